@@ -1,0 +1,21 @@
+# What every target of the house shares: warnings are errors, and arithmetic that is the same everywhere.
+
+add_library(softcell_options INTERFACE)
+target_compile_options(softcell_options INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wpedantic -Werror
+  # A contracted multiply-add rounds once where the source rounds twice: results would depend on the compiler.
+  -ffp-contract=off)
+if(SOFTCELL_SANITIZE)
+  target_compile_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE})
+endif()
+
+# softcell_add_library(<folder> SOURCES ...)
+# The one library of a folder: target softcell_<folder>, alias softcell::<folder>, public headers in <folder>/include.
+function(softcell_add_library folder)
+  cmake_parse_arguments(arg "" "" "SOURCES" ${ARGN})
+  add_library(softcell_${folder} STATIC ${arg_SOURCES})
+  add_library(softcell::${folder} ALIAS softcell_${folder})
+  target_include_directories(softcell_${folder} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/include PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_link_libraries(softcell_${folder} PRIVATE softcell_options)
+endfunction()
