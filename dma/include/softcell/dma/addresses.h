@@ -1,0 +1,43 @@
+#pragma once
+// The two kinds of address on the Cell, as types, so that one cannot be taken for the other.
+
+#include <compare>
+#include <cstdint>
+
+namespace softcell::dma {
+
+inline constexpr std::uint32_t kLocalStoreBytes = 256 * 1024;         // [CBEA, local store] documented
+inline constexpr std::uint32_t kLocalStoreMask = kLocalStoreBytes - 1;  // the LSLR register
+inline constexpr std::uint32_t kQuadwordBytes = 16;
+inline constexpr std::uint32_t kLineBytes = 128;
+inline constexpr int kSpeCount = 6;  // usable on a PS3: eight made, one disabled, one the system's
+
+/// Byte offset into one SPE's local store, 0..0x3FFFF when valid.
+struct LocalStoreAddress {
+  std::uint32_t value = 0;
+  auto operator<=>(const LocalStoreAddress&) const = default;
+};
+
+/// 64-bit address in the emulated main storage. Never a host pointer.
+struct EffectiveAddress {
+  std::uint64_t value = 0;
+  auto operator<=>(const EffectiveAddress&) const = default;
+};
+
+constexpr EffectiveAddress operator+(EffectiveAddress ea, std::uint64_t bytes) { return {ea.value + bytes}; }
+
+/// The map of main storage. The low words are those of a PS3 game process (256 MB of XDR, 256 MB of video memory,
+/// SPU threads from 0xF0000000 in steps of 1 MB); the high word is not zero, so that a kernel that drops
+/// MFC_EAH is caught, and the addresses are ones that no host program has mapped, so that a kernel that follows
+/// one as a pointer faults.
+inline constexpr EffectiveAddress kMainMemoryBase{0x5EA0'1000'0000};
+inline constexpr std::uint64_t kMainMemoryBytes = 256ull << 20;
+inline constexpr EffectiveAddress kVideoMemoryBase{0x5EA0'C000'0000};
+inline constexpr std::uint64_t kVideoMemoryBytes = 256ull << 20;
+inline constexpr EffectiveAddress kLocalStoresBase{0x5EA0'F000'0000};
+inline constexpr std::uint64_t kLocalStoreStrideBytes = 1ull << 20;
+
+/// True when `ea` lies in one of the three ranges above, whether or not anything is allocated there.
+constexpr bool is_effective_address(std::uint64_t ea) { return (ea >> 32) == (kMainMemoryBase.value >> 32); }
+
+}  // namespace softcell::dma

@@ -1,0 +1,35 @@
+#pragma once
+// Triangle meshes: what a soft body is made from.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace softcell::ppu {
+
+/// An indexed triangle mesh in metres. `normals` has one unit vector per position.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+};
+
+struct Bounds {
+  Eigen::Vector3f low, high;
+};
+
+/// The mesh's axis-aligned box. @pre at least one position.
+Bounds bounds(const TriangleMesh& mesh);
+
+/// Reads an OBJ, PLY or STL file (by its extension). Positions that are equal are joined; normals are taken from the
+/// file or made, smooth up to a crease.
+/// @throws std::runtime_error  one sentence naming the file and what is wrong with it: no such file, unknown format, not
+///         readable as one, no triangles, NaN or infinite coordinates, indices out of range, more than 4 million triangles.
+TriangleMesh import_mesh(const std::filesystem::path& path);
+
+/// Moves and scales the mesh so that its box is centred on 0 and its longest side has the given length in metres.
+void fit(TriangleMesh& mesh, float longest_side);
+
+}  // namespace softcell::ppu

@@ -1,0 +1,58 @@
+#pragma once
+// The contract of the kernel `skin`: plain data in main memory, the same bytes for both sides.
+// Freestanding; included by the kernel and by the PPU side. All scalars are in the machine's own byte order.
+
+#include <stdint.h>
+
+namespace softcell::spu {
+
+/// Four mesh vertices of one lattice cell, one 128-byte line. The embedding packs each cell's vertices into groups of
+/// four; a last group that is not full repeats its last vertex.
+struct alignas(128) SkinGroup {
+  float xi[4];        ///< position in the cell along x, 0..1, one lane per vertex
+  float eta[4];       ///< along y
+  float zeta[4];      ///< along z
+  float normal_x[4];  ///< rest normal, unit length
+  float normal_y[4];
+  float normal_z[4];
+  uint16_t corner[8];     ///< the cell's corners as indices into the job's corner array; corner k = bx + 2 by + 4 bz
+  uint16_t continues[8];  ///< [0] is 1 when the group has the same eight corners as the group before it, else 0
+};
+static_assert(sizeof(SkinGroup) == 128, "one line");
+
+/// A particle's position as the PPU side hands it over.
+struct alignas(16) SkinCorner {
+  float x, y, z, pad;
+};
+
+/// What is drawn: binary16 numbers, relative to the job's origin. 16 bytes, four of them to a group.
+struct alignas(16) SkinnedVertex {
+  uint16_t position[4];  ///< x y z 1
+  uint16_t normal[4];    ///< x y z 0, unit length
+};
+
+/// Most corners in one job: the kernel holds them all in local store.
+constexpr uint32_t kSkinMaxCorners = 2048;
+
+/// A contiguous run of corners in main memory.
+struct SkinWindow {
+  uint64_t ea;     ///< of the first SkinCorner, a multiple of 16
+  uint32_t count;  ///< corners, 0..kSkinMaxCorners
+  uint32_t pad;
+};
+
+/// The job's descriptor, one line in main memory.
+struct alignas(128) SkinJob {
+  uint64_t groups_ea;        ///< group_count SkinGroups, 128-byte aligned
+  uint64_t vertices_ea;      ///< room for 4 * group_count SkinnedVertex, 128-byte aligned
+  SkinWindow window[2];      ///< the job's corner array is window[0] followed by window[1]; the sum is at most kSkinMaxCorners
+  float origin[4];           ///< subtracted from every corner; x y z and 0
+  uint32_t group_count;      ///< any number, 0 included
+  uint32_t pad[15];
+};
+static_assert(sizeof(SkinJob) == 128, "one line");
+
+/// What the kernel's main returns.
+enum SkinStatus : uint32_t { kSkinDone = 0, kSkinTooManyCorners = 1 };
+
+}  // namespace softcell::spu
