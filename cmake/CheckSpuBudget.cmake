@@ -1,0 +1,11 @@
+# Run after a kernel is linked: refuses an image that passes its declared budget, by name and by how much.
+execute_process(COMMAND ${NM} ${IMAGE} OUTPUT_VARIABLE symbols RESULT_VARIABLE failed)
+if(failed OR NOT symbols MATCHES "([0-9a-f]+) [A-Za-z] _end\n")
+  message(FATAL_ERROR "kernel ${KERNEL}: ${IMAGE} has no symbol _end; it was not linked with ls.ld")
+endif()
+math(EXPR total "0x${CMAKE_MATCH_1} + ${STACK_BYTES}")
+if(total GREATER BUDGET_BYTES)
+  math(EXPR excess "${total} - ${BUDGET_BYTES}")
+  file(REMOVE ${IMAGE})
+  message(FATAL_ERROR "kernel ${KERNEL}: ${excess} bytes over its budget: image and stack take ${total} of ${BUDGET_BYTES} bytes")
+endif()

@@ -1,0 +1,83 @@
+# softcell_add_spu_kernel(<name> SOURCES <file>... STACK_BYTES <n> BUDGET_BYTES <n>)
+#
+# Builds one SPU kernel for the host: freestanding objects, linked on their own at local-store address 0 into
+# <binary dir>/<name>.spu.elf. The build fails when the image leaves no room for its stack, holds a relocation, or passes its
+# budget (image and stack together). Target <name>_image depends on the file; its property SOFTCELL_IMAGE is the path.
+# Each source is also checked against the declarations of a real SPU compiler, as the test spu_syntax.<name>.<file>.
+
+set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk)
+set(SOFTCELL_CHECK_BUDGET ${CMAKE_CURRENT_LIST_DIR}/CheckSpuBudget.cmake)
+
+set(SOFTCELL_KERNEL_FLAGS
+  -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fPIE -fvisibility=hidden -fno-stack-protector
+  # Kernels are optimised in every configuration: their budgets and their bits do not depend on it.
+  -O2 -g -mavx2 -mfma
+  # SPU arithmetic truncates at run time, so nothing may be folded in another mode or fused unasked.
+  -frounding-math -fno-trapping-math -ffp-contract=off
+  # The stack is measured in bytes below the stack pointer; SPU code has no red zone to rely on.
+  -mno-red-zone -fomit-frame-pointer
+  # No loops turned into calls of memcpy or memset: there is no C library in a local store.
+  -fno-builtin
+  -Wall -Wextra -Wshadow -Wpedantic -Werror -Wno-unknown-warning-option)
+
+function(softcell_add_spu_kernel name)
+  cmake_parse_arguments(arg "" "STACK_BYTES;BUDGET_BYTES" "SOURCES;INCLUDES" ${ARGN})
+  foreach(required STACK_BYTES BUDGET_BYTES SOURCES)
+    if(NOT arg_${required})
+      message(FATAL_ERROR "softcell_add_spu_kernel(${name}): ${required} is missing")
+    endif()
+  endforeach()
+  set(image ${CMAKE_CURRENT_BINARY_DIR}/${name}.spu.elf)
+
+  add_library(${name}_objects OBJECT ${arg_SOURCES})
+  # The project's own flags come first on the command line; these win over them.
+  target_compile_options(${name}_objects PRIVATE
+    -U_FORTIFY_SOURCE ${SOFTCELL_KERNEL_FLAGS}
+    $<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns>
+    "SHELL:-include ${SOFTCELL_SDK_DIR}/host/softcell_entry.h")
+  target_include_directories(${name}_objects PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/.. ${arg_INCLUDES})
+
+  add_custom_command(OUTPUT ${image}
+    COMMAND ${CMAKE_LINKER} -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
+      --defsym softcell_stack_bytes=${arg_STACK_BYTES} --defsym softcell_budget_bytes=${arg_BUDGET_BYTES}
+      --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
+      $<TARGET_OBJECTS:${name}_objects> -o ${image}
+    COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DIMAGE=${image} -DKERNEL=${name}
+      -DSTACK_BYTES=${arg_STACK_BYTES} -DBUDGET_BYTES=${arg_BUDGET_BYTES} -P ${SOFTCELL_CHECK_BUDGET}
+    DEPENDS ${name}_objects $<TARGET_OBJECTS:${name}_objects> ${SOFTCELL_SDK_DIR}/ls.ld ${SOFTCELL_CHECK_BUDGET}
+    COMMAND_EXPAND_LISTS VERBATIM
+    COMMENT "Linking local-store image ${name}")
+  add_custom_target(${name}_image ALL DEPENDS ${image})
+  set_target_properties(${name}_image PROPERTIES SOFTCELL_IMAGE ${image})
+
+  foreach(source IN LISTS arg_SOURCES)
+    cmake_path(ABSOLUTE_PATH source)
+    cmake_path(GET source STEM stem)
+    list(TRANSFORM arg_INCLUDES PREPEND -I OUTPUT_VARIABLE include_options)
+    add_test(NAME spu_syntax.${name}.${stem}
+      COMMAND ${CMAKE_CXX_COMPILER} -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fsyntax-only -Wall -Wextra -Werror
+        -I ${SOFTCELL_SDK_DIR}/check -I ${SOFTCELL_SDK_DIR}/.. ${include_options} ${source})
+    set_tests_properties(spu_syntax.${name}.${stem} PROPERTIES LABELS kernel)
+  endforeach()
+endfunction()
+
+# softcell_embed_spu_images(<library> <kernel>...)
+# Puts the images into a static library as read-only data: extern "C" const unsigned char softcell_image_<kernel>[] and
+# softcell_image_<kernel>_end[].
+function(softcell_embed_spu_images library)
+  foreach(kernel IN LISTS ARGN)
+    get_target_property(image ${kernel}_image SOFTCELL_IMAGE)
+    set(stub ${CMAKE_CURRENT_BINARY_DIR}/${kernel}.embed.S)
+    file(CONFIGURE OUTPUT ${stub} @ONLY CONTENT [[
+.section .rodata
+.balign 64
+.global softcell_image_@kernel@, softcell_image_@kernel@_end
+softcell_image_@kernel@:
+.incbin "@image@"
+softcell_image_@kernel@_end:
+.section .note.GNU-stack,"",%progbits
+]])
+    target_sources(${library} PRIVATE ${stub})
+    set_source_files_properties(${stub} PROPERTIES OBJECT_DEPENDS ${image})
+  endforeach()
+endfunction()

@@ -1,0 +1,30 @@
+#pragma once
+// Small DMA helpers shared by the kernels.
+
+#include <spu_mfcio.h>
+#include <stdint.h>
+
+namespace softcell::spu {
+
+/// Most bytes that one MFC command moves. [CBEA, MFC commands] documented
+constexpr uint32_t kMaxTransferBytes = 16384;
+
+/// Blocks until every command of the tag group is complete.
+inline void wait_for_tag(uint32_t tag) {
+  mfc_write_tag_mask(1u << tag);
+  mfc_read_tag_status_all();
+}
+
+/// Queues as many gets as it takes to fetch `bytes` (a multiple of 16, 0 included) to `ls`, all in one tag group.
+inline void get_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
+  char* to = static_cast<char*>(ls);
+  while (bytes != 0) {
+    const uint32_t piece = bytes < kMaxTransferBytes ? bytes : kMaxTransferBytes;
+    mfc_get(to, ea, piece, tag, 0, 0);
+    to += piece;
+    ea += piece;
+    bytes -= piece;
+  }
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,57 @@
+#pragma once
+// Four floats to four binary16 numbers, exactly: round to nearest, ties to even, in integer arithmetic, since the SPU's own
+// floating point truncates.
+
+#include <spu_intrinsics.h>
+
+namespace softcell::spu {
+
+/// Bits of the smallest float that is a normal binary16, and of the smallest that rounds to infinity.
+constexpr unsigned int kHalfSmallestNormal = 0x38800000u;  // 2^-14
+constexpr unsigned int kHalfOverflow = 0x477FF000u;        // 65520
+
+/// All ones in the lanes whose magnitude is outside the range that half_of_normal() handles.
+inline vec_uint4 outside_half_normal(vec_float4 value) {
+  const vec_uint4 magnitude = spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu));
+  return spu_or(spu_cmpgt(spu_splats(kHalfSmallestNormal), magnitude),
+                spu_cmpgt(magnitude, spu_splats(kHalfOverflow - 1u)));
+}
+
+/// binary16 bits in the low half of each word. Only for lanes where outside_half_normal() is 0.
+inline vec_uint4 half_of_normal(vec_float4 value) {
+  const vec_uint4 bits = (vec_uint4)value;
+  const vec_uint4 magnitude = spu_and(bits, spu_splats(0x7FFFFFFFu));
+  const vec_uint4 odd = spu_and(spu_rlmask(magnitude, -13), spu_splats(1u));
+  // Rebias the exponent (127 to 15) and round in one addition; a carry out of the fraction moves the exponent, as it should.
+  const vec_uint4 rounded = spu_add(spu_add(magnitude, odd), spu_splats(0xFFFu - (112u << 23)));
+  const vec_uint4 sign = spu_and(spu_rlmask(bits, -16), spu_splats(0x8000u));
+  return spu_or(sign, spu_rlmask(rounded, -13));
+}
+
+/// binary16 bits in the low half of each word, for every bit pattern: subnormals, zero, infinity; a NaN stays one.
+inline vec_uint4 half_of_any(vec_float4 value) {
+  const vec_uint4 bits = (vec_uint4)value;
+  const vec_uint4 magnitude = spu_and(bits, spu_splats(0x7FFFFFFFu));
+  const vec_uint4 sign = spu_and(spu_rlmask(bits, -16), spu_splats(0x8000u));
+
+  // Below 2^-14: shift the fraction with its hidden bit right by 14..25 places and round; 25 leaves nothing of it.
+  const vec_uint4 exponent = spu_rlmask(magnitude, -23);
+  const vec_uint4 wanted = spu_sub(spu_splats(126u), exponent);
+  const vec_uint4 shift = spu_sel(wanted, spu_splats(25u), spu_cmpgt(wanted, spu_splats(25u)));
+  const vec_int4 right = (vec_int4)spu_sub(spu_splats(0u), shift);
+  const vec_uint4 fraction = spu_or(spu_and(magnitude, spu_splats(0x7FFFFFu)), spu_splats(0x800000u));
+  const vec_uint4 odd = spu_and(spu_rlmask(fraction, right), spu_splats(1u));
+  const vec_uint4 almost_half = spu_sub(spu_sl(spu_splats(1u), spu_sub(shift, spu_splats(1u))), spu_splats(1u));
+  const vec_uint4 subnormal = spu_rlmask(spu_add(spu_add(fraction, almost_half), odd), right);
+
+  // A NaN keeps the top of its payload, and the quiet bit so that it stays one.
+  const vec_uint4 infinity = spu_splats(0x7C00u);
+  const vec_uint4 nan = spu_or(spu_and(spu_rlmask(magnitude, -13), spu_splats(0x3FFu)), spu_splats(0x7E00u));
+
+  vec_uint4 half = half_of_normal(value);
+  half = spu_sel(half, spu_or(sign, subnormal), spu_cmpgt(spu_splats(kHalfSmallestNormal), magnitude));
+  half = spu_sel(half, spu_or(sign, infinity), spu_cmpgt(magnitude, spu_splats(kHalfOverflow - 1u)));
+  return spu_sel(half, spu_or(sign, nan), spu_cmpgt(magnitude, spu_splats(0x7F800000u)));
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,42 @@
+#pragma once
+// Four 3-vectors at a time, one component to a register ("structure of arrays").
+
+#include <spu_intrinsics.h>
+
+namespace softcell::spu {
+
+struct Vector3x4 {
+  vec_float4 x, y, z;
+};
+
+inline Vector3x4 cross(const Vector3x4& a, const Vector3x4& b) {
+  return {spu_msub(a.y, b.z, spu_mul(a.z, b.y)), spu_msub(a.z, b.x, spu_mul(a.x, b.z)),
+          spu_msub(a.x, b.y, spu_mul(a.y, b.x))};
+}
+
+inline vec_float4 dot(const Vector3x4& a, const Vector3x4& b) {
+  return spu_madd(a.x, b.x, spu_madd(a.y, b.y, spu_mul(a.z, b.z)));
+}
+
+inline Vector3x4 scale(const Vector3x4& a, vec_float4 s) {
+  return {spu_mul(a.x, s), spu_mul(a.y, s), spu_mul(a.z, s)};
+}
+
+/// a * s + b, each component fused.
+inline Vector3x4 scale_add(const Vector3x4& a, vec_float4 s, const Vector3x4& b) {
+  return {spu_madd(a.x, s, b.x), spu_madd(a.y, s, b.y), spu_madd(a.z, s, b.z)};
+}
+
+inline Vector3x4 select(const Vector3x4& a, const Vector3x4& b, vec_uint4 take_b) {
+  return {spu_sel(a.x, b.x, take_b), spu_sel(a.y, b.y, take_b), spu_sel(a.z, b.z, take_b)};
+}
+
+/// 1 / sqrt(x) for x > 0, to about 23 bits: the estimate (12.5 bits) and one Newton step.
+inline vec_float4 reciprocal_sqrt(vec_float4 x) {
+  const vec_float4 estimate = spu_rsqrte(x);
+  const vec_float4 half_x = spu_mul(x, spu_splats(0.5f));
+  const vec_float4 correction = spu_nmsub(spu_mul(half_x, estimate), estimate, spu_splats(1.5f));
+  return spu_mul(estimate, correction);
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,18 @@
+#pragma once
+// The kernels of this project as files: ELF images linked for the local store, built into the library.
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace softcell::spu_kernels {
+
+struct ImageFile {
+  std::string_view name;
+  std::span<const std::byte> elf;  ///< for ls_sim::load_image()
+};
+
+/// All of them, by name.
+std::span<const ImageFile> image_files();
+
+}  // namespace softcell::spu_kernels

@@ -1,0 +1,19 @@
+#include "softcell/spu_kernels/images.h"
+
+#include <array>
+
+extern "C" {
+extern const std::byte softcell_image_skin[];
+extern const std::byte softcell_image_skin_end[];
+}
+
+namespace softcell::spu_kernels {
+
+std::span<const ImageFile> image_files() {
+  static const std::array<ImageFile, 1> files{{
+      {"skin", {softcell_image_skin, softcell_image_skin_end}},
+  }};
+  return files;
+}
+
+}  // namespace softcell::spu_kernels
