@@ -1,0 +1,58 @@
+#pragma once
+// What runs a kernel's instructions. The native engine runs host images; others may follow.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "softcell/dma/fault.h"
+#include "softcell/ls_sim/channels.h"
+#include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/local_store.h"
+
+namespace softcell::ls_sim {
+
+/// The three 64-bit arguments of a kernel's main. [SPU ABI, libspe2]
+struct EntryArguments {
+  std::uint64_t spe_id = 0;
+  std::uint64_t argp = 0;
+  std::uint64_t envp = 0;
+};
+
+/// How a run ended: by main's return (or spu_stop) with a stop code, or by a fault.
+struct RunResult {
+  std::uint32_t stop_code = 0;  ///< 0x2000 + status for a normal end; 0..0x3FFF
+  std::optional<dma::Fault> fault;
+
+  static constexpr std::uint32_t kNormalEnd = 0x2000;  // [libspe2, newlib] documented
+  bool ended_normally() const { return !fault && (stop_code & ~0xFFu) == kNormalEnd; }
+  std::uint32_t status() const { return stop_code & 0xFFu; }
+};
+
+/// One engine belongs to one SPE and is called by that SPE's thread, except for interrupt().
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// Makes the image resident, replacing what was there. Text, data and bss are as linked, the rest is filler.
+  virtual void load(const KernelImage& image) = 0;
+
+  /// Runs the resident image once. The initialised data are as linked; bss is as the last run left it.
+  virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels) = 0;
+
+  /// Stops the run in progress, if there is one, with the fault deadline-exceeded. Any thread.
+  virtual void interrupt() = 0;
+
+  /// Most stack in bytes that any run since load() used, found by what is left of the filler.
+  virtual std::uint32_t stack_high_water() const = 0;
+};
+
+/// The engine for images made by softcell_add_spu_kernel for this host.
+/// @throws std::runtime_error  when the processor lacks AVX2 or FMA.
+std::unique_ptr<Engine> make_native_engine(LocalStore& local_store);
+
+/// @throws std::runtime_error  one sentence, when one of the two is false: the native engine needs both.
+void require_vector_units(bool avx2, bool fma);
+
+}  // namespace softcell::ls_sim

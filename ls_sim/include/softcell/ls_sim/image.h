@@ -1,0 +1,41 @@
+#pragma once
+// A kernel image: the bytes that are copied into a local store, and what is declared about them.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace softcell::ls_sim {
+
+/// Bytes at the bottom of every local store that belong to the emulator: the environment through which a kernel on the host
+/// engine reaches its channels. An SPU program linked at 0x80 leaves them free as well.
+inline constexpr std::uint32_t kEnvironmentBytes = 128;
+
+/// Sizes in bytes of what an image occupies, and of what it may.
+struct ImageSizes {
+  std::uint32_t text = 0, rodata = 0, data = 0, bss = 0;
+  std::uint32_t stack = 0;   ///< declared, at the top of the local store
+  std::uint32_t budget = 0;  ///< declared: the most that total() may be
+
+  std::uint32_t end = 0;  ///< local-store address behind bss: environment, alignment and all sections
+  std::uint32_t total() const { return end + stack; }
+};
+
+struct KernelImage {
+  std::string name;
+  std::vector<std::byte> bytes;  ///< from kEnvironmentBytes up to the end of data; bss follows, zeroed
+  std::uint32_t data_begin = 0;  ///< local-store address of the writable initialised data
+  std::uint32_t data_end = 0;
+  std::uint32_t entry = 0;  ///< local-store address
+  ImageSizes sizes;
+};
+
+/// Reads a kernel that was linked with spu_kernels/sdk/ls.ld.
+/// @throws std::runtime_error  one sentence with the name and what is wrong: not ELF, another machine or class, truncated,
+///         linked by another script, a relocation left, past 256 KB, segments that overlap, an entry outside the text.
+KernelImage load_image(std::string_view name, std::span<const std::byte> elf);
+
+}  // namespace softcell::ls_sim

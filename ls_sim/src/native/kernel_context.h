@@ -1,0 +1,74 @@
+#pragma once
+// The state that the three stacks of a native run share: the worker's own, the kernel's (in local store), and the landing stack
+// on which a kernel that faulted is left.
+//
+//   worker    run() --jump--> kernel: main() ... gate() --jump--> run(): serves the channel --jump--> gate() returns ...
+//   kernel    on a fault: signal handler (on the signal stack) rewrites the interrupted context to land() on the landing
+//             stack, which jumps to run(); the kernel's frames are abandoned where they are.
+//
+// Only code without sanitizer instrumentation runs on the kernel's and the landing stack (kernel_side.cpp), so that sanitizers
+// see one stack per thread.
+
+#include <boost/context/detail/fcontext.hpp>
+#include <csignal>
+#include <cstdint>
+
+namespace softcell::ls_sim::native {
+
+/// First quadwords of the local store, as spu_kernels/sdk/host/softcell_environment.h declares them (a test compares the two).
+struct Environment {
+  std::uint64_t gate = 0;
+  std::uint32_t mfc_lsa = 0, mfc_eah = 0, mfc_eal = 0, mfc_size = 0, mfc_tag = 0;
+  std::uint32_t reserved[25] = {};
+};
+static_assert(sizeof(Environment) == 128);
+
+/// What the kernel asks of the worker.
+enum class Operation : std::uint32_t { kRead = 0, kWrite = 1, kCount = 2, kStop = 3, kHalt = 4, kFault = 5 };
+
+/// How the processor stopped the kernel.
+struct Trap {
+  int signal = 0;
+  bool general_protection = false;  ///< the processor gave no address: it was not a canonical one
+  bool instruction_fetch = false;
+  bool write = false;
+  std::uintptr_t address = 0;
+  std::uintptr_t instruction = 0;
+  std::uintptr_t stack = 0;
+};
+
+struct KernelContext {
+  boost::context::detail::fcontext_t kernel = nullptr;  ///< where the kernel waits; its value is the kernel's stack pointer
+  boost::context::detail::fcontext_t worker = nullptr;
+
+  // The request of the kernel and the worker's answer.
+  Operation operation = Operation::kStop;
+  std::uint32_t channel = 0;
+  std::uint32_t value = 0;
+  std::uint32_t reply = 0;
+  Trap trap;
+
+  // What main is called with.
+  std::uintptr_t entry = 0;
+  std::uint64_t arguments[3] = {};
+
+  // For the signal handler.
+  std::uintptr_t arena = 0;
+  std::uintptr_t landing_stack_top = 0;
+  volatile std::sig_atomic_t in_kernel = 0;
+  volatile std::sig_atomic_t interrupted = 0;
+};
+
+/// The context that this thread runs, or null. Set for the time of a run.
+KernelContext*& current_context();
+
+/// First function on the kernel's stack: sets the SPU's arithmetic, calls main, asks for the stop.
+void kernel_start(boost::context::detail::transfer_t transfer);
+
+/// Called by kernels through the environment: operation is kind << 8 | channel.
+std::uint32_t gate(std::uint32_t operation, std::uint32_t value);
+
+/// First function on the landing stack.
+void land();
+
+}  // namespace softcell::ls_sim::native

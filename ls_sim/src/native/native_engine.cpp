@@ -1,0 +1,252 @@
+#include <pthread.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+#include <stdexcept>
+
+#include "kernel_context.h"
+#include "signals.h"
+#include "softcell/ls_sim/engine.h"
+
+namespace softcell::ls_sim {
+
+void require_vector_units(bool avx2, bool fma) {
+  if (avx2 && fma) return;
+  throw std::runtime_error(std::string("this processor lacks ") + (avx2 ? "FMA" : fma ? "AVX2" : "AVX2 and FMA") +
+                           ": the native engine needs a processor with AVX2 and FMA (Intel since 2013, AMD since 2015)");
+}
+
+namespace {
+
+using native::KernelContext;
+using native::Operation;
+
+constexpr std::byte kFiller{0xA5};
+constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
+constexpr std::size_t kLandingStackBytes = 16 * 1024;
+
+std::string hexadecimal(std::uint64_t value) {
+  std::array<char, 24> text{};
+  std::snprintf(text.data(), text.size(), "0x%05llx", static_cast<unsigned long long>(value));
+  return text.data();
+}
+
+std::string describe_stack(const ImageSizes& sizes) { return "the declared stack has " + std::to_string(sizes.stack) + " bytes"; }
+
+class NativeEngine final : public Engine {
+ public:
+  explicit NativeEngine(LocalStore& local_store)
+      : local_store_(local_store), landing_stack_(std::make_unique<std::byte[]>(kLandingStackBytes)) {
+    require_vector_units(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0);
+    native::install_signal_handlers();
+    context_.arena = arena();
+    const auto top = reinterpret_cast<std::uintptr_t>(landing_stack_.get()) + kLandingStackBytes;
+    context_.landing_stack_top = top & ~std::uintptr_t{15};
+  }
+
+  void load(const KernelImage& image) override {
+    image_ = &image;
+    std::byte* const base = local_store_.base();
+    native::Environment environment;
+    environment.gate = reinterpret_cast<std::uint64_t>(&native::gate);
+    std::memcpy(base, &environment, sizeof environment);
+    std::byte* const bss = std::copy(image.bytes.begin(), image.bytes.end(), base + kEnvironmentBytes);
+    std::fill(bss, base + image.sizes.end, std::byte{0});
+    std::fill(base + image.sizes.end, base + dma::kLocalStoreBytes, kFiller);
+  }
+
+  RunResult run(const EntryArguments& arguments, ChannelPort& channels) override;
+  void interrupt() override;
+  std::uint32_t stack_high_water() const override;
+
+ private:
+  std::uintptr_t arena() const { return reinterpret_cast<std::uintptr_t>(local_store_.base()); }
+  std::uint32_t stack_limit() const { return dma::kLocalStoreBytes - image_->sizes.stack; }
+
+  void prepare(const EntryArguments& arguments);
+  void enter_kernel();
+  RunResult serve(ChannelPort& channels);
+  ChannelReply serve_channel(ChannelPort& channels);
+  ChannelReply issue_command(ChannelPort& channels);
+  std::optional<dma::Fault> check_stack() const;
+  dma::Fault classify_trap() const;
+  dma::Fault stack_overflow(std::string detail) const;
+
+  static dma::Fault fault(dma::Rule rule, std::string detail) {
+    dma::Fault result{rule};
+    result.detail = std::move(detail);
+    return result;
+  }
+
+  LocalStore& local_store_;
+  std::unique_ptr<std::byte[]> landing_stack_;
+  const KernelImage* image_ = nullptr;
+  KernelContext context_;
+  std::mutex running_mutex_;  // guards the two below
+  bool running_ = false;
+  pthread_t runner_{};
+};
+
+void NativeEngine::prepare(const EntryArguments& arguments) {
+  // The initialised data start every run as they were linked, so that no job sees what another left.
+  const std::uint32_t data_offset = image_->data_begin - kEnvironmentBytes;
+  std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
+              local_store_.base() + image_->data_begin);
+  context_.entry = arena() + image_->entry;
+  context_.arguments[0] = arguments.spe_id;
+  context_.arguments[1] = arguments.argp;
+  context_.arguments[2] = arguments.envp;
+  context_.interrupted = 0;
+  context_.kernel = boost::context::detail::make_fcontext(local_store_.base() + dma::kLocalStoreBytes, image_->sizes.stack,
+                                                          native::kernel_start);
+}
+
+void NativeEngine::enter_kernel() {
+  context_.in_kernel = 1;
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  const auto back = boost::context::detail::jump_fcontext(context_.kernel, &context_);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  context_.in_kernel = 0;
+  context_.kernel = back.fctx;
+}
+
+RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels) {
+  const native::SignalStack signal_stack;
+  prepare(arguments);
+  native::current_context() = &context_;
+  {
+    const std::scoped_lock lock(running_mutex_);
+    runner_ = pthread_self();
+    running_ = true;
+  }
+  RunResult result = serve(channels);
+  {
+    const std::scoped_lock lock(running_mutex_);
+    running_ = false;
+  }
+  native::current_context() = nullptr;
+  return result;
+}
+
+void NativeEngine::interrupt() {
+  const std::scoped_lock lock(running_mutex_);
+  if (running_) pthread_kill(runner_, native::kInterruptSignal);
+}
+
+RunResult NativeEngine::serve(ChannelPort& channels) {
+  for (;;) {
+    enter_kernel();
+    if (context_.operation == Operation::kFault) return {0, classify_trap()};
+    if (auto overflow = check_stack()) return {0, std::move(overflow)};
+    if (context_.interrupted != 0) return {0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
+    if (context_.operation == Operation::kStop) return {context_.value & 0x3FFFu, std::nullopt};
+    if (context_.operation == Operation::kHalt) {
+      return {0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
+    }
+    ChannelReply reply = serve_channel(channels);
+    if (reply.fault) return {0, std::move(reply.fault)};
+    context_.reply = reply.value;
+  }
+}
+
+ChannelReply NativeEngine::serve_channel(ChannelPort& channels) {
+  switch (context_.operation) {
+    case Operation::kRead:
+      return channels.read(context_.channel);
+    case Operation::kWrite:
+      if (context_.channel == static_cast<std::uint32_t>(Channel::kMfcCmd)) return issue_command(channels);
+      return channels.write(context_.channel, context_.value);
+    case Operation::kCount:
+      return channels.count(context_.channel);
+    default:
+      return {0, fault(dma::Rule::kIllegalChannel, "the kernel called the environment with an unknown operation")};
+  }
+}
+
+/// The host headers keep the five parameters of a command in the environment and call only for the command itself.
+ChannelReply NativeEngine::issue_command(ChannelPort& channels) {
+  native::Environment environment;
+  std::memcpy(&environment, local_store_.base(), sizeof environment);
+  const std::array parameters{environment.mfc_lsa, environment.mfc_eah, environment.mfc_eal, environment.mfc_size,
+                              environment.mfc_tag};
+  for (std::uint32_t i = 0; i < parameters.size(); ++i) {
+    ChannelReply reply = channels.write(static_cast<std::uint32_t>(Channel::kMfcLsa) + i, parameters[i]);
+    if (reply.fault) return reply;
+  }
+  return channels.write(static_cast<std::uint32_t>(Channel::kMfcCmd), context_.value);
+}
+
+dma::Fault NativeEngine::stack_overflow(std::string detail) const {
+  return fault(dma::Rule::kStackOverflow, std::move(detail) + "; " + describe_stack(image_->sizes));
+}
+
+std::optional<dma::Fault> NativeEngine::check_stack() const {
+  const auto pointer = reinterpret_cast<std::uintptr_t>(context_.kernel) - arena();
+  if (pointer < stack_limit()) return stack_overflow("the stack pointer is at local-store address " + hexadecimal(pointer));
+  const std::uint32_t canary_end = stack_limit();
+  const std::uint32_t canary_begin = std::max(image_->sizes.end, canary_end - std::min(canary_end, kCanaryBytes));
+  const std::byte* const base = local_store_.base();
+  if (context_.operation == Operation::kStop &&
+      std::any_of(base + canary_begin, base + canary_end, [](std::byte b) { return b != kFiller; })) {
+    return stack_overflow("bytes below the stack were written");
+  }
+  return std::nullopt;
+}
+
+dma::Fault NativeEngine::classify_trap() const {
+  const native::Trap& trap = context_.trap;
+  const std::uintptr_t at = trap.instruction - arena();
+  const std::string where = at < dma::kLocalStoreBytes ? "the instruction at local-store address " + hexadecimal(at)
+                                                       : "an instruction outside the local store";
+  if (trap.signal == native::kInterruptSignal) {
+    return fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time; it was at local-store address " + hexadecimal(at));
+  }
+  const std::uintptr_t stack = trap.stack - (arena() - LocalStore::kGuardBytes);
+  if (stack < LocalStore::kGuardBytes + stack_limit()) {
+    return stack_overflow("the stack pointer is " + std::to_string(arena() + stack_limit() - trap.stack) +
+                          " bytes below its limit at " + where);
+  }
+  if (trap.signal == SIGILL || trap.signal == SIGTRAP) {
+    return fault(dma::Rule::kIllegalInstruction, where + " is not one");
+  }
+  if (trap.signal == SIGFPE) {
+    return fault(dma::Rule::kIllegalInstruction, where + " divides an integer by zero");
+  }
+  if (trap.general_protection) {
+    return fault(dma::Rule::kOutsideLocalStore, where + " followed a pointer that is no address at all");
+  }
+  const char* const access = trap.instruction_fetch ? " jumped to " : trap.write ? " wrote to " : " read from ";
+  if (dma::is_effective_address(trap.address)) {
+    return fault(dma::Rule::kEffectiveAddressAsPointer,
+                 where + access + "effective address " + hexadecimal(trap.address) + "; main storage is reached by DMA only");
+  }
+  const std::uintptr_t offset = trap.address - arena();
+  if (offset < 2 * std::uintptr_t{dma::kLocalStoreBytes}) {
+    return fault(dma::Rule::kOutsideLocalStore, where + access + std::to_string(offset - dma::kLocalStoreMask) +
+                                                    " bytes past the end of the local store");
+  }
+  if (arena() - trap.address <= LocalStore::kGuardBytes) {
+    return fault(dma::Rule::kOutsideLocalStore,
+                 where + access + std::to_string(arena() - trap.address) + " bytes before the local store");
+  }
+  return fault(dma::Rule::kOutsideLocalStore, where + access + "address " + hexadecimal(trap.address) +
+                                                  ", which is neither in the local store nor an effective address");
+}
+
+std::uint32_t NativeEngine::stack_high_water() const {
+  if (image_ == nullptr) return 0;
+  const std::byte* const base = local_store_.base();
+  const std::byte* const top = base + dma::kLocalStoreBytes;
+  const std::byte* const used = std::find_if(base + image_->sizes.end, top, [](std::byte b) { return b != kFiller; });
+  return static_cast<std::uint32_t>(top - used);
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> make_native_engine(LocalStore& local_store) { return std::make_unique<NativeEngine>(local_store); }
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,93 @@
+#include "signals.h"
+
+#include <ucontext.h>
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+
+#include "kernel_context.h"
+#include "softcell/dma/addresses.h"
+
+namespace softcell::ls_sim::native {
+namespace {
+
+constexpr std::array kSignals{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGTRAP, kInterruptSignal};
+std::array<struct sigaction, NSIG> previous_actions;
+
+// Bits of the page-fault error code. [AMD64 manual, volume 2, page fault] documented
+constexpr std::uint64_t kPageFaultWrite = 2, kPageFaultFetch = 16;
+
+/// Does what would have happened without us.
+void pass_on(int signal, siginfo_t* info, void* machine) {
+  const struct sigaction& previous = previous_actions[static_cast<std::size_t>(signal)];
+  if ((previous.sa_flags & SA_SIGINFO) != 0) {
+    previous.sa_sigaction(signal, info, machine);
+  } else if (previous.sa_handler == SIG_DFL) {
+    sigaction(signal, &previous, nullptr);  // the instruction runs again and ends the process
+    if (info->si_code <= 0) raise(signal);
+  } else if (previous.sa_handler != SIG_IGN) {
+    previous.sa_handler(signal);
+  }
+}
+
+/// Leaves the kernel where it is: when the handler returns, the thread continues in land() on the landing stack.
+void redirect_to_landing(const KernelContext& context, mcontext_t& machine) {
+  machine.gregs[REG_RIP] = reinterpret_cast<greg_t>(&land);
+  machine.gregs[REG_RSP] = static_cast<greg_t>(context.landing_stack_top - 8);  // as if called: 8 below a multiple of 16
+  machine.gregs[REG_EFL] &= ~static_cast<greg_t>(0x400);                        // direction flag clear, as the ABI asks
+}
+
+bool in_arena(const KernelContext& context, std::uintptr_t address) {
+  return address - context.arena < dma::kLocalStoreBytes;
+}
+
+void handle(int signal, siginfo_t* info, void* machine_context) {
+  KernelContext* context = current_context();
+  if (signal == kInterruptSignal && info->si_code == SI_TKILL) {
+    // Late, or between kernel and worker: the flag is read at the next channel operation.
+    if (context == nullptr) return;
+    context->interrupted = 1;
+  } else if (context == nullptr || context->in_kernel == 0) {
+    pass_on(signal, info, machine_context);
+    return;
+  }
+  auto& machine = static_cast<ucontext_t*>(machine_context)->uc_mcontext;
+  const auto instruction = static_cast<std::uintptr_t>(machine.gregs[REG_RIP]);
+  if (signal == kInterruptSignal && info->si_code == SI_TKILL && (context->in_kernel == 0 || !in_arena(*context, instruction))) {
+    return;
+  }
+  const auto error = static_cast<std::uint64_t>(machine.gregs[REG_ERR]);
+  context->trap.signal = signal;
+  context->trap.general_protection = signal == SIGSEGV && info->si_code == SI_KERNEL;
+  context->trap.address = reinterpret_cast<std::uintptr_t>(info->si_addr);
+  context->trap.instruction = instruction;
+  context->trap.stack = static_cast<std::uintptr_t>(machine.gregs[REG_RSP]);
+  context->trap.write = (error & kPageFaultWrite) != 0;
+  context->trap.instruction_fetch = (error & kPageFaultFetch) != 0;
+  redirect_to_landing(*context, machine);
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    struct sigaction action {};
+    action.sa_sigaction = handle;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+    sigemptyset(&action.sa_mask);
+    for (const int signal : kSignals) sigaction(signal, &action, &previous_actions[static_cast<std::size_t>(signal)]);
+  });
+}
+
+SignalStack::SignalStack() : memory_(std::make_unique<std::byte[]>(kBytes)) {
+  stack_t stack{};
+  stack.ss_sp = memory_.get();
+  stack.ss_size = kBytes;
+  sigaltstack(&stack, &previous_);
+}
+
+SignalStack::~SignalStack() { sigaltstack(&previous_, nullptr); }
+
+}  // namespace softcell::ls_sim::native

@@ -1,0 +1,148 @@
+#include "softcell/ppu/skin_orchestrator.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace softcell::ppu {
+
+using spu::SkinCorner;
+using spu::SkinGroup;
+using spu::SkinJob;
+using spu::SkinnedVertex;
+
+struct SkinOrchestrator::Model {
+  std::shared_ptr<const Embedding> embedding;
+  dma::Buffer<SkinGroup> groups;
+};
+
+struct SkinOrchestrator::Body {
+  struct Half {
+    dma::Buffer<SkinCorner> corners;
+    dma::Buffer<SkinJob> jobs;
+    dma::Buffer<SkinnedVertex> vertices;
+    Eigen::Vector3f origin{0, 0, 0};
+  };
+  const Model* model;
+  std::array<Half, 2> half;
+};
+
+namespace {
+
+/// A point below all particles by a margin that is not tiny against the body, so that every relative coordinate is a normal
+/// half float with an error far below its unit in the last place.
+Eigen::Vector3f origin_below(std::span<const SkinCorner> positions) {
+  Eigen::Vector3f low(positions[0].x, positions[0].y, positions[0].z), high = low;
+  for (const SkinCorner& p : positions) {
+    low = low.cwiseMin(Eigen::Vector3f(p.x, p.y, p.z));
+    high = high.cwiseMax(Eigen::Vector3f(p.x, p.y, p.z));
+  }
+  return low - Eigen::Vector3f::Constant((high - low).maxCoeff() / 16);
+}
+
+dma::BufferOptions readable(const char* name) { return {.name = name, .spu_read = true, .spu_write = false}; }
+dma::BufferOptions writable(const char* name) { return {.name = name, .spu_read = false, .spu_write = true}; }
+
+}  // namespace
+
+SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool& pool, const ls_sim::KernelImage& skin)
+    : memory_(memory), pool_(pool), skin_(skin) {}
+
+SkinOrchestrator::~SkinOrchestrator() { batch_.wait(); }
+
+std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
+  auto known = std::find_if(models_.begin(), models_.end(), [&](const auto& m) { return m->embedding == embedding; });
+  if (known == models_.end()) {
+    auto model = std::make_unique<Model>();
+    model->groups = memory_.allocate<SkinGroup>(embedding->groups.size(), readable("skin groups"));
+    std::copy(embedding->groups.begin(), embedding->groups.end(), model->groups.span().begin());
+    model->embedding = std::move(embedding);
+    known = models_.insert(models_.end(), std::move(model));
+  }
+  const Embedding& shared = *(*known)->embedding;
+  auto body = std::make_unique<Body>();
+  body->model = known->get();
+  for (Body::Half& half : body->half) {
+    half.corners = memory_.allocate<SkinCorner>(particles, readable("particle positions"));
+    half.jobs = memory_.allocate<SkinJob>(shared.parts.size(), readable("skin jobs"));
+    half.vertices = memory_.allocate<SkinnedVertex>(4 * shared.groups.size(), writable("skinned vertices"));
+  }
+  bodies_.push_back(std::move(body));
+  jobs_.resize(jobs_.size() + shared.parts.size());
+  vertices_ += shared.slot_of_vertex.size();
+  return bodies_.size() - 1;
+}
+
+void SkinOrchestrator::write_half(Body& body, std::span<const SkinCorner> positions) {
+  Body::Half& half = body.half[static_cast<std::size_t>(working_)];
+  if (positions.size() != half.corners.size()) {
+    throw std::invalid_argument("a body of " + std::to_string(half.corners.size()) + " particles was given " +
+                                std::to_string(positions.size()) + " positions");
+  }
+  std::memcpy(half.corners.span().data(), positions.data(), positions.size_bytes());
+  half.origin = origin_below(positions);
+
+  const Embedding& embedding = *body.model->embedding;
+  for (std::size_t i = 0; i < embedding.parts.size(); ++i) {
+    const SkinPart& part = embedding.parts[i];
+    SkinJob job{};
+    job.groups_ea = (body.model->groups.ea() + part.first_group * sizeof(SkinGroup)).value;
+    job.vertices_ea = (half.vertices.ea() + std::uint64_t{part.first_group} * 4 * sizeof(SkinnedVertex)).value;
+    for (std::size_t w = 0; w < 2; ++w) {
+      job.window[w].ea = (half.corners.ea() + part.window[w].first_particle * sizeof(SkinCorner)).value;
+      job.window[w].count = part.window[w].count;
+    }
+    for (int axis = 0; axis < 3; ++axis) job.origin[axis] = half.origin[axis];
+    job.group_count = part.group_count;
+    half.jobs.span()[i] = job;
+  }
+}
+
+bool SkinOrchestrator::kick(std::span<const std::span<const SkinCorner>> positions) {
+  if (positions.size() != bodies_.size()) throw std::invalid_argument("kick() needs the positions of every body");
+  if (in_flight_ && !batch_.finished()) {
+    ++late_frames_;
+    return false;
+  }
+  collect();
+  working_ = shown_ == 0 ? 1 : 0;
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    write_half(*bodies_[b], positions[b]);
+    const auto& descriptors = bodies_[b]->half[static_cast<std::size_t>(working_)].jobs;
+    for (std::size_t i = 0; i < descriptors.size(); ++i) {
+      jobs_[next++] = {.image = &skin_, .argp = descriptors.ea() + i * sizeof(SkinJob), .envp = {}};
+    }
+  }
+  pool_.submit(batch_, jobs_);
+  in_flight_ = true;
+  return true;
+}
+
+/// Takes over the frame that the SPEs have finished.
+void SkinOrchestrator::collect() {
+  if (!in_flight_) return;
+  in_flight_ = false;
+  if (batch_.failures().empty()) {
+    shown_ = working_;
+    return;
+  }
+  std::string message = "skinning a frame failed";
+  for (const ls_sim::JobFailure& failure : batch_.failures()) message += "; " + failure.message;
+  throw std::runtime_error(message);
+}
+
+void SkinOrchestrator::drain() {
+  batch_.wait();
+  collect();
+}
+
+SkinnedBody SkinOrchestrator::shown(std::size_t body) const {
+  if (shown_ < 0) return {};
+  const Body::Half& half = bodies_[body]->half[static_cast<std::size_t>(shown_)];
+  return {half.vertices.span(), half.origin};
+}
+
+}  // namespace softcell::ppu
