@@ -44,7 +44,7 @@ struct SkinWindow {
 /// The job's descriptor, one line in main memory.
 struct alignas(128) SkinJob {
   uint64_t groups_ea;        ///< group_count SkinGroups, 128-byte aligned
-  uint64_t vertices_ea;      ///< room for 4 * group_count SkinnedVertex, 128-byte aligned
+  uint64_t vertices_ea;      ///< room for 4 * group_count SkinnedVertex, a multiple of 16 (128 is fastest)
   SkinWindow window[2];      ///< the job's corner array is window[0] followed by window[1]; the sum is at most kSkinMaxCorners
   float origin[4];           ///< subtracted from every corner; x y z and 0
   uint32_t group_count;      ///< any number, 0 included
