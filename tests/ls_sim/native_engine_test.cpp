@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+#include <xmmintrin.h>
+
+#include <thread>
+
+#include "softcell/ls_sim/engine.h"
+#include "test_images.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+/// Answers every channel with 0 and notes the arithmetic mode in which it was called.
+class RecordingPort final : public ChannelPort {
+ public:
+  ChannelReply read(std::uint32_t) override { return note(); }
+  ChannelReply write(std::uint32_t channel, std::uint32_t value) override {
+    writes.emplace_back(channel, value);
+    return note();
+  }
+  ChannelReply count(std::uint32_t) override { return note(); }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> writes;
+  std::vector<unsigned int> modes;
+
+ private:
+  ChannelReply note() {
+    modes.push_back(_mm_getcsr() & ~_MM_EXCEPT_MASK);
+    return {};
+  }
+};
+
+class NativeEngineTest : public testing::Test {
+ protected:
+  RunResult run(const std::string& name, EntryArguments arguments = {}) {
+    image_ = test_image(name);
+    engine_->load(image_);
+    return engine_->run(arguments, port_);
+  }
+
+  LocalStore local_store_;
+  std::unique_ptr<Engine> engine_ = make_native_engine(local_store_);
+  KernelImage image_;
+  RecordingPort port_;
+};
+
+TEST_F(NativeEngineTest, EndsWithTheStatusOfMain) {
+  const RunResult result = run("echo_arguments", {.spe_id = 1, .argp = 0x1000, .envp = 42});
+  ASSERT_FALSE(result.fault);
+  EXPECT_EQ(result.stop_code, 0x2000u + 42u);
+  EXPECT_EQ(result.status(), 42u);
+}
+
+TEST_F(NativeEngineTest, PassesCommandsThroughTheChannelsOfTheMfc) {
+  const std::uint64_t ea = 0x5EA0'1234'5680;
+  run("echo_arguments", {.argp = ea});
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> first(port_.writes.begin() + 1, port_.writes.begin() + 6);
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{
+      {17, 0x5EA0}, {18, 0x12345680}, {19, 128}, {20, 5}, {21, 0x40}};
+  EXPECT_EQ(first, expected);
+  EXPECT_EQ(port_.writes[0].first, 16u);
+  EXPECT_LT(port_.writes[0].second, dma::kLocalStoreBytes);
+}
+
+TEST_F(NativeEngineTest, RestoresTheHostsArithmeticInEveryCallAndAfterwards) {
+  const unsigned int host = _mm_getcsr() & ~_MM_EXCEPT_MASK;
+  run("arithmetic", {.argp = 0x1000});
+  ASSERT_FALSE(port_.modes.empty());
+  for (const unsigned int mode : port_.modes) EXPECT_EQ(mode, host);
+  EXPECT_EQ(_mm_getcsr() & ~_MM_EXCEPT_MASK, host);
+}
+
+TEST_F(NativeEngineTest, RestoresTheHostsArithmeticAfterAFault) {
+  const unsigned int host = _mm_getcsr() & ~_MM_EXCEPT_MASK;
+  EXPECT_TRUE(run("illegal_instruction").fault);
+  EXPECT_EQ(_mm_getcsr() & ~_MM_EXCEPT_MASK, host);
+}
+
+struct FaultCase {
+  const char* kernel;
+  EntryArguments arguments;
+  dma::Rule rule;
+  const char* detail;
+};
+
+void PrintTo(const FaultCase& c, std::ostream* out) { *out << c.kernel << " " << static_cast<std::int64_t>(c.arguments.envp); }
+
+class NativeEngineFaults : public NativeEngineTest, public testing::WithParamInterface<FaultCase> {};
+
+TEST_P(NativeEngineFaults, AreTypedAndTheEngineLives) {
+  const RunResult result = run(GetParam().kernel, GetParam().arguments);
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->rule, GetParam().rule) << result.fault->message();
+  EXPECT_NE(result.fault->message().find(GetParam().detail), std::string::npos) << result.fault->message();
+  const RunResult after = run("echo_arguments", {.argp = 0x1000, .envp = 7});
+  EXPECT_FALSE(after.fault);
+  EXPECT_EQ(after.status(), 7u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, NativeEngineFaults,
+    testing::Values(
+        // Past the declared stack but not past the arena, past everything, and by one frame.
+        FaultCase{"stack_overflow_deep", {.envp = 12}, dma::Rule::kStackOverflow, "2048 bytes"},
+        FaultCase{"stack_overflow_deep", {.envp = 100}, dma::Rule::kStackOverflow, "2048 bytes"},
+        FaultCase{"stack_overflow_deep", {.envp = 100'000'000}, dma::Rule::kStackOverflow, "2048 bytes"},
+        FaultCase{"read_effective_address", {.argp = dma::kMainMemoryBase.value + 0x80}, dma::Rule::kEffectiveAddressAsPointer,
+                  "0x5ea010000080"},
+        FaultCase{"read_effective_address", {.argp = dma::kVideoMemoryBase.value}, dma::Rule::kEffectiveAddressAsPointer,
+                  "0x5ea0c0000000"},
+        FaultCase{"read_effective_address", {.argp = 0}, dma::Rule::kOutsideLocalStore, "0x00000"},
+        FaultCase{"read_effective_address", {.argp = 0xEA00'0000'0000'0000}, dma::Rule::kOutsideLocalStore, "no address"},
+        FaultCase{"outside_local_store", {.envp = 256 * 1024}, dma::Rule::kOutsideLocalStore, "past the end"},
+        FaultCase{"outside_local_store", {.envp = static_cast<std::uint64_t>(-128 * 1024)}, dma::Rule::kOutsideLocalStore,
+                  "before the local store"},
+        FaultCase{"illegal_instruction", {}, dma::Rule::kIllegalInstruction, "local-store address"}));
+
+TEST_F(NativeEngineTest, AShallowStackIsNoFaultAndIsMeasured) {
+  EXPECT_FALSE(run("stack_overflow_deep", {.envp = 2}).fault);
+  const std::uint32_t shallow = engine_->stack_high_water();
+  EXPECT_FALSE(run("stack_overflow_deep", {.envp = 4}).fault);
+  const std::uint32_t deeper = engine_->stack_high_water();
+  EXPECT_GE(deeper, shallow + 2 * 256);
+  EXPECT_LE(deeper, 2048u);
+}
+
+class EndlessKernels : public NativeEngineTest, public testing::WithParamInterface<std::uint64_t> {};
+
+TEST_P(EndlessKernels, AreInterrupted) {
+  image_ = test_image("endless");
+  engine_->load(image_);
+  std::jthread watchdog([this](const std::stop_token& done) {
+    while (!done.stop_requested()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      engine_->interrupt();
+    }
+  });
+  const RunResult result = engine_->run({.envp = GetParam()}, port_);
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->rule, dma::Rule::kDeadlineExceeded);
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutCalls, EndlessKernels, testing::Values(0, 1));
+
+TEST(RequireVectorUnits, NamesWhatIsMissing) {
+  EXPECT_NO_THROW(require_vector_units(true, true));
+  EXPECT_THROW(require_vector_units(true, false), std::runtime_error);
+  try {
+    require_vector_units(false, true);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("lacks AVX2:"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ls_sim

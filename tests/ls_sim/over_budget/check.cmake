@@ -1,0 +1,12 @@
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja -DMODULES=${MODULES} -DCMAKE_CXX_COMPILER=${COMPILER}
+  RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(failed)
+  message(FATAL_ERROR "the project of the kernel past its budget could not be configured:\n${output}")
+endif()
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${BINARY} RESULT_VARIABLE refused OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(NOT refused)
+  message(FATAL_ERROR "a kernel past its budget was built")
+endif()
+if(NOT output MATCHES "kernel glutton: [0-9]+ bytes over its")
+  message(FATAL_ERROR "the refusal does not name the kernel and the bytes too many:\n${output}")
+endif()
