@@ -1,0 +1,133 @@
+#pragma once
+// Main storage: main memory and video memory behind effective addresses, handed out as named buffers.
+//
+//   0x5EA010000000  main memory, 256 MB    +--------+--------+-----------+
+//   0x5EA0C0000000  video memory, 256 MB   | buffer | buffer |   free    |  each starts at a line of 128
+//   bytes 0x5EA0F0000000  the local stores       +--------+--------+-----------+
+//
+// The bytes lie somewhere else in the host's memory; host pointers belong to the PPU side, effective
+// addresses to the SPEs, and only resolve() leads from one to the other.
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <variant>
+
+#include "softcell/dma/addresses.h"
+#include "softcell/dma/fault.h"
+
+namespace softcell::dma {
+
+class Arena;
+
+/// Which memory a buffer lies in.
+enum class Memory : std::uint8_t { kMain, kVideo };
+
+/// What an SPE may do with a buffer, and what a command wants to do: a get reads, a put writes.
+enum class SpeAccess : std::uint8_t { kNone = 0, kRead = 1, kWrite = 2, kReadWrite = 3 };
+
+constexpr bool allows(SpeAccess granted, SpeAccess wanted) {
+  return (static_cast<unsigned>(wanted) & ~static_cast<unsigned>(granted)) == 0;
+}
+
+/// How a buffer is made.
+struct BufferOptions {
+  SpeAccess spe_access = SpeAccess::kReadWrite;  ///< writes to video memory are refused whatever stands here
+  Memory memory = Memory::kMain;
+  /// Bytes of one element: 1, 2, 4 or 8, by which a big-endian engine swaps; 0: mixed widths, or not known.
+  std::uint32_t element_bytes = 0;
+};
+
+/// One buffer as the MFC sees it.
+struct Mapping {
+  EffectiveAddress ea = {};
+  /// Size for DMA: the buffer's own, rounded up to a quadword, because no legal command could move its tail
+  /// otherwise.
+  std::uint64_t bytes = 0;
+  std::byte* host = nullptr;
+  SpeAccess spe_access = SpeAccess::kNone;
+  Memory memory = Memory::kMain;
+  std::uint32_t element_bytes = 0;
+
+  bool contains(EffectiveAddress address) const { return address.value - ea.value < bytes; }
+  bool contains(EffectiveAddress address, std::uint64_t size) const {
+    return contains(address) && size <= bytes - (address.value - ea.value);
+  }
+  /// True when an SPE may do this here.
+  bool permits(SpeAccess wanted) const {
+    return allows(spe_access, wanted) && (memory != Memory::kVideo || !allows(wanted, SpeAccess::kWrite));
+  }
+  std::byte* host_of(EffectiveAddress address) const { return host + (address.value - ea.value); }
+};
+
+/// Everything is thread safe: the PPU side allocates while SPEs look up. Several may exist in one process;
+/// each has the same addresses and its own bytes. Must outlive its buffers and every MFC that uses it.
+class AddressSpace {
+ public:
+  /// Reserves 512 MB of host address space (no memory: pages become real when touched), and, once per
+  /// process, makes the host addresses equal to effective ones inaccessible.
+  /// @throws std::runtime_error  the host has no address range left.
+  AddressSpace();
+  ~AddressSpace();
+  AddressSpace(const AddressSpace&) = delete;
+  AddressSpace& operator=(const AddressSpace&) = delete;
+
+  /// Makes a buffer of zero bytes at the lowest address that has room. Prefer Buffer<T>, which frees itself.
+  /// @param name   for messages.
+  /// @param bytes  at least 1; occupies a multiple of 128.
+  /// @return  its address, a multiple of 128.
+  /// @throws std::runtime_error     no free range is large enough; the sentence gives the sizes.
+  /// @throws std::invalid_argument  zero bytes, or an element width other than 0, 1, 2, 4 and 8.
+  EffectiveAddress allocate(std::string name, std::uint64_t bytes, const BufferOptions& options = {});
+
+  /// Gives a buffer back. No command may be in flight to or from it.
+  /// @throws std::invalid_argument  no buffer begins at `ea`.
+  void free(EffectiveAddress ea);
+
+  /// The host bytes behind [ea, ea + bytes), which must lie within one buffer that permits `wanted`.
+  /// @param bytes   at least 1.
+  /// @param wanted  kNone asks for no permission: that is the PPU side.
+  /// @return  the host pointer, or a fault with rule and detail set: ea-not-mapped, ea-crosses-buffer,
+  /// ea-not-readable,
+  ///          ea-not-writable or video-memory-write.
+  /// @note    Takes a shared lock. An MFC goes through its TranslationCache instead.
+  std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) const;
+
+  /// The buffer that holds `ea`, if any.
+  std::optional<Mapping> mapping_at(EffectiveAddress ea) const;
+
+  /// Changes whenever a mapping ends, after which copies of it must not be used.
+  std::uint64_t generation() const { return generation_.load(std::memory_order_acquire); }
+
+  /// Bytes not allocated, in all and in the largest piece.
+  std::uint64_t free_bytes(Memory memory) const;
+  std::uint64_t largest_free_range(Memory memory) const;
+
+ private:
+  struct NamedBuffer {
+    Mapping mapping;
+    std::string name;
+    std::uint64_t allocated_bytes = 0;  // as asked for
+  };
+  using Registry = std::map<std::uint64_t, NamedBuffer>;  // by effective address
+
+  Arena& arena(Memory memory) const { return memory == Memory::kMain ? *main_ : *video_; }
+  Registry::const_iterator last_at_or_below(EffectiveAddress ea) const;  // registry_mutex_ held
+  std::string describe_unmapped(EffectiveAddress ea) const;              // registry_mutex_ held
+
+  mutable std::mutex arena_mutex_;  // guards the arenas; never taken while registry_mutex_ is held
+  std::unique_ptr<Arena> main_;
+  std::unique_ptr<Arena> video_;
+
+  mutable std::shared_mutex registry_mutex_;
+  Registry registry_;
+  std::atomic<std::uint64_t> generation_{1};
+};
+
+}  // namespace softcell::dma

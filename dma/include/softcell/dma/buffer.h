@@ -1,0 +1,84 @@
+#pragma once
+// A typed buffer in emulated memory that frees itself: how the PPU side owns what SPEs read and write.
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "softcell/dma/address_space.h"
+
+namespace softcell::dma {
+
+/// `size()` elements of T, zero at first, starting at a line of 128 bytes. Move-only. The PPU side uses
+/// span(), the SPEs ea(). Freed at the end of its life, which must come before that of its address space.
+///
+///     Buffer<float> heights(space, "heights", 1000, {.spe_access = SpeAccess::kRead});
+template <class T>
+class Buffer {
+  static_assert(std::is_trivially_copyable_v<T>, "DMA moves bytes");
+  static_assert(alignof(T) <= kLineBytes, "buffers start at a line of 128 bytes");
+
+ public:
+  /// Owns nothing.
+  Buffer() = default;
+
+  /// @param options  element_bytes 0 stands for sizeof(T) when T is a number or an enumeration.
+  /// @throws std::runtime_error     out of memory of that kind; the sentence gives the sizes.
+  /// @throws std::invalid_argument  count is 0.
+  Buffer(AddressSpace& space, std::string name, std::size_t count, BufferOptions options = {})
+      : space_(&space) {
+    if (options.element_bytes == 0 && (std::is_arithmetic_v<T> || std::is_enum_v<T>)) {
+      options.element_bytes = sizeof(T);
+    }
+    // A product that does not fit is more than any memory holds; the largest number says so and is refused as
+    // such.
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+    const std::uint64_t bytes = count > kMost / sizeof(T) ? kMost : count * sizeof(T);
+    ea_ = space.allocate(std::move(name), bytes, options);
+    elements_ = {reinterpret_cast<T*>(space.mapping_at(ea_)->host), count};
+  }
+
+  Buffer(Buffer&& other) noexcept
+      : space_(std::exchange(other.space_, nullptr)),
+        ea_(std::exchange(other.ea_, {})),
+        elements_(std::exchange(other.elements_, {})) {}
+
+  Buffer& operator=(Buffer&& other) noexcept {
+    Buffer moved(std::move(other));
+    std::swap(space_, moved.space_);
+    std::swap(ea_, moved.ea_);
+    std::swap(elements_, moved.elements_);
+    return *this;
+  }
+
+  ~Buffer() {
+    if (space_ != nullptr) space_->free(ea_);
+  }
+
+  /// Address of the first element, or of element `index`, as an SPE sees it.
+  EffectiveAddress ea() const { return ea_; }
+  EffectiveAddress ea(std::size_t index) const { return ea_ + index * sizeof(T); }
+
+  /// The elements, as the PPU side sees them. An SPE may read or write them while a job that knows the
+  /// address runs.
+  std::span<T> span() { return elements_; }
+  std::span<const T> span() const { return elements_; }
+  T* data() { return elements_.data(); }
+  const T* data() const { return elements_.data(); }
+  T& operator[](std::size_t index) { return elements_[index]; }
+  const T& operator[](std::size_t index) const { return elements_[index]; }
+
+  std::size_t size() const { return elements_.size(); }
+  std::size_t size_bytes() const { return elements_.size_bytes(); }
+  bool empty() const { return elements_.empty(); }
+
+ private:
+  AddressSpace* space_ = nullptr;
+  EffectiveAddress ea_;
+  std::span<T> elements_;
+};
+
+}  // namespace softcell::dma

@@ -1,0 +1,41 @@
+#pragma once
+// An MFC's own copy of the mappings it used last, so that most commands take no lock: what a TLB is to the
+// hardware.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+
+#include "softcell/dma/address_space.h"
+
+namespace softcell::dma {
+
+/// Used by one thread. The address space may change at any time in others: its generation tells when copies
+/// are stale.
+class TranslationCache {
+ public:
+  explicit TranslationCache(const AddressSpace& space) : space_(&space) {}
+
+  /// As AddressSpace::resolve().
+  std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) {
+    if (space_->generation() == generation_) {
+      for (const Mapping& mapping : entries_) {
+        if (mapping.contains(ea, bytes) && mapping.permits(wanted)) return mapping.host_of(ea);
+      }
+    }
+    return resolve_slowly(ea, bytes, wanted);
+  }
+
+ private:
+  static constexpr std::size_t kEntries = 8;  // descriptor, image, and inputs and outputs of a usual job
+
+  std::variant<std::byte*, Fault> resolve_slowly(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted);
+
+  const AddressSpace* space_;
+  std::uint64_t generation_ = 0;             // of the entries
+  std::array<Mapping, kEntries> entries_{};  // one of 0 bytes holds no address
+  std::size_t next_ = 0;                     // to be replaced
+};
+
+}  // namespace softcell::dma

@@ -1,0 +1,56 @@
+#include "softcell/dma/fault.h"
+
+#include <cinttypes>
+#include <cstdio>
+
+#include "text.h"
+
+namespace softcell::dma {
+namespace {
+
+struct RuleRow {
+  std::string_view name;
+  Evidence evidence;
+  std::string_view explanation;
+};
+
+constexpr RuleRow kRules[] = {
+#define SC_RULE(enumerator, name, evidence, explanation) {name, Evidence::evidence, explanation},
+#include "softcell/dma/rules.def"
+#undef SC_RULE
+};
+
+const RuleRow& row(Rule rule) { return kRules[static_cast<std::size_t>(rule)]; }
+
+std::string to_text(const MfcCommand& command) {
+  const std::string_view known = name(command.opcode());
+  std::string text = known.empty() ? "command " + hex(command.word, 8) : std::string(known);
+  text += " tag " + std::to_string(command.tag);
+  text += ", LSA " + to_text(command.lsa);
+  text += ", EA " + to_text(command.ea);
+  text += ", " + byte_count(command.size);
+  return text;
+}
+
+}  // namespace
+
+std::string hex(std::uint64_t value, int digits) {
+  char text[19];
+  std::snprintf(text, sizeof text, "0x%0*" PRIX64, digits, value);
+  return text;
+}
+
+std::string_view name(Rule rule) { return row(rule).name; }
+std::string_view explanation(Rule rule) { return row(rule).explanation; }
+Evidence evidence(Rule rule) { return row(rule).evidence; }
+
+std::string Fault::message() const {
+  std::string text = spe < 0 ? "SPE unknown" : "SPE " + std::to_string(spe);
+  text += ", kernel " + (kernel.empty() ? "unknown" : kernel) + ": ";
+  text += name(rule);
+  if (command) text += ": " + to_text(*command);
+  if (!detail.empty()) text += ": " + detail;
+  return text;
+}
+
+}  // namespace softcell::dma
