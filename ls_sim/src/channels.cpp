@@ -1,6 +1,8 @@
 #include "softcell/ls_sim/channels.h"
 
 #include <string>
+#include <utility>
+#include <variant>
 
 namespace softcell::ls_sim {
 namespace {
@@ -11,12 +13,17 @@ ChannelReply illegal(std::uint32_t channel, const char* access) {
   return {0, std::move(fault)};
 }
 
+ChannelReply reply_of(std::variant<std::uint32_t, dma::Fault> status) {
+  if (auto* fault = std::get_if<dma::Fault>(&status)) return {0, std::move(*fault)};
+  return {std::get<std::uint32_t>(status), {}};
+}
+
 }  // namespace
 
 ChannelReply MfcChannels::read(std::uint32_t channel) {
   switch (static_cast<Channel>(channel)) {
     case Channel::kMfcRdTagStat:
-      return read_tag_status();
+      return reply_of(mfc_.read_tag_status());
     case Channel::kMfcRdTagMask:
       return {mfc_.tag_mask(), {}};
     default:
@@ -57,9 +64,9 @@ ChannelReply MfcChannels::write(std::uint32_t channel, std::uint32_t value) {
 ChannelReply MfcChannels::count(std::uint32_t channel) {
   switch (static_cast<Channel>(channel)) {
     case Channel::kMfcCmd:
-      return {mfc_.free_slots(), {}};
+      return {static_cast<std::uint32_t>(mfc_.free_slots()), {}};
     case Channel::kMfcRdTagStat:
-      return {mfc_.tag_status_count(), {}};
+      return {static_cast<std::uint32_t>(mfc_.tag_status_count()), {}};
     case Channel::kMfcRdTagMask:
     case Channel::kMfcLsa:
     case Channel::kMfcEah:

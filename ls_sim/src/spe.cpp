@@ -23,7 +23,6 @@ std::string Spe::run(const Job& job, std::uint64_t job_number) {
     result.fault->spe = number_;
     result.fault->kernel = job.image->name;
     failure = result.fault->message();
-    mfc_.abandon();
     resident_ = nullptr;  // whatever it did to its local store goes with it
   } else {
     mfc_.drain();

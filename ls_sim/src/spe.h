@@ -13,7 +13,7 @@ class Spe {
   Spe(int number, dma::AddressSpace& memory, const PoolOptions& options)
       : number_(number),
         options_(options),
-        mfc_(local_store_.bytes(), memory, options.schedule, static_cast<std::uint32_t>(number)),
+        mfc_(local_store_.bytes(), memory, options.schedule, static_cast<std::uint64_t>(number)),
         engine_(make_native_engine(local_store_)) {}
 
   /// Runs one job to its end. @return an empty string, or why it failed.

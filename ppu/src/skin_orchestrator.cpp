@@ -42,8 +42,8 @@ Eigen::Vector3f origin_below(std::span<const SkinCorner> positions) {
   return low - Eigen::Vector3f::Constant((high - low).maxCoeff() / 16);
 }
 
-dma::BufferOptions readable(const char* name) { return {.name = name, .spu_read = true, .spu_write = false}; }
-dma::BufferOptions writable(const char* name) { return {.name = name, .spu_read = false, .spu_write = true}; }
+constexpr dma::BufferOptions kInput{.spe_access = dma::SpeAccess::kRead};
+constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .element_bytes = 2};
 
 }  // namespace
 
@@ -56,7 +56,7 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
   auto known = std::find_if(models_.begin(), models_.end(), [&](const auto& m) { return m->embedding == embedding; });
   if (known == models_.end()) {
     auto model = std::make_unique<Model>();
-    model->groups = memory_.allocate<SkinGroup>(embedding->groups.size(), readable("skin groups"));
+    model->groups = dma::Buffer<SkinGroup>(memory_, "skin groups", embedding->groups.size(), kInput);
     std::copy(embedding->groups.begin(), embedding->groups.end(), model->groups.span().begin());
     model->embedding = std::move(embedding);
     known = models_.insert(models_.end(), std::move(model));
@@ -65,9 +65,9 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
   auto body = std::make_unique<Body>();
   body->model = known->get();
   for (Body::Half& half : body->half) {
-    half.corners = memory_.allocate<SkinCorner>(particles, readable("particle positions"));
-    half.jobs = memory_.allocate<SkinJob>(shared.parts.size(), readable("skin jobs"));
-    half.vertices = memory_.allocate<SkinnedVertex>(4 * shared.groups.size(), writable("skinned vertices"));
+    half.corners = dma::Buffer<SkinCorner>(memory_, "particle positions", particles, kInput);
+    half.jobs = dma::Buffer<SkinJob>(memory_, "skin jobs", shared.parts.size(), kInput);
+    half.vertices = dma::Buffer<SkinnedVertex>(memory_, "skinned vertices", 4 * shared.groups.size(), kOutput);
   }
   bodies_.push_back(std::move(body));
   jobs_.resize(jobs_.size() + shared.parts.size());
@@ -81,22 +81,22 @@ void SkinOrchestrator::write_half(Body& body, std::span<const SkinCorner> positi
     throw std::invalid_argument("a body of " + std::to_string(half.corners.size()) + " particles was given " +
                                 std::to_string(positions.size()) + " positions");
   }
-  std::memcpy(half.corners.span().data(), positions.data(), positions.size_bytes());
+  std::memcpy(half.corners.data(), positions.data(), positions.size_bytes());
   half.origin = origin_below(positions);
 
   const Embedding& embedding = *body.model->embedding;
   for (std::size_t i = 0; i < embedding.parts.size(); ++i) {
     const SkinPart& part = embedding.parts[i];
     SkinJob job{};
-    job.groups_ea = (body.model->groups.ea() + part.first_group * sizeof(SkinGroup)).value;
-    job.vertices_ea = (half.vertices.ea() + std::uint64_t{part.first_group} * 4 * sizeof(SkinnedVertex)).value;
+    job.groups_ea = body.model->groups.ea(part.first_group).value;
+    job.vertices_ea = half.vertices.ea(std::size_t{part.first_group} * 4).value;
     for (std::size_t w = 0; w < 2; ++w) {
-      job.window[w].ea = (half.corners.ea() + part.window[w].first_particle * sizeof(SkinCorner)).value;
+      job.window[w].ea = half.corners.ea(part.window[w].first_particle).value;
       job.window[w].count = part.window[w].count;
     }
     for (int axis = 0; axis < 3; ++axis) job.origin[axis] = half.origin[axis];
     job.group_count = part.group_count;
-    half.jobs.span()[i] = job;
+    half.jobs[i] = job;
   }
 }
 
@@ -113,7 +113,7 @@ bool SkinOrchestrator::kick(std::span<const std::span<const SkinCorner>> positio
     write_half(*bodies_[b], positions[b]);
     const auto& descriptors = bodies_[b]->half[static_cast<std::size_t>(working_)].jobs;
     for (std::size_t i = 0; i < descriptors.size(); ++i) {
-      jobs_[next++] = {.image = &skin_, .argp = descriptors.ea() + i * sizeof(SkinJob), .envp = {}};
+      jobs_[next++] = {.image = &skin_, .argp = descriptors.ea(i), .envp = {}};
     }
   }
   pool_.submit(batch_, jobs_);

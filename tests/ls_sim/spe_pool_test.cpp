@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "softcell/dma/buffer.h"
 #include "test_images.h"
 
 namespace softcell::ls_sim {
@@ -15,7 +16,7 @@ using Words = std::array<std::uint32_t, 32>;
 class SpePoolTest : public testing::Test {
  protected:
   dma::Buffer<Words> make_lines(std::size_t count) {
-    auto lines = memory_.allocate<Words>(count, {.name = "lines", .spu_read = true, .spu_write = true});
+    dma::Buffer<Words> lines(memory_, "lines", count);
     for (std::size_t i = 0; i < count; ++i) lines.span()[i].fill(static_cast<std::uint32_t>(i));
     return lines;
   }
@@ -30,7 +31,7 @@ TEST_F(SpePoolTest, RunsEveryJobOnceForAnyNumberOfSpesAndAnySchedule) {
       SpePool pool(memory_, {.spes = spes, .schedule = dma::parse_schedule(schedule)});
       auto lines = make_lines(100);
       std::vector<Job> jobs;
-      for (std::size_t i = 0; i < 100; ++i) jobs.push_back({&image, lines.ea() + i * sizeof(Words), {}});
+      for (std::size_t i = 0; i < 100; ++i) jobs.push_back({&image, lines.ea(i), {}});
       JobBatch batch;
       pool.submit(batch, jobs);
       batch.wait();
@@ -50,7 +51,7 @@ TEST_F(SpePoolTest, OneFaultingJobFailsItsBatchAndTheOthersAndThePoolGoOn) {
   const KernelImage good = test_image("echo_arguments"), bad = test_image("bad_dma");
   SpePool pool(memory_, {.spes = 2});
   auto lines = make_lines(3);
-  const std::vector<Job> jobs{{&good, lines.ea(), {}}, {&bad, lines.ea(), {24}}, {&good, lines.ea() + 128, {}}};
+  const std::vector<Job> jobs{{&good, lines.ea(), {}}, {&bad, lines.ea(), {24}}, {&good, lines.ea(1), {}}};
   JobBatch batch;
   pool.submit(batch, jobs);
   batch.wait();
@@ -97,7 +98,7 @@ TEST_F(SpePoolTest, AReadWithoutAWaitShowsUnderTheLazySchedule) {
     SpePool pool(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)});
     auto lines = make_lines(2);
     JobBatch batch;
-    pool.submit(batch, std::vector<Job>{{&image, lines.ea() + sizeof(Words), lines.ea()}});
+    pool.submit(batch, std::vector<Job>{{&image, lines.ea(1), lines.ea()}});
     batch.wait();
     ASSERT_TRUE(batch.failures().empty());
     EXPECT_EQ(lines.span()[0][0], expected) << schedule;
@@ -111,7 +112,7 @@ TEST_F(SpePoolTest, InitialisedDataAreFreshForEveryJob) {
     auto lines = make_lines(3);
     JobBatch batch;
     for (std::size_t i = 0; i < 3; ++i) {
-      pool.submit(batch, std::vector<Job>{{&image, lines.ea() + i * sizeof(Words), {}}});
+      pool.submit(batch, std::vector<Job>{{&image, lines.ea(i), {}}});
       batch.wait();
       EXPECT_EQ(lines.span()[i][0], 101u);
       EXPECT_EQ(lines.span()[i][1], reload ? 1u : i + 1) << "bss is the last job's unless the image is reloaded";
@@ -122,7 +123,7 @@ TEST_F(SpePoolTest, InitialisedDataAreFreshForEveryJob) {
 TEST_F(SpePoolTest, ComputesWithTheArithmeticOfTheSpu) {
   const KernelImage image = test_image("arithmetic");
   SpePool pool(memory_, {.spes = 1});
-  auto out = memory_.allocate<std::array<float, 32>>(1, {.name = "out", .spu_read = true, .spu_write = true});
+  const dma::Buffer<std::array<float, 32>> out(memory_, "out", 1);
   JobBatch batch;
   pool.submit(batch, std::vector<Job>{{&image, out.ea(), {}}});
   batch.wait();

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "softcell/dma/address_space.h"
+#include "softcell/dma/buffer.h"
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/image.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "skin_job.h"
-#include "softcell/dma/address_space.h"
+#include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/embedding.h"
 

@@ -1,0 +1,130 @@
+// The command `softcell`: parses the command line, calls a verb, turns what goes wrong into one line and an exit status.
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <regex>
+
+#include "usage_error.h"
+#include "verbs.h"
+
+namespace {
+
+using namespace softcell;
+using namespace softcell::demos;
+
+constexpr int kMaxFrames = 1'000'000;
+constexpr int kMinPixels = 16, kMaxPixels = 8192;
+
+PictureSize parse_size(const std::string& text) {
+  static const std::regex pattern("([0-9]{1,5})x([0-9]{1,5})");
+  std::smatch match;
+  PictureSize size{0, 0};
+  if (std::regex_match(text, match, pattern)) size = {std::stoi(match[1]), std::stoi(match[2])};
+  const auto allowed = [](int pixels) { return pixels >= kMinPixels && pixels <= kMaxPixels; };
+  if (!allowed(size.width) || !allowed(size.height)) {
+    throw UsageError("--size " + text + ": give WIDTHxHEIGHT in pixels, each 16 to 8192, for example 1280x720");
+  }
+  return size;
+}
+
+dma::Schedule parse_dma(const std::string& text) {
+  try {
+    return dma::parse_schedule(text);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError("--dma " + text + ": " + error.what());
+  }
+}
+
+/// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
+class CommandLine {
+ public:
+  CommandLine() {
+    app_.set_version_flag("--version", "softcell " SOFTCELL_VERSION);
+    app_.require_subcommand(1);
+    add_demo();
+    add_spu();
+    add_scenes();
+    add_bench();
+  }
+
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
+      throw UsageError(error.what());
+    }
+    if (!size_.empty()) demo_.size = parse_size(size_);
+    demo_.schedule = parse_dma(schedule_);
+    return chosen_();
+  }
+
+ private:
+  void add_demo() {
+    CLI::App* demo = app_.add_subcommand("demo", "Run a demo")->require_subcommand(1);
+    CLI::App* d = demo->add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
+    d->add_flag("--headless", demo_.headless, "Run without a window");
+    d->add_option("--scene", demo_.scene, "Scene by name; `softcell scenes` lists them (default: arena)");
+    d->add_option("--mesh", demo_.mesh, "Drop this OBJ, PLY or STL model (scene drop)");
+    d->add_option("--cell", demo_.cell, "Edge of a lattice cell in the model's units (default: its longest side / 8)")
+        ->needs("--mesh");
+    d->add_option("--frames", demo_.frames, "Frames of 1/60 s to simulate (default: 300)")->check(CLI::Range(1, kMaxFrames));
+    d->add_option("--out", demo_.out, "Folder for numbered PNG frames");
+    d->add_option("--video", demo_.video, "Write an MP4 video (needs ffmpeg)");
+    d->add_option("--size", size_, "Picture size, WIDTHxHEIGHT (default: 1280x720)");
+    d->add_option("--spes", demo_.spes, "SPEs at work, 1 to 6 (default: 6)")->check(CLI::Range(1, 6));
+    d->add_option("--dma", schedule_, "When transfers finish: eager, lazy or random:SEED (default: eager)");
+    d->add_option("--json", demo_.json, "Write statistics to this file");
+    d->add_flag("--lattice", demo_.lattice, "Draw particles and links instead of meshes");
+    d->callback([this] { chosen_ = [this] { return run_demo_3d(demo_); }; });
+  }
+
+  void add_spu() {
+    CLI::App* spu = app_.add_subcommand("spu", "Look at SPU kernels")->require_subcommand(1);
+    CLI::App* b = spu->add_subcommand("budget", "Local store of each kernel: sections, stack used, share of 256 KB, budget");
+    b->add_option("--json", budget_.json, "Write the table to this file as well");
+    b->callback([this] { chosen_ = [this] { return run_budget(budget_); }; });
+  }
+
+  void add_scenes() {
+    app_.add_subcommand("scenes", "List the scenes")->callback([this] { chosen_ = run_scenes; });
+  }
+
+  void add_bench() {
+    CLI::App* b = app_.add_subcommand("bench", "Measure kernels, side by side in one run");
+    b->add_option("--filter", bench_.filter, "Only benchmarks whose name matches this regular expression");
+    b->add_option("--json", bench_.json, "Write the figures to this file as well");
+    b->callback([this] { chosen_ = [this] { return run_bench(bench_); }; });
+  }
+
+  CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.", "softcell"};
+  Demo3dOptions demo_;
+  BudgetOptions budget_;
+  BenchOptions bench_;
+  std::string size_;
+  std::string schedule_ = "eager";
+  std::function<int()> chosen_;
+};
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n') c = ' ';
+  }
+  return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return CommandLine().run(argc, argv);
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "softcell: %s (softcell --help lists what is allowed)\n", one_line(error.what()).c_str());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softcell: %s\n", one_line(error.what()).c_str());
+    return 1;
+  }
+}

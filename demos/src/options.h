@@ -1,0 +1,41 @@
+#pragma once
+// What the command line asks for, one struct for each verb.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "softcell/dma/schedule.h"
+
+namespace softcell::demos {
+
+struct PictureSize {
+  int width = 1280;
+  int height = 720;
+};
+
+struct Demo3dOptions {
+  bool headless = false;
+  std::optional<std::string> scene;            ///< arena, or drop when a mesh is given
+  std::optional<std::filesystem::path> mesh;   ///< the user's own model
+  std::optional<double> cell;                  ///< cell size in the model's own units
+  int frames = 300;
+  std::optional<std::filesystem::path> out;    ///< folder for numbered frames
+  std::optional<std::filesystem::path> video;
+  std::optional<std::filesystem::path> json;
+  PictureSize size;
+  int spes = 6;
+  dma::Schedule schedule{};
+  bool lattice = false;  ///< draw particles and links instead of the skinned meshes
+};
+
+struct BudgetOptions {
+  std::optional<std::filesystem::path> json;
+};
+
+struct BenchOptions {
+  std::string filter;  ///< regular expression; empty: all
+  std::optional<std::filesystem::path> json;
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,15 @@
+#pragma once
+// One function for each verb of the command, each in a file of its name. They print their result on standard output.
+// @throws UsageError (exit status 2) or another std::exception (exit status 1), one sentence either way.
+
+#include "options.h"
+
+namespace softcell::demos {
+
+/// @return the exit status: 0, or 130 when interrupted.
+int run_demo_3d(const Demo3dOptions& options);
+int run_scenes();
+int run_budget(const BudgetOptions& options);
+int run_bench(const BenchOptions& options);
+
+}  // namespace softcell::demos
