@@ -1,0 +1,86 @@
+#pragma once
+// One frame as plain data: what to draw, from where, in which light. Metres, y up. Spans must live until
+// render() returns.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "softcell/render/camera.h"
+
+namespace softcell::render {
+
+/// Linear light, 0..1 a channel.
+using Colour = Eigen::Vector3f;
+
+/// The linear colour of 0xRRGGBB as painting programs write it. A cubic fit to the sRGB curve, within 0.003
+/// of it, so that no libm enters the picture.
+inline Colour srgb(std::uint32_t rrggbb) {
+  const auto channel = [rrggbb](int shift) {
+    const float encoded = static_cast<float>((rrggbb >> shift) & 0xFFu) / 255.0f;
+    return encoded * (encoded * (encoded * 0.305306011f + 0.682171111f) + 0.012522878f);
+  };
+  return {channel(16), channel(8), channel(0)};
+}
+
+/// Handles to meshes of one Renderer.
+struct MeshId {
+  std::uint32_t value = 0;
+};
+struct StaticMeshId {
+  std::uint32_t value = 0;
+};
+
+enum class Pattern : std::uint8_t {
+  plain,
+  tiles,  ///< squares of 1 m in two shades on the mesh's own xz plane, with fine lines between them
+};
+
+/// A skinned mesh at its current vertices. Drawn from both sides.
+struct SkinnedDraw {
+  MeshId mesh;
+  Eigen::Vector3f origin{0, 0, 0};  ///< added to every vertex
+  Colour colour{0.8f, 0.8f, 0.8f};
+  float opacity = 1;  ///< below 1: blended over what is behind it, and casts no shadow
+};
+
+/// A mesh that does not change, moved as a whole.
+struct StaticDraw {
+  StaticMeshId mesh;
+  Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();  ///< affine, determinant above 0
+  Colour colour{0.8f, 0.8f, 0.8f};
+  float opacity = 1;  ///< below 1: blended over what is behind it (only its front sides), and casts no shadow
+  Pattern pattern = Pattern::plain;
+};
+
+/// A particle lattice: spheres and the links between them.
+struct LatticeDraw {
+  std::span<const Eigen::Vector3f> particles;
+  std::span<const std::array<std::uint32_t, 2>> links;  ///< indices into `particles`
+  float radius = 0.02f;                                 ///< of a sphere
+  Colour colour{0.9f, 0.5f, 0.1f};
+};
+
+/// The sun. Shadows fall inside a sphere that the caller keeps around its scene: a fixed one keeps shadow
+/// edges still.
+struct Light {
+  Eigen::Vector3f toward{0.45f, 0.8f, 0.4f};  ///< direction from the scene to the light; any length but 0
+  Colour colour{2.1f, 2.0f, 1.85f};
+  Colour sky{0.50f, 0.58f, 0.70f};     ///< ambient light from above
+  Colour ground{0.26f, 0.23f, 0.21f};  ///< ambient light from below
+  Eigen::Vector3f shadow_centre{0, 0, 0};
+  float shadow_radius = 10;
+};
+
+struct FrameDescription {
+  Camera camera;
+  Light light;
+  std::span<const SkinnedDraw> skinned;
+  std::span<const StaticDraw> statics;
+  std::span<const LatticeDraw> lattices;
+  Colour background_top = srgb(0x5B7FA6);
+  Colour background_bottom = srgb(0xDCE6EE);
+};
+
+}  // namespace softcell::render

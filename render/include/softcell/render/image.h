@@ -1,0 +1,35 @@
+#pragma once
+// A picture in memory.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace softcell::render {
+
+/// RGBA8, sRGB-encoded, rows from top to bottom without padding.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;
+
+  Image() = default;
+  /// A transparent black picture. @pre width and height are not negative.
+  Image(int image_width, int image_height);
+
+  /// The four channels of the pixel in column x and row y, counted from the top left. @pre inside the picture
+  const std::uint8_t* pixel(int x, int y) const { return rgba.data() + offset(x, y); }
+  std::uint8_t* pixel(int x, int y) { return rgba.data() + offset(x, y); }
+
+  bool operator==(const Image&) const = default;
+
+ private:
+  std::size_t offset(int x, int y) const {
+    return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+  }
+};
+
+/// XXH3 (64 bits) of the pixels, seeded with width and height: equal pictures, equal hashes, on every host.
+std::uint64_t image_hash(const Image& image);
+
+}  // namespace softcell::render

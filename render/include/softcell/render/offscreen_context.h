@@ -1,0 +1,28 @@
+#pragma once
+// OpenGL without a window. Mesa is loaded at run time, never linked: its libraries export the same symbols as
+// libGL, and a program must also start on a machine that has neither.
+
+#include <memory>
+
+#include "softcell/render/gl_context.h"
+
+namespace softcell::render {
+
+enum class Backend {
+  automatic,  ///< OSMesa, else EGL
+  osmesa,     ///< libOSMesa: always in software; gone from Mesa 25.1 on
+  egl,  ///< libEGL on Mesa's surfaceless platform; in software when pin_software_rasterizer() was called
+};
+
+/// Makes a context and makes it current on the calling thread.
+/// @throws std::runtime_error  one sentence naming the missing library and the package that has it, or what
+/// Mesa refused.
+std::unique_ptr<GlContext> create_offscreen_context(Backend backend = Backend::automatic);
+
+/// Makes pictures the same on every x86-64 processor: selects Mesa's software rasterizer llvmpipe, limits its
+/// code generator to SSE2 and 128-bit vectors (wider sets contract and round differently in the last bit),
+/// and switches its on-disk shader cache off. Sets environment variables of this process, so call it first
+/// thing in main(), before any thread and before the first context.
+void pin_software_rasterizer();
+
+}  // namespace softcell::render

@@ -1,0 +1,72 @@
+#pragma once
+// Draws frames of meshes into a picture. Knows vertex buffers and nothing of physics.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "softcell/render/frame.h"
+#include "softcell/render/gl_context.h"
+#include "softcell/render/image.h"
+
+namespace softcell::render {
+
+using Triangle = std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from outside
+
+/// Bytes of one skinned vertex: four binary16 of position (x y z, the fourth unused) and four of normal.
+inline constexpr std::size_t kSkinnedVertexBytes = 16;
+
+struct RendererSettings {
+  int width = 960;
+  int height = 540;
+  int samples = 4;             ///< of multisampling; taken down to what the context can do; 1 is none
+  int shadow_map_size = 1024;  ///< texels a side
+};
+
+/// One sun with soft-edged shadows, light from sky and ground, tone mapping and sRGB encoding, four samples a
+/// pixel. Draws into its own framebuffer; holds no global state. Use it on the context's thread; the context
+/// outlives it. After the first frames render() and pixels() allocate nothing themselves (the GL library does
+/// as it likes).
+class Renderer {
+ public:
+  /// @throws std::runtime_error  the context has no OpenGL 3.3, or refuses the sizes.
+  Renderer(GlContext& context, const RendererSettings& settings);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// A mesh whose vertices are given anew by update_mesh(); until then it draws nothing.
+  /// @param indices  three vertices a triangle, counter-clockwise seen from outside.
+  /// @throws std::invalid_argument  a count that is no multiple of three.
+  MeshId add_mesh(std::span<const std::uint32_t> indices);
+
+  /// Replaces the vertices, kSkinnedVertexBytes each, in the host's byte order. The bytes are copied before
+  /// it returns.
+  /// @throws std::invalid_argument  fewer vertices than the indices speak of, or a broken last one, or no
+  /// such mesh.
+  void update_mesh(MeshId mesh, std::span<const std::byte> vertices);
+
+  /// A mesh that stays as it is, with one unit normal per position.
+  /// @throws std::invalid_argument  another number of normals than positions, or an index out of range.
+  StaticMeshId add_static_mesh(std::span<const Eigen::Vector3f> positions,
+                               std::span<const Eigen::Vector3f> normals, std::span<const Triangle> triangles);
+
+  /// Draws one frame. Opaque things first, then those with an opacity below 1 in the given order, static ones
+  /// last.
+  /// @throws std::invalid_argument  a handle of another renderer or a link out of range.
+  void render(const FrameDescription& frame);
+
+  /// The last frame, read back. The reference stays valid; the next call overwrites the picture.
+  const Image& pixels();
+
+  /// For the log: "OSMesa, llvmpipe (LLVM 15.0.6, 128 bits), 4 samples".
+  const char* description() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softcell::render

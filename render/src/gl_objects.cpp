@@ -1,0 +1,78 @@
+#include "gl_objects.h"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace softcell::render {
+namespace {
+
+GlObject compile(const GladGLContext& gl, GLenum kind, std::initializer_list<const char*> parts) {
+  GlObject shader(gl, gl.CreateShader(kind),
+                  [](const GladGLContext& g, GLuint name) { g.DeleteShader(name); });
+  gl.ShaderSource(shader.name(), static_cast<GLsizei>(parts.size()), parts.begin(), nullptr);
+  gl.CompileShader(shader.name());
+  GLint compiled = 0;
+  gl.GetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
+  if (compiled == 0) {
+    std::array<char, 2000> log{};
+    gl.GetShaderInfoLog(shader.name(), static_cast<GLsizei>(log.size()), nullptr, log.data());
+    throw std::runtime_error(std::string("OpenGL does not compile a shader: ") + log.data());
+  }
+  return shader;
+}
+
+}  // namespace
+
+GlObject make_buffer(const GladGLContext& gl) {
+  GLuint name = 0;
+  gl.GenBuffers(1, &name);
+  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteBuffers(1, &n); }};
+}
+
+GlObject make_vertex_array(const GladGLContext& gl) {
+  GLuint name = 0;
+  gl.GenVertexArrays(1, &name);
+  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteVertexArrays(1, &n); }};
+}
+
+GlObject make_texture(const GladGLContext& gl) {
+  GLuint name = 0;
+  gl.GenTextures(1, &name);
+  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteTextures(1, &n); }};
+}
+
+GlObject make_renderbuffer(const GladGLContext& gl) {
+  GLuint name = 0;
+  gl.GenRenderbuffers(1, &name);
+  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteRenderbuffers(1, &n); }};
+}
+
+GlObject make_framebuffer(const GladGLContext& gl) {
+  GLuint name = 0;
+  gl.GenFramebuffers(1, &name);
+  return {gl, name, [](const GladGLContext& g, GLuint n) { g.DeleteFramebuffers(1, &n); }};
+}
+
+GlObject make_program(const GladGLContext& gl, std::initializer_list<const char*> vertex_parts,
+                      std::initializer_list<const char*> fragment_parts) {
+  const GlObject vertex = compile(gl, GL_VERTEX_SHADER, vertex_parts);
+  const GlObject fragment = compile(gl, GL_FRAGMENT_SHADER, fragment_parts);
+  GlObject program(gl, gl.CreateProgram(),
+                   [](const GladGLContext& g, GLuint name) { g.DeleteProgram(name); });
+  gl.AttachShader(program.name(), vertex.name());
+  gl.AttachShader(program.name(), fragment.name());
+  gl.LinkProgram(program.name());
+  GLint linked = 0;
+  gl.GetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+  if (linked == 0) {
+    std::array<char, 2000> log{};
+    gl.GetProgramInfoLog(program.name(), static_cast<GLsizei>(log.size()), nullptr, log.data());
+    throw std::runtime_error(std::string("OpenGL does not link a program: ") + log.data());
+  }
+  gl.DetachShader(program.name(), vertex.name());
+  gl.DetachShader(program.name(), fragment.name());
+  return program;
+}
+
+}  // namespace softcell::render

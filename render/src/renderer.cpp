@@ -1,0 +1,546 @@
+#include "softcell/render/renderer.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "gl_objects.h"
+#include "shaders.h"
+
+namespace softcell::render {
+namespace {
+
+static_assert(sizeof(Eigen::Vector3f) == 12, "spans of vectors are uploaded as they are");
+
+constexpr GLuint kPositionAttribute = 0;
+constexpr GLuint kNormalAttribute = 1;
+constexpr GLuint kFrameBinding = 0;
+
+/// The uniform block `Frame` of shaders.h, std140.
+struct FrameBlock {
+  Eigen::Matrix4f view_projection;
+  Eigen::Matrix4f light_projection;
+  Eigen::Matrix4f view_to_world;
+  Eigen::Vector4f eye;
+  Eigen::Vector4f toward_light;
+  Eigen::Vector4f light_colour;
+  Eigen::Vector4f sky;
+  Eigen::Vector4f ground;
+  Eigen::Vector4f background_top;
+  Eigen::Vector4f background_bottom;
+  Eigen::Vector4f shadow_texel;
+  Eigen::Vector4f pixels_per_tangent;
+};
+static_assert(sizeof(FrameBlock) == 3 * 64 + 9 * 16, "std140 has no padding here");
+
+Eigen::Vector4f vec4(const Eigen::Vector3f& v, float w = 0) { return {v.x(), v.y(), v.z(), w}; }
+
+const void* buffer_offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+/// A program and where its uniforms are; one that a program lacks is -1, which GL ignores.
+struct Program {
+  Program(const GladGLContext& gl, std::initializer_list<const char*> vertex_parts,
+          std::initializer_list<const char*> fragment_parts)
+      : object(make_program(gl, vertex_parts, fragment_parts)),
+        model(gl.GetUniformLocation(object.name(), "model")),
+        normal_matrix(gl.GetUniformLocation(object.name(), "normal_matrix")),
+        colour(gl.GetUniformLocation(object.name(), "colour")),
+        radius(gl.GetUniformLocation(object.name(), "radius")) {
+    gl.UniformBlockBinding(object.name(), gl.GetUniformBlockIndex(object.name(), "Frame"), kFrameBinding);
+  }
+
+  GlObject object;
+  GLint model;
+  GLint normal_matrix;
+  GLint colour;
+  GLint radius;
+};
+
+/// Triangles on the GPU.
+struct MeshBuffers {
+  explicit MeshBuffers(const GladGLContext& gl)
+      : layout(make_vertex_array(gl)), vertices(make_buffer(gl)), indices(make_buffer(gl)) {}
+
+  GlObject layout;
+  GlObject vertices;
+  GlObject indices;
+  GLsizei index_count = 0;
+  std::size_t vertices_needed = 0;  ///< the largest index and one
+  bool filled = false;              ///< the vertices have been given
+};
+
+std::size_t bytes_of(std::size_t count, std::size_t size) { return count * size; }
+
+/// World to the shadow map's clip space: a box around the sphere that the light shines on, seen along the
+/// light.
+Eigen::Matrix4f light_projection(const Light& light) {
+  const Eigen::Vector3f toward = light.toward.normalized();
+  const Eigen::Vector3f up =
+      toward.y() * toward.y() < 0.98f ? Eigen::Vector3f(0, 1, 0) : Eigen::Vector3f(0, 0, 1);
+  const Eigen::Vector3f eye = light.shadow_centre + 2 * light.shadow_radius * toward;
+  return orthographic(light.shadow_radius, light.shadow_radius, 3 * light.shadow_radius) *
+         look_at(eye, light.shadow_centre, up);
+}
+
+/// What turns normals when `pose` turns and stretches positions: the cofactors, up to length the inverse
+/// transpose.
+Eigen::Matrix3f normal_matrix(const Eigen::Matrix4f& pose) {
+  const Eigen::Vector3f x = pose.block<3, 1>(0, 0);
+  const Eigen::Vector3f y = pose.block<3, 1>(0, 1);
+  const Eigen::Vector3f z = pose.block<3, 1>(0, 2);
+  Eigen::Matrix3f cofactors;
+  cofactors << y.cross(z), z.cross(x), x.cross(y);
+  return cofactors;
+}
+
+Eigen::Matrix4f translation(const Eigen::Vector3f& offset) {
+  Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();
+  pose.block<3, 1>(0, 3) = offset;
+  return pose;
+}
+
+}  // namespace
+
+struct Renderer::State {
+  State(GlContext& gl_context, const RendererSettings& settings);
+  ~State() { context.make_current(); }  // then the members' objects are deleted
+
+  void make_picture_buffers(int samples);
+  void make_shadow_map();
+  MeshBuffers make_mesh(const void* indices, std::size_t index_count) const;
+  const MeshBuffers& mesh(MeshId id) const;
+  const MeshBuffers& mesh(StaticMeshId id) const;
+
+  void check(const FrameDescription& frame) const;
+  void upload_frame(const FrameDescription& frame);
+  void upload_lattice(const LatticeDraw& lattice);
+  void draw_shadow_map(const FrameDescription& frame);
+  void draw_opaque(const FrameDescription& frame);
+  void draw_lattice(const LatticeDraw& lattice);
+  void draw_background();
+  void draw_translucent(const FrameDescription& frame);
+  void draw(const MeshBuffers& buffers) const;
+  void draw_surface(const SkinnedDraw& item) const;
+  void draw_surface(const StaticDraw& item) const;
+  void draw_surface(const Program& program, const MeshBuffers& buffers, const Eigen::Matrix4f& pose,
+                    const Colour& colour, float opacity) const;
+  void draw_shadow(const MeshBuffers& buffers, const Eigen::Matrix4f& pose) const;
+
+  GlContext& context;
+  GladGLContext gl;
+  int width;
+  int height;
+  int shadow_map_size;
+  std::string description;
+
+  struct Programs {
+    explicit Programs(const GladGLContext& gl)
+        : surface(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, kShaderLighting, kSurfaceFragment}),
+          tiles(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, kShaderLighting, kTilesFragment}),
+          shadow(gl, {kShaderFrame, kShadowVertex}, {kShaderFrame, kShadowFragment}),
+          particle(gl, {kShaderFrame, kParticleVertex}, {kShaderFrame, kShaderLighting, kParticleFragment}),
+          particle_shadow(gl, {kShaderFrame, kParticleShadowVertex}, {kShaderFrame, kParticleShadowFragment}),
+          link(gl, {kShaderFrame, kLinkVertex}, {kShaderFrame, kShaderLighting, kLinkFragment}),
+          background(gl, {kShaderFrame, kBackgroundVertex},
+                     {kShaderFrame, kShaderLighting, kBackgroundFragment}) {}
+    Program surface, tiles, shadow, particle, particle_shadow, link, background;
+  };
+
+  // The framebuffer with its samples, the one they are resolved into, and the shadow map.
+  GlObject sampled_framebuffer, sampled_colour, sampled_depth;
+  GlObject resolved_framebuffer, resolved_colour;
+  GlObject shadow_framebuffer, shadow_map;
+  GlObject frame_buffer;  ///< the uniform block
+  GlObject lattice_layout, lattice_vertices, lattice_indices;
+  GlObject empty_layout;  ///< for the background, which has no vertices
+  std::unique_ptr<Programs> programs;
+  std::vector<MeshBuffers> skinned;
+  std::vector<MeshBuffers> statics;
+  Image picture;
+};
+
+Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
+    : context(gl_context),
+      width(settings.width),
+      height(settings.height),
+      shadow_map_size(settings.shadow_map_size) {
+  context.make_current();
+  const auto load = [](void* user, const char* name) {
+    return static_cast<GlContext*>(user)->function(name);
+  };
+  if (gladLoadGLContextUserPtr(&gl, load, &context) < GLAD_MAKE_VERSION(3, 3)) {
+    throw std::runtime_error(context.backend_name() + " offers less than OpenGL 3.3");
+  }
+  const auto limit = [this](GLenum name) {
+    GLint value = 0;
+    gl.GetIntegerv(name, &value);
+    return value;
+  };
+  const int largest = std::min(limit(GL_MAX_RENDERBUFFER_SIZE), limit(GL_MAX_TEXTURE_SIZE));
+  for (const int side : {width, height, shadow_map_size}) {
+    if (side < 1 || side > largest) {
+      throw std::runtime_error("a picture or shadow map of " + std::to_string(side) +
+                               " pixels a side cannot be drawn; 1 to " + std::to_string(largest) + " can");
+    }
+  }
+  const int samples = std::clamp(settings.samples, 1, std::max(limit(GL_MAX_SAMPLES), 1));
+  description = context.backend_name() + ", " + reinterpret_cast<const char*>(gl.GetString(GL_RENDERER)) +
+                ", " + std::to_string(samples) + " samples";
+
+  programs = std::make_unique<Programs>(gl);
+  make_picture_buffers(samples);
+  make_shadow_map();
+  frame_buffer = make_buffer(gl);
+  empty_layout = make_vertex_array(gl);
+
+  lattice_layout = make_vertex_array(gl);
+  lattice_vertices = make_buffer(gl);
+  lattice_indices = make_buffer(gl);
+  gl.BindVertexArray(lattice_layout.name());
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, lattice_indices.name());
+  gl.BindBuffer(GL_ARRAY_BUFFER, lattice_vertices.name());
+  gl.EnableVertexAttribArray(kPositionAttribute);
+  gl.VertexAttribPointer(kPositionAttribute, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f), nullptr);
+
+  gl.Enable(GL_PROGRAM_POINT_SIZE);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  picture = Image(width, height);
+}
+
+void Renderer::State::make_picture_buffers(int samples) {
+  const auto storage = [this](const GlObject& buffer, int count, GLenum format) {
+    gl.BindRenderbuffer(GL_RENDERBUFFER, buffer.name());
+    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, width, height);
+  };
+  const auto require_complete = [this] {
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw std::runtime_error(description + ": no framebuffer of " + std::to_string(width) + " by " +
+                               std::to_string(height) + " pixels");
+    }
+  };
+  sampled_framebuffer = make_framebuffer(gl);
+  sampled_colour = make_renderbuffer(gl);
+  sampled_depth = make_renderbuffer(gl);
+  storage(sampled_colour, samples > 1 ? samples : 0, GL_RGBA8);
+  storage(sampled_depth, samples > 1 ? samples : 0, GL_DEPTH_COMPONENT24);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, sampled_framebuffer.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, sampled_colour.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, sampled_depth.name());
+  require_complete();
+
+  resolved_framebuffer = make_framebuffer(gl);
+  resolved_colour = make_renderbuffer(gl);
+  storage(resolved_colour, 0, GL_RGBA8);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, resolved_framebuffer.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolved_colour.name());
+  require_complete();
+}
+
+void Renderer::State::make_shadow_map() {
+  shadow_map = make_texture(gl);
+  gl.BindTexture(GL_TEXTURE_2D, shadow_map.name());
+  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, shadow_map_size, shadow_map_size, 0,
+                GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  // Beyond the map the sun shines.
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  const std::array<float, 4> far_away{1, 1, 1, 1};
+  gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, far_away.data());
+
+  shadow_framebuffer = make_framebuffer(gl);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer.name());
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_map.name(), 0);
+  gl.DrawBuffer(GL_NONE);
+  gl.ReadBuffer(GL_NONE);
+  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw std::runtime_error(description + ": no shadow map of " + std::to_string(shadow_map_size) +
+                             " texels a side");
+  }
+}
+
+MeshBuffers Renderer::State::make_mesh(const void* indices, std::size_t index_count) const {
+  MeshBuffers buffers(gl);
+  buffers.index_count = static_cast<GLsizei>(index_count);
+  gl.BindVertexArray(buffers.layout.name());
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices.name());
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                static_cast<GLsizeiptr>(bytes_of(index_count, sizeof(std::uint32_t))), indices,
+                GL_STATIC_DRAW);
+  gl.BindBuffer(GL_ARRAY_BUFFER, buffers.vertices.name());
+  gl.EnableVertexAttribArray(kPositionAttribute);
+  gl.EnableVertexAttribArray(kNormalAttribute);
+  return buffers;
+}
+
+const MeshBuffers& Renderer::State::mesh(MeshId id) const {
+  if (id.value >= skinned.size()) throw std::invalid_argument("no mesh " + std::to_string(id.value));
+  return skinned[id.value];
+}
+
+const MeshBuffers& Renderer::State::mesh(StaticMeshId id) const {
+  if (id.value >= statics.size()) throw std::invalid_argument("no static mesh " + std::to_string(id.value));
+  return statics[id.value];
+}
+
+void Renderer::State::check(const FrameDescription& frame) const {
+  for (const SkinnedDraw& item : frame.skinned) mesh(item.mesh);
+  for (const StaticDraw& item : frame.statics) mesh(item.mesh);
+  for (const LatticeDraw& lattice : frame.lattices) {
+    for (const auto& link : lattice.links) {
+      if (link[0] >= lattice.particles.size() || link[1] >= lattice.particles.size()) {
+        throw std::invalid_argument("a link from particle " + std::to_string(link[0]) + " to " +
+                                    std::to_string(link[1]) + " of " +
+                                    std::to_string(lattice.particles.size()));
+      }
+    }
+  }
+}
+
+void Renderer::State::upload_frame(const FrameDescription& frame) {
+  const Camera& camera = frame.camera;
+  const Light& light = frame.light;
+  FrameBlock block;
+  block.view_projection = view_projection(camera, static_cast<float>(width) / static_cast<float>(height));
+  block.light_projection = light_projection(light);
+  block.view_to_world = look_at(camera.eye, camera.target, camera.up).transpose();
+  block.eye = vec4(camera.eye);
+  block.toward_light = vec4(light.toward.normalized());
+  block.light_colour = vec4(light.colour);
+  block.sky = vec4(light.sky);
+  block.ground = vec4(light.ground);
+  block.background_top = vec4(frame.background_top);
+  block.background_bottom = vec4(frame.background_bottom);
+  const float texels = static_cast<float>(shadow_map_size);
+  block.shadow_texel = Eigen::Vector4f(1 / texels, 2 * light.shadow_radius / texels, 0, 0);
+  block.pixels_per_tangent = Eigen::Vector4f(static_cast<float>(height) / (2 * camera.tan_half_fov_y),
+                                             texels / (2 * light.shadow_radius), 0, 0);
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame_buffer.name());
+  gl.BufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
+}
+
+void Renderer::State::upload_lattice(const LatticeDraw& lattice) {
+  gl.BindVertexArray(lattice_layout.name());
+  gl.BindBuffer(GL_ARRAY_BUFFER, lattice_vertices.name());
+  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(lattice.particles.size_bytes()),
+                lattice.particles.data(), GL_STREAM_DRAW);
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(lattice.links.size_bytes()),
+                lattice.links.data(), GL_STREAM_DRAW);
+}
+
+void Renderer::State::draw(const MeshBuffers& buffers) const {
+  if (!buffers.filled) return;
+  gl.BindVertexArray(buffers.layout.name());
+  gl.DrawElements(GL_TRIANGLES, buffers.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+void Renderer::State::draw_shadow(const MeshBuffers& buffers, const Eigen::Matrix4f& pose) const {
+  gl.UniformMatrix4fv(programs->shadow.model, 1, GL_FALSE, pose.data());
+  draw(buffers);
+}
+
+void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer.name());
+  gl.Viewport(0, 0, shadow_map_size, shadow_map_size);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  gl.Disable(GL_CULL_FACE);
+  gl.UseProgram(programs->shadow.object.name());
+  for (const SkinnedDraw& item : frame.skinned) {
+    if (item.opacity >= 1) draw_shadow(mesh(item.mesh), translation(item.origin));
+  }
+  for (const StaticDraw& item : frame.statics) {
+    if (item.opacity >= 1) draw_shadow(mesh(item.mesh), item.pose);
+  }
+  gl.UseProgram(programs->particle_shadow.object.name());
+  for (const LatticeDraw& lattice : frame.lattices) {
+    upload_lattice(lattice);
+    gl.Uniform1f(programs->particle_shadow.radius, lattice.radius);
+    gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(lattice.particles.size()));
+  }
+}
+
+void Renderer::State::draw_surface(const Program& program, const MeshBuffers& buffers,
+                                   const Eigen::Matrix4f& pose, const Colour& colour, float opacity) const {
+  gl.UseProgram(program.object.name());
+  gl.UniformMatrix4fv(program.model, 1, GL_FALSE, pose.data());
+  gl.UniformMatrix3fv(program.normal_matrix, 1, GL_FALSE, normal_matrix(pose).eval().data());
+  gl.Uniform4f(program.colour, colour.x(), colour.y(), colour.z(), opacity);
+  draw(buffers);
+}
+
+void Renderer::State::draw_surface(const SkinnedDraw& item) const {
+  draw_surface(programs->surface, mesh(item.mesh), translation(item.origin), item.colour, item.opacity);
+}
+
+void Renderer::State::draw_surface(const StaticDraw& item) const {
+  const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->surface;
+  draw_surface(program, mesh(item.mesh), item.pose, item.colour, item.opacity);
+}
+
+void Renderer::State::draw_opaque(const FrameDescription& frame) {
+  gl.BindFramebuffer(GL_FRAMEBUFFER, sampled_framebuffer.name());
+  gl.Viewport(0, 0, width, height);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);  // the background covers what nothing else does
+  for (const SkinnedDraw& item : frame.skinned) {
+    if (item.opacity >= 1) draw_surface(item);
+  }
+  gl.Enable(GL_CULL_FACE);
+  for (const StaticDraw& item : frame.statics) {
+    if (item.opacity >= 1) draw_surface(item);
+  }
+  for (const LatticeDraw& lattice : frame.lattices) draw_lattice(lattice);
+}
+
+void Renderer::State::draw_lattice(const LatticeDraw& lattice) {
+  upload_lattice(lattice);
+  const Colour& colour = lattice.colour;
+  const Program& link = programs->link;
+  gl.UseProgram(link.object.name());
+  gl.Uniform4f(link.colour, colour.x(), colour.y(), colour.z(), 1);
+  gl.DrawElements(GL_LINES, static_cast<GLsizei>(2 * lattice.links.size()), GL_UNSIGNED_INT, nullptr);
+
+  const Program& particle = programs->particle;
+  gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);  // round discs without blending, in any order
+  gl.UseProgram(particle.object.name());
+  gl.Uniform4f(particle.colour, colour.x(), colour.y(), colour.z(), 1);
+  gl.Uniform1f(particle.radius, lattice.radius);
+  gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(lattice.particles.size()));
+  gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+}
+
+void Renderer::State::draw_background() {
+  gl.DepthFunc(GL_LEQUAL);  // it lies exactly on the far plane
+  gl.UseProgram(programs->background.object.name());
+  gl.BindVertexArray(empty_layout.name());
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.DepthFunc(GL_LESS);
+}
+
+void Renderer::State::draw_translucent(const FrameDescription& frame) {
+  gl.Enable(GL_BLEND);
+  gl.DepthMask(GL_FALSE);
+  for (const SkinnedDraw& item : frame.skinned) {
+    if (item.opacity < 1) draw_surface(item);
+  }
+  for (const StaticDraw& item : frame.statics) {
+    if (item.opacity < 1) draw_surface(item);
+  }
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+}
+
+Renderer::Renderer(GlContext& context, const RendererSettings& settings)
+    : state_(std::make_unique<State>(context, settings)) {}
+
+Renderer::~Renderer() = default;
+
+MeshId Renderer::add_mesh(std::span<const std::uint32_t> indices) {
+  if (indices.size() % 3 != 0) {
+    throw std::invalid_argument(std::to_string(indices.size()) + " indices are no whole triangles");
+  }
+  State& state = *state_;
+  state.context.make_current();
+  MeshBuffers buffers = state.make_mesh(indices.data(), indices.size());
+  for (const std::uint32_t index : indices) {
+    buffers.vertices_needed = std::max<std::size_t>(buffers.vertices_needed, std::size_t{index} + 1);
+  }
+  const GladGLContext& gl = state.gl;
+  gl.VertexAttribPointer(kPositionAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes,
+                         buffer_offset(0));
+  gl.VertexAttribPointer(kNormalAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes, buffer_offset(8));
+  state.skinned.push_back(std::move(buffers));
+  return {static_cast<std::uint32_t>(state.skinned.size() - 1)};
+}
+
+void Renderer::update_mesh(MeshId id, std::span<const std::byte> vertices) {
+  State& state = *state_;
+  if (id.value >= state.skinned.size()) throw std::invalid_argument("no mesh " + std::to_string(id.value));
+  MeshBuffers& buffers = state.skinned[id.value];
+  if (vertices.size() % kSkinnedVertexBytes != 0 ||
+      vertices.size() / kSkinnedVertexBytes < buffers.vertices_needed) {
+    throw std::invalid_argument(std::to_string(vertices.size()) + " bytes of vertices for a mesh of " +
+                                std::to_string(buffers.vertices_needed) + " vertices of 16 bytes");
+  }
+  state.context.make_current();
+  const auto size = static_cast<GLsizeiptr>(vertices.size());
+  state.gl.BindBuffer(GL_ARRAY_BUFFER, buffers.vertices.name());
+  // New storage in place of the old, which a frame in progress may still read.
+  state.gl.BufferData(GL_ARRAY_BUFFER, size, nullptr, GL_STREAM_DRAW);
+  state.gl.BufferSubData(GL_ARRAY_BUFFER, 0, size, vertices.data());
+  buffers.filled = true;
+}
+
+StaticMeshId Renderer::add_static_mesh(std::span<const Eigen::Vector3f> positions,
+                                       std::span<const Eigen::Vector3f> normals,
+                                       std::span<const Triangle> triangles) {
+  if (positions.size() != normals.size()) {
+    throw std::invalid_argument(std::to_string(positions.size()) + " positions with " +
+                                std::to_string(normals.size()) + " normals");
+  }
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index >= positions.size()) {
+        throw std::invalid_argument("vertex " + std::to_string(index) + " of " +
+                                    std::to_string(positions.size()));
+      }
+    }
+  }
+  State& state = *state_;
+  state.context.make_current();
+  MeshBuffers buffers = state.make_mesh(triangles.data(), 3 * triangles.size());
+  // All positions, then all normals.
+  const GladGLContext& gl = state.gl;
+  const auto half = static_cast<GLsizeiptr>(positions.size_bytes());
+  gl.BufferData(GL_ARRAY_BUFFER, 2 * half, nullptr, GL_STATIC_DRAW);
+  gl.BufferSubData(GL_ARRAY_BUFFER, 0, half, positions.data());
+  gl.BufferSubData(GL_ARRAY_BUFFER, half, half, normals.data());
+  gl.VertexAttribPointer(kPositionAttribute, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f),
+                         buffer_offset(0));
+  gl.VertexAttribPointer(kNormalAttribute, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f),
+                         buffer_offset(positions.size_bytes()));
+  buffers.filled = true;
+  state.statics.push_back(std::move(buffers));
+  return {static_cast<std::uint32_t>(state.statics.size() - 1)};
+}
+
+void Renderer::render(const FrameDescription& frame) {
+  State& state = *state_;
+  state.check(frame);
+  state.context.make_current();
+  const GladGLContext& gl = state.gl;
+  state.upload_frame(frame);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.BindTexture(GL_TEXTURE_2D, state.shadow_map.name());
+  state.draw_shadow_map(frame);
+  state.draw_opaque(frame);
+  state.draw_background();
+  state.draw_translucent(frame);
+
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.sampled_framebuffer.name());
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.resolved_framebuffer.name());
+  gl.BlitFramebuffer(0, 0, state.width, state.height, 0, 0, state.width, state.height, GL_COLOR_BUFFER_BIT,
+                     GL_NEAREST);
+}
+
+const Image& Renderer::pixels() {
+  State& state = *state_;
+  state.context.make_current();
+  state.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.resolved_framebuffer.name());
+  state.gl.ReadPixels(0, 0, state.width, state.height, GL_RGBA, GL_UNSIGNED_BYTE, state.picture.rgba.data());
+  // OpenGL counts rows from the bottom.
+  for (int y = 0; y < state.height / 2; ++y) {
+    std::uint8_t* const upper = state.picture.pixel(0, y);
+    std::swap_ranges(upper, upper + 4 * state.width, state.picture.pixel(0, state.height - 1 - y));
+  }
+  return state.picture;
+}
+
+const char* Renderer::description() const { return state_->description.c_str(); }
+
+}  // namespace softcell::render
