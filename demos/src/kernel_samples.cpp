@@ -1,0 +1,56 @@
+#include "kernel_samples.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ppu/lattice.h"
+#include "softcell/ppu/shapes.h"
+#include "softcell/ppu/skin_orchestrator.h"
+#include "softcell/spu_kernels/images.h"
+
+namespace softcell::demos {
+namespace {
+
+void run_skin_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory, ls_sim::SpePool& pool) {
+  // A sphere about the origin has normals and positions of every sign and size, zero and subnormal halves among them.
+  const ppu::TriangleMesh mesh = ppu::make_sphere(1, 20);
+  const ppu::Lattice lattice = ppu::voxelize(mesh, 0.25f);
+  const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
+  std::vector<spu::SkinCorner> corners;
+  for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+    const Eigen::Vector3f x = lattice.rest_position(i);
+    corners.push_back({x.x(), x.y(), x.z(), 0});
+  }
+  ppu::SkinOrchestrator orchestrator(memory, pool, kernel);
+  orchestrator.add(embedding, corners.size());
+  const std::span<const spu::SkinCorner> positions(corners);
+  orchestrator.kick({&positions, 1});
+  orchestrator.drain();
+}
+
+}  // namespace
+
+std::vector<ls_sim::KernelImage> load_kernels() {
+  std::vector<ls_sim::KernelImage> kernels;
+  for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) kernels.push_back(ls_sim::load_image(file.name, file.elf));
+  std::sort(kernels.begin(), kernels.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return kernels;
+}
+
+ls_sim::KernelImage load_kernel(std::string_view name) {
+  for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) {
+    if (file.name == name) return ls_sim::load_image(file.name, file.elf);
+  }
+  throw std::runtime_error("there is no kernel " + std::string(name));
+}
+
+std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
+  dma::AddressSpace memory;
+  ls_sim::SpePool pool(memory, {.spes = 1, .measure_stack = true});
+  if (kernel.name != "skin") throw std::runtime_error("kernel " + kernel.name + " has no sample of work to measure its stack with");
+  run_skin_sample(kernel, memory, pool);
+  return pool.statistics()[0].stack_high_water;
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,82 @@
+#pragma once
+// A scene as plain data: what is in the world, how it looks, and what happens. Shared by the demo, its tests and benchmarks.
+// Metres, kilograms, seconds; y is up.
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "softcell/ppu/mesh.h"
+#include "softcell/ppu/soft_body.h"
+#include "softcell/render/camera.h"
+#include "softcell/render/frame.h"
+
+namespace softcell::demos {
+
+struct SoftBodyPlacement {
+  std::string name;
+  ppu::TriangleMesh mesh;
+  ppu::SoftBodySettings settings;
+  Eigen::Vector3f position{0, 0, 0};  ///< where the mesh's own origin goes
+  render::Colour colour{0.8f, 0.8f, 0.8f};
+};
+
+struct RigidBox {
+  Eigen::Vector3f size{1, 1, 1};
+  float mass = 0;  ///< 0: does not move
+  Eigen::Vector3f position{0, 0, 0};
+  render::Colour colour{0.8f, 0.8f, 0.8f};
+  float opacity = 1;
+  render::Pattern pattern = render::Pattern::plain;
+};
+
+/// A convex shape that does not move.
+struct Obstacle {
+  ppu::TriangleMesh mesh;
+  Eigen::Vector3f position{0, 0, 0};
+  render::Colour colour{0.8f, 0.8f, 0.8f};
+};
+
+/// The ground tilts about the x and z axes: angle(t) = amplitude sin(2 pi t / period), with the tilt growing over the first
+/// seconds. The world stays in the ground's frame, in which gravity turns; the camera turns with it.
+struct TiltScript {
+  float amplitude_x = 0, amplitude_z = 0;  ///< radians
+  float period_x = 1, period_z = 1;        ///< seconds
+  float begin = 0;                         ///< seconds
+};
+
+struct Scene {
+  std::vector<SoftBodyPlacement> soft_bodies;
+  std::vector<RigidBox> boxes;
+  std::vector<Obstacle> obstacles;
+  TiltScript tilt;
+  float gravity = 9.81f;  ///< m/s^2
+  float friction = 0.6f;
+  int substeps = 2;  ///< of a frame of 1/60 s
+  render::Camera camera;
+  render::Light light;
+};
+
+/// The user's own model for scene drop.
+struct OwnModel {
+  ppu::TriangleMesh mesh;
+  float cell_size = 0;  ///< in the mesh's units
+};
+
+struct SceneEntry {
+  std::string_view name;
+  std::string_view description;  ///< one line
+  Scene (*make)(const std::optional<OwnModel>& model);
+};
+
+/// All scenes, by name.
+std::span<const SceneEntry> scenes();
+
+/// @throws std::runtime_error  no scene of that name; the sentence lists those that there are.
+const SceneEntry& find_scene(std::string_view name);
+
+}  // namespace softcell::demos

@@ -1,0 +1,69 @@
+#pragma once
+// A scene at work: the Bullet world, the soft bodies in it, and the SPEs that skin them. No pictures here.
+
+#include <Eigen/Core>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scene.h"
+#include "softcell/ppu/skin_orchestrator.h"
+
+namespace softcell::demos {
+
+/// Milliseconds of one frame, measured on the PPU thread.
+struct FrameTimes {
+  double physics_ms = 0;    ///< in Bullet
+  double ppu_ms = 0;        ///< in softcell: shape matching, coupling, handing over the skinning
+  double skin_ms = 0;       ///< of ppu_ms: handing over the skinning
+  double skin_wait_ms = 0;  ///< waiting for the SPEs, which only a run without a window does; in none of the above
+};
+
+struct SimulationOptions {
+  int spes = 6;
+  dma::Schedule schedule{};
+};
+
+/// Used by one thread. step() allocates nothing outside Bullet once the first frames are past.
+class Simulation3d {
+ public:
+  /// @throws std::runtime_error  a body cannot be made, main memory is full, the host cannot run kernels.
+  Simulation3d(const Scene& scene, const SimulationOptions& options);
+  ~Simulation3d();
+  Simulation3d(const Simulation3d&) = delete;
+  Simulation3d& operator=(const Simulation3d&) = delete;
+
+  /// Simulates 1/60 s and hands its skinning to the SPEs; the frame before becomes the one that is shown.
+  /// @throws std::runtime_error  when skinning the frame before failed; the sentence is the fault's.
+  FrameTimes step();
+
+  /// Waits for the SPEs, so that the newest frame is shown. @throws as step().
+  void finish();
+
+  std::size_t soft_bodies() const;
+  std::size_t particles() const;
+  std::size_t vertices() const;  ///< of the meshes
+  std::size_t rigid_bodies() const;
+  const ppu::SoftBodyModel& model(std::size_t body) const;
+  const ppu::SoftBody& soft_body(std::size_t body) const;
+
+  /// 64-bit hash over positions and velocities of all particles as they are now.
+  std::uint64_t state_hash() const;
+
+  // The frame that is shown: all of one moment. Before the first step that is the beginning.
+  ppu::SkinnedBody shown(std::size_t body) const;
+  std::span<const spu::SkinCorner> shown_particles(std::size_t body) const;
+  std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
+  const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
+
+  std::vector<ls_sim::SpeStatistics> spe_statistics() const;
+  std::uint64_t late_frames() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softcell::demos
