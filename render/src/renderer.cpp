@@ -123,6 +123,7 @@ struct Renderer::State {
   void draw_background();
   void draw_translucent(const FrameDescription& frame);
   void draw(const MeshBuffers& buffers) const;
+  void cull_back_faces(bool cull) const;
   void draw_surface(const SkinnedDraw& item) const;
   void draw_surface(const StaticDraw& item) const;
   void draw_surface(const Program& program, const MeshBuffers& buffers, const Eigen::Matrix4f& pose,
@@ -340,6 +341,14 @@ void Renderer::State::draw(const MeshBuffers& buffers) const {
   gl.DrawElements(GL_TRIANGLES, buffers.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
+void Renderer::State::cull_back_faces(bool cull) const {
+  if (cull) {
+    gl.Enable(GL_CULL_FACE);
+  } else {
+    gl.Disable(GL_CULL_FACE);
+  }
+}
+
 void Renderer::State::draw_shadow(const MeshBuffers& buffers, const Eigen::Matrix4f& pose) const {
   gl.UniformMatrix4fv(programs->shadow.model, 1, GL_FALSE, pose.data());
   draw(buffers);
@@ -349,11 +358,13 @@ void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer.name());
   gl.Viewport(0, 0, shadow_map_size, shadow_map_size);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  gl.Disable(GL_CULL_FACE);
   gl.UseProgram(programs->shadow.object.name());
   for (const SkinnedDraw& item : frame.skinned) {
-    if (item.opacity >= 1) draw_shadow(mesh(item.mesh), translation(item.origin));
+    if (item.opacity < 1) continue;
+    cull_back_faces(!item.two_sided);
+    draw_shadow(mesh(item.mesh), translation(item.origin));
   }
+  cull_back_faces(true);
   for (const StaticDraw& item : frame.statics) {
     if (item.opacity >= 1) draw_shadow(mesh(item.mesh), item.pose);
   }
@@ -375,10 +386,12 @@ void Renderer::State::draw_surface(const Program& program, const MeshBuffers& bu
 }
 
 void Renderer::State::draw_surface(const SkinnedDraw& item) const {
+  cull_back_faces(!item.two_sided);
   draw_surface(programs->surface, mesh(item.mesh), translation(item.origin), item.colour, item.opacity);
 }
 
 void Renderer::State::draw_surface(const StaticDraw& item) const {
+  cull_back_faces(true);
   const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->surface;
   draw_surface(program, mesh(item.mesh), item.pose, item.colour, item.opacity);
 }
@@ -390,7 +403,6 @@ void Renderer::State::draw_opaque(const FrameDescription& frame) {
   for (const SkinnedDraw& item : frame.skinned) {
     if (item.opacity >= 1) draw_surface(item);
   }
-  gl.Enable(GL_CULL_FACE);
   for (const StaticDraw& item : frame.statics) {
     if (item.opacity >= 1) draw_surface(item);
   }

@@ -42,8 +42,11 @@ vec3 encode(vec3 x) {
   return 0.662002687 * s1 + 0.684122060 * s2 - 0.323583601 * s3 - 0.0225411470 * x;
 }
 
-// A rational film curve: keeps the hue of highlights that are brighter than white. (Narkowicz 2016)
-vec3 tone(vec3 x) { return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
+// Leaves the lower two thirds as they are, so that colours stay those asked for, and bends what is above towards white.
+vec3 tone(vec3 x) {
+  vec3 above = max(x - 0.65, 0.0);
+  return min(x, 0.65) + above / (1.0 + above / 0.35);
+}
 
 vec3 shade(vec3 position, vec3 normal, vec3 shadow_position, vec3 albedo) {
   vec3 toward_eye = normalize(eye.xyz - position);
@@ -65,8 +68,8 @@ vec3 shade(vec3 position, vec3 normal, vec3 shadow_position, vec3 albedo) {
 
   vec3 ambient = mix(ground.rgb, sky.rgb, 0.5 * normal.y + 0.5);
   vec3 light = albedo * (ambient + sun * light_colour.rgb);
-  light += (0.22 * sun * shine) * light_colour.rgb + (0.10 * grazing) * sky.rgb;
-  return encode(tone(0.62 * light));
+  light += (0.35 * sun * shine) * light_colour.rgb + (0.25 * grazing) * sky.rgb;
+  return encode(tone(light));
 }
 )glsl";
 
@@ -200,7 +203,7 @@ void main() { gl_Position = view_projection * vec4(vertex_position, 1.0); }
 inline constexpr char kLinkFragment[] = R"glsl(
 uniform vec4 colour;
 out vec4 result;
-void main() { result = vec4(encode(tone(0.62 * colour.rgb)), 1.0); }
+void main() { result = vec4(encode(tone(colour.rgb)), 1.0); }
 )glsl";
 
 /// A triangle that covers the picture at the far plane.

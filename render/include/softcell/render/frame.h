@@ -37,12 +37,13 @@ enum class Pattern : std::uint8_t {
   tiles,  ///< squares of 1 m in two shades on the mesh's own xz plane, with fine lines between them
 };
 
-/// A skinned mesh at its current vertices. Drawn from both sides.
+/// A skinned mesh at its current vertices.
 struct SkinnedDraw {
   MeshId mesh;
   Eigen::Vector3f origin{0, 0, 0};  ///< added to every vertex
   Colour colour{0.8f, 0.8f, 0.8f};
-  float opacity = 1;  ///< below 1: blended over what is behind it, and casts no shadow
+  float opacity = 1;       ///< below 1: blended over what is behind it, and casts no shadow
+  bool two_sided = false;  ///< draw the inner side too: for meshes with holes; takes about 1.6 times as long
 };
 
 /// A mesh that does not change, moved as a whole.
@@ -62,13 +63,14 @@ struct LatticeDraw {
   Colour colour{0.9f, 0.5f, 0.1f};
 };
 
-/// The sun. Shadows fall inside a sphere that the caller keeps around its scene: a fixed one keeps shadow
+/// The sun and the sky. Together they are about 1 on a surface that faces the sun, which then shows its own
+/// colour. Shadows fall inside a sphere that the caller keeps around its scene: a fixed one keeps shadow
 /// edges still.
 struct Light {
-  Eigen::Vector3f toward{0.45f, 0.8f, 0.4f};  ///< direction from the scene to the light; any length but 0
-  Colour colour{2.1f, 2.0f, 1.85f};
-  Colour sky{0.50f, 0.58f, 0.70f};     ///< ambient light from above
-  Colour ground{0.26f, 0.23f, 0.21f};  ///< ambient light from below
+  Eigen::Vector3f toward{-0.5f, 0.8f, 0.3f};  ///< direction from the scene to the light; any length but 0
+  Colour colour{0.86f, 0.80f, 0.70f};
+  Colour sky{0.36f, 0.41f, 0.48f};     ///< ambient light from above
+  Colour ground{0.17f, 0.15f, 0.13f};  ///< ambient light from below
   Eigen::Vector3f shadow_centre{0, 0, 0};
   float shadow_radius = 10;
 };

@@ -19,10 +19,11 @@ enum class Backend {
 /// Mesa refused.
 std::unique_ptr<GlContext> create_offscreen_context(Backend backend = Backend::automatic);
 
-/// Makes pictures the same on every x86-64 processor: selects Mesa's software rasterizer llvmpipe, limits its
-/// code generator to SSE2 and 128-bit vectors (wider sets contract and round differently in the last bit),
-/// and switches its on-disk shader cache off. Sets environment variables of this process, so call it first
-/// thing in main(), before any thread and before the first context.
+/// Makes pictures the same on every processor with AVX and FMA, which softcell's native engine needs anyway:
+/// selects Mesa's software rasterizer llvmpipe, fixes the instruction set and vector width of its code
+/// generator, and switches its on-disk shader cache off. It costs no speed. On an older processor single
+/// pixels differ by 1. Sets environment variables of this process, so call it first thing in main(), before
+/// any thread and before the first context.
 void pin_software_rasterizer();
 
 }  // namespace softcell::render
