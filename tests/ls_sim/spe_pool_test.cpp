@@ -58,7 +58,7 @@ TEST_F(SpePoolTest, OneFaultingJobFailsItsBatchAndTheOthersAndThePoolGoOn) {
   ASSERT_EQ(batch.failures().size(), 1u);
   EXPECT_EQ(batch.failures()[0].job, 1u);
   const std::string& message = batch.failures()[0].message;
-  for (const char* part : {"SPE ", "bad_dma", "get", "tag 3", "0x5ea010000000", "24"}) {
+  for (const char* part : {"SPE ", "bad_dma", "get", "tag 3", "0x5EA010000000", "24"}) {
     EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
   }
   EXPECT_EQ(lines.span()[0][0], 1u);

@@ -31,7 +31,7 @@ constexpr std::size_t kLandingStackBytes = 16 * 1024;
 
 std::string hexadecimal(std::uint64_t value) {
   std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "0x%05llx", static_cast<unsigned long long>(value));
+  std::snprintf(text.data(), text.size(), "0x%05llX", static_cast<unsigned long long>(value));
   return text.data();
 }
 
