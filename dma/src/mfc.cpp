@@ -132,11 +132,11 @@ bool Mfc::is_met(const StatusRequest& request) const {
   return false;
 }
 
-// Nothing, a few pieces or nearly everything, each about as likely, while some commands do not move at all.
+// Nothing, a few pieces or a whole transfer, each about as likely, while some commands do not move at all.
 void Mfc::pass_a_moment() {
   if (schedule_.kind != Schedule::kRandom || queue_.empty()) return;
   const auto moving = static_cast<SlotSet>(random_.next());
-  const std::uint32_t magnitude = random_.below(10);
+  const std::uint32_t magnitude = random_.below(8);
   for (std::uint32_t steps = random_.below(1u << magnitude); steps != 0; --steps) random_step(moving);
 }
 

@@ -34,8 +34,8 @@ TEST_P(RefusedSchedule, SaysWhatIsAllowed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Texts, RefusedSchedule,
-                         testing::Values("", "sometimes", "Eager", "eager ", "random", "random:", "random:x", "random:-1",
-                                         "random:+1", "random: 1", "random:1x", "random:0x10",
+                         testing::Values("", "sometimes", "Eager", "eager ", "random", "random:", "random:x",
+                                         "random:-1", "random:+1", "random: 1", "random:1x", "random:0x10",
                                          "random:18446744073709551616"));
 
 }  // namespace
