@@ -1,21 +1,36 @@
 #pragma once
-// Procedural closed meshes, centred on 0, deterministic on every host (no libm in their coordinates).
+// Procedural closed meshes, their boxes centred on 0, y up, deterministic on every host (no libm in their
+// coordinates). Lengths in metres, positive and finite; std::invalid_argument otherwise, and for counts below
+// those stated.
 
 #include "softcell/ppu/mesh.h"
 
 namespace softcell::ppu {
 
-/// A sphere of `radius` metres: a cube's six faces, each `subdivisions` squares a side, pushed onto the sphere.
+/// A sphere of `radius` metres: a cube's six faces, each `subdivisions` (1..512) squares a side, pushed onto
+/// the sphere.
 TriangleMesh make_sphere(float radius, int subdivisions);
 
 /// A torus about the y axis; `major` is the radius of the ring, `minor` that of the tube.
+/// Both counts 3..2048.
 TriangleMesh make_torus(float major, float minor, int ring_segments, int tube_segments);
 
-/// A box with the given edge lengths, each face divided into squares of about `step` metres. Corners are sharp.
+/// A box with the given edge lengths, each face divided into squares of about `step` metres (at most
+/// 1024 along an edge). Corners are sharp.
 TriangleMesh make_box(const Eigen::Vector3f& size, float step);
 
-/// A bumper car `length` metres long (along x): a rounded hull with a bumper ring, a seat back, and a thin antenna at the
-/// rear that is about as high as the car is long.
+/// A bumper car `length` metres long (along x): a rounded hull with a bumper ring, a seat back, and a thin
+/// antenna at the rear that is about as high as the car is long.
 TriangleMesh make_car(float length);
+
+/// A spike: a cone about the y axis, its tip up; `segments` 3..2048.
+TriangleMesh make_cone(float radius, float height, int segments);
+
+/// A post: a cylinder about the y axis; `segments` 3..2048.
+TriangleMesh make_cylinder(float radius, float height, int segments);
+
+/// A ramp: a box without the half above its diagonal; it rises along x, from nothing at -x to the full height
+/// at +x.
+TriangleMesh make_wedge(const Eigen::Vector3f& size);
 
 }  // namespace softcell::ppu
