@@ -1,0 +1,285 @@
+#include "softcell/render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "pinned_context.h"
+#include "test_scene.h"
+
+namespace softcell::render {
+namespace {
+
+using test::pinned_context;
+
+constexpr int kSide = 200;
+const Colour kBackground = srgb(0x000000);
+
+/// A camera 4 m above the origin that sees 4 m by 4 m of the ground: 50 pixels a metre, x to the right, z
+/// downwards.
+FrameDescription view_from_above() {
+  FrameDescription frame;
+  frame.camera.eye = {0, 4, 0};
+  frame.camera.up = {0, 0, -1};
+  frame.camera.tan_half_fov_y = 0.5f;
+  frame.light.toward = {0, 1, 0};
+  frame.light.shadow_radius = 4;
+  frame.background_top = frame.background_bottom = kBackground;
+  return frame;
+}
+
+const std::uint8_t* pixel_at(const Image& image, float x, float z) {
+  return image.pixel(static_cast<int>(kSide / 2 + 50 * x), static_cast<int>(kSide / 2 + 50 * z));
+}
+
+int brightness(const std::uint8_t* pixel) { return pixel[0] + pixel[1] + pixel[2]; }
+
+/// One triangle in the ground plane that faces up: the right angle at 0, legs of 1 m along x and z.
+test::SkinnedMesh ground_triangle() {
+  test::SkinnedMesh mesh;
+  const Eigen::Vector3f up(0, 1, 0);
+  mesh.add_vertex({0, 0, 0}, up);
+  mesh.add_vertex({0, 0, 1}, up);
+  mesh.add_vertex({1, 0, 0}, up);
+  mesh.indices = {0, 1, 2};
+  return mesh;
+}
+
+class RendererTest : public testing::Test {
+ protected:
+  const Image& draw(const FrameDescription& frame) {
+    renderer_.render(frame);
+    return renderer_.pixels();
+  }
+
+  SkinnedDraw add(const test::SkinnedMesh& mesh) {
+    SkinnedDraw item;
+    item.mesh = renderer_.add_mesh(mesh.indices);
+    renderer_.update_mesh(item.mesh, mesh.bytes());
+    return item;
+  }
+
+  Renderer renderer_{pinned_context(), {.width = kSide, .height = kSide}};
+};
+
+TEST_F(RendererTest, DrawsHalfFloatTrianglesWhereTheyAre) {
+  SkinnedDraw item = add(ground_triangle());
+  item.origin = {0.5f, 0, -1};
+  item.colour = srgb(0xFF0000);
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  const Image& image = draw(frame);
+
+  // Inside the triangle (0.5, -1) (0.5, 0) (1.5, -1), red; outside, the background.
+  for (const auto& [x, z] : {std::pair(0.56f, -0.94f), {0.56f, -0.16f}, {1.34f, -0.94f}, {0.9f, -0.5f}}) {
+    const std::uint8_t* const pixel = pixel_at(image, x, z);
+    EXPECT_GT(pixel[0], 180) << x << ' ' << z;
+    EXPECT_LT(pixel[1], 100) << x << ' ' << z;
+    EXPECT_EQ(pixel[3], 255);
+  }
+  for (const auto& [x, z] : {std::pair(0.44f, -0.5f), {0.9f, -1.06f}, {1.06f, -0.44f}, {-1.0f, 1.0f}}) {
+    EXPECT_LT(brightness(pixel_at(image, x, z)), 10) << x << ' ' << z;
+  }
+}
+
+TEST_F(RendererTest, SmoothsEdgesWithFourSamples) {
+  SkinnedDraw item = add(ground_triangle());
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  const Image& image = draw(frame);
+  // Along the hypotenuse pixels are covered in part: there are values between the background's and the
+  // surface's.
+  const int inside = brightness(pixel_at(image, 0.2f, 0.2f));
+  int between = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int value = brightness(image.pixel(i % kSide, i / kSide));
+    between += value > inside / 8 && value < inside * 7 / 8;
+  }
+  EXPECT_GT(between, 20);
+}
+
+TEST_F(RendererTest, ShowsNewVerticesFromTheNextFrameOn) {
+  test::SkinnedMesh mesh = ground_triangle();
+  SkinnedDraw item = add(mesh);
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  EXPECT_GT(brightness(pixel_at(draw(frame), 0.2f, 0.2f)), 300);
+
+  test::SkinnedMesh moved;
+  for (const Eigen::Vector3f& corner : {Eigen::Vector3f(-1.5f, 0, 0), {-1.5f, 0, 1}, {-0.5f, 0, 0}}) {
+    moved.add_vertex(corner, {0, 1, 0});
+  }
+  renderer_.update_mesh(item.mesh, moved.bytes());
+  const Image& image = draw(frame);
+  EXPECT_LT(brightness(pixel_at(image, 0.2f, 0.2f)), 10);
+  EXPECT_GT(brightness(pixel_at(image, -1.3f, 0.2f)), 300);
+}
+
+TEST_F(RendererTest, HidesTheInnerSideUnlessAskedForBoth) {
+  test::SkinnedMesh mesh = ground_triangle();
+  std::swap(mesh.indices[0], mesh.indices[1]);
+  SkinnedDraw item = add(mesh);
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  EXPECT_LT(brightness(pixel_at(draw(frame), 0.2f, 0.2f)), 10);
+  item.two_sided = true;
+  EXPECT_GT(brightness(pixel_at(draw(frame), 0.2f, 0.2f)), 100);
+}
+
+TEST_F(RendererTest, ABoxDarkensTheFloorUnderItAndNothingElse) {
+  const StaticMeshId box = test::add_unit_box(renderer_);
+  StaticDraw floor;
+  floor.mesh = box;
+  floor.pose = test::box_pose({0, -0.5f, 0}, {20, 1, 20});
+  // A box of 0.4 m hovers to the left of the middle; the light comes in at 45 degrees from the left, so that
+  // its shadow falls 1 m further right: onto -0.2..0.2.
+  StaticDraw crate;
+  crate.mesh = box;
+  crate.pose = test::box_pose({-1, 1, 0}, {0.4f, 0.4f, 0.4f});
+  const std::array both{floor, crate};
+  FrameDescription frame = view_from_above();
+  frame.light.toward = {-1, 1, 0};
+  frame.statics = std::span(both).first(1);
+  const Image lit = draw(frame);
+  frame.statics = both;
+  const Image& shadowed = draw(frame);
+
+  const int bright = brightness(pixel_at(lit, 0, 0));
+  EXPECT_LT(brightness(pixel_at(shadowed, 0, 0)), bright * 85 / 100) << "of " << bright;
+  EXPECT_LT(brightness(pixel_at(shadowed, 0.1f, 0.1f)), bright * 85 / 100);
+  for (const auto& [x, z] :
+       {std::pair(0.5f, 0.0f), {-0.5f, 0.0f}, {0.0f, 0.35f}, {0.0f, -0.35f}, {1.5f, 1.5f}}) {
+    EXPECT_NEAR(brightness(pixel_at(shadowed, x, z)), brightness(pixel_at(lit, x, z)), 3) << x << ' ' << z;
+  }
+}
+
+TEST_F(RendererTest, ALitFloorHasNoShadowAcne) {
+  StaticDraw floor;
+  floor.mesh = test::add_unit_box(renderer_);
+  floor.pose = test::box_pose({0, -0.5f, 0}, {20, 1, 20});
+  FrameDescription frame = view_from_above();
+  frame.statics = std::span(&floor, 1);
+  for (const float slope : {0.0f, 1.0f, 3.0f}) {
+    frame.light.toward = {slope, 1, 0.3f * slope};
+    frame.light.shadow_radius = 0.01f;  // the map covers next to nothing: no shadows at all
+    const Image without = draw(frame);
+    frame.light.shadow_radius = 6;
+    EXPECT_EQ(draw(frame), without) << "slope " << slope;
+  }
+}
+
+TEST_F(RendererTest, AFootprintTouchesItsShadow) {
+  // A box on the floor, light from the left: the floor is dark right beside its right side (no gap:
+  // "peter-panning").
+  const StaticMeshId box = test::add_unit_box(renderer_);
+  std::array<StaticDraw, 2> items;
+  items[0].mesh = items[1].mesh = box;
+  items[0].pose = test::box_pose({0, -0.5f, 0}, {20, 1, 20});
+  items[1].pose = test::box_pose({0, 0.25f, 0}, {0.5f, 0.5f, 0.5f});
+  FrameDescription frame = view_from_above();
+  frame.light.toward = {-1, 1, 0};
+  frame.statics = items;
+  const Image& image = draw(frame);
+  const int bright = brightness(pixel_at(image, 1.5f, 0));
+  // The top of the box, 3.5 m from the eye, hides the floor up to 0.286 m.
+  EXPECT_LT(brightness(pixel_at(image, 0.32f, 0)), bright * 85 / 100) << "of " << bright;
+}
+
+TEST_F(RendererTest, TranslucentWallsLetWhatIsBehindThemThrough) {
+  SkinnedDraw item = add(ground_triangle());
+  item.colour = srgb(0xFF0000);
+  StaticDraw wall;
+  wall.mesh = test::add_unit_box(renderer_);
+  wall.pose = test::box_pose({0, 1, 0}, {4, 0.1f, 4});
+  wall.colour = srgb(0x0000FF);
+  wall.opacity = 0.3f;
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  frame.statics = std::span(&wall, 1);
+  const Image& image = draw(frame);
+  EXPECT_GT(pixel_at(image, 0.2f, 0.2f)[0], 120) << "the triangle";
+  EXPECT_GT(pixel_at(image, 0.2f, 0.2f)[2], 40) << "the wall";
+}
+
+TEST_F(RendererTest, DrawsParticlesAsDiscsOfTheirRadiusAndLinksBetweenThem) {
+  const std::array<Eigen::Vector3f, 2> particles{Eigen::Vector3f(-1, 0, 0), Eigen::Vector3f(1, 0, 0)};
+  const std::array<std::array<std::uint32_t, 2>, 1> links{{{0, 1}}};
+  LatticeDraw lattice;
+  lattice.particles = particles;
+  lattice.links = links;
+  lattice.radius = 0.2f;
+  FrameDescription frame = view_from_above();
+  frame.lattices = std::span(&lattice, 1);
+  const Image& image = draw(frame);
+  EXPECT_GT(brightness(pixel_at(image, 1, 0)), 100);
+  EXPECT_GT(brightness(pixel_at(image, 1.16f, 0)), 50) << "inside the disc";
+  EXPECT_LT(brightness(pixel_at(image, 1.25f, 0)), 10) << "outside";
+  EXPECT_LT(brightness(pixel_at(image, 1.17f, 0.17f)), 10) << "a disc has no corners";
+  EXPECT_GT(brightness(image.pixel(kSide / 2, kSide / 2)) + brightness(image.pixel(kSide / 2, kSide / 2 - 1)),
+            100)
+      << "the link";
+}
+
+TEST_F(RendererTest, DrawsTheSameFrameInTheSameBits) {
+  const test::TestScene scene(renderer_, 1);
+  const Image first = draw(scene.frame());
+  EXPECT_EQ(draw(scene.frame()), first);
+  Renderer other(pinned_context(), {.width = kSide, .height = kSide});
+  const test::TestScene same(other, 1);
+  other.render(same.frame());
+  EXPECT_EQ(other.pixels(), first);
+}
+
+TEST_F(RendererTest, PutsTheTopRowFirst) {
+  FrameDescription frame = view_from_above();
+  frame.background_top = srgb(0xFFFFFF);
+  const Image& image = draw(frame);
+  EXPECT_GT(image.pixel(0, 0)[0], 240);
+  EXPECT_LT(image.pixel(0, kSide - 1)[0], 30);
+}
+
+TEST_F(RendererTest, RefusesWhatWouldReadPastItsBuffers) {
+  const test::SkinnedMesh mesh = ground_triangle();
+  const MeshId id = renderer_.add_mesh(mesh.indices);
+  EXPECT_THROW(renderer_.update_mesh(id, mesh.bytes().first(2 * kSkinnedVertexBytes)), std::invalid_argument);
+  EXPECT_THROW(renderer_.update_mesh(id, mesh.bytes().first(3 * kSkinnedVertexBytes - 8)),
+               std::invalid_argument);
+  EXPECT_THROW(renderer_.update_mesh({77}, mesh.bytes()), std::invalid_argument);
+  EXPECT_THROW(renderer_.add_mesh(std::span(mesh.indices).first(2)), std::invalid_argument);
+
+  const std::array<Eigen::Vector3f, 3> points{Eigen::Vector3f(0, 0, 0), {1, 0, 0}, {0, 1, 0}};
+  const std::array<Triangle, 1> good{{{0, 1, 2}}};
+  const std::array<Triangle, 1> bad{{{0, 1, 3}}};
+  EXPECT_THROW(renderer_.add_static_mesh(points, points, bad), std::invalid_argument);
+  EXPECT_THROW(renderer_.add_static_mesh(points, std::span(points).first(2), good), std::invalid_argument);
+
+  const std::array<std::array<std::uint32_t, 2>, 1> links{{{0, 3}}};
+  LatticeDraw lattice;
+  lattice.particles = points;
+  lattice.links = links;
+  FrameDescription frame = view_from_above();
+  frame.lattices = std::span(&lattice, 1);
+  EXPECT_THROW(renderer_.render(frame), std::invalid_argument);
+  const StaticDraw nothing{.mesh = {5}};
+  frame = view_from_above();
+  frame.statics = std::span(&nothing, 1);
+  EXPECT_THROW(renderer_.render(frame), std::invalid_argument);
+}
+
+TEST(RendererSettings, RefusesSizesThatCannotBeDrawn) {
+  EXPECT_THROW(Renderer(pinned_context(), {.width = 0, .height = 10}), std::runtime_error);
+  EXPECT_THROW(Renderer(pinned_context(), {.width = 10, .height = 1 << 24}), std::runtime_error);
+}
+
+TEST(Srgb, IsNearTheCurve) {
+  EXPECT_EQ(srgb(0x000000), Colour(0, 0, 0));
+  for (std::uint32_t level = 0; level < 256; ++level) {
+    const double encoded = level / 255.0;
+    const double exact = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(srgb(level << 8).y(), exact, 0.003) << level;
+  }
+}
+
+}  // namespace
+}  // namespace softcell::render

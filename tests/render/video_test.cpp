@@ -1,0 +1,184 @@
+#include "softcell/render/video.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "temporary_directory.h"
+
+namespace softcell::render {
+namespace {
+
+using test::error_of;
+using test::TemporaryDirectory;
+
+constexpr int kWidth = 64;
+constexpr int kHeight = 48;
+
+Image plain_frame(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
+  Image image(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      std::uint8_t* const pixel = image.pixel(x, y);
+      pixel[0] = red;
+      pixel[1] = green;
+      pixel[2] = blue;
+      pixel[3] = 255;
+    }
+  }
+  return image;
+}
+
+std::vector<char> bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool has_ffmpeg() { return std::system("ffmpeg -version >/dev/null 2>&1") == 0; }
+
+/// All frames of a video as packed RGB.
+std::vector<char> decode(const std::filesystem::path& video, const std::filesystem::path& scratch) {
+  const std::string command =
+      "ffmpeg -v error -y -i '" + video.string() + "' -f rawvideo -pix_fmt rgb24 '" + scratch.string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  return bytes_of(scratch);
+}
+
+/// Another PATH for as long as it lives.
+class PathOverride {
+ public:
+  explicit PathOverride(const std::string& path) : old_(std::getenv("PATH")) {
+    ::setenv("PATH", path.c_str(), 1);
+  }
+  ~PathOverride() { ::setenv("PATH", old_.c_str(), 1); }
+  PathOverride(const PathOverride&) = delete;
+  PathOverride& operator=(const PathOverride&) = delete;
+
+ private:
+  std::string old_;
+};
+
+/// Puts a shell script named ffmpeg into the directory.
+void make_fake_ffmpeg(const TemporaryDirectory& directory, const std::string& script) {
+  std::ofstream(directory / "ffmpeg") << "#!/bin/sh\n" << script;
+  std::filesystem::permissions(directory / "ffmpeg", std::filesystem::perms::owner_all);
+}
+
+class VideoWithFfmpeg : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  }
+  const TemporaryDirectory directory_;
+};
+
+TEST_F(VideoWithFfmpeg, HoldsEveryFrameInItsColour) {
+  constexpr int kFrames = 7;
+  VideoWriter video(directory_ / "demo.mp4", kWidth, kHeight, 30);
+  for (int i = 0; i < kFrames; ++i) video.add_frame(plain_frame(kWidth, kHeight, 200, 60, 30));
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "demo.mp4")) << "before it is whole";
+  video.finish();
+  EXPECT_EQ(directory_.entries(), std::vector<std::string>{"demo.mp4"});
+
+  const std::vector<char> frames = decode(directory_ / "demo.mp4", directory_ / "frames");
+  ASSERT_EQ(frames.size(), static_cast<std::size_t>(kFrames * kWidth * kHeight * 3));
+  const std::size_t middle = 3 * (kHeight / 2 * kWidth + kWidth / 2);
+  EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle]), 200, 6);
+  EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle + 1]), 60, 6);
+  EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle + 2]), 30, 6);
+}
+
+TEST_F(VideoWithFfmpeg, PadsOddSizesToEvenOnes) {
+  VideoWriter video(directory_ / "odd.mp4", 63, 47, 30);
+  video.add_frame(plain_frame(63, 47, 0, 255, 0));
+  video.finish();
+  EXPECT_EQ(decode(directory_ / "odd.mp4", directory_ / "frames").size(), std::size_t{64 * 48 * 3});
+}
+
+TEST_F(VideoWithFfmpeg, IsTheSameFileForTheSameFrames) {
+  for (const char* name : {"a.mp4", "b.mp4"}) {
+    VideoWriter video(directory_ / name, kWidth, kHeight, 60);
+    for (int i = 0; i < 5; ++i) {
+      video.add_frame(plain_frame(kWidth, kHeight, static_cast<std::uint8_t>(50 * i), 90, 10));
+    }
+    video.finish();
+  }
+  EXPECT_FALSE(bytes_of(directory_ / "a.mp4").empty());
+  EXPECT_EQ(bytes_of(directory_ / "a.mp4"), bytes_of(directory_ / "b.mp4"));
+}
+
+TEST_F(VideoWithFfmpeg, LeavesNothingWhenItIsAbandoned) {
+  {
+    VideoWriter video(directory_ / "demo.mp4", kWidth, kHeight, 30);
+    video.add_frame(plain_frame(kWidth, kHeight, 1, 2, 3));
+  }
+  EXPECT_TRUE(directory_.entries().empty());
+}
+
+TEST_F(VideoWithFfmpeg, TellsWhatFfmpegSaidOfAnUnknownFormat) {
+  const std::string error = error_of([&] {
+    VideoWriter video(directory_ / "demo.nosuchformat", kWidth, kHeight, 30);
+    for (int i = 0; i < 100; ++i) video.add_frame(plain_frame(kWidth, kHeight, 1, 2, 3));
+    video.finish();
+  });
+  EXPECT_NE(error.find("demo.nosuchformat: ffmpeg: "), std::string::npos) << error;
+  EXPECT_NE(error.find("Invalid argument"), std::string::npos) << error;
+  EXPECT_TRUE(directory_.entries().empty());
+}
+
+TEST_F(VideoWithFfmpeg, TellsWhenTheDirectoryIsMissing) {
+  const std::string error = error_of([&] {
+    VideoWriter video(directory_ / "none/demo.mp4", kWidth, kHeight, 30);
+    video.finish();
+  });
+  EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
+}
+
+TEST(Video, NamesThePackageWhenFfmpegIsNotInstalled) {
+  const TemporaryDirectory directory;
+  const PathOverride nothing(directory.string());
+  EXPECT_EQ(error_of([&] { VideoWriter video(directory / "demo.mp4", kWidth, kHeight, 30); }),
+            "cannot write the video " + directory.string() +
+                "/demo.mp4: the program ffmpeg was not found in PATH; install the package ffmpeg");
+}
+
+TEST(Video, ReportsTheLastLineOfAnEncoderThatEndsEarly) {
+  const TemporaryDirectory directory;
+  make_fake_ffmpeg(directory, "echo first >&2; echo 'the last words' >&2; exit 3\n");
+  const PathOverride fake(directory.string());
+  // A stream that nobody reads raises no SIGPIPE, which would end this test program.
+  const std::string error = error_of([&] {
+    VideoWriter video(directory / "demo.mp4", kWidth, kHeight, 30);
+    for (;;) video.add_frame(plain_frame(kWidth, kHeight, 1, 2, 3));
+  });
+  EXPECT_EQ(error, "cannot write the video " + directory.string() + "/demo.mp4: ffmpeg: the last words");
+  EXPECT_EQ(directory.entries(), std::vector<std::string>{"ffmpeg"});
+}
+
+TEST(Video, ReportsTheStatusOfAnEncoderThatFailsInSilence) {
+  const TemporaryDirectory directory;
+  make_fake_ffmpeg(directory, "while read -r line; do :; done; exit 5\n");
+  const PathOverride fake(directory.string());
+  VideoWriter video(directory / "demo.mp4", kWidth, kHeight, 30);
+  video.add_frame(plain_frame(kWidth, kHeight, 1, 2, 3));
+  EXPECT_NE(error_of([&] { video.finish(); }).find("ended with status 5"), std::string::npos);
+}
+
+TEST(Video, RefusesSizesThatDoNotFit) {
+  const TemporaryDirectory directory;
+  make_fake_ffmpeg(directory, "while read -r line; do :; done\n");
+  const PathOverride fake(directory.string());
+  EXPECT_NE(error_of([&] { VideoWriter video(directory / "v.mp4", 0, 10, 30); }).find("above 0"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { VideoWriter video(directory / "v.mp4", 10, 10, 0); }).find("above 0"),
+            std::string::npos);
+  VideoWriter video(directory / "v.mp4", kWidth, kHeight, 30);
+  EXPECT_NE(error_of([&] { video.add_frame(Image(8, 8)); }).find("a frame of 8 by 8"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softcell::render
