@@ -8,8 +8,9 @@
 
 namespace softcell::ppu {
 
-/// The part of a body that one skin job works on: groups [first_group, first_group + group_count) and the particles it reads
-/// as at most two contiguous runs. `SkinGroup::corner` of those groups counts through window 0, then window 1.
+/// The part of a body that one skin job works on: groups [first_group, first_group + group_count) and the
+/// particles it reads as at most two contiguous runs. `SkinGroup::corner` of those groups counts through
+/// window 0, then window 1.
 struct SkinPart {
   std::uint32_t first_group = 0;
   std::uint32_t group_count = 0;
@@ -17,27 +18,41 @@ struct SkinPart {
     std::uint32_t first_particle = 0;
     std::uint32_t count = 0;
   } window[2];
+
+  /// The number of the particle that corner index `corner` of this part stands for.
+  std::uint32_t particle(std::uint32_t corner) const {
+    return corner < window[0].count ? window[0].first_particle + corner
+                                    : window[1].first_particle + (corner - window[0].count);
+  }
 };
+
+/// Most groups in one part: 2048 vertices, 64 KB in and 32 KB out. Small, so that six SPEs share one body
+/// evenly (a mesh of 35,000 vertices makes some 25 parts); large against the up to 32 KB of corners that
+/// every part fetches for itself.
+inline constexpr std::uint32_t kMaxPartGroups = 512;
 
 /// Shared by all bodies of one model, immutable.
 struct Embedding {
-  std::vector<spu::SkinGroup> groups;        ///< sorted by part, then by cell
-  std::vector<SkinPart> parts;               ///< cover all groups, in order
-  std::vector<std::uint32_t> slot_of_vertex;   ///< mesh vertex -> output slot 4 * group + lane (a vertex's own, not a repeat)
-  std::vector<std::uint32_t> vertex_of_slot;   ///< output slot -> mesh vertex; repeats included
-  std::vector<std::uint32_t> indices;        ///< three output slots per mesh triangle: the index buffer for drawing
+  std::vector<spu::SkinGroup> groups;  ///< sorted by part, then by cell
+  std::vector<SkinPart> parts;         ///< cover all groups, in order
+  std::vector<std::uint32_t>
+      slot_of_vertex;  ///< mesh vertex -> output slot 4 * group + lane (a vertex's own, not a repeat)
+  std::vector<std::uint32_t> vertex_of_slot;  ///< output slot -> mesh vertex; repeats included
+  std::vector<std::uint32_t> indices;  ///< three output slots per mesh triangle: the index buffer for drawing
 };
 
 /// @pre  `lattice` covers `mesh`, as voxelize() makes it.
-/// @throws std::runtime_error  when a vertex lies in no cell, or one layer of the lattice cannot be cut into jobs.
+/// @throws std::runtime_error  when a vertex lies in no cell, or one layer of the lattice cannot be cut into
+/// jobs.
 Embedding embed(const TriangleMesh& mesh, const Lattice& lattice);
 
 /// One vertex evaluated in double precision straight from the equations: the oracle for the kernel.
-/// x = sum N_k x_k; n = normalize(cof(F) N) with F the deformation gradient, N the rest normal where that vanishes.
+/// x = sum N_k x_k; n = normalize(cof(F) N) with F the deformation gradient, N the rest normal where that
+/// vanishes.
 struct ReferenceVertex {
   Eigen::Vector3d position, normal;
 };
-ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& part, std::uint32_t group, int lane,
-                                   std::span<const Eigen::Vector3f> particle_positions);
+ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& part, std::uint32_t group,
+                                   int lane, std::span<const Eigen::Vector3f> particle_positions);
 
 }  // namespace softcell::ppu
