@@ -29,6 +29,7 @@ uniform sampler2DShadow shadow_map;
 
 // Share of the sun that arrives. Four taps, each an interpolation of 2 x 2 comparisons, spread to cover 3 x 3 texels.
 float sunlight(vec3 at) {
+  at.z = min(at.z, 1.0);  // behind the map's depth the sun shines, as it does beside it
   float d = 0.5 * shadow_texel.x;
   return 0.25 * (texture(shadow_map, at + vec3(-d, -d, 0.0)) + texture(shadow_map, at + vec3(d, -d, 0.0)) +
                  texture(shadow_map, at + vec3(-d, d, 0.0)) + texture(shadow_map, at + vec3(d, d, 0.0)));

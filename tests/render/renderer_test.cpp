@@ -23,7 +23,7 @@ FrameDescription view_from_above() {
   frame.camera.eye = {0, 4, 0};
   frame.camera.up = {0, 0, -1};
   frame.camera.tan_half_fov_y = 0.5f;
-  frame.light.toward = {0, 1, 0};
+  frame.light.toward = {0.6f, 1, 0.4f};  // not straight above: the eye would look into its mirror image
   frame.light.shadow_radius = 4;
   frame.background_top = frame.background_bottom = kBackground;
   return frame;

@@ -17,29 +17,33 @@
 
 namespace softcell::test {
 
+struct GoldenFolders {
+  std::filesystem::path golden = SOFTCELL_GOLDEN_DIR;
+  std::filesystem::path failures = SOFTCELL_GOLDEN_FAILURES_DIR;
+};
+
 /// Compares a picture with <golden folder>/<name>.png by the golden rule of image_compare.h. On failure the
 /// picture, the golden one and their difference (32-fold) are left in the failures folder, and the message
 /// names them. With SOFTCELL_UPDATE_GOLDENS=1 in the environment the golden picture is written instead and
 /// the comparison passes: look at it before committing it, and say in the commit why it moved.
 ///
 ///     EXPECT_TRUE(compare_with_golden(renderer.pixels(), "small_scene"));
-inline testing::AssertionResult compare_with_golden(const render::Image& actual, const std::string& name) {
-  const std::filesystem::path golden = std::filesystem::path(SOFTCELL_GOLDEN_DIR) / (name + ".png");
-  const std::filesystem::path failures = SOFTCELL_GOLDEN_FAILURES_DIR;
+inline testing::AssertionResult compare_with_golden(const render::Image& actual, const std::string& name,
+                                                    const GoldenFolders& folders = {}) {
+  const std::filesystem::path golden = folders.golden / (name + ".png");
+  const auto keep = [&](const char* kind, const render::Image& image) {
+    std::filesystem::create_directories(folders.failures);
+    const std::filesystem::path path = folders.failures / (name + "." + kind + ".png");
+    render::write_png(path, image, render::PngEffort::small);
+    return "\n  " + path.string();
+  };
   try {
     const char* const update = std::getenv("SOFTCELL_UPDATE_GOLDENS");
     if (update != nullptr && std::string(update) == "1") {
-      std::filesystem::create_directories(golden.parent_path());
+      std::filesystem::create_directories(folders.golden);
       render::write_png(golden, actual, render::PngEffort::small);
       return testing::AssertionSuccess() << "wrote " << golden.string();
     }
-
-    std::filesystem::create_directories(failures);
-    const auto keep = [&](const char* kind, const render::Image& image) {
-      const std::filesystem::path path = failures / (name + "." + kind + ".png");
-      render::write_png(path, image, render::PngEffort::small);
-      return "\n  " + path.string();
-    };
     if (!std::filesystem::exists(golden)) {
       return testing::AssertionFailure() << "there is no golden picture " << golden.string()
                                          << "; the picture drawn is" << keep("actual", actual);
