@@ -1,0 +1,35 @@
+#pragma once
+// The rotation nearest to a matrix: which way a region is turned.
+//
+// R = argmax <R, A> over rotations, A = sum m p q^T. With signed singular values s1 >= s2 >= |s3| of A the
+// optimum is well determined about body axis i exactly when the other two add up to something, s_j + s_k. So
+// a flat region (s3 = 0) has one answer, an inverted one (s3 < 0) too, a line leaves its twist open and a
+// point leaves everything open; what is open stays as it was.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace softcell::ppu {
+
+/// Turns `rotation` to the optimum for `matrix`, starting from the last step's answer: Newton's method on
+/// SO(3), two or three iterations as a rule, and a cold start of its own accord when that does not get there.
+/// @param matrix    any 3x3 matrix of finite numbers, of any rank, either sign of the determinant, any scale.
+/// @param rotation  unit quaternion; in: last step's, which decides what the matrix leaves open. out: unit.
+/// @param floor     a matrix whose Frobenius norm is at most this is noise: the rotation stays. 0 for exact
+/// zero.
+/// @return          the rotation matrix of the new `rotation`.
+/// @note  Real is float or double. Deterministic; allocates nothing.
+/// @source  [KKB18] for Newton with a warm start; the safeguards are ours, derived in docs/soft_bodies.md.
+template <typename Real>
+Eigen::Matrix<Real, 3, 3> update_rotation(const Eigen::Matrix<Real, 3, 3>& matrix,
+                                          Eigen::Quaternion<Real>& rotation, Real floor = Real(0));
+
+/// The optimum found without trusting `rotation`, which still decides what the matrix leaves open: the
+/// largest eigenvector of Davenport's 4x4 matrix, by Jacobi rotations in double precision. Several times as
+/// slow as update_rotation().
+/// @source  [HORN87]
+template <typename Real>
+Eigen::Matrix<Real, 3, 3> find_rotation(const Eigen::Matrix<Real, 3, 3>& matrix,
+                                        Eigen::Quaternion<Real>& rotation, Real floor = Real(0));
+
+}  // namespace softcell::ppu

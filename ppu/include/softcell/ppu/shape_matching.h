@@ -1,0 +1,153 @@
+#pragma once
+// Lattice shape matching: every region finds its best rigid motion, every particle is pulled towards the mean
+// of where its regions would have it.
+//
+//     x, v -- m~x, m~x x0^T --> [sum up] --> c_r, A_r --> R_r, t_r --> [sum down] --> g_i --> v_i += alpha
+//     (g_i - x_i)/h
+//             m~v, x × m~v, m~x x^T --> [sum up] --> v_r, omega_r --> [sum down] --> dv_i --> v_i += k dv_i
+//
+// Letters as in [LSM07]: m~_i = m_i / |R_i| modified mass, |R_i| number of regions that hold particle i, M_r
+// and c0_r mass and rest centre of region r. Velocities change, positions never: contacts of the engine stay
+// intact.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "softcell/ppu/lanes.h"
+#include "softcell/ppu/lattice.h"
+#include "softcell/ppu/summation.h"
+
+namespace softcell::ppu {
+
+/// Both give the same bits. Naive sums are the reference: (2w+1)^3 additions per particle and quantity.
+enum class SumMethod { kNaive, kBarPlateCube };
+
+/// What all bodies of one model share: constants of particles and regions at rest. Immutable.
+template <typename Real>
+class MatchingPlan {
+ public:
+  using Vector = Eigen::Matrix<Real, 3, 1>;
+
+  /// @param half_width  w, 0..kMaxHalfWidth; 1 to 4 are useful.
+  /// @param masses      kg, one per particle, positive and finite. Scaling all of them changes no result.
+  /// @throws std::invalid_argument  masses not as stated.
+  /// @throws std::runtime_error     as find_regions().
+  MatchingPlan(const Lattice& lattice, int half_width, std::span<const float> masses);
+
+  std::size_t particles() const { return particles_.size(); }
+  std::size_t regions() const { return regions_.size(); }  ///< distinct ones; see SumPlan
+  int half_width() const { return half_width_; }
+  Real spacing() const { return spacing_; }  ///< metres
+  const SumPlan& sums() const { return sums_; }
+  const Vector& rest_centre() const {
+    return rest_centre_;
+  }  ///< centre of mass at rest, in the lattice's frame
+
+  struct Particle {
+    Vector x0;                  ///< rest position relative to rest_centre()
+    Real modified_mass;         ///< m~, kg
+    Real inverse_region_count;  ///< 1 / |R_i|
+    Real mass;                  ///< kg
+  };
+  struct Region {
+    Vector c0;          ///< rest centre relative to rest_centre()
+    Real mass;          ///< M_r = sum of m~, kg
+    Real inverse_mass;  ///< 1 / M_r
+  };
+  std::span<const Particle> particle_constants() const { return particles_; }
+  std::span<const Region> region_constants() const { return regions_; }
+
+  /// Below this times M_r, a region's A_r is rounding noise: all its particles sit on one point. Square
+  /// metres.
+  Real noise_floor() const { return noise_floor_; }
+
+ private:
+  SumPlan sums_;
+  int half_width_;
+  Real spacing_;
+  Vector rest_centre_;
+  Real noise_floor_;
+  std::vector<Particle> particles_;
+  std::vector<Region> regions_;
+};
+
+/// The moving state of one body: the rotation of each region, and scratch memory. Copy it to save and
+/// restore. Allocates nothing after construction. Not thread safe: one thread at a time for one matcher;
+/// matchers of the same plan are independent.
+///
+/// Every call sums positions (and velocities) first: a NaN or infinity among them is reported before anything
+/// changes. Accuracy in float: goals to about 1e-5 of the body's size for bodies up to 50 cells long,
+/// wherever in the world.
+template <typename Real>
+class ShapeMatcher {
+ public:
+  using Vector = Eigen::Matrix<Real, 3, 1>;
+  using Quaternion = Eigen::Quaternion<Real>;
+
+  explicit ShapeMatcher(std::shared_ptr<const MatchingPlan<Real>> plan,
+                        SumMethod method = SumMethod::kBarPlateCube);
+
+  /// The goal position of each particle.
+  /// @param x  positions, metres    @param g  out: goals, metres; may be the same memory as x
+  /// @throws std::invalid_argument  a span is not one element per particle.
+  /// @throws std::runtime_error     a position is NaN or infinite; the sentence names the particle.
+  void goals(std::span<const Vector> x, std::span<Vector> g);
+
+  /// One step's change of velocity: the pull towards the goals, then damping of what is not rigid motion of a
+  /// region. Call it once per time step of the engine, before it integrates, with that step's `h`.
+  /// @param x        positions, metres
+  /// @param v        velocities, m/s, changed in place
+  /// @param alpha    0..1: the share of the way to the goal that one step makes up for
+  /// @param h        time step, seconds, positive and finite
+  /// @param damping  k, 0..1: the share of the deviation from rigid motion that one step takes away
+  /// @throws  as goals(); std::invalid_argument also for alpha, h, damping outside their ranges. Nothing has
+  /// changed then.
+  void step_velocities(std::span<const Vector> x, std::span<Vector> v, Real alpha, Real h, Real damping);
+
+  /// Of the last goals() or step_velocities(), metres; the rest positions before the first.
+  std::span<const Vector> goals_of_last_step() const { return goals_; }
+
+  /// Forgets the rotations: after a teleport, or when the body is put back to rest. The next step starts
+  /// cold.
+  void reset();
+
+  /// One unit quaternion per distinct region: that of particle i is
+  /// rotations()[plan().sums().region_of()[i]].
+  std::span<const Quaternion> rotations() const { return rotations_; }
+
+  const MatchingPlan<Real>& plan() const { return *plan_; }
+
+ private:
+  using Moments = Lanes<Real, 12>;  // what goes up:  m~x and m~x x0^T; for damping m~v, x × m~v, m~x x^T
+  using Motion = Lanes<Real, 12>;   // what comes down: t_r and R_r
+  using Twist = Lanes<Real, 8>;     // the same for damping: b_r, omega_r, two spare lanes
+
+  void check_sizes(std::size_t positions, std::size_t others) const;
+  void match(std::span<const Vector> x);
+  void blend_goals();
+  void damp(std::span<Vector> v, Real damping);
+
+  std::shared_ptr<const MatchingPlan<Real>> plan_;
+  SumMethod method_;
+  bool cold_ = true;  // rotations_ says nothing about the body yet
+  Vector origin_;     // a point in the body that positions are taken relative to, metres
+  std::vector<Quaternion> rotations_;
+  std::vector<Vector> x_;  // of each particle, relative to origin_
+  std::vector<Vector> goals_;
+  std::vector<Vector> centres_;  // c_r of each region, relative to origin_
+  std::vector<Moments> particle_moments_, region_moments_;
+  std::vector<Motion> motions_, motion_totals_;
+  std::vector<Twist> twists_, twist_totals_;
+  SumScratch<Moments> moment_scratch_;  // of Motion too: the same type
+  SumScratch<Twist> twist_scratch_;
+};
+
+extern template class MatchingPlan<float>;
+extern template class MatchingPlan<double>;
+extern template class ShapeMatcher<float>;
+extern template class ShapeMatcher<double>;
+
+}  // namespace softcell::ppu
