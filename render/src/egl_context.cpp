@@ -36,18 +36,13 @@ class EglContext final : public GlContext {
     display_ = get_platform_display(kEglPlatformSurfacelessMesa, nullptr, nullptr);
     if (display_ == nullptr) refuse("a surfaceless display; install the package libegl-mesa0");
     if (initialize_(display_, nullptr, nullptr) == 0) refuse("to start; install the package libgl1-mesa-dri");
-    try {
-      create();
-    } catch (...) {
-      terminate_(display_);
-      throw;
-    }
+    create();
   }
 
   ~EglContext() override {
     make_current_(display_, nullptr, nullptr, nullptr);
     destroy_context_(display_, handle_);
-    terminate_(display_);
+    // The display is the process's: terminating it would end the contexts of others.
   }
 
   void make_current() override {
@@ -91,7 +86,6 @@ class EglContext final : public GlContext {
   int (*get_error_)() = library_.function<decltype(get_error_)>("eglGetError");
   unsigned int (*initialize_)(EglHandle, int*,
                               int*) = library_.function<decltype(initialize_)>("eglInitialize");
-  unsigned int (*terminate_)(EglHandle) = library_.function<decltype(terminate_)>("eglTerminate");
   unsigned int (*bind_api_)(unsigned int) = library_.function<decltype(bind_api_)>("eglBindAPI");
   unsigned int (*choose_config_)(EglHandle, const int*, EglHandle*, int,
                                  int*) = library_.function<decltype(choose_config_)>("eglChooseConfig");
