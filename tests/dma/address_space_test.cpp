@@ -49,6 +49,7 @@ TEST(AddressSpace, JoinsFreeNeighboursInAnyOrderOfFreeing) {
   do {
     AddressSpace space;
     std::vector<EffectiveAddress> buffers;
+    buffers.reserve(4);
     for (int i = 0; i < 4; ++i) buffers.push_back(space.allocate("piece", 1000));
     for (const int i : order) space.free(buffers[i]);
     EXPECT_EQ(space.largest_free_range(Memory::kMain), kMainMemoryBytes);
@@ -209,6 +210,7 @@ TEST(AddressSpace, KeepsTheHostAddressesEqualToEffectiveOnesForItself) {
 TEST(AddressSpaceDeathTest, AnEffectiveAddressFollowedAsAPointerFaults) {
   AddressSpace space;
   const EffectiveAddress ea = space.allocate("a", 128);
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the mistake under test
   EXPECT_DEATH(*reinterpret_cast<volatile char*>(ea.value) = 1, "");
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,12 @@ inline MfcCommand command(MfcOpcode opcode, std::uint32_t lsa, EffectiveAddress 
 /// One SPE's view: everything an MFC works on, the MFC under the given schedule, and the calls of a kernel.
 class MfcBench {
  public:
-  static constexpr std::size_t kBufferBytes = 64 * 1024;
+  static constexpr std::size_t kBufferBytes = 65536;
 
   explicit MfcBench(Schedule schedule, std::uint64_t stream = 0)
       : buffer(space, "buffer", kBufferBytes), store(kLocalStoreBytes), mfc(store, space, schedule, stream) {}
 
-  void issue(MfcOpcode opcode, std::uint32_t lsa, std::uint64_t offset, std::uint32_t size,
+  void issue(MfcOpcode opcode, std::uint32_t lsa, std::uint32_t offset, std::uint32_t size,
              std::uint32_t tag) {
     const std::optional<Fault> fault = mfc.issue(command(opcode, lsa, buffer.ea() + offset, size, tag));
     ASSERT_FALSE(fault) << fault->message();
@@ -44,19 +45,19 @@ class MfcBench {
   std::uint32_t wait_any(std::uint32_t mask) { return wait(mask, 1); }
   std::uint32_t wait_all(std::uint32_t mask) { return wait(mask, 2); }
 
-  void fill_buffer(std::uint64_t offset, std::size_t bytes, int value) {
+  void fill_buffer(std::uint32_t offset, std::uint32_t bytes, int value) {
     std::fill_n(buffer.data() + offset, bytes, static_cast<std::byte>(value));
   }
-  void fill_store(std::uint32_t lsa, std::size_t bytes, int value) {
+  void fill_store(std::uint32_t lsa, std::uint32_t bytes, int value) {
     std::fill_n(store.begin() + lsa, bytes, static_cast<std::byte>(value));
   }
   /// How many of the local store's bytes from `lsa` on hold `value`.
-  std::ptrdiff_t count_in_store(std::uint32_t lsa, std::size_t bytes, int value) const {
-    return std::count(store.begin() + lsa, store.begin() + static_cast<std::ptrdiff_t>(lsa + bytes),
-                      static_cast<std::byte>(value));
+  std::ptrdiff_t count_in_store(std::uint32_t lsa, std::uint32_t bytes, int value) const {
+    const auto range = std::span(store).subspan(lsa, bytes);
+    return std::count(range.begin(), range.end(), static_cast<std::byte>(value));
   }
   int store_at(std::uint32_t lsa) const { return std::to_integer<int>(store[lsa]); }
-  int buffer_at(std::uint64_t offset) const { return std::to_integer<int>(buffer[offset]); }
+  int buffer_at(std::uint32_t offset) const { return std::to_integer<int>(buffer[offset]); }
 
   AddressSpace space;
   Buffer<std::byte> buffer;

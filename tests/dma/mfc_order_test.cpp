@@ -11,10 +11,12 @@ constexpr std::uint32_t kBytes = 1024;
 class OrderBench : public MfcBench {
  public:
   explicit OrderBench(Schedule schedule) : MfcBench(schedule) {
-    for (int block = 0; block < 16; ++block) fill_buffer(kBytes * block, kBytes, block);
+    for (std::uint32_t block = 0; block < 16; ++block) {
+      fill_buffer(kBytes * block, kBytes, static_cast<int>(block));
+    }
   }
   void get_block(MfcOpcode opcode, int block, std::uint32_t lsa, std::uint32_t tag) {
-    issue(opcode, lsa, kBytes * block, kBytes, tag);
+    issue(opcode, lsa, kBytes * static_cast<std::uint32_t>(block), kBytes, tag);
   }
   bool store_holds(std::uint32_t lsa, int block) const {
     return count_in_store(lsa, kBytes, block) == kBytes;

@@ -21,6 +21,7 @@ TEST(TranslationCache, AnswersAsTheAddressSpaceDoes) {
   TranslationCache cache(space);
   // More buffers than the cache holds, so that entries are replaced and looked up again.
   std::vector<Buffer<char>> buffers;
+  buffers.reserve(20);
   for (int i = 0; i < 20; ++i) {
     buffers.emplace_back(space, "b", 256,
                          BufferOptions{.spe_access = i % 2 == 0 ? SpeAccess::kRead : SpeAccess::kReadWrite});
@@ -70,6 +71,7 @@ TEST(TranslationCache, SixMfcsLookUpWhileThePpuAllocates) {
   std::atomic<int> running{kSpeCount};
   std::vector<int> moved(kSpeCount, 0);
   std::vector<std::thread> spes;
+  spes.reserve(kSpeCount);
   for (int spe = 0; spe < kSpeCount; ++spe) {
     spes.emplace_back([&, spe] {
       std::vector<std::byte> store(kLocalStoreBytes);

@@ -47,8 +47,7 @@ struct BufferOptions {
 /// One buffer as the MFC sees it.
 struct Mapping {
   EffectiveAddress ea = {};
-  /// Size for DMA: the buffer's own, rounded up to a quadword, because no legal command could move its tail
-  /// otherwise.
+  /// The buffer's size rounded up to a quadword, because no legal command could move its tail otherwise.
   std::uint64_t bytes = 0;
   std::byte* host = nullptr;
   SpeAccess spe_access = SpeAccess::kNone;
@@ -94,8 +93,7 @@ class AddressSpace {
   /// @param bytes   at least 1.
   /// @param wanted  kNone asks for no permission: that is the PPU side.
   /// @return  the host pointer, or a fault with rule and detail set: ea-not-mapped, ea-crosses-buffer,
-  /// ea-not-readable,
-  ///          ea-not-writable or video-memory-write.
+  ///          ea-not-readable, ea-not-writable or video-memory-write.
   /// @note    Takes a shared lock. An MFC goes through its TranslationCache instead.
   std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) const;
 

@@ -62,8 +62,7 @@ class Buffer {
   EffectiveAddress ea() const { return ea_; }
   EffectiveAddress ea(std::size_t index) const { return ea_ + index * sizeof(T); }
 
-  /// The elements, as the PPU side sees them. An SPE may read or write them while a job that knows the
-  /// address runs.
+  /// The elements, as the PPU side sees them. SPEs may change them as long as a job has their address.
   std::span<T> span() { return elements_; }
   std::span<const T> span() const { return elements_; }
   T* data() { return elements_.data(); }

@@ -46,8 +46,7 @@ struct Fault {
   std::string detail = {};                 ///< what was found and what is allowed; no full stop
 
   /// One line with all of the above:
-  /// "SPE 2, kernel skin: ea-alignment: getf tag 3, LSA 0x00400, EA 0x5EA010000008, 16 bytes: EA is 8 bytes
-  /// past ..."
+  /// "SPE 2, kernel skin: ea-alignment: getf tag 3, LSA 0x00400, EA 0x5EA010000008, 16 bytes: EA is ..."
   std::string message() const;
 };
 

@@ -55,8 +55,7 @@ class Mfc {
   /// the schedule's seed and on `job_id`, not on the SPE. Statistics go on.
   void begin_job(std::uint64_t job_id);
 
-  /// Queues one DMA command (a write to MFC_Cmd). Its bytes may move at any time from now until its tag is
-  /// waited for.
+  /// Queues one DMA command (a write to MFC_Cmd). Its bytes may move at any time until its tag is waited for.
   /// @param command  lsa and ea in bytes; size 1, 2, 4, 8 or a multiple of 16 up to 16384 bytes; tag 0..31.
   /// @return  nothing, or the rule that the command breaks; then nothing is queued.
   /// @note    A full queue is no error: time passes until a slot is free, and the stall is counted.
@@ -64,8 +63,8 @@ class Mfc {
   /// @source  [CBEA, MFC commands] documented
   std::optional<Fault> issue(const MfcCommand& command);
 
-  /// Free slots of the queue, 0..16 (the channel count of MFC_Cmd). Asking takes time: a loop that asks goes
-  /// on.
+  /// Free slots of the queue, 0..16 (the channel count of MFC_Cmd). Asking takes time, so a loop
+  /// that asks comes to an end.
   int free_slots();
 
   /// MFC_WrTagMask and MFC_RdTagMask: bit t is tag t.
@@ -73,17 +72,15 @@ class Mfc {
   std::uint32_t tag_mask() const { return tag_mask_; }
 
   /// MFC_WrTagUpdate: asks for the status of the tags that are in the mask now.
-  /// @param condition  0 immediate, which also cancels an open request; 1 any tag complete; 2 all tags
-  /// complete.
-  /// @return  nothing, or tag-update-condition (another value) or tag-update-pending (1 or 2 while a request
-  /// is open).
+  /// @param condition  0 immediate, which also cancels an open request; 1 any tag complete; 2 all complete.
+  /// @return  nothing, or the fault tag-update-condition (another value) or tag-update-pending (1 or 2 while
+  /// a
+  ///          request is open).
   std::optional<Fault> write_tag_update(std::uint32_t condition);
 
-  /// MFC_RdTagStat: waits until the requested condition holds, which completes transfers, and ends the
-  /// request.
-  /// @return  the requested tags that are complete; or tag-status-not-requested or tag-mask-empty, where the
-  /// hardware
-  ///          would wait for ever.
+  /// MFC_RdTagStat: completes transfers until the requested condition holds, and ends the request.
+  /// @return  the requested tags that are complete; or the fault tag-status-not-requested or tag-mask-empty,
+  ///          where the hardware would wait for ever.
   std::variant<std::uint32_t, Fault> read_tag_status();
 
   /// 1 when read_tag_status() would not wait, else 0 (the channel count of MFC_RdTagStat). Asking takes time.

@@ -9,10 +9,9 @@
 
 namespace softcell::dma {
 
-/// The opcodes, in the manual's spelling. All of them have a name, so that an unsupported one is refused by
-/// name.
+/// The opcodes, in the manual's spelling; all of them, so that an unsupported one is refused by name.
 enum class MfcOpcode : std::uint16_t {
-#define SC_MFC_OPCODE(name, code) name = code,
+#define SC_MFC_OPCODE(name, code) name = (code),
 #include "softcell/dma/mfc_opcodes.def"
 #undef SC_MFC_OPCODE
 };
@@ -25,8 +24,8 @@ constexpr std::uint32_t kMaxTransferBytes = 16384;  // [CBEA, MFC commands] docu
 
 /// A command as issued; nothing is checked here, see check_command() in mfc_rules.h.
 struct MfcCommand {
-  std::uint32_t word =
-      0;  ///< MFC_Cmd: transfer class << 24 | replacement class << 16 | opcode. The classes are cache hints.
+  /// MFC_Cmd: transfer class << 24 | replacement class << 16 | opcode. The classes are cache hints.
+  std::uint32_t word = 0;
   LocalStoreAddress lsa = {};
   EffectiveAddress ea = {};
   std::uint32_t size = 0;  ///< bytes

@@ -16,9 +16,8 @@ namespace softcell::dma {
 ///   16 .. 16384     both multiples of 16, as is the size
 ///
 /// @return  nothing, or the first rule broken, in the order of rules.def, with the command set. Of the known
-/// commands get, put and
-///          putr with their fence and barrier forms are executed; the others are refused by name
-///          (command-not-supported).
+///          commands, get, put and putr are executed, with their fence and barrier forms; the others are
+///          refused by name (command-not-supported).
 /// @note    Pure; any thread.
 /// @source  [CBEA, MFC commands] documented; what is not is marked in rules.def
 std::optional<Fault> check_command(const MfcCommand& command);

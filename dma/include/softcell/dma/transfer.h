@@ -27,8 +27,7 @@ class Transfer {
   /// Moves whatever has not moved yet.
   void move_rest();
 
-  /// Moves the piece that `choice`, below pieces_left(), counts among those not moved yet, lowest address
-  /// first.
+  /// Moves one piece: number `choice`, below pieces_left(), of those not moved yet, lowest address first.
   void move_piece(std::uint32_t choice);
 
   std::uint32_t pieces_left() const { return pieces_left_; }
