@@ -18,7 +18,7 @@ set(SOFTCELL_KERNEL_FLAGS
   -mno-red-zone -fomit-frame-pointer
   # No loops turned into calls of memcpy or memset: there is no C library in a local store.
   -fno-builtin
-  -Wall -Wextra -Wshadow -Wpedantic -Werror -Wno-unknown-warning-option)
+  -Wall -Wextra -Wshadow -Werror -Wno-unknown-warning-option)
 
 function(softcell_add_spu_kernel name)
   cmake_parse_arguments(arg "" "STACK_BYTES;BUDGET_BYTES" "SOURCES;INCLUDES" ${ARGN})
