@@ -1,0 +1,77 @@
+#pragma once
+// Soft bodies in somebody's Bullet world.
+//
+//     BulletSoftBodies soft_bodies(world);                     // your btDiscreteDynamicsWorld
+//     SoftBody& ball = soft_bodies.add(model, {0, 2, 0});
+//     world.stepSimulation(dt, max_substeps, fixed_step);      // as before
+//     draw(ball.positions());
+//
+// Each outer particle is a btRigidBody: a small sphere that cannot turn (one that rolls has no friction).
+// Bullet moves them and solves their contacts, with everything else in the world and with other soft bodies.
+// In every internal substep, before Bullet integrates, shape matching changes their velocities, with that
+// substep's length; positions are Bullet's own business, because moving a body spoils its contacts. Inner
+// particles, which nothing can touch, are integrated here.
+//
+//     substep:  [pull: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <Eigen/Core>
+#include <chrono>
+#include <memory>
+
+#include "softcell/ppu/soft_body.h"
+
+namespace softcell::ppu {
+
+/// The soft bodies of one world. Several of these may share a world.
+///
+/// What it installs in the world: an internal pre-tick callback and an overlap filter, each calling the one
+/// found there, and an action. The world's user info stays the caller's own. A callback or filter that the
+/// caller installs later must call the one it replaces, or soft bodies lose their shape.
+///
+/// Used by the thread that steps the world. Allocates nothing in stepSimulation(); Bullet may.
+/// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
+class BulletSoftBodies {
+ public:
+  /// A particle moves at most this share of a cell in one substep; faster ones are slowed down. Bullet finds
+  /// contacts before they happen within such a distance (see contact_sphere.h), so that nothing goes through
+  /// a floor. With cells of 0.2 m and substeps of 1/120 s that is 12 m/s, a fall from 7 m.
+  static constexpr float kMaxTravelInCells = 0.5f;
+
+  /// @param world  outlives this.
+  explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);
+  /// Removes all bodies and leaves the world as it was found.
+  ~BulletSoftBodies();
+  BulletSoftBodies(const BulletSoftBodies&) = delete;
+  BulletSoftBodies& operator=(const BulletSoftBodies&) = delete;
+
+  /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
+  /// Between steps the body may be changed through its own functions; Bullet is told at the next substep.
+  SoftBody& add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position);
+
+  /// @throws std::invalid_argument  the body is not one of these.
+  void remove(const SoftBody& body);
+
+  std::size_t size() const;
+  SoftBody& operator[](std::size_t index);  ///< in the order of add()
+  const SoftBody& operator[](std::size_t index) const;
+
+  /// The soft body and the particle number that a collision object stands for, for contact callbacks; a null
+  /// pointer for everything else.
+  struct Particle {
+    const SoftBody* body = nullptr;
+    std::size_t number = 0;
+  };
+  static Particle particle_of(const btCollisionObject& object);
+
+  /// Time spent in this class inside stepSimulation(), for all soft bodies of `world`, since the first was
+  /// attached.
+  static std::chrono::nanoseconds time_spent(const btDynamicsWorld& world);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace softcell::ppu
