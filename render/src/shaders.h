@@ -27,10 +27,10 @@ layout(std140) uniform Frame {
 inline constexpr char kShaderLighting[] = R"glsl(
 uniform sampler2DShadow shadow_map;
 
-// Share of the sun that arrives. Four taps, each an interpolation of 2 x 2 comparisons, spread to cover 3 x 3 texels.
+// Share of the sun that arrives. Four taps, each an interpolation of 2 x 2 comparisons, spread to cover 3.5 x 3.5 texels.
 float sunlight(vec3 at) {
   at.z = min(at.z, 1.0);  // behind the map's depth the sun shines, as it does beside it
-  float d = 0.5 * shadow_texel.x;
+  float d = 0.75 * shadow_texel.x;
   return 0.25 * (texture(shadow_map, at + vec3(-d, -d, 0.0)) + texture(shadow_map, at + vec3(d, -d, 0.0)) +
                  texture(shadow_map, at + vec3(-d, d, 0.0)) + texture(shadow_map, at + vec3(d, d, 0.0)));
 }
@@ -90,7 +90,7 @@ void main() {
   pattern_position = vertex_position.xz;
   // Compared a little off the surface, along the normal: a surface must not shadow itself (acne), and an offset along
   // the light would part shadows from the feet that cast them.
-  vec3 lifted = position + normal * (1.5 * shadow_texel.y);
+  vec3 lifted = position + normal * (2.0 * shadow_texel.y);
   shadow_position = 0.5 * (light_projection * vec4(lifted, 1.0)).xyz + 0.5;
   gl_Position = view_projection * world;
 }

@@ -22,7 +22,7 @@ struct RendererSettings {
   int width = 960;
   int height = 540;
   int samples = 4;             ///< of multisampling; taken down to what the context can do; 1 is none
-  int shadow_map_size = 1024;  ///< texels a side
+  int shadow_map_size = 1536;  ///< texels a side
 };
 
 /// One sun with soft-edged shadows, light from sky and ground, tone mapping and sRGB encoding, four samples a

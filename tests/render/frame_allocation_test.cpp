@@ -1,0 +1,32 @@
+#include <gtest/gtest.h>
+
+#include "dma/allocation_counter.h"
+#include "pinned_context.h"
+#include "test_scene.h"
+
+namespace softcell::render {
+namespace {
+
+TEST(SteadyFrame, AllocatesNothing) {
+  Renderer renderer(test::pinned_context(), {.width = 160, .height = 90});
+  const test::TestScene scene(renderer, 1);
+  const test::SkinnedMesh torus = test::make_torus(32, 16);
+  SkinnedDraw item;
+  item.mesh = renderer.add_mesh(torus.indices);
+  item.origin = {0, 2, 0};
+  FrameDescription frame = scene.frame();
+  frame.skinned = std::span(&item, 1);
+  const auto draw = [&] {
+    renderer.update_mesh(item.mesh, torus.bytes());
+    renderer.render(frame);
+    renderer.pixels();
+  };
+  for (int warm_up = 0; warm_up < 3; ++warm_up) draw();
+
+  const long before = allocation_count();
+  for (int i = 0; i < 5; ++i) draw();
+  EXPECT_EQ(allocation_count() - before, 0);
+}
+
+}  // namespace
+}  // namespace softcell::render
