@@ -44,9 +44,11 @@ inline vec_uint4 half_of_any(vec_float4 value) {
   const vec_uint4 almost_half = spu_sub(spu_sl(spu_splats(1u), spu_sub(shift, spu_splats(1u))), spu_splats(1u));
   const vec_uint4 subnormal = spu_rlmask(spu_add(spu_add(fraction, almost_half), odd), right);
 
-  // A NaN keeps the top of its payload, and the quiet bit so that it stays one.
+  // A NaN keeps the top of its payload; one whose payload lies lower gets the quiet bit, so that it stays one.
   const vec_uint4 infinity = spu_splats(0x7C00u);
-  const vec_uint4 nan = spu_or(spu_and(spu_rlmask(magnitude, -13), spu_splats(0x3FFu)), spu_splats(0x7E00u));
+  const vec_uint4 payload = spu_and(spu_rlmask(magnitude, -13), spu_splats(0x3FFu));
+  const vec_uint4 quiet = spu_and(spu_cmpeq(payload, spu_splats(0u)), spu_splats(0x200u));
+  const vec_uint4 nan = spu_or(spu_or(infinity, payload), quiet);
 
   vec_uint4 half = half_of_normal(value);
   half = spu_sel(half, spu_or(sign, subnormal), spu_cmpgt(spu_splats(kHalfSmallestNormal), magnitude));
