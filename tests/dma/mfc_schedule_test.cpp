@@ -254,6 +254,27 @@ TEST(MfcSchedules, RandomCompletesTwoTagsInBothOrders) {
   EXPECT_EQ(first_done, (std::set<std::uint32_t>{1, 2, 3}));
 }
 
+// Fifteen commands of tag 1 fill the local store while one of tag 0 is waited for. A visit to the MFC moves
+// fewer than 128 lines, so more than that have moved during the wait itself.
+TEST(MfcSchedules, RandomMovesOtherTagsDuringAWaitToo) {
+  constexpr std::uint32_t kCommandBytes = 16384;
+  int seeds_with_others_moving = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    MfcBench bench(random_schedule(seed));
+    bench.fill_buffer(0, kCommandBytes, 1);
+    const auto lines_of_others = [&] {
+      return bench.count_in_store(kCommandBytes, 15 * kCommandBytes, 1) / kLineBytes;
+    };
+    for (std::uint32_t i = 1; i < 16; ++i)
+      bench.issue(MfcOpcode::get, i * kCommandBytes, 0, kCommandBytes, 1);
+    bench.issue(MfcOpcode::get, 0, 0, kCommandBytes, 0);
+    const auto before = lines_of_others();
+    bench.wait_all(1);
+    seeds_with_others_moving += lines_of_others() - before > 128;
+  }
+  EXPECT_GE(seeds_with_others_moving, 15);
+}
+
 // What an early reader sees after each of some commands: a fingerprint of the decisions taken.
 std::vector<std::ptrdiff_t> decisions(MfcBench& bench) {
   std::vector<std::ptrdiff_t> seen;
