@@ -121,28 +121,31 @@ class ShapeMatcher {
   const MatchingPlan<Real>& plan() const { return *plan_; }
 
  private:
-  using Moments = Lanes<Real, 12>;  // what goes up:  m~x and m~x x0^T; for damping m~v, x × m~v, m~x x^T
-  using Motion = Lanes<Real, 12>;   // what comes down: t_r and R_r
-  using Twist = Lanes<Real, 8>;     // the same for damping: b_r, omega_r, two spare lanes
+  using Moments = Lanes<Real, 12>;  // goes up: m~x and m~x x0^T; for damping m~v, x × m~v, m~x x^T
+  using Motion = Lanes<Real, 12>;   // comes down: t_r and R_r
+  using Twist = Lanes<Real, 8>;     // comes down for damping: b_r, omega_r, two spare lanes
 
   void check_sizes(std::size_t positions, std::size_t others) const;
+  void localise(std::span<const Vector> x);
   void match(std::span<const Vector> x);
-  void blend_goals();
   void damp(std::span<Vector> v, Real damping);
+  void up();
+  template <typename Payload>
+  void down(const std::vector<Payload>& values, SumScratch<Payload>& scratch, std::vector<Payload>& totals);
 
   std::shared_ptr<const MatchingPlan<Real>> plan_;
   SumMethod method_;
-  bool cold_ = true;  // rotations_ says nothing about the body yet
-  Vector origin_;     // a point in the body that positions are taken relative to, metres
+  bool cold_ = true;  // rotations_ say nothing about the body yet
   std::vector<Quaternion> rotations_;
-  std::vector<Vector> x_;  // of each particle, relative to origin_
+  std::vector<Vector> x_;      // of each particle: position relative to a point in the body
+  std::vector<Vector> pulls_;  // g_i - x_i
   std::vector<Vector> goals_;
-  std::vector<Vector> centres_;  // c_r of each region, relative to origin_
+  std::vector<Vector> centres_;  // c_r of each region, relative to the same point
   std::vector<Moments> particle_moments_, region_moments_;
   std::vector<Motion> motions_, motion_totals_;
   std::vector<Twist> twists_, twist_totals_;
-  SumScratch<Moments> moment_scratch_;  // of Motion too: the same type
-  SumScratch<Twist> twist_scratch_;
+  SumScratch<Lanes<Real, 12>> scratch12_;
+  SumScratch<Lanes<Real, 8>> scratch8_;
 };
 
 extern template class MatchingPlan<float>;
