@@ -121,22 +121,22 @@ bool SkinOrchestrator::kick(std::span<const std::span<const SkinCorner>> positio
   return true;
 }
 
-/// Takes over the frame that the SPEs have finished.
-void SkinOrchestrator::collect() {
-  if (!in_flight_) return;
+/// Takes over the frame that the SPEs have finished, if there is one.
+bool SkinOrchestrator::collect() {
+  if (!in_flight_) return false;
   in_flight_ = false;
   if (batch_.failures().empty()) {
     shown_ = working_;
-    return;
+    return true;
   }
   std::string message = "skinning a frame failed";
   for (const ls_sim::JobFailure& failure : batch_.failures()) message += "; " + failure.message;
   throw std::runtime_error(message);
 }
 
-void SkinOrchestrator::drain() {
+bool SkinOrchestrator::drain() {
   batch_.wait();
-  collect();
+  return collect();
 }
 
 SkinnedBody SkinOrchestrator::shown(std::size_t body) const {

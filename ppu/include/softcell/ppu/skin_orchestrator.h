@@ -44,9 +44,9 @@ class SkinOrchestrator {
   /// @throws std::runtime_error  when a job of the frame before failed: one sentence per fault.
   bool kick(std::span<const std::span<const spu::SkinCorner>> positions);
 
-  /// Waits for the frame under way and makes it the one that is shown: the end of a run, and tests.
-  /// @throws std::runtime_error  as kick().
-  void drain();
+  /// Waits for the frame under way and makes it the one that is shown: for runs whose pictures must not depend on the
+  /// speed of the host. @return false when there was none under way. @throws std::runtime_error  as kick().
+  bool drain();
 
   /// The newest complete frame; empty vertices before the first one.
   SkinnedBody shown(std::size_t body) const;
@@ -59,7 +59,7 @@ class SkinOrchestrator {
   struct Model;  // an embedding in main memory
   struct Body;   // a body's two halves
 
-  void collect();
+  bool collect();
   void write_half(Body& body, std::span<const spu::SkinCorner> positions);
 
   dma::AddressSpace& memory_;

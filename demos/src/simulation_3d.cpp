@@ -1,0 +1,169 @@
+#include "simulation_3d.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "kernel_samples.h"
+#include "softcell/ppu/bullet_coupling.h"
+#include "softcell/ppu/bullet_world.h"
+#include "softcell/ppu/deterministic_math.h"
+#include "softcell/ppu/state_hash.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr float kFrameSeconds = 1.0f / 60;
+constexpr double kTiltGrowsFor = 3;  // seconds
+
+double milliseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// From the ground's frame to the observer's: first about x, then about z.
+Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
+  const double grown = std::clamp((time - double{script.begin}) / kTiltGrowsFor, 0.0, 1.0);
+  const auto angle = [&](float amplitude, float period) {
+    const double phase = 2 * std::numbers::pi * (time - double{script.begin}) / double{period};
+    return grown * double{amplitude} * ppu::sine(phase);
+  };
+  const double ax = angle(script.amplitude_x, script.period_x), az = angle(script.amplitude_z, script.period_z);
+  const auto sx = static_cast<float>(ppu::sine(ax)), cx = static_cast<float>(ppu::cosine(ax));
+  const auto sz = static_cast<float>(ppu::sine(az)), cz = static_cast<float>(ppu::cosine(az));
+  Eigen::Matrix3f about_x, about_z;
+  about_x << 1, 0, 0, 0, cx, -sx, 0, sx, cx;
+  about_z << cz, -sz, 0, sz, cz, 0, 0, 0, 1;
+  return about_z * about_x;
+}
+
+}  // namespace
+
+struct Simulation3d::State {
+  /// What a picture needs beside the vertices, of the moment at which these were handed to the SPEs.
+  struct Snapshot {
+    std::vector<Eigen::Matrix4f> box_poses;
+    std::vector<std::vector<spu::SkinCorner>> particles;
+    Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
+  };
+
+  State(const Scene& scene_description, const SimulationOptions& options)
+      : scene(scene_description),
+        soft_bodies(world.world()),
+        skin(load_kernel("skin")),
+        pool(memory, {.spes = options.spes, .schedule = options.schedule}),
+        orchestrator(memory, pool, skin) {
+    for (const RigidBox& box : scene.boxes) {
+      boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
+    }
+    for (const Obstacle& obstacle : scene.obstacles) world.add_convex(obstacle.mesh, obstacle.position, scene.friction);
+    for (const SoftBodyPlacement& placement : scene.soft_bodies) {
+      const auto model = ppu::make_soft_body_model(placement.mesh, placement.settings);
+      const ppu::SoftBody& body = soft_bodies.add(model, placement.position);
+      orchestrator.add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()), model->particles());
+      positions.push_back(body.positions());
+    }
+    for (Snapshot& snapshot : snapshots) {
+      snapshot.box_poses.resize(boxes.size());
+      for (const auto& body : positions) snapshot.particles.emplace_back(body.size());
+    }
+    world.set_gravity({0, -scene.gravity, 0});
+    hand_over();
+    orchestrator.drain();
+    newest = 0;
+  }
+
+  /// Copies what belongs to the vertices beside them and starts the SPEs.
+  void hand_over() {
+    Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
+    for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
+    for (std::size_t b = 0; b < positions.size(); ++b) {
+      std::copy(positions[b].begin(), positions[b].end(), snapshot.particles[b].begin());
+    }
+    snapshot.tilt = tilt;
+    orchestrator.kick(positions);
+  }
+
+  const Snapshot& shown() const { return snapshots[static_cast<std::size_t>(newest)]; }
+
+  const Scene& scene;
+  ppu::BulletWorld world;
+  ppu::BulletSoftBodies soft_bodies;
+  std::vector<std::size_t> boxes;  // numbers in the world
+
+  dma::AddressSpace memory;
+  ls_sim::KernelImage skin;
+  ls_sim::SpePool pool;
+  ppu::SkinOrchestrator orchestrator;
+  std::vector<std::span<const spu::SkinCorner>> positions;
+
+  std::array<Snapshot, 2> snapshots;
+  int newest = 1;  // the snapshot of the vertices that the orchestrator shows
+  Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
+  long frame = 0;
+};
+
+Simulation3d::Simulation3d(const Scene& scene, const SimulationOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
+
+Simulation3d::~Simulation3d() = default;
+
+FrameTimes Simulation3d::step() {
+  State& s = *state_;
+  FrameTimes times;
+  s.tilt = tilt_at(s.scene.tilt, static_cast<double>(s.frame++) / 60);
+  s.world.set_gravity(s.tilt.transpose() * Eigen::Vector3f(0, -s.scene.gravity, 0));
+  const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
+
+  const auto waiting = std::chrono::steady_clock::now();
+  finish();
+  times.skin_wait_ms = milliseconds_since(waiting);
+
+  const auto handing_over = std::chrono::steady_clock::now();
+  s.hand_over();
+  times.skin_ms = milliseconds_since(handing_over);
+  times.physics_ms = step.physics_ms;
+  times.ppu_ms = step.soft_body_ms + times.skin_ms;
+  return times;
+}
+
+void Simulation3d::finish() {
+  State& s = *state_;
+  if (s.orchestrator.drain()) s.newest = 1 - s.newest;
+}
+
+std::size_t Simulation3d::soft_bodies() const { return state_->soft_bodies.size(); }
+
+std::size_t Simulation3d::particles() const {
+  std::size_t sum = 0;
+  for (const auto& body : state_->positions) sum += body.size();
+  return sum;
+}
+
+std::size_t Simulation3d::vertices() const { return state_->orchestrator.vertices_per_frame(); }
+
+std::size_t Simulation3d::rigid_bodies() const {
+  return static_cast<std::size_t>(std::count_if(state_->scene.boxes.begin(), state_->scene.boxes.end(), [](const RigidBox& box) { return box.mass > 0; }));
+}
+
+const ppu::SoftBodyModel& Simulation3d::model(std::size_t body) const { return state_->soft_bodies[body].model(); }
+const ppu::SoftBody& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
+
+std::uint64_t Simulation3d::state_hash() const {
+  std::uint64_t hash = 0;
+  for (std::size_t b = 0; b < soft_bodies(); ++b) hash = ppu::state_hash(soft_body(b), hash);
+  return hash;
+}
+
+ppu::SkinnedBody Simulation3d::shown(std::size_t body) const { return state_->orchestrator.shown(body); }
+
+std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body) const { return state_->shown().particles[body]; }
+
+std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return state_->shown().box_poses; }
+
+const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
+
+std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->pool.statistics(); }
+
+std::uint64_t Simulation3d::late_frames() const { return state_->orchestrator.late_frames(); }
+
+}  // namespace softcell::demos

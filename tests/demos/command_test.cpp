@@ -1,0 +1,208 @@
+// The command as a user meets it: what it prints, what it leaves, and how it refuses.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "run_command.h"
+#include "softcell/render/png_io.h"
+
+namespace softcell::tests {
+namespace {
+
+constexpr const char* kDrop = "demo 3d --headless --scene drop --size 64x48 ";
+
+nlohmann::json read_json(const std::string& path) {
+  std::ifstream file(path);
+  return nlohmann::json::parse(file);
+}
+
+std::set<std::string> files_in(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+void write_file(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+const std::string kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST(Command, LeavesNumberedFramesAndStatistics) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell(kDrop + std::string("--frames 3 --out ") + (folder / "out") + " --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(files_in(folder / "out"), (std::set<std::string>{"frame_00000.png", "frame_00001.png", "frame_00002.png"}));
+  const render::Image image = render::read_png(folder / "out/frame_00002.png");
+  EXPECT_EQ(image.width, 64);
+  EXPECT_EQ(image.height, 48);
+
+  const auto stats = read_json(folder / "s.json");
+  for (const char* key : {"frames", "bodies", "particles", "vertices", "spes", "ppu_ms", "physics_ms", "spe_busy", "dma_bytes",
+                          "dma_commands", "state_hash", "image_hash"}) {
+    EXPECT_TRUE(stats.contains(key)) << key;
+  }
+  EXPECT_EQ(stats["frames"], 3);
+  EXPECT_EQ(stats["spe_busy"].size(), 6u);
+  for (const char* key : {"mean", "p50", "p99", "max"}) EXPECT_TRUE(stats["ppu_ms"].contains(key)) << key;
+  EXPECT_EQ(stats["state_hash"].get<std::string>().size(), 16u);
+  EXPECT_GT(stats["dma_bytes"].get<std::uint64_t>(), 0u);
+}
+
+TEST(Command, TheLastPictureIsTheSameWithAndWithoutFiles) {
+  const ScratchFolder folder;
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out") + " --json " + (folder / "a.json")).status, 0);
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --json ") + (folder / "b.json")).status, 0);
+  EXPECT_EQ(read_json(folder / "a.json")["image_hash"], read_json(folder / "b.json")["image_hash"]);
+  EXPECT_EQ(read_json(folder / "a.json")["state_hash"], read_json(folder / "b.json")["state_hash"]);
+}
+
+TEST(Command, ASecondRunReplacesTheFramesOfTheFirst) {
+  const ScratchFolder folder;
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out")).status, 0);
+  write_file(folder / "out/mine.txt", "keep");
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 2 --out ") + (folder / "out")).status, 0);
+  EXPECT_EQ(files_in(folder / "out"), (std::set<std::string>{"frame_00000.png", "frame_00001.png", "mine.txt"}));
+}
+
+TEST(Command, DropsTheUsersOwnModel) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  const CommandResult run =
+      run_softcell("demo 3d --headless --frames 2 --size 64x48 --mesh " + (folder / "cube.obj") + " --cell 0.25 --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(read_json(folder / "s.json")["scene"], "drop");
+  EXPECT_EQ(read_json(folder / "s.json")["bodies"], 1);
+}
+
+TEST(Command, ListsItsScenes) {
+  const CommandResult run = run_softcell("scenes");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.output.find("arena "), std::string::npos);
+  EXPECT_NE(run.output.find("drop "), std::string::npos);
+}
+
+TEST(Command, PrintsTheBudgetOfEveryKernel) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell("spu budget --json " + (folder / "b.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  const auto table = read_json(folder / "b.json");
+  ASSERT_FALSE(table.empty());
+  for (const auto& row : table) {
+    for (const char* key : {"kernel", "text", "rodata", "data", "bss", "stack", "stack_used", "total", "budget"}) {
+      EXPECT_TRUE(row.contains(key)) << key;
+    }
+    EXPECT_LE(row["total"], row["budget"]) << row["kernel"];
+    EXPECT_LE(row["stack_used"], row["stack"]) << row["kernel"];
+    EXPECT_GT(row["stack_used"], 0) << row["kernel"];
+  }
+  EXPECT_EQ(table[0]["kernel"], "skin");
+  EXPECT_LE(table[0]["total"], 96 * 1024);
+}
+
+TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
+  const ScratchFolder folder;
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::freopen("/dev/null", "w", stdout);
+    std::freopen("/dev/null", "w", stderr);
+    const std::string out = folder / "out", video = folder / "v.mp4";
+    execl(SOFTCELL_COMMAND, "softcell", "demo", "3d", "--headless", "--scene", "drop", "--frames", "100000", "--size", "320x240",
+          "--out", out.c_str(), "--video", video.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  const auto frames = [&] {
+    return std::filesystem::exists(folder / "out") ? files_in(folder / "out").size() : std::size_t{0};
+  };
+  for (int i = 0; i < 3000 && frames() < 3; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto begin = std::chrono::steady_clock::now();
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  const auto took = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(took, std::chrono::seconds(SOFTCELL_SLOW_BUILD ? 10 : 1));
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_GE(frames(), 3u);
+  for (const std::string& name : files_in(folder / "out")) {
+    EXPECT_TRUE(name.ends_with(".png")) << name;
+    EXPECT_NO_THROW(render::read_png(folder / "out/" + name)) << name;
+  }
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"out"}) << "no part of a video is left";
+}
+
+struct Refusal {
+  const char* arguments;  ///< %s is a scratch folder with cube.obj and some broken files
+  int status;
+  const char* part;  ///< of the one line that is printed
+};
+
+void PrintTo(const Refusal& r, std::ostream* out) { *out << r.arguments; }
+
+class CommandRefuses : public testing::TestWithParam<Refusal> {};
+
+TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  write_file(folder / "empty.obj", "");
+  write_file(folder / "truncated.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n");
+  write_file(folder / "nan.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n");
+  write_file(folder / "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  write_file(folder / "file", "not a folder");
+  std::string arguments = GetParam().arguments;
+  for (std::size_t at; (at = arguments.find("%s")) != std::string::npos;) arguments.replace(at, 2, folder.path().string());
+  const auto before = files_in(folder.path());
+
+  const CommandResult run = run_softcell(arguments);
+  EXPECT_EQ(run.status, GetParam().status) << run.output;
+  EXPECT_NE(run.output.find(GetParam().part), std::string::npos) << run.output;
+  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+  EXPECT_EQ(run.output.rfind("softcell: ", 0), 0u) << run.output;
+  EXPECT_EQ(files_in(folder.path()), before) << "nothing half written is left";
+}
+
+#define SC_DEMO "demo 3d --headless --frames 1 --size 32x32 "
+
+INSTANTIATE_TEST_SUITE_P(
+    WrongUsage, CommandRefuses,
+    testing::Values(Refusal{"", 2, "subcommand"}, Refusal{"dance", 2, "dance"}, Refusal{"demo", 2, "subcommand"},
+                    Refusal{SC_DEMO "--bogus", 2, "--bogus"}, Refusal{SC_DEMO "--spes 7", 2, "1"}, Refusal{SC_DEMO "--spes 0", 2, "6"},
+                    Refusal{SC_DEMO "--spes two", 2, "--spes"}, Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
+                    Refusal{"demo 3d --headless --size 99999x20", 2, "8192"}, Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
+                    Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"}, Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
+                    Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"}, Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
+                    Refusal{"demo 3d --headless --frames 0", 2, "--frames"}, Refusal{"demo 3d --frames 1", 2, "--headless"},
+                    Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"}, Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"}, Refusal{"bench --filter [", 2, "regular expression"},
+                    Refusal{"bench --filter nothing-is-called-so", 2, "no benchmark"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    BadInput, CommandRefuses,
+    testing::Values(Refusal{SC_DEMO "--scene nowhere", 1, "arena, drop"}, Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"},
+                    Refusal{SC_DEMO "--mesh %s", 1, "softcell_"}, Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},
+                    Refusal{SC_DEMO "--mesh %s/truncated.ply", 1, "truncated.ply"}, Refusal{SC_DEMO "--mesh %s/nan.obj", 1, "nan.obj"},
+                    Refusal{SC_DEMO "--mesh %s/range.obj", 1, "range.obj"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0", 1, "cell size 0"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell -1", 1, "cell size -1"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell nan", 1, "cell size nan"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell inf", 1, "cell size inf"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell 3", 1, "whole mesh"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell 1e-9", 1, "cell size"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.001", 1, "cell size"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --out %s/file", 1, "file"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --out /proc/frames", 1, "/proc/frames"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --json /dev/full", 1, "No space left"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --json /proc/stats.json", 1, "/proc/stats.json"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --video /proc/v.mp4", 1, "/proc/v.mp4"}));
+
+}  // namespace
+}  // namespace softcell::tests

@@ -1,0 +1,42 @@
+// What the design promises about cost, as ratios within one run, with room for a busy machine.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "kernel_samples.h"
+#include "scene.h"
+#include "simulation_3d.h"
+#include "softcell/ppu/shapes.h"
+#include "softcell/ppu/skin_scalar.h"
+
+namespace softcell::demos {
+namespace {
+
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr bool kOptimised = true;
+#else
+constexpr bool kOptimised = false;
+#endif
+
+TEST(Speed, ArenaSimulatesSixtyFramesASecondAndSkinningIsLittleOfThePpusTime) {
+  if (!kOptimised) GTEST_SKIP() << "only an optimised build without sanitizers is measured";
+  const Scene scene = find_scene("arena").make(std::nullopt);
+  Simulation3d simulation(scene, {});
+  std::vector<double> frame_ms;
+  double frames = 0, skinning = 0;
+  for (int i = 0; i < 300; ++i) {
+    const FrameTimes times = simulation.step();
+    frame_ms.push_back(times.physics_ms + times.ppu_ms);
+    frames += frame_ms.back();
+    skinning += times.skin_ms;
+  }
+  std::nth_element(frame_ms.begin(), frame_ms.begin() + 150, frame_ms.end());
+  EXPECT_LT(frame_ms[150], 1000.0 / 60) << "median milliseconds of a frame";
+  EXPECT_LT(skinning / frames, 0.02);
+}
+
+}  // namespace
+}  // namespace softcell::demos
