@@ -20,6 +20,16 @@ set(SOFTCELL_KERNEL_FLAGS
   -fno-builtin
   -Wall -Wextra -Wshadow -Werror -Wno-unknown-warning-option)
 
+# How a source is checked against the declarations of a real SPU compiler, sdk/check, with either of the host's compilers.
+set(SOFTCELL_SPU_CHECK_FLAGS
+  -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fsyntax-only -Wall -Wextra -Werror
+  # The SPU's data model: 32-bit pointers and long, 64-bit numbers aligned to eight, unsigned char. (x32 has it; no library is needed.)
+  -mx32 -funsigned-char -D__SPU__
+  # As an SPU g++ has it, and clang++ has not: vectors change their type by casts only.
+  -fno-lax-vector-conversions
+  # stdint.h and stddef.h come from sdk/check; a local store has no other library.
+  -nostdinc -I ${SOFTCELL_SDK_DIR}/check -I ${SOFTCELL_SDK_DIR}/..)
+
 function(softcell_add_spu_kernel name)
   cmake_parse_arguments(arg "" "STACK_BYTES;BUDGET_BYTES" "SOURCES;INCLUDES" ${ARGN})
   foreach(required STACK_BYTES BUDGET_BYTES SOURCES)
@@ -55,8 +65,7 @@ function(softcell_add_spu_kernel name)
     cmake_path(GET source STEM stem)
     list(TRANSFORM arg_INCLUDES PREPEND -I OUTPUT_VARIABLE include_options)
     add_test(NAME spu_syntax.${name}.${stem}
-      COMMAND ${CMAKE_CXX_COMPILER} -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fsyntax-only -Wall -Wextra -Werror
-        -I ${SOFTCELL_SDK_DIR}/check -I ${SOFTCELL_SDK_DIR}/.. ${include_options} ${source})
+      COMMAND ${CMAKE_CXX_COMPILER} ${SOFTCELL_SPU_CHECK_FLAGS} ${include_options} ${source})
     set_tests_properties(spu_syntax.${name}.${stem} PROPERTIES LABELS kernel)
   endforeach()
 endfunction()
