@@ -115,6 +115,8 @@ class SoftBody {
   /// Shape matching and damping: changes velocities, conserves momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
   void pull(float step);
+  /// Slows particles down that are faster than `limit` (m/s).
+  void limit_speed(float limit);
   /// Integrates the inner particles under `gravity` (m/s^2): v += h g, x += h v. Bullet's own order.
   void advance_inner(float step, const Eigen::Vector3f& gravity);
   /// Takes an outer particle over from the engine.

@@ -1,5 +1,5 @@
 #pragma once
-// One number for the state of all soft bodies: equal numbers, equal bytes.
+// One number for the state of soft bodies: equal numbers, equal bytes.
 
 #include <cstdint>
 #include <span>
@@ -8,23 +8,12 @@
 
 namespace softcell::ppu {
 
-/// Hash over positions and velocities of the particles of several bodies, fed body by body. The order counts.
-class StateHash {
- public:
-  StateHash();
-  ~StateHash();
-  StateHash(const StateHash&) = delete;
-  StateHash& operator=(const StateHash&) = delete;
+/// Hash over the positions and velocities of a body's particles. For several bodies, pass on the hash of
+/// those before: state_hash(b, state_hash(a)). The order counts.
+/// @source  XXH3, the 64-bit variant; `before` is its seed
+std::uint64_t state_hash(const SoftBody& body, std::uint64_t before = 0);
 
-  void add(const SoftBody& body);
-  std::uint64_t value() const;  ///< XXH3, 64 bits; of everything added so far
-
- private:
-  struct State;
-  State* state_;
-};
-
-/// @source  XXH3, the 64-bit variant with seed 0.
+/// Of several bodies, in order.
 std::uint64_t state_hash(std::span<const SoftBody* const> bodies);
 
 }  // namespace softcell::ppu
