@@ -68,6 +68,7 @@ class TextCheck {
   void facet() {
     expect({"facet", "normal"}, true);
     if (lines_.words().size() != 5) lines_.refuse("three numbers were expected after 'facet normal'");
+    for (std::size_t i = 2; i < 5; ++i) lines_.number(lines_.words()[i]);
     next(), expect({"outer", "loop"});
     for (int corner = 0; corner < 3; ++corner) {
       next(), expect({"vertex"}, true);

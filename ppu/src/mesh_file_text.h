@@ -46,17 +46,22 @@ class LineReader {
     ppu::refuse("line " + std::to_string(line_) + ": " + problem);
   }
 
-  /// A word as a number that a float can hold.
-  double finite_number(std::string_view word) const {
+  /// A word as a number; NaN and infinity are numbers here.
+  double number(std::string_view word) const {
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     double value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
       refuse(in_quotes(word) + " is not a number");
     }
-    // out of range: too large, or so small that it is 0
-    if (error == std::errc::result_out_of_range && std::abs(value) < 1) return 0;
-    if (error != std::errc() || !(std::abs(value) <= std::numeric_limits<float>::max())) {
+    // Out of a double's range, too large or too small: which, from_chars does not say.
+    return error == std::errc() ? value : std::numeric_limits<double>::infinity();
+  }
+
+  /// A word as a number that a float can hold.
+  double finite_number(std::string_view word) const {
+    const double value = number(word);
+    if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
       refuse(in_quotes(word) + " is not a finite number (of at most 3.4e38)");
     }
     return value;

@@ -69,6 +69,14 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
   }
 }
 
+/// The library's complaints may quote the rest of the file.
+std::string one_line(std::string text) {
+  constexpr std::size_t kLongest = 160;
+  if (text.size() > kLongest) text.replace(kLongest, std::string::npos, "...");
+  for (char& c : text) c = c >= ' ' && c <= '~' ? c : ' ';
+  return text;
+}
+
 /// Corners and triangles as the library delivers them, checked; degenerate triangles left out.
 struct Soup {
   std::vector<Eigen::Vector3f> positions;
@@ -222,7 +230,7 @@ TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format) {
   keep_only(importer, extension);
   importer.SetIOHandler(new SingleFile("mesh." + extension, bytes));  // the importer deletes it
   const aiScene* scene = importer.ReadFile("mesh." + extension, aiProcess_Triangulate);
-  if (scene == nullptr) refuse(importer.GetErrorString());
+  if (scene == nullptr) refuse(one_line(importer.GetErrorString()));
 
   Soup soup = gather(*scene, contents);
   if (!soup.normals.empty() && normalize(soup.normals)) return with_given_normals(soup);
