@@ -2,6 +2,7 @@
 // header, which would clash with the loader's. [GL/osmesa.h of Mesa 22.3] documented
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 
@@ -77,7 +78,7 @@ class OsmesaContext final : public GlContext {
   void (*destroy_)(OsmesaHandle) = library_.function<decltype(destroy_)>("OSMesaDestroyContext");
   Function (*function_)(const char*) = library_.function<decltype(function_)>("OSMesaGetProcAddress");
   OsmesaHandle handle_ = nullptr;
-  std::array<std::uint32_t, kWindowSide * kWindowSide> window_{};
+  std::array<std::uint32_t, std::size_t{kWindowSide} * kWindowSide> window_{};
 };
 
 }  // namespace

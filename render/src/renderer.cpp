@@ -38,6 +38,8 @@ static_assert(sizeof(FrameBlock) == 3 * 64 + 9 * 16, "std140 has no padding here
 
 Eigen::Vector4f vec4(const Eigen::Vector3f& v, float w = 0) { return {v.x(), v.y(), v.z(), w}; }
 
+// The API takes offsets into the bound buffer as pointers.
+// NOLINTNEXTLINE(performance-no-int-to-ptr)
 const void* buffer_offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
 /// A program and where its uniforms are; one that a program lacks is -1, which GL ignores.
@@ -208,6 +210,10 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
 
   gl.Enable(GL_PROGRAM_POINT_SIZE);
   gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  if (gl.GetError() != GL_NO_ERROR) {
+    throw std::runtime_error(description + ": no memory for a picture of " + std::to_string(width) + " by " +
+                             std::to_string(height) + " pixels");
+  }
   picture = Image(width, height);
 }
 
@@ -546,9 +552,10 @@ const Image& Renderer::pixels() {
   state.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.resolved_framebuffer.name());
   state.gl.ReadPixels(0, 0, state.width, state.height, GL_RGBA, GL_UNSIGNED_BYTE, state.picture.rgba.data());
   // OpenGL counts rows from the bottom.
+  const std::ptrdiff_t row_bytes = std::ptrdiff_t{4} * state.width;
   for (int y = 0; y < state.height / 2; ++y) {
     std::uint8_t* const upper = state.picture.pixel(0, y);
-    std::swap_ranges(upper, upper + 4 * state.width, state.picture.pixel(0, state.height - 1 - y));
+    std::swap_ranges(upper, upper + row_bytes, state.picture.pixel(0, state.height - 1 - y));
   }
   return state.picture;
 }

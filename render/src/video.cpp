@@ -143,6 +143,7 @@ void VideoWriter::Encoder::start(int rate) {
 
   std::vector<std::string> words = arguments(partial.path(), width, height, rate);
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const int error = ::posix_spawnp(&child, "ffmpeg", &actions, &attributes, argv.data(), environ);

@@ -30,7 +30,7 @@ FrameDescription view_from_above() {
 }
 
 const std::uint8_t* pixel_at(const Image& image, float x, float z) {
-  return image.pixel(static_cast<int>(kSide / 2 + 50 * x), static_cast<int>(kSide / 2 + 50 * z));
+  return image.pixel(static_cast<int>(0.5f * kSide + 50 * x), static_cast<int>(0.5f * kSide + 50 * z));
 }
 
 int brightness(const std::uint8_t* pixel) { return pixel[0] + pixel[1] + pixel[2]; }
@@ -154,6 +154,22 @@ TEST_F(RendererTest, ABoxDarkensTheFloorUnderItAndNothingElse) {
   }
 }
 
+TEST_F(RendererTest, ASkinnedBodyCastsAShadowUnlessItIsTranslucent) {
+  SkinnedDraw item = add(ground_triangle());
+  item.origin = {-1.4f, 1, -0.3f};  // the light at 45 degrees moves its shadow to x = -0.4, z = -0.3
+  StaticDraw floor;
+  floor.mesh = test::add_unit_box(renderer_);
+  floor.pose = test::box_pose({0, -0.5f, 0}, {20, 1, 20});
+  FrameDescription frame = view_from_above();
+  frame.light.toward = {-1, 1, 0};
+  frame.statics = std::span(&floor, 1);
+  const int bright = brightness(pixel_at(draw(frame), 0, 0));
+  frame.skinned = std::span(&item, 1);
+  EXPECT_LT(brightness(pixel_at(draw(frame), 0, 0)), bright * 85 / 100) << "of " << bright;
+  item.opacity = 0.99f;
+  EXPECT_EQ(brightness(pixel_at(draw(frame), 0, 0)), bright);
+}
+
 TEST_F(RendererTest, ALitFloorHasNoShadowAcne) {
   StaticDraw floor;
   floor.mesh = test::add_unit_box(renderer_);
@@ -270,6 +286,7 @@ TEST_F(RendererTest, RefusesWhatWouldReadPastItsBuffers) {
 TEST(RendererSettings, RefusesSizesThatCannotBeDrawn) {
   EXPECT_THROW(Renderer(pinned_context(), {.width = 0, .height = 10}), std::runtime_error);
   EXPECT_THROW(Renderer(pinned_context(), {.width = 10, .height = 1 << 24}), std::runtime_error);
+  EXPECT_THROW(Renderer(pinned_context(), {.width = 16384, .height = 16384}), std::runtime_error);
 }
 
 TEST(Srgb, IsNearTheCurve) {

@@ -1,6 +1,7 @@
 #include "softcell/render/video.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <stdlib.h>
 
 #include <cstdlib>
@@ -18,6 +19,7 @@ using test::TemporaryDirectory;
 
 constexpr int kWidth = 64;
 constexpr int kHeight = 48;
+constexpr std::size_t kRgbBytes = std::size_t{3} * kWidth * kHeight;
 
 Image plain_frame(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
   Image image(width, height);
@@ -85,8 +87,8 @@ TEST_F(VideoWithFfmpeg, HoldsEveryFrameInItsColour) {
   EXPECT_EQ(directory_.entries(), std::vector<std::string>{"demo.mp4"});
 
   const std::vector<char> frames = decode(directory_ / "demo.mp4", directory_ / "frames");
-  ASSERT_EQ(frames.size(), static_cast<std::size_t>(kFrames * kWidth * kHeight * 3));
-  const std::size_t middle = 3 * (kHeight / 2 * kWidth + kWidth / 2);
+  ASSERT_EQ(frames.size(), kFrames * kRgbBytes);
+  const std::size_t middle = kRgbBytes / 2 + std::size_t{3} * kWidth / 2;
   EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle]), 200, 6);
   EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle + 1]), 60, 6);
   EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle + 2]), 30, 6);
@@ -96,7 +98,7 @@ TEST_F(VideoWithFfmpeg, PadsOddSizesToEvenOnes) {
   VideoWriter video(directory_ / "odd.mp4", 63, 47, 30);
   video.add_frame(plain_frame(63, 47, 0, 255, 0));
   video.finish();
-  EXPECT_EQ(decode(directory_ / "odd.mp4", directory_ / "frames").size(), std::size_t{64 * 48 * 3});
+  EXPECT_EQ(decode(directory_ / "odd.mp4", directory_ / "frames").size(), kRgbBytes);
 }
 
 TEST_F(VideoWithFfmpeg, IsTheSameFileForTheSameFrames) {
@@ -150,7 +152,9 @@ TEST(Video, ReportsTheLastLineOfAnEncoderThatEndsEarly) {
   const TemporaryDirectory directory;
   make_fake_ffmpeg(directory, "echo first >&2; echo 'the last words' >&2; exit 3\n");
   const PathOverride fake(directory.string());
-  // A stream that nobody reads raises no SIGPIPE, which would end this test program.
+  // A stream that nobody reads raises no SIGPIPE, which would end this test program (were it not ignored
+  // already).
+  ::signal(SIGPIPE, SIG_DFL);
   const std::string error = error_of([&] {
     VideoWriter video(directory / "demo.mp4", kWidth, kHeight, 30);
     for (;;) video.add_frame(plain_frame(kWidth, kHeight, 1, 2, 3));
