@@ -1,8 +1,10 @@
 #pragma once
-// The generic intrinsics: one row for each operation and group of vector types. [LEXT, generic intrinsics] documented
+// The generic intrinsics: one row for each operation and group of vector types. [LEXT, generic intrinsics]
+// documented
 //
-// As on a real SPU compiler a vector argument must have exactly the type of a row, and a scalar argument is converted; where an
-// operation has scalar arguments only, the first of them must have exactly the type of a row.
+// As on a real SPU compiler a vector argument must have exactly the type of a row, and a scalar argument is
+// converted; where an operation has scalar arguments only, the first of them must have exactly the type of a
+// row.
 
 #include "softcell_check_types.h"
 

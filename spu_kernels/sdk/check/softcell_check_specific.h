@@ -1,6 +1,6 @@
 #pragma once
-// The specific intrinsics: one row for each instruction, operands in the assembler's order; an instruction that also reads its target
-// takes that last. [LEXT, specific intrinsics; SPU-ISA] documented
+// The specific intrinsics: one row for each instruction, operands in the assembler's order; an instruction
+// that also reads its target takes that last. [LEXT, specific intrinsics; SPU-ISA] documented
 
 #include "softcell_check_types.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 // Vector types and immediates as a real SPU compiler sees them. [LEXT, data types] documented
 
-// Macros, not type names, as they are there: `vec_float4{...}` and `vec_float4(x)` are no expressions, and the word `vector` is taken.
+// Macros, not type names, as they are there: `vec_float4{...}` and `vec_float4(x)` are no expressions, and
+// the word `vector` is taken.
 #define __vector __attribute__((vector_size(16)))
 #define vector __vector
 
@@ -46,4 +47,5 @@ struct Immediate {
 #define SC_U16_WORDS(imm) SC_IMMEDIATE(0, 0x3FFFF, 4, imm)
 
 // What the host's compiler has beyond an SPU g++ 7.
-#pragma GCC poison __builtin_shufflevector __builtin_convertvector __builtin_bit_cast _Float16 __float128 __m128 __m256
+#pragma GCC poison \
+    __builtin_shufflevector __builtin_convertvector __builtin_bit_cast _Float16 __float128 __m128 __m256

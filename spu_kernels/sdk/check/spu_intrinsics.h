@@ -1,15 +1,18 @@
 #pragma once
-// What a real SPU g++ (7 to 9) knows as <spu_intrinsics.h>: declarations only, to be compiled with -fsyntax-only. A kernel that this
-// header refuses, a real compiler would refuse as well. The flags are SOFTCELL_SPU_CHECK_FLAGS in cmake/SoftcellSpuKernel.cmake.
+// What a real SPU g++ (7 to 9) knows as <spu_intrinsics.h>: declarations only, to be compiled with
+// -fsyntax-only. A kernel that this header refuses, a real compiler would refuse as well. The flags are
+// SOFTCELL_SPU_CHECK_FLAGS in cmake/SoftcellSpuKernel.cmake.
 //
-// Every table names the operations as the language extensions do, so that it can be read beside them. [LEXT] documented
+// Every table names the operations as the language extensions do, so that it can be read beside them. [LEXT]
+// documented
 //   softcell_check_types.h     vector types, constants that must be literals
 //   softcell_check_channels.h  numbers of the channels
 //   softcell_check_specific.h  si_*: one for each instruction
 //   softcell_check_generic.h   spu_*: over all vector types
 //
-// Deliberately stricter than a compiler: immediates must be constant expressions where they are written (a real compiler also takes
-// what its optimiser makes constant), and the PowerXCell's si_df* comparisons do not exist, because a PS3 does not have them.
+// Deliberately stricter than a compiler: immediates must be constant expressions where they are written (a
+// real compiler also takes what its optimiser makes constant), and the PowerXCell's si_df* comparisons do not
+// exist, because a PS3 does not have them.
 
 #include "softcell_check_types.h"
 

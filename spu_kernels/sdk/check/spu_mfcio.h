@@ -1,5 +1,6 @@
 #pragma once
-// What a real SPU toolchain knows as <spu_mfcio.h>: declarations only. [LEXT, MFC input and output] documented
+// What a real SPU toolchain knows as <spu_mfcio.h>: declarations only. [LEXT, MFC input and output]
+// documented
 //
 // A local store address is any pointer to what is not const, an effective address any number or pointer.
 
@@ -8,10 +9,10 @@
 
 /// One element of a list command; eight bytes, in local store, aligned to eight.
 typedef struct mfc_list_element {
-  uint64_t notify : 1;     ///< stall behind this element until it is acknowledged
+  uint64_t notify : 1;  ///< stall behind this element until it is acknowledged
   uint64_t reserved : 16;
-  uint64_t size : 15;      ///< bytes, up to 16384
-  uint64_t eal : 32;       ///< low half of the effective address
+  uint64_t size : 15;  ///< bytes, up to 16384
+  uint64_t eal : 32;   ///< low half of the effective address
 } mfc_list_element_t;
 
 // clang-format off

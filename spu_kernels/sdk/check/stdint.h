@@ -1,6 +1,6 @@
 #pragma once
-// The integer types of the SPU's ABI. Together with stddef.h all that a freestanding kernel may include beside the SDK; the check
-// is compiled with -nostdinc, so any other header is refused.
+// The integer types of the SPU's ABI. Together with stddef.h all that a freestanding kernel may include
+// beside the SDK; the check is compiled with -nostdinc, so any other header is refused.
 
 typedef signed char int8_t;
 typedef unsigned char uint8_t;

@@ -1,0 +1,40 @@
+// sdk: check
+// One or two instructions of each operand shape, by their own names. Host headers: with the si_* intrinsics.
+#include "returns.h"
+#include "vectors.h"
+
+RETURNS(qword, si_lqd(s8, -32));
+RETURNS(qword, si_lqa(0x3FFFC));
+RETURNS(void, si_stqd(s8, s8, 16));
+RETURNS(void, si_stqx(s8, s8, s8));
+RETURNS(qword, si_cwd(s8, 4));
+RETURNS(qword, si_il(-32768));
+RETURNS(qword, si_ilhu(0xFFFF));
+RETURNS(qword, si_iohl(si_ilhu(0x3F80), 0));
+RETURNS(qword, si_fsmbi(0x0F0F));
+RETURNS(qword, si_a(s8, s8));
+RETURNS(qword, si_ai(s8, 511));
+RETURNS(qword, si_addx(s8, s8, s8));
+RETURNS(qword, si_mpyhhau(s8, s8, s8));
+RETURNS(qword, si_shufb(s8, s8, (qword)u8));
+RETURNS(qword, si_rotqbyi(s8, -4));
+RETURNS(qword, si_rotmi(s8, -31));
+RETURNS(qword, si_clgtbi(s8, 127));
+RETURNS(qword, si_fma((qword)f32, (qword)f32, (qword)f32));
+RETURNS(qword, si_csflt((qword)s32, 127));
+RETURNS(qword, si_fi((qword)f32, si_frest((qword)f32)));
+RETURNS(void, si_heqi(s8, 0));
+RETURNS(void, si_stop(0x2000));
+RETURNS(qword, si_rdch(SPU_RdInMbox));
+RETURNS(void, si_wrch(SPU_WrOutMbox, si_from_uint(1u)));
+RETURNS(float, si_to_float(si_from_float(1.0f)));
+RETURNS(unsigned long long, si_to_ullong(si_from_ullong(1ull)));
+RETURNS(void*, si_to_ptr(si_from_ptr(&u)));
+RETURNS(vec_uint4, spu_mffpscr());
+RETURNS(vec_ullong2, spu_testsv(f64, SPU_SV_NAN | SPU_SV_POS_INFINITY));
+RETURNS(void, spu_stop(0x3FFF));
+RETURNS(vec_uint4, spu_readchqw(SPU_RdSigNotify1));
+// Comparisons of doubles are generic, but a PS3 makes them of several instructions.
+RETURNS(vec_ullong2, spu_cmpeq(f64, f64));
+RETURNS(vec_ullong2, spu_cmpgt(f64, f64));
+RETURNS(vec_ullong2, spu_cmpabseq(f64, f64));

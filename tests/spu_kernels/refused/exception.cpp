@@ -1,0 +1,4 @@
+// refused: exception
+#include <spu_intrinsics.h>
+
+void f() { throw 1; }

@@ -1,0 +1,4 @@
+// refused: not a constant expression|not usable in a constant expression
+#include <spu_intrinsics.h>
+
+vec_float4 f(vec_int4 a, int scale) { return spu_convtf(a, scale); }
