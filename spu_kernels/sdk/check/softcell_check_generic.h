@@ -49,6 +49,11 @@
 
 namespace softcell_check {
 
+/// A second scalar: converted, whatever its type, and without a say in which row is meant.
+struct Scalar {
+  Scalar(long double);
+};
+
 // Constants, one lane
 SC_ALL(SC_V_S, spu_splats)      template <class T> void spu_splats(T) = delete;
 SC_ALL(SC_V_S_AT, spu_promote)  template <class T> void spu_promote(T, int) = delete;
@@ -104,8 +109,8 @@ SC_8_16_32(SC_U_VV, spu_cmpgt)  SC_REALS(SC_U_VV, spu_cmpgt)  SC_8_16_32(SC_U_VS
 SC_REALS(SC_U_VV, spu_cmpabseq)
 SC_REALS(SC_U_VV, spu_cmpabsgt)
 vec_ullong2 spu_testsv(vec_double2, int);
-void spu_hcmpeq(int, int);  void spu_hcmpeq(unsigned int, unsigned int);  template <class T, class N> void spu_hcmpeq(T, N) = delete;
-void spu_hcmpgt(int, int);  void spu_hcmpgt(unsigned int, unsigned int);  template <class T, class N> void spu_hcmpgt(T, N) = delete;
+void spu_hcmpeq(int, Scalar);  void spu_hcmpeq(unsigned int, Scalar);  template <class T> void spu_hcmpeq(T, Scalar) = delete;
+void spu_hcmpgt(int, Scalar);  void spu_hcmpgt(unsigned int, Scalar);  template <class T> void spu_hcmpgt(T, Scalar) = delete;
 
 // Bits and masks
 SC_BYTES(SC_U_V, spu_cntb)

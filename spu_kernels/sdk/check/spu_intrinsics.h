@@ -10,9 +10,9 @@
 //   softcell_check_specific.h  si_*: one for each instruction
 //   softcell_check_generic.h   spu_*: over all vector types
 //
-// Deliberately stricter than a compiler: immediates must be constant expressions where they are written (a
-// real compiler also takes what its optimiser makes constant), and the PowerXCell's si_df* comparisons do not
-// exist, because a PS3 does not have them.
+// Deliberately stricter than a compiler: immediates must be constant expressions where they are written; a
+// real compiler also takes what its optimiser makes constant. The comparisons si_df* are the PowerXCell's
+// alone, so a compiler for the PS3 does not have them.
 
 #include "softcell_check_types.h"
 

@@ -3,13 +3,20 @@
 #include "returns.h"
 #include "vectors.h"
 
-#define FOR_ALL(TEST)                                                                   \
-  TEST(vec_uchar16, u8, u8, unsigned char)                                              \
-  TEST(vec_char16, s8, u8, signed char) TEST(vec_ushort8, u16, u16, unsigned short)     \
-      TEST(vec_short8, s16, u16, short) TEST(vec_uint4, u32, u32, unsigned int)         \
-          TEST(vec_int4, s32, u32, int) TEST(vec_ullong2, u64, u64, unsigned long long) \
-              TEST(vec_llong2, s64, u64, long long) TEST(vec_float4, f32, u32, float)   \
-                  TEST(vec_double2, f64, u64, double)
+// TEST(vector, a value of it, the mask of its width, its lane)
+// clang-format off
+#define FOR_ALL(TEST) \
+  TEST(vec_uchar16, u8,  u8,  unsigned char) \
+  TEST(vec_char16,  s8,  u8,  signed char) \
+  TEST(vec_ushort8, u16, u16, unsigned short) \
+  TEST(vec_short8,  s16, u16, short) \
+  TEST(vec_uint4,   u32, u32, unsigned int) \
+  TEST(vec_int4,    s32, u32, int) \
+  TEST(vec_ullong2, u64, u64, unsigned long long) \
+  TEST(vec_llong2,  s64, u64, long long) \
+  TEST(vec_float4,  f32, u32, float) \
+  TEST(vec_double2, f64, u64, double)
+// clang-format on
 
 #define LOGIC(V, v, mask, S)       \
   RETURNS(V, spu_and(v, v));       \

@@ -38,3 +38,6 @@ RETURNS(vec_uint4, spu_readchqw(SPU_RdSigNotify1));
 RETURNS(vec_ullong2, spu_cmpeq(f64, f64));
 RETURNS(vec_ullong2, spu_cmpgt(f64, f64));
 RETURNS(vec_ullong2, spu_cmpabseq(f64, f64));
+// Of two scalars the first decides and the second is converted.
+RETURNS(void, spu_hcmpeq(i, 7u));
+RETURNS(void, spu_hcmpgt(u, 7));
