@@ -14,9 +14,7 @@
 // real compiler also takes what its optimiser makes constant. The comparisons si_df* are the PowerXCell's
 // alone, so a compiler for the PS3 does not have them.
 
-#include "softcell_check_types.h"
-
 #include "softcell_check_channels.h"
-#include "softcell_check_specific.h"
-
 #include "softcell_check_generic.h"
+#include "softcell_check_specific.h"
+#include "softcell_check_types.h"
