@@ -16,32 +16,37 @@ template <typename Real>
 struct Tolerance;
 template <>
 struct Tolerance<float> {
-  static constexpr float kResidual = 1e-6f;  // |axial(R^T A)| at which to stop: some roundings of a float
-  static constexpr int kIterations = 3;      // from 0.3 rad away; most steps need one or two
+  static constexpr float kGoodEnough = 1e-5f;  // after the last iteration; above it, start cold
+  static constexpr float kResidual = 1e-6f;    // |axial(R^T A)| at which to stop: some roundings of a float
+  static constexpr int kIterations = 6;        // one or two as a rule; more where s_j + s_k is small
 };
 template <>
 struct Tolerance<double> {
+  static constexpr double kGoodEnough = 1e-12;
   static constexpr double kResidual = 1e-14;
   static constexpr int kIterations = 12;  // each takes three digits, fewer where s_j + s_k is small
 };
-constexpr double kGoodEnough = 1e-3;      // residual after the last iteration above which to start cold
 constexpr double kRegularisation = 1e-3;  // mu, which keeps axes that nothing determines where they are
 constexpr double kLongestStep = 1.5;      // radians
 constexpr double kPastWeight = 1e-6;  // of the previous rotation in a cold start; far below what A determines
 
+/// The square of the norm is divided out: a quaternion in float is a unit only to some roundings, and the
+/// matrix would have four times its error.
 template <typename Real>
 Matrix3<Real> matrix_of(const Eigen::Quaternion<Real>& q) {
   const Real w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  const Real two = 2 / (w * w + x * x + y * y + z * z);
+  const Real tx = two * x, ty = two * y, tz = two * z;
   Matrix3<Real> r;
-  r(0, 0) = 1 - 2 * (y * y + z * z);
-  r(0, 1) = 2 * (x * y - w * z);
-  r(0, 2) = 2 * (x * z + w * y);
-  r(1, 0) = 2 * (x * y + w * z);
-  r(1, 1) = 1 - 2 * (x * x + z * z);
-  r(1, 2) = 2 * (y * z - w * x);
-  r(2, 0) = 2 * (x * z - w * y);
-  r(2, 1) = 2 * (y * z + w * x);
-  r(2, 2) = 1 - 2 * (x * x + y * y);
+  r(0, 0) = 1 - (ty * y + tz * z);
+  r(0, 1) = tx * y - tz * w;
+  r(0, 2) = tx * z + ty * w;
+  r(1, 0) = tx * y + tz * w;
+  r(1, 1) = 1 - (tx * x + tz * z);
+  r(1, 2) = ty * z - tx * w;
+  r(2, 0) = tx * z - ty * w;
+  r(2, 1) = ty * z + tx * w;
+  r(2, 2) = 1 - (tx * x + ty * y);
   return r;
 }
 
@@ -87,6 +92,7 @@ enum class Outcome { kConverged, kLost };
 template <typename Real>
 Outcome refine(const Matrix3<Real>& a, Eigen::Quaternion<Real>& q, Matrix3<Real>& r) {
   constexpr Real kMu = Real(kRegularisation);
+  constexpr Real kAccept = Tolerance<Real>::kGoodEnough * Tolerance<Real>::kGoodEnough;
   constexpr Real kStop = Tolerance<Real>::kResidual * Tolerance<Real>::kResidual;
   for (int iteration = 0;; ++iteration) {
     r = matrix_of(q);
@@ -109,7 +115,7 @@ Outcome refine(const Matrix3<Real>& a, Eigen::Quaternion<Real>& q, Matrix3<Real>
 
     if (residual <= kStop) return positive ? Outcome::kConverged : Outcome::kLost;
     if (iteration == Tolerance<Real>::kIterations)
-      return positive && residual <= Real(kGoodEnough * kGoodEnough) ? Outcome::kConverged : Outcome::kLost;
+      return positive && residual <= kAccept ? Outcome::kConverged : Outcome::kLost;
 
     Real x, y, z;
     if (positive) {
