@@ -23,7 +23,7 @@ class CoupledBody {
               const Eigen::Vector3f& position)
       : world_(world),
         soft_(std::move(model), position),
-        shape_(soft_.model().contact_radius(),
+        shape_(soft_.model().contact_radius(), soft_.model().soft_contact_radius(),
                BulletSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing) {
     for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
   }

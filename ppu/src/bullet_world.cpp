@@ -54,6 +54,9 @@ struct BulletWorld::Impl {
 BulletWorld::BulletWorld() : impl_(std::make_unique<Impl>()) {
   btContactSolverInfo& solver = impl_->world.getSolverInfo();
   solver.m_solverMode = SOLVER_USE_WARMSTARTING;  // in order, and without code chosen by the processor
+  // Penetration is undone by moving bodies apart, never by a velocity: that would throw soft bodies upwards.
+  solver.m_splitImpulse = 1;
+  solver.m_splitImpulsePenetrationThreshold = 0;
   set_gravity({0, -9.81f, 0});
 }
 

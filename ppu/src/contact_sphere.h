@@ -6,21 +6,39 @@
 
 namespace softcell::ppu {
 
-/// A small sphere that meets contacts early.
+/// A sphere of two radii that meets contacts early.
 ///
-/// Bullet makes a contact as soon as two shapes are nearer than the smaller of their "breaking thresholds",
-/// and lets the solver use up exactly the distance that is left. A sphere's own threshold would be 2 % of its
-/// radius, so that one of 3 cm, moving 5 cm in a substep, would be inside the floor before there is a
-/// contact. With a threshold of one substep's longest way it arrives at the surface instead; the other
-/// shape's threshold (2 % of its size, 17 cm for a floor of 12 m) still bounds it. Bullet's own continuous
-/// collision costs a sweep through the broad phase for each fast particle, and hits particles of the same
-/// body.
+/// Two radii. Against rigid shapes it is small, so that the mesh lies close to what it lies on. Such spheres,
+/// a cell apart, would slip through the gaps of another body's, so among themselves they are large enough to
+/// close them. Bullet makes that easy: a sphere is a point with a margin to GJK, which does the convex
+/// shapes, but a radius to the sphere-sphere algorithm. (A rigid btSphereShape meets the large radius too,
+/// and so do triangle meshes.)
+///
+/// Early. Bullet makes a contact as soon as two shapes are nearer than the smaller of their "breaking
+/// thresholds", and lets the solver use up exactly the distance that is left. A sphere's own threshold would
+/// be 2 % of its radius, so that one of 3 cm, moving 5 cm in a substep, would be inside the floor before
+/// there is a contact. With a threshold of one substep's longest way it arrives at the surface instead; the
+/// other shape's threshold (2 % of its size, 17 cm for a floor of 12 m) still bounds it. Bullet's own
+/// continuous collision costs a sweep through the broad phase for each fast particle, and hits particles of
+/// the same body.
 class ContactSphere final : public btSphereShape {
  public:
-  /// @param reach  metres: the longest way of a particle in one substep
-  ContactSphere(float radius, float reach) : btSphereShape(radius), reach_(reach) { setUserPointer(tag()); }
+  /// All in metres.
+  /// @param radius       against rigid shapes
+  /// @param soft_radius  against other particles
+  /// @param reach        the longest way of a particle in one substep
+  ContactSphere(float radius, float soft_radius, float reach)
+      : btSphereShape(soft_radius), radius_(radius), reach_(reach) {
+    setUserPointer(tag());
+  }
 
+  btScalar getMargin() const override { return radius_; }
   btScalar getContactBreakingThreshold(btScalar) const override { return reach_; }
+  void getAabb(const btTransform& pose, btVector3& low, btVector3& high) const override {
+    const btVector3 extent(getRadius(), getRadius(), getRadius());
+    low = pose.getOrigin() - extent;
+    high = pose.getOrigin() + extent;
+  }
 
   /// Whether an object is a particle of a soft body. The user pointer of such an object is ours: it tells
   /// bodies apart.
@@ -35,7 +53,7 @@ class ContactSphere final : public btSphereShape {
     return &unique;
   }
 
-  float reach_;
+  float radius_, reach_;
 };
 
 }  // namespace softcell::ppu

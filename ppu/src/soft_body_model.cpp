@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,7 +17,12 @@ SoftBodyModel::SoftBodyModel(Lattice lattice, Embedding embedding, const SoftBod
   for (const float m : masses_) mass += m;
   mass_ = static_cast<float>(mass);
 
-  const std::vector<bool> is_outer = outer_particles(lattice_);
+  const std::vector<bool> on_boundary = outer_particles(lattice_);
+  std::vector<bool> is_outer = on_boundary;
+  for (const auto& cell : lattice_.corners) {
+    if (std::none_of(cell.begin(), cell.end(), [&](std::uint32_t i) { return on_boundary[i]; })) continue;
+    for (const std::uint32_t i : cell) is_outer[i] = true;
+  }
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
 }
 

@@ -34,10 +34,11 @@ namespace softcell::ppu {
 /// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
 class BulletSoftBodies {
  public:
-  /// A particle moves at most this share of a cell in one substep; faster ones are slowed down. Bullet finds
+  /// A particle moves at most this many cells in one substep; faster ones are slowed down. Bullet finds
   /// contacts before they happen within such a distance (see contact_sphere.h), so that nothing goes through
-  /// a floor. With cells of 0.2 m and substeps of 1/120 s that is 12 m/s, a fall from 7 m.
-  static constexpr float kMaxTravelInCells = 0.5f;
+  /// a floor. With cells of 0.2 m and substeps of 1/120 s that is 24 m/s, a fall from 29 m. A
+  /// particle that is slowed down takes momentum from its body.
+  static constexpr float kMaxTravelInCells = 1.0f;
 
   /// @param world  outlives this.
   explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);

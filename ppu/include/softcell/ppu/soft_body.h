@@ -55,19 +55,25 @@ class SoftBodyModel {
   std::span<const float> masses() const { return masses_; }  ///< kg, of each particle
   float mass() const { return mass_; }                       ///< kg, of the body
 
-  /// Particle numbers, ascending. Outer particles collide; inner ones cannot be reached.
+  /// Particle numbers, ascending. Outer particles collide: all corners of the cells at the lattice's
+  /// boundary, which makes them two deep. One layer would keep things out, but a body that is pressed flat on
+  /// a floor would push its second layer, which the mesh hangs on too, through the first and the floor.
   std::span<const std::uint32_t> outer() const { return outer_; }
   std::span<const std::uint32_t> inner() const { return inner_; }
 
   /// Radius in metres of the sphere with which an outer particle collides.
   ///
-  /// Outer particles are corners of empty cells, so none lies inside the mesh, and every mesh vertex lies
-  /// between the eight corners of its cell: while no particle's centre is below a floor, neither is the mesh.
-  /// The radius therefore adds nothing but distance between the mesh and what it lies on. It is as small as
-  /// contacts work well with, 0.15 cells, the same for all; the mesh's lowest point comes to rest that much
-  /// above the floor, plus its own distance to the lattice's boundary.
+  /// The mesh lies inside its lattice, and every mesh vertex between the eight corners of its cell: while no
+  /// particle's centre is below a floor, neither is the mesh. The radius adds nothing but distance between
+  /// the mesh and what it lies on. It is as small as contacts work well with, 0.15 cells, the same for all;
+  /// the mesh's lowest point comes to rest that much above the floor, plus its own distance to the lattice's
+  /// boundary.
   float contact_radius() const { return kContactRadiusInCells * lattice_.spacing; }
+  /// The same towards particles of other soft bodies. A particle has to meet a lattice of equal cells
+  /// wherever it comes, also in the middle of a face: 2 r > s / sqrt(2).
+  float soft_contact_radius() const { return kSoftContactRadiusInCells * lattice_.spacing; }
   static constexpr float kContactRadiusInCells = 0.15f;
+  static constexpr float kSoftContactRadiusInCells = 0.4f;
 
  private:
   friend std::shared_ptr<const SoftBodyModel> make_soft_body_model(const TriangleMesh&,

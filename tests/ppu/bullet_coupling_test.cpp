@@ -1,0 +1,376 @@
+#include "softcell/ppu/bullet_coupling.h"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "soft_body_scenes.h"
+#include "softcell/ppu/shapes.h"
+#include "softcell/ppu/state_hash.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector3i;
+
+SoftBodySettings stiff(float cell_size) {
+  return {.cell_size = cell_size, .half_width = 2, .density = 200, .alpha = 1, .damping = 0.3f};
+}
+
+class RestsOnFloor : public testing::TestWithParam<int> {};
+
+TEST_P(RestsOnFloor, InShapeAndAtItsHeight) {
+  const int cells = GetParam();
+  World world;
+  world.add_floor();
+  const float cell = 0.8f / static_cast<float>(cells);
+  SoftBody& body = world.soft.add(block_model(Vector3i::Constant(cells), stiff(cell)), {0, 0.5f, 0});
+  float lowest = 1;
+  for (int frame = 0; frame < 600; ++frame) {  // it is elastic, and bounces for a while
+    world.bullet.step(kFrame, 2);
+    lowest = std::min(lowest, body.bounds().low.y());
+  }
+  EXPECT_GT(lowest, 0) << "a particle's centre went below the floor";
+  EXPECT_LT(fastest(body), 0.02f);
+  // E / rho = (s/h)^2 alpha w (w+1) / 3: how much a column gives under its weight, with room for its edges.
+  const float modulus = 2 * (cell * 120) * (cell * 120);
+  const float sag = 9.81f * 0.8f * 0.8f / (2 * modulus);
+  EXPECT_LT(deformation(body), 4 * sag + 0.004f);
+  EXPECT_NEAR(body.bounds().low.y(), body.model().contact_radius(), 0.006f);
+}
+
+// 125 and 1000 particles.
+INSTANTIATE_TEST_SUITE_P(Blocks, RestsOnFloor, testing::Values(4, 9));
+
+double lowest_mesh_vertex(const SoftBodyModel& model, std::span<const Vector3f> x) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const SkinPart& part : model.embedding().parts) {
+    for (std::uint32_t g = part.first_group; g < part.first_group + part.group_count; ++g) {
+      for (int lane = 0; lane < 4; ++lane) {
+        lowest = std::min(lowest, evaluate_reference(model.embedding(), part, g, lane, x).position.y());
+      }
+    }
+  }
+  return lowest;
+}
+
+TEST(BulletSoftBodies, AMeshNeverDipsIntoTheFloor) {
+  World world;
+  world.add_floor();
+  const auto model = make_soft_body_model(make_sphere(0.6f, 12), stiff(0.2f));
+  SoftBody& body = world.soft.add(model, {0, 2, 0});
+  double lowest = 1, lowest_vertex = 1;
+  std::vector<Vector3f> x(model->particles());
+  for (int frame = 0; frame < 900; ++frame) {
+    world.bullet.step(kFrame, 2);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = body.position(i);
+    lowest_vertex = lowest_mesh_vertex(*model, x);
+    lowest = std::min(lowest, lowest_vertex);
+  }
+  EXPECT_GT(lowest, 0);
+  EXPECT_LT(lowest_vertex, 1.2 * 0.2) << "the mesh lies more than a cell above the floor";
+}
+
+TEST(BulletSoftBodies, SlideAboutAsFarAsACoulombBlock) {
+  constexpr float kFriction = 0.5f, kSpeed = 3;
+  World world;
+  world.add_floor(1);
+  SoftBodySettings settings = stiff(0.2f);
+  settings.friction = kFriction;
+  SoftBody& body = world.soft.add(block_model({6, 2, 4}, settings), {0, 0.031f, 0});
+  world.run(1);
+  const float begin = body.centre_of_mass().x();
+  body.add_velocity({kSpeed, 0, 0});
+  world.run(3);
+  const float way = body.centre_of_mass().x() - begin;
+  const float coulomb = kSpeed * kSpeed / (2 * kFriction * 9.81f);
+  EXPECT_GT(way, coulomb / 1.5f);
+  EXPECT_LT(way, coulomb * 1.5f);
+  EXPECT_LT(fastest(body), 0.02f);
+}
+
+TEST(BulletSoftBodies, PushARigidBox) {
+  World world;
+  world.add_floor(0.2f);
+  const std::size_t box = world.bullet.add_box({0.5f, 0.5f, 0.5f}, 10, {1.2f, 0.25f, 0}, 0.5f);
+  SoftBody& body = world.soft.add(block_model({4, 3, 4}, stiff(0.2f)), {0, 0.031f, 0});
+  body.add_velocity({4, 0, 0});
+  world.run(2);
+  EXPECT_GT(world.bullet.pose(box)(0, 3), 1.5f);
+  EXPECT_NEAR(world.bullet.pose(box)(1, 3), 0.25f, 0.03f);
+  EXPECT_LT(body.centre_of_mass().x(), world.bullet.pose(box)(0, 3));
+}
+
+TEST(BulletSoftBodies, CarryARigidBox) {
+  World world;
+  world.add_floor();
+  SoftBody& body = world.soft.add(block_model({4, 3, 4}, stiff(0.2f)), {0, 0.031f, 0});
+  const std::size_t box = world.bullet.add_box({0.5f, 0.5f, 0.5f}, 25, {0, 1.0f, 0}, 0.6f);
+  world.run(4);
+  const float top = 3 * 0.2f + 2 * body.model().contact_radius();
+  EXPECT_NEAR(world.bullet.pose(box)(1, 3), top + 0.25f, 0.06f);
+  EXPECT_LT(fastest(body), 0.03f);
+}
+
+TEST(BulletSoftBodies, SoftBodiesRestOnEachOther) {
+  World world;
+  world.add_floor();
+  SoftBody& lower = world.soft.add(block_model({6, 2, 6}, stiff(0.2f)), {0, 0.05f, 0});
+  // Half a cell aside: every particle comes down on the middle of a face, the widest gap.
+  SoftBody& upper = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.65f, 0});
+  for (int frame = 0; frame < 300; ++frame) {
+    world.bullet.step(kFrame, 2);
+    ASSERT_GT(upper.bounds().low.y(), 0.37f) << "frame " << frame << ": it sinks in";
+  }
+  EXPECT_LT(upper.bounds().low.y(), 0.7f);
+  EXPECT_GT(lower.bounds().low.y(), 0);
+}
+
+TEST(BulletSoftBodies, DoNotPassThroughEachOther) {
+  World world;
+  world.bullet.set_gravity({0, 0, 0});
+  const auto model = block_model({3, 3, 3}, stiff(0.2f));
+  SoftBody& a = world.soft.add(model, {-0.5f, 0, 0});
+  SoftBody& b = world.soft.add(model, {0.5f, 0.1f, 0.1f});
+  a.add_velocity({5, 0, 0});
+  const Vector3f before = a.linear_momentum();
+  world.run(1);
+  EXPECT_GT(b.centre_of_mass().x() - a.centre_of_mass().x(), 0.6f);
+  EXPECT_LT((a.linear_momentum() + b.linear_momentum() - before).norm(), 1e-3f * before.norm());
+}
+
+TEST(BulletSoftBodies, ACollisionKeepsTheTotalMomentum) {
+  World world;
+  world.bullet.set_gravity({0, 0, 0});
+  const std::size_t box = world.bullet.add_box({0.6f, 0.6f, 0.6f}, 30, {1.5f, 0.1f, 0.05f}, 0.5f);
+  const auto model = make_soft_body_model(make_sphere(0.5f, 8), stiff(0.2f));
+  SoftBody& ball = world.soft.add(model, {0, 0, 0});
+  ball.add_velocity({5, 0, 0});
+  const Vector3f before = ball.linear_momentum();
+  world.run(1);
+  const auto& rigid =
+      *btRigidBody::upcast(world.bullet.world().getCollisionObjectArray()[static_cast<int>(box)]);
+  const btVector3 v = rigid.getLinearVelocity();
+  const Vector3f of_box = 30 * Vector3f(v.x(), v.y(), v.z());
+  EXPECT_GT(of_box.x(), 0.2f * before.x()) << "they did not meet";
+  EXPECT_LT((ball.linear_momentum() + of_box - before).norm(), 1e-3f * before.norm());
+}
+
+TEST(BulletSoftBodies, WithstandThirtyTimesTheEarthsGravity) {
+  World world;
+  world.bullet.set_gravity({0, -300, 0});
+  world.add_floor();
+  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 0.5f, 0});
+  for (int frame = 0; frame < 300; ++frame) {
+    world.bullet.step(kFrame, 4);
+    ASSERT_GT(body.bounds().low.y(), -0.01f) << "frame " << frame;
+    ASSERT_LT(body.bounds().high.y(), 3.0f) << "frame " << frame;
+  }
+  EXPECT_LT(fastest(body), 1.0f);
+  world.bullet.set_gravity({0, -9.81f, 0});
+  world.run(2, 4);
+  EXPECT_LT(deformation(body), 0.02f) << "it did not get its shape back";
+}
+
+TEST(BulletSoftBodies, AFallFromFarStopsAtTheFloor) {
+  for (const int substeps : {1, 2, 4}) {
+    World world;
+    world.add_floor();
+    SoftBody& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 10, 0});
+    float lowest = 1;
+    for (int frame = 0; frame < 1200; ++frame) {
+      world.bullet.step(kFrame, substeps);
+      lowest = std::min(lowest, body.bounds().low.y());
+    }
+    EXPECT_GT(lowest, 0) << substeps << " substeps";
+    EXPECT_LT(body.centre_of_mass().y(), 0.5f) << substeps << " substeps";
+  }
+}
+
+/// Seconds of a period of the stretching of a block in free space.
+double measured_period(float frequency, float step) {
+  World world;
+  world.bullet.set_gravity({0, 0, 0});
+  SoftBodySettings settings = stiff(0.2f);
+  settings.half_width = 4;  // one region: each particle swings about a fixed goal
+  settings.frequency = frequency;
+  settings.damping = 0;
+  SoftBody& body = world.soft.add(block_model({2, 2, 2}, settings), {0, 0, 0});
+  // Stretched along x by a velocity that keeps centre and orientation.
+  const std::uint32_t left = 0;
+  const auto right = static_cast<std::uint32_t>(body.model().particles() - 1);
+  const float rest = body.position(right).x() - body.position(left).x();
+  for (int i = 0; i < world.bullet.world().getNumCollisionObjects(); ++i) {
+    auto& particle = *btRigidBody::upcast(world.bullet.world().getCollisionObjectArray()[i]);
+    const float x = particle.getWorldTransform().getOrigin().x();
+    particle.setLinearVelocity(btVector3(0.3f * x, 0, 0));
+  }
+  const double h = step;
+  double previous = 0, first = 0, last = 0;
+  int crossings = 0;
+  for (int i = 1; i <= 600; ++i) {
+    world.bullet.step(step, 1);
+    const double stretch = body.position(right).x() - body.position(left).x() - rest;
+    if (i > 1 && previous < 0 && stretch >= 0) {
+      last = h * (i - stretch / (stretch - previous));
+      if (crossings++ == 0) first = last;
+    }
+    previous = stretch;
+  }
+  return (last - first) / (crossings - 1);
+}
+
+TEST(BulletSoftBodies, AFrequencyMeansTheSameForAnyTimeStep) {
+  const float frequency = 4;
+  EXPECT_NEAR(measured_period(frequency, 1.0f / 60), 0.25, 0.005);
+  EXPECT_NEAR(measured_period(frequency, 1.0f / 120), 0.25, 0.005);
+}
+
+int g_ticks;
+void count_tick(btDynamicsWorld*, btScalar) { ++g_ticks; }
+
+TEST(BulletSoftBodies, ActOncePerSubstepAndCallWhatWasThere) {
+  BulletWorld bullet;
+  bullet.set_gravity({0, 0, 0});
+  int users = 0;
+  bullet.world().setInternalTickCallback(&count_tick, &users, true);
+  g_ticks = 0;
+  std::optional<BulletSoftBodies> soft(bullet.world());
+  SoftBodySettings settings = stiff(0.2f);
+  settings.damping = 1;  // takes a tenth of nothing: rigid motion stays
+  settings.alpha = 0;
+  SoftBody& body = soft->add(block_model({2, 2, 2}, settings), {0, 0, 0});
+  body.add_velocity({1, 0, 0});
+  bullet.step(kFrame, 3);
+  EXPECT_EQ(g_ticks, 3);
+  // A caller's own way of stepping, with substeps of Bullet's choice.
+  bullet.world().stepSimulation(1.0f / 30, 8, 1.0f / 120);
+  EXPECT_EQ(g_ticks, 7);
+  EXPECT_EQ(bullet.world().getWorldUserInfo(), &users);
+  EXPECT_NEAR(body.centre_of_mass().x(), kFrame + 1.0f / 30, 1e-5f);
+  soft.reset();
+  EXPECT_EQ(bullet.world().getNumCollisionObjects(), 0);
+  bullet.step(kFrame, 1);
+  EXPECT_EQ(g_ticks, 8);
+}
+
+TEST(BulletSoftBodies, TheLengthOfTheSubstepCounts) {
+  // Half a pull's way in one step is alpha (g - x) / h: after one step of any length a particle that was 1 cm
+  // off in a body of one region is alpha cm nearer.
+  for (const float step : {1.0f / 60, 1.0f / 240}) {
+    World world;
+    world.bullet.set_gravity({0, 0, 0});
+    SoftBodySettings settings = stiff(0.2f);
+    settings.half_width = 4;
+    settings.alpha = 0.5f;
+    settings.damping = 0;
+    SoftBody& body = world.soft.add(block_model({4, 4, 4}, settings), {0, 0, 0});
+    auto& particle = *btRigidBody::upcast(world.bullet.world().getCollisionObjectArray()[0]);
+    const Vector3f rest = body.position(0);
+    particle.getWorldTransform().getOrigin() += btVector3(0.01f, 0, 0);
+    world.bullet.step(step, 1);
+    // 5 mm, less what the whole body follows: its region's weight is spread over 125 particles.
+    EXPECT_NEAR(body.position(0).x() - rest.x(), 0.005f, 0.0005f) << step;
+  }
+}
+
+struct RefuseAll final : btOverlapFilterCallback {
+  bool needBroadphaseCollision(btBroadphaseProxy*, btBroadphaseProxy*) const override { return false; }
+};
+
+TEST(BulletSoftBodies, AnOverlapFilterThatWasThereStillCounts) {
+  BulletWorld bullet;
+  RefuseAll refuse;
+  bullet.world().getPairCache()->setOverlapFilterCallback(&refuse);
+  {
+    BulletSoftBodies soft(bullet.world());
+    bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f);
+    SoftBody& body = soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.1f, 0});
+    for (int i = 0; i < 60; ++i) bullet.step(kFrame, 2);
+    EXPECT_LT(body.centre_of_mass().y(), -1) << "the floor should not have held it";
+  }
+  EXPECT_EQ(bullet.world().getPairCache()->getOverlapFilterCallback(), &refuse);
+}
+
+TEST(BulletSoftBodies, NoContactsWithinABody) {
+  World world;
+  world.bullet.set_gravity({0, 0, 0});
+  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.01f)), {0, 0, 0});
+  world.run(0.1f);
+  EXPECT_EQ(world.bullet.world().getPairCache()->getNumOverlappingPairs(), 0);
+  const auto& object = *world.bullet.world().getCollisionObjectArray()[3];
+  EXPECT_EQ(BulletSoftBodies::particle_of(object).body, &body);
+  EXPECT_EQ(BulletSoftBodies::particle_of(object).number, body.model().outer()[3]);
+}
+
+TEST(BulletSoftBodies, ATeleportIsToldToBullet) {
+  World world;
+  world.add_floor();
+  SoftBody& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.05f, 0});
+  world.run(1);
+  const Vector3f before = body.centre_of_mass();
+  body.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(0.7f, Vector3f::UnitY())), {3, 0.5f, -2});
+  world.bullet.step(kFrame, 2);
+  EXPECT_LT((body.centre_of_mass() - before - Vector3f(3, 0.5f, -2)).norm(), 0.02f);
+  EXPECT_LT(deformation(body), 0.02f);
+  world.run(2);
+  EXPECT_NEAR(body.bounds().low.y(), body.model().contact_radius(), 0.01f);
+}
+
+TEST(BulletSoftBodies, CanBeRemovedOneByOne) {
+  World world;
+  world.add_floor();
+  const auto model = block_model({2, 2, 2}, stiff(0.2f));
+  SoftBody& a = world.soft.add(model, {0, 0.05f, 0});
+  SoftBody& b = world.soft.add(model, {0, 0.8f, 0});
+  world.run(1);
+  world.soft.remove(a);
+  EXPECT_EQ(world.soft.size(), 1u);
+  EXPECT_THROW(world.soft.remove(a), std::invalid_argument);
+  world.run(2);
+  EXPECT_NEAR(b.bounds().low.y(), model->contact_radius(), 0.01f) << "what held it is gone";
+}
+
+TEST(BulletSoftBodies, ANanIsReported) {
+  World world;
+  SoftBody& body = world.soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.05f, 0});
+  body.add_velocity({NAN, 0, 0});
+  EXPECT_THROW(world.run(0.1f), std::runtime_error);
+}
+
+std::uint64_t hash_of_a_run() {
+  World world;
+  world.add_floor();
+  world.bullet.add_box({0.4f, 0.4f, 0.4f}, 10, {0.1f, 1.6f, 0}, 0.6f);
+  const auto ball = make_soft_body_model(make_sphere(0.5f, 8), stiff(0.2f));
+  const SoftBody* bodies[] = {&world.soft.add(ball, {0, 0.8f, 0}), &world.soft.add(ball, {0.3f, 2.2f, 0.1f})};
+  world.run(2);
+  return state_hash(bodies);
+}
+
+TEST(BulletSoftBodies, TwoRunsGiveTheSameBytes) { EXPECT_EQ(hash_of_a_run(), hash_of_a_run()); }
+
+TEST(BulletWorld, TakesTheSoftBodiesTimeOutOfBullets) {
+  World world;
+  world.add_floor();
+  world.soft.add(block_model({6, 6, 6}, stiff(0.2f)), {0, 0.05f, 0});
+  const StepTimes times = world.bullet.step(kFrame, 2);
+  EXPECT_GT(times.soft_body_ms, 0);
+  EXPECT_GT(times.physics_ms, 0);
+}
+
+TEST(BulletWorld, RefusesWhatMakesNoSense) {
+  BulletWorld world;
+  EXPECT_THROW(world.add_box({1, 0, 1}, 0, {0, 0, 0}, 0.5f), std::invalid_argument);
+  EXPECT_THROW(world.add_box({1, 1, 1}, -1, {0, 0, 0}, 0.5f), std::invalid_argument);
+  EXPECT_THROW(world.add_convex({}, {0, 0, 0}, 0.5f), std::invalid_argument);
+  EXPECT_THROW(world.step(0, 1), std::invalid_argument);
+  EXPECT_THROW(world.step(kFrame, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace softcell::ppu

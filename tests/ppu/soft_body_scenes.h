@@ -1,0 +1,63 @@
+#pragma once
+// Small worlds for the tests of soft bodies.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "softcell/ppu/bullet_coupling.h"
+#include "softcell/ppu/bullet_world.h"
+#include "softcell/ppu/lattice.h"
+#include "softcell/ppu/regions.h"
+#include "softcell/ppu/soft_body.h"
+
+namespace softcell::ppu {
+
+inline constexpr float kFrame = 1.0f / 60;
+
+/// A block of cells, its lowest particles at y = 0, centred on 0 in x and z. A block of n cells along each
+/// edge has (n + 1)^3 particles.
+inline std::shared_ptr<const SoftBodyModel> block_model(const Eigen::Vector3i& cells,
+                                                        const SoftBodySettings& settings) {
+  std::vector<Eigen::Vector3i> all;
+  for (int x = 0; x < cells.x(); ++x)
+    for (int y = 0; y < cells.y(); ++y)
+      for (int z = 0; z < cells.z(); ++z) all.push_back({x, y, z});
+  const Eigen::Vector3f size = settings.cell_size * cells.cast<float>();
+  const Eigen::Vector3f origin(-size.x() / 2, 0, -size.z() / 2);
+  return make_soft_body_model(lattice_from_cells(all, settings.cell_size, origin), settings);
+}
+
+/// A Bullet world with soft bodies, and a floor whose top is at y = 0 when asked for.
+struct World {
+  BulletWorld bullet;
+  BulletSoftBodies soft{bullet.world()};
+
+  void add_floor(float friction = 0.6f) { bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, friction); }
+  void run(float seconds, int substeps = 2) {
+    const int frames = static_cast<int>(seconds / kFrame + 0.5f);
+    for (int i = 0; i < frames; ++i) bullet.step(kFrame, substeps);
+  }
+};
+
+/// The longest distance of a particle from where the rigid motion that fits best would have it, in metres.
+inline float deformation(const SoftBody& body) {
+  std::vector<Eigen::Vector3f> x(body.model().particles()), goals(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = body.position(i);
+  // One region that holds the whole body.
+  const auto rigid =
+      std::make_shared<MatchingPlan<float>>(body.model().lattice(), kMaxHalfWidth, body.model().masses());
+  ShapeMatcher<float>(rigid).goals(x, goals);
+  float longest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) longest = std::max(longest, (x[i] - goals[i]).norm());
+  return longest;
+}
+
+inline float fastest(const SoftBody& body) {
+  float speed = 0;
+  for (const Eigen::Vector3f& v : body.velocities()) speed = std::max(speed, v.norm());
+  return speed;
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,218 @@
+#include "softcell/ppu/soft_body.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "soft_body_scenes.h"
+#include "softcell/ppu/shapes.h"
+#include "softcell/ppu/state_hash.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+SoftBodySettings rubber() {
+  return {.cell_size = 0.2f, .half_width = 2, .density = 200, .alpha = 0.5f, .damping = 0.1f};
+}
+
+TEST(SoftBodySettings, RefuseValuesOutOfTheirRangeByName) {
+  const auto sentence = [](const std::function<void(SoftBodySettings&)>& change) -> std::string {
+    SoftBodySettings settings = rubber();
+    change(settings);
+    try {
+      validate(settings);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(sentence([](auto&) {}), "accepted");
+  EXPECT_NE(sentence([](auto& s) { s.cell_size = 0; }).find("cell_size is 0"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.half_width = -1; }).find("half_width is -1"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.half_width = 17; }).find("half_width is 17"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.density = -3; }).find("density is -3"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.alpha = 1.5f; }).find("alpha is 1.5"), std::string::npos);
+  EXPECT_NE(sentence([=](auto& s) { s.alpha = kNan; }).find("alpha is nan"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.damping = 2; }).find("damping is 2"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.friction = -1; }).find("friction is -1"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.frequency = -1.0f; }).find("frequency is -1"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.damping_time = -1.0f; }).find("damping_time is -1"), std::string::npos);
+}
+
+TEST(SoftBodySettings, FrequencyAndDampingTimeTakeThePlaceOfAlphaAndDamping) {
+  SoftBodySettings settings = rubber();
+  EXPECT_EQ(settings.alpha_of_step(0.01f), 0.5f);
+  EXPECT_EQ(settings.damping_of_step(0.01f), 0.1f);
+  settings.frequency = 5.0f;
+  settings.damping_time = 0.2f;
+  for (const float h : {1.0f / 60, 1.0f / 120}) {
+    const double s = std::sin(M_PI * 5 * double{h});
+    EXPECT_NEAR(settings.alpha_of_step(h), 4 * s * s, 1e-6);
+    EXPECT_NEAR(settings.damping_of_step(h), 1 - std::exp(-double{h} / 0.2), 1e-6);
+  }
+  settings.frequency = 30.0f;
+  EXPECT_EQ(settings.alpha_of_step(1.0f / 60), 1.0f);
+}
+
+TEST(SoftBodyModel, SplitsParticlesIntoOuterAndInner) {
+  const auto model = block_model({6, 6, 6}, rubber());
+  EXPECT_EQ(model->particles(), 343u);
+  EXPECT_EQ(model->inner().size(), 27u) << "two layers are outer";
+  EXPECT_EQ(model->outer().size(), 316u);
+  EXPECT_NEAR(model->mass(), 200 * 1.2f * 1.2f * 1.2f, 1e-2f);
+  EXPECT_TRUE(model->embedding().groups.empty());
+  EXPECT_FLOAT_EQ(model->contact_radius(), 0.03f);
+}
+
+TEST(SoftBodyModel, OfAMeshEmbedsIt) {
+  const TriangleMesh mesh = make_sphere(0.5f, 6);
+  const auto model = make_soft_body_model(mesh, rubber());
+  EXPECT_EQ(model->embedding().slot_of_vertex.size(), mesh.positions.size());
+  EXPECT_EQ(model->outer().size() + model->inner().size(), model->particles());
+}
+
+TEST(SoftBodyModel, RefusesALatticeOfAnotherSpacing) {
+  const Eigen::Vector3i cell(0, 0, 0);
+  EXPECT_THROW(make_soft_body_model(lattice_from_cells({&cell, 1}, 0.1f, Vector3f::Zero()), rubber()),
+               std::runtime_error);
+}
+
+/// A body that moves, turns and is out of shape.
+SoftBody moving_body() {
+  SoftBody body(block_model({4, 3, 2}, rubber()), {1, 2, 3});
+  body.add_velocity({1, -2, 0.5f});
+  body.add_angular_velocity({0.5f, 1, -2});
+  for (std::size_t i = 0; i < body.model().particles(); ++i) {
+    const Vector3f x = body.position(i) + 0.02f * Vector3f(float(i % 3) - 1, float(i % 5) - 2, float(i % 2));
+    body.set_particle(i, x, body.velocities()[i]);
+  }
+  return body;
+}
+
+TEST(SoftBody, BeginsAtRestInItsPlace) {
+  const SoftBody body(block_model({2, 2, 2}, rubber()), {1, 2, 3});
+  EXPECT_TRUE(body.bounds().low.isApprox(Vector3f(0.8f, 2, 2.8f)));
+  EXPECT_TRUE(body.bounds().high.isApprox(Vector3f(1.2f, 2.4f, 3.2f)));
+  EXPECT_TRUE(body.centre_of_mass().isApprox(Vector3f(1, 2.2f, 3)));
+  EXPECT_EQ(fastest(body), 0);
+}
+
+TEST(SoftBody, PositionsForTheKernelsAreAlwaysThePositions) {
+  SoftBody body = moving_body();
+  const auto check = [&](const char* after) {
+    for (std::size_t i = 0; i < body.positions().size(); ++i) {
+      const spu::SkinCorner c = body.positions()[i];
+      ASSERT_EQ(Vector3f(c.x, c.y, c.z), body.position(i)) << after;
+      ASSERT_EQ(c.pad, 0) << after;
+    }
+  };
+  check("set_particle");
+  body.advance_inner(0.01f, {0, -10, 0});
+  check("advance_inner");
+  body.translate({1, 0, 0});
+  check("translate");
+  body.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(1, Vector3f::UnitZ())), {0, 1, 0});
+  check("move_without_force");
+  body.reset_deformation();
+  check("reset_deformation");
+}
+
+TEST(SoftBody, InnerParticlesAreIntegratedInBulletsOrder) {
+  SoftBody body(block_model({4, 4, 4}, rubber()));
+  const std::uint32_t inner = body.model().inner()[0];
+  const Vector3f x = body.position(inner);
+  body.advance_inner(0.1f, {0, -10, 0});
+  EXPECT_TRUE(body.velocities()[inner].isApprox(Vector3f(0, -1, 0)));
+  EXPECT_TRUE(body.position(inner).isApprox(x + Vector3f(0, -0.1f, 0)));
+  EXPECT_EQ(body.velocities()[body.model().outer()[0]], Vector3f(0, 0, 0)) << "an outer one is the engine's";
+}
+
+TEST(SoftBody, PullsConserveMomentum) {
+  SoftBody body = moving_body();
+  const Vector3f p = body.linear_momentum(), l = body.angular_momentum();
+  const auto before = body.velocities()[0];
+  body.pull(1.0f / 60);
+  EXPECT_NE(body.velocities()[0], before);
+  EXPECT_LT((body.linear_momentum() - p).norm(), 1e-4f * p.norm());
+  EXPECT_LT((body.angular_momentum() - l).norm(), 1e-3f * l.norm());
+}
+
+TEST(SoftBody, ASpeedLimitSlowsOnlyWhatIsFaster) {
+  SoftBody body(block_model({1, 1, 1}, rubber()));
+  body.set_particle(0, body.position(0), {3, 0, 4});
+  body.set_particle(1, body.position(1), {0, 0.5f, 0});
+  body.limit_speed(1);
+  EXPECT_TRUE(body.velocities()[0].isApprox(Vector3f(0.6f, 0, 0.8f)));
+  EXPECT_EQ(body.velocities()[1], Vector3f(0, 0.5f, 0));
+}
+
+TEST(SoftBody, ATeleportTurnsVelocitiesWithTheBody) {
+  SoftBody body = moving_body();
+  const auto revision = body.revision();
+  const Vector3f centre = body.centre_of_mass(), p = body.linear_momentum(), l = body.angular_momentum();
+  const Eigen::Quaternionf turn(Eigen::AngleAxisf(2, Vector3f(1, 2, -1).normalized()));
+  body.move_without_force(turn, {5, -1, 2});
+  EXPECT_NE(body.revision(), revision);
+  EXPECT_TRUE(body.centre_of_mass().isApprox(centre + Vector3f(5, -1, 2), 1e-5f));
+  EXPECT_TRUE(body.linear_momentum().isApprox(turn * p, 1e-4f));
+  EXPECT_TRUE(body.angular_momentum().isApprox(turn * l, 1e-3f));
+  // The shape is the same: the next pull does the same in the turned frame.
+  SoftBody still = moving_body();
+  still.pull(1.0f / 60);
+  body.pull(1.0f / 60);
+  for (std::size_t i = 0; i < body.velocities().size(); ++i) {
+    ASSERT_LT((body.velocities()[i] - turn * still.velocities()[i]).norm(), 1e-3f) << "particle " << i;
+  }
+}
+
+TEST(SoftBody, ResetTakesAwayTheDeformationOnly) {
+  SoftBody body = moving_body();
+  const Eigen::Quaternionf turn(Eigen::AngleAxisf(2.5f, Vector3f(1, 2, -1).normalized()));
+  body.move_without_force(turn, {0, 0, 0});
+  const Vector3f centre = body.centre_of_mass(), p = body.linear_momentum(), l = body.angular_momentum();
+  const Vector3f diagonal = turn * (moving_body().position(59) - moving_body().position(0));
+  ASSERT_GT(deformation(body), 0.02f);
+  body.reset_deformation();
+  EXPECT_LT(deformation(body), 1e-5f);
+  EXPECT_TRUE(body.centre_of_mass().isApprox(centre, 1e-5f));
+  EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
+  EXPECT_TRUE(body.angular_momentum().isApprox(l, 1e-3f));
+  EXPECT_GT((body.position(59) - body.position(0)).normalized().dot(diagonal.normalized()), 0.98f)
+      << "it lost its orientation";
+  const auto before = body.velocities()[0];
+  body.pull(1.0f / 60);
+  EXPECT_LT((body.velocities()[0] - before).norm(), 1e-3f) << "rigid motion of the rest shape is left alone";
+}
+
+TEST(SoftBody, ACopyIsASavedState) {
+  SoftBody body = moving_body();
+  body.pull(1.0f / 60);
+  const SoftBody saved = body;
+  const auto run = [&] {
+    for (int i = 0; i < 5; ++i) body.pull(1.0f / 60);
+    return state_hash(body);
+  };
+  const auto first = run();
+  body = saved;
+  EXPECT_EQ(run(), first);
+}
+
+TEST(StateHash, SeesEveryParticleVelocityAndTheOrderOfBodies) {
+  SoftBody a = moving_body(), b = moving_body();
+  EXPECT_EQ(state_hash(a), state_hash(b));
+  b.set_particle(7, b.position(7), b.velocities()[7] + Vector3f(0, 0, 1e-6f));
+  EXPECT_NE(state_hash(a), state_hash(b));
+  const SoftBody* ab[] = {&a, &b};
+  const SoftBody* ba[] = {&b, &a};
+  EXPECT_NE(state_hash(ab), state_hash(ba));
+  EXPECT_EQ(state_hash(ab), state_hash(b, state_hash(a)));
+}
+
+}  // namespace
+}  // namespace softcell::ppu
