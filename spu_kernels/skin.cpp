@@ -54,17 +54,15 @@ struct alignas(128) LocalStoreMap {
 static_assert(sizeof(LocalStoreMap) <= 64 * 1024, "leaves a third of the budget for code and stack");
 LocalStoreMap ls;
 
-/// The trilinear map of one cell as a polynomial: c + cx xi + cy eta + cz zeta + cxy xi eta + ... + cxyz xi eta zeta.
-struct CellPolynomial {
-  Vector3x4 c, cx, cy, cz, cxy, cyz, czx, cxyz;
+/// One component of a cell's trilinear map as a polynomial, each coefficient in all lanes:
+/// c + cx xi + cy eta + cz zeta + cxy xi eta + cyz eta zeta + czx zeta xi + cxyz xi eta zeta.
+struct Polynomial {
+  vec_float4 c, cx, cy, cz, cxy, cyz, czx, cxyz;
 };
 
-inline Vector3x4 splat_xyz(vec_float4 v) {
-  const vec_uchar16 x = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-  const vec_uchar16 y = {4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7};
-  const vec_uchar16 z = {8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11};
-  return {spu_shuffle(v, v, x), spu_shuffle(v, v, y), spu_shuffle(v, v, z)};
-}
+struct CellPolynomial {
+  Polynomial x, y, z;
+};
 
 inline CellPolynomial polynomial_of(vec_ushort8 corner) {
   const vec_float4 x0 = ls.corner[spu_extract(corner, 0)];
@@ -81,58 +79,96 @@ inline CellPolynomial polynomial_of(vec_ushort8 corner) {
   const vec_float4 cyz = spu_sub(spu_sub(x6, x4), cy);
   const vec_float4 czx = spu_sub(upper, cx);
   const vec_float4 cxyz = spu_sub(spu_sub(spu_sub(x7, x6), upper), cxy);
-  return {splat_xyz(x0),  splat_xyz(cx),  splat_xyz(cy),  splat_xyz(cz),
-          splat_xyz(cxy), splat_xyz(cyz), splat_xyz(czx), splat_xyz(cxyz)};
+  const auto component = [&](vec_uchar16 splat) -> Polynomial {
+    const auto all = [splat](vec_float4 v) { return spu_shuffle(v, v, splat); };
+    return {all(x0), all(cx), all(cy), all(cz), all(cxy), all(cyz), all(czx), all(cxyz)};
+  };
+  const vec_uchar16 first = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+  const vec_uchar16 second = {4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7};
+  const vec_uchar16 third = {8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11};
+  return {component(first), component(second), component(third)};
+}
+
+/// One component of a position, and of the three columns of the deformation gradient: its derivatives by xi, eta, zeta.
+struct Component {
+  vec_float4 position, f1, f2, f3;
+};
+
+inline Component evaluate(const Polynomial& p, vec_float4 xi, vec_float4 eta, vec_float4 zeta) {
+  const vec_float4 along_xy = spu_madd(p.cxyz, zeta, p.cxy);
+  const vec_float4 along_y = spu_madd(p.cyz, zeta, p.cy);
+  const vec_float4 f1 = spu_madd(along_xy, eta, spu_madd(p.czx, zeta, p.cx));
+  const vec_float4 f2 = spu_madd(along_xy, xi, along_y);
+  const vec_float4 f3 = spu_madd(spu_madd(p.cxyz, xi, p.cyz), eta, spu_madd(p.czx, xi, p.cz));
+  const vec_float4 position = spu_madd(f1, xi, spu_madd(along_y, eta, spu_madd(p.cz, zeta, p.c)));
+  return {position, f1, f2, f3};
 }
 
 struct Surface {
   Vector3x4 position, normal;
 };
 
-inline Surface evaluate(const CellPolynomial& p, const Group& g) {
-  const Vector3x4 along_xy = scale_add(p.cxyz, g.zeta, p.cxy);
-  const Vector3x4 along_yz = scale_add(p.cxyz, g.xi, p.cyz);
-  const Vector3x4 along_y = scale_add(p.cyz, g.zeta, p.cy);
-  const Vector3x4 f1 = scale_add(along_xy, g.eta, scale_add(p.czx, g.zeta, p.cx));
-  const Vector3x4 f2 = scale_add(along_xy, g.xi, along_y);
-  const Vector3x4 f3 = scale_add(along_yz, g.eta, scale_add(p.czx, g.xi, p.cz));
-  const Vector3x4 position = scale_add(f1, g.xi, scale_add(along_y, g.eta, scale_add(p.cz, g.zeta, p.c)));
-
-  const Vector3x4 n = scale_add(cross(f1, f2), g.normal.z,
-                                scale_add(cross(f3, f1), g.normal.y, scale(cross(f2, f3), g.normal.x)));
+/// normalize(cof(F) N); where the cell is flat, N.
+inline Vector3x4 deformed_normal(const Vector3x4& f1, const Vector3x4& f2, const Vector3x4& f3, const Vector3x4& rest) {
+  const Vector3x4 n = scale_add(cross(f1, f2), rest.z, scale_add(cross(f3, f1), rest.y, scale(cross(f2, f3), rest.x)));
   const vec_float4 squared = dot(n, n);
   const vec_uint4 flat = spu_cmpgt(spu_splats(kSmallestNormalSquared), squared);
-  return {position, select(scale(n, reciprocal_sqrt(squared)), g.normal, flat)};
+  return select(scale(n, reciprocal_sqrt(squared)), rest, flat);
 }
 
-/// Rounds to halves and stores four vertices of 16 bytes.
-inline void store(const Surface& s, vec_ushort8* out) {
-  const vec_uint4 rare = spu_or(
-      spu_or(spu_or(outside_half_normal(s.position.x), outside_half_normal(s.position.y)),
-             spu_or(outside_half_normal(s.position.z), outside_half_normal(s.normal.x))),
-      spu_or(outside_half_normal(s.normal.y), outside_half_normal(s.normal.z)));
-  vec_uint4 x, y, z, nx, ny, nz;
-  if (__builtin_expect(spu_extract(spu_gather(rare), 0) == 0, 1)) {
-    x = half_of_normal(s.position.x), y = half_of_normal(s.position.y), z = half_of_normal(s.position.z);
-    nx = half_of_normal(s.normal.x), ny = half_of_normal(s.normal.y), nz = half_of_normal(s.normal.z);
-  } else {
-    x = half_of_any(s.position.x), y = half_of_any(s.position.y), z = half_of_any(s.position.z);
-    nx = half_of_any(s.normal.x), ny = half_of_any(s.normal.y), nz = half_of_any(s.normal.z);
-  }
-  // Two halves to a word, the first in the high half, which is the first in memory.
-  const vec_uint4 xy = spu_or(spu_sl(x, 16), y);
-  const vec_uint4 z1 = spu_or(spu_sl(z, 16), spu_splats(0x3C00u));
-  const vec_uint4 nxy = spu_or(spu_sl(nx, 16), ny);
-  const vec_uint4 nz0 = spu_sl(nz, 16);
-  // Transpose the 4 x 4 words: one vertex to a quadword.
+/// Two halves to a word: what is drawn of one vector. The first in memory is in the high half.
+struct HalfVector {
+  vec_uint4 xy, zw;
+};
+
+/// `fourth` follows x y z, as a half in the high half of its word.
+inline HalfVector pack(vec_uint4 x, vec_uint4 y, vec_uint4 z, vec_uint4 fourth) {
+  const vec_uchar16 high_halves = {0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29};
+  return {spu_shuffle(x, y, high_halves), spu_shuffle(z, fourth, high_halves)};
+}
+
+constexpr uint32_t kHalfOneInHigh = 0x3C000000u;
+
+inline void to_half_any(const Surface& s, HalfVector& position, HalfVector& normal) {
+  position = pack(high_half_of_any(s.position.x), high_half_of_any(s.position.y), high_half_of_any(s.position.z),
+                  spu_splats(kHalfOneInHigh));
+  normal = pack(high_half_of_any(s.normal.x), high_half_of_any(s.normal.y), high_half_of_any(s.normal.z), spu_splats(0u));
+}
+
+inline void to_half(const Surface& s, HalfVector& position, HalfVector& normal) {
+  // A normal's components are at most 1.
+  const vec_uint4 outside = spu_or(
+      spu_or(spu_or(spu_or(below_half_normal(s.position.x), above_half_normal(s.position.x)),
+                    spu_or(below_half_normal(s.position.y), above_half_normal(s.position.y))),
+             spu_or(below_half_normal(s.position.z), above_half_normal(s.position.z))),
+      spu_or(spu_or(below_half_normal(s.normal.x), below_half_normal(s.normal.y)), below_half_normal(s.normal.z)));
+  if (__builtin_expect(spu_extract(spu_orx(outside), 0) >= 0x80000000u, 0)) return to_half_any(s, position, normal);
+  position = pack(high_half_of_normal(s.position.x), high_half_of_normal(s.position.y), high_half_of_normal(s.position.z),
+                  spu_splats(kHalfOneInHigh));
+  normal = pack(high_half_of_normal(s.normal.x), high_half_of_normal(s.normal.y), high_half_of_normal(s.normal.z), spu_splats(0u));
+}
+
+/// Four vertices of 16 bytes: transposes the 4 x 4 words, one vertex to a quadword.
+inline void store(const HalfVector& position, const HalfVector& normal, vec_ushort8* out) {
   const vec_uchar16 low = {0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23};
   const vec_uchar16 high = {8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31};
-  const vec_uint4 a = spu_shuffle(xy, nxy, low), b = spu_shuffle(xy, nxy, high);
-  const vec_uint4 c = spu_shuffle(z1, nz0, low), d = spu_shuffle(z1, nz0, high);
+  const vec_uint4 a = spu_shuffle(position.xy, normal.xy, low), b = spu_shuffle(position.xy, normal.xy, high);
+  const vec_uint4 c = spu_shuffle(position.zw, normal.zw, low), d = spu_shuffle(position.zw, normal.zw, high);
   out[0] = (vec_ushort8)spu_shuffle(a, c, low);
   out[1] = (vec_ushort8)spu_shuffle(a, c, high);
   out[2] = (vec_ushort8)spu_shuffle(b, d, low);
   out[3] = (vec_ushort8)spu_shuffle(b, d, high);
+}
+
+inline void skin_group(const CellPolynomial& p, const Group& g, vec_ushort8* out) {
+  const Component x = evaluate(p.x, g.xi, g.eta, g.zeta);
+  const Component y = evaluate(p.y, g.xi, g.eta, g.zeta);
+  const Component z = evaluate(p.z, g.xi, g.eta, g.zeta);
+  const Surface surface = {{x.position, y.position, z.position},
+                           deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
+  HalfVector position, normal;
+  to_half(surface, position, normal);
+  store(position, normal, out);
 }
 
 /// One buffer of groups to one buffer of vertices.
@@ -141,7 +177,7 @@ void skin_chunk(const Group* groups, uint32_t count, vec_ushort8* vertices) {
   for (uint32_t i = 0; i < count; ++i) {
     // A chunk may begin in the middle of a cell; the first group's polynomial is always made.
     if (i != 0 && spu_extract(groups[i].continues, 0) == 0) p = polynomial_of(groups[i].corner);
-    store(evaluate(p, groups[i]), vertices + 4 * i);
+    skin_group(p, groups[i], vertices + 4 * i);
   }
 }
 

@@ -45,8 +45,9 @@ std::optional<OwnModel> load_model(const Demo3dOptions& options) {
   const ppu::Bounds box = ppu::bounds(model.mesh);
   const double longest = (box.high - box.low).maxCoeff();
   model.cell_size = static_cast<float>(options.cell.value_or(longest / kDefaultCellsAlongModel));
-  // Checked in the model's own units, before the scene scales both, so that the sentence has the user's numbers.
-  ppu::check_cell_size(model.mesh, model.cell_size);
+  ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
+  // Refused here, in the model's own units, before the scene scales both: the sentence has the user's numbers.
+  ppu::voxelize(model.mesh, model.cell_size);
   return model;
 }
 

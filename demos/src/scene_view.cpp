@@ -41,10 +41,7 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
   for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
     const ppu::SoftBodyModel& model = simulation_.model(b);
     const auto& colour = scene_.soft_bodies[b].colour;
-    const auto& indices = model.embedding().indices;
-    std::vector<render::Triangle> triangles(indices.size() / 3);
-    for (std::size_t t = 0; t < triangles.size(); ++t) triangles[t] = {indices[3 * t], indices[3 * t + 1], indices[3 * t + 2]};
-    skinned_.push_back({.mesh = renderer_.add_mesh(triangles), .colour = colour});
+    skinned_.push_back({.mesh = renderer_.add_mesh(model.embedding().indices), .colour = colour});
     if (view_ == View::kLattice) {
       LatticeBuffers& buffers = lattice_buffers_[b];
       buffers.particles.resize(model.lattice().particles.size());

@@ -1,5 +1,8 @@
 #include "softcell/ls_sim/spe_pool.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
@@ -16,6 +19,17 @@ void JobBatch::wait() const {
     pending_.wait(left, std::memory_order_acquire);
   }
 }
+
+namespace {
+
+/// On a console an SPE never takes time from the PPU. Here both share cores: a batch thread at least does not interrupt the thread that
+/// wakes it. Where the host refuses, only timings suffer.
+void leave_the_ppu_its_core() {
+  const sched_param parameters{};
+  pthread_setschedparam(pthread_self(), SCHED_BATCH, &parameters);
+}
+
+}  // namespace
 
 struct SpePool::State {
   struct QueuedJob {
@@ -75,15 +89,19 @@ struct SpePool::State {
   }
 
   void work(Worker& worker) {
+    leave_the_ppu_its_core();
     std::unique_lock lock(mutex);
     for (;;) {
       job_ready.wait(lock, [this] { return stopping || count != 0; });
       if (stopping) return;
       const QueuedJob next = take();
+      const bool more = count != 0;
+      const bool was_full = count + 1 == kQueueCapacity;
       worker.started = std::chrono::steady_clock::now();
       worker.busy = true;
       lock.unlock();
-      slot_free.notify_one();
+      if (more) job_ready.notify_one();  // each SPE wakes the next, so that submitting costs one wake-up
+      if (was_full) slot_free.notify_one();
       std::string failure = worker.spe.run(next.job, next.number);
       lock.lock();
       worker.busy = false;
@@ -141,8 +159,10 @@ void SpePool::submit(JobBatch& batch, std::span<const Job> jobs) {
     state_->slot_free.wait(lock, [this] { return state_->count < kQueueCapacity; });
     state_->ring[(state_->head + state_->count) % kQueueCapacity] = {job, state_->submitted++, &batch};
     ++state_->count;
-    state_->job_ready.notify_one();
+    if (state_->count == kQueueCapacity) state_->job_ready.notify_one();
   }
+  lock.unlock();
+  state_->job_ready.notify_one();
 }
 
 std::vector<SpeStatistics> SpePool::statistics() const {

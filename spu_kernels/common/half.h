@@ -10,26 +10,29 @@ namespace softcell::spu {
 constexpr unsigned int kHalfSmallestNormal = 0x38800000u;  // 2^-14
 constexpr unsigned int kHalfOverflow = 0x477FF000u;        // 65520
 
-/// All ones in the lanes whose magnitude is outside the range that half_of_normal() handles.
-inline vec_uint4 outside_half_normal(vec_float4 value) {
-  const vec_uint4 magnitude = spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu));
-  return spu_or(spu_cmpgt(spu_splats(kHalfSmallestNormal), magnitude),
-                spu_cmpgt(magnitude, spu_splats(kHalfOverflow - 1u)));
+/// Sign bit set in the lanes that are too small to become a normal binary16, zero among them.
+inline vec_uint4 below_half_normal(vec_float4 value) {
+  return spu_sub(spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu)), spu_splats(kHalfSmallestNormal));
 }
 
-/// binary16 bits in the low half of each word. Only for lanes where outside_half_normal() is 0.
-inline vec_uint4 half_of_normal(vec_float4 value) {
+/// Sign bit set in the lanes that become infinite.
+inline vec_uint4 above_half_normal(vec_float4 value) {
+  return spu_add(spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu)), spu_splats(0x80000000u - kHalfOverflow));
+}
+
+/// binary16 bits in the high half of each word; the low half is what was cut off. Only for lanes whose sign bit is clear in
+/// both functions above.
+inline vec_uint4 high_half_of_normal(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
-  const vec_uint4 magnitude = spu_and(bits, spu_splats(0x7FFFFFFFu));
-  const vec_uint4 odd = spu_and(spu_rlmask(magnitude, -13), spu_splats(1u));
+  const vec_uint4 odd = spu_and(spu_rlmask(bits, -13), spu_splats(1u));
   // Rebias the exponent (127 to 15) and round in one addition; a carry out of the fraction moves the exponent, as it should.
-  const vec_uint4 rounded = spu_add(spu_add(magnitude, odd), spu_splats(0xFFFu - (112u << 23)));
-  const vec_uint4 sign = spu_and(spu_rlmask(bits, -16), spu_splats(0x8000u));
-  return spu_or(sign, spu_rlmask(rounded, -13));
+  const vec_uint4 rounded = spu_add(spu_add(bits, odd), spu_splats(0xFFFu - (112u << 23)));
+  return spu_sel(spu_sl(rounded, 3), bits, spu_splats(0x80000000u));
 }
 
-/// binary16 bits in the low half of each word, for every bit pattern: subnormals, zero, infinity; a NaN stays one.
-inline vec_uint4 half_of_any(vec_float4 value) {
+/// binary16 bits in the high half of each word, the low half 0, for every bit pattern: subnormals, zero, infinity; a NaN
+/// stays one.
+inline vec_uint4 high_half_of_any(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
   const vec_uint4 magnitude = spu_and(bits, spu_splats(0x7FFFFFFFu));
   const vec_uint4 sign = spu_and(spu_rlmask(bits, -16), spu_splats(0x8000u));
@@ -50,10 +53,10 @@ inline vec_uint4 half_of_any(vec_float4 value) {
   const vec_uint4 quiet = spu_and(spu_cmpeq(payload, spu_splats(0u)), spu_splats(0x200u));
   const vec_uint4 nan = spu_or(spu_or(infinity, payload), quiet);
 
-  vec_uint4 half = half_of_normal(value);
+  vec_uint4 half = spu_rlmask(high_half_of_normal(value), -16);
   half = spu_sel(half, spu_or(sign, subnormal), spu_cmpgt(spu_splats(kHalfSmallestNormal), magnitude));
   half = spu_sel(half, spu_or(sign, infinity), spu_cmpgt(magnitude, spu_splats(kHalfOverflow - 1u)));
-  return spu_sel(half, spu_or(sign, nan), spu_cmpgt(magnitude, spu_splats(0x7F800000u)));
+  return spu_sl(spu_sel(half, spu_or(sign, nan), spu_cmpgt(magnitude, spu_splats(0x7F800000u))), 16);
 }
 
 }  // namespace softcell::spu

@@ -46,9 +46,9 @@ WorstVertex compare_with_oracle(const Simulation3d& simulation) {
           Eigen::Vector3d normal;
           for (int axis = 0; axis < 3; ++axis) {
             const double relative = expected.position[axis] - double{body.origin[axis]};
-            const double position = ppu::half_to_float(actual.position[axis]);
+            const double position = ppu::float_from_half(actual.position[axis]);
             worst.position_ulps = std::max(worst.position_ulps, std::abs(position - relative) / half_ulp_at(relative));
-            normal[axis] = ppu::half_to_float(actual.normal[axis]);
+            normal[axis] = ppu::float_from_half(actual.normal[axis]);
           }
           const double angle = std::atan2(normal.cross(expected.normal).norm(), normal.dot(expected.normal));
           worst.normal_radians = std::max(worst.normal_radians, angle);

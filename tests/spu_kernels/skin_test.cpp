@@ -1,0 +1,209 @@
+// The kernel skin on an SPE against its oracle, in poses and sizes that scenes do not show.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ppu/half.h"
+#include "softcell/ppu/lattice.h"
+#include "softcell/ppu/shapes.h"
+#include "softcell/ppu/skin_orchestrator.h"
+#include "softcell/ppu/skin_scalar.h"
+#include "softcell/spu_kernels/images.h"
+
+namespace softcell {
+namespace {
+
+using Eigen::Vector3f;
+
+/// A mesh in a lattice, skinned by the kernel.
+class SkinRig {
+ public:
+  explicit SkinRig(const ppu::TriangleMesh& mesh, float cell_size, const ls_sim::PoolOptions& options = {})
+      : lattice(ppu::voxelize(mesh, cell_size)),
+        embedding(std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice))),
+        image_(ls_sim::load_image("skin", spu_kernels::image_files()[0].elf)),
+        pool_(memory_, options),
+        orchestrator_(memory_, pool_, image_) {
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) positions.push_back(lattice.rest_position(i));
+    orchestrator_.add(embedding, positions.size());
+  }
+
+  ppu::SkinnedBody skin() {
+    std::vector<spu::SkinCorner> corners;
+    for (const Vector3f& p : positions) corners.push_back({p.x(), p.y(), p.z(), 0});
+    const std::span<const spu::SkinCorner> all(corners);
+    EXPECT_TRUE(orchestrator_.kick({&all, 1}));
+    orchestrator_.drain();
+    return orchestrator_.shown(0);
+  }
+
+  /// Every vertex against the double-precision evaluation.
+  void expect_oracle(double position_tolerance, double normal_tolerance) {
+    const ppu::SkinnedBody body = skin();
+    for (const ppu::SkinPart& part : embedding->parts) {
+      for (std::uint32_t g = part.first_group; g < part.first_group + part.group_count; ++g) {
+        for (int lane = 0; lane < 4; ++lane) {
+          const ppu::ReferenceVertex expected = ppu::evaluate_reference(*embedding, part, g, lane, positions);
+          const spu::SkinnedVertex& v = body.vertices[4 * g + static_cast<std::uint32_t>(lane)];
+          Eigen::Vector3d position, normal;
+          for (int d = 0; d < 3; ++d) {
+            position[d] = double{ppu::float_from_half(v.position[d])} + double{body.origin[d]};
+            normal[d] = double{ppu::float_from_half(v.normal[d])};
+          }
+          ASSERT_LE((position - expected.position).lpNorm<Eigen::Infinity>(), position_tolerance) << "group " << g << " lane " << lane;
+          ASSERT_LE((normal - expected.normal).norm(), normal_tolerance) << "group " << g << " lane " << lane;
+        }
+      }
+    }
+  }
+
+  ppu::Lattice lattice;
+  std::shared_ptr<ppu::Embedding> embedding;
+  std::vector<Vector3f> positions;
+
+ private:
+  dma::AddressSpace memory_;
+  ls_sim::KernelImage image_;
+  ls_sim::SpePool pool_;
+  ppu::SkinOrchestrator orchestrator_;
+};
+
+constexpr double kUlpAtTwo = 1.0 / 1024;  // of a half between 1 and 2 metres from the origin
+
+TEST(Skin, ShowsTheRestShapeAtRest) {
+  const ppu::TriangleMesh mesh = ppu::make_sphere(0.7f, 12);
+  SkinRig rig(mesh, 0.28f);
+  const ppu::SkinnedBody body = rig.skin();
+  for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+    const spu::SkinnedVertex& v = body.vertices[rig.embedding->slot_of_vertex[vertex]];
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_NEAR(ppu::float_from_half(v.position[d]) + body.origin[d], mesh.positions[vertex][d], kUlpAtTwo);
+      EXPECT_NEAR(ppu::float_from_half(v.normal[d]), mesh.normals[vertex][d], 0.002);
+    }
+    EXPECT_EQ(v.position[3], 0x3C00);
+    EXPECT_EQ(v.normal[3], 0);
+  }
+}
+
+TEST(Skin, AgreesWithTheOracleInRandomPoses) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> jitter(-0.06f, 0.06f);
+  SkinRig rig(ppu::make_torus(0.72f, 0.28f, 40, 20), 0.2f);
+  for (int pose = 0; pose < 10; ++pose) {
+    for (std::size_t i = 0; i < rig.positions.size(); ++i) {
+      rig.positions[i] = rig.lattice.rest_position(i) + Vector3f(jitter(random), jitter(random), jitter(random));
+    }
+    rig.expect_oracle(kUlpAtTwo, 0.005);
+  }
+}
+
+TEST(Skin, FollowsInvertedAndFlattenedCells) {
+  SkinRig rig(ppu::make_sphere(0.7f, 12), 0.28f);
+  for (Vector3f& p : rig.positions) p.x() = -p.x();
+  rig.expect_oracle(kUlpAtTwo, 0.005);
+  for (Vector3f& p : rig.positions) p.x() = 0.25f;  // no volume: the rest normal, and no NaN
+  const ppu::SkinnedBody body = rig.skin();
+  for (const spu::SkinnedVertex& v : body.vertices) {
+    for (int d = 0; d < 3; ++d) ASSERT_LE(v.normal[d] & 0x7FFF, 0x3C00);
+  }
+}
+
+TEST(Skin, WorksFarFromTheWorldsOrigin) {
+  SkinRig rig(ppu::make_sphere(0.7f, 12), 0.28f);
+  for (Vector3f& p : rig.positions) p += Vector3f(1000, -200, 500);
+  rig.expect_oracle(2 * kUlpAtTwo, 0.02);  // the particles themselves are only good to 6e-5 m there
+}
+
+TEST(Skin, CutsLargeLatticesIntoJobsOfTwoWindows) {
+  SkinRig rig(ppu::make_sphere(1.0f, 40), 0.05f);
+  EXPECT_GT(rig.embedding->parts.size(), 6u);
+  EXPECT_GT(rig.positions.size(), std::size_t{spu::kSkinMaxCorners});
+  rig.expect_oracle(2 * kUlpAtTwo, 0.02);
+}
+
+TEST(Skin, GivesTheSameBytesUnderEveryScheduleAndOnAFreshLocalStore) {
+  std::vector<spu::SkinnedVertex> expected;
+  for (const char* schedule : {"eager", "lazy", "random:1", "random:2", "random:3"}) {
+    for (const bool reload : {false, true}) {
+      SkinRig rig(ppu::make_sphere(0.7f, 24), 0.2f, {.spes = 2, .schedule = dma::parse_schedule(schedule), .reload_always = reload});
+      rig.skin();
+      const auto body = rig.skin();
+      if (expected.empty()) expected.assign(body.vertices.begin(), body.vertices.end());
+      ASSERT_EQ(expected.size(), body.vertices.size());
+      EXPECT_EQ(std::memcmp(expected.data(), body.vertices.data(), body.vertices.size_bytes()), 0) << schedule << " " << reload;
+    }
+  }
+}
+
+TEST(Skin, AgreesWithItsScalarTwinToOneUnit) {
+  SkinRig rig(ppu::make_torus(0.72f, 0.28f, 64, 32), 0.2f);
+  for (Vector3f& p : rig.positions) p.z() += 0.2f * p.x() * p.y();
+  const ppu::SkinnedBody body = rig.skin();
+  std::vector<spu::SkinnedVertex> twin(body.vertices.size());
+  for (const ppu::SkinPart& part : rig.embedding->parts) {
+    ppu::skin_scalar(*rig.embedding, part, rig.positions, body.origin,
+                     std::span(twin).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
+  }
+  for (std::size_t i = 0; i < twin.size(); ++i) {
+    for (int d = 0; d < 3; ++d) ASSERT_LE(std::abs(int{twin[i].position[d]} - int{body.vertices[i].position[d]}), 1) << "slot " << i;
+  }
+}
+
+TEST(Skin, RefusesAJobWithTooManyCorners) {
+  dma::AddressSpace memory;
+  ls_sim::SpePool pool(memory, {.spes = 1});
+  const ls_sim::KernelImage image = ls_sim::load_image("skin", spu_kernels::image_files()[0].elf);
+  dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 3);
+  jobs[0].window[0].count = spu::kSkinMaxCorners + 1;
+  jobs[1].window[0].count = spu::kSkinMaxCorners;
+  jobs[1].window[1].count = 1;
+  jobs[2].window[0].count = 0xFFFFFFFF;
+  jobs[2].window[1].count = 2;
+  ls_sim::JobBatch batch;
+  pool.submit(batch, std::vector<ls_sim::Job>{{&image, jobs.ea(0), {}}, {&image, jobs.ea(1), {}}, {&image, jobs.ea(2), {}}});
+  batch.wait();
+  ASSERT_EQ(batch.failures().size(), 3u);
+  for (const auto& failure : batch.failures()) EXPECT_NE(failure.message.find("status 1"), std::string::npos) << failure.message;
+}
+
+TEST(Skin, AnEmptyJobIsDone) {
+  dma::AddressSpace memory;
+  ls_sim::SpePool pool(memory, {.spes = 1});
+  const ls_sim::KernelImage image = ls_sim::load_image("skin", spu_kernels::image_files()[0].elf);
+  dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 1);
+  ls_sim::JobBatch batch;
+  pool.submit(batch, std::vector<ls_sim::Job>{{&image, jobs.ea(), {}}});
+  batch.wait();
+  EXPECT_TRUE(batch.failures().empty());
+}
+
+TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
+  dma::AddressSpace memory;
+  ls_sim::SpePool pool(memory, {.spes = 1});
+  ls_sim::KernelImage broken = ls_sim::load_image("skin", spu_kernels::image_files()[0].elf);
+  broken.bytes[broken.entry - ls_sim::kEnvironmentBytes] = std::byte{0x0F};  // ud2
+  broken.bytes[broken.entry - ls_sim::kEnvironmentBytes + 1] = std::byte{0x0B};
+  const ppu::TriangleMesh mesh = ppu::make_sphere(0.7f, 8);
+  const ppu::Lattice lattice = ppu::voxelize(mesh, 0.35f);
+  const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
+  ppu::SkinOrchestrator orchestrator(memory, pool, broken);
+  const std::vector<spu::SkinCorner> corners(lattice.particles.size());
+  orchestrator.add(embedding, corners.size());
+  const std::span<const spu::SkinCorner> all(corners);
+  orchestrator.kick({&all, 1});
+  try {
+    orchestrator.drain();
+    FAIL() << "the fault was lost";
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("illegal-instruction"), std::string::npos) << message;
+    EXPECT_NE(message.find("kernel skin"), std::string::npos) << message;
+  }
+}
+
+}  // namespace
+}  // namespace softcell
