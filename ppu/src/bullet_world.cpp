@@ -27,6 +27,12 @@ double milliseconds(std::chrono::nanoseconds time) {
 struct BulletWorld::Impl {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
+  // The fastest of those that Bullet has, measured on the demo's arena: 5 soft bodies of 1455 colliding
+  // particles, 6 boxes, 9 static shapes, gravity turning. Milliseconds of CPU time per frame of two substeps,
+  // of which 0.9 are shape matching:
+  //
+  //     btDbvtBroadphase                    2.9     with deferred collide    4.1
+  //     btAxisSweep3 (100 m of world)       3.1     bt32BitAxisSweep3        3.5
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
