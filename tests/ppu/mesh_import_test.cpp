@@ -25,6 +25,7 @@ class MeshImport : public testing::Test {
   ~MeshImport() override { fs::remove_all(folder_); }
 
   fs::path write(const std::string& name, const std::string& bytes) const {
+    fs::remove(folder_ / name);  // some file systems make overwriting wait for the disk
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
   }
