@@ -39,6 +39,16 @@ struct Vector {
   static constexpr int kWidth = sizeof(LaneType);
 };
 
+template <bool Condition>
+struct EnableIf {};
+template <>
+struct EnableIf<true> {
+  using Type = int;
+};
+/// Takes part in overload resolution only when the condition holds.
+template <bool Condition>
+using If = typename EnableIf<Condition>::Type;
+
 template <class T>
 inline constexpr int kIsVector = 0;
 
@@ -51,7 +61,7 @@ inline constexpr int kIsVector = 0;
     softcell_sdk::Raw<LaneType> raw;                                                                               \
     Name() = default;                                                                                              \
     /* As many lanes as the type has. */                                                                           \
-    template <class... L, class = decltype(static_cast<char (*)[sizeof...(L) == kLanes ? 1 : -1]>(nullptr))>       \
+    template <class... L, softcell_sdk::If<sizeof...(L) == kLanes> = 0>                                            \
     constexpr Name(L... lanes) : raw{static_cast<LaneType>(lanes)...} {}                                           \
     /* A cast from another vector type keeps the SPU's bytes. */                                                   \
     template <class Other, class = decltype(Other::kLanes)>                                                        \
@@ -121,16 +131,6 @@ template <class A, class B>
 inline constexpr bool kSame = false;
 template <class A>
 inline constexpr bool kSame<A, A> = true;
-
-template <bool Condition>
-struct EnableIf {};
-template <>
-struct EnableIf<true> {
-  using Type = int;
-};
-/// Takes part in overload resolution only when the condition holds.
-template <bool Condition>
-using If = typename EnableIf<Condition>::Type;
 
 template <class V>
 inline constexpr bool kVector = kIsVector<V> == 1;
