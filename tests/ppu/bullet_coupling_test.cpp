@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "allocation_counter.h"
 #include "soft_body_scenes.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/state_hash.h"
@@ -354,16 +353,6 @@ std::uint64_t hash_of_a_run() {
 }
 
 TEST(BulletSoftBodies, TwoRunsGiveTheSameBytes) { EXPECT_EQ(hash_of_a_run(), hash_of_a_run()); }
-
-TEST(BulletSoftBodies, AllocateNothingInASteadyRun) {
-  World world;
-  world.add_floor();
-  world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 0.05f, 0});
-  world.run(0.5f);
-  const std::size_t before = test::allocations();  // of operator new: Bullet's own go elsewhere
-  world.run(0.5f);
-  EXPECT_EQ(test::allocations(), before);
-}
 
 TEST(BulletWorld, TakesTheSoftBodiesTimeOutOfBullets) {
   World world;
