@@ -35,8 +35,8 @@ ppu::SoftBodySettings rubber(float cell_size) {
   settings.cell_size = cell_size;
   settings.half_width = 2;
   settings.density = 200;
-  settings.alpha = 0.5f;
-  settings.damping = 0.08f;
+  settings.alpha = 0.12f;
+  settings.damping = 0.04f;
   return settings;
 }
 
@@ -49,14 +49,14 @@ void add_floor_and_walls(Scene& scene) {
                          .pattern = render::Pattern::tiles});
   const float middle = kHalfFloor + kWallThickness / 2;
   for (const float side : {-1.0f, 1.0f}) {
-    scene.boxes.push_back({.size = {kWallThickness, kWallHeight, 2 * kHalfFloor},
+    scene.boxes.push_back({.size = {kWallThickness, kWallHeight, outer},
                            .position = {side * middle, kWallHeight / 2, 0},
                            .colour = colour});
     // The wall towards the camera is glass.
-    scene.boxes.push_back({.size = {outer, kWallHeight, kWallThickness},
+    scene.boxes.push_back({.size = {2 * kHalfFloor, kWallHeight, kWallThickness},
                            .position = {0, kWallHeight / 2, side * middle},
                            .colour = colour,
-                           .opacity = side > 0 ? 0.25f : 1.0f});
+                           .opacity = side > 0 ? 0.15f : 1.0f});
   }
 }
 
@@ -71,10 +71,10 @@ void add_obstacles(Scene& scene) {
 
 void add_soft_bodies(Scene& scene) {
   ppu::SoftBodySettings car = rubber(0.2f);
-  car.alpha = 1;  // an antenna of one cell's cross-section would hang limp at less
+  car.alpha = 0.8f;  // an antenna of one cell's cross-section would hang limp at less
   scene.soft_bodies.push_back({"torus", ppu::make_torus(0.72f, 0.28f, 96, 40), rubber(0.2f), {-2.3f, 2.6f, -0.6f}, srgb(0xE0782C)});
   scene.soft_bodies.push_back({"sphere", ppu::make_sphere(0.7f, 24), rubber(0.28f), {0.25f, 2.2f, 0.3f}, srgb(0xC23B3B)});
-  scene.soft_bodies.push_back({"car", ppu::make_car(1.7f), car, {-1.2f, 1.0f, 2.6f}, srgb(0x2E7FC2)});
+  scene.soft_bodies.push_back({"car", ppu::make_car(1.7f), car, {-1.2f, 1.35f, 2.6f}, srgb(0x2E7FC2)});
   scene.soft_bodies.push_back({"bunny", load_bunny(1.7f), rubber(0.24f), {2.4f, 1.9f, -2.2f}, srgb(0xD9C9A8)});
   scene.soft_bodies.push_back({"cube", ppu::make_box({0.9f, 0.9f, 0.9f}, 0.06f), rubber(0.225f), {2.2f, 2.4f, 1.8f}, srgb(0x4FA35A)});
 }

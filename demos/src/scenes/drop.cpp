@@ -14,8 +14,8 @@ Scene make_drop(const std::optional<OwnModel>& model) {
   SoftBodyPlacement body{.name = "body", .mesh = {}, .settings = {}, .position = {}, .colour = render::srgb(0xD26A35)};
   body.settings.half_width = 2;
   body.settings.density = 200;
-  body.settings.alpha = 0.4f;
-  body.settings.damping = 0.06f;
+  body.settings.alpha = 0.15f;
+  body.settings.damping = 0.03f;
   if (model) {
     const ppu::Bounds box = ppu::bounds(model->mesh);
     const float scale = kLongestSide / (box.high - box.low).maxCoeff();
