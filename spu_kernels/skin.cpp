@@ -79,7 +79,7 @@ inline CellPolynomial polynomial_of(vec_ushort8 corner) {
   const vec_float4 cyz = spu_sub(spu_sub(x6, x4), cy);
   const vec_float4 czx = spu_sub(upper, cx);
   const vec_float4 cxyz = spu_sub(spu_sub(spu_sub(x7, x6), upper), cxy);
-  const auto component = [&](vec_uchar16 splat) -> Polynomial {
+  const auto component = [&](vec_uchar16 splat) __attribute__((always_inline)) -> Polynomial {
     const auto all = [splat](vec_float4 v) { return spu_shuffle(v, v, splat); };
     return {all(x0), all(cx), all(cy), all(cz), all(cxy), all(cyz), all(czx), all(cxyz)};
   };

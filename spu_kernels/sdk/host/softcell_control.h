@@ -1,39 +1,131 @@
 #pragma once
-// Channels, halts, stops and barriers. [LEXT, channel control and control intrinsics] documented
+// Channels, stop, barriers, and what a host kernel cannot have.  [LEXT, channel control and control
+// intrinsics] documented
+//
+// Channel numbers are constants in the instruction: these are macros, as in a real SPU compiler's headers.
 
 #include "softcell_environment.h"
-#include "softcell_float.h"
+#include "softcell_lanes.h"
 
-inline unsigned int spu_readch(unsigned int channel) { return softcell_sdk::call_gate(softcell_sdk::kRead, channel, 0); }
-inline unsigned int spu_readchcnt(unsigned int channel) { return softcell_sdk::call_gate(softcell_sdk::kCount, channel, 0); }
-inline void spu_writech(unsigned int channel, unsigned int value) { softcell_sdk::write_channel(channel, value); }
-inline qword spu_readchqw(unsigned int channel) { return qword(vec_uint4(spu_readch(channel), 0u, 0u, 0u)); }
-template <class V, class = decltype(V::kLanes)>
-inline void spu_writechqw(unsigned int channel, const V& value) {
-  spu_writech(channel, vec_uint4(value).raw[0]);
+// ---- channel numbers
+
+#define SPU_RdEventStat 0
+#define SPU_WrEventMask 1
+#define SPU_WrEventAck 2
+#define SPU_RdSigNotify1 3
+#define SPU_RdSigNotify2 4
+#define SPU_WrDec 7
+#define SPU_RdDec 8
+#define MFC_WrMSSyncReq 9
+#define SPU_RdEventMask 11
+#define MFC_RdTagMask 12
+#define SPU_RdMachStat 13
+#define SPU_WrSRR0 14
+#define SPU_RdSRR0 15
+#define MFC_LSA 16
+#define MFC_EAH 17
+#define MFC_EAL 18
+#define MFC_Size 19
+#define MFC_TagID 20
+#define MFC_Cmd 21
+#define MFC_WrTagMask 22
+#define MFC_WrTagUpdate 23
+#define MFC_RdTagStat 24
+#define MFC_RdListStallStat 25
+#define MFC_WrListStallAck 26
+#define MFC_RdAtomicStat 27
+#define SPU_WrOutMbox 28
+#define SPU_RdInMbox 29
+#define SPU_WrOutIntrMbox 30
+
+namespace softcell_sdk {
+
+constexpr bool is_channel(long long number) { return number >= 0 && number <= 127; }
+
+template <int Channel>
+SC_SDK_INLINE unsigned int read_channel() {
+  static_assert(is_channel(Channel), "channels are numbered 0 to 127");
+  return call_gate(kRead, Channel, 0);
+}
+template <int Channel>
+SC_SDK_INLINE unsigned int read_channel_count() {
+  static_assert(is_channel(Channel), "channels are numbered 0 to 127");
+  return call_gate(kCount, Channel, 0);
+}
+/// The five parameters of a DMA command wait in the environment for the command itself; all else is a call.
+template <int Channel>
+SC_SDK_INLINE void write_channel(unsigned int value) {
+  static_assert(is_channel(Channel), "channels are numbered 0 to 127");
+  if constexpr (Channel == MFC_LSA) {
+    environment().mfc_lsa = value;
+  } else if constexpr (Channel == MFC_EAH) {
+    environment().mfc_eah = value;
+  } else if constexpr (Channel == MFC_EAL) {
+    environment().mfc_eal = value;
+  } else if constexpr (Channel == MFC_Size) {
+    environment().mfc_size = value;
+  } else if constexpr (Channel == MFC_TagID) {
+    environment().mfc_tag = value;
+  } else {
+    call_gate(kWrite, Channel, value);
+  }
 }
 
-/// Ends the program with a 14-bit code. Unlike on the hardware it does not come back: no host here restarts a stopped SPU.
-inline void spu_stop(unsigned int code) { softcell_sdk::call_gate(softcell_sdk::kStop, 0, code); }
-
-/// Halt the SPU when the condition holds.
-inline void spu_hcmpeq(int a, int b) {
-  if (a == b) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
-}
-inline void spu_hcmpeq(unsigned int a, unsigned int b) {
-  if (a == b) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
-}
-inline void spu_hcmpgt(int a, int b) {
-  if (a > b) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
-}
-inline void spu_hcmpgt(unsigned int a, unsigned int b) {
-  if (a > b) softcell_sdk::call_gate(softcell_sdk::kHalt, 0, 0);
+template <int Code>
+SC_SDK_INLINE void stop() {
+  static_assert(Code >= 0 && Code <= 0x3FFF, "a stop code has 14 bits");
+  call_gate(kStop, 0, Code);
 }
 
-// Order of loads, stores and instruction fetch: the host's compiler must not move memory accesses across; the rest is in order anyway.
-inline void spu_sync() { asm volatile("" ::: "memory"); }
-inline void spu_sync_c() { asm volatile("" ::: "memory"); }
-inline void spu_dsync() { asm volatile("" ::: "memory"); }
+/// Order of memory accesses and channels: the compiler must not move one across. The emulator does the rest
+/// in order anyway.
+SC_SDK_INLINE void barrier() { asm volatile("" ::: "memory"); }
 
-// Interrupts do not exist in a job; asking to have them off changes nothing.
-inline void spu_idisable() {}
+// What compiles on an SPU and has no meaning for a job on the host is refused where it is used, with the
+// reason.
+
+template <class>
+inline constexpr bool kNever = false;
+
+template <class T = void>
+SC_SDK_INLINE vec_uint4 no_fpscr() {
+  static_assert(kNever<T>,
+                "FPSCR is not modelled on the host: doubles round to nearest, and there are no sticky flags");
+  return {};
+}
+template <class T = void>
+SC_SDK_INLINE unsigned int no_special_register() {
+  static_assert(kNever<T>, "special purpose registers are not modelled on the host");
+  return 0;
+}
+template <class T = void>
+SC_SDK_INLINE void no_interrupts() {
+  static_assert(kNever<T>, "interrupts are not modelled on the host: wait on SPU_RdEventStat instead");
+}
+
+}  // namespace softcell_sdk
+
+/// Reads a channel; blocks until there is something to read.
+#define spu_readch(channel) (softcell_sdk::read_channel<(channel)>())
+#define spu_readchqw(channel) (vec_uint4(softcell_sdk::read_channel<(channel)>(), 0))
+/// How many reads or writes go without blocking.
+#define spu_readchcnt(channel) (softcell_sdk::read_channel_count<(channel)>())
+#define spu_writech(channel, value) (softcell_sdk::write_channel<(channel)>(value))
+#define spu_writechqw(channel, value) (softcell_sdk::write_channel<(channel)>(vec_uint4(value).raw[0]))
+
+/// Stops the SPU with a constant code of 14 bits: 0x2000 + status ends the program. On the host it is never
+/// started again.
+#define spu_stop(code) (softcell_sdk::stop<(code)>())
+
+#define spu_sync() (softcell_sdk::barrier())
+#define spu_sync_c() (softcell_sdk::barrier())
+#define spu_dsync() (softcell_sdk::barrier())
+
+/// No interrupt ever reaches a job on the host: off is what they are.
+#define spu_idisable() (softcell_sdk::barrier())
+#define spu_ienable() (softcell_sdk::no_interrupts<>())
+
+#define spu_mffpscr() (softcell_sdk::no_fpscr<>())
+#define spu_mtfpscr(value) (static_cast<void>(value), softcell_sdk::no_fpscr<>())
+#define spu_mfspr(number) (softcell_sdk::no_special_register<>())
+#define spu_mtspr(number, value) (static_cast<void>(value), softcell_sdk::no_special_register<>())

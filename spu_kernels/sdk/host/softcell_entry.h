@@ -1,6 +1,6 @@
 #pragma once
-// Included before every kernel source on the host. A freestanding compiler may mangle main's name; the image's
-// entry is the plain one.
+// Included before every kernel source on the host. A freestanding compiler may mangle main's name; the
+// image's entry is the plain one.
 
 #include <stdint.h>
 

@@ -1,54 +1,50 @@
 #pragma once
-// How a kernel on the host reaches its channels: the emulator leaves a function pointer in the first quadwords of the local store, which the
-// kernel finds from its stack pointer, since the stack lies in the local store and that is aligned to its size.
+// How a kernel on the host reaches its channels. The emulator leaves the address of a function, the gate, in
+// the first bytes of the local store. The kernel finds them from its stack pointer: its stack lies in the
+// local store, and that is aligned to its size of 256 KB. Nothing here needs a relocation, so an image runs
+// wherever it is copied.
 
 #include <stdint.h>
 
 namespace softcell_sdk {
 
-/// At local-store address 0. Written by the emulator when it loads an image; the kernel writes the mfc_ fields.
+/// At local-store address 0. The emulator writes `gate` when it loads an image, the kernel the mfc_ fields.
 struct Environment {
-  uint64_t gate;  ///< uint32_t gate(uint32_t operation, uint32_t value), System V calling convention
+  uint64_t
+      gate;  ///< address of uint32_t gate(uint32_t operation, uint32_t value), System V calling convention
   uint32_t mfc_lsa, mfc_eah, mfc_eal, mfc_size, mfc_tag;  ///< channels 16 to 20
   uint32_t reserved[25];
 };
-static_assert(sizeof(Environment) == 128, "what ls.ld leaves free");
+static_assert(sizeof(Environment) == 128, "what the link script leaves free");
 
-/// What is asked of the gate: kind << 8 | channel.
-enum Kind : uint32_t { kRead = 0, kWrite = 1, kCount = 2, kStop = 3, kHalt = 4 };
+/// What is asked of the gate: operation = kind << 8 | channel. `value` is what is written, or the stop code.
+enum GateKind : uint32_t { kRead = 0, kWrite = 1, kCount = 2, kStop = 3, kHalt = 4 };
 
 constexpr uintptr_t kLocalStoreMask = 0x3FFFF;
 
-inline Environment& environment() {
+/// Where the local store lies in the host's memory.
+__attribute__((always_inline)) inline uintptr_t local_store_base() {
   uintptr_t stack_pointer;
   asm("mov %%rsp, %0" : "=r"(stack_pointer));
-  return *reinterpret_cast<Environment*>(stack_pointer & ~kLocalStoreMask);
+  return stack_pointer & ~kLocalStoreMask;
 }
 
-/// The local-store address of a pointer.
-inline uint32_t local_store_address(const volatile void* pointer) {
+__attribute__((always_inline)) inline Environment& environment() {
+  return *reinterpret_cast<Environment*>(local_store_base());
+}
+
+/// The local-store address of a pointer. For a pointer to somewhere else it means nothing, as on the SPU.
+__attribute__((always_inline)) inline uint32_t local_store_address(const volatile void* pointer) {
   return static_cast<uint32_t>(reinterpret_cast<uintptr_t>(pointer) & kLocalStoreMask);
 }
 
-/// Memory may change in the call: DMA writes behind the compiler's back.
-inline uint32_t call_gate(Kind kind, uint32_t channel, uint32_t value) {
+/// DMA writes the local store behind the compiler's back, so that no value of memory survives the call.
+__attribute__((always_inline)) inline uint32_t call_gate(GateKind kind, uint32_t channel, uint32_t value) {
   using Gate = uint32_t(uint32_t, uint32_t);
   asm volatile("" ::: "memory");
-  const uint32_t reply = reinterpret_cast<Gate*>(environment().gate)(static_cast<uint32_t>(kind) << 8 | channel, value);
+  const uint32_t reply = reinterpret_cast<Gate*>(environment().gate)(kind << 8 | channel, value);
   asm volatile("" ::: "memory");
   return reply;
-}
-
-inline void write_channel(uint32_t channel, uint32_t value) {
-  // The five parameters of a DMA command wait in the environment for the command itself.
-  switch (channel) {
-    case 16: environment().mfc_lsa = value; return;
-    case 17: environment().mfc_eah = value; return;
-    case 18: environment().mfc_eal = value; return;
-    case 19: environment().mfc_size = value; return;
-    case 20: environment().mfc_tag = value; return;
-    default: call_gate(kWrite, channel, value);
-  }
 }
 
 }  // namespace softcell_sdk

@@ -1,253 +1,179 @@
 #pragma once
-// Integer arithmetic, shifts and rotates. [LEXT, generic intrinsics; SPU ISA] documented
+// Integer arithmetic, and counting bits.  [LEXT, arithmetic and byte intrinsics; SPU-ISA] documented
+//
+// Halves of a word: "even" is the high one, lane 0, 2, .. of the halfwords; "odd" the low one. On the host
+// the even half lies in the low 16 bits of a word's register lane.
 
-#include "softcell_logic.h"
+#include "softcell_lanes.h"
 
-// ---- add and subtract; a scalar may be the second operand of an addition and the first of a subtraction
+// ---- add and subtract
 
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_add(const V& a, const V& b) {
-  return softcell_sdk::unwrap<V>(softcell_sdk::wrap(a) + softcell_sdk::wrap(b));
+template <class T, softcell_sdk::If<softcell_sdk::kHalfOrWord<T>> = 0>
+SC_SDK_INLINE softcell_sdk::Vector<T> spu_add(softcell_sdk::Vector<T> a, softcell_sdk::Vector<T> b) {
+  return softcell_sdk::make<softcell_sdk::Vector<T>>(softcell_sdk::wrap(a) + softcell_sdk::wrap(b));
 }
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_add(const V& a, typename V::Lane b) {
-  return spu_add(a, spu_splats(b));
+template <class T, softcell_sdk::If<softcell_sdk::kHalfOrWord<T>> = 0>
+SC_SDK_INLINE softcell_sdk::Vector<T> spu_add(softcell_sdk::Vector<T> a, softcell_sdk::Scalar<T> b) {
+  return spu_add(a, softcell_sdk::splats<T>(b));
 }
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sub(const V& a, const V& b) {
-  return softcell_sdk::unwrap<V>(softcell_sdk::wrap(a) - softcell_sdk::wrap(b));
+template <class T, softcell_sdk::If<softcell_sdk::kHalfOrWord<T>> = 0>
+SC_SDK_INLINE softcell_sdk::Vector<T> spu_sub(softcell_sdk::Vector<T> a, softcell_sdk::Vector<T> b) {
+  return softcell_sdk::make<softcell_sdk::Vector<T>>(softcell_sdk::wrap(a) - softcell_sdk::wrap(b));
 }
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sub(typename V::Lane a, const V& b) {
-  return spu_sub(spu_splats(a), b);
+/// The scalar minus each lane.
+template <class T, softcell_sdk::If<softcell_sdk::kHalfOrWord<T>> = 0>
+SC_SDK_INLINE softcell_sdk::Vector<T> spu_sub(softcell_sdk::Scalar<T> a, softcell_sdk::Vector<T> b) {
+  return spu_sub(softcell_sdk::splats<T>(a), b);
 }
 
-#define SC_SDK_WORD_TYPES(X) X(vec_uint4) X(vec_int4)
+// ---- carries and borrows of words; only the lowest bit of the third operand counts, and a borrow of 1 means
+// "none needed"
 
-// Carry and borrow, one word each. A borrow of 1 means none was needed.
-#define SC_SDK_CARRY(V)                                                                                                       \
-  inline V spu_addx(const V& a, const V& b, const V& c) {                                                                     \
-    return softcell_sdk::unwrap<V>(softcell_sdk::wrap(a) + softcell_sdk::wrap(b) + (softcell_sdk::wrap(c) & 1u));             \
-  }                                                                                                                           \
-  inline V spu_subx(const V& a, const V& b, const V& c) {                                                                     \
-    return softcell_sdk::unwrap<V>(softcell_sdk::wrap(a) + ~softcell_sdk::wrap(b) + (softcell_sdk::wrap(c) & 1u));            \
-  }                                                                                                                           \
-  inline V spu_genc(const V& a, const V& b) {                                                                                 \
-    return softcell_sdk::for_lanes<V>(                                                                                        \
-        [](auto x, auto y) { return (uint64_t{static_cast<uint32_t>(x)} + static_cast<uint32_t>(y)) >> 32; }, a, b);          \
-  }                                                                                                                           \
-  inline V spu_gencx(const V& a, const V& b, const V& c) {                                                                    \
-    return softcell_sdk::for_lanes<V>(                                                                                        \
-        [](auto x, auto y, auto z) {                                                                                          \
-          return (uint64_t{static_cast<uint32_t>(x)} + static_cast<uint32_t>(y) + (static_cast<uint32_t>(z) & 1u)) >> 32;     \
-        },                                                                                                                    \
-        a, b, c);                                                                                                             \
-  }                                                                                                                           \
-  inline V spu_genb(const V& a, const V& b) {                                                                                 \
-    return softcell_sdk::for_lanes<V>([](auto x, auto y) { return static_cast<uint32_t>(x) >= static_cast<uint32_t>(y); }, a, b); \
-  }                                                                                                                           \
-  inline V spu_genbx(const V& a, const V& b, const V& c) {                                                                    \
-    return softcell_sdk::for_lanes<V>(                                                                                        \
-        [](auto x, auto y, auto z) {                                                                                          \
-          const uint32_t p = static_cast<uint32_t>(x), q = static_cast<uint32_t>(y);                                          \
-          return (static_cast<uint32_t>(z) & 1u) != 0 ? p >= q : p > q;                                                       \
-        },                                                                                                                    \
-        a, b, c);                                                                                                             \
+#define SC_SDK_CARRY(name, parameters, operands, expression)            \
+  template <class T, softcell_sdk::If<softcell_sdk::kWord<T>> = 0>      \
+  SC_SDK_INLINE softcell_sdk::Vector<T> name parameters {               \
+    using Words = softcell_sdk::Raw<unsigned int>;                      \
+    const Words a = softcell_sdk::wrap(va), b = softcell_sdk::wrap(vb); \
+    operands;                                                           \
+    return softcell_sdk::make<softcell_sdk::Vector<T>>(expression);     \
   }
-SC_SDK_WORD_TYPES(SC_SDK_CARRY)
+#define SC_SDK_TWO (softcell_sdk::Vector<T> va, softcell_sdk::Vector<T> vb)
+#define SC_SDK_THREE (softcell_sdk::Vector<T> va, softcell_sdk::Vector<T> vb, softcell_sdk::Vector<T> vc)
+#define SC_SDK_C const Words c = softcell_sdk::wrap(vc) & 1u
+
+/// a + b + carry.
+SC_SDK_CARRY(spu_addx, SC_SDK_THREE, SC_SDK_C, a + b + c)
+/// a - b - (1 - carry).
+SC_SDK_CARRY(spu_subx, SC_SDK_THREE, SC_SDK_C, a + ~b + c)
+/// Carry out of a + b.
+SC_SDK_CARRY(spu_genc, SC_SDK_TWO, const Words sum = a + b, Words(sum < a) & 1u)
+/// Carry out of a + b + carry.
+SC_SDK_CARRY(spu_gencx, SC_SDK_THREE, SC_SDK_C;
+             const Words sum = a + b, (Words(sum < a) | Words(sum + c < sum)) & 1u)
+/// 1 where a - b needs no borrow.
+SC_SDK_CARRY(spu_genb, SC_SDK_TWO, , Words(a >= b) & 1u)
+/// 1 where a - b - (1 - carry) needs no borrow.
+SC_SDK_CARRY(spu_genbx, SC_SDK_THREE, SC_SDK_C, (Words(a > b) & 1u) | (Words(a == b) & c))
+
+#undef SC_SDK_C
+#undef SC_SDK_THREE
+#undef SC_SDK_TWO
 #undef SC_SDK_CARRY
 
-// ---- multiply: halfwords of 16 bits to words of 32; "even" is the high half of a word, lane 0 first
+// ---- multiply halves of 16 bits to words
 
-inline vec_int4 spu_mulo(const vec_short8& a, const vec_short8& b) {
-  vec_int4 r{};
-  for (int i = 0; i < 4; ++i) r.raw[i] = a.raw[2 * i + 1] * b.raw[2 * i + 1];
-  return r;
-}
-inline vec_uint4 spu_mulo(const vec_ushort8& a, const vec_ushort8& b) {
-  vec_uint4 r{};
-  for (int i = 0; i < 4; ++i) r.raw[i] = uint32_t{a.raw[2 * i + 1]} * b.raw[2 * i + 1];
-  return r;
-}
-inline vec_int4 spu_mulo(const vec_short8& a, short b) { return spu_mulo(a, spu_splats(b)); }
-inline vec_uint4 spu_mulo(const vec_ushort8& a, unsigned short b) { return spu_mulo(a, spu_splats(b)); }
-inline vec_int4 spu_mule(const vec_short8& a, const vec_short8& b) {
-  vec_int4 r{};
-  for (int i = 0; i < 4; ++i) r.raw[i] = a.raw[2 * i] * b.raw[2 * i];
-  return r;
-}
-inline vec_uint4 spu_mule(const vec_ushort8& a, const vec_ushort8& b) {
-  vec_uint4 r{};
-  for (int i = 0; i < 4; ++i) r.raw[i] = uint32_t{a.raw[2 * i]} * b.raw[2 * i];
-  return r;
-}
-/// High half of a times low half of b, shifted to the high half: the cross term of a 32-bit product.
-inline vec_int4 spu_mulh(const vec_short8& a, const vec_short8& b) {
-  vec_int4 r{};
-  for (int i = 0; i < 4; ++i) {
-    r.raw[i] = static_cast<int>((static_cast<uint32_t>(a.raw[2 * i]) * static_cast<uint32_t>(b.raw[2 * i + 1])) << 16);
-  }
-  return r;
-}
-/// The upper half of the product of the low halves, sign-extended.
-inline vec_int4 spu_mulsr(const vec_short8& a, const vec_short8& b) {
-  vec_int4 r{};
-  for (int i = 0; i < 4; ++i) r.raw[i] = (a.raw[2 * i + 1] * b.raw[2 * i + 1]) >> 16;
-  return r;
-}
-/// Low halves multiplied and added to c.
-inline vec_int4 spu_madd(const vec_short8& a, const vec_short8& b, const vec_int4& c) { return spu_add(spu_mulo(a, b), c); }
-/// High halves multiplied and added to c.
-inline vec_int4 spu_mhhadd(const vec_short8& a, const vec_short8& b, const vec_int4& c) { return spu_add(spu_mule(a, b), c); }
-inline vec_uint4 spu_mhhadd(const vec_ushort8& a, const vec_ushort8& b, const vec_uint4& c) { return spu_add(spu_mule(a, b), c); }
+namespace softcell_sdk {
+SC_SDK_INLINE __m128i even_halves(__m128i a) { return _mm_and_si128(a, _mm_set1_epi32(0xFFFF)); }
+SC_SDK_INLINE __m128i odd_halves(__m128i a) { return _mm_srli_epi32(a, 16); }
+}  // namespace softcell_sdk
 
-// ---- bytes, bits, widening
-
-inline vec_uchar16 spu_absd(const vec_uchar16& a, const vec_uchar16& b) {
-  return softcell_sdk::for_lanes<vec_uchar16>([](int x, int y) { return x > y ? x - y : y - x; }, a, b);
+/// The odd halves multiplied.
+SC_SDK_INLINE vec_int4 spu_mulo(vec_short8 a, vec_short8 b) {
+  using namespace softcell_sdk;
+  return make<vec_int4>(_mm_madd_epi16(odd_halves(bits(a)), odd_halves(bits(b))));
 }
-inline vec_uchar16 spu_avg(const vec_uchar16& a, const vec_uchar16& b) {
-  return softcell_sdk::for_lanes<vec_uchar16>([](int x, int y) { return (x + y + 1) >> 1; }, a, b);
+SC_SDK_INLINE vec_uint4 spu_mulo(vec_ushort8 a, vec_ushort8 b) {
+  using namespace softcell_sdk;
+  return make<vec_uint4>(_mm_mullo_epi32(odd_halves(bits(a)), odd_halves(bits(b))));
 }
-/// Each word: the four bytes of b summed in its high half, those of a in its low half.
-inline vec_ushort8 spu_sumb(const vec_uchar16& a, const vec_uchar16& b) {
-  vec_ushort8 r{};
-  for (int i = 0; i < 16; ++i) {
-    r.raw[i / 4 * 2] = static_cast<unsigned short>(r.raw[i / 4 * 2] + b.raw[i]);
-    r.raw[i / 4 * 2 + 1] = static_cast<unsigned short>(r.raw[i / 4 * 2 + 1] + a.raw[i]);
-  }
-  return r;
+SC_SDK_INLINE vec_int4 spu_mulo(vec_short8 a, short b) { return spu_mulo(a, softcell_sdk::splats(b)); }
+SC_SDK_INLINE vec_uint4 spu_mulo(vec_ushort8 a, unsigned short b) {
+  return spu_mulo(a, softcell_sdk::splats(b));
 }
-/// Ones in each byte.
-template <class V, softcell_sdk::If<softcell_sdk::kVector<V> && V::kWidth == 1> = 0>
-inline vec_uchar16 spu_cntb(const V& a) {
-  return softcell_sdk::for_lanes<vec_uchar16>([](auto x) { return __builtin_popcount(static_cast<unsigned char>(x)); }, a);
+/// The even halves multiplied.
+SC_SDK_INLINE vec_int4 spu_mule(vec_short8 a, vec_short8 b) {
+  using namespace softcell_sdk;
+  return make<vec_int4>(_mm_madd_epi16(even_halves(bits(a)), even_halves(bits(b))));
 }
-/// Leading zeros of each word, 32 for 0.
-template <class V, softcell_sdk::If<softcell_sdk::kVector<V> && V::kWidth == 4> = 0>
-inline vec_uint4 spu_cntlz(const V& a) {
-  return softcell_sdk::for_lanes<vec_uint4>([](uint32_t x) { return x == 0 ? 32 : __builtin_clz(x); },
-                                            softcell_sdk::same_lanes<vec_uint4>(a));
+SC_SDK_INLINE vec_uint4 spu_mule(vec_ushort8 a, vec_ushort8 b) {
+  using namespace softcell_sdk;
+  return make<vec_uint4>(_mm_mullo_epi32(even_halves(bits(a)), even_halves(bits(b))));
 }
-/// The low half of each lane of the result's width, sign-extended: odd lanes of `a`.
-inline vec_short8 spu_extend(const vec_char16& a) {
-  vec_short8 r{};
-  for (int i = 0; i < 8; ++i) r.raw[i] = a.raw[2 * i + 1];
-  return r;
+/// Even half of a times odd half of b, shifted up by 16: a cross term of a 32-bit product, which is
+/// spu_mulh(a, b) + spu_mulh(b, a) + spu_mulo of both as unsigned.
+SC_SDK_INLINE vec_int4 spu_mulh(vec_short8 a, vec_short8 b) {
+  using namespace softcell_sdk;
+  return make<vec_int4>(_mm_slli_epi32(_mm_mullo_epi16(bits(a), odd_halves(bits(b))), 16));
 }
-inline vec_int4 spu_extend(const vec_short8& a) {
-  vec_int4 r{};
-  for (int i = 0; i < 4; ++i) r.raw[i] = a.raw[2 * i + 1];
-  return r;
+/// The odd halves multiplied, then shifted down by 16.
+SC_SDK_INLINE vec_int4 spu_mulsr(vec_short8 a, vec_short8 b) {
+  using namespace softcell_sdk;
+  return make<vec_int4>(_mm_srai_epi32(_mm_mulhi_epi16(bits(a), bits(b)), 16));
 }
-inline vec_llong2 spu_extend(const vec_int4& a) {
-  vec_llong2 r{};
-  for (int i = 0; i < 2; ++i) r.raw[i] = a.raw[2 * i + 1];
-  return r;
+/// The odd halves multiplied, plus c.
+SC_SDK_INLINE vec_int4 spu_madd(vec_short8 a, vec_short8 b, vec_int4 c) { return spu_add(spu_mulo(a, b), c); }
+/// The even halves multiplied, plus c.
+SC_SDK_INLINE vec_int4 spu_mhhadd(vec_short8 a, vec_short8 b, vec_int4 c) {
+  return spu_add(spu_mule(a, b), c);
+}
+SC_SDK_INLINE vec_uint4 spu_mhhadd(vec_ushort8 a, vec_ushort8 b, vec_uint4 c) {
+  return spu_add(spu_mule(a, b), c);
 }
 
-// ---- shifts and rotates of each lane, by a count of each lane or one scalar
+// ---- bytes
+
+SC_SDK_INLINE vec_uchar16 spu_absd(vec_uchar16 a, vec_uchar16 b) {
+  using namespace softcell_sdk;
+  return make<vec_uchar16>(_mm_or_si128(_mm_subs_epu8(bits(a), bits(b)), _mm_subs_epu8(bits(b), bits(a))));
+}
+/// The mean, rounded up.
+SC_SDK_INLINE vec_uchar16 spu_avg(vec_uchar16 a, vec_uchar16 b) {
+  using namespace softcell_sdk;
+  return make<vec_uchar16>(_mm_avg_epu8(bits(a), bits(b)));
+}
 
 namespace softcell_sdk {
 
-/// Counts as the instructions read them: one bit more than the lane's own, so that "everything" can be said.
-template <class V>
-inline constexpr unsigned int kCountMask = 2 * 8 * V::kWidth - 1;
+/// Each word: the sum of its four bytes.
+SC_SDK_INLINE __m128i sums_of_bytes(__m128i bytes) {
+  return _mm_madd_epi16(_mm_maddubs_epi16(bytes, _mm_set1_epi8(1)), _mm_set1_epi16(1));
+}
 
-template <class V>
-inline uint32_t shifted_left(typename UnsignedOf<V>::Lane x, unsigned int n) {
-  return n >= 8u * V::kWidth ? 0 : static_cast<uint32_t>(x) << n;
-}
-template <class V>
-inline uint32_t shifted_right(typename UnsignedOf<V>::Lane x, unsigned int n) {
-  return n >= 8u * V::kWidth ? 0 : static_cast<uint32_t>(x) >> n;
-}
-template <class V>
-inline int32_t shifted_right_signed(typename SignedOf<V>::Lane x, unsigned int n) {
-  constexpr unsigned int kMost = 8 * V::kWidth - 1;
-  return static_cast<int32_t>(x) >> (n > kMost ? kMost : n);
+SC_SDK_INLINE __m128i ones_in_bytes(__m128i bytes) {
+  const __m128i ones = _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4),
+                nibble = _mm_set1_epi8(15);
+  const __m128i low = _mm_shuffle_epi8(ones, _mm_and_si128(bytes, nibble));
+  const __m128i high = _mm_shuffle_epi8(ones, _mm_and_si128(_mm_srli_epi16(bytes, 4), nibble));
+  return _mm_add_epi8(low, high);
 }
 
 }  // namespace softcell_sdk
 
-/// a << count; counts are taken modulo twice the lane's bits, and 0 comes out from the lane's bits on.
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sl(const V& a, const softcell_sdk::UnsignedOf<V>& count) {
+/// In each word: the four bytes of b summed in the even half, those of a in the odd one.
+SC_SDK_INLINE vec_ushort8 spu_sumb(vec_uchar16 a, vec_uchar16 b) {
   using namespace softcell_sdk;
-  if constexpr (V::kWidth == 4) {
-    return V::from_raw((Raw<typename V::Lane>)_mm_sllv_epi32((__m128i)a.raw, (__m128i)(count.raw & 63u)));
-  } else {
-    return for_lanes<V>([](auto x, unsigned int n) { return shifted_left<V>(static_cast<unsigned short>(x), n & kCountMask<V>); }, a, count);
-  }
-}
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sl(const V& a, unsigned int count) {
-  return spu_sl(a, spu_splats(static_cast<typename softcell_sdk::UnsignedOf<V>::Lane>(count)));
+  return make<vec_ushort8>(_mm_or_si128(sums_of_bytes(bits(b)), _mm_slli_epi32(sums_of_bytes(bits(a)), 16)));
 }
 
-/// Logical shift right by the negated count. [SPU ISA, rotm, rothm] documented
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_rlmask(const V& a, const softcell_sdk::SignedOf<V>& count) {
+// ---- bits
+
+/// Ones in each byte.
+template <class T, softcell_sdk::If<sizeof(T) == 1> = 0>
+SC_SDK_INLINE vec_uchar16 spu_cntb(softcell_sdk::Vector<T> a) {
+  return softcell_sdk::make<vec_uchar16>(softcell_sdk::ones_in_bytes(softcell_sdk::bits(a)));
+}
+/// Leading zeros of each word, 32 for 0.
+template <class T, softcell_sdk::If<sizeof(T) == 4> = 0>
+SC_SDK_INLINE vec_uint4 spu_cntlz(softcell_sdk::Vector<T> a) {
   using namespace softcell_sdk;
-  if constexpr (V::kWidth == 4) {
-    return V::from_raw((Raw<typename V::Lane>)_mm_srlv_epi32((__m128i)a.raw, (__m128i)(-wrap(count) & 63u)));
-  } else {
-    return for_lanes<V>(
-        [](auto x, int n) { return shifted_right<V>(static_cast<unsigned short>(x), static_cast<unsigned int>(-n) & kCountMask<V>); }, a, count);
-  }
-}
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_rlmask(const V& a, int count) {
-  return spu_rlmask(a, spu_splats(static_cast<typename softcell_sdk::SignedOf<V>::Lane>(count)));
+  Raw<unsigned int> ones = wrap(a);  // after smearing: every bit below the first one
+  ones |= ones >> 1;
+  ones |= ones >> 2;
+  ones |= ones >> 4;
+  ones |= ones >> 8;
+  ones |= ones >> 16;
+  return make<vec_uint4>(32u - (Raw<unsigned int>)sums_of_bytes(ones_in_bytes((__m128i)ones)));
 }
 
-/// Arithmetic shift right by the negated count. [SPU ISA, rotma, rotmah] documented
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_rlmaska(const V& a, const softcell_sdk::SignedOf<V>& count) {
-  using namespace softcell_sdk;
-  if constexpr (V::kWidth == 4) {
-    return V::from_raw((Raw<typename V::Lane>)_mm_srav_epi32((__m128i)a.raw, (__m128i)(-wrap(count) & 63u)));
-  } else {
-    return for_lanes<V>(
-        [](auto x, int n) { return shifted_right_signed<V>(static_cast<short>(x), static_cast<unsigned int>(-n) & kCountMask<V>); }, a, count);
-  }
-}
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_rlmaska(const V& a, int count) {
-  return spu_rlmaska(a, spu_splats(static_cast<typename softcell_sdk::SignedOf<V>::Lane>(count)));
-}
+// ---- sign extension of the odd, low half of each lane
 
-/// Shifts right by the count itself: the same instructions, the count negated for them.
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sr(const V& a, const softcell_sdk::UnsignedOf<V>& count) {
-  return spu_rlmask(a, softcell_sdk::SignedOf<V>::from_raw((softcell_sdk::Raw<typename softcell_sdk::SignedOf<V>::Lane>)(-count.raw)));
+SC_SDK_INLINE vec_short8 spu_extend(vec_char16 a) {
+  return softcell_sdk::make<vec_short8>(_mm_srai_epi16(softcell_sdk::bits(a), 8));
 }
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sr(const V& a, unsigned int count) {
-  return spu_rlmask(a, static_cast<int>(0u - count));
+SC_SDK_INLINE vec_int4 spu_extend(vec_short8 a) {
+  return softcell_sdk::make<vec_int4>(_mm_srai_epi32(softcell_sdk::bits(a), 16));
 }
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sra(const V& a, const softcell_sdk::UnsignedOf<V>& count) {
-  return spu_rlmaska(a, softcell_sdk::SignedOf<V>::from_raw((softcell_sdk::Raw<typename softcell_sdk::SignedOf<V>::Lane>)(-count.raw)));
-}
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_sra(const V& a, unsigned int count) {
-  return spu_rlmaska(a, static_cast<int>(0u - count));
-}
-
-/// Rotate left; counts modulo the lane's bits.
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_rl(const V& a, const softcell_sdk::SignedOf<V>& count) {
-  constexpr unsigned int kBits = 8 * V::kWidth;
-  return softcell_sdk::for_lanes<V>(
-      [](auto lane, int n) {
-        const auto x = static_cast<uint32_t>(static_cast<typename softcell_sdk::UnsignedOf<V>::Lane>(lane));
-        const unsigned int left = static_cast<unsigned int>(n) & (kBits - 1);
-        return x << left | (left == 0 ? 0 : x >> (kBits - left));
-      },
-      a, count);
-}
-template <class V, softcell_sdk::If<softcell_sdk::kHalfOrWord<V>> = 0>
-inline V spu_rl(const V& a, int count) {
-  return spu_rl(a, spu_splats(static_cast<typename softcell_sdk::SignedOf<V>::Lane>(count)));
+SC_SDK_INLINE vec_llong2 spu_extend(vec_int4 a) {
+  const __m128i odd = _mm_shuffle_epi32(softcell_sdk::bits(a), 0xF5);
+  return softcell_sdk::make<vec_llong2>(_mm_blend_epi32(odd, _mm_srai_epi32(odd, 31), 0xA));
 }

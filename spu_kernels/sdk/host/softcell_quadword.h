@@ -1,62 +1,79 @@
 #pragma once
-// Shifts and rotates of the whole register as one number of 128 bits, byte 0 the most significant. [SPU ISA, quadword shifts] documented
+// Shifts and rotates of the register as one number of 128 bits, byte 0 the most significant.  [LEXT; SPU-ISA]
+// documented
 //
-// Names: ...qw by 0..7 bits, ...qwbyte by bytes, ...qwbytebc by bytes with the count in bits 3 and up. The rlmask forms shift right by the
-// negated count, the sr forms by the count.
+// ..qw: by 0..7 bits. ..qwbyte: by bytes. ..qwbytebc: by bytes, the count given in bits. The rlmask forms
+// shift right by the negated count, the sr forms by the count itself.
 
-#include "softcell_logic.h"
+#include "softcell_shuffle.h"
 
 namespace softcell_sdk {
 
-/// The register as two halves of a number, most significant first.
-struct Wide {
-  uint64_t high, low;
-};
+SC_SDK_INLINE Bytes places() { return Bytes{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}; }
 
-template <class V>
-inline Wide wide_of(const V& v) {
-  const vec_ullong2 halves(v);
-  return {halves.raw[0], halves.raw[1]};
-}
-template <class V>
-inline V vector_of(const Wide& w) {
-  return V(vec_ullong2(w.high, w.low));
+/// Shuffles one register; zero where the pattern is not 0..15.
+template <class T>
+SC_SDK_INLINE Vector<T> take_bytes(Vector<T> a, Bytes pattern) {
+  const Bytes outside = (Bytes)(pattern > 15);
+  return make<Vector<T>>(
+      shuffle_bytes<sizeof(T)>((Bytes)a.raw, (Bytes)a.raw, (pattern & ~outside) | (outside & 0x80)));
 }
 
-inline Wide shift_left(Wide w, unsigned int bits) {
-  if (bits >= 128) return {0, 0};
-  if (bits >= 64) return {w.low << (bits - 64), 0};
-  return bits == 0 ? w : Wide{w.high << bits | w.low >> (64 - bits), w.low << bits};
+// By n = 0..31 bytes.
+template <class T>
+SC_SDK_INLINE Vector<T> bytes_left(Vector<T> a, unsigned int n) {
+  return take_bytes(a, places() + static_cast<unsigned char>(n));
 }
-inline Wide shift_right(Wide w, unsigned int bits) {
-  if (bits >= 128) return {0, 0};
-  if (bits >= 64) return {0, w.high >> (bits - 64)};
-  return bits == 0 ? w : Wide{w.high >> bits, w.low >> bits | w.high << (64 - bits)};
+template <class T>
+SC_SDK_INLINE Vector<T> bytes_right(Vector<T> a, unsigned int n) {
+  return take_bytes(a, places() - static_cast<unsigned char>(n));
 }
-inline Wide rotate_left(Wide w, unsigned int bits) {
-  const Wide left = shift_left(w, bits), right = shift_right(w, 128 - bits);
-  return bits == 0 ? w : Wide{left.high | right.high, left.low | right.low};
+template <class T>
+SC_SDK_INLINE Vector<T> bytes_around(Vector<T> a, unsigned int n) {
+  return take_bytes(a, (places() + static_cast<unsigned char>(n)) & 15);
+}
+
+// By n = 0..7 bits: each word, and what its neighbour gives it.
+SC_SDK_INLINE __m128i words_left(__m128i a, __m128i next, unsigned int n) {
+  return _mm_or_si128(_mm_sll_epi32(a, _mm_cvtsi32_si128(static_cast<int>(n))),
+                      _mm_srl_epi32(next, _mm_cvtsi32_si128(static_cast<int>(32 - n))));
+}
+template <class T>
+SC_SDK_INLINE Vector<T> bits_left(Vector<T> a, unsigned int n) {
+  const __m128i words = bits(vec_uint4(a));
+  return Vector<T>(make<vec_uint4>(words_left(words, _mm_srli_si128(words, 4), n)));
+}
+template <class T>
+SC_SDK_INLINE Vector<T> bits_around(Vector<T> a, unsigned int n) {
+  const __m128i words = bits(vec_uint4(a));
+  return Vector<T>(make<vec_uint4>(words_left(words, _mm_shuffle_epi32(words, 0x39), n)));
+}
+template <class T>
+SC_SDK_INLINE Vector<T> bits_right(Vector<T> a, unsigned int n) {
+  const __m128i words = bits(vec_uint4(a)), previous = _mm_slli_si128(words, 4);
+  return Vector<T>(
+      make<vec_uint4>(_mm_or_si128(_mm_srl_epi32(words, _mm_cvtsi32_si128(static_cast<int>(n))),
+                                   _mm_sll_epi32(previous, _mm_cvtsi32_si128(static_cast<int>(32 - n))))));
 }
 
 }  // namespace softcell_sdk
 
-// expression: the number of bits, from the scalar count n.
-#define SC_SDK_QUADWORD(name, operation, expression)                                                     \
-  template <class V, softcell_sdk::If<softcell_sdk::kVector<V>> = 0>                                     \
-  inline V name(const V& a, int count) {                                                                 \
-    const unsigned int n = static_cast<unsigned int>(count);                                             \
-    return softcell_sdk::vector_of<V>(softcell_sdk::operation(softcell_sdk::wide_of(a), (expression)));   \
+#define SC_SDK_QUADWORD(name, Count, operation, expression)                            \
+  template <class T>                                                                   \
+  SC_SDK_INLINE softcell_sdk::Vector<T> name(softcell_sdk::Vector<T> a, Count count) { \
+    const unsigned int n = static_cast<unsigned int>(count);                           \
+    return softcell_sdk::operation(a, expression);                                     \
   }
-SC_SDK_QUADWORD(spu_slqw, shift_left, n & 7u)
-SC_SDK_QUADWORD(spu_slqwbyte, shift_left, 8u * (n & 31u))
-SC_SDK_QUADWORD(spu_slqwbytebc, shift_left, 8u * (n >> 3 & 31u))
-SC_SDK_QUADWORD(spu_rlqw, rotate_left, n & 7u)
-SC_SDK_QUADWORD(spu_rlqwbyte, rotate_left, 8u * (n & 15u))
-SC_SDK_QUADWORD(spu_rlqwbytebc, rotate_left, 8u * (n >> 3 & 15u))
-SC_SDK_QUADWORD(spu_rlmaskqw, shift_right, (0u - n) & 7u)
-SC_SDK_QUADWORD(spu_rlmaskqwbyte, shift_right, 8u * ((0u - n) & 31u))
-SC_SDK_QUADWORD(spu_rlmaskqwbytebc, shift_right, 8u * ((0u - (n >> 3)) & 31u))
-SC_SDK_QUADWORD(spu_srqw, shift_right, n & 7u)
-SC_SDK_QUADWORD(spu_srqwbyte, shift_right, 8u * (n & 31u))
-SC_SDK_QUADWORD(spu_srqwbytebc, shift_right, 8u * (n >> 3 & 31u))
+SC_SDK_QUADWORD(spu_slqw, unsigned int, bits_left, n & 7u)
+SC_SDK_QUADWORD(spu_slqwbyte, unsigned int, bytes_left, n & 31u)
+SC_SDK_QUADWORD(spu_slqwbytebc, unsigned int, bytes_left, n >> 3 & 31u)
+SC_SDK_QUADWORD(spu_rlqw, int, bits_around, n & 7u)
+SC_SDK_QUADWORD(spu_rlqwbyte, int, bytes_around, n & 15u)
+SC_SDK_QUADWORD(spu_rlqwbytebc, int, bytes_around, n >> 3 & 15u)
+SC_SDK_QUADWORD(spu_rlmaskqw, int, bits_right, -n & 7u)
+SC_SDK_QUADWORD(spu_rlmaskqwbyte, int, bytes_right, -n & 31u)
+SC_SDK_QUADWORD(spu_rlmaskqwbytebc, int, bytes_right, -(n >> 3) & 31u)
+SC_SDK_QUADWORD(spu_srqw, unsigned int, bits_right, n & 7u)
+SC_SDK_QUADWORD(spu_srqwbyte, unsigned int, bytes_right, n & 31u)
+SC_SDK_QUADWORD(spu_srqwbytebc, unsigned int, bytes_right, n >> 3 & 31u)
 #undef SC_SDK_QUADWORD

@@ -1,12 +1,23 @@
 #pragma once
-// The vector types of the Cell language extensions on a little-endian host.
+// The vector types of the Cell language extensions on a little-endian host.  [LEXT, data types] documented
 //
-// A vector is sixteen bytes, lane 0 first in memory, each lane in the host's byte order. The SPU numbers the bytes of a register from
-// the most significant end: its byte i of a vector whose lanes have `width` bytes is the host's byte i ^ (width - 1). Casts and
-// shuffles permute bytes by that rule, so that they mean what they mean on the SPU. [LEXT, data types] documented
+// A vector is sixteen bytes, lane 0 first in memory, each lane in the host's byte order. The SPU numbers the
+// bytes of a register from its most significant end: its byte i of a vector whose lanes are `width` bytes
+// wide is the host's byte i ^ (width - 1):
+//
+//   vec_uint4 {0x00112233, 0x44556677, ..}     SPU bytes    00 11 22 33 44 55 66 77 ..
+//                                              host bytes   33 22 11 00 77 66 55 44 ..
+//
+// A cast between lane widths permutes bytes by that rule, and so means what it means on the SPU; between
+// equal widths it keeps the lanes. What cannot be kept is punning through memory: an array of words read as
+// bytes shows the host's order.
 
 #include <immintrin.h>
 #include <stdint.h>
+
+#define SC_SDK_INLINE __attribute__((always_inline)) inline
+// Like the SPU's vectors, ours may look at memory that was written as something else.
+#define SC_SDK_REGISTER __attribute__((may_alias, aligned(16)))
 
 namespace softcell_sdk {
 
@@ -14,30 +25,99 @@ template <class Lane>
 struct RawOf {
   typedef Lane Type __attribute__((vector_size(16)));
 };
+/// The compiler's own vector of these lanes.
 template <class Lane>
 using Raw = typename RawOf<Lane>::Type;
+using Bytes = Raw<unsigned char>;
 
-typedef unsigned char Bytes __attribute__((vector_size(16)));
-typedef unsigned long long Pair __attribute__((vector_size(16)));
-
-/// The host's byte j comes from the host's byte j ^ Mask.
-template <int Mask>
-inline Bytes permute_bytes(Bytes b) {
-  if constexpr (Mask == 0) {
+/// Reads byte j of the result from byte j ^ Flip: from one lane width to another, or from the host's numbers
+/// to the SPU's.
+template <int Flip>
+SC_SDK_INLINE Bytes flip_bytes(Bytes b) {
+  if constexpr (Flip == 0) {
     return b;
   } else {
-    return __builtin_shufflevector(b, b, 0 ^ Mask, 1 ^ Mask, 2 ^ Mask, 3 ^ Mask, 4 ^ Mask, 5 ^ Mask, 6 ^ Mask, 7 ^ Mask,
-                                   8 ^ Mask, 9 ^ Mask, 10 ^ Mask, 11 ^ Mask, 12 ^ Mask, 13 ^ Mask, 14 ^ Mask, 15 ^ Mask);
+    return __builtin_shufflevector(b, b, 0 ^ Flip, 1 ^ Flip, 2 ^ Flip, 3 ^ Flip, 4 ^ Flip, 5 ^ Flip, 6 ^ Flip,
+                                   7 ^ Flip, 8 ^ Flip, 9 ^ Flip, 10 ^ Flip, 11 ^ Flip, 12 ^ Flip, 13 ^ Flip,
+                                   14 ^ Flip, 15 ^ Flip);
   }
 }
 
-/// What all vector types share. Self is the type itself, LaneType that of its lanes.
-template <class Self, class LaneType>
-struct Vector {
-  using Lane = LaneType;
-  static constexpr int kLanes = 16 / sizeof(LaneType);
-  static constexpr int kWidth = sizeof(LaneType);
+/// The storage of N lanes and how to name them. As on the SPU the lanes left out are zero (here two at least
+/// are given: one alone would be an implicit conversion from a scalar).
+template <class T, int N>
+struct Lanes;
+
+template <class T>
+struct SC_SDK_REGISTER Lanes<T, 2> {
+  Raw<T> raw;
+  Lanes() = default;
+  constexpr Lanes(T l0, T l1) : raw{l0, l1} {}
 };
+template <class T>
+struct SC_SDK_REGISTER Lanes<T, 4> {
+  Raw<T> raw;
+  Lanes() = default;
+  constexpr Lanes(T l0, T l1, T l2 = 0, T l3 = 0) : raw{l0, l1, l2, l3} {}
+};
+template <class T>
+struct SC_SDK_REGISTER Lanes<T, 8> {
+  Raw<T> raw;
+  Lanes() = default;
+  constexpr Lanes(T l0, T l1, T l2 = 0, T l3 = 0, T l4 = 0, T l5 = 0, T l6 = 0, T l7 = 0)
+      : raw{l0, l1, l2, l3, l4, l5, l6, l7} {}
+};
+template <class T>
+struct SC_SDK_REGISTER Lanes<T, 16> {
+  Raw<T> raw;
+  Lanes() = default;
+  constexpr Lanes(T l0, T l1, T l2 = 0, T l3 = 0, T l4 = 0, T l5 = 0, T l6 = 0, T l7 = 0, T l8 = 0, T l9 = 0,
+                  T l10 = 0, T l11 = 0, T l12 = 0, T l13 = 0, T l14 = 0, T l15 = 0)
+      : raw{l0, l1, l2, l3, l4, l5, l6, l7, l8, l9, l10, l11, l12, l13, l14, l15} {}
+};
+
+/// One vector type for each lane type. No operators: only what the language extensions document.
+template <class T>
+struct SC_SDK_REGISTER Vector : Lanes<T, 16 / sizeof(T)> {
+  using Lane = T;
+  static constexpr int kWidth = sizeof(T);
+  static constexpr int kLanes = 16 / kWidth;
+
+  Vector() = default;
+  using Lanes<T, 16 / sizeof(T)>::Lanes;
+
+  /// A cast from another vector type, qword included.
+  template <class Other, int = Other::kWidth>
+  SC_SDK_INLINE explicit Vector(const Other& other) {
+    this->raw = (Raw<T>)flip_bytes<(Other::kWidth - 1) ^ (kWidth - 1)>((Bytes)other.raw);
+  }
+};
+
+}  // namespace softcell_sdk
+
+using vec_uchar16 = softcell_sdk::Vector<unsigned char>;
+using vec_char16 = softcell_sdk::Vector<signed char>;
+using vec_ushort8 = softcell_sdk::Vector<unsigned short>;
+using vec_short8 = softcell_sdk::Vector<signed short>;
+using vec_uint4 = softcell_sdk::Vector<unsigned int>;
+using vec_int4 = softcell_sdk::Vector<signed int>;
+using vec_ullong2 = softcell_sdk::Vector<unsigned long long>;
+using vec_llong2 = softcell_sdk::Vector<signed long long>;
+using vec_float4 = softcell_sdk::Vector<float>;
+using vec_double2 = softcell_sdk::Vector<double>;
+
+/// A register without a type, for the specific intrinsics (si_*). In memory it is a vector of words; casts do
+/// the rest.
+struct SC_SDK_REGISTER qword {
+  static constexpr int kWidth = 4;
+  softcell_sdk::Raw<unsigned int> raw;
+
+  qword() = default;
+  template <class T>
+  SC_SDK_INLINE explicit qword(const softcell_sdk::Vector<T>& v) : raw(vec_uint4(v).raw) {}
+};
+
+namespace softcell_sdk {
 
 template <bool Condition>
 struct EnableIf {};
@@ -50,121 +130,74 @@ template <bool Condition>
 using If = typename EnableIf<Condition>::Type;
 
 template <class T>
-inline constexpr int kIsVector = 0;
-
-}  // namespace softcell_sdk
-
-// One class for each type: no operators, only what the language extensions document. Raw vectors of the compiler go in and out by
-// name (`raw`, from_raw), never silently.
-#define SC_SDK_VECTOR(Name, LaneType)                                                                              \
-  struct alignas(16) Name : softcell_sdk::Vector<Name, LaneType> {                                                 \
-    softcell_sdk::Raw<LaneType> raw;                                                                               \
-    Name() = default;                                                                                              \
-    /* As many lanes as the type has. */                                                                           \
-    template <class... L, softcell_sdk::If<sizeof...(L) == kLanes> = 0>                                            \
-    constexpr Name(L... lanes) : raw{static_cast<LaneType>(lanes)...} {}                                           \
-    /* A cast from another vector type keeps the SPU's bytes. */                                                   \
-    template <class Other, class = decltype(Other::kLanes)>                                                        \
-    explicit Name(const Other& other)                                                                              \
-        : raw((softcell_sdk::Raw<LaneType>)softcell_sdk::permute_bytes<(Other::kWidth - 1) ^ (kWidth - 1)>(        \
-              (softcell_sdk::Bytes)other.raw)) {}                                                                  \
-    static Name from_raw(softcell_sdk::Raw<LaneType> value) {                                                      \
-      Name result;                                                                                                 \
-      result.raw = value;                                                                                          \
-      return result;                                                                                               \
-    }                                                                                                              \
-  };                                                                                                               \
-  template <>                                                                                                      \
-  inline constexpr int softcell_sdk::kIsVector<Name> = 1;
-
-SC_SDK_VECTOR(vec_uchar16, unsigned char)
-SC_SDK_VECTOR(vec_char16, signed char)
-SC_SDK_VECTOR(vec_ushort8, unsigned short)
-SC_SDK_VECTOR(vec_short8, signed short)
-SC_SDK_VECTOR(vec_uint4, unsigned int)
-SC_SDK_VECTOR(vec_int4, signed int)
-SC_SDK_VECTOR(vec_ullong2, unsigned long long)
-SC_SDK_VECTOR(vec_llong2, signed long long)
-SC_SDK_VECTOR(vec_float4, float)
-SC_SDK_VECTOR(vec_double2, double)
-#undef SC_SDK_VECTOR
-
-/// A register without a type, for the specific intrinsics (si_*). It keeps its bytes as words do: word 0 is lane 0.
-struct alignas(16) qword : softcell_sdk::Vector<qword, unsigned int> {
-  softcell_sdk::Raw<unsigned int> raw;
-  qword() = default;
-  template <class Other, class = decltype(Other::kLanes)>
-  explicit qword(const Other& other) : raw(vec_uint4(other).raw) {}
+struct Same {
+  using Type = T;
 };
-
-namespace softcell_sdk {
-
-/// The unsigned and signed integer vectors with lanes of a given width.
-template <int Width>
-struct OfWidth;
-template <>
-struct OfWidth<1> {
-  using Unsigned = vec_uchar16;
-  using Signed = vec_char16;
-};
-template <>
-struct OfWidth<2> {
-  using Unsigned = vec_ushort8;
-  using Signed = vec_short8;
-};
-template <>
-struct OfWidth<4> {
-  using Unsigned = vec_uint4;
-  using Signed = vec_int4;
-};
-template <>
-struct OfWidth<8> {
-  using Unsigned = vec_ullong2;
-  using Signed = vec_llong2;
-};
-template <class V>
-using UnsignedOf = typename OfWidth<V::kWidth>::Unsigned;
-template <class V>
-using SignedOf = typename OfWidth<V::kWidth>::Signed;
+/// T, but given by the other arguments: this one is converted to it.
+template <class T>
+using Scalar = typename Same<T>::Type;
 
 template <class A, class B>
 inline constexpr bool kSame = false;
 template <class A>
 inline constexpr bool kSame<A, A> = true;
 
-template <class V>
-inline constexpr bool kVector = kIsVector<V> == 1;
-template <class V>
-inline constexpr bool kFloating = kSame<V, vec_float4> || kSame<V, vec_double2>;
-template <class V>
-inline constexpr bool kInteger = kVector<V> && !kFloating<V>;
+template <class T>
+inline constexpr bool kFloating = kSame<T, float> || kSame<T, double>;
+/// Bytes, halfwords and words.
+template <class T>
+inline constexpr bool kInteger = !kFloating<T> && sizeof(T) <= 4;
 /// Halfwords and words: what most integer instructions work on.
-template <class V>
-inline constexpr bool kHalfOrWord = kSame<V, vec_ushort8> || kSame<V, vec_short8> || kSame<V, vec_uint4> || kSame<V, vec_int4>;
+template <class T>
+inline constexpr bool kHalfOrWord = kInteger<T> && sizeof(T) >= 2;
+template <class T>
+inline constexpr bool kWord = kInteger<T> && sizeof(T) == 4;
 
-/// Lane by lane: result[i] = f(a[i], ...).
-template <class R, class F, class... V>
-inline R for_lanes(F f, const V&... operand) {
-  R result{};
-  for (int i = 0; i < R::kLanes; ++i) result.raw[i] = static_cast<typename R::Lane>(f(operand.raw[i]...));
+template <int Width>
+struct OfWidth;
+template <>
+struct OfWidth<1> {
+  using Unsigned = unsigned char;
+  using Signed = signed char;
+};
+template <>
+struct OfWidth<2> {
+  using Unsigned = unsigned short;
+  using Signed = signed short;
+};
+template <>
+struct OfWidth<4> {
+  using Unsigned = unsigned int;
+  using Signed = signed int;
+};
+template <>
+struct OfWidth<8> {
+  using Unsigned = unsigned long long;
+  using Signed = signed long long;
+};
+/// The integer lane as wide as T: of masks, and of shift counts.
+template <class T>
+using Unsigned = typename OfWidth<sizeof(T)>::Unsigned;
+template <class T>
+using Signed = typename OfWidth<sizeof(T)>::Signed;
+
+/// The sixteen bytes as the host's instructions take them, and back.
+template <class V>
+SC_SDK_INLINE __m128i bits(const V& v) {
+  return (__m128i)v.raw;
+}
+template <class V, class AnyRaw>
+SC_SDK_INLINE V make(AnyRaw raw) {
+  static_assert(sizeof(raw) == 16);
+  V result;
+  result.raw = (decltype(V::raw))raw;
   return result;
 }
 
-/// The same sixteen bytes under another type of the same lane width.
-template <class To, class From>
-inline To same_lanes(const From& from) {
-  static_assert(To::kWidth == From::kWidth);
-  return To::from_raw((Raw<typename To::Lane>)from.raw);
-}
-
 /// Integer arithmetic wraps: it is done on unsigned lanes.
-template <class V>
-inline Raw<typename UnsignedOf<V>::Lane> wrap(const V& v) {
-  return (Raw<typename UnsignedOf<V>::Lane>)v.raw;
-}
-template <class V>
-inline V unwrap(Raw<typename UnsignedOf<V>::Lane> raw) {
-  return V::from_raw((Raw<typename V::Lane>)raw);
+template <class T>
+SC_SDK_INLINE Raw<Unsigned<T>> wrap(const Vector<T>& v) {
+  return (Raw<Unsigned<T>>)v.raw;
 }
 
 }  // namespace softcell_sdk

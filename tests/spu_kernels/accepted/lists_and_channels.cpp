@@ -1,6 +1,5 @@
-// sdk: check
-// List commands, atomic lines, signals, mailboxes, events, the tag manager. Host headers: with the rest of
-// spu_mfcio.h.
+// sdk: check host
+// List commands, atomic lines, signals, mailboxes, events, the tag manager.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 

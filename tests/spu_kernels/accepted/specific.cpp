@@ -1,29 +1,29 @@
-// sdk: check
-// One or two instructions of each operand shape, by their own names. Host headers: with the si_* intrinsics.
+// sdk: check host
+// One or two instructions of each operand shape, by their own names.
 #include "returns.h"
 #include "vectors.h"
 
-RETURNS(qword, si_lqd(s8, -32));
+RETURNS(qword, si_lqd(q, -32));
 RETURNS(qword, si_lqa(0x3FFFC));
-RETURNS(void, si_stqd(s8, s8, 16));
-RETURNS(void, si_stqx(s8, s8, s8));
-RETURNS(qword, si_cwd(s8, 4));
+RETURNS(void, si_stqd(q, q, 16));
+RETURNS(void, si_stqx(q, q, q));
+RETURNS(qword, si_cwd(q, 4));
 RETURNS(qword, si_il(-32768));
 RETURNS(qword, si_ilhu(0xFFFF));
 RETURNS(qword, si_iohl(si_ilhu(0x3F80), 0));
 RETURNS(qword, si_fsmbi(0x0F0F));
-RETURNS(qword, si_a(s8, s8));
-RETURNS(qword, si_ai(s8, 511));
-RETURNS(qword, si_addx(s8, s8, s8));
-RETURNS(qword, si_mpyhhau(s8, s8, s8));
-RETURNS(qword, si_shufb(s8, s8, (qword)u8));
-RETURNS(qword, si_rotqbyi(s8, -4));
-RETURNS(qword, si_rotmi(s8, -31));
-RETURNS(qword, si_clgtbi(s8, 127));
+RETURNS(qword, si_a(q, q));
+RETURNS(qword, si_ai(q, 511));
+RETURNS(qword, si_addx(q, q, q));
+RETURNS(qword, si_mpyhhau(q, q, q));
+RETURNS(qword, si_shufb(q, q, (qword)u8));
+RETURNS(qword, si_rotqbyi(q, -4));
+RETURNS(qword, si_rotmi(q, -31));
+RETURNS(qword, si_clgtbi(q, 127));
 RETURNS(qword, si_fma((qword)f32, (qword)f32, (qword)f32));
 RETURNS(qword, si_csflt((qword)s32, 127));
 RETURNS(qword, si_fi((qword)f32, si_frest((qword)f32)));
-RETURNS(void, si_heqi(s8, 0));
+RETURNS(void, si_heqi(q, 0));
 RETURNS(void, si_stop(0x2000));
 RETURNS(qword, si_rdch(SPU_RdInMbox));
 RETURNS(void, si_wrch(SPU_WrOutMbox, si_from_uint(1u)));

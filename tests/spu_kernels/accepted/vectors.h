@@ -13,6 +13,7 @@ extern vec_ullong2 u64;
 extern vec_llong2 s64;
 extern vec_float4 f32;
 extern vec_double2 f64;
+extern qword q;
 
 extern int i;
 extern unsigned int u;

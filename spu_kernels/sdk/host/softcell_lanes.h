@@ -1,0 +1,87 @@
+#pragma once
+// Scalars in and out of lanes.  [LEXT, vector and scalar intrinsics] documented
+
+#include "softcell_vectors.h"
+
+namespace softcell_sdk {
+
+/// The lane type that a scalar of type T splats to. Only the exact scalar types have one: on the SPU, too,
+/// spu_splats(true) is an error. 64-bit integers have two names; on the SPU `long` has 32 bits and is none of
+/// them.
+template <class T>
+struct LaneOf {};
+template <class T>
+struct LaneIs {
+  using Type = T;
+};
+template <>
+struct LaneOf<unsigned char> : LaneIs<unsigned char> {};
+template <>
+struct LaneOf<signed char> : LaneIs<signed char> {};
+template <>
+struct LaneOf<unsigned short> : LaneIs<unsigned short> {};
+template <>
+struct LaneOf<signed short> : LaneIs<signed short> {};
+template <>
+struct LaneOf<unsigned int> : LaneIs<unsigned int> {};
+template <>
+struct LaneOf<signed int> : LaneIs<signed int> {};
+template <>
+struct LaneOf<unsigned long> : LaneIs<unsigned long long> {};  // the host's uint64_t
+template <>
+struct LaneOf<signed long> : LaneIs<signed long long> {};
+template <>
+struct LaneOf<unsigned long long> : LaneIs<unsigned long long> {};
+template <>
+struct LaneOf<signed long long> : LaneIs<signed long long> {};
+template <>
+struct LaneOf<float> : LaneIs<float> {};
+template <>
+struct LaneOf<double> : LaneIs<double> {};
+
+template <class T>
+SC_SDK_INLINE Vector<T> splats(T value) {
+  // A sum with zero, which is how the compiler's vectors broadcast, would not keep a float's bits under every
+  // rounding mode.
+  Vector<T> result;
+  if constexpr (sizeof(T) == 1) {
+    result.raw = Raw<T>{value, value, value, value, value, value, value, value,
+                        value, value, value, value, value, value, value, value};
+  } else if constexpr (sizeof(T) == 2) {
+    result.raw = Raw<T>{value, value, value, value, value, value, value, value};
+  } else if constexpr (sizeof(T) == 4) {
+    result.raw = Raw<T>{value, value, value, value};
+  } else {
+    result.raw = Raw<T>{value, value};
+  }
+  return result;
+}
+
+}  // namespace softcell_sdk
+
+/// The scalar in every lane.
+template <class S, class T = typename softcell_sdk::LaneOf<S>::Type>
+SC_SDK_INLINE softcell_sdk::Vector<T> spu_splats(S value) {
+  return softcell_sdk::splats(static_cast<T>(value));
+}
+
+/// The scalar in lane `element` modulo the number of lanes. The SPU leaves the others undefined; here they
+/// hold it too.
+template <class S, class T = typename softcell_sdk::LaneOf<S>::Type>
+SC_SDK_INLINE softcell_sdk::Vector<T> spu_promote(S value, int) {
+  return softcell_sdk::splats(static_cast<T>(value));
+}
+
+/// Lane `element` modulo the number of lanes.
+template <class T>
+SC_SDK_INLINE T spu_extract(softcell_sdk::Vector<T> a, int element) {
+  return a.raw[element & (a.kLanes - 1)];
+}
+
+/// `a` with the scalar in lane `element` modulo the number of lanes.
+template <class T>
+SC_SDK_INLINE softcell_sdk::Vector<T> spu_insert(softcell_sdk::Scalar<T> value, softcell_sdk::Vector<T> a,
+                                                 int element) {
+  a.raw[element & (a.kLanes - 1)] = value;
+  return a;
+}
