@@ -42,7 +42,6 @@ class CommandLine {
  public:
   CommandLine() {
     app_.set_version_flag("--version", "softcell " SOFTCELL_VERSION);
-    app_.require_subcommand(1);
     add_demo();
     add_spu();
     add_scenes();
@@ -56,6 +55,7 @@ class CommandLine {
       if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
       throw UsageError(error.what());
     }
+    if (!chosen_) throw UsageError("say what to do: demo 3d, spu budget, scenes or bench");
     if (!size_.empty()) demo_.size = parse_size(size_);
     demo_.schedule = parse_dma(schedule_);
     return chosen_();
@@ -63,7 +63,7 @@ class CommandLine {
 
  private:
   void add_demo() {
-    CLI::App* demo = app_.add_subcommand("demo", "Run a demo")->require_subcommand(1);
+    CLI::App* demo = app_.add_subcommand("demo", "Run a demo: 3d");
     CLI::App* d = demo->add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
     d->add_flag("--headless", demo_.headless, "Run without a window");
     d->add_option("--scene", demo_.scene, "Scene by name; `softcell scenes` lists them (default: arena)");
@@ -82,7 +82,7 @@ class CommandLine {
   }
 
   void add_spu() {
-    CLI::App* spu = app_.add_subcommand("spu", "Look at SPU kernels")->require_subcommand(1);
+    CLI::App* spu = app_.add_subcommand("spu", "Look at SPU kernels: budget");
     CLI::App* b = spu->add_subcommand("budget", "Local store of each kernel: sections, stack used, share of 256 KB, budget");
     b->add_option("--json", budget_.json, "Write the table to this file as well");
     b->callback([this] { chosen_ = [this] { return run_budget(budget_); }; });

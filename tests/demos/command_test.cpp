@@ -174,7 +174,7 @@ TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
 
 INSTANTIATE_TEST_SUITE_P(
     WrongUsage, CommandRefuses,
-    testing::Values(Refusal{"", 2, "subcommand"}, Refusal{"dance", 2, "dance"}, Refusal{"demo", 2, "subcommand"},
+    testing::Values(Refusal{"", 2, "say what to do"}, Refusal{"dance", 2, "dance"}, Refusal{"demo", 2, "say what to do"}, Refusal{"demo 4d", 2, "4d"},
                     Refusal{SC_DEMO "--bogus", 2, "--bogus"}, Refusal{SC_DEMO "--spes 7", 2, "1"}, Refusal{SC_DEMO "--spes 0", 2, "6"},
                     Refusal{SC_DEMO "--spes two", 2, "--spes"}, Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
                     Refusal{"demo 3d --headless --size 99999x20", 2, "8192"}, Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
