@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <tuple>
 
@@ -499,6 +501,22 @@ TYPED_TEST(Matching, RegionMassesAddUpToTheBody) {
     }
     EXPECT_NEAR(regions / body, 1, TestFixture::kFloat ? 1e-6 : 1e-13);
   });
+}
+
+TEST(MatchingBits, AreTheSameForEveryCompilerAndBuild) {
+  const std::vector<Eigen::Vector3i> cells = test::all_cells()[1].second;
+  const Lattice lattice = lattice_from_cells(cells, 0.125f, {0, 0, 0});
+  Body<float> body(lattice, 2);
+  auto x = Body<float>::narrow(body.rest()), v = Body<float>::narrow(noise(x.size(), 2, 36));
+  for (int step = 0; step < 300; ++step) {
+    body.matcher().step_velocities(x, v, 0.75f, 1.0f / 64, 0.02f);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += v[i] * (1.0f / 64);
+  }
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  for (const Eigen::Vector3f& position : x)
+    for (int d = 0; d < 3; ++d) hash = (hash ^ std::bit_cast<std::uint32_t>(position[d])) * 0x100000001b3u;
+  // Changes with any change of the arithmetic; never with the compiler, its options, or the host.
+  EXPECT_EQ(hash, 0xf747525b1416b5e5u);
 }
 
 }  // namespace

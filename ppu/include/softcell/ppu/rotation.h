@@ -19,7 +19,7 @@ namespace softcell::ppu {
 /// zero.
 /// @return          the rotation matrix of the new `rotation`.
 /// @note  Real is float or double. Deterministic; allocates nothing.
-/// @source  [KKB18] for Newton with a warm start; the safeguards are ours, derived in docs/soft_bodies.md.
+/// @source  [KKB18] for Newton with a warm start; the safeguards are derived beside the code.
 template <typename Real>
 Eigen::Matrix<Real, 3, 3> update_rotation(const Eigen::Matrix<Real, 3, 3>& matrix,
                                           Eigen::Quaternion<Real>& rotation, Real floor = Real(0));
