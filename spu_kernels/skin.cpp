@@ -108,11 +108,15 @@ struct Surface {
   Vector3x4 position, normal;
 };
 
-/// normalize(cof(F) N); where the cell is flat, N.
+/// normalize(cof(F) N); where the cell is flat, N. With F's columns f1 f2 f3,
+/// cof(F) N = Nx f2 x f3 + Ny f3 x f1 + Nz f1 x f2 = f2 x (Nx f3 - Nz f1) + Ny f3 x f1.
 inline Vector3x4 deformed_normal(const Vector3x4& f1, const Vector3x4& f2, const Vector3x4& f3, const Vector3x4& rest) {
-  const Vector3x4 n = scale_add(cross(f1, f2), rest.z, scale_add(cross(f3, f1), rest.y, scale(cross(f2, f3), rest.x)));
+  const Vector3x4 across = {spu_msub(f3.x, rest.x, spu_mul(f1.x, rest.z)), spu_msub(f3.y, rest.x, spu_mul(f1.y, rest.z)),
+                            spu_msub(f3.z, rest.x, spu_mul(f1.z, rest.z))};
+  const Vector3x4 n = scale_add(cross(f3, f1), rest.y, cross(f2, across));
   const vec_float4 squared = dot(n, n);
-  const vec_uint4 flat = spu_cmpgt(spu_splats(kSmallestNormalSquared), squared);
+  // Both are positive floats, whose order is that of their bits: an integer compare is the cheaper one on a host.
+  const vec_uint4 flat = spu_cmpgt((vec_int4)spu_splats(kSmallestNormalSquared), (vec_int4)squared);
   return select(scale(n, reciprocal_sqrt(squared)), rest, flat);
 }
 
@@ -129,22 +133,22 @@ inline HalfVector pack(vec_uint4 x, vec_uint4 y, vec_uint4 z, vec_uint4 fourth) 
 
 constexpr uint32_t kHalfOneInHigh = 0x3C000000u;
 
+/// The way for every bit pattern.
 inline void to_half_any(const Surface& s, HalfVector& position, HalfVector& normal) {
   position = pack(high_half_of_any(s.position.x), high_half_of_any(s.position.y), high_half_of_any(s.position.z),
                   spu_splats(kHalfOneInHigh));
   normal = pack(high_half_of_any(s.normal.x), high_half_of_any(s.normal.y), high_half_of_any(s.normal.z), spu_splats(0u));
 }
 
+/// The fast way, for positive positions (the PPU side puts the origin below the body) and normals without tiny components.
 inline void to_half(const Surface& s, HalfVector& position, HalfVector& normal) {
-  // A normal's components are at most 1.
   const vec_uint4 outside = spu_or(
-      spu_or(spu_or(spu_or(below_half_normal(s.position.x), above_half_normal(s.position.x)),
-                    spu_or(below_half_normal(s.position.y), above_half_normal(s.position.y))),
-             spu_or(below_half_normal(s.position.z), above_half_normal(s.position.z))),
+      spu_or(spu_or(outside_positive_half_normal(s.position.x), outside_positive_half_normal(s.position.y)),
+             outside_positive_half_normal(s.position.z)),
       spu_or(spu_or(below_half_normal(s.normal.x), below_half_normal(s.normal.y)), below_half_normal(s.normal.z)));
   if (__builtin_expect(spu_extract(spu_orx(outside), 0) >= 0x80000000u, 0)) return to_half_any(s, position, normal);
-  position = pack(high_half_of_normal(s.position.x), high_half_of_normal(s.position.y), high_half_of_normal(s.position.z),
-                  spu_splats(kHalfOneInHigh));
+  position = pack(high_half_of_positive(s.position.x), high_half_of_positive(s.position.y),
+                  high_half_of_positive(s.position.z), spu_splats(kHalfOneInHigh));
   normal = pack(high_half_of_normal(s.normal.x), high_half_of_normal(s.normal.y), high_half_of_normal(s.normal.z), spu_splats(0u));
 }
 
@@ -231,12 +235,10 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
     const uint32_t buffer = chunk & 1u;
     if (chunk + 1 < chunks) fetch_chunk(chunk + 1);
-    wait_for_tag(kTagVertices + buffer);
-    wait_for_tag(kTagGroups + buffer);
+    wait_for_tags(1u << (kTagGroups + buffer) | 1u << (kTagVertices + buffer));
     skin_chunk(ls.groups[buffer], groups_in_chunk(chunk), ls.vertices[buffer]);
     put_chunk(chunk);
   }
-  wait_for_tag(kTagVertices);
-  wait_for_tag(kTagVertices + 1);
+  wait_for_tags(3u << kTagVertices);
   return kSkinDone;
 }

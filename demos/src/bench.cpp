@@ -43,7 +43,7 @@ struct SkinCase {
         pool(memory, {.spes = 1}),
         kernel(load_kernel("skin")),
         orchestrator(memory, pool, kernel),
-        scalar_out(4 * embedding->groups.size()) {
+        scalar_out(kSkinnedBodies, std::vector<spu::SkinnedVertex>(4 * embedding->groups.size())) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       Eigen::Vector3f x = lattice.rest_position(i);
       x.x() += 0.1f * x.y() * x.y();
@@ -64,10 +64,10 @@ struct SkinCase {
 
   void run_scalar() {
     const Eigen::Vector3f origin(-2, -2, -2);
-    for (std::size_t body = 0; body < kSkinnedBodies; ++body) {
+    for (auto& out : scalar_out) {
       for (const ppu::SkinPart& part : embedding->parts) {
         ppu::skin_scalar(*embedding, part, positions, origin,
-                         std::span(scalar_out).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
+                         std::span(out).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
       }
     }
   }
@@ -82,7 +82,7 @@ struct SkinCase {
   std::vector<Eigen::Vector3f> positions;
   std::vector<spu::SkinCorner> corners;
   std::vector<std::span<const spu::SkinCorner>> all_corners;  // one for each body, all in the same pose
-  std::vector<spu::SkinnedVertex> scalar_out;
+  std::vector<std::vector<spu::SkinnedVertex>> scalar_out;  // of each body
 };
 
 void add_skin(std::vector<Benchmark>& all, const std::shared_ptr<SkinCase>& body) {

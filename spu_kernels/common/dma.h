@@ -9,11 +9,14 @@ namespace softcell::spu {
 /// Most bytes that one MFC command moves. [CBEA, MFC commands] documented
 constexpr uint32_t kMaxTransferBytes = 16384;
 
-/// Blocks until every command of the tag group is complete.
-inline void wait_for_tag(uint32_t tag) {
-  mfc_write_tag_mask(1u << tag);
+/// Blocks until every command of the tag groups in `mask` (bit t is tag t) is complete.
+inline void wait_for_tags(uint32_t mask) {
+  mfc_write_tag_mask(mask);
   mfc_read_tag_status_all();
 }
+
+/// Blocks until every command of one tag group is complete.
+inline void wait_for_tag(uint32_t tag) { wait_for_tags(1u << tag); }
 
 /// Queues as many gets as it takes to fetch `bytes` (a multiple of 16, 0 included) to `ls`, all in one tag group.
 inline void get_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {

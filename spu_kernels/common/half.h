@@ -10,24 +10,29 @@ namespace softcell::spu {
 constexpr unsigned int kHalfSmallestNormal = 0x38800000u;  // 2^-14
 constexpr unsigned int kHalfOverflow = 0x477FF000u;        // 65520
 
-/// Sign bit set in the lanes that are too small to become a normal binary16, zero among them.
+/// Sign bit set in the lanes whose magnitude is too small for a normal binary16, zero among them.
 inline vec_uint4 below_half_normal(vec_float4 value) {
   return spu_sub(spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu)), spu_splats(kHalfSmallestNormal));
 }
 
-/// Sign bit set in the lanes that become infinite.
-inline vec_uint4 above_half_normal(vec_float4 value) {
-  return spu_add(spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu)), spu_splats(0x80000000u - kHalfOverflow));
+/// Sign bit set in the lanes that are negative, too small for a normal binary16, or so large that they become infinite.
+inline vec_uint4 outside_positive_half_normal(vec_float4 value) {
+  const vec_uint4 bits = (vec_uint4)value;
+  return spu_or(spu_sub(bits, spu_splats(kHalfSmallestNormal)), spu_add(bits, spu_splats(0x80000000u - kHalfOverflow)));
 }
 
-/// binary16 bits in the high half of each word; the low half is what was cut off. Only for lanes whose sign bit is clear in
-/// both functions above.
-inline vec_uint4 high_half_of_normal(vec_float4 value) {
+/// binary16 bits in the high half of each word; what is in the low half was cut off. For lanes whose sign bit is clear in
+/// outside_positive_half_normal().
+inline vec_uint4 high_half_of_positive(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
   const vec_uint4 odd = spu_and(spu_rlmask(bits, -13), spu_splats(1u));
   // Rebias the exponent (127 to 15) and round in one addition; a carry out of the fraction moves the exponent, as it should.
-  const vec_uint4 rounded = spu_add(spu_add(bits, odd), spu_splats(0xFFFu - (112u << 23)));
-  return spu_sel(spu_sl(rounded, 3), bits, spu_splats(0x80000000u));
+  return spu_sl(spu_add(spu_add(bits, odd), spu_splats(0xFFFu - (112u << 23))), 3);
+}
+
+/// The same for either sign. For lanes whose sign bit is clear in below_half_normal(), and whose magnitude is below kHalfOverflow.
+inline vec_uint4 high_half_of_normal(vec_float4 value) {
+  return spu_sel(high_half_of_positive(value), (vec_uint4)value, spu_splats(0x80000000u));
 }
 
 /// binary16 bits in the high half of each word, the low half 0, for every bit pattern: subnormals, zero, infinity; a NaN
