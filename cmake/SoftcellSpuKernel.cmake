@@ -6,6 +6,8 @@
 # Each source is also checked against the declarations of a real SPU compiler, as the test spu_syntax.<name>.<file>.
 
 set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk)
+# GNU ld: the link script is written for it.
+find_program(SOFTCELL_KERNEL_LINKER ld.bfd REQUIRED)
 set(SOFTCELL_CHECK_BUDGET ${CMAKE_CURRENT_LIST_DIR}/CheckSpuBudget.cmake)
 
 set(SOFTCELL_KERNEL_FLAGS
@@ -48,7 +50,7 @@ function(softcell_add_spu_kernel name)
   target_include_directories(${name}_objects PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/.. ${arg_INCLUDES})
 
   add_custom_command(OUTPUT ${image}
-    COMMAND ${CMAKE_LINKER} -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
+    COMMAND ${SOFTCELL_KERNEL_LINKER} -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
       --defsym softcell_stack_bytes=${arg_STACK_BYTES} --defsym softcell_budget_bytes=${arg_BUDGET_BYTES}
       --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
       $<TARGET_OBJECTS:${name}_objects> -o ${image}

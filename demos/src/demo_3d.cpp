@@ -77,7 +77,7 @@ class FrameFolder {
 /// Where pictures go: nowhere, files, a video. The GL context is made only when a picture is asked for.
 class Pictures {
  public:
-  Pictures(const Demo3dOptions& options, const Scene& scene, const Simulation3d& simulation) : options_(options) {
+  Pictures(const Demo3dOptions& options, const Scene& scene, const Simulation3d& simulation) {
     if (options.out) folder_.emplace(*options.out);
     if (options.video) {
       if (const auto parent = options.video->parent_path(); !parent.empty()) {
@@ -111,7 +111,6 @@ class Pictures {
   const std::vector<double>& milliseconds() const { return milliseconds_; }
 
  private:
-  const Demo3dOptions& options_;
   std::optional<FrameFolder> folder_;
   std::unique_ptr<render::VideoWriter> video_;
   std::unique_ptr<render::GlContext> context_;
