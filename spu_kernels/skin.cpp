@@ -1,8 +1,8 @@
 // skin: mesh vertices from the particles of their lattice cells.  [LSM07, embedding]
 //
 //   x = sum_k N_k(xi, eta, zeta) x_k        trilinear, over the cell's eight corners
-//   F = (dx/dxi, dx/deta, dx/dzeta)         deformation gradient, times the spacing (which the normalisation removes)
-//   n = normalize(cof(F) N)                 cof(F) = [f2 x f3, f3 x f1, f1 x f2], N the rest normal
+//   F = (dx/dxi, dx/deta, dx/dzeta)         deformation gradient, times the spacing (which the normalisation
+//   removes) n = normalize(cof(F) N)                 cof(F) = [f2 x f3, f3 x f1, f1 x f2], N the rest normal
 //
 //   array     direction  element                count         alignment
 //   job       in         SkinJob, 128 bytes     1             128
@@ -10,8 +10,8 @@
 //   groups    in         SkinGroup, 128 bytes   any           128
 //   vertices  out        SkinnedVertex, 16 bytes  4 per group   128
 //
-// Budget: 96 KB. Corners 32 KB, two buffers of 8 KB in and 4 KB out, about 6 KB of code and tables, 4 KB of stack.
-// DMA: 128 bytes in and 64 bytes out for four vertices, and 16 bytes for a corner once a job.
+// Budget: 96 KB. Corners 32 KB, two buffers of 8 KB in and 4 KB out, about 6 KB of code and tables, 4 KB of
+// stack. DMA: 128 bytes in and 64 bytes out for four vertices, and 16 bytes for a corner once a job.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
 
@@ -26,8 +26,9 @@
 namespace softcell::spu {
 namespace {
 
-constexpr uint32_t kChunkGroups = 64;         // 8 KB in, 4 KB out: long enough to hide a transfer's latency
-constexpr float kSmallestNormalSquared = 1e-20f;  // of |cof(F) N|, in m^4: below it the cell is flat and has no normal
+constexpr uint32_t kChunkGroups = 64;  // 8 KB in, 4 KB out: long enough to hide a transfer's latency
+constexpr float kSmallestNormalSquared =
+    1e-20f;  // of |cof(F) N|, in m^4: below it the cell is flat and has no normal
 
 enum Tag : uint32_t {
   kTagCorners = 0,  // the descriptor, then the corners
@@ -79,7 +80,7 @@ inline CellPolynomial polynomial_of(vec_ushort8 corner) {
   const vec_float4 cyz = spu_sub(spu_sub(x6, x4), cy);
   const vec_float4 czx = spu_sub(upper, cx);
   const vec_float4 cxyz = spu_sub(spu_sub(spu_sub(x7, x6), upper), cxy);
-  const auto component = [&](vec_uchar16 splat) __attribute__((always_inline)) -> Polynomial {
+  const auto component = [&](vec_uchar16 splat) __attribute__((always_inline))->Polynomial {
     const auto all = [splat](vec_float4 v) { return spu_shuffle(v, v, splat); };
     return {all(x0), all(cx), all(cy), all(cz), all(cxy), all(cyz), all(czx), all(cxyz)};
   };
@@ -89,7 +90,8 @@ inline CellPolynomial polynomial_of(vec_ushort8 corner) {
   return {component(first), component(second), component(third)};
 }
 
-/// One component of a position, and of the three columns of the deformation gradient: its derivatives by xi, eta, zeta.
+/// One component of a position, and of the three columns of the deformation gradient: its derivatives by xi,
+/// eta, zeta.
 struct Component {
   vec_float4 position, f1, f2, f3;
 };
@@ -110,12 +112,15 @@ struct Surface {
 
 /// normalize(cof(F) N); where the cell is flat, N. With F's columns f1 f2 f3,
 /// cof(F) N = Nx f2 x f3 + Ny f3 x f1 + Nz f1 x f2 = f2 x (Nx f3 - Nz f1) + Ny f3 x f1.
-inline Vector3x4 deformed_normal(const Vector3x4& f1, const Vector3x4& f2, const Vector3x4& f3, const Vector3x4& rest) {
-  const Vector3x4 across = {spu_msub(f3.x, rest.x, spu_mul(f1.x, rest.z)), spu_msub(f3.y, rest.x, spu_mul(f1.y, rest.z)),
+inline Vector3x4 deformed_normal(const Vector3x4& f1, const Vector3x4& f2, const Vector3x4& f3,
+                                 const Vector3x4& rest) {
+  const Vector3x4 across = {spu_msub(f3.x, rest.x, spu_mul(f1.x, rest.z)),
+                            spu_msub(f3.y, rest.x, spu_mul(f1.y, rest.z)),
                             spu_msub(f3.z, rest.x, spu_mul(f1.z, rest.z))};
   const Vector3x4 n = scale_add(cross(f3, f1), rest.y, cross(f2, across));
   const vec_float4 squared = dot(n, n);
-  // Both are positive floats, whose order is that of their bits: an integer compare is the cheaper one on a host.
+  // Both are positive floats, whose order is that of their bits: an integer compare is the cheaper one on a
+  // host.
   const vec_uint4 flat = spu_cmpgt((vec_int4)spu_splats(kSmallestNormalSquared), (vec_int4)squared);
   return select(scale(n, reciprocal_sqrt(squared)), rest, flat);
 }
@@ -135,21 +140,26 @@ constexpr uint32_t kHalfOneInHigh = 0x3C000000u;
 
 /// The way for every bit pattern.
 inline void to_half_any(const Surface& s, HalfVector& position, HalfVector& normal) {
-  position = pack(high_half_of_any(s.position.x), high_half_of_any(s.position.y), high_half_of_any(s.position.z),
-                  spu_splats(kHalfOneInHigh));
-  normal = pack(high_half_of_any(s.normal.x), high_half_of_any(s.normal.y), high_half_of_any(s.normal.z), spu_splats(0u));
+  position = pack(high_half_of_any(s.position.x), high_half_of_any(s.position.y),
+                  high_half_of_any(s.position.z), spu_splats(kHalfOneInHigh));
+  normal = pack(high_half_of_any(s.normal.x), high_half_of_any(s.normal.y), high_half_of_any(s.normal.z),
+                spu_splats(0u));
 }
 
-/// The fast way, for positive positions (the PPU side puts the origin below the body) and normals without tiny components.
+/// The fast way, for positive positions (the PPU side puts the origin below the body) and normals without
+/// tiny components.
 inline void to_half(const Surface& s, HalfVector& position, HalfVector& normal) {
   const vec_uint4 outside = spu_or(
       spu_or(spu_or(outside_positive_half_normal(s.position.x), outside_positive_half_normal(s.position.y)),
              outside_positive_half_normal(s.position.z)),
-      spu_or(spu_or(below_half_normal(s.normal.x), below_half_normal(s.normal.y)), below_half_normal(s.normal.z)));
-  if (__builtin_expect(spu_extract(spu_orx(outside), 0) >= 0x80000000u, 0)) return to_half_any(s, position, normal);
+      spu_or(spu_or(below_half_normal(s.normal.x), below_half_normal(s.normal.y)),
+             below_half_normal(s.normal.z)));
+  if (__builtin_expect(spu_extract(spu_orx(outside), 0) >= 0x80000000u, 0))
+    return to_half_any(s, position, normal);
   position = pack(high_half_of_positive(s.position.x), high_half_of_positive(s.position.y),
                   high_half_of_positive(s.position.z), spu_splats(kHalfOneInHigh));
-  normal = pack(high_half_of_normal(s.normal.x), high_half_of_normal(s.normal.y), high_half_of_normal(s.normal.z), spu_splats(0u));
+  normal = pack(high_half_of_normal(s.normal.x), high_half_of_normal(s.normal.y),
+                high_half_of_normal(s.normal.z), spu_splats(0u));
 }
 
 /// Four vertices of 16 bytes: transposes the 4 x 4 words, one vertex to a quadword.
@@ -168,8 +178,9 @@ inline void skin_group(const CellPolynomial& p, const Group& g, vec_ushort8* out
   const Component x = evaluate(p.x, g.xi, g.eta, g.zeta);
   const Component y = evaluate(p.y, g.xi, g.eta, g.zeta);
   const Component z = evaluate(p.z, g.xi, g.eta, g.zeta);
-  const Surface surface = {{x.position, y.position, z.position},
-                           deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
+  const Surface surface = {
+      {x.position, y.position, z.position},
+      deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
   HalfVector position, normal;
   to_half(surface, position, normal);
   store(position, normal, out);
@@ -200,7 +211,8 @@ inline void put_chunk(uint32_t chunk) {
   const uint32_t buffer = chunk & 1u;
   mfc_put(ls.vertices[buffer],
           ls.job.vertices_ea + static_cast<uint64_t>(chunk) * kChunkGroups * 4 * sizeof(SkinnedVertex),
-          groups_in_chunk(chunk) * 4 * static_cast<uint32_t>(sizeof(SkinnedVertex)), kTagVertices + buffer, 0, 0);
+          groups_in_chunk(chunk) * 4 * static_cast<uint32_t>(sizeof(SkinnedVertex)), kTagVertices + buffer, 0,
+          0);
 }
 
 /// Fetches both windows of corners, one behind the other, and takes the origin off them.
@@ -222,13 +234,15 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   using namespace softcell::spu;
   mfc_get(&ls.job, argp, sizeof(SkinJob), kTagCorners, 0, 0);
   wait_for_tag(kTagCorners);
-  if (ls.job.window[0].count > kSkinMaxCorners || ls.job.window[1].count > kSkinMaxCorners - ls.job.window[0].count) {
+  if (ls.job.window[0].count > kSkinMaxCorners ||
+      ls.job.window[1].count > kSkinMaxCorners - ls.job.window[0].count) {
     return kSkinTooManyCorners;
   }
 
-  //   get   [0 A][1 B]     [2 A]     [3 B]          A, B: the two buffers in each direction, each with its own tag group
-  //   work       [0 A]     [1 B]     [2 A]          an input buffer is free again when its work is done,
-  //   put             [0 A]     [1 B]     [2 A]     an output buffer when its put of two chunks ago is
+  //   get   [0 A][1 B]     [2 A]     [3 B]          A, B: the two buffers in each direction, each with its
+  //   own tag group work       [0 A]     [1 B]     [2 A]          an input buffer is free again when its work
+  //   is done, put             [0 A]     [1 B]     [2 A]     an output buffer when its put of two chunks ago
+  //   is
   const uint32_t chunks = (ls.job.group_count + kChunkGroups - 1) / kChunkGroups;
   if (chunks != 0) fetch_chunk(0);
   load_corners();

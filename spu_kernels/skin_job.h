@@ -6,8 +6,8 @@
 
 namespace softcell::spu {
 
-/// Four mesh vertices of one lattice cell, one 128-byte line. The embedding packs each cell's vertices into groups of
-/// four; a last group that is not full repeats its last vertex.
+/// Four mesh vertices of one lattice cell, one 128-byte line. The embedding packs each cell's vertices into
+/// groups of four; a last group that is not full repeats its last vertex.
 struct alignas(128) SkinGroup {
   float xi[4];        ///< position in the cell along x, 0..1, one lane per vertex
   float eta[4];       ///< along y
@@ -15,8 +15,10 @@ struct alignas(128) SkinGroup {
   float normal_x[4];  ///< rest normal, unit length
   float normal_y[4];
   float normal_z[4];
-  uint16_t corner[8];     ///< the cell's corners as indices into the job's corner array; corner k = bx + 2 by + 4 bz
-  uint16_t continues[8];  ///< [0] is 1 when the group has the same eight corners as the group before it, else 0
+  uint16_t
+      corner[8];  ///< the cell's corners as indices into the job's corner array; corner k = bx + 2 by + 4 bz
+  uint16_t
+      continues[8];  ///< [0] is 1 when the group has the same eight corners as the group before it, else 0
 };
 static_assert(sizeof(SkinGroup) == 128, "one line");
 
@@ -43,11 +45,12 @@ struct SkinWindow {
 
 /// The job's descriptor, one line in main memory.
 struct alignas(128) SkinJob {
-  uint64_t groups_ea;        ///< group_count SkinGroups, 128-byte aligned
-  uint64_t vertices_ea;      ///< room for 4 * group_count SkinnedVertex, a multiple of 16 (128 is fastest)
-  SkinWindow window[2];      ///< the job's corner array is window[0] followed by window[1]; the sum is at most kSkinMaxCorners
-  float origin[4];           ///< subtracted from every corner; x y z and 0
-  uint32_t group_count;      ///< any number, 0 included
+  uint64_t groups_ea;    ///< group_count SkinGroups, 128-byte aligned
+  uint64_t vertices_ea;  ///< room for 4 * group_count SkinnedVertex, a multiple of 16 (128 is fastest)
+  SkinWindow window[2];  ///< the job's corner array is window[0] followed by window[1]; the sum is at most
+                         ///< kSkinMaxCorners
+  float origin[4];       ///< subtracted from every corner; x y z and 0
+  uint32_t group_count;  ///< any number, 0 included
   uint32_t pad[15];
 };
 static_assert(sizeof(SkinJob) == 128, "one line");

@@ -13,8 +13,8 @@
 #include "json_file.h"
 #include "kernel_samples.h"
 #include "softcell/ls_sim/spe_pool.h"
-#include "softcell/ppu/shapes.h"
 #include "softcell/ppu/shape_matching.h"
+#include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_orchestrator.h"
 #include "softcell/ppu/skin_scalar.h"
 #include "usage_error.h"
@@ -24,7 +24,8 @@ namespace softcell::demos {
 namespace {
 
 constexpr int kRounds = 31;  // of which the minimum and the median are reported
-constexpr std::size_t kSkinnedBodies = 8;  // in one frame, as many as an arena has, so that waking the SPE does not count
+constexpr std::size_t kSkinnedBodies =
+    8;  // in one frame, as many as an arena has, so that waking the SPE does not count
 
 /// One thing to measure: `run` does `items` items of work.
 struct Benchmark {
@@ -66,8 +67,9 @@ struct SkinCase {
     const Eigen::Vector3f origin(-2, -2, -2);
     for (auto& out : scalar_out) {
       for (const ppu::SkinPart& part : embedding->parts) {
-        ppu::skin_scalar(*embedding, part, positions, origin,
-                         std::span(out).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
+        ppu::skin_scalar(
+            *embedding, part, positions, origin,
+            std::span(out).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
       }
     }
   }
@@ -82,7 +84,7 @@ struct SkinCase {
   std::vector<Eigen::Vector3f> positions;
   std::vector<spu::SkinCorner> corners;
   std::vector<std::span<const spu::SkinCorner>> all_corners;  // one for each body, all in the same pose
-  std::vector<std::vector<spu::SkinnedVertex>> scalar_out;  // of each body
+  std::vector<std::vector<spu::SkinnedVertex>> scalar_out;    // of each body
 };
 
 void add_skin(std::vector<Benchmark>& all, const std::shared_ptr<SkinCase>& body) {
@@ -99,10 +101,12 @@ void add_solver(std::vector<Benchmark>& all, int half_width) {
   for (int x = 0; x < kSide; ++x)
     for (int y = 0; y < kSide; ++y)
       for (int z = 0; z < kSide; ++z) cells.emplace_back(x, y, z);
-  const auto lattice = std::make_shared<ppu::Lattice>(ppu::lattice_from_cells(cells, 0.1f, {-0.45f, -0.45f, -0.45f}));
+  const auto lattice =
+      std::make_shared<ppu::Lattice>(ppu::lattice_from_cells(cells, 0.1f, {-0.45f, -0.45f, -0.45f}));
   const auto masses = ppu::particle_masses(*lattice, 1000);
   const auto plan = std::make_shared<const ppu::MatchingPlan<float>>(*lattice, half_width, masses);
-  for (const auto& [label, method] : {std::pair{"eigen", ppu::SumMethod::kBarPlateCube}, std::pair{"naive", ppu::SumMethod::kNaive}}) {
+  for (const auto& [label, method] :
+       {std::pair{"eigen", ppu::SumMethod::kBarPlateCube}, std::pair{"naive", ppu::SumMethod::kNaive}}) {
     const auto matcher = std::make_shared<ppu::ShapeMatcher<float>>(plan, method);
     const auto x = std::make_shared<std::vector<Vector>>();
     for (std::size_t i = 0; i < lattice->particles.size(); ++i) {
@@ -154,7 +158,8 @@ int run_bench(const BenchOptions& options) {
   measure(all);
 
   auto document = nlohmann::ordered_json::array();
-  fmt::print("{:<32} {:>10} {:>10} {:>9}   nanoseconds per item, {} rounds\n", "name", "minimum", "median", "items", kRounds);
+  fmt::print("{:<32} {:>10} {:>10} {:>9}   nanoseconds per item, {} rounds\n", "name", "minimum", "median",
+             "items", kRounds);
   for (const Benchmark& b : all) {
     const double least = b.nanoseconds.front(), median = b.nanoseconds[b.nanoseconds.size() / 2];
     fmt::print("{:<32} {:>10.2f} {:>10.2f} {:>9}\n", b.name, least, median, b.items);

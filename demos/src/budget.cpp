@@ -15,13 +15,14 @@ namespace softcell::demos {
 int run_budget(const BudgetOptions& options) {
   auto document = nlohmann::ordered_json::array();
   std::string over;
-  fmt::print("{:<10} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}\n", "kernel", "text", "rodata", "data", "bss", "stack",
-             "stack used", "total", "share", "budget");
+  fmt::print("{:<10} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}\n", "kernel", "text", "rodata",
+             "data", "bss", "stack", "stack used", "total", "share", "budget");
   for (const ls_sim::KernelImage& kernel : load_kernels()) {
     const ls_sim::ImageSizes& s = kernel.sizes;
     const std::uint32_t used = measure_stack(kernel);
-    fmt::print("{:<10} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>5.1f}% {:>8}\n", kernel.name, s.text, s.rodata, s.data, s.bss,
-               s.stack, used, s.total(), 100.0 * s.total() / dma::kLocalStoreBytes, s.budget);
+    fmt::print("{:<10} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>5.1f}% {:>8}\n", kernel.name, s.text,
+               s.rodata, s.data, s.bss, s.stack, used, s.total(), 100.0 * s.total() / dma::kLocalStoreBytes,
+               s.budget);
     document.push_back({{"kernel", kernel.name},
                         {"text", s.text},
                         {"rodata", s.rodata},
@@ -32,7 +33,8 @@ int run_budget(const BudgetOptions& options) {
                         {"total", s.total()},
                         {"budget", s.budget}});
     if (s.total() > s.budget) {
-      over += fmt::format("{}kernel {} is {} bytes over its budget", over.empty() ? "" : "; ", kernel.name, s.total() - s.budget);
+      over += fmt::format("{}kernel {} is {} bytes over its budget", over.empty() ? "" : "; ", kernel.name,
+                          s.total() - s.budget);
     }
   }
   if (options.json) write_json(*options.json, document);

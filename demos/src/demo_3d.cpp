@@ -46,7 +46,8 @@ std::optional<OwnModel> load_model(const Demo3dOptions& options) {
   const double longest = (box.high - box.low).maxCoeff();
   model.cell_size = static_cast<float>(options.cell.value_or(longest / kDefaultCellsAlongModel));
   ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
-  // Refused here, in the model's own units, before the scene scales both: the sentence has the user's numbers.
+  // Refused here, in the model's own units, before the scene scales both: the sentence has the user's
+  // numbers.
   ppu::voxelize(model.mesh, model.cell_size);
   return model;
 }
@@ -58,7 +59,8 @@ class FrameFolder {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (!std::filesystem::is_directory(folder_)) {
-      throw std::runtime_error("--out " + folder_.string() + " is not a folder and cannot be made one: " + error.message());
+      throw std::runtime_error("--out " + folder_.string() +
+                               " is not a folder and cannot be made one: " + error.message());
     }
     static const std::regex numbered("frame_[0-9]{5,}\\.png");
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
@@ -84,12 +86,14 @@ class Pictures {
         std::error_code ignored;  // what is wrong with the folder, the writer will say
         std::filesystem::create_directories(parent, ignored);
       }
-      video_ = std::make_unique<render::VideoWriter>(*options.video, options.size.width, options.size.height, kFramesPerSecond);
+      video_ = std::make_unique<render::VideoWriter>(*options.video, options.size.width, options.size.height,
+                                                     kFramesPerSecond);
     }
     context_ = render::create_offscreen_context();
     renderer_ = std::make_unique<render::Renderer>(
         *context_, render::RendererSettings{.width = options.size.width, .height = options.size.height});
-    view_ = std::make_unique<SceneView>(scene, simulation, *renderer_, options.lattice ? View::kLattice : View::kMesh);
+    view_ = std::make_unique<SceneView>(scene, simulation, *renderer_,
+                                        options.lattice ? View::kLattice : View::kMesh);
   }
 
   bool every_frame() const { return folder_ || video_; }
@@ -146,8 +150,9 @@ nlohmann::ordered_json to_json(const Summary& s) {
   return {{"mean", s.mean}, {"p50", s.p50}, {"p99", s.p99}, {"max", s.max}};
 }
 
-nlohmann::ordered_json statistics_document(const std::string& scene, const Demo3dOptions& options, const Simulation3d& simulation,
-                                           const RunRecord& record, const Pictures& pictures) {
+nlohmann::ordered_json statistics_document(const std::string& scene, const Demo3dOptions& options,
+                                           const Simulation3d& simulation, const RunRecord& record,
+                                           const Pictures& pictures) {
   std::vector<double> busy;
   std::uint64_t bytes = 0, commands = 0, jobs = 0;
   for (const ls_sim::SpeStatistics& spe : simulation.spe_statistics()) {
@@ -188,16 +193,21 @@ void print_summary(const nlohmann::ordered_json& s, const Demo3dOptions& options
     busiest = std::max(busiest, share);
     mean += share / static_cast<double>(s["spe_busy"].size());
   }
-  fmt::print("scene {}: {} frames, {} soft bodies and {} rigid ones, {} particles, {} vertices\n", s["scene"].get<std::string>(),
-             s["frames"].get<int>(), s["bodies"].get<int>(), s["rigid_bodies"].get<int>(), s["particles"].get<int>(),
-             s["vertices"].get<int>());
-  fmt::print("a frame:  PPU {:.2f} ms (of it {:.3f} ms to hand over the skinning), physics {:.2f} ms, pictures {:.1f} ms\n",
-             s["ppu_ms"]["mean"].get<double>(), s["skin_ms"]["mean"].get<double>(), s["physics_ms"]["mean"].get<double>(),
-             s["picture_ms"]["mean"].get<double>());
+  fmt::print("scene {}: {} frames, {} soft bodies and {} rigid ones, {} particles, {} vertices\n",
+             s["scene"].get<std::string>(), s["frames"].get<int>(), s["bodies"].get<int>(),
+             s["rigid_bodies"].get<int>(), s["particles"].get<int>(), s["vertices"].get<int>());
+  fmt::print(
+      "a frame:  PPU {:.2f} ms (of it {:.3f} ms to hand over the skinning), physics {:.2f} ms, pictures "
+      "{:.1f} ms\n",
+      s["ppu_ms"]["mean"].get<double>(), s["skin_ms"]["mean"].get<double>(),
+      s["physics_ms"]["mean"].get<double>(), s["picture_ms"]["mean"].get<double>());
   fmt::print("          {:.0f} frames a second without pictures\n", s["simulated_fps"].get<double>());
-  fmt::print("SPEs:     {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {} DMA commands, {:.1f} MB\n", options.spes,
-             100 * mean, 100 * busiest, s["dma_commands"].get<std::uint64_t>(), static_cast<double>(s["dma_bytes"].get<std::uint64_t>()) / 1e6);
-  fmt::print("state:    {}   picture: {}\n", s["state_hash"].get<std::string>(), s["image_hash"].get<std::string>());
+  fmt::print(
+      "SPEs:     {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {} DMA commands, {:.1f} MB\n",
+      options.spes, 100 * mean, 100 * busiest, s["dma_commands"].get<std::uint64_t>(),
+      static_cast<double>(s["dma_bytes"].get<std::uint64_t>()) / 1e6);
+  fmt::print("state:    {}   picture: {}\n", s["state_hash"].get<std::string>(),
+             s["image_hash"].get<std::string>());
   const auto where = [](const char* what, const std::optional<std::filesystem::path>& path) {
     if (path) fmt::print("{:<9} {}\n", what, path->string());
   };
@@ -210,7 +220,8 @@ void print_summary(const nlohmann::ordered_json& s, const Demo3dOptions& options
 
 int run_demo_3d(const Demo3dOptions& options) {
   if (!options.headless) {
-    throw UsageError("this version has no window yet: run it with --headless, and --out or --video to see something");
+    throw UsageError(
+        "this version has no window yet: run it with --headless, and --out or --video to see something");
   }
   render::pin_software_rasterizer();
   const std::optional<OwnModel> model = load_model(options);
@@ -233,8 +244,8 @@ int run_demo_3d(const Demo3dOptions& options) {
   if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
   simulation.finish();
   if (guard.interrupted()) {
-    fmt::print(stderr, "softcell: interrupted after {} of {} frames; every frame that was written is whole\n", record.frames,
-               options.frames);
+    fmt::print(stderr, "softcell: interrupted after {} of {} frames; every frame that was written is whole\n",
+               record.frames, options.frames);
     return kExitInterrupted;
   }
   record.seconds = milliseconds_since(begin) / 1000;

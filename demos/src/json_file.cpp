@@ -15,7 +15,8 @@ void write_json(const std::filesystem::path& path, const nlohmann::ordered_json&
   };
   // A device or a pipe is written to directly: it cannot be replaced by renaming.
   std::error_code ignored;
-  const bool in_place = std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
+  const bool in_place =
+      std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
   const std::filesystem::path temporary = in_place ? path : std::filesystem::path(path.string() + ".part");
   const std::string text = document.dump(2) + "\n";
   std::FILE* file = std::fopen(temporary.c_str(), "wb");

@@ -13,7 +13,8 @@ namespace softcell::demos {
 namespace {
 
 void run_skin_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory, ls_sim::SpePool& pool) {
-  // A sphere about the origin has normals and positions of every sign and size, zero and subnormal halves among them.
+  // A sphere about the origin has normals and positions of every sign and size, zero and subnormal halves
+  // among them.
   const ppu::TriangleMesh mesh = ppu::make_sphere(1, 20);
   const ppu::Lattice lattice = ppu::voxelize(mesh, 0.25f);
   const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
@@ -33,7 +34,8 @@ void run_skin_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memor
 
 std::vector<ls_sim::KernelImage> load_kernels() {
   std::vector<ls_sim::KernelImage> kernels;
-  for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) kernels.push_back(ls_sim::load_image(file.name, file.elf));
+  for (const spu_kernels::ImageFile& file : spu_kernels::image_files())
+    kernels.push_back(ls_sim::load_image(file.name, file.elf));
   std::sort(kernels.begin(), kernels.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return kernels;
 }
@@ -48,7 +50,8 @@ ls_sim::KernelImage load_kernel(std::string_view name) {
 std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
   dma::AddressSpace memory;
   ls_sim::SpePool pool(memory, {.spes = 1, .measure_stack = true});
-  if (kernel.name != "skin") throw std::runtime_error("kernel " + kernel.name + " has no sample of work to measure its stack with");
+  if (kernel.name != "skin")
+    throw std::runtime_error("kernel " + kernel.name + " has no sample of work to measure its stack with");
   run_skin_sample(kernel, memory, pool);
   return pool.statistics()[0].stack_high_water;
 }

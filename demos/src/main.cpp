@@ -1,4 +1,5 @@
-// The command `softcell`: parses the command line, calls a verb, turns what goes wrong into one line and an exit status.
+// The command `softcell`: parses the command line, calls a verb, turns what goes wrong into one line and an
+// exit status.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -24,7 +25,8 @@ PictureSize parse_size(const std::string& text) {
   if (std::regex_match(text, match, pattern)) size = {std::stoi(match[1]), std::stoi(match[2])};
   const auto allowed = [](int pixels) { return pixels >= kMinPixels && pixels <= kMaxPixels; };
   if (!allowed(size.width) || !allowed(size.height)) {
-    throw UsageError("--size " + text + ": give WIDTHxHEIGHT in pixels, each 16 to 8192, for example 1280x720");
+    throw UsageError("--size " + text +
+                     ": give WIDTHxHEIGHT in pixels, each 16 to 8192, for example 1280x720");
   }
   return size;
 }
@@ -68,9 +70,11 @@ class CommandLine {
     d->add_flag("--headless", demo_.headless, "Run without a window");
     d->add_option("--scene", demo_.scene, "Scene by name; `softcell scenes` lists them (default: arena)");
     d->add_option("--mesh", demo_.mesh, "Drop this OBJ, PLY or STL model (scene drop)");
-    d->add_option("--cell", demo_.cell, "Edge of a lattice cell in the model's units (default: its longest side / 8)")
+    d->add_option("--cell", demo_.cell,
+                  "Edge of a lattice cell in the model's units (default: its longest side / 8)")
         ->needs("--mesh");
-    d->add_option("--frames", demo_.frames, "Frames of 1/60 s to simulate (default: 300)")->check(CLI::Range(1, kMaxFrames));
+    d->add_option("--frames", demo_.frames, "Frames of 1/60 s to simulate (default: 300)")
+        ->check(CLI::Range(1, kMaxFrames));
     d->add_option("--out", demo_.out, "Folder for numbered PNG frames");
     d->add_option("--video", demo_.video, "Write an MP4 video (needs ffmpeg)");
     d->add_option("--size", size_, "Picture size, WIDTHxHEIGHT (default: 1280x720)");
@@ -83,7 +87,8 @@ class CommandLine {
 
   void add_spu() {
     CLI::App* spu = app_.add_subcommand("spu", "Look at SPU kernels: budget");
-    CLI::App* b = spu->add_subcommand("budget", "Local store of each kernel: sections, stack used, share of 256 KB, budget");
+    CLI::App* b = spu->add_subcommand(
+        "budget", "Local store of each kernel: sections, stack used, share of 256 KB, budget");
     b->add_option("--json", budget_.json, "Write the table to this file as well");
     b->callback([this] { chosen_ = [this] { return run_budget(budget_); }; });
   }
@@ -99,7 +104,8 @@ class CommandLine {
     b->callback([this] { chosen_ = [this] { return run_bench(bench_); }; });
   }
 
-  CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.", "softcell"};
+  CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
+                "softcell"};
   Demo3dOptions demo_;
   BudgetOptions budget_;
   BenchOptions bench_;
@@ -121,7 +127,8 @@ int main(int argc, char** argv) {
   try {
     return CommandLine().run(argc, argv);
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "softcell: %s (softcell --help lists what is allowed)\n", one_line(error.what()).c_str());
+    std::fprintf(stderr, "softcell: %s (softcell --help lists what is allowed)\n",
+                 one_line(error.what()).c_str());
     return 2;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "softcell: %s\n", one_line(error.what()).c_str());

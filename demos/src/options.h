@@ -16,11 +16,11 @@ struct PictureSize {
 
 struct Demo3dOptions {
   bool headless = false;
-  std::optional<std::string> scene;            ///< arena, or drop when a mesh is given
-  std::optional<std::filesystem::path> mesh;   ///< the user's own model
-  std::optional<double> cell;                  ///< cell size in the model's own units
+  std::optional<std::string> scene;           ///< arena, or drop when a mesh is given
+  std::optional<std::filesystem::path> mesh;  ///< the user's own model
+  std::optional<double> cell;                 ///< cell size in the model's own units
   int frames = 300;
-  std::optional<std::filesystem::path> out;    ///< folder for numbered frames
+  std::optional<std::filesystem::path> out;  ///< folder for numbered frames
   std::optional<std::filesystem::path> video;
   std::optional<std::filesystem::path> json;
   PictureSize size;

@@ -19,7 +19,8 @@ std::span<const SceneEntry> scenes() {
 
 const SceneEntry& find_scene(std::string_view name) {
   const auto all = scenes();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const SceneEntry& entry) { return entry.name == name; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const SceneEntry& entry) { return entry.name == name; });
   if (found != all.end()) return *found;
   std::string known;
   for (const SceneEntry& entry : all) known += (known.empty() ? "" : ", ") + std::string(entry.name);

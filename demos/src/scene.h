@@ -1,6 +1,6 @@
 #pragma once
-// A scene as plain data: what is in the world, how it looks, and what happens. Shared by the demo, its tests and benchmarks.
-// Metres, kilograms, seconds; y is up.
+// A scene as plain data: what is in the world, how it looks, and what happens. Shared by the demo, its tests
+// and benchmarks. Metres, kilograms, seconds; y is up.
 
 #include <Eigen/Core>
 #include <memory>
@@ -41,8 +41,9 @@ struct Obstacle {
   render::Colour colour{0.8f, 0.8f, 0.8f};
 };
 
-/// The ground tilts about the x and z axes: angle(t) = amplitude sin(2 pi t / period), with the tilt growing over the first
-/// seconds. The world stays in the ground's frame, in which gravity turns; the camera turns with it.
+/// The ground tilts about the x and z axes: angle(t) = amplitude sin(2 pi t / period), with the tilt growing
+/// over the first seconds. The world stays in the ground's frame, in which gravity turns; the camera turns
+/// with it.
 struct TiltScript {
   float amplitude_x = 0, amplitude_z = 0;  ///< radians
   float period_x = 1, period_z = 1;        ///< seconds

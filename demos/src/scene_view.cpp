@@ -20,7 +20,8 @@ std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice& lattice) 
 
 }  // namespace
 
-SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer, View view)
+SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer,
+                     View view)
     : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view) {
   const auto add_static = [&](const ppu::TriangleMesh& mesh) {
     return renderer_.add_static_mesh(mesh.positions, mesh.normals, mesh.triangles);

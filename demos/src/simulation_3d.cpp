@@ -22,8 +22,8 @@ double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Processor time of this thread. Handing over wakes threads that stand for SPEs and share the host's cores with this one; what they take is
-/// no time of the PPU's.
+/// Processor time of this thread. Handing over wakes threads that stand for SPEs and share the host's cores
+/// with this one; what they take is no time of the PPU's.
 double thread_milliseconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -37,7 +37,8 @@ Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
     const double phase = 2 * std::numbers::pi * (time - double{script.begin}) / double{period};
     return grown * double{amplitude} * ppu::sine(phase);
   };
-  const double ax = angle(script.amplitude_x, script.period_x), az = angle(script.amplitude_z, script.period_z);
+  const double ax = angle(script.amplitude_x, script.period_x),
+               az = angle(script.amplitude_z, script.period_z);
   const auto sx = static_cast<float>(ppu::sine(ax)), cx = static_cast<float>(ppu::cosine(ax));
   const auto sz = static_cast<float>(ppu::sine(az)), cz = static_cast<float>(ppu::cosine(az));
   Eigen::Matrix3f about_x, about_z;
@@ -65,7 +66,8 @@ struct Simulation3d::State {
     for (const RigidBox& box : scene.boxes) {
       boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
     }
-    for (const Obstacle& obstacle : scene.obstacles) world.add_convex(obstacle.mesh, obstacle.position, scene.friction);
+    for (const Obstacle& obstacle : scene.obstacles)
+      world.add_convex(obstacle.mesh, obstacle.position, scene.friction);
     for (const SoftBodyPlacement& placement : scene.soft_bodies) {
       const auto model = ppu::make_soft_body_model(placement.mesh, placement.settings);
       const ppu::SoftBody& body = soft_bodies.add(model, placement.position);
@@ -152,10 +154,13 @@ std::size_t Simulation3d::particles() const {
 std::size_t Simulation3d::vertices() const { return state_->orchestrator.vertices_per_frame(); }
 
 std::size_t Simulation3d::rigid_bodies() const {
-  return static_cast<std::size_t>(std::count_if(state_->scene.boxes.begin(), state_->scene.boxes.end(), [](const RigidBox& box) { return box.mass > 0; }));
+  return static_cast<std::size_t>(std::count_if(state_->scene.boxes.begin(), state_->scene.boxes.end(),
+                                                [](const RigidBox& box) { return box.mass > 0; }));
 }
 
-const ppu::SoftBodyModel& Simulation3d::model(std::size_t body) const { return state_->soft_bodies[body].model(); }
+const ppu::SoftBodyModel& Simulation3d::model(std::size_t body) const {
+  return state_->soft_bodies[body].model();
+}
 const ppu::SoftBody& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
 
 std::uint64_t Simulation3d::state_hash() const {
@@ -166,7 +171,9 @@ std::uint64_t Simulation3d::state_hash() const {
 
 ppu::SkinnedBody Simulation3d::shown(std::size_t body) const { return state_->orchestrator.shown(body); }
 
-std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body) const { return state_->shown().particles[body]; }
+std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body) const {
+  return state_->shown().particles[body];
+}
 
 std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return state_->shown().box_poses; }
 

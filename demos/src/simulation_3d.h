@@ -15,10 +15,11 @@ namespace softcell::demos {
 
 /// Milliseconds of one frame, measured on the PPU thread.
 struct FrameTimes {
-  double physics_ms = 0;    ///< in Bullet
-  double ppu_ms = 0;        ///< in softcell: shape matching, coupling, handing over the skinning
-  double skin_ms = 0;       ///< of ppu_ms: handing over the skinning, in processor time of the thread
-  double skin_wait_ms = 0;  ///< waiting for the SPEs, which only a run without a window does; in none of the above
+  double physics_ms = 0;  ///< in Bullet
+  double ppu_ms = 0;      ///< in softcell: shape matching, coupling, handing over the skinning
+  double skin_ms = 0;     ///< of ppu_ms: handing over the skinning, in processor time of the thread
+  double skin_wait_ms =
+      0;  ///< waiting for the SPEs, which only a run without a window does; in none of the above
 };
 
 struct SimulationOptions {

@@ -1,5 +1,6 @@
 #pragma once
-// One function for each verb of the command, each in a file of its name. They print their result on standard output.
+// One function for each verb of the command, each in a file of its name. They print their result on standard
+// output.
 // @throws UsageError (exit status 2) or another std::exception (exit status 1), one sentence either way.
 
 #include "options.h"

@@ -9,7 +9,8 @@ namespace {
 
 ChannelReply illegal(std::uint32_t channel, const char* access) {
   dma::Fault fault{dma::Rule::kIllegalChannel};
-  fault.detail = std::string(access) + " of channel " + std::to_string(channel) + ", which this SPE does not have for that";
+  fault.detail = std::string(access) + " of channel " + std::to_string(channel) +
+                 ", which this SPE does not have for that";
   return {0, std::move(fault)};
 }
 

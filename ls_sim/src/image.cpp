@@ -29,8 +29,8 @@ class ElfReader {
 
   std::span<const std::byte> slice(std::uint64_t offset, std::uint64_t size, const char* what) const {
     if (offset > file_.size() || size > file_.size() - offset) {
-      refuse(std::string("truncated: ") + what + " lies past the end of the file (" + std::to_string(file_.size()) +
-             " bytes)");
+      refuse(std::string("truncated: ") + what + " lies past the end of the file (" +
+             std::to_string(file_.size()) + " bytes)");
     }
     return file_.subspan(offset, size);
   }
@@ -50,7 +50,8 @@ class ElfReader {
 Elf64_Ehdr read_header(const ElfReader& elf) {
   const auto header = elf.read<Elf64_Ehdr>(0, "the ELF header");
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) elf.refuse("not an ELF file");
-  if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_ident[EI_DATA] != ELFDATA2LSB || header.e_machine != EM_X86_64) {
+  if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_ident[EI_DATA] != ELFDATA2LSB ||
+      header.e_machine != EM_X86_64) {
     elf.refuse("built for ELF machine " + std::to_string(header.e_machine) +
                "; the native engine runs 64-bit x86 images made by softcell_add_spu_kernel");
   }
@@ -65,16 +66,21 @@ Elf64_Phdr read_segment(const ElfReader& elf, const Elf64_Ehdr& header) {
   Elf64_Phdr segment{};
   int count = 0;
   for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
-    const auto candidate = elf.read<Elf64_Phdr>(header.e_phoff + i * sizeof(Elf64_Phdr), "the program header table");
+    const auto candidate =
+        elf.read<Elf64_Phdr>(header.e_phoff + i * sizeof(Elf64_Phdr), "the program header table");
     if (candidate.p_type != PT_LOAD) continue;
     segment = candidate;
     ++count;
   }
-  if (count != 1) elf.refuse("it has " + std::to_string(count) + " loadable segments; ls.ld makes exactly one");
-  if (segment.p_filesz > segment.p_memsz) elf.refuse("its segment holds more bytes in the file than in memory");
-  if (segment.p_vaddr != kEnvironmentBytes) elf.refuse("its segment does not begin at local-store address 0x80");
+  if (count != 1)
+    elf.refuse("it has " + std::to_string(count) + " loadable segments; ls.ld makes exactly one");
+  if (segment.p_filesz > segment.p_memsz)
+    elf.refuse("its segment holds more bytes in the file than in memory");
+  if (segment.p_vaddr != kEnvironmentBytes)
+    elf.refuse("its segment does not begin at local-store address 0x80");
   if (segment.p_memsz > dma::kLocalStoreBytes - segment.p_vaddr) {
-    elf.refuse("it takes " + std::to_string(segment.p_memsz) + " bytes and passes the 256 KB of a local store");
+    elf.refuse("it takes " + std::to_string(segment.p_memsz) +
+               " bytes and passes the 256 KB of a local store");
   }
   return segment;
 }
@@ -123,7 +129,8 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
     elf.refuse("it has no .softcell.kernel section; link it with softcell_add_spu_kernel");
   }
   const auto declaration = elf.read<Declaration>(declared.sh_offset, "the .softcell.kernel section");
-  if (declaration.magic != kDeclarationMagic) elf.refuse("its .softcell.kernel section is of another version");
+  if (declaration.magic != kDeclarationMagic)
+    elf.refuse("its .softcell.kernel section is of another version");
   if (sections.find(".rela.dyn").sh_size != 0) {
     elf.refuse("a relocation is left: an absolute pointer is stored in its static data");
   }
@@ -140,7 +147,8 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.sizes.end = declaration.end;
 
   const std::uint64_t end = segment.p_vaddr + segment.p_memsz;
-  if (declaration.end < end || declaration.end - end >= dma::kLineBytes) elf.refuse("its sections do not end where _end says");
+  if (declaration.end < end || declaration.end - end >= dma::kLineBytes)
+    elf.refuse("its sections do not end where _end says");
   if (declaration.stack_bytes == 0 || declaration.stack_bytes % dma::kQuadwordBytes != 0 ||
       declaration.stack_bytes > dma::kLocalStoreBytes - declaration.end) {
     elf.refuse("its declared stack of " + std::to_string(declaration.stack_bytes) +
@@ -150,7 +158,8 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
     elf.refuse("its entry lies outside its text");
   }
   const std::uint64_t file_end = segment.p_vaddr + segment.p_filesz;
-  if (data.sh_size != 0 && (data.sh_addr < segment.p_vaddr || data.sh_addr > file_end || data.sh_size > file_end - data.sh_addr)) {
+  if (data.sh_size != 0 &&
+      (data.sh_addr < segment.p_vaddr || data.sh_addr > file_end || data.sh_size > file_end - data.sh_addr)) {
     elf.refuse("its data lie outside its segment");
   }
   image.entry = static_cast<std::uint32_t>(header.e_entry);

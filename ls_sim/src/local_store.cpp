@@ -26,9 +26,10 @@ LocalStore::LocalStore() {
   if (mprotect(base_, dma::kLocalStoreBytes, PROT_READ | PROT_WRITE | PROT_EXEC) != 0) {
     const int error = errno;
     munmap(mapping_, kMappingBytes);
-    throw std::runtime_error(std::string("a local store cannot be made executable (is memory that is writable and "
-                                         "executable forbidden here?): ") +
-                             std::strerror(error));
+    throw std::runtime_error(
+        std::string("a local store cannot be made executable (is memory that is writable and "
+                    "executable forbidden here?): ") +
+        std::strerror(error));
   }
 }
 

@@ -16,7 +16,8 @@ std::string Spe::run(const Job& job, std::uint64_t job_number) {
   make_resident(*job.image);
   mfc_.begin_job(job_number);
   MfcChannels channels(mfc_);
-  RunResult result = engine_->run({static_cast<std::uint64_t>(number_), job.argp.value, job.envp.value}, channels);
+  RunResult result =
+      engine_->run({static_cast<std::uint64_t>(number_), job.argp.value, job.envp.value}, channels);
 
   std::string failure;
   if (result.fault) {

@@ -22,8 +22,8 @@ void JobBatch::wait() const {
 
 namespace {
 
-/// On a console an SPE never takes time from the PPU. Here both share cores: a batch thread at least does not interrupt the thread that
-/// wakes it. Where the host refuses, only timings suffer.
+/// On a console an SPE never takes time from the PPU. Here both share cores: a batch thread at least does not
+/// interrupt the thread that wakes it. Where the host refuses, only timings suffer.
 void leave_the_ppu_its_core() {
   const sched_param parameters{};
   pthread_setschedparam(pthread_self(), SCHED_BATCH, &parameters);
@@ -40,14 +40,16 @@ struct SpePool::State {
 
   /// An SPE and what the watchdog needs to know of it.
   struct Worker {
-    Worker(int number, dma::AddressSpace& memory, const PoolOptions& options) : spe(number, memory, options) {}
+    Worker(int number, dma::AddressSpace& memory, const PoolOptions& options)
+        : spe(number, memory, options) {}
     Spe spe;
-    SpeStatistics statistics;                          // copied after each job
-    std::chrono::steady_clock::time_point started{};   // of the job under way
+    SpeStatistics statistics;                         // copied after each job
+    std::chrono::steady_clock::time_point started{};  // of the job under way
     bool busy = false;
   };
 
-  State(dma::AddressSpace& memory, const PoolOptions& pool_options) : options(pool_options), ring(kQueueCapacity) {
+  State(dma::AddressSpace& memory, const PoolOptions& pool_options)
+      : options(pool_options), ring(kQueueCapacity) {
     for (int number = 0; number < options.spes; ++number) {
       workers.push_back(std::make_unique<Worker>(number, memory, options));
     }
@@ -79,8 +81,9 @@ struct SpePool::State {
   static void finish(const QueuedJob& done, std::string failure) {
     if (!failure.empty()) {
       auto& failures = done.batch->failures_;
-      const auto place = std::upper_bound(failures.begin(), failures.end(), done.number,
-                                          [](std::uint64_t number, const JobFailure& f) { return number < f.job; });
+      const auto place =
+          std::upper_bound(failures.begin(), failures.end(), done.number,
+                           [](std::uint64_t number, const JobFailure& f) { return number < f.job; });
       failures.insert(place, JobFailure{done.number, std::move(failure)});
     }
     // The batch may be gone as soon as its last job is counted down.
@@ -112,8 +115,8 @@ struct SpePool::State {
 
   /// Every wait for a job ends because this loop ends the job.
   void watch() {
-    const auto period = std::clamp<std::chrono::milliseconds>(options.deadline / 8, std::chrono::milliseconds(1),
-                                                              std::chrono::milliseconds(100));
+    const auto period = std::clamp<std::chrono::milliseconds>(
+        options.deadline / 8, std::chrono::milliseconds(1), std::chrono::milliseconds(100));
     std::unique_lock lock(mutex);
     while (!stopping || std::any_of(workers.begin(), workers.end(), [](const auto& w) { return w->busy; })) {
       stop_watching.wait_for(lock, period);
@@ -140,7 +143,8 @@ struct SpePool::State {
 
 SpePool::SpePool(dma::AddressSpace& memory, const PoolOptions& options) {
   if (options.spes < 1 || options.spes > dma::kSpeCount) {
-    throw std::invalid_argument("the number of SPEs is " + std::to_string(options.spes) + "; 1 to 6 are allowed");
+    throw std::invalid_argument("the number of SPEs is " + std::to_string(options.spes) +
+                                "; 1 to 6 are allowed");
   }
   if (options.deadline <= std::chrono::milliseconds::zero()) {
     throw std::invalid_argument("the deadline of a job must be positive");

@@ -31,8 +31,8 @@ struct SkinOrchestrator::Body {
 
 namespace {
 
-/// A point below all particles by a margin that is not tiny against the body, so that every relative coordinate is a normal
-/// half float with an error far below its unit in the last place.
+/// A point below all particles by a margin that is not tiny against the body, so that every relative
+/// coordinate is a normal half float with an error far below its unit in the last place.
 Eigen::Vector3f origin_below(std::span<const SkinCorner> positions) {
   Eigen::Vector3f low(positions[0].x, positions[0].y, positions[0].z), high = low;
   for (const SkinCorner& p : positions) {
@@ -47,13 +47,15 @@ constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .elem
 
 }  // namespace
 
-SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool& pool, const ls_sim::KernelImage& skin)
+SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool& pool,
+                                   const ls_sim::KernelImage& skin)
     : memory_(memory), pool_(pool), skin_(skin) {}
 
 SkinOrchestrator::~SkinOrchestrator() { batch_.wait(); }
 
 std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
-  auto known = std::find_if(models_.begin(), models_.end(), [&](const auto& m) { return m->embedding == embedding; });
+  auto known =
+      std::find_if(models_.begin(), models_.end(), [&](const auto& m) { return m->embedding == embedding; });
   if (known == models_.end()) {
     auto model = std::make_unique<Model>();
     model->groups = dma::Buffer<SkinGroup>(memory_, "skin groups", embedding->groups.size(), kInput);
@@ -67,7 +69,8 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
   for (Body::Half& half : body->half) {
     half.corners = dma::Buffer<SkinCorner>(memory_, "particle positions", particles, kInput);
     half.jobs = dma::Buffer<SkinJob>(memory_, "skin jobs", shared.parts.size(), kInput);
-    half.vertices = dma::Buffer<SkinnedVertex>(memory_, "skinned vertices", 4 * shared.groups.size(), kOutput);
+    half.vertices =
+        dma::Buffer<SkinnedVertex>(memory_, "skinned vertices", 4 * shared.groups.size(), kOutput);
   }
   bodies_.push_back(std::move(body));
   jobs_.resize(jobs_.size() + shared.parts.size());
@@ -101,7 +104,8 @@ void SkinOrchestrator::write_half(Body& body, std::span<const SkinCorner> positi
 }
 
 bool SkinOrchestrator::kick(std::span<const std::span<const SkinCorner>> positions) {
-  if (positions.size() != bodies_.size()) throw std::invalid_argument("kick() needs the positions of every body");
+  if (positions.size() != bodies_.size())
+    throw std::invalid_argument("kick() needs the positions of every body");
   if (in_flight_ && !batch_.finished()) {
     ++late_frames_;
     return false;

@@ -18,7 +18,8 @@ inline void wait_for_tags(uint32_t mask) {
 /// Blocks until every command of one tag group is complete.
 inline void wait_for_tag(uint32_t tag) { wait_for_tags(1u << tag); }
 
-/// Queues as many gets as it takes to fetch `bytes` (a multiple of 16, 0 included) to `ls`, all in one tag group.
+/// Queues as many gets as it takes to fetch `bytes` (a multiple of 16, 0 included) to `ls`, all in one tag
+/// group.
 inline void get_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
   char* to = static_cast<char*>(ls);
   while (bytes != 0) {

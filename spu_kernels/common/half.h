@@ -1,6 +1,6 @@
 #pragma once
-// Four floats to four binary16 numbers, exactly: round to nearest, ties to even, in integer arithmetic, since the SPU's own
-// floating point truncates.
+// Four floats to four binary16 numbers, exactly: round to nearest, ties to even, in integer arithmetic, since
+// the SPU's own floating point truncates.
 
 #include <spu_intrinsics.h>
 
@@ -15,44 +15,51 @@ inline vec_uint4 below_half_normal(vec_float4 value) {
   return spu_sub(spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu)), spu_splats(kHalfSmallestNormal));
 }
 
-/// Sign bit set in the lanes that are negative, too small for a normal binary16, or so large that they become infinite.
+/// Sign bit set in the lanes that are negative, too small for a normal binary16, or so large that they become
+/// infinite.
 inline vec_uint4 outside_positive_half_normal(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
-  return spu_or(spu_sub(bits, spu_splats(kHalfSmallestNormal)), spu_add(bits, spu_splats(0x80000000u - kHalfOverflow)));
+  return spu_or(spu_sub(bits, spu_splats(kHalfSmallestNormal)),
+                spu_add(bits, spu_splats(0x80000000u - kHalfOverflow)));
 }
 
-/// binary16 bits in the high half of each word; what is in the low half was cut off. For lanes whose sign bit is clear in
-/// outside_positive_half_normal().
+/// binary16 bits in the high half of each word; what is in the low half was cut off. For lanes whose sign bit
+/// is clear in outside_positive_half_normal().
 inline vec_uint4 high_half_of_positive(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
   const vec_uint4 odd = spu_and(spu_rlmask(bits, -13), spu_splats(1u));
-  // Rebias the exponent (127 to 15) and round in one addition; a carry out of the fraction moves the exponent, as it should.
+  // Rebias the exponent (127 to 15) and round in one addition; a carry out of the fraction moves the
+  // exponent, as it should.
   return spu_sl(spu_add(spu_add(bits, odd), spu_splats(0xFFFu - (112u << 23))), 3);
 }
 
-/// The same for either sign. For lanes whose sign bit is clear in below_half_normal(), and whose magnitude is below kHalfOverflow.
+/// The same for either sign. For lanes whose sign bit is clear in below_half_normal(), and whose magnitude is
+/// below kHalfOverflow.
 inline vec_uint4 high_half_of_normal(vec_float4 value) {
   return spu_sel(high_half_of_positive(value), (vec_uint4)value, spu_splats(0x80000000u));
 }
 
-/// binary16 bits in the high half of each word, the low half 0, for every bit pattern: subnormals, zero, infinity; a NaN
-/// stays one.
+/// binary16 bits in the high half of each word, the low half 0, for every bit pattern: subnormals, zero,
+/// infinity; a NaN stays one.
 inline vec_uint4 high_half_of_any(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
   const vec_uint4 magnitude = spu_and(bits, spu_splats(0x7FFFFFFFu));
   const vec_uint4 sign = spu_and(spu_rlmask(bits, -16), spu_splats(0x8000u));
 
-  // Below 2^-14: shift the fraction with its hidden bit right by 14..25 places and round; 25 leaves nothing of it.
+  // Below 2^-14: shift the fraction with its hidden bit right by 14..25 places and round; 25 leaves nothing
+  // of it.
   const vec_uint4 exponent = spu_rlmask(magnitude, -23);
   const vec_uint4 wanted = spu_sub(spu_splats(126u), exponent);
   const vec_uint4 shift = spu_sel(wanted, spu_splats(25u), spu_cmpgt(wanted, spu_splats(25u)));
   const vec_int4 right = (vec_int4)spu_sub(spu_splats(0u), shift);
   const vec_uint4 fraction = spu_or(spu_and(magnitude, spu_splats(0x7FFFFFu)), spu_splats(0x800000u));
   const vec_uint4 odd = spu_and(spu_rlmask(fraction, right), spu_splats(1u));
-  const vec_uint4 almost_half = spu_sub(spu_sl(spu_splats(1u), spu_sub(shift, spu_splats(1u))), spu_splats(1u));
+  const vec_uint4 almost_half =
+      spu_sub(spu_sl(spu_splats(1u), spu_sub(shift, spu_splats(1u))), spu_splats(1u));
   const vec_uint4 subnormal = spu_rlmask(spu_add(spu_add(fraction, almost_half), odd), right);
 
-  // A NaN keeps the top of its payload; one whose payload lies lower gets the quiet bit, so that it stays one.
+  // A NaN keeps the top of its payload; one whose payload lies lower gets the quiet bit, so that it stays
+  // one.
   const vec_uint4 infinity = spu_splats(0x7C00u);
   const vec_uint4 payload = spu_and(spu_rlmask(magnitude, -13), spu_splats(0x3FFu));
   const vec_uint4 quiet = spu_and(spu_cmpeq(payload, spu_splats(0u)), spu_splats(0x200u));

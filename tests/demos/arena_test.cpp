@@ -41,13 +41,15 @@ WorstVertex compare_with_oracle(const Simulation3d& simulation) {
     for (const ppu::SkinPart& part : embedding.parts) {
       for (std::uint32_t group = part.first_group; group < part.first_group + part.group_count; ++group) {
         for (int lane = 0; lane < 4; ++lane) {
-          const ppu::ReferenceVertex expected = ppu::evaluate_reference(embedding, part, group, lane, particles);
+          const ppu::ReferenceVertex expected =
+              ppu::evaluate_reference(embedding, part, group, lane, particles);
           const spu::SkinnedVertex& actual = body.vertices[4 * group + static_cast<std::uint32_t>(lane)];
           Eigen::Vector3d normal;
           for (int axis = 0; axis < 3; ++axis) {
             const double relative = expected.position[axis] - double{body.origin[axis]};
             const double position = ppu::float_from_half(actual.position[axis]);
-            worst.position_ulps = std::max(worst.position_ulps, std::abs(position - relative) / half_ulp_at(relative));
+            worst.position_ulps =
+                std::max(worst.position_ulps, std::abs(position - relative) / half_ulp_at(relative));
             normal[axis] = ppu::float_from_half(actual.normal[axis]);
           }
           const double angle = std::atan2(normal.cross(expected.normal).norm(), normal.dot(expected.normal));
@@ -87,7 +89,8 @@ TEST(Arena, NothingLeavesThroughFloorOrWallsAndEverythingStaysFinite) {
       for (const spu::SkinCorner& p : simulation.shown_particles(b)) {
         ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
         ASSERT_GT(p.y, 0.0f) << arena().soft_bodies[b].name << " is under the floor in frame " << frame;
-        ASSERT_LT(std::max(std::abs(p.x), std::abs(p.z)), 4.8f) << arena().soft_bodies[b].name << " left in frame " << frame;
+        ASSERT_LT(std::max(std::abs(p.x), std::abs(p.z)), 4.8f)
+            << arena().soft_bodies[b].name << " left in frame " << frame;
       }
     }
     for (const Eigen::Matrix4f& pose : simulation.shown_box_poses()) ASSERT_GT(pose(1, 3), -0.6f);
@@ -96,9 +99,10 @@ TEST(Arena, NothingLeavesThroughFloorOrWallsAndEverythingStaysFinite) {
 
 TEST(Arena, TheAntennaOfTheCarBends) {
   Simulation3d simulation(arena(), {});
-  const auto car = static_cast<std::size_t>(
-      std::find_if(arena().soft_bodies.begin(), arena().soft_bodies.end(), [](const auto& s) { return s.name == "car"; }) -
-      arena().soft_bodies.begin());
+  const auto car =
+      static_cast<std::size_t>(std::find_if(arena().soft_bodies.begin(), arena().soft_bodies.end(),
+                                            [](const auto& s) { return s.name == "car"; }) -
+                               arena().soft_bodies.begin());
   ASSERT_LT(car, simulation.soft_bodies());
   const ppu::Lattice& lattice = simulation.model(car).lattice();
   // The antenna is what is highest: its tip, its foot one half further down, and the body's middle.
@@ -112,7 +116,8 @@ TEST(Arena, TheAntennaOfTheCarBends) {
   };
   const auto below = [&](int cells) {
     const Eigen::Vector3i wanted = lattice.particles[tip] - Eigen::Vector3i(0, cells, 0);
-    return static_cast<std::size_t>(std::find(lattice.particles.begin(), lattice.particles.end(), wanted) - lattice.particles.begin());
+    return static_cast<std::size_t>(std::find(lattice.particles.begin(), lattice.particles.end(), wanted) -
+                                    lattice.particles.begin());
   };
   const std::size_t middle = below(2), foot = below(4);
   ASSERT_LT(middle, lattice.particles.size());
@@ -120,7 +125,8 @@ TEST(Arena, TheAntennaOfTheCarBends) {
   float largest = 0;
   for (int frame = 0; frame < 300; ++frame) {
     simulation.step();
-    const Eigen::Vector3f lower = (at(middle) - at(foot)).normalized(), upper = (at(tip) - at(middle)).normalized();
+    const Eigen::Vector3f lower = (at(middle) - at(foot)).normalized(),
+                          upper = (at(tip) - at(middle)).normalized();
     largest = std::max(largest, lower.cross(upper).norm());
   }
   EXPECT_GT(largest, 0.1f) << "sine of the largest angle between the antenna's halves";
@@ -128,7 +134,8 @@ TEST(Arena, TheAntennaOfTheCarBends) {
 
 TEST(Arena, TheStateIsTheSameForAnyNumberOfSpesAndAnySchedule) {
   std::uint64_t expected = 0;
-  for (const auto& [spes, schedule] : {std::pair{6, "eager"}, std::pair{1, "lazy"}, std::pair{4, "random:3"}}) {
+  for (const auto& [spes, schedule] :
+       {std::pair{6, "eager"}, std::pair{1, "lazy"}, std::pair{4, "random:3"}}) {
     Simulation3d simulation(arena(), {.spes = spes, .schedule = dma::parse_schedule(schedule)});
     std::uint64_t pictures = 14695981039346656037u;
     for (int frame = 0; frame < 40; ++frame) {

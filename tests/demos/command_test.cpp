@@ -26,11 +26,14 @@ nlohmann::json read_json(const std::string& path) {
 
 std::set<std::string> files_in(const std::filesystem::path& folder) {
   std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
   return names;
 }
 
-void write_file(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 const std::string kCube =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
@@ -38,16 +41,18 @@ const std::string kCube =
 
 TEST(Command, LeavesNumberedFramesAndStatistics) {
   const ScratchFolder folder;
-  const CommandResult run = run_softcell(kDrop + std::string("--frames 3 --out ") + (folder / "out") + " --json " + (folder / "s.json"));
+  const CommandResult run = run_softcell(kDrop + std::string("--frames 3 --out ") + (folder / "out") +
+                                         " --json " + (folder / "s.json"));
   ASSERT_EQ(run.status, 0) << run.output;
-  EXPECT_EQ(files_in(folder / "out"), (std::set<std::string>{"frame_00000.png", "frame_00001.png", "frame_00002.png"}));
+  EXPECT_EQ(files_in(folder / "out"),
+            (std::set<std::string>{"frame_00000.png", "frame_00001.png", "frame_00002.png"}));
   const render::Image image = render::read_png(folder / "out/frame_00002.png");
   EXPECT_EQ(image.width, 64);
   EXPECT_EQ(image.height, 48);
 
   const auto stats = read_json(folder / "s.json");
-  for (const char* key : {"frames", "bodies", "particles", "vertices", "spes", "ppu_ms", "physics_ms", "spe_busy", "dma_bytes",
-                          "dma_commands", "state_hash", "image_hash"}) {
+  for (const char* key : {"frames", "bodies", "particles", "vertices", "spes", "ppu_ms", "physics_ms",
+                          "spe_busy", "dma_bytes", "dma_commands", "state_hash", "image_hash"}) {
     EXPECT_TRUE(stats.contains(key)) << key;
   }
   EXPECT_EQ(stats["frames"], 3);
@@ -59,7 +64,10 @@ TEST(Command, LeavesNumberedFramesAndStatistics) {
 
 TEST(Command, TheLastPictureIsTheSameWithAndWithoutFiles) {
   const ScratchFolder folder;
-  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out") + " --json " + (folder / "a.json")).status, 0);
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out") + " --json " +
+                         (folder / "a.json"))
+                .status,
+            0);
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --json ") + (folder / "b.json")).status, 0);
   EXPECT_EQ(read_json(folder / "a.json")["image_hash"], read_json(folder / "b.json")["image_hash"]);
   EXPECT_EQ(read_json(folder / "a.json")["state_hash"], read_json(folder / "b.json")["state_hash"]);
@@ -70,14 +78,16 @@ TEST(Command, ASecondRunReplacesTheFramesOfTheFirst) {
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out")).status, 0);
   write_file(folder / "out/mine.txt", "keep");
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 2 --out ") + (folder / "out")).status, 0);
-  EXPECT_EQ(files_in(folder / "out"), (std::set<std::string>{"frame_00000.png", "frame_00001.png", "mine.txt"}));
+  EXPECT_EQ(files_in(folder / "out"),
+            (std::set<std::string>{"frame_00000.png", "frame_00001.png", "mine.txt"}));
 }
 
 TEST(Command, DropsTheUsersOwnModel) {
   const ScratchFolder folder;
   write_file(folder / "cube.obj", kCube);
   const CommandResult run =
-      run_softcell("demo 3d --headless --frames 2 --size 64x48 --mesh " + (folder / "cube.obj") + " --cell 0.25 --json " + (folder / "s.json"));
+      run_softcell("demo 3d --headless --frames 2 --size 64x48 --mesh " + (folder / "cube.obj") +
+                   " --cell 0.25 --json " + (folder / "s.json"));
   ASSERT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(read_json(folder / "s.json")["scene"], "drop");
   EXPECT_EQ(read_json(folder / "s.json")["bodies"], 1);
@@ -97,7 +107,8 @@ TEST(Command, PrintsTheBudgetOfEveryKernel) {
   const auto table = read_json(folder / "b.json");
   ASSERT_FALSE(table.empty());
   for (const auto& row : table) {
-    for (const char* key : {"kernel", "text", "rodata", "data", "bss", "stack", "stack_used", "total", "budget"}) {
+    for (const char* key :
+         {"kernel", "text", "rodata", "data", "bss", "stack", "stack_used", "total", "budget"}) {
       EXPECT_TRUE(row.contains(key)) << key;
     }
     EXPECT_LE(row["total"], row["budget"]) << row["kernel"];
@@ -116,8 +127,8 @@ TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
     std::freopen("/dev/null", "w", stdout);
     std::freopen("/dev/null", "w", stderr);
     const std::string out = folder / "out", video = folder / "v.mp4";
-    execl(SOFTCELL_COMMAND, "softcell", "demo", "3d", "--headless", "--scene", "drop", "--frames", "100000", "--size", "320x240",
-          "--out", out.c_str(), "--video", video.c_str(), static_cast<char*>(nullptr));
+    execl(SOFTCELL_COMMAND, "softcell", "demo", "3d", "--headless", "--scene", "drop", "--frames", "100000",
+          "--size", "320x240", "--out", out.c_str(), "--video", video.c_str(), static_cast<char*>(nullptr));
     _exit(127);
   }
   const auto frames = [&] {
@@ -159,7 +170,8 @@ TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
   write_file(folder / "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
   write_file(folder / "file", "not a folder");
   std::string arguments = GetParam().arguments;
-  for (std::size_t at; (at = arguments.find("%s")) != std::string::npos;) arguments.replace(at, 2, folder.path().string());
+  for (std::size_t at; (at = arguments.find("%s")) != std::string::npos;)
+    arguments.replace(at, 2, folder.path().string());
   const auto before = files_in(folder.path());
 
   const CommandResult run = run_softcell(arguments);
@@ -172,24 +184,36 @@ TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
 
 #define SC_DEMO "demo 3d --headless --frames 1 --size 32x32 "
 
-INSTANTIATE_TEST_SUITE_P(
-    WrongUsage, CommandRefuses,
-    testing::Values(Refusal{"", 2, "say what to do"}, Refusal{"dance", 2, "dance"}, Refusal{"demo", 2, "say what to do"}, Refusal{"demo 4d", 2, "4d"},
-                    Refusal{SC_DEMO "--bogus", 2, "--bogus"}, Refusal{SC_DEMO "--spes 7", 2, "1"}, Refusal{SC_DEMO "--spes 0", 2, "6"},
-                    Refusal{SC_DEMO "--spes two", 2, "--spes"}, Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
-                    Refusal{"demo 3d --headless --size 99999x20", 2, "8192"}, Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
-                    Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"}, Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
-                    Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"}, Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
-                    Refusal{"demo 3d --headless --frames 0", 2, "--frames"}, Refusal{"demo 3d --frames 1", 2, "--headless"},
-                    Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"}, Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
-                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"}, Refusal{"bench --filter [", 2, "regular expression"},
-                    Refusal{"bench --filter nothing-is-called-so", 2, "no benchmark"}));
+INSTANTIATE_TEST_SUITE_P(WrongUsage, CommandRefuses,
+                         testing::Values(Refusal{"", 2, "say what to do"}, Refusal{"dance", 2, "dance"},
+                                         Refusal{"demo", 2, "say what to do"}, Refusal{"demo 4d", 2, "4d"},
+                                         Refusal{SC_DEMO "--bogus", 2, "--bogus"},
+                                         Refusal{SC_DEMO "--spes 7", 2, "1"},
+                                         Refusal{SC_DEMO "--spes 0", 2, "6"},
+                                         Refusal{SC_DEMO "--spes two", 2, "--spes"},
+                                         Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
+                                         Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
+                                         Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
+                                         Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
+                                         Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
+                                         Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
+                                         Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
+                                         Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
+                                         Refusal{"demo 3d --frames 1", 2, "--headless"},
+                                         Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
+                                         Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
+                                         Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
+                                         Refusal{"bench --filter [", 2, "regular expression"},
+                                         Refusal{"bench --filter nothing-is-called-so", 2, "no benchmark"}));
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
-    testing::Values(Refusal{SC_DEMO "--scene nowhere", 1, "arena, drop"}, Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"},
-                    Refusal{SC_DEMO "--mesh %s", 1, "softcell_"}, Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},
-                    Refusal{SC_DEMO "--mesh %s/truncated.ply", 1, "truncated.ply"}, Refusal{SC_DEMO "--mesh %s/nan.obj", 1, "nan.obj"},
+    testing::Values(Refusal{SC_DEMO "--scene nowhere", 1, "arena, drop"},
+                    Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"},
+                    Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
+                    Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},
+                    Refusal{SC_DEMO "--mesh %s/truncated.ply", 1, "truncated.ply"},
+                    Refusal{SC_DEMO "--mesh %s/nan.obj", 1, "nan.obj"},
                     Refusal{SC_DEMO "--mesh %s/range.obj", 1, "range.obj"},
                     Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0", 1, "cell size 0"},
                     Refusal{SC_DEMO "--mesh %s/cube.obj --cell -1", 1, "cell size -1"},

@@ -13,8 +13,8 @@
 namespace softcell::tests {
 
 struct CommandResult {
-  int status = -1;      ///< exit status, or 128 + signal
-  std::string output;   ///< standard output and error
+  int status = -1;     ///< exit status, or 128 + signal
+  std::string output;  ///< standard output and error
 };
 
 /// @param arguments  as typed in a shell.
@@ -24,7 +24,8 @@ inline CommandResult run_softcell(const std::string& arguments) {
   std::FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) return result;
   std::array<char, 4096> buffer{};
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) result.output.append(buffer.data(), n);
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    result.output.append(buffer.data(), n);
   const int status = pclose(pipe);
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;

@@ -28,13 +28,15 @@ TEST_P(SceneGolden, LooksAsItDid) {
   const auto context = render::create_offscreen_context();
   render::Renderer renderer(*context, {.width = 480, .height = 270});
   SceneView view(scene, simulation, renderer, View::kMesh);
-  EXPECT_TRUE(test::compare_with_golden(view.draw(), std::string(GetParam().scene) + "_" + std::to_string(GetParam().frame)));
+  EXPECT_TRUE(test::compare_with_golden(
+      view.draw(), std::string(GetParam().scene) + "_" + std::to_string(GetParam().frame)));
 }
 
-// Early moments: later ones hang on the last bit of the C library's sine, which differs between processor generations.
+// Early moments: later ones hang on the last bit of the C library's sine, which differs between processor
+// generations.
 INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden,
-                         testing::Values(Moment{"arena", 1}, Moment{"arena", 45}, Moment{"arena", 90}, Moment{"drop", 1},
-                                         Moment{"drop", 35}, Moment{"drop", 90}));
+                         testing::Values(Moment{"arena", 1}, Moment{"arena", 45}, Moment{"arena", 90},
+                                         Moment{"drop", 1}, Moment{"drop", 35}, Moment{"drop", 90}));
 
 TEST(SceneGolden, TheLatticeViewLooksAsItDid) {
   const Scene scene = find_scene("drop").make(std::nullopt);

@@ -74,7 +74,8 @@ TEST(LoadImage, RefusesAnotherMachine) {
 TEST(LoadImage, RefusesEveryTruncation) {
   const Bytes whole = good_elf();
   for (std::size_t size = 0; size < whole.size(); size += 7) {
-    EXPECT_NE(refusal(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), "accepted") << size;
+    EXPECT_NE(refusal(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), "accepted")
+        << size;
   }
 }
 
@@ -97,7 +98,8 @@ TEST(LoadImage, RefusesAnEntryOutsideTheText) {
 }
 
 TEST(LoadImage, SurvivesEveryChangedByteOfTheHeaders) {
-  // A changed byte may be harmless; it must never read outside the file (the sanitizer builds watch) or throw anything else.
+  // A changed byte may be harmless; it must never read outside the file (the sanitizer builds watch) or throw
+  // anything else.
   const Bytes whole = good_elf();
   for (std::size_t i = 0; i < 256 && i < whole.size(); ++i) {
     for (const int value : {0x00, 0x01, 0x7F, 0x80, 0xFF}) {

@@ -53,7 +53,8 @@ TEST_F(NativeEngineTest, EndsWithTheStatusOfMain) {
 TEST_F(NativeEngineTest, PassesCommandsThroughTheChannelsOfTheMfc) {
   const std::uint64_t ea = 0x5EA0'1234'5680;
   run("echo_arguments", {.argp = ea});
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> first(port_.writes.begin() + 1, port_.writes.begin() + 6);
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> first(port_.writes.begin() + 1,
+                                                                   port_.writes.begin() + 6);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{
       {17, 0x5EA0}, {18, 0x12345680}, {19, 128}, {20, 5}, {21, 0x40}};
   EXPECT_EQ(first, expected);
@@ -82,7 +83,9 @@ struct FaultCase {
   const char* detail;
 };
 
-void PrintTo(const FaultCase& c, std::ostream* out) { *out << c.kernel << " " << static_cast<std::int64_t>(c.arguments.envp); }
+void PrintTo(const FaultCase& c, std::ostream* out) {
+  *out << c.kernel << " " << static_cast<std::int64_t>(c.arguments.envp);
+}
 
 class NativeEngineFaults : public NativeEngineTest, public testing::WithParamInterface<FaultCase> {};
 
@@ -103,14 +106,23 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"stack_overflow_deep", {.envp = 12}, dma::Rule::kStackOverflow, "2048 bytes"},
         FaultCase{"stack_overflow_deep", {.envp = 100}, dma::Rule::kStackOverflow, "2048 bytes"},
         FaultCase{"stack_overflow_deep", {.envp = 100'000'000}, dma::Rule::kStackOverflow, "2048 bytes"},
-        FaultCase{"read_effective_address", {.argp = dma::kMainMemoryBase.value + 0x80}, dma::Rule::kEffectiveAddressAsPointer,
+        FaultCase{"read_effective_address",
+                  {.argp = dma::kMainMemoryBase.value + 0x80},
+                  dma::Rule::kEffectiveAddressAsPointer,
                   "0x5EA010000080"},
-        FaultCase{"read_effective_address", {.argp = dma::kVideoMemoryBase.value}, dma::Rule::kEffectiveAddressAsPointer,
+        FaultCase{"read_effective_address",
+                  {.argp = dma::kVideoMemoryBase.value},
+                  dma::Rule::kEffectiveAddressAsPointer,
                   "0x5EA0C0000000"},
         FaultCase{"read_effective_address", {.argp = 0}, dma::Rule::kOutsideLocalStore, "0x00000"},
-        FaultCase{"read_effective_address", {.argp = 0xEA00'0000'0000'0000}, dma::Rule::kOutsideLocalStore, "no address"},
+        FaultCase{"read_effective_address",
+                  {.argp = 0xEA00'0000'0000'0000},
+                  dma::Rule::kOutsideLocalStore,
+                  "no address"},
         FaultCase{"outside_local_store", {.envp = 256 * 1024}, dma::Rule::kOutsideLocalStore, "past the end"},
-        FaultCase{"outside_local_store", {.envp = static_cast<std::uint64_t>(-128 * 1024)}, dma::Rule::kOutsideLocalStore,
+        FaultCase{"outside_local_store",
+                  {.envp = static_cast<std::uint64_t>(-128 * 1024)},
+                  dma::Rule::kOutsideLocalStore,
                   "before the local store"},
         FaultCase{"illegal_instruction", {}, dma::Rule::kIllegalInstruction, "local-store address"}));
 

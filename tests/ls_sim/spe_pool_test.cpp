@@ -115,7 +115,8 @@ TEST_F(SpePoolTest, InitialisedDataAreFreshForEveryJob) {
       pool.submit(batch, std::vector<Job>{{&image, lines.ea(i), {}}});
       batch.wait();
       EXPECT_EQ(lines.span()[i][0], 101u);
-      EXPECT_EQ(lines.span()[i][1], reload ? 1u : i + 1) << "bss is the last job's unless the image is reloaded";
+      EXPECT_EQ(lines.span()[i][1], reload ? 1u : i + 1)
+          << "bss is the last job's unless the image is reloaded";
     }
   }
 }

@@ -1,4 +1,5 @@
-// The kernels' conversion from float to half, against a definition in exact arithmetic: the nearest half, the even one of two.
+// The kernels' conversion from float to half, against a definition in exact arithmetic: the nearest half, the
+// even one of two.
 
 #include "common/half.h"
 
@@ -28,11 +29,13 @@ float float_of(std::uint32_t bits) {
 /// The value of a half from its fields; exact.
 double value_of_half(std::uint16_t half) {
   const int exponent = half >> 10 & 31, fraction = half & 1023;
-  const double magnitude = exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
+  const double magnitude =
+      exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
   return (half & 0x8000) != 0 ? -magnitude : magnitude;
 }
 
-/// The definition: among all halves the nearest to the float, at a tie the one with an even fraction; from 65520 on infinity.
+/// The definition: among all halves the nearest to the float, at a tie the one with an even fraction; from
+/// 65520 on infinity.
 std::uint16_t nearest_half(float f) {
   const auto sign = static_cast<std::uint16_t>(bits_of(f) >> 16 & 0x8000);
   const double magnitude = std::fabs(static_cast<double>(f));
@@ -53,9 +56,13 @@ std::uint16_t nearest_half(float f) {
   return static_cast<std::uint16_t>(sign | (low + (up ? 1 : 0)));
 }
 
-std::uint16_t kernel_half(float f) { return static_cast<std::uint16_t>(spu_extract(high_half_of_any(spu_splats(f)), 2) >> 16); }
+std::uint16_t kernel_half(float f) {
+  return static_cast<std::uint16_t>(spu_extract(high_half_of_any(spu_splats(f)), 2) >> 16);
+}
 
-bool is_positive_normal(float f) { return (spu_extract(outside_positive_half_normal(spu_splats(f)), 0) & 0x80000000u) == 0; }
+bool is_positive_normal(float f) {
+  return (spu_extract(outside_positive_half_normal(spu_splats(f)), 0) & 0x80000000u) == 0;
+}
 bool is_normal(float f) {
   return (spu_extract(below_half_normal(spu_splats(f)), 0) & 0x80000000u) == 0 && std::fabs(f) < 65520.0f;
 }
@@ -63,10 +70,12 @@ bool is_normal(float f) {
 void expect_nearest(float f) {
   ASSERT_EQ(kernel_half(f), nearest_half(f)) << f << " = " << std::hex << bits_of(f);
   if (is_normal(f)) {
-    ASSERT_EQ(spu_extract(high_half_of_normal(spu_splats(f)), 1) >> 16, nearest_half(f)) << f << " = " << std::hex << bits_of(f);
+    ASSERT_EQ(spu_extract(high_half_of_normal(spu_splats(f)), 1) >> 16, nearest_half(f))
+        << f << " = " << std::hex << bits_of(f);
   }
   if (is_positive_normal(f)) {
-    ASSERT_EQ(spu_extract(high_half_of_positive(spu_splats(f)), 3) >> 16, nearest_half(f)) << f << " = " << std::hex << bits_of(f);
+    ASSERT_EQ(spu_extract(high_half_of_positive(spu_splats(f)), 3) >> 16, nearest_half(f))
+        << f << " = " << std::hex << bits_of(f);
   }
 }
 
@@ -90,7 +99,8 @@ TEST(KernelHalf, KeepsInfinitiesAndNansAsTheyAre) {
 
 TEST(KernelHalf, RoundsToTheNearestAtAndAroundEveryMiddle) {
   for (std::uint32_t half = 0; half < 0x7BFF; ++half) {
-    const double a = value_of_half(static_cast<std::uint16_t>(half)), b = value_of_half(static_cast<std::uint16_t>(half + 1));
+    const double a = value_of_half(static_cast<std::uint16_t>(half)),
+                 b = value_of_half(static_cast<std::uint16_t>(half + 1));
     const auto middle = static_cast<float>((a + b) / 2);  // exact: a float has the bits
     expect_nearest(middle);
     expect_nearest(-middle);
@@ -115,7 +125,8 @@ TEST(KernelHalf, KnowsTheNormalHalves) {
     EXPECT_FALSE(is_positive_normal(-f)) << f;
     EXPECT_TRUE(is_normal(f) && is_normal(-f)) << f;
   }
-  for (const float f : {6.1035152e-5f, 0.0f, -0.0f, 1e-30f, 65520.0f, -65520.0f, 1e30f, float_of(0x7F800000), float_of(0xFFFFFFFF)}) {
+  for (const float f : {6.1035152e-5f, 0.0f, -0.0f, 1e-30f, 65520.0f, -65520.0f, 1e30f, float_of(0x7F800000),
+                        float_of(0xFFFFFFFF)}) {
     EXPECT_FALSE(is_positive_normal(f)) << f;
   }
   for (const float f : {6.1035152e-5f, -6.1035152e-5f, 0.0f, -0.0f, 1e-30f}) EXPECT_FALSE(is_normal(f)) << f;

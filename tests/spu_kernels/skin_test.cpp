@@ -54,7 +54,8 @@ class SkinRig {
             position[d] = double{ppu::float_from_half(v.position[d])} + double{body.origin[d]};
             normal[d] = double{ppu::float_from_half(v.normal[d])};
           }
-          ASSERT_LE((position - expected.position).lpNorm<Eigen::Infinity>(), position_tolerance) << "group " << g << " lane " << lane;
+          ASSERT_LE((position - expected.position).lpNorm<Eigen::Infinity>(), position_tolerance)
+              << "group " << g << " lane " << lane;
           ASSERT_LE((normal - expected.normal).norm(), normal_tolerance) << "group " << g << " lane " << lane;
         }
       }
@@ -95,7 +96,8 @@ TEST(Skin, AgreesWithTheOracleInRandomPoses) {
   SkinRig rig(ppu::make_torus(0.72f, 0.28f, 40, 20), 0.2f);
   for (int pose = 0; pose < 10; ++pose) {
     for (std::size_t i = 0; i < rig.positions.size(); ++i) {
-      rig.positions[i] = rig.lattice.rest_position(i) + Vector3f(jitter(random), jitter(random), jitter(random));
+      rig.positions[i] =
+          rig.lattice.rest_position(i) + Vector3f(jitter(random), jitter(random), jitter(random));
     }
     rig.expect_oracle(kUlpAtTwo, 0.005);
   }
@@ -129,12 +131,14 @@ TEST(Skin, GivesTheSameBytesUnderEveryScheduleAndOnAFreshLocalStore) {
   std::vector<spu::SkinnedVertex> expected;
   for (const char* schedule : {"eager", "lazy", "random:1", "random:2", "random:3"}) {
     for (const bool reload : {false, true}) {
-      SkinRig rig(ppu::make_sphere(0.7f, 24), 0.2f, {.spes = 2, .schedule = dma::parse_schedule(schedule), .reload_always = reload});
+      SkinRig rig(ppu::make_sphere(0.7f, 24), 0.2f,
+                  {.spes = 2, .schedule = dma::parse_schedule(schedule), .reload_always = reload});
       rig.skin();
       const auto body = rig.skin();
       if (expected.empty()) expected.assign(body.vertices.begin(), body.vertices.end());
       ASSERT_EQ(expected.size(), body.vertices.size());
-      EXPECT_EQ(std::memcmp(expected.data(), body.vertices.data(), body.vertices.size_bytes()), 0) << schedule << " " << reload;
+      EXPECT_EQ(std::memcmp(expected.data(), body.vertices.data(), body.vertices.size_bytes()), 0)
+          << schedule << " " << reload;
     }
   }
 }
@@ -145,11 +149,13 @@ TEST(Skin, AgreesWithItsScalarTwinToOneUnit) {
   const ppu::SkinnedBody body = rig.skin();
   std::vector<spu::SkinnedVertex> twin(body.vertices.size());
   for (const ppu::SkinPart& part : rig.embedding->parts) {
-    ppu::skin_scalar(*rig.embedding, part, rig.positions, body.origin,
-                     std::span(twin).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
+    ppu::skin_scalar(
+        *rig.embedding, part, rig.positions, body.origin,
+        std::span(twin).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
   }
   for (std::size_t i = 0; i < twin.size(); ++i) {
-    for (int d = 0; d < 3; ++d) ASSERT_LE(std::abs(int{twin[i].position[d]} - int{body.vertices[i].position[d]}), 1) << "slot " << i;
+    for (int d = 0; d < 3; ++d)
+      ASSERT_LE(std::abs(int{twin[i].position[d]} - int{body.vertices[i].position[d]}), 1) << "slot " << i;
   }
 }
 
@@ -164,10 +170,12 @@ TEST(Skin, RefusesAJobWithTooManyCorners) {
   jobs[2].window[0].count = 0xFFFFFFFF;
   jobs[2].window[1].count = 2;
   ls_sim::JobBatch batch;
-  pool.submit(batch, std::vector<ls_sim::Job>{{&image, jobs.ea(0), {}}, {&image, jobs.ea(1), {}}, {&image, jobs.ea(2), {}}});
+  pool.submit(batch, std::vector<ls_sim::Job>{
+                         {&image, jobs.ea(0), {}}, {&image, jobs.ea(1), {}}, {&image, jobs.ea(2), {}}});
   batch.wait();
   ASSERT_EQ(batch.failures().size(), 3u);
-  for (const auto& failure : batch.failures()) EXPECT_NE(failure.message.find("status 1"), std::string::npos) << failure.message;
+  for (const auto& failure : batch.failures())
+    EXPECT_NE(failure.message.find("status 1"), std::string::npos) << failure.message;
 }
 
 TEST(Skin, AnEmptyJobIsDone) {

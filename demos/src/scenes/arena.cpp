@@ -1,4 +1,5 @@
-// The report's 3D demo: a walled floor with things sticking out of it, soft bodies of different shape, and a ground that tilts.
+// The report's 3D demo: a walled floor with things sticking out of it, soft bodies of different shape, and a
+// ground that tilts.
 
 #include <filesystem>
 #include <stdexcept>
@@ -12,17 +13,19 @@ namespace {
 using Eigen::Vector3f;
 using render::srgb;
 
-constexpr float kHalfFloor = 4.5f;   // metres from the middle to a wall
+constexpr float kHalfFloor = 4.5f;  // metres from the middle to a wall
 constexpr float kWallHeight = 0.9f;
 constexpr float kWallThickness = 0.3f;
 
-// A mesh that nobody here modelled: the Stanford bunny as Debian's package glmark2-data installs it. It is read where it lies
-// and is no part of softcell; the package's licence (GPL-3+) and the scan's terms are noted in docs/third-party.md.
+// A mesh that nobody here modelled: the Stanford bunny as Debian's package glmark2-data installs it. It is
+// read where it lies and is no part of softcell; the package's licence (GPL-3+) and the scan's terms are
+// noted in docs/third-party.md.
 constexpr const char* kBunny = "/usr/share/glmark2/models/bunny.obj";
 
 ppu::TriangleMesh load_bunny(float longest_side) {
   if (!std::filesystem::exists(kBunny)) {
-    throw std::runtime_error(std::string("scene arena needs ") + kBunny + ": install the package glmark2-data");
+    throw std::runtime_error(std::string("scene arena needs ") + kBunny +
+                             ": install the package glmark2-data");
   }
   ppu::TriangleMesh bunny = ppu::import_mesh(kBunny);
   ppu::fit(bunny, longest_side);
@@ -72,17 +75,22 @@ void add_obstacles(Scene& scene) {
 void add_soft_bodies(Scene& scene) {
   ppu::SoftBodySettings car = rubber(0.2f);
   car.alpha = 0.8f;  // an antenna of one cell's cross-section would hang limp at less
-  scene.soft_bodies.push_back({"torus", ppu::make_torus(0.72f, 0.28f, 96, 40), rubber(0.2f), {-2.3f, 2.6f, -0.6f}, srgb(0xE0782C)});
-  scene.soft_bodies.push_back({"sphere", ppu::make_sphere(0.7f, 24), rubber(0.28f), {0.25f, 2.2f, 0.3f}, srgb(0xC23B3B)});
+  scene.soft_bodies.push_back(
+      {"torus", ppu::make_torus(0.72f, 0.28f, 96, 40), rubber(0.2f), {-2.3f, 2.6f, -0.6f}, srgb(0xE0782C)});
+  scene.soft_bodies.push_back(
+      {"sphere", ppu::make_sphere(0.7f, 24), rubber(0.28f), {0.25f, 2.2f, 0.3f}, srgb(0xC23B3B)});
   scene.soft_bodies.push_back({"car", ppu::make_car(1.7f), car, {-1.2f, 1.35f, 2.6f}, srgb(0x2E7FC2)});
-  scene.soft_bodies.push_back({"bunny", load_bunny(1.7f), rubber(0.24f), {2.4f, 1.9f, -2.2f}, srgb(0xD9C9A8)});
-  scene.soft_bodies.push_back({"cube", ppu::make_box({0.9f, 0.9f, 0.9f}, 0.06f), rubber(0.225f), {2.2f, 2.4f, 1.8f}, srgb(0x4FA35A)});
+  scene.soft_bodies.push_back(
+      {"bunny", load_bunny(1.7f), rubber(0.24f), {2.4f, 1.9f, -2.2f}, srgb(0xD9C9A8)});
+  scene.soft_bodies.push_back(
+      {"cube", ppu::make_box({0.9f, 0.9f, 0.9f}, 0.06f), rubber(0.225f), {2.2f, 2.4f, 1.8f}, srgb(0x4FA35A)});
 }
 
 void add_rigid_boxes(Scene& scene) {
   const auto wood = srgb(0xA9743F);
-  for (const Vector3f& position : {Vector3f{-3.4f, 0.25f, 2.2f}, Vector3f{-3.4f, 0.75f, 2.2f}, Vector3f{-3.3f, 1.25f, 2.25f},
-                                   Vector3f{1.6f, 0.25f, 3.2f}, Vector3f{2.2f, 0.25f, 3.3f}, Vector3f{-0.8f, 0.25f, -3.2f}}) {
+  for (const Vector3f& position :
+       {Vector3f{-3.4f, 0.25f, 2.2f}, Vector3f{-3.4f, 0.75f, 2.2f}, Vector3f{-3.3f, 1.25f, 2.25f},
+        Vector3f{1.6f, 0.25f, 3.2f}, Vector3f{2.2f, 0.25f, 3.3f}, Vector3f{-0.8f, 0.25f, -3.2f}}) {
     scene.boxes.push_back({.size = {0.5f, 0.5f, 0.5f}, .mass = 25, .position = position, .colour = wood});
   }
 }
@@ -95,8 +103,13 @@ Scene make_arena() {
   add_obstacles(scene);
   add_soft_bodies(scene);
   add_rigid_boxes(scene);
-  scene.tilt = {.amplitude_x = 0.20f, .amplitude_z = 0.26f, .period_x = 4.6f, .period_z = 6.2f, .begin = 1.5f};
-  scene.camera = {.eye = {0, 6.4f, 9.6f}, .target = {0, 0.3f, 0.3f}, .tan_half_fov_y = 0.42f, .near_plane = 1, .far_plane = 60};
+  scene.tilt = {
+      .amplitude_x = 0.20f, .amplitude_z = 0.26f, .period_x = 4.6f, .period_z = 6.2f, .begin = 1.5f};
+  scene.camera = {.eye = {0, 6.4f, 9.6f},
+                  .target = {0, 0.3f, 0.3f},
+                  .tan_half_fov_y = 0.42f,
+                  .near_plane = 1,
+                  .far_plane = 60};
   scene.light.shadow_radius = 7.5f;
   return scene;
 }

@@ -11,7 +11,8 @@ constexpr float kLongestSide = 1.6f;  // metres, to which the user's model is sc
 }  // namespace
 
 Scene make_drop(const std::optional<OwnModel>& model) {
-  SoftBodyPlacement body{.name = "body", .mesh = {}, .settings = {}, .position = {}, .colour = render::srgb(0xD26A35)};
+  SoftBodyPlacement body{
+      .name = "body", .mesh = {}, .settings = {}, .position = {}, .colour = render::srgb(0xD26A35)};
   body.settings.half_width = 2;
   body.settings.density = 200;
   body.settings.alpha = 0.15f;
@@ -35,7 +36,11 @@ Scene make_drop(const std::optional<OwnModel>& model) {
                          .colour = render::srgb(0xB9B4A7),
                          .pattern = render::Pattern::tiles});
   scene.soft_bodies.push_back(std::move(body));
-  scene.camera = {.eye = {2.6f, 2.4f, 4.2f}, .target = {0, 0.7f, 0}, .tan_half_fov_y = 0.4f, .near_plane = 0.5f, .far_plane = 60};
+  scene.camera = {.eye = {2.6f, 2.4f, 4.2f},
+                  .target = {0, 0.7f, 0},
+                  .tan_half_fov_y = 0.4f,
+                  .near_plane = 0.5f,
+                  .far_plane = 60};
   scene.light.shadow_radius = 4;
   return scene;
 }

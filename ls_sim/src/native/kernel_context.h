@@ -1,13 +1,14 @@
 #pragma once
-// The state that the three stacks of a native run share: the worker's own, the kernel's (in local store), and the landing stack
-// on which a kernel that faulted is left.
+// The state that the three stacks of a native run share: the worker's own, the kernel's (in local store), and
+// the landing stack on which a kernel that faulted is left.
 //
-//   worker    run() --jump--> kernel: main() ... gate() --jump--> run(): serves the channel --jump--> gate() returns ...
-//   kernel    on a fault: signal handler (on the signal stack) rewrites the interrupted context to land() on the landing
+//   worker    run() --jump--> kernel: main() ... gate() --jump--> run(): serves the channel --jump--> gate()
+//   returns ... kernel    on a fault: signal handler (on the signal stack) rewrites the interrupted context
+//   to land() on the landing
 //             stack, which jumps to run(); the kernel's frames are abandoned where they are.
 //
-// Only code without sanitizer instrumentation runs on the kernel's and the landing stack (kernel_side.cpp), so that sanitizers
-// see one stack per thread.
+// Only code without sanitizer instrumentation runs on the kernel's and the landing stack (kernel_side.cpp),
+// so that sanitizers see one stack per thread.
 
 #include <boost/context/detail/fcontext.hpp>
 #include <csignal>
@@ -15,7 +16,8 @@
 
 namespace softcell::ls_sim::native {
 
-/// First quadwords of the local store, as spu_kernels/sdk/host/softcell_environment.h declares them (a test compares the two).
+/// First quadwords of the local store, as spu_kernels/sdk/host/softcell_environment.h declares them (a test
+/// compares the two).
 struct Environment {
   std::uint64_t gate = 0;
   std::uint32_t mfc_lsa = 0, mfc_eah = 0, mfc_eal = 0, mfc_size = 0, mfc_tag = 0;
@@ -38,7 +40,8 @@ struct Trap {
 };
 
 struct KernelContext {
-  boost::context::detail::fcontext_t kernel = nullptr;  ///< where the kernel waits; its value is the kernel's stack pointer
+  boost::context::detail::fcontext_t kernel =
+      nullptr;  ///< where the kernel waits; its value is the kernel's stack pointer
   boost::context::detail::fcontext_t worker = nullptr;
 
   // The request of the kernel and the worker's answer.

@@ -1,4 +1,5 @@
-// The host code that runs on a kernel's stack or the landing stack. Built without sanitizers: see kernel_context.h.
+// The host code that runs on a kernel's stack or the landing stack. Built without sanitizers: see
+// kernel_context.h.
 
 #include <xmmintrin.h>
 
@@ -7,11 +8,13 @@
 namespace softcell::ls_sim::native {
 namespace {
 
-// Truncation, denormal results and operands to zero, all exceptions masked: the SPU's single precision inside the range that
-// both formats share. [SPU ISA, single precision] documented
-constexpr unsigned int kSpuArithmetic = _MM_MASK_MASK | _MM_ROUND_TOWARD_ZERO | _MM_FLUSH_ZERO_ON | 0x0040 /* DAZ */;
+// Truncation, denormal results and operands to zero, all exceptions masked: the SPU's single precision inside
+// the range that both formats share. [SPU ISA, single precision] documented
+constexpr unsigned int kSpuArithmetic =
+    _MM_MASK_MASK | _MM_ROUND_TOWARD_ZERO | _MM_FLUSH_ZERO_ON | 0x0040 /* DAZ */;
 
-/// Waits for the worker. fcontext saves the arithmetic mode of the side that leaves and restores that of the side it enters.
+/// Waits for the worker. fcontext saves the arithmetic mode of the side that leaves and restores that of the
+/// side it enters.
 void ask(KernelContext& context) {
   const auto back = boost::context::detail::jump_fcontext(context.worker, &context);
   context.worker = back.fctx;
@@ -29,8 +32,8 @@ void kernel_start(boost::context::detail::transfer_t transfer) {
   context.worker = transfer.fctx;
   _mm_setcsr(kSpuArithmetic);
   using Main = int(std::uint64_t, std::uint64_t, std::uint64_t);
-  const int status =
-      reinterpret_cast<Main*>(context.entry)(context.arguments[0], context.arguments[1], context.arguments[2]);
+  const int status = reinterpret_cast<Main*>(context.entry)(context.arguments[0], context.arguments[1],
+                                                            context.arguments[2]);
   context.operation = Operation::kStop;
   context.value = 0x2000u | (static_cast<std::uint32_t>(status) & 0xFFu);
   ask(context);

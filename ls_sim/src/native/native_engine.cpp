@@ -16,8 +16,12 @@ namespace softcell::ls_sim {
 
 void require_vector_units(bool avx2, bool fma) {
   if (avx2 && fma) return;
-  throw std::runtime_error(std::string("this processor lacks ") + (avx2 ? "FMA" : fma ? "AVX2" : "AVX2 and FMA") +
-                           ": the native engine needs a processor with AVX2 and FMA (Intel since 2013, AMD since 2015)");
+  throw std::runtime_error(
+      std::string("this processor lacks ") +
+      (avx2  ? "FMA"
+       : fma ? "AVX2"
+             : "AVX2 and FMA") +
+      ": the native engine needs a processor with AVX2 and FMA (Intel since 2013, AMD since 2015)");
 }
 
 namespace {
@@ -35,7 +39,9 @@ std::string hexadecimal(std::uint64_t value) {
   return text.data();
 }
 
-std::string describe_stack(const ImageSizes& sizes) { return "the declared stack has " + std::to_string(sizes.stack) + " bytes"; }
+std::string describe_stack(const ImageSizes& sizes) {
+  return "the declared stack has " + std::to_string(sizes.stack) + " bytes";
+}
 
 class NativeEngine final : public Engine {
  public:
@@ -101,8 +107,8 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   context_.arguments[1] = arguments.argp;
   context_.arguments[2] = arguments.envp;
   context_.interrupted = 0;
-  context_.kernel = boost::context::detail::make_fcontext(local_store_.base() + dma::kLocalStoreBytes, image_->sizes.stack,
-                                                          native::kernel_start);
+  context_.kernel = boost::context::detail::make_fcontext(local_store_.base() + dma::kLocalStoreBytes,
+                                                          image_->sizes.stack, native::kernel_start);
 }
 
 void NativeEngine::enter_kernel() {
@@ -142,7 +148,8 @@ RunResult NativeEngine::serve(ChannelPort& channels) {
     enter_kernel();
     if (context_.operation == Operation::kFault) return {0, classify_trap()};
     if (auto overflow = check_stack()) return {0, std::move(overflow)};
-    if (context_.interrupted != 0) return {0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
+    if (context_.interrupted != 0)
+      return {0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
     if (context_.operation == Operation::kStop) return {context_.value & 0x3FFFu, std::nullopt};
     if (context_.operation == Operation::kHalt) {
       return {0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
@@ -163,16 +170,18 @@ ChannelReply NativeEngine::serve_channel(ChannelPort& channels) {
     case Operation::kCount:
       return channels.count(context_.channel);
     default:
-      return {0, fault(dma::Rule::kIllegalChannel, "the kernel called the environment with an unknown operation")};
+      return {0, fault(dma::Rule::kIllegalChannel,
+                       "the kernel called the environment with an unknown operation")};
   }
 }
 
-/// The host headers keep the five parameters of a command in the environment and call only for the command itself.
+/// The host headers keep the five parameters of a command in the environment and call only for the command
+/// itself.
 ChannelReply NativeEngine::issue_command(ChannelPort& channels) {
   native::Environment environment;
   std::memcpy(&environment, local_store_.base(), sizeof environment);
-  const std::array parameters{environment.mfc_lsa, environment.mfc_eah, environment.mfc_eal, environment.mfc_size,
-                              environment.mfc_tag};
+  const std::array parameters{environment.mfc_lsa, environment.mfc_eah, environment.mfc_eal,
+                              environment.mfc_size, environment.mfc_tag};
   for (std::uint32_t i = 0; i < parameters.size(); ++i) {
     ChannelReply reply = channels.write(static_cast<std::uint32_t>(Channel::kMfcLsa) + i, parameters[i]);
     if (reply.fault) return reply;
@@ -186,9 +195,11 @@ dma::Fault NativeEngine::stack_overflow(std::string detail) const {
 
 std::optional<dma::Fault> NativeEngine::check_stack() const {
   const auto pointer = reinterpret_cast<std::uintptr_t>(context_.kernel) - arena();
-  if (pointer < stack_limit()) return stack_overflow("the stack pointer is at local-store address " + hexadecimal(pointer));
+  if (pointer < stack_limit())
+    return stack_overflow("the stack pointer is at local-store address " + hexadecimal(pointer));
   const std::uint32_t canary_end = stack_limit();
-  const std::uint32_t canary_begin = std::max(image_->sizes.end, canary_end - std::min(canary_end, kCanaryBytes));
+  const std::uint32_t canary_begin =
+      std::max(image_->sizes.end, canary_end - std::min(canary_end, kCanaryBytes));
   const std::byte* const base = local_store_.base();
   if (context_.operation == Operation::kStop &&
       std::any_of(base + canary_begin, base + canary_end, [](std::byte b) { return b != kFiller; })) {
@@ -200,10 +211,12 @@ std::optional<dma::Fault> NativeEngine::check_stack() const {
 dma::Fault NativeEngine::classify_trap() const {
   const native::Trap& trap = context_.trap;
   const std::uintptr_t at = trap.instruction - arena();
-  const std::string where = at < dma::kLocalStoreBytes ? "the instruction at local-store address " + hexadecimal(at)
-                                                       : "an instruction outside the local store";
+  const std::string where = at < dma::kLocalStoreBytes
+                                ? "the instruction at local-store address " + hexadecimal(at)
+                                : "an instruction outside the local store";
   if (trap.signal == native::kInterruptSignal) {
-    return fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time; it was at local-store address " + hexadecimal(at));
+    return fault(dma::Rule::kDeadlineExceeded,
+                 "the kernel did not end in time; it was at local-store address " + hexadecimal(at));
   }
   const std::uintptr_t stack = trap.stack - (arena() - LocalStore::kGuardBytes);
   if (stack < LocalStore::kGuardBytes + stack_limit()) {
@@ -219,34 +232,42 @@ dma::Fault NativeEngine::classify_trap() const {
   if (trap.general_protection) {
     return fault(dma::Rule::kOutsideLocalStore, where + " followed a pointer that is no address at all");
   }
-  const char* const access = trap.instruction_fetch ? " jumped to " : trap.write ? " wrote to " : " read from ";
+  const char* const access = trap.instruction_fetch ? " jumped to "
+                             : trap.write           ? " wrote to "
+                                                    : " read from ";
   if (dma::is_effective_address(trap.address)) {
-    return fault(dma::Rule::kEffectiveAddressAsPointer,
-                 where + access + "effective address " + hexadecimal(trap.address) + "; main storage is reached by DMA only");
+    return fault(dma::Rule::kEffectiveAddressAsPointer, where + access + "effective address " +
+                                                            hexadecimal(trap.address) +
+                                                            "; main storage is reached by DMA only");
   }
   const std::uintptr_t offset = trap.address - arena();
   if (offset < 2 * std::uintptr_t{dma::kLocalStoreBytes}) {
-    return fault(dma::Rule::kOutsideLocalStore, where + access + std::to_string(offset - dma::kLocalStoreMask) +
+    return fault(dma::Rule::kOutsideLocalStore, where + access +
+                                                    std::to_string(offset - dma::kLocalStoreMask) +
                                                     " bytes past the end of the local store");
   }
   if (arena() - trap.address <= LocalStore::kGuardBytes) {
     return fault(dma::Rule::kOutsideLocalStore,
                  where + access + std::to_string(arena() - trap.address) + " bytes before the local store");
   }
-  return fault(dma::Rule::kOutsideLocalStore, where + access + "address " + hexadecimal(trap.address) +
-                                                  ", which is neither in the local store nor an effective address");
+  return fault(dma::Rule::kOutsideLocalStore,
+               where + access + "address " + hexadecimal(trap.address) +
+                   ", which is neither in the local store nor an effective address");
 }
 
 std::uint32_t NativeEngine::stack_high_water() const {
   if (image_ == nullptr) return 0;
   const std::byte* const base = local_store_.base();
   const std::byte* const top = base + dma::kLocalStoreBytes;
-  const std::byte* const used = std::find_if(base + image_->sizes.end, top, [](std::byte b) { return b != kFiller; });
+  const std::byte* const used =
+      std::find_if(base + image_->sizes.end, top, [](std::byte b) { return b != kFiller; });
   return static_cast<std::uint32_t>(top - used);
 }
 
 }  // namespace
 
-std::unique_ptr<Engine> make_native_engine(LocalStore& local_store) { return std::make_unique<NativeEngine>(local_store); }
+std::unique_ptr<Engine> make_native_engine(LocalStore& local_store) {
+  return std::make_unique<NativeEngine>(local_store);
+}
 
 }  // namespace softcell::ls_sim

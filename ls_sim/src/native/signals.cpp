@@ -31,11 +31,13 @@ void pass_on(int signal, siginfo_t* info, void* machine) {
   }
 }
 
-/// Leaves the kernel where it is: when the handler returns, the thread continues in land() on the landing stack.
+/// Leaves the kernel where it is: when the handler returns, the thread continues in land() on the landing
+/// stack.
 void redirect_to_landing(const KernelContext& context, mcontext_t& machine) {
   machine.gregs[REG_RIP] = reinterpret_cast<greg_t>(&land);
-  machine.gregs[REG_RSP] = static_cast<greg_t>(context.landing_stack_top - 8);  // as if called: 8 below a multiple of 16
-  machine.gregs[REG_EFL] &= ~static_cast<greg_t>(0x400);                        // direction flag clear, as the ABI asks
+  machine.gregs[REG_RSP] =
+      static_cast<greg_t>(context.landing_stack_top - 8);  // as if called: 8 below a multiple of 16
+  machine.gregs[REG_EFL] &= ~static_cast<greg_t>(0x400);   // direction flag clear, as the ABI asks
 }
 
 bool in_arena(const KernelContext& context, std::uintptr_t address) {
@@ -54,7 +56,8 @@ void handle(int signal, siginfo_t* info, void* machine_context) {
   }
   auto& machine = static_cast<ucontext_t*>(machine_context)->uc_mcontext;
   const auto instruction = static_cast<std::uintptr_t>(machine.gregs[REG_RIP]);
-  if (signal == kInterruptSignal && info->si_code == SI_TKILL && (context->in_kernel == 0 || !in_arena(*context, instruction))) {
+  if (signal == kInterruptSignal && info->si_code == SI_TKILL &&
+      (context->in_kernel == 0 || !in_arena(*context, instruction))) {
     return;
   }
   const auto error = static_cast<std::uint64_t>(machine.gregs[REG_ERR]);
@@ -77,7 +80,8 @@ void install_signal_handlers() {
     action.sa_sigaction = handle;
     action.sa_flags = SA_SIGINFO | SA_ONSTACK;
     sigemptyset(&action.sa_mask);
-    for (const int signal : kSignals) sigaction(signal, &action, &previous_actions[static_cast<std::size_t>(signal)]);
+    for (const int signal : kSignals)
+      sigaction(signal, &action, &previous_actions[static_cast<std::size_t>(signal)]);
   });
 }
 

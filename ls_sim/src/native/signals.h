@@ -7,15 +7,16 @@
 
 namespace softcell::ls_sim::native {
 
-/// The signal that interrupt() sends to a worker. It is one that the thread sanitizer delivers at once, even to a thread that
-/// never calls the library.
+/// The signal that interrupt() sends to a worker. It is one that the thread sanitizer delivers at once, even
+/// to a thread that never calls the library.
 inline constexpr int kInterruptSignal = SIGSYS;
 
-/// Installs the handlers once per process. Signals that do not come from a kernel go to whoever handled them before.
+/// Installs the handlers once per process. Signals that do not come from a kernel go to whoever handled them
+/// before.
 void install_signal_handlers();
 
-/// Gives the calling thread a stack for signal handlers, for as long as the object lives: a kernel's own stack is in its local
-/// store and may be the very thing that is broken.
+/// Gives the calling thread a stack for signal handlers, for as long as the object lives: a kernel's own
+/// stack is in its local store and may be the very thing that is broken.
 class SignalStack {
  public:
   SignalStack();

@@ -58,7 +58,8 @@ SC_SDK_INLINE vec_float4 interpolate(vec_float4 argument, vec_float4 estimate) {
   return make<vec_float4>((below & borrowed) | ((head | difference >> 9) & ~borrowed));
 }
 
-/// fi on an argument's own estimate: its product never passes its base (a test tries every one), so there is no borrow.
+/// fi on an argument's own estimate: its product never passes its base (a test tries every one), so there is
+/// no borrow.
 SC_SDK_INLINE vec_float4 interpolate_own(vec_float4 argument, vec_float4 estimate) {
   const auto a = (Raw<unsigned int>)argument.raw, e = (Raw<unsigned int>)estimate.raw;
   const Raw<unsigned int> base = (e & 0x7FFC00u) << 9, product = (e & 0x3FFu) * (a & 0x7FFFFu);

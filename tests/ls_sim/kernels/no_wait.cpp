@@ -1,4 +1,5 @@
-// Reads its buffer without waiting for the transfer: right under the eager schedule, wrong under the lazy one.
+// Reads its buffer without waiting for the transfer: right under the eager schedule, wrong under the lazy
+// one.
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 

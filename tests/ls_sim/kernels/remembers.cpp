@@ -1,4 +1,5 @@
-// Writes back how often it has run since its image was loaded, by data (restored for every run) and by bss (not).
+// Writes back how often it has run since its image was loaded, by data (restored for every run) and by bss
+// (not).
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 

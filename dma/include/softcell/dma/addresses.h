@@ -6,7 +6,7 @@
 
 namespace softcell::dma {
 
-inline constexpr std::uint32_t kLocalStoreBytes = 256 * 1024;         // [CBEA, local store] documented
+inline constexpr std::uint32_t kLocalStoreBytes = 256 * 1024;           // [CBEA, local store] documented
 inline constexpr std::uint32_t kLocalStoreMask = kLocalStoreBytes - 1;  // the LSLR register
 inline constexpr std::uint32_t kQuadwordBytes = 16;
 inline constexpr std::uint32_t kLineBytes = 128;
@@ -26,10 +26,10 @@ struct EffectiveAddress {
 
 constexpr EffectiveAddress operator+(EffectiveAddress ea, std::uint64_t bytes) { return {ea.value + bytes}; }
 
-/// The map of main storage. The low words are those of a PS3 game process (256 MB of XDR, 256 MB of video memory,
-/// SPU threads from 0xF0000000 in steps of 1 MB); the high word is not zero, so that a kernel that drops
-/// MFC_EAH is caught, and the addresses are ones that no host program has mapped, so that a kernel that follows
-/// one as a pointer faults.
+/// The map of main storage. The low words are those of a PS3 game process (256 MB of XDR, 256 MB of video
+/// memory, SPU threads from 0xF0000000 in steps of 1 MB); the high word is not zero, so that a kernel that
+/// drops MFC_EAH is caught, and the addresses are ones that no host program has mapped, so that a kernel that
+/// follows one as a pointer faults.
 inline constexpr EffectiveAddress kMainMemoryBase{0x5EA0'1000'0000};
 inline constexpr std::uint64_t kMainMemoryBytes = 256ull << 20;
 inline constexpr EffectiveAddress kVideoMemoryBase{0x5EA0'C000'0000};

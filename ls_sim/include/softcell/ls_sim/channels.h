@@ -38,8 +38,8 @@ class ChannelPort {
   virtual ChannelReply count(std::uint32_t channel) = 0;
 };
 
-/// The channels that lead to the MFC: command parameters, tag mask, tag update and status. Any other number is a fault
-/// (illegal-channel), as is a read of a channel that is only written and the reverse.
+/// The channels that lead to the MFC: command parameters, tag mask, tag update and status. Any other number
+/// is a fault (illegal-channel), as is a read of a channel that is only written and the reverse.
 class MfcChannels final : public ChannelPort {
  public:
   explicit MfcChannels(dma::Mfc& mfc) : mfc_(mfc) {}

@@ -35,7 +35,8 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// Makes the image resident, replacing what was there. Text, data and bss are as linked, the rest is filler.
+  /// Makes the image resident, replacing what was there. Text, data and bss are as linked, the rest is
+  /// filler.
   virtual void load(const KernelImage& image) = 0;
 
   /// Runs the resident image once. The initialised data are as linked; bss is as the last run left it.

@@ -10,8 +10,8 @@
 
 namespace softcell::ls_sim {
 
-/// Bytes at the bottom of every local store that belong to the emulator: the environment through which a kernel on the host
-/// engine reaches its channels. An SPU program linked at 0x80 leaves them free as well.
+/// Bytes at the bottom of every local store that belong to the emulator: the environment through which a
+/// kernel on the host engine reaches its channels. An SPU program linked at 0x80 leaves them free as well.
 inline constexpr std::uint32_t kEnvironmentBytes = 128;
 
 /// Sizes in bytes of what an image occupies, and of what it may.
@@ -34,8 +34,10 @@ struct KernelImage {
 };
 
 /// Reads a kernel that was linked with spu_kernels/sdk/ls.ld.
-/// @throws std::runtime_error  one sentence with the name and what is wrong: not ELF, another machine or class, truncated,
-///         linked by another script, a relocation left, past 256 KB, segments that overlap, an entry outside the text.
+/// @throws std::runtime_error  one sentence with the name and what is wrong: not ELF, another machine or
+/// class, truncated,
+///         linked by another script, a relocation left, past 256 KB, segments that overlap, an entry outside
+///         the text.
 KernelImage load_image(std::string_view name, std::span<const std::byte> elf);
 
 }  // namespace softcell::ls_sim

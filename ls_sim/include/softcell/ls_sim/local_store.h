@@ -9,9 +9,10 @@
 
 namespace softcell::ls_sim {
 
-/// 256 KB of readable, writable, executable memory, aligned to 256 KB, so that the local-store address of any pointer into it
-/// is its low 18 bits; with 256 KB of inaccessible pages on both sides, so that a kernel that leaves it faults.
-/// Not copyable, not movable. Any thread may create one; its bytes belong to the SPE that runs.
+/// 256 KB of readable, writable, executable memory, aligned to 256 KB, so that the local-store address of any
+/// pointer into it is its low 18 bits; with 256 KB of inaccessible pages on both sides, so that a kernel that
+/// leaves it faults. Not copyable, not movable. Any thread may create one; its bytes belong to the SPE that
+/// runs.
 class LocalStore {
  public:
   static constexpr std::uint32_t kGuardBytes = dma::kLocalStoreBytes;

@@ -2,11 +2,11 @@
 // Six SPEs, each a thread with its own local store and MFC, that take jobs from one queue.
 //
 //   caller   submit(batch, jobs) ............ batch.wait() -> failures
-//   SPE 0    [ job 0 ][ job 2 ] ...            each SPE takes the oldest job when it is free; an image stays resident
-//   SPE 1    [ job 1      ][ job 3 ] ...       until another is asked for
+//   SPE 0    [ job 0 ][ job 2 ] ...            each SPE takes the oldest job when it is free; an image stays
+//   resident SPE 1    [ job 1      ][ job 3 ] ...       until another is asked for
 //
-// Jobs of one submission may run in any order and at the same time, so they must not depend on each other. Then the result is the
-// same bits for any number of SPEs.
+// Jobs of one submission may run in any order and at the same time, so they must not depend on each other.
+// Then the result is the same bits for any number of SPEs.
 
 #include <atomic>
 #include <chrono>
@@ -41,7 +41,8 @@ class JobBatch {
  public:
   bool finished() const { return pending_.load(std::memory_order_acquire) == 0; }
 
-  /// Blocks until every job has ended, well or badly. Always returns: a job that never ends is stopped by the pool's deadline.
+  /// Blocks until every job has ended, well or badly. Always returns: a job that never ends is stopped by the
+  /// pool's deadline.
   void wait() const;
 
   /// Empty when all went well; in order of submission. @pre finished().
@@ -66,9 +67,10 @@ struct SpeStatistics {
 struct PoolOptions {
   int spes = dma::kSpeCount;  ///< 1..6
   dma::Schedule schedule{};
-  std::chrono::milliseconds deadline{10'000};  ///< for one job; a job that takes longer is stopped with a fault
-  bool measure_stack = false;                  ///< scan the stack after each job
-  bool reload_always = false;                  ///< copy the image in before every job, so that bss starts as zero
+  std::chrono::milliseconds deadline{
+      10'000};                 ///< for one job; a job that takes longer is stopped with a fault
+  bool measure_stack = false;  ///< scan the stack after each job
+  bool reload_always = false;  ///< copy the image in before every job, so that bss starts as zero
 };
 
 class SpePool {
@@ -82,7 +84,8 @@ class SpePool {
   SpePool(const SpePool&) = delete;
   SpePool& operator=(const SpePool&) = delete;
 
-  /// Queues the jobs; returns at once unless more than kQueueCapacity jobs are waiting. Allocates nothing. Any thread.
+  /// Queues the jobs; returns at once unless more than kQueueCapacity jobs are waiting. Allocates nothing.
+  /// Any thread.
   void submit(JobBatch& batch, std::span<const Job> jobs);
 
   /// Of each SPE. Exact for jobs whose batch has finished.

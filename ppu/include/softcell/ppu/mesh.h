@@ -23,13 +23,16 @@ struct Bounds {
 /// The mesh's axis-aligned box. @pre at least one position.
 Bounds bounds(const TriangleMesh& mesh);
 
-/// Reads an OBJ, PLY or STL file (by its extension). Positions that are equal are joined; normals are taken from the
-/// file or made, smooth up to a crease.
-/// @throws std::runtime_error  one sentence naming the file and what is wrong with it: no such file, unknown format, not
-///         readable as one, no triangles, NaN or infinite coordinates, indices out of range, more than 4 million triangles.
+/// Reads an OBJ, PLY or STL file (by its extension). Positions that are equal are joined; normals are taken
+/// from the file or made, smooth up to a crease.
+/// @throws std::runtime_error  one sentence naming the file and what is wrong with it: no such file, unknown
+/// format, not
+///         readable as one, no triangles, NaN or infinite coordinates, indices out of range, more than 4
+///         million triangles.
 TriangleMesh import_mesh(const std::filesystem::path& path);
 
-/// Moves and scales the mesh so that its box is centred on 0 and its longest side has the given length in metres.
+/// Moves and scales the mesh so that its box is centred on 0 and its longest side has the given length in
+/// metres.
 void fit(TriangleMesh& mesh, float longest_side);
 
 }  // namespace softcell::ppu

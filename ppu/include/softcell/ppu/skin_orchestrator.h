@@ -4,7 +4,8 @@
 //   PPU    step 0 | kick 0 | step 1 | kick 1, show 0 | step 2 | kick 2, show 1 | ...
 //   SPEs           [ skin 0        ] [ skin 1               ] [ skin 2 ...
 //
-// Positions, job descriptors and vertices exist twice in main memory: the SPEs work on one half while the PPU shows the other.
+// Positions, job descriptors and vertices exist twice in main memory: the SPEs work on one half while the PPU
+// shows the other.
 
 #include <chrono>
 #include <cstdint>
@@ -21,8 +22,9 @@ namespace softcell::ppu {
 
 /// One body's vertices of the last frame that is complete.
 struct SkinnedBody {
-  std::span<const spu::SkinnedVertex> vertices;  ///< relative to `origin`, one per output slot of the embedding
-  Eigen::Vector3f origin{0, 0, 0};               ///< world position, metres
+  std::span<const spu::SkinnedVertex>
+      vertices;                     ///< relative to `origin`, one per output slot of the embedding
+  Eigen::Vector3f origin{0, 0, 0};  ///< world position, metres
 };
 
 /// Used by the PPU thread alone.
@@ -34,18 +36,21 @@ class SkinOrchestrator {
   SkinOrchestrator(const SkinOrchestrator&) = delete;
   SkinOrchestrator& operator=(const SkinOrchestrator&) = delete;
 
-  /// Adds a body; its number counts from 0. The embedding's groups are copied into main memory, once for all bodies that
-  /// share the embedding. @throws std::runtime_error  when main memory is full.
+  /// Adds a body; its number counts from 0. The embedding's groups are copied into main memory, once for all
+  /// bodies that share the embedding. @throws std::runtime_error  when main memory is full.
   std::size_t add(std::shared_ptr<const Embedding> embedding, std::size_t particles);
 
-  /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues the jobs. Never waits.
-  /// @return false, with nothing done, when the SPEs have not finished the frame before: its vertices stay the newest, and
+  /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues the
+  /// jobs. Never waits.
+  /// @return false, with nothing done, when the SPEs have not finished the frame before: its vertices stay
+  /// the newest, and
   ///         late_frames() counts.
   /// @throws std::runtime_error  when a job of the frame before failed: one sentence per fault.
   bool kick(std::span<const std::span<const spu::SkinCorner>> positions);
 
-  /// Waits for the frame under way and makes it the one that is shown: for runs whose pictures must not depend on the
-  /// speed of the host. @return false when there was none under way. @throws std::runtime_error  as kick().
+  /// Waits for the frame under way and makes it the one that is shown: for runs whose pictures must not
+  /// depend on the speed of the host. @return false when there was none under way. @throws std::runtime_error
+  /// as kick().
   bool drain();
 
   /// The newest complete frame; empty vertices before the first one.
@@ -70,8 +75,8 @@ class SkinOrchestrator {
   std::vector<ls_sim::Job> jobs_;  // of one frame; rewritten by each kick
   ls_sim::JobBatch batch_;
   bool in_flight_ = false;
-  int working_ = 0;   // the half that the SPEs write, or wrote last
-  int shown_ = -1;    // the half that is complete
+  int working_ = 0;  // the half that the SPEs write, or wrote last
+  int shown_ = -1;   // the half that is complete
   std::size_t vertices_ = 0;
   std::uint64_t late_frames_ = 0;
 };
