@@ -93,6 +93,16 @@ TEST_F(IntrinsicsConvert, EveryScaleTruncatesAndClamps) {
   check_scales(std::make_integer_sequence<int, 128>{});
 }
 
+TEST_F(IntrinsicsConvert, NoRoundingModeEnters) {
+  for (const unsigned int rounding : {_MM_ROUND_NEAREST, _MM_ROUND_UP, _MM_ROUND_DOWN}) {
+    const unsigned int mode = _mm_getcsr();
+    _mm_setcsr(_MM_MASK_MASK | rounding);
+    check_scale<0>();
+    check_scale<100>();
+    _mm_setcsr(mode);
+  }
+}
+
 TEST_F(IntrinsicsConvert, ConstantsAreConvertedAsIfAtRunTime) {
   EXPECT_EQ(bits_of(spu_extract(spu_convtf(spu_splats(0x7FFFFFFF), 0), 0)), 0x4EFFFFFFu)
       << "nearest would give 2^31";

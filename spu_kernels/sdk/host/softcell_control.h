@@ -129,3 +129,6 @@ SC_SDK_INLINE void no_interrupts() {
 #define spu_mtfpscr(value) (static_cast<void>(value), softcell_sdk::no_fpscr<>())
 #define spu_mfspr(number) (softcell_sdk::no_special_register<>())
 #define spu_mtspr(number, value) (static_cast<void>(value), softcell_sdk::no_special_register<>())
+
+/// Promises that the pointer less `offset` is a multiple of `base` bytes. Nothing comes of it here.
+#define __align_hint(pointer, base, offset) (static_cast<void>(pointer))

@@ -74,10 +74,12 @@ SC_SDK_INLINE qword& quadword_at(unsigned int address) {
 }
 template <int Offset>
 SC_SDK_INLINE unsigned int displaced(qword a) {
-  return word0(a) + static_cast<unsigned int>(immediate<Offset, -0x2000, 0x1FFF>() & ~15);
+  static_assert(Offset % 16 == 0, "quadwords lie at multiples of 16 bytes");
+  return word0(a) + static_cast<unsigned int>(immediate<Offset, -0x2000, 0x1FFF>());
 }
 template <int Address>
 SC_SDK_INLINE constexpr unsigned int absolute() {
+  static_assert(Address % 4 == 0, "the instruction holds an address in words");
   return static_cast<unsigned int>(immediate<Address, 0, 0x3FFFF>());
 }
 
