@@ -12,3 +12,26 @@ softcell_add_test(spu_intrinsics_tests SOURCES
   intrinsics_specific_test.cpp)
 target_include_directories(spu_intrinsics_tests PRIVATE ${SOFTCELL_SDK_DIR}/host)
 target_compile_options(spu_intrinsics_tests PRIVATE -mavx2 -mfma -frounding-math)
+
+# Every documented name has a test.
+add_test(NAME spu_intrinsics.every_documented_name_is_tested
+  COMMAND ${CMAKE_COMMAND} -DCHECK=${SOFTCELL_SDK_DIR}/check -DTESTS=${CMAKE_CURRENT_LIST_DIR}
+    -P ${CMAKE_CURRENT_LIST_DIR}/check_names.cmake)
+
+# host_refused/*.cpp must not compile with the host's headers, for the reason in their first line.
+file(GLOB host_refused CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/host_refused/*.cpp)
+foreach(source IN LISTS host_refused)
+  cmake_path(GET source STEM stem)
+  add_test(NAME spu_intrinsics.refuses.${stem}
+    COMMAND ${CMAKE_COMMAND} -DSOURCE=${source} -P ${CMAKE_CURRENT_LIST_DIR}/check_refused.cmake --
+      ${CMAKE_CXX_COMPILER} ${SOFTCELL_KERNEL_FLAGS} -fsyntax-only -I ${SOFTCELL_SDK_DIR}/host ${source})
+endforeach()
+
+# host_code/*.cpp must compile to few instructions.
+file(GLOB host_code CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/host_code/*.cpp)
+foreach(source IN LISTS host_code)
+  cmake_path(GET source STEM stem)
+  add_test(NAME spu_intrinsics.code.${stem}
+    COMMAND ${CMAKE_COMMAND} -DSOURCE=${source} -P ${CMAKE_CURRENT_LIST_DIR}/check_code.cmake --
+      ${CMAKE_CXX_COMPILER} ${SOFTCELL_KERNEL_FLAGS} -I ${SOFTCELL_SDK_DIR}/host)
+endforeach()

@@ -49,11 +49,12 @@ struct Scaled {
 };
 template <int Scale>
 SC_SDK_INLINE Scaled scale_up(vec_float4 a) {
-  const auto word = (Raw<int>)a.raw;
-  const Raw<int> field = word >> 23 & 0xFF, zero = field == 0;
+  const auto word = (Raw<unsigned int>)a.raw;
+  const auto field = (Raw<int>)(word >> 23 & 0xFFu), zero = (Raw<int>)(field == 0);
   const Raw<int> exponent = (field + Scale) | zero;
-  const Raw<int> fits = ~zero & (exponent < 127 + 31);
-  return {exponent, (Raw<int>)_mm_cvttps_epi32((__m128)((word + (Scale << 23)) & fits))};
+  const auto fits = (Raw<unsigned int>)(~zero & (exponent < 127 + 31));
+  const auto product = (__m128)((word + (static_cast<unsigned int>(Scale) << 23)) & fits);
+  return {exponent, (Raw<int>)_mm_cvttps_epi32(product)};
 }
 
 template <int Scale>
@@ -69,7 +70,7 @@ SC_SDK_INLINE vec_uint4 to_unsigned(vec_float4 a) {
   const Scaled s = scale_up<Scale>(a);
   // From 2^31 to 2^32 the 24 bits of the fraction are the top of the word.
   const Raw<int> top = s.exponent == 127 + 31, over = s.exponent > 127 + 31;
-  const Raw<int> shifted = ((Raw<int>)a.raw << 8) | INT32_MIN;
+  const auto shifted = (Raw<int>)((Raw<unsigned int>)a.raw << 8 | 0x80000000u);
   const Raw<int> positive = ~((Raw<int>)a.raw >> 31);
   return make<vec_uint4>((s.truncated | (shifted & top) | over) & positive);
 }
@@ -96,7 +97,7 @@ SC_SDK_INLINE vec_double2 spu_extend(vec_float4 a) {
 /// anyway.
 SC_SDK_INLINE vec_float4 spu_roundtf(vec_double2 a) {
   using namespace softcell_sdk;
-  const auto lanes = (Raw<int>)_mm_unpacklo_ps(to_single(a), _mm_setzero_ps());
+  const auto lanes = (Raw<int>)_mm_unpacklo_ps(to_single(a), zero_floats());
   const Raw<int> nan = (lanes & INT32_MAX) > 0x7F800000;
   return make<vec_float4>((lanes & ~nan) | (nan & 0x7FC00000));
 }

@@ -24,7 +24,7 @@ SC_SDK_INLINE vec_float4 spu_sub(vec_float4 a, vec_float4 b) {
   return softcell_sdk::make<vec_float4>(_mm_sub_ps(a.raw, b.raw));
 }
 SC_SDK_INLINE vec_float4 spu_mul(vec_float4 a, vec_float4 b) {
-  return softcell_sdk::make<vec_float4>(_mm_fmadd_ps(a.raw, b.raw, _mm_setzero_ps()));
+  return softcell_sdk::make<vec_float4>(_mm_fmadd_ps(a.raw, b.raw, softcell_sdk::zero_floats()));
 }
 /// a * b + c, rounded once.
 SC_SDK_INLINE vec_float4 spu_madd(vec_float4 a, vec_float4 b, vec_float4 c) {

@@ -372,8 +372,8 @@ SC_SDK_INLINE qword si_from_int(int value) {
 SC_SDK_INLINE qword si_from_uint(unsigned int value) { return softcell_sdk::words(value, 0); }
 SC_SDK_INLINE qword si_from_llong(long long value) { return qword(vec_llong2(value, 0)); }
 SC_SDK_INLINE qword si_from_ullong(unsigned long long value) { return qword(vec_ullong2(value, 0)); }
-SC_SDK_INLINE qword si_from_float(float value) { return qword(vec_float4(value, 0)); }
-SC_SDK_INLINE qword si_from_double(double value) { return qword(vec_double2(value, 0)); }
+SC_SDK_INLINE qword si_from_float(float value) { return qword(vec_float4(value, 0.0f)); }
+SC_SDK_INLINE qword si_from_double(double value) { return qword(vec_double2(value, 0.0)); }
 /// The local-store address; 0 for a null pointer.
 SC_SDK_INLINE qword si_from_ptr(const volatile void* pointer) {
   return softcell_sdk::words(softcell_sdk::local_store_address(pointer), 0);

@@ -58,21 +58,22 @@ template <class T>
 struct SC_SDK_REGISTER Lanes<T, 4> {
   Raw<T> raw;
   Lanes() = default;
-  constexpr Lanes(T l0, T l1, T l2 = 0, T l3 = 0) : raw{l0, l1, l2, l3} {}
+  constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T()) : raw{l0, l1, l2, l3} {}
 };
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 8> {
   Raw<T> raw;
   Lanes() = default;
-  constexpr Lanes(T l0, T l1, T l2 = 0, T l3 = 0, T l4 = 0, T l5 = 0, T l6 = 0, T l7 = 0)
+  constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T())
       : raw{l0, l1, l2, l3, l4, l5, l6, l7} {}
 };
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 16> {
   Raw<T> raw;
   Lanes() = default;
-  constexpr Lanes(T l0, T l1, T l2 = 0, T l3 = 0, T l4 = 0, T l5 = 0, T l6 = 0, T l7 = 0, T l8 = 0, T l9 = 0,
-                  T l10 = 0, T l11 = 0, T l12 = 0, T l13 = 0, T l14 = 0, T l15 = 0)
+  constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T(),
+                  T l8 = T(), T l9 = T(), T l10 = T(), T l11 = T(), T l12 = T(), T l13 = T(), T l14 = T(),
+                  T l15 = T())
       : raw{l0, l1, l2, l3, l4, l5, l6, l7, l8, l9, l10, l11, l12, l13, l14, l15} {}
 };
 
@@ -193,6 +194,9 @@ SC_SDK_INLINE V make(AnyRaw raw) {
   result.raw = (decltype(V::raw))raw;
   return result;
 }
+
+/// Clang computes even (float)0 at run time when told not to rely on a rounding mode; zero bits it knows.
+SC_SDK_INLINE __m128 zero_floats() { return (__m128)_mm_setzero_si128(); }
 
 /// Integer arithmetic wraps: it is done on unsigned lanes.
 template <class T>

@@ -1,0 +1,3 @@
+// refused: immediate does not hold that value
+#include <spu_intrinsics.h>
+qword f(qword a) { return si_ai(a, 512); }

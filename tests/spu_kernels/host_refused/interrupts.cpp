@@ -1,0 +1,3 @@
+// refused: interrupts are not modelled on the host
+#include <spu_intrinsics.h>
+void f() { spu_ienable(); }
