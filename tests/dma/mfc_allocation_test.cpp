@@ -1,6 +1,6 @@
 // A steady stream of commands allocates no heap memory.
-#include "allocation_counter.h"
 #include "mfc_fixture.h"
+#include "support/allocation_counter.h"
 
 namespace softcell::dma {
 namespace {
@@ -10,8 +10,8 @@ INSTANTIATE_TEST_SUITE_P(Schedules, MfcAllocation, testing::ValuesIn(all_schedul
 
 TEST_P(MfcAllocation, ASteadyStreamOfCommandsAllocatesNothing) {
   MfcBench bench(GetParam());
-  ASSERT_GT(allocation_count(), 0) << "allocations are not counted";
-  const long before = allocation_count();
+  ASSERT_GT(test::allocations(), 0u) << "allocations are not counted";
+  const std::size_t before = test::allocations();
   for (std::uint32_t i = 0; i < 1000; ++i) {
     bench.issue(i % 3 == 0 ? MfcOpcode::putf : MfcOpcode::get, i % 8 * 1024, i % 32 * 1024, 1024, i % 5);
     if (i % 50 == 49) {
@@ -21,7 +21,7 @@ TEST_P(MfcAllocation, ASteadyStreamOfCommandsAllocatesNothing) {
       bench.mfc.begin_job(i);
     }
   }
-  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(test::allocations(), before);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "allocation_counter.h"
 #include "soft_body_scenes.h"
+#include "support/allocation_counter.h"
 
 namespace softcell::ppu {
 namespace {
@@ -13,9 +13,9 @@ TEST(BulletSoftBodies, AllocateNothingInASteadyRun) {
   world.add_floor();
   world.soft.add(block_model({4, 4, 4}, {.cell_size = 0.2f}), {0, 0.05f, 0});
   world.run(0.5f);
-  const std::size_t before = test::allocations();  // of operator new: Bullet's own go elsewhere
+  const std::size_t before = softcell::test::allocations();  // of operator new: Bullet's own go elsewhere
   world.run(0.5f);
-  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(softcell::test::allocations(), before);
 }
 
 }  // namespace

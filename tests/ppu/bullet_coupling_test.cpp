@@ -224,6 +224,19 @@ double measured_period(float frequency, float step) {
   return (last - first) / (crossings - 1);
 }
 
+TEST(BulletSoftBodies, AThrowAtAThinFloorStopsThere) {
+  for (const float speed : {30.0f, 60.0f}) {
+    World world;
+    world.bullet.add_box({20, 0.05f, 20}, 0, {0, -0.025f, 0}, 0.6f);
+    SoftBodySettings settings;
+    settings.cell_size = 0.2f;
+    SoftBody& body = world.soft.add(block_model({4, 4, 4}, settings), {0, 3, 0});
+    body.add_velocity({0, -speed, 0});
+    world.run(1);
+    EXPECT_GT(body.bounds().low.y(), -0.02f) << speed << " m/s";
+  }
+}
+
 TEST(BulletSoftBodies, AFrequencyMeansTheSameForAnyTimeStep) {
   const float frequency = 4;
   EXPECT_NEAR(measured_period(frequency, 1.0f / 60), 0.25, 0.005);

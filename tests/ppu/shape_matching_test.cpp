@@ -10,9 +10,9 @@
 #include <limits>
 #include <tuple>
 
-#include "allocation_counter.h"
 #include "lattices.h"
 #include "softcell/ppu/regions.h"
+#include "support/allocation_counter.h"
 
 namespace softcell::ppu {
 namespace {
@@ -418,13 +418,13 @@ TYPED_TEST(Matching, AllocatesNothingInAStep) {
     Body<TypeParam> body(test::block(4, 4, 4), 2, {}, method);
     const auto x = Body<TypeParam>::narrow(sum(body.rest(), noise(body.rest().size(), 0.04, 32)));
     auto v = Body<TypeParam>::narrow(noise(x.size(), 1, 33)), g = v;
-    const std::size_t before = test::allocations();
+    const std::size_t before = softcell::test::allocations();
     for (int step = 0; step < 3; ++step) {
       body.matcher().step_velocities(x, v, TypeParam(1), TypeParam(0.01), TypeParam(0.1));
       body.matcher().goals(x, g);
     }
     body.matcher().reset();
-    EXPECT_EQ(test::allocations(), before);
+    EXPECT_EQ(softcell::test::allocations(), before);
   }
 }
 

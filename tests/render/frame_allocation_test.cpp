@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "dma/allocation_counter.h"
 #include "pinned_context.h"
+#include "support/allocation_counter.h"
 #include "test_scene.h"
 
 namespace softcell::render {
@@ -23,10 +23,10 @@ TEST(SteadyFrame, AllocatesNothing) {
   };
   for (int warm_up = 0; warm_up < 3; ++warm_up) draw();
 
-  const long before = allocation_count();
+  const std::size_t before = softcell::test::allocations();
   ASSERT_GT(before, 0) << "the counter counts";
   for (int i = 0; i < 5; ++i) draw();
-  EXPECT_EQ(allocation_count() - before, 0);
+  EXPECT_EQ(softcell::test::allocations() - before, 0u);
 }
 
 }  // namespace

@@ -70,10 +70,11 @@ class SoftBodyModel {
   /// boundary.
   float contact_radius() const { return kContactRadiusInCells * lattice_.spacing; }
   /// The same towards particles of other soft bodies. A particle has to meet a lattice of equal cells
-  /// wherever it comes, also in the middle of a face: 2 r > s / sqrt(2).
+  /// wherever it comes, also in the middle of a face: 2 r > s / sqrt(2), and with something to spare, because
+  /// a face gives: at 0.40 cells 5 of 30 pairs of balls came to rest inside each other, at 0.45 none.
   float soft_contact_radius() const { return kSoftContactRadiusInCells * lattice_.spacing; }
   static constexpr float kContactRadiusInCells = 0.15f;
-  static constexpr float kSoftContactRadiusInCells = 0.4f;
+  static constexpr float kSoftContactRadiusInCells = 0.45f;
 
  private:
   friend std::shared_ptr<const SoftBodyModel> make_soft_body_model(const TriangleMesh&,

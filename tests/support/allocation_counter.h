@@ -1,0 +1,12 @@
+#pragma once
+// Counts calls of operator new in a test program that links allocation_counter.cpp. Such a program is one of
+// its own: it replaces operator new for all that is in it.
+
+#include <cstddef>
+
+namespace softcell::test {
+
+/// Since the program began, by the calling thread.
+std::size_t allocations();
+
+}  // namespace softcell::test
