@@ -27,8 +27,8 @@ namespace softcell::spu {
 namespace {
 
 constexpr uint32_t kChunkGroups = 64;  // 8 KB in, 4 KB out: long enough to hide a transfer's latency
-constexpr float kSmallestNormalSquared =
-    1e-20f;  // of |cof(F) N|, in m^4: below it the cell is flat and has no normal
+constexpr float kFlat =
+    1e-12f;  // epsilon of the normals, in m^2: against the squared size of a cell, nothing
 
 enum Tag : uint32_t {
   kTagCorners = 0,  // the descriptor, then the corners
@@ -110,19 +110,16 @@ struct Surface {
   Vector3x4 position, normal;
 };
 
-/// normalize(cof(F) N); where the cell is flat, N. With F's columns f1 f2 f3,
-/// cof(F) N = Nx f2 x f3 + Ny f3 x f1 + Nz f1 x f2 = f2 x (Nx f3 - Nz f1) + Ny f3 x f1.
+/// normalize(cof(F) N + epsilon N): where the cell is flat and cof(F) vanishes, N is left, without a choice
+/// to be made. With F's columns f1 f2 f3, cof(F) N = Nx f2 x f3 + Ny f3 x f1 + Nz f1 x f2 = f2 x (Nx f3 - Nz
+/// f1) + Ny f3 x f1.
 inline Vector3x4 deformed_normal(const Vector3x4& f1, const Vector3x4& f2, const Vector3x4& f3,
                                  const Vector3x4& rest) {
   const Vector3x4 across = {spu_msub(f3.x, rest.x, spu_mul(f1.x, rest.z)),
                             spu_msub(f3.y, rest.x, spu_mul(f1.y, rest.z)),
                             spu_msub(f3.z, rest.x, spu_mul(f1.z, rest.z))};
-  const Vector3x4 n = scale_add(cross(f3, f1), rest.y, cross(f2, across));
-  const vec_float4 squared = dot(n, n);
-  // Both are positive floats, whose order is that of their bits: an integer compare is the cheaper one on a
-  // host.
-  const vec_uint4 flat = spu_cmpgt((vec_int4)spu_splats(kSmallestNormalSquared), (vec_int4)squared);
-  return select(scale(n, reciprocal_sqrt(squared)), rest, flat);
+  const Vector3x4 n = scale_add(rest, spu_splats(kFlat), scale_add(cross(f3, f1), rest.y, cross(f2, across)));
+  return scale(n, reciprocal_sqrt(dot(n, n)));
 }
 
 /// Two halves to a word: what is drawn of one vector. The first in memory is in the high half.
@@ -138,28 +135,29 @@ inline HalfVector pack(vec_uint4 x, vec_uint4 y, vec_uint4 z, vec_uint4 fourth) 
 
 constexpr uint32_t kHalfOneInHigh = 0x3C000000u;
 
-/// The way for every bit pattern.
-inline void to_half_any(const Surface& s, HalfVector& position, HalfVector& normal) {
-  position = pack(high_half_of_any(s.position.x), high_half_of_any(s.position.y),
-                  high_half_of_any(s.position.z), spu_splats(kHalfOneInHigh));
-  normal = pack(high_half_of_any(s.normal.x), high_half_of_any(s.normal.y), high_half_of_any(s.normal.z),
-                spu_splats(0u));
+inline bool any_sign(vec_uint4 words) { return spu_extract(spu_orx(words), 0) >= 0x80000000u; }
+
+inline HalfVector to_half_any(const Vector3x4& v, vec_uint4 fourth) {
+  return pack(high_half_of_any(v.x), high_half_of_any(v.y), high_half_of_any(v.z), fourth);
 }
 
-/// The fast way, for positive positions (the PPU side puts the origin below the body) and normals without
-/// tiny components.
+/// The fast ways are for positive positions (the PPU side puts the origin below the body) and for normals
+/// without tiny components, which a flat side along an axis has.
 inline void to_half(const Surface& s, HalfVector& position, HalfVector& normal) {
-  const vec_uint4 outside = spu_or(
+  const vec_uint4 one = spu_splats(kHalfOneInHigh), zero = spu_splats(0u);
+  const vec_uint4 odd_positions =
       spu_or(spu_or(outside_positive_half_normal(s.position.x), outside_positive_half_normal(s.position.y)),
-             outside_positive_half_normal(s.position.z)),
-      spu_or(spu_or(below_half_normal(s.normal.x), below_half_normal(s.normal.y)),
-             below_half_normal(s.normal.z)));
-  if (__builtin_expect(spu_extract(spu_orx(outside), 0) >= 0x80000000u, 0))
-    return to_half_any(s, position, normal);
+             outside_positive_half_normal(s.position.z));
+  const vec_uint4 odd_normals = spu_or(spu_or(below_half_normal(s.normal.x), below_half_normal(s.normal.y)),
+                                       below_half_normal(s.normal.z));
   position = pack(high_half_of_positive(s.position.x), high_half_of_positive(s.position.y),
-                  high_half_of_positive(s.position.z), spu_splats(kHalfOneInHigh));
+                  high_half_of_positive(s.position.z), one);
   normal = pack(high_half_of_normal(s.normal.x), high_half_of_normal(s.normal.y),
-                high_half_of_normal(s.normal.z), spu_splats(0u));
+                high_half_of_normal(s.normal.z), zero);
+  if (__builtin_expect(any_sign(spu_or(odd_positions, odd_normals)), 0)) {
+    if (any_sign(odd_positions)) position = to_half_any(s.position, one);
+    if (any_sign(odd_normals)) normal = to_half_any(s.normal, zero);
+  }
 }
 
 /// Four vertices of 16 bytes: transposes the 4 x 4 words, one vertex to a quadword.

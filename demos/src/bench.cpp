@@ -23,9 +23,8 @@
 namespace softcell::demos {
 namespace {
 
-constexpr int kRounds = 31;  // of which the minimum and the median are reported
-constexpr std::size_t kSkinnedBodies =
-    8;  // in one frame, as many as an arena has, so that waking the SPE does not count
+constexpr int kRounds = 31;                // of which the minimum and the median are reported
+constexpr std::size_t kSkinnedBodies = 8;  // in one frame, so that waking the SPE does not count
 
 /// One thing to measure: `run` does `items` items of work.
 struct Benchmark {
