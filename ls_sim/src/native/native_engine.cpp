@@ -79,6 +79,7 @@ class NativeEngine final : public Engine {
   ChannelReply serve_channel(ChannelPort& channels);
   ChannelReply issue_command(ChannelPort& channels);
   std::optional<dma::Fault> check_stack() const;
+  bool written_below_stack() const;
   dma::Fault classify_trap() const;
   dma::Fault stack_overflow(std::string detail) const;
 
@@ -197,15 +198,17 @@ std::optional<dma::Fault> NativeEngine::check_stack() const {
   const auto pointer = reinterpret_cast<std::uintptr_t>(context_.kernel) - arena();
   if (pointer < stack_limit())
     return stack_overflow("the stack pointer is at local-store address " + hexadecimal(pointer));
-  const std::uint32_t canary_end = stack_limit();
-  const std::uint32_t canary_begin =
-      std::max(image_->sizes.end, canary_end - std::min(canary_end, kCanaryBytes));
-  const std::byte* const base = local_store_.base();
-  if (context_.operation == Operation::kStop &&
-      std::any_of(base + canary_begin, base + canary_end, [](std::byte b) { return b != kFiller; })) {
+  if (context_.operation == Operation::kStop && written_below_stack()) {
     return stack_overflow("bytes below the stack were written");
   }
   return std::nullopt;
+}
+
+bool NativeEngine::written_below_stack() const {
+  const std::uint32_t end = stack_limit();
+  const std::uint32_t begin = std::max(image_->sizes.end, end - std::min(end, kCanaryBytes));
+  const std::byte* const base = local_store_.base();
+  return std::any_of(base + begin, base + end, [](std::byte b) { return b != kFiller; });
 }
 
 dma::Fault NativeEngine::classify_trap() const {
@@ -223,6 +226,9 @@ dma::Fault NativeEngine::classify_trap() const {
     return stack_overflow("the stack pointer is " + std::to_string(arena() + stack_limit() - trap.stack) +
                           " bytes below its limit at " + where);
   }
+  // A stack that grew through the kernel's own code makes it fail in any way at all: this is where it began.
+  if (written_below_stack())
+    return stack_overflow("bytes below the stack were written before " + where + " failed");
   if (trap.signal == SIGILL || trap.signal == SIGTRAP) {
     return fault(dma::Rule::kIllegalInstruction, where + " is not one");
   }
