@@ -9,7 +9,7 @@ function(softcell_suppress_mesa_reports test)
   set(script ${CMAKE_CURRENT_BINARY_DIR}/${test}_suppressions.cmake)
   file(CONFIGURE OUTPUT ${script} @ONLY CONTENT [[
 set_tests_properties(${@test@_TESTS} PROPERTIES ENVIRONMENT
-  "LSAN_OPTIONS=suppressions=@SOFTCELL_SUPPRESSIONS_DIR@/lsan.supp;TSAN_OPTIONS=suppressions=@SOFTCELL_SUPPRESSIONS_DIR@/tsan.supp")
+  "LSAN_OPTIONS=suppressions=@SOFTCELL_SUPPRESSIONS_DIR@/lsan.supp:print_suppressions=0;TSAN_OPTIONS=suppressions=@SOFTCELL_SUPPRESSIONS_DIR@/tsan.supp:print_suppressions=0")
 ]])
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
 endfunction()
