@@ -26,9 +26,9 @@ struct SkinPart {
   }
 };
 
-/// Most groups in one part: 2880 vertices, 90 KB in and 45 KB out. Small, so that six SPEs share one body (a mesh
-/// of 35,000 vertices makes some 13 parts, two for each); large against the up to 32 KB of corners that every
-/// part fetches for itself, and against the start of a job: with 512, skinning took some 5 % longer.
+/// Most groups in one part: 2880 vertices, 90 KB in and 45 KB out. Small, so that six SPEs share one body (a
+/// mesh of 35,000 vertices makes some 13 parts, two for each); large against the up to 32 KB of corners that
+/// every part fetches for itself, and against the start of a job: with 512, skinning took some 5 % longer.
 inline constexpr std::uint32_t kMaxPartGroups = 720;
 
 /// Shared by all bodies of one model, immutable.
