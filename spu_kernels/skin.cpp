@@ -26,7 +26,7 @@
 namespace softcell::spu {
 namespace {
 
-constexpr uint32_t kChunkGroups = 64;  // 8 KB in, 4 KB out: long enough to hide a transfer's latency
+constexpr uint32_t kChunkGroups = 128;  // 16 KB in, the most one command moves, and 8 KB out
 constexpr float kFlat =
     1e-12f;  // epsilon of the normals, in m^2: against the squared size of a cell, nothing
 
@@ -52,7 +52,7 @@ struct alignas(128) LocalStoreMap {
   alignas(128) Group groups[2][kChunkGroups];
   alignas(128) vec_ushort8 vertices[2][kChunkGroups * 4];
 };
-static_assert(sizeof(LocalStoreMap) <= 64 * 1024, "leaves a third of the budget for code and stack");
+static_assert(sizeof(LocalStoreMap) <= 84 * 1024, "leaves 12 KB of the budget for code and stack");
 LocalStoreMap ls;
 
 /// One component of a cell's trilinear map as a polynomial, each coefficient in all lanes:
