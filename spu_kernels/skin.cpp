@@ -10,7 +10,7 @@
 //   groups    in         SkinGroup, 128 bytes   any           128
 //   vertices  out        SkinnedVertex, 16 bytes  4 per group   128
 //
-// Budget: 96 KB. Corners 32 KB, two buffers of 8 KB in and 4 KB out, about 6 KB of code and tables, 4 KB of
+// Budget: 96 KB. Corners 32 KB, two buffers of 16 KB in and 8 KB out, about 6 KB of code and tables, 4 KB of
 // stack. DMA: 128 bytes in and 64 bytes out for four vertices, and 16 bytes for a corner once a job.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
