@@ -157,8 +157,8 @@ nlohmann::ordered_json statistics_document(const std::string& scene, const Demo3
   std::uint64_t bytes = 0, commands = 0, jobs = 0;
   for (const ls_sim::SpeStatistics& spe : simulation.spe_statistics()) {
     busy.push_back(record.seconds > 0 ? std::chrono::duration<double>(spe.busy).count() / record.seconds : 0);
-    bytes += spe.dma_bytes;
-    commands += spe.dma_commands;
+    bytes += spe.dma.bytes();
+    commands += spe.dma.commands();
     jobs += spe.jobs;
   }
   return {

@@ -46,7 +46,9 @@ Evidence evidence(Rule rule) { return row(rule).evidence; }
 
 std::string Fault::message() const {
   std::string text = spe < 0 ? "SPE unknown" : "SPE " + std::to_string(spe);
-  text += ", kernel " + (kernel.empty() ? "unknown" : kernel) + ": ";
+  text += ", kernel " + (kernel.empty() ? "unknown" : kernel);
+  if (!place.empty()) text += ", " + place;
+  text += ": ";
   text += name(rule);
   if (command) text += ": " + to_text(*command);
   if (!detail.empty()) text += ": " + detail;

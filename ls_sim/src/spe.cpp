@@ -36,8 +36,7 @@ std::string Spe::run(const Job& job, std::uint64_t job_number) {
 
   ++statistics_.jobs;
   statistics_.busy += std::chrono::steady_clock::now() - begin;
-  statistics_.dma_commands = mfc_.statistics().commands();
-  statistics_.dma_bytes = mfc_.statistics().bytes();
+  statistics_.dma = mfc_.statistics();
   if (options_.measure_stack) {
     statistics_.stack_high_water = std::max(statistics_.stack_high_water, engine_->stack_high_water());
   }

@@ -10,7 +10,7 @@ namespace softcell::ls_sim {
 /// Used by one thread, except for interrupt().
 class Spe {
  public:
-  Spe(int number, dma::AddressSpace& memory, const PoolOptions& options)
+  Spe(int number, dma::AddressSpace& memory, const SpeOptions& options)
       : number_(number),
         options_(options),
         mfc_(local_store_.bytes(), memory, options.schedule, static_cast<std::uint64_t>(number)),
@@ -27,7 +27,7 @@ class Spe {
   void make_resident(const KernelImage& image);
 
   int number_;
-  PoolOptions options_;
+  SpeOptions options_;
   LocalStore local_store_;
   dma::Mfc mfc_;
   std::unique_ptr<Engine> engine_;

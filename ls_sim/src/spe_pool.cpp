@@ -40,15 +40,14 @@ struct SpePool::State {
 
   /// An SPE and what the watchdog needs to know of it.
   struct Worker {
-    Worker(int number, dma::AddressSpace& memory, const PoolOptions& options)
-        : spe(number, memory, options) {}
+    Worker(int number, dma::AddressSpace& memory, const SpeOptions& options) : spe(number, memory, options) {}
     Spe spe;
     SpeStatistics statistics;                         // copied after each job
     std::chrono::steady_clock::time_point started{};  // of the job under way
     bool busy = false;
   };
 
-  State(dma::AddressSpace& memory, const PoolOptions& pool_options)
+  State(dma::AddressSpace& memory, const SpeOptions& pool_options)
       : options(pool_options), ring(kQueueCapacity) {
     for (int number = 0; number < options.spes; ++number) {
       workers.push_back(std::make_unique<Worker>(number, memory, options));
@@ -127,7 +126,7 @@ struct SpePool::State {
     }
   }
 
-  const PoolOptions options;
+  const SpeOptions options;
   std::vector<std::unique_ptr<Worker>> workers;
 
   std::mutex mutex;  // guards all below and what finish() touches
@@ -141,7 +140,7 @@ struct SpePool::State {
   std::jthread watchdog;
 };
 
-SpePool::SpePool(dma::AddressSpace& memory, const PoolOptions& options) {
+SpePool::SpePool(dma::AddressSpace& memory, const SpeOptions& options) {
   if (options.spes < 1 || options.spes > dma::kSpeCount) {
     throw std::invalid_argument("the number of SPEs is " + std::to_string(options.spes) +
                                 "; 1 to 6 are allowed");

@@ -16,8 +16,9 @@ TEST(Rule, HasAUniqueNameInKebabCase) {
     const std::string_view text = name(rule);
     EXPECT_TRUE(names.insert(text).second) << text;
     EXPECT_FALSE(text.empty());
-    EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) { return std::islower(c) || c == '-'; }))
-        << text;
+    EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) {
+      return std::islower(c) || std::isdigit(c) || c == '-';
+    })) << text;
   }
   EXPECT_EQ(name(Rule::kEaAlignment), "ea-alignment");
   EXPECT_EQ(name(Rule::kImageNotLoadable), "image-not-loadable");
@@ -46,11 +47,13 @@ TEST(Fault, MessageNamesEverythingKnown) {
   const Fault fault{.rule = Rule::kEaAlignment,
                     .spe = 2,
                     .kernel = "skin",
+                    .place = "skin.cpp:41",
                     .command = MfcCommand{0x42, {0x400}, kMainMemoryBase + 8, 16, 3},
                     .detail = "EA is 8 bytes past a multiple of 16"};
-  EXPECT_EQ(fault.message(),
-            "SPE 2, kernel skin: ea-alignment: getf tag 3, LSA 0x00400, EA 0x5EA010000008, 16 bytes: "
-            "EA is 8 bytes past a multiple of 16");
+  EXPECT_EQ(
+      fault.message(),
+      "SPE 2, kernel skin, skin.cpp:41: ea-alignment: getf tag 3, LSA 0x00400, EA 0x5EA010000008, 16 bytes: "
+      "EA is 8 bytes past a multiple of 16");
 }
 
 TEST(Fault, MessageWithoutACommandNamesTheRest) {

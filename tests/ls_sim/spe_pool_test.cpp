@@ -40,7 +40,7 @@ TEST_F(SpePoolTest, RunsEveryJobOnceForAnyNumberOfSpesAndAnySchedule) {
         for (const std::uint32_t word : lines.span()[i]) ASSERT_EQ(word, i + 1) << spes << " " << schedule;
       }
       std::uint64_t jobs_run = 0, bytes = 0;
-      for (const SpeStatistics& s : pool.statistics()) jobs_run += s.jobs, bytes += s.dma_bytes;
+      for (const SpeStatistics& s : pool.statistics()) jobs_run += s.jobs, bytes += s.dma.bytes();
       EXPECT_EQ(jobs_run, 100u);
       EXPECT_EQ(bytes, 100u * 256u);
     }

@@ -22,7 +22,7 @@ using Eigen::Vector3f;
 /// A mesh in a lattice, skinned by the kernel.
 class SkinRig {
  public:
-  explicit SkinRig(const ppu::TriangleMesh& mesh, float cell_size, const ls_sim::PoolOptions& options = {})
+  explicit SkinRig(const ppu::TriangleMesh& mesh, float cell_size, const ls_sim::SpeOptions& options = {})
       : lattice(ppu::voxelize(mesh, cell_size)),
         embedding(std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice))),
         image_(ls_sim::load_image("skin", spu_kernels::image_files()[0].elf)),

@@ -49,6 +49,7 @@ struct KernelContext {
   std::uint32_t channel = 0;
   std::uint32_t value = 0;
   std::uint32_t reply = 0;
+  std::uintptr_t caller = 0;  ///< the kernel's instruction behind the call of the gate
   Trap trap;
 
   // What main is called with.

@@ -65,7 +65,10 @@ class NativeEngine final : public Engine {
     std::fill(base + image.sizes.end, base + dma::kLocalStoreBytes, kFiller);
   }
 
-  RunResult run(const EntryArguments& arguments, ChannelPort& channels) override;
+  RunResult run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses) override;
+  dma::LocalStoreAddress position() const override {
+    return {static_cast<std::uint32_t>(context_.caller - arena()) & dma::kLocalStoreMask};
+  }
   void interrupt() override;
   std::uint32_t stack_high_water() const override;
 
@@ -121,7 +124,8 @@ void NativeEngine::enter_kernel() {
   context_.kernel = back.fctx;
 }
 
-RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels) {
+RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels,
+                            AccessObserver* /*accesses*/) {
   const native::SignalStack signal_stack;
   prepare(arguments);
   native::current_context() = &context_;

@@ -37,16 +37,19 @@ std::string_view explanation(Rule rule);
 
 Evidence evidence(Rule rule);
 
-/// A rule broken by a kernel. The MFC knows neither the SPE's number nor the kernel: the SPE fills them in.
+/// A rule broken by a kernel. The MFC knows neither the SPE's number nor the kernel nor the place: the SPE
+/// fills them in.
 struct Fault {
   Rule rule{};
   int spe = -1;                            ///< -1: not known
   std::string kernel = {};                 ///< empty: not known
+  std::string place = {};                  ///< source file and line, "saxpy.cpp:41"; empty: not known
   std::optional<MfcCommand> command = {};  ///< set when a DMA command broke the rule
   std::string detail = {};                 ///< what was found and what is allowed; no full stop
 
   /// One line with all of the above:
-  /// "SPE 2, kernel skin: ea-alignment: getf tag 3, LSA 0x00400, EA 0x5EA010000008, 16 bytes: EA is ..."
+  /// "SPE 2, kernel skin, skin.cpp:41: ea-alignment: getf tag 3, LSA 0x00400, EA 0x5EA010000008, 16 bytes: EA
+  /// is ..."
   std::string message() const;
 };
 

@@ -30,6 +30,23 @@ struct RunResult {
   std::uint32_t status() const { return stop_code & 0xFFu; }
 };
 
+/// One load or store of a checked kernel.
+struct Access {
+  dma::LocalStoreAddress lsa;  ///< first byte
+  std::uint32_t bytes = 0;
+  bool is_store = false;
+  dma::LocalStoreAddress instruction;    ///< its place in the code
+  dma::LocalStoreAddress stack_pointer;  ///< at that moment
+};
+
+/// Sees every load and store that the compiler of a checked kernel reports, before it happens. Called by the
+/// thread that runs the SPE.
+class AccessObserver {
+ public:
+  virtual ~AccessObserver() = default;
+  virtual void on_access(const Access& access) = 0;
+};
+
 /// One engine belongs to one SPE and is called by that SPE's thread, except for interrupt().
 class Engine {
  public:
@@ -40,7 +57,13 @@ class Engine {
   virtual void load(const KernelImage& image) = 0;
 
   /// Runs the resident image once. The initialised data are as linked; bss is as the last run left it.
-  virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels) = 0;
+  /// @param accesses  told of loads and stores of a checked image; may be null.
+  virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels,
+                        AccessObserver* accesses = nullptr) = 0;
+
+  /// Where the kernel is: the instruction after its last call of a channel, or the one that faulted; during a
+  /// channel operation the one that waits for it.
+  virtual dma::LocalStoreAddress position() const = 0;
 
   /// Stops the run in progress, if there is one, with the fault deadline-exceeded. Any thread.
   virtual void interrupt() = 0;

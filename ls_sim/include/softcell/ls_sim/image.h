@@ -3,10 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "softcell/dma/addresses.h"
 
 namespace softcell::ls_sim {
 
@@ -24,13 +27,25 @@ struct ImageSizes {
   std::uint32_t total() const { return end + stack; }
 };
 
+/// A variable of an image, from its symbol table.
+struct ImageObject {
+  std::string name;  ///< demangled
+  dma::LocalStoreAddress begin;
+  std::uint32_t bytes = 0;
+};
+
 struct KernelImage {
   std::string name;
   std::vector<std::byte> bytes;  ///< from kEnvironmentBytes up to the end of data; bss follows, zeroed
   std::uint32_t data_begin = 0;  ///< local-store address of the writable initialised data
   std::uint32_t data_end = 0;
-  std::uint32_t entry = 0;  ///< local-store address
+  std::uint32_t entry = 0;                         ///< local-store address
+  std::uint32_t text_begin = 0, text_end = 0;      ///< local-store addresses of the instructions
+  std::uint32_t rodata_begin = 0, rodata_end = 0;  ///< and of the constants
   ImageSizes sizes;
+  std::vector<ImageObject> objects;                   ///< in order of address
+  std::shared_ptr<const std::vector<std::byte>> elf;  ///< the file, for its line table
+  bool checked = false;                               ///< built with calls for every load and store
 };
 
 /// Reads a kernel that was linked with spu_kernels/sdk/ls.ld.

@@ -9,7 +9,6 @@
 // Then the result is the same bits for any number of SPEs.
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -17,9 +16,10 @@
 #include <vector>
 
 #include "softcell/dma/buffer.h"
-#include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/spe_options.h"
+#include "softcell/ls_sim/statistics.h"
 
 namespace softcell::ls_sim {
 
@@ -54,30 +54,11 @@ class JobBatch {
   std::vector<JobFailure> failures_;  // guarded by the pool's mutex until finished
 };
 
-/// Sums since the pool began, of one SPE.
-struct SpeStatistics {
-  std::uint64_t jobs = 0;
-  std::uint64_t image_loads = 0;
-  std::chrono::nanoseconds busy{0};
-  std::uint64_t dma_commands = 0;
-  std::uint64_t dma_bytes = 0;
-  std::uint32_t stack_high_water = 0;  ///< bytes, the most of any job; only with PoolOptions::measure_stack
-};
-
-struct PoolOptions {
-  int spes = dma::kSpeCount;  ///< 1..6
-  dma::Schedule schedule{};
-  std::chrono::milliseconds deadline{
-      10'000};                 ///< for one job; a job that takes longer is stopped with a fault
-  bool measure_stack = false;  ///< scan the stack after each job
-  bool reload_always = false;  ///< copy the image in before every job, so that bss starts as zero
-};
-
 class SpePool {
  public:
   /// @throws std::invalid_argument  spes outside 1..6, or a deadline that is not positive.
   /// @throws std::runtime_error     when the host cannot run native kernels.
-  SpePool(dma::AddressSpace& memory, const PoolOptions& options);
+  SpePool(dma::AddressSpace& memory, const SpeOptions& options);
 
   /// Waits for the jobs under way, drops those that no SPE has taken.
   ~SpePool();

@@ -1,0 +1,31 @@
+#pragma once
+// What checked kernels did wrong, each mistake once, with how often it happened.
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "softcell/dma/fault.h"
+
+namespace softcell::ls_sim {
+
+struct Finding {
+  dma::Fault fault;         ///< of its first occurrence
+  std::uint64_t count = 0;  ///< occurrences with the same rule, kernel and place, on any SPE
+};
+
+/// Thread safe.
+class Findings {
+ public:
+  void add(const dma::Fault& fault);
+
+  /// In order of rule, kernel and place, so that the list does not depend on the order of threads.
+  std::vector<Finding> list() const;
+  bool empty() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace softcell::ls_sim

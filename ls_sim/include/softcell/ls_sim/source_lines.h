@@ -1,0 +1,30 @@
+#pragma once
+// From an instruction of an image to the line of its source.
+
+#include <memory>
+#include <string>
+
+#include "softcell/dma/addresses.h"
+#include "softcell/ls_sim/image.h"
+
+namespace softcell::ls_sim {
+
+/// Reads the DWARF line table of an image. One thread at a time.
+class SourceLines {
+ public:
+  /// An image without debug information gives empty places.
+  explicit SourceLines(const KernelImage& image);
+  ~SourceLines();
+  SourceLines(const SourceLines&) = delete;
+  SourceLines& operator=(const SourceLines&) = delete;
+
+  /// "saxpy.cpp:41": file name without its folder, and line. For code that was inlined from the headers of
+  /// the SDK, the line that called them. Empty when not known.
+  std::string place_of(dma::LocalStoreAddress instruction) const;
+
+ private:
+  struct Reader;
+  std::unique_ptr<Reader> reader_;
+};
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,106 @@
+#pragma once
+// Up to six SPEs that the PPU side starts one by one, and what it sees of each: mailboxes, signals, proxy
+// DMA, local store. For jobs that any SPE may take, see SpePool.
+//
+//   SpeGroup spes(memory, {.spes = 2});
+//   spes.start(0, image, {.spe_id = 0, .argp = data.ea().value});
+//   spes.problem_state(0).write_in_mbox(42);
+//   const RunResult result = spes.wait(0);
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "softcell/dma/address_space.h"
+#include "softcell/dma/fault.h"
+#include "softcell/dma/mfc_command.h"
+#include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/spe_options.h"
+#include "softcell/ls_sim/statistics.h"
+
+namespace softcell::ls_sim {
+
+/// How a signal register takes a value. [CBEA, signal notification] documented
+enum class SignalMode : std::uint8_t { kOverwrite, kOr };
+
+/// One SPE as the PPU sees it. Any thread. [CBEA, problem state area] documented
+class ProblemState {
+ public:
+  virtual ~ProblemState() = default;
+
+  /// Outbound mailboxes, 1 deep each: the value, or nothing when empty.
+  virtual std::optional<std::uint32_t> read_out_mbox() = 0;
+  virtual std::optional<std::uint32_t> read_out_intr_mbox() = 0;
+
+  /// Waits for a value: false when the SPE has stopped without writing one.
+  virtual std::optional<std::uint32_t> wait_out_mbox() = 0;
+  virtual std::optional<std::uint32_t> wait_out_intr_mbox() = 0;
+
+  /// Inbound mailbox, 4 deep. Into a full one, the value replaces the newest.
+  virtual void write_in_mbox(std::uint32_t value) = 0;
+
+  /// Outbound count | free inbound slots << 8 | outbound-interrupt count << 16.
+  virtual std::uint32_t mbox_status() const = 0;
+
+  /// @param which  1 or 2.
+  virtual void write_signal(int which, std::uint32_t value) = 0;
+  virtual void set_signal_mode(int which, SignalMode mode) = 0;
+
+  /// Proxy DMA: 8 commands, no lists, no line commands. @return a fault, and then nothing is queued; waits
+  /// while full.
+  virtual std::optional<dma::Fault> issue_proxy(const dma::MfcCommand& command) = 0;
+
+  /// Which of these tags have no proxy command left. `wait_proxy` completes them first.
+  virtual std::uint32_t proxy_status(std::uint32_t tag_mask) = 0;
+  virtual std::uint32_t wait_proxy(std::uint32_t tag_mask) = 0;
+  virtual int free_proxy_slots() const = 0;
+
+  /// The local store's bytes. What runs there may change them at any time.
+  virtual std::span<std::byte> local_store() = 0;
+  virtual dma::EffectiveAddress local_store_ea() const = 0;
+};
+
+class SpeGroup {
+ public:
+  /// Maps the local stores into `memory`. @throws std::invalid_argument, std::runtime_error as SpePool.
+  SpeGroup(dma::AddressSpace& memory, const SpeOptions& options);
+
+  /// Stops what still runs.
+  ~SpeGroup();
+  SpeGroup(const SpeGroup&) = delete;
+  SpeGroup& operator=(const SpeGroup&) = delete;
+
+  int spes() const;
+
+  /// Loads the image and runs it on the SPE's own thread. @pre the SPE does not run. The image must outlive
+  /// the run.
+  void start(int spe, const KernelImage& image, const EntryArguments& arguments);
+
+  /// Blocks until the run has ended; it always does, by its end, a fault, a deadlock or the deadline.
+  RunResult wait(int spe);
+
+  ProblemState& problem_state(int spe);
+
+  SpeStatistics statistics(int spe) const;
+
+  /// While one of these lives, somebody outside may still write to a mailbox, a signal or memory, and SPEs
+  /// that all wait are no deadlock.
+  class Outside {
+   public:
+    explicit Outside(SpeGroup& group);
+    ~Outside();
+    Outside(const Outside&) = delete;
+    Outside& operator=(const Outside&) = delete;
+
+   private:
+    SpeGroup& group_;
+  };
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softcell::ls_sim
