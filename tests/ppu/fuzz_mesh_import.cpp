@@ -1,5 +1,5 @@
 // libFuzzer target: any bytes, as each of the three formats (chosen by the first byte), give a valid mesh or
-// a std::runtime_error. Run: fuzz_mesh_import -max_len=4096 <new corpus folder> tests/ppu/corpus
+// a std::runtime_error.
 
 #include <cstdlib>
 #include <stdexcept>
