@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/lattice.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_orchestrator.h"
 #include "softcell/spu_kernels/images.h"
+#include "transfers_job.h"
 
 namespace softcell::demos {
 namespace {
@@ -30,6 +32,18 @@ void run_skin_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memor
   orchestrator.drain();
 }
 
+void run_transfers_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory,
+                          ls_sim::SpePool& pool) {
+  dma::Buffer<std::byte> data(memory, "data", 1024);
+  dma::Buffer<spu::TransfersJob> descriptor(memory, "job", 1);
+  descriptor.span()[0] = {data.ea().value, 128, 16, 8, spu::kTransferGet, {}};
+  const ls_sim::Job job{&kernel, descriptor.ea(), {}};
+  ls_sim::JobBatch batch;
+  pool.submit(batch, {&job, 1});
+  batch.wait();
+  if (!batch.failures().empty()) throw std::runtime_error(batch.failures().front().message);
+}
+
 }  // namespace
 
 std::vector<ls_sim::KernelImage> load_kernels() {
@@ -50,9 +64,13 @@ ls_sim::KernelImage load_kernel(std::string_view name) {
 std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
   dma::AddressSpace memory;
   ls_sim::SpePool pool(memory, {.spes = 1, .measure_stack = true});
-  if (kernel.name != "skin")
+  if (kernel.name == "skin") {
+    run_skin_sample(kernel, memory, pool);
+  } else if (kernel.name == "transfers") {
+    run_transfers_sample(kernel, memory, pool);
+  } else {
     throw std::runtime_error("kernel " + kernel.name + " has no sample of work to measure its stack with");
-  run_skin_sample(kernel, memory, pool);
+  }
   return pool.statistics()[0].stack_high_water;
 }
 

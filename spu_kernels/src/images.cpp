@@ -5,13 +5,16 @@
 extern "C" {
 extern const std::byte softcell_image_skin[];
 extern const std::byte softcell_image_skin_end[];
+extern const std::byte softcell_image_transfers[];
+extern const std::byte softcell_image_transfers_end[];
 }
 
 namespace softcell::spu_kernels {
 
 std::span<const ImageFile> image_files() {
-  static const std::array<ImageFile, 1> files{{
+  static const std::array<ImageFile, 2> files{{
       {"skin", {softcell_image_skin, softcell_image_skin_end}},
+      {"transfers", {softcell_image_transfers, softcell_image_transfers_end}},
   }};
   return files;
 }

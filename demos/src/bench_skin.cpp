@@ -1,0 +1,82 @@
+// Skinning on an SPE beside its scalar twin.
+
+#include <memory>
+
+#include "benchmarks.h"
+#include "kernel_samples.h"
+#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ppu/shapes.h"
+#include "softcell/ppu/skin_orchestrator.h"
+#include "softcell/ppu/skin_scalar.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr std::size_t kSkinnedBodies = 8;  // in one frame, so that waking the SPE does not count
+
+/// A body in a bent pose, so that nothing is a special case.
+struct SkinCase {
+  SkinCase(std::string body_name, const ppu::TriangleMesh& body_mesh, float cell_size)
+      : name(std::move(body_name)),
+        lattice(ppu::voxelize(body_mesh, cell_size)),
+        embedding(std::make_shared<ppu::Embedding>(ppu::embed(body_mesh, lattice))),
+        pool(memory, {.spes = 1}),
+        kernel(load_kernel("skin")),
+        orchestrator(memory, pool, kernel),
+        scalar_out(kSkinnedBodies, std::vector<spu::SkinnedVertex>(4 * embedding->groups.size())) {
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+      Eigen::Vector3f x = lattice.rest_position(i);
+      x.x() += 0.1f * x.y() * x.y();
+      x.z() += 0.05f * x.x() * x.y();
+      positions.push_back(x);
+      corners.push_back({x.x(), x.y(), x.z(), 0});
+    }
+    for (std::size_t body = 0; body < kSkinnedBodies; ++body) {
+      orchestrator.add(embedding, corners.size());
+      all_corners.push_back(corners);
+    }
+  }
+
+  void run_spe() {
+    orchestrator.kick(all_corners);
+    orchestrator.drain();
+  }
+
+  void run_scalar() {
+    const Eigen::Vector3f origin(-2, -2, -2);
+    for (auto& out : scalar_out) {
+      for (const ppu::SkinPart& part : embedding->parts) {
+        ppu::skin_scalar(
+            *embedding, part, positions, origin,
+            std::span(out).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
+      }
+    }
+  }
+
+  std::string name;
+  ppu::Lattice lattice;
+  std::shared_ptr<ppu::Embedding> embedding;
+  dma::AddressSpace memory;
+  ls_sim::SpePool pool;
+  ls_sim::KernelImage kernel;
+  ppu::SkinOrchestrator orchestrator;
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<spu::SkinCorner> corners;
+  std::vector<std::span<const spu::SkinCorner>> all_corners;  // one for each body, all in the same pose
+  std::vector<std::vector<spu::SkinnedVertex>> scalar_out;    // of each body
+};
+
+void add_skin(std::vector<Benchmark>& all, const std::shared_ptr<SkinCase>& body) {
+  const std::size_t vertices = kSkinnedBodies * body->embedding->slot_of_vertex.size();
+  all.push_back({"skin/" + body->name + "/spe", vertices, [body] { body->run_spe(); }});
+  all.push_back({"skin/" + body->name + "/scalar", vertices, [body] { body->run_scalar(); }});
+}
+
+}  // namespace
+
+void add_skin_benchmarks(std::vector<Benchmark>& all) {
+  add_skin(all, std::make_shared<SkinCase>("sphere", ppu::make_sphere(0.7f, 48), 0.28f));
+  add_skin(all, std::make_shared<SkinCase>("torus", ppu::make_torus(0.72f, 0.28f, 192, 80), 0.2f));
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,101 @@
+// What an SPE itself costs: transfers next to memcpy of the same bytes, commands, dispatch of jobs.
+
+#include <array>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+#include "benchmarks.h"
+#include "kernel_samples.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/ls_sim/spe_pool.h"
+#include "transfers_job.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr std::size_t kBlockBytes = 16384;
+constexpr std::size_t kBlocks = 2048;    // commands in one job, so that its dispatch does not count
+constexpr std::size_t kCommands = 8192;  // in one job, of 16 bytes
+constexpr std::uint32_t kBlocksInFlight = 2, kCommandsInFlight = 8;
+constexpr std::size_t kQueuedJobs = 1000;
+
+/// One SPE that runs the kernel `transfers`.
+class TransfersRig {
+ public:
+  explicit TransfersRig(dma::Schedule schedule = {})
+      : pool_(memory_, {.spes = 1, .schedule = schedule}),
+        kernel_(load_kernel("transfers")),
+        descriptor_(memory_, "transfers job", 1),
+        data_(memory_, "transfers data", spu::kTransfersBufferBytes) {}
+
+  void move(spu::TransferDirection direction, std::size_t bytes, std::size_t count, std::uint32_t in_flight) {
+    descriptor_.span()[0] = {.ea = data_.ea().value,
+                             .bytes = static_cast<std::uint32_t>(bytes),
+                             .count = static_cast<std::uint32_t>(count),
+                             .in_flight = in_flight,
+                             .direction = direction,
+                             .pad = {}};
+    run_jobs(1, descriptor_.ea());
+  }
+
+  /// Jobs that return at once, submitted together.
+  void run_empty_jobs(std::size_t count) { run_jobs(count, {}); }
+
+ private:
+  void run_jobs(std::size_t count, dma::EffectiveAddress argp) {
+    jobs_.assign(count, {&kernel_, argp, {}});
+    pool_.submit(batch_, jobs_);
+    batch_.wait();
+    if (!batch_.failures().empty()) throw std::runtime_error(batch_.failures().front().message);
+  }
+
+  dma::AddressSpace memory_;
+  ls_sim::SpePool pool_;
+  ls_sim::KernelImage kernel_;
+  dma::Buffer<spu::TransfersJob> descriptor_;
+  dma::Buffer<std::byte> data_;
+  std::vector<ls_sim::Job> jobs_;
+  ls_sim::JobBatch batch_;
+};
+
+/// The same blocks by memcpy between the same kinds of memory: two blocks of one to two of the other.
+class Memcpy {
+ public:
+  void run() {
+    for (std::size_t i = 0; i < kBlocks; ++i) {
+      const std::size_t offset = i % kBlocksInFlight * kBlockBytes;
+      std::memcpy(to_->data() + offset, from_->data() + offset, kBlockBytes);
+      asm volatile("" ::"r"(to_->data()) : "memory");  // every copy has to happen
+    }
+  }
+
+ private:
+  using Blocks = std::array<std::byte, kBlocksInFlight * kBlockBytes>;
+  std::unique_ptr<Blocks> from_ = std::make_unique<Blocks>(), to_ = std::make_unique<Blocks>();
+};
+
+}  // namespace
+
+void add_dma_benchmarks(std::vector<Benchmark>& all) {
+  const auto eager = std::make_shared<TransfersRig>();
+  const auto lazy = std::make_shared<TransfersRig>(dma::Schedule{dma::Schedule::kLazy});
+  const auto by_memcpy = std::make_shared<Memcpy>();
+  all.push_back({"dma/memcpy16k", kBlocks, [by_memcpy] { by_memcpy->run(); }});
+  all.push_back({"dma/get16k", kBlocks,
+                 [eager] { eager->move(spu::kTransferGet, kBlockBytes, kBlocks, kBlocksInFlight); }});
+  all.push_back({"dma/put16k", kBlocks,
+                 [eager] { eager->move(spu::kTransferPut, kBlockBytes, kBlocks, kBlocksInFlight); }});
+  all.push_back({"dma/command/eager", kCommands,
+                 [eager] { eager->move(spu::kTransferGet, 16, kCommands, kCommandsInFlight); }});
+  all.push_back({"dma/command/lazy", kCommands,
+                 [lazy] { lazy->move(spu::kTransferGet, 16, kCommands, kCommandsInFlight); }});
+}
+
+void add_dispatch_benchmarks(std::vector<Benchmark>& all) {
+  const auto rig = std::make_shared<TransfersRig>();
+  all.push_back({"dispatch/queued", kQueuedJobs, [rig] { rig->run_empty_jobs(kQueuedJobs); }});
+  all.push_back({"dispatch/round_trip", 1, [rig] { rig->run_empty_jobs(1); }});
+}
+
+}  // namespace softcell::demos
