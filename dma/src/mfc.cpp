@@ -10,7 +10,7 @@
 namespace softcell::dma {
 
 Mfc::Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedule,
-         std::uint64_t stream_number)
+         std::uint64_t stream_number, ReservationListener*)
     : local_store_(local_store),
       translation_(space),
       schedule_(schedule),
@@ -111,13 +111,45 @@ int Mfc::tag_status_count() {
   return 0;
 }
 
-void Mfc::drain() {
-  while (!queue_.empty()) complete_one_of(MfcQueue::kAllSlots);
+std::variant<std::uint32_t, Fault> Mfc::read_list_stall_status() {
+  return Fault{.rule = Rule::kListStallNotExpected, .detail = "no list that stalls is queued"};
+}
+
+int Mfc::list_stall_count() {
+  pass_a_moment();
+  return 0;
+}
+
+std::optional<Fault> Mfc::write_list_stall_ack(std::uint32_t tag) {
+  return Fault{.rule = Rule::kListStallAckTag,
+               .detail = "no list of tag " + std::to_string(tag) + " has stalled"};
+}
+
+std::variant<std::uint32_t, Fault> Mfc::read_atomic_status() {
+  return Fault{.rule = Rule::kAtomicStatusNotExpected, .detail = "no atomic command came before"};
+}
+
+int Mfc::atomic_status_count() {
+  pass_a_moment();
+  return 0;
+}
+
+bool Mfc::advance() {
+  if (queue_.empty()) return false;
+  complete_one_of(MfcQueue::kAllSlots);
+  return true;
+}
+
+std::optional<Fault> Mfc::drain() {
+  while (advance()) {
+  }
+  return take_fault();
 }
 
 void Mfc::count(const MfcCommand& command) {
-  ++(command.is_get() ? statistics_.get_commands : statistics_.put_commands);
-  (command.is_get() ? statistics_.get_bytes : statistics_.put_bytes) += command.size;
+  MfcStatistics::Traffic& traffic = command.is_get() ? statistics_.get : statistics_.put;
+  ++traffic.commands;
+  traffic.bytes += command.size;
 }
 
 bool Mfc::is_met(const StatusRequest& request) const {

@@ -120,10 +120,10 @@ TEST_P(MfcUnderEverySchedule, CountsCommandsAndBytes) {
   bench.issue(MfcOpcode::putr, 0, 0, 8, 1);
   EXPECT_TRUE(bench.mfc.issue(command(MfcOpcode::get, 1, bench.buffer.ea(), 16, 1)));
   const MfcStatistics& statistics = bench.mfc.statistics();
-  EXPECT_EQ(statistics.get_commands, 2u);
-  EXPECT_EQ(statistics.get_bytes, 1040u);
-  EXPECT_EQ(statistics.put_commands, 1u);
-  EXPECT_EQ(statistics.put_bytes, 8u);
+  EXPECT_EQ(statistics.get.commands, 2u);
+  EXPECT_EQ(statistics.get.bytes, 1040u);
+  EXPECT_EQ(statistics.put.commands, 1u);
+  EXPECT_EQ(statistics.put.bytes, 8u);
   EXPECT_EQ(statistics.commands(), 3u);
   EXPECT_EQ(statistics.bytes(), 1048u);
   EXPECT_GE(statistics.highest_queue_occupancy, 1);
