@@ -5,8 +5,7 @@
 
 namespace softcell::demos {
 
-/// Writes the document under a temporary name and renames it, so that no half-written file is left as if it
-/// were whole.
+/// Writes the document; the file appears whole or not at all.
 /// @throws std::runtime_error  naming the file and why it cannot be written.
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& document);
 

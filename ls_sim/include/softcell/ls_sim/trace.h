@@ -1,12 +1,11 @@
 #pragma once
 // What happened when: jobs, DMA commands, waits and findings of each SPE, for `--trace` and `softcell
-// report`.
+// report`. docs/trace-and-report.md describes the file.
 
-#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "softcell/dma/fault.h"
@@ -19,42 +18,57 @@ namespace softcell::ls_sim {
 using TraceTime = std::int64_t;
 TraceTime trace_now();
 
-/// One SPE's part of a trace. Used by the thread that runs the SPE; recording allocates only when its memory
-/// grows.
+/// One SPE's part of a trace. Used by the thread that runs the SPE. Recording an event is a look at the clock
+/// and an append: it allocates only when the memory grows. Past the limit of a trace, further events are
+/// counted and dropped.
 class SpeTrace final : public dma::MfcObserver {
  public:
-  SpeTrace();
   ~SpeTrace() override;
+  SpeTrace(const SpeTrace&) = delete;
+  SpeTrace& operator=(const SpeTrace&) = delete;
 
+  /// A run that has ended. What the image declares is copied when it is first seen.
+  /// @param failed  by a fault, or with another status than 0.
   void on_job(const KernelImage& image, std::uint64_t job_number, TraceTime begin, TraceTime end,
               bool failed);
+
+  /// Stack that the image was seen to use, in bytes; the most of all calls is kept.
+  void on_stack_used(const KernelImage& image, std::uint32_t bytes);
 
   /// A channel operation that had to wait: a tag status, a full queue, an empty mailbox, an event.
   void on_wait(std::uint32_t channel, TraceTime begin, TraceTime end);
 
   void on_finding(const dma::Fault& fault, TraceTime when);
 
-  // dma::MfcObserver: DMA commands from issue to completion.
+  // dma::MfcObserver: DMA commands from issue to completion. A command that never completes, because a fault
+  // ended its job, is drawn to the end of that job.
   void on_issue(std::uint64_t number, const dma::MfcCommand& command, std::uint64_t bytes) override;
   void on_complete(std::uint64_t number) override;
 
  private:
   friend class Trace;
   struct Events;
+  explicit SpeTrace(std::size_t most_events);
   std::unique_ptr<Events> events_;
 };
 
 /// A run's trace. Hand `spe(n)` to SPE n while it runs; write when all have stopped.
 class Trace {
  public:
-  explicit Trace(int spes);
+  /// 4 million events an SPE are half an hour of a demo, and at most 160 MB.
+  static constexpr std::size_t kMostEvents = 4'000'000;
+
+  /// @param spes         1 or more.
+  /// @param most_events  of each SPE and kind: jobs, waits, commands, findings.
+  explicit Trace(int spes, std::size_t most_events = kMostEvents);
   ~Trace();
 
   SpeTrace& spe(int number);
   int spes() const;
 
-  /// Writes the Chrome / Perfetto JSON format: one process, one thread for each SPE's jobs, waits and
-  /// commands, and for each image its local-store map as metadata. The file appears whole or not at all.
+  /// Writes the Chrome / Perfetto JSON format: one process for each SPE with rows for its jobs, its waits and
+  /// its overlapping commands, findings as instants, and for each image its local-store map. Times count from
+  /// the construction of the trace. The file appears whole or not at all.
   /// @throws std::runtime_error  the file cannot be written; the sentence says why.
   void write(const std::filesystem::path& file) const;
 

@@ -1,0 +1,36 @@
+#pragma once
+// A file that appears whole or not at all.
+
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+namespace softcell::ls_sim {
+
+/// Written under a temporary name beside its own and renamed at the end, so that no half-written file is left
+/// as if it were whole. A device or a pipe is written to directly: it cannot be replaced by renaming.
+///
+///   WholeFile file(path);
+///   file.write(text);
+///   file.commit();  // without it nothing is left
+///
+/// Every error is a std::runtime_error that names the file and says why it cannot be written.
+class WholeFile {
+ public:
+  explicit WholeFile(std::filesystem::path path);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  void write(std::string_view bytes);
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error);
+
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;  ///< the path itself when written in place
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace softcell::ls_sim
