@@ -1,16 +1,8 @@
 # cmake -DSOURCE=<file> -P check_code.cmake -- <compiler and its arguments>
 # Compiles SOURCE to assembly and counts the instructions of each function that stands under `// instructions: <n>`.
 
-set(command)
-set(behind FALSE)
-math(EXPR last "${CMAKE_ARGC} - 1")
-foreach(i RANGE ${last})
-  if(behind)
-    list(APPEND command "${CMAKE_ARGV${i}}")
-  elseif(CMAKE_ARGV${i} STREQUAL "--")
-    set(behind TRUE)
-  endif()
-endforeach()
+include(${CMAKE_CURRENT_LIST_DIR}/command_behind_dashes.cmake)
+command_behind_dashes(command)
 execute_process(COMMAND ${command} -S -g0 -o - ${SOURCE} RESULT_VARIABLE result OUTPUT_VARIABLE assembly ERROR_VARIABLE errors)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "${SOURCE} does not compile:\n${errors}")

@@ -144,6 +144,7 @@ TEST_F(IntrinsicsChannels, ListsAreAddressedInLocalStore) {
   expect(0x44, [&] { mfc_getl(ls, kEa, list, 64, 2, 0, 0); });
   expect(0x45, [&] { mfc_getlb(ls, kEa, list, 64, 2, 0, 0); });
   expect(0x46, [&] { mfc_getlf(ls, kEa, list, 64, 2, 0, 0); });
+  expect(0x44, [&] { mfc_getl(ls, kEa, 0x400u, 64, 2, 0, 0); });
   const mfc_list_element_t element = {1, 0, 16384, 0x89ABCDEF};
   std::array<std::uint32_t, 2> words{};
   std::memcpy(words.data(), &element, sizeof element);
