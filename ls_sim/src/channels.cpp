@@ -1,5 +1,6 @@
 #include "softcell/ls_sim/channels.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -7,16 +8,22 @@
 namespace softcell::ls_sim {
 namespace {
 
+ChannelReply reply_of(dma::Fault&& fault) { return {0, std::make_unique<dma::Fault>(std::move(fault))}; }
+
+ChannelReply reply_of(std::optional<dma::Fault> fault) {
+  return fault ? reply_of(std::move(*fault)) : ChannelReply{};
+}
+
+ChannelReply reply_of(std::variant<std::uint32_t, dma::Fault> status) {
+  if (auto* fault = std::get_if<dma::Fault>(&status)) return reply_of(std::move(*fault));
+  return {std::get<std::uint32_t>(status), {}};
+}
+
 ChannelReply illegal(std::uint32_t channel, const char* access) {
   dma::Fault fault{dma::Rule::kIllegalChannel};
   fault.detail = std::string(access) + " of channel " + std::to_string(channel) +
                  ", which this SPE does not have for that";
-  return {0, std::move(fault)};
-}
-
-ChannelReply reply_of(std::variant<std::uint32_t, dma::Fault> status) {
-  if (auto* fault = std::get_if<dma::Fault>(&status)) return {0, std::move(*fault)};
-  return {std::get<std::uint32_t>(status), {}};
+  return reply_of(std::move(fault));
 }
 
 }  // namespace
@@ -51,12 +58,12 @@ ChannelReply MfcChannels::write(std::uint32_t channel, std::uint32_t value) {
       return {};
     case Channel::kMfcCmd:
       parameters_.word = value;
-      return {0, mfc_.issue(parameters_)};
+      return issue(parameters_);
     case Channel::kMfcWrTagMask:
       mfc_.write_tag_mask(value);
       return {};
     case Channel::kMfcWrTagUpdate:
-      return {0, mfc_.write_tag_update(value)};
+      return reply_of(mfc_.write_tag_update(value));
     default:
       return illegal(channel, "write");
   }
@@ -81,5 +88,7 @@ ChannelReply MfcChannels::count(std::uint32_t channel) {
       return illegal(channel, "count");
   }
 }
+
+ChannelReply MfcChannels::issue(const dma::MfcCommand& command) { return reply_of(mfc_.issue(command)); }
 
 }  // namespace softcell::ls_sim

@@ -18,8 +18,13 @@ class RecordingPort final : public ChannelPort {
     return note();
   }
   ChannelReply count(std::uint32_t) override { return note(); }
+  ChannelReply issue(const dma::MfcCommand& command) override {
+    commands.push_back(command);
+    return note();
+  }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> writes;
+  std::vector<dma::MfcCommand> commands;
   std::vector<unsigned int> modes;
 
  private:
@@ -53,13 +58,20 @@ TEST_F(NativeEngineTest, EndsWithTheStatusOfMain) {
 TEST_F(NativeEngineTest, PassesCommandsThroughTheChannelsOfTheMfc) {
   const std::uint64_t ea = 0x5EA0'1234'5680;
   run("echo_arguments", {.argp = ea});
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> first(port_.writes.begin() + 1,
-                                                                   port_.writes.begin() + 6);
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{
-      {17, 0x5EA0}, {18, 0x12345680}, {19, 128}, {20, 5}, {21, 0x40}};
-  EXPECT_EQ(first, expected);
-  EXPECT_EQ(port_.writes[0].first, 16u);
-  EXPECT_LT(port_.writes[0].second, dma::kLocalStoreBytes);
+  ASSERT_FALSE(port_.commands.empty());
+  const dma::MfcCommand& first = port_.commands.front();
+  EXPECT_EQ(first.ea.value, ea);
+  EXPECT_EQ(first.size, 128u);
+  EXPECT_EQ(first.tag, 5u);
+  EXPECT_EQ(first.word, 0x40u);
+  EXPECT_LT(first.lsa.value, dma::kLocalStoreBytes);
+}
+
+TEST_F(NativeEngineTest, TellsTheTagMaskBeforeTheTagUpdate) {
+  run("echo_arguments", {.argp = 0x1000});
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{{22, 1u << 5}, {23, 2}};
+  ASSERT_GE(port_.writes.size(), 2u);
+  EXPECT_EQ(decltype(expected)(port_.writes.begin(), port_.writes.begin() + 2), expected);
 }
 
 TEST_F(NativeEngineTest, RestoresTheHostsArithmeticInEveryCallAndAfterwards) {

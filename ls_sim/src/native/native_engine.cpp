@@ -39,6 +39,8 @@ std::string hexadecimal(std::uint64_t value) {
   return text.data();
 }
 
+constexpr std::uint32_t number(Channel channel) { return static_cast<std::uint32_t>(channel); }
+
 std::string describe_stack(const ImageSizes& sizes) {
   return "the declared stack has " + std::to_string(sizes.stack) + " bytes";
 }
@@ -80,7 +82,6 @@ class NativeEngine final : public Engine {
   void enter_kernel();
   RunResult serve(ChannelPort& channels);
   ChannelReply serve_channel(ChannelPort& channels);
-  ChannelReply issue_command(ChannelPort& channels);
   std::optional<dma::Fault> check_stack() const;
   bool written_below_stack() const;
   dma::Fault classify_trap() const;
@@ -96,7 +97,8 @@ class NativeEngine final : public Engine {
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
   KernelContext context_;
-  std::mutex running_mutex_;  // guards the two below
+  std::uint32_t tag_mask_ = 0;  ///< as last written to the channel; the kernel's is in the environment
+  std::mutex running_mutex_;    // guards the two below
   bool running_ = false;
   pthread_t runner_{};
 };
@@ -106,6 +108,8 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   const std::uint32_t data_offset = image_->data_begin - kEnvironmentBytes;
   std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
               local_store_.base() + image_->data_begin);
+  auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
+  environment.mfc_tag_mask = tag_mask_ = 0;
   context_.entry = arena() + image_->entry;
   context_.arguments[0] = arguments.spe_id;
   context_.arguments[1] = arguments.argp;
@@ -160,38 +164,42 @@ RunResult NativeEngine::serve(ChannelPort& channels) {
       return {0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
     }
     ChannelReply reply = serve_channel(channels);
-    if (reply.fault) return {0, std::move(reply.fault)};
+    if (reply.fault) return {0, std::move(*reply.fault)};
     context_.reply = reply.value;
   }
 }
 
 ChannelReply NativeEngine::serve_channel(ChannelPort& channels) {
+  native::Environment environment;
+  std::memcpy(&environment, local_store_.base(), sizeof environment);
+  if (context_.operation == Operation::kWrite && context_.channel == number(Channel::kMfcCmd)) {
+    return channels.issue({.word = context_.value,
+                           .lsa = {environment.mfc_lsa},
+                           .ea = {std::uint64_t{environment.mfc_eah} << 32 | environment.mfc_eal},
+                           .size = environment.mfc_size,
+                           .tag = environment.mfc_tag});
+  }
+  if (environment.mfc_tag_mask != tag_mask_) {
+    tag_mask_ = environment.mfc_tag_mask;
+    ChannelReply reply = channels.write(number(Channel::kMfcWrTagMask), tag_mask_);
+    if (reply.fault) return reply;
+  }
   switch (context_.operation) {
     case Operation::kRead:
       return channels.read(context_.channel);
     case Operation::kWrite:
-      if (context_.channel == static_cast<std::uint32_t>(Channel::kMfcCmd)) return issue_command(channels);
       return channels.write(context_.channel, context_.value);
     case Operation::kCount:
       return channels.count(context_.channel);
+    case Operation::kTagStatus: {
+      ChannelReply reply = channels.write(number(Channel::kMfcWrTagUpdate), context_.value);
+      return reply.fault ? std::move(reply) : channels.read(number(Channel::kMfcRdTagStat));
+    }
     default:
-      return {0, fault(dma::Rule::kIllegalChannel,
-                       "the kernel called the environment with an unknown operation")};
+      return {
+          0, std::make_unique<dma::Fault>(fault(
+                 dma::Rule::kIllegalChannel, "the kernel called the environment with an unknown operation"))};
   }
-}
-
-/// The host headers keep the five parameters of a command in the environment and call only for the command
-/// itself.
-ChannelReply NativeEngine::issue_command(ChannelPort& channels) {
-  native::Environment environment;
-  std::memcpy(&environment, local_store_.base(), sizeof environment);
-  const std::array parameters{environment.mfc_lsa, environment.mfc_eah, environment.mfc_eal,
-                              environment.mfc_size, environment.mfc_tag};
-  for (std::uint32_t i = 0; i < parameters.size(); ++i) {
-    ChannelReply reply = channels.write(static_cast<std::uint32_t>(Channel::kMfcLsa) + i, parameters[i]);
-    if (reply.fault) return reply;
-  }
-  return channels.write(static_cast<std::uint32_t>(Channel::kMfcCmd), context_.value);
 }
 
 dma::Fault NativeEngine::stack_overflow(std::string detail) const {

@@ -22,7 +22,8 @@ SC_SDK_INLINE unsigned int read_channel_count() {
   static_assert(is_channel(Channel), "channels are numbered 0 to 127");
   return call_gate(kCount, Channel, 0);
 }
-/// The five parameters of a DMA command wait in the environment for the command itself; all else is a call.
+/// The five parameters of a DMA command and the tag mask wait in the environment for the command and the tag
+/// update; all else is a call.
 template <int Channel>
 SC_SDK_INLINE void write_channel(unsigned int value) {
   static_assert(is_channel(Channel), "channels are numbered 0 to 127");
@@ -36,10 +37,15 @@ SC_SDK_INLINE void write_channel(unsigned int value) {
     environment().mfc_size = value;
   } else if constexpr (Channel == MFC_TagID) {
     environment().mfc_tag = value;
+  } else if constexpr (Channel == MFC_WrTagMask) {
+    environment().mfc_tag_mask = value;
   } else {
     call_gate(kWrite, Channel, value);
   }
 }
+
+/// A write to MFC_WrTagUpdate and a read of MFC_RdTagStat.
+SC_SDK_INLINE unsigned int tag_status(unsigned int condition) { return call_gate(kTagStatus, 0, condition); }
 
 template <int Code>
 SC_SDK_INLINE void stop() {

@@ -8,17 +8,20 @@
 
 namespace softcell_sdk {
 
-/// At local-store address 0. The emulator writes `gate` when it loads an image, the kernel the mfc_ fields.
+/// At local-store address 0. The emulator writes `gate` when it loads an image, the kernel the mfc_ fields:
+/// channels that only hold a value until another channel is used, so that it need not be called for them.
 struct Environment {
   uint64_t
       gate;  ///< address of uint32_t gate(uint32_t operation, uint32_t value), System V calling convention
   uint32_t mfc_lsa, mfc_eah, mfc_eal, mfc_size, mfc_tag;  ///< channels 16 to 20
-  uint32_t reserved[25];
+  uint32_t mfc_tag_mask;                                  ///< channel 22; 0 when a run begins
+  uint32_t reserved[24];
 };
 static_assert(sizeof(Environment) == 128, "what the link script leaves free");
 
 /// What is asked of the gate: operation = kind << 8 | channel. `value` is what is written, or the stop code.
-enum GateKind : uint32_t { kRead = 0, kWrite = 1, kCount = 2, kStop = 3, kHalt = 4 };
+/// kTagStatus writes `value` to MFC_WrTagUpdate and then reads MFC_RdTagStat: one call for each wait.
+enum GateKind : uint32_t { kRead = 0, kWrite = 1, kCount = 2, kStop = 3, kHalt = 4, kTagStatus = 5 };
 
 constexpr uintptr_t kLocalStoreMask = 0x3FFFF;
 

@@ -2,7 +2,7 @@
 // The SPU's channels: its only door to the MFC and to the world.
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 
 #include "softcell/dma/fault.h"
 #include "softcell/dma/mfc.h"
@@ -23,10 +23,11 @@ enum class Channel : std::uint8_t {
   kMfcRdTagMask = 12,
 };
 
-/// What a channel operation gave: a value, or the fault that stops the SPU.
+/// What a channel operation gave: a value, or the fault that stops the SPU. It fits two registers, as there
+/// is one for each command of a kernel.
 struct ChannelReply {
   std::uint32_t value = 0;
-  std::optional<dma::Fault> fault;
+  std::unique_ptr<dma::Fault> fault;
 };
 
 /// What an engine sees of its surroundings. Called by the thread that runs the SPE.
@@ -36,6 +37,9 @@ class ChannelPort {
   virtual ChannelReply read(std::uint32_t channel) = 0;
   virtual ChannelReply write(std::uint32_t channel, std::uint32_t value) = 0;
   virtual ChannelReply count(std::uint32_t channel) = 0;
+
+  /// A whole DMA command: writes to MFC_LSA, MFC_EAH, MFC_EAL, MFC_Size, MFC_TagID and MFC_Cmd in one call.
+  virtual ChannelReply issue(const dma::MfcCommand& command) = 0;
 };
 
 /// The channels that lead to the MFC: command parameters, tag mask, tag update and status. Any other number
@@ -47,6 +51,7 @@ class MfcChannels final : public ChannelPort {
   ChannelReply read(std::uint32_t channel) override;
   ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
   ChannelReply count(std::uint32_t channel) override;
+  ChannelReply issue(const dma::MfcCommand& command) override;
 
  private:
   dma::Mfc& mfc_;
