@@ -21,6 +21,7 @@
 
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/fault.h"
+#include "softcell/dma/reservations.h"
 
 namespace softcell::dma {
 
@@ -103,6 +104,9 @@ class AddressSpace {
   /// Changes whenever a mapping ends, after which copies of it must not be used.
   std::uint64_t generation() const { return generation_.load(std::memory_order_acquire); }
 
+  /// Through which every copy to or from these bytes goes that must respect reserved lines.
+  Reservations& reservations() const { return reservations_; }
+
   /// Bytes not allocated, in all and in the largest piece.
   std::uint64_t free_bytes(Memory memory) const;
   std::uint64_t largest_free_range(Memory memory) const;
@@ -126,6 +130,8 @@ class AddressSpace {
   mutable std::shared_mutex registry_mutex_;
   Registry registry_;
   std::atomic<std::uint64_t> generation_{1};
+
+  mutable Reservations reservations_;
 };
 
 }  // namespace softcell::dma
