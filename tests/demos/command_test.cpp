@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "run_command.h"
+#include "scratch_folder.h"
 #include "softcell/render/png_io.h"
 
 namespace softcell::tests {
