@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "indivisible_copy.h"
+#include "local_stores.h"
 
 namespace softcell::dma {
 namespace {
@@ -86,11 +87,17 @@ struct Reservations::State {
 
   static constexpr int kLockBits = 6;
 
+  explicit State(LocalStores* stores) : local_stores(stores) {}
+
+  /// @return  whether the write went to a register, so that there is nothing to copy.
+  bool announce(EffectiveAddress ea, const std::byte* from, std::uint32_t bytes) {
+    return LocalStores::contains(ea) && local_stores != nullptr && local_stores->on_write(ea, from, bytes);
+  }
+
   std::mutex& lock_of(std::uint64_t line) {
     constexpr std::uint64_t kSpread = 0x9E37'79B9'7F4A'7C15;  // 2^64 over the golden ratio: neighbours differ
     return locks[line / kLineBytes * kSpread >> (64 - kLockBits)].mutex;
   }
-  std::mutex& lock_of(EffectiveAddress ea) { return lock_of(line_of(ea)); }
 
   int take_place(ReservationListener* listener);
   void leave_place(int place);
@@ -113,6 +120,8 @@ struct Reservations::State {
     announced.store(LineRange().word(), std::memory_order_release);
     return free;
   }
+
+  LocalStores* const local_stores;  // null: none
 
   std::array<Lock, 1 << kLockBits> locks;
   std::array<Reservation, kMaxHolders> reservations;
@@ -194,32 +203,35 @@ ReservationHolder::ReservationHolder(Reservations& reservations, ReservationList
 
 ReservationHolder::~ReservationHolder() { reservations_.state_->leave_place(place_); }
 
-Reservations::Reservations() : state_(std::make_unique<State>()) {}
+Reservations::Reservations(LocalStores* local_stores) : state_(std::make_unique<State>(local_stores)) {}
 Reservations::~Reservations() = default;
 
-void Reservations::load_and_reserve(ReservationHolder& holder, EffectiveAddress line, const std::byte* host,
-                                    std::byte* to) {
+void Reservations::load_and_reserve(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host,
+                                    std::byte* to, std::uint32_t bytes) {
+  const std::uint64_t line = line_of(ea);
   State::Reservation& own = state_->reservations[holder.place_];
-  if (own.last_line != line.value) state_->give_up(holder.place_);
+  if (own.last_line != line) state_->give_up(holder.place_);
   const std::lock_guard lock(state_->lock_of(line));
-  own.last_line = line.value;
-  own.line.store(line.value, std::memory_order_seq_cst);
-  state_->wait_for_long_copies(line.value);
-  copy_indivisibly(to, host, kLineBytes);
+  own.last_line = line;
+  own.line.store(line, std::memory_order_seq_cst);
+  state_->wait_for_long_copies(line);
+  copy_indivisibly(to, host, bytes);
 }
 
-bool Reservations::store_conditional(ReservationHolder& holder, EffectiveAddress line, std::byte* host,
-                                     const std::byte* from) {
+bool Reservations::store_conditional(ReservationHolder& holder, EffectiveAddress ea, std::byte* host,
+                                     const std::byte* from, std::uint32_t bytes) {
+  const std::uint64_t line = line_of(ea);
   State::Reservation& own = state_->reservations[holder.place_];
-  if (own.last_line != line.value) {
+  if (own.last_line != line) {
     state_->give_up(holder.place_);
     return false;
   }
   const std::lock_guard lock(state_->lock_of(line));
-  const bool stands = own.line.load(std::memory_order_relaxed) == line.value;
+  const bool stands = own.line.load(std::memory_order_relaxed) == line;
   if (stands) {
-    copy_indivisibly(host, from, kLineBytes);
-    state_->lose_reservations(line.value, holder.place_);
+    state_->announce(ea, from, bytes);
+    copy_indivisibly(host, from, bytes);
+    state_->lose_reservations(line, holder.place_);
   }
   own.last_line = kNoLine;
   return stands;
@@ -237,21 +249,23 @@ void Reservations::read(ReservationHolder& holder, EffectiveAddress ea, const st
     return;
   }
   for_each_line(ea, bytes, [&](std::uint32_t offset, std::uint32_t size) {
-    const std::lock_guard lock(state_->lock_of(ea + offset));
+    const std::lock_guard lock(state_->lock_of(line_of(ea + offset)));
     copy_indivisibly(to + offset, host + offset, size);
   });
 }
 
 void Reservations::write(ReservationHolder& holder, EffectiveAddress ea, std::byte* host,
                          const std::byte* from, std::uint32_t bytes) {
+  if (state_->announce(ea, from, bytes)) return;
   if (!fits_one_line(ea, bytes) &&
       state_->copy_at_once(holder.place_, {ea, bytes}, [&] { std::memmove(host, from, bytes); })) {
     return;
   }
   for_each_line(ea, bytes, [&](std::uint32_t offset, std::uint32_t size) {
-    const std::lock_guard lock(state_->lock_of(ea + offset));
+    const std::uint64_t line = line_of(ea + offset);
+    const std::lock_guard lock(state_->lock_of(line));
     copy_indivisibly(host + offset, from + offset, size);
-    state_->lose_reservations(line_of(ea + offset), holder.place_);
+    state_->lose_reservations(line, holder.place_);
   });
 }
 
