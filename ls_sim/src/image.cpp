@@ -167,6 +167,7 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.data_end = static_cast<std::uint32_t>(image.data_begin + data.sh_size);
   const auto bytes = elf.slice(segment.p_offset, segment.p_filesz, "its segment");
   image.bytes.assign(bytes.begin(), bytes.end());
+  image.elf = std::make_shared<const std::vector<std::byte>>(file.begin(), file.end());
   return image;
 }
 

@@ -57,7 +57,7 @@ struct KernelContext {
   std::uint32_t channel = 0;
   std::uint32_t value = 0;
   std::uint32_t reply = 0;
-  std::uintptr_t caller = 0;  ///< the kernel's instruction behind the call of the gate
+  std::uintptr_t caller = 0;  ///< in the kernel's call of the gate: its last byte
   Trap trap;
 
   // What main is called with.
