@@ -269,6 +269,8 @@ void Reservations::write(ReservationHolder& holder, EffectiveAddress ea, std::by
   });
 }
 
+void Reservations::give_up(ReservationHolder& holder) { state_->give_up(holder.place_); }
+
 bool Reservations::holds(const ReservationHolder& holder) const {
   return state_->reservations[holder.place_].line.load(std::memory_order_acquire) != kNoLine;
 }

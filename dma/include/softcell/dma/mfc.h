@@ -45,7 +45,7 @@ class Mfc {
   /// Tells `observer` of every command from now on; null: nobody. It must outlive the MFC or be replaced.
   void set_observer(MfcObserver* observer) { observer_ = observer; }
 
-  /// State as after reset: empty queue and tag mask, no status request. What is still queued is dropped, as
+  /// State as after reset: empty queue and tag mask, no status request, no reservation. What is still queued is dropped, as
   /// after a fault; call drain() at the end of a job that ended well. Random decisions from here on depend on
   /// the schedule's seed and on `job_id`, not on the SPE. Statistics go on.
   void begin_job(std::uint64_t job_id);

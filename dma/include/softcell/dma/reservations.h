@@ -81,6 +81,9 @@ class Reservations {
   void write(ReservationHolder& holder, EffectiveAddress ea, std::byte* host, const std::byte* from,
              std::uint32_t bytes);
 
+  /// Gives up what the holder has reserved, if anything, without an event.
+  void give_up(ReservationHolder& holder);
+
   /// Whether the holder's reservation stands.
   bool holds(const ReservationHolder& holder) const;
 

@@ -61,6 +61,7 @@ class StoragePort {
   void store_line(const StoragePlace& line, const std::byte* from) {
     reservations_.store_line(holder_, line.ea, line.host, from);
   }
+  void give_up_reservation() { reservations_.give_up(holder_); }
 
  private:
   TranslationCache translation_;
