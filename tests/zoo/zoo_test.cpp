@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <ostream>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "kernel_card.h"
 #include "kernel_run.h"
@@ -121,6 +123,29 @@ TEST(ZooChecklist, EveryLegalKernelKeepsRulesThatExist) {
     EXPECT_FALSE(card.keeps.empty()) << card.name;
     for (const std::string& rule : card.keeps) EXPECT_TRUE(names.contains(rule)) << card.name << ": " << rule;
   }
+}
+
+TEST(ZooChecklist, TheManualHasOneSectionForEveryRuleAndSaysWhatIsUnconfirmed) {
+  std::ifstream manual(ZOO_MANUAL);
+  std::map<std::string, std::vector<std::string>> sections;  // first lines of the text below each heading
+  std::string heading;
+  for (std::string line; std::getline(manual, line);) {
+    if (line.starts_with("### ")) {
+      heading = line.substr(4);
+    } else if (!heading.empty() && !line.empty()) {
+      sections[heading].push_back(line);
+      heading.clear();
+    }
+  }
+  for (const dma::Rule rule : dma::kAllRules) {
+    const std::string name(dma::name(rule));
+    ASSERT_EQ(sections[name].size(), 1u) << name;
+    EXPECT_EQ(sections[name].front().starts_with("*Unconfirmed.* "),
+              dma::evidence(rule) == dma::Evidence::kUnconfirmed)
+        << name;
+    sections.erase(name);
+  }
+  for (const auto& [name, text] : sections) ADD_FAILURE() << "a section for " << name << ", which is no rule";
 }
 
 TEST(ZooChecklist, UnconfirmedRulesSaySoInTheirExplanation) {
