@@ -251,14 +251,14 @@ int Mfc::free_slots() {
 std::optional<Fault> Mfc::write_tag_update(std::uint32_t condition) {
   if (suspended_by_) return suspension();
   if (condition > static_cast<std::uint32_t>(Condition::kAll)) {
-    return Fault{
-        .rule = Rule::kTagUpdateCondition,
-        .detail = "condition " + std::to_string(condition) + "; 0 immediate, 1 any and 2 all are allowed"};
+    return Fault{.rule = Rule::kTagUpdateCondition,
+                 .detail = "MFC_WrTagUpdate takes 0 (immediate), 1 (any) or 2 (all), not " +
+                           std::to_string(condition)};
   }
   const auto wanted = static_cast<Condition>(condition);
   if (request_ && wanted != Condition::kImmediate) {
     return Fault{.rule = Rule::kTagUpdatePending,
-                 .detail = "the answer to the request before has not been read from MFC_RdTagStat"};
+                 .detail = "MFC_WrTagUpdate was written before MFC_RdTagStat was read for the last request"};
   }
   request_ = StatusRequest{wanted, tag_mask_};
   request_told_ = false;
@@ -274,7 +274,8 @@ std::variant<std::uint32_t, Fault> Mfc::read_tag_status() {
   }
   const StatusRequest request = *request_;
   if (request.condition == Condition::kAny && request.mask == 0) {
-    return Fault{.rule = Rule::kTagMaskEmpty, .detail = "any tag of none was waited for"};
+    return Fault{.rule = Rule::kTagMaskEmpty,
+                 .detail = "MFC_RdTagStat was read for any tag of an empty MFC_WrTagMask"};
   }
   pass_a_moment();
   if (!is_met(request)) {
@@ -328,9 +329,10 @@ std::variant<std::uint32_t, Fault> Mfc::read_list_stall_status() {
     if (progress(lists_)) continue;
     if (suspended_by_) return suspension();
     return Fault{.rule = Rule::kListStallNotExpected,
-                 .detail = stalled_ == 0 ? "no list that stalls is queued"
-                                         : "the list that has stalled was read of before, and waits for its "
-                                           "tag in MFC_WrListStallAck"};
+                 .detail = stalled_ == 0
+                               ? "MFC_RdListStallStat was read, and no list that stalls is queued"
+                               : "MFC_RdListStallStat was read again, and the list that has stalled "
+                                 "waits for its tag in MFC_WrListStallAck"};
   }
   if (suspended_by_) return suspension();
   return std::exchange(stall_status_, 0);
@@ -347,8 +349,9 @@ std::optional<Fault> Mfc::write_list_stall_ack(std::uint32_t tag) {
   if (suspended_by_) return suspension();
   const SlotSet resumed = tag < kTagCount ? queue_.slots_of(1u << tag) & stalled_ : SlotSet{0};
   if (resumed == 0) {
-    return Fault{.rule = Rule::kListStallAckTag,
-                 .detail = "no list of tag " + std::to_string(tag) + " has stalled"};
+    return Fault{
+        .rule = Rule::kListStallAckTag,
+        .detail = "MFC_WrListStallAck took tag " + std::to_string(tag) + ", of which no list has stalled"};
   }
   stalled_ &= static_cast<SlotSet>(~resumed);
   for (SlotSet rest = resumed; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
@@ -368,8 +371,10 @@ std::variant<std::uint32_t, Fault> Mfc::read_atomic_status() {
   if (suspended_by_) return suspension();
   pass_a_moment();
   if (!atomic_status_) {
-    return Fault{.rule = Rule::kAtomicStatusNotExpected,
-                 .detail = "no getllar, putllc or putlluc was issued since the last read"};
+    return Fault{
+        .rule = Rule::kAtomicStatusNotExpected,
+        .detail =
+            "MFC_RdAtomicStat was read, and no getllar, putllc or putlluc was issued since its last read"};
   }
   if (suspended_by_) return suspension();
   return *std::exchange(atomic_status_, std::nullopt);

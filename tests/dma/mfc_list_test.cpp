@@ -421,12 +421,14 @@ TEST(MfcListStall, ReadingItsStatusWithNothingThatStallsNeverEnds) {
     EXPECT_EQ(std::get<Fault>(status).rule, Rule::kListStallNotExpected);
     EXPECT_EQ(std::get<Fault>(status).detail, detail);
   };
-  expect_fault("no list that stalls is queued");
+  expect_fault("MFC_RdListStallStat was read, and no list that stalls is queued");
   bench.issue_list(MfcOpcode::getl, 0x1000, {bench.element(16, 0)}, 3);
-  expect_fault("no list that stalls is queued");
+  expect_fault("MFC_RdListStallStat was read, and no list that stalls is queued");
   bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0)}, 3);
   EXPECT_EQ(bench.stall_status(), 1u << 3);
-  expect_fault("the list that has stalled was read of before, and waits for its tag in MFC_WrListStallAck");
+  expect_fault(
+      "MFC_RdListStallStat was read again, and the list that has stalled waits for its tag in "
+      "MFC_WrListStallAck");
 }
 
 TEST(MfcListStall, AnAcknowledgementNeedsAStalledListOfItsTag) {
@@ -436,7 +438,8 @@ TEST(MfcListStall, AnAcknowledgementNeedsAStalledListOfItsTag) {
     const std::optional<Fault> fault = bench.mfc.write_list_stall_ack(tag);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->rule, Rule::kListStallAckTag);
-    EXPECT_EQ(fault->detail, "no list of tag " + std::to_string(tag) + " has stalled");
+    EXPECT_EQ(fault->detail,
+              "MFC_WrListStallAck took tag " + std::to_string(tag) + ", of which no list has stalled");
   }
   EXPECT_FALSE(bench.mfc.write_list_stall_ack(3));
   EXPECT_TRUE(bench.mfc.write_list_stall_ack(3)) << "once";
