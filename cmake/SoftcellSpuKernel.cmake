@@ -53,6 +53,7 @@ function(softcell_add_spu_kernel name)
   add_custom_command(OUTPUT ${image}
     COMMAND ${SOFTCELL_KERNEL_LINKER} -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
       --defsym softcell_stack_bytes=${arg_STACK_BYTES} --defsym softcell_budget_bytes=${arg_BUDGET_BYTES}
+      --defsym softcell_is_checked=0
       --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
       $<TARGET_OBJECTS:${name}_objects> -o ${image}
     COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DIMAGE=${image} -DKERNEL=${name}
