@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "softcell/ls_sim/source_lines.h"
+#include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {
 
@@ -10,6 +11,7 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
     : number_(number),
       options_(options),
       monitor_(monitor),
+      trace_(options.trace == nullptr ? nullptr : &options.trace->spe(number)),
       mfc_(local_store_.bytes(), memory, options.schedule, static_cast<std::uint64_t>(number), this),
       engine_(make_native_engine(local_store_)),
       channels_({.spe = number_,
@@ -18,40 +20,48 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
                  .registers = registers_,
                  .mfc = mfc_,
                  .engine = *engine_,
-                 .statistics = statistics_}) {}
+                 .statistics = statistics_,
+                 .trace = trace_}) {
+  mfc_.set_observer(trace_);
+}
 
 RunResult Spe::run(const Run& run) {
   RunResult result = execute(run);
+  channels_.end_run();
   if (result.fault) {
     result.fault->spe = number_;
     result.fault->kernel = run.image->name;
-    resident_ = nullptr;  // whatever it did to its local store goes with it
   }
-  add_to_statistics(run, std::chrono::steady_clock::now());
+  // Whatever a kernel that failed did to its local store goes with it.
+  if (result.fault || options_.reload_always) resident_ = nullptr;
+  account(run, result, std::chrono::steady_clock::now());
   return result;
 }
 
 RunResult Spe::execute(const Run& run) {
-  make_resident(*run.image);
+  if (resident_ != run.image) load(*run.image);
   mfc_.begin_job(run.number);
   channels_.begin_run();
   RunResult result = engine_->run(run.arguments, channels_);
-  if (result.fault) {
-    result.fault->place = SourceLines(*run.image).place_of(engine_->position());
-  } else {
-    result.fault = mfc_.drain();  // of a command issued earlier: nobody knows where
-  }
+  if (!result.fault) result.fault = mfc_.drain();
+  if (result.fault) result.fault->place = SourceLines(*run.image).place_of(position_of(*result.fault));
   return result;
 }
 
-void Spe::make_resident(const KernelImage& image) {
-  if (resident_ == &image && !options_.reload_always) return;
+dma::LocalStoreAddress Spe::position_of(const dma::Fault& fault) const {
+  // A list's elements are looked at while it executes: the mistake is where it was issued. One that has
+  // stalled is no mistake before something waits for it.
+  if (fault.rule == dma::Rule::kListStalledForEver) return engine_->position();
+  return channels_.issued_at(fault).value_or(engine_->position());
+}
+
+void Spe::load(const KernelImage& image) {
   engine_->load(image);
   resident_ = &image;
   ++statistics_.image_loads;
 }
 
-void Spe::add_to_statistics(const Run& run, SpeMonitor::HostTime end) {
+void Spe::account(const Run& run, const RunResult& result, SpeMonitor::HostTime end) {
   ++statistics_.jobs;
   statistics_.busy += end - run.begin;
   statistics_.dma = mfc_.statistics();
@@ -62,6 +72,11 @@ void Spe::add_to_statistics(const Run& run, SpeMonitor::HostTime end) {
     statistics_.stack_high_water = std::max(statistics_.stack_high_water, stack);
   }
   statistics_.local_store_high_water = std::max(statistics_.local_store_high_water, sizes.end + stack);
+  if (trace_ == nullptr) return;
+  const bool failed = !result.ended_normally() || result.status() != 0;
+  trace_->on_job(*run.image, run.number, run.begin.time_since_epoch().count(), end.time_since_epoch().count(),
+                 failed);
+  if (options_.measure_stack) trace_->on_stack_used(*run.image, stack);
 }
 
 void Spe::interrupt() {

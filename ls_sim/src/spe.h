@@ -31,7 +31,14 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
   /// @param monitor  of all SPEs that run together; outlives them.
   Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor& monitor);
 
-  /// Runs an image to its end. @pre the monitor has been told of its start.
+  /// Moves with the SPE from now on; outlives its runs.
+  void set_proxy(dma::ProxyQueue* proxy) { channels_.set_proxy(proxy); }
+
+  /// Makes the image resident anew. Any thread, while no run is in progress.
+  void load(const KernelImage& image);
+
+  /// Runs an image to its end, which is made resident if it is not. @pre the monitor has been told of its
+  /// start.
   RunResult run(const Run& run);
 
   /// Ends the run in progress with the fault deadline-exceeded. Any thread, with the monitor's lock.
@@ -51,13 +58,14 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
  private:
   void on_reservation_lost() override;
 
-  void make_resident(const KernelImage& image);
   RunResult execute(const Run& run);
-  void add_to_statistics(const Run& run, SpeMonitor::HostTime end);
+  dma::LocalStoreAddress position_of(const dma::Fault& fault) const;
+  void account(const Run& run, const RunResult& result, SpeMonitor::HostTime end);
 
   int number_;
   SpeOptions options_;
   SpeMonitor& monitor_;
+  SpeTrace* trace_;  ///< may be null
   LocalStore local_store_;
   SpeRegisters registers_;
   dma::Mfc mfc_;

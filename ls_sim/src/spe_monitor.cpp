@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "softcell/ls_sim/channel_name.h"
+#include "softcell/ls_sim/source_lines.h"
 
 namespace softcell::ls_sim {
 namespace {
@@ -173,8 +174,11 @@ void SpeMonitor::declare_deadlock() {
     const Member& m = member(spe);
     if (m.state != State::kAsleep) continue;
     if (!deadlock_.empty()) deadlock_ += ", ";
-    deadlock_ += "SPE " + std::to_string(spe) + " (" + m.image->name + ") waits to " +
-                 (m.sleep.writes ? "write " : "read ") + std::string(channel_name(m.sleep.channel));
+    const std::string place = SourceLines(*m.image).place_of(m.sleep.position);
+    deadlock_ += "SPE " + std::to_string(spe) + " (" + m.image->name + (place.empty() ? "" : ", " + place) +
+                 ") waits to " +
+                 (channel_access(m.sleep.channel) == ChannelAccess::kWrite ? "write " : "read ") +
+                 std::string(channel_name(m.sleep.channel));
   }
   deadlock_ += "; nothing is in flight, and nobody is left who could end that";
   for (int spe = 0; spe < dma::kSpeCount; ++spe) wake_with(spe, Woken::kDeadlock);

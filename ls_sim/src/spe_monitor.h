@@ -28,7 +28,6 @@ namespace softcell::ls_sim {
 /// What an SPE that sleeps waits for.
 struct Sleep {
   std::uint32_t channel = 0;
-  bool writes = false;
   dma::LocalStoreAddress position;  ///< of the instruction that waits
 
   /// When it wakes by itself, if it does: the host's time, or ticks of simulated time to come.

@@ -17,6 +17,7 @@ struct SpeRegisters {
   Mailbox<1> out_mbox, out_intr_mbox;
   SignalRegister signal1, signal2;
   EventFacility events;
+  bool proxy_issued = false;  ///< a proxy command came: an SPE that sleeps has to let it move
 
   void write_in_mbox(std::uint32_t value) {
     if (in_mbox.empty()) events.raise(event::kInMbox);

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/ls_sim/trace.h"
+
 namespace softcell::ls_sim {
 namespace {
 
@@ -24,6 +26,10 @@ const SpeOptions& checked(const SpeOptions& options) {
   }
   if (options.deadline <= std::chrono::milliseconds::zero()) {
     throw std::invalid_argument("the deadline of a run must be positive");
+  }
+  if (options.trace != nullptr && options.trace->spes() < options.spes) {
+    throw std::invalid_argument("the trace has room for " + std::to_string(options.trace->spes()) +
+                                " SPEs; there are " + std::to_string(options.spes));
   }
   return options;
 }

@@ -1,5 +1,6 @@
 #include "spu_channels.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <variant>
@@ -50,6 +51,7 @@ void SpuChannels::begin_run() {
   decrementer_ = {};
   srr0_ = 0;
   parameters_ = {};
+  lists_ = {};
 }
 
 // ---- the door
@@ -141,6 +143,10 @@ ChannelReply SpuChannels::issue(const dma::MfcCommand& command) {
 // ---- the MFC's channels
 
 ChannelReply SpuChannels::issue_now(const dma::MfcCommand& command) {
+  if (command.kind() == dma::CommandKind::kList) {
+    lists_[next_list_] = {command, to_.engine.position()};
+    next_list_ = (next_list_ + 1) % lists_.size();
+  }
   dma::Mfc& mfc = to_.mfc;
   return wait_for_mfc(
       Channel::kMfcCmd, [&] { return mfc.statistics().queue_full_stalls; },
@@ -272,7 +278,7 @@ ChannelReply SpuChannels::attempt_or_sleep(Channel channel, Attempt&& attempt) {
 
 template <class Attempt>
 ChannelReply SpuChannels::sleep_until(Channel channel, Attempt&& attempt) {
-  while (to_.mfc.advance()) {
+  while (move_something()) {
     const SpeMonitor::Lock lock = to_.monitor.lock();
     if (const auto value = attempt()) return {*value, {}};
   }
@@ -281,6 +287,13 @@ ChannelReply SpuChannels::sleep_until(Channel channel, Attempt&& attempt) {
   SpeMonitor::Lock lock = to_.monitor.lock();
   for (;;) {
     if (const auto value = attempt()) return {*value, {}};
+    if (std::exchange(to_.registers.proxy_issued, false)) {
+      lock.unlock();
+      while (move_something()) {
+      }
+      lock.lock();
+      continue;
+    }
     const Sleep sleep = sleep_at(channel);
     switch (to_.monitor.sleep(lock, to_.spe, sleep)) {
       case Woken::kToLook:
@@ -330,6 +343,14 @@ void SpuChannels::acknowledge_events(std::uint32_t events) {
 
 // ---- ends and waits
 
+std::optional<dma::LocalStoreAddress> SpuChannels::issued_at(const dma::Fault& fault) const {
+  if (!fault.command) return std::nullopt;
+  const auto list = std::find_if(lists_.begin(), lists_.end(),
+                                 [&](const IssuedList& issued) { return issued.command == *fault.command; });
+  if (list == lists_.end()) return std::nullopt;
+  return list->position;
+}
+
 ChannelReply SpuChannels::stopped(std::uint32_t channel) const {
   dma::Fault fault{dma::Rule::kDeadlineExceeded};
   fault.detail = "the kernel did not end in time; it was to " + describe_access(channel);
@@ -343,6 +364,9 @@ void SpuChannels::note_wait(Channel channel, HostClock::time_point begin) {
   waits.time += end - begin;
   ++to_.statistics.channel_waits;
   to_.statistics.channel_waiting += end - begin;
+  if (to_.trace != nullptr) {
+    to_.trace->on_wait(number(channel), begin.time_since_epoch().count(), end.time_since_epoch().count());
+  }
 }
 
 }  // namespace softcell::ls_sim

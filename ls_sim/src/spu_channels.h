@@ -1,15 +1,19 @@
 #pragma once
 // All channels of one SPU, over its MFC and its registers.
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
 
 #include "decrementer.h"
 #include "softcell/dma/mfc.h"
+#include "softcell/dma/mfc_queue.h"
+#include "softcell/dma/proxy_queue.h"
 #include "softcell/ls_sim/channels.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/statistics.h"
+#include "softcell/ls_sim/trace.h"
 #include "spe_monitor.h"
 #include "spe_registers.h"
 #include "spu_clock.h"
@@ -29,18 +33,32 @@ class SpuChannels final : public ChannelPort {
     dma::Mfc& mfc;
     const Engine& engine;  ///< knows where the kernel is
     SpeStatistics& statistics;
+    SpeTrace* trace;  ///< may be null
   };
 
   explicit SpuChannels(const Surroundings& surroundings)
       : to_(surroundings), clock_(surroundings.options.clock) {}
 
+  /// The PPU side's queue, which moves with the SPU's own. It outlives the channels.
+  void set_proxy(dma::ProxyQueue* proxy) { proxy_ = proxy; }
+
   /// State at the start of a program, of all but the MFC and the registers.
   void begin_run();
+
+  /// What is in the PPU side's queue moves on without the SPU.
+  void end_run() {
+    while (proxy_ != nullptr && proxy_->advance()) {
+    }
+  }
 
   ChannelReply read(std::uint32_t channel) override;
   ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
   ChannelReply count(std::uint32_t channel) override;
   ChannelReply issue(const dma::MfcCommand& command) override;
+
+  /// Where the list command that broke a rule was issued: its elements are looked at later, when the kernel
+  /// is somewhere else. @return  nothing for a fault of anything but a list's elements.
+  std::optional<dma::LocalStoreAddress> issued_at(const dma::Fault& fault) const;
 
  private:
   using HostClock = std::chrono::steady_clock;
@@ -48,6 +66,7 @@ class SpuChannels final : public ChannelPort {
   /// Where every operation begins. @return  false when the SPE has been stopped.
   bool begin_operation() {
     clock_.on_operation();
+    if (proxy_ != nullptr) proxy_->visit();
     return to_.monitor.pass_turn(to_.spe);
   }
 
@@ -62,6 +81,7 @@ class SpuChannels final : public ChannelPort {
   std::uint32_t count_register(Channel channel);
   template <class Attempt>
   ChannelReply attempt_or_sleep(Channel channel, Attempt&& attempt);
+  bool move_something() { return to_.mfc.advance() || (proxy_ != nullptr && proxy_->advance()); }
   template <class Attempt>
   ChannelReply sleep_until(Channel channel, Attempt&& attempt);
   Sleep sleep_at(Channel channel) const;
@@ -74,10 +94,18 @@ class SpuChannels final : public ChannelPort {
   void note_wait(Channel channel, HostClock::time_point begin);
 
   Surroundings to_;
+  dma::ProxyQueue* proxy_ = nullptr;
   SpuClock clock_;
   Decrementer decrementer_;
   std::uint32_t srr0_ = 0;
   dma::MfcCommand parameters_{};  ///< as written to channels 16 to 20 so far
+
+  struct IssuedList {
+    dma::MfcCommand command;
+    dma::LocalStoreAddress position;
+  };
+  std::array<IssuedList, dma::MfcQueue::kSlots> lists_{};  ///< the last that were issued, in a ring
+  std::size_t next_list_ = 0;
 };
 
 }  // namespace softcell::ls_sim

@@ -8,12 +8,14 @@
 
 #include "softcell/ls_sim/image.h"
 
-#define SC_TEST_KERNELS(X)  \
-  X(echo_arguments)         \
-  X(remembers)              \
-  X(stack_overflow_deep)    \
-  X(read_effective_address) \
-  X(outside_local_store) X(illegal_instruction) X(endless) X(bad_dma) X(no_wait) X(arithmetic)
+#define SC_TEST_KERNELS(X)                                                                           \
+  X(echo_arguments)                                                                                  \
+  X(remembers)                                                                                       \
+  X(stack_overflow_deep)                                                                             \
+  X(read_effective_address)                                                                          \
+  X(outside_local_store)                                                                             \
+  X(illegal_instruction) X(endless) X(bad_dma) X(no_wait) X(arithmetic) X(waits) X(pings) X(doubles) \
+      X(increments) X(locks) X(queues) X(meets)
 
 extern "C" {
 #define SC_DECLARE(name) extern const std::byte softcell_image_##name[], softcell_image_##name##_end[];

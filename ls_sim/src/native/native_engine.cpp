@@ -7,6 +7,7 @@
 #include <cstring>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "kernel_context.h"
 #include "signals.h"
@@ -65,6 +66,7 @@ class NativeEngine final : public Engine {
     std::byte* const bss = std::copy(image.bytes.begin(), image.bytes.end(), base + kEnvironmentBytes);
     std::fill(bss, base + image.sizes.end, std::byte{0});
     std::fill(base + image.sizes.end, base + dma::kLocalStoreBytes, kFiller);
+    data_as_linked_ = true;
   }
 
   RunResult run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses) override;
@@ -96,6 +98,7 @@ class NativeEngine final : public Engine {
   LocalStore& local_store_;
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
+  bool data_as_linked_ = false;  ///< nothing has run since load()
   KernelContext context_;
   std::uint32_t tag_mask_ = 0;  ///< as last written to the channel; the kernel's is in the environment
   std::mutex running_mutex_;    // guards the two below
@@ -104,10 +107,13 @@ class NativeEngine final : public Engine {
 };
 
 void NativeEngine::prepare(const EntryArguments& arguments) {
-  // The initialised data start every run as they were linked, so that no job sees what another left.
-  const std::uint32_t data_offset = image_->data_begin - kEnvironmentBytes;
-  std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
-              local_store_.base() + image_->data_begin);
+  // The initialised data start every run as they were linked, so that no job sees what another left. Right
+  // after load() they are so already, and others may have written to them since.
+  if (!std::exchange(data_as_linked_, false)) {
+    const std::uint32_t data_offset = image_->data_begin - kEnvironmentBytes;
+    std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
+                local_store_.base() + image_->data_begin);
+  }
   auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
   environment.mfc_tag_mask = tag_mask_ = 0;
   context_.entry = arena() + image_->entry;
