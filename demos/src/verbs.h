@@ -13,4 +13,9 @@ int run_scenes();
 int run_budget(const BudgetOptions& options);
 int run_bench(const BenchOptions& options);
 
+/// @return  0; 1 when an SPE failed; 3 when a checked kernel has findings.
+int run_spu_run(const SpuRunOptions& options);
+/// @return  as run_spu_run() when all seeds agree, 1 when they do not, 130 when interrupted.
+int run_spu_explore(const SpuExploreOptions& options);
+
 }  // namespace softcell::demos
