@@ -3,8 +3,10 @@
 // bytes when its schedule says so, and answers for tag groups.
 //
 //   issue() --> rules --> translation --> queue of 16 --> local store <-> main storage
-//                                            |
-//   write_tag_mask(), write_tag_update() --> read_tag_status()
+//                              |             |
+//                              |             +--> read_tag_status(), read_list_stall_status(), take_events()
+//                              |
+//                              +--> getllar, putllc, putlluc at once --> read_atomic_status()
 //
 // There is no clock: time passes where the SPU meets the MFC, at each call below, and as much of it as the
 // schedule decides.
@@ -45,13 +47,14 @@ class Mfc {
   /// Tells `observer` of every command from now on; null: nobody. It must outlive the MFC or be replaced.
   void set_observer(MfcObserver* observer) { observer_ = observer; }
 
-  /// State as after reset: empty queue and tag mask, no status request, no reservation. What is still queued is dropped, as
-  /// after a fault; call drain() at the end of a job that ended well. Random decisions from here on depend on
-  /// the schedule's seed and on `job_id`, not on the SPE. Statistics go on.
+  /// State as after reset: empty queue and tag mask, no status request, no reservation. What is still queued
+  /// is dropped, as after a fault, and its observer hears no more of it; call drain() at the end of a job
+  /// that ended well. Random decisions from here on depend on the schedule's seed and on `job_id`, not on the
+  /// SPE. Statistics go on.
   void begin_job(std::uint64_t job_id);
 
   /// Queues one DMA command (a write to MFC_Cmd). Its bytes may move at any time until its tag is waited for.
-  /// @param command  lsa and ea in bytes; size 1, 2, 4, 8 or a multiple of 16 up to 16384 bytes; tag 0..31.
+  /// @param command  lsa, ea and size in bytes, as its kind asks for: see check_command() in mfc_rules.h.
   /// @return  nothing, or the rule that the command breaks; then nothing is queued.
   /// @note    A full queue is no error: time passes until a slot is free, and the stall is counted. But the
   ///          fault list-stalled-for-ever is one, when all that is queued waits for a list that has stalled.
