@@ -27,6 +27,15 @@ bool is_foreign(std::string_view file) {
   return false;
 }
 
+/// The compilation unit of an instruction. Not by dwarf_addrdie(), which needs a table that Clang leaves out.
+bool find_unit(Dwarf* dwarf, Dwarf_Addr address, Dwarf_Die& unit) {
+  Dwarf_CU* compilation_unit = nullptr;
+  while (dwarf_get_units(dwarf, compilation_unit, &compilation_unit, nullptr, nullptr, &unit, nullptr) == 0) {
+    if (dwarf_haspc(&unit, address) > 0) return true;
+  }
+  return false;
+}
+
 /// The scope that holds an instruction and those around it, innermost first. Not lexically, as the source has
 /// them, but as the code was inlined.
 std::vector<Dwarf_Die> inlining_scopes(Dwarf* dwarf, Dwarf_Die* unit, Dwarf_Addr address) {
@@ -91,7 +100,7 @@ struct SourceLines::Reader {
 
   std::string find(Dwarf_Addr address) const {
     Dwarf_Die unit;
-    if (dwarf == nullptr || dwarf_addrdie(dwarf, address, &unit) == nullptr) return {};
+    if (dwarf == nullptr || !find_unit(dwarf, address, unit)) return {};
     const SourceLine innermost = line_of(&unit, address);
     SourceLine source = innermost;
     for (Dwarf_Die& scope : inlining_scopes(dwarf, &unit, address)) {
