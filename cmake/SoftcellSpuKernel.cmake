@@ -16,6 +16,8 @@ set(SOFTCELL_KERNEL_FLAGS
   -O2 -g -mavx2 -mfma
   # SPU arithmetic truncates at run time, so nothing may be folded in another mode or fused unasked.
   -frounding-math -fno-trapping-math -ffp-contract=off
+  # How to unwind goes to the debugger only: ls.ld leaves .eh_frame out of the image.
+  -fno-asynchronous-unwind-tables
   # The stack is measured in bytes below the stack pointer; SPU code has no red zone to rely on.
   -mno-red-zone -fomit-frame-pointer
   # No loops turned into calls of memcpy or memset: there is no C library in a local store.
@@ -54,7 +56,7 @@ function(softcell_add_spu_kernel name)
     COMMAND ${SOFTCELL_KERNEL_LINKER} -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
       --defsym softcell_stack_bytes=${arg_STACK_BYTES} --defsym softcell_budget_bytes=${arg_BUDGET_BYTES}
       --defsym softcell_is_checked=0
-      --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
+      --emit-relocs --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
       $<TARGET_OBJECTS:${name}_objects> -o ${image}
     COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DIMAGE=${image} -DKERNEL=${name}
       -DSTACK_BYTES=${arg_STACK_BYTES} -DBUDGET_BYTES=${arg_BUDGET_BYTES} -P ${SOFTCELL_CHECK_BUDGET}

@@ -79,10 +79,33 @@ Declaration read_declaration(const ElfFile& elf, std::uint64_t segment_end) {
   return declared;
 }
 
+/// True for what would have to be applied to the image wherever it is copied. All else the link has done for
+/// good.
+bool is_absolute(const Elf64_Rela& relocation) {
+  switch (ELF64_R_TYPE(relocation.r_info)) {
+    case R_X86_64_NONE:
+    case R_X86_64_PC32:
+    case R_X86_64_PLT32:
+    case R_X86_64_GOTPCREL:
+    case R_X86_64_GOTPCRELX:
+    case R_X86_64_REX_GOTPCRELX:
+      return false;
+    default:
+      return true;
+  }
+}
+
+/// The link keeps its relocations (--emit-relocs): a debugger needs those of the debug information. Those of
+/// the image itself must be ones that the link has done for good.
 void refuse_relocations(const ElfFile& elf) {
-  for (const ElfFile::Section& section : elf.sections()) {
-    const bool relocates = section.header.sh_type == SHT_RELA || section.header.sh_type == SHT_REL;
-    if (relocates && section.header.sh_size != 0)
+  for (const auto& [name, header] : elf.sections()) {
+    if ((header.sh_type != SHT_RELA && header.sh_type != SHT_REL) || header.sh_size == 0) continue;
+    const bool is_loaded = (header.sh_flags & SHF_ALLOC) != 0 || name == ".rela.dyn";
+    const bool is_of_image = header.sh_info < elf.sections().size() &&
+                             (elf.sections()[header.sh_info].header.sh_flags & SHF_ALLOC) != 0;
+    const auto relocations = elf.table<Elf64_Rela>(header.sh_offset, header.sh_size / sizeof(Elf64_Rela),
+                                                   "a table of relocations");
+    if (is_loaded || (is_of_image && std::any_of(relocations.begin(), relocations.end(), is_absolute)))
       elf.refuse("a relocation is left: an absolute pointer is stored in its static data");
   }
 }

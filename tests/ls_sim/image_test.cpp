@@ -173,6 +173,14 @@ TEST(LoadImage, RefusesARelocation) {
             "kernel image k: a relocation is left: an absolute pointer is stored in its static data");
 }
 
+TEST(LoadImage, RefusesAnAbsoluteAddressAmongTheRelocationsThatTheLinkKept) {
+  Bytes file = good_elf();
+  const auto table = read<Elf64_Shdr>(file, section_offset(file, ".rela.text"));
+  ASSERT_NE(table.sh_size, 0u);
+  change<Elf64_Rela>(file, table.sh_offset, [](Elf64_Rela& r) { r.r_info = ELF64_R_INFO(1, R_X86_64_64); });
+  EXPECT_NE(refusal(file).find("a relocation is left"), std::string::npos);
+}
+
 TEST(LoadImage, RefusesSectionsThatOverlap) {
   Bytes file = good_elf();
   change<Elf64_Shdr>(file, section_offset(file, ".bss"),
@@ -217,7 +225,7 @@ TEST(LoadImage, RefusesDeclarationsThatCannotBe) {
                                           {4, 2, "neither says checked nor unchecked"}}) {
     Bytes file = good_elf();
     const std::size_t at = read<Elf64_Shdr>(file, section_offset(file, ".softcell.kernel")).sh_offset;
-    change<std::uint32_t>(file, at + word * 4, [&](std::uint32_t& w) { w = value; });
+    change<std::uint32_t>(file, at + word * 4, [wanted = value](std::uint32_t& w) { w = wanted; });
     EXPECT_NE(refusal(file).find(says), std::string::npos) << refusal(file);
   }
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "debugger_symbols.h"
 #include "kernel_context.h"
 #include "signals.h"
 #include "softcell/ls_sim/engine.h"
@@ -59,6 +60,7 @@ class NativeEngine final : public Engine {
 
   void load(const KernelImage& image) override {
     image_ = &image;
+    debugger_symbols_.reset();
     std::byte* const base = local_store_.base();
     native::Environment environment;
     environment.gate = reinterpret_cast<std::uint64_t>(&native::gate);
@@ -66,6 +68,7 @@ class NativeEngine final : public Engine {
     std::byte* const bss = std::copy(image.bytes.begin(), image.bytes.end(), base + kEnvironmentBytes);
     std::fill(bss, base + image.sizes.end, std::byte{0});
     std::fill(base + image.sizes.end, base + dma::kLocalStoreBytes, kFiller);
+    if (debugger_wanted_) debugger_symbols_ = std::make_unique<native::DebuggerSymbols>(image, base);
     data_as_linked_ = true;
   }
 
@@ -98,7 +101,9 @@ class NativeEngine final : public Engine {
   LocalStore& local_store_;
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
-  bool data_as_linked_ = false;  ///< nothing has run since load()
+  const bool debugger_wanted_ = native::debugger_wanted();
+  std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
+  bool data_as_linked_ = false;                                ///< nothing has run since load()
   KernelContext context_;
   std::uint32_t tag_mask_ = 0;  ///< as last written to the channel; the kernel's is in the environment
   std::mutex running_mutex_;    // guards the two below
