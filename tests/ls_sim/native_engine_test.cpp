@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/source_lines.h"
 #include "test_images.h"
 
 namespace softcell::ls_sim {
@@ -65,6 +66,48 @@ TEST_F(NativeEngineTest, PassesCommandsThroughTheChannelsOfTheMfc) {
   EXPECT_EQ(first.tag, 5u);
   EXPECT_EQ(first.word, 0x40u);
   EXPECT_LT(first.lsa.value, dma::kLocalStoreBytes);
+}
+
+/// Notes every access with the place of its instruction.
+class RecordingObserver final : public AccessObserver {
+ public:
+  explicit RecordingObserver(const KernelImage& image) : lines_(image) {}
+  void on_access(const Access& access) override {
+    accesses.emplace_back(access, lines_.place_of(access.instruction));
+  }
+  std::vector<std::pair<Access, std::string>> accesses;
+
+ private:
+  SourceLines lines_;
+};
+
+TEST_F(NativeEngineTest, TellsLoadsAndStoresOfACheckedKernelWithTheirPlaces) {
+  image_ = test_image("remembers_checked");
+  ASSERT_TRUE(image_.checked);
+  engine_->load(image_);
+  RecordingObserver observer(image_);
+  ASSERT_FALSE(engine_->run({.argp = 0x1000}, port_, &observer).fault);
+  // counts.data = ++in_data: one load, two stores.
+  std::vector<std::pair<std::uint32_t, bool>> of_line;
+  for (const auto& [access, place] : observer.accesses) {
+    EXPECT_GE(access.stack_pointer.value, dma::kLocalStoreBytes - image_.sizes.stack);
+    EXPECT_EQ(access.bytes, 4u);
+    if (place == "remembers.cpp:14") of_line.emplace_back(access.lsa.value, access.is_store);
+  }
+  const std::uint32_t in_data = image_.objects.front().begin.value;
+  ASSERT_EQ(image_.objects.front().name, "in_data");
+  ASSERT_EQ(of_line.size(), 3u);
+  EXPECT_EQ(of_line[0], std::pair(in_data, false));
+  EXPECT_TRUE(of_line[1].second && of_line[2].second);
+  EXPECT_NE(of_line[1].first, of_line[2].first);
+}
+
+TEST_F(NativeEngineTest, AnUncheckedKernelReportsNothing) {
+  image_ = test_image("remembers");
+  engine_->load(image_);
+  RecordingObserver observer(image_);
+  ASSERT_FALSE(engine_->run({.argp = 0x1000}, port_, &observer).fault);
+  EXPECT_TRUE(observer.accesses.empty());
 }
 
 TEST_F(NativeEngineTest, TellsTheTagMaskBeforeTheTagUpdate) {

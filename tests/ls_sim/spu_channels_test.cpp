@@ -20,6 +20,7 @@ class NoEngine final : public Engine {
   void load(const KernelImage&) override {}
   RunResult run(const EntryArguments&, ChannelPort&, AccessObserver*) override { return {}; }
   dma::LocalStoreAddress position() const override { return {0x1234}; }
+  dma::LocalStoreAddress stack_pointer() const override { return {0x1234}; }
   void interrupt() override {}
   std::uint32_t stack_high_water() const override { return 0; }
 };

@@ -21,7 +21,8 @@ namespace softcell::ls_sim::native {
 struct Environment {
   std::uint64_t gate = 0;
   std::uint32_t mfc_lsa = 0, mfc_eah = 0, mfc_eal = 0, mfc_size = 0, mfc_tag = 0, mfc_tag_mask = 0;
-  std::uint32_t reserved[24] = {};
+  std::uint32_t access_bytes = 0, access_instruction = 0, access_stack_pointer = 0;
+  std::uint32_t reserved[21] = {};
 };
 static_assert(sizeof(Environment) == 128);
 
@@ -33,6 +34,7 @@ enum class Operation : std::uint32_t {
   kStop = 3,
   kHalt = 4,
   kTagStatus = 5,
+  kAccess = 6,
   kFault = 0xFF'FFFF
 };
 

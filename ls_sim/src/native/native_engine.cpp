@@ -76,6 +76,10 @@ class NativeEngine final : public Engine {
   dma::LocalStoreAddress position() const override {
     return {static_cast<std::uint32_t>(context_.caller - arena()) & dma::kLocalStoreMask};
   }
+  dma::LocalStoreAddress stack_pointer() const override {
+    return {static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(context_.kernel) - arena()) &
+            dma::kLocalStoreMask};
+  }
   void interrupt() override;
   std::uint32_t stack_high_water() const override;
 
@@ -85,7 +89,8 @@ class NativeEngine final : public Engine {
 
   void prepare(const EntryArguments& arguments);
   void enter_kernel();
-  RunResult serve(ChannelPort& channels);
+  RunResult serve(ChannelPort& channels, AccessObserver* accesses);
+  Access requested_access() const;
   ChannelReply serve_channel(ChannelPort& channels);
   std::optional<dma::Fault> check_stack() const;
   bool written_below_stack() const;
@@ -140,7 +145,7 @@ void NativeEngine::enter_kernel() {
 }
 
 RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels,
-                            AccessObserver* /*accesses*/) {
+                            AccessObserver* accesses) {
   const native::SignalStack signal_stack;
   prepare(arguments);
   native::current_context() = &context_;
@@ -149,7 +154,7 @@ RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channe
     runner_ = pthread_self();
     running_ = true;
   }
-  RunResult result = serve(channels);
+  RunResult result = serve(channels, accesses);
   {
     const std::scoped_lock lock(running_mutex_);
     running_ = false;
@@ -163,9 +168,11 @@ void NativeEngine::interrupt() {
   if (running_) pthread_kill(runner_, native::kInterruptSignal);
 }
 
-RunResult NativeEngine::serve(ChannelPort& channels) {
+RunResult NativeEngine::serve(ChannelPort& channels, AccessObserver* accesses) {
   for (;;) {
     enter_kernel();
+    if (context_.operation == Operation::kAccess)
+      context_.caller = arena() + requested_access().instruction.value;
     if (context_.operation == Operation::kFault) return {0, classify_trap()};
     if (auto overflow = check_stack()) return {0, std::move(overflow)};
     if (context_.interrupted != 0)
@@ -174,10 +181,24 @@ RunResult NativeEngine::serve(ChannelPort& channels) {
     if (context_.operation == Operation::kHalt) {
       return {0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
     }
+    if (context_.operation == Operation::kAccess) {
+      if (accesses != nullptr) accesses->on_access(requested_access());
+      continue;
+    }
     ChannelReply reply = serve_channel(channels);
     if (reply.fault) return {0, std::move(*reply.fault)};
     context_.reply = reply.value;
   }
+}
+
+Access NativeEngine::requested_access() const {
+  native::Environment environment;
+  std::memcpy(&environment, local_store_.base(), sizeof environment);
+  return {.lsa = {context_.value & dma::kLocalStoreMask},
+          .bytes = environment.access_bytes & dma::kLocalStoreMask,
+          .is_store = context_.channel != 0,
+          .instruction = {environment.access_instruction & dma::kLocalStoreMask},
+          .stack_pointer = {environment.access_stack_pointer & dma::kLocalStoreMask}};
 }
 
 ChannelReply NativeEngine::serve_channel(ChannelPort& channels) {
