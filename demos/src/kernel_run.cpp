@@ -46,8 +46,9 @@ KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image
   ls_sim::SpeGroup group(memory, options);
   for (int spe = 0; spe < task.spes; ++spe) {
     for (const std::uint32_t value : task.in_mbox) group.problem_state(spe).write_in_mbox(value);
-    group.start(spe, image, buffers.arguments(spe));
+    group.prepare(spe, image, buffers.arguments(spe));
   }
+  for (int spe = 0; spe < task.spes; ++spe) group.start(spe);  // which may write to the others' local stores
   KernelRun run;
   for (int spe = 0; spe < task.spes; ++spe) {
     SpeRun& one = run.spes.emplace_back();

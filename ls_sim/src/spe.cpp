@@ -39,6 +39,10 @@ RunResult Spe::run(const Run& run) {
 }
 
 RunResult Spe::execute(const Run& run) {
+  if (options_.findings != nullptr && !run.image->checked) {
+    return {0, dma::Fault{.rule = dma::Rule::kImageNotLoadable,
+                          .detail = "the image is not a checked one, so that nothing would be found"}};
+  }
   if (resident_ != run.image) load(*run.image);
   mfc_.begin_job(run.number);
   channels_.begin_run();

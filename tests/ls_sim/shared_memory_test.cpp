@@ -105,6 +105,22 @@ INSTANTIATE_TEST_SUITE_P(Schedules, SharedMemory,
                                          Setting{"random:3", Interleaving::kTurns},
                                          Setting{"random:4", Interleaving::kTurns}));
 
+TEST(SharedCounter, SixSpesAndThePpuCountToAMillion) {
+  constexpr std::uint32_t kCounters = 7, kEach = 1'000'000 / kCounters + 1;
+  dma::AddressSpace memory;
+  const dma::Buffer<Line> line(memory, "counter", 1);
+  const KernelImage image = test_image("increments");
+  SpeGroup group(memory, {.spes = 6, .deadline = std::chrono::minutes(5)});
+  for (int spe = 0; spe < 6; ++spe) group.start(spe, image, {.argp = line.ea().value, .envp = kEach});
+  dma::Atomics ppu(memory);
+  for (std::uint32_t i = 0; i < kEach; ++i) ppu.fetch_add<std::uint32_t>(line.ea(), 1);
+  for (int spe = 0; spe < 6; ++spe) {
+    const RunResult result = group.wait(spe);
+    EXPECT_FALSE(result.fault) << result.fault->message();
+  }
+  EXPECT_EQ(line.span()[0][0], kCounters * kEach);
+}
+
 // ---- turns
 
 /// What six SPEs that fight for one counter have done.

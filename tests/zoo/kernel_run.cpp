@@ -70,9 +70,10 @@ Observation run(const KernelCard& card, Flavour flavour, const dma::Schedule& sc
     for (int spe = 0; spe < card.spes; ++spe) {
       const dma::EffectiveAddress envp =
           card.envp == "next-spe" ? spes.problem_state((spe + 1) % card.spes).local_store_ea() : other.ea();
-      spes.start(spe, image,
-                 {.spe_id = static_cast<std::uint64_t>(spe), .argp = data.ea().value, .envp = envp.value});
+      spes.prepare(spe, image,
+                   {.spe_id = static_cast<std::uint64_t>(spe), .argp = data.ea().value, .envp = envp.value});
     }
+    for (int spe = 0; spe < card.spes; ++spe) spes.start(spe);
     if (!card.ppu.empty()) act_as_ppu(card.ppu, spes.problem_state(0));
   }
   for (int spe = 0; spe < card.spes; ++spe) observation.results.push_back(spes.wait(spe));

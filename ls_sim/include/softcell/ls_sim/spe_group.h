@@ -81,8 +81,9 @@ class SpeGroup {
 
   int spes() const;
 
-  /// Loads the image, so that the PPU side may write to the local store before the run begins. Mailboxes and
-  /// signal registers stay as they are. The image must outlive the run.
+  /// Loads the image, so that the PPU side and other SPEs may write to the local store before the run begins:
+  /// SPEs that talk to each other are all prepared before the first of them starts. Mailboxes and signal
+  /// registers stay as they are. The image must outlive the run.
   /// @throws std::logic_error  the SPE runs.
   void prepare(int spe, const KernelImage& image, const EntryArguments& arguments);
 
