@@ -217,7 +217,8 @@ TEST_F(ReservationsStress, ABarrierLetsNobodyRunAhead) {
   EXPECT_EQ(wrong, 0);
 }
 
-// The line in the middle is reserved and stored whole by some, while others copy all five.
+// The line in the middle is reserved and stored whole by some, while others copy all five, until both have
+// happened often enough.
 class LongCopy : public ReservationsStress {
  protected:
   static constexpr std::uint32_t kReserved = 2 * kWordsPerLine;
@@ -250,7 +251,7 @@ TEST_F(LongCopy, ReadsNoHalfStoredLine) {
     if (number < 2) return store_whole_lines(running, static_cast<std::uint32_t>(number) << 31);
     SpeLike reader(storage_, space_);
     alignas(kLineBytes) std::array<std::uint32_t, kWords> words;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRounds || stored_ == 0; ++round) {
       reader.get(0, words.data(), kWords);
       std::copy_n(words.begin() + kReserved, kWordsPerLine, reader.line.begin());
       if (!is_uniform(reader.line)) ++torn_;
@@ -258,7 +259,6 @@ TEST_F(LongCopy, ReadsNoHalfStoredLine) {
     --running;
   });
   EXPECT_EQ(torn_, 0);
-  EXPECT_GT(stored_, 0);
 }
 
 TEST_F(LongCopy, WritesNoHalfLineUnderAReservation) {
@@ -267,14 +267,13 @@ TEST_F(LongCopy, WritesNoHalfLineUnderAReservation) {
     if (number < 3) return store_whole_lines(running, static_cast<std::uint32_t>(number) << 30);
     SpeLike writer(storage_, space_);
     alignas(kLineBytes) std::array<std::uint32_t, kWords> words;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRounds || stored_ == 0; ++round) {
       words.fill(0xC000'0000 + static_cast<std::uint32_t>(round));
       writer.put(0, words.data(), kWords);
     }
     --running;
   });
   EXPECT_EQ(torn_, 0);
-  EXPECT_GT(stored_, 0);
 }
 
 // Between a getllar and a putllc that stores, a long put must not slip in: what it wrote would be lost.
@@ -331,9 +330,16 @@ TEST_F(ReservationsStress, EveryLossIsToldOnceAndByThen) {
   EXPECT_EQ(counter.losses, kRounds);
 }
 
+// The listener takes its time, so that whoever does not wait for it is ahead of it.
 TEST_F(ReservationsStress, NothingIsHeardOfAReservationGivenUp) {
-  constexpr int kRounds = 20'000;
-  LossCounter counter;
+  struct SlowCounter : LossCounter {
+    void on_reservation_lost() override {
+      std::this_thread::yield();
+      LossCounter::on_reservation_lost();
+    }
+  };
+  constexpr int kRounds = 500;
+  SlowCounter counter;
   std::atomic<bool> running{true};
   int late = 0;
   run_threads(2, [&](int number) {
@@ -341,9 +347,10 @@ TEST_F(ReservationsStress, NothingIsHeardOfAReservationGivenUp) {
       SpeLike spe(storage_, space_, &counter);
       for (int round = 0; round < kRounds; ++round) {
         spe.getllar(0);
+        std::this_thread::yield();
         spe.getllar(kWordsPerLine);  // which nobody writes
         const int before = counter.losses.load();
-        spe.getllar(kWordsPerLine);
+        std::this_thread::yield();
         if (counter.losses.load() != before) ++late;
       }
       running = false;
