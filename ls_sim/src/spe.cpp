@@ -23,6 +23,13 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
                  .statistics = statistics_,
                  .trace = trace_}) {
   mfc_.set_observer(trace_);
+  if (options_.findings != nullptr) {
+    checker_ = std::make_unique<Checker>(Checker::Surroundings{.spe = number_,
+                                                               .local_store = local_store_.bytes(),
+                                                               .channels = channels_,
+                                                               .engine = *engine_,
+                                                               .findings = *options_.findings});
+  }
 }
 
 RunResult Spe::run(const Run& run) {
@@ -46,9 +53,17 @@ RunResult Spe::execute(const Run& run) {
   if (resident_ != run.image) load(*run.image);
   mfc_.begin_job(run.number);
   channels_.begin_run();
-  RunResult result = engine_->run(run.arguments, channels_);
+  RunResult result = run_engine(run);
   if (!result.fault) result.fault = mfc_.drain();
   if (result.fault) result.fault->place = SourceLines(*run.image).place_of(position_of(*result.fault));
+  return result;
+}
+
+RunResult Spe::run_engine(const Run& run) {
+  if (checker_ == nullptr) return engine_->run(run.arguments, channels_);
+  checker_->begin_run(*run.image);
+  RunResult result = engine_->run(run.arguments, *checker_, checker_.get());
+  if (!result.fault) checker_->end_run();
   return result;
 }
 
@@ -61,6 +76,7 @@ dma::LocalStoreAddress Spe::position_of(const dma::Fault& fault) const {
 
 void Spe::load(const KernelImage& image) {
   engine_->load(image);
+  if (checker_ != nullptr) checker_->on_load();
   resident_ = &image;
   ++statistics_.image_loads;
 }
@@ -88,7 +104,9 @@ void Spe::interrupt() {
   engine_->interrupt();
 }
 
-void Spe::on_external_write(dma::LocalStoreAddress, std::uint32_t) {}
+void Spe::on_external_write(dma::LocalStoreAddress lsa, std::uint32_t bytes) {
+  if (checker_ != nullptr) checker_->on_external_write(lsa, bytes);
+}
 
 void Spe::on_register_write(dma::SpeRegister which, std::uint32_t value) {
   const SpeMonitor::Lock lock = monitor_.lock();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 
+#include "checker.h"
 #include "softcell/dma/local_store_port.h"
 #include "softcell/dma/mfc.h"
 #include "softcell/dma/reservations.h"
@@ -59,6 +60,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
   void on_reservation_lost() override;
 
   RunResult execute(const Run& run);
+  RunResult run_engine(const Run& run);
   dma::LocalStoreAddress position_of(const dma::Fault& fault) const;
   void account(const Run& run, const RunResult& result, SpeMonitor::HostTime end);
 
@@ -72,6 +74,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
   std::unique_ptr<Engine> engine_;
   SpeStatistics statistics_;
   SpuChannels channels_;
+  std::unique_ptr<Checker> checker_;  ///< null: nothing is checked
   const KernelImage* resident_ = nullptr;
 };
 
