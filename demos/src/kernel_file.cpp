@@ -1,9 +1,10 @@
 #include "kernel_file.h"
 
+#include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <stdexcept>
 
+#include "kernel_samples.h"
 #include "read_file.h"
 #include "softcell/spu_kernels/images.h"
 
@@ -42,11 +43,9 @@ std::string kernel_name(const std::filesystem::path& file) {
   return name;
 }
 
-std::optional<std::span<const std::byte>> built_in(std::string_view name) {
-  for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) {
-    if (file.name == name) return file.elf;
-  }
-  return std::nullopt;
+bool is_built_in(std::string_view name) {
+  const auto files = spu_kernels::image_files();
+  return std::any_of(files.begin(), files.end(), [&](const auto& file) { return file.name == name; });
 }
 
 std::string built_in_names() {
@@ -63,15 +62,9 @@ ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
     const std::filesystem::path file = flavour_of(image, checked);
     return ls_sim::load_image(kernel_name(file), read_file(file));
   }
-  const auto elf = built_in(image);
-  if (!elf) {
-    throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
-                             built_in_names() + ")");
-  }
-  ls_sim::KernelImage kernel = ls_sim::load_image(image, *elf);
-  if (checked && !kernel.checked)
-    throw std::runtime_error("there is no checked flavour of softcell's kernel " + image);
-  return kernel;
+  if (is_built_in(image)) return load_kernel(image, checked);
+  throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
+                           built_in_names() + ")");
 }
 
 }  // namespace softcell::demos

@@ -158,24 +158,33 @@ void print_statistics(const ls_sim::KernelImage& image, const KernelRun& run) {
   print_local_store(image, run);
 }
 
-void print_problems(const ls_sim::KernelImage& image, const KernelRun& run) {
-  for (const ls_sim::Finding& finding : run.findings) {
+void print_findings(std::span<const ls_sim::Finding> findings) {
+  for (const ls_sim::Finding& finding : findings) {
     fmt::print(stderr, "softcell: {}{}\n    {}\n", finding.fault.message(),
                finding.count == 1 ? "" : fmt::format(" ({} times)", finding.count),
                dma::explanation(finding.fault.rule));
   }
+}
+
+void print_problems(const ls_sim::KernelImage& image, const KernelRun& run) {
+  print_findings(run.findings);
   for (const std::string& failure : run.failures(image)) fmt::print(stderr, "softcell: {}\n", failure);
+}
+
+ordered_json to_json(std::span<const ls_sim::Finding> findings) {
+  ordered_json document = ordered_json::array();
+  for (const ls_sim::Finding& finding : findings) {
+    document.push_back(to_json(finding.fault));
+    document.back()["count"] = finding.count;
+  }
+  return document;
 }
 
 ordered_json to_json(const ls_sim::KernelImage& image, const KernelRun& run) {
   const ls_sim::ImageSizes& s = image.sizes;
-  ordered_json spes = ordered_json::array(), findings = ordered_json::array();
+  ordered_json spes = ordered_json::array();
   for (std::size_t number = 0; number < run.spes.size(); ++number)
     spes.push_back(to_json(static_cast<int>(number), run.spes[number]));
-  for (const ls_sim::Finding& finding : run.findings) {
-    findings.push_back(to_json(finding.fault));
-    findings.back()["count"] = finding.count;
-  }
   return {{"kernel", image.name},
           {"checked", image.checked},
           {"exit_status", exit_status(image, run)},
@@ -190,7 +199,7 @@ ordered_json to_json(const ls_sim::KernelImage& image, const KernelRun& run) {
             {"budget", s.budget},
             {"free", dma::kLocalStoreBytes - s.total()}}},
           {"spes", std::move(spes)},
-          {"findings", std::move(findings)}};
+          {"findings", to_json(std::span(run.findings))}};
 }
 
 int exit_status(const ls_sim::KernelImage& image, const KernelRun& run) {

@@ -2,6 +2,7 @@
 // What a run of a kernel was like: for the reader, and for other programs.
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 
 #include "kernel_run.h"
 
@@ -10,11 +11,16 @@ namespace softcell::demos {
 /// Prints the DMA traffic by kind, what each SPE did, and the use of the local store.
 void print_statistics(const ls_sim::KernelImage& image, const KernelRun& run);
 
-/// Prints findings and failures on standard error, a line each, a finding with its rule's explanation below
-/// it.
+/// Prints findings on standard error, a line each, with the rule's explanation below it.
+void print_findings(std::span<const ls_sim::Finding> findings);
+
+/// Prints findings, and a line for each failure.
 void print_problems(const ls_sim::KernelImage& image, const KernelRun& run);
 
-/// All of it.
+/// Findings as an array of objects with rule, kernel, place, message, explanation and count.
+nlohmann::ordered_json to_json(std::span<const ls_sim::Finding> findings);
+
+/// All of a run.
 nlohmann::ordered_json to_json(const ls_sim::KernelImage& image, const KernelRun& run);
 
 /// 1 when an SPE failed, else 3 when there are findings, else 0.

@@ -19,6 +19,7 @@ using namespace softcell::demos;
 constexpr int kMaxFrames = 1'000'000;
 constexpr int kMinPixels = 16, kMaxPixels = 8192;
 constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
+constexpr const char* kTraceHelp = "Write a trace of what happened when; `softcell report` shows it";
 constexpr const char* kDmaHelp = "When transfers finish: eager, lazy or random:SEED (default: eager)";
 
 PictureSize parse_size(const std::string& text) {
@@ -90,6 +91,9 @@ class CommandLine {
     d->add_option("--size", size_, "Picture size, WIDTHxHEIGHT (default: 1280x720)");
     d->add_option("--spes", demo_.spes, "SPEs at work, 1 to 6 (default: 6)")->check(CLI::Range(1, 6));
     d->add_option("--dma", schedule_, kDmaHelp);
+    d->add_flag("--checked", demo_.checked,
+                "Run the instrumented flavour of the kernels; findings end with status 3");
+    d->add_option("--trace", demo_.trace, kTraceHelp);
     d->add_option("--json", demo_.json, "Write statistics to this file");
     d->add_flag("--lattice", demo_.lattice, "Draw particles and links instead of meshes");
     d->callback([this] { chosen_ = [this] { return run_demo_3d(demo_); }; });
@@ -114,7 +118,7 @@ class CommandLine {
         "--clock", clock_,
         "What time is to the kernel: host (default), or simulated, where it advances with each channel "
         "operation and SPEs take turns, so that a run is the same every time");
-    r->add_option("--trace", run_.trace, "Write a trace of what happened when; `softcell report` shows it");
+    r->add_option("--trace", run_.trace, kTraceHelp);
     r->add_option("--json", run_.json, "Write statistics, findings and faults to this file as well");
     r->callback([this] {
       chosen_ = [this] {

@@ -29,6 +29,8 @@ struct Demo3dOptions {
   PictureSize size;
   int spes = 6;
   dma::Schedule schedule{};
+  bool checked = false;  ///< run instrumented kernels
+  std::optional<std::filesystem::path> trace;
   bool lattice = false;  ///< draw particles and links instead of the skinned meshes
 };
 

@@ -2,20 +2,26 @@
 
 #include <array>
 
+#define SC_DECLARE(kernel)                                                           \
+  extern const std::byte softcell_image_##kernel[], softcell_image_##kernel##_end[]; \
+  extern const std::byte softcell_image_##kernel##_checked[], softcell_image_##kernel##_checked_end[];
+
 extern "C" {
-extern const std::byte softcell_image_skin[];
-extern const std::byte softcell_image_skin_end[];
-extern const std::byte softcell_image_transfers[];
-extern const std::byte softcell_image_transfers_end[];
+SC_DECLARE(skin)
+SC_DECLARE(transfers)
 }
+#undef SC_DECLARE
 
 namespace softcell::spu_kernels {
 
 std::span<const ImageFile> image_files() {
-  static const std::array<ImageFile, 2> files{{
-      {"skin", {softcell_image_skin, softcell_image_skin_end}},
-      {"transfers", {softcell_image_transfers, softcell_image_transfers_end}},
-  }};
+#define SC_FILE(kernel)                                                                        \
+  ImageFile {                                                                                  \
+    .name = #kernel, .elf = {softcell_image_##kernel, softcell_image_##kernel##_end},          \
+    .checked_elf = {softcell_image_##kernel##_checked, softcell_image_##kernel##_checked_end}, \
+  }
+  static const std::array files{SC_FILE(skin), SC_FILE(transfers)};
+#undef SC_FILE
   return files;
 }
 
