@@ -32,9 +32,11 @@ void Checker::begin_run(const KernelImage& image) {
     lines_ = std::make_unique<SourceLines>(image);
     image_ = &image;
     objects_.emplace(image);
+    padding_ = padding_of(image);
   }
   written_.forget_the_last_program();
   written_.mark(kEnvironmentBytes, static_cast<std::uint32_t>(image.bytes.size()));
+  for (const PaddingRange& gap : padding_) written_.mark(gap.lsa, gap.bytes);
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
   is_waiting_ = false;
@@ -136,7 +138,7 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
   } else if (is_get && objects_->in_code(range.lsa)) {
     report(Rule::kWriteToCode, here, "its destination is " + where, command);
   } else if (!is_get) {
-    // By quadwords: what is shorter is padding. On the stack a whole variable may be.
+    // By quadwords, as the SPU stores. Where variables on the stack have their padding is not known.
     const std::uint32_t step = objects_->in_stack(range.lsa) ? range.bytes : dma::kQuadwordBytes;
     for (std::uint32_t done = 0; done < range.bytes; done += step) {
       if (written_.any(range.lsa + done, std::min(step, range.bytes - done))) continue;

@@ -11,9 +11,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "commands_in_flight.h"
 #include "object_map.h"
+#include "object_padding.h"
 #include "softcell/ls_sim/channels.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/findings.h"
@@ -85,6 +87,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   const KernelImage* image_ = nullptr;
   std::unique_ptr<SourceLines> lines_;  ///< of image_
   std::optional<ObjectMap> objects_;
+  std::vector<PaddingRange> padding_;
 
   WrittenBytes written_;
   CommandsInFlight in_flight_;

@@ -46,6 +46,8 @@ TEST_P(CheckedKernels, BssTakenForZeroAndPutUnwrittenAreFound) {
             (Texts{"load-never-written remembers.cpp:15 x1", "put-never-written remembers.cpp:16 x1"}));
 }
 
+TEST_P(CheckedKernels, PaddingNeedsNotBeWritten) { EXPECT_EQ(findings_of("padded", GetParam()), Texts{}); }
+
 /// The checker alone, told of accesses and commands as an engine would. Positions are the addresses of the
 /// entry and of what follows it.
 class CheckerTest : public testing::Test {
