@@ -58,6 +58,7 @@ class CommandLine {
     add_spu();
     add_scenes();
     add_bench();
+    add_report();
   }
 
   int run(int argc, char** argv) {
@@ -68,7 +69,7 @@ class CommandLine {
       throw UsageError(error.what());
     }
     if (!chosen_)
-      throw UsageError("say what to do: demo 3d, spu run, spu explore, spu budget, scenes or bench");
+      throw UsageError("say what to do: demo 3d, spu run, spu explore, spu budget, scenes, bench or report");
     if (!size_.empty()) demo_.size = parse_size(size_);
     demo_.schedule = parse_dma(schedule_);
     return chosen_();
@@ -159,6 +160,13 @@ class CommandLine {
     b->callback([this] { chosen_ = [this] { return run_bench(bench_); }; });
   }
 
+  void add_report() {
+    CLI::App* r = app_.add_subcommand("report", "Make a page to look at of what --trace recorded");
+    r->add_option("trace", report_.trace, "The file that --trace wrote")->required();
+    r->add_option("--out", report_.out, "HTML page to write; it opens offline")->required();
+    r->callback([this] { chosen_ = [this] { return run_report(report_); }; });
+  }
+
   CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
                 "softcell"};
   Demo3dOptions demo_;
@@ -167,6 +175,7 @@ class CommandLine {
   SpuExploreOptions explore_;
   BudgetOptions budget_;
   BenchOptions bench_;
+  ReportOptions report_;
   std::string size_;
   std::string schedule_ = "eager";
   std::string clock_ = "host";

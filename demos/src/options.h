@@ -59,4 +59,9 @@ struct BenchOptions {
   std::optional<std::filesystem::path> json;
 };
 
+struct ReportOptions {
+  std::filesystem::path trace;
+  std::filesystem::path out;
+};
+
 }  // namespace softcell::demos

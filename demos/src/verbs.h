@@ -12,6 +12,7 @@ int run_demo_3d(const Demo3dOptions& options);
 int run_scenes();
 int run_budget(const BudgetOptions& options);
 int run_bench(const BenchOptions& options);
+int run_report(const ReportOptions& options);
 
 /// @return  0; 1 when an SPE failed; 3 when a checked kernel has findings.
 int run_spu_run(const SpuRunOptions& options);

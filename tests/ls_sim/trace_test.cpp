@@ -297,7 +297,7 @@ TEST(JsonText, MakesValidUtf8OfAnyBytes) {
     for (const int second : {0x00, 0x41, 0x80, 0x8F, 0x90, 0x9F, 0xA0, 0xBF, 0xC0, 0xFF}) {
       const std::string bytes{static_cast<char>(first), static_cast<char>(second), '\x80', '\x80'};
       for (std::size_t length = 1; length <= bytes.size(); ++length) {
-        EXPECT_NO_THROW(json::parse(JsonText().string(bytes.substr(0, length)).text()))
+        EXPECT_TRUE(json::accept(JsonText().string(bytes.substr(0, length)).text()))
             << first << " " << second;
       }
     }
