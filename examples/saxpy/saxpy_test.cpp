@@ -9,7 +9,7 @@
 
 #include "saxpy_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ls_sim/spe_group.h"
 
 // Made by softcell_embed_spu_images.
 extern "C" const std::byte softcell_image_saxpy[], softcell_image_saxpy_end[];
@@ -24,8 +24,9 @@ constexpr float kA = 3;
 float x_at(std::size_t i) { return static_cast<float>(i % 100); }
 float y_at(std::size_t i) { return static_cast<float>(i % 7); }
 
-/// Runs the image on one SPE. @return y, or nothing when the job failed.
-std::vector<float> run(const ls_sim::KernelImage& image, std::size_t count, const std::string& schedule) {
+/// Runs the image on SPEs that share the work. @return y.
+std::vector<float> run(const ls_sim::KernelImage& image, std::size_t count, const std::string& schedule,
+                       int spes = 1) {
   dma::AddressSpace memory;
   dma::Buffer<float> x(memory, "x", count), y(memory, "y", count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -33,14 +34,21 @@ std::vector<float> run(const ls_sim::KernelImage& image, std::size_t count, cons
     y[i] = y_at(i);
   }
   dma::Buffer<SaxpyJob> job(memory, "job", 1);
-  job[0] = {std::bit_cast<std::uint32_t>(kA), x.ea().value, y.ea().value, count, 1, 0};
+  job[0] = {std::bit_cast<std::uint32_t>(kA),
+            x.ea().value,
+            y.ea().value,
+            count,
+            static_cast<std::uint64_t>(spes),
+            0};
 
-  ls_sim::SpePool spes(memory, {.spes = 1, .schedule = dma::parse_schedule(schedule)});
-  const ls_sim::Job one{&image, job.ea(), {}};
-  ls_sim::JobBatch batch;
-  spes.submit(batch, {&one, 1});
-  batch.wait();
-  for (const auto& failure : batch.failures()) ADD_FAILURE() << failure.message;
+  ls_sim::SpeGroup group(memory, {.spes = spes, .schedule = dma::parse_schedule(schedule)});
+  for (int spe = 0; spe < spes; ++spe)
+    group.start(spe, image, {.spe_id = static_cast<std::uint64_t>(spe), .argp = job.ea().value});
+  for (int spe = 0; spe < spes; ++spe) {
+    const ls_sim::RunResult result = group.wait(spe);
+    EXPECT_FALSE(result.fault) << result.fault->message();
+    EXPECT_EQ(result.status(), kSaxpyDone);
+  }
   return {y.span().begin(), y.span().end()};
 }
 
@@ -56,6 +64,12 @@ TEST_P(Saxpy, AddsForCountsAroundItsBlockSize) {
   const auto image = ls_sim::load_image("saxpy", {softcell_image_saxpy, softcell_image_saxpy_end});
   for (const std::size_t count : {4u, 2044u, 2048u, 2052u, 4096u, 10'000u})
     EXPECT_EQ(run(image, count, GetParam()), expected(count)) << count;
+}
+
+TEST_P(Saxpy, GivesTheSameOnAnyNumberOfSpes) {
+  const auto image = ls_sim::load_image("saxpy", {softcell_image_saxpy, softcell_image_saxpy_end});
+  for (int spes = 1; spes <= 6; ++spes)
+    EXPECT_EQ(run(image, 20'000, GetParam(), spes), expected(20'000)) << spes << " SPEs";
 }
 
 INSTANTIATE_TEST_SUITE_P(Schedules, Saxpy, testing::Values("eager", "lazy", "random:1", "random:2"));

@@ -37,6 +37,17 @@ std::vector<float> read_floats(const std::string& path) {
   return values;
 }
 
+/// The number of the first line of a file that holds some text.
+std::string line_of(const std::string& text, const std::string& path) {
+  std::ifstream file(path);
+  int number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    if (line.find(text) != std::string::npos) return std::to_string(number);
+  }
+  return "none";
+}
+
 bool exists(const std::string& path) { return std::filesystem::exists(path); }
 
 /// A folder with x.bin and y.bin, and the options for y = 2 x + y on them.
@@ -181,6 +192,39 @@ TEST_F(SpuCommand, NothingHangs) {
   const CommandResult endless = run_softcell("spu run " + kTalk + " --in-mbox 5 --deadline 0.2");
   EXPECT_EQ(endless.status, 1);
   EXPECT_NE(endless.output.find("deadline-exceeded"), std::string::npos) << endless.output;
+}
+
+TEST_F(SpuCommand, CheckedHasNothingToSayAboutACorrectKernel) {
+  for (const char* schedule : {"eager", "lazy", "random:3"}) {
+    make_inputs(kCount);
+    const CommandResult run =
+        run_softcell("spu run " + kSaxpy + saxpy_options(2) + "--checked --dma " + schedule);
+    ASSERT_EQ(run.status, 0) << run.output;
+    expect_result();
+  }
+}
+
+TEST_F(SpuCommand, CheckedNamesTheLineThatDoesNotWait) {
+  make_inputs(1024);
+  const std::string line = line_of("too early", SOFTCELL_SAXPY_NO_WAIT_SOURCE);
+  const CommandResult run =
+      run_softcell("spu run " + kNoWait + saxpy_options() + "--checked --json " + (folder_ / "s.json"));
+  EXPECT_EQ(run.status, 3) << run.output;
+  EXPECT_NE(run.output.find("saxpy_no_wait.cpp:" + line + ": load-in-flight"), std::string::npos)
+      << run.output;
+  EXPECT_EQ(read_floats(folder_ / "y.bin")[1], 1.f) << "a run with findings writes no buffers";
+  const auto findings = read_json(folder_ / "s.json")["findings"];
+  ASSERT_FALSE(findings.empty());
+  EXPECT_EQ(findings[0]["rule"], "load-in-flight");
+  EXPECT_EQ(findings[0]["place"], "saxpy_no_wait.cpp:" + line);
+  EXPECT_GT(findings[0]["count"], 1);
+}
+
+TEST_F(SpuCommand, CheckedNeedsTheNeighbourFile) {
+  std::filesystem::copy_file(kSaxpy, folder_ / "alone.spu.elf");
+  const CommandResult run = run_softcell("spu run --checked " + (folder_ / "alone.spu.elf"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("alone.checked.spu.elf does not exist"), std::string::npos) << run.output;
 }
 
 TEST_F(SpuCommand, ExploreIsContentWithACorrectKernel) {
