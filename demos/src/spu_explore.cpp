@@ -71,8 +71,8 @@ class Explorer {
   }
 
   void report() const {
+    print_problems(image_, first_run_);
     if (differences_.empty()) {
-      print_problems(image_, first_run_);
       fmt::print("kernel {}: the same outcome under {} seed{}{}\n", image_.name, tried_,
                  tried_ == 1 ? "" : "s", exit_status() == 0 ? "" : ", and it is not a good one");
       return;

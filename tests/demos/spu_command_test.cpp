@@ -265,6 +265,14 @@ TEST_F(SpuCommand, ExploreFindsAKernelThatDoesNotWaitAndSaysHowToSeeItAgain) {
   EXPECT_NE(std::memcmp(&results[0][first], &results[1][first], sizeof(float)), 0);
 }
 
+TEST_F(SpuCommand, ExploreOfACheckedKernelNamesTheReasonToo) {
+  make_inputs(1024);
+  const CommandResult run = run_softcell("spu explore --checked " + kNoWait + saxpy_options());
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("buffer y, byte "), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("load-in-flight"), std::string::npos) << run.output;
+}
+
 TEST_F(SpuCommand, ExploreReportsAFaultThatEverySeedHas) {
   const CommandResult run = run_softcell(
       "spu explore " + kTalk + " --in-mbox 2 --seeds 3 --in x=" + (folder_ / "x.bin") + " --arg @x");
