@@ -74,7 +74,7 @@ void write(std::ostream& out) {
   for (const dma::Rule rule : dma::kAllRules) {
     bool headed = false;
     for (const KernelCard& card : cards) {
-      if (card.rule != dma::name(rule) || !card.runs_plain()) continue;
+      if (card.rule != dma::name(rule)) continue;
       if (!headed) {
         out << "\n## " << dma::name(rule) << "\n\n"
             << "**" << word_for(dma::evidence(rule)) << ".** " << dma::explanation(rule) << "\n\n"

@@ -25,7 +25,7 @@ std::string name_of(const ::testing::TestParamInfo<KernelCard>& info) { return i
 
 template <class Body>
 void for_each_run(const KernelCard& card, Body body) {
-  for (const Flavour flavour : {Flavour::kPlain}) {  // the checked ones when their images are built
+  for (const Flavour flavour : {Flavour::kPlain, Flavour::kChecked}) {
     if (flavour == Flavour::kPlain ? !card.runs_plain() : !card.runs_checked()) continue;
     for (const char* schedule : {"eager", "lazy", "random:1", "random:2"}) {
       SCOPED_TRACE(std::string(flavour == Flavour::kPlain ? "plain, " : "checked, ") + schedule);

@@ -3,7 +3,7 @@
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 
-static const volatile uint32_t table[4] = {1, 2, 3, 4};
+static const uint32_t table[4] = {1, 2, 3, 4};
 static volatile uint32_t copy[4];
 
 int main(uint64_t, uint64_t, uint64_t) {
