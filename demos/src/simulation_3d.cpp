@@ -63,7 +63,6 @@ struct Simulation3d::State {
         skin(load_kernel("skin", options.findings != nullptr)),
         pool(memory, {.spes = options.spes,
                       .schedule = options.schedule,
-                      .measure_stack = options.trace != nullptr,
                       .findings = options.findings,
                       .trace = options.trace}),
         orchestrator(memory, pool, skin) {
