@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "softcell/ls_sim/trace.h"
+
 namespace softcell::ls_sim {
 namespace {
 
@@ -254,12 +256,14 @@ void Checker::end_run() {
 
 void Checker::report(Rule rule, Address place, std::string detail,
                      const std::optional<dma::MfcCommand>& command) {
-  to_.findings.add(dma::Fault{.rule = rule,
-                              .spe = to_.spe,
-                              .kernel = image_->name,
-                              .place = place_of(place),
-                              .command = command,
-                              .detail = std::move(detail)});
+  const dma::Fault finding{.rule = rule,
+                           .spe = to_.spe,
+                           .kernel = image_->name,
+                           .place = place_of(place),
+                           .command = command,
+                           .detail = std::move(detail)};
+  to_.findings.add(finding);
+  if (to_.trace != nullptr) to_.trace->on_finding(finding, trace_now());
 }
 
 std::string Checker::describe(const Access& access) const {

@@ -24,6 +24,8 @@
 
 namespace softcell::ls_sim {
 
+class SpeTrace;
+
 /// One for each SPE. Used by the thread that runs the SPE, except for on_external_write().
 class Checker final : public ChannelPort, public AccessObserver {
  public:
@@ -34,6 +36,7 @@ class Checker final : public ChannelPort, public AccessObserver {
     ChannelPort& channels;
     const Engine& engine;  ///< knows where the kernel is
     Findings& findings;
+    SpeTrace* trace = nullptr;  ///< told of each occurrence; null: nobody
   };
 
   explicit Checker(const Surroundings& surroundings) : to_(surroundings) {}

@@ -28,7 +28,8 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
                                                                .local_store = local_store_.bytes(),
                                                                .channels = channels_,
                                                                .engine = *engine_,
-                                                               .findings = *options_.findings});
+                                                               .findings = *options_.findings,
+                                                               .trace = trace_});
   }
 }
 
@@ -96,6 +97,7 @@ void Spe::account(const Run& run, const RunResult& result, SpeMonitor::HostTime 
   const bool failed = !result.ended_normally() || result.status() != 0;
   trace_->on_job(*run.image, run.number, run.begin.time_since_epoch().count(), end.time_since_epoch().count(),
                  failed);
+  if (result.fault) trace_->on_finding(*result.fault, end.time_since_epoch().count());
   if (options_.measure_stack) trace_->on_stack_used(*run.image, stack);
 }
 

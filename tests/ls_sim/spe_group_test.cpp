@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "softcell/dma/buffer.h"
@@ -385,6 +388,22 @@ TEST_F(SpeGroupTest, AFaultNamesSpeKernelAndPlace) {
   EXPECT_EQ(result.fault->spe, 1);
   EXPECT_EQ(result.fault->kernel, "bad_dma");
   EXPECT_EQ(result.fault->place.find("bad_dma.cpp:"), 0u) << result.fault->message();
+}
+
+TEST_F(SpeGroupTest, TheTraceHasTheRunItsWaitAndItsFault) {
+  Trace trace(1);
+  {
+    SpeGroup group(memory_, {.spes = 1, .trace = &trace});
+    expect_deadlock(group, {{.argp = kInMbox}}, {});
+  }
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "spe_group_test.trace.json";
+  trace.write(file);
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::filesystem::remove(file);
+  for (const char* part : {"waits", "SPU_RdInMbox", "deadlock"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
 }
 
 }  // namespace
