@@ -85,6 +85,11 @@ class NativeEngine final : public Engine {
 
  private:
   std::uintptr_t arena() const { return reinterpret_cast<std::uintptr_t>(local_store_.base()); }
+  /// Read field by field: a copy of it all in wide pieces would wait for the kernel's narrow stores to leave
+  /// the processor's store queue, which costs as much as the rest of a command.
+  const native::Environment& environment() const {
+    return *reinterpret_cast<const native::Environment*>(local_store_.base());
+  }
   std::uint32_t stack_limit() const { return dma::kLocalStoreBytes - image_->sizes.stack; }
 
   void prepare(const EntryArguments& arguments);
@@ -192,8 +197,7 @@ RunResult NativeEngine::serve(ChannelPort& channels, AccessObserver* accesses) {
 }
 
 Access NativeEngine::requested_access() const {
-  native::Environment environment;
-  std::memcpy(&environment, local_store_.base(), sizeof environment);
+  const native::Environment& environment = this->environment();
   return {.lsa = {context_.value & dma::kLocalStoreMask},
           .bytes = environment.access_bytes & dma::kLocalStoreMask,
           .is_store = context_.channel != 0,
@@ -202,8 +206,7 @@ Access NativeEngine::requested_access() const {
 }
 
 ChannelReply NativeEngine::serve_channel(ChannelPort& channels) {
-  native::Environment environment;
-  std::memcpy(&environment, local_store_.base(), sizeof environment);
+  const native::Environment& environment = this->environment();
   if (context_.operation == Operation::kWrite && context_.channel == number(Channel::kMfcCmd)) {
     return channels.issue({.word = context_.value,
                            .lsa = {environment.mfc_lsa},
