@@ -13,7 +13,7 @@ std::string_view name(MfcOpcode opcode) {
   return {};
 }
 
-CommandKind MfcCommand::kind() const {
+CommandKind MfcCommand::kind_of_other() const {
   constexpr std::uint32_t kListBit = 0x04;
   constexpr std::uint32_t kStartBit = 0x08;
   if (is_get() || is_put()) {

@@ -48,7 +48,8 @@ struct MfcCommand {
 
   constexpr MfcOpcode opcode() const { return static_cast<MfcOpcode>(word & 0xFFFF); }
 
-  CommandKind kind() const;
+  /// What it is, whatever its parameters. Plain gets and puts, which are nearly all, are known at once.
+  CommandKind kind() const { return is_plain_transfer() ? CommandKind::kTransfer : kind_of_other(); }
 
   /// Main storage to local store, in any form (fence, barrier, list, start).
   constexpr bool is_get() const { return (word & 0xFFF0) == 0x40; }
@@ -71,6 +72,11 @@ struct MfcCommand {
   bool operator==(const MfcCommand&) const = default;
 
  private:
+  /// get and put without and with fence or barrier.
+  constexpr bool is_plain_transfer() const {
+    return ((word & 0xFFFC) == 0x40 || (word & 0xFFFC) == 0x20) && (word & 0x03) != 0x03;
+  }
+  CommandKind kind_of_other() const;
   constexpr bool has_order_bits() const { return is_get() || is_put() || (word & 0xFFFC) == 0xA0; }
 };
 
