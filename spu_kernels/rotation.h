@@ -38,7 +38,13 @@ constexpr RotationEffort kTwoIterations = {2, 2};
 constexpr RotationEffort kAdaptive = {0, 6};
 
 constexpr float kRotationResidual = 2e-6f;  ///< some roundings
-constexpr float kRotationLost = 1e-2f;      ///< above it a lane starts again
+constexpr float kRotationLost = 3e-3f;      ///< above it a lane starts again
+
+/// Where the magnitudes of A's elements, summed and times `weight`, are at most `floor`, A is rounding noise.
+struct RotationNoise {
+  vec_float4 weight;
+  vec_float4 floor;
+};
 
 struct Rotation4 {
   Matrix3x4 matrix;
@@ -166,16 +172,16 @@ __attribute__((noinline)) inline Rotation4 start_again(const Matrix3x4& a, const
   return {e.r, e.residual_square};
 }
 
-/// A times a power of two that makes its elements' magnitudes sum to 1..2; zero where they sum to at most
-/// `floor`.
-inline Matrix3x4 normalise(const Matrix3x4& a, vec_float4 floor) {
+/// A times a power of two that makes its elements' magnitudes sum to 1..2; zero where A is noise.
+inline Matrix3x4 normalise(const Matrix3x4& a, const RotationNoise& noise_of) {
   const vec_float4 sum = spu_add(
       spu_add(spu_add(spu_add(absolute(a.x.x), absolute(a.x.y)), spu_add(absolute(a.x.z), absolute(a.y.x))),
               spu_add(spu_add(absolute(a.y.y), absolute(a.y.z)), spu_add(absolute(a.z.x), absolute(a.z.y)))),
       absolute(a.z.z));
   const vec_uint4 exponent = spu_and((vec_uint4)sum, spu_splats(0x7F800000u));
   const vec_uint4 noise = negative_lanes(spu_or(
-      less(spu_splats(kLargestSum), sum), spu_or(not_less(floor, sum), less(sum, spu_splats(kSmallestSum)))));
+      less(spu_splats(kLargestSum), sum),
+      spu_or(not_less(noise_of.floor, spu_mul(sum, noise_of.weight)), less(sum, spu_splats(kSmallestSum)))));
   const vec_float4 by = (vec_float4)spu_andc(spu_sub(spu_splats(0x7F000000u), exponent), noise);
   return {scale(a.x, by), scale(a.y, by), scale(a.z, by)};
 }
@@ -186,12 +192,12 @@ inline Matrix3x4 normalise(const Matrix3x4& a, vec_float4 floor) {
 /// @param a       any matrices of finite numbers, of any rank, either sign of the determinant. Scale: the
 ///                magnitudes of the elements sum to 1e-37..1.7e38; outside it the rotation stays.
 /// @param q       unit quaternions to 1e-5; in: last step's. out: unit to 5e-6.
-/// @param floor   where the magnitudes of A's elements sum to at most this, A is noise and q stays. >= 0.
+/// @param noise   where q stays, whatever A is
 /// @param effort  how many iterations; lanes that are lost in spite of them start cold.
-inline Rotation4 update_rotation(const Matrix3x4& a, Quaternion4& q, vec_float4 floor,
+inline Rotation4 update_rotation(const Matrix3x4& a, Quaternion4& q, const RotationNoise& noise,
                                  RotationEffort effort) {
   using namespace rotation_detail;
-  const Matrix3x4 normalised = normalise(a, floor);
+  const Matrix3x4 normalised = normalise(a, noise);
   const Quaternion4 before = q;
   const Estimate e = iterate(normalised, q, effort);
   const vec_uint4 restart = lost(e);
@@ -201,10 +207,10 @@ inline Rotation4 update_rotation(const Matrix3x4& a, Quaternion4& q, vec_float4 
 }
 
 /// The optimum found without trusting `q`, which decides only what `a` leaves open. Several times as slow.
-inline Rotation4 find_rotation(const Matrix3x4& a, Quaternion4& q, vec_float4 floor) {
+inline Rotation4 find_rotation(const Matrix3x4& a, Quaternion4& q, const RotationNoise& noise) {
   using namespace rotation_detail;
   const Quaternion4 before = q;
-  return start_again(normalise(a, floor), before, q, spu_splats(0xFFFFFFFFu));
+  return start_again(normalise(a, noise), before, q, spu_splats(0xFFFFFFFFu));
 }
 
 }  // namespace softcell::spu

@@ -70,9 +70,11 @@ void run(Batch& batch, const Find& find) {
   }
 }
 
+RotationNoise noise_below(float floor) { return {spu_splats(1.0f), spu_splats(floor)}; }
+
 void update(Batch& batch, RotationEffort effort, float floor = 0) {
   run(batch,
-      [&](const Matrix3x4& a, Quaternion4& q) { return update_rotation(a, q, spu_splats(floor), effort); });
+      [&](const Matrix3x4& a, Quaternion4& q) { return update_rotation(a, q, noise_below(floor), effort); });
 }
 
 /// U diag(1, 1, det(U V^T)) V^T.
@@ -240,7 +242,7 @@ TEST(KernelRotation, ColdStartFindsTheOptimumFromAnywhere) {
       batch.a[lane] = source.with_values(determined_values(source, seed));
       batch.q[lane] = source.rotation();
     }
-    run(batch, [](const Matrix3x4& a, Quaternion4& q) { return find_rotation(a, q, spu_splats(0.0f)); });
+    run(batch, [](const Matrix3x4& a, Quaternion4& q) { return find_rotation(a, q, noise_below(0)); });
     for (std::size_t lane = 0; lane < 4; ++lane)
       ASSERT_LT(angle_between(batch.r[lane], reference(batch.a[lane])), 6e-5) << "seed " << seed;
   }

@@ -1,0 +1,85 @@
+#pragma once
+// Shape matching between the sums: what goes up, the region's best rigid motion, what comes down.  [LSM07]
+//
+//   up      row k of a slot:   m~ x_k (x0, y0, z0, 1)
+//   region  c = P / M,  A = sum m~ x x0^T - P c0^T,  R = rotation of A,  t = c - R c0
+//   down    row k of a slot:   (R_k0, R_k1, R_k2, t_k)
+//   goal    g_k = 1 / m_i  (sum of row k) . m~ (x0, y0, z0, 1)
+
+#include <spu_intrinsics.h>
+
+#include "common/transpose.h"
+#include "match/local_store.h"
+#include "rotation.h"
+
+namespace softcell::spu {
+
+/// Four particles' payload.
+inline void match_moments(const ParticleConstants& p, const Vector3x4& x, Slot* out) {
+  const auto particle = [&](int lane) __attribute__((always_inline)) {
+    const vec_float4 moment = p.rest_moment[lane];
+    out[lane].row[0] = spu_mul(spu_splats(spu_extract(x.x, lane)), moment);
+    out[lane].row[1] = spu_mul(spu_splats(spu_extract(x.y, lane)), moment);
+    out[lane].row[2] = spu_mul(spu_splats(spu_extract(x.z, lane)), moment);
+  };
+  particle(0);
+  particle(1);
+  particle(2);
+  particle(3);
+}
+
+/// Row `k` of four slots, as registers of four lanes.
+inline Rows4 load_row(const Slot* slots, int k) {
+  return transpose({slots[0].row[k], slots[1].row[k], slots[2].row[k], slots[3].row[k]});
+}
+
+inline void store_row(Slot* slots, int k, const Rows4& components) {
+  const Rows4 t = transpose(components);
+  slots[0].row[k] = t.a;
+  slots[1].row[k] = t.b;
+  slots[2].row[k] = t.c;
+  slots[3].row[k] = t.d;
+}
+
+/// Sums of four regions to their motions, in place.
+/// @param momentum  out: sum m~ x of each
+/// @param find      of a Matrix3x4, Quaternion4& and RotationNoise makes a Rotation4
+/// @return          the squares of the rotations' residuals
+template <class Find>
+inline vec_float4 match_regions(const RegionConstants& r, Slot* slots, Quaternion4& rotation,
+                                Vector3x4& momentum, vec_float4 noise_floor, const Find& find) {
+  const Rows4 x = load_row(slots, 0), y = load_row(slots, 1), z = load_row(slots, 2);
+  const Vector3x4 p = {x.d, y.d, z.d};
+  momentum = p;
+  const auto row_of_a = [&](const Rows4& sum) __attribute__((always_inline))->Vector3x4 {
+    return {spu_nmsub(sum.d, r.centre.x, sum.a), spu_nmsub(sum.d, r.centre.y, sum.b),
+            spu_nmsub(sum.d, r.centre.z, sum.c)};
+  };
+  const Rotation4 found = find(Matrix3x4{row_of_a(x), row_of_a(y), row_of_a(z)}, rotation,
+                               RotationNoise{r.inverse_mass, noise_floor});
+  const auto store = [&](int k, const Vector3x4& row, vec_float4 moment) __attribute__((always_inline)) {
+    const vec_float4 turned = dot(row, r.centre);
+    store_row(slots, k, {row.x, row.y, row.z, spu_msub(moment, r.inverse_mass, turned)});
+  };
+  store(0, found.matrix.x, p.x);
+  store(1, found.matrix.y, p.y);
+  store(2, found.matrix.z, p.z);
+  return found.residual_square;
+}
+
+/// The goals of four particles.
+inline Vector3x4 goals(const ParticleConstants& p, const Slot* totals) {
+  const vec_float4* const from = totals->row;
+  const vec_float4* const a = from + p.region[0];
+  const vec_float4* const b = from + p.region[1];
+  const vec_float4* const c = from + p.region[2];
+  const vec_float4* const d = from + p.region[3];
+  const auto component = [&](int k) __attribute__((always_inline)) {
+    const vec_float4 sum = sums_of_rows({spu_mul(a[k], p.rest_moment[0]), spu_mul(b[k], p.rest_moment[1]),
+                                         spu_mul(c[k], p.rest_moment[2]), spu_mul(d[k], p.rest_moment[3])});
+    return spu_mul(sum, p.inverse_mass);
+  };
+  return {component(0), component(1), component(2)};
+}
+
+}  // namespace softcell::spu
