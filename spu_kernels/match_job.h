@@ -122,6 +122,6 @@ constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
 }
 
 /// What the kernel has for all that.
-constexpr uint32_t kMatchArenaBytes = 222 * 1024;
+constexpr uint32_t kMatchArenaBytes = 216 * 1024;
 
 }  // namespace softcell::spu

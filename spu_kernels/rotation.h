@@ -55,6 +55,7 @@ namespace rotation_detail {
 
 constexpr float kMu = 5e-4f;            // against matrices whose elements sum to 1..2
 constexpr float kLongestStep = 0.75f;   // of omega / 2: 1.3 rad
+constexpr int kPolishing = 6;           // iterations after a cold start
 constexpr float kLargestSum = 1.7e38f;  // of |A|'s elements; beyond it and below kSmallestSum A counts as 0
 constexpr float kSmallestSum = 1e-37f;
 
@@ -68,7 +69,7 @@ struct Estimate {
   vec_uint4 indefinite;  // top bit set where H is not safely positive
 };
 
-inline Estimate estimate(const Matrix3x4& a, const Quaternion4& q) {
+__attribute__((always_inline)) inline Estimate estimate(const Matrix3x4& a, const Quaternion4& q) {
   Estimate e;
   e.r = matrix_of(q);
   const Matrix3x4& r = e.r;
@@ -112,7 +113,7 @@ inline Estimate estimate(const Matrix3x4& a, const Quaternion4& q) {
 }
 
 /// omega / 2 by Newton's method. Where H is not positive it means nothing.
-inline Vector3x4 newton_half(const Estimate& e) {
+__attribute__((always_inline)) inline Vector3x4 newton_half(const Estimate& e) {
   const Vector3x4& g = e.gradient;
   const Vector3x4 adjugate_g = {
       spu_madd(e.minor_xx, g.x, spu_madd(e.minor_xy, g.y, spu_mul(e.minor_xz, g.z))),
@@ -122,7 +123,7 @@ inline Vector3x4 newton_half(const Estimate& e) {
 }
 
 /// omega / 2 where Newton's step is none or goes too far: along the gradient, and no longer than it may be.
-inline Vector3x4 safe_half(const Estimate& e, const Vector3x4& newton) {
+__attribute__((noinline)) inline Vector3x4 safe_half(const Estimate& e, const Vector3x4& newton) {
   const vec_float4 step = reciprocal(spu_madd(spu_splats(2.0f), absolute(e.trace), spu_splats(2.0f)));
   const vec_uint4 indefinite = negative_lanes(e.indefinite);
   const Vector3x4 half = {spu_sel(newton.x, spu_mul(e.gradient.x, step), indefinite),
@@ -134,22 +135,11 @@ inline Vector3x4 safe_half(const Estimate& e, const Vector3x4& newton) {
   return scale(half, spu_sel(spu_splats(1.0f), shorter, far));
 }
 
-inline Quaternion4 improve(const Estimate& e, const Quaternion4& q) {
+__attribute__((always_inline)) inline Quaternion4 improve(const Estimate& e, const Quaternion4& q) {
   Vector3x4 half = newton_half(e);
   const vec_uint4 far = less(spu_splats(kLongestStep * kLongestStep), dot(half, half));
   if (__builtin_expect(any_negative(spu_or(e.indefinite, far)), 0)) half = safe_half(e, half);
   return turn(q, half);
-}
-
-inline Estimate iterate(const Matrix3x4& a, Quaternion4& q, RotationEffort effort) {
-  const vec_float4 good = spu_splats(kRotationResidual * kRotationResidual);
-  for (uint32_t iteration = 0;; ++iteration) {
-    const Estimate e = estimate(a, q);
-    if (iteration >= effort.least &&
-        (iteration == effort.most || !any_negative(spu_or(e.indefinite, less(good, e.residual_square)))))
-      return e;
-    q = improve(e, q);
-  }
 }
 
 /// Top bit set where the answer cannot be trusted.
@@ -161,19 +151,8 @@ inline Quaternion4 select(const Quaternion4& a, const Quaternion4& b, vec_uint4 
   return {spu_sel(a.x, b.x, mask), spu_sel(a.y, b.y, mask), spu_sel(a.z, b.z, mask), spu_sel(a.w, b.w, mask)};
 }
 
-/// The lanes of `mask` from Davenport's matrix, polished. `before` decides what A leaves open.
-__attribute__((noinline)) inline Rotation4 start_again(const Matrix3x4& a, const Quaternion4& before,
-                                                       Quaternion4& q, vec_uint4 mask) {
-  const Quaternion4 found = davenport(a, before);
-  Quaternion4 polished = found;
-  const vec_uint4 failed = negative_lanes(lost(iterate(a, polished, {2, 8})));
-  q = select(q, select(polished, found, failed), mask);
-  const Estimate e = estimate(a, q);
-  return {e.r, e.residual_square};
-}
-
 /// A times a power of two that makes its elements' magnitudes sum to 1..2; zero where A is noise.
-inline Matrix3x4 normalise(const Matrix3x4& a, const RotationNoise& noise_of) {
+__attribute__((always_inline)) inline Matrix3x4 normalise(const Matrix3x4& a, const RotationNoise& noise_of) {
   const vec_float4 sum = spu_add(
       spu_add(spu_add(spu_add(absolute(a.x.x), absolute(a.x.y)), spu_add(absolute(a.x.z), absolute(a.y.x))),
               spu_add(spu_add(absolute(a.y.y), absolute(a.y.z)), spu_add(absolute(a.z.x), absolute(a.z.y)))),
@@ -188,29 +167,78 @@ inline Matrix3x4 normalise(const Matrix3x4& a, const RotationNoise& noise_of) {
 
 }  // namespace rotation_detail
 
-/// Turns `q` to the optimum for `a`.
-/// @param a       any matrices of finite numbers, of any rank, either sign of the determinant. Scale: the
-///                magnitudes of the elements sum to 1e-37..1.7e38; outside it the rotation stays.
-/// @param q       unit quaternions to 1e-5; in: last step's. out: unit to 5e-6.
-/// @param noise   where q stays, whatever A is
-/// @param effort  how many iterations; lanes that are lost in spite of them start cold.
-inline Rotation4 update_rotation(const Matrix3x4& a, Quaternion4& q, const RotationNoise& noise,
-                                 RotationEffort effort) {
+/// Four matrices, scaled, and room for what else belongs to them.
+struct RotationProblem {
+  Matrix3x4 a;        ///< as normalised() makes it
+  Vector3x4 payload;  ///< not looked at
+};
+
+/// `a` as a RotationProblem takes it: times a power of two, or zero where it is noise.
+/// @param a  any matrices of finite numbers, of any rank, either sign of the determinant. Scale: the
+/// magnitudes
+///           of the elements sum to 1e-37..1.7e38; outside it A counts as noise.
+__attribute__((always_inline)) inline Matrix3x4 normalised(const Matrix3x4& a, const RotationNoise& noise) {
+  return rotation_detail::normalise(a, noise);
+}
+
+/// Turns `count` groups of four quaternions towards the optima, as far as `effort` says.
+///
+/// One iteration is a chain of dependent operations and takes five times as long as its operations would.
+/// Groups do not depend on each other: a pass makes one iteration of all of them, for the processor, or the
+/// compiler that unrolls it, to overlap.
+/// @param q  unit to 1e-5; in: last step's. out: unit to 5e-6.
+__attribute__((noinline)) inline void improve_rotations(const RotationProblem* problems, Quaternion4* q,
+                                                        uint32_t count, RotationEffort effort) {
   using namespace rotation_detail;
-  const Matrix3x4 normalised = normalise(a, noise);
-  const Quaternion4 before = q;
-  const Estimate e = iterate(normalised, q, effort);
-  const vec_uint4 restart = lost(e);
-  if (__builtin_expect(any_negative(restart), 0))
-    return start_again(normalised, before, q, negative_lanes(restart));
+  const vec_float4 good = spu_splats(kRotationResidual * kRotationResidual);
+  for (uint32_t pass = 0; pass < effort.most; ++pass) {
+    bool all_good = pass >= effort.least;
+    for (uint32_t g = 0; g < count; ++g) {
+      const Estimate e = estimate(problems[g].a, q[g]);
+      if (pass >= effort.least && !any_negative(spu_or(e.indefinite, less(good, e.residual_square))))
+        continue;
+      q[g] = improve(e, q[g]);
+      all_good = false;
+    }
+    if (all_good) return;
+  }
+}
+
+namespace rotation_detail {
+
+/// The same as a function, for what is rare.
+__attribute__((noinline)) inline Estimate estimate_slowly(const Matrix3x4& a, const Quaternion4& q) {
+  return estimate(a, q);
+}
+
+/// The lanes of `mask` from Davenport's matrix, polished. `q` as it is decides what A leaves open.
+__attribute__((noinline)) inline Rotation4 start_again(const RotationProblem& problem, Quaternion4& q,
+                                                       vec_uint4 mask) {
+  const Quaternion4 found = davenport(problem.a, q);
+  Quaternion4 polished = found;
+  improve_rotations(&problem, &polished, 1, {kPolishing, kPolishing});
+  const vec_uint4 failed = negative_lanes(lost(estimate_slowly(problem.a, polished)));
+  q = select(q, select(polished, found, failed), mask);
+  const Estimate e = estimate_slowly(problem.a, q);
   return {e.r, e.residual_square};
 }
 
-/// The optimum found without trusting `q`, which decides only what `a` leaves open. Several times as slow.
-inline Rotation4 find_rotation(const Matrix3x4& a, Quaternion4& q, const RotationNoise& noise) {
+}  // namespace rotation_detail
+
+/// The matrices of quaternions that improve_rotations() has made. Lanes that are lost all the same start
+/// cold, and change `q`.
+__attribute__((always_inline)) inline Rotation4 rotation_of(const RotationProblem& problem, Quaternion4& q) {
   using namespace rotation_detail;
-  const Quaternion4 before = q;
-  return start_again(normalise(a, noise), before, q, spu_splats(0xFFFFFFFFu));
+  const Estimate e = estimate(problem.a, q);
+  const vec_uint4 restart = lost(e);
+  if (__builtin_expect(any_negative(restart), 0)) return start_again(problem, q, negative_lanes(restart));
+  return {e.r, e.residual_square};
+}
+
+/// The optimum found without trusting `q`, which decides only what the problem leaves open. Several times as
+/// slow.
+inline Rotation4 find_rotation(const RotationProblem& problem, Quaternion4& q) {
+  return rotation_detail::start_again(problem, q, spu_splats(0xFFFFFFFFu));
 }
 
 }  // namespace softcell::spu

@@ -41,30 +41,32 @@ inline void store_row(Slot* slots, int k, const Rows4& components) {
   slots[3].row[k] = t.d;
 }
 
-/// Sums of four regions to their motions, in place.
-/// @param momentum  out: sum m~ x of each
-/// @param find      of a Matrix3x4, Quaternion4& and RotationNoise makes a Rotation4
-/// @return          the squares of the rotations' residuals
-template <class Find>
-inline vec_float4 match_regions(const RegionConstants& r, Slot* slots, Quaternion4& rotation,
-                                Vector3x4& momentum, vec_float4 noise_floor, const Find& find) {
+/// Four regions' sums, in the place of their four slots: A, and in the payload P = sum m~ x.
+inline RotationProblem* problem_at(Slot* slots) { return reinterpret_cast<RotationProblem*>(slots); }
+static_assert(sizeof(RotationProblem) == 4 * sizeof(Slot), "one takes the other's place");
+
+/// Sums of four regions to A and P, in place.
+__attribute__((always_inline)) inline void make_problem(const RegionConstants& r, Slot* slots,
+                                                        vec_float4 noise_floor) {
   const Rows4 x = load_row(slots, 0), y = load_row(slots, 1), z = load_row(slots, 2);
-  const Vector3x4 p = {x.d, y.d, z.d};
-  momentum = p;
   const auto row_of_a = [&](const Rows4& sum) __attribute__((always_inline))->Vector3x4 {
     return {spu_nmsub(sum.d, r.centre.x, sum.a), spu_nmsub(sum.d, r.centre.y, sum.b),
             spu_nmsub(sum.d, r.centre.z, sum.c)};
   };
-  const Rotation4 found = find(Matrix3x4{row_of_a(x), row_of_a(y), row_of_a(z)}, rotation,
-                               RotationNoise{r.inverse_mass, noise_floor});
+  *problem_at(slots) = {normalised({row_of_a(x), row_of_a(y), row_of_a(z)}, {r.inverse_mass, noise_floor}),
+                        {x.d, y.d, z.d}};
+}
+
+/// R and P of four regions to their motions, in the place of the problem they come from.
+__attribute__((always_inline)) inline void store_motions(const RegionConstants& r, const Matrix3x4& rotation,
+                                                         const Vector3x4& momentum, Slot* slots) {
   const auto store = [&](int k, const Vector3x4& row, vec_float4 moment) __attribute__((always_inline)) {
     const vec_float4 turned = dot(row, r.centre);
     store_row(slots, k, {row.x, row.y, row.z, spu_msub(moment, r.inverse_mass, turned)});
   };
-  store(0, found.matrix.x, p.x);
-  store(1, found.matrix.y, p.y);
-  store(2, found.matrix.z, p.z);
-  return found.residual_square;
+  store(0, rotation.x, momentum.x);
+  store(1, rotation.y, momentum.y);
+  store(2, rotation.z, momentum.z);
 }
 
 /// The goals of four particles.

@@ -34,24 +34,39 @@ inline void sum_down(const BodyMap& map, Slot* b, Slot* a) {
   sum_slots<kRows>(map.regions_of_plates, b, a);
 }
 
-/// @return the largest square of a rotation's residual in each lane
-template <class Find>
-inline vec_float4 match_all_regions(const BodyMap& map, Slot* sums, vec_float4 noise_floor,
-                                    const Find& find) {
-  vec_float4 worst = spu_splats(0.0f);
-  for (uint32_t g = 0; g < map.region_groups; ++g) {
-    const vec_float4 residual =
-        match_regions(map.regions[g], sums + 1 + 4 * g, map.rotations[g], map.momenta[g], noise_floor, find);
-    worst = spu_sel(worst, residual, negative_lanes(less(worst, residual)));
-  }
-  return worst;
-}
-
 struct StepOptions {
   float pull, damping;
   RotationEffort effort;
   bool cold;
 };
+
+/// Sums to motions, in place, and the momenta. In blocks that are small enough for the first-level cache of a
+/// host and long enough to overlap iterations.
+/// @return the largest square of a rotation's residual in each lane
+inline vec_float4 match_regions(const BodyMap& map, Slot* sums, vec_float4 noise_floor,
+                                const StepOptions& options) {
+  constexpr uint32_t kBlock = 8;
+  vec_float4 worst = spu_splats(0.0f);
+  for (uint32_t first = 0; first < map.region_groups; first += kBlock) {
+    const uint32_t left = map.region_groups - first, count = left < kBlock ? left : kBlock;
+    const RegionConstants* const regions = map.regions + first;
+    Quaternion4* const rotations = map.rotations + first;
+    Slot* const slots = sums + 1 + 4 * first;
+
+    for (uint32_t g = 0; g < count; ++g) make_problem(regions[g], slots + 4 * g, noise_floor);
+    if (!options.cold) improve_rotations(problem_at(slots), rotations, count, options.effort);
+    for (uint32_t g = 0; g < count; ++g) {
+      const RotationProblem& problem = *problem_at(slots + 4 * g);
+      const Vector3x4 momentum = problem.payload;
+      const Rotation4 found =
+          options.cold ? find_rotation(problem, rotations[g]) : rotation_of(problem, rotations[g]);
+      map.momenta[first + g] = momentum;
+      store_motions(regions[g], found.matrix, momentum, slots + 4 * g);
+      worst = spu_sel(worst, found.residual_square, negative_lanes(less(worst, found.residual_square)));
+    }
+  }
+  return worst;
+}
 
 /// @pre    positions and velocities in components, positions about the body's origin; both buffers' slot 0 is
 ///         zero
@@ -63,10 +78,7 @@ inline vec_float4 step_body(const BodyMap& map, float noise_floor, const StepOpt
   for (uint32_t g = 0; g < map.particle_groups; ++g)
     match_moments(map.particles[g], map.positions[g].v, a + 1 + 4 * g);
   sum_up(map, a, b);
-  const vec_float4 residual =
-      match_all_regions(map, b, floor, [&](const Matrix3x4& m, Quaternion4& q, const RotationNoise& noise) {
-        return options.cold ? find_rotation(m, q, noise) : update_rotation(m, q, noise, options.effort);
-      });
+  const vec_float4 residual = match_regions(map, b, floor, options);
   sum_down<3>(map, b, a);
 
   const vec_float4 pull = spu_splats(options.pull);

@@ -242,7 +242,7 @@ TEST(KernelRotation, ColdStartFindsTheOptimumFromAnywhere) {
       batch.a[lane] = source.with_values(determined_values(source, seed));
       batch.q[lane] = source.rotation();
     }
-    run(batch, [](const Matrix3x4& a, Quaternion4& q) { return find_rotation(a, q, noise_below(0)); });
+    run(batch, [](const Matrix3x4& a, Quaternion4& q) { return find_rotation({normalised(a, noise_below(0)), {}}, q); });
     for (std::size_t lane = 0; lane < 4; ++lane)
       ASSERT_LT(angle_between(batch.r[lane], reference(batch.a[lane])), 6e-5) << "seed " << seed;
   }
