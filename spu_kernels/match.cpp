@@ -86,11 +86,10 @@ void step(const BodyMap& map) {
   if (ls.result.finite != 0) {
     to_components(map.positions, particles, origin_of(x, particles, plan().grid));
     to_components(map.velocities, particles, spu_splats(0.0f));
-    const vec_float4 residual = step_body(map, plan().noise_floor,
-                                          {ls.body.pull,
-                                           ls.body.damping,
-                                           {ls.job.least_iterations, ls.job.most_iterations},
-                                           ls.body.cold != 0});
+    const vec_float4 residual = step_body(map, {ls.body.pull,
+                                                ls.body.damping,
+                                                {ls.job.least_iterations, ls.job.most_iterations},
+                                                ls.body.cold != 0});
     ls.result.residual = root_of_largest(residual);
     to_particles(map.velocities, map.particle_groups);
     store_body(map);

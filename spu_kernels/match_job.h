@@ -15,14 +15,15 @@
 
 namespace softcell::spu {
 
-constexpr uint32_t kMatchQuadwordsPerSlot = 3;
+constexpr uint32_t kMatchSlotBytes = 48;
+constexpr uint32_t kMatchOffsetUnit = 8;  ///< bytes
 
 /// Constants of four particles.
 struct alignas(16) MatchParticles {
-  float rest_moment[4][4];  ///< of each particle: m~ (x0 y0 z0 1), about the rest centre; kg m and kg
+  float rest_moment[4][4];  ///< of each particle: m~ (x0 y0 z0 1), x0 about the rest centre, m~ = m / |R_i|
   float inverse_mass[4];    ///< 1 / m, kg^-1; 0 for padding
-  float modified_mass[4];   ///< m~ = m / |R_i|, kg
-  uint32_t region[4];       ///< offset of the slot of the particle's region, in quadwords
+  float mass[4];            ///< m, kg; 0 for padding
+  uint32_t region[4];       ///< offset of the slot of the particle's region
 };
 static_assert(sizeof(MatchParticles) == 112, "seven quadwords");
 
@@ -62,10 +63,11 @@ struct alignas(128) MatchPlanHeader {
   uint32_t bars_of_regions;     ///< offset of a sum list: from each particle's region
   uint32_t plates;              ///< offset of a sum list: from bars
   uint32_t regions_of_plates;   ///< offset of a sum list: from plates
-  float noise_floor;  ///< m^2: a region whose |A_r| is at most this times M_r has all its particles on one
-                      ///< point
-  float grid;         ///< metres: the body's origin is a multiple of this power of two
-  uint32_t pad[20];
+  float noise_floor;   ///< m^2: a region whose |A_r| is at most this times M_r has all its particles on one
+                       ///< point
+  float grid;          ///< metres: the body's origin is a multiple of this power of two
+  float inverse_mass;  ///< 1 / kg, of the body
+  uint32_t pad[19];
 };
 static_assert(sizeof(MatchPlanHeader) == 128, "one line");
 
@@ -113,9 +115,7 @@ constexpr uint32_t match_rotations_bytes(const MatchPlanHeader& plan) {
   return groups_of(plan.regions) * static_cast<uint32_t>(sizeof(MatchRotations));
 }
 constexpr uint32_t match_momenta_bytes(const MatchPlanHeader& plan) { return groups_of(plan.regions) * 48; }
-constexpr uint32_t match_buffer_bytes(const MatchPlanHeader& plan) {
-  return plan.slots * kMatchQuadwordsPerSlot * 16;
-}
+constexpr uint32_t match_buffer_bytes(const MatchPlanHeader& plan) { return plan.slots * kMatchSlotBytes; }
 constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
   return match_plan_bytes(plan) + 2 * match_vectors_bytes(plan) + match_rotations_bytes(plan) +
          match_momenta_bytes(plan) + 2 * match_buffer_bytes(plan);

@@ -89,8 +89,8 @@ spu::MatchParticles particles_at(const MatchingPlan<float>& matching, std::size_
     for (int d = 0; d < 3; ++d) group.rest_moment[lane][d] = particle.modified_mass * particle.x0[d];
     group.rest_moment[lane][3] = particle.modified_mass;
     group.inverse_mass[lane] = 1 / particle.mass;
-    group.modified_mass[lane] = particle.modified_mass;
-    group.region[lane] = (region_of[first + lane] + 1) * spu::kMatchQuadwordsPerSlot;
+    group.mass[lane] = particle.mass;
+    group.region[lane] = (region_of[first + lane] + 1) * (spu::kMatchSlotBytes / spu::kMatchOffsetUnit);
   }
   return group;
 }
@@ -131,6 +131,12 @@ float grid_of(float spacing) {
   return std::ldexp(1.0f, exponent - 1);
 }
 
+float inverse_mass_of(const MatchingPlan<float>& matching) {
+  double mass = 0;
+  for (const auto& particle : matching.particle_constants()) mass += static_cast<double>(particle.mass);
+  return static_cast<float>(1 / mass);
+}
+
 void check_size(std::size_t particles, std::size_t slots, std::uint64_t bytes) {
   if (slots <= kMaxSumSlot && bytes <= spu::kMatchArenaBytes) return;
   throw std::runtime_error("a soft body of " + std::to_string(particles) + " particles needs " +
@@ -151,7 +157,7 @@ MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching
   const std::size_t slots =
       1 + std::max({4 * particle_groups, bars.item.size(), plates.item.size(), 4 * region_groups});
   // Before lists are written, whose offsets would not fit: what state and buffers need at least.
-  check_size(matching.particles(), slots, std::uint64_t{slots} * 2 * spu::kMatchQuadwordsPerSlot * 16);
+  check_size(matching.particles(), slots, std::uint64_t{slots} * 2 * spu::kMatchSlotBytes);
 
   std::vector<spu::MatchParticles> particle_constants;
   for (std::size_t i = 0; i < matching.particles(); i += 4)
@@ -186,6 +192,7 @@ MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching
   header.regions_of_plates = writer.append(of_regions.halfwords);
   header.noise_floor = matching.noise_floor();
   header.grid = grid_of(lattice.spacing);
+  header.inverse_mass = inverse_mass_of(matching);
 
   lines_.resize((writer.bytes_.size() + sizeof(Line) - 1) / sizeof(Line));
   header.bytes = static_cast<std::uint32_t>(lines_.size() * sizeof(Line));

@@ -11,7 +11,7 @@ namespace softcell::ppu {
 namespace {
 
 std::uint16_t offset_of(std::uint32_t slot) {
-  return static_cast<std::uint16_t>(slot * spu::kMatchQuadwordsPerSlot);
+  return static_cast<std::uint16_t>(slot * (spu::kMatchSlotBytes / spu::kMatchOffsetUnit));
 }
 
 struct Step {

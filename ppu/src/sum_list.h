@@ -26,6 +26,6 @@ struct SumList {
 /// @pre  slots are at most kMaxSumSlot.
 SumList write_sum_list(const std::vector<Sum>& sums, int restart);
 
-inline constexpr std::uint32_t kMaxSumSlot = 21845;  ///< its offset in quadwords still fits a halfword
+inline constexpr std::uint32_t kMaxSumSlot = 10922;  ///< its offset still fits a halfword
 
 }  // namespace softcell::ppu

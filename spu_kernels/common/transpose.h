@@ -37,4 +37,12 @@ inline vec_float4 sums_of_rows(const Rows4& m) {
   return spu_add(interleave_low(ac, bd), interleave_high(ac, bd));
 }
 
+/// The sum of the four words, in all of them.
+inline vec_float4 sum_of_lanes(vec_float4 v) {
+  const vec_uchar16 halves = {8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7};
+  const vec_uchar16 neighbours = {4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11};
+  const vec_float4 pairs = spu_add(v, spu_shuffle(v, v, halves));
+  return spu_add(pairs, spu_shuffle(pairs, pairs, neighbours));
+}
+
 }  // namespace softcell::spu

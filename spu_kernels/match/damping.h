@@ -16,9 +16,16 @@
 
 namespace softcell::spu {
 
+/// m~ of four particles.
+inline vec_float4 modified_mass(const ParticleConstants& p) {
+  return interleave_high(interleave_high(p.rest_moment[0], p.rest_moment[2]),
+                         interleave_high(p.rest_moment[1], p.rest_moment[3]));
+}
+
 /// Four particles' payload.
 inline void twist_moments(const ParticleConstants& p, const Vector3x4& x, const Vector3x4& v, Slot* out) {
-  const Vector3x4 momentum = scale(v, p.modified_mass), moment = scale(x, p.modified_mass);
+  const vec_float4 mass = modified_mass(p);
+  const Vector3x4 momentum = scale(v, mass), moment = scale(x, mass);
   const Vector3x4 l = cross(x, momentum);
   store_row(out, 0, {momentum.x, momentum.y, momentum.z, spu_mul(moment.x, x.x)});
   store_row(out, 1, {l.x, l.y, l.z, spu_mul(moment.y, x.y)});
@@ -87,14 +94,13 @@ inline void twist_regions(const RegionConstants& r, const Vector3x4& moment, Slo
 /// The velocities of four particles, less `damping` times what is not rigid motion of their regions.
 inline Vector3x4 damp(const ParticleConstants& p, const Slot* totals, const Vector3x4& x, const Vector3x4& v,
                       vec_float4 damping) {
-  const vec_float4* const from = totals->row;
   const auto row = [&](int k) __attribute__((always_inline)) {
-    return transpose(
-        {from[p.region[0] + k], from[p.region[1] + k], from[p.region[2] + k], from[p.region[3] + k]});
+    return transpose({slot_at(totals, p.region[0]).row[k], slot_at(totals, p.region[1]).row[k],
+                      slot_at(totals, p.region[2]).row[k], slot_at(totals, p.region[3]).row[k]});
   };
   const Rows4 b = row(0), omega = row(1);
   const Vector3x4 turning = cross({omega.a, omega.b, omega.c}, x);
-  const vec_float4 share = spu_mul(p.modified_mass, p.inverse_mass);  // 1 / |R_i|
+  const vec_float4 share = spu_mul(modified_mass(p), p.inverse_mass);  // 1 / |R_i|
   const auto component = [&](vec_float4 sum, vec_float4 turn, vec_float4 before)
       __attribute__((always_inline)) {
     return spu_madd(damping, spu_msub(share, spu_add(sum, turn), before), before);

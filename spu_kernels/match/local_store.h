@@ -14,12 +14,17 @@ namespace softcell::spu {
 struct Slot {
   vec_float4 row[3];
 };
-static_assert(sizeof(Slot) == 16 * kMatchQuadwordsPerSlot, "as offsets count it");
+static_assert(sizeof(Slot) == kMatchSlotBytes, "as offsets count it");
+
+/// The slot at an offset of a sum list.
+inline const Slot& slot_at(const Slot* slots, uint32_t offset) {
+  return *reinterpret_cast<const Slot*>(reinterpret_cast<const char*>(slots) + offset * kMatchOffsetUnit);
+}
 
 /// MatchParticles as registers.
 struct ParticleConstants {
   vec_float4 rest_moment[4];
-  vec_float4 inverse_mass, modified_mass;
+  vec_float4 inverse_mass, mass;
   uint32_t region[4];
 };
 static_assert(sizeof(ParticleConstants) == sizeof(MatchParticles), "the same bytes");
@@ -44,6 +49,7 @@ struct BodyMap {
   const RegionConstants* regions;
   const uint16_t *bars_of_particles, *bars_of_regions, *plates, *regions_of_plates;
   uint32_t particle_groups, region_groups;
+  float noise_floor, inverse_mass;  // the header's
 
   Vectors4* positions;  // relative to the body's origin
   Vectors4* velocities;
@@ -69,6 +75,8 @@ inline BodyMap map_of(char* arena) {
   map.bars_of_regions = list(plan.bars_of_regions);
   map.plates = list(plan.plates);
   map.regions_of_plates = list(plan.regions_of_plates);
+  map.noise_floor = plan.noise_floor;
+  map.inverse_mass = plan.inverse_mass;
   map.particle_groups = groups_of(plan.particles);
   map.region_groups = groups_of(plan.regions);
   map.positions = reinterpret_cast<Vectors4*>(take(match_vectors_bytes(plan)));

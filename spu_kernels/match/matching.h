@@ -71,14 +71,12 @@ __attribute__((always_inline)) inline void store_motions(const RegionConstants& 
 
 /// The goals of four particles.
 inline Vector3x4 goals(const ParticleConstants& p, const Slot* totals) {
-  const vec_float4* const from = totals->row;
-  const vec_float4* const a = from + p.region[0];
-  const vec_float4* const b = from + p.region[1];
-  const vec_float4* const c = from + p.region[2];
-  const vec_float4* const d = from + p.region[3];
+  const Slot &a = slot_at(totals, p.region[0]), &b = slot_at(totals, p.region[1]);
+  const Slot &c = slot_at(totals, p.region[2]), &d = slot_at(totals, p.region[3]);
   const auto component = [&](int k) __attribute__((always_inline)) {
-    const vec_float4 sum = sums_of_rows({spu_mul(a[k], p.rest_moment[0]), spu_mul(b[k], p.rest_moment[1]),
-                                         spu_mul(c[k], p.rest_moment[2]), spu_mul(d[k], p.rest_moment[3])});
+    const vec_float4 sum =
+        sums_of_rows({spu_mul(a.row[k], p.rest_moment[0]), spu_mul(b.row[k], p.rest_moment[1]),
+                      spu_mul(c.row[k], p.rest_moment[2]), spu_mul(d.row[k], p.rest_moment[3])});
     return spu_mul(sum, p.inverse_mass);
   };
   return {component(0), component(1), component(2)};

@@ -7,7 +7,7 @@
 //               -->   regions: sums become motions in place
 //   bars        <--
 //               -->   plates
-//   totals      <--                      goals, new velocities
+//   totals      <--                      goals, new velocities, momentum held
 //               -->   particles          and the same way again for damping, buffers exchanged
 
 #include "match/damping.h"
@@ -43,9 +43,9 @@ struct StepOptions {
 /// Sums to motions, in place, and the momenta. In blocks that are small enough for the first-level cache of a
 /// host and long enough to overlap iterations.
 /// @return the largest square of a rotation's residual in each lane
-inline vec_float4 match_regions(const BodyMap& map, Slot* sums, vec_float4 noise_floor,
-                                const StepOptions& options) {
+inline vec_float4 match_regions(const BodyMap& map, Slot* sums, const StepOptions& options) {
   constexpr uint32_t kBlock = 8;
+  const vec_float4 noise_floor = spu_splats(map.noise_floor);
   vec_float4 worst = spu_splats(0.0f);
   for (uint32_t first = 0; first < map.region_groups; first += kBlock) {
     const uint32_t left = map.region_groups - first, count = left < kBlock ? left : kBlock;
@@ -68,38 +68,52 @@ inline vec_float4 match_regions(const BodyMap& map, Slot* sums, vec_float4 noise
   return worst;
 }
 
+/// From sums of motions to velocities: v += pull (g - x).
+/// @return  sum m (g - x) in each lane
+inline Vector3x4 pull_particles(const BodyMap& map, const Slot* totals, vec_float4 pull) {
+  const vec_float4 zero = spu_splats(0.0f);
+  Vector3x4 moment = {zero, zero, zero};
+  for (uint32_t g = 0; g < map.particle_groups; ++g) {
+    const Vector3x4 to_goal = difference(goals(map.particles[g], totals), map.positions[g].v);
+    map.velocities[g].v = scale_add(to_goal, pull, map.velocities[g].v);
+    moment = scale_add(to_goal, map.particles[g].mass, moment);
+  }
+  return moment;
+}
+
+/// Takes off the velocities what the pull has given the body as a whole. It should be nothing and is a
+/// rounding error; but truncation errs to one side, and a body at rest would begin to drift.
+inline void hold_momentum(const BodyMap& map, const Vector3x4& moment, float pull) {
+  const vec_float4 share = spu_splats(pull * map.inverse_mass);
+  const Vector3x4 drift = {spu_mul(sum_of_lanes(moment.x), share), spu_mul(sum_of_lanes(moment.y), share),
+                           spu_mul(sum_of_lanes(moment.z), share)};
+  for (uint32_t g = 0; g < map.particle_groups; ++g)
+    map.velocities[g].v = difference(map.velocities[g].v, drift);
+}
+
 /// @pre    positions and velocities in components, positions about the body's origin; both buffers' slot 0 is
 ///         zero
 /// @return the largest square of a rotation's residual in each lane
-inline vec_float4 step_body(const BodyMap& map, float noise_floor, const StepOptions& options) {
-  Slot *a = map.first, *b = map.second;
-  const vec_float4 floor = spu_splats(noise_floor);
+inline vec_float4 step_body(const BodyMap& map, const StepOptions& options) {
+  Slot *const a = map.first, *const b = map.second;
 
   for (uint32_t g = 0; g < map.particle_groups; ++g)
     match_moments(map.particles[g], map.positions[g].v, a + 1 + 4 * g);
   sum_up(map, a, b);
-  const vec_float4 residual = match_regions(map, b, floor, options);
+  const vec_float4 residual = match_regions(map, b, options);
   sum_down<3>(map, b, a);
+  hold_momentum(map, pull_particles(map, a, spu_splats(options.pull)), options.pull);
+  if (!(options.damping > 0)) return residual;
 
-  const vec_float4 pull = spu_splats(options.pull);
-  const bool damps = options.damping > 0;
-  for (uint32_t g = 0; g < map.particle_groups; ++g) {
-    const Vector3x4 x = map.positions[g].v;
-    const Vector3x4 goal = goals(map.particles[g], a);
-    const Vector3x4 v = scale_add({spu_sub(goal.x, x.x), spu_sub(goal.y, x.y), spu_sub(goal.z, x.z)}, pull,
-                                  map.velocities[g].v);
-    map.velocities[g].v = v;
-    if (damps) twist_moments(map.particles[g], x, v, b + 1 + 4 * g);
-  }
-  if (!damps) return residual;
-
+  for (uint32_t g = 0; g < map.particle_groups; ++g)
+    twist_moments(map.particles[g], map.positions[g].v, map.velocities[g].v, b + 1 + 4 * g);
   sum_up(map, b, a);
   for (uint32_t g = 0; g < map.region_groups; ++g)
-    twist_regions(map.regions[g], map.momenta[g], a + 1 + 4 * g, floor);
+    twist_regions(map.regions[g], map.momenta[g], a + 1 + 4 * g, spu_splats(map.noise_floor));
   sum_down<2>(map, a, b);
-  const vec_float4 damping = spu_splats(options.damping);
   for (uint32_t g = 0; g < map.particle_groups; ++g)
-    map.velocities[g].v = damp(map.particles[g], b, map.positions[g].v, map.velocities[g].v, damping);
+    map.velocities[g].v =
+        damp(map.particles[g], b, map.positions[g].v, map.velocities[g].v, spu_splats(options.damping));
   return residual;
 }
 

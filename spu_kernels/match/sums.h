@@ -15,39 +15,37 @@ namespace softcell::spu {
 /// out[1], out[2], ... by `list`, which match_job.h explains. Of each slot the first `kRows` rows.
 template <int kRows>
 __attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, Slot* out) {
-  const vec_float4* const from = in->row;
-  vec_float4* to = out[1].row;
+  static_assert(kRows == 2 || kRows == 3, "a slot has three rows");
   for (;;) {
     const uint32_t terms = list[0];
     if (terms == 0) return;
-    uint32_t steps = list[1];
+    const uint32_t steps = list[1];
     list += 2;
 
-    const vec_float4* term = from + list[0];
-    vec_float4 sum0 = term[0], sum1 = term[1], sum2 = kRows > 2 ? term[2] : sum0;
+    const Slot& first = slot_at(in, list[0]);
+    vec_float4 sum0 = first.row[0], sum1 = first.row[1], sum2 = first.row[kRows - 1];
     for (uint32_t i = 1; i < terms; ++i) {
-      term = from + list[i];
-      sum0 = spu_add(sum0, term[0]);
-      sum1 = spu_add(sum1, term[1]);
-      if (kRows > 2) sum2 = spu_add(sum2, term[2]);
+      const Slot& term = slot_at(in, list[i]);
+      sum0 = spu_add(sum0, term.row[0]);
+      sum1 = spu_add(sum1, term.row[1]);
+      if (kRows > 2) sum2 = spu_add(sum2, term.row[2]);
     }
     list += terms;
-    to[0] = sum0;
-    to[1] = sum1;
-    if (kRows > 2) to[2] = sum2;
-    to += kMatchQuadwordsPerSlot;
+    const auto store = [&]() __attribute__((always_inline)) {
+      ++out;
+      out->row[0] = sum0;
+      out->row[1] = sum1;
+      if (kRows > 2) out->row[2] = sum2;
+    };
+    store();
 
-    for (; steps != 0; --steps) {
-      const vec_float4* const joins = from + list[0];
-      const vec_float4* const leaves = from + list[1];
-      list += 2;
-      sum0 = spu_add(sum0, spu_sub(joins[0], leaves[0]));
-      sum1 = spu_add(sum1, spu_sub(joins[1], leaves[1]));
-      if (kRows > 2) sum2 = spu_add(sum2, spu_sub(joins[2], leaves[2]));
-      to[0] = sum0;
-      to[1] = sum1;
-      if (kRows > 2) to[2] = sum2;
-      to += kMatchQuadwordsPerSlot;
+    const uint16_t* const end = list + 2 * steps;
+    for (; list != end; list += 2) {
+      const Slot &joins = slot_at(in, list[0]), &leaves = slot_at(in, list[1]);
+      sum0 = spu_add(sum0, spu_sub(joins.row[0], leaves.row[0]));
+      sum1 = spu_add(sum1, spu_sub(joins.row[1], leaves.row[1]));
+      if (kRows > 2) sum2 = spu_add(sum2, spu_sub(joins.row[2], leaves.row[2]));
+      store();
     }
   }
 }

@@ -73,8 +73,11 @@ void run(Batch& batch, const Find& find) {
 RotationNoise noise_below(float floor) { return {spu_splats(1.0f), spu_splats(floor)}; }
 
 void update(Batch& batch, RotationEffort effort, float floor = 0) {
-  run(batch,
-      [&](const Matrix3x4& a, Quaternion4& q) { return update_rotation(a, q, noise_below(floor), effort); });
+  run(batch, [&](const Matrix3x4& a, Quaternion4& q) {
+    const RotationProblem problem = {normalised(a, noise_below(floor)), {}};
+    improve_rotations(&problem, &q, 1, effort);
+    return rotation_of(problem, q);
+  });
 }
 
 /// U diag(1, 1, det(U V^T)) V^T.
@@ -242,7 +245,9 @@ TEST(KernelRotation, ColdStartFindsTheOptimumFromAnywhere) {
       batch.a[lane] = source.with_values(determined_values(source, seed));
       batch.q[lane] = source.rotation();
     }
-    run(batch, [](const Matrix3x4& a, Quaternion4& q) { return find_rotation({normalised(a, noise_below(0)), {}}, q); });
+    run(batch, [](const Matrix3x4& a, Quaternion4& q) {
+      return find_rotation({normalised(a, noise_below(0)), {}}, q);
+    });
     for (std::size_t lane = 0; lane < 4; ++lane)
       ASSERT_LT(angle_between(batch.r[lane], reference(batch.a[lane])), 6e-5) << "seed " << seed;
   }
