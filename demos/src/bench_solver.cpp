@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "benchmarks.h"
+#include "eigen_solver.h"
 #include "kernel_samples.h"
 #include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/match_orchestrator.h"
@@ -81,6 +82,7 @@ struct SolverCase {
         kernel(load_kernel("match")),
         bodies(std::max<std::size_t>(1, kParticlesAtOnce / lattice.particles.size())),
         spes(memory, pool, kernel, ppu::MatchPlan(lattice, *plan), bodies),
+        eigen(plan),
         shared_sums(plan, ppu::SumMethod::kBarPlateCube),
         naive_sums(plan, ppu::SumMethod::kNaive) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) x.push_back(bent(lattice, i));
@@ -92,6 +94,11 @@ struct SolverCase {
   void run_spes() {
     for (std::size_t b = 0; b < bodies; ++b) std::ranges::fill(spes.velocities(b), spu::SkinCorner{});
     spes.step({.pull = kAlpha / kStep, .damping = kDamping, .least_iterations = 2, .most_iterations = 2});
+  }
+
+  void run_eigen() {
+    std::ranges::fill(v, Eigen::Vector3f::Zero());
+    eigen.step(x, v, kAlpha, kStep, kDamping);
   }
 
   void run_ppu(ppu::ShapeMatcher<float>& matcher) {
@@ -107,6 +114,7 @@ struct SolverCase {
   ls_sim::KernelImage kernel;
   std::size_t bodies;
   ppu::MatchOrchestrator spes;
+  EigenSolver eigen;
   ppu::ShapeMatcher<float> shared_sums, naive_sums;
   std::vector<Eigen::Vector3f> x, v;
 };
@@ -116,7 +124,8 @@ void add_solver(std::vector<Benchmark>& all, const std::string& name, const ppu:
   const auto body = std::make_shared<SolverCase>(name, lattice, half_width);
   const std::size_t particles = body->x.size();
   all.push_back({body->name + "/spe", body->bodies * particles, [body] { body->run_spes(); }});
-  all.push_back({body->name + "/eigen", particles, [body] { body->run_ppu(body->shared_sums); }});
+  all.push_back({body->name + "/eigen", particles, [body] { body->run_eigen(); }});
+  all.push_back({body->name + "/ppu", particles, [body] { body->run_ppu(body->shared_sums); }});
   if (half_width <= 2)
     all.push_back({body->name + "/naive", particles, [body] { body->run_ppu(body->naive_sums); }});
 }
