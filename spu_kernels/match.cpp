@@ -44,7 +44,7 @@ const MatchPlanHeader& plan() { return *reinterpret_cast<const MatchPlanHeader*>
 bool load_plan() {
   mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader), kTagIn, 0, 0);
   wait_for_tag(kTagIn);
-  if (plan().bytes > kMatchArenaBytes || match_local_store_bytes(plan()) > kMatchArenaBytes) return false;
+  if (!match_fits(plan())) return false;
   get_large(ls.arena + sizeof(MatchPlanHeader), ls.job.plan_ea + sizeof(MatchPlanHeader),
             plan().bytes - static_cast<uint32_t>(sizeof(MatchPlanHeader)), kTagIn);
   wait_for_tag(kTagIn);

@@ -124,4 +124,11 @@ constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
 /// What the kernel has for all that.
 constexpr uint32_t kMatchArenaBytes = 216 * 1024;
 
+/// Whether a plan and one body's state fit. Any numbers may stand in the header.
+constexpr bool match_fits(const MatchPlanHeader& plan) {
+  const uint32_t most = kMatchArenaBytes / 16;  // of anything; below it, sizes do not overflow
+  return plan.bytes <= kMatchArenaBytes && plan.particles <= most && plan.regions <= most &&
+         plan.slots <= most && match_local_store_bytes(plan) <= kMatchArenaBytes;
+}
+
 }  // namespace softcell::spu

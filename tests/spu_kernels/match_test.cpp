@@ -316,6 +316,46 @@ TEST(Match, RefusesABodyThatDoesNotFit) {
   }
 }
 
+TEST(Match, RefusesAJobWhosePlanDoesNotFit) {
+  dma::AddressSpace memory;
+  ls_sim::SpePool pool(memory, {.spes = 1});
+  const ls_sim::KernelImage image = test::kernel_image("match");
+  dma::Buffer<spu::MatchPlanHeader> plans(memory, "plans", 4);
+  for (spu::MatchPlanHeader& plan : plans.span()) {
+    plan.bytes = 128;
+    plan.particles = plan.regions = 1;
+    plan.slots = 2;
+  }
+  plans[0].bytes = spu::kMatchArenaBytes;
+  plans[1].particles = 0xFFFFFFFF;
+  plans[2].regions = 0x10000000;
+  plans[3].slots = 0x05555556;  // whose bytes, as 32 bits, are few
+  dma::Buffer<spu::MatchJob> descriptors(memory, "jobs", 4);
+  std::vector<ls_sim::Job> jobs;
+  for (std::size_t i = 0; i < 4; ++i) {
+    descriptors[i].plan_ea = plans.ea(i).value;
+    descriptors[i].body_count = 1;
+    jobs.push_back({&image, descriptors.ea(i), {}});
+  }
+  ls_sim::JobBatch batch;
+  pool.submit(batch, jobs);
+  batch.wait();
+  ASSERT_EQ(batch.failures().size(), 4u);
+  for (const auto& failure : batch.failures())
+    EXPECT_NE(failure.message.find("status 1"), std::string::npos) << failure.message;
+}
+
+TEST(Match, AnEmptyJobIsDone) {
+  dma::AddressSpace memory;
+  ls_sim::SpePool pool(memory, {.spes = 1});
+  const ls_sim::KernelImage image = test::kernel_image("match");
+  dma::Buffer<spu::MatchJob> jobs(memory, "jobs", 1);
+  ls_sim::JobBatch batch;
+  pool.submit(batch, std::vector<ls_sim::Job>{{&image, jobs.ea(), {}}});
+  batch.wait();
+  EXPECT_TRUE(batch.failures().empty());
+}
+
 TEST(Match, ABlockOfAThousandFits) {
   for (int w = 1; w <= 4; ++w) {
     MatchRig rig(ppu::test::block(9, 9, 9), w);
