@@ -18,6 +18,11 @@ function(softcell_add_library folder)
   cmake_parse_arguments(arg "" "" "SOURCES" ${ARGN})
   add_library(softcell_${folder} STATIC ${arg_SOURCES})
   add_library(softcell::${folder} ALIAS softcell_${folder})
-  target_include_directories(softcell_${folder} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/include PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
-  target_link_libraries(softcell_${folder} PRIVATE softcell_options)
+  set_target_properties(softcell_${folder} PROPERTIES EXPORT_NAME ${folder})
+  target_compile_features(softcell_${folder} PUBLIC cxx_std_20)
+  target_include_directories(softcell_${folder}
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
+    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  # How we compile is not how users of the installed libraries have to.
+  target_link_libraries(softcell_${folder} PRIVATE $<BUILD_INTERFACE:softcell_options>)
 endfunction()

@@ -13,9 +13,11 @@
 
 #include "interrupt.h"
 #include "json_file.h"
+#include "kernel_report.h"
 #include "progress_bar.h"
 #include "scene_view.h"
 #include "simulation_3d.h"
+#include "softcell/ls_sim/trace.h"
 #include "softcell/render/offscreen_context.h"
 #include "softcell/render/png_io.h"
 #include "softcell/render/video.h"
@@ -28,6 +30,7 @@ namespace {
 
 constexpr int kFramesPerSecond = 60;
 constexpr double kDefaultCellsAlongModel = 8;
+constexpr int kExitFindings = 3;
 constexpr int kExitInterrupted = 130;  // as a shell reports a process that SIGINT ended
 
 using Clock = std::chrono::steady_clock;
@@ -213,6 +216,7 @@ void print_summary(const nlohmann::ordered_json& s, const Demo3dOptions& options
   };
   where("frames:", options.out);
   where("video:", options.video);
+  where("trace:", options.trace);
   where("figures:", options.json);
 }
 
@@ -227,7 +231,13 @@ int run_demo_3d(const Demo3dOptions& options) {
   const std::optional<OwnModel> model = load_model(options);
   const SceneEntry& entry = find_scene(options.scene.value_or(model ? "drop" : "arena"));
   const Scene scene = entry.make(model);
-  Simulation3d simulation(scene, {.spes = options.spes, .schedule = options.schedule});
+  ls_sim::Findings findings;
+  std::optional<ls_sim::Trace> trace;
+  if (options.trace) trace.emplace(options.spes);
+  Simulation3d simulation(scene, {.spes = options.spes,
+                                  .schedule = options.schedule,
+                                  .findings = options.checked ? &findings : nullptr,
+                                  .trace = trace ? &*trace : nullptr});
 
   RunRecord record;
   const InterruptGuard guard;
@@ -251,10 +261,14 @@ int run_demo_3d(const Demo3dOptions& options) {
   record.seconds = milliseconds_since(begin) / 1000;
   pictures.finish();
 
-  const auto statistics = statistics_document(std::string(entry.name), options, simulation, record, pictures);
+  auto statistics = statistics_document(std::string(entry.name), options, simulation, record, pictures);
+  const std::vector<ls_sim::Finding> found = findings.list();
+  if (options.checked) statistics["findings"] = to_json(std::span(found));
+  if (trace) trace->write(*options.trace);
   if (options.json) write_json(*options.json, statistics);
   print_summary(statistics, options);
-  return 0;
+  print_findings(found);
+  return found.empty() ? 0 : kExitFindings;
 }
 
 }  // namespace softcell::demos

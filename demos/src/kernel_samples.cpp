@@ -69,9 +69,14 @@ std::vector<ls_sim::KernelImage> load_kernels() {
   return kernels;
 }
 
-ls_sim::KernelImage load_kernel(std::string_view name) {
+ls_sim::KernelImage load_kernel(std::string_view name, bool checked) {
   for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) {
-    if (file.name == name) return ls_sim::load_image(file.name, file.elf);
+    if (file.name != name) continue;
+    if (checked && file.checked_elf.empty()) {
+      throw std::runtime_error("kernel " + std::string(name) +
+                               " has no checked flavour: it would not fit in a local store");
+    }
+    return ls_sim::load_image(file.name, checked ? file.checked_elf : file.elf);
   }
   throw std::runtime_error("there is no kernel " + std::string(name));
 }

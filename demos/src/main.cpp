@@ -7,6 +7,7 @@
 #include <exception>
 #include <regex>
 
+#include "kernel_task_options.h"
 #include "usage_error.h"
 #include "verbs.h"
 
@@ -17,6 +18,9 @@ using namespace softcell::demos;
 
 constexpr int kMaxFrames = 1'000'000;
 constexpr int kMinPixels = 16, kMaxPixels = 8192;
+constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
+constexpr const char* kTraceHelp = "Write a trace of what happened when; `softcell report` shows it";
+constexpr const char* kDmaHelp = "When transfers finish: eager, lazy or random:SEED (default: eager)";
 
 PictureSize parse_size(const std::string& text) {
   static const std::regex pattern("([0-9]{1,5})x([0-9]{1,5})");
@@ -39,6 +43,12 @@ dma::Schedule parse_dma(const std::string& text) {
   }
 }
 
+ls_sim::Clock parse_clock(const std::string& text) {
+  if (text == "host") return ls_sim::Clock::kHost;
+  if (text == "simulated") return ls_sim::Clock::kSimulated;
+  throw UsageError("--clock " + text + ": give host or simulated");
+}
+
 /// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
 class CommandLine {
  public:
@@ -48,6 +58,7 @@ class CommandLine {
     add_spu();
     add_scenes();
     add_bench();
+    add_report();
   }
 
   int run(int argc, char** argv) {
@@ -57,7 +68,8 @@ class CommandLine {
       if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
       throw UsageError(error.what());
     }
-    if (!chosen_) throw UsageError("say what to do: demo 3d, spu budget, scenes or bench");
+    if (!chosen_)
+      throw UsageError("say what to do: demo 3d, spu run, spu explore, spu budget, scenes, bench or report");
     if (!size_.empty()) demo_.size = parse_size(size_);
     demo_.schedule = parse_dma(schedule_);
     return chosen_();
@@ -79,18 +91,62 @@ class CommandLine {
     d->add_option("--video", demo_.video, "Write an MP4 video (needs ffmpeg)");
     d->add_option("--size", size_, "Picture size, WIDTHxHEIGHT (default: 1280x720)");
     d->add_option("--spes", demo_.spes, "SPEs at work, 1 to 6 (default: 6)")->check(CLI::Range(1, 6));
-    d->add_option("--dma", schedule_, "When transfers finish: eager, lazy or random:SEED (default: eager)");
+    d->add_option("--dma", schedule_, kDmaHelp);
+    d->add_flag("--checked", demo_.checked,
+                "Run the instrumented flavour of the kernels; findings end with status 3");
+    d->add_option("--trace", demo_.trace, kTraceHelp);
     d->add_option("--json", demo_.json, "Write statistics to this file");
     d->add_flag("--lattice", demo_.lattice, "Draw particles and links instead of meshes");
     d->callback([this] { chosen_ = [this] { return run_demo_3d(demo_); }; });
   }
 
   void add_spu() {
-    CLI::App* spu = app_.add_subcommand("spu", "Look at SPU kernels: budget");
+    CLI::App* spu = app_.add_subcommand("spu", "SPU kernels: run, explore, budget");
+    add_spu_run(*spu);
+    add_spu_explore(*spu);
     CLI::App* b = spu->add_subcommand(
         "budget", "Local store of each kernel: sections, stack used, share of 256 KB, budget");
     b->add_option("--json", budget_.json, "Write the table to this file as well");
     b->callback([this] { chosen_ = [this] { return run_budget(budget_); }; });
+  }
+
+  void add_spu_run(CLI::App& spu) {
+    CLI::App* r = spu.add_subcommand(
+        "run", "Run a kernel on your own data: softcell spu run saxpy.spu.elf --in x=x.bin --arg @x 1024");
+    run_task_.add_to(*r);
+    r->add_option("--dma", schedule_, kDmaHelp);
+    r->add_option(
+        "--clock", clock_,
+        "What time is to the kernel: host (default), or simulated, where it advances with each channel "
+        "operation and SPEs take turns, so that a run is the same every time");
+    r->add_option("--trace", run_.trace, kTraceHelp);
+    r->add_option("--json", run_.json, "Write statistics, findings and faults to this file as well");
+    r->callback([this] {
+      chosen_ = [this] {
+        run_.task = run_task_.task();
+        run_.schedule = parse_dma(schedule_);
+        run_.clock = parse_clock(clock_);
+        return run_spu_run(run_);
+      };
+    });
+  }
+
+  void add_spu_explore(CLI::App& spu) {
+    CLI::App* e = spu.add_subcommand(
+        "explore",
+        "Run a kernel under many orders of its transfers and SPEs; all must have the same outcome");
+    explore_task_.add_to(*e);
+    e->add_option("--seeds", explore_.seeds, "Orders to try: --dma random:1 to random:SEEDS (default: 100)")
+        ->check(CLI::Range(std::uint64_t{1}, kMaxSeeds));
+    e->add_flag("--quiet", explore_.quiet, "No progress bar");
+    e->add_option("--json", explore_.json, "Write the result to this file as well");
+    e->callback([this] {
+      chosen_ = [this] {
+        explore_.task = explore_task_.task();
+        explore_.task_text = explore_task_.text();
+        return run_spu_explore(explore_);
+      };
+    });
   }
 
   void add_scenes() {
@@ -104,13 +160,25 @@ class CommandLine {
     b->callback([this] { chosen_ = [this] { return run_bench(bench_); }; });
   }
 
+  void add_report() {
+    CLI::App* r = app_.add_subcommand("report", "Make a page to look at of what --trace recorded");
+    r->add_option("trace", report_.trace, "The file that --trace wrote")->required();
+    r->add_option("--out", report_.out, "HTML page to write; it opens offline")->required();
+    r->callback([this] { chosen_ = [this] { return run_report(report_); }; });
+  }
+
   CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
                 "softcell"};
   Demo3dOptions demo_;
+  KernelTaskOptions run_task_, explore_task_;
+  SpuRunOptions run_;
+  SpuExploreOptions explore_;
   BudgetOptions budget_;
   BenchOptions bench_;
+  ReportOptions report_;
   std::string size_;
   std::string schedule_ = "eager";
+  std::string clock_ = "host";
   std::function<int()> chosen_;
 };
 

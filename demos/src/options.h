@@ -1,11 +1,14 @@
 #pragma once
 // What the command line asks for, one struct for each verb.
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "kernel_task.h"
 #include "softcell/dma/schedule.h"
+#include "softcell/ls_sim/spe_options.h"
 
 namespace softcell::demos {
 
@@ -26,6 +29,8 @@ struct Demo3dOptions {
   PictureSize size;
   int spes = 6;
   dma::Schedule schedule{};
+  bool checked = false;  ///< run instrumented kernels
+  std::optional<std::filesystem::path> trace;
   bool lattice = false;  ///< draw particles and links instead of the skinned meshes
 };
 
@@ -33,9 +38,30 @@ struct BudgetOptions {
   std::optional<std::filesystem::path> json;
 };
 
+struct SpuRunOptions {
+  KernelTask task;
+  dma::Schedule schedule{};
+  ls_sim::Clock clock = ls_sim::Clock::kHost;
+  std::optional<std::filesystem::path> trace;
+  std::optional<std::filesystem::path> json;
+};
+
+struct SpuExploreOptions {
+  KernelTask task;
+  std::string task_text;  ///< the options that make the task, to be typed again
+  std::uint64_t seeds = 100;
+  bool quiet = false;  ///< no progress, even on a terminal
+  std::optional<std::filesystem::path> json;
+};
+
 struct BenchOptions {
   std::string filter;  ///< regular expression; empty: all
   std::optional<std::filesystem::path> json;
+};
+
+struct ReportOptions {
+  std::filesystem::path trace;
+  std::filesystem::path out;
 };
 
 }  // namespace softcell::demos

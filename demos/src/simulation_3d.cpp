@@ -60,8 +60,11 @@ struct Simulation3d::State {
   State(const Scene& scene_description, const SimulationOptions& options)
       : scene(scene_description),
         soft_bodies(world.world()),
-        skin(load_kernel("skin")),
-        pool(memory, {.spes = options.spes, .schedule = options.schedule}),
+        skin(load_kernel("skin", options.findings != nullptr)),
+        pool(memory, {.spes = options.spes,
+                      .schedule = options.schedule,
+                      .findings = options.findings,
+                      .trace = options.trace}),
         orchestrator(memory, pool, skin) {
     for (const RigidBox& box : scene.boxes) {
       boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));

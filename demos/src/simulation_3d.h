@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene.h"
+#include "softcell/ls_sim/trace.h"
 #include "softcell/ppu/skin_orchestrator.h"
 
 namespace softcell::demos {
@@ -25,6 +26,8 @@ struct FrameTimes {
 struct SimulationOptions {
   int spes = 6;
   dma::Schedule schedule{};
+  ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked
+  ls_sim::Trace* trace = nullptr;        ///< of at least as many SPEs; null: nothing is recorded
 };
 
 /// Used by one thread. step() allocates nothing outside Bullet once the first frames are past.

@@ -4,7 +4,9 @@
 #include <stdexcept>
 
 #include "arena.h"
+#include "local_stores.h"
 #include "reserved_addresses.h"
+#include "softcell/dma/local_store_port.h"
 #include "text.h"
 
 namespace softcell::dma {
@@ -24,7 +26,9 @@ constexpr bool is_element_width(std::uint32_t bytes) {
 
 AddressSpace::AddressSpace()
     : main_(std::make_unique<Arena>(kMainMemoryBase, kMainMemoryBytes)),
-      video_(std::make_unique<Arena>(kVideoMemoryBase, kVideoMemoryBytes)) {
+      video_(std::make_unique<Arena>(kVideoMemoryBase, kVideoMemoryBytes)),
+      local_stores_(std::make_unique<LocalStores>()),
+      reservations_(local_stores_.get()) {
   reserve_effective_addresses();
 }
 
@@ -64,7 +68,8 @@ void AddressSpace::free(EffectiveAddress ea) {
   {
     const std::lock_guard lock(registry_mutex_);
     const auto found = registry_.find(ea.value);
-    if (found == registry_.end()) throw std::invalid_argument("no buffer begins at EA " + to_text(ea));
+    if (found == registry_.end() || LocalStores::contains(ea))
+      throw std::invalid_argument("no buffer begins at EA " + to_text(ea));
     buffer = std::move(found->second);
     registry_.erase(found);
     generation_.fetch_add(1, std::memory_order_release);
@@ -73,8 +78,37 @@ void AddressSpace::free(EffectiveAddress ea) {
   arena(buffer.mapping.memory).free(ea, buffer.allocated_bytes);
 }
 
+void AddressSpace::map_local_store(int spe, LocalStorePort& port) {
+  const std::string what = "local store of SPE " + std::to_string(spe);
+  if (spe < 0 || spe >= kSpeCount) throw std::invalid_argument(what + "; SPEs have numbers from 0 to 5");
+  const std::span<std::byte> bytes = port.local_store();
+  if (bytes.size() != kLocalStoreBytes) {
+    throw std::invalid_argument(what + " of " + byte_count(bytes.size()) + "; it has 262144");
+  }
+  const EffectiveAddress ea = local_store_ea(spe);
+  const Mapping mapping{
+      .ea = ea, .bytes = bytes.size(), .host = bytes.data(), .spe_access = SpeAccess::kReadWrite};
+  const std::lock_guard lock(registry_mutex_);
+  if (!registry_.emplace(ea.value, NamedBuffer{mapping, what, bytes.size()}).second) {
+    throw std::invalid_argument(what + " is mapped already, by another group or pool of this memory");
+  }
+  local_stores_->set_port(spe, &port);
+}
+
+void AddressSpace::unmap_local_store(int spe) {
+  const std::lock_guard lock(registry_mutex_);
+  if (spe < 0 || spe >= kSpeCount || registry_.erase(local_store_ea(spe).value) == 0) {
+    throw std::invalid_argument("no local store of SPE " + std::to_string(spe) + " is mapped");
+  }
+  local_stores_->set_port(spe, nullptr);
+  generation_.fetch_add(1, std::memory_order_release);
+}
+
 std::variant<std::byte*, Fault> AddressSpace::resolve(EffectiveAddress ea, std::uint64_t bytes,
                                                       SpeAccess wanted) const {
+  if (LocalStores::contains(ea) && LocalStores::is_register(ea)) {
+    return local_stores_->resolve_register(ea, bytes, wanted == SpeAccess::kWrite);
+  }
   const std::shared_lock lock(registry_mutex_);
   const auto found = last_at_or_below(ea);
   if (found == registry_.end() || !found->second.mapping.contains(ea)) {
@@ -131,6 +165,10 @@ std::string AddressSpace::describe_unmapped(EffectiveAddress ea) const {
     }
     return "EA is no address of main storage, whose upper word is " + hex(kMainMemoryBase.value >> 32) +
            "; is it a host pointer?";
+  }
+  if (LocalStores::contains(ea)) {
+    return "that is the local store of SPE " + std::to_string(LocalStores::spe_of(ea)) +
+           ", which is not there";
   }
   const auto below = last_at_or_below(ea);
   if (below == registry_.end()) return "no buffer lies there or below";

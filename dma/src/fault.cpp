@@ -22,14 +22,29 @@ constexpr RuleRow kRules[] = {
 
 const RuleRow& row(Rule rule) { return kRules[static_cast<std::size_t>(rule)]; }
 
+/// Only what the command looks at: a getllar has no tag, a barrier no address.
 std::string to_text(const MfcCommand& command) {
   const std::string_view known = name(command.opcode());
-  std::string text = known.empty() ? "command " + hex(command.word, 8) : std::string(known);
-  text += " tag " + std::to_string(command.tag);
-  text += ", LSA " + to_text(command.lsa);
-  text += ", EA " + to_text(command.ea);
-  text += ", " + byte_count(command.size);
-  return text;
+  const std::string text = known.empty() ? "command " + hex(command.word, 8) : std::string(known);
+  const std::string tag = " tag " + std::to_string(command.tag);
+  const std::string lsa = ", LSA " + to_text(command.lsa);
+  const std::string ea = ", EA " + to_text(command.ea);
+  const std::string bytes = ", " + byte_count(command.size);
+  switch (command.kind()) {
+    case CommandKind::kList:
+      return text + tag + lsa + ", MFC_EAH " + hex(command.ea.value >> 32, 8) + ", list " +
+             to_text(command.list_address()) + ", " + byte_count(command.size) + " of list";
+    case CommandKind::kLine:
+      return text + lsa + ea;
+    case CommandKind::kQueuedLine:
+      return text + tag + lsa + ea;
+    case CommandKind::kOrdering:
+      return text + tag;
+    case CommandKind::kCacheHint:
+      return text + tag + ea + bytes;
+    default:
+      return text + tag + lsa + ea + bytes;
+  }
 }
 
 }  // namespace

@@ -1,18 +1,61 @@
 #include "softcell/dma/mfc.h"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 #include <string>
 
 #include "softcell/dma/mfc_rules.h"
+#include "text.h"
+
+// What the SPU sees of its MFC. How queued commands come to an end is in mfc_schedule.cpp.
 
 namespace softcell::dma {
+namespace {
+
+// Bits of MFC_RdAtomicStat. [CBEA, MFC_RdAtomicStat] documented
+constexpr std::uint32_t kPutllcFailed = 1;
+constexpr std::uint32_t kPutllucDone = 2;
+constexpr std::uint32_t kGetllarDone = 4;
+
+constexpr std::uint32_t kLineMask = kLineBytes - 1;
+
+/// What sdcrz stores, in lines that a range of up to 16 KB touches.
+constexpr std::byte kZeros[kMaxTransferBytes + kLineBytes]{};
+
+constexpr std::uint32_t bytes_of_lines(const MfcCommand& command) {
+  const auto begin = static_cast<std::uint32_t>(command.ea.value) & kLineMask;
+  return (begin + command.size + kLineMask) & ~kLineMask;
+}
+
+std::uint64_t bytes_moved(const MfcCommand& command, std::span<const std::byte> local_store) {
+  switch (command.kind()) {
+    case CommandKind::kTransfer:
+      return command.size;
+    case CommandKind::kList: {
+      std::uint64_t bytes = 0;
+      for (std::uint32_t i = 0; i < command.size / kListElementBytes; ++i) {
+        bytes += read_element(local_store, command, i).size();
+      }
+      return bytes;
+    }
+    case CommandKind::kLine:
+    case CommandKind::kQueuedLine:
+      return kLineBytes;
+    case CommandKind::kSignal:
+      return kSignalBytes;
+    case CommandKind::kCacheHint:
+      return command.opcode() == MfcOpcode::sdcrz ? bytes_of_lines(command) : 0;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
 
 Mfc::Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedule,
-         std::uint64_t stream_number, ReservationListener*)
+         std::uint64_t stream_number, ReservationListener* listener)
     : local_store_(local_store),
-      translation_(space),
+      port_(space, listener),
       schedule_(schedule),
       random_(schedule.seed, stream_number) {
   if (local_store.size() != kLocalStoreBytes) {
@@ -23,36 +66,177 @@ Mfc::Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedul
 
 void Mfc::begin_job(std::uint64_t job_id) {
   queue_.clear();
+  lists_ = stalled_ = 0;
   tag_mask_ = 0;
   request_.reset();
+  stall_status_ = 0;
+  atomic_status_.reset();
+  events_ = 0;
+  suspended_by_.reset();
+  port_.give_up_reservation();
   random_ = RandomStream(schedule_.seed, job_id);
 }
 
+// Commands.
+
 std::optional<Fault> Mfc::issue(const MfcCommand& command) {
+  if (suspended_by_) return suspension();
   if (std::optional<Fault> fault = check_command(command)) return fault;
-  auto resolved =
-      translation_.resolve(command.ea, command.size, command.is_get() ? SpeAccess::kRead : SpeAccess::kWrite);
-  if (Fault* fault = std::get_if<Fault>(&resolved)) {
+  const CommandKind kind = command.kind();
+  if (kind == CommandKind::kLine) return execute_line_command(command);
+
+  auto made = transfer_of(command, kind);
+  if (Fault* fault = std::get_if<Fault>(&made)) {
     fault->command = command;
     return std::move(*fault);
   }
-  Transfer transfer(command, local_store_.data(), std::get<std::byte*>(resolved));
-  count(command);
-
-  if (schedule_.kind == Schedule::kEager) {
-    statistics_.highest_queue_occupancy = std::max(statistics_.highest_queue_occupancy, 1);
-    transfer.move_rest();
+  auto& transfer = std::get<Transfer>(made);
+  if (schedule_.kind == Schedule::kEager && queue_.empty() && kind != CommandKind::kList) {
+    count(command, kind);
+    execute_at_once(command, transfer);
     return std::nullopt;
   }
-  if (queue_.full()) {
-    ++statistics_.queue_full_stalls;
-    complete_one_of(MfcQueue::kAllSlots);
+  return enqueue(command, kind, transfer);
+}
+
+std::variant<Transfer, Fault> Mfc::transfer_of(const MfcCommand& command, CommandKind kind) {
+  std::byte* local = local_store_.data() + command.lsa.value;
+  const auto put = [&](const std::byte* from, std::variant<StoragePlace, Fault> to,
+                       std::uint32_t bytes) -> std::variant<Transfer, Fault> {
+    if (auto* fault = std::get_if<Fault>(&to)) return std::move(*fault);
+    return Transfer::put(from, std::get<StoragePlace>(to), bytes);
+  };
+  switch (kind) {
+    case CommandKind::kTransfer: {
+      if (command.is_put()) {
+        return put(local, port_.resolve(command.ea, command.size, SpeAccess::kWrite), command.size);
+      }
+      auto from = port_.resolve(command.ea, command.size, SpeAccess::kRead);
+      if (auto* fault = std::get_if<Fault>(&from)) return std::move(*fault);
+      return Transfer::get(std::get<StoragePlace>(from), local, command.size);
+    }
+    case CommandKind::kQueuedLine:
+      return put(local, port_.resolve_lines(command.ea, kLineBytes, SpeAccess::kWrite), kLineBytes);
+    case CommandKind::kSignal:
+      return put(local, port_.resolve(command.ea, kSignalBytes, SpeAccess::kWrite), kSignalBytes);
+    case CommandKind::kCacheHint: {
+      // Touching (sdcrt, sdcrtst) is free of faults, as the PowerPC's dcbt is.
+      if (command.opcode() == MfcOpcode::sdcrt || command.opcode() == MfcOpcode::sdcrtst) return Transfer();
+      const bool zeroes = command.opcode() == MfcOpcode::sdcrz;
+      auto lines =
+          port_.resolve_lines(command.ea, command.size, zeroes ? SpeAccess::kWrite : SpeAccess::kNone);
+      if (zeroes) return put(kZeros, std::move(lines), bytes_of_lines(command));
+      if (auto* fault = std::get_if<Fault>(&lines)) return std::move(*fault);
+      return Transfer();
+    }
+    default:
+      return Transfer();  // ordering moves no bytes, and a list resolves its elements one by one
   }
-  transfers_[queue_.push(command)] = transfer;
-  statistics_.highest_queue_occupancy =
-      std::max(statistics_.highest_queue_occupancy, queue_.occupied_slots());
+}
+
+std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
+  const MfcOpcode opcode = command.opcode();
+  auto line = port_.resolve_lines(command.ea, kLineBytes,
+                                  opcode == MfcOpcode::getllar ? SpeAccess::kRead : SpeAccess::kWrite);
+  if (auto* fault = std::get_if<Fault>(&line)) {
+    fault->command = command;
+    return std::move(*fault);
+  }
+  const auto& place = std::get<StoragePlace>(line);
+  std::byte* local = local_store_.data() + command.lsa.value;
+  tell_issue(command);
+  std::uint32_t status = 0;
+  if (opcode == MfcOpcode::getllar) {
+    ++statistics_.getllar;
+    port_.load_and_reserve(place, local);
+    status = kGetllarDone;
+  } else if (opcode == MfcOpcode::putlluc) {
+    ++statistics_.putlluc;
+    port_.store_line(place, local);
+    status = kPutllucDone;
+  } else {
+    ++statistics_.putllc;
+    if (!port_.store_conditional(place, local)) {
+      ++statistics_.putllc_failed;
+      status = kPutllcFailed;
+    }
+  }
+  atomic_status_ = atomic_status_.value_or(0) | status;
+  if (observer_ != nullptr) observer_->on_complete(commands_issued_);
   pass_a_moment();
   return std::nullopt;
+}
+
+void Mfc::execute_at_once(const MfcCommand& command, Transfer& transfer) {
+  ++statistics_.queued_commands;
+  ++statistics_.occupancy_sum;
+  statistics_.highest_queue_occupancy = std::max(statistics_.highest_queue_occupancy, 1);
+  tell_issue(command);
+  transfer.move_rest(port_);
+  if (observer_ != nullptr) observer_->on_complete(commands_issued_);
+}
+
+std::optional<Fault> Mfc::enqueue(const MfcCommand& command, CommandKind kind, const Transfer& transfer) {
+  if (queue_.full()) {
+    ++statistics_.queue_full_stalls;
+    while (queue_.full()) {
+      if (!progress(MfcQueue::kAllSlots)) return stuck(MfcQueue::kAllSlots);
+    }
+  }
+  count(command, kind);
+  tell_issue(command);
+  const int slot = queue_.push(command);
+  QueuedCommand& queued = commands_[slot];
+  queued.number = commands_issued_;
+  queued.due = visits_ + kMostVisits;
+  queued.started = false;
+  if (queue_.occupied_slots() == 1) next_due_ = queued.due;
+  if (kind == CommandKind::kList) {
+    list_transfers_[slot] = ListTransfer(command);
+    lists_ |= slot_bit(slot);
+  } else {
+    queued.transfer = transfer;
+  }
+  const int occupied = queue_.occupied_slots();
+  ++statistics_.queued_commands;
+  statistics_.occupancy_sum += static_cast<std::uint64_t>(occupied);
+  statistics_.highest_queue_occupancy = std::max(statistics_.highest_queue_occupancy, occupied);
+
+  pass_a_moment();
+  if (suspended_by_) return suspension();
+  return std::nullopt;
+}
+
+void Mfc::count(const MfcCommand& command, CommandKind kind) {
+  switch (kind) {
+    case CommandKind::kTransfer: {
+      MfcStatistics::Traffic& traffic = command.is_get() ? statistics_.get : statistics_.put;
+      ++traffic.commands;
+      traffic.bytes += command.size;
+      return;
+    }
+    case CommandKind::kList:
+      ++(command.is_get() ? statistics_.get_list : statistics_.put_list).commands;
+      return;
+    case CommandKind::kQueuedLine:
+      ++statistics_.putqlluc;
+      return;
+    case CommandKind::kSignal:
+      ++statistics_.signals;
+      return;
+    case CommandKind::kOrdering:
+      ++statistics_.ordering;
+      return;
+    default:
+      ++statistics_.hints;
+  }
+}
+
+void Mfc::tell_issue(const MfcCommand& command) {
+  ++commands_issued_;
+  if (observer_ != nullptr) {
+    observer_->on_issue(commands_issued_, command, bytes_moved(command, local_store_));
+  }
 }
 
 int Mfc::free_slots() {
@@ -62,40 +246,47 @@ int Mfc::free_slots() {
   return answer;
 }
 
+// Tag status.
+
 std::optional<Fault> Mfc::write_tag_update(std::uint32_t condition) {
+  if (suspended_by_) return suspension();
   if (condition > static_cast<std::uint32_t>(Condition::kAll)) {
-    return Fault{
-        .rule = Rule::kTagUpdateCondition,
-        .detail = "condition " + std::to_string(condition) + "; 0 immediate, 1 any and 2 all are allowed"};
+    return Fault{.rule = Rule::kTagUpdateCondition,
+                 .detail = "MFC_WrTagUpdate takes 0 (immediate), 1 (any) or 2 (all), not " +
+                           std::to_string(condition)};
   }
   const auto wanted = static_cast<Condition>(condition);
   if (request_ && wanted != Condition::kImmediate) {
     return Fault{.rule = Rule::kTagUpdatePending,
-                 .detail = "the answer to the request before has not been read from MFC_RdTagStat"};
+                 .detail = "MFC_WrTagUpdate was written before MFC_RdTagStat was read for the last request"};
   }
   request_ = StatusRequest{wanted, tag_mask_};
+  request_told_ = false;
+  tell_if_met();
   return std::nullopt;
 }
 
 std::variant<std::uint32_t, Fault> Mfc::read_tag_status() {
+  if (suspended_by_) return suspension();
   if (!request_) {
     return Fault{.rule = Rule::kTagStatusNotRequested,
                  .detail = "MFC_RdTagStat was read with no request open; write MFC_WrTagUpdate first"};
   }
   const StatusRequest request = *request_;
   if (request.condition == Condition::kAny && request.mask == 0) {
-    return Fault{.rule = Rule::kTagMaskEmpty, .detail = "any tag of none was waited for"};
+    return Fault{.rule = Rule::kTagMaskEmpty,
+                 .detail = "MFC_RdTagStat was read for any tag of an empty MFC_WrTagMask"};
   }
   pass_a_moment();
   if (!is_met(request)) {
     ++statistics_.tag_waits;
-    SlotSet wanted = queue_.slots_of(request.mask);
-    if (request.condition == Condition::kAny && schedule_.kind == Schedule::kLazy) {
-      // One tag is all that this wait needs.
-      wanted = queue_.slots_of(1u << queue_.tag_of(queue_.newest(wanted)));
+    while (!is_met(request)) {
+      const bool moved = request.condition == Condition::kAny ? progress_any_tag(request.mask)
+                                                              : progress(queue_.slots_of(request.mask));
+      if (!moved) return stuck(queue_.slots_of(request.mask));
     }
-    while (!is_met(request)) complete_one_of(wanted);
   }
+  if (suspended_by_) return suspension();
   request_.reset();
   const std::uint32_t status = complete_tags(request.mask);
   if (request.condition == Condition::kImmediate && status != request.mask)
@@ -111,47 +302,6 @@ int Mfc::tag_status_count() {
   return 0;
 }
 
-std::variant<std::uint32_t, Fault> Mfc::read_list_stall_status() {
-  return Fault{.rule = Rule::kListStallNotExpected, .detail = "no list that stalls is queued"};
-}
-
-int Mfc::list_stall_count() {
-  pass_a_moment();
-  return 0;
-}
-
-std::optional<Fault> Mfc::write_list_stall_ack(std::uint32_t tag) {
-  return Fault{.rule = Rule::kListStallAckTag,
-               .detail = "no list of tag " + std::to_string(tag) + " has stalled"};
-}
-
-std::variant<std::uint32_t, Fault> Mfc::read_atomic_status() {
-  return Fault{.rule = Rule::kAtomicStatusNotExpected, .detail = "no atomic command came before"};
-}
-
-int Mfc::atomic_status_count() {
-  pass_a_moment();
-  return 0;
-}
-
-bool Mfc::advance() {
-  if (queue_.empty()) return false;
-  complete_one_of(MfcQueue::kAllSlots);
-  return true;
-}
-
-std::optional<Fault> Mfc::drain() {
-  while (advance()) {
-  }
-  return take_fault();
-}
-
-void Mfc::count(const MfcCommand& command) {
-  MfcStatistics::Traffic& traffic = command.is_get() ? statistics_.get : statistics_.put;
-  ++traffic.commands;
-  traffic.bytes += command.size;
-}
-
 bool Mfc::is_met(const StatusRequest& request) const {
   switch (request.condition) {
     case Condition::kImmediate:
@@ -164,44 +314,111 @@ bool Mfc::is_met(const StatusRequest& request) const {
   return false;
 }
 
-// Nothing, a few pieces or a whole transfer, each about as likely, while some commands do not move at all.
-void Mfc::pass_a_moment() {
-  if (schedule_.kind != Schedule::kRandom || queue_.empty()) return;
-  const auto moving = static_cast<SlotSet>(random_.next());
-  const std::uint32_t magnitude = random_.below(8);
-  for (std::uint32_t steps = random_.below(1u << magnitude); steps != 0; --steps) random_step(moving);
+void Mfc::tell_if_met() {
+  if (!request_ || request_told_ || !is_met(*request_)) return;
+  events_ |= kTagStatusEvent;
+  request_told_ = true;
 }
 
-// Until one of `wanted`, which are those that somebody waits for, is done. Others may move meanwhile, or not.
-void Mfc::complete_one_of(SlotSet wanted) {
-  if (schedule_.kind == Schedule::kLazy) {
-    const int slot = queue_.newest(queue_.ready(wanted));
-    transfers_[slot].move_rest();
-    queue_.complete(slot);
-    return;
+// Lists that stall and notify.
+
+std::variant<std::uint32_t, Fault> Mfc::read_list_stall_status() {
+  if (suspended_by_) return suspension();
+  pass_a_moment();
+  while (stall_status_ == 0) {
+    if (progress(lists_)) continue;
+    if (suspended_by_) return suspension();
+    return Fault{.rule = Rule::kListStallNotExpected,
+                 .detail = stalled_ == 0
+                               ? "MFC_RdListStallStat was read, and no list that stalls is queued"
+                               : "MFC_RdListStallStat was read again, and the list that has stalled "
+                                 "waits for its tag in MFC_WrListStallAck"};
   }
-  const auto moving = static_cast<SlotSet>(random_.next() | wanted);
-  const SlotSet before = queue_.slots() & wanted;
-  while ((queue_.slots() & wanted) == before) random_step(moving);
+  if (suspended_by_) return suspension();
+  return std::exchange(stall_status_, 0);
 }
 
-// A loop that polls must come to an end, so under the lazy schedule every fruitless question completes one
-// command, after the answer. The random schedule lets time pass before the answer.
-void Mfc::answer_poll(SlotSet wanted) {
-  if (schedule_.kind == Schedule::kLazy && (wanted & queue_.slots()) != 0) complete_one_of(wanted);
+int Mfc::list_stall_count() {
+  pass_a_moment();
+  if (stall_status_ != 0) return 1;
+  answer_poll(lists_);
+  return 0;
 }
 
-void Mfc::random_step(SlotSet moving) {
-  SlotSet ready = queue_.ready(moving);
-  if (ready == 0) return;
-  for (std::uint32_t skip = random_.below(static_cast<std::uint32_t>(std::popcount(ready))); skip != 0;
-       --skip) {
-    ready &= static_cast<SlotSet>(ready - 1);
+std::optional<Fault> Mfc::write_list_stall_ack(std::uint32_t tag) {
+  if (suspended_by_) return suspension();
+  const SlotSet resumed = tag < kTagCount ? queue_.slots_of(1u << tag) & stalled_ : SlotSet{0};
+  if (resumed == 0) {
+    return Fault{
+        .rule = Rule::kListStallAckTag,
+        .detail = "MFC_WrListStallAck took tag " + std::to_string(tag) + ", of which no list has stalled"};
   }
-  const int slot = std::countr_zero(ready);
-  Transfer& transfer = transfers_[slot];
-  transfer.move_piece(random_.below(transfer.pieces_left()));
-  if (transfer.pieces_left() == 0) queue_.complete(slot);
+  stalled_ &= static_cast<SlotSet>(~resumed);
+  for (SlotSet rest = resumed; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
+    const int slot = std::countr_zero(rest);
+    list_transfers_[slot].resume();
+    commands_[slot].due = visits_ + kMostVisits;
+    if (list_transfers_[slot].is_done()) complete(slot);  // the last element had stalled
+  }
+  pass_a_moment();
+  if (suspended_by_) return suspension();
+  return std::nullopt;
+}
+
+// Atomic status.
+
+std::variant<std::uint32_t, Fault> Mfc::read_atomic_status() {
+  if (suspended_by_) return suspension();
+  pass_a_moment();
+  if (!atomic_status_) {
+    return Fault{
+        .rule = Rule::kAtomicStatusNotExpected,
+        .detail =
+            "MFC_RdAtomicStat was read, and no getllar, putllc or putlluc was issued since its last read"};
+  }
+  if (suspended_by_) return suspension();
+  return *std::exchange(atomic_status_, std::nullopt);
+}
+
+int Mfc::atomic_status_count() {
+  pass_a_moment();
+  return atomic_status_ ? 1 : 0;
+}
+
+// Faults found while commands execute.
+
+void Mfc::suspend(Fault fault) {
+  suspended_by_ = std::move(fault);
+  suspension_told_ = false;
+}
+
+Fault Mfc::suspension() {
+  suspension_told_ = true;
+  return *suspended_by_;
+}
+
+std::optional<Fault> Mfc::take_fault() {
+  if (!suspended_by_ || suspension_told_) return std::nullopt;
+  return suspension();
+}
+
+// Why nothing that `wanted` needs can move: a list's fault, or a list that waits for its acknowledgement.
+Fault Mfc::stuck(SlotSet wanted) {
+  if (suspended_by_) return suspension();
+  const ListTransfer& list = list_transfers_[queue_.oldest(queue_.with_predecessors(wanted) & stalled_)];
+  const std::string tag = std::to_string(list.command().tag);
+  return Fault{.rule = Rule::kListStalledForEver,
+               .command = list.command(),
+               .detail = "the list has stalled after element " + std::to_string(list.next() - 1) + " of " +
+                         std::to_string(list.count()) + " (from 0); write its tag " + tag +
+                         " to MFC_WrListStallAck before waiting for what it holds up"};
+}
+
+std::optional<Fault> Mfc::drain() {
+  while (advance()) {
+  }
+  if (queue_.empty() && !suspended_by_) return std::nullopt;
+  return stuck(queue_.slots());
 }
 
 }  // namespace softcell::dma

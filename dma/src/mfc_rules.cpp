@@ -1,28 +1,19 @@
 #include "softcell/dma/mfc_rules.h"
 
 #include <string>
+#include <utility>
 
+#include "softcell/dma/local_store_port.h"
 #include "text.h"
 
 namespace softcell::dma {
 namespace {
 
-bool is_supported(MfcOpcode opcode) {
-  switch (opcode) {
-    case MfcOpcode::get:
-    case MfcOpcode::getf:
-    case MfcOpcode::getb:
-    case MfcOpcode::put:
-    case MfcOpcode::putf:
-    case MfcOpcode::putb:
-    case MfcOpcode::putr:  // the result form is a cache hint: the same bytes move
-    case MfcOpcode::putrf:
-    case MfcOpcode::putrb:
-      return true;
-    default:
-      return false;
-  }
-}
+/// A broken rule before it is known whose it is.
+struct Breach {
+  Rule rule;
+  std::string detail;
+};
 
 constexpr bool is_small(std::uint32_t size) { return size == 1 || size == 2 || size == 4 || size == 8; }
 
@@ -48,41 +39,164 @@ std::string size_detail(std::uint32_t size) {
   return byte_count(size) + " is neither 1, 2, 4, 8 nor a multiple of 16";
 }
 
+std::optional<Breach> check_range(LocalStoreAddress lsa, std::uint32_t size) {
+  if (lsa.value < kLocalStoreBytes && size <= kLocalStoreBytes - lsa.value) return std::nullopt;
+  return Breach{Rule::kLsaOutOfRange, "bytes " + to_text(lsa) + ".." +
+                                          hex(std::uint64_t{lsa.value} + size - 1, 5) +
+                                          " reach past the local store's last byte 0x3FFFF"};
+}
+
+std::optional<Breach> check_transfer(const MfcCommand& command) {
+  const auto [word, lsa, ea, size, tag] = command;
+  if (size == 0) return Breach{Rule::kSizeZero, "0 bytes; leave the command out"};
+  if (!is_legal_size(size)) return Breach{Rule::kSizeNotLegal, size_detail(size)};
+  const std::uint32_t alignment = required_alignment(size);
+  if (lsa.value % alignment != 0) return Breach{Rule::kLsaAlignment, misaligned("LSA", lsa.value, size)};
+  if (ea.value % alignment != 0) return Breach{Rule::kEaAlignment, misaligned("EA", ea.value, size)};
+  if (lsa.value % kQuadwordBytes != ea.value % kQuadwordBytes) {
+    return Breach{Rule::kLowBitsDiffer, "low four bits are " + hex(lsa.value % kQuadwordBytes) +
+                                            " in LSA and " + hex(ea.value % kQuadwordBytes) +
+                                            " in EA; below 16 bytes they must be equal"};
+  }
+  return check_range(lsa, size);
+}
+
+std::optional<Breach> check_list(const MfcCommand& command) {
+  if (std::optional<Breach> breach = check_range(command.lsa, 1)) {
+    breach->detail = "LSA " + to_text(command.lsa) + " lies past the local store's last byte 0x3FFFF";
+    return breach;
+  }
+  const LocalStoreAddress list = command.list_address();
+  if (list.value % kListElementBytes != 0) {
+    return Breach{Rule::kListAddress, "the list's address " + to_text(list) + " is " +
+                                          byte_count(list.value % kListElementBytes) +
+                                          " past a multiple of 8"};
+  }
+  if (command.size == 0 || command.size % kListElementBytes != 0 || command.size > kMaxTransferBytes) {
+    return Breach{Rule::kListSize, "a list of " + byte_count(command.size) +
+                                       "; 8 for each element, 8 to 16384 in all, are allowed"};
+  }
+  if (check_range(list, command.size)) {
+    return Breach{Rule::kListAddress, "the list's bytes " + to_text(list) + ".." +
+                                          hex(std::uint64_t{list.value} + command.size - 1, 5) +
+                                          " reach past the local store's last byte 0x3FFFF"};
+  }
+  return std::nullopt;
+}
+
+std::optional<Breach> check_line(const MfcCommand& command) {
+  const auto off_line = [](std::string_view which, std::uint64_t address) {
+    return Breach{Rule::kAtomicAlignment, std::string(which) + " is " + byte_count(address % kLineBytes) +
+                                              " past a multiple of 128; a whole line is moved"};
+  };
+  if (command.lsa.value % kLineBytes != 0) return off_line("LSA", command.lsa.value);
+  if (command.ea.value % kLineBytes != 0) return off_line("EA", command.ea.value);
+  return check_range(command.lsa, kLineBytes);
+}
+
+bool is_signal_register(EffectiveAddress ea) {
+  const std::uint64_t offset = (ea.value - kLocalStoresBase.value) % kLocalStoreStrideBytes;
+  return ea >= kLocalStoresBase && (offset == static_cast<std::uint64_t>(SpeRegister::kSignal1) ||
+                                    offset == static_cast<std::uint64_t>(SpeRegister::kSignal2));
+}
+
+std::optional<Breach> check_signal(const MfcCommand& command) {
+  const auto [word, lsa, ea, size, tag] = command;
+  if (size != kSignalBytes) {
+    return Breach{Rule::kSignalCommand, byte_count(size) + "; a signal has 4"};
+  }
+  if (!is_signal_register(ea)) {
+    return Breach{Rule::kSignalCommand, "EA is no Sig_Notify register of an SPE; they lie " +
+                                            hex(static_cast<std::uint32_t>(SpeRegister::kSignal1)) + " and " +
+                                            hex(static_cast<std::uint32_t>(SpeRegister::kSignal2)) +
+                                            " past the SPE's base address"};
+  }
+  if (lsa.value % kSignalBytes != 0) {
+    return Breach{Rule::kLsaAlignment, misaligned("LSA", lsa.value, kSignalBytes)};
+  }
+  if (const std::uint32_t low = ea.value % kQuadwordBytes; lsa.value % kQuadwordBytes != low) {
+    return Breach{Rule::kLowBitsDiffer, "low four bits are " + hex(lsa.value % kQuadwordBytes) +
+                                            " in LSA and " + hex(low) + " in EA; a signal's must be equal"};
+  }
+  return check_range(lsa, kSignalBytes);
+}
+
+std::optional<Breach> check_cache_hint(const MfcCommand& command) {
+  if (command.size == 0) return Breach{Rule::kSizeZero, "0 bytes; leave the command out"};
+  if (command.size > kMaxTransferBytes) return Breach{Rule::kSizeNotLegal, size_detail(command.size)};
+  return std::nullopt;
+}
+
+std::optional<Breach> check(const MfcCommand& command) {
+  const CommandKind kind = command.kind();
+  if (kind == CommandKind::kUnknown) {
+    return Breach{Rule::kUnknownCommand, "opcode " + hex(command.word & 0xFFFF, 2) + " is no MFC command"};
+  }
+  if (kind == CommandKind::kStart) {
+    return Breach{Rule::kProxyFormOnly, "an SPU's own commands have no start form; it runs already"};
+  }
+  if (kind == CommandKind::kLine) return check_line(command);  // no tag to look at
+  if (command.tag >= kTagCount) {
+    return Breach{Rule::kTagOutOfRange, "tag " + std::to_string(command.tag) + " is not in 0..31"};
+  }
+  switch (kind) {
+    case CommandKind::kTransfer:
+      return check_transfer(command);
+    case CommandKind::kList:
+      return check_list(command);
+    case CommandKind::kQueuedLine:
+      return check_line(command);
+    case CommandKind::kSignal:
+      return check_signal(command);
+    case CommandKind::kCacheHint:
+      return check_cache_hint(command);
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<Breach> check(const MfcCommand& command, ListElement element, LocalStoreAddress cursor) {
+  const std::uint32_t size = element.size();
+  if (element.reserved() != 0) {
+    return Breach{Rule::kListElementReservedBits,
+                  "its first word is " + hex(element.head, 8) + "; bits 1 to 16 must be zero"};
+  }
+  if (size == 0) return std::nullopt;
+  if (!is_legal_size(size)) return Breach{Rule::kListElementSize, size_detail(size)};
+  if (element.eal % required_alignment(size) != 0) {
+    return Breach{Rule::kListElementAlignment, misaligned("EA " + hex(element.eal, 8), element.eal, size)};
+  }
+  if (std::uint64_t{element.eal} + size > std::uint64_t{1} << 32) {
+    return Breach{Rule::kListCrosses4Gb,
+                  byte_count(size) + " from " + to_text(element.ea(command)) +
+                      " on reach past a boundary of 4 GB, and MFC_EAH is common to all elements"};
+  }
+  const LocalStoreAddress lsa = element.place(cursor);
+  if (size >= kQuadwordBytes && lsa.value % kQuadwordBytes != 0) {
+    return Breach{Rule::kLsaAlignment, misaligned("LSA " + to_text(lsa), lsa.value, size)};
+  }
+  return check_range(lsa, size);
+}
+
 }  // namespace
 
 std::optional<Fault> check_command(const MfcCommand& command) {
-  const auto broken = [&](Rule rule, std::string detail) {
-    return Fault{.rule = rule, .command = command, .detail = std::move(detail)};
-  };
-  const auto [word, lsa, ea, size, tag] = command;
+  std::optional<Breach> breach = check(command);
+  if (!breach) return std::nullopt;
+  return Fault{.rule = breach->rule, .command = command, .detail = std::move(breach->detail)};
+}
 
-  if (!is_supported(command.opcode())) {
-    const std::string_view known = name(command.opcode());
-    if (known.empty())
-      return broken(Rule::kUnknownCommand, "opcode " + hex(word & 0xFFFF, 2) + " is no MFC command");
-    return broken(
-        Rule::kCommandNotSupported,
-        std::string(known) + " is not executed yet; get, put and putr are, with their f and b forms");
-  }
-  if (tag >= kTagCount)
-    return broken(Rule::kTagOutOfRange, "tag " + std::to_string(tag) + " is not in 0..31");
-  if (size == 0) return broken(Rule::kSizeZero, "0 bytes; leave the command out");
-  if (!is_legal_size(size)) return broken(Rule::kSizeNotLegal, size_detail(size));
+std::optional<Fault> check_element(const MfcCommand& command, std::uint32_t index, ListElement element,
+                                   LocalStoreAddress lsa) {
+  const std::optional<Breach> breach = check(command, element, lsa);
+  if (!breach) return std::nullopt;
+  return Fault{
+      .rule = breach->rule, .command = command, .detail = describe_element(command, index, breach->detail)};
+}
 
-  const std::uint32_t alignment = required_alignment(size);
-  if (lsa.value % alignment != 0) return broken(Rule::kLsaAlignment, misaligned("LSA", lsa.value, size));
-  if (ea.value % alignment != 0) return broken(Rule::kEaAlignment, misaligned("EA", ea.value, size));
-  if (lsa.value % kQuadwordBytes != ea.value % kQuadwordBytes) {
-    return broken(Rule::kLowBitsDiffer, "low four bits are " + hex(lsa.value % kQuadwordBytes) +
-                                            " in LSA and " + hex(ea.value % kQuadwordBytes) +
-                                            " in EA; below 16 bytes they must be equal");
-  }
-  if (lsa.value >= kLocalStoreBytes || size > kLocalStoreBytes - lsa.value) {
-    return broken(Rule::kLsaOutOfRange, "bytes " + to_text(lsa) + ".." +
-                                            hex(std::uint64_t{lsa.value} + size - 1, 5) +
-                                            " reach past the local store's last byte 0x3FFFF");
-  }
-  return std::nullopt;
+std::string describe_element(const MfcCommand& command, std::uint32_t index, std::string_view detail) {
+  return "element " + std::to_string(index) + " of " + std::to_string(command.size / kListElementBytes) +
+         " (from 0): " + std::string(detail);
 }
 
 }  // namespace softcell::dma

@@ -1,79 +1,50 @@
 #include "softcell/ls_sim/image.h"
 
-#include <elf.h>
+#include <cxxabi.h>
 
 #include <algorithm>
-#include <cstring>
-#include <stdexcept>
+#include <cstdlib>
+#include <utility>
 
+#include "elf_file.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::ls_sim {
 namespace {
 
-constexpr std::uint32_t kDeclarationMagic = 0x314B4353;  // "SCK1", written by ls.ld
+constexpr std::uint32_t kDeclarationMagic = 0x324B4353;  // "SCK2", written by ls.ld
 
 /// The section that ls.ld writes for the loader.
 struct Declaration {
-  std::uint32_t magic, stack_bytes, budget_bytes, end;
+  std::uint32_t magic, stack_bytes, budget_bytes, end, is_checked;
 };
 
-/// Reads structures out of the file, refusing what lies outside it.
-class ElfReader {
- public:
-  ElfReader(std::string_view name, std::span<const std::byte> file) : name_(name), file_(file) {}
+constexpr std::size_t kLongestName = 1024;  // of what is demangled: a longer one stays as it is
 
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw std::runtime_error("kernel image " + std::string(name_) + ": " + what);
-  }
-
-  std::span<const std::byte> slice(std::uint64_t offset, std::uint64_t size, const char* what) const {
-    if (offset > file_.size() || size > file_.size() - offset) {
-      refuse(std::string("truncated: ") + what + " lies past the end of the file (" +
-             std::to_string(file_.size()) + " bytes)");
-    }
-    return file_.subspan(offset, size);
-  }
-
-  template <typename T>
-  T read(std::uint64_t offset, const char* what) const {
-    T value;
-    std::memcpy(&value, slice(offset, sizeof value, what).data(), sizeof value);
-    return value;
-  }
-
- private:
-  std::string_view name_;
-  std::span<const std::byte> file_;
-};
-
-Elf64_Ehdr read_header(const ElfReader& elf) {
-  const auto header = elf.read<Elf64_Ehdr>(0, "the ELF header");
-  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) elf.refuse("not an ELF file");
-  if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_ident[EI_DATA] != ELFDATA2LSB ||
-      header.e_machine != EM_X86_64) {
-    elf.refuse("built for ELF machine " + std::to_string(header.e_machine) +
-               "; the native engine runs 64-bit x86 images made by softcell_add_spu_kernel");
-  }
-  if (header.e_phentsize != sizeof(Elf64_Phdr) || header.e_shentsize != sizeof(Elf64_Shdr)) {
-    elf.refuse("its header tables have entries of an unknown size");
-  }
-  return header;
+std::string demangled(std::string_view symbol) {
+  std::string name(symbol);
+  if (name.size() > kLongestName) return name;
+  int status = 0;
+  char* const text = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status);
+  if (status == 0) name = text;
+  std::free(text);
+  return name;
 }
 
 /// The one loadable segment that ls.ld makes, checked against the local store.
-Elf64_Phdr read_segment(const ElfReader& elf, const Elf64_Ehdr& header) {
-  Elf64_Phdr segment{};
-  int count = 0;
-  for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
-    const auto candidate =
-        elf.read<Elf64_Phdr>(header.e_phoff + i * sizeof(Elf64_Phdr), "the program header table");
-    if (candidate.p_type != PT_LOAD) continue;
-    segment = candidate;
-    ++count;
+Elf64_Phdr read_segment(const ElfFile& elf) {
+  auto segments = elf.loadable_segments();
+  std::sort(segments.begin(), segments.end(), [](const Elf64_Phdr& a, const Elf64_Phdr& b) {
+    return std::pair(a.p_vaddr, a.p_memsz) < std::pair(b.p_vaddr, b.p_memsz);
+  });
+  for (std::size_t i = 1; i < segments.size(); ++i) {
+    if (segments[i].p_vaddr - segments[i - 1].p_vaddr < segments[i - 1].p_memsz)
+      elf.refuse("its loadable segments overlap at address " + std::to_string(segments[i].p_vaddr));
   }
-  if (count != 1)
-    elf.refuse("it has " + std::to_string(count) + " loadable segments; ls.ld makes exactly one");
+  if (segments.size() != 1) {
+    elf.refuse("it has " + std::to_string(segments.size()) + " loadable segments; ls.ld makes exactly one");
+  }
+  const Elf64_Phdr& segment = segments.front();
   if (segment.p_filesz > segment.p_memsz)
     elf.refuse("its segment holds more bytes in the file than in memory");
   if (segment.p_vaddr != kEnvironmentBytes)
@@ -85,88 +56,137 @@ Elf64_Phdr read_segment(const ElfReader& elf, const Elf64_Ehdr& header) {
   return segment;
 }
 
-class SectionTable {
- public:
-  SectionTable(const ElfReader& elf, const Elf64_Ehdr& header) : elf_(elf), header_(header) {
-    if (header.e_shstrndx >= header.e_shnum) elf.refuse("it has no section names");
-    names_ = section(header.e_shstrndx);
+Declaration read_declaration(const ElfFile& elf, std::uint64_t segment_end) {
+  const Elf64_Shdr section = elf.find(".softcell.kernel").header;
+  if (section.sh_size < sizeof(std::uint32_t)) {
+    elf.refuse("it has no .softcell.kernel section; link it with softcell_add_spu_kernel");
   }
-
-  Elf64_Shdr section(std::uint64_t index) const {
-    return elf_.read<Elf64_Shdr>(header_.e_shoff + index * sizeof(Elf64_Shdr), "the section header table");
+  const char* const what = "the .softcell.kernel section";
+  if (section.sh_size != sizeof(Declaration) ||
+      elf.table<std::uint32_t>(section.sh_offset, 1, what).front() != kDeclarationMagic) {
+    elf.refuse("its .softcell.kernel section is of another version of softcell_add_spu_kernel");
   }
-
-  bool is_named(const Elf64_Shdr& section, std::string_view name) const {
-    const auto names = elf_.slice(names_.sh_offset, names_.sh_size, "the section names");
-    if (section.sh_name > names.size() || names.size() - section.sh_name <= name.size()) return false;
-    return std::memcmp(names.data() + section.sh_name, name.data(), name.size()) == 0 &&
-           names[section.sh_name + name.size()] == std::byte{0};
+  const auto declared = elf.table<Declaration>(section.sh_offset, 1, what).front();
+  if (declared.end < segment_end || declared.end - segment_end >= dma::kLineBytes)
+    elf.refuse("its sections do not end where _end says");
+  if (declared.end > dma::kLocalStoreBytes || declared.stack_bytes == 0 ||
+      declared.stack_bytes % dma::kQuadwordBytes != 0 ||
+      declared.stack_bytes > dma::kLocalStoreBytes - declared.end) {
+    elf.refuse("its declared stack of " + std::to_string(declared.stack_bytes) +
+               " bytes is not a positive multiple of 16 that fits above the image in 256 KB");
   }
+  if (declared.is_checked > 1) elf.refuse("its .softcell.kernel section neither says checked nor unchecked");
+  return declared;
+}
 
-  Elf64_Shdr find(std::string_view name) const {
-    for (std::uint64_t i = 0; i < header_.e_shnum; ++i) {
-      if (const Elf64_Shdr candidate = section(i); is_named(candidate, name)) return candidate;
-    }
-    return {};
+/// True for what would have to be applied to the image wherever it is copied. All else the link has done for
+/// good.
+bool is_absolute(const Elf64_Rela& relocation) {
+  switch (ELF64_R_TYPE(relocation.r_info)) {
+    case R_X86_64_NONE:
+    case R_X86_64_PC32:
+    case R_X86_64_PLT32:
+    case R_X86_64_GOTPCREL:
+    case R_X86_64_GOTPCRELX:
+    case R_X86_64_REX_GOTPCRELX:
+      return false;
+    default:
+      return true;
   }
+}
 
- private:
-  const ElfReader& elf_;
-  const Elf64_Ehdr& header_;
-  Elf64_Shdr names_{};
+/// The link keeps its relocations (--emit-relocs): a debugger needs those of the debug information. Those of
+/// the image itself must be ones that the link has done for good.
+void refuse_relocations(const ElfFile& elf) {
+  for (const auto& [name, header] : elf.sections()) {
+    if ((header.sh_type != SHT_RELA && header.sh_type != SHT_REL) || header.sh_size == 0) continue;
+    const bool is_loaded = (header.sh_flags & SHF_ALLOC) != 0 || name == ".rela.dyn";
+    const bool is_of_image = header.sh_info < elf.sections().size() &&
+                             (elf.sections()[header.sh_info].header.sh_flags & SHF_ALLOC) != 0;
+    const auto relocations = elf.table<Elf64_Rela>(header.sh_offset, header.sh_size / sizeof(Elf64_Rela),
+                                                   "a table of relocations");
+    if (is_loaded || (is_of_image && std::any_of(relocations.begin(), relocations.end(), is_absolute)))
+      elf.refuse("a relocation is left: an absolute pointer is stored in its static data");
+  }
+}
+
+/// The four sections that live in the local store, as ls.ld orders them.
+struct Layout {
+  ElfFile::Section text, rodata, data, bss;
 };
+
+Layout read_layout(const ElfFile& elf, const Elf64_Phdr& segment) {
+  const Layout layout{elf.find(".text"), elf.find(".rodata"), elf.find(".data"), elf.find(".bss")};
+  const std::uint64_t file_end = segment.p_vaddr + segment.p_filesz;
+  const std::uint64_t memory_end = segment.p_vaddr + segment.p_memsz;
+  std::uint64_t free_from = segment.p_vaddr;
+  for (const ElfFile::Section* section : {&layout.text, &layout.rodata, &layout.data, &layout.bss}) {
+    if (section->header.sh_size == 0) continue;
+    const std::uint64_t end = section == &layout.bss ? memory_end : file_end;
+    if (section->header.sh_addr < free_from || section->end() > end) {
+      elf.refuse("its section " + std::string(section->name) +
+                 " overlaps another or lies outside the segment that is loaded");
+    }
+    free_from = section->end();
+  }
+  return layout;
+}
+
+/// The variables, in order of address.
+std::vector<ImageObject> read_objects(const ElfFile& elf, std::uint32_t end) {
+  std::vector<ImageObject> objects;
+  for (const auto& [name, symbol] : elf.symbols()) {
+    if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size == 0) continue;
+    if (symbol.st_value < kEnvironmentBytes || symbol.st_value >= end ||
+        symbol.st_size > end - symbol.st_value) {
+      elf.refuse("its variable " + demangled(name) + " lies outside it");
+    }
+    objects.push_back({demangled(name),
+                       {static_cast<std::uint32_t>(symbol.st_value)},
+                       static_cast<std::uint32_t>(symbol.st_size)});
+  }
+  std::sort(objects.begin(), objects.end(), [](const ImageObject& a, const ImageObject& b) {
+    return std::pair(a.begin, a.bytes) < std::pair(b.begin, b.bytes);
+  });
+  return objects;
+}
+
+std::uint32_t narrow(std::uint64_t value) { return static_cast<std::uint32_t>(value); }
 
 }  // namespace
 
 KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
-  const ElfReader elf(name, file);
-  const Elf64_Ehdr header = read_header(elf);
-  const Elf64_Phdr segment = read_segment(elf, header);
-  const SectionTable sections(elf, header);
+  const ElfFile elf(name, file);
+  const Elf64_Phdr segment = read_segment(elf);
+  const std::uint64_t file_end = segment.p_vaddr + segment.p_filesz;
+  const Declaration declared = read_declaration(elf, segment.p_vaddr + segment.p_memsz);
+  refuse_relocations(elf);
+  const Layout layout = read_layout(elf, segment);
+  const std::uint64_t entry = elf.header().e_entry;
+  if (entry < layout.text.header.sh_addr || entry >= layout.text.end())
+    elf.refuse("its entry lies outside its text");
 
-  const Elf64_Shdr declared = sections.find(".softcell.kernel");
-  if (declared.sh_size != sizeof(Declaration)) {
-    elf.refuse("it has no .softcell.kernel section; link it with softcell_add_spu_kernel");
-  }
-  const auto declaration = elf.read<Declaration>(declared.sh_offset, "the .softcell.kernel section");
-  if (declaration.magic != kDeclarationMagic)
-    elf.refuse("its .softcell.kernel section is of another version");
-  if (sections.find(".rela.dyn").sh_size != 0) {
-    elf.refuse("a relocation is left: an absolute pointer is stored in its static data");
-  }
-
-  const Elf64_Shdr text = sections.find(".text"), data = sections.find(".data");
   KernelImage image;
   image.name = name;
-  image.sizes.text = static_cast<std::uint32_t>(text.sh_size);
-  image.sizes.rodata = static_cast<std::uint32_t>(sections.find(".rodata").sh_size);
-  image.sizes.data = static_cast<std::uint32_t>(data.sh_size);
-  image.sizes.bss = static_cast<std::uint32_t>(sections.find(".bss").sh_size);
-  image.sizes.stack = declaration.stack_bytes;
-  image.sizes.budget = declaration.budget_bytes;
-  image.sizes.end = declaration.end;
-
-  const std::uint64_t end = segment.p_vaddr + segment.p_memsz;
-  if (declaration.end < end || declaration.end - end >= dma::kLineBytes)
-    elf.refuse("its sections do not end where _end says");
-  if (declaration.stack_bytes == 0 || declaration.stack_bytes % dma::kQuadwordBytes != 0 ||
-      declaration.stack_bytes > dma::kLocalStoreBytes - declaration.end) {
-    elf.refuse("its declared stack of " + std::to_string(declaration.stack_bytes) +
-               " bytes is not a positive multiple of 16 that fits above the image in 256 KB");
-  }
-  if (header.e_entry < text.sh_addr || header.e_entry - text.sh_addr >= text.sh_size) {
-    elf.refuse("its entry lies outside its text");
-  }
-  const std::uint64_t file_end = segment.p_vaddr + segment.p_filesz;
-  if (data.sh_size != 0 &&
-      (data.sh_addr < segment.p_vaddr || data.sh_addr > file_end || data.sh_size > file_end - data.sh_addr)) {
-    elf.refuse("its data lie outside its segment");
-  }
-  image.entry = static_cast<std::uint32_t>(header.e_entry);
-  image.data_begin = static_cast<std::uint32_t>(data.sh_size != 0 ? data.sh_addr : file_end);
-  image.data_end = static_cast<std::uint32_t>(image.data_begin + data.sh_size);
+  image.sizes = {.text = narrow(layout.text.header.sh_size),
+                 .rodata = narrow(layout.rodata.header.sh_size),
+                 .data = narrow(layout.data.header.sh_size),
+                 .bss = narrow(layout.bss.header.sh_size),
+                 .stack = declared.stack_bytes,
+                 .budget = declared.budget_bytes,
+                 .end = declared.end};
+  image.entry = narrow(entry);
+  image.text_begin = narrow(layout.text.header.sh_addr);
+  image.text_end = narrow(layout.text.end());
+  image.rodata_begin = narrow(image.sizes.rodata != 0 ? layout.rodata.header.sh_addr : image.text_end);
+  image.rodata_end = image.rodata_begin + image.sizes.rodata;
+  image.data_begin = narrow(image.sizes.data != 0 ? layout.data.header.sh_addr : file_end);
+  image.data_end = image.data_begin + image.sizes.data;
+  image.objects = read_objects(elf, declared.end);
+  image.checked = declared.is_checked == 1;
   const auto bytes = elf.slice(segment.p_offset, segment.p_filesz, "its segment");
   image.bytes.assign(bytes.begin(), bytes.end());
+  image.elf = std::make_shared<const std::vector<std::byte>>(file.begin(), file.end());
   return image;
 }
 

@@ -1,15 +1,11 @@
 #include "softcell/ls_sim/spe_pool.h"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <algorithm>
+#include <array>
 #include <condition_variable>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 
-#include "spe.h"
+#include "spe_threads.h"
 
 namespace softcell::ls_sim {
 
@@ -22,61 +18,52 @@ void JobBatch::wait() const {
 
 namespace {
 
-/// On a console an SPE never takes time from the PPU. Here both share cores: a batch thread at least does not
-/// interrupt the thread that wakes it. Where the host refuses, only timings suffer.
-void leave_the_ppu_its_core() {
-  const sched_param parameters{};
-  pthread_setschedparam(pthread_self(), SCHED_BATCH, &parameters);
+/// Why a job failed; empty when it did not.
+std::string failure_of(int spe, const KernelImage& image, const RunResult& result) {
+  if (result.fault) return result.fault->message();
+  if (result.ended_normally() && result.status() == 0) return {};
+  return "SPE " + std::to_string(spe) + ", kernel " + image.name +
+         (result.ended_normally() ? ": refused its job with status " + std::to_string(result.status())
+                                  : ": stopped with code " + std::to_string(result.stop_code));
 }
 
 }  // namespace
 
-struct SpePool::State {
+struct SpePool::State final : RunSource {
   struct QueuedJob {
     Job job;
     std::uint64_t number = 0;
     JobBatch* batch = nullptr;
   };
 
-  /// An SPE and what the watchdog needs to know of it.
-  struct Worker {
-    Worker(int number, dma::AddressSpace& memory, const SpeOptions& options) : spe(number, memory, options) {}
-    Spe spe;
-    SpeStatistics statistics;                         // copied after each job
-    std::chrono::steady_clock::time_point started{};  // of the job under way
-    bool busy = false;
+  /// What an SPE's thread remembers of the job that it has taken.
+  struct Taken {
+    QueuedJob job;
+    bool more = false, was_full = false;
   };
 
-  State(dma::AddressSpace& memory, const SpeOptions& pool_options)
-      : options(pool_options), ring(kQueueCapacity) {
-    for (int number = 0; number < options.spes; ++number) {
-      workers.push_back(std::make_unique<Worker>(number, memory, options));
-    }
-    for (auto& worker : workers) threads.emplace_back([this, &worker] { work(*worker); });
-    watchdog = std::jthread([this] { watch(); });
-  }
+  State(dma::AddressSpace& memory, const SpeOptions& options)
+      : ring(kQueueCapacity), threads(memory, options, SpeMonitor::PpuSide::kStaysAway, *this) {}
 
-  ~State() {
+  ~State() override {
     {
-      const std::scoped_lock lock(mutex);
+      const SpeMonitor::Lock lock = threads.monitor().lock();
       stopping = true;
     }
     job_ready.notify_all();
     slot_free.notify_all();
-    stop_watching.notify_all();
-    threads.clear();
-    if (watchdog.joinable()) watchdog.join();
-    while (count != 0) finish(take(), "dropped: the pool of SPEs was closed before the job ran");
+    threads.join();
+    while (count != 0) finish(pop(), "dropped: the pool of SPEs was closed before the job ran");
   }
 
-  QueuedJob take() {
+  QueuedJob pop() {
     const QueuedJob next = ring[head];
     head = (head + 1) % kQueueCapacity;
     --count;
     return next;
   }
 
-  /// @pre the mutex is held, or no other thread is left.
+  /// With the lock, or when no other thread is left.
   static void finish(const QueuedJob& done, std::string failure) {
     if (!failure.empty()) {
       auto& failures = done.batch->failures_;
@@ -90,63 +77,45 @@ struct SpePool::State {
     if (pending.fetch_sub(1, std::memory_order_acq_rel) == 1) pending.notify_all();
   }
 
-  void work(Worker& worker) {
-    leave_the_ppu_its_core();
-    std::unique_lock lock(mutex);
-    for (;;) {
-      job_ready.wait(lock, [this] { return stopping || count != 0; });
-      if (stopping) return;
-      const QueuedJob next = take();
-      const bool more = count != 0;
-      const bool was_full = count + 1 == kQueueCapacity;
-      worker.started = std::chrono::steady_clock::now();
-      worker.busy = true;
-      lock.unlock();
-      if (more) job_ready.notify_one();  // each SPE wakes the next, so that submitting costs one wake-up
-      if (was_full) slot_free.notify_one();
-      std::string failure = worker.spe.run(next.job, next.number);
-      lock.lock();
-      worker.busy = false;
-      worker.statistics = worker.spe.statistics();
-      finish(next, std::move(failure));
-    }
+  std::optional<Run> next_run(int spe, SpeMonitor::Lock& lock) override {
+    job_ready.wait(lock, [this] { return stopping || count != 0; });
+    if (stopping) return std::nullopt;
+    const QueuedJob next = pop();
+    taken[static_cast<std::size_t>(spe)] = {next, count != 0, count + 1 == kQueueCapacity};
+    threads.spe(spe).registers() = {};  // a job finds nothing that another has left
+    const auto now = std::chrono::steady_clock::now();
+    threads.monitor().start(spe, *next.job.image, now);
+    return Run{.image = next.job.image,
+               .arguments = {static_cast<std::uint64_t>(spe), next.job.argp.value, next.job.envp.value},
+               .number = next.number,
+               .begin = now};
   }
 
-  /// Every wait for a job ends because this loop ends the job.
-  void watch() {
-    const auto period = std::clamp<std::chrono::milliseconds>(
-        options.deadline / 8, std::chrono::milliseconds(1), std::chrono::milliseconds(100));
-    std::unique_lock lock(mutex);
-    while (!stopping || std::any_of(workers.begin(), workers.end(), [](const auto& w) { return w->busy; })) {
-      stop_watching.wait_for(lock, period);
-      const auto now = std::chrono::steady_clock::now();
-      for (auto& worker : workers) {
-        if (worker->busy && now - worker->started > options.deadline) worker->spe.interrupt();
-      }
-    }
+  void on_taken(int spe) override {
+    const Taken& mine = taken[static_cast<std::size_t>(spe)];
+    if (mine.more) job_ready.notify_one();  // each SPE wakes the next, so that submitting costs one wake-up
+    if (mine.was_full) slot_free.notify_one();
   }
 
-  const SpeOptions options;
-  std::vector<std::unique_ptr<Worker>> workers;
+  void on_ended(int spe, const Run& run, RunResult&& result) override {
+    finish(taken[static_cast<std::size_t>(spe)].job, failure_of(spe, *run.image, result));
+  }
 
-  std::mutex mutex;  // guards all below and what finish() touches
-  std::condition_variable job_ready, slot_free, stop_watching;
+  // All guarded by the monitor's lock, but what each SPE's thread has taken.
+  std::condition_variable job_ready, slot_free;
   std::vector<QueuedJob> ring;
   std::size_t head = 0, count = 0;
   std::uint64_t submitted = 0;
   bool stopping = false;
+  std::array<Taken, dma::kSpeCount> taken;
 
-  std::vector<std::jthread> threads;
-  std::jthread watchdog;
+  SpeThreads threads;
 };
 
 SpePool::SpePool(dma::AddressSpace& memory, const SpeOptions& options) {
-  if (options.spes < 1 || options.spes > dma::kSpeCount) {
-    throw std::invalid_argument("the number of SPEs is " + std::to_string(options.spes) +
-                                "; 1 to 6 are allowed");
-  }
-  if (options.deadline <= std::chrono::milliseconds::zero()) {
-    throw std::invalid_argument("the deadline of a job must be positive");
+  if (options.interleaving == Interleaving::kTurns) {
+    throw std::invalid_argument(
+        "the jobs of a pool do not depend on each other, and take no turns; an SpeGroup's SPEs do");
   }
   state_ = std::make_unique<State>(memory, options);
 }
@@ -155,7 +124,7 @@ SpePool::~SpePool() = default;
 
 void SpePool::submit(JobBatch& batch, std::span<const Job> jobs) {
   if (jobs.empty()) return;
-  std::unique_lock lock(state_->mutex);
+  SpeMonitor::Lock lock = state_->threads.monitor().lock();
   if (batch.finished()) batch.failures_.clear();
   batch.pending_.fetch_add(static_cast<std::uint32_t>(jobs.size()), std::memory_order_acq_rel);
   for (const Job& job : jobs) {
@@ -169,12 +138,12 @@ void SpePool::submit(JobBatch& batch, std::span<const Job> jobs) {
 }
 
 std::vector<SpeStatistics> SpePool::statistics() const {
-  const std::scoped_lock lock(state_->mutex);
+  const SpeMonitor::Lock lock = state_->threads.monitor().lock();
   std::vector<SpeStatistics> result;
-  for (const auto& worker : state_->workers) result.push_back(worker->statistics);
+  for (int spe = 0; spe < spes(); ++spe) result.push_back(state_->threads.statistics(spe));
   return result;
 }
 
-int SpePool::spes() const { return state_->options.spes; }
+int SpePool::spes() const { return state_->threads.spes(); }
 
 }  // namespace softcell::ls_sim

@@ -6,11 +6,11 @@
 
 namespace softcell::ppu {
 
-Csr find_regions(const Lattice& lattice, int half_width) {
+Csr find_regions(const Csr& neighbours, int half_width) {
   if (half_width < 0 || half_width > kMaxHalfWidth)
     throw std::runtime_error("region half width " + std::to_string(half_width) + ": expected 0 to " +
                              std::to_string(kMaxHalfWidth));
-  const auto particles = static_cast<std::uint32_t>(lattice.particles.size());
+  const auto particles = static_cast<std::uint32_t>(neighbours.size());
   Csr regions;
   std::vector<std::uint32_t> visited(particles, particles);  // the centre whose search came here last
   std::vector<std::uint32_t> found;
@@ -21,7 +21,7 @@ Csr find_regions(const Lattice& lattice, int half_width) {
     for (int round = 0; round < half_width && ring < found.size(); ++round) {
       const std::size_t end = found.size();
       for (; ring < end; ++ring) {
-        for (const std::uint32_t next : lattice.neighbours[found[ring]]) {
+        for (const std::uint32_t next : neighbours[found[ring]]) {
           if (visited[next] == centre) continue;
           visited[next] = centre;
           found.push_back(next);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "matching_checks.h"
 #include "softcell/ppu/regions.h"
 #include "softcell/ppu/rotation.h"
 
@@ -17,42 +18,6 @@ template <typename Real>
 using Vector3 = Eigen::Matrix<Real, 3, 1>;
 template <typename Real>
 using Matrix3 = Eigen::Matrix<Real, 3, 3>;
-
-void check_masses(std::span<const float> masses, std::size_t particles) {
-  if (masses.size() != particles)
-    throw std::invalid_argument("MatchingPlan: " + std::to_string(masses.size()) + " masses for " +
-                                std::to_string(particles) + " particles");
-  for (std::size_t i = 0; i < masses.size(); ++i)
-    if (!(masses[i] > 0) || !std::isfinite(masses[i]))
-      throw std::invalid_argument("MatchingPlan: the mass of particle " + std::to_string(i) + " is " +
-                                  std::to_string(masses[i]) + " kg; expected a positive number");
-}
-
-void check_range(const char* name, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    throw std::invalid_argument(std::string("ShapeMatcher: ") + name + " " + std::to_string(value) +
-                                ": expected " + std::to_string(low) + " to " + std::to_string(high));
-}
-
-/// The mean of the vectors, in double precision. One NaN or infinity among them makes the sum one too.
-template <typename Real>
-Vector3<double> finite_mean(std::span<const Vector3<Real>> vectors, const char* what) {
-  double x = 0, y = 0, z = 0;
-  for (const Vector3<Real>& vector : vectors) {
-    x += static_cast<double>(vector.x());
-    y += static_cast<double>(vector.y());
-    z += static_cast<double>(vector.z());
-  }
-  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) {
-    const auto bad =
-        std::find_if(vectors.begin(), vectors.end(), [](const Vector3<Real>& v) { return !v.allFinite(); });
-    const std::string who =
-        bad == vectors.end() ? "of the body" : "of particle " + std::to_string(bad - vectors.begin());
-    throw std::runtime_error(std::string("soft body: the ") + what + " " + who + " is not a finite number");
-  }
-  const double count = static_cast<double>(vectors.size());
-  return {x / count, y / count, z / count};
-}
 
 template <typename Real>
 Vector3<Real> cross(const Vector3<Real>& a, const Vector3<Real>& b) {
@@ -181,12 +146,8 @@ template <typename Real>
 void ShapeMatcher<Real>::step_velocities(std::span<const Vector> x, std::span<Vector> v, Real alpha, Real h,
                                          Real damping) {
   check_sizes(x.size(), v.size());
-  check_range("alpha", static_cast<double>(alpha), 0, 1);
-  check_range("damping", static_cast<double>(damping), 0, 1);
-  if (!(h > 0) || !std::isfinite(h))
-    throw std::invalid_argument("ShapeMatcher: time step " + std::to_string(h) +
-                                " s: expected a positive number");
-  finite_mean<Real>(v, "velocity");
+  check_step(static_cast<double>(alpha), static_cast<double>(damping), static_cast<double>(h));
+  finite_mean<Vector>(v, "velocity");
 
   match(x);
   const Real rate = alpha / h;
@@ -206,7 +167,7 @@ void ShapeMatcher<Real>::check_sizes(std::size_t positions, std::size_t others) 
 /// from the world's origin the sums would otherwise cancel to nothing.
 template <typename Real>
 void ShapeMatcher<Real>::localise(std::span<const Vector> x) {
-  const Vector3<double> mean = finite_mean<Real>(x, "position");
+  const Vector3<double> mean = finite_mean<Vector>(x, "position");
   const double s = static_cast<double>(plan_->spacing());
   Vector origin;
   for (int d = 0; d < 3; ++d) origin[d] = static_cast<Real>(std::floor(mean[d] / s + 0.5) * s);

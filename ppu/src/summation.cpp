@@ -49,13 +49,13 @@ void check_symmetry(const Csr& regions) {
 /// Cuts a region into plates and bars, and numbers each.
 class Cutter {
  public:
-  explicit Cutter(const Lattice& lattice) : lattice_(lattice) {}
+  explicit Cutter(std::span<const Eigen::Vector3i> particles) : particles_(particles) {}
 
   std::uint32_t add(std::span<const std::uint32_t> region) {
     plate_list_.clear();
     for (std::size_t first = 0, last = 0; first < region.size(); first = last) {
-      const int x = lattice_.particles[region[first]].x();
-      while (last < region.size() && lattice_.particles[region[last]].x() == x) ++last;
+      const int x = particles_[region[first]].x();
+      while (last < region.size() && particles_[region[last]].x() == x) ++last;
       plate_list_.push_back(add_plate(region.subspan(first, last - first)));
     }
     return regions.number_of(plate_list_);
@@ -67,14 +67,14 @@ class Cutter {
   std::uint32_t add_plate(std::span<const std::uint32_t> plate) {
     bar_list_.clear();
     for (std::size_t first = 0, last = 0; first < plate.size(); first = last) {
-      const int y = lattice_.particles[plate[first]].y();
-      while (last < plate.size() && lattice_.particles[plate[last]].y() == y) ++last;
+      const int y = particles_[plate[first]].y();
+      while (last < plate.size() && particles_[plate[last]].y() == y) ++last;
       bar_list_.push_back(bars.number_of(plate.subspan(first, last - first)));
     }
     return plates.number_of(bar_list_);
   }
 
-  const Lattice& lattice_;
+  std::span<const Eigen::Vector3i> particles_;
   std::vector<std::uint32_t> plate_list_, bar_list_;
 };
 
@@ -82,12 +82,12 @@ std::size_t additions(const Csr& lists) { return lists.items.size() - lists.size
 
 }  // namespace
 
-SumPlan::SumPlan(const Lattice& lattice, const Csr& regions) {
-  if (regions.size() != lattice.particles.size())
+SumPlan::SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions) {
+  if (regions.size() != particles.size())
     throw std::invalid_argument("SumPlan: expected one region per particle");
   check_symmetry(regions);
 
-  Cutter cutter(lattice);
+  Cutter cutter(particles);
   region_of_.reserve(regions.size());
   for (std::size_t r = 0; r < regions.size(); ++r) region_of_.push_back(cutter.add(regions[r]));
   naive_additions_ = additions(regions);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gl_objects.h"
+#include "overlay_painter.h"
 #include "shaders.h"
 
 namespace softcell::render {
@@ -110,7 +111,8 @@ struct Renderer::State {
   State(GlContext& gl_context, const RendererSettings& settings);
   ~State() { context.make_current(); }  // then the members' objects are deleted
 
-  void make_picture_buffers(int samples);
+  void require_drawable(int side) const;
+  void make_picture_buffers();
   void make_shadow_map();
   MeshBuffers make_mesh(const void* indices, std::size_t index_count) const;
   const MeshBuffers& mesh(MeshId id) const;
@@ -137,6 +139,8 @@ struct Renderer::State {
   int width;
   int height;
   int shadow_map_size;
+  int largest_side = 0;  ///< of a picture or texture, in pixels
+  int samples = 1;
   std::string description;
 
   struct Programs {
@@ -160,6 +164,7 @@ struct Renderer::State {
   GlObject lattice_layout, lattice_vertices, lattice_indices;
   GlObject empty_layout;  ///< for the background, which has no vertices
   std::unique_ptr<Programs> programs;
+  std::unique_ptr<OverlayPainter> overlay;  ///< made when it is first asked for
   std::vector<MeshBuffers> skinned;
   std::vector<MeshBuffers> statics;
   Image picture;
@@ -182,19 +187,14 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
     gl.GetIntegerv(name, &value);
     return value;
   };
-  const int largest = std::min(limit(GL_MAX_RENDERBUFFER_SIZE), limit(GL_MAX_TEXTURE_SIZE));
-  for (const int side : {width, height, shadow_map_size}) {
-    if (side < 1 || side > largest) {
-      throw std::runtime_error("a picture or shadow map of " + std::to_string(side) +
-                               " pixels a side cannot be drawn; 1 to " + std::to_string(largest) + " can");
-    }
-  }
-  const int samples = std::clamp(settings.samples, 1, std::max(limit(GL_MAX_SAMPLES), 1));
+  largest_side = std::min(limit(GL_MAX_RENDERBUFFER_SIZE), limit(GL_MAX_TEXTURE_SIZE));
+  for (const int side : {width, height, shadow_map_size}) require_drawable(side);
+  samples = std::clamp(settings.samples, 1, std::max(limit(GL_MAX_SAMPLES), 1));
   description = context.backend_name() + ", " + reinterpret_cast<const char*>(gl.GetString(GL_RENDERER)) +
                 ", " + std::to_string(samples) + " samples";
 
   programs = std::make_unique<Programs>(gl);
-  make_picture_buffers(samples);
+  make_picture_buffers();
   make_shadow_map();
   frame_buffer = make_buffer(gl);
   empty_layout = make_vertex_array(gl);
@@ -210,14 +210,15 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
 
   gl.Enable(GL_PROGRAM_POINT_SIZE);
   gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  if (gl.GetError() != GL_NO_ERROR) {
-    throw std::runtime_error(description + ": no memory for a picture of " + std::to_string(width) + " by " +
-                             std::to_string(height) + " pixels");
-  }
-  picture = Image(width, height);
 }
 
-void Renderer::State::make_picture_buffers(int samples) {
+void Renderer::State::require_drawable(int side) const {
+  if (side >= 1 && side <= largest_side) return;
+  throw std::runtime_error("a picture or shadow map of " + std::to_string(side) +
+                           " pixels a side cannot be drawn; 1 to " + std::to_string(largest_side) + " can");
+}
+
+void Renderer::State::make_picture_buffers() {
   const auto storage = [this](const GlObject& buffer, int count, GLenum format) {
     gl.BindRenderbuffer(GL_RENDERBUFFER, buffer.name());
     gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, width, height);
@@ -244,6 +245,11 @@ void Renderer::State::make_picture_buffers(int samples) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, resolved_framebuffer.name());
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolved_colour.name());
   require_complete();
+  if (gl.GetError() != GL_NO_ERROR) {
+    throw std::runtime_error(description + ": no memory for a picture of " + std::to_string(width) + " by " +
+                             std::to_string(height) + " pixels");
+  }
+  picture = Image(width, height);
 }
 
 void Renderer::State::make_shadow_map() {
@@ -559,6 +565,38 @@ const Image& Renderer::pixels() {
   }
   return state.picture;
 }
+
+void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh) {
+  State& state = *state_;
+  state.context.make_current();
+  if (state.overlay == nullptr) state.overlay = std::make_unique<OverlayPainter>(state.gl);
+  state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.resolved_framebuffer.name());
+  state.overlay->draw(font, mesh, state.width, state.height);
+}
+
+void Renderer::present(int width, int height) {
+  State& state = *state_;
+  state.context.make_current();
+  const GladGLContext& gl = state.gl;
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.resolved_framebuffer.name());
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  const bool same = width == state.width && height == state.height;
+  gl.BlitFramebuffer(0, 0, state.width, state.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                     same ? GL_NEAREST : GL_LINEAR);
+}
+
+void Renderer::resize(int width, int height) {
+  State& state = *state_;
+  if (width == state.width && height == state.height) return;
+  for (const int side : {width, height}) state.require_drawable(side);
+  state.context.make_current();
+  state.width = width;
+  state.height = height;
+  state.make_picture_buffers();
+}
+
+int Renderer::width() const { return state_->width; }
+int Renderer::height() const { return state_->height; }
 
 const char* Renderer::description() const { return state_->description.c_str(); }
 

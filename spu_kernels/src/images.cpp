@@ -2,23 +2,30 @@
 
 #include <array>
 
+#define SC_DECLARE(kernel)                                                           \
+  extern const std::byte softcell_image_##kernel[], softcell_image_##kernel##_end[]; \
+  extern const std::byte softcell_image_##kernel##_checked[], softcell_image_##kernel##_checked_end[];
+
 extern "C" {
-extern const std::byte softcell_image_match[];
-extern const std::byte softcell_image_match_end[];
-extern const std::byte softcell_image_skin[];
-extern const std::byte softcell_image_skin_end[];
-extern const std::byte softcell_image_transfers[];
-extern const std::byte softcell_image_transfers_end[];
+extern const std::byte softcell_image_match[], softcell_image_match_end[];
+SC_DECLARE(skin)
+SC_DECLARE(transfers)
 }
+#undef SC_DECLARE
 
 namespace softcell::spu_kernels {
 
 std::span<const ImageFile> image_files() {
-  static const std::array<ImageFile, 3> files{{
-      {"match", {softcell_image_match, softcell_image_match_end}},
-      {"skin", {softcell_image_skin, softcell_image_skin_end}},
-      {"transfers", {softcell_image_transfers, softcell_image_transfers_end}},
-  }};
+#define SC_FILE(kernel)                                                                        \
+  ImageFile {                                                                                  \
+    .name = #kernel, .elf = {softcell_image_##kernel, softcell_image_##kernel##_end},          \
+    .checked_elf = {softcell_image_##kernel##_checked, softcell_image_##kernel##_checked_end}, \
+  }
+  static const std::array files{
+      // A checked match would not fit in a local store.
+      ImageFile{.name = "match", .elf = {softcell_image_match, softcell_image_match_end}, .checked_elf = {}},
+      SC_FILE(skin), SC_FILE(transfers)};
+#undef SC_FILE
   return files;
 }
 

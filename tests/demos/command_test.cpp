@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "run_command.h"
+#include "scratch_folder.h"
 #include "softcell/render/png_io.h"
 
 namespace softcell::tests {
@@ -91,6 +92,33 @@ TEST(Command, DropsTheUsersOwnModel) {
   ASSERT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(read_json(folder / "s.json")["scene"], "drop");
   EXPECT_EQ(read_json(folder / "s.json")["bodies"], 1);
+}
+
+TEST(Command, TracesADemoAndMakesAPageOfIt) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell(kDrop + std::string("--frames 3 --spes 2 --trace ") +
+                                         (folder / "t.json") + " --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  const auto trace = read_json(folder / "t.json"), stats = read_json(folder / "s.json");
+  std::size_t jobs = 0, commands = 0;
+  std::uint64_t bytes = 0;
+  for (const auto& event : trace["traceEvents"]) {
+    const std::string category = event.value("cat", "");
+    jobs += category == "job";
+    commands += category == "dma";
+    if (category == "dma") bytes += event["args"]["bytes"].get<std::uint64_t>();
+  }
+  EXPECT_GT(jobs, 0u);
+  EXPECT_EQ(jobs, stats["spe_jobs"]);
+  EXPECT_EQ(commands, stats["dma_commands"]);
+  EXPECT_EQ(bytes, stats["dma_bytes"]);
+  EXPECT_EQ(trace["softcell"]["images"][0]["name"], "skin");
+
+  const CommandResult report =
+      run_softcell("report " + (folder / "t.json") + " --out " + (folder / "t.html"));
+  EXPECT_EQ(report.status, 0) << report.output;
+  EXPECT_NE(report.output.find(std::to_string(jobs) + " jobs"), std::string::npos) << report.output;
+  EXPECT_GT(std::filesystem::file_size(folder / "t.html"), 20'000u);
 }
 
 TEST(Command, ListsItsScenes) {
@@ -203,6 +231,7 @@ INSTANTIATE_TEST_SUITE_P(WrongUsage, CommandRefuses,
                                          Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
                                          Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
                                          Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
+                                         Refusal{"report", 2, "trace"}, Refusal{"report %s/file", 2, "--out"},
                                          Refusal{"bench --filter [", 2, "regular expression"},
                                          Refusal{"bench --filter nothing-is-called-so", 2, "no benchmark"}));
 
@@ -224,6 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.001", 1, "cell size"},
                     Refusal{SC_DEMO "--mesh %s/cube.obj --out %s/file", 1, "file"},
                     Refusal{SC_DEMO "--mesh %s/cube.obj --out /proc/frames", 1, "/proc/frames"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --trace /proc/t.json", 1, "/proc/t.json"},
                     Refusal{SC_DEMO "--mesh %s/cube.obj --json /dev/full", 1, "No space left"},
                     Refusal{SC_DEMO "--mesh %s/cube.obj --json /proc/stats.json", 1, "/proc/stats.json"},
                     Refusal{SC_DEMO "--mesh %s/cube.obj --video /proc/v.mp4", 1, "/proc/v.mp4"}));

@@ -48,7 +48,35 @@ TEST(MfcCommand, PredicatesFollowFromTheName) {
     EXPECT_EQ(of(code).is_get(), get) << name;
     EXPECT_EQ(of(code).is_put(), put) << name;
     EXPECT_EQ(of(code).has_fence(), ordered && name.find('f') != std::string::npos) << name;
-    EXPECT_EQ(of(code).has_barrier(), ordered && name.find('b') != std::string::npos) << name;
+    EXPECT_EQ(of(code).has_barrier(),
+              (ordered && name.find('b') != std::string::npos) || name == "mfceieio" || name == "mfcsync")
+        << name;
+    EXPECT_EQ(of(code).is_queue_barrier(), name == "barrier") << name;
+  }
+}
+
+TEST(MfcCommand, KindFollowsFromTheName) {
+  for (const auto& [name, code] : kOpcodes) {
+    CommandKind kind = CommandKind::kTransfer;
+    if (name == "putqlluc") {
+      kind = CommandKind::kQueuedLine;
+    } else if (name.find("ll") != std::string::npos) {
+      kind = CommandKind::kLine;
+    } else if (name.starts_with("sndsig")) {
+      kind = CommandKind::kSignal;
+    } else if (name.starts_with("sdcr")) {
+      kind = CommandKind::kCacheHint;
+    } else if (name == "barrier" || name.starts_with("mfc")) {
+      kind = CommandKind::kOrdering;
+    } else if (name.find('l') != std::string::npos) {
+      kind = CommandKind::kList;
+    } else if (name.ends_with('s')) {
+      kind = CommandKind::kStart;
+    }
+    EXPECT_EQ(of(code).kind(), kind) << name;
+  }
+  for (const std::uint32_t code : {0x00u, 0x23u, 0x27u, 0x33u, 0x38u, 0x43u, 0x4Cu, 0xA3u, 0xD1u}) {
+    EXPECT_EQ(of(code).kind(), CommandKind::kUnknown) << std::hex << code;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,33 @@ class MfcBench {
   void issue(MfcOpcode opcode, std::uint32_t lsa, std::uint32_t offset, std::uint32_t size,
              std::uint32_t tag) {
     const std::optional<Fault> fault = mfc.issue(command(opcode, lsa, buffer.ea() + offset, size, tag));
+    ASSERT_FALSE(fault) << fault->message();
+  }
+
+  /// An element that moves `size` bytes at `offset` of the buffer.
+  ListElement element(std::uint32_t size, std::uint32_t offset) const {
+    return {size, static_cast<std::uint32_t>(buffer.ea().value) + offset};
+  }
+  ListElement stalling(std::uint32_t size, std::uint32_t offset) const {
+    return {size | ListElement::kStallBit, static_cast<std::uint32_t>(buffer.ea().value) + offset};
+  }
+
+  /// Where lists lie in the local store.
+  static constexpr std::uint32_t kListLsa = 0x30000;
+
+  /// The command for a list that lies in the local store at `list`.
+  MfcCommand list_command(MfcOpcode opcode, std::uint32_t lsa, std::size_t elements, std::uint32_t tag,
+                          std::uint32_t list = kListLsa) const {
+    const EffectiveAddress ea{(buffer.ea().value >> 32 << 32) | list};
+    return command(opcode, lsa, ea, static_cast<std::uint32_t>(elements * kListElementBytes), tag);
+  }
+  void write_list(const std::vector<ListElement>& elements, std::uint32_t list = kListLsa) {
+    std::memcpy(&store[list], elements.data(), elements.size() * sizeof(ListElement));
+  }
+  void issue_list(MfcOpcode opcode, std::uint32_t lsa, const std::vector<ListElement>& elements,
+                  std::uint32_t tag, std::uint32_t list = kListLsa) {
+    write_list(elements, list);
+    const std::optional<Fault> fault = mfc.issue(list_command(opcode, lsa, elements.size(), tag, list));
     ASSERT_FALSE(fault) << fault->message();
   }
 

@@ -85,6 +85,41 @@ TEST_P(MfcOrder, DrainKeepsOrder) {
   EXPECT_TRUE(bench.store_holds(0, 6));
 }
 
+// The `barrier` command is of no tag's business: everything before it comes before everything after it.
+TEST_P(MfcOrder, TheBarrierCommandOrdersTheWholeQueue) {
+  OrderBench bench(GetParam());
+  bench.get_block(MfcOpcode::get, 1, 0, 4);
+  bench.get_block(MfcOpcode::get, 2, 8192, 5);
+  bench.issue(MfcOpcode::barrier, 0, 0, 0, 6);
+  bench.get_block(MfcOpcode::get, 3, 0, 7);
+  bench.get_block(MfcOpcode::get, 4, 8192, 4);
+  bench.wait_all(1u << 4 | 1u << 7);
+  EXPECT_TRUE(bench.store_holds(0, 3));
+  EXPECT_TRUE(bench.store_holds(8192, 4));
+}
+
+TEST_P(MfcOrder, MfcsyncAndMfceieioAreBarriersOfTheirTag) {
+  for (const MfcOpcode opcode : {MfcOpcode::mfcsync, MfcOpcode::mfceieio}) {
+    OrderBench bench(GetParam());
+    bench.get_block(MfcOpcode::get, 1, 0, 4);
+    bench.issue(opcode, 0, 0, 0, 4);
+    bench.get_block(MfcOpcode::get, 2, 0, 4);
+    bench.wait_all(1u << 4);
+    EXPECT_TRUE(bench.store_holds(0, 2)) << name(opcode);
+  }
+}
+
+// Each is a queue command with a tag of its own that one can wait for.
+TEST_P(MfcOrder, WaitingForAnOrderingCommandIsWaitingForWhatItOrders) {
+  OrderBench bench(GetParam());
+  bench.get_block(MfcOpcode::get, 1, 0, 4);
+  bench.issue(MfcOpcode::barrier, 0, 0, 0, 6);
+  bench.wait_all(1u << 6);
+  EXPECT_TRUE(bench.store_holds(0, 1));
+  EXPECT_EQ(bench.mfc.statistics().ordering, 1u);
+  EXPECT_EQ(bench.mfc.statistics().bytes(), kBytes);
+}
+
 // What follows is legal behaviour that surprises; the lazy schedule always shows it.
 
 TEST(MfcOrderWhenLazy, UnorderedCommandsGoInReverse) {
@@ -111,6 +146,17 @@ TEST(MfcOrderWhenLazy, FencesAndBarriersDoNotReachOtherTags) {
     bench.get_block(opcode, 2, 0, 5);
     bench.wait_all(1u << 4 | 1u << 5);
     EXPECT_TRUE(bench.store_holds(0, 1));
+  }
+}
+
+TEST(MfcOrderWhenLazy, MfcsyncAndMfceieioDoNotReachOtherTags) {
+  for (const MfcOpcode opcode : {MfcOpcode::mfcsync, MfcOpcode::mfceieio}) {
+    OrderBench bench(kLazy);
+    bench.get_block(MfcOpcode::get, 1, 0, 4);
+    bench.issue(opcode, 0, 0, 0, 5);
+    bench.get_block(MfcOpcode::get, 2, 0, 5);
+    bench.wait_all(1u << 4 | 1u << 5);
+    EXPECT_TRUE(bench.store_holds(0, 1)) << name(opcode);
   }
 }
 

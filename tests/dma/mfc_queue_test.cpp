@@ -9,6 +9,9 @@ MfcCommand plain(std::uint32_t tag) { return {.word = 0x40, .tag = tag}; }
 MfcCommand fence(std::uint32_t tag) { return {.word = 0x42, .tag = tag}; }
 MfcCommand barrier(std::uint32_t tag) { return {.word = 0x41, .tag = tag}; }
 
+/// The `barrier` command.
+MfcCommand all(std::uint32_t tag) { return {.word = 0xC0, .tag = tag}; }
+
 SlotSet bits(std::initializer_list<int> slots) {
   SlotSet set = 0;
   for (const int slot : slots) set |= static_cast<SlotSet>(1u << slot);
@@ -77,6 +80,41 @@ TEST(MfcQueue, FencesAndBarriersChain) {
   EXPECT_TRUE(queue.empty());
 }
 
+TEST(MfcQueue, TheBarrierCommandWaitsForAllAndAllWaitForIt) {
+  MfcQueue queue;
+  queue.push(plain(1));
+  queue.push(plain(2));
+  queue.push(all(3));
+  queue.push(plain(2));
+  queue.push(all(3));
+  queue.push(fence(4));
+  EXPECT_EQ(queue.ready(), bits({0, 1}));
+  queue.complete(1);
+  queue.complete(0);
+  EXPECT_EQ(queue.ready(), bits({2}));
+  queue.complete(2);
+  EXPECT_EQ(queue.ready(), bits({3}));
+  queue.complete(3);
+  EXPECT_EQ(queue.ready(), bits({4}));
+  queue.complete(4);
+  EXPECT_EQ(queue.ready(), bits({5}));
+}
+
+TEST(MfcQueue, KnowsAllThatMustBeDoneBefore) {
+  MfcQueue queue;
+  queue.push(plain(1));
+  queue.push(barrier(1));
+  queue.push(plain(2));
+  queue.push(plain(1));  // after slot 1, hence after slot 0
+  queue.push(all(3));
+  EXPECT_EQ(queue.with_predecessors(0), 0);
+  EXPECT_EQ(queue.with_predecessors(bits({2})), bits({2}));
+  EXPECT_EQ(queue.with_predecessors(bits({3})), bits({0, 1, 3}));
+  EXPECT_EQ(queue.with_predecessors(bits({4})), bits({0, 1, 2, 3, 4}));
+  queue.complete(0);
+  EXPECT_EQ(queue.with_predecessors(bits({3})), bits({1, 3}));
+}
+
 // A slot filled anew is another command: those that waited for the old one do not wait for it.
 TEST(MfcQueue, AReusedSlotHasNoPast) {
   MfcQueue queue;
@@ -98,6 +136,7 @@ TEST(MfcQueue, FindsSlotsByTagAndAge) {
   EXPECT_EQ(queue.slots_of(1u << 1 | 1u << 31), bits({0, 1, 2}));
   EXPECT_EQ(queue.slots_of(1u << 5), 0);
   EXPECT_EQ(queue.newest(bits({0, 1})), 1);
+  EXPECT_EQ(queue.oldest(bits({1, 2})), 1);
   queue.clear();
   EXPECT_TRUE(queue.empty());
   EXPECT_EQ(queue.busy_tags(), 0u);

@@ -213,6 +213,45 @@ TEST(MfcSchedules, ReadingBeforeTheWaitIsFound) {
   EXPECT_EQ(seen.size(), 9u) << "0 to 8 of the 8 lines";
 }
 
+// What is in a get's destination until its tag was waited for is nobody's business. Poison there makes a
+// kernel fail that would come away with old bytes, and only the random schedule has it.
+TEST(MfcSchedules, RandomPoisonsTheDestinationOfAGetInFlight) {
+  const auto early_look = [](MfcBench& bench) {
+    bench.fill_store(0, 1024, 1);
+    bench.fill_buffer(0, 1024, 1);
+    bench.issue(MfcOpcode::get, 128, 128, 512, 0);
+    const auto poisoned = bench.count_in_store(0, 1024, std::to_integer<int>(Transfer::kPoison));
+    EXPECT_LE(poisoned, 512);
+    bench.wait_all(1);
+    EXPECT_EQ(bench.count_in_store(0, 1024, 1), 1024);
+    return poisoned;
+  };
+  std::set<std::ptrdiff_t> seen;
+  MfcBench bench(random_schedule(1));
+  for (std::uint64_t job = 0; job < 200; ++job) {
+    bench.mfc.begin_job(job);
+    seen.insert(early_look(bench));
+  }
+  EXPECT_EQ(seen, (std::set<std::ptrdiff_t>{0, 128, 256, 384, 512}));
+  for (const Schedule& schedule : {kEager, kLazy}) {
+    MfcBench calm(schedule);
+    EXPECT_EQ(early_look(calm), 0);
+  }
+}
+
+// A fenced get has not started while the put before it reads its destination.
+TEST(MfcSchedules, RandomPoisonsNothingBeforeATransferMayStart) {
+  MfcBench bench(random_schedule(1));
+  for (std::uint64_t job = 0; job < 300; ++job) {
+    bench.mfc.begin_job(job);
+    bench.fill_store(0, 1024, 1);
+    bench.issue(MfcOpcode::put, 0, 0, 1024, 0);
+    bench.issue(MfcOpcode::getf, 0, 4096, 1024, 0);
+    bench.wait_all(1);
+    ASSERT_EQ(std::count(bench.buffer.data(), bench.buffer.data() + 1024, std::byte{1}), 1024) << job;
+  }
+}
+
 TEST(MfcSchedules, OverwritingTheSourceOfAPutIsFound) {
   const auto early_write = [](Schedule schedule) {
     MfcBench bench(schedule);

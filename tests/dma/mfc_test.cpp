@@ -141,6 +141,20 @@ TEST(Mfc, CountsStallsAndWaitsExactlyWhenLazy) {
   EXPECT_EQ(bench.mfc.statistics().tag_waits, 1u);
 }
 
+TEST(Mfc, CountsHowFullItsQueueWas) {
+  MfcBench lazy(kLazy);
+  EXPECT_EQ(lazy.mfc.statistics().mean_queue_occupancy(), 0.0);
+  for (std::uint32_t i = 0; i < 3; ++i) lazy.issue(MfcOpcode::get, i * 16, i * 16, 16, 2);
+  lazy.issue(MfcOpcode::getllar, 0, 0, 0, 0);  // at once, in no slot
+  EXPECT_EQ(lazy.mfc.statistics().queued_commands, 3u);
+  EXPECT_EQ(lazy.mfc.statistics().mean_queue_occupancy(), 2.0);
+  EXPECT_EQ(lazy.mfc.statistics().highest_queue_occupancy, 3);
+
+  MfcBench eager(kEager);
+  for (std::uint32_t i = 0; i < 3; ++i) eager.issue(MfcOpcode::get, i * 16, i * 16, 16, 2);
+  EXPECT_EQ(eager.mfc.statistics().mean_queue_occupancy(), 1.0);
+}
+
 TEST(Mfc, EagerNeverStallsOrWaits) {
   MfcBench bench(kEager);
   for (std::uint32_t i = 0; i < 20; ++i) bench.issue(MfcOpcode::get, i * 16, i * 16, 16, 2);

@@ -10,19 +10,22 @@ namespace {
 
 constexpr std::byte kUntouched{0xEE};
 
-// Local store and storage with different, position-dependent contents.
+// Local store and storage with different, position-dependent contents, and a get from one to the other.
 struct Memories {
+  AddressSpace space;
+  StoragePort port{space, nullptr};
   std::vector<std::byte> store = std::vector<std::byte>(kLocalStoreBytes, kUntouched);
   std::vector<std::byte> storage;
 
   Memories() {
     for (int i = 0; i < 32768; ++i) storage.push_back(static_cast<std::byte>(i * 7 % 229));
   }
-};
 
-MfcCommand get_at(std::uint64_t ea_offset, std::uint32_t size) {
-  return {static_cast<std::uint32_t>(MfcOpcode::get), {1024}, kMainMemoryBase + ea_offset, size, 0};
-}
+  StoragePlace place(std::uint64_t offset) { return {kMainMemoryBase + offset, storage.data() + offset}; }
+  Transfer get(std::uint64_t offset, std::uint32_t size) {
+    return Transfer::get(place(offset), &store[1024], size);
+  }
+};
 
 struct Shape {
   std::uint64_t ea_offset;
@@ -35,7 +38,7 @@ class TransferShape : public testing::TestWithParam<Shape> {};
 TEST_P(TransferShape, IsCutAtLinesOfMainStorage) {
   const auto [offset, size, pieces] = GetParam();
   Memories memories;
-  const Transfer transfer(get_at(offset, size), memories.store.data(), memories.storage.data() + offset);
+  const Transfer transfer = memories.get(offset, size);
   EXPECT_EQ(transfer.pieces_left(), pieces);
 }
 
@@ -44,11 +47,11 @@ TEST_P(TransferShape, MovesEveryByteInAnyOrderOfPieces) {
   const auto [offset, size, pieces] = GetParam();
   for (std::uint32_t order = 0; order < 4; ++order) {
     Memories memories;
-    Transfer transfer(get_at(offset, size), memories.store.data(), memories.storage.data() + offset);
+    Transfer transfer = memories.get(offset, size);
     while (transfer.pieces_left() > 0) {
       const std::uint32_t left = transfer.pieces_left();
       const std::uint32_t choices[] = {0, left - 1, left / 2, (left * 13 + 5) % left};
-      transfer.move_piece(choices[order]);
+      transfer.move_piece(choices[order], memories.port);
       ASSERT_EQ(transfer.pieces_left(), left - 1);
     }
     EXPECT_EQ(std::memcmp(&memories.store[1024], &memories.storage[offset], size), 0) << "order " << order;
@@ -60,9 +63,10 @@ TEST_P(TransferShape, MovesEveryByteInAnyOrderOfPieces) {
 TEST_P(TransferShape, MovesTheRestAfterSomePieces) {
   const auto [offset, size, pieces] = GetParam();
   Memories memories;
-  Transfer transfer(get_at(offset, size), memories.store.data(), memories.storage.data() + offset);
-  for (std::uint32_t i = 0; i < pieces / 2; ++i) transfer.move_piece(transfer.pieces_left() / 2);
-  transfer.move_rest();
+  Transfer transfer = memories.get(offset, size);
+  for (std::uint32_t i = 0; i < pieces / 2; ++i)
+    transfer.move_piece(transfer.pieces_left() / 2, memories.port);
+  transfer.move_rest(memories.port);
   EXPECT_EQ(transfer.pieces_left(), 0u);
   EXPECT_EQ(std::memcmp(&memories.store[1024], &memories.storage[offset], size), 0);
   EXPECT_EQ(memories.store[1024 + size], kUntouched);
@@ -76,9 +80,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, TransferShape,
 
 TEST(Transfer, MovesAWholePieceAndOnlyThat) {
   Memories memories;
-  Transfer transfer(get_at(112, 272), memories.store.data(), memories.storage.data() + 112);
+  Transfer transfer = memories.get(112, 272);
   ASSERT_EQ(transfer.pieces_left(), 3u);  // 16, 128 and 128 bytes
-  transfer.move_piece(1);
+  transfer.move_piece(1, memories.port);
   EXPECT_EQ(memories.store[1024 + 15], kUntouched);
   EXPECT_EQ(std::memcmp(&memories.store[1024 + 16], &memories.storage[128], 128), 0);
   EXPECT_EQ(memories.store[1024 + 144], kUntouched);
@@ -86,11 +90,27 @@ TEST(Transfer, MovesAWholePieceAndOnlyThat) {
 
 TEST(Transfer, PutGoesTheOtherWay) {
   Memories memories;
-  Transfer transfer({static_cast<std::uint32_t>(MfcOpcode::putr), {1024}, kMainMemoryBase, 32, 0},
-                    memories.store.data(), memories.storage.data());
-  transfer.move_rest();
+  Transfer transfer = Transfer::put(&memories.store[1024], memories.place(0), 32);
+  transfer.move_rest(memories.port);
   EXPECT_EQ(memories.storage[31], kUntouched);
   EXPECT_NE(memories.storage[32], kUntouched);
+}
+
+TEST(Transfer, PoisonFillsTheDestinationOfAGetAndNothingOfAPut) {
+  Memories memories;
+  Transfer get = memories.get(0, 32);
+  get.poison();
+  EXPECT_EQ(memories.store[1024], Transfer::kPoison);
+  EXPECT_EQ(memories.store[1024 + 31], Transfer::kPoison);
+  EXPECT_EQ(memories.store[1024 + 32], kUntouched);
+  get.move_rest(memories.port);
+  EXPECT_EQ(std::memcmp(&memories.store[1024], &memories.storage[0], 32), 0);
+
+  const std::vector<std::byte> before = memories.storage;
+  Transfer put = Transfer::put(&memories.store[2048], memories.place(0), 32);
+  put.poison();
+  EXPECT_EQ(memories.storage, before);
+  EXPECT_EQ(memories.store[2048], kUntouched);
 }
 
 }  // namespace

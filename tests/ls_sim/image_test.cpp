@@ -38,6 +38,41 @@ std::size_t load_segment_offset(const Bytes& file) {
   }
 }
 
+template <typename T>
+T read(const Bytes& file, std::size_t offset) {
+  T record;
+  std::memcpy(&record, file.data() + offset, sizeof record);
+  return record;
+}
+
+/// Where the header of the section of that name lies in the file.
+std::size_t section_offset(const Bytes& file, const std::string& name) {
+  const auto header = read<Elf64_Ehdr>(file, 0);
+  const auto at = [&](std::size_t i) { return header.e_shoff + i * sizeof(Elf64_Shdr); };
+  const auto names = read<Elf64_Shdr>(file, at(header.e_shstrndx));
+  for (std::size_t i = 0; i < header.e_shnum; ++i) {
+    const auto* text = file.data() + names.sh_offset + read<Elf64_Shdr>(file, at(i)).sh_name;
+    if (name == reinterpret_cast<const char*>(text)) return at(i);
+  }
+  throw std::logic_error("no section " + name);
+}
+
+/// Moves the program headers to the end of the file, with an edited copy of the loadable one.
+void append_segment(Bytes& file, const std::function<void(Elf64_Phdr&)>& edit) {
+  const auto first = read<Elf64_Phdr>(file, load_segment_offset(file));
+  change<Elf64_Ehdr>(file, 0, [&](Elf64_Ehdr& h) {
+    h.e_phoff = file.size();
+    h.e_phnum = 2;
+  });
+  file.resize(file.size() + 2 * sizeof first);
+  for (const std::size_t from_end : {std::size_t{2}, std::size_t{1}}) {
+    change<Elf64_Phdr>(file, file.size() - from_end * sizeof first, [&](Elf64_Phdr& s) {
+      s = first;
+      if (from_end == 1) edit(s);
+    });
+  }
+}
+
 std::string refusal(const Bytes& file) {
   try {
     load_image("k", file);
@@ -91,10 +126,144 @@ TEST(LoadImage, RefusesASegmentElsewhere) {
   EXPECT_NE(refusal(file).find("0x80"), std::string::npos);
 }
 
+TEST(LoadImage, RefusesMoreBytesInTheFileThanInMemory) {
+  Bytes file = good_elf();
+  change<Elf64_Phdr>(file, load_segment_offset(file), [](Elf64_Phdr& s) { s.p_filesz = s.p_memsz + 1; });
+  EXPECT_NE(refusal(file).find("more bytes in the file than in memory"), std::string::npos);
+}
+
+TEST(LoadImage, RefusesSegmentsThatOverlap) {
+  Bytes file = good_elf();
+  append_segment(file, [](Elf64_Phdr& s) { s.p_vaddr += 16; });
+  EXPECT_EQ(refusal(file), "kernel image k: its loadable segments overlap at address 144");
+}
+
+TEST(LoadImage, RefusesTwoSegmentsSideBySide) {
+  Bytes file = good_elf();
+  append_segment(file, [](Elf64_Phdr& s) { s.p_vaddr += 0x10000; });
+  EXPECT_EQ(refusal(file), "kernel image k: it has 2 loadable segments; ls.ld makes exactly one");
+}
+
 TEST(LoadImage, RefusesAnEntryOutsideTheText) {
   Bytes file = good_elf();
   change<Elf64_Ehdr>(file, 0, [](Elf64_Ehdr& h) { h.e_entry = 0x3FF00; });
-  EXPECT_NE(refusal(file).find("entry"), std::string::npos);
+  EXPECT_EQ(refusal(file), "kernel image k: its entry lies outside its text");
+}
+
+TEST(LoadImage, RefusesAnObjectFile) {
+  Bytes file = good_elf();
+  change<Elf64_Ehdr>(file, 0, [](Elf64_Ehdr& h) { h.e_type = ET_REL; });
+  EXPECT_NE(refusal(file).find("not a linked program"), std::string::npos);
+}
+
+TEST(LoadImage, NamesARealSpuProgram) {
+  Bytes file = good_elf();
+  change<Elf64_Ehdr>(file, 0, [](Elf64_Ehdr& h) {
+    h.e_ident[EI_CLASS] = ELFCLASS32;
+    h.e_ident[EI_DATA] = ELFDATA2MSB;
+    h.e_machine = EM_SPU << 8;  // as a little-endian host reads it
+  });
+  EXPECT_NE(refusal(file).find("ELF machine 23 (a real SPU)"), std::string::npos);
+}
+
+TEST(LoadImage, RefusesARelocation) {
+  Bytes file = good_elf();
+  change<Elf64_Shdr>(file, section_offset(file, ".bss"), [](Elf64_Shdr& s) { s.sh_type = SHT_RELA; });
+  EXPECT_EQ(refusal(file),
+            "kernel image k: a relocation is left: an absolute pointer is stored in its static data");
+}
+
+TEST(LoadImage, RefusesAnAbsoluteAddressAmongTheRelocationsThatTheLinkKept) {
+  Bytes file = good_elf();
+  const auto table = read<Elf64_Shdr>(file, section_offset(file, ".rela.text"));
+  ASSERT_NE(table.sh_size, 0u);
+  change<Elf64_Rela>(file, table.sh_offset, [](Elf64_Rela& r) { r.r_info = ELF64_R_INFO(1, R_X86_64_64); });
+  EXPECT_NE(refusal(file).find("a relocation is left"), std::string::npos);
+}
+
+TEST(LoadImage, RefusesSectionsThatOverlap) {
+  Bytes file = good_elf();
+  change<Elf64_Shdr>(file, section_offset(file, ".bss"),
+                     [](Elf64_Shdr& section) { section.sh_addr = kEnvironmentBytes; });
+  EXPECT_NE(refusal(file).find("its section .bss overlaps another"), std::string::npos);
+}
+
+TEST(LoadImage, RefusesSectionsOutsideTheSegment) {
+  for (const std::uint64_t address : {0ull, 0x3FFF0ull, 0xFFFFFFF0ull}) {
+    Bytes file = good_elf();
+    change<Elf64_Shdr>(file, section_offset(file, ".bss"), [&](Elf64_Shdr& s) { s.sh_addr = address; });
+    EXPECT_NE(refusal(file).find("its section .bss overlaps another or lies outside"), std::string::npos);
+  }
+}
+
+TEST(LoadImage, RefusesAbsurdSizes) {
+  Bytes file = good_elf();
+  change<Elf64_Shdr>(file, section_offset(file, ".text"), [](Elf64_Shdr& s) { s.sh_size = ~0ull; });
+  EXPECT_NE(refusal(file).find("its section .text has an address or size of more than 32 bits"),
+            std::string::npos);
+  file = good_elf();
+  change<Elf64_Ehdr>(file, 0, [](Elf64_Ehdr& h) { h.e_shoff = ~0ull - 8; });
+  EXPECT_NE(refusal(file).find("truncated: the section header table"), std::string::npos);
+  file = good_elf();
+  change<Elf64_Ehdr>(file, 0, [](Elf64_Ehdr& h) { h.e_phnum = 0xFFFF; });
+  EXPECT_NE(refusal(file).find("truncated: the program header table"), std::string::npos);
+}
+
+TEST(LoadImage, RefusesDeclarationsThatCannotBe) {
+  struct Case {
+    std::size_t word;
+    std::uint32_t value;
+    const char* says;
+  };
+  for (const auto& [word, value, says] : {Case{0, 0x314B4353, "of another version"},
+                                          {1, 0, "declared stack of 0 bytes"},
+                                          {1, 24, "declared stack of 24 bytes"},
+                                          {1, 0x40000, "declared stack of 262144 bytes"},
+                                          {1, 0xFFFFFFF0, "declared stack of 4294967280 bytes"},
+                                          {3, 0, "do not end where _end says"},
+                                          {3, 0xFFFFFFF0, "do not end where _end says"},
+                                          {4, 2, "neither says checked nor unchecked"}}) {
+    Bytes file = good_elf();
+    const std::size_t at = read<Elf64_Shdr>(file, section_offset(file, ".softcell.kernel")).sh_offset;
+    change<std::uint32_t>(file, at + word * 4, [wanted = value](std::uint32_t& w) { w = wanted; });
+    EXPECT_NE(refusal(file).find(says), std::string::npos) << refusal(file);
+  }
+}
+
+TEST(LoadImage, RefusesAnImageWithoutDeclaration) {
+  Bytes file = good_elf();
+  change<Elf64_Shdr>(file, section_offset(file, ".softcell.kernel"), [](Elf64_Shdr& s) { s.sh_name = 0; });
+  EXPECT_NE(refusal(file).find("no .softcell.kernel section"), std::string::npos);
+}
+
+TEST(LoadImage, RefusesAVariableOutsideTheImage) {
+  Bytes file = good_elf();
+  const auto symbols = read<Elf64_Shdr>(file, section_offset(file, ".symtab"));
+  change<Elf64_Sym>(file, symbols.sh_offset + sizeof(Elf64_Sym), [](Elf64_Sym& s) {
+    s = {.st_name = 0,
+         .st_info = STT_OBJECT,
+         .st_other = 0,
+         .st_shndx = 1,
+         .st_value = 0x100,
+         .st_size = ~0ull};
+  });
+  EXPECT_EQ(refusal(file), "kernel image k: its variable  lies outside it");
+}
+
+TEST(LoadImage, KnowsSectionsAndVariablesByAddress) {
+  const KernelImage image = test_image("remembers");
+  EXPECT_EQ(image.text_begin, kEnvironmentBytes);
+  EXPECT_EQ(image.text_end - image.text_begin, image.sizes.text);
+  EXPECT_LE(image.text_end, image.rodata_begin);
+  EXPECT_EQ(image.rodata_end - image.rodata_begin, image.sizes.rodata);
+  EXPECT_LE(image.rodata_end, image.data_begin);
+  ASSERT_EQ(image.objects.size(), 3u);
+  EXPECT_EQ(image.objects[0].name, "in_data");
+  EXPECT_EQ(image.objects[0].begin.value, image.data_begin);
+  EXPECT_EQ(image.objects[0].bytes, 4u);
+  EXPECT_LT(image.objects[1].begin, image.objects[2].begin);
+  EXPECT_FALSE(image.checked);
+  EXPECT_EQ(*image.elf, Bytes(test_elf("remembers").begin(), test_elf("remembers").end()));
 }
 
 TEST(LoadImage, SurvivesEveryChangedByteOfTheHeaders) {

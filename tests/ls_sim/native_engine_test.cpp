@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/source_lines.h"
 #include "test_images.h"
 
 namespace softcell::ls_sim {
@@ -18,8 +19,13 @@ class RecordingPort final : public ChannelPort {
     return note();
   }
   ChannelReply count(std::uint32_t) override { return note(); }
+  ChannelReply issue(const dma::MfcCommand& command) override {
+    commands.push_back(command);
+    return note();
+  }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> writes;
+  std::vector<dma::MfcCommand> commands;
   std::vector<unsigned int> modes;
 
  private:
@@ -53,13 +59,62 @@ TEST_F(NativeEngineTest, EndsWithTheStatusOfMain) {
 TEST_F(NativeEngineTest, PassesCommandsThroughTheChannelsOfTheMfc) {
   const std::uint64_t ea = 0x5EA0'1234'5680;
   run("echo_arguments", {.argp = ea});
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> first(port_.writes.begin() + 1,
-                                                                   port_.writes.begin() + 6);
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{
-      {17, 0x5EA0}, {18, 0x12345680}, {19, 128}, {20, 5}, {21, 0x40}};
-  EXPECT_EQ(first, expected);
-  EXPECT_EQ(port_.writes[0].first, 16u);
-  EXPECT_LT(port_.writes[0].second, dma::kLocalStoreBytes);
+  ASSERT_FALSE(port_.commands.empty());
+  const dma::MfcCommand& first = port_.commands.front();
+  EXPECT_EQ(first.ea.value, ea);
+  EXPECT_EQ(first.size, 128u);
+  EXPECT_EQ(first.tag, 5u);
+  EXPECT_EQ(first.word, 0x40u);
+  EXPECT_LT(first.lsa.value, dma::kLocalStoreBytes);
+}
+
+/// Notes every access with the place of its instruction.
+class RecordingObserver final : public AccessObserver {
+ public:
+  explicit RecordingObserver(const KernelImage& image) : lines_(image) {}
+  void on_access(const Access& access) override {
+    accesses.emplace_back(access, lines_.place_of(access.instruction));
+  }
+  std::vector<std::pair<Access, std::string>> accesses;
+
+ private:
+  SourceLines lines_;
+};
+
+TEST_F(NativeEngineTest, TellsLoadsAndStoresOfACheckedKernelWithTheirPlaces) {
+  image_ = test_image("remembers_checked");
+  ASSERT_TRUE(image_.checked);
+  engine_->load(image_);
+  RecordingObserver observer(image_);
+  ASSERT_FALSE(engine_->run({.argp = 0x1000}, port_, &observer).fault);
+  // counts.data = ++in_data: one load, two stores.
+  std::vector<std::pair<std::uint32_t, bool>> of_line;
+  for (const auto& [access, place] : observer.accesses) {
+    EXPECT_GE(access.stack_pointer.value, dma::kLocalStoreBytes - image_.sizes.stack);
+    EXPECT_EQ(access.bytes, 4u);
+    if (place == "remembers.cpp:14") of_line.emplace_back(access.lsa.value, access.is_store);
+  }
+  const std::uint32_t in_data = image_.objects.front().begin.value;
+  ASSERT_EQ(image_.objects.front().name, "in_data");
+  ASSERT_EQ(of_line.size(), 3u);
+  EXPECT_EQ(of_line[0], std::pair(in_data, false));
+  EXPECT_TRUE(of_line[1].second && of_line[2].second);
+  EXPECT_NE(of_line[1].first, of_line[2].first);
+}
+
+TEST_F(NativeEngineTest, AnUncheckedKernelReportsNothing) {
+  image_ = test_image("remembers");
+  engine_->load(image_);
+  RecordingObserver observer(image_);
+  ASSERT_FALSE(engine_->run({.argp = 0x1000}, port_, &observer).fault);
+  EXPECT_TRUE(observer.accesses.empty());
+}
+
+TEST_F(NativeEngineTest, TellsTheTagMaskBeforeTheTagUpdate) {
+  run("echo_arguments", {.argp = 0x1000});
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{{22, 1u << 5}, {23, 2}};
+  ASSERT_GE(port_.writes.size(), 2u);
+  EXPECT_EQ(decltype(expected)(port_.writes.begin(), port_.writes.begin() + 2), expected);
 }
 
 TEST_F(NativeEngineTest, RestoresTheHostsArithmeticInEveryCallAndAfterwards) {

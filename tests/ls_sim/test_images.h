@@ -1,5 +1,5 @@
 #pragma once
-// The test kernels, by name.
+// The test kernels, by name; their checked flavours by that name and "_checked".
 
 #include <cstddef>
 #include <span>
@@ -8,22 +8,30 @@
 
 #include "softcell/ls_sim/image.h"
 
-#define SC_TEST_KERNELS(X)  \
-  X(echo_arguments)         \
-  X(remembers)              \
-  X(stack_overflow_deep)    \
-  X(read_effective_address) \
-  X(outside_local_store) X(illegal_instruction) X(endless) X(bad_dma) X(no_wait) X(arithmetic)
+#define SC_TEST_KERNELS(X)                                                                          \
+  X(echo_arguments)                                                                                 \
+  X(remembers)                                                                                      \
+  X(stack_overflow_deep)                                                                            \
+  X(read_effective_address)                                                                         \
+  X(outside_local_store)                                                                            \
+  X(illegal_instruction)                                                                            \
+  X(endless)                                                                                        \
+  X(bad_dma) X(no_wait) X(padded) X(arithmetic) X(waits) X(pings) X(doubles) X(increments) X(locks) \
+      X(queues) X(meets)
 
 extern "C" {
-#define SC_DECLARE(name) extern const std::byte softcell_image_##name[], softcell_image_##name##_end[];
+#define SC_DECLARE(name)                                                         \
+  extern const std::byte softcell_image_##name[], softcell_image_##name##_end[]; \
+  extern const std::byte softcell_image_##name##_checked[], softcell_image_##name##_checked_end[];
 SC_TEST_KERNELS(SC_DECLARE)
 #undef SC_DECLARE
 }
 
 inline std::span<const std::byte> test_elf(const std::string& wanted) {
-#define SC_CHOOSE(name) \
-  if (wanted == #name) return {softcell_image_##name, softcell_image_##name##_end};
+#define SC_CHOOSE(name)                                                             \
+  if (wanted == #name) return {softcell_image_##name, softcell_image_##name##_end}; \
+  if (wanted == #name "_checked")                                                   \
+    return {softcell_image_##name##_checked, softcell_image_##name##_checked_end};
   SC_TEST_KERNELS(SC_CHOOSE)
 #undef SC_CHOOSE
   throw std::logic_error("no test kernel " + wanted);

@@ -7,17 +7,8 @@ if(NOT first_line MATCHES "^// refused: (.+)$")
 endif()
 set(expected "${CMAKE_MATCH_1}")
 
-# The command stands behind "--".
-set(command)
-set(behind FALSE)
-math(EXPR last "${CMAKE_ARGC} - 1")
-foreach(i RANGE ${last})
-  if(behind)
-    list(APPEND command "${CMAKE_ARGV${i}}")
-  elseif(CMAKE_ARGV${i} STREQUAL "--")
-    set(behind TRUE)
-  endif()
-endforeach()
+include(${CMAKE_CURRENT_LIST_DIR}/command_behind_dashes.cmake)
+command_behind_dashes(command)
 
 set(ENV{LC_ALL} C)  # messages in English, quotes in ASCII
 execute_process(COMMAND ${command} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)

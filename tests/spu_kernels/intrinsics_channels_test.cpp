@@ -12,6 +12,7 @@ using softcell_sdk::kCount;
 using softcell_sdk::kHalt;
 using softcell_sdk::kRead;
 using softcell_sdk::kStop;
+using softcell_sdk::kTagStatus;
 using softcell_sdk::kWrite;
 
 class IntrinsicsChannels : public ::testing::Test {
@@ -51,7 +52,7 @@ TEST_F(IntrinsicsChannels, ChannelsByNumber) {
   expect_write(28, 78, [] { spu_writechqw(SPU_WrOutMbox, (vec_uint4{78u, 1u, 2u, 3u})); });
   expect_read(127, [] { return si_to_uint(si_rdch(127)); });
   expect_count(0, [] { return si_to_uint(si_rchcnt(0)); });
-  expect_write(22, 5, [] { si_wrch(MFC_WrTagMask, si_from_uint(5)); });
+  expect_write(23, 2, [] { si_wrch(MFC_WrTagUpdate, si_from_uint(2)); });
 }
 
 TEST_F(IntrinsicsChannels, StopsAndHalts) {
@@ -144,6 +145,7 @@ TEST_F(IntrinsicsChannels, ListsAreAddressedInLocalStore) {
   expect(0x44, [&] { mfc_getl(ls, kEa, list, 64, 2, 0, 0); });
   expect(0x45, [&] { mfc_getlb(ls, kEa, list, 64, 2, 0, 0); });
   expect(0x46, [&] { mfc_getlf(ls, kEa, list, 64, 2, 0, 0); });
+  expect(0x44, [&] { mfc_getl(ls, kEa, 0x400u, 64, 2, 0, 0); });
   const mfc_list_element_t element = {1, 0, 16384, 0x89ABCDEF};
   std::array<std::uint32_t, 2> words{};
   std::memcpy(words.data(), &element, sizeof element);
@@ -204,7 +206,6 @@ TEST_F(IntrinsicsChannels, NamedChannels) {
   expect_count(28, [] { return spu_stat_out_mbox(); });
   expect_count(30, [] { return spu_stat_out_intr_mbox(); });
   expect_count(0, [] { return spu_stat_event_status(); });
-  expect_write(22, 0x1234567, [] { mfc_write_tag_mask(0x1234567); });
   expect_write(23, 0x1234567, [] { mfc_write_tag_update(0x1234567); });
   expect_write(26, 0x1234567, [] { mfc_write_list_stall_ack(0x1234567); });
   expect_write(28, 0x1234567, [] { spu_write_out_mbox(0x1234567); });
@@ -219,21 +220,27 @@ TEST_F(IntrinsicsChannels, NamedChannels) {
   expect_write(23, 2, [] { mfc_write_tag_update_all(); });
 }
 
-TEST_F(IntrinsicsChannels, WaitingForTagsWritesTheConditionAndReadsTheStatus) {
+TEST_F(IntrinsicsChannels, WaitingForTagsIsOneCallWithTheCondition) {
   const auto expect = [&](std::uint32_t condition, std::function<std::uint32_t()> kernel) {
-    spe_.answer = [](const GateCall& c) { return c.kind == kRead ? 0x55u : 0u; };
+    spe_.answer = [](const GateCall&) { return 0x55u; };
     std::uint32_t got = 0;
-    const auto calls = spe_.run([&] { got = kernel(); });
-    ASSERT_EQ(calls.size(), 2u);
-    EXPECT_EQ((std::array{calls[0].kind, calls[0].channel, calls[0].value}),
-              (std::array{std::uint32_t{kWrite}, 23u, condition}));
-    EXPECT_EQ((std::array{calls[1].kind, calls[1].channel, got}),
-              (std::array{std::uint32_t{kRead}, 24u, 0x55u}));
+    const GateCall call = only([&] { got = kernel(); });
+    EXPECT_EQ((std::array{call.kind, call.value, got}),
+              (std::array{std::uint32_t{kTagStatus}, condition, 0x55u}));
   };
   expect(0, [] { return mfc_read_tag_status_immediate(); });
   expect(1, [] { return mfc_read_tag_status_any(); });
   expect(2, [] { return mfc_read_tag_status_all(); });
   expect(2, [] { return spu_mfcstat(MFC_TAG_UPDATE_ALL); });
+}
+
+TEST_F(IntrinsicsChannels, TheTagMaskWaitsInTheEnvironment) {
+  const GateCall call = only([] {
+    mfc_write_tag_mask(0x1234567);
+    si_wrch(MFC_WrTagMask, si_from_uint(0x80000001));
+    mfc_read_tag_status_all();
+  });
+  EXPECT_EQ(call.tag_mask, 0x80000001u);
 }
 
 TEST_F(IntrinsicsChannels, CompositesTakeRawCommands) {

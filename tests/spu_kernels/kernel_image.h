@@ -9,9 +9,9 @@
 
 namespace softcell::test {
 
-inline ls_sim::KernelImage kernel_image(const std::string& name) {
+inline ls_sim::KernelImage kernel_image(const std::string& name, bool checked = false) {
   for (const spu_kernels::ImageFile& file : spu_kernels::image_files())
-    if (file.name == name) return ls_sim::load_image(name, file.elf);
+    if (file.name == name) return ls_sim::load_image(name, checked ? file.checked_elf : file.elf);
   throw std::logic_error("no kernel " + name);
 }
 

@@ -19,7 +19,7 @@ constexpr std::size_t kLocalStoreBytes = 256 * 1024;
 /// One call of the gate, with the environment's DMA parameters at that moment.
 struct GateCall {
   std::uint32_t kind = 0, channel = 0, value = 0;
-  std::uint32_t lsa = 0, eah = 0, eal = 0, size = 0, tag = 0;
+  std::uint32_t lsa = 0, eah = 0, eal = 0, size = 0, tag = 0, tag_mask = 0;
 };
 
 class LocalStoreThread {
@@ -74,8 +74,8 @@ class LocalStoreThread {
     LocalStoreThread& self = *current();
     softcell_sdk::Environment e;
     std::memcpy(&e, self.base(), sizeof e);
-    self.calls_.push_back(
-        {operation >> 8, operation & 0xFF, value, e.mfc_lsa, e.mfc_eah, e.mfc_eal, e.mfc_size, e.mfc_tag});
+    self.calls_.push_back({operation >> 8, operation & 0xFF, value, e.mfc_lsa, e.mfc_eah, e.mfc_eal,
+                           e.mfc_size, e.mfc_tag, e.mfc_tag_mask});
     return self.answer ? self.answer(self.calls_.back()) : 0;
   }
 

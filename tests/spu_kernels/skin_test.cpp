@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "softcell/ls_sim/findings.h"
 #include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/half.h"
 #include "softcell/ppu/lattice.h"
@@ -25,7 +26,7 @@ class SkinRig {
   explicit SkinRig(const ppu::TriangleMesh& mesh, float cell_size, const ls_sim::SpeOptions& options = {})
       : lattice(ppu::voxelize(mesh, cell_size)),
         embedding(std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice))),
-        image_(test::kernel_image("skin")),
+        image_(test::kernel_image("skin", options.findings != nullptr)),
         pool_(memory_, options),
         orchestrator_(memory_, pool_, image_) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) positions.push_back(lattice.rest_position(i));
@@ -100,6 +101,16 @@ TEST(Skin, AgreesWithTheOracleInRandomPoses) {
           rig.lattice.rest_position(i) + Vector3f(jitter(random), jitter(random), jitter(random));
     }
     rig.expect_oracle(kUlpAtTwo, 0.005);
+  }
+}
+
+TEST(Skin, ItsCheckedFlavourFindsNothing) {
+  for (const char* schedule : {"eager", "lazy", "random:5"}) {
+    ls_sim::Findings findings;
+    SkinRig rig(ppu::make_torus(0.72f, 0.28f, 40, 20), 0.2f,
+                {.spes = 2, .schedule = dma::parse_schedule(schedule), .findings = &findings});
+    rig.expect_oracle(kUlpAtTwo, 0.005);
+    for (const ls_sim::Finding& finding : findings.list()) ADD_FAILURE() << finding.fault.message();
   }
 }
 

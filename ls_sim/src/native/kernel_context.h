@@ -20,13 +20,23 @@ namespace softcell::ls_sim::native {
 /// compares the two).
 struct Environment {
   std::uint64_t gate = 0;
-  std::uint32_t mfc_lsa = 0, mfc_eah = 0, mfc_eal = 0, mfc_size = 0, mfc_tag = 0;
-  std::uint32_t reserved[25] = {};
+  std::uint32_t mfc_lsa = 0, mfc_eah = 0, mfc_eal = 0, mfc_size = 0, mfc_tag = 0, mfc_tag_mask = 0;
+  std::uint32_t access_bytes = 0, access_instruction = 0, access_stack_pointer = 0;
+  std::uint32_t reserved[21] = {};
 };
 static_assert(sizeof(Environment) == 128);
 
-/// What the kernel asks of the worker.
-enum class Operation : std::uint32_t { kRead = 0, kWrite = 1, kCount = 2, kStop = 3, kHalt = 4, kFault = 5 };
+/// What the kernel asks of the worker; kFault is said by land() and never by a kernel.
+enum class Operation : std::uint32_t {
+  kRead = 0,
+  kWrite = 1,
+  kCount = 2,
+  kStop = 3,
+  kHalt = 4,
+  kTagStatus = 5,
+  kAccess = 6,
+  kFault = 0xFF'FFFF
+};
 
 /// How the processor stopped the kernel.
 struct Trap {
@@ -49,7 +59,7 @@ struct KernelContext {
   std::uint32_t channel = 0;
   std::uint32_t value = 0;
   std::uint32_t reply = 0;
-  std::uintptr_t caller = 0;  ///< the kernel's instruction behind the call of the gate
+  std::uintptr_t caller = 0;  ///< in the kernel's call of the gate: its last byte
   Trap trap;
 
   // What main is called with.

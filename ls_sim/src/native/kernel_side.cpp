@@ -45,7 +45,7 @@ std::uint32_t gate(std::uint32_t operation, std::uint32_t value) {
   context.operation = static_cast<Operation>(operation >> 8);
   context.channel = operation & 0xFFu;
   context.value = value;
-  context.caller = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0));
+  context.caller = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)) - 1;
   ask(context);
   return context.reply;
 }

@@ -7,7 +7,9 @@
 #include <cstring>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
+#include "debugger_symbols.h"
 #include "kernel_context.h"
 #include "signals.h"
 #include "softcell/ls_sim/engine.h"
@@ -39,6 +41,8 @@ std::string hexadecimal(std::uint64_t value) {
   return text.data();
 }
 
+constexpr std::uint32_t number(Channel channel) { return static_cast<std::uint32_t>(channel); }
+
 std::string describe_stack(const ImageSizes& sizes) {
   return "the declared stack has " + std::to_string(sizes.stack) + " bytes";
 }
@@ -56,6 +60,7 @@ class NativeEngine final : public Engine {
 
   void load(const KernelImage& image) override {
     image_ = &image;
+    debugger_symbols_.reset();
     std::byte* const base = local_store_.base();
     native::Environment environment;
     environment.gate = reinterpret_cast<std::uint64_t>(&native::gate);
@@ -63,11 +68,17 @@ class NativeEngine final : public Engine {
     std::byte* const bss = std::copy(image.bytes.begin(), image.bytes.end(), base + kEnvironmentBytes);
     std::fill(bss, base + image.sizes.end, std::byte{0});
     std::fill(base + image.sizes.end, base + dma::kLocalStoreBytes, kFiller);
+    if (debugger_wanted_) debugger_symbols_ = std::make_unique<native::DebuggerSymbols>(image, base);
+    data_as_linked_ = true;
   }
 
   RunResult run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses) override;
   dma::LocalStoreAddress position() const override {
     return {static_cast<std::uint32_t>(context_.caller - arena()) & dma::kLocalStoreMask};
+  }
+  dma::LocalStoreAddress stack_pointer() const override {
+    return {static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(context_.kernel) - arena()) &
+            dma::kLocalStoreMask};
   }
   void interrupt() override;
   std::uint32_t stack_high_water() const override;
@@ -78,9 +89,9 @@ class NativeEngine final : public Engine {
 
   void prepare(const EntryArguments& arguments);
   void enter_kernel();
-  RunResult serve(ChannelPort& channels);
+  RunResult serve(ChannelPort& channels, AccessObserver* accesses);
+  Access requested_access() const;
   ChannelReply serve_channel(ChannelPort& channels);
-  ChannelReply issue_command(ChannelPort& channels);
   std::optional<dma::Fault> check_stack() const;
   bool written_below_stack() const;
   dma::Fault classify_trap() const;
@@ -95,17 +106,26 @@ class NativeEngine final : public Engine {
   LocalStore& local_store_;
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
+  const bool debugger_wanted_ = native::debugger_wanted();
+  std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
+  bool data_as_linked_ = false;                                ///< nothing has run since load()
   KernelContext context_;
-  std::mutex running_mutex_;  // guards the two below
+  std::uint32_t tag_mask_ = 0;  ///< as last written to the channel; the kernel's is in the environment
+  std::mutex running_mutex_;    // guards the two below
   bool running_ = false;
   pthread_t runner_{};
 };
 
 void NativeEngine::prepare(const EntryArguments& arguments) {
-  // The initialised data start every run as they were linked, so that no job sees what another left.
-  const std::uint32_t data_offset = image_->data_begin - kEnvironmentBytes;
-  std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
-              local_store_.base() + image_->data_begin);
+  // The initialised data start every run as they were linked, so that no job sees what another left. Right
+  // after load() they are so already, and others may have written to them since.
+  if (!std::exchange(data_as_linked_, false)) {
+    const std::uint32_t data_offset = image_->data_begin - kEnvironmentBytes;
+    std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
+                local_store_.base() + image_->data_begin);
+  }
+  auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
+  environment.mfc_tag_mask = tag_mask_ = 0;
   context_.entry = arena() + image_->entry;
   context_.arguments[0] = arguments.spe_id;
   context_.arguments[1] = arguments.argp;
@@ -125,8 +145,8 @@ void NativeEngine::enter_kernel() {
 }
 
 RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels,
-                            AccessObserver* /*accesses*/) {
-  const native::SignalStack signal_stack;
+                            AccessObserver* accesses) {
+  static thread_local const native::SignalStack signal_stack;  // as long as the thread: a run takes less time
   prepare(arguments);
   native::current_context() = &context_;
   {
@@ -134,7 +154,7 @@ RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channe
     runner_ = pthread_self();
     running_ = true;
   }
-  RunResult result = serve(channels);
+  RunResult result = serve(channels, accesses);
   {
     const std::scoped_lock lock(running_mutex_);
     running_ = false;
@@ -148,9 +168,11 @@ void NativeEngine::interrupt() {
   if (running_) pthread_kill(runner_, native::kInterruptSignal);
 }
 
-RunResult NativeEngine::serve(ChannelPort& channels) {
+RunResult NativeEngine::serve(ChannelPort& channels, AccessObserver* accesses) {
   for (;;) {
     enter_kernel();
+    if (context_.operation == Operation::kAccess)
+      context_.caller = arena() + requested_access().instruction.value;
     if (context_.operation == Operation::kFault) return {0, classify_trap()};
     if (auto overflow = check_stack()) return {0, std::move(overflow)};
     if (context_.interrupted != 0)
@@ -159,39 +181,57 @@ RunResult NativeEngine::serve(ChannelPort& channels) {
     if (context_.operation == Operation::kHalt) {
       return {0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
     }
+    if (context_.operation == Operation::kAccess) {
+      if (accesses != nullptr) accesses->on_access(requested_access());
+      continue;
+    }
     ChannelReply reply = serve_channel(channels);
-    if (reply.fault) return {0, std::move(reply.fault)};
+    if (reply.fault) return {0, std::move(*reply.fault)};
     context_.reply = reply.value;
   }
 }
 
+Access NativeEngine::requested_access() const {
+  native::Environment environment;
+  std::memcpy(&environment, local_store_.base(), sizeof environment);
+  return {.lsa = {context_.value & dma::kLocalStoreMask},
+          .bytes = environment.access_bytes & dma::kLocalStoreMask,
+          .is_store = context_.channel != 0,
+          .instruction = {environment.access_instruction & dma::kLocalStoreMask},
+          .stack_pointer = {environment.access_stack_pointer & dma::kLocalStoreMask}};
+}
+
 ChannelReply NativeEngine::serve_channel(ChannelPort& channels) {
+  native::Environment environment;
+  std::memcpy(&environment, local_store_.base(), sizeof environment);
+  if (context_.operation == Operation::kWrite && context_.channel == number(Channel::kMfcCmd)) {
+    return channels.issue({.word = context_.value,
+                           .lsa = {environment.mfc_lsa},
+                           .ea = {std::uint64_t{environment.mfc_eah} << 32 | environment.mfc_eal},
+                           .size = environment.mfc_size,
+                           .tag = environment.mfc_tag});
+  }
+  if (environment.mfc_tag_mask != tag_mask_) {
+    tag_mask_ = environment.mfc_tag_mask;
+    ChannelReply reply = channels.write(number(Channel::kMfcWrTagMask), tag_mask_);
+    if (reply.fault) return reply;
+  }
   switch (context_.operation) {
     case Operation::kRead:
       return channels.read(context_.channel);
     case Operation::kWrite:
-      if (context_.channel == static_cast<std::uint32_t>(Channel::kMfcCmd)) return issue_command(channels);
       return channels.write(context_.channel, context_.value);
     case Operation::kCount:
       return channels.count(context_.channel);
+    case Operation::kTagStatus: {
+      ChannelReply reply = channels.write(number(Channel::kMfcWrTagUpdate), context_.value);
+      return reply.fault ? std::move(reply) : channels.read(number(Channel::kMfcRdTagStat));
+    }
     default:
-      return {0, fault(dma::Rule::kIllegalChannel,
-                       "the kernel called the environment with an unknown operation")};
+      return {
+          0, std::make_unique<dma::Fault>(fault(
+                 dma::Rule::kIllegalChannel, "the kernel called the environment with an unknown operation"))};
   }
-}
-
-/// The host headers keep the five parameters of a command in the environment and call only for the command
-/// itself.
-ChannelReply NativeEngine::issue_command(ChannelPort& channels) {
-  native::Environment environment;
-  std::memcpy(&environment, local_store_.base(), sizeof environment);
-  const std::array parameters{environment.mfc_lsa, environment.mfc_eah, environment.mfc_eal,
-                              environment.mfc_size, environment.mfc_tag};
-  for (std::uint32_t i = 0; i < parameters.size(); ++i) {
-    ChannelReply reply = channels.write(static_cast<std::uint32_t>(Channel::kMfcLsa) + i, parameters[i]);
-    if (reply.fault) return reply;
-  }
-  return channels.write(static_cast<std::uint32_t>(Channel::kMfcCmd), context_.value);
 }
 
 dma::Fault NativeEngine::stack_overflow(std::string detail) const {

@@ -7,6 +7,8 @@
 #include <spu_intrinsics.h>
 #include <stdint.h>
 
+#include "../shared/softcell_mfc_constants.h"
+
 /// One element of a list command; eight bytes, in local store, aligned to eight.
 typedef struct mfc_list_element {
   uint64_t notify : 1;  ///< stall behind this element until it is acknowledged
@@ -16,86 +18,6 @@ typedef struct mfc_list_element {
 } mfc_list_element_t;
 
 // clang-format off
-
-// Limits
-#define MFC_MIN_DMA_SIZE_SHIFT    4
-#define MFC_MAX_DMA_SIZE_SHIFT    14
-#define MFC_MIN_DMA_SIZE          16
-#define MFC_MAX_DMA_SIZE          16384
-#define MFC_MIN_DMA_SIZE_MASK     15
-#define MFC_MAX_DMA_SIZE_MASK     16383
-#define MFC_MIN_DMA_LIST_ELEMENTS 1
-#define MFC_MAX_DMA_LIST_ELEMENTS 2048
-#define MFC_MIN_DMA_LIST_SIZE     8
-#define MFC_MAX_DMA_LIST_SIZE     16384
-
-// Commands
-#define MFC_BARRIER_ENABLE 0x01
-#define MFC_FENCE_ENABLE   0x02
-#define MFC_LIST_ENABLE    0x04
-#define MFC_RESULT_ENABLE  0x10
-
-#define MFC_PUT_CMD      0x20
-#define MFC_PUTB_CMD     0x21
-#define MFC_PUTF_CMD     0x22
-#define MFC_PUTL_CMD     0x24
-#define MFC_PUTLB_CMD    0x25
-#define MFC_PUTLF_CMD    0x26
-#define MFC_PUTR_CMD     0x30
-#define MFC_PUTRB_CMD    0x31
-#define MFC_PUTRF_CMD    0x32
-#define MFC_PUTRL_CMD    0x34
-#define MFC_PUTRLB_CMD   0x35
-#define MFC_PUTRLF_CMD   0x36
-#define MFC_GET_CMD      0x40
-#define MFC_GETB_CMD     0x41
-#define MFC_GETF_CMD     0x42
-#define MFC_GETL_CMD     0x44
-#define MFC_GETLB_CMD    0x45
-#define MFC_GETLF_CMD    0x46
-#define MFC_SDCRT_CMD    0x80
-#define MFC_SDCRTST_CMD  0x81
-#define MFC_SDCRZ_CMD    0x89
-#define MFC_SDCRST_CMD   0x8D
-#define MFC_SDCRF_CMD    0x8F
-#define MFC_SNDSIG_CMD   0xA0
-#define MFC_SNDSIGB_CMD  0xA1
-#define MFC_SNDSIGF_CMD  0xA2
-#define MFC_PUTLLUC_CMD  0xB0
-#define MFC_PUTLLC_CMD   0xB4
-#define MFC_PUTQLLUC_CMD 0xB8
-#define MFC_BARRIER_CMD  0xC0
-#define MFC_EIEIO_CMD    0xC8
-#define MFC_SYNC_CMD     0xCC
-#define MFC_GETLLAR_CMD  0xD0
-
-/// The word for channel MFC_Cmd: transfer class, replacement class, opcode.
-#define MFC_CMD_WORD(tid, rid, cmd) (((tid) << 24) | ((rid) << 16) | (cmd))
-
-// Events: bits of channels 0, 1 and 2
-#define MFC_TAG_STATUS_UPDATE_EVENT       0x0001
-#define MFC_LIST_STALL_NOTIFY_EVENT       0x0002
-#define MFC_COMMAND_QUEUE_AVAILABLE_EVENT 0x0008
-#define MFC_IN_MBOX_AVAILABLE_EVENT       0x0010
-#define MFC_DECREMENTER_EVENT             0x0020
-#define MFC_OUT_INTR_MBOX_AVAILABLE_EVENT 0x0040
-#define MFC_OUT_MBOX_AVAILABLE_EVENT      0x0080
-#define MFC_SIGNAL_NOTIFY_2_EVENT         0x0100
-#define MFC_SIGNAL_NOTIFY_1_EVENT         0x0200
-#define MFC_LLR_LOST_EVENT                0x0400
-#define MFC_PRIV_ATTN_EVENT               0x0800
-#define MFC_MULTI_SRC_SYNC_EVENT          0x1000
-
-// Channels 23 and 27
-#define MFC_TAG_UPDATE_IMMEDIATE 0
-#define MFC_TAG_UPDATE_ANY       1
-#define MFC_TAG_UPDATE_ALL       2
-#define MFC_PUTLLC_STATUS        1
-#define MFC_PUTLLUC_STATUS       2
-#define MFC_GETLLAR_STATUS       4
-
-#define MFC_TAG_VALID   0x00000000
-#define MFC_TAG_INVALID 0xFFFFFFFF
 
 namespace softcell_check {
 
@@ -125,7 +47,6 @@ unsigned int multi_tag_release(unsigned int first, unsigned int count);
 #define mfc_ea2h(ea)    ::softcell_check::ea_half(SC_EA(ea))
 #define mfc_ea2l(ea)    ::softcell_check::ea_half(SC_EA(ea))
 #define mfc_hl2ea(h, l) ::softcell_check::ea_of_halves(h, l)
-#define mfc_ceil128(v)  (((v) + 127) & ~127)
 
 // Transfers
 #define SC_TRANSFER(ls, ea, size, tag, tid, rid)  ::softcell_check::transfer(ls, SC_EA(ea), size, tag, tid, rid)

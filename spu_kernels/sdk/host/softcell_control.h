@@ -4,39 +4,9 @@
 //
 // Channel numbers are constants in the instruction: these are macros, as in a real SPU compiler's headers.
 
+#include "../shared/softcell_channels.h"
 #include "softcell_environment.h"
 #include "softcell_lanes.h"
-
-// ---- channel numbers
-
-#define SPU_RdEventStat 0
-#define SPU_WrEventMask 1
-#define SPU_WrEventAck 2
-#define SPU_RdSigNotify1 3
-#define SPU_RdSigNotify2 4
-#define SPU_WrDec 7
-#define SPU_RdDec 8
-#define MFC_WrMSSyncReq 9
-#define SPU_RdEventMask 11
-#define MFC_RdTagMask 12
-#define SPU_RdMachStat 13
-#define SPU_WrSRR0 14
-#define SPU_RdSRR0 15
-#define MFC_LSA 16
-#define MFC_EAH 17
-#define MFC_EAL 18
-#define MFC_Size 19
-#define MFC_TagID 20
-#define MFC_Cmd 21
-#define MFC_WrTagMask 22
-#define MFC_WrTagUpdate 23
-#define MFC_RdTagStat 24
-#define MFC_RdListStallStat 25
-#define MFC_WrListStallAck 26
-#define MFC_RdAtomicStat 27
-#define SPU_WrOutMbox 28
-#define SPU_RdInMbox 29
-#define SPU_WrOutIntrMbox 30
 
 namespace softcell_sdk {
 
@@ -52,7 +22,8 @@ SC_SDK_INLINE unsigned int read_channel_count() {
   static_assert(is_channel(Channel), "channels are numbered 0 to 127");
   return call_gate(kCount, Channel, 0);
 }
-/// The five parameters of a DMA command wait in the environment for the command itself; all else is a call.
+/// The five parameters of a DMA command and the tag mask wait in the environment for the command and the tag
+/// update; all else is a call.
 template <int Channel>
 SC_SDK_INLINE void write_channel(unsigned int value) {
   static_assert(is_channel(Channel), "channels are numbered 0 to 127");
@@ -66,10 +37,15 @@ SC_SDK_INLINE void write_channel(unsigned int value) {
     environment().mfc_size = value;
   } else if constexpr (Channel == MFC_TagID) {
     environment().mfc_tag = value;
+  } else if constexpr (Channel == MFC_WrTagMask) {
+    environment().mfc_tag_mask = value;
   } else {
     call_gate(kWrite, Channel, value);
   }
 }
+
+/// A write to MFC_WrTagUpdate and a read of MFC_RdTagStat.
+SC_SDK_INLINE unsigned int tag_status(unsigned int condition) { return call_gate(kTagStatus, 0, condition); }
 
 template <int Code>
 SC_SDK_INLINE void stop() {

@@ -9,6 +9,7 @@
 // doubles to many instructions. That they read denormals as zero is assumed; a test on such a machine would
 // settle it.
 
+#include "../shared/softcell_special_values.h"
 #include "softcell_lanes.h"
 
 namespace softcell_sdk {
@@ -115,14 +116,6 @@ SC_SDK_INLINE vec_ullong2 spu_cmpabsgt(vec_double2 a, vec_double2 b) {
 }
 
 // ---- special values
-
-#define SPU_SV_NEG_DENORM 0x01
-#define SPU_SV_POS_DENORM 0x02
-#define SPU_SV_NEG_ZERO 0x04
-#define SPU_SV_POS_ZERO 0x08
-#define SPU_SV_NEG_INFINITY 0x10
-#define SPU_SV_POS_INFINITY 0x20
-#define SPU_SV_NAN 0x40
 
 namespace softcell_sdk {
 

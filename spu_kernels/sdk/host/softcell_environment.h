@@ -8,17 +8,33 @@
 
 namespace softcell_sdk {
 
-/// At local-store address 0. The emulator writes `gate` when it loads an image, the kernel the mfc_ fields.
+/// At local-store address 0. The emulator writes `gate` when it loads an image, the kernel the mfc_ fields:
+/// channels that only hold a value until another channel is used, so that it need not be called for them.
 struct Environment {
   uint64_t
       gate;  ///< address of uint32_t gate(uint32_t operation, uint32_t value), System V calling convention
   uint32_t mfc_lsa, mfc_eah, mfc_eal, mfc_size, mfc_tag;  ///< channels 16 to 20
-  uint32_t reserved[25];
+  uint32_t mfc_tag_mask;                                  ///< channel 22; 0 when a run begins
+  // Of a checked kernel's load or store, besides its address (see sdk/checked/report_accesses.cpp).
+  uint32_t access_bytes;
+  uint32_t access_instruction, access_stack_pointer;  ///< local-store addresses
+  uint32_t reserved[21];
 };
 static_assert(sizeof(Environment) == 128, "what the link script leaves free");
 
 /// What is asked of the gate: operation = kind << 8 | channel. `value` is what is written, or the stop code.
-enum GateKind : uint32_t { kRead = 0, kWrite = 1, kCount = 2, kStop = 3, kHalt = 4 };
+/// kTagStatus writes `value` to MFC_WrTagUpdate and then reads MFC_RdTagStat: one call for each wait.
+/// kAccess, with 1 as the channel for a store, reports a load or store of a checked kernel at local-store
+/// address `value`.
+enum GateKind : uint32_t {
+  kRead = 0,
+  kWrite = 1,
+  kCount = 2,
+  kStop = 3,
+  kHalt = 4,
+  kTagStatus = 5,
+  kAccess = 6
+};
 
 constexpr uintptr_t kLocalStoreMask = 0x3FFFF;
 

@@ -2,19 +2,19 @@
 // The tag manager: hands out tag groups, so that parts of a kernel which do not know each other do not share
 // one. [LEXT, MFC utilities] documented
 
-#define MFC_TAG_INVALID 0xFFFFFFFFu
-#define MFC_TAG_VALID 0x00000000u
+#include "../shared/softcell_mfc_constants.h"
 
 namespace softcell_sdk {
-/// A set bit is a reserved tag.
-inline unsigned int reserved_tags = 0;
+/// A set bit is a tag that nobody has. Not zero, so that it lies in the initialised data: bss is not cleared
+/// for a job.
+inline unsigned int free_tags = 0xFFFFFFFFu;
 
 inline unsigned int reserve_tags(unsigned int count) {
   if (count == 0 || count > 32) return MFC_TAG_INVALID;
   const unsigned int run = 0xFFFFFFFFu >> (32 - count);
   for (unsigned int first = 0; first + count <= 32; ++first) {
-    if ((reserved_tags & run << first) == 0) {
-      reserved_tags |= run << first;
+    if ((free_tags & run << first) == run << first) {
+      free_tags &= ~(run << first);
       return first;
     }
   }
@@ -24,8 +24,8 @@ inline unsigned int reserve_tags(unsigned int count) {
 inline unsigned int release_tags(unsigned int first, unsigned int count) {
   if (count == 0 || count > 32 || first > 32 - count) return MFC_TAG_INVALID;
   const unsigned int run = 0xFFFFFFFFu >> (32 - count) << first;
-  if ((reserved_tags & run) != run) return MFC_TAG_INVALID;
-  reserved_tags &= ~run;
+  if ((free_tags & run) != 0) return MFC_TAG_INVALID;
+  free_tags |= run;
   return MFC_TAG_VALID;
 }
 }  // namespace softcell_sdk

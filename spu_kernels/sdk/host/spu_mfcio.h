@@ -5,85 +5,9 @@
 // Everything here writes and reads channels, nothing else: what the emulator does not have answers with its
 // own fault.
 
+#include "../shared/softcell_mfc_constants.h"
 #include "softcell_tags.h"
 #include "spu_intrinsics.h"
-
-// ---- sizes, in bytes
-
-#define MFC_MIN_DMA_SIZE_SHIFT 4
-#define MFC_MAX_DMA_SIZE_SHIFT 14
-#define MFC_MIN_DMA_SIZE (1 << MFC_MIN_DMA_SIZE_SHIFT)
-#define MFC_MAX_DMA_SIZE (1 << MFC_MAX_DMA_SIZE_SHIFT)
-#define MFC_MIN_DMA_SIZE_MASK (MFC_MIN_DMA_SIZE - 1)
-#define MFC_MAX_DMA_SIZE_MASK (MFC_MAX_DMA_SIZE - 1)
-#define MFC_MIN_DMA_LIST_ELEMENTS 1
-#define MFC_MAX_DMA_LIST_ELEMENTS 2048
-#define MFC_MIN_DMA_LIST_SIZE (MFC_MIN_DMA_LIST_ELEMENTS << 3)
-#define MFC_MAX_DMA_LIST_SIZE (MFC_MAX_DMA_LIST_ELEMENTS << 3)
-
-// ---- opcodes
-
-#define MFC_BARRIER_ENABLE 0x01
-#define MFC_FENCE_ENABLE 0x02
-#define MFC_LIST_ENABLE 0x04
-#define MFC_RESULT_ENABLE 0x10
-#define MFC_PUT_CMD 0x20
-#define MFC_PUTB_CMD 0x21
-#define MFC_PUTF_CMD 0x22
-#define MFC_PUTL_CMD 0x24
-#define MFC_PUTLB_CMD 0x25
-#define MFC_PUTLF_CMD 0x26
-#define MFC_PUTR_CMD 0x30
-#define MFC_PUTRB_CMD 0x31
-#define MFC_PUTRF_CMD 0x32
-#define MFC_PUTRL_CMD 0x34
-#define MFC_PUTRLB_CMD 0x35
-#define MFC_PUTRLF_CMD 0x36
-#define MFC_GET_CMD 0x40
-#define MFC_GETB_CMD 0x41
-#define MFC_GETF_CMD 0x42
-#define MFC_GETL_CMD 0x44
-#define MFC_GETLB_CMD 0x45
-#define MFC_GETLF_CMD 0x46
-#define MFC_SNDSIG_CMD 0xA0
-#define MFC_SNDSIGB_CMD 0xA1
-#define MFC_SNDSIGF_CMD 0xA2
-#define MFC_BARRIER_CMD 0xC0
-#define MFC_EIEIO_CMD 0xC8
-#define MFC_SYNC_CMD 0xCC
-#define MFC_GETLLAR_CMD 0xD0
-#define MFC_PUTLLC_CMD 0xB4
-#define MFC_PUTLLUC_CMD 0xB0
-#define MFC_PUTQLLUC_CMD 0xB8
-#define MFC_SDCRT_CMD 0x80
-#define MFC_SDCRTST_CMD 0x81
-#define MFC_SDCRZ_CMD 0x89
-#define MFC_SDCRST_CMD 0x8D
-#define MFC_SDCRF_CMD 0x8F
-#define MFC_CMD_WORD(tid, rid, opcode) (((tid) << 24) | ((rid) << 16) | (opcode))
-
-// ---- values read from and written to channels
-
-#define MFC_TAG_UPDATE_IMMEDIATE 0
-#define MFC_TAG_UPDATE_ANY 1
-#define MFC_TAG_UPDATE_ALL 2
-
-#define MFC_PUTLLC_STATUS 0x1
-#define MFC_PUTLLUC_STATUS 0x2
-#define MFC_GETLLAR_STATUS 0x4
-
-#define MFC_TAG_STATUS_UPDATE_EVENT 0x00000001
-#define MFC_LIST_STALL_NOTIFY_EVENT 0x00000002
-#define MFC_COMMAND_QUEUE_AVAILABLE_EVENT 0x00000008
-#define MFC_IN_MBOX_AVAILABLE_EVENT 0x00000010
-#define MFC_DECREMENTER_EVENT 0x00000020
-#define MFC_OUT_INTR_MBOX_AVAILABLE_EVENT 0x00000040
-#define MFC_OUT_MBOX_AVAILABLE_EVENT 0x00000080
-#define MFC_SIGNAL_NOTIFY_2_EVENT 0x00000100
-#define MFC_SIGNAL_NOTIFY_1_EVENT 0x00000200
-#define MFC_LLR_LOST_EVENT 0x00000400
-#define MFC_PRIV_ATTN_EVENT 0x00000800
-#define MFC_MULTI_SRC_SYNC_EVENT 0x00001000
 
 // ---- effective addresses
 
@@ -92,8 +16,6 @@ SC_SDK_INLINE constexpr unsigned int mfc_ea2l(uint64_t ea) { return static_cast<
 SC_SDK_INLINE constexpr uint64_t mfc_hl2ea(unsigned int high, unsigned int low) {
   return uint64_t{high} << 32 | low;
 }
-/// Rounds up to a multiple of 128.
-#define mfc_ceil128(value) (((value) + 127) & ~127)
 
 // ---- DMA: ls in local store, ea in main storage, size in bytes, tag 0..31; tid and rid are hints for
 // caches, 0 is always right
@@ -113,24 +35,33 @@ SC_SDK_TRANSFER(mfc_getf, MFC_GETF_CMD)
 
 /// One transfer of a list: size in bytes, ea's low half. The list's words have the SPU's values in the host's
 /// byte order.
-struct mfc_list_element_t {
+typedef struct mfc_list_element {
   uint32_t size : 15, reserved : 16, notify : 1;
   uint32_t eal;
 
-  mfc_list_element_t() = default;
+  mfc_list_element() = default;
   /// In the order in which the SPU's compiler lays the fields out.
-  constexpr mfc_list_element_t(uint32_t notify_bit, uint32_t reserved_bits, uint32_t size_bytes, uint32_t low)
+  constexpr mfc_list_element(uint32_t notify_bit, uint32_t reserved_bits, uint32_t size_bytes, uint32_t low)
       : size(size_bytes & 0x7FFFu), reserved(reserved_bits & 0xFFFFu), notify(notify_bit & 1u), eal(low) {}
-};
+} mfc_list_element_t;
 static_assert(sizeof(mfc_list_element_t) == 8, "as the MFC reads it");
+
+namespace softcell_sdk {
+/// Where a list lies in local store: a pointer, or its address as a number, as a real SPU's header takes
+/// both.
+struct ListAddress {
+  SC_SDK_INLINE ListAddress(const volatile void* list) : value(local_store_address(list)) {}
+  SC_SDK_INLINE ListAddress(unsigned int list) : value(list) {}
+  uint32_t value;
+};
+}  // namespace softcell_sdk
 
 /// `ea` gives the high half of all elements' addresses, `list` lies in local store, `size` is its length in
 /// bytes.
-#define SC_SDK_LIST_TRANSFER(name, opcode)                                                              \
-  SC_SDK_INLINE void name(volatile void* ls, uint64_t ea, const volatile void* list, unsigned int size, \
-                          unsigned int tag, unsigned int tid, unsigned int rid) {                       \
-    spu_mfcdma64(ls, mfc_ea2h(ea), softcell_sdk::local_store_address(list), size, tag,                  \
-                 MFC_CMD_WORD(tid, rid, opcode));                                                       \
+#define SC_SDK_LIST_TRANSFER(name, opcode)                                                                   \
+  SC_SDK_INLINE void name(volatile void* ls, uint64_t ea, softcell_sdk::ListAddress list, unsigned int size, \
+                          unsigned int tag, unsigned int tid, unsigned int rid) {                            \
+    spu_mfcdma64(ls, mfc_ea2h(ea), list.value, size, tag, MFC_CMD_WORD(tid, rid, opcode));                   \
   }
 SC_SDK_LIST_TRANSFER(mfc_putl, MFC_PUTL_CMD)
 SC_SDK_LIST_TRANSFER(mfc_putlb, MFC_PUTLB_CMD)

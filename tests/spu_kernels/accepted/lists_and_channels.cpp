@@ -14,6 +14,7 @@ int main(uint64_t, uint64_t argp, uint64_t envp) {
   list[0].size = MFC_MAX_DMA_SIZE;
   list[0].eal = mfc_ea2l(argp);
   mfc_getl(buffer, argp, list, sizeof list, tag, 0, 0);
+  mfc_getl(buffer, argp, reinterpret_cast<uintptr_t>(list), sizeof list, tag, 0, 0);
   mfc_getlf(buffer, argp, &list[1], sizeof(mfc_list_element_t), tag, 0, 0);
   mfc_putlb(buffer, argp, list, sizeof list, tag, 0, 0);
   if (mfc_stat_list_stall_status()) mfc_write_list_stall_ack(mfc_read_list_stall_status() & tag);

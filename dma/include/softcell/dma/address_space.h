@@ -2,8 +2,8 @@
 // Main storage: main memory and video memory behind effective addresses, handed out as named buffers.
 //
 //   0x5EA010000000  main memory, 256 MB    +--------+--------+-----------+
-//   0x5EA0C0000000  video memory, 256 MB   | buffer | buffer |   free    |  each starts at a line of 128
-//   bytes 0x5EA0F0000000  the local stores       +--------+--------+-----------+
+//   0x5EA0C0000000  video memory, 256 MB   | buffer | buffer |   free    |  each starts at a line
+//   0x5EA0F0000000  local store of SPE 0, 256 KB, and its registers; those of SPE n are n MB further up
 //
 // The bytes lie somewhere else in the host's memory; host pointers belong to the PPU side, effective
 // addresses to the SPEs, and only resolve() leads from one to the other.
@@ -21,10 +21,13 @@
 
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/fault.h"
+#include "softcell/dma/reservations.h"
 
 namespace softcell::dma {
 
 class Arena;
+class LocalStorePort;
+class LocalStores;
 
 /// Which memory a buffer lies in.
 enum class Memory : std::uint8_t { kMain, kVideo };
@@ -89,19 +92,36 @@ class AddressSpace {
   /// @throws std::invalid_argument  no buffer begins at `ea`.
   void free(EffectiveAddress ea);
 
+  /// Makes an SPE reachable at local_store_ea(spe): its local store for any access, and its registers
+  /// Sig_Notify_1, Sig_Notify_2 and SPU_In_Mbox for writes of 4 bytes. The port is told of every write that
+  /// goes through reservations().
+  /// @param spe   0..5.
+  /// @param port  must stay until unmap_local_store().
+  /// @throws std::invalid_argument  another number, one that is mapped already, or a local store of another
+  ///                                size.
+  void map_local_store(int spe, LocalStorePort& port);
+
+  /// Takes it away. No command may be in flight to or from it.
+  /// @throws std::invalid_argument  it is not mapped.
+  void unmap_local_store(int spe);
+
   /// The host bytes behind [ea, ea + bytes), which must lie within one buffer that permits `wanted`.
   /// @param bytes   at least 1.
   /// @param wanted  kNone asks for no permission: that is the PPU side.
   /// @return  the host pointer, or a fault with rule and detail set: ea-not-mapped, ea-crosses-buffer,
-  ///          ea-not-readable, ea-not-writable or video-memory-write.
+  ///          ea-not-readable, ea-not-writable, video-memory-write or register-access. The pointer that
+  ///          stands for a register is for Reservations::write() alone: nothing lies behind it.
   /// @note    Takes a shared lock. An MFC goes through its TranslationCache instead.
   std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) const;
 
-  /// The buffer that holds `ea`, if any.
+  /// The buffer or local store that holds `ea`, if any.
   std::optional<Mapping> mapping_at(EffectiveAddress ea) const;
 
   /// Changes whenever a mapping ends, after which copies of it must not be used.
   std::uint64_t generation() const { return generation_.load(std::memory_order_acquire); }
+
+  /// Through which every copy to or from these bytes goes that must respect reserved lines.
+  Reservations& reservations() const { return reservations_; }
 
   /// Bytes not allocated, in all and in the largest piece.
   std::uint64_t free_bytes(Memory memory) const;
@@ -126,6 +146,9 @@ class AddressSpace {
   mutable std::shared_mutex registry_mutex_;
   Registry registry_;
   std::atomic<std::uint64_t> generation_{1};
+
+  const std::unique_ptr<LocalStores> local_stores_;
+  mutable Reservations reservations_;
 };
 
 }  // namespace softcell::dma

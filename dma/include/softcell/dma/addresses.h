@@ -37,6 +37,11 @@ inline constexpr std::uint64_t kVideoMemoryBytes = 256ull << 20;
 inline constexpr EffectiveAddress kLocalStoresBase{0x5EA0'F000'0000};
 inline constexpr std::uint64_t kLocalStoreStrideBytes = 1ull << 20;
 
+/// Where byte 0 of the local store of SPE 0..5 lies in main storage. Its registers follow from +0x40000.
+constexpr EffectiveAddress local_store_ea(int spe) {
+  return kLocalStoresBase + static_cast<std::uint64_t>(spe) * kLocalStoreStrideBytes;
+}
+
 /// True when `ea` lies in one of the three ranges above, whether or not anything is allocated there.
 constexpr bool is_effective_address(std::uint64_t ea) { return (ea >> 32) == (kMainMemoryBase.value >> 32); }
 

@@ -17,8 +17,13 @@ enum class SpeRegister : std::uint32_t {
   kSignal2 = 0x5C00C,
 };
 
-/// Implemented by the SPE, called by whoever writes: any thread, with reservation locks held. Calls must be
-/// short and must not come back to the address space.
+/// Implemented by the SPE, called by whoever writes: any thread, perhaps with reservation locks held. Calls
+/// must be short and must not come back to the address space.
+///
+/// What arrives whole: 1, 2, 4 or 8 bytes, each quadword of a transfer within one line, and each quadword of
+/// a longer one as far as the host's memcpy keeps them whole, which it does on x86. So a kernel may poll a
+/// quadword of its local store that another SPE puts to; of several quadwords, any may come first unless a
+/// fence or barrier orders their commands.
 class LocalStorePort {
  public:
   virtual ~LocalStorePort() = default;
@@ -26,7 +31,8 @@ class LocalStorePort {
   /// kLocalStoreBytes of host memory, for as long as the port is mapped.
   virtual std::span<std::byte> local_store() = 0;
 
-  /// Bytes have arrived that this SPE did not fetch itself.
+  /// Bytes arrive that this SPE did not fetch itself. Called just before, so that no kernel that finds them
+  /// is ahead of this account.
   virtual void on_external_write(LocalStoreAddress lsa, std::uint32_t bytes) = 0;
 
   /// A register was written.

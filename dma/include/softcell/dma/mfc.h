@@ -3,8 +3,10 @@
 // bytes when its schedule says so, and answers for tag groups.
 //
 //   issue() --> rules --> translation --> queue of 16 --> local store <-> main storage
-//                                            |
-//   write_tag_mask(), write_tag_update() --> read_tag_status()
+//                              |             |
+//                              |             +--> read_tag_status(), read_list_stall_status(), take_events()
+//                              |
+//                              +--> getllar, putllc, putlluc at once --> read_atomic_status()
 //
 // There is no clock: time passes where the SPU meets the MFC, at each call below, and as much of it as the
 // schedule decides.
@@ -19,6 +21,7 @@
 
 #include "softcell/dma/address_space.h"
 #include "softcell/dma/fault.h"
+#include "softcell/dma/list_transfer.h"
 #include "softcell/dma/mfc_command.h"
 #include "softcell/dma/mfc_observer.h"
 #include "softcell/dma/mfc_queue.h"
@@ -26,8 +29,8 @@
 #include "softcell/dma/random_stream.h"
 #include "softcell/dma/reservations.h"
 #include "softcell/dma/schedule.h"
+#include "softcell/dma/storage_port.h"
 #include "softcell/dma/transfer.h"
-#include "softcell/dma/translation_cache.h"
 
 namespace softcell::dma {
 
@@ -44,15 +47,18 @@ class Mfc {
   /// Tells `observer` of every command from now on; null: nobody. It must outlive the MFC or be replaced.
   void set_observer(MfcObserver* observer) { observer_ = observer; }
 
-  /// State as after reset: empty queue and tag mask, no status request. What is still queued is dropped, as
-  /// after a fault; call drain() at the end of a job that ended well. Random decisions from here on depend on
-  /// the schedule's seed and on `job_id`, not on the SPE. Statistics go on.
+  /// State as after reset: empty queue and tag mask, no status request, no reservation. What is still queued
+  /// is dropped, as after a fault, and its observer hears no more of it; call drain() at the end of a job
+  /// that ended well. Random decisions from here on depend on the schedule's seed and on `job_id`, not on the
+  /// SPE. Statistics go on.
   void begin_job(std::uint64_t job_id);
 
   /// Queues one DMA command (a write to MFC_Cmd). Its bytes may move at any time until its tag is waited for.
-  /// @param command  lsa and ea in bytes; size 1, 2, 4, 8 or a multiple of 16 up to 16384 bytes; tag 0..31.
+  /// @param command  lsa, ea and size in bytes, as its kind asks for: see check_command() in mfc_rules.h.
   /// @return  nothing, or the rule that the command breaks; then nothing is queued.
-  /// @note    A full queue is no error: time passes until a slot is free, and the stall is counted.
+  /// @note    A full queue is no error: time passes until a slot is free, and the stall is counted. But the
+  ///          fault list-stalled-for-ever is one, when all that is queued waits for a list that has stalled.
+  /// @note    getllar, putllc and putlluc are done at once and wait for nothing that is queued.
   /// @note    The buffer must stay allocated until the command is complete.
   /// @source  [CBEA, MFC commands] documented
   std::optional<Fault> issue(const MfcCommand& command);
@@ -102,7 +108,8 @@ class Mfc {
 
   /// The SPU has been at a channel that is not the MFC's: time passes here as well. Under the lazy and random
   /// schedules no command stays queued for more than kMostVisits visits, calls of this class included, so
-  /// that a kernel that polls memory comes to see its own puts leave.
+  /// that a kernel that polls memory comes to see its own puts leave. (Stalled lists, and what waits for
+  /// them, stay.)
   void visit() { pass_a_moment(); }
   static constexpr std::uint64_t kMostVisits = 256;
 
@@ -117,9 +124,10 @@ class Mfc {
   static constexpr std::uint32_t kListStallEvent = 0x2;  ///< SN: a list has stalled
   static constexpr std::uint32_t kQueueSlotEvent = 0x8;  ///< QV: a slot became free in a full queue
 
-  /// The fault of a list element, which is found while its command executes and suspends the queue. Every
-  /// call that may return a fault returns this one first; after one that cannot, ask here. Gives it once.
-  std::optional<Fault> take_fault() { return std::exchange(fault_, std::nullopt); }
+  /// The fault of a list element, which is found while its command executes and suspends the queue until
+  /// begin_job(). Every call that may return a fault returns this one first; after one that cannot, ask here.
+  /// Gives it once, whoever asked first.
+  std::optional<Fault> take_fault();
 
   /// Completes every queued command, in an order that fences and barriers allow.
   /// @return  nothing, or why that cannot be: an element's fault, or list-stalled-for-ever.
@@ -135,32 +143,80 @@ class Mfc {
     std::uint32_t mask;
   };
 
-  void count(const MfcCommand& command);
+  /// What a slot of the queue holds beside its place in the order.
+  struct QueuedCommand {
+    Transfer transfer;         // of all but lists
+    std::uint64_t number = 0;  // as the observer counts
+    std::uint64_t due = 0;     // the visit by which it is done
+    bool started = false;      // under the random schedule: whether its destination is poisoned by now
+  };
+
+  // Of issue():
+  std::variant<Transfer, Fault> transfer_of(const MfcCommand& command, CommandKind kind);
+  std::optional<Fault> execute_line_command(const MfcCommand& command);
+  std::optional<Fault> enqueue(const MfcCommand& command, CommandKind kind, const Transfer& transfer);
+  void execute_at_once(const MfcCommand& command, Transfer& transfer);
+  void count(const MfcCommand& command, CommandKind kind);
+  void tell_issue(const MfcCommand& command);
+
   bool is_met(const StatusRequest& request) const;
+  void tell_if_met();
   std::uint32_t complete_tags(std::uint32_t mask) const { return mask & ~queue_.busy_tags(); }
 
-  // Time passing: as much as the SPU's visit takes; until a slot of `wanted` is empty; while the SPU polls.
+  // Time passing: as much as the SPU's visit takes; what is overdue; while the SPU polls.
   void pass_a_moment();
-  void complete_one_of(SlotSet wanted);
+  void complete_overdue();
   void answer_poll(SlotSet wanted);
 
+  // Moving on until one of `wanted`, or one tag, or the whole mask is done. False when nothing that these
+  // need can move.
+  bool progress(SlotSet wanted);
+  bool progress_any_tag(std::uint32_t mask);
+
+  /// Those of `slots` that neither wait for another nor for an acknowledgement.
+  SlotSet movable(SlotSet slots) const {
+    return suspended_by_ ? SlotSet{0} : static_cast<SlotSet>(queue_.ready(slots) & ~stalled_);
+  }
+  void run_all_that_can();
+  void finish(int slot);
+  void finish_list(int slot);
   void random_step(SlotSet moving);
+  void random_list_step(int slot);
+  bool open_next_element(int slot);
+  void stall_or_complete(int slot);
+  void complete(int slot);
+
+  void suspend(Fault fault);
+  Fault suspension();
+  Fault stuck(SlotSet wanted);
 
   std::span<std::byte> local_store_;
-  TranslationCache translation_;
+  StoragePort port_;
   Schedule schedule_;
   RandomStream random_;
 
   MfcQueue queue_;
-  std::array<Transfer, MfcQueue::kSlots> transfers_;
+  std::array<QueuedCommand, MfcQueue::kSlots> commands_;
+  std::array<ListTransfer, MfcQueue::kSlots> list_transfers_;
+  SlotSet lists_ = 0;    // slots that hold a list
+  SlotSet stalled_ = 0;  // of these, those that wait for an acknowledgement
+
+  std::uint64_t visits_ = 0;    // while anything was queued
+  std::uint64_t next_due_ = 0;  // no command is due before this visit
 
   std::uint32_t tag_mask_ = 0;
   std::optional<StatusRequest> request_;
-  MfcStatistics statistics_;
+  bool request_told_ = false;
+  std::uint32_t stall_status_ = 0;
+  std::optional<std::uint32_t> atomic_status_;
 
-  MfcObserver* observer_ = nullptr;
   std::uint32_t events_ = 0;
-  std::optional<Fault> fault_;
+  std::optional<Fault> suspended_by_;
+  bool suspension_told_ = false;
+
+  MfcStatistics statistics_;
+  MfcObserver* observer_ = nullptr;
+  std::uint64_t commands_issued_ = 0;
 };
 
 }  // namespace softcell::dma

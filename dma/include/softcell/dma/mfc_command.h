@@ -21,6 +21,21 @@ std::string_view name(MfcOpcode opcode);
 
 constexpr std::uint32_t kTagCount = 32;             // tag groups of one MFC [CBEA, MFC commands] documented
 constexpr std::uint32_t kMaxTransferBytes = 16384;  // [CBEA, MFC commands] documented
+constexpr std::uint32_t kListElementBytes = 8;      // [CBEA, MFC list commands] documented
+constexpr std::uint32_t kSignalBytes = 4;           // [CBEA, sndsig] documented
+
+/// What a command does with its parameters.
+enum class CommandKind : std::uint8_t {
+  kUnknown,
+  kTransfer,  ///< get, put and putr: one range of up to 16 KB
+  kList,      ///< their list forms: `ea` holds MFC_EAH and the list's local-store address, `size` its length
+  kStart,     ///< their start forms, which belong to the proxy queue
+  kLine,      ///< getllar, putllc, putlluc: 128 bytes, at once, without a tag; the size is ignored
+  kQueuedLine,  ///< putqlluc: 128 bytes, in its turn; the size is ignored
+  kSignal,      ///< sndsig: 4 bytes to a register
+  kOrdering,    ///< barrier, mfceieio, mfcsync: no address, no size
+  kCacheHint,   ///< sdcrt, sdcrtst, sdcrz, sdcrst, sdcrf: a range of main storage, no local store
+};
 
 /// A command as issued; nothing is checked here, see check_command() in mfc_rules.h.
 struct MfcCommand {
@@ -33,14 +48,25 @@ struct MfcCommand {
 
   constexpr MfcOpcode opcode() const { return static_cast<MfcOpcode>(word & 0xFFFF); }
 
+  CommandKind kind() const;
+
   /// Main storage to local store, in any form (fence, barrier, list, start).
   constexpr bool is_get() const { return (word & 0xFFF0) == 0x40; }
   /// Local store to main storage, in any form.
   constexpr bool is_put() const { return (word & 0xFFE0) == 0x20; }
   /// Waits for every earlier command of its tag; true for the f forms only.
   constexpr bool has_fence() const { return has_order_bits() && (word & 0x02) != 0; }
-  /// As a fence, and later commands of its tag wait for it; true for the b forms.
-  constexpr bool has_barrier() const { return has_order_bits() && (word & 0x01) != 0; }
+  /// As a fence, and later commands of its tag wait for it; true for the b forms, mfceieio and mfcsync. (What
+  /// these two order beyond the tag, accesses of other units, is in order here anyway.)
+  constexpr bool has_barrier() const {
+    return (has_order_bits() && (word & 0x01) != 0) || opcode() == MfcOpcode::mfceieio ||
+           opcode() == MfcOpcode::mfcsync;
+  }
+  /// Waits for every earlier command of the queue, of whatever tag, and every later one waits for it.
+  constexpr bool is_queue_barrier() const { return opcode() == MfcOpcode::barrier; }
+
+  /// The list of a list command: its address in local store, from MFC_EAL.
+  constexpr LocalStoreAddress list_address() const { return {static_cast<std::uint32_t>(ea.value)}; }
 
   bool operator==(const MfcCommand&) const = default;
 

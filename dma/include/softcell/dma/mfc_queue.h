@@ -13,12 +13,15 @@ namespace softcell::dma {
 /// A set of queue slots: bit i is slot i.
 using SlotSet = std::uint16_t;
 
+constexpr SlotSet slot_bit(int slot) { return static_cast<SlotSet>(1u << slot); }
+
 /// The SPU command queue of one MFC as a scoreboard: each slot holds the set of slots it waits for, which is
 /// settled when it is filled, because order reaches backwards only:
 ///
-///   plain    waits for earlier barriers of its tag
-///   fence    waits for every earlier command of its tag
-///   barrier  as fence, and later commands of its tag wait for it
+///   plain               waits for earlier barriers of its tag, and for earlier `barrier` commands of any
+///   fence               waits for every earlier command of its tag
+///   barrier             as fence, and later commands of its tag wait for it; mfceieio and mfcsync are
+///   barriers `barrier` command   waits for every earlier command, and every later one waits for it
 ///
 /// [CBEA, MFC command ordering] documented
 class MfcQueue {
@@ -36,25 +39,31 @@ class MfcQueue {
   /// Fills a free slot. @pre not full, tag 0..31. @return its number.
   int push(const MfcCommand& command) {
     const int slot = std::countr_one(occupied_);
-    const SlotSet bit = static_cast<SlotSet>(1u << slot);
     SlotSet& group = groups_[command.tag];
-    const bool waits_for_group = command.has_fence() || command.has_barrier();
-    waits_for_[slot] = waits_for_group ? group : static_cast<SlotSet>(group & barriers_);
+    const SlotSet before = predecessors(command, group);
+    waits_for_[slot] = before;
+    if (before != 0) waiting_ |= slot_bit(slot);
     issued_[slot] = next_issue_++;
     tags_[slot] = static_cast<std::uint8_t>(command.tag);
-    occupied_ |= bit;
-    group |= bit;
-    if (command.has_barrier()) barriers_ |= bit;
+    occupied_ |= slot_bit(slot);
+    group |= slot_bit(slot);
+    if (command.has_barrier()) barriers_ |= slot_bit(slot);
+    if (command.is_queue_barrier()) queue_barriers_ |= slot_bit(slot);
     busy_tags_ |= 1u << command.tag;
     return slot;
   }
 
   /// Empties a slot whose command is done. @pre occupied, and waiting for nothing.
   void complete(int slot) {
-    const SlotSet others = static_cast<SlotSet>(~(1u << slot));
+    const auto others = static_cast<SlotSet>(~slot_bit(slot));
     occupied_ &= others;
     barriers_ &= others;
-    for (SlotSet& slots : waits_for_) slots &= others;
+    queue_barriers_ &= others;
+    for (SlotSet rest = waiting_; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
+      const int waiter = std::countr_zero(rest);
+      waits_for_[waiter] &= others;
+      if (waits_for_[waiter] == 0) waiting_ &= static_cast<SlotSet>(~slot_bit(waiter));
+    }
     SlotSet& group = groups_[tags_[slot]];
     group &= others;
     if (group == 0) busy_tags_ &= ~(1u << tags_[slot]);
@@ -74,23 +83,32 @@ class MfcQueue {
     return slots;
   }
 
-  /// Those of `slots` that wait for nothing. Never empty when `slots` holds all commands of a busy tag.
+  /// Those of `slots` that wait for nothing.
   SlotSet ready(SlotSet slots = kAllSlots) const {
-    SlotSet result = 0;
-    for (int slot = 0; slot < kSlots; ++slot) {
-      if (waits_for_[slot] == 0) result |= static_cast<SlotSet>(1u << slot);
-    }
-    return result & slots & occupied_;
+    return static_cast<SlotSet>(slots & occupied_ & ~waiting_);
   }
 
-  /// The one of `slots` that was filled last. @pre not empty, all occupied.
-  int newest(SlotSet slots) const {
-    int newest = std::countr_zero(slots);
-    for (SlotSet rest = slots; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
-      const int slot = std::countr_zero(rest);
-      if (issued_[slot] > issued_[newest]) newest = slot;
+  /// `slots` and all that must be done before the last of them can go. Some of it is ready, unless it is
+  /// empty.
+  SlotSet with_predecessors(SlotSet slots) const {
+    SlotSet all = slots;
+    for (SlotSet added = slots; added != 0;) {
+      SlotSet before = 0;
+      for (SlotSet rest = added; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
+        before |= waits_for_[std::countr_zero(rest)];
+      }
+      added = static_cast<SlotSet>(before & ~all);
+      all |= added;
     }
-    return newest;
+    return all;
+  }
+
+  /// The one of `slots` that was filled last, or first. @pre not empty, all occupied.
+  int newest(SlotSet slots) const {
+    return best_of(slots, [this](int a, int b) { return issued_[a] > issued_[b]; });
+  }
+  int oldest(SlotSet slots) const {
+    return best_of(slots, [this](int a, int b) { return issued_[a] < issued_[b]; });
   }
 
   std::uint32_t tag_of(int slot) const { return tags_[slot]; }
@@ -98,11 +116,29 @@ class MfcQueue {
   static constexpr SlotSet kAllSlots = 0xFFFF;
 
  private:
+  SlotSet predecessors(const MfcCommand& command, SlotSet group) const {
+    if (command.is_queue_barrier()) return occupied_;
+    const bool waits_for_group = command.has_fence() || command.has_barrier();
+    return static_cast<SlotSet>((waits_for_group ? group : group & barriers_) | queue_barriers_);
+  }
+
+  template <class Better>
+  static int best_of(SlotSet slots, Better better) {
+    int best = std::countr_zero(slots);
+    for (SlotSet rest = slots; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
+      const int slot = std::countr_zero(rest);
+      if (better(slot, best)) best = slot;
+    }
+    return best;
+  }
+
   SlotSet occupied_ = 0;
-  SlotSet barriers_ = 0;
+  SlotSet waiting_ = 0;         // those that wait for others
+  SlotSet barriers_ = 0;        // within their tag
+  SlotSet queue_barriers_ = 0;  // of all tags
   std::uint32_t busy_tags_ = 0;
   std::uint64_t next_issue_ = 0;
-  std::array<SlotSet, kSlots> waits_for_{};
+  std::array<SlotSet, kSlots> waits_for_{};  // of an empty slot: nothing
   std::array<std::uint8_t, kSlots> tags_{};
   std::array<std::uint64_t, kSlots> issued_{};
   std::array<SlotSet, kTagCount> groups_{};  // by tag

@@ -1,25 +1,38 @@
 #pragma once
-// What makes a single DMA command legal, whatever else is going on.
+// What makes a single DMA command, or one element of a list, legal, whatever else is going on.
 
 #include <optional>
 
 #include "softcell/dma/fault.h"
+#include "softcell/dma/list_element.h"
 #include "softcell/dma/mfc_command.h"
 
 namespace softcell::dma {
 
-/// Checks a command against the rules for its opcode, tag, size, alignment and local-store range. Whether its
-/// effective address is mapped is the address space's to say (AddressSpace::resolve).
+/// Checks a command of the SPU's queue against the rules for its opcode, tag, size, alignment and local-store
+/// range. Whether its effective address is mapped is the address space's to say (AddressSpace::resolve).
 ///
-///   size            LSA and EA
-///   1, 2, 4, 8      both multiples of the size, low four bits equal
-///   16 .. 16384     both multiples of 16, as is the size
+///   command               size                      LSA and EA
+///   get, put, putr        1, 2, 4, 8                both multiples of the size, low four bits equal
+///                         16 .. 16384               both multiples of 16, as is the size
+///   their list forms      8 .. 16384, in steps of 8 EA's low half: the list, a multiple of 8 in local store
+///   the line commands     not looked at             both multiples of 128
+///   sndsig                4                         EA: a Sig_Notify register; LSA's low four bits are equal
+///   data-cache hints      1 .. 16384                EA: anything
 ///
-/// @return  nothing, or the first rule broken, in the order of rules.def, with the command set. Of the known
-///          commands, get, put and putr are executed, with their fence and barrier forms; the others are
-///          refused by name (command-not-supported).
+/// @return  nothing, or the first rule broken (of sndsig, its own one first), with the command set.
 /// @note    Pure; any thread.
 /// @source  [CBEA, MFC commands] documented; what is not is marked in rules.def
 std::optional<Fault> check_command(const MfcCommand& command);
+
+/// Checks one element of a list command, whose fetch has come to local-store address `lsa`: reserved bits,
+/// size, alignment, the 4 GB rule and the local-store range.
+/// @param index  from 0, for the message.
+/// @return  as check_command(); the detail names the element.
+std::optional<Fault> check_element(const MfcCommand& command, std::uint32_t index, ListElement element,
+                                   LocalStoreAddress lsa);
+
+/// "element 3 of 12: " and what follows: where a list's fault comes from.
+std::string describe_element(const MfcCommand& command, std::uint32_t index, std::string_view detail);
 
 }  // namespace softcell::dma

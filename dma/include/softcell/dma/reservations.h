@@ -15,6 +15,7 @@
 
 namespace softcell::dma {
 
+class LocalStores;
 class Reservations;
 
 /// Told when a reservation is lost to somebody else's write: event LR. Called by the writer's thread, with
@@ -51,20 +52,22 @@ class Reservations {
  public:
   static constexpr int kMaxHolders = 32;
 
-  Reservations();
+  /// @param local_stores  told of writes to local stores and registers of SPEs; null: there are none.
+  explicit Reservations(LocalStores* local_stores = nullptr);
   ~Reservations();
   Reservations(const Reservations&) = delete;
   Reservations& operator=(const Reservations&) = delete;
 
-  /// getllar: copies the line and reserves it, giving up what the holder had reserved before.
-  /// @param line  multiple of 128. @param host  its bytes. @param to  128 bytes.
-  void load_and_reserve(ReservationHolder& holder, EffectiveAddress line, const std::byte* host,
-                        std::byte* to);
+  /// getllar: copies the line and reserves it, giving up what the holder had reserved before, of whose loss
+  /// nothing is heard any more. With `bytes` of 4 or 8 it is lwarx or ldarx, which reserve the line as well.
+  /// @param ea  multiple of `bytes`. @param host  its bytes. @param to  where they go.
+  void load_and_reserve(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
+                        std::uint32_t bytes = kLineBytes);
 
   /// putllc: stores 128 bytes if the holder's reservation of this very line stands, and gives the reservation
-  /// up in either case. @return whether it stored.
-  bool store_conditional(ReservationHolder& holder, EffectiveAddress line, std::byte* host,
-                         const std::byte* from);
+  /// up in either case. With `bytes` of 4 or 8 it is stwcx. or stdcx. @return whether it stored.
+  bool store_conditional(ReservationHolder& holder, EffectiveAddress ea, std::byte* host,
+                         const std::byte* from, std::uint32_t bytes = kLineBytes);
 
   /// putlluc: stores 128 bytes; everybody's reservation of the line is lost, the holder's own given up.
   void store_line(ReservationHolder& holder, EffectiveAddress line, std::byte* host, const std::byte* from);
@@ -73,10 +76,13 @@ class Reservations {
   void read(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
             std::uint32_t bytes);
 
-  /// A put's bytes; loses reservations of the lines it touches, the holder's own too (as RPCS3 does; what the
-  /// hardware does with a plain put of the same SPE is unconfirmed).
+  /// A put's bytes; loses reservations of the lines it touches. The holder's own is lost too, without an
+  /// event (as emulators have it; what the hardware does with a plain put of the same SPE is unconfirmed).
   void write(ReservationHolder& holder, EffectiveAddress ea, std::byte* host, const std::byte* from,
              std::uint32_t bytes);
+
+  /// Gives up what the holder has reserved, if anything, without an event.
+  void give_up(ReservationHolder& holder);
 
   /// Whether the holder's reservation stands.
   bool holds(const ReservationHolder& holder) const;

@@ -11,10 +11,11 @@ namespace softcell::dma {
 
 struct Schedule {
   enum Kind : std::uint8_t {
-    kEager,   ///< at issue
-    kLazy,    ///< as late as waits, a full queue and ordering allow; of several that may go, the last issued
-              ///< first
-    kRandom,  ///< at random moments, in random order, line by line; reproducible by the seed
+    kEager,  ///< at issue, or as soon as what they wait for is done
+    kLazy,   ///< as late as waits, a full queue, ordering and Mfc::kMostVisits allow; of several that may go,
+             ///< the last issued first
+    kRandom,  ///< at random moments, line by line, in any order that fences, barriers and tags allow; what a
+              ///< get is about to overwrite is poisoned first; reproducible by the seed
   };
   Kind kind = kEager;
   std::uint64_t seed = 0;  ///< of kRandom only

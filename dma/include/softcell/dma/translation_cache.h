@@ -28,7 +28,8 @@ class TranslationCache {
   }
 
  private:
-  static constexpr std::size_t kEntries = 8;  // descriptor, image, and inputs and outputs of a usual job
+  // Descriptor, image, inputs and outputs of a usual job, and the local stores of the other SPEs.
+  static constexpr std::size_t kEntries = 16;
 
   std::variant<std::byte*, Fault> resolve_slowly(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted);
 

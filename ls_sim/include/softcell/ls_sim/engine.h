@@ -61,9 +61,13 @@ class Engine {
   virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels,
                         AccessObserver* accesses = nullptr) = 0;
 
-  /// Where the kernel is: the instruction after its last call of a channel, or the one that faulted; during a
-  /// channel operation the one that waits for it.
+  /// Where the kernel is: an address within its last call of a channel, or the instruction that faulted;
+  /// during a channel operation the one that waits for it.
   virtual dma::LocalStoreAddress position() const = 0;
+
+  /// The kernel's stack pointer at its last call of a channel, less what that call itself has put on the
+  /// stack.
+  virtual dma::LocalStoreAddress stack_pointer() const = 0;
 
   /// Stops the run in progress, if there is one, with the fault deadline-exceeded. Any thread.
   virtual void interrupt() = 0;

@@ -6,6 +6,13 @@
 //   spes.start(0, image, {.spe_id = 0, .argp = data.ea().value});
 //   spes.problem_state(0).write_in_mbox(42);
 //   const RunResult result = spes.wait(0);
+//
+// SPEs that all wait at channels, while nothing is in flight, can only be waiting for the PPU side. When that
+// waits too, in one of the calls below that say so, it is a deadlock: each of them stops with a fault that
+// says who waits for what. Where more than one thread acts as the PPU, each says so by an Outside.
+//
+// With Interleaving::kTurns, SPEs run while the PPU side waits in such a call, and for a while when it looks
+// at a mailbox or a status in vain; so a run is the same every time if one thread acts as the PPU.
 
 #include <cstdint>
 #include <memory>
@@ -34,7 +41,7 @@ class ProblemState {
   virtual std::optional<std::uint32_t> read_out_mbox() = 0;
   virtual std::optional<std::uint32_t> read_out_intr_mbox() = 0;
 
-  /// Waits for a value: false when the SPE has stopped without writing one.
+  /// Waits for a value: nothing when the SPE has stopped without writing one.
   virtual std::optional<std::uint32_t> wait_out_mbox() = 0;
   virtual std::optional<std::uint32_t> wait_out_intr_mbox() = 0;
 
@@ -42,20 +49,20 @@ class ProblemState {
   virtual void write_in_mbox(std::uint32_t value) = 0;
 
   /// Outbound count | free inbound slots << 8 | outbound-interrupt count << 16.
-  virtual std::uint32_t mbox_status() const = 0;
+  virtual std::uint32_t mbox_status() = 0;
 
-  /// @param which  1 or 2.
+  /// @param which  1 or 2. @throws std::invalid_argument  another.
   virtual void write_signal(int which, std::uint32_t value) = 0;
   virtual void set_signal_mode(int which, SignalMode mode) = 0;
 
-  /// Proxy DMA: 8 commands, no lists, no line commands. @return a fault, and then nothing is queued; waits
-  /// while full.
+  /// Proxy DMA: 8 commands, no lists, no line commands but putqlluc. Those with start begin the run of a
+  /// prepared SPE once their bytes have moved. @return a fault, and then nothing is queued; waits while full.
   virtual std::optional<dma::Fault> issue_proxy(const dma::MfcCommand& command) = 0;
 
   /// Which of these tags have no proxy command left. `wait_proxy` completes them first.
   virtual std::uint32_t proxy_status(std::uint32_t tag_mask) = 0;
   virtual std::uint32_t wait_proxy(std::uint32_t tag_mask) = 0;
-  virtual int free_proxy_slots() const = 0;
+  virtual int free_proxy_slots() = 0;
 
   /// The local store's bytes. What runs there may change them at any time.
   virtual std::span<std::byte> local_store() = 0;
@@ -74,15 +81,30 @@ class SpeGroup {
 
   int spes() const;
 
-  /// Loads the image and runs it on the SPE's own thread. @pre the SPE does not run. The image must outlive
-  /// the run.
-  void start(int spe, const KernelImage& image, const EntryArguments& arguments);
+  /// Loads the image, so that the PPU side and other SPEs may write to the local store before the run begins:
+  /// SPEs that talk to each other are all prepared before the first of them starts. Mailboxes and signal
+  /// registers stay as they are. The image must outlive the run.
+  /// @throws std::logic_error  the SPE runs.
+  void prepare(int spe, const KernelImage& image, const EntryArguments& arguments);
 
-  /// Blocks until the run has ended; it always does, by its end, a fault, a deadlock or the deadline.
+  /// Begins the run that was prepared, on the SPE's own thread.
+  /// @throws std::logic_error  nothing was prepared, or the SPE runs.
+  void start(int spe);
+
+  /// Both.
+  void start(int spe, const KernelImage& image, const EntryArguments& arguments) {
+    prepare(spe, image, arguments);
+    start(spe);
+  }
+
+  /// Waits until the run has ended; it always does, by its end, a fault, a deadlock or the deadline. Asked
+  /// again, gives the same answer.
+  /// @throws std::logic_error  the SPE was never started.
   RunResult wait(int spe);
 
   ProblemState& problem_state(int spe);
 
+  /// Exact when the SPE does not run, else as of its last run.
   SpeStatistics statistics(int spe) const;
 
   /// While one of these lives, somebody outside may still write to a mailbox, a signal or memory, and SPEs

@@ -1,12 +1,22 @@
 #pragma once
 // What an SPE has done.
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 
 #include "softcell/dma/mfc.h"
 
 namespace softcell::ls_sim {
+
+/// Channel operations that had to wait.
+struct ChannelWaits {
+  std::uint64_t count = 0;
+  std::chrono::nanoseconds time{0};
+};
+
+/// Channels below this may make an SPU wait.
+inline constexpr std::size_t kWaitingChannels = 31;
 
 /// Sums since the SPE was made.
 struct SpeStatistics {
@@ -16,6 +26,10 @@ struct SpeStatistics {
   dma::MfcStatistics dma;
   std::uint64_t channel_waits = 0;  ///< channel operations that blocked, tag waits included
   std::chrono::nanoseconds channel_waiting{0};
+  std::array<ChannelWaits, kWaitingChannels> waits{};  ///< the same by the channel's number
+  /// Bytes of local store, the most of any run: environment, image and stack, the latter as declared, or as
+  /// used with SpeOptions::measure_stack.
+  std::uint32_t local_store_high_water = 0;
   std::uint32_t stack_high_water = 0;  ///< bytes, the most of any run; only with SpeOptions::measure_stack
 };
 

@@ -18,6 +18,8 @@ namespace softcell::ls_sim {
 using TraceTime = std::int64_t;
 TraceTime trace_now();
 
+struct SpeEvents;
+
 /// One SPE's part of a trace. Used by the thread that runs the SPE. Recording an event is a look at the clock
 /// and an append: it allocates only when the memory grows. Past the limit of a trace, further events are
 /// counted and dropped.
@@ -47,15 +49,14 @@ class SpeTrace final : public dma::MfcObserver {
 
  private:
   friend class Trace;
-  struct Events;
   explicit SpeTrace(std::size_t most_events);
-  std::unique_ptr<Events> events_;
+  std::unique_ptr<SpeEvents> events_;
 };
 
 /// A run's trace. Hand `spe(n)` to SPE n while it runs; write when all have stopped.
 class Trace {
  public:
-  /// 4 million events an SPE are half an hour of a demo, and at most 160 MB.
+  /// 4 million events an SPE are half an hour of a demo, and of commands at most 160 MB.
   static constexpr std::size_t kMostEvents = 4'000'000;
 
   /// @param spes         1 or more.

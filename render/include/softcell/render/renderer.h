@@ -10,6 +10,7 @@
 #include "softcell/render/frame.h"
 #include "softcell/render/gl_context.h"
 #include "softcell/render/image.h"
+#include "softcell/render/overlay.h"
 
 namespace softcell::render {
 
@@ -57,6 +58,17 @@ class Renderer {
   /// last.
   /// @throws std::invalid_argument  a handle of another renderer or a link out of range.
   void render(const FrameDescription& frame);
+
+  /// Draws text and widgets over the last frame.
+  void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh);
+
+  /// Copies the last frame to the context's own framebuffer, which a window shows, stretched to its size.
+  void present(int width, int height);
+
+  /// Changes the size of the pictures from here on. @throws std::runtime_error  as the constructor.
+  void resize(int width, int height);
+  int width() const;
+  int height() const;
 
   /// The last frame, read back. The reference stays valid; the next call overwrites the picture.
   const Image& pixels();

@@ -1,5 +1,5 @@
 #pragma once
-// Channel numbers and the special values of spu_testsv. [LEXT, channels; CBEA, SPU channel map] documented
+// Numbers of the channels, for host and check alike. [LEXT, channels; CBEA, SPU channel map] documented
 
 #define SPU_RdEventStat 0
 #define SPU_WrEventMask 1
@@ -29,11 +29,3 @@
 #define SPU_WrOutMbox 28
 #define SPU_RdInMbox 29
 #define SPU_WrOutIntrMbox 30
-
-#define SPU_SV_NEG_DENORM 0x01
-#define SPU_SV_POS_DENORM 0x02
-#define SPU_SV_NEG_ZERO 0x04
-#define SPU_SV_POS_ZERO 0x08
-#define SPU_SV_NEG_INFINITY 0x10
-#define SPU_SV_POS_INFINITY 0x20
-#define SPU_SV_NAN 0x40

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "softcell/ls_sim/image.h"
+
+namespace softcell::demos {
+
+/// Loads a kernel by the path of its .spu.elf file, or by name when it is one of this project's.
+/// @param checked  take its instrumented flavour: NAME.checked.spu.elf beside NAME.spu.elf.
+/// @throws std::runtime_error  one sentence: neither, no such flavour, or why it is not loadable.
+ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked);
+
+}  // namespace softcell::demos

@@ -1,0 +1,124 @@
+// softcell spu explore: one kernel under many orders of its transfers. A correct one does not care.
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "interrupt.h"
+#include "json_file.h"
+#include "kernel_file.h"
+#include "kernel_outcome.h"
+#include "kernel_report.h"
+#include "progress_bar.h"
+#include "verbs.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr int kExitDifference = 1, kExitInterrupted = 130;
+constexpr std::uint64_t kFirstSeed = 1;
+
+dma::Schedule schedule_of(std::uint64_t seed) { return {dma::Schedule::kRandom, seed}; }
+
+class Explorer {
+ public:
+  explicit Explorer(const SpuExploreOptions& options)
+      : options_(options),
+        image_(load_kernel_file(options.task.image, options.task.checked)),
+        buffers_(memory_, options.task) {}
+
+  int explore() {
+    const InterruptGuard guard;
+    {
+      ProgressBar bar("spu explore", options_.quiet ? 0 : options_.seeds);
+      while (tried_ < options_.seeds && differences_.empty() && !guard.interrupted()) {
+        try_next_seed();
+        if (!options_.quiet) bar.show(tried_);
+      }
+    }
+    if (guard.interrupted() && differences_.empty()) {
+      fmt::print(stderr, "softcell: interrupted; {} of {} seeds gave the same outcome\n", tried_,
+                 options_.seeds);
+      return kExitInterrupted;
+    }
+    if (options_.json) write_json(*options_.json, document());
+    report();
+    return exit_status();
+  }
+
+ private:
+  std::uint64_t last_seed() const { return kFirstSeed + tried_ - 1; }
+
+  void try_next_seed() {
+    ++tried_;
+    buffers_.reset();
+    KernelRun run = run_kernel(memory_, image_, buffers_, options_.task,
+                               {.schedule = schedule_of(last_seed()), .clock = ls_sim::Clock::kSimulated});
+    if (tried_ == 1) {
+      first_run_ = std::move(run);
+      first_ = outcome(first_run_, buffers_);
+    } else {
+      differences_ = differences(first_, outcome(run, buffers_));
+    }
+  }
+
+  int exit_status() const {
+    return differences_.empty() ? demos::exit_status(image_, first_run_) : kExitDifference;
+  }
+
+  std::string reproduction(std::uint64_t seed) const {
+    return fmt::format("softcell spu run {} --dma random:{} --clock simulated", options_.task_text, seed);
+  }
+
+  void report() const {
+    print_problems(image_, first_run_);
+    if (differences_.empty()) {
+      fmt::print("kernel {}: the same outcome under {} seed{}{}\n", image_.name, tried_,
+                 tried_ == 1 ? "" : "s", exit_status() == 0 ? "" : ", and it is not a good one");
+      return;
+    }
+    fmt::print(
+        stderr,
+        "softcell: kernel {}: the outcome depends on when transfers happen: seed {} differs from seed {}\n",
+        image_.name, last_seed(), kFirstSeed);
+    for (const Difference& difference : differences_) {
+      fmt::print("{}\n", difference.sentence(fmt::format("seed {}", kFirstSeed),
+                                             fmt::format("seed {}", last_seed())));
+    }
+    fmt::print("to see either again:\n  {}\n  {}\n", reproduction(kFirstSeed), reproduction(last_seed()));
+  }
+
+  nlohmann::ordered_json document() const {
+    nlohmann::ordered_json found = nlohmann::ordered_json::array();
+    for (const Difference& difference : differences_) found.push_back(to_json(difference));
+    nlohmann::ordered_json document{{"kernel", image_.name},
+                                    {"checked", image_.checked},
+                                    {"exit_status", exit_status()},
+                                    {"seeds", options_.seeds},
+                                    {"seeds_tried", tried_},
+                                    {"first_seed", kFirstSeed},
+                                    {"differs", !differences_.empty()},
+                                    {"first_run", to_json(image_, first_run_)},
+                                    {"differences", std::move(found)}};
+    if (!differences_.empty()) {
+      document["differing_seed"] = last_seed();
+      document["reproduce"] = {reproduction(kFirstSeed), reproduction(last_seed())};
+    }
+    return document;
+  }
+
+  const SpuExploreOptions& options_;
+  const ls_sim::KernelImage image_;
+  dma::AddressSpace memory_;
+  KernelBuffers buffers_;
+  std::uint64_t tried_ = 0;
+  KernelRun first_run_;
+  KernelOutcome first_;
+  std::vector<Difference> differences_;
+};
+
+}  // namespace
+
+int run_spu_explore(const SpuExploreOptions& options) { return Explorer(options).explore(); }
+
+}  // namespace softcell::demos

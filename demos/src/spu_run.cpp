@@ -1,0 +1,42 @@
+// softcell spu run: one kernel on the user's own data.
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "json_file.h"
+#include "kernel_file.h"
+#include "kernel_report.h"
+#include "kernel_run.h"
+#include "softcell/ls_sim/trace.h"
+#include "verbs.h"
+
+namespace softcell::demos {
+
+int run_spu_run(const SpuRunOptions& options) {
+  const KernelTask& task = options.task;
+  const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked);
+  dma::AddressSpace memory;
+  const KernelBuffers buffers(memory, task);
+  std::optional<ls_sim::Trace> trace;
+  if (options.trace) trace.emplace(task.spes);
+
+  const KernelRun run =
+      run_kernel(memory, image, buffers, task,
+                 {.schedule = options.schedule, .clock = options.clock, .trace = trace ? &*trace : nullptr});
+
+  const int status = exit_status(image, run);
+  if (status == 0) buffers.write_files();
+  if (trace) trace->write(*options.trace);
+  if (options.json) {
+    auto document = to_json(image, run);
+    document["dma_schedule"] = dma::to_string(options.schedule);
+    write_json(*options.json, document);
+  }
+  print_statistics(image, run);
+  print_problems(image, run);
+  return status;
+}
+
+}  // namespace softcell::demos

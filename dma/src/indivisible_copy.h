@@ -1,0 +1,61 @@
+#pragma once
+// Copies whose units arrive whole, whoever looks on: a kernel that polls its local store, a PPU thread with a
+// std::atomic_ref, another SPE's DMA.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__SANITIZE_THREAD__)
+#define SC_THREAD_SANITIZER 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define SC_THREAD_SANITIZER 1
+#endif
+#endif
+
+namespace softcell::dma {
+
+#if defined(SC_THREAD_SANITIZER)
+// The sanitizer's own accesses of 16 bytes: as builtins, the compilers know atomic ones of up to 8.
+__extension__ typedef unsigned __int128 TsanQuadword;
+extern "C" TsanQuadword __tsan_atomic128_load(const volatile void* from, int order);
+extern "C" void __tsan_atomic128_store(volatile void* to, TsanQuadword value, int order);
+#endif
+
+template <class Unit>
+void copy_unit(std::byte* to, const std::byte* from) {
+  using Aliased [[gnu::may_alias]] = Unit;
+  const Unit value = __atomic_load_n(reinterpret_cast<const Aliased*>(from), __ATOMIC_ACQUIRE);
+  __atomic_store_n(reinterpret_cast<Aliased*>(to), value, __ATOMIC_RELEASE);
+}
+
+/// An aligned access of 16 bytes is indivisible on every x86 with AVX, and ordered as all others. The
+/// volatile keeps the compiler from cutting it or making a memcpy of a loop.
+inline void copy_quadword(std::byte* to, const std::byte* from) {
+#if defined(SC_THREAD_SANITIZER)
+  __tsan_atomic128_store(to, __tsan_atomic128_load(from, __ATOMIC_ACQUIRE), __ATOMIC_RELEASE);
+#else
+  typedef long long Quadword __attribute__((vector_size(16), may_alias));
+  *reinterpret_cast<volatile Quadword*>(to) = *reinterpret_cast<const volatile Quadword*>(from);
+#endif
+}
+
+/// Copies 1, 2, 4 or 8 bytes in one access, multiples of 16 by quadwords, each when both addresses are
+/// multiples of the unit, as every legal DMA command's are; anything else byte by byte as far as anybody can
+/// tell. The ranges may overlap; then what arrives is not specified.
+inline void copy_indivisibly(std::byte* to, const std::byte* from, std::uint32_t bytes) {
+  const auto addresses = reinterpret_cast<std::uintptr_t>(to) | reinterpret_cast<std::uintptr_t>(from);
+  if ((addresses | bytes) % 16 == 0) {
+    for (std::uint32_t at = 0; at < bytes; at += 16) copy_quadword(to + at, from + at);
+    return;
+  }
+  const bool aligned = (addresses & (bytes - 1)) == 0;
+  if (bytes == 4 && aligned) return copy_unit<std::uint32_t>(to, from);
+  if (bytes == 8 && aligned) return copy_unit<std::uint64_t>(to, from);
+  if (bytes == 2 && aligned) return copy_unit<std::uint16_t>(to, from);
+  if (bytes == 1) return copy_unit<std::uint8_t>(to, from);
+  std::memmove(to, from, bytes);
+}
+
+}  // namespace softcell::dma

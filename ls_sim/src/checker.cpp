@@ -1,0 +1,282 @@
+#include "checker.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "softcell/ls_sim/trace.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+using dma::CommandKind;
+using dma::MfcOpcode;
+using dma::Rule;
+
+constexpr std::uint32_t kListStallStatus = 25, kListStallAck = 26, kAtomicStatus = 27;
+
+std::string hex(std::uint32_t lsa) {
+  static constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string text = "0x00000";
+  for (std::size_t i = text.size() - 1; lsa != 0; --i, lsa >>= 4) text[i] = kDigits[lsa & 15];
+  return text;
+}
+
+std::string name_of(const dma::MfcCommand& command) { return std::string(dma::name(command.opcode())); }
+
+bool same_line(dma::EffectiveAddress a, dma::EffectiveAddress b) {
+  return a.value / dma::kLineBytes == b.value / dma::kLineBytes;
+}
+
+}  // namespace
+
+void Checker::begin_run(const KernelImage& image) {
+  if (image_ != &image) {
+    lines_ = std::make_unique<SourceLines>(image);
+    image_ = &image;
+    objects_.emplace(image);
+    padding_ = padding_of(image);
+  }
+  written_.forget_the_last_program();
+  written_.mark(kEnvironmentBytes, static_cast<std::uint32_t>(image.bytes.size()));
+  for (const PaddingRange& gap : padding_) written_.mark(gap.lsa, gap.bytes);
+  in_flight_.clear();
+  tag_mask_ = tags_issued_ = 0;
+  is_waiting_ = false;
+  asked_at_ = 0;
+  status_unread_.reset();
+  reservation_.reset();
+}
+
+// ---- loads and stores
+
+void Checker::on_access(const Access& access) {
+  const std::string trespass = objects_->trespass(access.lsa.value, access.bytes, access.stack_pointer.value);
+  if (!trespass.empty()) {
+    report(Rule::kOutsideObjects, access.instruction, describe(access) + ": " + trespass);
+  } else if (access.is_store) {
+    check_store(access);
+  } else {
+    check_load(access);
+  }
+  if (access.is_store) written_.mark(access.lsa.value, access.bytes);
+}
+
+void Checker::check_store(const Access& access) {
+  const std::uint32_t lsa = access.lsa.value;
+  if (reservation_ && lsa < reservation_->command.lsa.value + dma::kLineBytes &&
+      reservation_->command.lsa.value < lsa + access.bytes) {
+    reservation_->line_changed = true;
+  }
+  if (objects_->in_code(lsa)) {
+    report(Rule::kWriteToCode, access.instruction, describe(access));
+    return;
+  }
+  const CommandInFlight* other = in_flight_.listing(lsa, access.bytes);
+  const Rule rule = other != nullptr ? Rule::kListInFlight : Rule::kStoreInFlight;
+  if (other == nullptr) other = in_flight_.writing(lsa, access.bytes);
+  if (other == nullptr) other = in_flight_.reading(lsa, access.bytes);
+  if (other != nullptr)
+    report(rule, access.instruction, describe(access) + "; in flight: " + describe(*other));
+}
+
+void Checker::check_load(const Access& access) {
+  if (const CommandInFlight* const other = in_flight_.writing(access.lsa.value, access.bytes)) {
+    report(Rule::kLoadInFlight, access.instruction, describe(access) + "; in flight: " + describe(*other));
+    return;
+  }
+  // The compiler passes arguments on the stack without telling, and warns of variables that are not set. A
+  // load of which some bytes were written takes padding along.
+  if (objects_->in_stack(access.lsa.value) || written_.any(access.lsa.value, access.bytes)) return;
+  report(Rule::kLoadNeverWritten, access.instruction, describe(access) + ": this job has not written it");
+}
+
+// ---- commands
+
+ChannelReply Checker::issue(const dma::MfcCommand& command) {
+  CommandInFlight in_flight{
+      .command = command,
+      .issued_at = to_.engine.position(),
+      .writes_local_store = command.is_get(),
+      .writes_main_storage = command.is_put() || command.kind() == CommandKind::kQueuedLine,
+      .cursor = command.lsa};
+  // The list as it is now: the command may write over it.
+  add_ranges(in_flight, to_.local_store);
+  ChannelReply reply = to_.channels.issue(command);
+  if (reply.fault) return reply;
+  if (command.kind() == CommandKind::kLine) {
+    check_line_command(command);
+    return reply;
+  }
+  tags_issued_ |= 1u << (command.tag % dma::kTagCount);
+  if (command.kind() == CommandKind::kCacheHint) return reply;
+  if (command.kind() == CommandKind::kQueuedLine) end_reservation(command);
+  check_ranges(in_flight_.add(std::move(in_flight)), 0);
+  return reply;
+}
+
+void Checker::check_ranges(CommandInFlight& command, std::size_t first) {
+  for (std::size_t i = first; i < command.ranges.size(); ++i)
+    check_local_range(command.command, command.ranges[i], command.writes_local_store);
+  if (const CommandInFlight* const other = in_flight_.conflicting(command)) {
+    report(Rule::kTransfersOverlap, to_.engine.position(), "in flight: " + describe(*other), command.command);
+  }
+  if (!command.writes_local_store) return;
+  for (const MovedRange& range : command.ranges) {
+    const CommandInFlight* const list = in_flight_.listing(range.lsa, range.bytes);
+    if (list != nullptr && list->number != command.number) {
+      report(Rule::kListInFlight, to_.engine.position(), "in flight: " + describe(*list), command.command);
+      return;
+    }
+  }
+}
+
+void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get) {
+  const Address here = to_.engine.position();
+  const std::string where = objects_->describe(range.lsa);
+  const std::string trespass = objects_->trespass(range.lsa, range.bytes, to_.engine.stack_pointer().value);
+  if (!trespass.empty()) {
+    report(Rule::kOutsideObjects, here, std::to_string(range.bytes) + " bytes at " + where + ": " + trespass,
+           command);
+  } else if (is_get && objects_->in_code(range.lsa)) {
+    report(Rule::kWriteToCode, here, "its destination is " + where, command);
+  } else if (!is_get) {
+    // By quadwords, as the SPU stores. Where variables on the stack have their padding is not known.
+    const std::uint32_t step = objects_->in_stack(range.lsa) ? range.bytes : dma::kQuadwordBytes;
+    for (std::uint32_t done = 0; done < range.bytes; done += step) {
+      if (written_.any(range.lsa + done, std::min(step, range.bytes - done))) continue;
+      report(Rule::kPutNeverWritten, here,
+             objects_->describe(range.lsa + done) + ": this job has not written it", command);
+      break;
+    }
+  }
+  if (is_get) written_.mark(range.lsa, range.bytes);
+}
+
+void Checker::check_line_command(const dma::MfcCommand& command) {
+  const Address here = to_.engine.position();
+  const MovedRange line{command.lsa.value, command.ea.value, dma::kLineBytes};
+  if (status_unread_) {
+    report(Rule::kAtomicStatusNotRead, here,
+           "the " + name_of(status_unread_->command) + " before it, issued at " +
+               place_of(status_unread_->issued_at) + ", has a status that was not read",
+           command);
+  }
+  status_unread_ = LineCommand{command, here};
+  if (command.opcode() == MfcOpcode::putllc &&
+      !(reservation_ && same_line(reservation_->command.ea, command.ea)))
+    report(Rule::kPutllcWithoutReservation, here, "no getllar of this line is before it", command);
+  check_local_range(command, line, command.opcode() == MfcOpcode::getllar);
+  end_reservation(command);
+}
+
+void Checker::end_reservation(const dma::MfcCommand& by) {
+  const bool stores_it =
+      reservation_ && by.opcode() != MfcOpcode::getllar && same_line(reservation_->command.ea, by.ea);
+  if (reservation_ && !stores_it && reservation_->line_changed && by.opcode() == MfcOpcode::getllar) {
+    report(Rule::kReservationNotUsed, reservation_->issued_at,
+           "the line was changed, and the next getllar is at " + place_of(to_.engine.position()),
+           reservation_->command);
+  }
+  if (by.opcode() == MfcOpcode::getllar) {
+    reservation_ = LineCommand{by, to_.engine.position()};
+  } else if (stores_it || by.opcode() == MfcOpcode::putllc) {
+    reservation_.reset();
+  }
+}
+
+// ---- channels
+
+ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
+  ChannelReply reply = to_.channels.write(channel, value);
+  if (reply.fault) return reply;
+  if (channel == static_cast<std::uint32_t>(Channel::kMfcWrTagMask)) tag_mask_ = value;
+  if (channel == static_cast<std::uint32_t>(Channel::kMfcWrTagUpdate)) on_tag_update(value);
+  if (channel == kListStallAck) on_list_acknowledged(value);
+  return reply;
+}
+
+void Checker::on_tag_update(std::uint32_t condition) {
+  is_waiting_ = condition != 0;
+  asked_at_ = in_flight_.last_number();
+  if (!is_waiting_ || (tag_mask_ & tags_issued_) != 0) return;
+  std::string tags;
+  for (std::uint32_t tag = 0; tag < dma::kTagCount; ++tag) {
+    if ((tag_mask_ >> tag & 1u) != 0) tags += (tags.empty() ? "tag " : ", tag ") + std::to_string(tag);
+  }
+  report(Rule::kTagWithoutCommand, to_.engine.position(),
+         tags.empty() ? "the tag mask is empty" : tags + ": no command since the last wait");
+}
+
+ChannelReply Checker::read(std::uint32_t channel) {
+  ChannelReply reply = to_.channels.read(channel);
+  if (reply.fault) return reply;
+  if (channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat)) {
+    in_flight_.complete(reply.value, asked_at_);
+    if (is_waiting_) tags_issued_ &= ~reply.value;
+  }
+  if (channel == kListStallStatus) on_list_stall(reply.value);
+  if (channel == kAtomicStatus) status_unread_.reset();
+  return reply;
+}
+
+void Checker::on_list_stall(std::uint32_t tags) {
+  for (CommandInFlight& command : in_flight_.all()) {
+    if (!command.is_list() || (tags >> command.command.tag & 1u) == 0) continue;
+    command.has_stalled = true;
+    command.ranges.clear();  // of the elements up to the one that has stalled
+  }
+}
+
+void Checker::on_list_acknowledged(std::uint32_t tag) {
+  for (CommandInFlight& command : in_flight_.all()) {
+    if (!command.has_stalled || command.command.tag != tag) continue;
+    command.has_stalled = false;
+    add_ranges(command, to_.local_store);
+    check_ranges(command, 0);
+  }
+}
+
+void Checker::end_run() {
+  if (status_unread_) {
+    report(Rule::kAtomicStatusNotRead, status_unread_->issued_at, "the program ends without it",
+           status_unread_->command);
+  }
+  if (reservation_ && reservation_->line_changed) {
+    report(Rule::kReservationNotUsed, reservation_->issued_at, "the line was changed, and the program ends",
+           reservation_->command);
+  }
+  for (const CommandInFlight& command : in_flight_.all()) {
+    if (command.command.kind() == CommandKind::kOrdering) continue;
+    report(Rule::kCommandsOutstanding, command.issued_at, "the program ends without a wait for its tag",
+           command.command);
+  }
+}
+
+// ---- words
+
+void Checker::report(Rule rule, Address place, std::string detail,
+                     const std::optional<dma::MfcCommand>& command) {
+  const dma::Fault finding{.rule = rule,
+                           .spe = to_.spe,
+                           .kernel = image_->name,
+                           .place = place_of(place),
+                           .command = command,
+                           .detail = std::move(detail)};
+  to_.findings.add(finding);
+  if (to_.trace != nullptr) to_.trace->on_finding(finding, trace_now());
+}
+
+std::string Checker::describe(const Access& access) const {
+  return std::string(access.is_store ? "store" : "load") + " of " + std::to_string(access.bytes) +
+         (access.bytes == 1 ? " byte at " : " bytes at ") + objects_->describe(access.lsa.value) + " (LSA " +
+         hex(access.lsa.value) + ")";
+}
+
+std::string Checker::describe(const CommandInFlight& other) const {
+  std::uint64_t bytes = 0;
+  for (const MovedRange& range : other.ranges) bytes += range.bytes;
+  return name_of(other.command) + " of " + std::to_string(bytes) + " bytes, tag " +
+         std::to_string(other.command.tag) + ", issued at " + place_of(other.issued_at);
+}
+
+}  // namespace softcell::ls_sim

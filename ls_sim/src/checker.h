@@ -1,0 +1,105 @@
+#pragma once
+// Follows what a checked kernel does and reports what the hardware would keep silent about.
+//
+//   engine --loads, stores--> Checker --findings--> Findings
+//   engine --channels-------> Checker ------------> the SPU's channels
+//
+// It keeps the architectural state, which is what a program may rely on, and not the emulator's: under any
+// schedule it finds the same.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "commands_in_flight.h"
+#include "object_map.h"
+#include "object_padding.h"
+#include "softcell/ls_sim/channels.h"
+#include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/source_lines.h"
+#include "written_bytes.h"
+
+namespace softcell::ls_sim {
+
+class SpeTrace;
+
+/// One for each SPE. Used by the thread that runs the SPE, except for on_external_write().
+class Checker final : public ChannelPort, public AccessObserver {
+ public:
+  /// What it stands between; all of it outlives the checker.
+  struct Surroundings {
+    int spe;
+    std::span<const std::byte> local_store;
+    ChannelPort& channels;
+    const Engine& engine;  ///< knows where the kernel is
+    Findings& findings;
+    SpeTrace* trace = nullptr;  ///< told of each occurrence; null: nobody
+  };
+
+  explicit Checker(const Surroundings& surroundings) : to_(surroundings) {}
+
+  /// An image was made resident, and overwrote what was there.
+  void on_load() { written_.clear(); }
+
+  void begin_run(const KernelImage& image);
+
+  /// After a run that no fault has ended.
+  void end_run();
+
+  /// Any thread.
+  void on_external_write(dma::LocalStoreAddress lsa, std::uint32_t bytes) {
+    written_.mark_external(lsa.value, bytes);
+  }
+
+  ChannelReply read(std::uint32_t channel) override;
+  ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
+  ChannelReply count(std::uint32_t channel) override { return to_.channels.count(channel); }
+  ChannelReply issue(const dma::MfcCommand& command) override;
+  void on_access(const Access& access) override;
+
+ private:
+  using Address = dma::LocalStoreAddress;
+
+  /// A line command whose status was not read yet, or a getllar of which nothing has come yet.
+  struct LineCommand {
+    dma::MfcCommand command;
+    Address issued_at;
+    bool line_changed = false;
+  };
+
+  void check_store(const Access& access);
+  void check_load(const Access& access);
+  void check_ranges(CommandInFlight& command, std::size_t first);
+  void check_line_command(const dma::MfcCommand& command);
+  void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);
+  void end_reservation(const dma::MfcCommand& by);
+  void on_tag_update(std::uint32_t condition);
+  void on_list_stall(std::uint32_t tags);
+  void on_list_acknowledged(std::uint32_t tag);
+
+  void report(dma::Rule rule, Address place, std::string detail,
+              const std::optional<dma::MfcCommand>& command = std::nullopt);
+  std::string describe(const Access& access) const;
+  std::string describe(const CommandInFlight& command) const;
+  std::string place_of(Address instruction) const { return lines_->place_of(instruction); }
+
+  Surroundings to_;
+  const KernelImage* image_ = nullptr;
+  std::unique_ptr<SourceLines> lines_;  ///< of image_
+  std::optional<ObjectMap> objects_;
+  std::vector<PaddingRange> padding_;
+
+  WrittenBytes written_;
+  CommandsInFlight in_flight_;
+  std::uint32_t tag_mask_ = 0;
+  std::uint32_t tags_issued_ = 0;  ///< since each was last waited for
+  bool is_waiting_ = false;        ///< the open tag-status request is one that waits
+  std::uint64_t asked_at_ = 0;     ///< number of the last command when the request was made
+  std::optional<LineCommand> status_unread_;
+  std::optional<LineCommand> reservation_;
+};
+
+}  // namespace softcell::ls_sim

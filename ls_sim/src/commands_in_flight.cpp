@@ -1,0 +1,142 @@
+#include "commands_in_flight.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "softcell/dma/list_element.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+template <typename Number>
+bool overlap(Number a, std::uint32_t a_bytes, Number b, std::uint32_t b_bytes) {
+  return a < b + b_bytes && b < a + a_bytes;
+}
+
+bool touches(const CommandInFlight& command, std::uint32_t lsa, std::uint32_t bytes) {
+  return std::any_of(command.ranges.begin(), command.ranges.end(),
+                     [&](const MovedRange& range) { return overlap(range.lsa, range.bytes, lsa, bytes); });
+}
+
+/// Whether fences and barriers let `later` start only when `earlier` is complete.
+bool is_ordered(const dma::MfcCommand& earlier, const dma::MfcCommand& later) {
+  if (earlier.is_queue_barrier() || later.is_queue_barrier()) return true;
+  return earlier.tag == later.tag && (later.has_fence() || later.has_barrier() || earlier.has_barrier());
+}
+
+bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t number) {
+  return std::binary_search(sorted.begin(), sorted.end(), number);
+}
+
+}  // namespace
+
+void add_ranges(CommandInFlight& in_flight, std::span<const std::byte> local_store) {
+  const dma::MfcCommand& command = in_flight.command;
+  switch (command.kind()) {
+    case dma::CommandKind::kTransfer:
+      in_flight.ranges.push_back({command.lsa.value, command.ea.value, command.size});
+      return;
+    case dma::CommandKind::kQueuedLine:
+      in_flight.ranges.push_back({command.lsa.value, command.ea.value, dma::kLineBytes});
+      return;
+    case dma::CommandKind::kSignal:
+      in_flight.ranges.push_back({command.lsa.value, command.ea.value, dma::kSignalBytes});
+      return;
+    case dma::CommandKind::kList:
+      break;
+    default:
+      return;
+  }
+  in_flight.first_element = in_flight.next_element;
+  const std::uint32_t count = command.size / dma::kListElementBytes;
+  while (in_flight.next_element < count) {
+    dma::ListElement element;
+    const std::uint32_t at = command.list_address().value + in_flight.next_element * dma::kListElementBytes;
+    if (at + sizeof element > local_store.size()) return;
+    std::memcpy(&element, local_store.data() + at, sizeof element);
+    if (element.size() != 0) {
+      in_flight.ranges.push_back(
+          {element.place(in_flight.cursor).value, element.ea(command).value, element.size()});
+    }
+    in_flight.cursor = element.next(in_flight.cursor);
+    ++in_flight.next_element;
+    if (element.stalls()) return;
+  }
+}
+
+void CommandsInFlight::clear() {
+  commands_.clear();
+  last_number_ = 0;
+}
+
+CommandInFlight& CommandsInFlight::add(CommandInFlight command) {
+  command.number = ++last_number_;
+  for (const CommandInFlight& earlier : commands_) {
+    if (!is_ordered(earlier.command, command.command)) continue;
+    command.behind.push_back(earlier.number);
+    command.behind.insert(command.behind.end(), earlier.behind.begin(), earlier.behind.end());
+  }
+  std::sort(command.behind.begin(), command.behind.end());
+  command.behind.erase(std::unique(command.behind.begin(), command.behind.end()), command.behind.end());
+  return commands_.emplace_back(std::move(command));
+}
+
+void CommandsInFlight::complete(std::uint32_t tags, std::uint64_t up_to) {
+  std::vector<std::uint64_t> done;
+  for (const CommandInFlight& command : commands_) {
+    if (command.number > up_to || (tags >> (command.command.tag % dma::kTagCount) & 1u) == 0) continue;
+    done.push_back(command.number);
+    done.insert(done.end(), command.behind.begin(), command.behind.end());
+  }
+  std::sort(done.begin(), done.end());
+  std::erase_if(commands_, [&](const CommandInFlight& command) { return contains(done, command.number); });
+  // What is complete orders nothing any more, and neither does a barrier that has nothing to wait for.
+  for (CommandInFlight& command : commands_)
+    std::erase_if(command.behind, [&](std::uint64_t number) { return contains(done, number); });
+  std::erase_if(commands_, [](const CommandInFlight& command) {
+    return command.command.kind() == dma::CommandKind::kOrdering && command.behind.empty();
+  });
+}
+
+const CommandInFlight* CommandsInFlight::writing(std::uint32_t lsa, std::uint32_t bytes) const {
+  for (const CommandInFlight& command : commands_) {
+    if (command.writes_local_store && touches(command, lsa, bytes)) return &command;
+  }
+  return nullptr;
+}
+
+const CommandInFlight* CommandsInFlight::reading(std::uint32_t lsa, std::uint32_t bytes) const {
+  for (const CommandInFlight& command : commands_) {
+    if (!command.writes_local_store && touches(command, lsa, bytes)) return &command;
+  }
+  return nullptr;
+}
+
+const CommandInFlight* CommandsInFlight::listing(std::uint32_t lsa, std::uint32_t bytes) const {
+  for (const CommandInFlight& command : commands_) {
+    if (!command.is_list() || command.has_stalled) continue;
+    const std::uint32_t begin = command.command.list_address().value;
+    const std::uint32_t done = command.first_element * dma::kListElementBytes;
+    if (overlap(begin + done, command.command.size - done, lsa, bytes)) return &command;
+  }
+  return nullptr;
+}
+
+const CommandInFlight* CommandsInFlight::conflicting(const CommandInFlight& command) const {
+  for (const CommandInFlight& other : commands_) {
+    if (other.number == command.number || contains(command.behind, other.number)) continue;
+    const bool local = command.writes_local_store || other.writes_local_store;
+    const bool main = command.writes_main_storage || other.writes_main_storage;
+    for (const MovedRange& a : command.ranges) {
+      for (const MovedRange& b : other.ranges) {
+        if ((local && overlap(a.lsa, a.bytes, b.lsa, b.bytes)) ||
+            (main && overlap(a.ea, a.bytes, b.ea, b.bytes)))
+          return &other;
+      }
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,35 @@
+#include "softcell/ls_sim/findings.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace softcell::ls_sim {
+namespace {
+
+auto key(const dma::Fault& fault) { return std::tie(fault.rule, fault.kernel, fault.place); }
+
+}  // namespace
+
+void Findings::add(const dma::Fault& fault) {
+  const std::scoped_lock lock(mutex_);
+  const auto at =
+      std::lower_bound(findings_.begin(), findings_.end(), fault,
+                       [](const Finding& f, const dma::Fault& wanted) { return key(f.fault) < key(wanted); });
+  if (at != findings_.end() && key(at->fault) == key(fault)) {
+    ++at->count;
+  } else {
+    findings_.insert(at, Finding{fault, 1});
+  }
+}
+
+std::vector<Finding> Findings::list() const {
+  const std::scoped_lock lock(mutex_);
+  return findings_;
+}
+
+bool Findings::empty() const {
+  const std::scoped_lock lock(mutex_);
+  return findings_.empty();
+}
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,187 @@
+#include "spe_monitor.h"
+
+#include <algorithm>
+
+#include "softcell/ls_sim/channel_name.h"
+#include "softcell/ls_sim/source_lines.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+/// Tells apart the random decisions about turns from those of the MFCs, which have the numbers of jobs.
+constexpr std::uint64_t kTurnStream = 0x7475'726E;
+
+/// A turn lasts up to 2^0 .. 2^5 channel operations, each order of magnitude as often.
+constexpr std::uint32_t kTurnMagnitudes = 6;
+
+}  // namespace
+
+SpeMonitor::SpeMonitor(const SpeOptions& options, PpuSide ppu_side)
+    : takes_turns_(options.interleaving == Interleaving::kTurns),
+      ppu_side_(ppu_side),
+      random_(options.schedule.seed, kTurnStream) {}
+
+void SpeMonitor::start(int spe, const KernelImage& image, HostTime now) {
+  Member& m = member(spe);
+  m.state = State::kRunnable;
+  m.stopped = false;
+  m.image = &image;
+  m.started = now;
+  if (takes_turns_ && turn_ == kNobody) settle();
+}
+
+void SpeMonitor::end(int spe) {
+  member(spe).state = State::kIdle;
+  wake_ppu();
+  give_up_turn(spe);
+}
+
+void SpeMonitor::stop(int spe) {
+  member(spe).stopped = true;
+  member(spe).wake_up.notify_one();
+}
+
+bool SpeMonitor::await_first_turn(Lock& lock, int spe) {
+  member(spe).wake_up.wait(lock, [&] { return may_go_on(spe); });
+  return !member(spe).stopped;
+}
+
+bool SpeMonitor::pass_turn_now(int spe) {
+  Lock lock(mutex_);
+  Member& m = member(spe);
+  if (!m.stopped && operations_left_ != 0) {
+    --operations_left_;
+    return true;
+  }
+  give_up_turn(spe);
+  m.wake_up.wait(lock, [&] { return may_go_on(spe); });
+  return !m.stopped;
+}
+
+Woken SpeMonitor::sleep(Lock& lock, int spe, const Sleep& sleep) {
+  Member& m = member(spe);
+  m.state = State::kAsleep;
+  m.woken = Woken::kToLook;
+  m.sleep = sleep;
+  give_up_turn(spe);
+  while (!may_go_on(spe)) {
+    if (!sleep.until || m.state == State::kRunnable) {
+      m.wake_up.wait(lock);
+    } else if (m.wake_up.wait_until(lock, *sleep.until) == std::cv_status::timeout) {
+      wake(spe);
+    }
+  }
+  m.state = State::kRunnable;
+  return m.stopped ? Woken::kStopped : m.woken;
+}
+
+void SpeMonitor::wake(int spe) { wake_with(spe, Woken::kToLook); }
+
+void SpeMonitor::wake_with(int spe, Woken why) {
+  Member& m = member(spe);
+  if (m.state != State::kAsleep) return;
+  m.state = State::kRunnable;
+  m.woken = why;
+  if (takes_turns_ && turn_ == kNobody) settle();
+  if (has_turn(spe)) m.wake_up.notify_one();
+}
+
+void SpeMonitor::wake_ppu() {
+  if (!ppu_waits_.empty()) ppu_wake_up_.notify_all();
+}
+
+void SpeMonitor::ppu_wait(Lock& lock, const std::function<bool()>& ready) {
+  ppu_waits_.push_back(&ready);
+  if (turn_ == kNobody) settle();
+  ppu_wake_up_.wait(lock, [&] { return turn_ == kNobody && ready(); });
+  ppu_waits_.erase(std::find(ppu_waits_.begin(), ppu_waits_.end(), &ready));
+  if (takes_turns_ && !ppu_waits_.empty()) settle();  // another thread's wait goes on
+}
+
+void SpeMonitor::ppu_pause(Lock& lock) {
+  if (!takes_turns_) return;
+  const std::uint64_t before = turns_drawn_;
+  ppu_wait(lock, [&] { return turns_drawn_ != before || !any(State::kRunnable); });
+}
+
+void SpeMonitor::change_outside(int difference) {
+  outside_ += difference;
+  if (turn_ == kNobody) settle();
+}
+
+bool SpeMonitor::any(State state) const {
+  return std::any_of(members_.begin(), members_.end(), [state](const Member& m) { return m.state == state; });
+}
+
+bool SpeMonitor::ppu_acts() const {
+  if (ppu_side_ == PpuSide::kStaysAway) return false;
+  return ppu_waits_.empty() ||
+         std::any_of(ppu_waits_.begin(), ppu_waits_.end(), [](const auto* ready) { return (*ready)(); });
+}
+
+void SpeMonitor::give_up_turn(int spe) {
+  if (turn_ != spe && turn_ != kNobody) return;  // stopped out of turn
+  turn_ = kNobody;
+  settle();
+}
+
+/// Whenever somebody has stopped running: says who goes on, or that nobody ever will.
+void SpeMonitor::settle() {
+  if (takes_turns_ && ppu_acts()) {
+    wake_ppu();
+    return;
+  }
+  if (any(State::kRunnable)) {
+    if (takes_turns_) draw_turn();
+    return;
+  }
+  if (!any(State::kAsleep) || let_time_pass()) return;
+  if (outside_ == 0 && !ppu_acts()) declare_deadlock();
+}
+
+void SpeMonitor::draw_turn() {
+  std::array<int, dma::kSpeCount> runnable{};
+  std::uint32_t count = 0;
+  for (int spe = 0; spe < dma::kSpeCount; ++spe) {
+    if (member(spe).state == State::kRunnable) runnable[count++] = spe;
+  }
+  turn_ = runnable[random_.below(count)];
+  operations_left_ = random_.below(1u << random_.below(kTurnMagnitudes));
+  ++turns_drawn_;
+  member(turn_).wake_up.notify_one();
+}
+
+/// Everybody sleeps. @return  whether time alone ends that: the host's will, simulated time is made to pass.
+bool SpeMonitor::let_time_pass() {
+  int next = kNobody;
+  for (int spe = 0; spe < dma::kSpeCount; ++spe) {
+    const Member& m = member(spe);
+    if (m.state != State::kAsleep) continue;
+    if (m.sleep.until) return true;
+    if (m.sleep.simulated_ticks &&
+        (next == kNobody || *m.sleep.simulated_ticks < *member(next).sleep.simulated_ticks)) {
+      next = spe;
+    }
+  }
+  if (next == kNobody) return false;
+  wake_with(next, Woken::kTimePassed);
+  return true;
+}
+
+void SpeMonitor::declare_deadlock() {
+  deadlock_.clear();
+  for (int spe = 0; spe < dma::kSpeCount; ++spe) {
+    const Member& m = member(spe);
+    if (m.state != State::kAsleep) continue;
+    if (!deadlock_.empty()) deadlock_ += ", ";
+    const std::string place = SourceLines(*m.image).place_of(m.sleep.position);
+    deadlock_ += "SPE " + std::to_string(spe) + " (" + m.image->name + (place.empty() ? "" : ", " + place) +
+                 ") waits to " +
+                 (channel_access(m.sleep.channel) == ChannelAccess::kWrite ? "write " : "read ") +
+                 std::string(channel_name(m.sleep.channel));
+  }
+  deadlock_ += "; nothing is in flight, and nobody is left who could end that";
+  for (int spe = 0; spe < dma::kSpeCount; ++spe) wake_with(spe, Woken::kDeadlock);
+}
+
+}  // namespace softcell::ls_sim

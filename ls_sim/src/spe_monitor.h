@@ -1,0 +1,150 @@
+#pragma once
+// Who runs, who waits for what, and who goes on: the one lock of a group of SPEs.
+//
+//   SPE 0   runs ---- sleep(reads SPU_RdInMbox) ................ runs ---- end()
+//   SPE 1   runs ----------------- writes the mailbox, wake(0) -- runs - sleep() ... nobody left: deadlock
+//   PPU     start(0) start(1) -- ppu_wait() ............................................... runs
+//
+// Its mutex also guards what an SPE may wait for (mailboxes, signals, events), so that a sleep never misses
+// the change it waits for. It is never held while an MFC or a kernel runs.
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "softcell/dma/addresses.h"
+#include "softcell/dma/random_stream.h"
+#include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/spe_options.h"
+
+namespace softcell::ls_sim {
+
+/// What an SPE that sleeps waits for.
+struct Sleep {
+  std::uint32_t channel = 0;
+  dma::LocalStoreAddress position;  ///< of the instruction that waits
+
+  /// When it wakes by itself, if it does: the host's time, or ticks of simulated time to come.
+  std::optional<std::chrono::steady_clock::time_point> until = {};
+  std::optional<std::uint64_t> simulated_ticks = {};
+};
+
+/// Why an SPE no longer sleeps. It may have been woken for nothing: it looks again at what it waited for.
+enum class Woken : std::uint8_t {
+  kToLook,
+  kTimePassed,  ///< its simulated_ticks, in which nobody had anything to do
+  kDeadlock,    ///< deadlock() says why
+  kStopped,     ///< by stop()
+};
+
+class SpeMonitor {
+ public:
+  using Lock = std::unique_lock<std::mutex>;
+  using HostTime = std::chrono::steady_clock::time_point;
+
+  /// Whether whoever started the SPEs may end their waits. One who acts does so at any time but in
+  /// ppu_wait().
+  enum class PpuSide : std::uint8_t { kActs, kStaysAway };
+
+  SpeMonitor(const SpeOptions& options, PpuSide ppu_side);
+
+  Lock lock() { return Lock(mutex_); }
+
+  // Runs of SPEs. All with the lock.
+
+  /// From now on the SPE runs, though its thread may still have to wake up.
+  void start(int spe, const KernelImage& image, HostTime now);
+  void end(int spe);
+  bool runs(int spe) const { return members_[static_cast<std::size_t>(spe)].state != State::kIdle; }
+  HostTime started(int spe) const { return members_[static_cast<std::size_t>(spe)].started; }
+
+  /// Ends the SPE's sleeps from now until its run has ended.
+  void stop(int spe);
+
+  // What the SPE's own thread calls while it runs.
+
+  /// At the beginning of a run, with the lock: waits for its turn. @return  false when it has been stopped.
+  bool await_first_turn(Lock& lock, int spe);
+
+  /// At each channel operation, without the lock: the turn may go to another SPE and come back.
+  /// @return  false when the SPE has been stopped meanwhile.
+  bool pass_turn(int spe) { return !takes_turns_ || pass_turn_now(spe); }
+
+  /// Sleeps until somebody calls wake(), or as Woken says.
+  Woken sleep(Lock& lock, int spe, const Sleep& sleep);
+
+  /// Who waits for what; of the last deadlock. With the lock.
+  const std::string& deadlock() const { return deadlock_; }
+
+  // What anybody calls who has changed something that may be waited for. With the lock.
+
+  void wake(int spe);
+  void wake_ppu();
+
+  // The PPU side. All with the lock.
+
+  /// Sleeps until `ready`, which is asked with the lock; meanwhile the PPU side does not act.
+  void ppu_wait(Lock& lock, const std::function<bool()>& ready);
+
+  /// The PPU side has looked and found nothing: where SPEs take turns, one of them runs for a while.
+  void ppu_pause(Lock& lock);
+
+  /// How many more, or fewer, may act outside while all here wait.
+  void change_outside(int difference);
+
+ private:
+  enum class State : std::uint8_t { kIdle, kRunnable, kAsleep };
+
+  struct Member {
+    State state = State::kIdle;
+    bool stopped = false;
+    Woken woken = Woken::kToLook;
+    const KernelImage* image = nullptr;
+    HostTime started{};
+    Sleep sleep;
+    std::condition_variable wake_up;
+  };
+
+  static constexpr int kNobody = -1;
+
+  Member& member(int spe) { return members_[static_cast<std::size_t>(spe)]; }
+  bool has_turn(int spe) const { return !takes_turns_ || turn_ == spe; }
+  bool may_go_on(int spe) {
+    return member(spe).stopped || (member(spe).state == State::kRunnable && has_turn(spe));
+  }
+  bool any(State state) const;
+
+  bool pass_turn_now(int spe);
+  void give_up_turn(int spe);
+  void wake_with(int spe, Woken why);
+
+  bool ppu_acts() const;
+  void settle();
+  void draw_turn();
+  bool let_time_pass();
+  void declare_deadlock();
+
+  const bool takes_turns_;
+  const PpuSide ppu_side_;
+
+  std::mutex mutex_;  // guards all below, and what SPEs wait for
+  std::array<Member, dma::kSpeCount> members_;
+  std::condition_variable ppu_wake_up_;
+  std::vector<const std::function<bool()>*> ppu_waits_;
+  int outside_ = 0;
+  std::string deadlock_;
+
+  // Of turns:
+  int turn_ = kNobody;
+  std::uint32_t operations_left_ = 0;  ///< of whose turn it is
+  std::uint64_t turns_drawn_ = 0;
+  dma::RandomStream random_;
+};
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,107 @@
+#include "spe_threads.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "softcell/ls_sim/trace.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+/// On a console an SPE never takes time from the PPU. Here both share cores: a batch thread at least does not
+/// interrupt the thread that wakes it. Where the host refuses, only timings suffer.
+void leave_the_ppu_its_core() {
+  const sched_param parameters{};
+  pthread_setschedparam(pthread_self(), SCHED_BATCH, &parameters);
+}
+
+const SpeOptions& checked(const SpeOptions& options) {
+  if (options.spes < 1 || options.spes > dma::kSpeCount) {
+    throw std::invalid_argument("the number of SPEs is " + std::to_string(options.spes) +
+                                "; 1 to 6 are allowed");
+  }
+  if (options.deadline <= std::chrono::milliseconds::zero()) {
+    throw std::invalid_argument("the deadline of a run must be positive");
+  }
+  if (options.trace != nullptr && options.trace->spes() < options.spes) {
+    throw std::invalid_argument("the trace has room for " + std::to_string(options.trace->spes()) +
+                                " SPEs; there are " + std::to_string(options.spes));
+  }
+  return options;
+}
+
+}  // namespace
+
+SpeThreads::SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor::PpuSide ppu_side,
+                       RunSource& source)
+    : options_(checked(options)), source_(source), monitor_(options, ppu_side) {
+  for (int number = 0; number < options_.spes; ++number) {
+    workers_.push_back(std::make_unique<Worker>(number, memory, options_, monitor_));
+  }
+  for (int number = 0; number < options_.spes; ++number) {
+    threads_.emplace_back([this, number] { work(number); });
+  }
+  watchdog_ = std::jthread([this] { watch(); });
+}
+
+void SpeThreads::join() {
+  threads_.clear();  // the watchdog still ends what takes too long
+  {
+    const SpeMonitor::Lock lock = monitor_.lock();
+    closed_ = true;
+  }
+  watchdog_wake_up_.notify_one();
+  if (watchdog_.joinable()) watchdog_.join();
+}
+
+void SpeThreads::stop_runs() {
+  stops_runs_ = true;
+  watchdog_wake_up_.notify_one();
+}
+
+void SpeThreads::work(int number) {
+  leave_the_ppu_its_core();
+  SpeMonitor::Lock lock = monitor_.lock();
+  while (const std::optional<Run> next = source_.next_run(number, lock)) {
+    RunResult result = run(number, *next, lock);
+    monitor_.end(number);
+    Worker& worker = *workers_[static_cast<std::size_t>(number)];
+    worker.statistics = worker.spe.statistics();
+    source_.on_ended(number, *next, std::move(result));
+  }
+}
+
+RunResult SpeThreads::run(int number, const Run& run, SpeMonitor::Lock& lock) {
+  if (!monitor_.await_first_turn(lock, number)) {
+    return {0, dma::Fault{.rule = dma::Rule::kDeadlineExceeded,
+                          .spe = number,
+                          .kernel = run.image->name,
+                          .detail = "the kernel was stopped before its first instruction"}};
+  }
+  lock.unlock();
+  source_.on_taken(number);
+  RunResult result = spe(number).run(run);
+  lock.lock();
+  return result;
+}
+
+/// Every wait for a run ends because this loop ends the run.
+void SpeThreads::watch() {
+  using namespace std::chrono_literals;
+  const auto period = std::clamp<std::chrono::milliseconds>(options_.deadline / 8, 1ms, 100ms);
+  SpeMonitor::Lock lock = monitor_.lock();
+  while (!closed_) {
+    watchdog_wake_up_.wait_for(lock, stops_runs_ ? 1ms : period);
+    const auto now = std::chrono::steady_clock::now();
+    for (int number = 0; number < options_.spes; ++number) {
+      const bool late = stops_runs_ || now - monitor_.started(number) > options_.deadline;
+      if (late && monitor_.runs(number)) spe(number).interrupt();
+    }
+  }
+}
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,82 @@
+#pragma once
+// What SpePool and SpeGroup have in common: SPEs, a thread for each, and the watchdog that ends runs which
+// take too long.
+
+#include <condition_variable>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "spe.h"
+
+namespace softcell::ls_sim {
+
+/// Who gives the SPEs their runs. Called by the SPEs' threads.
+class RunSource {
+ public:
+  virtual ~RunSource() = default;
+
+  /// Waits for a run for this SPE; releases the lock meanwhile. The caller has told the monitor of its start.
+  /// @return  nothing when the thread is to end.
+  virtual std::optional<Run> next_run(int spe, SpeMonitor::Lock& lock) = 0;
+
+  /// It is on its way. Without the lock, which is the time to wake others.
+  virtual void on_taken(int spe) = 0;
+
+  /// With the lock; the SPE no longer runs.
+  virtual void on_ended(int spe, const Run& run, RunResult&& result) = 0;
+};
+
+class SpeThreads {
+ public:
+  /// @param source  outlives this; called as soon as the threads run, before the constructor returns.
+  /// @throws std::invalid_argument  options out of range.
+  /// @throws std::runtime_error     when the host cannot run native kernels.
+  SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor::PpuSide ppu_side,
+             RunSource& source);
+
+  ~SpeThreads() { join(); }
+  SpeThreads(const SpeThreads&) = delete;
+  SpeThreads& operator=(const SpeThreads&) = delete;
+
+  /// Waits for the threads. @pre the source gives no more runs.
+  void join();
+
+  /// All runs in progress end with a fault. With the lock.
+  void stop_runs();
+
+  SpeMonitor& monitor() { return monitor_; }
+  Spe& spe(int number) { return workers_[static_cast<std::size_t>(number)]->spe; }
+  int spes() const { return options_.spes; }
+
+  /// Exact when the SPE does not run, else as of its last run. With the lock.
+  const SpeStatistics& statistics(int spe) const {
+    return workers_[static_cast<std::size_t>(spe)]->statistics;
+  }
+
+ private:
+  struct Worker {
+    Worker(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor& monitor)
+        : spe(number, memory, options, monitor) {}
+    Spe spe;
+    SpeStatistics statistics;
+  };
+
+  void work(int number);
+  RunResult run(int number, const Run& run, SpeMonitor::Lock& lock);
+  void watch();
+
+  const SpeOptions options_;
+  RunSource& source_;
+  SpeMonitor monitor_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+
+  std::condition_variable watchdog_wake_up_;
+  bool stops_runs_ = false, closed_ = false;  // guarded by the monitor's lock
+
+  std::vector<std::jthread> threads_;
+  std::jthread watchdog_;
+};
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,372 @@
+#include "spu_channels.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "softcell/ls_sim/channel_name.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+constexpr std::uint32_t number(Channel channel) { return static_cast<std::uint32_t>(channel); }
+
+ChannelReply reply_of(dma::Fault&& fault) { return {0, std::make_unique<dma::Fault>(std::move(fault))}; }
+
+ChannelReply reply_of(std::optional<dma::Fault> fault) {
+  return fault ? reply_of(std::move(*fault)) : ChannelReply{};
+}
+
+ChannelReply reply_of(std::variant<std::uint32_t, dma::Fault> status) {
+  if (auto* fault = std::get_if<dma::Fault>(&status)) return reply_of(std::move(*fault));
+  return {std::get<std::uint32_t>(status), {}};
+}
+
+ChannelReply illegal(std::uint32_t channel, const char* operation) {
+  dma::Fault fault{dma::Rule::kIllegalChannel};
+  fault.detail = std::string(operation) + " channel " + std::to_string(channel) + ", ";
+  switch (channel_access(channel)) {
+    case ChannelAccess::kNone:
+      fault.detail += "which does not exist";
+      break;
+    case ChannelAccess::kRead:
+      fault.detail += std::string(channel_name(channel)) + ", which is only read";
+      break;
+    case ChannelAccess::kWrite:
+      fault.detail += std::string(channel_name(channel)) + ", which is only written";
+      break;
+  }
+  return reply_of(std::move(fault));
+}
+
+std::string describe_access(std::uint32_t channel) {
+  return (channel_access(channel) == ChannelAccess::kRead ? "read " : "write ") +
+         std::string(channel_name(channel));
+}
+
+}  // namespace
+
+void SpuChannels::begin_run() {
+  decrementer_ = {};
+  srr0_ = 0;
+  parameters_ = {};
+  lists_ = {};
+}
+
+// ---- the door
+
+ChannelReply SpuChannels::read(std::uint32_t channel) {
+  if (!begin_operation()) return stopped(channel);
+  if (channel_access(channel) != ChannelAccess::kRead) return illegal(channel, "read of");
+  dma::Mfc& mfc = to_.mfc;
+  switch (static_cast<Channel>(channel)) {
+    case Channel::kMfcRdTagStat:
+      return wait_for_mfc(
+          Channel::kMfcRdTagStat, [&] { return mfc.statistics().tag_waits; },
+          [&] { return mfc.read_tag_status(); });
+    case Channel::kMfcRdListStallStat:
+      return wait_for_mfc(
+          Channel::kMfcRdListStallStat,
+          [&] { return mfc.statistics().get_list.stalls + mfc.statistics().put_list.stalls; },
+          [&] { return mfc.read_list_stall_status(); });
+    case Channel::kMfcRdAtomicStat:
+      return reply_of(mfc.read_atomic_status());
+    case Channel::kMfcRdTagMask:
+      return {mfc.tag_mask(), {}};
+    default:
+      return read_register(static_cast<Channel>(channel));
+  }
+}
+
+ChannelReply SpuChannels::write(std::uint32_t channel, std::uint32_t value) {
+  if (!begin_operation()) return stopped(channel);
+  if (channel_access(channel) != ChannelAccess::kWrite) return illegal(channel, "write to");
+  dma::Mfc& mfc = to_.mfc;
+  switch (static_cast<Channel>(channel)) {
+    case Channel::kMfcLsa:
+      parameters_.lsa.value = value;
+      return {};
+    case Channel::kMfcEah:
+      parameters_.ea.value = (std::uint64_t{value} << 32) | (parameters_.ea.value & 0xFFFFFFFFu);
+      return {};
+    case Channel::kMfcEal:
+      parameters_.ea.value = (parameters_.ea.value & ~std::uint64_t{0xFFFFFFFFu}) | value;
+      return {};
+    case Channel::kMfcSize:
+      parameters_.size = value;
+      return {};
+    case Channel::kMfcTagId:
+      parameters_.tag = value;
+      return {};
+    case Channel::kMfcCmd:
+      parameters_.word = value;
+      return issue_now(parameters_);
+    case Channel::kMfcWrTagMask:
+      mfc.write_tag_mask(value);
+      return {};
+    case Channel::kMfcWrTagUpdate:
+      return reply_of(mfc.write_tag_update(value));
+    case Channel::kMfcWrListStallAck:
+      return reply_of(mfc.write_list_stall_ack(value));
+    default:
+      return write_register(static_cast<Channel>(channel), value);
+  }
+}
+
+ChannelReply SpuChannels::count(std::uint32_t channel) {
+  if (!begin_operation()) return stopped(channel);
+  if (channel_access(channel) == ChannelAccess::kNone) return illegal(channel, "count of");
+  dma::Mfc& mfc = to_.mfc;
+  const auto reply = [](int slots) { return ChannelReply{static_cast<std::uint32_t>(slots), {}}; };
+  switch (static_cast<Channel>(channel)) {
+    case Channel::kMfcCmd:
+      return reply(mfc.free_slots());
+    case Channel::kMfcRdTagStat:
+      return reply(mfc.tag_status_count());
+    case Channel::kMfcRdListStallStat:
+      return reply(mfc.list_stall_count());
+    case Channel::kMfcRdAtomicStat:
+      return reply(mfc.atomic_status_count());
+    default:
+      mfc.visit();
+      if (auto fault = mfc.take_fault()) return reply_of(std::move(fault));
+      return {count_register(static_cast<Channel>(channel)), {}};
+  }
+}
+
+ChannelReply SpuChannels::issue(const dma::MfcCommand& command) {
+  if (!begin_operation()) return stopped(number(Channel::kMfcCmd));
+  return issue_now(command);
+}
+
+// ---- the MFC's channels
+
+ChannelReply SpuChannels::issue_now(const dma::MfcCommand& command) {
+  if (command.kind() == dma::CommandKind::kList) {
+    lists_[next_list_] = {command, to_.engine.position()};
+    next_list_ = (next_list_ + 1) % lists_.size();
+  }
+  dma::Mfc& mfc = to_.mfc;
+  return wait_for_mfc(
+      Channel::kMfcCmd, [&] { return mfc.statistics().queue_full_stalls; },
+      [&] { return mfc.issue(command); });
+}
+
+/// A call of the MFC that may have to wait for transfers; the MFC's own count says whether it had to.
+template <class Waits, class Call>
+ChannelReply SpuChannels::wait_for_mfc(Channel channel, Waits&& waits, Call&& call) {
+  // Nothing waits that is done at once, and a look at the clock costs as much as a command.
+  if (to_.options.schedule.kind == dma::Schedule::kEager) return reply_of(call());
+  const std::uint64_t before = waits();
+  const auto begin = HostClock::now();
+  ChannelReply reply = reply_of(call());
+  if (waits() != before) note_wait(channel, begin);
+  return reply;
+}
+
+// ---- the other channels
+
+ChannelReply SpuChannels::read_register(Channel channel) {
+  SpeRegisters& registers = to_.registers;
+  switch (channel) {
+    case Channel::kSpuRdInMbox:
+      return attempt_or_sleep(channel, [&] { return registers.in_mbox.read(); });
+    case Channel::kSpuRdSigNotify1:
+      return attempt_or_sleep(channel, [&] { return registers.signal1.read(); });
+    case Channel::kSpuRdSigNotify2:
+      return attempt_or_sleep(channel, [&] { return registers.signal2.read(); });
+    case Channel::kSpuRdEventStat:
+      return attempt_or_sleep(channel, [&] {
+        collect_events();
+        return registers.events.read();
+      });
+    case Channel::kSpuRdEventMask:
+      return attempt_or_sleep(channel, [&] { return std::optional(registers.events.mask()); });
+    case Channel::kSpuRdDec:
+      return attempt_or_sleep(channel, [&] { return std::optional(decrementer_.read(clock_.ticks())); });
+    case Channel::kSpuRdSrr0:
+      return {srr0_, {}};
+    default:  // SPU_RdMachStat: interrupts are off, and the SPU is not isolated
+      return {0, {}};
+  }
+}
+
+ChannelReply SpuChannels::write_register(Channel channel, std::uint32_t value) {
+  SpeRegisters& registers = to_.registers;
+  constexpr auto kDone = std::optional<std::uint32_t>(0);
+  const auto write_mbox = [&](Mailbox<1>& mbox) {
+    return attempt_or_sleep(channel, [&]() -> std::optional<std::uint32_t> {
+      if (mbox.full()) return std::nullopt;
+      mbox.write(value);
+      to_.monitor.wake_ppu();
+      return kDone;
+    });
+  };
+  switch (channel) {
+    case Channel::kSpuWrOutMbox:
+      return write_mbox(registers.out_mbox);
+    case Channel::kSpuWrOutIntrMbox:
+      return write_mbox(registers.out_intr_mbox);
+    case Channel::kSpuWrEventMask:
+      return attempt_or_sleep(channel, [&] {
+        collect_events();
+        registers.events.write_mask(value);
+        return kDone;
+      });
+    case Channel::kSpuWrEventAck:
+      return attempt_or_sleep(channel, [&] {
+        acknowledge_events(value);
+        return kDone;
+      });
+    case Channel::kSpuWrDec:
+      return attempt_or_sleep(channel, [&] {
+        collect_events();  // an event of the old count stays one
+        decrementer_.write(value, clock_.ticks());
+        return kDone;
+      });
+    case Channel::kMfcWrMsSyncReq:
+      // Transfers of others into this local store are done when they are visible at all.
+      return attempt_or_sleep(channel, [&] {
+        registers.events.raise(event::kMultisourceSync);
+        return kDone;
+      });
+    case Channel::kSpuWrSrr0:
+      srr0_ = value;
+      return {};
+    default:  // bookmarks for tools that watch from outside
+      return {};
+  }
+}
+
+std::uint32_t SpuChannels::count_register(Channel channel) {
+  const SpeMonitor::Lock lock = to_.monitor.lock();
+  SpeRegisters& registers = to_.registers;
+  switch (channel) {
+    case Channel::kSpuRdEventStat:
+      collect_events();
+      return registers.events.count();
+    case Channel::kSpuRdSigNotify1:
+      return registers.signal1.count();
+    case Channel::kSpuRdSigNotify2:
+      return registers.signal2.count();
+    case Channel::kSpuRdInMbox:
+      return registers.in_mbox.count();
+    case Channel::kSpuWrOutMbox:
+      return registers.out_mbox.free_slots();
+    case Channel::kSpuWrOutIntrMbox:
+      return registers.out_intr_mbox.free_slots();
+    default:  // never waits
+      return 1;
+  }
+}
+
+/// @param attempt  with the monitor's lock: the operation's value, or nothing when it has to wait.
+template <class Attempt>
+ChannelReply SpuChannels::attempt_or_sleep(Channel channel, Attempt&& attempt) {
+  to_.mfc.visit();
+  if (auto fault = to_.mfc.take_fault()) return reply_of(std::move(fault));
+  {
+    const SpeMonitor::Lock lock = to_.monitor.lock();
+    if (const auto value = attempt()) return {*value, {}};
+  }
+  const auto begin = HostClock::now();
+  ChannelReply reply = sleep_until(channel, attempt);
+  note_wait(channel, begin);
+  return reply;
+}
+
+template <class Attempt>
+ChannelReply SpuChannels::sleep_until(Channel channel, Attempt&& attempt) {
+  while (move_something()) {
+    const SpeMonitor::Lock lock = to_.monitor.lock();
+    if (const auto value = attempt()) return {*value, {}};
+  }
+  if (auto fault = to_.mfc.take_fault()) return reply_of(std::move(fault));
+
+  SpeMonitor::Lock lock = to_.monitor.lock();
+  for (;;) {
+    if (const auto value = attempt()) return {*value, {}};
+    if (std::exchange(to_.registers.proxy_issued, false)) {
+      lock.unlock();
+      while (move_something()) {
+      }
+      lock.lock();
+      continue;
+    }
+    const Sleep sleep = sleep_at(channel);
+    switch (to_.monitor.sleep(lock, to_.spe, sleep)) {
+      case Woken::kToLook:
+        break;
+      case Woken::kTimePassed:
+        clock_.skip(*sleep.simulated_ticks);
+        break;
+      case Woken::kDeadlock: {
+        dma::Fault fault{dma::Rule::kDeadlock};
+        fault.detail = to_.monitor.deadlock();
+        return reply_of(std::move(fault));
+      }
+      case Woken::kStopped:
+        return stopped(number(channel));
+    }
+  }
+}
+
+Sleep SpuChannels::sleep_at(Channel channel) const {
+  Sleep sleep{.channel = number(channel), .position = to_.engine.position()};
+  const bool timed =
+      channel == Channel::kSpuRdEventStat && (to_.registers.events.mask() & event::kDecrementer) != 0;
+  const auto wakes_at = timed ? decrementer_.next_event() : std::nullopt;
+  if (!wakes_at) return sleep;
+  if (clock_.kind() == Clock::kSimulated) {
+    sleep.simulated_ticks = *wakes_at - clock_.ticks();
+  } else {
+    sleep.until = clock_.host_time_of(*wakes_at);
+  }
+  return sleep;
+}
+
+// ---- events
+
+void SpuChannels::collect_events() {
+  std::uint32_t events = to_.mfc.take_events();
+  if (decrementer_.next_event() && decrementer_.take_event(clock_.ticks())) events |= event::kDecrementer;
+  to_.registers.events.raise(events);
+}
+
+void SpuChannels::acknowledge_events(std::uint32_t events) {
+  collect_events();
+  to_.registers.events.acknowledge(events);
+  const std::uint32_t masked = ~to_.registers.events.mask();
+  if ((events & masked & event::kDecrementer) != 0) decrementer_.stop(clock_.ticks());
+}
+
+// ---- ends and waits
+
+std::optional<dma::LocalStoreAddress> SpuChannels::issued_at(const dma::Fault& fault) const {
+  if (!fault.command) return std::nullopt;
+  const auto list = std::find_if(lists_.begin(), lists_.end(),
+                                 [&](const IssuedList& issued) { return issued.command == *fault.command; });
+  if (list == lists_.end()) return std::nullopt;
+  return list->position;
+}
+
+ChannelReply SpuChannels::stopped(std::uint32_t channel) const {
+  dma::Fault fault{dma::Rule::kDeadlineExceeded};
+  fault.detail = "the kernel did not end in time; it was to " + describe_access(channel);
+  return reply_of(std::move(fault));
+}
+
+void SpuChannels::note_wait(Channel channel, HostClock::time_point begin) {
+  const auto end = HostClock::now();
+  ChannelWaits& waits = to_.statistics.waits[number(channel)];
+  ++waits.count;
+  waits.time += end - begin;
+  ++to_.statistics.channel_waits;
+  to_.statistics.channel_waiting += end - begin;
+  if (to_.trace != nullptr) {
+    to_.trace->on_wait(number(channel), begin.time_since_epoch().count(), end.time_since_epoch().count());
+  }
+}
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,111 @@
+#pragma once
+// All channels of one SPU, over its MFC and its registers.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "decrementer.h"
+#include "softcell/dma/mfc.h"
+#include "softcell/dma/mfc_queue.h"
+#include "softcell/dma/proxy_queue.h"
+#include "softcell/ls_sim/channels.h"
+#include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/statistics.h"
+#include "softcell/ls_sim/trace.h"
+#include "spe_monitor.h"
+#include "spe_registers.h"
+#include "spu_clock.h"
+
+namespace softcell::ls_sim {
+
+/// Used by the thread that runs the SPE. Before it sleeps, all that the MFC can move has moved: the
+/// hardware's transfers do not need the SPU.
+class SpuChannels final : public ChannelPort {
+ public:
+  /// What the channels lead to; all of it outlives them.
+  struct Surroundings {
+    int spe;
+    const SpeOptions& options;
+    SpeMonitor& monitor;
+    SpeRegisters& registers;  ///< guarded by the monitor
+    dma::Mfc& mfc;
+    const Engine& engine;  ///< knows where the kernel is
+    SpeStatistics& statistics;
+    SpeTrace* trace;  ///< may be null
+  };
+
+  explicit SpuChannels(const Surroundings& surroundings)
+      : to_(surroundings), clock_(surroundings.options.clock) {}
+
+  /// The PPU side's queue, which moves with the SPU's own. It outlives the channels.
+  void set_proxy(dma::ProxyQueue* proxy) { proxy_ = proxy; }
+
+  /// State at the start of a program, of all but the MFC and the registers.
+  void begin_run();
+
+  /// What is in the PPU side's queue moves on without the SPU.
+  void end_run() {
+    while (proxy_ != nullptr && proxy_->advance()) {
+    }
+  }
+
+  ChannelReply read(std::uint32_t channel) override;
+  ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
+  ChannelReply count(std::uint32_t channel) override;
+  ChannelReply issue(const dma::MfcCommand& command) override;
+
+  /// Where the list command that broke a rule was issued: its elements are looked at later, when the kernel
+  /// is somewhere else. @return  nothing for a fault of anything but a list's elements.
+  std::optional<dma::LocalStoreAddress> issued_at(const dma::Fault& fault) const;
+
+ private:
+  using HostClock = std::chrono::steady_clock;
+
+  /// Where every operation begins. @return  false when the SPE has been stopped.
+  bool begin_operation() {
+    clock_.on_operation();
+    if (proxy_ != nullptr) proxy_->visit();
+    return to_.monitor.pass_turn(to_.spe);
+  }
+
+  // Channels of the MFC.
+  template <class Waits, class Call>
+  ChannelReply wait_for_mfc(Channel channel, Waits&& waits, Call&& call);
+  ChannelReply issue_now(const dma::MfcCommand& command);
+
+  // The other channels.
+  ChannelReply read_register(Channel channel);
+  ChannelReply write_register(Channel channel, std::uint32_t value);
+  std::uint32_t count_register(Channel channel);
+  template <class Attempt>
+  ChannelReply attempt_or_sleep(Channel channel, Attempt&& attempt);
+  bool move_something() { return to_.mfc.advance() || (proxy_ != nullptr && proxy_->advance()); }
+  template <class Attempt>
+  ChannelReply sleep_until(Channel channel, Attempt&& attempt);
+  Sleep sleep_at(Channel channel) const;
+
+  // Events; with the monitor's lock.
+  void collect_events();
+  void acknowledge_events(std::uint32_t events);
+
+  ChannelReply stopped(std::uint32_t channel) const;
+  void note_wait(Channel channel, HostClock::time_point begin);
+
+  Surroundings to_;
+  dma::ProxyQueue* proxy_ = nullptr;
+  SpuClock clock_;
+  Decrementer decrementer_;
+  std::uint32_t srr0_ = 0;
+  dma::MfcCommand parameters_{};  ///< as written to channels 16 to 20 so far
+
+  struct IssuedList {
+    dma::MfcCommand command;
+    dma::LocalStoreAddress position;
+  };
+  std::array<IssuedList, dma::MfcQueue::kSlots> lists_{};  ///< the last that were issued, in a ring
+  std::size_t next_list_ = 0;
+};
+
+}  // namespace softcell::ls_sim

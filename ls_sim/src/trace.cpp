@@ -1,0 +1,130 @@
+#include "softcell/ls_sim/trace.h"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "softcell/ls_sim/whole_file.h"
+#include "trace_events.h"
+#include "trace_writer.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+TracedImage describe(const KernelImage& image) {
+  return {image.name, image.checked, image.sizes.budget, local_store_map(image), image.objects, {}};
+}
+
+}  // namespace
+
+TraceTime trace_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+bool TracedImage::is(const TracedImage& other) const {
+  const auto same_object = [](const ImageObject& a, const ImageObject& b) {
+    return a.name == b.name && a.begin == b.begin && a.bytes == b.bytes;
+  };
+  return name == other.name && checked == other.checked && budget == other.budget &&
+         sections == other.sections &&
+         std::equal(objects.begin(), objects.end(), other.objects.begin(), other.objects.end(), same_object);
+}
+
+std::uint32_t SpeEvents::image_index(const KernelImage& image) {
+  // An image that is gone may have left its address to another: the name tells them apart.
+  if (&image == last_image && image.name == images[last_index].name) return last_index;
+  TracedImage described = describe(image);
+  const auto known =
+      std::find_if(images.begin(), images.end(), [&](const TracedImage& i) { return i.is(described); });
+  last_image = &image;
+  last_index = static_cast<std::uint32_t>(known - images.begin());
+  if (known == images.end()) images.push_back(std::move(described));
+  return last_index;
+}
+
+SpeTrace::SpeTrace(std::size_t most_events) : events_(std::make_unique<SpeEvents>(most_events)) {
+  events_->in_flight.reserve(64);
+}
+
+SpeTrace::~SpeTrace() = default;
+
+void SpeTrace::on_job(const KernelImage& image, std::uint64_t job_number, TraceTime begin, TraceTime end,
+                      bool failed) {
+  SpeEvents& e = *events_;
+  e.jobs.append({begin, end, job_number, e.image_index(image), failed});
+  for (const auto& left : e.in_flight) e.commands[left.index].complete = end;
+  e.in_flight.clear();
+}
+
+void SpeTrace::on_stack_used(const KernelImage& image, std::uint32_t bytes) {
+  auto& used = events_->images[events_->image_index(image)].stack_used;
+  used = std::max(used.value_or(0), bytes);
+}
+
+void SpeTrace::on_wait(std::uint32_t channel, TraceTime begin, TraceTime end) {
+  events_->waits.append({begin, end, channel});
+}
+
+void SpeTrace::on_finding(const dma::Fault& fault, TraceTime when) {
+  SpeEvents& e = *events_;
+  if (e.findings.size() == e.most_findings) {
+    ++e.dropped_findings;
+    return;
+  }
+  e.findings.push_back(
+      {when, std::string(dma::name(fault.rule)), fault.kernel, fault.place, fault.message()});
+}
+
+void SpeTrace::on_issue(std::uint64_t number, const dma::MfcCommand& command, std::uint64_t bytes) {
+  const TraceTime now = trace_now();
+  const std::size_t index = events_->commands.append({.issue = now,
+                                                      .complete = now,
+                                                      .ea = command.ea.value,
+                                                      .lsa = command.lsa.value,
+                                                      .size = command.size,
+                                                      .bytes = static_cast<std::uint32_t>(bytes),
+                                                      .opcode = static_cast<std::uint16_t>(command.opcode()),
+                                                      .tag = static_cast<std::uint8_t>(command.tag),
+                                                      .completed = false});
+  if (index != EventLog<TracedCommand>::kDropped) events_->in_flight.push_back({number, index});
+}
+
+void SpeTrace::on_complete(std::uint64_t number) {
+  auto& in_flight = events_->in_flight;
+  // From the newest: what completes is often what was issued last.
+  for (std::size_t i = in_flight.size(); i-- > 0;) {
+    if (in_flight[i].number != number) continue;
+    TracedCommand& command = events_->commands[in_flight[i].index];
+    command.complete = trace_now();
+    command.completed = true;
+    in_flight[i] = in_flight.back();
+    in_flight.pop_back();
+    return;
+  }
+}
+
+Trace::Trace(int spes, std::size_t most_events) : begin_(trace_now()) {
+  if (spes < 1) throw std::invalid_argument("a trace is of 1 SPE or more, not of " + std::to_string(spes));
+  for (int i = 0; i < spes; ++i) {
+    spes_.push_back(std::unique_ptr<SpeTrace>(new SpeTrace(most_events)));
+  }
+}
+
+Trace::~Trace() = default;
+
+SpeTrace& Trace::spe(int number) { return *spes_.at(static_cast<std::size_t>(number)); }
+int Trace::spes() const { return static_cast<int>(spes_.size()); }
+
+void Trace::write(const std::filesystem::path& path) const {
+  WholeFile file(path);
+  TraceWriter writer(file, begin_);
+  std::vector<const SpeEvents*> spes;
+  for (const auto& spe : spes_) spes.push_back(spe->events_.get());
+  writer.write(spes);
+  file.commit();
+}
+
+}  // namespace softcell::ls_sim

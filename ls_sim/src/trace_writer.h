@@ -1,0 +1,48 @@
+#pragma once
+// The Chrome / Perfetto JSON format, as softcell writes it. docs/trace-and-report.md describes each field.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "json_text.h"
+#include "softcell/ls_sim/trace.h"
+#include "softcell/ls_sim/whole_file.h"
+#include "trace_events.h"
+
+namespace softcell::ls_sim {
+
+class TraceWriter {
+ public:
+  /// @param begin  time 0 of the file.
+  TraceWriter(WholeFile& file, TraceTime begin) : file_(file), begin_(begin) {}
+
+  /// The whole file; SPE n is the n-th of these.
+  void write(const std::vector<const SpeEvents*>& spes);
+
+ private:
+  void write_spe(int spe, const SpeEvents& events);
+  void write_rows(int spe, std::size_t command_rows);
+  void write_jobs(int spe, const SpeEvents& events);
+  void write_waits(int spe, const SpeEvents& events);
+  void write_commands(int spe, const SpeEvents& events, const std::vector<std::uint32_t>& rows);
+  void write_findings(int spe, const SpeEvents& events);
+  void write_about(const std::vector<const SpeEvents*>& spes);
+  void write_image(const TracedImage& image);
+
+  /// Begins an event on its own line; the caller ends it with raw("}").
+  JsonText& event(std::string_view phase, int spe, int row);
+  /// And of one that lasts, up to where its arguments begin.
+  JsonText& slice(int spe, int row, TraceTime begin, TraceTime end, std::string_view category,
+                  std::string_view quoted_name);
+  void name_row(int spe, int row, std::string_view name);
+  void flush(std::size_t when_longer_than);
+
+  WholeFile& file_;
+  TraceTime begin_;
+  JsonText out_;
+  bool first_ = true;
+};
+
+}  // namespace softcell::ls_sim

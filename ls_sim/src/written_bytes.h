@@ -1,0 +1,62 @@
+#pragma once
+// Which bytes of a local store have been written: a flag for each.
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "softcell/dma/addresses.h"
+
+namespace softcell::ls_sim {
+
+/// Used by the thread that runs the SPE, except for mark_external().
+class WrittenBytes {
+ public:
+  /// Nothing is written, from outside neither.
+  void clear() { set_all(0); }
+
+  /// A new program begins: what came from outside before its start stays.
+  void forget_the_last_program() {
+    for (auto& flags : flags_) flags.store(flags.load(kRelaxed) & kFromOutside, kRelaxed);
+  }
+
+  void mark(std::uint32_t lsa, std::uint32_t bytes) { add(lsa, bytes, kByProgram); }
+
+  /// Any thread.
+  void mark_external(std::uint32_t lsa, std::uint32_t bytes) { add(lsa, bytes, kFromOutside); }
+
+  /// False when not one byte of the range was written.
+  bool any(std::uint32_t lsa, std::uint32_t bytes) const {
+    const auto [begin, end] = clip(lsa, bytes);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (flags_[i].load(kRelaxed) != 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint8_t kByProgram = 1, kFromOutside = 2;
+  static constexpr auto kRelaxed = std::memory_order_relaxed;
+
+  static std::pair<std::uint32_t, std::uint32_t> clip(std::uint32_t lsa, std::uint32_t bytes) {
+    const std::uint32_t begin = std::min(lsa, dma::kLocalStoreBytes);
+    return {begin, begin + std::min(bytes, dma::kLocalStoreBytes - begin)};
+  }
+  void set_all(std::uint8_t value) {
+    for (auto& flags : flags_) flags.store(value, kRelaxed);
+  }
+  void add(std::uint32_t lsa, std::uint32_t bytes, std::uint8_t flag) {
+    const auto [begin, end] = clip(lsa, bytes);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      // Once set it stays, so that most of the time nothing has to be written.
+      if ((flags_[i].load(kRelaxed) & flag) == 0) flags_[i].fetch_or(flag, kRelaxed);
+    }
+  }
+
+  std::array<std::atomic<std::uint8_t>, dma::kLocalStoreBytes> flags_{};
+};
+
+}  // namespace softcell::ls_sim

@@ -1,0 +1,108 @@
+#pragma once
+// Lattice shape matching in two dimensions. As shape_matching.h, but a rotation is one angle and has a closed
+// form, so that two of the four sums of a region's matrix are enough:
+//
+//     C = sum m~ p.q   S = sum m~ q x p   (p = x - c, q = x0 - c0, a x b = ax by - ay bx)   (cos, sin) ~ (C,
+//     S)
+//
+// which is the best rotation whatever the region's rank, mirrored or not. [LSM07]
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "softcell/ppu/lanes.h"
+#include "softcell/ppu/lattice_2d.h"
+#include "softcell/ppu/shape_matching.h"
+#include "softcell/ppu/summation.h"
+
+namespace softcell::ppu {
+
+/// What all bodies of one model share. Immutable. See MatchingPlan.
+template <typename Real>
+class MatchingPlan2d {
+ public:
+  using Vector = Eigen::Matrix<Real, 2, 1>;
+
+  /// Arguments and errors as MatchingPlan's.
+  MatchingPlan2d(const Lattice2d& lattice, int half_width, std::span<const float> masses);
+
+  std::size_t particles() const { return particles_.size(); }
+  std::size_t regions() const { return regions_.size(); }  ///< distinct ones
+  Real spacing() const { return spacing_; }                ///< metres
+  const SumPlan& sums() const { return sums_; }
+  const Vector& rest_centre() const { return rest_centre_; }
+
+  struct Particle {
+    Vector x0;                  ///< rest position relative to rest_centre()
+    Real modified_mass;         ///< m~, kg
+    Real inverse_region_count;  ///< 1 / |R_i|
+  };
+  struct Region {
+    Vector c0;          ///< rest centre relative to rest_centre()
+    Real mass;          ///< M_r, kg
+    Real inverse_mass;  ///< 1 / M_r
+  };
+  std::span<const Particle> particle_constants() const { return particles_; }
+  std::span<const Region> region_constants() const { return regions_; }
+
+  /// Below this times M_r, C and S are rounding noise. Square metres.
+  Real noise_floor() const { return noise_floor_; }
+
+ private:
+  SumPlan sums_;
+  Real spacing_;
+  Vector rest_centre_;
+  Real noise_floor_;
+  std::vector<Particle> particles_;
+  std::vector<Region> regions_;
+};
+
+/// The moving state of one body, as ShapeMatcher.
+template <typename Real>
+class ShapeMatcher2d {
+ public:
+  using Vector = Eigen::Matrix<Real, 2, 1>;
+
+  /// cos and sin of a region's angle: the direction in which its x axis points.
+  using Direction = Vector;
+
+  explicit ShapeMatcher2d(std::shared_ptr<const MatchingPlan2d<Real>> plan,
+                          SumMethod method = SumMethod::kBarPlateCube);
+
+  /// As ShapeMatcher's.
+  void goals(std::span<const Vector> x, std::span<Vector> g);
+  void step_velocities(std::span<const Vector> x, std::span<Vector> v, Real alpha, Real h, Real damping);
+  void reset();
+
+  /// One for each distinct region: that of particle i is directions()[plan().sums().region_of()[i]].
+  std::span<const Direction> directions() const { return directions_; }
+  const MatchingPlan2d<Real>& plan() const { return *plan_; }
+
+ private:
+  using Payload = Lanes<Real, 4>;
+
+  void check_sizes(std::size_t positions, std::size_t others) const;
+  void localise(std::span<const Vector> x);
+  void match(std::span<const Vector> x);
+  void damp(std::span<Vector> v, Real damping);
+  void up();
+  void down();
+
+  std::shared_ptr<const MatchingPlan2d<Real>> plan_;
+  SumMethod method_;
+  std::vector<Direction> directions_;
+  std::vector<Vector> x_;      // of each particle: position relative to a point in the body
+  std::vector<Vector> pulls_;  // g_i - x_i
+  std::vector<Vector> centres_;
+  std::vector<Payload> of_particles_, of_regions_, totals_;
+  SumScratch<Payload> scratch_;
+};
+
+extern template class MatchingPlan2d<float>;
+extern template class MatchingPlan2d<double>;
+extern template class ShapeMatcher2d<float>;
+extern template class ShapeMatcher2d<double>;
+
+}  // namespace softcell::ppu

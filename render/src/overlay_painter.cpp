@@ -1,0 +1,92 @@
+#include "overlay_painter.h"
+
+#include <cstddef>
+
+namespace softcell::render {
+namespace {
+
+constexpr char kVertex[] = R"glsl(#version 330 core
+layout(location = 0) in vec2 vertex_position;
+layout(location = 1) in vec2 vertex_texel;
+layout(location = 2) in vec4 vertex_colour;
+uniform vec2 to_clip;  // 2 / picture size
+out vec2 texel;
+out vec4 colour;
+void main() {
+  texel = vertex_texel;
+  colour = vertex_colour;
+  gl_Position = vec4(vertex_position.x * to_clip.x - 1.0, 1.0 - vertex_position.y * to_clip.y, 0.0, 1.0);
+}
+)glsl";
+
+constexpr char kFragment[] = R"glsl(#version 330 core
+uniform sampler2D font;
+in vec2 texel;
+in vec4 colour;
+out vec4 result;
+void main() { result = vec4(colour.rgb, colour.a * texture(font, texel).r); }
+)glsl";
+
+// NOLINTNEXTLINE(performance-no-int-to-ptr)
+const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+}  // namespace
+
+OverlayPainter::OverlayPainter(const GladGLContext& gl)
+    : gl_(gl),
+      program_(make_program(gl, {kVertex}, {kFragment})),
+      layout_(make_vertex_array(gl)),
+      vertices_(make_buffer(gl)),
+      indices_(make_buffer(gl)),
+      texture_(make_texture(gl)),
+      to_clip_(gl.GetUniformLocation(program_.name(), "to_clip")) {
+  gl_.BindVertexArray(layout_.name());
+  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.name());
+  gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_.name());
+  for (const GLuint attribute : {0u, 1u, 2u}) gl_.EnableVertexAttribArray(attribute);
+  constexpr GLsizei kStride = sizeof(OverlayVertex);
+  gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, x)));
+  gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, u)));
+  gl_.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride, offset(offsetof(OverlayVertex, rgba)));
+}
+
+void OverlayPainter::upload_font(const OverlayFont& font) {
+  gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
+  if (uploaded_ == font.coverage.data()) return;
+  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, font.width, font.height, 0, GL_RED, GL_UNSIGNED_BYTE,
+                 font.coverage.data());
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  uploaded_ = font.coverage.data();
+}
+
+void OverlayPainter::draw(const OverlayFont& font, const OverlayMesh& mesh, int width, int height) {
+  upload_font(font);
+  gl_.Viewport(0, 0, width, height);
+  gl_.UseProgram(program_.name());
+  gl_.Uniform2f(to_clip_, 2 / static_cast<float>(width), 2 / static_cast<float>(height));
+  gl_.BindVertexArray(layout_.name());
+  gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_.name());
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(OverlayVertex)),
+                 mesh.vertices.data(), GL_STREAM_DRAW);
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(),
+                 GL_STREAM_DRAW);
+  gl_.Disable(GL_DEPTH_TEST);
+  gl_.Disable(GL_CULL_FACE);
+  gl_.Enable(GL_BLEND);
+  gl_.Enable(GL_SCISSOR_TEST);
+  for (const OverlayCommand& command : mesh.commands) {
+    if (command.right <= command.left || command.bottom <= command.top) continue;
+    gl_.Scissor(command.left, height - command.bottom, command.right - command.left,
+                command.bottom - command.top);
+    gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.index_count), GL_UNSIGNED_INT,
+                     offset(std::size_t{command.first_index} * sizeof(std::uint32_t)));
+  }
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.Disable(GL_BLEND);
+  gl_.Enable(GL_DEPTH_TEST);
+}
+
+}  // namespace softcell::render

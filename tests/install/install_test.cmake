@@ -1,0 +1,60 @@
+# Installs the build tree, then builds and tests examples/saxpy with nothing but what was installed.
+
+# step(<what it is for> <command>...): the command succeeds, or this test fails with its output.
+function(step purpose)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${purpose} failed (${status}):\n${output}")
+  endif()
+endfunction()
+
+# says(<status> <regular expression> <command>...): the command ends with that status and prints that.
+function(says expected_status expected)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT status EQUAL expected_status OR NOT output MATCHES "${expected}")
+    message(FATAL_ERROR "expected status ${expected_status} and \"${expected}\" of ${ARGN}, got ${status}:\n${output}")
+  endif()
+endfunction()
+
+set(prefix ${SCRATCH}/prefix)
+set(copy ${SCRATCH}/saxpy)
+set(build ${SCRATCH}/build)
+file(REMOVE_RECURSE ${SCRATCH})
+file(COPY ${EXAMPLE} DESTINATION ${SCRATCH})  # away from our source tree, so that nothing of it is found by chance
+
+step("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+step("configuring the example" ${CMAKE_COMMAND} -S ${copy} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
+  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
+step("building the example" ${CMAKE_COMMAND} --build ${build} --parallel 2)
+step("testing the example" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
+
+# The installed command on the example's kernels: the right one, and the broken one.
+string(REPEAT "0123456789abcdef" 256 bytes)  # 1024 floats
+file(WRITE ${SCRATCH}/x.bin "${bytes}")
+set(task --in x=${SCRATCH}/x.bin --out y=${SCRATCH}/y.bin:4096 --arg f32:2 @x @y 1024 1 0)
+says(0 "put +1 +4096" ${prefix}/bin/softcell spu run ${build}/saxpy.spu.elf ${task})
+says(0 "the same outcome under 10 seeds" ${prefix}/bin/softcell spu explore ${build}/saxpy.spu.elf --seeds 10 ${task})
+says(1 "buffer y, byte [0-9]+:" ${prefix}/bin/softcell spu explore ${build}/saxpy_no_wait.spu.elf ${task})
+
+file(STRINGS ${copy}/saxpy_no_wait.cpp lines)
+set(line 1)
+foreach(text IN LISTS lines)
+  if(text MATCHES "// too early")
+    break()
+  endif()
+  math(EXPR line "${line} + 1")
+endforeach()
+says(0 "status 0" ${prefix}/bin/softcell spu run --checked ${build}/saxpy.spu.elf ${task})
+says(3 "saxpy_no_wait.cpp:${line}: load-in-flight" ${prefix}/bin/softcell spu run --checked ${build}/saxpy_no_wait.spu.elf ${task})
+
+# The installed files name no file of the source tree.
+file(GLOB_RECURSE package ${prefix}/lib/cmake/*.cmake ${prefix}/share/*.cmake)
+cmake_path(GET EXAMPLE PARENT_PATH examples)
+cmake_path(GET examples PARENT_PATH source)
+foreach(file IN LISTS package)
+  file(READ ${file} text)
+  string(FIND "${text}" "${source}/" found)
+  if(NOT found EQUAL -1)
+    message(FATAL_ERROR "${file} refers to the source tree ${source}")
+  endif()
+endforeach()

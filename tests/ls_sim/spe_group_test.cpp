@@ -1,0 +1,410 @@
+#include "softcell/ls_sim/spe_group.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "softcell/dma/buffer.h"
+#include "softcell/dma/local_store_port.h"
+#include "softcell/ls_sim/trace.h"
+#include "test_images.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock_ = std::chrono::steady_clock;
+
+// What the kernel `waits` takes as argp, as in the SDK.
+constexpr std::uint64_t kEventStat = 0, kSignal1 = 3, kSignal2 = 4, kDecrementer = 8, kOutMbox = 28,
+                        kInMbox = 29, kOutIntrMbox = 30;
+
+constexpr std::uint64_t kInMboxEvent = 0x10, kDecrementerEvent = 0x20, kOutMboxEvent = 0x80,
+                        kSignal2Event = 0x100, kLostReservationEvent = 0x400;
+
+class SpeGroupTest : public testing::Test {
+ protected:
+  /// Expects that each of the waits, one for each SPE, ends with the fault deadlock, soon and with `parts` in
+  /// its message.
+  void expect_deadlock(SpeGroup& group, const std::vector<EntryArguments>& waits,
+                       const std::vector<std::string>& parts) {
+    const auto begin = Clock_::now();
+    for (std::size_t spe = 0; spe < waits.size(); ++spe)
+      group.start(static_cast<int>(spe), waits_, waits[spe]);
+    for (std::size_t spe = 0; spe < waits.size(); ++spe) {
+      const RunResult result = group.wait(static_cast<int>(spe));
+      ASSERT_TRUE(result.fault);
+      EXPECT_EQ(result.fault->rule, dma::Rule::kDeadlock) << result.fault->message();
+      EXPECT_EQ(result.fault->spe, static_cast<int>(spe));
+      EXPECT_EQ(result.fault->kernel, "waits");
+      for (const std::string& part : parts) {
+        EXPECT_NE(result.fault->message().find(part), std::string::npos)
+            << part << " is not in: " << result.fault->message();
+      }
+    }
+    EXPECT_LT(Clock_::now() - begin, 900ms);
+  }
+
+  dma::AddressSpace memory_;
+  const KernelImage waits_ = test_image("waits");
+};
+
+TEST_F(SpeGroupTest, RunsAnImageWithItsArgumentsAndGivesItsStatus) {
+  const KernelImage image = test_image("echo_arguments");
+  const dma::Buffer<std::array<std::uint32_t, 32>> line(memory_, "line", 1);
+  SpeGroup group(memory_, {.spes = 2});
+  for (const std::uint64_t status : {42u, 7u}) {
+    group.start(1, image, {.spe_id = 1, .argp = line.ea().value, .envp = status});
+    const RunResult result = group.wait(1);
+    ASSERT_FALSE(result.fault) << result.fault->message();
+    EXPECT_EQ(result.status(), status);
+    EXPECT_EQ(group.wait(1).status(), status) << "asked again";
+  }
+  EXPECT_EQ(line.span()[0][0], 2u);
+  EXPECT_EQ(group.statistics(1).jobs, 2u);
+  EXPECT_EQ(group.statistics(1).dma.bytes(), 512u);
+  EXPECT_EQ(group.statistics(0).jobs, 0u);
+}
+
+TEST_F(SpeGroupTest, ATalkThroughMailboxes) {
+  const KernelImage image = test_image("doubles");
+  for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {
+    SpeGroup group(memory_, {.spes = 1, .interleaving = interleaving});
+    group.start(0, image, {});
+    ProblemState& spe = group.problem_state(0);
+    for (std::uint32_t value = 1; value <= 100; ++value) {
+      spe.write_in_mbox(value);
+      EXPECT_EQ(spe.wait_out_mbox(), 2 * value);
+    }
+    spe.write_in_mbox(0);
+    EXPECT_EQ(group.wait(0).status(), 0u);
+    EXPECT_EQ(spe.wait_out_mbox(), std::nullopt) << "nobody is left to write";
+  }
+}
+
+TEST_F(SpeGroupTest, PollingAMailboxIsEnoughForAnAnswer) {
+  const KernelImage image = test_image("doubles");
+  for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {
+    SpeGroup group(memory_, {.spes = 1, .interleaving = interleaving});
+    group.start(0, image, {});
+    ProblemState& spe = group.problem_state(0);
+    spe.write_in_mbox(21);
+    std::optional<std::uint32_t> answer;
+    while (!answer) answer = spe.read_out_mbox();
+    EXPECT_EQ(*answer, 42u);
+    spe.write_in_mbox(0);
+    group.wait(0);
+  }
+}
+
+TEST_F(SpeGroupTest, MailboxStatusCountsWhatIsThere) {
+  SpeGroup group(memory_, {.spes = 1});
+  ProblemState& spe = group.problem_state(0);
+  EXPECT_EQ(spe.mbox_status(), 0x000400u);
+  for (std::uint32_t i = 1; i <= 3; ++i) spe.write_in_mbox(i);
+  EXPECT_EQ(spe.mbox_status(), 0x000100u);
+  group.start(0, waits_, {.argp = kOutMbox, .envp = 1});
+  group.wait(0);
+  group.start(0, waits_, {.argp = kOutIntrMbox, .envp = 1});
+  group.wait(0);
+  EXPECT_EQ(spe.mbox_status(), 0x010101u);
+  EXPECT_EQ(spe.read_out_intr_mbox(), 1u);
+  EXPECT_EQ(spe.read_out_intr_mbox(), std::nullopt);
+  EXPECT_EQ(spe.mbox_status(), 0x000101u);
+}
+
+TEST_F(SpeGroupTest, AFullMailboxMakesTheSpeWaitUntilItIsRead) {
+  SpeGroup group(memory_, {.spes = 1});
+  ProblemState& spe = group.problem_state(0);
+  group.start(0, waits_, {.argp = kOutMbox, .envp = 5});
+  for (std::uint32_t i = 1; i <= 5; ++i) EXPECT_EQ(spe.wait_out_mbox(), i);
+  EXPECT_EQ(group.wait(0).status(), 0u);
+}
+
+TEST_F(SpeGroupTest, SignalsFromThePpuCollectOrReplace) {
+  SpeGroup group(memory_, {.spes = 1});
+  ProblemState& spe = group.problem_state(0);
+  for (const auto& [mode, expected] :
+       {std::pair{SignalMode::kOverwrite, 0x20u}, std::pair{SignalMode::kOr, 0x21u}}) {
+    for (const int which : {1, 2}) {
+      spe.set_signal_mode(which, mode);
+      spe.write_signal(which, 0x01);
+      spe.write_signal(which, 0x20);
+      group.start(0, waits_, {.argp = which == 1 ? kSignal1 : kSignal2});
+      EXPECT_EQ(group.wait(0).status(), expected);
+    }
+  }
+  EXPECT_THROW(spe.write_signal(3, 0), std::invalid_argument);
+}
+
+TEST_F(SpeGroupTest, EventsWakeAnSpeThatSleeps) {
+  SpeGroup group(memory_, {.spes = 1});
+  ProblemState& spe = group.problem_state(0);
+  struct Case {
+    std::uint64_t event;
+    std::function<void()> cause;
+  };
+  const std::vector<Case> cases{{kInMboxEvent, [&] { spe.write_in_mbox(1); }},
+                                {kSignal2Event, [&] { spe.write_signal(2, 1); }}};
+  for (const auto& [event, cause] : cases) {
+    group.start(0, waits_, {.argp = kEventStat, .envp = event});
+    cause();
+    EXPECT_EQ(group.wait(0).status(), event & 0xFF);
+  }
+}
+
+TEST_F(SpeGroupTest, WhatCameBeforeTheStartIsPending) {
+  SpeGroup group(memory_, {.spes = 1});
+  group.problem_state(0).write_in_mbox(1);
+  group.start(0, waits_, {.argp = kEventStat, .envp = kInMboxEvent});
+  EXPECT_EQ(group.wait(0).status(), kInMboxEvent);
+}
+
+TEST_F(SpeGroupTest, TheDecrementerEndsASleepByItself) {
+  for (const Clock clock : {Clock::kHost, Clock::kSimulated}) {
+    for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {
+      SpeGroup group(memory_, {.spes = 2, .clock = clock, .interleaving = interleaving});
+      const auto begin = Clock_::now();
+      group.start(0, waits_, {.argp = kDecrementer, .envp = 3 * 79'800});
+      group.start(1, waits_, {.argp = kDecrementer, .envp = 1 * 79'800});
+      for (const int spe : {0, 1}) {
+        const RunResult result = group.wait(spe);
+        ASSERT_FALSE(result.fault) << result.fault->message();
+        EXPECT_EQ(result.status(), kDecrementerEvent);
+      }
+      if (clock == Clock::kHost) {
+        EXPECT_GE(Clock_::now() - begin, 3ms);
+      }
+    }
+  }
+}
+
+TEST_F(SpeGroupTest, HoursOfSimulatedTimePassAtOnce) {
+  SpeGroup group(memory_, {.spes = 1, .clock = Clock::kSimulated});
+  group.start(0, waits_, {.argp = kDecrementer, .envp = 0xFFFF'FFFE});  // 53.8 s
+  EXPECT_FALSE(group.wait(0).fault);
+}
+
+// ---- deadlocks
+
+TEST_F(SpeGroupTest, TwoThatWaitForEachOthersSignalsAreADeadlock) {
+  for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {
+    SpeGroup group(memory_, {.spes = 2, .interleaving = interleaving});
+    expect_deadlock(group, {{.argp = kSignal1}, {.argp = kSignal2}},
+                    {"SPE 0 (waits, waits.cpp:", "waits to read SPU_RdSigNotify1",
+                     "SPE 1 (waits, waits.cpp:", "waits to read SPU_RdSigNotify2"});
+  }
+}
+
+TEST_F(SpeGroupTest, EveryChannelThatWaitsIsNamed) {
+  const std::vector<std::pair<EntryArguments, std::string>> cases{
+      {{.argp = kInMbox}, "read SPU_RdInMbox"},
+      {{.argp = kOutMbox, .envp = 2}, "write SPU_WrOutMbox"},
+      {{.argp = kOutIntrMbox, .envp = 2}, "write SPU_WrOutIntrMbox"},
+      {{.argp = kEventStat, .envp = kLostReservationEvent}, "read SPU_RdEventStat"},
+      {{.argp = kEventStat, .envp = kOutMboxEvent}, "read SPU_RdEventStat"},
+      // In the mask, but the decrementer was never started.
+      {{.argp = kEventStat, .envp = kDecrementerEvent}, "read SPU_RdEventStat"}};
+  for (const auto& [arguments, part] : cases) {
+    SpeGroup group(memory_, {.spes = 1});
+    expect_deadlock(group, {arguments}, {part});
+  }
+}
+
+TEST_F(SpeGroupTest, OneThatStillRunsCouldEndTheOthersWait) {
+  const KernelImage endless = test_image("endless");
+  SpeGroup group(memory_, {.spes = 2, .deadline = 150ms});
+  group.start(0, waits_, {.argp = kSignal1});
+  group.start(1, endless, {});
+  for (const int spe : {0, 1}) {
+    const RunResult result = group.wait(spe);
+    ASSERT_TRUE(result.fault);
+    EXPECT_EQ(result.fault->rule, dma::Rule::kDeadlineExceeded) << result.fault->message();
+  }
+}
+
+TEST_F(SpeGroupTest, SomebodyOutsideCouldEndTheWait) {
+  SpeGroup group(memory_, {.spes = 1});
+  std::optional<SpeGroup::Outside> outside(group);
+  std::jthread other([&] {
+    std::this_thread::sleep_for(50ms);
+    group.problem_state(0).write_in_mbox(9);
+    outside.reset();
+  });
+  group.start(0, waits_, {.argp = kInMbox});
+  EXPECT_EQ(group.wait(0).status(), 9u);
+}
+
+TEST_F(SpeGroupTest, WhenTheLastOneOutsideLeavesItIsADeadlock) {
+  SpeGroup group(memory_, {.spes = 1});
+  std::optional<SpeGroup::Outside> outside(group);
+  std::jthread other([&] {
+    std::this_thread::sleep_for(50ms);
+    outside.reset();
+  });
+  group.start(0, waits_, {.argp = kInMbox});
+  const RunResult result = group.wait(0);
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->rule, dma::Rule::kDeadlock);
+}
+
+TEST_F(SpeGroupTest, ThePpuThatWaitsForAMailboxIsPartOfTheDeadlock) {
+  SpeGroup group(memory_, {.spes = 1});
+  group.start(0, waits_, {.argp = kInMbox});
+  EXPECT_EQ(group.problem_state(0).wait_out_mbox(), std::nullopt);
+  EXPECT_EQ(group.wait(0).fault->rule, dma::Rule::kDeadlock);
+}
+
+TEST_F(SpeGroupTest, AfterADeadlockTheGroupGoesOn) {
+  SpeGroup group(memory_, {.spes = 2});
+  expect_deadlock(group, {{.argp = kSignal1}, {.argp = kSignal1}}, {});
+  group.problem_state(1).write_signal(1, 5);
+  group.start(1, waits_, {.argp = kSignal1});
+  EXPECT_EQ(group.wait(1).status(), 5u);
+}
+
+TEST_F(SpeGroupTest, ASleepPastTheDeadlineIsStopped) {
+  SpeGroup group(memory_, {.spes = 1, .deadline = 100ms});
+  const SpeGroup::Outside outside(group);
+  group.start(0, waits_, {.argp = kInMbox});
+  const RunResult result = group.wait(0);
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->rule, dma::Rule::kDeadlineExceeded);
+  EXPECT_NE(result.fault->message().find("SPU_RdInMbox"), std::string::npos) << result.fault->message();
+}
+
+// ---- local stores and the proxy queue
+
+TEST_F(SpeGroupTest, SignalsGoRoundBetweenSpes) {
+  const KernelImage image = test_image("pings");
+  for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {
+    for (const char* schedule : {"eager", "lazy", "random:5"}) {
+      constexpr int kSpes = 3;
+      constexpr std::uint64_t kRounds = 50;
+      SpeGroup group(
+          memory_, {.spes = kSpes, .schedule = dma::parse_schedule(schedule), .interleaving = interleaving});
+      for (int spe = 0; spe < kSpes; ++spe) {
+        const auto next = group.problem_state((spe + 1) % kSpes).local_store_ea().value;
+        group.start(spe, image,
+                    {.spe_id = static_cast<std::uint64_t>(spe),
+                     .argp = next + static_cast<std::uint64_t>(dma::SpeRegister::kSignal1),
+                     .envp = kRounds});
+      }
+      for (int spe = 0; spe < kSpes; ++spe) {
+        const RunResult result = group.wait(spe);
+        ASSERT_FALSE(result.fault) << result.fault->message();
+        EXPECT_EQ(result.status(), spe == 0 ? (kSpes * kRounds) & 0xFF : kSpes * (kRounds - 1) + spe);
+      }
+      const SpeStatistics statistics = group.statistics(1);
+      EXPECT_EQ(statistics.dma.signals, kRounds);
+      EXPECT_LE(statistics.waits[kSignal1].count, kRounds);
+    }
+  }
+}
+
+TEST_F(SpeGroupTest, TheProxyQueueMovesWhileTheSpeSleeps) {
+  // A put of the PPU side into the SPE's own mailbox: it must arrive though nobody asks for its tag.
+  for (const char* schedule : {"eager", "lazy", "random:3"}) {
+    SpeGroup group(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)});
+    ProblemState& spe = group.problem_state(0);
+    constexpr std::uint32_t kLetter = 0x3000C;
+    group.prepare(0, waits_, {.argp = kInMbox});
+    const std::uint32_t value = 77;
+    std::memcpy(&spe.local_store()[kLetter], &value, sizeof value);
+    group.start(0);
+    const auto fault =
+        spe.issue_proxy({.word = 0x20,
+                         .lsa = {kLetter},
+                         .ea = spe.local_store_ea() + static_cast<std::uint64_t>(dma::SpeRegister::kInMbox),
+                         .size = 4,
+                         .tag = 1});
+    ASSERT_FALSE(fault) << fault->message();
+    EXPECT_EQ(group.wait(0).status(), value) << schedule;
+    EXPECT_EQ(spe.wait_proxy(1u << 1), 1u << 1);
+    EXPECT_EQ(spe.free_proxy_slots(), 8);
+  }
+}
+
+TEST_F(SpeGroupTest, AProxyCommandWithStartBeginsThePreparedRun) {
+  SpeGroup group(memory_, {.spes = 1});
+  const dma::Buffer<std::array<std::uint32_t, 32>> line(memory_, "line", 1);
+  ProblemState& spe = group.problem_state(0);
+  spe.write_in_mbox(3);
+  group.prepare(0, waits_, {.argp = kInMbox});
+  EXPECT_THROW(group.wait(0), std::logic_error) << "nothing has run yet";
+  ASSERT_FALSE(spe.issue_proxy({.word = 0x48, .lsa = {0x30000}, .ea = line.ea(), .size = 128, .tag = 0}));
+  EXPECT_EQ(group.wait(0).status(), 3u);
+}
+
+TEST_F(SpeGroupTest, RefusesProxyCommandsWithTheSpesNumber) {
+  SpeGroup group(memory_, {.spes = 2});
+  const auto fault = group.problem_state(1).issue_proxy({.word = 0xD0});
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->rule, dma::Rule::kNotOnProxyQueue);
+  EXPECT_EQ(fault->spe, 1);
+}
+
+// ---- misuse and ends
+
+TEST_F(SpeGroupTest, RefusesWhatMakesNoSense) {
+  SpeGroup group(memory_, {.spes = 2});
+  EXPECT_THROW(group.problem_state(2), std::invalid_argument);
+  EXPECT_THROW(group.start(-1, waits_, {}), std::invalid_argument);
+  EXPECT_THROW(group.start(0), std::logic_error);
+  EXPECT_THROW(group.wait(0), std::logic_error);
+  group.start(0, waits_, {.argp = kInMbox});
+  EXPECT_THROW(group.prepare(0, waits_, {}), std::logic_error);
+  group.problem_state(0).write_in_mbox(0);
+  group.wait(0);
+  EXPECT_THROW(SpeGroup(memory_, {.spes = 1}), std::invalid_argument) << "SPE 0 of this memory exists";
+  EXPECT_THROW(SpeGroup(memory_, {.spes = 7}), std::invalid_argument);
+  Trace trace(1);
+  EXPECT_THROW(SpeGroup(memory_, {.spes = 2, .trace = &trace}), std::invalid_argument);
+}
+
+TEST_F(SpeGroupTest, LeavesNobodyBehind) {
+  const KernelImage endless = test_image("endless");
+  for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {
+    SpeGroup group(memory_, {.spes = 3, .interleaving = interleaving});
+    group.start(0, endless, {});
+    group.start(1, endless, {.envp = 1});
+    group.start(2, waits_, {.argp = kInMbox});
+  }  // each of them is stopped
+  SpeGroup again(memory_, {.spes = 3});
+  EXPECT_EQ(again.spes(), 3);
+}
+
+TEST_F(SpeGroupTest, AFaultNamesSpeKernelAndPlace) {
+  const KernelImage image = test_image("bad_dma");
+  SpeGroup group(memory_, {.spes = 2});
+  group.start(1, image, {.argp = dma::kMainMemoryBase.value, .envp = 24});
+  const RunResult result = group.wait(1);
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->spe, 1);
+  EXPECT_EQ(result.fault->kernel, "bad_dma");
+  EXPECT_EQ(result.fault->place.find("bad_dma.cpp:"), 0u) << result.fault->message();
+}
+
+TEST_F(SpeGroupTest, TheTraceHasTheRunItsWaitAndItsFault) {
+  Trace trace(1);
+  {
+    SpeGroup group(memory_, {.spes = 1, .trace = &trace});
+    expect_deadlock(group, {{.argp = kInMbox}}, {});
+  }
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "spe_group_test.trace.json";
+  trace.write(file);
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::filesystem::remove(file);
+  for (const char* part : {"waits", "SPU_RdInMbox", "deadlock"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ls_sim

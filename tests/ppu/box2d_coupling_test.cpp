@@ -1,0 +1,152 @@
+#include "softcell/ppu/box2d_coupling.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "soft_body_2d_scenes.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector2f;
+
+SoftBodySettings rubber(float cell_size = 0.25f) {
+  return {.cell_size = cell_size, .half_width = 2, .density = 5, .alpha = 0.5f, .damping = 0.1f};
+}
+
+float lowest(const SoftBody2d& body) {
+  float y = std::numeric_limits<float>::infinity();
+  for (const Vector2f& p : body.positions()) y = std::min(y, p.y());
+  return y;
+}
+
+TEST(Box2dCoupling, RestsOnAFloorInShape) {
+  World2d world;
+  world.add_box({0, -1}, {10, 1});
+  SoftBodySettings settings = rubber();
+  settings.damping = 0.3f;
+  SoftBody2d& body = world.soft.add(rectangle_model({6, 4}, settings), {0, 0.6f});
+  world.run(8);  // it is elastic, and bounces for a while
+  float fastest = 0;
+  for (const Vector2f& v : body.velocities()) fastest = std::max(fastest, v.norm());
+  EXPECT_LT(fastest, 0.005f);
+  EXPECT_LT(body.deformation(), 0.02f);
+  EXPECT_NEAR(lowest(body), body.model().contact_radius(), 0.02f);
+}
+
+TEST(Box2dCoupling, FallsAsEverythingFalls) {
+  World2d world;
+  SoftBody2d& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 10});
+  const Vector2f begin = body.centre_of_mass();
+  const int steps = 60;
+  const float h = 1.0f / 120;
+  for (int i = 0; i < steps; ++i) world.soft.step(h);
+  // v += h g, x += h v: n (n + 1) / 2 times h^2 g.
+  EXPECT_NEAR(begin.y() - body.centre_of_mass().y(), 9.81f * h * h * steps * (steps + 1) / 2, 2e-4f);
+  EXPECT_LT(body.deformation(), 1e-4f);
+}
+
+TEST(Box2dCoupling, KeepsMomentumInCollisionsWithRigidBodies) {
+  World2d world(0);
+  SoftBody2d& body = world.soft.add(rectangle_model({4, 4}, rubber()), {0, 0});
+  b2Body* const box = world.add_box({3, 0.5f}, {0.4f, 0.4f}, 4);
+  box->SetLinearVelocity({-3, 0});
+  const float before = box->GetMass() * -3;
+  world.run(2);
+  const float after = box->GetMass() * box->GetLinearVelocity().x + body.linear_momentum().x();
+  EXPECT_NEAR(after, before, 1e-3f * std::abs(before));
+  EXPECT_GT(box->GetLinearVelocity().x, -2) << "the box has met the body";
+  EXPECT_LT(body.linear_momentum().x(), -0.5f) << "and pushed it";
+}
+
+TEST(Box2dCoupling, MakesNoContactsWithinABody) {
+  World2d world;
+  world.soft.add(rectangle_model({5, 5}, rubber()), {0, 0});
+  world.run(0.1f);
+  EXPECT_EQ(world.box2d.GetContactCount(), 0);
+}
+
+TEST(Box2dCoupling, TwoBodiesStackOnEachOther) {
+  World2d world;
+  world.add_box({0, -1}, {10, 1});
+  SoftBody2d& under = world.soft.add(rectangle_model({6, 3}, rubber()), {0, 0.2f});
+  SoftBody2d& over = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 1.6f});
+  world.run(5);
+  EXPECT_GT(lowest(over), under.centre_of_mass().y() + 0.25f);
+  EXPECT_LT(over.deformation(), 0.1f);
+}
+
+TEST(Box2dCoupling, ComesBackToItsShapeAfterBeingThrown) {
+  World2d world;
+  world.add_box({0, -1}, {10, 1});
+  world.add_box({-5, 5}, {1, 10});
+  SoftBody2d& body = world.soft.add(rectangle_model({4, 6}, rubber()), {0, 0.5f});
+  body.add_velocity({-25, 5});
+  float worst = 0;
+  for (int i = 0; i < 1200; ++i) {
+    world.soft.step(1.0f / 120);
+    worst = std::max(worst, body.deformation());
+  }
+  EXPECT_GT(worst, 0.1f) << "it was hardly deformed";
+  EXPECT_LT(body.deformation(), 0.03f);
+}
+
+TEST(Box2dCoupling, TakesChangesBetweenSteps) {
+  World2d world(0);
+  SoftBody2d& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 0});
+  world.run(0.1f);
+  body.translate({3, 4});
+  body.add_particle_velocity(body.model().outer().front(), {1, 0});
+  world.soft.step(1.0f / 120);
+  EXPECT_NEAR(body.centre_of_mass().x(), 3, 0.01f);
+  EXPECT_GT(body.linear_momentum().x(), 0);
+  body.reset({0, 1});
+  world.run(0.1f);
+  EXPECT_NEAR(body.centre_of_mass().y(), 1.25f, 1e-4f);
+  EXPECT_LT(body.linear_momentum().norm(), 1e-6f);
+}
+
+TEST(Box2dCoupling, KnowsItsParticles) {
+  World2d world;
+  b2Body* const box = world.add_box({0, 0}, {1, 1});
+  SoftBody2d& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 5});
+  int found = 0;
+  for (const b2Body* b = world.box2d.GetBodyList(); b != nullptr; b = b->GetNext()) {
+    const auto particle = world.soft.particle_of(*b);
+    if (b == box) {
+      EXPECT_EQ(particle.body, nullptr);
+    } else {
+      EXPECT_EQ(particle.body, &body);
+      EXPECT_EQ(body.positions()[particle.number].x(), b->GetPosition().x);
+      ++found;
+    }
+  }
+  EXPECT_EQ(found, 8);
+  world.soft.remove(body);
+  EXPECT_EQ(world.box2d.GetBodyCount(), 1);
+  EXPECT_EQ(world.soft.size(), 0u);
+}
+
+TEST(Box2dCoupling, RefusesWhatItIsNotGiven) {
+  World2d world, other;
+  SoftBody2d& body = other.soft.add(rectangle_model({1, 1}, rubber()), {0, 0});
+  EXPECT_THROW(world.soft.remove(body), std::invalid_argument);
+  EXPECT_THROW(rectangle_model({1, 1}, rubber(), 0), std::runtime_error);
+  EXPECT_THROW(rectangle_model({1, 1}, {.cell_size = 0}), std::runtime_error);
+}
+
+TEST(Box2dCoupling, GravityOf300Holds) {
+  World2d world(300);
+  world.add_box({0, -1}, {10, 1});
+  SoftBodySettings settings = rubber();
+  settings.alpha = 1;
+  SoftBody2d& body = world.soft.add(rectangle_model({4, 4}, settings), {0, 0.2f});
+  world.run(10);
+  EXPECT_TRUE(std::isfinite(body.centre_of_mass().y()));
+  EXPECT_GT(lowest(body), 0) << "a particle's centre went below the floor";
+}
+
+}  // namespace
+}  // namespace softcell::ppu

@@ -1,0 +1,19 @@
+// rule: list-size
+// names: getl
+// twin: legal/list_at_multiple_of_8
+// Issues its list also when nothing was put into it.
+#include <spu_intrinsics.h>
+#include <spu_mfcio.h>
+
+alignas(128) static unsigned char buffer[256];
+alignas(8) static mfc_list_element_t list[2];
+static volatile unsigned int count = 0;
+
+int main(uint64_t, uint64_t argp, uint64_t) {
+  list[0] = {0, 0, 128, mfc_ea2l(argp)};
+  list[1] = {0, 0, 128, mfc_ea2l(argp) + 4096};
+  mfc_getl(buffer, argp, list, count * sizeof(mfc_list_element_t), 5, 0, 0);  // BROKEN
+  mfc_write_tag_mask(1u << 5);
+  mfc_read_tag_status_all();
+  return 0;
+}

@@ -1,0 +1,15 @@
+// rule: unknown-command
+// names: opcode 0x50
+// twin: legal/put_with_result
+// Adds the result hint to a get: only puts have that form, and the sum of the two bits is no opcode.
+#include <spu_intrinsics.h>
+#include <spu_mfcio.h>
+
+alignas(128) static unsigned char buffer[128];
+
+int main(uint64_t, uint64_t argp, uint64_t) {
+  spu_mfcdma64(buffer, mfc_ea2h(argp), mfc_ea2l(argp), 128, 0, MFC_GET_CMD | MFC_RESULT_ENABLE);  // BROKEN
+  mfc_write_tag_mask(1u << 0);
+  mfc_read_tag_status_all();
+  return 0;
+}

@@ -1,0 +1,24 @@
+#pragma once
+// One run of a zoo kernel in surroundings of its own.
+
+#include <vector>
+
+#include "kernel_card.h"
+#include "softcell/dma/schedule.h"
+#include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/findings.h"
+
+namespace softcell::zoo {
+
+enum class Flavour { kPlain, kChecked };
+
+/// What came of it.
+struct Observation {
+  std::vector<ls_sim::RunResult> results;  ///< of each SPE
+  std::vector<ls_sim::Finding> findings;
+};
+
+/// argp leads to 64 KB of words, each of which is its own index.
+Observation run(const KernelCard& card, Flavour flavour, const dma::Schedule& schedule);
+
+}  // namespace softcell::zoo
