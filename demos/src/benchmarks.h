@@ -19,7 +19,8 @@ struct Benchmark {
 /// skin/<body>/<spe|scalar>: an item is a vertex.
 void add_skin_benchmarks(std::vector<Benchmark>& all);
 
-/// solver3d/<body>/w<n>/<eigen|naive>: an item is a particle.
+/// solver3d/<body>/w<n>/<spe|eigen|ppu|naive>: an item is a particle. `eigen` is as one writes it with Eigen,
+/// `ppu` the PPU's solver, `naive` that one without shared sums.
 void add_solver_benchmarks(std::vector<Benchmark>& all);
 
 /// dma/<get|put>16k and dma/memcpy16k: an item is 16 KB. dma/command/<schedule>: an item is one get of 16

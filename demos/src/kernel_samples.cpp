@@ -6,6 +6,8 @@
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/lattice.h"
+#include "softcell/ppu/match_orchestrator.h"
+#include "softcell/ppu/shape_matching.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_orchestrator.h"
 #include "softcell/spu_kernels/images.h"
@@ -32,6 +34,19 @@ void run_skin_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memor
   orchestrator.drain();
 }
 
+void run_match_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory, ls_sim::SpePool& pool) {
+  // Rotations from nothing, then from the last step: the deepest ways through the kernel.
+  const ppu::Lattice lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
+  const ppu::MatchingPlan<float> matching(lattice, 2, ppu::particle_masses(lattice, 1000));
+  ppu::MatchOrchestrator orchestrator(memory, pool, kernel, ppu::MatchPlan(lattice, matching), 1);
+  for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+    const Eigen::Vector3f x = lattice.rest_position(i);
+    orchestrator.positions(0)[i] = {-x.x(), x.y(), x.z(), 0};
+  }
+  orchestrator.step({.pull = 30, .damping = 0.1f});
+  orchestrator.step({.pull = 30, .damping = 0.1f});
+}
+
 void run_transfers_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory,
                           ls_sim::SpePool& pool) {
   dma::Buffer<std::byte> data(memory, "data", 1024);
@@ -56,7 +71,12 @@ std::vector<ls_sim::KernelImage> load_kernels() {
 
 ls_sim::KernelImage load_kernel(std::string_view name, bool checked) {
   for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) {
-    if (file.name == name) return ls_sim::load_image(file.name, checked ? file.checked_elf : file.elf);
+    if (file.name != name) continue;
+    if (checked && file.checked_elf.empty()) {
+      throw std::runtime_error("kernel " + std::string(name) +
+                               " has no checked flavour: it would not fit in a local store");
+    }
+    return ls_sim::load_image(file.name, checked ? file.checked_elf : file.elf);
   }
   throw std::runtime_error("there is no kernel " + std::string(name));
 }
@@ -64,7 +84,9 @@ ls_sim::KernelImage load_kernel(std::string_view name, bool checked) {
 std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
   dma::AddressSpace memory;
   ls_sim::SpePool pool(memory, {.spes = 1, .measure_stack = true});
-  if (kernel.name == "skin") {
+  if (kernel.name == "match") {
+    run_match_sample(kernel, memory, pool);
+  } else if (kernel.name == "skin") {
     run_skin_sample(kernel, memory, pool);
   } else if (kernel.name == "transfers") {
     run_transfers_sample(kernel, memory, pool);

@@ -31,4 +31,16 @@ inline void get_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
   }
 }
 
+/// Likewise puts.
+inline void put_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
+  char* from = static_cast<char*>(ls);
+  while (bytes != 0) {
+    const uint32_t piece = bytes < kMaxTransferBytes ? bytes : kMaxTransferBytes;
+    mfc_put(from, ea, piece, tag, 0, 0);
+    from += piece;
+    ea += piece;
+    bytes -= piece;
+  }
+}
+
 }  // namespace softcell::spu

@@ -22,6 +22,11 @@ inline Vector3x4 scale(const Vector3x4& a, vec_float4 s) {
   return {spu_mul(a.x, s), spu_mul(a.y, s), spu_mul(a.z, s)};
 }
 
+/// a - b.
+inline Vector3x4 difference(const Vector3x4& a, const Vector3x4& b) {
+  return {spu_sub(a.x, b.x), spu_sub(a.y, b.y), spu_sub(a.z, b.z)};
+}
+
 /// a * s + b, each component fused.
 inline Vector3x4 scale_add(const Vector3x4& a, vec_float4 s, const Vector3x4& b) {
   return {spu_madd(a.x, s, b.x), spu_madd(a.y, s, b.y), spu_madd(a.z, s, b.z)};

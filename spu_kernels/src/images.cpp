@@ -7,6 +7,7 @@
   extern const std::byte softcell_image_##kernel##_checked[], softcell_image_##kernel##_checked_end[];
 
 extern "C" {
+extern const std::byte softcell_image_match[], softcell_image_match_end[];
 SC_DECLARE(skin)
 SC_DECLARE(transfers)
 }
@@ -20,7 +21,10 @@ std::span<const ImageFile> image_files() {
     .name = #kernel, .elf = {softcell_image_##kernel, softcell_image_##kernel##_end},          \
     .checked_elf = {softcell_image_##kernel##_checked, softcell_image_##kernel##_checked_end}, \
   }
-  static const std::array files{SC_FILE(skin), SC_FILE(transfers)};
+  static const std::array files{
+      // A checked match would not fit in a local store.
+      ImageFile{.name = "match", .elf = {softcell_image_match, softcell_image_match_end}, .checked_elf = {}},
+      SC_FILE(skin), SC_FILE(transfers)};
 #undef SC_FILE
   return files;
 }

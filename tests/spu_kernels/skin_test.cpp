@@ -13,7 +13,7 @@
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_orchestrator.h"
 #include "softcell/ppu/skin_scalar.h"
-#include "softcell/spu_kernels/images.h"
+#include "spu_kernels/kernel_image.h"
 
 namespace softcell {
 namespace {
@@ -26,9 +26,7 @@ class SkinRig {
   explicit SkinRig(const ppu::TriangleMesh& mesh, float cell_size, const ls_sim::SpeOptions& options = {})
       : lattice(ppu::voxelize(mesh, cell_size)),
         embedding(std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice))),
-        image_(ls_sim::load_image("skin", options.findings == nullptr
-                                              ? spu_kernels::image_files()[0].elf
-                                              : spu_kernels::image_files()[0].checked_elf)),
+        image_(test::kernel_image("skin", options.findings != nullptr)),
         pool_(memory_, options),
         orchestrator_(memory_, pool_, image_) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) positions.push_back(lattice.rest_position(i));
@@ -175,7 +173,7 @@ TEST(Skin, AgreesWithItsScalarTwinToOneUnit) {
 TEST(Skin, RefusesAJobWithTooManyCorners) {
   dma::AddressSpace memory;
   ls_sim::SpePool pool(memory, {.spes = 1});
-  const ls_sim::KernelImage image = ls_sim::load_image("skin", spu_kernels::image_files()[0].elf);
+  const ls_sim::KernelImage image = test::kernel_image("skin");
   dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 3);
   jobs[0].window[0].count = spu::kSkinMaxCorners + 1;
   jobs[1].window[0].count = spu::kSkinMaxCorners;
@@ -194,7 +192,7 @@ TEST(Skin, RefusesAJobWithTooManyCorners) {
 TEST(Skin, AnEmptyJobIsDone) {
   dma::AddressSpace memory;
   ls_sim::SpePool pool(memory, {.spes = 1});
-  const ls_sim::KernelImage image = ls_sim::load_image("skin", spu_kernels::image_files()[0].elf);
+  const ls_sim::KernelImage image = test::kernel_image("skin");
   dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 1);
   ls_sim::JobBatch batch;
   pool.submit(batch, std::vector<ls_sim::Job>{{&image, jobs.ea(), {}}});
@@ -205,7 +203,7 @@ TEST(Skin, AnEmptyJobIsDone) {
 TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
   dma::AddressSpace memory;
   ls_sim::SpePool pool(memory, {.spes = 1});
-  ls_sim::KernelImage broken = ls_sim::load_image("skin", spu_kernels::image_files()[0].elf);
+  ls_sim::KernelImage broken = test::kernel_image("skin");
   broken.bytes[broken.entry - ls_sim::kEnvironmentBytes] = std::byte{0x0F};  // ud2
   broken.bytes[broken.entry - ls_sim::kEnvironmentBytes + 1] = std::byte{0x0B};
   const ppu::TriangleMesh mesh = ppu::make_sphere(0.7f, 8);

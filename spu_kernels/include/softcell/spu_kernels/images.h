@@ -10,7 +10,7 @@ namespace softcell::spu_kernels {
 struct ImageFile {
   std::string_view name;
   std::span<const std::byte> elf;          ///< for ls_sim::load_image()
-  std::span<const std::byte> checked_elf;  ///< its instrumented flavour
+  std::span<const std::byte> checked_elf;  ///< its instrumented flavour; empty for one that would not fit
 };
 
 /// All of them, by name.

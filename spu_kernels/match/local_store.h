@@ -1,0 +1,91 @@
+#pragma once
+// Where the kernel `match` keeps a plan and one body's state, and how particles and regions look there.
+
+#include <spu_intrinsics.h>
+#include <stdint.h>
+
+#include "common/matrix3.h"
+#include "match_job.h"
+
+namespace softcell::spu {
+
+/// A payload: three rows of four words. Going up for matching, row k is sum m~ x_k (x0 y0 z0 1); coming down,
+/// row k of (R | t).
+struct Slot {
+  vec_float4 row[3];
+};
+static_assert(sizeof(Slot) == kMatchSlotBytes, "as offsets count it");
+
+/// The slot at an offset of a sum list.
+inline const Slot& slot_at(const Slot* slots, uint32_t offset) {
+  return *reinterpret_cast<const Slot*>(reinterpret_cast<const char*>(slots) + offset * kMatchOffsetUnit);
+}
+
+/// MatchParticles as registers.
+struct ParticleConstants {
+  vec_float4 rest_moment[4];
+  vec_float4 inverse_mass, mass;
+  uint32_t region[4];
+};
+static_assert(sizeof(ParticleConstants) == sizeof(MatchParticles), "the same bytes");
+
+/// MatchRegions as registers.
+struct RegionConstants {
+  Vector3x4 centre;
+  vec_float4 inverse_mass;
+};
+static_assert(sizeof(RegionConstants) == sizeof(MatchRegions), "the same bytes");
+
+/// Positions or velocities of four particles. As they come from main memory a quadword is a particle;
+/// localise.h turns them, and a quadword is a component.
+struct Vectors4 {
+  Vector3x4 v;
+  vec_float4 spare;
+};
+
+/// The parts of the arena, one behind the other. Pointers are made here and never stored in static data.
+struct BodyMap {
+  const ParticleConstants* particles;
+  const RegionConstants* regions;
+  const uint16_t *bars_of_particles, *bars_of_regions, *plates, *regions_of_plates;
+  uint32_t particle_groups, region_groups;
+  float noise_floor, inverse_mass;  // the header's
+
+  Vectors4* positions;  // relative to the body's origin
+  Vectors4* velocities;
+  Quaternion4* rotations;
+  Vector3x4* momenta;    // of each region: sum m~ x
+  Slot *first, *second;  // the two buffers
+};
+
+/// @param arena  holds the plan already, and room for match_local_store_bytes()
+inline BodyMap map_of(char* arena) {
+  const MatchPlanHeader& plan = *reinterpret_cast<const MatchPlanHeader*>(arena);
+  const auto list = [&](uint32_t offset) { return reinterpret_cast<const uint16_t*>(arena + offset); };
+  char* free = arena + match_plan_bytes(plan);
+  const auto take = [&](uint32_t bytes) {
+    char* const part = free;
+    free += bytes;
+    return part;
+  };
+  BodyMap map;
+  map.particles = reinterpret_cast<const ParticleConstants*>(arena + plan.particle_constants);
+  map.regions = reinterpret_cast<const RegionConstants*>(arena + plan.region_constants);
+  map.bars_of_particles = list(plan.bars_of_particles);
+  map.bars_of_regions = list(plan.bars_of_regions);
+  map.plates = list(plan.plates);
+  map.regions_of_plates = list(plan.regions_of_plates);
+  map.noise_floor = plan.noise_floor;
+  map.inverse_mass = plan.inverse_mass;
+  map.particle_groups = groups_of(plan.particles);
+  map.region_groups = groups_of(plan.regions);
+  map.positions = reinterpret_cast<Vectors4*>(take(match_vectors_bytes(plan)));
+  map.velocities = reinterpret_cast<Vectors4*>(take(match_vectors_bytes(plan)));
+  map.rotations = reinterpret_cast<Quaternion4*>(take(match_rotations_bytes(plan)));
+  map.momenta = reinterpret_cast<Vector3x4*>(take(match_momenta_bytes(plan)));
+  map.first = reinterpret_cast<Slot*>(take(match_buffer_bytes(plan)));
+  map.second = reinterpret_cast<Slot*>(take(match_buffer_bytes(plan)));
+  return map;
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,85 @@
+#pragma once
+// Shape matching between the sums: what goes up, the region's best rigid motion, what comes down.  [LSM07]
+//
+//   up      row k of a slot:   m~ x_k (x0, y0, z0, 1)
+//   region  c = P / M,  A = sum m~ x x0^T - P c0^T,  R = rotation of A,  t = c - R c0
+//   down    row k of a slot:   (R_k0, R_k1, R_k2, t_k)
+//   goal    g_k = 1 / m_i  (sum of row k) . m~ (x0, y0, z0, 1)
+
+#include <spu_intrinsics.h>
+
+#include "common/transpose.h"
+#include "match/local_store.h"
+#include "rotation.h"
+
+namespace softcell::spu {
+
+/// Four particles' payload.
+inline void match_moments(const ParticleConstants& p, const Vector3x4& x, Slot* out) {
+  const auto particle = [&](int lane) __attribute__((always_inline)) {
+    const vec_float4 moment = p.rest_moment[lane];
+    out[lane].row[0] = spu_mul(spu_splats(spu_extract(x.x, lane)), moment);
+    out[lane].row[1] = spu_mul(spu_splats(spu_extract(x.y, lane)), moment);
+    out[lane].row[2] = spu_mul(spu_splats(spu_extract(x.z, lane)), moment);
+  };
+  particle(0);
+  particle(1);
+  particle(2);
+  particle(3);
+}
+
+/// Row `k` of four slots, as registers of four lanes.
+inline Rows4 load_row(const Slot* slots, int k) {
+  return transpose({slots[0].row[k], slots[1].row[k], slots[2].row[k], slots[3].row[k]});
+}
+
+inline void store_row(Slot* slots, int k, const Rows4& components) {
+  const Rows4 t = transpose(components);
+  slots[0].row[k] = t.a;
+  slots[1].row[k] = t.b;
+  slots[2].row[k] = t.c;
+  slots[3].row[k] = t.d;
+}
+
+/// Four regions' sums, in the place of their four slots: A, and in the payload P = sum m~ x.
+inline RotationProblem* problem_at(Slot* slots) { return reinterpret_cast<RotationProblem*>(slots); }
+static_assert(sizeof(RotationProblem) == 4 * sizeof(Slot), "one takes the other's place");
+
+/// Sums of four regions to A and P, in place.
+__attribute__((always_inline)) inline void make_problem(const RegionConstants& r, Slot* slots,
+                                                        vec_float4 noise_floor) {
+  const Rows4 x = load_row(slots, 0), y = load_row(slots, 1), z = load_row(slots, 2);
+  const auto row_of_a = [&](const Rows4& sum) __attribute__((always_inline))->Vector3x4 {
+    return {spu_nmsub(sum.d, r.centre.x, sum.a), spu_nmsub(sum.d, r.centre.y, sum.b),
+            spu_nmsub(sum.d, r.centre.z, sum.c)};
+  };
+  *problem_at(slots) = {normalised({row_of_a(x), row_of_a(y), row_of_a(z)}, {r.inverse_mass, noise_floor}),
+                        {x.d, y.d, z.d}};
+}
+
+/// R and P of four regions to their motions, in the place of the problem they come from.
+__attribute__((always_inline)) inline void store_motions(const RegionConstants& r, const Matrix3x4& rotation,
+                                                         const Vector3x4& momentum, Slot* slots) {
+  const auto store = [&](int k, const Vector3x4& row, vec_float4 moment) __attribute__((always_inline)) {
+    const vec_float4 turned = dot(row, r.centre);
+    store_row(slots, k, {row.x, row.y, row.z, spu_msub(moment, r.inverse_mass, turned)});
+  };
+  store(0, rotation.x, momentum.x);
+  store(1, rotation.y, momentum.y);
+  store(2, rotation.z, momentum.z);
+}
+
+/// The goals of four particles.
+inline Vector3x4 goals(const ParticleConstants& p, const Slot* totals) {
+  const Slot &a = slot_at(totals, p.region[0]), &b = slot_at(totals, p.region[1]);
+  const Slot &c = slot_at(totals, p.region[2]), &d = slot_at(totals, p.region[3]);
+  const auto component = [&](int k) __attribute__((always_inline)) {
+    const vec_float4 sum =
+        sums_of_rows({spu_mul(a.row[k], p.rest_moment[0]), spu_mul(b.row[k], p.rest_moment[1]),
+                      spu_mul(c.row[k], p.rest_moment[2]), spu_mul(d.row[k], p.rest_moment[3])});
+    return spu_mul(sum, p.inverse_mass);
+  };
+  return {component(0), component(1), component(2)};
+}
+
+}  // namespace softcell::spu

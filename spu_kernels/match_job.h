@@ -1,0 +1,134 @@
+#pragma once
+// The contract of the kernel `match`: plain data in main memory, the same bytes for both sides.
+// Freestanding; included by the kernel and by the PPU side. All scalars are in the machine's own byte order.
+//
+// A plan is what all bodies of one model share: constants of particles and regions, and the lists by which
+// sums are made. The PPU side writes it once (ppu/match_plan.h). Four particles, and four regions, stand
+// together, one to a lane; a last group that is not full is padded with particles of no mass and regions of
+// nothing.
+//
+// The kernel works on two buffers of slots; a slot is three quadwords: the payload of a particle, a bar, a
+// plate or a region. Slot 0 is always zero, particle i is in slot i + 1. Numbers of slots are written as
+// offsets in quadwords, 3 * slot.
+
+#include <stdint.h>
+
+namespace softcell::spu {
+
+constexpr uint32_t kMatchSlotBytes = 48;
+constexpr uint32_t kMatchOffsetUnit = 8;  ///< bytes
+
+/// Constants of four particles.
+struct alignas(16) MatchParticles {
+  float rest_moment[4][4];  ///< of each particle: m~ (x0 y0 z0 1), x0 about the rest centre, m~ = m / |R_i|
+  float inverse_mass[4];    ///< 1 / m, kg^-1; 0 for padding
+  float mass[4];            ///< m, kg; 0 for padding
+  uint32_t region[4];       ///< offset of the slot of the particle's region
+};
+static_assert(sizeof(MatchParticles) == 112, "seven quadwords");
+
+/// Constants of four regions.
+struct alignas(16) MatchRegions {
+  float centre_x[4];  ///< c0, the rest centre, about the body's rest centre; metres
+  float centre_y[4];
+  float centre_z[4];
+  float inverse_mass[4];  ///< 1 / M_r, M_r the sum of m~; 0 for padding
+};
+static_assert(sizeof(MatchRegions) == 64, "four quadwords");
+
+/// Four unit quaternions: of four regions, kept from step to step.
+struct alignas(16) MatchRotations {
+  float x[4], y[4], z[4], w[4];
+};
+static_assert(sizeof(MatchRotations) == 64, "four quadwords");
+
+/// A plan's first line. The other parts follow at the given offsets, in bytes from the header's start, each a
+/// multiple of 16.
+///
+/// A sum list is a sequence of halfwords and makes slots 1, 2, 3, ... of one buffer from slots of the other:
+///
+///     chain:  terms (1 or more), steps (0 or more),
+///             terms x offset                the first sum is that of these slots
+///             steps x (offset, offset)      each further sum is the one before, plus the first, minus the
+///             second
+///     end:    0
+struct alignas(128) MatchPlanHeader {
+  uint32_t bytes;               ///< of the whole plan, header included; a multiple of 128
+  uint32_t particles;           ///< 1 or more
+  uint32_t regions;             ///< distinct ones, 1 or more
+  uint32_t slots;               ///< of each buffer, slot 0 and padding included
+  uint32_t particle_constants;  ///< offset of MatchParticles, groups_of(particles) of them
+  uint32_t region_constants;    ///< offset of MatchRegions, groups_of(regions) of them
+  uint32_t bars_of_particles;   ///< offset of a sum list: from particles
+  uint32_t bars_of_regions;     ///< offset of a sum list: from each particle's region
+  uint32_t plates;              ///< offset of a sum list: from bars
+  uint32_t regions_of_plates;   ///< offset of a sum list: from plates
+  float noise_floor;   ///< m^2: a region whose |A_r| is at most this times M_r has all its particles on one
+                       ///< point
+  float grid;          ///< metres: the body's origin is a multiple of this power of two
+  float inverse_mass;  ///< 1 / kg, of the body
+  uint32_t pad[19];
+};
+static_assert(sizeof(MatchPlanHeader) == 128, "one line");
+
+/// One body. One line in main memory.
+struct alignas(128) MatchBody {
+  uint64_t positions_ea;   ///< x y z and 0 of each particle, metres; a multiple of 16 (128 is fastest)
+  uint64_t velocities_ea;  ///< x y z and 0 of each particle, m/s; changed in place; likewise aligned
+  uint64_t rotations_ea;   ///< MatchRotations of all groups of regions; changed in place; likewise aligned
+  uint64_t result_ea;      ///< a MatchResult, a multiple of 16
+  float pull;              ///< alpha / h, 1/s
+  float damping;           ///< k, 0..1
+  uint32_t cold;           ///< not 0: the rotations say nothing yet, only what they leave open
+  uint32_t pad[21];
+};
+static_assert(sizeof(MatchBody) == 128, "one line");
+
+/// What one body's step came to.
+struct alignas(16) MatchResult {
+  float residual;   ///< the largest |axial(R^T A)| over the sum of |A|'s elements, roughly radians
+  uint32_t finite;  ///< 0: a position or velocity is infinite or no number, and nothing was written
+  uint32_t pad[2];
+};
+
+/// The job's descriptor, one line in main memory: bodies of one model, stepped one after the other.
+struct alignas(128) MatchJob {
+  uint64_t plan_ea;           ///< a MatchPlanHeader and what follows it, 128-byte aligned
+  uint64_t bodies_ea;         ///< body_count MatchBody, 128-byte aligned
+  uint32_t body_count;        ///< any number, 0 included
+  uint32_t least_iterations;  ///< of each rotation; 2 and 2 for a fixed effort, 0 and 6 to go by the residual
+  uint32_t most_iterations;
+  uint32_t pad[25];
+};
+static_assert(sizeof(MatchJob) == 128, "one line");
+
+/// What the kernel's main returns.
+enum MatchStatus : uint32_t { kMatchDone = 0, kMatchTooLarge = 1 };
+
+/// Particles or regions in groups of four.
+constexpr uint32_t groups_of(uint32_t count) { return (count + 3) / 4; }
+
+/// Bytes of local store for a plan and one body's state, each part a multiple of 16 bytes.
+constexpr uint32_t match_plan_bytes(const MatchPlanHeader& plan) { return plan.bytes; }
+constexpr uint32_t match_vectors_bytes(const MatchPlanHeader& plan) { return groups_of(plan.particles) * 64; }
+constexpr uint32_t match_rotations_bytes(const MatchPlanHeader& plan) {
+  return groups_of(plan.regions) * static_cast<uint32_t>(sizeof(MatchRotations));
+}
+constexpr uint32_t match_momenta_bytes(const MatchPlanHeader& plan) { return groups_of(plan.regions) * 48; }
+constexpr uint32_t match_buffer_bytes(const MatchPlanHeader& plan) { return plan.slots * kMatchSlotBytes; }
+constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
+  return match_plan_bytes(plan) + 2 * match_vectors_bytes(plan) + match_rotations_bytes(plan) +
+         match_momenta_bytes(plan) + 2 * match_buffer_bytes(plan);
+}
+
+/// What the kernel has for all that.
+constexpr uint32_t kMatchArenaBytes = 216 * 1024;
+
+/// Whether a plan and one body's state fit. Any numbers may stand in the header.
+constexpr bool match_fits(const MatchPlanHeader& plan) {
+  const uint32_t most = kMatchArenaBytes / 16;  // of anything; below it, sizes do not overflow
+  return plan.bytes <= kMatchArenaBytes && plan.particles <= most && plan.regions <= most &&
+         plan.slots <= most && match_local_store_bytes(plan) <= kMatchArenaBytes;
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,244 @@
+#pragma once
+// The rotation nearest to a matrix, for four regions at a time: R = argmax <R, A>.
+//
+// Newton's method on SO(3) from the last step's quaternion: [KKB18] with the safeguards below.
+//
+//   S = R^T A                    the matrix in the body's frame
+//   g = axial(S)                 gradient;  g = 0 and H > 0 only at the optimum, all else are saddles
+//   H = (tr S + mu) 1 - sym(S)   minus the Hessian; eigenvalues s_j + s_k + mu at the optimum
+//   omega = H^-1 g,  q := normalize(q (1, omega / 2))
+//
+// With signed singular values s1 >= s2 >= |s3|, what A leaves open is a turn about an axis with s_j + s_k =
+// 0: the twist of a line, everything of a point. g has no component there, mu keeps H invertible, and the
+// rotation stays as it was. Rank 2 leaves nothing open. The answer is made from a unit quaternion and
+// therefore proper for every A.
+//
+// Lanes in which H is not positive, or that are not there after the last iteration, start again from
+// Davenport's matrix (rotation_cold.h). It is rare: teleports, bodies turned inside out within a step.
+
+#include <spu_intrinsics.h>
+
+#include "common/lane_mask.h"
+#include "common/matrix3.h"
+#include "common/reciprocal.h"
+#include "rotation_cold.h"
+
+namespace softcell::spu {
+
+/// How far the iteration goes. Residuals are |axial(R^T A)| over the sum of |A|'s elements, roughly an angle.
+struct RotationEffort {
+  uint32_t least;  ///< iterations that are always made
+  uint32_t most;   ///< iterations after which to stop in any case, `least` or more
+};
+
+/// Two iterations, whatever the residual. Turns of 0.3 rad in one step are found to 1e-3 rad, of 0.05 to
+/// 1e-6.
+constexpr RotationEffort kTwoIterations = {2, 2};
+/// As many as it takes to come below kRotationResidual: none for a body at rest.
+constexpr RotationEffort kAdaptive = {0, 6};
+
+constexpr float kRotationResidual = 2e-6f;  ///< some roundings
+constexpr float kRotationLost = 3e-3f;      ///< above it a lane starts again
+
+/// Where the magnitudes of A's elements, summed and times `weight`, are at most `floor`, A is rounding noise.
+struct RotationNoise {
+  vec_float4 weight;
+  vec_float4 floor;
+};
+
+struct Rotation4 {
+  Matrix3x4 matrix;
+  vec_float4 residual_square;  ///< of this matrix
+};
+
+namespace rotation_detail {
+
+constexpr float kMu = 5e-4f;            // against matrices whose elements sum to 1..2
+constexpr float kLongestStep = 0.75f;   // of omega / 2: 1.3 rad
+constexpr int kPolishing = 6;           // iterations after a cold start
+constexpr float kLargestSum = 1.7e38f;  // of |A|'s elements; beyond it and below kSmallestSum A counts as 0
+constexpr float kSmallestSum = 1e-37f;
+
+/// A at one candidate rotation. `minors` belong to 2 H: its adjugate and determinant.
+struct Estimate {
+  Matrix3x4 r;
+  Vector3x4 gradient;
+  vec_float4 minor_xx, minor_xy, minor_xz, minor_yy, minor_yz, minor_zz, determinant;
+  vec_float4 trace;
+  vec_float4 residual_square;
+  vec_uint4 indefinite;  // top bit set where H is not safely positive
+};
+
+__attribute__((always_inline)) inline Estimate estimate(const Matrix3x4& a, const Quaternion4& q) {
+  Estimate e;
+  e.r = matrix_of(q);
+  const Matrix3x4& r = e.r;
+  const auto column_product = [](vec_float4 rx, vec_float4 ry, vec_float4 rz, vec_float4 ax, vec_float4 ay,
+                                 vec_float4 az) __attribute__((always_inline)) {
+    return spu_madd(rx, ax, spu_madd(ry, ay, spu_mul(rz, az)));
+  };
+  const vec_float4 sxx = column_product(r.x.x, r.y.x, r.z.x, a.x.x, a.y.x, a.z.x);
+  const vec_float4 sxy = column_product(r.x.x, r.y.x, r.z.x, a.x.y, a.y.y, a.z.y);
+  const vec_float4 sxz = column_product(r.x.x, r.y.x, r.z.x, a.x.z, a.y.z, a.z.z);
+  const vec_float4 syx = column_product(r.x.y, r.y.y, r.z.y, a.x.x, a.y.x, a.z.x);
+  const vec_float4 syy = column_product(r.x.y, r.y.y, r.z.y, a.x.y, a.y.y, a.z.y);
+  const vec_float4 syz = column_product(r.x.y, r.y.y, r.z.y, a.x.z, a.y.z, a.z.z);
+  const vec_float4 szx = column_product(r.x.z, r.y.z, r.z.z, a.x.x, a.y.x, a.z.x);
+  const vec_float4 szy = column_product(r.x.z, r.y.z, r.z.z, a.x.y, a.y.y, a.z.y);
+  const vec_float4 szz = column_product(r.x.z, r.y.z, r.z.z, a.x.z, a.y.z, a.z.z);
+  e.gradient = {spu_sub(szy, syz), spu_sub(sxz, szx), spu_sub(syx, sxy)};
+  e.residual_square = dot(e.gradient, e.gradient);
+  e.trace = spu_add(spu_add(sxx, syy), szz);
+
+  // 2 H. Twice, so that nothing has to be halved and its solution is omega / 2.
+  const vec_float4 mu = spu_splats(kMu), two = spu_splats(2.0f), two_mu = spu_splats(2 * kMu);
+  const vec_float4 hxx = spu_madd(two, spu_add(syy, szz), two_mu);
+  const vec_float4 hyy = spu_madd(two, spu_add(sxx, szz), two_mu);
+  const vec_float4 hzz = spu_madd(two, spu_add(sxx, syy), two_mu);
+  const vec_float4 minus_hxy = spu_add(sxy, syx);
+  const vec_float4 minus_hxz = spu_add(sxz, szx);
+  const vec_float4 minus_hyz = spu_add(syz, szy);
+  e.minor_xx = spu_msub(hyy, hzz, spu_mul(minus_hyz, minus_hyz));
+  e.minor_xy = spu_madd(minus_hxz, minus_hyz, spu_mul(minus_hxy, hzz));
+  e.minor_xz = spu_madd(minus_hxy, minus_hyz, spu_mul(minus_hxz, hyy));
+  e.minor_yy = spu_msub(hxx, hzz, spu_mul(minus_hxz, minus_hxz));
+  e.minor_yz = spu_madd(minus_hxy, minus_hxz, spu_mul(hxx, minus_hyz));
+  e.minor_zz = spu_msub(hxx, hyy, spu_mul(minus_hxy, minus_hxy));
+  e.determinant = spu_msub(hxx, e.minor_xx, spu_madd(minus_hxy, e.minor_xy, spu_mul(minus_hxz, e.minor_xz)));
+
+  // The pivots h_zz, minor_xx / h_zz, determinant / minor_xx, each against half of its 2 mu.
+  e.indefinite = spu_or(spu_or(less(hzz, mu), less(e.minor_xx, spu_mul(mu, hzz))),
+                        less(e.determinant, spu_mul(mu, e.minor_xx)));
+  return e;
+}
+
+/// omega / 2 by Newton's method. Where H is not positive it means nothing.
+__attribute__((always_inline)) inline Vector3x4 newton_half(const Estimate& e) {
+  const Vector3x4& g = e.gradient;
+  const Vector3x4 adjugate_g = {
+      spu_madd(e.minor_xx, g.x, spu_madd(e.minor_xy, g.y, spu_mul(e.minor_xz, g.z))),
+      spu_madd(e.minor_xy, g.x, spu_madd(e.minor_yy, g.y, spu_mul(e.minor_yz, g.z))),
+      spu_madd(e.minor_xz, g.x, spu_madd(e.minor_yz, g.y, spu_mul(e.minor_zz, g.z)))};
+  return scale(adjugate_g, rough_reciprocal(e.determinant));
+}
+
+/// omega / 2 where Newton's step is none or goes too far: along the gradient, and no longer than it may be.
+__attribute__((noinline)) inline Vector3x4 safe_half(const Estimate& e, const Vector3x4& newton) {
+  const vec_float4 step = reciprocal(spu_madd(spu_splats(2.0f), absolute(e.trace), spu_splats(2.0f)));
+  const vec_uint4 indefinite = negative_lanes(e.indefinite);
+  const Vector3x4 half = {spu_sel(newton.x, spu_mul(e.gradient.x, step), indefinite),
+                          spu_sel(newton.y, spu_mul(e.gradient.y, step), indefinite),
+                          spu_sel(newton.z, spu_mul(e.gradient.z, step), indefinite)};
+  const vec_float4 square = dot(half, half);
+  const vec_uint4 far = negative_lanes(less(spu_splats(kLongestStep * kLongestStep), square));
+  const vec_float4 shorter = spu_mul(spu_splats(kLongestStep), reciprocal_sqrt(square));
+  return scale(half, spu_sel(spu_splats(1.0f), shorter, far));
+}
+
+__attribute__((always_inline)) inline Quaternion4 improve(const Estimate& e, const Quaternion4& q) {
+  Vector3x4 half = newton_half(e);
+  const vec_uint4 far = less(spu_splats(kLongestStep * kLongestStep), dot(half, half));
+  if (__builtin_expect(any_negative(spu_or(e.indefinite, far)), 0)) half = safe_half(e, half);
+  return turn(q, half);
+}
+
+/// Top bit set where the answer cannot be trusted.
+inline vec_uint4 lost(const Estimate& e) {
+  return spu_or(e.indefinite, less(spu_splats(kRotationLost * kRotationLost), e.residual_square));
+}
+
+inline Quaternion4 select(const Quaternion4& a, const Quaternion4& b, vec_uint4 mask) {
+  return {spu_sel(a.x, b.x, mask), spu_sel(a.y, b.y, mask), spu_sel(a.z, b.z, mask), spu_sel(a.w, b.w, mask)};
+}
+
+/// A times a power of two that makes its elements' magnitudes sum to 1..2; zero where A is noise.
+__attribute__((always_inline)) inline Matrix3x4 normalise(const Matrix3x4& a, const RotationNoise& noise_of) {
+  const vec_float4 sum = spu_add(
+      spu_add(spu_add(spu_add(absolute(a.x.x), absolute(a.x.y)), spu_add(absolute(a.x.z), absolute(a.y.x))),
+              spu_add(spu_add(absolute(a.y.y), absolute(a.y.z)), spu_add(absolute(a.z.x), absolute(a.z.y)))),
+      absolute(a.z.z));
+  const vec_uint4 exponent = spu_and((vec_uint4)sum, spu_splats(0x7F800000u));
+  const vec_uint4 noise = negative_lanes(spu_or(
+      less(spu_splats(kLargestSum), sum),
+      spu_or(not_less(noise_of.floor, spu_mul(sum, noise_of.weight)), less(sum, spu_splats(kSmallestSum)))));
+  const vec_float4 by = (vec_float4)spu_andc(spu_sub(spu_splats(0x7F000000u), exponent), noise);
+  return {scale(a.x, by), scale(a.y, by), scale(a.z, by)};
+}
+
+}  // namespace rotation_detail
+
+/// Four matrices, scaled, and room for what else belongs to them.
+struct RotationProblem {
+  Matrix3x4 a;        ///< as normalised() makes it
+  Vector3x4 payload;  ///< not looked at
+};
+
+/// `a` as a RotationProblem takes it: times a power of two, or zero where it is noise.
+/// @param a  any matrices of finite numbers, of any rank, either sign of the determinant. Scale: the
+/// magnitudes
+///           of the elements sum to 1e-37..1.7e38; outside it A counts as noise.
+__attribute__((always_inline)) inline Matrix3x4 normalised(const Matrix3x4& a, const RotationNoise& noise) {
+  return rotation_detail::normalise(a, noise);
+}
+
+/// Turns `count` groups of four quaternions towards the optima, as far as `effort` says.
+///
+/// One iteration is a chain of dependent operations and takes five times as long as its operations would.
+/// Groups do not depend on each other: a pass makes one iteration of all of them, for the processor, or the
+/// compiler that unrolls it, to overlap.
+/// @param q  unit to 1e-5; in: last step's. out: unit to 5e-6.
+__attribute__((noinline)) inline void improve_rotations(const RotationProblem* problems, Quaternion4* q,
+                                                        uint32_t count, RotationEffort effort) {
+  using namespace rotation_detail;
+  const vec_float4 good = spu_splats(kRotationResidual * kRotationResidual);
+  for (uint32_t pass = 0; pass < effort.most; ++pass) {
+    bool all_good = pass >= effort.least;
+    for (uint32_t g = 0; g < count; ++g) {
+      const Estimate e = estimate(problems[g].a, q[g]);
+      if (pass >= effort.least && !any_negative(spu_or(e.indefinite, less(good, e.residual_square))))
+        continue;
+      q[g] = improve(e, q[g]);
+      all_good = false;
+    }
+    if (all_good) return;
+  }
+}
+
+namespace rotation_detail {
+
+/// The same as a function, for what is rare.
+__attribute__((noinline)) inline Estimate estimate_slowly(const Matrix3x4& a, const Quaternion4& q) {
+  return estimate(a, q);
+}
+
+/// The lanes of `mask` from Davenport's matrix, polished. `q` as it is decides what A leaves open.
+__attribute__((noinline)) inline Rotation4 start_again(const RotationProblem& problem, Quaternion4& q,
+                                                       vec_uint4 mask) {
+  const Quaternion4 found = davenport(problem.a, q);
+  Quaternion4 polished = found;
+  improve_rotations(&problem, &polished, 1, {kPolishing, kPolishing});
+  const vec_uint4 failed = negative_lanes(lost(estimate_slowly(problem.a, polished)));
+  q = select(q, select(polished, found, failed), mask);
+  const Estimate e = estimate_slowly(problem.a, q);
+  return {e.r, e.residual_square};
+}
+
+}  // namespace rotation_detail
+
+/// The matrices of quaternions that improve_rotations() has made. Lanes that are lost all the same start
+/// cold, and change `q`.
+__attribute__((always_inline)) inline Rotation4 rotation_of(const RotationProblem& problem, Quaternion4& q) {
+  using namespace rotation_detail;
+  const Estimate e = estimate(problem.a, q);
+  const vec_uint4 restart = lost(e);
+  if (__builtin_expect(any_negative(restart), 0)) return start_again(problem, q, negative_lanes(restart));
+  return {e.r, e.residual_square};
+}
+
+/// The optimum found without trusting `q`, which decides only what the problem leaves open. Several times as
+/// slow.
+inline Rotation4 find_rotation(const RotationProblem& problem, Quaternion4& q) {
+  return rotation_detail::start_again(problem, q, spu_splats(0xFFFFFFFFu));
+}
+
+}  // namespace softcell::spu
