@@ -134,6 +134,7 @@ TEST(Command, PrintsTheBudgetOfEveryKernel) {
   ASSERT_EQ(run.status, 0) << run.output;
   const auto table = read_json(folder / "b.json");
   ASSERT_FALSE(table.empty());
+  bool has_skin = false;
   for (const auto& row : table) {
     for (const char* key :
          {"kernel", "text", "rodata", "data", "bss", "stack", "stack_used", "total", "budget"}) {
@@ -142,9 +143,11 @@ TEST(Command, PrintsTheBudgetOfEveryKernel) {
     EXPECT_LE(row["total"], row["budget"]) << row["kernel"];
     EXPECT_LE(row["stack_used"], row["stack"]) << row["kernel"];
     EXPECT_GT(row["stack_used"], 0) << row["kernel"];
+    if (row["kernel"] != "skin") continue;
+    has_skin = true;
+    EXPECT_LE(row["total"], 96 * 1024);
   }
-  EXPECT_EQ(table[0]["kernel"], "skin");
-  EXPECT_LE(table[0]["total"], 96 * 1024);
+  EXPECT_TRUE(has_skin);
 }
 
 TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
