@@ -52,6 +52,4 @@ SC_SDK_INLINE void spu_mfcdma32(volatile void* ls, unsigned int ea, unsigned int
 }
 /// Waits as MFC_WrTagUpdate's value says (0 immediate, 1 any, 2 all) and returns the complete tag groups of
 /// the mask.
-SC_SDK_INLINE unsigned int spu_mfcstat(unsigned int condition) {
-  return softcell_sdk::tag_status(condition);
-}
+SC_SDK_INLINE unsigned int spu_mfcstat(unsigned int condition) { return softcell_sdk::tag_status(condition); }
