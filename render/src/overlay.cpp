@@ -6,7 +6,7 @@
 
 namespace softcell::render {
 
-Overlay::Overlay(float scale) : context_(ImGui::CreateContext()), scale_(scale) {
+Overlay::Overlay(float scale) : context_(ImGui::CreateContext()) {
   make_current();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // windows stand where the program puts them

@@ -65,7 +65,6 @@ class Overlay {
 
  private:
   ImGuiContext* context_;
-  float scale_;
   OverlayMesh mesh_;
 };
 
