@@ -15,6 +15,7 @@
 #include "json_file.h"
 #include "kernel_report.h"
 #include "progress_bar.h"
+#include "scene_file/scene_library.h"
 #include "scene_view.h"
 #include "simulation_3d.h"
 #include "softcell/ls_sim/trace.h"
@@ -41,9 +42,6 @@ double milliseconds_since(Clock::time_point begin) {
 
 std::optional<OwnModel> load_model(const Demo3dOptions& options) {
   if (!options.mesh) return std::nullopt;
-  if (options.scene && *options.scene != "drop") {
-    throw UsageError("--mesh drops a model in scene drop; it does not go with --scene " + *options.scene);
-  }
   OwnModel model{.mesh = ppu::import_mesh(*options.mesh)};
   const ppu::Bounds box = ppu::bounds(model.mesh);
   const double longest = (box.high - box.low).maxCoeff();
@@ -229,8 +227,8 @@ int run_demo_3d(const Demo3dOptions& options) {
   }
   render::pin_software_rasterizer();
   const std::optional<OwnModel> model = load_model(options);
-  const SceneEntry& entry = find_scene(options.scene.value_or(model ? "drop" : "arena"));
-  const Scene scene = entry.make(model);
+  // Before any thread is started: a scene in Lua forks.
+  const Scene scene = load_scene_3d(options.scene.value_or(model ? "drop" : "arena"), model);
   ls_sim::Findings findings;
   std::optional<ls_sim::Trace> trace;
   if (options.trace) trace.emplace(options.spes);
@@ -261,7 +259,7 @@ int run_demo_3d(const Demo3dOptions& options) {
   record.seconds = milliseconds_since(begin) / 1000;
   pictures.finish();
 
-  auto statistics = statistics_document(std::string(entry.name), options, simulation, record, pictures);
+  auto statistics = statistics_document(scene.name, options, simulation, record, pictures);
   const std::vector<ls_sim::Finding> found = findings.list();
   if (options.checked) statistics["findings"] = to_json(std::span(found));
   if (trace) trace->write(*options.trace);

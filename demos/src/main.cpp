@@ -80,7 +80,8 @@ class CommandLine {
     CLI::App* demo = app_.add_subcommand("demo", "Run a demo: 3d");
     CLI::App* d = demo->add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
     d->add_flag("--headless", demo_.headless, "Run without a window");
-    d->add_option("--scene", demo_.scene, "Scene by name; `softcell scenes` lists them (default: arena)");
+    d->add_option("--scene", demo_.scene,
+                  "Scene by name, or a scene file; `softcell scenes` lists them (default: arena)");
     d->add_option("--mesh", demo_.mesh, "Drop this OBJ, PLY or STL model (scene drop)");
     d->add_option("--cell", demo_.cell,
                   "Edge of a lattice cell in the model's units (default: its longest side / 8)")

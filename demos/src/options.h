@@ -19,7 +19,7 @@ struct PictureSize {
 
 struct Demo3dOptions {
   bool headless = false;
-  std::optional<std::string> scene;           ///< arena, or drop when a mesh is given
+  std::optional<std::string> scene;           ///< name or file; default: arena, or drop when a mesh is given
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
   std::optional<double> cell;                 ///< cell size in the model's own units
   int frames = 300;

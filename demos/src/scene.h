@@ -3,13 +3,10 @@
 // and benchmarks. Metres, kilograms, seconds; y is up.
 
 #include <Eigen/Core>
-#include <memory>
-#include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "scripted_input.h"
 #include "softcell/ppu/mesh.h"
 #include "softcell/ppu/soft_body.h"
 #include "softcell/render/camera.h"
@@ -51,33 +48,19 @@ struct TiltScript {
 };
 
 struct Scene {
+  std::string name, title;
   std::vector<SoftBodyPlacement> soft_bodies;
-  std::vector<RigidBox> boxes;
+  std::vector<RigidBox> boxes;  ///< the framework's floor and walls first
   std::vector<Obstacle> obstacles;
   TiltScript tilt;
   float gravity = 9.81f;  ///< m/s^2
   float friction = 0.6f;
   int substeps = 2;  ///< of a frame of 1/60 s
+  int frames = 300;  ///< how long the scene is worth watching without a user
   render::Camera camera;
   render::Light light;
+  ScriptedInput<3> script;
+  std::vector<int> pictures;  ///< frames worth a picture, ascending
 };
-
-/// The user's own model for scene drop.
-struct OwnModel {
-  ppu::TriangleMesh mesh;
-  float cell_size = 0;  ///< in the mesh's units
-};
-
-struct SceneEntry {
-  std::string_view name;
-  std::string_view description;  ///< one line
-  Scene (*make)(const std::optional<OwnModel>& model);
-};
-
-/// All scenes, by name.
-std::span<const SceneEntry> scenes();
-
-/// @throws std::runtime_error  no scene of that name; the sentence lists those that there are.
-const SceneEntry& find_scene(std::string_view name);
 
 }  // namespace softcell::demos

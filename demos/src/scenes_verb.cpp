@@ -2,15 +2,16 @@
 
 #include <algorithm>
 
-#include "scene.h"
+#include "scene_file/scene_library.h"
 #include "verbs.h"
 
 namespace softcell::demos {
 
 int run_scenes() {
   std::size_t width = 0;
-  for (const SceneEntry& entry : scenes()) width = std::max(width, entry.name.size());
-  for (const SceneEntry& entry : scenes()) fmt::print("{:{}}  {}\n", entry.name, width, entry.description);
+  for (const SceneListing& scene : list_scenes()) width = std::max(width, scene.name.size());
+  for (const SceneListing& scene : list_scenes())
+    fmt::print("{:{}}  {}d  {}\n", scene.name, width, scene.dimension, scene.title);
   return 0;
 }
 

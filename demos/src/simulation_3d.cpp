@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "kernel_samples.h"
+#include "script_player.h"
 #include "softcell/ppu/bullet_coupling.h"
 #include "softcell/ppu/bullet_world.h"
 #include "softcell/ppu/deterministic_math.h"
@@ -59,6 +60,7 @@ struct Simulation3d::State {
 
   State(const Scene& scene_description, const SimulationOptions& options)
       : scene(scene_description),
+        script(scene.script),
         soft_bodies(world.world()),
         skin(load_kernel("skin", options.findings != nullptr)),
         pool(memory, {.spes = options.spes,
@@ -101,6 +103,7 @@ struct Simulation3d::State {
   const Snapshot& shown() const { return snapshots[static_cast<std::size_t>(newest)]; }
 
   const Scene& scene;
+  ScriptPlayer<3> script;
   ppu::BulletWorld world;
   ppu::BulletSoftBodies soft_bodies;
   std::vector<std::size_t> boxes;  // numbers in the world
@@ -125,8 +128,11 @@ Simulation3d::~Simulation3d() = default;
 FrameTimes Simulation3d::step() {
   State& s = *state_;
   FrameTimes times;
-  s.tilt = tilt_at(s.scene.tilt, static_cast<double>(s.frame++) / 60);
-  s.world.set_gravity(s.tilt.transpose() * Eigen::Vector3f(0, -s.scene.gravity, 0));
+  const double time = static_cast<double>(s.frame++) / 60;
+  s.tilt = tilt_at(s.scene.tilt, time);
+  const float gravity = s.script.gravity_at(time, s.scene.gravity);
+  s.world.set_gravity(s.tilt.transpose() * Eigen::Vector3f(0, -gravity, 0));
+  s.script.act(time, [&](std::size_t body) -> ppu::SoftBody& { return s.soft_bodies[body]; });
   const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
 
   const auto waiting = std::chrono::steady_clock::now();

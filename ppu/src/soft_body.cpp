@@ -125,6 +125,11 @@ void SoftBody::add_velocity(const Vector3f& dv) {
   ++revision_;
 }
 
+void SoftBody::add_particle_velocity(std::size_t particle, const Vector3f& dv) {
+  v_[particle] += dv;
+  ++revision_;
+}
+
 void SoftBody::add_angular_velocity(const Vector3f& dw) {
   const Vector3f centre = centre_of_mass();
   for (std::size_t i = 0; i < x_.size(); ++i) v_[i] += dw.cross(x_[i] - centre);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene.h"
+#include "scene_file/scene_library.h"
 #include "simulation_3d.h"
 #include "support/allocation_counter.h"
 
@@ -11,7 +11,7 @@ namespace softcell::demos {
 namespace {
 
 TEST(Allocation, ASteadyFrameAllocatesNothing) {
-  const Scene scene = find_scene("arena").make(std::nullopt);
+  const Scene scene = load_scene_3d("arena");
   Simulation3d simulation(scene, {});
   ASSERT_GT(test::allocations(), 0u) << "allocations are not counted";
   for (int frame = 0; frame < 60; ++frame) simulation.step();

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "scene.h"
+#include "scene_file/scene_library.h"
 #include "simulation_3d.h"
 #include "softcell/ppu/half.h"
 
@@ -15,7 +15,7 @@ namespace softcell::demos {
 namespace {
 
 const Scene& arena() {
-  static const Scene scene = find_scene("arena").make(std::nullopt);
+  static const Scene scene = load_scene_3d("arena");
   return scene;
 }
 

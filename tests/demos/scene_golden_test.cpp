@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene.h"
+#include "scene_file/scene_library.h"
 #include "scene_view.h"
 #include "simulation_3d.h"
 #include "softcell/render/offscreen_context.h"
@@ -21,7 +21,7 @@ void PrintTo(const Moment& m, std::ostream* out) { *out << m.scene << " " << m.f
 class SceneGolden : public testing::TestWithParam<Moment> {};
 
 TEST_P(SceneGolden, LooksAsItDid) {
-  const Scene scene = find_scene(GetParam().scene).make(std::nullopt);
+  const Scene scene = load_scene_3d(GetParam().scene);
   Simulation3d simulation(scene, {});
   for (int frame = 0; frame < GetParam().frame; ++frame) simulation.step();
   simulation.finish();
@@ -39,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden,
                                          Moment{"drop", 1}, Moment{"drop", 35}, Moment{"drop", 90}));
 
 TEST(SceneGolden, TheLatticeViewLooksAsItDid) {
-  const Scene scene = find_scene("drop").make(std::nullopt);
+  const Scene scene = load_scene_3d("drop");
   Simulation3d simulation(scene, {});
   const auto context = render::create_offscreen_context();
   render::Renderer renderer(*context, {.width = 480, .height = 270});

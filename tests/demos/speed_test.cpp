@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kernel_samples.h"
-#include "scene.h"
+#include "scene_file/scene_library.h"
 #include "simulation_3d.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_scalar.h"
@@ -23,7 +23,7 @@ constexpr bool kOptimised = false;
 
 TEST(Speed, ArenaSimulatesSixtyFramesASecondAndSkinningIsLittleOfThePpusTime) {
   if (!kOptimised) GTEST_SKIP() << "only an optimised build without sanitizers is measured";
-  const Scene scene = find_scene("arena").make(std::nullopt);
+  const Scene scene = load_scene_3d("arena");
   Simulation3d simulation(scene, {});
   std::vector<double> frame_ms;
   double frames = 0, skinning = 0;

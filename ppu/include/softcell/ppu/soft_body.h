@@ -140,7 +140,8 @@ class SoftBody {
   void move_without_force(const Eigen::Quaternionf& rotation, const Eigen::Vector3f& translation);
   /// Back to the undeformed shape, centre, mean orientation and both momenta kept.
   void reset_deformation();
-  void add_velocity(const Eigen::Vector3f& dv);  ///< m/s, to every particle
+  void add_velocity(const Eigen::Vector3f& dv);                                 ///< m/s, to every particle
+  void add_particle_velocity(std::size_t particle, const Eigen::Vector3f& dv);  ///< m/s
   /// m/s, to every particle: adds a turn about the centre of mass, in rad/s.
   void add_angular_velocity(const Eigen::Vector3f& dw);
   std::uint32_t revision() const { return revision_; }

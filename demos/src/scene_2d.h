@@ -1,0 +1,64 @@
+#pragma once
+// A scene in two dimensions as plain data: see scene.h. Metres, kilograms, seconds; y is up.
+
+#include <Eigen/Core>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scripted_input.h"
+#include "softcell/ppu/soft_body_2d.h"
+#include "softcell/render/frame.h"
+
+namespace softcell::demos {
+
+struct SoftBody2dPlacement {
+  std::string name;
+  std::vector<Eigen::Vector2i> cells;  ///< grid indices of the lattice's cells, of any origin
+  ppu::SoftBodySettings settings;      ///< density is in kg/m^2
+  Eigen::Vector2f position{0, 0};      ///< of the middle of the cells' box
+  float contact_radius = ppu::SoftBodyModel2d::kContactRadiusInCells;  ///< cells
+  render::Colour colour{0.8f, 0.8f, 0.8f};
+
+  /// The lattice, the middle of its box at 0. @throws std::runtime_error  as lattice_2d_from_cells().
+  ppu::Lattice2d lattice() const;
+};
+
+struct Box2dShape {
+  Eigen::Vector2f size{1, 1};  ///< metres
+};
+struct CircleShape {
+  float radius = 0.5f;  ///< metres
+};
+/// Convex, 3 to 8 corners, counter-clockwise.
+struct PolygonShape {
+  std::vector<Eigen::Vector2f> corners;  ///< metres, about the body's position
+};
+
+struct RigidBody2d {
+  std::variant<Box2dShape, CircleShape, PolygonShape> shape;
+  float mass = 0;  ///< kg; 0: does not move
+  Eigen::Vector2f position{0, 0};
+  float angle = 0;  ///< radians, counter-clockwise
+  render::Colour colour{0.8f, 0.8f, 0.8f};
+};
+
+struct Camera2d {
+  Eigen::Vector2f centre{0, 0};
+  float height = 10;  ///< of the part of the world that the picture shows, metres
+};
+
+struct Scene2d {
+  std::string name, title;
+  std::vector<SoftBody2dPlacement> soft_bodies;
+  std::vector<RigidBody2d> rigid_bodies;  ///< the framework's walls first: left, right, bottom, top
+  float gravity = 9.81f;                  ///< m/s^2, downwards
+  float friction = 0.6f;
+  int substeps = 2;  ///< of a frame of 1/60 s
+  int frames = 300;  ///< how long the scene is worth watching without a user
+  Camera2d camera;
+  ScriptedInput<2> script;
+  std::vector<int> pictures;  ///< frames worth a picture, ascending
+};
+
+}  // namespace softcell::demos

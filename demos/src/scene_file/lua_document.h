@@ -1,0 +1,25 @@
+#pragma once
+// Runs a scene or a lattice that is written in Lua, and takes over what it returns.
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "value.h"
+
+namespace softcell::demos {
+
+/// Runs the chunk in a child process with limits on time and memory (lua_sandbox.h), and reads the plain data
+/// that it returns. Every value's place is the line at which the chunk ended.
+///
+/// Forks: call it before threads are started, since a child has only the calling one, and locks that others
+/// hold stay locked in it.
+/// @param file  as errors name it.
+/// @throws SceneError  a mistake in the chunk, data that is not plain, or a limit passed. Never takes longer
+/// than kLuaWallSeconds and a little.
+Value run_lua(std::string_view chunk, const std::shared_ptr<const std::string>& file);
+
+/// Seconds after which a child that has not answered is killed.
+inline constexpr double kLuaWallSeconds = 1.6;
+
+}  // namespace softcell::demos

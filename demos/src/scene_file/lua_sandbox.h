@@ -1,0 +1,21 @@
+#pragma once
+// What runs in the child process of run_lua().
+//
+// A chunk can use what a scene needs: numbers, texts, tables, the functions of kAllowed in lua_sandbox.cpp.
+// Left out is what reaches files or other programs, what catches errors (a limit must end the chunk), what
+// can run for ever inside Lua's own C code, where no hook comes by (string patterns, string.rep, table.move,
+// finalizers by setmetatable), and what differs from run to run (pairs, which follows addresses).
+
+#include <string>
+#include <string_view>
+
+namespace softcell::demos {
+
+inline constexpr std::size_t kLuaMaxBytes = std::size_t{64} << 20;
+inline constexpr double kLuaSeconds = 1;
+
+/// Writes the message (value_message.h) to the file descriptor and ends the process. Sets limits on processor
+/// time, memory and files of the process first.
+[[noreturn]] void run_sandboxed(std::string_view chunk, int descriptor);
+
+}  // namespace softcell::demos

@@ -1,0 +1,122 @@
+#pragma once
+// What scenes of two and of three dimensions have in common.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "field_reader.h"
+
+namespace softcell::demos {
+
+// More than these no host plays, and a slip of the pen is more likely.
+inline constexpr std::size_t kMaxSoftBodies = 64, kMaxRigidBodies = 1000, kMaxEvents = 1000,
+                             kMaxPictures = 1000;
+inline constexpr std::uint32_t kMaxParticlesOfScene = 200'000;
+inline constexpr int kMaxFrames = 1'000'000;
+inline constexpr int kMaxSubsteps = 64;
+inline constexpr double kMaxGravity = 1000;  // m/s^2
+inline constexpr double kMaxMass = 1e6;      // kg
+inline constexpr double kMaxTime = 1e5;      // seconds
+inline constexpr double kMaxSpeed = 1000;    // m/s
+inline constexpr Range kGravity{.low = -kMaxGravity, .high = kMaxGravity};
+inline constexpr Range kMass{.low = 0, .high = kMaxMass};
+inline constexpr Range kTime{.low = 0, .high = kMaxTime};
+inline constexpr Range kVelocity{.low = -kMaxSpeed, .high = kMaxSpeed};
+inline constexpr Range kAnyFriction{.low = 0, .high = 100};
+
+/// "soft body 2 ('torus')".
+inline std::string item_name(const char* kind, std::size_t index, const std::string& name = {}) {
+  return fmt::format("{} {}{}", kind, index + 1, name.empty() ? "" : fmt::format(" ('{}')", name));
+}
+
+/// The text in an item's `name`, for sentences about the item.
+inline std::string stated_name(const Value& item) {
+  const auto* table = std::get_if<Table>(&item.data);
+  if (table == nullptr) return {};
+  for (const auto& [key, value] : *table) {
+    const auto* text = std::get_if<std::string>(&value.data);
+    if (key == "name" && text != nullptr) return *text;
+  }
+  return {};
+}
+
+/// The fields `title`, `frames` and `pictures` of the scene, and its table `world`.
+/// @param SceneOf  Scene or Scene2d
+template <class SceneOf>
+void read_world(FieldReader& fields, SceneOf& scene) {
+  fields.text("title", scene.title);
+  const std::span<const Value> pictures = fields.items("pictures", kMaxPictures);
+  if (const Value* world = fields.field("world")) {
+    FieldReader(*world, "world")
+        .number("gravity", scene.gravity, kGravity)
+        .number("friction", scene.friction, kAnyFriction)
+        .integer("substeps", scene.substeps, 1, kMaxSubsteps)
+        .integer("frames", scene.frames, 1, kMaxFrames)
+        .finish();
+  }
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    scene.pictures.push_back(
+        read_integer(pictures[i], fmt::format("number {} of pictures", i + 1), 1, scene.frames));
+  }
+  std::sort(scene.pictures.begin(), scene.pictures.end());
+}
+
+/// Seconds of a substep.
+template <class SceneOf>
+double step_of(const SceneOf& scene) {
+  return 1.0 / 60 / scene.substeps;
+}
+
+/// The number of the soft body that an event names. @throws SceneError  none has that name.
+template <class SceneOf>
+std::size_t read_body(FieldReader& event, const SceneOf& scene) {
+  std::string name;
+  event.text("body", name, Need::kRequired);
+  const auto found = std::find_if(scene.soft_bodies.begin(), scene.soft_bodies.end(),
+                                  [&](const auto& body) { return body.name == name; });
+  if (event.has("body") && found == scene.soft_bodies.end()) {
+    throw SceneError(event.place("body"), fmt::format("there is no soft body '{}'", name));
+  }
+  return static_cast<std::size_t>(found - scene.soft_bodies.begin());
+}
+
+/// The tables `impulse`, `drag` and `gravity` of the scene, after its soft bodies.
+template <int Dimension, class SceneOf>
+void read_script(FieldReader& fields, SceneOf& scene) {
+  const auto impulses = fields.items("impulse", kMaxEvents);
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    FieldReader event(impulses[i], item_name("impulse", i));
+    auto& impulse = scene.script.impulses.emplace_back();
+    impulse.body = read_body(event, scene);
+    event.number("time", impulse.time, kTime, Need::kRequired)
+        .template vector<Dimension>("velocity", impulse.velocity, kVelocity, Need::kRequired)
+        .finish();
+  }
+  const auto drags = fields.items("drag", kMaxEvents);
+  for (std::size_t i = 0; i < drags.size(); ++i) {
+    FieldReader event(drags[i], item_name("drag", i));
+    auto& drag = scene.script.drags.emplace_back();
+    drag.body = read_body(event, scene);
+    event.number("begin", drag.begin, kTime, Need::kRequired)
+        .number("end", drag.end, kTime, Need::kRequired)
+        .template vector<Dimension>("from", drag.from, kCoordinate, Need::kRequired)
+        .template vector<Dimension>("to", drag.to, kCoordinate, Need::kRequired)
+        .finish();
+    if (drag.end <= drag.begin) {
+      throw SceneError(event.place("end"),
+                       fmt::format("{} ends at {} s; it begins at {} s and must end later", event.what(),
+                                   drag.end, drag.begin));
+    }
+  }
+  const auto changes = fields.items("gravity", kMaxEvents);
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    GravityChange& change = scene.script.gravity.emplace_back();
+    FieldReader(changes[i], item_name("gravity", i))
+        .number("time", change.time, kTime, Need::kRequired)
+        .number("value", change.gravity, kGravity, Need::kRequired)
+        .finish();
+  }
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,127 @@
+#include "read_lattice_2d.h"
+
+#include <fmt/format.h>
+
+#include "lua_document.h"
+#include "softcell/ppu/lattice_2d.h"
+
+namespace softcell::demos {
+namespace {
+
+using Eigen::Vector2i;
+using Cells = std::vector<Vector2i>;
+
+constexpr int kMaxCells = ppu::kMaxLatticeCellsPerAxis;
+constexpr int kMaxGridIndex = 1'000'000;
+
+Cells cells_where(const Vector2i& size, auto is_cell) {
+  Cells cells;
+  for (int x = 0; x < size.x(); ++x) {
+    for (int y = 0; y < size.y(); ++y) {
+      if (is_cell(x, y)) cells.push_back({x, y});
+    }
+  }
+  return cells;
+}
+
+Cells rectangle(FieldReader& fields) {
+  int width = 4, height = 4;
+  fields.integer("width", width, 1, kMaxCells).integer("height", height, 1, kMaxCells).finish();
+  return cells_where({width, height}, [](int, int) { return true; });
+}
+
+/// Cells whose middles lie in a ring; a disc is one without a hole.
+Cells ring_of(int diameter, int hole) {
+  return cells_where({diameter, diameter}, [&](int x, int y) {
+    // Twice the distances from the middle, so that all is whole.
+    const int dx = 2 * x + 1 - diameter, dy = 2 * y + 1 - diameter, squared = dx * dx + dy * dy;
+    return squared <= diameter * diameter && squared >= hole * hole;
+  });
+}
+
+Cells disc(FieldReader& fields) {
+  int diameter = 8;
+  fields.integer("diameter", diameter, 1, kMaxCells).finish();
+  return ring_of(diameter, 0);
+}
+
+Cells ring(FieldReader& fields) {
+  int diameter = 10, hole = 4;
+  fields.integer("diameter", diameter, 3, kMaxCells).integer("hole", hole, 0, kMaxCells).finish();
+  if (hole > diameter - 2) {
+    throw SceneError(
+        fields.place("hole"),
+        fmt::format("hole of {} is {}; it must be at least 2 less than diameter", fields.what(), hole));
+  }
+  return ring_of(diameter, hole);
+}
+
+constexpr std::array<std::string_view, 3> kKinds{"disc", "rectangle", "ring"};
+constexpr std::array<Cells (*)(FieldReader&), 3> kMakers{disc, rectangle, ring};
+
+Cells read_shape(const Value& value, const std::string& owner) {
+  FieldReader fields(value, "the shape of " + owner);
+  std::size_t kind = kKinds.size();
+  fields.choice("kind", kind, kKinds, Need::kRequired);
+  if (kind == kKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
+  return kMakers[kind](fields);
+}
+
+Cells read_rows(std::span<const Value> items, const std::string& owner) {
+  std::vector<std::string> rows;
+  for (const Value& item : items) {
+    const auto* text = std::get_if<std::string>(&item.data);
+    if (text == nullptr || text->size() > kMaxCells) {
+      throw SceneError(item.place, fmt::format("row {} of {} must be a text of at most {} characters",
+                                               rows.size() + 1, owner, kMaxCells));
+    }
+    rows.push_back(*text);
+  }
+  try {
+    return ppu::cells_from_rows(rows);
+  } catch (const std::runtime_error& error) {
+    throw SceneError(items.front().place, error.what());
+  }
+}
+
+Cells read_cells(std::span<const Value> items, const std::string& owner) {
+  Cells cells;
+  for (const Value& item : items) {
+    const std::string name = fmt::format("cell {} of {}", cells.size() + 1, owner);
+    const auto* pair = std::get_if<Array>(&item.data);
+    if (pair == nullptr || pair->size() != 2)
+      throw SceneError(item.place, name + " must be an array of 2 numbers");
+    cells.push_back({read_integer((*pair)[0], "x of " + name, -kMaxGridIndex, kMaxGridIndex),
+                     read_integer((*pair)[1], "y of " + name, -kMaxGridIndex, kMaxGridIndex)});
+  }
+  return cells;
+}
+
+/// What a lattice's Lua file returns: `cells` or `rows`.
+Cells read_lattice_file(const SourceText& file, const Place& place) {
+  if (!file.is_lua())
+    throw SceneError(place, fmt::format("lattice '{}' must be a file that ends in .lua", *file.name));
+  const Value value = run_lua(file.text, file.name);
+  FieldReader fields(value, "a lattice");
+  const auto cells = fields.items("cells", ppu::kMaxLatticeParticles);
+  const auto rows = fields.items("rows", static_cast<std::size_t>(kMaxCells));
+  fields.finish();
+  if (cells.empty() == rows.empty()) throw SceneError(value.place, "a lattice needs either cells or rows");
+  return rows.empty() ? read_cells(cells, "a lattice") : read_rows(rows, "a lattice");
+}
+
+}  // namespace
+
+Cells read_lattice_2d(FieldReader& body, const SceneSource& source) {
+  const auto rows = body.items("rows", static_cast<std::size_t>(kMaxCells));
+  const Value* shape = body.field("shape");
+  std::string file;
+  body.text("lattice", file).finish();
+  const int given = (rows.empty() ? 0 : 1) + (shape != nullptr ? 1 : 0) + (body.has("lattice") ? 1 : 0);
+  if (given != 1) throw SceneError(body.place(), body.what() + " needs one of rows, shape and lattice");
+  if (shape != nullptr) return read_shape(*shape, body.what());
+  if (!rows.empty()) return read_rows(rows, body.what());
+  return read_lattice_file(source.text(file, body.place("lattice")), body.place("lattice"));
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,90 @@
+#include "read_material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "nearest_name.h"
+#include "softcell/ppu/regions.h"
+#include "softcell/ppu/stiffness.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr Range kDensity{.low = 0, .high = 1e6, .low_excluded = true};
+constexpr Range kFriction{.low = 0, .high = 100};
+constexpr Range kFrequency{.low = 0, .high = 1e6};
+constexpr Range kModulus{.low = 0, .high = 1e9, .low_excluded = true};
+constexpr Range kDampingTime{.low = 0, .high = 1e6};
+
+/// At most one of the names may be given. @return whether one is.
+bool one_of(const FieldReader& fields, std::initializer_list<std::string_view> names) {
+  std::string_view first;
+  for (const std::string_view name : names) {
+    if (!fields.has(name)) continue;
+    if (!first.empty()) {
+      throw SceneError(fields.place(name),
+                       fmt::format("{} has both {} and {}; give one", fields.what(), first, name));
+    }
+    first = name;
+  }
+  return !first.empty();
+}
+
+void read_fields(FieldReader& fields, Material& material) {
+  ppu::SoftBodySettings& s = material.settings;
+  // What is stated takes the place of what the material before said in another way.
+  if (one_of(fields, {"alpha", "frequency", "modulus"})) s.frequency.reset(), material.modulus.reset();
+  if (one_of(fields, {"damping", "damping_time"})) s.damping_time.reset();
+  fields.number("cell_size", s.cell_size, kLength)
+      .integer("half_width", s.half_width, 0, ppu::kMaxHalfWidth)
+      .number("density", s.density, kDensity)
+      .number("alpha", s.alpha, kShare)
+      .number("frequency", s.frequency, kFrequency)
+      .number("modulus", material.modulus, kModulus)
+      .number("damping", s.damping, kShare)
+      .number("damping_time", s.damping_time, kDampingTime)
+      .number("friction", s.friction, kFriction);
+}
+
+}  // namespace
+
+ppu::SoftBodySettings Material::settings_for(double step) const {
+  ppu::SoftBodySettings result = settings;
+  if (modulus) {
+    const double stiffest = ppu::specific_modulus(double{settings.cell_size}, step, 1, settings.half_width);
+    result.alpha = stiffest > 0 ? static_cast<float>(std::min(1.0, double{*modulus} / stiffest)) : 1;
+  }
+  return result;
+}
+
+Materials::Materials(const Value* table) {
+  if (table == nullptr) return;
+  for (const auto& [name, value] : as_table(*table, "materials")) {
+    FieldReader fields(value, "material '" + name + "'");
+    read_fields(fields, by_name_[name]);
+    fields.finish();
+  }
+}
+
+Material Materials::read(FieldReader& body) const {
+  Material material;
+  std::string name;
+  body.text("material", name);
+  if (body.has("material")) {
+    const auto found = by_name_.find(name);
+    if (found == by_name_.end()) {
+      std::vector<std::string_view> known;
+      for (const auto& [known_name, ignored] : by_name_) known.push_back(known_name);
+      const std::string_view meant = nearest_name(name, known);
+      throw SceneError(body.place("material"),
+                       fmt::format("there is no material '{}'{}", name,
+                                   meant.empty() ? "" : fmt::format("; did you mean '{}'?", meant)));
+    }
+    material = found->second;
+  }
+  read_fields(body, material);
+  return material;
+}
+
+}  // namespace softcell::demos

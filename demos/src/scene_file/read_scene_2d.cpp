@@ -1,0 +1,166 @@
+#include "read_scene_2d.h"
+
+#include "read_common.h"
+#include "read_lattice_2d.h"
+#include "read_material.h"
+
+namespace softcell::demos {
+namespace {
+
+using Eigen::Vector2f;
+
+/// Four walls around the middle of the world; width and height are those of the room within.
+void read_framework(const Value& value, Scene2d& scene) {
+  Vector2f room{8, 6};
+  float thickness = 0.5f;
+  render::Colour colour = render::srgb(0x9AA7B5);
+  FieldReader(value, "framework")
+      .number("width", room.x(), kLength)
+      .number("height", room.y(), kLength)
+      .number("thickness", thickness, kLength)
+      .colour("colour", colour)
+      .finish();
+  const Vector2f middle = (room + Vector2f(thickness, thickness)) / 2;
+  const Vector2f upright{thickness, room.y() + 2 * thickness}, lying{room.x() + 2 * thickness, thickness};
+  const auto add = [&](const Vector2f& size, const Vector2f& position) {
+    scene.rigid_bodies.push_back({.shape = Box2dShape{size}, .position = position, .colour = colour});
+  };
+  add(upright, {-middle.x(), 0});
+  add(upright, {middle.x(), 0});
+  add(lying, {0, -middle.y()});
+  add(lying, {0, middle.y()});
+}
+
+/// The fields that rigid bodies of all shapes have.
+RigidBody2d read_rigid_body(FieldReader& fields) {
+  constexpr Range kAngle{.low = -100, .high = 100};
+  RigidBody2d body;
+  fields.number("mass", body.mass, kMass)
+      .vector<2>("position", body.position, kCoordinate)
+      .number("angle", body.angle, kAngle)
+      .colour("colour", body.colour);
+  return body;
+}
+
+std::vector<Vector2f> read_corners(FieldReader& fields) {
+  constexpr std::size_t kMaxCorners = 8;  // Box2D's
+  std::vector<Vector2f> corners;
+  for (const Value& item : fields.items("corners", kMaxCorners)) {
+    const std::string name = fmt::format("corner {} of {}", corners.size() + 1, fields.what());
+    const auto* pair = std::get_if<Array>(&item.data);
+    if (pair == nullptr || pair->size() != 2)
+      throw SceneError(item.place, name + " must be an array of 2 numbers");
+    corners.push_back({read_number((*pair)[0], "x of " + name, kCoordinate),
+                       read_number((*pair)[1], "y of " + name, kCoordinate)});
+  }
+  return corners;
+}
+
+/// Whether every corner turns left, once around in all.
+bool is_convex(const std::vector<Vector2f>& corners) {
+  const std::size_t n = corners.size();
+  if (n < 3) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector2f along = corners[(i + 1) % n] - corners[i];
+    for (std::size_t j = 0; j < n; ++j) {
+      if (j == i || j == (i + 1) % n) continue;
+      const Vector2f to = corners[j] - corners[i];
+      if (along.x() * to.y() - along.y() * to.x() <= 1e-6f * along.squaredNorm()) return false;
+    }
+  }
+  return true;
+}
+
+void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
+  const auto boxes = root.items("box", kMaxRigidBodies);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    FieldReader fields(boxes[i], item_name("box", i));
+    Box2dShape shape;
+    RigidBody2d body = read_rigid_body(fields);
+    fields.vector<2>("size", shape.size, kLength, Need::kRequired).finish();
+    body.shape = shape;
+    scene.rigid_bodies.push_back(body);
+  }
+  const auto circles = root.items("circle", kMaxRigidBodies);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    FieldReader fields(circles[i], item_name("circle", i));
+    CircleShape shape;
+    RigidBody2d body = read_rigid_body(fields);
+    fields.number("radius", shape.radius, kLength, Need::kRequired).finish();
+    body.shape = shape;
+    scene.rigid_bodies.push_back(body);
+  }
+  const auto polygons = root.items("polygon", kMaxRigidBodies);
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    FieldReader fields(polygons[i], item_name("polygon", i));
+    RigidBody2d body = read_rigid_body(fields);
+    PolygonShape shape{read_corners(fields)};
+    fields.finish();
+    if (!is_convex(shape.corners)) {
+      throw SceneError(fields.place("corners"),
+                       fields.what() + " must be convex and have 3 to 8 corners, counter-clockwise");
+    }
+    body.shape = std::move(shape);
+    scene.rigid_bodies.push_back(std::move(body));
+  }
+}
+
+SoftBody2dPlacement read_soft_body(const Value& value, std::size_t index, const SceneSource& source,
+                                   const Materials& materials, double step) {
+  constexpr Range kContactRadius{.low = 0, .high = 1, .low_excluded = true};
+  FieldReader fields(value, item_name("soft body", index, stated_name(value)));
+  SoftBody2dPlacement body;
+  body.name = "body " + std::to_string(index + 1);
+  fields.text("name", body.name)
+      .colour("colour", body.colour)
+      .vector<2>("position", body.position, kCoordinate)
+      .number("contact_radius", body.contact_radius, kContactRadius);
+  const Material material = materials.read(fields);
+  body.cells = read_lattice_2d(fields, source);
+  if (material.settings.cell_size <= 0)
+    throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
+  body.settings = material.settings_for(step);
+  return body;
+}
+
+void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
+                      Scene2d& scene) {
+  std::size_t particles = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    scene.soft_bodies.push_back(read_soft_body(items[i], i, source, materials, step_of(scene)));
+    try {
+      particles += scene.soft_bodies.back().lattice().particles.size();
+    } catch (const std::runtime_error& error) {
+      throw SceneError(items[i].place, error.what());
+    }
+    if (particles > kMaxParticlesOfScene) {
+      throw SceneError(items[i].place, fmt::format("the scene has {} particles and more; {} are the most",
+                                                   particles, kMaxParticlesOfScene));
+    }
+  }
+}
+
+}  // namespace
+
+Scene2d read_scene_2d(FieldReader& root, const SceneSource& source) {
+  Scene2d scene;
+  scene.name = source.name();
+  read_world(root, scene);
+  const Value* framework = root.field("framework");
+  const Value* camera = root.field("camera");
+  const Materials materials(root.field("materials"));
+  if (framework != nullptr) read_framework(*framework, scene);
+  read_rigid_bodies(root, scene);
+  read_soft_bodies(root.items("soft_body", kMaxSoftBodies), source, materials, scene);
+  read_script<2>(root, scene);
+  if (camera != nullptr) {
+    FieldReader(*camera, "camera")
+        .vector<2>("centre", scene.camera.centre, kCoordinate)
+        .number("height", scene.camera.height, kLength)
+        .finish();
+  }
+  root.finish();
+  return scene;
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "../scene_2d.h"
+#include "field_reader.h"
+#include "scene_source.h"
+
+namespace softcell::demos {
+
+/// A 2D scene from a file's root. @throws SceneError
+Scene2d read_scene_2d(FieldReader& root, const SceneSource& source);
+
+}  // namespace softcell::demos

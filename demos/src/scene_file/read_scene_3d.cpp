@@ -1,0 +1,204 @@
+#include "read_scene_3d.h"
+
+#include "../usage_error.h"
+#include "read_common.h"
+#include "read_material.h"
+#include "read_mesh.h"
+
+namespace softcell::demos {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr std::array<std::string_view, 2> kPatterns{"plain", "tiles"};
+
+/// A floor whose upper side is at y = 0, and four walls on it. The wall towards +z, where cameras are, may be
+/// glass.
+void read_framework(const Value& value, Scene& scene) {
+  float half_width = 4.5f, height = 0.9f, thickness = 0.3f, front_opacity = 1;
+  auto floor_colour = render::srgb(0xB9B4A7), wall_colour = render::srgb(0x9AA7B5);
+  std::size_t pattern = 1;
+  FieldReader(value, "framework")
+      .number("half_width", half_width, kLength)
+      .number("height", height, kLength)
+      .number("thickness", thickness, kLength)
+      .number("front_opacity", front_opacity, kShare)
+      .colour("floor_colour", floor_colour)
+      .colour("wall_colour", wall_colour)
+      .choice("pattern", pattern, kPatterns)
+      .finish();
+  const float outer = 2 * half_width + 2 * thickness, middle = half_width + thickness / 2;
+  scene.boxes.push_back({.size = {outer, 1, outer},
+                         .position = {0, -0.5f, 0},
+                         .colour = floor_colour,
+                         .pattern = static_cast<render::Pattern>(pattern)});
+  for (const float side : {-1.0f, 1.0f}) {
+    scene.boxes.push_back({.size = {thickness, height, outer},
+                           .position = {side * middle, height / 2, 0},
+                           .colour = wall_colour});
+    scene.boxes.push_back({.size = {2 * half_width, height, thickness},
+                           .position = {0, height / 2, side * middle},
+                           .colour = wall_colour,
+                           .opacity = side > 0 ? front_opacity : 1.0f});
+  }
+}
+
+RigidBox read_box(const Value& value, std::size_t index) {
+  RigidBox box;
+  std::size_t pattern = 0;
+  FieldReader(value, item_name("box", index))
+      .vector<3>("size", box.size, kLength, Need::kRequired)
+      .number("mass", box.mass, kMass)
+      .vector<3>("position", box.position, kCoordinate)
+      .colour("colour", box.colour)
+      .number("opacity", box.opacity, kShare)
+      .choice("pattern", pattern, kPatterns)
+      .finish();
+  box.pattern = static_cast<render::Pattern>(pattern);
+  return box;
+}
+
+Obstacle read_obstacle(const Value& value, std::size_t index, const SceneSource& source) {
+  FieldReader fields(value, item_name("obstacle", index));
+  Obstacle obstacle;
+  fields.vector<3>("position", obstacle.position, kCoordinate).colour("colour", obstacle.colour);
+  obstacle.mesh = read_mesh(fields, source);
+  return obstacle;
+}
+
+/// Puts the user's model where the body's own mesh was.
+void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
+  const ppu::Bounds box = ppu::bounds(model.mesh);
+  const float scale = longest_side / (box.high - box.low).maxCoeff();
+  body.mesh = model.mesh;
+  ppu::fit(body.mesh, longest_side);
+  body.settings.cell_size = model.cell_size * scale;
+}
+
+/// Particles of the lattice that the mesh will get: a scene that asks for too many is refused here, where its
+/// file and line are known.
+std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
+  try {
+    ppu::validate(body.settings);
+    return ppu::voxelize(body.mesh, body.settings.cell_size).particles.size();
+  } catch (const std::runtime_error& error) {
+    throw SceneError(place, error.what());
+  }
+}
+
+/// @return whether the model has taken the body's place.
+bool read_soft_body(const Value& value, std::size_t index, const SceneSource& source,
+                    const Materials& materials, const OwnModel* model, Scene& scene) {
+  FieldReader fields(value, item_name("soft body", index, stated_name(value)));
+  SoftBodyPlacement& body = scene.soft_bodies.emplace_back();
+  std::optional<float> own_model_side, above;
+  body.name = "body " + std::to_string(index + 1);
+  fields.text("name", body.name)
+      .colour("colour", body.colour)
+      .vector<3>("position", body.position, kCoordinate)
+      .number("above", above, kCoordinate)
+      .number("own_model_side", own_model_side, kLength);
+  Material material = materials.read(fields);
+  body.mesh = read_mesh(fields, source);
+  const bool replaced = model != nullptr && own_model_side;
+  if (replaced) {
+    take_place(body, *model, *own_model_side);
+    material.settings.cell_size = body.settings.cell_size;
+  }
+  if (material.settings.cell_size <= 0)
+    throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
+  body.settings = material.settings_for(step_of(scene));
+  if (above) body.position.y() = *above - ppu::bounds(body.mesh).low.y();
+  return replaced;
+}
+
+void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
+                      const std::optional<OwnModel>& model, Scene& scene) {
+  bool place_taken = false;
+  std::size_t particles = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const OwnModel* own = model && !place_taken ? &*model : nullptr;
+    place_taken = read_soft_body(items[i], i, source, materials, own, scene) || place_taken;
+    particles += count_particles(scene.soft_bodies.back(), items[i].place);
+    if (particles > kMaxParticlesOfScene) {
+      throw SceneError(items[i].place, fmt::format("the scene has {} particles and more; {} are the most",
+                                                   particles, kMaxParticlesOfScene));
+    }
+  }
+  if (model && !place_taken) {
+    throw UsageError("--mesh does not go with scene " + scene.name +
+                     ", which has no body with own_model_side");
+  }
+}
+
+void read_camera(const Value& value, render::Camera& camera) {
+  constexpr Range kAngle{.low = 0.01, .high = 10};
+  FieldReader fields(value, "camera");
+  fields.vector<3>("eye", camera.eye, kCoordinate)
+      .vector<3>("target", camera.target, kCoordinate)
+      .vector<3>("up", camera.up, kCoordinate)
+      .number("tan_half_fov_y", camera.tan_half_fov_y, kAngle)
+      .number("near", camera.near_plane, kLength)
+      .number("far", camera.far_plane, kLength)
+      .finish();
+  if (camera.far_plane <= camera.near_plane) {
+    throw SceneError(fields.place("far"), "far of camera must be larger than near");
+  }
+  const Vector3f sight = camera.target - camera.eye;
+  if (sight.cross(camera.up).norm() <= 1e-4f * sight.norm() * camera.up.norm()) {
+    throw SceneError(fields.place("target"),
+                     "the camera's eye and target must differ, and up must not lie along the line of sight");
+  }
+}
+
+void read_light(const Value& value, render::Light& light) {
+  FieldReader fields(value, "light");
+  fields.vector<3>("toward", light.toward, kCoordinate)
+      .colour("colour", light.colour)
+      .colour("sky", light.sky)
+      .colour("ground", light.ground)
+      .vector<3>("shadow_centre", light.shadow_centre, kCoordinate)
+      .number("shadow_radius", light.shadow_radius, kLength)
+      .finish();
+  if (light.toward.norm() < 1e-4f) throw SceneError(fields.place("toward"), "toward of light must not be 0");
+}
+
+void read_tilt(const Value& value, TiltScript& tilt) {
+  constexpr Range kAngle{.low = -1.5, .high = 1.5}, kPeriod{.low = 0.01, .high = kMaxTime};
+  FieldReader(value, "tilt")
+      .number("amplitude_x", tilt.amplitude_x, kAngle)
+      .number("amplitude_z", tilt.amplitude_z, kAngle)
+      .number("period_x", tilt.period_x, kPeriod)
+      .number("period_z", tilt.period_z, kPeriod)
+      .number("begin", tilt.begin, kTime)
+      .finish();
+}
+
+}  // namespace
+
+Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::optional<OwnModel>& model) {
+  Scene scene;
+  scene.name = source.name();
+  read_world(root, scene);
+  const Value* framework = root.field("framework");
+  const Value* camera = root.field("camera");
+  const Value* light = root.field("light");
+  const Value* tilt = root.field("tilt");
+  const Materials materials(root.field("materials"));
+  const auto boxes = root.items("box", kMaxRigidBodies);
+  const auto obstacles = root.items("obstacle", kMaxRigidBodies);
+  const auto soft_bodies = root.items("soft_body", kMaxSoftBodies);
+  if (framework != nullptr) read_framework(*framework, scene);
+  for (std::size_t i = 0; i < boxes.size(); ++i) scene.boxes.push_back(read_box(boxes[i], i));
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    scene.obstacles.push_back(read_obstacle(obstacles[i], i, source));
+  read_soft_bodies(soft_bodies, source, materials, model, scene);
+  read_script<3>(root, scene);
+  if (camera != nullptr) read_camera(*camera, scene.camera);
+  if (light != nullptr) read_light(*light, scene.light);
+  if (tilt != nullptr) read_tilt(*tilt, scene.tilt);
+  root.finish();
+  return scene;
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,69 @@
+#include "scene_library.h"
+
+#include <fmt/format.h>
+
+#include "builtin_files.h"
+#include "field_reader.h"
+#include "lua_document.h"
+#include "read_scene_2d.h"
+#include "read_scene_3d.h"
+#include "scene_source.h"
+#include "toml_document.h"
+
+namespace softcell::demos {
+namespace {
+
+int read_dimension(FieldReader& root) {
+  int dimension = 3;
+  root.integer("dimension", dimension, 2, 3);
+  return dimension;
+}
+
+std::variant<Scene, Scene2d> load(std::string_view name_or_file, const std::optional<OwnModel>& model) {
+  const SceneSource source = SceneSource::find(name_or_file);
+  const SourceText& text = source.main();
+  const Value document = text.is_lua() ? run_lua(text.text, text.name) : parse_toml(text.text, text.name);
+  FieldReader root(document, "a scene");
+  if (read_dimension(root) == 2) return read_scene_2d(root, source);
+  return read_scene_3d(root, source, model);
+}
+
+}  // namespace
+
+const std::vector<SceneListing>& list_scenes() {
+  static const std::vector<SceneListing> scenes = [] {
+    std::vector<SceneListing> found;
+    for (const BuiltinFile& file : builtin_files()) {
+      if (!file.name.ends_with(".toml")) continue;
+      const Value document = parse_toml(file.text, std::make_shared<const std::string>(file.name));
+      SceneListing& scene = found.emplace_back();
+      scene.file = file.name;
+      scene.name = file.name.substr(0, file.name.rfind('.'));
+      FieldReader root(document, "a scene");
+      scene.dimension = read_dimension(root);
+      root.text("title", scene.title, Need::kRequired);
+    }
+    return found;
+  }();
+  return scenes;
+}
+
+std::variant<Scene, Scene2d> load_scene(std::string_view name_or_file) {
+  return load(name_or_file, std::nullopt);
+}
+
+Scene load_scene_3d(std::string_view name_or_file, const std::optional<OwnModel>& model) {
+  auto scene = load(name_or_file, model);
+  if (auto* found = std::get_if<Scene>(&scene)) return std::move(*found);
+  throw std::runtime_error(
+      fmt::format("scene {} has two dimensions; it is for softcell demo 2d", name_or_file));
+}
+
+Scene2d load_scene_2d(std::string_view name_or_file) {
+  auto scene = load(name_or_file, std::nullopt);
+  if (auto* found = std::get_if<Scene2d>(&scene)) return std::move(*found);
+  throw std::runtime_error(
+      fmt::format("scene {} has three dimensions; it is for softcell demo 3d", name_or_file));
+}
+
+}  // namespace softcell::demos

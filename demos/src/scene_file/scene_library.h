@@ -1,0 +1,42 @@
+#pragma once
+// Scenes by name or file. docs/scenes.md describes the files.
+//
+// A scene or lattice in Lua runs in a child process, made by fork(): load scenes before threads are started.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "../scene.h"
+#include "../scene_2d.h"
+
+namespace softcell::demos {
+
+struct SceneListing {
+  std::string name;   ///< by which it is found: "arena"
+  std::string file;   ///< "arena.toml"
+  int dimension = 3;  ///< 2 or 3
+  std::string title;  ///< one line
+};
+
+/// The scenes that are part of the command, sorted by name. All are TOML.
+const std::vector<SceneListing>& list_scenes();
+
+/// The user's own model, which takes the place of a body that has a place to give: `own_model_side`.
+struct OwnModel {
+  ppu::TriangleMesh mesh;
+  float cell_size = 0;  ///< in the mesh's units
+};
+
+/// @param name_or_file  a built-in scene's name, or a file that ends in .toml or .lua.
+/// @throws std::runtime_error  there is no such scene, or it is wrong (SceneError): one sentence.
+std::variant<Scene, Scene2d> load_scene(std::string_view name_or_file);
+
+/// The same for one dimension; a scene of the other is refused.
+/// @throws std::runtime_error  also when a model is given and the scene has no place for it.
+Scene load_scene_3d(std::string_view name_or_file, const std::optional<OwnModel>& model = std::nullopt);
+Scene2d load_scene_2d(std::string_view name_or_file);
+
+}  // namespace softcell::demos

@@ -1,0 +1,123 @@
+#include "scene_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "../read_file.h"
+#include "builtin_files.h"
+#include "scene_library.h"
+
+namespace softcell::demos {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSystemData = "/usr/share";
+
+const BuiltinFile* find_builtin(std::string_view name) {
+  const auto files = builtin_files();
+  const auto found =
+      std::find_if(files.begin(), files.end(), [&](const BuiltinFile& file) { return file.name == name; });
+  return found == files.end() ? nullptr : &*found;
+}
+
+SourceText builtin_text(const BuiltinFile& file) {
+  return {std::string(file.text), std::make_shared<const std::string>(file.name)};
+}
+
+/// Devices and pipes are refused: reading one might never end.
+SourceText read_text(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    throw std::runtime_error("cannot read " + path.string() + ": there is no such file");
+  if (!fs::is_regular_file(status))
+    throw std::runtime_error("cannot read " + path.string() + ": it is no file");
+  if (const auto size = fs::file_size(path, error); !error && size > SceneSource::kMaxTextBytes) {
+    throw std::runtime_error(fmt::format("{} has {} bytes; a scene file has at most {}", path.string(), size,
+                                         SceneSource::kMaxTextBytes));
+  }
+  const auto bytes = read_file(path);
+  return {std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
+          std::make_shared<const std::string>(path.string())};
+}
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  const auto [rest, ignored] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return rest == folder.end();
+}
+
+/// Control characters would garble the sentence that quotes the name.
+bool is_printable(const std::string& name) {
+  return std::none_of(name.begin(), name.end(),
+                      [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; });
+}
+
+}  // namespace
+
+SceneSource SceneSource::find(std::string_view name_or_file) {
+  SceneSource source;
+  for (const SceneListing& scene : list_scenes()) {
+    if (scene.name != name_or_file) continue;
+    source.main_ = builtin_text(*find_builtin(scene.file));
+    return source;
+  }
+  const fs::path path{name_or_file};
+  if (path.extension() != ".toml" && path.extension() != ".lua") {
+    std::string known;
+    for (const SceneListing& scene : list_scenes()) known += (known.empty() ? "" : ", ") + scene.name;
+    throw std::runtime_error(
+        fmt::format("unknown scene '{}'; there are: {}; or give a scene file, which ends in .toml or .lua",
+                    name_or_file, known));
+  }
+  source.main_ = read_text(path);
+  source.folder_ = fs::weakly_canonical(path).parent_path();
+  return source;
+}
+
+std::string SceneSource::name() const { return fs::path(*main_.name).stem().string(); }
+
+fs::path SceneSource::locate(const std::string& file, const Place& place) const {
+  const fs::path named(file);
+  if (file.empty() || !is_printable(file))
+    throw SceneError(place, "a file needs a name of printable characters");
+  if (!folder_ && !named.is_absolute())
+    throw SceneError(place, fmt::format("there is no built-in file '{}'", file));
+  std::error_code error;
+  const fs::path found = fs::weakly_canonical(named.is_absolute() ? named : *folder_ / named, error);
+  const bool allowed = !error && (is_below(found, kSystemData) ||
+                                  (folder_ && !named.is_absolute() && is_below(found, *folder_)));
+  if (!allowed) {
+    throw SceneError(
+        place, fmt::format("'{}' is outside; a scene may name files below its own folder, and below {}", file,
+                           kSystemData));
+  }
+  return found;
+}
+
+SourceText SceneSource::text(const std::string& file, const Place& place) const {
+  if (!folder_) {
+    if (const BuiltinFile* builtin = find_builtin(file)) return builtin_text(*builtin);
+  }
+  const fs::path path = locate(file, place);
+  try {
+    return read_text(path);
+  } catch (const std::runtime_error& error) {
+    throw SceneError(place, error.what());
+  }
+}
+
+fs::path SceneSource::mesh(const std::string& file, const Place& place) const {
+  fs::path path = locate(file, place);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) {
+    const bool bunny = !folder_ && file.ends_with("bunny.obj");
+    throw SceneError(place, fmt::format("there is no mesh file '{}'{}", file,
+                                        bunny ? ": install the package glmark2-data" : ""));
+  }
+  return path;
+}
+
+}  // namespace softcell::demos

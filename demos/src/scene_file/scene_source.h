@@ -1,0 +1,47 @@
+#pragma once
+// Where a scene and the files that it names come from: the command itself, or a folder.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "value.h"
+
+namespace softcell::demos {
+
+/// The text of a scene or of a lattice, and what errors call it.
+struct SourceText {
+  std::string text;
+  std::shared_ptr<const std::string> name;
+
+  bool is_lua() const { return name->ends_with(".lua"); }
+};
+
+/// One of the scenes that are part of the command, or a file of the user's. What such a file may name: files
+/// below its own folder, also when links are followed; and meshes that the system has installed for all,
+/// below /usr/share. A scene from somebody else can therefore not read the user's own files.
+class SceneSource {
+ public:
+  static constexpr std::uintmax_t kMaxTextBytes = 4 << 20;
+
+  /// @param name_or_file  the name of a built-in scene; or, with '/' or an ending, a file.
+  /// @throws std::runtime_error  no such scene or file; the sentence lists the scenes that there are.
+  static SceneSource find(std::string_view name_or_file);
+
+  const SourceText& main() const { return main_; }
+  std::string name() const;  ///< without folder and ending
+
+  /// A file that the scene names at `place`. @throws SceneError  there is none, or it may not be named.
+  SourceText text(const std::string& file, const Place& place) const;
+  std::filesystem::path mesh(const std::string& file, const Place& place) const;
+
+ private:
+  std::filesystem::path locate(const std::string& file, const Place& place) const;
+
+  SourceText main_;
+  std::optional<std::filesystem::path> folder_;  // none: built in
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,44 @@
+#pragma once
+// What a scene file says, whatever language it is written in: numbers, texts, arrays and tables, each with
+// the place where it is written.
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace softcell::demos {
+
+/// Where something is written. Lines and columns count from 1; 0: not known.
+struct Place {
+  std::shared_ptr<const std::string> file;
+  int line = 0, column = 0;
+};
+
+/// "arena.toml:12:3", as far as it is known.
+std::string to_string(const Place& place);
+
+struct Value;
+using Array = std::vector<Value>;
+using Table = std::vector<std::pair<std::string, Value>>;  ///< in no particular order, keys unique
+
+struct Value {
+  std::variant<bool, std::int64_t, double, std::string, Array, Table> data;
+  Place place;
+};
+
+/// "a number", "a table", ...
+std::string_view kind_of(const Value& value);
+
+/// A scene that cannot be used: one sentence that begins with the place.
+class SceneError : public std::runtime_error {
+ public:
+  SceneError(const Place& place, const std::string& sentence)
+      : std::runtime_error(to_string(place) + ": " + sentence) {}
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,46 @@
+#pragma once
+// How the child that runs Lua hands its result to the parent: one message through a pipe. The parent does not
+// trust it: the child ran somebody else's program.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "value.h"
+
+namespace softcell::demos {
+
+/// Builds a message of at most kMaxBytes; beyond that it stays too long, and says so.
+class MessageWriter {
+ public:
+  static constexpr std::size_t kMaxBytes = 16 << 20;
+
+  void flag(bool value);
+  void integer(std::int64_t value);
+  void real(double value);
+  void text(std::string_view value);
+  void begin_array(std::uint32_t items);
+  void begin_table(std::uint32_t entries);  ///< each entry: key(), then a value
+  void key(std::string_view name);
+
+  bool too_long() const { return bytes_.size() > kMaxBytes; }
+
+  /// The message: all that was written, which came about at this line.
+  std::string value_message(int line) const;
+  static std::string error_message(int line, std::string_view sentence);
+
+ private:
+  template <class T>
+  void put(const T& value);
+  std::string bytes_;
+};
+
+/// The value in a message; empty when the message is not whole. Tables are sorted by key.
+/// @throws SceneError  the message is an error.
+std::optional<Value> read_message(std::string_view message, const std::shared_ptr<const std::string>& file);
+
+/// Tables and arrays within each other; what is deeper is refused on both sides.
+inline constexpr int kMaxValueDepth = 32;
+
+}  // namespace softcell::demos

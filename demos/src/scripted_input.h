@@ -1,0 +1,39 @@
+#pragma once
+// What happens to a scene by itself, at times laid down in its file. Dimension: 2 or 3.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace softcell::demos {
+
+/// All particles of a soft body get faster at once.
+template <int Dimension>
+struct ScriptedImpulse {
+  float time = 0;        ///< seconds
+  std::size_t body = 0;  ///< number of the soft body
+  Eigen::Matrix<float, Dimension, 1> velocity = Eigen::Matrix<float, Dimension, 1>::Zero();  ///< m/s, added
+};
+
+/// A hand takes the particle nearest to `from`, moves evenly to `to`, and lets go.
+template <int Dimension>
+struct ScriptedDrag {
+  float begin = 0, end = 0;  ///< seconds
+  std::size_t body = 0;      ///< number of the soft body
+  Eigen::Matrix<float, Dimension, 1> from = Eigen::Matrix<float, Dimension, 1>::Zero();  ///< metres
+  Eigen::Matrix<float, Dimension, 1> to = Eigen::Matrix<float, Dimension, 1>::Zero();    ///< metres
+};
+
+struct GravityChange {
+  float time = 0;     ///< seconds
+  float gravity = 0;  ///< m/s^2 downwards, from then on
+};
+
+template <int Dimension>
+struct ScriptedInput {
+  std::vector<ScriptedImpulse<Dimension>> impulses;
+  std::vector<ScriptedDrag<Dimension>> drags;
+  std::vector<GravityChange> gravity;
+};
+
+}  // namespace softcell::demos
