@@ -63,7 +63,7 @@ class Sandbox {
     if (status == LUA_OK) status = lua_pcall(state_, 0, 1, 0);
     if (status != LUA_OK) fail_with_error(status);
     MessageWriter writer;
-    write(writer, "the result", 0);
+    write(writer, {}, 0);
     lua_sethook(state_, nullptr, 0, 0);
     end(writer.value_message(line_));
   }
@@ -143,7 +143,12 @@ class Sandbox {
     lua_rawseti(state_, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
   }
 
-  /// Writes the value on top of the stack. @param path  what it is called: "the result.walls[2]".
+  /// What errors call the value at this path; the path of the whole result is empty.
+  static std::string named(const std::string& path) {
+    return path.empty() ? "what the script returns" : path;
+  }
+
+  /// Writes the value on top of the stack. @param path  of the value: "world.gravity", "box[2].size[1]".
   void write(MessageWriter& writer, const std::string& path, int depth) {
     if (writer.too_long()) {
       fail(line_,
@@ -163,10 +168,10 @@ class Sandbox {
         write_table(writer, path, depth);
         return;
       case LUA_TNIL:
-        fail(line_, fmt::format("{} is nil; the script must return a table", path));
+        fail(line_, fmt::format("{} is nil; it must be a table", named(path)));
       default:
-        fail(line_, fmt::format("{} is a {}; a scene is made of numbers, texts, true, false and tables", path,
-                                lua_typename(state_, lua_type(state_, -1))));
+        fail(line_, fmt::format("{} is a {}; a scene is made of numbers, texts, true, false and tables",
+                                named(path), lua_typename(state_, lua_type(state_, -1))));
     }
   }
 
@@ -177,7 +182,7 @@ class Sandbox {
     }
     const double number = lua_tonumber(state_, -1);
     if (!std::isfinite(number)) {
-      fail(line_, fmt::format("{} is {}; it must be a finite number", path,
+      fail(line_, fmt::format("{} is {}; it must be a finite number", named(path),
                               std::isnan(number) ? "NaN" : "infinite"));
     }
     writer.real(number);
@@ -200,12 +205,12 @@ class Sandbox {
       for (lua_pushnil(state_); lua_next(state_, -2) != 0; lua_pop(state_, 1)) {
         const std::string name(text_at(-2));
         writer.key(name);
-        write(writer, path + "." + name.substr(0, 64), depth + 1);
+        write(writer, (path.empty() ? "" : path + ".") + name.substr(0, 64), depth + 1);
       }
       return;
     }
     if (!all_numbers)
-      fail(line_, path + " has names as well as numbers for keys; give names, or numbers from 1");
+      fail(line_, named(path) + " has names as well as numbers for keys; give names, or numbers from 1");
     writer.begin_array(entries);
     for (std::uint32_t i = 1; i <= entries; ++i) {
       const std::string item = fmt::format("{}[{}]", path, i);

@@ -19,8 +19,8 @@ int read_dimension(FieldReader& root) {
   return dimension;
 }
 
-std::variant<Scene, Scene2d> load(std::string_view name_or_file, const std::optional<OwnModel>& model) {
-  const SceneSource source = SceneSource::find(name_or_file);
+std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
+                                        const std::optional<OwnModel>& model = std::nullopt) {
   const SourceText& text = source.main();
   const Value document = text.is_lua() ? run_lua(text.text, text.name) : parse_toml(text.text, text.name);
   FieldReader root(document, "a scene");
@@ -49,18 +49,22 @@ const std::vector<SceneListing>& list_scenes() {
 }
 
 std::variant<Scene, Scene2d> load_scene(std::string_view name_or_file) {
-  return load(name_or_file, std::nullopt);
+  return read_scene(SceneSource::find(name_or_file));
+}
+
+std::variant<Scene, Scene2d> parse_scene(const std::string& text, const std::string& name) {
+  return read_scene(SceneSource::in_memory(text, name));
 }
 
 Scene load_scene_3d(std::string_view name_or_file, const std::optional<OwnModel>& model) {
-  auto scene = load(name_or_file, model);
+  auto scene = read_scene(SceneSource::find(name_or_file), model);
   if (auto* found = std::get_if<Scene>(&scene)) return std::move(*found);
   throw std::runtime_error(
       fmt::format("scene {} has two dimensions; it is for softcell demo 2d", name_or_file));
 }
 
 Scene2d load_scene_2d(std::string_view name_or_file) {
-  auto scene = load(name_or_file, std::nullopt);
+  auto scene = load_scene(name_or_file);
   if (auto* found = std::get_if<Scene2d>(&scene)) return std::move(*found);
   throw std::runtime_error(
       fmt::format("scene {} has three dimensions; it is for softcell demo 3d", name_or_file));

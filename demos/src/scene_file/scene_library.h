@@ -34,7 +34,10 @@ struct OwnModel {
 /// @throws std::runtime_error  there is no such scene, or it is wrong (SceneError): one sentence.
 std::variant<Scene, Scene2d> load_scene(std::string_view name_or_file);
 
-/// The same for one dimension; a scene of the other is refused.
+/// A scene in memory: see SceneSource::in_memory(). @throws SceneError
+std::variant<Scene, Scene2d> parse_scene(const std::string& text, const std::string& name);
+
+/// As load_scene(), for one dimension; a scene of the other is refused.
 /// @throws std::runtime_error  also when a model is given and the scene has no place for it.
 Scene load_scene_3d(std::string_view name_or_file, const std::optional<OwnModel>& model = std::nullopt);
 Scene2d load_scene_2d(std::string_view name_or_file);

@@ -77,6 +77,12 @@ SceneSource SceneSource::find(std::string_view name_or_file) {
   return source;
 }
 
+SceneSource SceneSource::in_memory(std::string text, const std::string& name) {
+  SceneSource source;
+  source.main_ = {std::move(text), std::make_shared<const std::string>(name)};
+  return source;
+}
+
 std::string SceneSource::name() const { return fs::path(*main_.name).stem().string(); }
 
 fs::path SceneSource::locate(const std::string& file, const Place& place) const {

@@ -30,6 +30,10 @@ class SceneSource {
   /// @throws std::runtime_error  no such scene or file; the sentence lists the scenes that there are.
   static SceneSource find(std::string_view name_or_file);
 
+  /// A scene in memory. It may name built-in files and what the system has installed.
+  /// @param name  as errors call it, "NAME.toml" or "NAME.lua".
+  static SceneSource in_memory(std::string text, const std::string& name);
+
   const SourceText& main() const { return main_; }
   std::string name() const;  ///< without folder and ending
 

@@ -1,0 +1,433 @@
+// Scene files: what they become, and how bad ones are refused.
+
+#include "scene_file/scene_library.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <chrono>
+#include <fstream>
+
+#include "scene_file/lua_document.h"
+#include "scene_file/nearest_name.h"
+#include "scene_file/value.h"
+#include "scratch_folder.h"
+
+namespace softcell::demos {
+namespace {
+
+/// A folder with scene files, and what loading them says.
+class SceneFile : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) {
+    std::filesystem::create_directories(std::filesystem::path(folder_ / name).parent_path());
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+
+  /// The sentence with which the scene is refused, without the folder's name; "" when it is not refused.
+  std::string refusal(const std::string& name, const std::string& text) {
+    const std::string file = write(name, text);
+    const auto begin = std::chrono::steady_clock::now();
+    std::string sentence;
+    try {
+      load_scene(file);
+    } catch (const std::runtime_error& error) {
+      sentence = error.what();
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2)) << sentence;
+    EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+    const std::string prefix = folder_.path().string() + "/";
+    return sentence.starts_with(prefix) ? sentence.substr(prefix.size()) : sentence;
+  }
+
+  tests::ScratchFolder folder_;
+};
+
+#define EXPECT_BEGINS(sentence, expected)                                    \
+  do {                                                                       \
+    const std::string said = sentence;                                       \
+    EXPECT_TRUE(said.starts_with(expected)) << "it says: \"" << said << '"'; \
+  } while (false)
+
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+TEST_F(SceneFile, EveryFieldOfA3dSceneArrives) {
+  write("meshes/t.obj", kTetrahedron);
+  const Scene scene = load_scene_3d(write("s.toml", R"(
+title = "a title"
+pictures = [30, 2]
+[world]
+gravity = 3.5
+friction = 0.25
+substeps = 3
+frames = 40
+[framework]
+half_width = 2
+height = 1
+thickness = 0.5
+front_opacity = 0.5
+[materials.jelly]
+cell_size = 0.25
+half_width = 1
+density = 100
+frequency = 4
+damping_time = 0.5
+friction = 0.1
+[[box]]
+size = [1, 2, 3]
+mass = 4
+position = [5, 6, 7]
+opacity = 0.75
+pattern = "tiles"
+colour = "#FFFFFF"
+[[obstacle]]
+shape = { kind = "cone", radius = 0.25, height = 2, segments = 5 }
+position = [1, 1, 1]
+[[soft_body]]
+name = "tetra"
+mesh = "meshes/t.obj"
+longest_side = 2
+material = "jelly"
+density = 50
+above = 1.5
+position = [3, 0, 4]
+[[impulse]]
+time = 0.5
+body = "tetra"
+velocity = [1, 2, 3]
+[[drag]]
+body = "tetra"
+begin = 1
+end = 2
+from = [1, 0, 0]
+to = [0, 1, 0]
+[[gravity]]
+time = 2
+value = -5
+[camera]
+eye = [1, 2, 3]
+target = [4, 5, 7]
+up = [1, 0, 0]
+tan_half_fov_y = 0.5
+near = 0.25
+far = 50
+[light]
+toward = [0, 1, 0]
+shadow_centre = [1, 0, 1]
+shadow_radius = 6
+[tilt]
+amplitude_x = 0.1
+period_z = 3
+begin = 2
+)"));
+  EXPECT_EQ(scene.name, "s");
+  EXPECT_EQ(scene.title, "a title");
+  EXPECT_EQ(scene.pictures, (std::vector<int>{2, 30}));
+  EXPECT_EQ(scene.gravity, 3.5f);
+  EXPECT_EQ(scene.friction, 0.25f);
+  EXPECT_EQ(scene.substeps, 3);
+  EXPECT_EQ(scene.frames, 40);
+  ASSERT_EQ(scene.boxes.size(), 6u);  // floor, four walls, the box
+  EXPECT_EQ(scene.boxes[0].size, Eigen::Vector3f(5, 1, 5));
+  EXPECT_EQ(scene.boxes[4].opacity, 0.5f);
+  const RigidBox& box = scene.boxes[5];
+  EXPECT_EQ(box.size, Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(box.mass, 4);
+  EXPECT_EQ(box.position, Eigen::Vector3f(5, 6, 7));
+  EXPECT_EQ(box.opacity, 0.75f);
+  EXPECT_EQ(box.pattern, render::Pattern::tiles);
+  EXPECT_EQ(box.colour, render::srgb(0xFFFFFF));
+  ASSERT_EQ(scene.obstacles.size(), 1u);
+  EXPECT_EQ(ppu::bounds(scene.obstacles[0].mesh).high.y(), 1);
+  ASSERT_EQ(scene.soft_bodies.size(), 1u);
+  const SoftBodyPlacement& body = scene.soft_bodies[0];
+  EXPECT_EQ(body.settings.cell_size, 0.25f);
+  EXPECT_EQ(body.settings.half_width, 1);
+  EXPECT_EQ(body.settings.density, 50);
+  EXPECT_EQ(body.settings.frequency, 4.0f);
+  EXPECT_EQ(body.settings.damping_time, 0.5f);
+  EXPECT_EQ(body.settings.friction, 0.1f);
+  EXPECT_EQ(body.position, Eigen::Vector3f(3, 2.5f, 4));
+  ASSERT_EQ(scene.script.impulses.size(), 1u);
+  EXPECT_EQ(scene.script.impulses[0].velocity, Eigen::Vector3f(1, 2, 3));
+  ASSERT_EQ(scene.script.drags.size(), 1u);
+  EXPECT_EQ(scene.script.drags[0].to, Eigen::Vector3f(0, 1, 0));
+  ASSERT_EQ(scene.script.gravity.size(), 1u);
+  EXPECT_EQ(scene.script.gravity[0].gravity, -5);
+  EXPECT_EQ(scene.camera.target, Eigen::Vector3f(4, 5, 7));
+  EXPECT_EQ(scene.camera.near_plane, 0.25f);
+  EXPECT_EQ(scene.light.shadow_radius, 6);
+  EXPECT_EQ(scene.tilt.amplitude_x, 0.1f);
+  EXPECT_EQ(scene.tilt.period_z, 3);
+}
+
+TEST_F(SceneFile, EveryFieldOfA2dSceneArrives) {
+  const Scene2d scene = load_scene_2d(write("s.toml", R"(
+dimension = 2
+[framework]
+width = 4
+height = 2
+thickness = 0.5
+[[box]]
+size = [1, 2]
+mass = 3
+angle = 0.5
+[[circle]]
+radius = 0.75
+position = [1, 1]
+[[polygon]]
+corners = [[0, 0], [1, 0], [0, 1]]
+[[soft_body]]
+name = "l"
+cell_size = 0.5
+alpha = 0.25
+contact_radius = 0.25
+position = [1, 2]
+rows = ["#.", "##"]
+[[soft_body]]
+cell_size = 0.5
+shape = { kind = "ring", diameter = 6, hole = 2 }
+[[drag]]
+body = "l"
+begin = 0
+end = 1
+from = [0, 0]
+to = [1, 1]
+[camera]
+centre = [1, 0]
+height = 3
+)"));
+  ASSERT_EQ(scene.rigid_bodies.size(), 7u);
+  EXPECT_EQ(scene.rigid_bodies[1].position, Eigen::Vector2f(2.25f, 0));
+  EXPECT_EQ(std::get<Box2dShape>(scene.rigid_bodies[2].shape).size, Eigen::Vector2f(5, 0.5f));
+  EXPECT_EQ(scene.rigid_bodies[4].mass, 3);
+  EXPECT_EQ(std::get<CircleShape>(scene.rigid_bodies[5].shape).radius, 0.75f);
+  EXPECT_EQ(std::get<PolygonShape>(scene.rigid_bodies[6].shape).corners.size(), 3u);
+  ASSERT_EQ(scene.soft_bodies.size(), 2u);
+  EXPECT_EQ(scene.soft_bodies[0].cells.size(), 3u);
+  EXPECT_EQ(scene.soft_bodies[0].contact_radius, 0.25f);
+  const ppu::Lattice2d lattice = scene.soft_bodies[0].lattice();
+  EXPECT_EQ(lattice.particles.size(), 8u);
+  EXPECT_EQ(lattice.origin, Eigen::Vector2f(-0.5f, -0.5f)) << "the middle of the box is at 0";
+  EXPECT_EQ(scene.soft_bodies[1].cells.size(), 28u) << "a disc of 32 cells without the four in its middle";
+  EXPECT_EQ(scene.camera.height, 3);
+  EXPECT_EQ(scene.script.drags.size(), 1u);
+}
+
+TEST(Scenes, AreListedWithDimensionAndTitleAndAllLoad) {
+  ASSERT_GE(list_scenes().size(), 3u);
+  for (const SceneListing& listing : list_scenes()) {
+    EXPECT_FALSE(listing.title.empty());
+    const auto scene = load_scene(listing.name);
+    EXPECT_EQ(std::holds_alternative<Scene>(scene) ? 3 : 2, listing.dimension) << listing.name;
+    std::visit([&](const auto& s) { EXPECT_EQ(s.title, listing.title); }, scene);
+  }
+}
+
+TEST(Scenes, TheManHas132Particles) {
+  EXPECT_EQ(load_scene_2d("man").soft_bodies.at(0).lattice().particles.size(), 132u);
+}
+
+TEST(Scenes, OfTheOtherDimensionAreRefused) {
+  EXPECT_THROW(load_scene_3d("man"), std::runtime_error);
+  EXPECT_THROW(load_scene_2d("arena"), std::runtime_error);
+}
+
+TEST_F(SceneFile, LuaAndTomlBecomeTheSameScene) {
+  const Scene lua = load_scene_3d(write("a.lua", R"(
+local boxes = {}
+for i = 1, 3 do table.insert(boxes, { size = { 1, i, 1 }, position = { 2 * i, 0.5, 0 } }) end
+return { world = { gravity = 2 }, box = boxes })"));
+  const Scene toml = load_scene_3d(write("a.toml",
+                                         "world = { gravity = 2 }\n"
+                                         "[[box]]\nsize = [1, 1, 1]\nposition = [2, 0.5, 0]\n"
+                                         "[[box]]\nsize = [1, 2, 1]\nposition = [4, 0.5, 0]\n"
+                                         "[[box]]\nsize = [1, 3, 1]\nposition = [6, 0.5, 0]\n"));
+  EXPECT_EQ(lua.gravity, toml.gravity);
+  ASSERT_EQ(lua.boxes.size(), toml.boxes.size());
+  for (std::size_t i = 0; i < lua.boxes.size(); ++i) {
+    EXPECT_EQ(lua.boxes[i].size, toml.boxes[i].size);
+    EXPECT_EQ(lua.boxes[i].position, toml.boxes[i].position);
+  }
+}
+
+TEST_F(SceneFile, RandomNumbersOfLuaAreTheSameInEveryRun) {
+  const std::string file = write("r.lua", "return { world = { gravity = math.random() } }");
+  EXPECT_EQ(load_scene_3d(file).gravity, load_scene_3d(file).gravity);
+}
+
+struct BadToml {
+  const char* text;
+  const char* sentence;
+};
+class BadScene : public SceneFile, public testing::WithParamInterface<BadToml> {};
+
+TEST_P(BadScene, IsRefusedWithLineAndColumn) {
+  EXPECT_BEGINS(refusal("bad.toml", GetParam().text), GetParam().sentence);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Toml, BadScene,
+    testing::Values(
+        BadToml{"title = \n", "bad.toml:1:"},
+        BadToml{"[world]\ngravitty = 3\n",
+                "bad.toml:2:1: world has no field 'gravitty'; did you mean 'gravity'?"},
+        BadToml{"[world]\nwheels = 3\n",
+                "bad.toml:2:1: world has no field 'wheels'; it has gravity, friction,"},
+        BadToml{"[[soft_bodies]]\n",
+                "bad.toml:1:3: a scene has no field 'soft_bodies'; did you mean 'soft_body'?"},
+        BadToml{"\n[world]\ngravity = \"down\"\n",
+                "bad.toml:3:1: gravity of world is 'down'; it must be a number from -1000 to 1000"},
+        BadToml{"[world]\ngravity = nan\n", "bad.toml:2:1: gravity of world is nan; it must be a number"},
+        BadToml{"[world]\ngravity = inf\n", "bad.toml:2:1: gravity of world is inf; it must be a number"},
+        BadToml{"[world]\nsubsteps = 1.5\n",
+                "bad.toml:2:1: substeps of world is 1.5; it must be a whole number"},
+        BadToml{"world = 3\n", "bad.toml:1:1: world must be a table, and is a number"},
+        BadToml{"box = 3\n", "bad.toml:1:1: box of a scene is 3; it must be an array"},
+        BadToml{"[[box]]\nmass = 1\n", "bad.toml:1:1: box 1 needs the field 'size'"},
+        BadToml{"[[box]]\nsize = [1, 1]\n",
+                "bad.toml:2:1: size of box 1 is an array; it must be an array of 3 numbers"},
+        BadToml{"[[box]]\nsize = [1, 0, 1]\n",
+                "bad.toml:2:12: number 2 in size of box 1 is 0; it must be a number above 0"},
+        BadToml{"[[box]]\nsize = [1, 1e-60, 1]\n", "bad.toml:2:12: number 2 in size of box 1 is 1e-60"},
+        BadToml{"[[box]]\nsize = [1, 1, 1]\ncolour = \"red\"\n",
+                "bad.toml:3:1: colour of box 1 is 'red'; it must be a colour"},
+        BadToml{"dimension = 4\n", "bad.toml:1:1: dimension of a scene is 4"},
+        BadToml{"title = 1979-05-27\n", "bad.toml:1:9: a scene has no dates or times"},
+        BadToml{"[materials.a]\nalpha = 1\nmodulus = 3\n",
+                "bad.toml:3:1: material 'a' has both alpha and modulus; give one"},
+        BadToml{"[materials.rubber]\n[[soft_body]]\nmaterial = \"ruber\"\nshape = { kind = \"sphere\" }\n",
+                "bad.toml:3:1: there is no material 'ruber'; did you mean 'rubber'?"},
+        BadToml{"[[soft_body]]\nshape = { kind = \"sphere\" }\n",
+                "bad.toml:1:1: soft body 1 needs the field 'cell_size'"},
+        BadToml{"[[soft_body]]\nshape = { kind = \"ball\" }\n",
+                "bad.toml:2:11: kind of the shape of soft body 1 is 'ball'; it must be one of box, car,"},
+        BadToml{"[[soft_body]]\ncell_size = 0.2\nmesh = \"none.obj\"\n",
+                "bad.toml:3:1: there is no mesh file 'none.obj'"},
+        BadToml{"[[soft_body]]\ncell_size = 0.004\nshape = { kind = \"box\", size = [1, 1, 1] }\n",
+                "bad.toml:1:"},
+        BadToml{"[[impulse]]\ntime = 0\nbody = \"x\"\nvelocity = [0, 0, 0]\n",
+                "bad.toml:3:1: there is no soft body 'x'"},
+        BadToml{"[camera]\neye = [0, 0, 0]\n", "bad.toml:"},
+        BadToml{"dimension = 2\n[[polygon]]\ncorners = [[0, 0], [0, 1], [1, 0]]\n",
+                "bad.toml:3:1: polygon 1 must be convex"},
+        BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\nrows = [\"#\", \"#o\"]\n", "bad.toml:4:"},
+        BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\n",
+                "bad.toml:2:1: soft body 1 needs one of rows, shape and lattice"},
+        BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\nshape = { kind = \"rectangle\", width = 10000, "
+                "height = 1000 }\n",
+                "bad.toml:4:"},
+        BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\nshape = { kind = \"rectangle\", width = 256, "
+                "height = 256 }\n",
+                "bad.toml:2:1: a lattice may have at most 65536 particles"}));
+
+class PathTrick : public SceneFile, public testing::WithParamInterface<const char*> {};
+
+TEST_P(PathTrick, DoesNotLeaveTheFolder) {
+  write("secret.obj", kTetrahedron);
+  write("scenes/inside.obj", kTetrahedron);
+  std::filesystem::create_symlink(folder_ / "secret.obj", folder_ / "scenes/link.obj");
+  const std::string scene = "[[soft_body]]\ncell_size = 0.2\nmesh = \"" + std::string(GetParam()) + "\"\n";
+  EXPECT_BEGINS(refusal("scenes/s.toml", scene), "scenes/s.toml:3:1: ");
+}
+
+INSTANTIATE_TEST_SUITE_P(Names, PathTrick,
+                         testing::Values("../secret.obj", "x/../../secret.obj", "link.obj", "/etc/passwd", "",
+                                         "/usr/share/../../etc/passwd", "inside.obj\\u0000", "a\\nb.obj",
+                                         "/dev/zero", "."));
+
+TEST_F(SceneFile, MeshesBelowTheFolderAreFoundThroughDots) {
+  write("scenes/inside.obj", kTetrahedron);
+  EXPECT_EQ(refusal("scenes/s.toml", "[[soft_body]]\ncell_size = 0.2\nmesh = \"./x/../inside.obj\"\n"), "");
+}
+
+TEST_F(SceneFile, FilesThatAreNoneAreRefusedAtOnce) {
+  EXPECT_THROW(load_scene("nothing"), std::runtime_error);
+  EXPECT_THROW(load_scene(folder_ / "nothing.toml"), std::runtime_error);
+  const std::string pipe = folder_ / "pipe.toml";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(load_scene(pipe), std::runtime_error) << "reading a pipe would wait for ever";
+}
+
+struct BadLua {
+  const char* text;
+  const char* sentence;
+};
+class BadScript : public SceneFile, public testing::WithParamInterface<BadLua> {};
+
+TEST_P(BadScript, IsRefusedWithinTwoSeconds) {
+  EXPECT_BEGINS(refusal("bad.lua", GetParam().text), GetParam().sentence);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Lua, BadScript,
+    testing::Values(
+        BadLua{"\nx = = 1", "bad.lua:2: unexpected symbol near '='"},
+        BadLua{"local x = 1\nwhile true do end", "bad.lua:2: the script ran for more than 1 second"},
+        BadLua{"local t = {}\nwhile true do t[#t + 1] = { 1 } end",
+               "bad.lua:2: the script needs more than 64 MB"},
+        BadLua{"local s = 'x'\nwhile true do s = s .. s end", "bad.lua:2: the script needs more than 64 MB"},
+        BadLua{"local function f() return 1 + f() end\nreturn f()", "bad.lua:"},
+        BadLua{"local cells = {}\nfor i = 1, 1e7 do cells[i] = { i, i } end\nreturn { cells = cells }",
+               "bad.lua:2: the script needs more than 64 MB"},
+        BadLua{"local t = {}\nt[1] = t\nreturn t",
+               "bad.lua:3: tables lie more than 32 deep in each other, or one contains itself"},
+        BadLua{"local t = { 1 }\nfor i = 1, 30 do t = { t, t } end\nreturn t",
+               "bad.lua:3: what the script returns is larger than 16 MB"},
+        BadLua{"return { world = { gravity = 0 / 0 } }",
+               "bad.lua:1: world.gravity is NaN; it must be a finite number"},
+        BadLua{"return { world = { gravity = math.huge } }", "bad.lua:1: world.gravity is infinite"},
+        BadLua{"return { title = math.sin }", "bad.lua:1: title is a function; a scene is made of"},
+        BadLua{"return { box = { 1, nil, 3 } }", "bad.lua:1: box[2] is missing: an array has no holes"},
+        BadLua{"return { box = { 1, x = 3 } }", "bad.lua:1: box has names as well as numbers for keys"},
+        BadLua{"local x = 1", "bad.lua:1: what the script returns is nil"},
+        BadLua{"return 3", "bad.lua:1: a scene must be a table, and is a number"},
+        BadLua{"error('by hand')", "bad.lua:1: by hand"},
+        BadLua{"error({})", "bad.lua:1: the script ended with an error that is no text"},
+        BadLua{"return { world = { gravitty = 3 } }",
+               "bad.lua:1: world has no field 'gravitty'; did you mean 'gravity'?"},
+        BadLua{"\x1bLua", "bad.lua"}));
+
+/// Everything that a script must not have, by the name under which it would be found.
+class LeftOut : public SceneFile, public testing::WithParamInterface<const char*> {};
+
+TEST_P(LeftOut, IsNil) {
+  const std::string text = "return { title = tostring(" + std::string(GetParam()) + " == nil) }";
+  EXPECT_EQ(load_scene_3d(write("s.lua", text)).title, "true");
+}
+
+INSTANTIATE_TEST_SUITE_P(Functions, LeftOut,
+                         testing::Values("load", "loadfile", "dofile", "require", "collectgarbage", "pcall",
+                                         "xpcall", "setmetatable", "getmetatable", "rawset", "next", "pairs",
+                                         "print", "io", "os", "debug", "package", "coroutine", "_G",
+                                         "string.rep", "string.dump", "string.find", "string.match",
+                                         "string.gmatch", "string.gsub", "('').rep", "('').find",
+                                         "table.move", "table.remove", "math.randomseed"));
+
+TEST_F(SceneFile, ALatticeMayBeAScript) {
+  write("l.lua", "return { rows = { '##', '##' } }");
+  const Scene2d scene =
+      load_scene_2d(write("s.toml", "dimension = 2\n[[soft_body]]\ncell_size = 0.5\nlattice = \"l.lua\"\n"));
+  EXPECT_EQ(scene.soft_bodies.at(0).cells.size(), 4u);
+}
+
+TEST_F(SceneFile, AnErrorInALatticeNamesTheLatticesFile) {
+  write("l.lua", "return {\n cell = {} }");
+  EXPECT_BEGINS(refusal("s.toml", "dimension = 2\n[[soft_body]]\ncell_size = 0.5\nlattice = \"l.lua\"\n"),
+                "l.lua:2: a lattice has no field 'cell'; did you mean 'cells'?");
+}
+
+TEST(NearestName, FindsSlipsAndNothingElse) {
+  constexpr std::array<std::string_view, 3> known{"gravity", "friction", "up"};
+  EXPECT_EQ(nearest_name("gravitty", known), "gravity");
+  EXPECT_EQ(nearest_name("frction", known), "friction");
+  EXPECT_EQ(nearest_name("ub", known), "up");
+  EXPECT_EQ(nearest_name("colour", known), "");
+  EXPECT_EQ(nearest_name(std::string(100'000, 'x'), known), "");
+}
+
+}  // namespace
+}  // namespace softcell::demos
