@@ -82,7 +82,7 @@ class CommandLine {
     d->add_flag("--headless", demo_.headless, "Run without a window");
     d->add_option("--scene", demo_.scene,
                   "Scene by name, or a scene file; `softcell scenes` lists them (default: arena)");
-    d->add_option("--mesh", demo_.mesh, "Drop this OBJ, PLY or STL model (scene drop)");
+    d->add_option("--mesh", demo_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)");
     d->add_option("--cell", demo_.cell,
                   "Edge of a lattice cell in the model's units (default: its longest side / 8)")
         ->needs("--mesh");

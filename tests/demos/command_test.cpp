@@ -126,6 +126,35 @@ TEST(Command, ListsItsScenes) {
   EXPECT_EQ(run.status, 0);
   EXPECT_NE(run.output.find("arena "), std::string::npos);
   EXPECT_NE(run.output.find("drop "), std::string::npos);
+  EXPECT_NE(run.output.find("man    2d"), std::string::npos);
+}
+
+TEST(Command, RunsTheUsersOwnScene) {
+  const ScratchFolder folder;
+  write_file(folder / "mine.lua",
+             "return { soft_body = { { cell_size = 0.2, shape = { kind = 'sphere' } } } }");
+  const CommandResult run = run_softcell("demo 3d --headless --frames 2 --size 64x48 --scene " +
+                                         (folder / "mine.lua") + " --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(read_json(folder / "s.json")["scene"], "mine");
+}
+
+TEST(Command, RefusesABadSceneInOneLineWithItsPlace) {
+  const ScratchFolder folder;
+  write_file(folder / "bad.toml", "[world]\ngravitty = 3\n");
+  const CommandResult run = run_softcell("demo 3d --headless --scene " + (folder / "bad.toml"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.output, "softcell: " + (folder / "bad.toml") +
+                            ":2:1: world has no field 'gravitty'; did you mean 'gravity'?\n");
+}
+
+TEST(Command, DoesNotPutAModelIntoASceneWithoutAPlaceForIt) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  const CommandResult run =
+      run_softcell("demo 3d --headless --scene arena --mesh " + (folder / "cube.obj") + " --cell 0.25");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.output.find("--mesh does not go with scene arena"), std::string::npos) << run.output;
 }
 
 TEST(Command, PrintsTheBudgetOfEveryKernel) {
