@@ -26,9 +26,9 @@ Value convert(const toml::node& node, const std::shared_ptr<const std::string>& 
   } else if (const auto* entries = node.as_table()) {
     Table table;
     for (const auto& [key, entry] : *entries) {
-      table.emplace_back(std::string(key.str()), convert(entry, file));
+      table.push_back({std::string(key.str()), convert(entry, file)});
       // The place of a field is that of its name; a table in brackets already begins there.
-      if (key.source().begin.line > 0) table.back().second.place = place_of(key.source(), file);
+      if (key.source().begin.line > 0) table.back().value.place = place_of(key.source(), file);
     }
     value.data = std::move(table);
   } else {

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -23,12 +22,18 @@ struct Place {
 std::string to_string(const Place& place);
 
 struct Value;
+struct Field;
 using Array = std::vector<Value>;
-using Table = std::vector<std::pair<std::string, Value>>;  ///< in no particular order, keys unique
+using Table = std::vector<Field>;  ///< in no particular order, names unique
 
 struct Value {
   std::variant<bool, std::int64_t, double, std::string, Array, Table> data;
   Place place;
+};
+
+struct Field {
+  std::string name;
+  Value value;
 };
 
 /// "a number", "a table", ...

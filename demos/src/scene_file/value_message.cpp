@@ -95,9 +95,9 @@ class MessageReader {
       if (!key) return std::nullopt;
       auto value = take_value(depth + 1);
       if (!value) return std::nullopt;
-      table.emplace_back(std::move(*key), std::move(*value));
+      table.push_back({std::move(*key), std::move(*value)});
     }
-    std::sort(table.begin(), table.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(table.begin(), table.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
     return Value{std::move(table), place_};
   }
 
