@@ -376,7 +376,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLua{"local t = {}\nt[1] = t\nreturn t",
                "bad.lua:3: tables lie more than 32 deep in each other, or one contains itself"},
         BadLua{"local t = { 1 }\nfor i = 1, 30 do t = { t, t } end\nreturn t",
-               "bad.lua:3: what the script returns is larger than 16 MB"},
+               "bad.lua:3: what the script returns is larger than 8 MB"},
         BadLua{"return { world = { gravity = 0 / 0 } }",
                "bad.lua:1: world.gravity is NaN; it must be a finite number"},
         BadLua{"return { world = { gravity = math.huge } }", "bad.lua:1: world.gravity is infinite"},

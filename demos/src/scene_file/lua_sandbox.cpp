@@ -6,15 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <iterator>
-#include <limits>
 #include <lua.hpp>
 #include <span>
 
+#include "lua_result.h"
 #include "value_message.h"
 
 namespace softcell::demos {
@@ -37,17 +35,16 @@ constexpr const char* kMath[] = {"abs",  "acos",       "asin",      "atan", "cei
                                  "sqrt", "tan",        "tointeger", "type", "ult"};
 constexpr const char* kString[] = {"byte", "char", "format", "len", "lower", "reverse", "sub", "upper"};
 constexpr const char* kTable[] = {"concat", "pack", "sort", "unpack"};
-constexpr Library kAllowed[] = {{"_G", luaopen_base, kBase},
-                                {"math", luaopen_math, kMath},
-                                {"string", luaopen_string, kString},
-                                {"table", luaopen_table, kTable}};
+constexpr Library kBaseLibrary{"_G", luaopen_base, kBase};
+constexpr Library kLibraries[] = {
+    {"math", luaopen_math, kMath}, {"string", luaopen_string, kString}, {"table", luaopen_table, kTable}};
 
 // Lua's own table.insert moves items in a loop without end when the length is not what it seems.
 constexpr const char* kPrelude = "function table.insert(t, value) t[#t + 1] = value end";
 
 class Sandbox {
  public:
-  Sandbox(int descriptor) : descriptor_(descriptor) {}
+  explicit Sandbox(int descriptor) : descriptor_(descriptor) {}
 
   [[noreturn]] void run(std::string_view chunk) {
     clock_gettime(CLOCK_MONOTONIC, &begin_);
@@ -63,8 +60,11 @@ class Sandbox {
     if (status == LUA_OK) status = lua_pcall(state_, 0, 1, 0);
     if (status != LUA_OK) fail_with_error(status);
     MessageWriter writer;
-    write(writer, {}, 0);
-    lua_sethook(state_, nullptr, 0, 0);
+    try {
+      write_result(state_, writer);
+    } catch (const std::runtime_error& error) {
+      fail(line_, error.what());
+    }
     end(writer.value_message(line_));
   }
 
@@ -104,128 +104,49 @@ class Sandbox {
 
   /// Opens the libraries and leaves only what is allowed, also to methods of texts.
   void open_libraries() {
-    for (const Library& library : kAllowed)
-      luaL_requiref(state_, library.name, library.open, 1), lua_pop(state_, 1);
-    // Random numbers are the same in every run.
+    const auto open = [&](const Library& library) {
+      luaL_requiref(state_, library.name, library.open, 1);
+      lua_pop(state_, 1);
+    };
+    open(kBaseLibrary);
+    for (const Library& library : kLibraries) open(library);
+    seed_random();
+    push_allowed(kBaseLibrary);  // the new globals
+    for (const Library& library : kLibraries) {
+      push_allowed(library);
+      if (library.open == luaopen_string) make_methods_of_texts();
+      lua_setfield(state_, -2, library.name);
+    }
+    lua_rawseti(state_, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+  }
+
+  /// Random numbers are the same in every run.
+  void seed_random() {
     lua_getglobal(state_, "math");
     lua_getfield(state_, -1, "randomseed");
     lua_pushinteger(state_, 1);
     lua_call(state_, 1, 0);
     lua_pop(state_, 1);
-
-    lua_newtable(state_);  // the new globals
-    for (const Library& library : kAllowed) {
-      const bool is_base = library.open == luaopen_base;
-      lua_getglobal(state_, library.name);
-      if (is_base) {
-        lua_pushvalue(state_, -2);
-      } else {
-        lua_newtable(state_);
-      }
-      for (const char* name : library.allowed) {
-        lua_getfield(state_, -2, name);
-        lua_setfield(state_, -2, name);
-      }
-      if (library.open == luaopen_string) {
-        lua_pushliteral(state_, "");
-        lua_getmetatable(state_, -1);
-        lua_pushvalue(state_, -3);
-        lua_setfield(state_, -2, "__index");
-        lua_pop(state_, 2);
-      }
-      if (is_base) {
-        lua_pop(state_, 2);
-      } else {
-        lua_setfield(state_, -3, library.name);
-        lua_pop(state_, 1);
-      }
-    }
-    lua_rawseti(state_, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
   }
 
-  /// What errors call the value at this path; the path of the whole result is empty.
-  static std::string named(const std::string& path) {
-    return path.empty() ? "what the script returns" : path;
+  /// Pushes a table of what is allowed of a library.
+  void push_allowed(const Library& library) {
+    lua_newtable(state_);
+    lua_getglobal(state_, library.name);
+    for (const char* name : library.allowed) {
+      lua_getfield(state_, -1, name);
+      lua_setfield(state_, -3, name);
+    }
+    lua_pop(state_, 1);
   }
 
-  /// Writes the value on top of the stack. @param path  of the value: "world.gravity", "box[2].size[1]".
-  void write(MessageWriter& writer, const std::string& path, int depth) {
-    if (writer.too_long()) {
-      fail(line_,
-           fmt::format("what the script returns is larger than {} MB", MessageWriter::kMaxBytes >> 20));
-    }
-    switch (lua_type(state_, -1)) {
-      case LUA_TBOOLEAN:
-        writer.flag(lua_toboolean(state_, -1) != 0);
-        return;
-      case LUA_TNUMBER:
-        write_number(writer, path);
-        return;
-      case LUA_TSTRING:
-        writer.text(text_at(-1));
-        return;
-      case LUA_TTABLE:
-        write_table(writer, path, depth);
-        return;
-      case LUA_TNIL:
-        fail(line_, fmt::format("{} is nil; it must be a table", named(path)));
-      default:
-        fail(line_, fmt::format("{} is a {}; a scene is made of numbers, texts, true, false and tables",
-                                named(path), lua_typename(state_, lua_type(state_, -1))));
-    }
-  }
-
-  void write_number(MessageWriter& writer, const std::string& path) {
-    if (lua_isinteger(state_, -1) != 0) {
-      writer.integer(lua_tointeger(state_, -1));
-      return;
-    }
-    const double number = lua_tonumber(state_, -1);
-    if (!std::isfinite(number)) {
-      fail(line_, fmt::format("{} is {}; it must be a finite number", named(path),
-                              std::isnan(number) ? "NaN" : "infinite"));
-    }
-    writer.real(number);
-  }
-
-  void write_table(MessageWriter& writer, const std::string& path, int depth) {
-    if (depth >= kMaxValueDepth || lua_checkstack(state_, 4) == 0) {
-      fail(line_,
-           fmt::format("tables lie more than {} deep in each other, or one contains itself", kMaxValueDepth));
-    }
-    std::uint32_t entries = 0;
-    bool all_names = true, all_numbers = true;
-    for (lua_pushnil(state_); lua_next(state_, -2) != 0; lua_pop(state_, 1)) {
-      ++entries;
-      all_names = all_names && lua_type(state_, -2) == LUA_TSTRING;
-      all_numbers = all_numbers && lua_isinteger(state_, -2) != 0;
-    }
-    if (all_names) {  // the empty table, too
-      writer.begin_table(entries);
-      for (lua_pushnil(state_); lua_next(state_, -2) != 0; lua_pop(state_, 1)) {
-        const std::string name(text_at(-2));
-        writer.key(name);
-        write(writer, (path.empty() ? "" : path + ".") + name.substr(0, 64), depth + 1);
-      }
-      return;
-    }
-    if (!all_numbers)
-      fail(line_, named(path) + " has names as well as numbers for keys; give names, or numbers from 1");
-    writer.begin_array(entries);
-    for (std::uint32_t i = 1; i <= entries; ++i) {
-      const std::string item = fmt::format("{}[{}]", path, i);
-      if (lua_rawgeti(state_, -1, i) == LUA_TNIL) {
-        fail(line_, fmt::format("{} is missing: an array has no holes", item));
-      }
-      write(writer, item, depth + 1);
-      lua_pop(state_, 1);
-    }
-  }
-
-  std::string_view text_at(int index) {
-    std::size_t size = 0;
-    const char* text = lua_tolstring(state_, index, &size);
-    return {text, size};
+  /// What ("text"):name() finds: the table on top of the stack.
+  void make_methods_of_texts() {
+    lua_pushliteral(state_, "");
+    lua_getmetatable(state_, -1);
+    lua_pushvalue(state_, -3);
+    lua_setfield(state_, -2, "__index");
+    lua_pop(state_, 2);
   }
 
   /// Ends with the error on top of the stack.
@@ -233,7 +154,7 @@ class Sandbox {
     if (status == LUA_ERRMEM)
       fail(line_, fmt::format("the script needs more than {} MB", kLuaMaxBytes >> 20));
     if (lua_type(state_, -1) != LUA_TSTRING) fail(line_, "the script ended with an error that is no text");
-    std::string_view sentence = text_at(-1);
+    std::string_view sentence = lua_tostring(state_, -1);
     int line = line_, length = 0;
     if (std::sscanf(sentence.data(), "s:%d: %n", &line, &length) == 1 && length > 0) {
       sentence.remove_prefix(static_cast<std::size_t>(length));
@@ -248,15 +169,11 @@ class Sandbox {
 
   [[noreturn]] void end(std::string_view message) {
     while (!message.empty()) {
-      const ssize_t written = write_bytes(message);
+      const ssize_t written = write(descriptor_, message.data(), message.size());
       if (written <= 0) _exit(1);
       message.remove_prefix(static_cast<std::size_t>(written));
     }
     _exit(0);
-  }
-
-  ssize_t write_bytes(std::string_view bytes) const {
-    return ::write(descriptor_, bytes.data(), bytes.size());
   }
 
   int descriptor_;

@@ -1,7 +1,7 @@
 #pragma once
 // What runs in the child process of run_lua().
 //
-// A chunk can use what a scene needs: numbers, texts, tables, the functions of kAllowed in lua_sandbox.cpp.
+// A chunk can use what a scene needs: numbers, texts, tables, the functions listed in lua_sandbox.cpp.
 // Left out is what reaches files or other programs, what catches errors (a limit must end the chunk), what
 // can run for ever inside Lua's own C code, where no hook comes by (string patterns, string.rep, table.move,
 // finalizers by setmetatable), and what differs from run to run (pairs, which follows addresses).

@@ -14,7 +14,7 @@ namespace softcell::demos {
 /// Builds a message of at most kMaxBytes; beyond that it stays too long, and says so.
 class MessageWriter {
  public:
-  static constexpr std::size_t kMaxBytes = 16 << 20;
+  static constexpr std::size_t kMaxBytes = 8 << 20;
 
   void flag(bool value);
   void integer(std::int64_t value);
