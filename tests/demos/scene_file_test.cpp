@@ -352,6 +352,29 @@ TEST_F(SceneFile, FilesThatAreNoneAreRefusedAtOnce) {
   EXPECT_THROW(load_scene(pipe), std::runtime_error) << "reading a pipe would wait for ever";
 }
 
+TEST_F(SceneFile, DeepNestingIsRefusedBeforeItOverflowsTheStack) {
+  const auto repeated = [](const std::string& text, int times) {
+    std::string all;
+    for (int i = 0; i < times; ++i) all += text;
+    return all;
+  };
+  constexpr int kTimes = 1'000'000;
+  for (const std::string& line :
+       {"a" + repeated(".a", kTimes) + " = 1", "[" + repeated("a.", kTimes) + "a]",
+        "a = " + repeated("[", kTimes), "a = " + repeated("{a=", kTimes),
+        repeated("\"#\".", kTimes) + "a = 1", R"(a = ["""x"""", { b)" + repeated(".a", kTimes) + "= 1}]"}) {
+    EXPECT_EQ(refusal("bad.toml", "\n" + line + "\n"),
+              "bad.toml:2: tables or arrays lie more than 32 deep in each other");
+  }
+}
+
+TEST_F(SceneFile, DotsInTextsAndCommentsAreNoNesting) {
+  const std::string dots(100, '.');
+  EXPECT_EQ(refusal("s.toml", "title = '" + dots + "' # " + dots + "\n"), "");
+  EXPECT_EQ(refusal("s.toml", "title = \"\\\"" + dots + "\"\n"), "");
+  EXPECT_EQ(refusal("s.toml", "title = \"\"\"a\n" + dots + "\"\"\"\"\"\n"), "");
+}
+
 struct BadLua {
   const char* text;
   const char* sentence;
@@ -389,7 +412,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLua{"error({})", "bad.lua:1: the script ended with an error that is no text"},
         BadLua{"return { world = { gravitty = 3 } }",
                "bad.lua:1: world has no field 'gravitty'; did you mean 'gravity'?"},
-        BadLua{"\x1bLua", "bad.lua"}));
+        BadLua{"\x1bLua", "bad.lua:1: "}));
 
 /// Everything that a script must not have, by the name under which it would be found.
 class LeftOut : public SceneFile, public testing::WithParamInterface<const char*> {};

@@ -179,7 +179,7 @@ class Sandbox {
   int descriptor_;
   lua_State* state_ = nullptr;
   std::size_t bytes_ = 0;
-  int line_ = 0;  // at which the chunk is
+  int line_ = 1;  // at which the chunk is; before it runs, its first
   timespec begin_{};
 };
 

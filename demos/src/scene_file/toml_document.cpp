@@ -1,9 +1,68 @@
 #include "toml_document.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
+
+#include <algorithm>
 
 namespace softcell::demos {
 namespace {
+
+/// Behind the string that begins at `begin`; the end of the text when it has none.
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string three(3, quote);
+  const bool many_lines = text.substr(begin).starts_with(three);
+  const std::string_view end = many_lines ? std::string_view(three) : text.substr(begin, 1);
+  for (std::size_t i = begin + end.size(); i < text.size(); ++i) {
+    if (text.substr(i).starts_with(end)) {
+      i += end.size();
+      // A text in three quotes may end with two of its own.
+      for (int more = 0; many_lines && more < 2 && text.substr(i).starts_with(quote); ++more) ++i;
+      return i;
+    }
+    if (text[i] == '\\' && quote == '"') ++i;
+    if (text[i] == '\n' && !many_lines) return i;  // a mistake, which toml++ will name
+  }
+  return text.size();
+}
+
+/// toml++ makes and destroys tables within tables by recursion, and knows no limit to names with dots: one of
+/// a million names would end the process.
+void refuse_deep_nesting(std::string_view text, const std::shared_ptr<const std::string>& file) {
+  int brackets = 0, dots = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    switch (text[i]) {
+      case '"':
+      case '\'':
+        i = end_of_string(text, i) - 1;
+        break;
+      case '#':
+        i = std::min(text.find('\n', i), text.size()) - 1;
+        break;
+      case '.':
+        ++dots;
+        break;
+      case '[':
+      case '{':
+        ++brackets, dots = 0;
+        break;
+      case ']':
+      case '}':
+        --brackets, dots = 0;
+        break;
+      case '=':
+      case ',':
+      case '\n':
+        dots = 0;
+        break;
+    }
+    if (brackets <= kMaxValueDepth && dots <= kMaxValueDepth) continue;
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+    throw SceneError({file, static_cast<int>(line), 0},
+                     fmt::format("tables or arrays lie more than {} deep in each other", kMaxValueDepth));
+  }
+}
 
 Place place_of(const toml::source_region& region, const std::shared_ptr<const std::string>& file) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
@@ -40,6 +99,7 @@ Value convert(const toml::node& node, const std::shared_ptr<const std::string>& 
 }  // namespace
 
 Value parse_toml(std::string_view text, const std::shared_ptr<const std::string>& file) {
+  refuse_deep_nesting(text, file);
   try {
     return convert(toml::parse(text), file);
   } catch (const toml::parse_error& error) {

@@ -36,6 +36,10 @@ struct Field {
   Value value;
 };
 
+/// Tables and arrays within each other. A scene needs five; what is deeper is refused by all readers, whose
+/// recursion must have an end.
+inline constexpr int kMaxValueDepth = 32;
+
 /// "a number", "a table", ...
 std::string_view kind_of(const Value& value);
 

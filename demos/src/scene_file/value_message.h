@@ -40,7 +40,4 @@ class MessageWriter {
 /// @throws SceneError  the message is an error.
 std::optional<Value> read_message(std::string_view message, const std::shared_ptr<const std::string>& file);
 
-/// Tables and arrays within each other; what is deeper is refused on both sides.
-inline constexpr int kMaxValueDepth = 32;
-
 }  // namespace softcell::demos
