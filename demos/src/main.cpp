@@ -70,8 +70,6 @@ class CommandLine {
     }
     if (!chosen_)
       throw UsageError("say what to do: demo 3d, spu run, spu explore, spu budget, scenes, bench or report");
-    if (!size_.empty()) demo_.size = parse_size(size_);
-    demo_.schedule = parse_dma(schedule_);
     return chosen_();
   }
 
@@ -79,26 +77,43 @@ class CommandLine {
   void add_demo() {
     CLI::App* demo = app_.add_subcommand("demo", "Run a demo: 3d");
     CLI::App* d = demo->add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
-    d->add_flag("--headless", demo_.headless, "Run without a window");
-    d->add_option("--scene", demo_.scene,
-                  "Scene by name, or a scene file; `softcell scenes` lists them (default: arena)");
-    d->add_option("--mesh", demo_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)");
-    d->add_option("--cell", demo_.cell,
+    add_demo_options(*d, demo_3d_, "arena");
+    d->add_option("--mesh", demo_3d_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)");
+    d->add_option("--cell", demo_3d_.cell,
                   "Edge of a lattice cell in the model's units (default: its longest side / 8)")
         ->needs("--mesh");
-    d->add_option("--frames", demo_.frames, "Frames of 1/60 s to simulate (default: 300)")
+    d->add_flag("--lattice", demo_3d_.lattice, "Draw particles and links instead of meshes");
+    d->callback([this] {
+      chosen_ = [this] {
+        parse_texts(demo_3d_);
+        return run_demo_3d(demo_3d_);
+      };
+    });
+  }
+
+  /// What all demos have.
+  void add_demo_options(CLI::App& d, DemoOptions& options, const std::string& default_scene) {
+    d.add_flag("--headless", options.headless, "Run without a window");
+    d.add_option(
+        "--scene", options.scene,
+        "Scene by name, or a scene file; `softcell scenes` lists them (default: " + default_scene + ")");
+    d.add_option("--frames", options.frames,
+                 "Frames of 1/60 s to simulate (default: the scene's, mostly 300)")
         ->check(CLI::Range(1, kMaxFrames));
-    d->add_option("--out", demo_.out, "Folder for numbered PNG frames");
-    d->add_option("--video", demo_.video, "Write an MP4 video (needs ffmpeg)");
-    d->add_option("--size", size_, "Picture size, WIDTHxHEIGHT (default: 1280x720)");
-    d->add_option("--spes", demo_.spes, "SPEs at work, 1 to 6 (default: 6)")->check(CLI::Range(1, 6));
-    d->add_option("--dma", schedule_, kDmaHelp);
-    d->add_flag("--checked", demo_.checked,
-                "Run the instrumented flavour of the kernels; findings end with status 3");
-    d->add_option("--trace", demo_.trace, kTraceHelp);
-    d->add_option("--json", demo_.json, "Write statistics to this file");
-    d->add_flag("--lattice", demo_.lattice, "Draw particles and links instead of meshes");
-    d->callback([this] { chosen_ = [this] { return run_demo_3d(demo_); }; });
+    d.add_option("--out", options.out, "Folder for numbered PNG frames");
+    d.add_option("--video", options.video, "Write an MP4 video (needs ffmpeg)");
+    d.add_option("--size", size_, "Picture size, WIDTHxHEIGHT (default: 1280x720)");
+    d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)")->check(CLI::Range(1, 6));
+    d.add_option("--dma", schedule_, kDmaHelp);
+    d.add_flag("--checked", options.checked,
+               "Run the instrumented flavour of the kernels; findings end with status 3");
+    d.add_option("--trace", options.trace, kTraceHelp);
+    d.add_option("--json", options.json, "Write statistics to this file");
+  }
+
+  void parse_texts(DemoOptions& options) const {
+    if (!size_.empty()) options.size = parse_size(size_);
+    options.schedule = parse_dma(schedule_);
   }
 
   void add_spu() {
@@ -170,7 +185,7 @@ class CommandLine {
 
   CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
                 "softcell"};
-  Demo3dOptions demo_;
+  Demo3dOptions demo_3d_;
   KernelTaskOptions run_task_, explore_task_;
   SpuRunOptions run_;
   SpuExploreOptions explore_;

@@ -17,12 +17,11 @@ struct PictureSize {
   int height = 720;
 };
 
-struct Demo3dOptions {
+/// What the demos have in common.
+struct DemoOptions {
   bool headless = false;
-  std::optional<std::string> scene;           ///< name or file; default: arena, or drop when a mesh is given
-  std::optional<std::filesystem::path> mesh;  ///< the user's own model
-  std::optional<double> cell;                 ///< cell size in the model's own units
-  int frames = 300;
+  std::optional<std::string> scene;          ///< name or file
+  std::optional<int> frames;                 ///< default: the scene's
   std::optional<std::filesystem::path> out;  ///< folder for numbered frames
   std::optional<std::filesystem::path> video;
   std::optional<std::filesystem::path> json;
@@ -31,7 +30,13 @@ struct Demo3dOptions {
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
   std::optional<std::filesystem::path> trace;
-  bool lattice = false;  ///< draw particles and links instead of the skinned meshes
+};
+
+/// The scene's default: arena, or drop when a mesh is given.
+struct Demo3dOptions : DemoOptions {
+  std::optional<std::filesystem::path> mesh;  ///< the user's own model
+  std::optional<double> cell;                 ///< cell size in the model's own units
+  bool lattice = false;                       ///< draw particles and links instead of the skinned meshes
 };
 
 struct BudgetOptions {

@@ -9,26 +9,10 @@
 #include <vector>
 
 #include "scene.h"
-#include "softcell/ls_sim/trace.h"
+#include "simulation_options.h"
 #include "softcell/ppu/skin_orchestrator.h"
 
 namespace softcell::demos {
-
-/// Milliseconds of one frame, measured on the PPU thread.
-struct FrameTimes {
-  double physics_ms = 0;  ///< in Bullet
-  double ppu_ms = 0;      ///< in softcell: shape matching, coupling, handing over the skinning
-  double skin_ms = 0;     ///< of ppu_ms: handing over the skinning, in processor time of the thread
-  double skin_wait_ms =
-      0;  ///< waiting for the SPEs, which only a run without a window does; in none of the above
-};
-
-struct SimulationOptions {
-  int spes = 6;
-  dma::Schedule schedule{};
-  ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked
-  ls_sim::Trace* trace = nullptr;        ///< of at least as many SPEs; null: nothing is recorded
-};
 
 /// Used by one thread. step() allocates nothing outside Bullet once the first frames are past.
 class Simulation3d {

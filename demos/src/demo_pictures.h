@@ -1,0 +1,55 @@
+#pragma once
+// Where a demo's pictures go: nowhere, files, a video.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "demo.h"
+#include "options.h"
+#include "softcell/render/gl_context.h"
+#include "softcell/render/renderer.h"
+#include "softcell/render/video.h"
+
+namespace softcell::demos {
+
+/// The folder of numbered frames. Frames of an earlier run are removed, so that what is there is of one run.
+class FrameFolder {
+ public:
+  /// @throws std::runtime_error  it is no folder and cannot be made one.
+  explicit FrameFolder(std::filesystem::path folder);
+
+  void write(int frame, const render::Image& image) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Draws a demo offscreen. Used by one thread, the one that made it.
+class Pictures {
+ public:
+  /// @throws std::runtime_error  a folder, the video or the GL context cannot be made.
+  Pictures(const DemoOptions& options, Demo& demo);
+
+  bool every_frame() const { return folder_ || video_; }
+
+  void take(int frame);
+  /// Completes the video.
+  void finish();
+
+  std::uint64_t last_hash() const { return hash_; }
+  const std::vector<double>& milliseconds() const { return milliseconds_; }  ///< of each picture
+
+ private:
+  Demo& demo_;
+  std::optional<FrameFolder> folder_;
+  std::unique_ptr<render::VideoWriter> video_;
+  std::unique_ptr<render::GlContext> context_;
+  std::unique_ptr<render::Renderer> renderer_;
+  std::uint64_t hash_ = 0;
+  std::vector<double> milliseconds_;
+};
+
+}  // namespace softcell::demos
