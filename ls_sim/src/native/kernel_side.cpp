@@ -13,6 +13,8 @@ namespace {
 constexpr unsigned int kSpuArithmetic =
     _MM_MASK_MASK | _MM_ROUND_TOWARD_ZERO | _MM_FLUSH_ZERO_ON | 0x0040 /* DAZ */;
 
+thread_local KernelContext* context_of_thread = nullptr;
+
 /// Waits for the worker. fcontext saves the arithmetic mode of the side that leaves and restores that of the
 /// side it enters.
 void ask(KernelContext& context) {
@@ -22,10 +24,7 @@ void ask(KernelContext& context) {
 
 }  // namespace
 
-KernelContext*& current_context() {
-  static thread_local KernelContext* context = nullptr;
-  return context;
-}
+KernelContext*& current_context() { return context_of_thread; }
 
 void kernel_start(boost::context::detail::transfer_t transfer) {
   auto& context = *static_cast<KernelContext*>(transfer.data);
@@ -41,7 +40,7 @@ void kernel_start(boost::context::detail::transfer_t transfer) {
 }
 
 std::uint32_t gate(std::uint32_t operation, std::uint32_t value) {
-  KernelContext& context = *current_context();
+  KernelContext& context = *context_of_thread;
   context.operation = static_cast<Operation>(operation >> 8);
   context.channel = operation & 0xFFu;
   context.value = value;
