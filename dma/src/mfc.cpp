@@ -85,15 +85,20 @@ std::optional<Fault> Mfc::issue(const MfcCommand& command) {
   const CommandKind kind = command.kind();
   if (kind == CommandKind::kLine) return execute_line_command(command);
 
+  const bool at_once = schedule_.kind == Schedule::kEager && queue_.empty();
+  if (at_once && kind == CommandKind::kTransfer) return transfer_at_once(command);
+
   auto made = transfer_of(command, kind);
   if (Fault* fault = std::get_if<Fault>(&made)) {
     fault->command = command;
     return std::move(*fault);
   }
   auto& transfer = std::get<Transfer>(made);
-  if (schedule_.kind == Schedule::kEager && queue_.empty() && kind != CommandKind::kList) {
+  if (at_once && kind != CommandKind::kList) {
     count(command, kind);
-    execute_at_once(command, transfer);
+    begin_at_once(command);
+    transfer.move_rest(port_);
+    if (observer_ != nullptr) observer_->on_complete(commands_issued_);
     return std::nullopt;
   }
   return enqueue(command, kind, transfer);
@@ -167,13 +172,36 @@ std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
   return std::nullopt;
 }
 
-void Mfc::execute_at_once(const MfcCommand& command, Transfer& transfer) {
+/// A get or put that meets an empty queue under the eager schedule, as nearly all do: moved before anything
+/// else is made of it.
+std::optional<Fault> Mfc::transfer_at_once(const MfcCommand& command) {
+  const bool is_put = command.is_put();
+  auto resolved = port_.resolve(command.ea, command.size, is_put ? SpeAccess::kWrite : SpeAccess::kRead);
+  if (auto* fault = std::get_if<Fault>(&resolved)) {
+    fault->command = command;
+    return std::move(*fault);
+  }
+  const auto& place = std::get<StoragePlace>(resolved);
+  std::byte* const local = local_store_.data() + command.lsa.value;
+  MfcStatistics::Traffic& traffic = is_put ? statistics_.put : statistics_.get;
+  ++traffic.commands;
+  traffic.bytes += command.size;
+  begin_at_once(command);
+  if (is_put) {
+    port_.write(place, local, command.size);
+  } else {
+    port_.read(place, local, command.size);
+  }
+  if (observer_ != nullptr) observer_->on_complete(commands_issued_);
+  return std::nullopt;
+}
+
+/// It passes through the queue without a wait.
+void Mfc::begin_at_once(const MfcCommand& command) {
   ++statistics_.queued_commands;
   ++statistics_.occupancy_sum;
   statistics_.highest_queue_occupancy = std::max(statistics_.highest_queue_occupancy, 1);
   tell_issue(command);
-  transfer.move_rest(port_);
-  if (observer_ != nullptr) observer_->on_complete(commands_issued_);
 }
 
 std::optional<Fault> Mfc::enqueue(const MfcCommand& command, CommandKind kind, const Transfer& transfer) {

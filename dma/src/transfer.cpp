@@ -5,10 +5,15 @@
 
 namespace softcell::dma {
 
-void Transfer::move_remaining_pieces(StoragePort& port) {
-  for (std::uint32_t piece = 0; piece < pieces_; ++piece) {
-    if ((moved_[piece / kWordBits] >> (piece % kWordBits) & 1) == 0) move_piece_number(piece, port);
+void Transfer::move_rest(StoragePort& port) {
+  if (pieces_left_ == pieces_) {
+    if (size_ != 0) move(0, size_, port);
+  } else {
+    for (std::uint32_t piece = 0; piece < pieces_; ++piece) {
+      if ((moved_[piece / kWordBits] >> (piece % kWordBits) & 1) == 0) move_piece_number(piece, port);
+    }
   }
+  pieces_left_ = 0;
 }
 
 void Transfer::move_piece(std::uint32_t choice, StoragePort& port) {
@@ -29,6 +34,14 @@ void Transfer::move_piece_number(std::uint32_t piece, StoragePort& port) {
   const std::uint32_t begin = piece == 0 ? 0 : piece * kLineBytes - offset_in_line();
   const std::uint32_t end = std::min(size_, (piece + 1) * kLineBytes - offset_in_line());
   move(begin, end, port);
+}
+
+void Transfer::move(std::uint32_t begin, std::uint32_t end, StoragePort& port) {
+  if (to_ != nullptr) {
+    port.read(storage_.after(begin), to_ + begin, end - begin);
+  } else {
+    port.write(storage_.after(begin), from_ + begin, end - begin);
+  }
 }
 
 }  // namespace softcell::dma

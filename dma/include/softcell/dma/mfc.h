@@ -155,7 +155,8 @@ class Mfc {
   std::variant<Transfer, Fault> transfer_of(const MfcCommand& command, CommandKind kind);
   std::optional<Fault> execute_line_command(const MfcCommand& command);
   std::optional<Fault> enqueue(const MfcCommand& command, CommandKind kind, const Transfer& transfer);
-  void execute_at_once(const MfcCommand& command, Transfer& transfer);
+  std::optional<Fault> transfer_at_once(const MfcCommand& command);
+  void begin_at_once(const MfcCommand& command);
   void count(const MfcCommand& command, CommandKind kind);
   void tell_issue(const MfcCommand& command);
 

@@ -31,14 +31,7 @@ class Transfer {
   }
 
   /// Moves whatever has not moved yet.
-  void move_rest(StoragePort& port) {
-    if (pieces_left_ == pieces_) {
-      if (size_ != 0) move(0, size_, port);
-    } else {
-      move_remaining_pieces(port);
-    }
-    pieces_left_ = 0;
-  }
+  void move_rest(StoragePort& port);
 
   /// Moves one piece: number `choice`, below pieces_left(), of those not moved yet, lowest address first.
   void move_piece(std::uint32_t choice, StoragePort& port);
@@ -67,14 +60,7 @@ class Transfer {
         pieces_left_(pieces_) {}
 
   std::uint32_t offset_in_line() const { return static_cast<std::uint32_t>(storage_.ea.value % kLineBytes); }
-  void move(std::uint32_t begin, std::uint32_t end, StoragePort& port) {
-    if (to_ != nullptr) {
-      port.read(storage_.after(begin), to_ + begin, end - begin);
-    } else {
-      port.write(storage_.after(begin), from_ + begin, end - begin);
-    }
-  }
-  void move_remaining_pieces(StoragePort& port);
+  void move(std::uint32_t begin, std::uint32_t end, StoragePort& port);
   void move_piece_number(std::uint32_t piece, StoragePort& port);
 
   StoragePlace storage_;
