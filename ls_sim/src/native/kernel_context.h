@@ -2,10 +2,10 @@
 // The state that the three stacks of a native run share: the worker's own, the kernel's (in local store), and
 // the landing stack on which a kernel that faulted is left.
 //
-//   worker    run() --jump--> kernel: main() ... gate() --jump--> run(): serves the channel --jump--> gate()
-//   returns ... kernel    on a fault: signal handler (on the signal stack) rewrites the interrupted context
-//   to land() on the landing
-//             stack, which jumps to run(); the kernel's frames are abandoned where they are.
+//   kernel   main() ... gate() --call--> worker's stack: serve(), as a function of run() --return--> gate()
+//                       gate() --jump--> run(), when serve() says that the run is at its end
+//   on a fault: the signal handler (on the signal stack) rewrites the interrupted context to land() on the
+//   landing stack, which jumps to run(); the kernel's frames are abandoned where they are.
 //
 // Only code without sanitizer instrumentation runs on the kernel's and the landing stack (kernel_side.cpp),
 // so that sanitizers see one stack per thread.
@@ -49,17 +49,25 @@ struct Trap {
   std::uintptr_t stack = 0;
 };
 
+struct KernelContext;
+
+/// Answers the request in the context. @return  whether the kernel goes on; otherwise its run has ended.
+using ServeRequest = bool(KernelContext* context) noexcept;
+
 struct KernelContext {
-  boost::context::detail::fcontext_t kernel =
-      nullptr;  ///< where the kernel waits; its value is the kernel's stack pointer
-  boost::context::detail::fcontext_t worker = nullptr;
+  boost::context::detail::fcontext_t worker =
+      nullptr;                         ///< where run() waits; its value is the worker's stack pointer
+  unsigned int worker_arithmetic = 0;  ///< MXCSR
+  ServeRequest* serve = nullptr;
+  void* engine = nullptr;  ///< for serve()
 
   // The request of the kernel and the worker's answer.
   Operation operation = Operation::kStop;
   std::uint32_t channel = 0;
   std::uint32_t value = 0;
   std::uint32_t reply = 0;
-  std::uintptr_t caller = 0;  ///< in the kernel's call of the gate: its last byte
+  std::uintptr_t caller = 0;         ///< in the kernel's call of the gate: its last byte
+  std::uintptr_t stack_pointer = 0;  ///< the kernel's, in the gate
   Trap trap;
 
   // What main is called with.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -54,6 +55,10 @@ class NativeEngine final : public Engine {
     require_vector_units(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0);
     native::install_signal_handlers();
     context_.arena = arena();
+    context_.engine = this;
+    context_.serve = [](KernelContext* context) noexcept {
+      return static_cast<NativeEngine*>(context->engine)->serve_request();
+    };
     const auto top = reinterpret_cast<std::uintptr_t>(landing_stack_.get()) + kLandingStackBytes;
     context_.landing_stack_top = top & ~std::uintptr_t{15};
   }
@@ -77,8 +82,7 @@ class NativeEngine final : public Engine {
     return {static_cast<std::uint32_t>(context_.caller - arena()) & dma::kLocalStoreMask};
   }
   dma::LocalStoreAddress stack_pointer() const override {
-    return {static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(context_.kernel) - arena()) &
-            dma::kLocalStoreMask};
+    return {static_cast<std::uint32_t>(context_.stack_pointer - arena()) & dma::kLocalStoreMask};
   }
   void interrupt() override;
   std::uint32_t stack_high_water() const override;
@@ -93,10 +97,11 @@ class NativeEngine final : public Engine {
   std::uint32_t stack_limit() const { return dma::kLocalStoreBytes - image_->sizes.stack; }
 
   void prepare(const EntryArguments& arguments);
-  void enter_kernel();
-  RunResult serve(ChannelPort& channels, AccessObserver* accesses);
+  void run_kernel();
+  bool serve_request() noexcept;
+  std::optional<RunResult> answer();
   Access requested_access() const;
-  ChannelReply serve_channel(ChannelPort& channels);
+  ChannelReply answer_channel();
   std::optional<dma::Fault> check_stack() const;
   bool written_below_stack() const;
   dma::Fault classify_trap() const;
@@ -115,6 +120,10 @@ class NativeEngine final : public Engine {
   std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
   bool data_as_linked_ = false;                                ///< nothing has run since load()
   KernelContext context_;
+  ChannelPort* channels_ = nullptr;  // these four: of the run
+  AccessObserver* accesses_ = nullptr;
+  RunResult result_;
+  std::exception_ptr failure_;
   std::uint32_t tag_mask_ = 0;  ///< as last written to the channel; the kernel's is in the environment
   std::mutex running_mutex_;    // guards the two below
   bool running_ = false;
@@ -136,17 +145,18 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   context_.arguments[1] = arguments.argp;
   context_.arguments[2] = arguments.envp;
   context_.interrupted = 0;
-  context_.kernel = boost::context::detail::make_fcontext(local_store_.base() + dma::kLocalStoreBytes,
-                                                          image_->sizes.stack, native::kernel_start);
 }
 
-void NativeEngine::enter_kernel() {
+/// Comes back when the run has ended; what the kernel asks for meanwhile is served by serve_request().
+void NativeEngine::run_kernel() {
+  const auto kernel = boost::context::detail::make_fcontext(local_store_.base() + dma::kLocalStoreBytes,
+                                                            image_->sizes.stack, native::kernel_start);
   context_.in_kernel = 1;
   std::atomic_signal_fence(std::memory_order_seq_cst);
-  const auto back = boost::context::detail::jump_fcontext(context_.kernel, &context_);
+  boost::context::detail::jump_fcontext(kernel, &context_);
   std::atomic_signal_fence(std::memory_order_seq_cst);
   context_.in_kernel = 0;
-  context_.kernel = back.fctx;
+  if (context_.operation == Operation::kFault) result_ = {0, classify_trap()};
 }
 
 RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels,
@@ -159,13 +169,16 @@ RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channe
     runner_ = pthread_self();
     running_ = true;
   }
-  RunResult result = serve(channels, accesses);
+  channels_ = &channels;
+  accesses_ = accesses;
+  run_kernel();
   {
     const std::scoped_lock lock(running_mutex_);
     running_ = false;
   }
   native::current_context() = nullptr;
-  return result;
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::move(result_);
 }
 
 void NativeEngine::interrupt() {
@@ -173,27 +186,44 @@ void NativeEngine::interrupt() {
   if (running_) pthread_kill(runner_, native::kInterruptSignal);
 }
 
-RunResult NativeEngine::serve(ChannelPort& channels, AccessObserver* accesses) {
-  for (;;) {
-    enter_kernel();
-    if (context_.operation == Operation::kAccess)
-      context_.caller = arena() + requested_access().instruction.value;
-    if (context_.operation == Operation::kFault) return {0, classify_trap()};
-    if (auto overflow = check_stack()) return {0, std::move(overflow)};
-    if (context_.interrupted != 0)
-      return {0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
-    if (context_.operation == Operation::kStop) return {context_.value & 0x3FFFu, std::nullopt};
-    if (context_.operation == Operation::kHalt) {
-      return {0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
+/// Called by the gate, on this thread's own stack below run_kernel().
+bool NativeEngine::serve_request() noexcept {
+  context_.in_kernel = 0;
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  try {
+    if (auto end = answer()) {
+      result_ = std::move(*end);
+      return false;
     }
-    if (context_.operation == Operation::kAccess) {
-      if (accesses != nullptr) accesses->on_access(requested_access());
-      continue;
-    }
-    ChannelReply reply = serve_channel(channels);
-    if (reply.fault) return {0, std::move(*reply.fault)};
-    context_.reply = reply.value;
+  } catch (...) {  // no exception finds its way through the kernel's frames
+    failure_ = std::current_exception();
+    return false;
   }
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  context_.in_kernel = 1;
+  return true;
+}
+
+/// @return  how the run ends, or nothing when the kernel goes on with context_.reply.
+std::optional<RunResult> NativeEngine::answer() {
+  if (context_.operation == Operation::kAccess)
+    context_.caller = arena() + requested_access().instruction.value;
+  if (auto overflow = check_stack()) return RunResult{0, std::move(overflow)};
+  if (context_.interrupted != 0)
+    return RunResult{0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
+  if (context_.operation == Operation::kStop) return RunResult{context_.value & 0x3FFFu, std::nullopt};
+  if (context_.operation == Operation::kHalt) {
+    return RunResult{
+        0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
+  }
+  if (context_.operation == Operation::kAccess) {
+    if (accesses_ != nullptr) accesses_->on_access(requested_access());
+    return std::nullopt;
+  }
+  ChannelReply reply = answer_channel();
+  if (reply.fault) return RunResult{0, std::move(*reply.fault)};
+  context_.reply = reply.value;
+  return std::nullopt;
 }
 
 Access NativeEngine::requested_access() const {
@@ -205,30 +235,30 @@ Access NativeEngine::requested_access() const {
           .stack_pointer = {environment.access_stack_pointer & dma::kLocalStoreMask}};
 }
 
-ChannelReply NativeEngine::serve_channel(ChannelPort& channels) {
+ChannelReply NativeEngine::answer_channel() {
   const native::Environment& environment = this->environment();
   if (context_.operation == Operation::kWrite && context_.channel == number(Channel::kMfcCmd)) {
-    return channels.issue({.word = context_.value,
-                           .lsa = {environment.mfc_lsa},
-                           .ea = {std::uint64_t{environment.mfc_eah} << 32 | environment.mfc_eal},
-                           .size = environment.mfc_size,
-                           .tag = environment.mfc_tag});
+    return channels_->issue({.word = context_.value,
+                             .lsa = {environment.mfc_lsa},
+                             .ea = {std::uint64_t{environment.mfc_eah} << 32 | environment.mfc_eal},
+                             .size = environment.mfc_size,
+                             .tag = environment.mfc_tag});
   }
   if (environment.mfc_tag_mask != tag_mask_) {
     tag_mask_ = environment.mfc_tag_mask;
-    ChannelReply reply = channels.write(number(Channel::kMfcWrTagMask), tag_mask_);
+    ChannelReply reply = channels_->write(number(Channel::kMfcWrTagMask), tag_mask_);
     if (reply.fault) return reply;
   }
   switch (context_.operation) {
     case Operation::kRead:
-      return channels.read(context_.channel);
+      return channels_->read(context_.channel);
     case Operation::kWrite:
-      return channels.write(context_.channel, context_.value);
+      return channels_->write(context_.channel, context_.value);
     case Operation::kCount:
-      return channels.count(context_.channel);
+      return channels_->count(context_.channel);
     case Operation::kTagStatus: {
-      ChannelReply reply = channels.write(number(Channel::kMfcWrTagUpdate), context_.value);
-      return reply.fault ? std::move(reply) : channels.read(number(Channel::kMfcRdTagStat));
+      ChannelReply reply = channels_->write(number(Channel::kMfcWrTagUpdate), context_.value);
+      return reply.fault ? std::move(reply) : channels_->read(number(Channel::kMfcRdTagStat));
     }
     default:
       return {
@@ -242,7 +272,7 @@ dma::Fault NativeEngine::stack_overflow(std::string detail) const {
 }
 
 std::optional<dma::Fault> NativeEngine::check_stack() const {
-  const auto pointer = reinterpret_cast<std::uintptr_t>(context_.kernel) - arena();
+  const auto pointer = context_.stack_pointer - arena();
   if (pointer < stack_limit())
     return stack_overflow("the stack pointer is at local-store address " + hexadecimal(pointer));
   if (context_.operation == Operation::kStop && written_below_stack()) {
