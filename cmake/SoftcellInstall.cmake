@@ -5,6 +5,7 @@
 #   lib/libsoftcell_<folder>.a         targets softcell::<folder>
 #   lib/cmake/softcell/                the package
 #   share/softcell/cmake/              softcell_add_spu_kernel
+#   share/man/man1/, share/bash-completion/, share/zsh/   the manual page and completions, for who builds it all
 #   share/softcell/spu_kernels/        sdk/, common/ and the *_job.h contracts, beside cmake/ as in the source tree
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -35,6 +36,10 @@ function(softcell_install_package)
   softcell_install_libraries(softcellBodyTargets ppu)
   if(TARGET softcell)
     install(TARGETS softcell RUNTIME)
+    get_target_property(demos softcell BINARY_DIR)
+    install(FILES ${demos}/manuals/softcell.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+    install(FILES ${demos}/manuals/softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+    install(FILES ${demos}/manuals/_softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
   endif()
 
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/spu_kernels/sdk ${PROJECT_SOURCE_DIR}/spu_kernels/common

@@ -138,7 +138,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const MakeDemo& 
   const auto begin = std::chrono::steady_clock::now();
   Pictures pictures(options, *demo);
   {
-    ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames));
+    ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames), options.quiet);
     for (int frame = 0; frame < frames && !guard.interrupted(); ++frame) {
       record.add(demo->step());
       if (pictures.every_frame()) pictures.take(frame);
@@ -160,7 +160,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const MakeDemo& 
   if (options.checked) statistics["findings"] = to_json(std::span(found));
   if (trace) trace->write(*options.trace);
   if (options.json) write_json(*options.json, statistics);
-  print_summary(statistics, options);
+  if (!options.quiet) print_summary(statistics, options);
   print_findings(found);
   return found.empty() ? 0 : kExitFindings;
 }

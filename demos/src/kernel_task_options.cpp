@@ -24,26 +24,32 @@ std::string quoted(const std::string& word) {
 
 void KernelTaskOptions::add_to(CLI::App& verb) {
   verb.add_option("IMAGE", image_, "A kernel: its .spu.elf file, or the name of one of softcell's own")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   verb.add_flag("--checked", checked_,
                 "Take the instrumented flavour, IMAGE's .checked.spu.elf: findings name file and line");
   verb.add_option("--spes", spes_,
                   "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number")
-      ->check(CLI::Range(1, 6));
-  verb.add_option("--in", in_, "NAME=FILE: a buffer that the kernel reads, filled from the file")
+      ->check(CLI::Range(1, 6, "SPEs"))
+      ->type_name("SPES");
+  verb.add_option("--in", in_, "A buffer that the kernel reads, filled from the file")
       ->expected(1)
-      ->take_all();
-  verb.add_option("--out", out_,
-                  "NAME=FILE:SIZE: a buffer of zeros that becomes the file when the run succeeds")
-      ->take_all();
-  verb.add_option("--inout", inout_,
-                  "NAME=FILE: filled from the file, which is replaced when the run succeeds")
-      ->take_all();
+      ->take_all()
+      ->type_name("NAME=FILE");
+  verb.add_option("--out", out_, "A buffer of zeros that becomes the file when the run succeeds")
+      ->take_all()
+      ->type_name("NAME=FILE:SIZE");
+  verb.add_option("--inout", inout_, "A buffer filled from the file, which is replaced when the run succeeds")
+      ->take_all()
+      ->type_name("NAME=FILE");
   verb.add_option("--arg", arguments_,
                   "Words of 64 bits: integers, f32:VALUE, @NAME (a buffer's address), #NAME (its bytes); "
-                  "argp is their address, envp their number");
-  verb.add_option("--in-mbox", in_mbox_, "Values waiting in each inbound mailbox, at most four");
-  verb.add_option("--deadline", deadline_, "Seconds after which a run is stopped with a fault (default: 10)");
+                  "argp is their address, envp their number")
+      ->type_name("WORD");
+  verb.add_option("--in-mbox", in_mbox_, "Values waiting in each inbound mailbox, at most four")
+      ->type_name("VALUE");
+  verb.add_option("--deadline", deadline_, "Seconds after which a run is stopped with a fault (default: 10)")
+      ->type_name("SECONDS");
 }
 
 KernelTask KernelTaskOptions::task() const {

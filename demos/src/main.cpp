@@ -7,6 +7,9 @@
 #include <exception>
 #include <regex>
 
+#include "command_line/command_tree.h"
+#include "command_line/manual_page.h"
+#include "command_line/shell_completion.h"
 #include "kernel_task_options.h"
 #include "usage_error.h"
 #include "verbs.h"
@@ -20,7 +23,8 @@ constexpr int kMaxFrames = 1'000'000;
 constexpr int kMinPixels = 16, kMaxPixels = 8192;
 constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
 constexpr const char* kTraceHelp = "Write a trace of what happened when; `softcell report` shows it";
-constexpr const char* kDmaHelp = "When transfers finish: eager, lazy or random:SEED (default: eager)";
+constexpr const char* kDmaValues = "eager|lazy|random:SEED";
+constexpr const char* kDmaHelp = "When transfers finish (default: eager)";
 
 PictureSize parse_size(const std::string& text) {
   static const std::regex pattern("([0-9]{1,5})x([0-9]{1,5})");
@@ -59,6 +63,7 @@ class CommandLine {
     add_scenes();
     add_bench();
     add_report();
+    add_shell();
   }
 
   int run(int argc, char** argv) {
@@ -69,7 +74,9 @@ class CommandLine {
       throw UsageError(error.what());
     }
     if (!chosen_)
-      throw UsageError("say what to do: demo 3d, spu run, spu explore, spu budget, scenes, bench or report");
+      throw UsageError(
+          "say what to do: demo 3d, spu run, spu explore, spu budget, scenes, bench, report, completion or "
+          "man");
     return chosen_();
   }
 
@@ -78,10 +85,12 @@ class CommandLine {
     CLI::App* demo = app_.add_subcommand("demo", "Run a demo: 3d");
     CLI::App* d = demo->add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
     add_demo_options(*d, demo_3d_, "arena");
-    d->add_option("--mesh", demo_3d_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)");
+    d->add_option("--mesh", demo_3d_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)")
+        ->type_name("FILE");
     d->add_option("--cell", demo_3d_.cell,
                   "Edge of a lattice cell in the model's units (default: its longest side / 8)")
-        ->needs("--mesh");
+        ->needs("--mesh")
+        ->type_name("LENGTH");
     d->add_flag("--lattice", demo_3d_.lattice, "Draw particles and links instead of meshes");
     d->callback([this] {
       chosen_ = [this] {
@@ -95,20 +104,25 @@ class CommandLine {
   void add_demo_options(CLI::App& d, DemoOptions& options, const std::string& default_scene) {
     d.add_flag("--headless", options.headless, "Run without a window");
     d.add_option(
-        "--scene", options.scene,
-        "Scene by name, or a scene file; `softcell scenes` lists them (default: " + default_scene + ")");
+         "--scene", options.scene,
+         "Scene by name, or a scene file; `softcell scenes` lists them (default: " + default_scene + ")")
+        ->type_name("SCENE");
     d.add_option("--frames", options.frames,
                  "Frames of 1/60 s to simulate (default: the scene's, mostly 300)")
-        ->check(CLI::Range(1, kMaxFrames));
-    d.add_option("--out", options.out, "Folder for numbered PNG frames");
-    d.add_option("--video", options.video, "Write an MP4 video (needs ffmpeg)");
-    d.add_option("--size", size_, "Picture size, WIDTHxHEIGHT (default: 1280x720)");
-    d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)")->check(CLI::Range(1, 6));
-    d.add_option("--dma", schedule_, kDmaHelp);
+        ->check(CLI::Range(1, kMaxFrames, "frames"))
+        ->type_name("FRAMES");
+    d.add_option("--out", options.out, "Folder for numbered PNG frames")->type_name("DIR");
+    d.add_option("--video", options.video, "Write an MP4 video (needs ffmpeg)")->type_name("FILE");
+    d.add_option("--size", size_, "Picture size in pixels (default: 1280x720)")->type_name("WIDTHxHEIGHT");
+    d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)")
+        ->check(CLI::Range(1, 6, "SPEs"))
+        ->type_name("SPES");
+    d.add_option("--dma", schedule_, kDmaHelp)->type_name(kDmaValues);
     d.add_flag("--checked", options.checked,
                "Run the instrumented flavour of the kernels; findings end with status 3");
-    d.add_option("--trace", options.trace, kTraceHelp);
-    d.add_option("--json", options.json, "Write statistics to this file");
+    d.add_option("--trace", options.trace, kTraceHelp)->type_name("FILE");
+    d.add_option("--json", options.json, "Write statistics to this file")->type_name("FILE");
+    d.add_flag("--quiet", options.quiet, "Print nothing but what goes wrong");
   }
 
   void parse_texts(DemoOptions& options) const {
@@ -122,7 +136,7 @@ class CommandLine {
     add_spu_explore(*spu);
     CLI::App* b = spu->add_subcommand(
         "budget", "Local store of each kernel: sections, stack used, share of 256 KB, budget");
-    b->add_option("--json", budget_.json, "Write the table to this file as well");
+    b->add_option("--json", budget_.json, "Write the table to this file as well")->type_name("FILE");
     b->callback([this] { chosen_ = [this] { return run_budget(budget_); }; });
   }
 
@@ -130,13 +144,15 @@ class CommandLine {
     CLI::App* r = spu.add_subcommand(
         "run", "Run a kernel on your own data: softcell spu run saxpy.spu.elf --in x=x.bin --arg @x 1024");
     run_task_.add_to(*r);
-    r->add_option("--dma", schedule_, kDmaHelp);
+    r->add_option("--dma", schedule_, kDmaHelp)->type_name(kDmaValues);
     r->add_option(
-        "--clock", clock_,
-        "What time is to the kernel: host (default), or simulated, where it advances with each channel "
-        "operation and SPEs take turns, so that a run is the same every time");
-    r->add_option("--trace", run_.trace, kTraceHelp);
-    r->add_option("--json", run_.json, "Write statistics, findings and faults to this file as well");
+         "--clock", clock_,
+         "What time is to the kernel: host (default), or simulated, where it advances with each channel "
+         "operation and SPEs take turns, so that a run is the same every time")
+        ->type_name("host|simulated");
+    r->add_option("--trace", run_.trace, kTraceHelp)->type_name("FILE");
+    r->add_option("--json", run_.json, "Write statistics, findings and faults to this file as well")
+        ->type_name("FILE");
     r->callback([this] {
       chosen_ = [this] {
         run_.task = run_task_.task();
@@ -153,9 +169,10 @@ class CommandLine {
         "Run a kernel under many orders of its transfers and SPEs; all must have the same outcome");
     explore_task_.add_to(*e);
     e->add_option("--seeds", explore_.seeds, "Orders to try: --dma random:1 to random:SEEDS (default: 100)")
-        ->check(CLI::Range(std::uint64_t{1}, kMaxSeeds));
+        ->check(CLI::Range(std::uint64_t{1}, kMaxSeeds, "seeds"))
+        ->type_name("SEEDS");
     e->add_flag("--quiet", explore_.quiet, "No progress bar");
-    e->add_option("--json", explore_.json, "Write the result to this file as well");
+    e->add_option("--json", explore_.json, "Write the result to this file as well")->type_name("FILE");
     e->callback([this] {
       chosen_ = [this] {
         explore_.task = explore_task_.task();
@@ -171,16 +188,41 @@ class CommandLine {
 
   void add_bench() {
     CLI::App* b = app_.add_subcommand("bench", "Measure kernels, side by side in one run");
-    b->add_option("--filter", bench_.filter, "Only benchmarks whose name matches this regular expression");
-    b->add_option("--json", bench_.json, "Write the figures to this file as well");
+    b->add_option("--filter", bench_.filter, "Only benchmarks whose name matches this regular expression")
+        ->type_name("REGEX");
+    b->add_option("--json", bench_.json, "Write the figures to this file as well")->type_name("FILE");
     b->callback([this] { chosen_ = [this] { return run_bench(bench_); }; });
   }
 
   void add_report() {
     CLI::App* r = app_.add_subcommand("report", "Make a page to look at of what --trace recorded");
-    r->add_option("trace", report_.trace, "The file that --trace wrote")->required();
-    r->add_option("--out", report_.out, "HTML page to write; it opens offline")->required();
+    r->add_option("trace", report_.trace, "The file that --trace wrote")->required()->type_name("FILE");
+    r->add_option("--out", report_.out, "HTML page to write; it opens offline")
+        ->required()
+        ->type_name("FILE");
     r->callback([this] { chosen_ = [this] { return run_report(report_); }; });
+  }
+
+  void add_shell() {
+    CLI::App* c =
+        app_.add_subcommand("completion", "Print a script for the shell that completes softcell's commands");
+    c->add_option("SHELL", shell_, "bash or zsh: source <(softcell completion bash)")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh"}).description(""))
+        ->type_name("bash|zsh");
+    c->callback([this] {
+      chosen_ = [this] {
+        const CommandVerb tree = command_tree(app_);
+        std::fputs((shell_ == "zsh" ? zsh_completion(tree) : bash_completion(tree)).c_str(), stdout);
+        return 0;
+      };
+    });
+    app_.add_subcommand("man", "Print the manual page: softcell man | man -l -")->callback([this] {
+      chosen_ = [this] {
+        std::fputs(manual_page(command_tree(app_), SOFTCELL_VERSION).c_str(), stdout);
+        return 0;
+      };
+    });
   }
 
   CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
@@ -195,6 +237,7 @@ class CommandLine {
   std::string size_;
   std::string schedule_ = "eager";
   std::string clock_ = "host";
+  std::string shell_;
   std::function<int()> chosen_;
 };
 

@@ -30,6 +30,7 @@ struct DemoOptions {
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
   std::optional<std::filesystem::path> trace;
+  bool quiet = false;  ///< nothing but what goes wrong, not even progress on a terminal
 };
 
 /// The scene's default: arena, or drop when a mesh is given.

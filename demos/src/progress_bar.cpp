@@ -12,8 +12,8 @@ constexpr std::size_t kWidth = 40;
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string label, std::size_t total)
-    : label_(std::move(label)), total_(total), enabled_(isatty(STDERR_FILENO) != 0) {}
+ProgressBar::ProgressBar(std::string label, std::size_t total, bool quiet)
+    : label_(std::move(label)), total_(total), enabled_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
 ProgressBar::~ProgressBar() {
   if (enabled_ && percent_ >= 0) fmt::print(stderr, "\r{:{}}\r", "", label_.size() + kWidth + 10);

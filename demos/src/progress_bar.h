@@ -8,7 +8,8 @@ namespace softcell::demos {
 /// A line on standard error that shows how far a long run is, on a terminal and nowhere else.
 class ProgressBar {
  public:
-  ProgressBar(std::string label, std::size_t total);
+  /// @param total  what show() counts up to.  @param quiet  show nothing anywhere.
+  ProgressBar(std::string label, std::size_t total, bool quiet);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;

@@ -30,7 +30,7 @@ class Explorer {
   int explore() {
     const InterruptGuard guard;
     {
-      ProgressBar bar("spu explore", options_.quiet ? 0 : options_.seeds);
+      ProgressBar bar("spu explore", options_.seeds, options_.quiet);
       while (tried_ < options_.seeds && differences_.empty() && !guard.interrupted()) {
         try_next_seed();
         if (!options_.quiet) bar.show(tried_);

@@ -14,9 +14,8 @@ struct CommandResult {
   std::string output;  ///< standard output and error
 };
 
-/// @param arguments  as typed in a shell.
-inline CommandResult run_softcell(const std::string& arguments) {
-  const std::string line = std::string(SOFTCELL_COMMAND) + " " + arguments + " 2>&1";
+inline CommandResult run_shell(const std::string& line_of_shell) {
+  const std::string line = "( " + line_of_shell + " ) 2>&1";
   CommandResult result;
   std::FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) return result;
@@ -26,6 +25,11 @@ inline CommandResult run_softcell(const std::string& arguments) {
   const int status = pclose(pipe);
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+/// @param arguments  as typed in a shell.
+inline CommandResult run_softcell(const std::string& arguments) {
+  return run_shell(std::string(SOFTCELL_COMMAND) + " " + arguments);
 }
 
 }  // namespace softcell::tests

@@ -1,0 +1,121 @@
+// The manual page and the shell completions: made of the parser's own description, so that no option is
+// missing.
+
+#include "command_line/command_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+
+#include "command_line/manual_page.h"
+#include "command_line/shell_completion.h"
+#include "run_command.h"
+#include "scratch_folder.h"
+
+namespace softcell::tests {
+namespace {
+
+using namespace demos;
+
+CommandVerb small_tree() {
+  CommandOption help{{"-h", "--help"}, "", "Print help"};
+  CommandOption clock{{"--clock"}, "host|random:SEED", "What time is"};
+  CommandOption image{{"IMAGE"}, "FILE", "A kernel", true, true};
+  return {"softcell",
+          "Runs kernels",
+          {help},
+          {{"spu", "Kernels", {help}, {{"run", "Run one", {help, clock, image}, {}}}},
+           {"scenes", ".hidden \\ text", {help}, {}}}};
+}
+
+TEST(CommandTree, LeavesAreTheVerbsThatDoSomething) {
+  const CommandVerb top = small_tree();
+  const auto leaves = leaves_of(top);
+  ASSERT_EQ(leaves.size(), 2u);
+  EXPECT_EQ(leaves[0].path, "spu run");
+  EXPECT_EQ(leaves[1].path, "scenes");
+  EXPECT_EQ(leaves[0].verb->description, "Run one");
+}
+
+TEST(CommandTree, ChoicesAreTheWordsOfAValue) {
+  const CommandVerb top = small_tree();
+  const auto& options = top.verbs[0].verbs[0].options;
+  EXPECT_EQ(choices_of(options[1]), (std::vector<std::string>{"host", "random:"}));
+  EXPECT_TRUE(choices_of(options[0]).empty());
+  EXPECT_TRUE(choices_of(options[2]).empty());
+}
+
+TEST(ManualPage, TextIsNeverTakenForMacros) {
+  const std::string page = manual_page(small_tree(), "1.2");
+  EXPECT_NE(page.find("\\&.hidden \\e text."), std::string::npos) << page;
+  EXPECT_NE(page.find("\\fB\\-\\-clock\\fR \\fIhost|random:SEED\\fR"), std::string::npos) << page;
+  EXPECT_NE(page.find("softcell 1.2"), std::string::npos);
+}
+
+/// Every `--option` that the help of a verb prints.
+std::vector<std::string> options_in_help(const std::string& verb) {
+  const std::string help = run_softcell(verb + " --help").output;
+  static const std::regex option("--[a-z-]+");
+  std::vector<std::string> names;
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at)
+    names.push_back(at->str());
+  return names;
+}
+
+std::string without_escapes(std::string text) {
+  static const std::regex escape(R"(\\f[BIR]|\\(?=-))");
+  return std::regex_replace(text, escape, "");
+}
+
+TEST(ManualPage, OfTheCommandNamesEveryOptionOfEveryVerb) {
+  const std::string page = without_escapes(run_softcell("man").output);
+  for (const char* verb : {"demo 3d", "spu run", "spu explore", "spu budget", "bench", "report"}) {
+    EXPECT_NE(page.find(std::string("softcell ") + verb), std::string::npos) << verb;
+    for (const std::string& option : options_in_help(verb))
+      EXPECT_NE(page.find(option), std::string::npos) << verb << " " << option;
+  }
+}
+
+/// What bash offers behind these words; the last one is begun and not yet whole.
+std::string completed(const std::string& words) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
+                                   << bash_completion(small_tree()) << "COMP_WORDS=(" << words << ")\n"
+                                   << "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_softcell\n"
+                                   << "printf '%s ' \"${COMPREPLY[@]}\"\n";
+  return run_shell("bash --norc " + (folder / "try.sh")).output;
+}
+
+TEST(BashCompletion, OffersVerbsOptionsAndValues) {
+  EXPECT_EQ(completed("softcell s"), "spu scenes ");
+  EXPECT_EQ(completed("softcell spu ''"), "run -h --help ");
+  EXPECT_EQ(completed("softcell spu run --c"), "--clock ");
+  EXPECT_EQ(completed("softcell spu run --clock h"), "host ");
+  EXPECT_EQ(completed("softcell spu run --clock ra"), "random: ");
+  EXPECT_EQ(completed("softcell spu run --clock host --"), "--help --clock ");
+}
+
+TEST(BashCompletion, OfTheCommandKnowsItsScenes) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
+                                   << "source <(softcell completion bash)\n"
+                                   << "COMP_WORDS=(softcell demo 3d --headless --scene ar)\nCOMP_CWORD=5\n"
+                                   << "_softcell\nprintf '%s ' \"${COMPREPLY[@]}\"\n";
+  EXPECT_EQ(run_shell("cd " + folder.path().string() + " && bash --norc try.sh").output, "arena ");
+}
+
+TEST(Completion, OfAnUnknownShellIsRefused) {
+  const CommandResult run = run_softcell("completion tcsh");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.output.find("bash"), std::string::npos) << run.output;
+}
+
+TEST(Quiet, PrintsNothing) {
+  const CommandResult run = run_softcell("demo 3d --headless --scene drop --size 64x48 --frames 2 --quiet");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.output, "");
+}
+
+}  // namespace
+}  // namespace softcell::tests
