@@ -30,7 +30,7 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
                 "Take the instrumented flavour, IMAGE's .checked.spu.elf: findings name file and line");
   verb.add_option("--spes", spes_,
                   "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number")
-      ->check(CLI::Range(1, 6, "SPEs"))
+      ->check(CLI::Range(1, 6).description(""))
       ->type_name("SPES");
   verb.add_option("--in", in_, "A buffer that the kernel reads, filled from the file")
       ->expected(1)

@@ -109,13 +109,13 @@ class CommandLine {
         ->type_name("SCENE");
     d.add_option("--frames", options.frames,
                  "Frames of 1/60 s to simulate (default: the scene's, mostly 300)")
-        ->check(CLI::Range(1, kMaxFrames, "frames"))
+        ->check(CLI::Range(1, kMaxFrames).description(""))
         ->type_name("FRAMES");
     d.add_option("--out", options.out, "Folder for numbered PNG frames")->type_name("DIR");
     d.add_option("--video", options.video, "Write an MP4 video (needs ffmpeg)")->type_name("FILE");
     d.add_option("--size", size_, "Picture size in pixels (default: 1280x720)")->type_name("WIDTHxHEIGHT");
     d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)")
-        ->check(CLI::Range(1, 6, "SPEs"))
+        ->check(CLI::Range(1, 6).description(""))
         ->type_name("SPES");
     d.add_option("--dma", schedule_, kDmaHelp)->type_name(kDmaValues);
     d.add_flag("--checked", options.checked,
@@ -169,7 +169,7 @@ class CommandLine {
         "Run a kernel under many orders of its transfers and SPEs; all must have the same outcome");
     explore_task_.add_to(*e);
     e->add_option("--seeds", explore_.seeds, "Orders to try: --dma random:1 to random:SEEDS (default: 100)")
-        ->check(CLI::Range(std::uint64_t{1}, kMaxSeeds, "seeds"))
+        ->check(CLI::Range(std::uint64_t{1}, kMaxSeeds).description(""))
         ->type_name("SEEDS");
     e->add_flag("--quiet", explore_.quiet, "No progress bar");
     e->add_option("--json", explore_.json, "Write the result to this file as well")->type_name("FILE");
