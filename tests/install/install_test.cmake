@@ -1,4 +1,4 @@
-# Installs the build tree, then builds and tests examples/saxpy with nothing but what was installed.
+# Installs the build tree, then builds and tests the examples with nothing but what was installed.
 
 # step(<what it is for> <command>...): the command succeeds, or this test fails with its output.
 function(step purpose)
@@ -16,17 +16,28 @@ function(says expected_status expected)
   endif()
 endfunction()
 
-set(prefix ${SCRATCH}/prefix)
-set(copy ${SCRATCH}/saxpy)
-set(build ${SCRATCH}/build)
-file(REMOVE_RECURSE ${SCRATCH})
-file(COPY ${EXAMPLE} DESTINATION ${SCRATCH})  # away from our source tree, so that nothing of it is found by chance
+# build_and_test(<example>): in a copy away from our source tree, so that nothing of it is found by chance.
+function(build_and_test example)
+  file(COPY ${EXAMPLES}/${example} DESTINATION ${SCRATCH})
+  set(build ${SCRATCH}/${example}/build)
+  step("configuring ${example}" ${CMAKE_COMMAND} -S ${SCRATCH}/${example} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
+  step("building ${example}" ${CMAKE_COMMAND} --build ${build} --parallel 2)
+  step("testing ${example}" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
+endfunction()
 
+set(prefix ${SCRATCH}/prefix)
+file(REMOVE_RECURSE ${SCRATCH})
 step("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
-step("configuring the example" ${CMAKE_COMMAND} -S ${copy} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
-  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
-step("building the example" ${CMAKE_COMMAND} --build ${build} --parallel 2)
-step("testing the example" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
+build_and_test(saxpy)
+build_and_test(soft_bodies)
+set(copy ${SCRATCH}/saxpy)
+set(build ${copy}/build)
+
+# Soft bodies: the box comes to rest on the jelly.
+says(0 "4\\.0 s: the box is at height 1\\.[01]" ${SCRATCH}/soft_bodies/build/jelly_3d ${SCRATCH}/soft_bodies/jelly.obj)
+says(1 "no_such.obj: there is no such file" ${SCRATCH}/soft_bodies/build/jelly_3d no_such.obj)
+says(0 "4\\.0 s: the box is at height 1\\.[0-3]" ${SCRATCH}/soft_bodies/build/jelly_2d)
 
 # The installed command on the example's kernels: the right one, and the broken one.
 string(REPEAT "0123456789abcdef" 256 bytes)  # 1024 floats
@@ -49,8 +60,7 @@ says(3 "saxpy_no_wait.cpp:${line}: load-in-flight" ${prefix}/bin/softcell spu ru
 
 # The installed files name no file of the source tree.
 file(GLOB_RECURSE package ${prefix}/lib/cmake/*.cmake ${prefix}/share/*.cmake)
-cmake_path(GET EXAMPLE PARENT_PATH examples)
-cmake_path(GET examples PARENT_PATH source)
+cmake_path(GET EXAMPLES PARENT_PATH source)
 foreach(file IN LISTS package)
   file(READ ${file} text)
   string(FIND "${text}" "${source}/" found)
