@@ -3,7 +3,7 @@ execute_process(COMMAND ${NM} ${IMAGE} OUTPUT_VARIABLE symbols RESULT_VARIABLE f
 if(failed OR NOT symbols MATCHES "([0-9a-f]+) [A-Za-z] _end\n")
   message(FATAL_ERROR "kernel ${KERNEL}: ${IMAGE} has no symbol _end; it was not linked with ls.ld")
 endif()
-math(EXPR total "0x${CMAKE_MATCH_1} + ${STACK_BYTES}")
+math(EXPR total "0x${CMAKE_MATCH_1} - ${BEGIN} + ${STACK_BYTES}")
 if(total GREATER BUDGET_BYTES)
   math(EXPR excess "${total} - ${BUDGET_BYTES}")
   file(REMOVE ${IMAGE})

@@ -1,10 +1,12 @@
-# softcell_add_spu_kernel(<name> SOURCES <file>... STACK_BYTES <n> BUDGET_BYTES <n> [INCLUDES <folder>...] [UNCHECKED_ONLY])
+# softcell_add_spu_kernel(<name> SOURCES <file>... STACK_BYTES <n> BUDGET_BYTES <n> [INCLUDES <folder>...] [RESIDENT_AT <address>] [UNCHECKED_ONLY])
 #
 # Builds one SPU kernel for the host: freestanding objects, linked on their own at local-store address 0 into
 # <binary dir>/<name>.spu.elf. The build fails when the image leaves no room for its stack, holds a relocation, or passes its
 # budget (image and stack together). Target <name>_image depends on the file; its property SOFTCELL_IMAGE is the path.
 # The same sources make the checked flavour, <name>.checked.spu.elf (target <name>_checked_image), which reports every load and store to
 # the emulator. It is larger: all of the local store is its budget. UNCHECKED_ONLY leaves it out, for a kernel that then does not fit.
+# RESIDENT_AT links the image at that local-store address, with its stack below it, for a kernel that calls others: theirs lie at the
+# bottom as ever.
 # Each source is also checked against the declarations of a real SPU compiler, as the test spu_syntax.<name>.<file>.
 
 set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk)
@@ -61,15 +63,21 @@ endfunction()
 
 # Links objects into an image and holds it against its budget.
 function(softcell_link_spu_image name)
-  cmake_parse_arguments(arg "" "IMAGE;CHECKED;STACK_BYTES;BUDGET_BYTES" "OBJECTS" ${ARGN})
+  cmake_parse_arguments(arg "" "IMAGE;CHECKED;STACK_BYTES;BUDGET_BYTES;RESIDENT_AT" "OBJECTS" ${ARGN})
+  set(image_begin 0x80)
+  set(begin 0)  # of what counts for the budget: the environment does
+  if(arg_RESIDENT_AT)
+    set(image_begin ${arg_RESIDENT_AT})
+    set(begin ${arg_RESIDENT_AT})
+  endif()
   list(TRANSFORM arg_OBJECTS REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
   add_custom_command(OUTPUT ${arg_IMAGE}
     COMMAND ${SOFTCELL_KERNEL_LINKER} -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
       --defsym softcell_stack_bytes=${arg_STACK_BYTES} --defsym softcell_budget_bytes=${arg_BUDGET_BYTES}
-      --defsym softcell_is_checked=${arg_CHECKED}
+      --defsym softcell_is_checked=${arg_CHECKED} --defsym softcell_image_begin=${image_begin}
       --emit-relocs --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
       ${objects} -o ${arg_IMAGE}
-    COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DIMAGE=${arg_IMAGE} -DKERNEL=${name}
+    COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DIMAGE=${arg_IMAGE} -DKERNEL=${name} -DBEGIN=${begin}
       -DSTACK_BYTES=${arg_STACK_BYTES} -DBUDGET_BYTES=${arg_BUDGET_BYTES} -P ${SOFTCELL_CHECK_BUDGET}
     DEPENDS ${arg_OBJECTS} ${objects} ${SOFTCELL_SDK_DIR}/ls.ld ${SOFTCELL_CHECK_BUDGET}
     COMMAND_EXPAND_LISTS VERBATIM
@@ -77,7 +85,7 @@ function(softcell_link_spu_image name)
 endfunction()
 
 function(softcell_add_spu_kernel name)
-  cmake_parse_arguments(arg "UNCHECKED_ONLY" "STACK_BYTES;BUDGET_BYTES" "SOURCES;INCLUDES" ${ARGN})
+  cmake_parse_arguments(arg "UNCHECKED_ONLY" "STACK_BYTES;BUDGET_BYTES;RESIDENT_AT" "SOURCES;INCLUDES" ${ARGN})
   foreach(required STACK_BYTES BUDGET_BYTES SOURCES)
     if(NOT arg_${required})
       message(FATAL_ERROR "softcell_add_spu_kernel(${name}): ${required} is missing")
@@ -86,7 +94,7 @@ function(softcell_add_spu_kernel name)
   set(image ${CMAKE_CURRENT_BINARY_DIR}/${name}.spu.elf)
   softcell_compile_spu_sources(${name}_objects SOURCES ${arg_SOURCES} INCLUDES ${arg_INCLUDES})
   softcell_link_spu_image(${name} IMAGE ${image} CHECKED 0 OBJECTS ${name}_objects
-    STACK_BYTES ${arg_STACK_BYTES} BUDGET_BYTES ${arg_BUDGET_BYTES})
+    STACK_BYTES ${arg_STACK_BYTES} BUDGET_BYTES ${arg_BUDGET_BYTES} RESIDENT_AT ${arg_RESIDENT_AT})
   add_custom_target(${name}_image ALL DEPENDS ${image})
   set_target_properties(${name}_image PROPERTIES SOFTCELL_IMAGE ${image})
 

@@ -4,7 +4,6 @@
 
 #include "benchmarks.h"
 #include "kernel_samples.h"
-#include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_orchestrator.h"
 #include "softcell/ppu/skin_scalar.h"
@@ -20,9 +19,10 @@ struct SkinCase {
       : name(std::move(body_name)),
         lattice(ppu::voxelize(body_mesh, cell_size)),
         embedding(std::make_shared<ppu::Embedding>(ppu::embed(body_mesh, lattice))),
-        pool(memory, {.spes = 1}),
         kernel(load_kernel("skin")),
-        orchestrator(memory, pool, kernel),
+        job_loop(load_kernel("job_loop")),
+        jobs(memory, {.spes = 1}, job_loop),
+        orchestrator(memory, jobs, kernel),
         scalar_out(kSkinnedBodies, std::vector<spu::SkinnedVertex>(4 * embedding->groups.size())) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       Eigen::Vector3f x = lattice.rest_position(i);
@@ -57,8 +57,8 @@ struct SkinCase {
   ppu::Lattice lattice;
   std::shared_ptr<ppu::Embedding> embedding;
   dma::AddressSpace memory;
-  ls_sim::SpePool pool;
-  ls_sim::KernelImage kernel;
+  ls_sim::KernelImage kernel, job_loop;
+  ppu::JobSystem jobs;
   ppu::SkinOrchestrator orchestrator;
   std::vector<Eigen::Vector3f> positions;
   std::vector<spu::SkinCorner> corners;

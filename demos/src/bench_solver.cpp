@@ -11,7 +11,7 @@
 #include "benchmarks.h"
 #include "eigen_solver.h"
 #include "kernel_samples.h"
-#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ppu/job_system.h"
 #include "softcell/ppu/match_orchestrator.h"
 #include "softcell/ppu/shape_matching.h"
 
@@ -78,10 +78,9 @@ struct SolverCase {
         lattice(std::move(body)),
         plan(std::make_shared<const ppu::MatchingPlan<float>>(lattice, half_width,
                                                               ppu::particle_masses(lattice, 1000))),
-        pool(memory, {.spes = 1}),
-        kernel(load_kernel("match")),
+        jobs(memory, {.spes = 1}, job_loop),
         bodies(std::max<std::size_t>(1, kParticlesAtOnce / lattice.particles.size())),
-        spes(memory, pool, kernel, ppu::MatchPlan(lattice, *plan), bodies),
+        spes(memory, jobs, kernel, ppu::MatchPlan(lattice, *plan), bodies),
         eigen(plan),
         shared_sums(plan, ppu::SumMethod::kBarPlateCube),
         naive_sums(plan, ppu::SumMethod::kNaive) {
@@ -110,8 +109,8 @@ struct SolverCase {
   ppu::Lattice lattice;
   std::shared_ptr<const ppu::MatchingPlan<float>> plan;
   dma::AddressSpace memory;
-  ls_sim::SpePool pool;
-  ls_sim::KernelImage kernel;
+  ls_sim::KernelImage job_loop = load_kernel("job_loop"), kernel = load_kernel("match");
+  ppu::JobSystem jobs;
   std::size_t bodies;
   ppu::MatchOrchestrator spes;
   EigenSolver eigen;

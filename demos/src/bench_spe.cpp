@@ -8,7 +8,7 @@
 #include "benchmarks.h"
 #include "kernel_samples.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ppu/job_system.h"
 #include "transfers_job.h"
 
 namespace softcell::demos {
@@ -20,12 +20,15 @@ constexpr std::size_t kCommands = 8192;  // in one job, of 16 bytes
 constexpr std::uint32_t kBlocksInFlight = 2, kCommandsInFlight = 8;
 constexpr std::size_t kQueuedJobs = 1000;
 
-/// One SPE that runs the kernel `transfers`.
+/// SPEs that run the kernel `transfers`.
 class TransfersRig {
  public:
-  explicit TransfersRig(dma::Schedule schedule = {})
-      : pool_(memory_, {.spes = 1, .schedule = schedule}),
-        kernel_(load_kernel("transfers")),
+  explicit TransfersRig(dma::Schedule schedule = {}, int spes = 1)
+      : kernel_(load_kernel("transfers")),
+        job_loop_(load_kernel("job_loop")),
+        jobs_(memory_, {.spes = spes, .schedule = schedule}, job_loop_),
+        image_(jobs_.place(kernel_)),
+        chain_(jobs_, "benchmark", kQueuedJobs),
         descriptor_(memory_, "transfers job", 1),
         data_(memory_, "transfers data", spu::kTransfersBufferBytes) {}
 
@@ -39,24 +42,25 @@ class TransfersRig {
     run_jobs(1, descriptor_.ea());
   }
 
-  /// Jobs that return at once, submitted together.
+  /// Jobs that return at once, one stage.
   void run_empty_jobs(std::size_t count) { run_jobs(count, {}); }
 
  private:
   void run_jobs(std::size_t count, dma::EffectiveAddress argp) {
-    jobs_.assign(count, {&kernel_, argp, {}});
-    pool_.submit(batch_, jobs_);
-    batch_.wait();
-    if (!batch_.failures().empty()) throw std::runtime_error(batch_.failures().front().message);
+    chain_.clear();
+    for (std::size_t i = 0; i < count; ++i) chain_.add({image_, argp});
+    chain_.kick();
+    chain_.wait();
+    if (!chain_.failures().empty()) throw std::runtime_error(chain_.failures().front().message);
   }
 
   dma::AddressSpace memory_;
-  ls_sim::SpePool pool_;
-  ls_sim::KernelImage kernel_;
+  ls_sim::KernelImage kernel_, job_loop_;
+  ppu::JobSystem jobs_;
+  ppu::JobImage image_;
+  ppu::JobChain chain_;
   dma::Buffer<spu::TransfersJob> descriptor_;
   dma::Buffer<std::byte> data_;
-  std::vector<ls_sim::Job> jobs_;
-  ls_sim::JobBatch batch_;
 };
 
 /// The same blocks by memcpy between the same kinds of memory: two blocks of one to two of the other.
@@ -97,6 +101,8 @@ void add_dispatch_benchmarks(std::vector<Benchmark>& all) {
   const auto rig = std::make_shared<TransfersRig>();
   all.push_back({"dispatch/queued", kQueuedJobs, [rig] { rig->run_empty_jobs(kQueuedJobs); }});
   all.push_back({"dispatch/round_trip", 1, [rig] { rig->run_empty_jobs(1); }});
+  const auto six = std::make_shared<TransfersRig>(dma::Schedule{}, 6);
+  all.push_back({"dispatch/round_trip_6_spes", 1, [six] { six->run_empty_jobs(1); }});
 }
 
 }  // namespace softcell::demos

@@ -3,60 +3,118 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "job_chain.h"
+#include "match_job.h"
+#include "skin_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ls_sim/spe_group.h"
+#include "softcell/ppu/embedding.h"
 #include "softcell/ppu/lattice.h"
-#include "softcell/ppu/match_orchestrator.h"
+#include "softcell/ppu/match_plan.h"
 #include "softcell/ppu/shape_matching.h"
 #include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_orchestrator.h"
 #include "softcell/spu_kernels/images.h"
 #include "transfers_job.h"
 
 namespace softcell::demos {
 namespace {
 
-void run_skin_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory, ls_sim::SpePool& pool) {
+/// One SPE that runs a kernel alone, so that all the stack it uses is the kernel's.
+class Sample {
+ public:
+  explicit Sample(const ls_sim::KernelImage& kernel) : kernel_(kernel) {}
+
+  void run(dma::EffectiveAddress argp) {
+    spes_.start(0, kernel_, {.spe_id = 0, .argp = argp.value, .envp = 0});
+    const ls_sim::RunResult result = spes_.wait(0);
+    if (result.fault) throw std::runtime_error(result.fault->message());
+    if (result.status() != 0) throw std::runtime_error("kernel " + kernel_.name + " refused its sample");
+  }
+
+  dma::AddressSpace& memory() { return memory_; }
+  std::uint32_t stack_used() const { return spes_.statistics(0).stack_high_water; }
+
+ private:
+  const ls_sim::KernelImage& kernel_;
+  dma::AddressSpace memory_;
+  ls_sim::SpeGroup spes_{memory_, {.spes = 1, .measure_stack = true}};
+};
+
+void run_skin(Sample& sample) {
   // A sphere about the origin has normals and positions of every sign and size, zero and subnormal halves
   // among them.
   const ppu::TriangleMesh mesh = ppu::make_sphere(1, 20);
   const ppu::Lattice lattice = ppu::voxelize(mesh, 0.25f);
-  const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
-  std::vector<spu::SkinCorner> corners;
+  const ppu::Embedding embedding = ppu::embed(mesh, lattice);
+  dma::Buffer<spu::SkinCorner> corners(sample.memory(), "corners", lattice.particles.size());
   for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
     const Eigen::Vector3f x = lattice.rest_position(i);
-    corners.push_back({x.x(), x.y(), x.z(), 0});
+    corners[i] = {x.x(), x.y(), x.z(), 0};
   }
-  ppu::SkinOrchestrator orchestrator(memory, pool, kernel);
-  orchestrator.add(embedding, corners.size());
-  const std::span<const spu::SkinCorner> positions(corners);
-  orchestrator.kick({&positions, 1});
-  orchestrator.drain();
+  dma::Buffer<spu::SkinGroup> groups(sample.memory(), "groups", embedding.groups.size());
+  std::copy(embedding.groups.begin(), embedding.groups.end(), groups.span().begin());
+  const dma::Buffer<spu::SkinnedVertex> vertices(sample.memory(), "vertices", 4 * embedding.groups.size());
+  dma::Buffer<spu::SkinJob> job(sample.memory(), "job", 1);
+  for (const ppu::SkinPart& part : embedding.parts) {
+    job[0] = {};
+    job[0].groups_ea = groups.ea(part.first_group).value;
+    job[0].vertices_ea = vertices.ea(std::size_t{part.first_group} * 4).value;
+    for (std::size_t w = 0; w < 2; ++w) {
+      job[0].window[w].ea = corners.ea(part.window[w].first_particle).value;
+      job[0].window[w].count = part.window[w].count;
+    }
+    job[0].group_count = part.group_count;
+    sample.run(job.ea());
+  }
 }
 
-void run_match_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory, ls_sim::SpePool& pool) {
-  // Rotations from nothing, then from the last step: the deepest ways through the kernel.
+/// One SPE's share of a step of one body, as MatchOrchestrator makes it.
+void run_match(Sample& sample) {
   const ppu::Lattice lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
-  const ppu::MatchingPlan<float> matching(lattice, 2, ppu::particle_masses(lattice, 1000));
-  ppu::MatchOrchestrator orchestrator(memory, pool, kernel, ppu::MatchPlan(lattice, matching), 1);
-  for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+  const std::size_t particles = lattice.particles.size();
+  const ppu::MatchPlan plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)});
+  dma::Buffer<std::byte> plan_bytes(sample.memory(), "plan", plan.bytes().size());
+  std::copy(plan.bytes().begin(), plan.bytes().end(), plan_bytes.span().begin());
+  dma::Buffer<spu::SkinCorner> positions(sample.memory(), "positions", particles);
+  for (std::size_t i = 0; i < particles; ++i) {
     const Eigen::Vector3f x = lattice.rest_position(i);
-    orchestrator.positions(0)[i] = {-x.x(), x.y(), x.z(), 0};
+    positions[i] = {-x.x(), x.y(), x.z(), 0};
   }
-  orchestrator.step({.pull = 30, .damping = 0.1f});
-  orchestrator.step({.pull = 30, .damping = 0.1f});
+  const dma::Buffer<spu::SkinCorner> velocities(sample.memory(), "velocities", particles);
+  const dma::Buffer<spu::MatchRotations> rotations(sample.memory(), "rotations",
+                                                   spu::groups_of(plan.header().regions));
+  const dma::Buffer<spu::MatchResult> result(sample.memory(), "result", 1);
+  dma::Buffer<spu::MatchBody> body(sample.memory(), "body", 1);
+  body[0].positions_ea = positions.ea().value;
+  body[0].velocities_ea = velocities.ea().value;
+  body[0].rotations_ea = rotations.ea().value;
+  body[0].result_ea = result.ea().value;
+  body[0].pull = 30;
+  body[0].damping = 0.1f;
+  dma::Buffer<spu::MatchJob> job(sample.memory(), "job", 1);
+  job[0].plan_ea = plan_bytes.ea().value;
+  job[0].bodies_ea = body.ea().value;
+  job[0].body_count = 1;
+  job[0].most_iterations = 6;
+  // Rotations from nothing, then from the last step: the deepest ways through the kernel.
+  for (const std::uint32_t cold : {1u, 0u}) {
+    body[0].cold = cold;
+    sample.run(job.ea());
+  }
 }
 
-void run_transfers_sample(const ls_sim::KernelImage& kernel, dma::AddressSpace& memory,
-                          ls_sim::SpePool& pool) {
-  dma::Buffer<std::byte> data(memory, "data", 1024);
-  dma::Buffer<spu::TransfersJob> descriptor(memory, "job", 1);
-  descriptor.span()[0] = {data.ea().value, 128, 16, 8, spu::kTransferGet, {}};
-  const ls_sim::Job job{&kernel, descriptor.ea(), {}};
-  ls_sim::JobBatch batch;
-  pool.submit(batch, {&job, 1});
-  batch.wait();
-  if (!batch.failures().empty()) throw std::runtime_error(batch.failures().front().message);
+void run_transfers(Sample& sample) {
+  const dma::Buffer<std::byte> data(sample.memory(), "data", 1024);
+  dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1);
+  job[0] = {data.ea().value, 128, 16, 8, spu::kTransferGet, {}};
+  sample.run(job.ea());
+}
+
+/// A board that tells the loop to end: the compiler makes one function with one frame of all it does.
+void run_job_loop(Sample& sample) {
+  dma::Buffer<spu::JobBoard> board(sample.memory(), "board", 1);
+  board[0].stop = 1;
+  sample.run(board.ea());
 }
 
 }  // namespace
@@ -82,18 +140,19 @@ ls_sim::KernelImage load_kernel(std::string_view name, bool checked) {
 }
 
 std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
-  dma::AddressSpace memory;
-  ls_sim::SpePool pool(memory, {.spes = 1, .measure_stack = true});
+  Sample sample(kernel);
   if (kernel.name == "match") {
-    run_match_sample(kernel, memory, pool);
+    run_match(sample);
   } else if (kernel.name == "skin") {
-    run_skin_sample(kernel, memory, pool);
+    run_skin(sample);
   } else if (kernel.name == "transfers") {
-    run_transfers_sample(kernel, memory, pool);
+    run_transfers(sample);
+  } else if (kernel.name == "job_loop") {
+    run_job_loop(sample);
   } else {
     throw std::runtime_error("kernel " + kernel.name + " has no sample of work to measure its stack with");
   }
-  return pool.statistics()[0].stack_high_water;
+  return sample.stack_used();
 }
 
 }  // namespace softcell::demos

@@ -63,11 +63,14 @@ struct Simulation3d::State {
         script(scene.script),
         soft_bodies(world.world()),
         skin(load_kernel("skin", options.findings != nullptr)),
-        pool(memory, {.spes = options.spes,
-                      .schedule = options.schedule,
-                      .findings = options.findings,
-                      .trace = options.trace}),
-        orchestrator(memory, pool, skin) {
+        job_loop(load_kernel("job_loop")),
+        jobs(memory,
+             {.spes = options.spes,
+              .schedule = options.schedule,
+              .findings = options.findings,
+              .trace = options.trace},
+             job_loop),
+        orchestrator(memory, jobs, skin) {
     for (const RigidBox& box : scene.boxes) {
       boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
     }
@@ -109,8 +112,8 @@ struct Simulation3d::State {
   std::vector<std::size_t> boxes;  // numbers in the world
 
   dma::AddressSpace memory;
-  ls_sim::KernelImage skin;
-  ls_sim::SpePool pool;
+  ls_sim::KernelImage skin, job_loop;
+  ppu::JobSystem jobs;
   ppu::SkinOrchestrator orchestrator;
   std::vector<std::span<const spu::SkinCorner>> positions;
 
@@ -188,7 +191,7 @@ std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return 
 
 const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
 
-std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->pool.statistics(); }
+std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->jobs.statistics(); }
 
 std::uint64_t Simulation3d::late_frames() const { return state_->orchestrator.late_frames(); }
 

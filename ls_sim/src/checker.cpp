@@ -29,13 +29,13 @@ bool same_line(dma::EffectiveAddress a, dma::EffectiveAddress b) {
 
 }  // namespace
 
-void Checker::begin_run(const KernelImage& image) {
+void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   if (image_ != &image) {
     lines_ = std::make_unique<SourceLines>(image);
     image_ = &image;
-    objects_.emplace(image);
     padding_ = padding_of(image);
   }
+  objects_.emplace(image, stack);
   written_.forget_the_last_program();
   written_.mark(kEnvironmentBytes, static_cast<std::uint32_t>(image.bytes.size()));
   for (const PaddingRange& gap : padding_) written_.mark(gap.lsa, gap.bytes);

@@ -44,7 +44,8 @@ class Checker final : public ChannelPort, public AccessObserver {
   /// An image was made resident, and overwrote what was there.
   void on_load() { written_.clear(); }
 
-  void begin_run(const KernelImage& image);
+  /// @param stack  of the image alone; within another kernel's run what is left of that one's.
+  void begin_run(const KernelImage& image, const StackRange& stack);
 
   /// After a run that no fault has ended.
   void end_run();

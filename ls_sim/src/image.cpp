@@ -47,8 +47,10 @@ Elf64_Phdr read_segment(const ElfFile& elf) {
   const Elf64_Phdr& segment = segments.front();
   if (segment.p_filesz > segment.p_memsz)
     elf.refuse("its segment holds more bytes in the file than in memory");
-  if (segment.p_vaddr != kEnvironmentBytes)
-    elf.refuse("its segment does not begin at local-store address 0x80");
+  if (segment.p_vaddr < kEnvironmentBytes || segment.p_vaddr >= dma::kLocalStoreBytes ||
+      segment.p_vaddr % dma::kLineBytes != 0) {
+    elf.refuse("its segment does not begin at a multiple of 128 from local-store address 0x80 on");
+  }
   if (segment.p_memsz > dma::kLocalStoreBytes - segment.p_vaddr) {
     elf.refuse("it takes " + std::to_string(segment.p_memsz) +
                " bytes and passes the 256 KB of a local store");
@@ -56,7 +58,8 @@ Elf64_Phdr read_segment(const ElfFile& elf) {
   return segment;
 }
 
-Declaration read_declaration(const ElfFile& elf, std::uint64_t segment_end) {
+Declaration read_declaration(const ElfFile& elf, const Elf64_Phdr& segment) {
+  const std::uint64_t segment_end = segment.p_vaddr + segment.p_memsz;
   const Elf64_Shdr section = elf.find(".softcell.kernel").header;
   if (section.sh_size < sizeof(std::uint32_t)) {
     elf.refuse("it has no .softcell.kernel section; link it with softcell_add_spu_kernel");
@@ -69,11 +72,13 @@ Declaration read_declaration(const ElfFile& elf, std::uint64_t segment_end) {
   const auto declared = elf.table<Declaration>(section.sh_offset, 1, what).front();
   if (declared.end < segment_end || declared.end - segment_end >= dma::kLineBytes)
     elf.refuse("its sections do not end where _end says");
+  const std::uint64_t room = segment.p_vaddr == kEnvironmentBytes
+                                 ? dma::kLocalStoreBytes - std::min(declared.end, dma::kLocalStoreBytes)
+                                 : segment.p_vaddr - kEnvironmentBytes;
   if (declared.end > dma::kLocalStoreBytes || declared.stack_bytes == 0 ||
-      declared.stack_bytes % dma::kQuadwordBytes != 0 ||
-      declared.stack_bytes > dma::kLocalStoreBytes - declared.end) {
+      declared.stack_bytes % dma::kQuadwordBytes != 0 || declared.stack_bytes > room) {
     elf.refuse("its declared stack of " + std::to_string(declared.stack_bytes) +
-               " bytes is not a positive multiple of 16 that fits above the image in 256 KB");
+               " bytes is not a positive multiple of 16 that fits beside the image in 256 KB");
   }
   if (declared.is_checked > 1) elf.refuse("its .softcell.kernel section neither says checked nor unchecked");
   return declared;
@@ -133,12 +138,11 @@ Layout read_layout(const ElfFile& elf, const Elf64_Phdr& segment) {
 }
 
 /// The variables, in order of address.
-std::vector<ImageObject> read_objects(const ElfFile& elf, std::uint32_t end) {
+std::vector<ImageObject> read_objects(const ElfFile& elf, std::uint32_t begin, std::uint32_t end) {
   std::vector<ImageObject> objects;
   for (const auto& [name, symbol] : elf.symbols()) {
     if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size == 0) continue;
-    if (symbol.st_value < kEnvironmentBytes || symbol.st_value >= end ||
-        symbol.st_size > end - symbol.st_value) {
+    if (symbol.st_value < begin || symbol.st_value >= end || symbol.st_size > end - symbol.st_value) {
       elf.refuse("its variable " + demangled(name) + " lies outside it");
     }
     objects.push_back({demangled(name),
@@ -159,7 +163,7 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   const ElfFile elf(name, file);
   const Elf64_Phdr segment = read_segment(elf);
   const std::uint64_t file_end = segment.p_vaddr + segment.p_filesz;
-  const Declaration declared = read_declaration(elf, segment.p_vaddr + segment.p_memsz);
+  const Declaration declared = read_declaration(elf, segment);
   refuse_relocations(elf);
   const Layout layout = read_layout(elf, segment);
   const std::uint64_t entry = elf.header().e_entry;
@@ -174,7 +178,10 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
                  .bss = narrow(layout.bss.header.sh_size),
                  .stack = declared.stack_bytes,
                  .budget = declared.budget_bytes,
+                 .from = segment.p_vaddr == kEnvironmentBytes ? 0 : narrow(segment.p_vaddr),
                  .end = declared.end};
+  image.begin = narrow(segment.p_vaddr);
+  if (image.begin != kEnvironmentBytes) image.stack_top = image.begin;
   image.entry = narrow(entry);
   image.text_begin = narrow(layout.text.header.sh_addr);
   image.text_end = narrow(layout.text.end());
@@ -182,7 +189,7 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.rodata_end = image.rodata_begin + image.sizes.rodata;
   image.data_begin = narrow(image.sizes.data != 0 ? layout.data.header.sh_addr : file_end);
   image.data_end = image.data_begin + image.sizes.data;
-  image.objects = read_objects(elf, declared.end);
+  image.objects = read_objects(elf, image.begin, declared.end);
   image.checked = declared.is_checked == 1;
   const auto bytes = elf.slice(segment.p_offset, segment.p_filesz, "its segment");
   image.bytes.assign(bytes.begin(), bytes.end());

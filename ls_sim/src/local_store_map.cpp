@@ -6,7 +6,8 @@ namespace softcell::ls_sim {
 
 std::vector<LocalStoreSection> local_store_map(const KernelImage& image) {
   const std::uint32_t end = image.sizes.end;
-  const std::uint32_t stack_begin = dma::kLocalStoreBytes - image.sizes.stack;
+  const std::uint32_t stack_begin = image.stack_top - image.sizes.stack;
+  const bool is_at_bottom = image.begin == kEnvironmentBytes;
   // ls.ld begins bss at a line and puts `end` at most one alignment behind it.
   const std::uint32_t bss_begin = (end - image.sizes.bss) / dma::kLineBytes * dma::kLineBytes;
 
@@ -14,13 +15,21 @@ std::vector<LocalStoreSection> local_store_map(const KernelImage& image) {
   const auto add = [&](std::string_view kind, std::uint32_t begin, std::uint32_t bytes) {
     if (bytes != 0) map.push_back({kind, begin, bytes});
   };
+  const auto add_stack = [&](std::uint32_t free_from) {
+    add("free", free_from, stack_begin - free_from);
+    add("stack", stack_begin, image.sizes.stack);
+  };
   add("environment", 0, kEnvironmentBytes);
+  if (!is_at_bottom) add_stack(kEnvironmentBytes);
   add("text", image.text_begin, image.text_end - image.text_begin);
   add("rodata", image.rodata_begin, image.rodata_end - image.rodata_begin);
   add("data", image.data_begin, image.data_end - image.data_begin);
   add("bss", bss_begin, image.sizes.bss);
-  add("free", end, stack_begin - end);
-  add("stack", stack_begin, image.sizes.stack);
+  if (is_at_bottom) {
+    add_stack(end);
+  } else {
+    add("free", end, dma::kLocalStoreBytes - end);
+  }
   return map;
 }
 

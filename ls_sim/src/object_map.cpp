@@ -24,7 +24,10 @@ const ImageObject* ObjectMap::object_at(std::uint32_t lsa) const {
 std::string ObjectMap::trespass(std::uint32_t lsa, std::uint32_t bytes, std::uint32_t stack_pointer) const {
   const std::uint32_t end = lsa + bytes;
   if (in_stack(lsa)) {
-    if (end > dma::kLocalStoreBytes) return "it passes the end of the local store";
+    if (end > stack_.end) {
+      return stack_.end == dma::kLocalStoreBytes ? "it passes the end of the local store"
+                                                 : "it passes the end of the stack";
+    }
     return lsa < stack_pointer ? "it lies below the stack pointer: what was there is gone" : "";
   }
   if (in_code(lsa)) return end <= image_->rodata_end ? "" : "it passes the end of the image's constants";
@@ -33,6 +36,7 @@ std::string ObjectMap::trespass(std::uint32_t lsa, std::uint32_t bytes, std::uin
     return "it passes the end of " + object->name + " by " + std::to_string(end - end_of(*object)) + " bytes";
   }
   if (lsa < image_->text_begin) return "nothing of the image lies there";
+  if (lsa >= stack_.end) return "it belongs to the kernel that has called this one";
   if (lsa >= image_->sizes.end) return "it is free space between the image and its stack";
   // Without a symbol table all variables are one.
   return image_->objects.empty() && end <= image_->sizes.end ? "" : "it belongs to no variable";

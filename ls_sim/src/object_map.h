@@ -8,13 +8,18 @@
 
 namespace softcell::ls_sim {
 
+/// Where a stack may grow: [begin, end), local-store addresses.
+struct StackRange {
+  std::uint32_t begin = 0, end = 0;
+};
+
 /// Borrows the image.
 class ObjectMap {
  public:
-  explicit ObjectMap(const KernelImage& image) : image_(&image) {}
+  ObjectMap(const KernelImage& image, const StackRange& stack) : image_(&image), stack_(stack) {}
 
   bool in_code(std::uint32_t lsa) const { return lsa >= image_->text_begin && lsa < image_->rodata_end; }
-  bool in_stack(std::uint32_t lsa) const { return lsa >= dma::kLocalStoreBytes - image_->sizes.stack; }
+  bool in_stack(std::uint32_t lsa) const { return lsa >= stack_.begin && lsa < stack_.end; }
 
   /// Empty when the range belongs to one variable, to code and constants, or to the stack in use; else what
   /// is wrong with it.
@@ -28,6 +33,7 @@ class ObjectMap {
   const ImageObject* object_at(std::uint32_t lsa) const;
 
   const KernelImage* image_;
+  StackRange stack_;
 };
 
 }  // namespace softcell::ls_sim

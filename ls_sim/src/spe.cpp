@@ -34,20 +34,27 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
 }
 
 RunResult Spe::run(const Run& run) {
+  run_ = &run;
   RunResult result = execute(run);
   channels_.end_run();
   if (result.fault) {
     result.fault->spe = number_;
-    result.fault->kernel = run.image->name;
+    result.fault->kernel = image_under_way().name;
   }
+  if (job_) result.job = job_->ea;
   // Whatever a kernel that failed did to its local store goes with it.
   if (result.fault || options_.reload_always) resident_ = nullptr;
-  account(run, result, std::chrono::steady_clock::now());
+  account(run, result);
+  job_.reset();
   return result;
 }
 
+const KernelImage& Spe::image_under_way() const {
+  return job_ && job_->image != nullptr ? *job_->image : *run_->image;
+}
+
 RunResult Spe::execute(const Run& run) {
-  if (options_.findings != nullptr && !run.image->checked) {
+  if (options_.findings != nullptr && !run.image->checked && !run.resident) {
     return {0, dma::Fault{.rule = dma::Rule::kImageNotLoadable,
                           .detail = "the image is not a checked one, so that nothing would be found"}};
   }
@@ -56,13 +63,20 @@ RunResult Spe::execute(const Run& run) {
   channels_.begin_run();
   RunResult result = run_engine(run);
   if (!result.fault) result.fault = mfc_.drain();
-  if (result.fault) result.fault->place = SourceLines(*run.image).place_of(position_of(*result.fault));
+  if (result.fault) {
+    result.fault->place = SourceLines(image_under_way()).place_of(position_of(*result.fault));
+  }
   return result;
 }
 
 RunResult Spe::run_engine(const Run& run) {
-  if (checker_ == nullptr) return engine_->run(run.arguments, channels_);
-  checker_->begin_run(*run.image);
+  JobObserver* const jobs = run.resident ? this : nullptr;
+  if (checker_ == nullptr) return engine_->run(run.arguments, channels_, nullptr, jobs);
+  if (run.resident) {
+    JobDoor door(*this);
+    return engine_->run(run.arguments, door, checker_.get(), jobs);
+  }
+  checker_->begin_run(*run.image, {run.image->stack_top - run.image->sizes.stack, run.image->stack_top});
   RunResult result = engine_->run(run.arguments, *checker_, checker_.get());
   if (!result.fault) checker_->end_run();
   return result;
@@ -82,23 +96,66 @@ void Spe::load(const KernelImage& image) {
   ++statistics_.image_loads;
 }
 
-void Spe::account(const Run& run, const RunResult& result, SpeMonitor::HostTime end) {
+// ---- jobs inside a run
+
+const KernelImage* Spe::on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) {
+  const auto now = std::chrono::steady_clock::now();
+  job_ = {.image = nullptr, .ea = job, .begin = now};
+  {
+    const SpeMonitor::Lock lock = monitor_.lock();
+    const auto known = job_images_->find(image.value);
+    if (known != job_images_->end()) job_->image = known->second;
+    monitor_.begin_job(number_, now);
+  }
+  if (is_checked_job()) checker_->begin_run(*job_->image, stack_of_job());
+  return job_->image;
+}
+
+void Spe::on_job_end() {
+  if (is_checked_job()) checker_->end_run();
+  count_job(image_under_way(), statistics_.jobs, job_->begin, false);
+  job_.reset();
+  const SpeMonitor::Lock lock = monitor_.lock();
+  monitor_.end_job(number_);
+  publish_statistics();
+}
+
+bool Spe::is_checked_job() const {
+  return checker_ != nullptr && job_ && job_->image != nullptr && job_->image->checked;
+}
+
+/// It goes on where the caller's ends, which may be anywhere in what that one has declared.
+StackRange Spe::stack_of_job() const {
+  const KernelImage& caller = *run_->image;
+  return {caller.stack_top - caller.sizes.stack - job_->image->sizes.stack, caller.stack_top};
+}
+
+void Spe::count_job(const KernelImage& image, std::uint64_t number, SpeMonitor::HostTime begin, bool failed) {
+  const auto end = std::chrono::steady_clock::now();
   ++statistics_.jobs;
-  statistics_.busy += end - run.begin;
+  statistics_.busy += end - begin;
+  statistics_.dma = mfc_.statistics();
+  if (trace_ == nullptr) return;
+  trace_->on_job(image, number, begin.time_since_epoch().count(), end.time_since_epoch().count(), failed);
+}
+
+void Spe::account(const Run& run, const RunResult& result) {
+  const bool failed = !result.ended_normally() || result.status() != 0;
+  if (!run.resident) count_job(*run.image, run.number, run.begin, failed);
+  if (run.resident && job_) count_job(image_under_way(), statistics_.jobs, job_->begin, true);
   statistics_.dma = mfc_.statistics();
   const ImageSizes& sizes = run.image->sizes;
   std::uint32_t stack = sizes.stack;
   if (options_.measure_stack) {
     stack = engine_->stack_high_water();
     statistics_.stack_high_water = std::max(statistics_.stack_high_water, stack);
+    if (trace_ != nullptr) trace_->on_stack_used(*run.image, stack);
   }
-  statistics_.local_store_high_water = std::max(statistics_.local_store_high_water, sizes.end + stack);
-  if (trace_ == nullptr) return;
-  const bool failed = !result.ended_normally() || result.status() != 0;
-  trace_->on_job(*run.image, run.number, run.begin.time_since_epoch().count(), end.time_since_epoch().count(),
-                 failed);
-  if (result.fault) trace_->on_finding(*result.fault, end.time_since_epoch().count());
-  if (options_.measure_stack) trace_->on_stack_used(*run.image, stack);
+  statistics_.local_store_high_water =
+      std::max(statistics_.local_store_high_water, sizes.end - sizes.from + stack);
+  if (trace_ != nullptr && result.fault) {
+    trace_->on_finding(*result.fault, std::chrono::steady_clock::now().time_since_epoch().count());
+  }
 }
 
 void Spe::interrupt() {

@@ -2,7 +2,9 @@
 // One SPE: local store, MFC, channels, engine.
 
 #include <chrono>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "checker.h"
 #include "softcell/dma/local_store_port.h"
@@ -24,16 +26,24 @@ struct Run {
   EntryArguments arguments;
   std::uint64_t number = 0;  ///< tells apart the random schedules of runs
   SpeMonitor::HostTime begin{};
+  bool resident =
+      false;  ///< runs for as long as it likes, calling others: what has a deadline are the jobs inside
 };
 
+/// Images in main storage, by their addresses: what the jobs inside a run are. Guarded by the monitor.
+using JobImages = std::map<std::uint64_t, const KernelImage*>;
+
 /// Used by its own thread, except for what is said to be for others.
-class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
+class Spe final : public dma::LocalStorePort, private dma::ReservationListener, private JobObserver {
  public:
   /// @param monitor  of all SPEs that run together; outlives them.
   Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor& monitor);
 
   /// Moves with the SPE from now on; outlives its runs.
   void set_proxy(dma::ProxyQueue* proxy) { channels_.set_proxy(proxy); }
+
+  /// Where to look for the images of jobs; outlives the SPE's runs.
+  void set_job_images(const JobImages* images) { job_images_ = images; }
 
   /// Makes the image resident anew. Any thread, while no run is in progress.
   void load(const KernelImage& image);
@@ -48,8 +58,9 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
   /// Guarded by the monitor.
   SpeRegisters& registers() { return registers_; }
 
-  /// While no run is in progress.
-  const SpeStatistics& statistics() const { return statistics_; }
+  /// Up to the end of the last run or job. With the monitor's lock.
+  const SpeStatistics& statistics() const { return published_; }
+  void publish_statistics() { published_ = statistics_; }
 
   // dma::LocalStorePort, any thread.
   std::span<std::byte> local_store() override { return local_store_.bytes(); }
@@ -58,11 +69,36 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
 
  private:
   void on_reservation_lost() override;
+  const KernelImage* on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) override;
+  void on_job_end() override;
 
+  /// The channels of a kernel that runs jobs: checked while one of these is.
+  class JobDoor final : public ChannelPort {
+   public:
+    explicit JobDoor(Spe& spe) : spe_(spe) {}
+    ChannelReply read(std::uint32_t channel) override { return port().read(channel); }
+    ChannelReply write(std::uint32_t channel, std::uint32_t value) override {
+      return port().write(channel, value);
+    }
+    ChannelReply count(std::uint32_t channel) override { return port().count(channel); }
+    ChannelReply issue(const dma::MfcCommand& command) override { return port().issue(command); }
+
+   private:
+    ChannelPort& port() {
+      if (spe_.is_checked_job()) return *spe_.checker_;
+      return spe_.channels_;
+    }
+    Spe& spe_;
+  };
+
+  const KernelImage& image_under_way() const;
+  bool is_checked_job() const;
+  StackRange stack_of_job() const;
   RunResult execute(const Run& run);
   RunResult run_engine(const Run& run);
   dma::LocalStoreAddress position_of(const dma::Fault& fault) const;
-  void account(const Run& run, const RunResult& result, SpeMonitor::HostTime end);
+  void account(const Run& run, const RunResult& result);
+  void count_job(const KernelImage& image, std::uint64_t number, SpeMonitor::HostTime begin, bool failed);
 
   int number_;
   SpeOptions options_;
@@ -72,10 +108,20 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener {
   SpeRegisters registers_;
   dma::Mfc mfc_;
   std::unique_ptr<Engine> engine_;
-  SpeStatistics statistics_;
+  SpeStatistics statistics_, published_;
   SpuChannels channels_;
   std::unique_ptr<Checker> checker_;  ///< null: nothing is checked
   const KernelImage* resident_ = nullptr;
+
+  /// The job inside the run, while one is under way.
+  struct InnerJob {
+    const KernelImage* image = nullptr;  ///< null: not known
+    dma::EffectiveAddress ea;
+    SpeMonitor::HostTime begin;
+  };
+  const JobImages* job_images_ = nullptr;
+  const Run* run_ = nullptr;
+  std::optional<InnerJob> job_;
 };
 
 }  // namespace softcell::ls_sim

@@ -35,6 +35,7 @@ class MappedLocalStore {
 struct Orders {
   std::optional<Run> prepared, given;
   std::optional<RunResult> result;
+  bool end_untold = false;  ///< to the listener
   std::condition_variable changed;
 };
 
@@ -171,6 +172,7 @@ struct SpeGroup::State final : RunSource {
       : threads(memory, options, SpeMonitor::PpuSide::kActs, *this) {
     try {
       for (int spe = 0; spe < options.spes; ++spe) {
+        threads.spe(spe).set_job_images(&job_images);
         doors[index(spe)] = std::make_unique<Door>(threads, memory, options, spe, [this, spe] {
           const SpeMonitor::Lock lock = monitor().lock();
           start_prepared(spe);
@@ -205,6 +207,19 @@ struct SpeGroup::State final : RunSource {
     return *doors[index(spe)];
   }
 
+  void prepare(int spe, const KernelImage& image, const EntryArguments& arguments, bool resident) {
+    door(spe);
+    {
+      const SpeMonitor::Lock lock = monitor().lock();
+      if (monitor().runs(spe)) {
+        throw std::logic_error("SPE " + std::to_string(spe) + " still runs; wait for its end first");
+      }
+      orders[index(spe)].prepared =
+          Run{.image = &image, .arguments = arguments, .number = runs_prepared++, .resident = resident};
+    }
+    threads.spe(spe).load(image);
+  }
+
   void move_proxies() {
     for (const auto& each : doors) {
       if (each) each->move_proxy();
@@ -219,7 +234,7 @@ struct SpeGroup::State final : RunSource {
     mine.given->begin = std::chrono::steady_clock::now();
     mine.result.reset();
     threads.spe(spe).registers().reset_events();
-    monitor().start(spe, *mine.given->image, mine.given->begin);
+    monitor().start(spe, *mine.given->image, mine.given->begin, !mine.given->resident);
     mine.changed.notify_one();
     return true;
   }
@@ -227,6 +242,12 @@ struct SpeGroup::State final : RunSource {
   std::optional<Run> next_run(int spe, SpeMonitor::Lock& lock) override {
     Orders& mine = orders[index(spe)];
     for (;;) {
+      if (std::exchange(mine.end_untold, false) && listener) {
+        const RunResult result = *mine.result;
+        lock.unlock();
+        listener(spe, result);
+        lock.lock();
+      }
       if (stopping) return std::nullopt;
       if (std::exchange(threads.spe(spe).registers().proxy_issued, false)) {
         lock.unlock();
@@ -244,12 +265,16 @@ struct SpeGroup::State final : RunSource {
 
   void on_ended(int spe, const Run&, RunResult&& result) override {
     orders[index(spe)].result = std::move(result);
+    orders[index(spe)].end_untold = true;
   }
 
   // Guarded by the monitor's lock:
   bool stopping = false;
   std::uint64_t runs_prepared = 0;
   std::array<Orders, dma::kSpeCount> orders;
+  JobImages job_images;
+
+  std::function<void(int, const RunResult&)> listener;  // as set before the first start
 
   SpeThreads threads;
   std::array<std::unique_ptr<Door>, dma::kSpeCount> doors;
@@ -263,16 +288,21 @@ SpeGroup::~SpeGroup() = default;
 int SpeGroup::spes() const { return state_->threads.spes(); }
 
 void SpeGroup::prepare(int spe, const KernelImage& image, const EntryArguments& arguments) {
-  state_->door(spe);
-  {
-    const SpeMonitor::Lock lock = state_->monitor().lock();
-    if (state_->monitor().runs(spe)) {
-      throw std::logic_error("SPE " + std::to_string(spe) + " still runs; wait for its end first");
-    }
-    state_->orders[State::index(spe)].prepared =
-        Run{.image = &image, .arguments = arguments, .number = state_->runs_prepared++};
-  }
-  state_->threads.spe(spe).load(image);
+  state_->prepare(spe, image, arguments, false);
+}
+
+void SpeGroup::start_resident(int spe, const KernelImage& image, const EntryArguments& arguments) {
+  state_->prepare(spe, image, arguments, true);
+  start(spe);
+}
+
+void SpeGroup::register_job_image(dma::EffectiveAddress ea, const KernelImage& image) {
+  const SpeMonitor::Lock lock = state_->monitor().lock();
+  state_->job_images[ea.value] = &image;
+}
+
+void SpeGroup::on_end(std::function<void(int, const RunResult&)> listener) {
+  state_->listener = std::move(listener);
 }
 
 void SpeGroup::start(int spe) {

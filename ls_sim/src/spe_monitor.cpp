@@ -21,12 +21,12 @@ SpeMonitor::SpeMonitor(const SpeOptions& options, PpuSide ppu_side)
       ppu_side_(ppu_side),
       random_(options.schedule.seed, kTurnStream) {}
 
-void SpeMonitor::start(int spe, const KernelImage& image, HostTime now) {
+void SpeMonitor::start(int spe, const KernelImage& image, HostTime now, bool timed) {
   Member& m = member(spe);
   m.state = State::kRunnable;
   m.stopped = false;
   m.image = &image;
-  m.started = now;
+  m.started = timed ? std::optional(now) : std::nullopt;
   if (takes_turns_ && turn_ == kNobody) settle();
 }
 

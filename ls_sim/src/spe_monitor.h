@@ -59,10 +59,19 @@ class SpeMonitor {
   // Runs of SPEs. All with the lock.
 
   /// From now on the SPE runs, though its thread may still have to wake up.
-  void start(int spe, const KernelImage& image, HostTime now);
+  /// @param timed  whether its deadline counts from now; else only that of jobs inside the run does.
+  void start(int spe, const KernelImage& image, HostTime now, bool timed = true);
+
+  /// A job begins or has ended inside the run.
+  void begin_job(int spe, HostTime now) { member(spe).started = now; }
+  void end_job(int spe) { member(spe).started.reset(); }
   void end(int spe);
   bool runs(int spe) const { return members_[static_cast<std::size_t>(spe)].state != State::kIdle; }
-  HostTime started(int spe) const { return members_[static_cast<std::size_t>(spe)].started; }
+  /// Whether what the SPE runs has taken longer than that.
+  bool is_late(int spe, HostTime now, std::chrono::milliseconds deadline) const {
+    const auto& started = members_[static_cast<std::size_t>(spe)].started;
+    return started && now - *started > deadline;
+  }
 
   /// Ends the SPE's sleeps from now until its run has ended.
   void stop(int spe);
@@ -106,7 +115,7 @@ class SpeMonitor {
     bool stopped = false;
     Woken woken = Woken::kToLook;
     const KernelImage* image = nullptr;
-    HostTime started{};
+    std::optional<HostTime> started;  ///< what has a deadline
     Sleep sleep;
     std::condition_variable wake_up;
   };

@@ -40,7 +40,7 @@ SpeThreads::SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, Spe
                        RunSource& source)
     : options_(checked(options)), source_(source), monitor_(options, ppu_side) {
   for (int number = 0; number < options_.spes; ++number) {
-    workers_.push_back(std::make_unique<Worker>(number, memory, options_, monitor_));
+    workers_.push_back(std::make_unique<Spe>(number, memory, options_, monitor_));
   }
   for (int number = 0; number < options_.spes; ++number) {
     threads_.emplace_back([this, number] { work(number); });
@@ -69,8 +69,7 @@ void SpeThreads::work(int number) {
   while (const std::optional<Run> next = source_.next_run(number, lock)) {
     RunResult result = run(number, *next, lock);
     monitor_.end(number);
-    Worker& worker = *workers_[static_cast<std::size_t>(number)];
-    worker.statistics = worker.spe.statistics();
+    spe(number).publish_statistics();
     source_.on_ended(number, *next, std::move(result));
   }
 }
@@ -98,7 +97,7 @@ void SpeThreads::watch() {
     watchdog_wake_up_.wait_for(lock, stops_runs_ ? 1ms : period);
     const auto now = std::chrono::steady_clock::now();
     for (int number = 0; number < options_.spes; ++number) {
-      const bool late = stops_runs_ || now - monitor_.started(number) > options_.deadline;
+      const bool late = stops_runs_ || monitor_.is_late(number, now, options_.deadline);
       if (late && monitor_.runs(number)) spe(number).interrupt();
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What SpePool and SpeGroup have in common: SPEs, a thread for each, and the watchdog that ends runs which
+// What an SpeGroup consists of: SPEs, a thread for each, and the watchdog that ends runs which
 // take too long.
 
 #include <condition_variable>
@@ -47,22 +47,15 @@ class SpeThreads {
   void stop_runs();
 
   SpeMonitor& monitor() { return monitor_; }
-  Spe& spe(int number) { return workers_[static_cast<std::size_t>(number)]->spe; }
+  Spe& spe(int number) { return *workers_[static_cast<std::size_t>(number)]; }
   int spes() const { return options_.spes; }
 
-  /// Exact when the SPE does not run, else as of its last run. With the lock.
+  /// Exact when the SPE does not run, else as of its last run or job. With the lock.
   const SpeStatistics& statistics(int spe) const {
-    return workers_[static_cast<std::size_t>(spe)]->statistics;
+    return workers_[static_cast<std::size_t>(spe)]->statistics();
   }
 
  private:
-  struct Worker {
-    Worker(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor& monitor)
-        : spe(number, memory, options, monitor) {}
-    Spe spe;
-    SpeStatistics statistics;
-  };
-
   void work(int number);
   RunResult run(int number, const Run& run, SpeMonitor::Lock& lock);
   void watch();
@@ -70,7 +63,7 @@ class SpeThreads {
   const SpeOptions options_;
   RunSource& source_;
   SpeMonitor monitor_;
-  std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<std::unique_ptr<Spe>> workers_;
 
   std::condition_variable watchdog_wake_up_;
   bool stops_runs_ = false, closed_ = false;  // guarded by the monitor's lock

@@ -27,15 +27,18 @@ void check(const char* name, float value, float most) {
                                 (most == 1 ? std::string(", at most 1") : std::string()));
 }
 
+std::size_t jobs_for(std::size_t bodies, std::size_t bodies_per_job) {
+  return (bodies + bodies_per_job - 1) / bodies_per_job;
+}
+
 constexpr dma::BufferOptions kInput{.spe_access = dma::SpeAccess::kRead};
 
 }  // namespace
 
-MatchOrchestrator::MatchOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool& pool,
+MatchOrchestrator::MatchOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
                                      const ls_sim::KernelImage& match, const MatchPlan& plan,
                                      std::size_t bodies, std::size_t bodies_per_job)
-    : pool_(pool),
-      particles_(plan.header().particles),
+    : particles_(plan.header().particles),
       region_groups_(spu::groups_of(plan.header().regions)),
       vector_stride_(stride_of<Vector>(particles_)),
       rotation_stride_(stride_of<spu::MatchRotations>(region_groups_)),
@@ -45,7 +48,8 @@ MatchOrchestrator::MatchOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool&
       rotations_(memory, "match rotations", bodies * rotation_stride_),
       results_(memory, "match results", bodies),
       bodies_(memory, "match bodies", bodies, kInput),
-      descriptors_(memory, "match jobs", (bodies + bodies_per_job - 1) / bodies_per_job, kInput) {
+      descriptors_(memory, "match jobs", jobs_for(bodies, bodies_per_job), kInput),
+      chain_(jobs, "match", jobs_for(bodies, bodies_per_job)) {
   std::memcpy(plan_.data(), plan.bytes().data(), plan.bytes().size());
   for (std::size_t b = 0; b < bodies; ++b) {
     spu::MatchBody& body = bodies_.span()[b];
@@ -56,18 +60,16 @@ MatchOrchestrator::MatchOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool&
     body.result_ea = results_.ea(b).value;
     reset(b);
   }
+  const JobImage image = jobs.place(match);
   for (std::size_t first = 0; first < bodies; first += bodies_per_job) {
-    const std::size_t job = jobs_.size();
-    descriptors_.span()[job] = {};
-    descriptors_.span()[job].plan_ea = plan_.ea().value;
-    descriptors_.span()[job].bodies_ea = bodies_.ea(first).value;
-    descriptors_.span()[job].body_count =
-        static_cast<std::uint32_t>(std::min(bodies_per_job, bodies - first));
-    jobs_.push_back({.image = &match, .argp = descriptors_.ea(job), .envp = {}});
+    const std::size_t job = chain_.size();
+    descriptors_[job] = {};
+    descriptors_[job].plan_ea = plan_.ea().value;
+    descriptors_[job].bodies_ea = bodies_.ea(first).value;
+    descriptors_[job].body_count = static_cast<std::uint32_t>(std::min(bodies_per_job, bodies - first));
+    chain_.add({.image = image, .argp = descriptors_.ea(job)});
   }
 }
-
-MatchOrchestrator::~MatchOrchestrator() { batch_.wait(); }
 
 std::span<MatchOrchestrator::Vector> MatchOrchestrator::positions(std::size_t body) {
   return positions_.span().subspan(body * vector_stride_, particles_);
@@ -108,16 +110,16 @@ void MatchOrchestrator::kick(const MatchSettings& settings) {
     job.least_iterations = settings.least_iterations;
     job.most_iterations = settings.most_iterations;
   }
-  pool_.submit(batch_, jobs_);
+  chain_.kick();
   in_flight_ = true;
 }
 
 void MatchOrchestrator::wait() {
-  batch_.wait();
+  chain_.wait();
   if (!in_flight_) return;
   in_flight_ = false;
   std::string failures;
-  for (const ls_sim::JobFailure& failure : batch_.failures()) failures += "; " + failure.message;
+  for (const JobFailure& failure : chain_.failures()) failures += "; " + failure.message;
   if (!failures.empty()) throw std::runtime_error("stepping soft bodies failed" + failures);
   std::string bad;
   for (std::size_t b = 0; b < bodies(); ++b) {

@@ -47,11 +47,21 @@ constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .elem
 
 }  // namespace
 
-SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool& pool,
-                                   const ls_sim::KernelImage& skin)
-    : memory_(memory), pool_(pool), skin_(skin) {}
+/// The jobs of a frame, as the halves lie in memory: from frame to frame they only change what they point to.
+struct SkinOrchestrator::Frame {
+  Frame(JobSystem& system, std::size_t jobs)
+      : chain{JobChain(system, "skinning, first half", jobs),
+              JobChain(system, "skinning, second half", jobs)} {}
+  std::array<JobChain, 2> chain;
+};
 
-SkinOrchestrator::~SkinOrchestrator() { batch_.wait(); }
+SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
+                                   const ls_sim::KernelImage& skin)
+    : memory_(memory), system_(jobs), skin_(jobs.place(skin)) {}
+
+SkinOrchestrator::~SkinOrchestrator() {
+  frame_.reset();  // which waits, while the bodies' memory is still there
+}
 
 std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
   auto known =
@@ -64,6 +74,8 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
     known = models_.insert(models_.end(), std::move(model));
   }
   const Embedding& shared = *(*known)->embedding;
+  drain();
+  frame_.reset();
   auto body = std::make_unique<Body>();
   body->model = known->get();
   for (Body::Half& half : body->half) {
@@ -73,7 +85,7 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
         dma::Buffer<SkinnedVertex>(memory_, "skinned vertices", 4 * shared.groups.size(), kOutput);
   }
   bodies_.push_back(std::move(body));
-  jobs_.resize(jobs_.size() + shared.parts.size());
+  jobs_per_frame_ += shared.parts.size();
   vertices_ += shared.slot_of_vertex.size();
   return bodies_.size() - 1;
 }
@@ -103,43 +115,54 @@ void SkinOrchestrator::write_half(Body& body, std::span<const SkinCorner> positi
   }
 }
 
+void SkinOrchestrator::make_frame() {
+  frame_ = std::make_unique<Frame>(system_, jobs_per_frame_);
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (const auto& body : bodies_) {
+      const auto& descriptors = body->half[half].jobs;
+      for (std::size_t i = 0; i < descriptors.size(); ++i) {
+        frame_->chain[half].add({.image = skin_, .argp = descriptors.ea(i)});
+      }
+    }
+  }
+}
+
+JobChain* SkinOrchestrator::chain_under_way() {
+  return in_flight_ ? &frame_->chain[static_cast<std::size_t>(working_)] : nullptr;
+}
+
 bool SkinOrchestrator::kick(std::span<const std::span<const SkinCorner>> positions) {
   if (positions.size() != bodies_.size())
     throw std::invalid_argument("kick() needs the positions of every body");
-  if (in_flight_ && !batch_.finished()) {
+  if (JobChain* const chain = chain_under_way(); chain != nullptr && !chain->finished()) {
     ++late_frames_;
     return false;
   }
   collect();
   working_ = shown_ == 0 ? 1 : 0;
-  std::size_t next = 0;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    write_half(*bodies_[b], positions[b]);
-    const auto& descriptors = bodies_[b]->half[static_cast<std::size_t>(working_)].jobs;
-    for (std::size_t i = 0; i < descriptors.size(); ++i) {
-      jobs_[next++] = {.image = &skin_, .argp = descriptors.ea(i), .envp = {}};
-    }
-  }
-  pool_.submit(batch_, jobs_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) write_half(*bodies_[b], positions[b]);
+  if (frame_ == nullptr) make_frame();
   in_flight_ = true;
+  chain_under_way()->kick();
   return true;
 }
 
 /// Takes over the frame that the SPEs have finished, if there is one.
 bool SkinOrchestrator::collect() {
   if (!in_flight_) return false;
+  const std::vector<JobFailure>& failures = chain_under_way()->failures();
   in_flight_ = false;
-  if (batch_.failures().empty()) {
+  if (failures.empty()) {
     shown_ = working_;
     return true;
   }
   std::string message = "skinning a frame failed";
-  for (const ls_sim::JobFailure& failure : batch_.failures()) message += "; " + failure.message;
+  for (const JobFailure& failure : failures) message += "; " + failure.message;
   throw std::runtime_error(message);
 }
 
 bool SkinOrchestrator::drain() {
-  batch_.wait();
+  if (JobChain* const chain = chain_under_way()) chain->wait();
   return collect();
 }
 

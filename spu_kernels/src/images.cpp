@@ -8,6 +8,7 @@
 
 extern "C" {
 extern const std::byte softcell_image_match[], softcell_image_match_end[];
+extern const std::byte softcell_image_job_loop[], softcell_image_job_loop_end[];
 SC_DECLARE(skin)
 SC_DECLARE(transfers)
 }
@@ -22,6 +23,9 @@ std::span<const ImageFile> image_files() {
     .checked_elf = {softcell_image_##kernel##_checked, softcell_image_##kernel##_checked_end}, \
   }
   static const std::array files{
+      ImageFile{.name = "job_loop",
+                .elf = {softcell_image_job_loop, softcell_image_job_loop_end},
+                .checked_elf = {}},
       // A checked match would not fit in a local store.
       ImageFile{.name = "match", .elf = {softcell_image_match, softcell_image_match_end}, .checked_elf = {}},
       SC_FILE(skin), SC_FILE(transfers)};

@@ -6,7 +6,7 @@
 
 #include "softcell/dma/address_space.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ls_sim/spe_group.h"
 #include "test_images.h"
 
 namespace softcell::ls_sim {
@@ -18,18 +18,21 @@ std::vector<std::string> findings_of(const std::string& kernel, const std::strin
   Findings findings;
   const KernelImage image = test_image(kernel + "_checked");
   const dma::Buffer<std::uint32_t> in(memory, "in", 1024), out(memory, "out", 1024);
-  SpePool spes(memory, {.spes = 1, .schedule = dma::parse_schedule(schedule), .findings = &findings});
-  JobBatch batch;
-  const Job job{&image, in.ea(), out.ea()};
-  spes.submit(batch, {&job, 1});
-  batch.wait();
-  EXPECT_TRUE(batch.failures().empty()) << batch.failures().front().message;
+  SpeGroup spes(memory, {.spes = 1, .schedule = dma::parse_schedule(schedule), .findings = &findings});
+  spes.start(0, image, {.spe_id = 0, .argp = in.ea().value, .envp = out.ea().value});
+  const RunResult result = spes.wait(0);
+  EXPECT_FALSE(result.fault) << result.fault->message();
   std::vector<std::string> texts;
   for (const Finding& finding : findings.list()) {
     texts.push_back(std::string(name(finding.fault.rule)) + " " + finding.fault.place + " x" +
                     std::to_string(finding.count));
   }
   return texts;
+}
+
+/// The stack of an image that runs alone.
+StackRange stack_of(const KernelImage& image) {
+  return {image.stack_top - image.sizes.stack, image.stack_top};
 }
 
 class CheckedKernels : public testing::TestWithParam<const char*> {};
@@ -63,7 +66,7 @@ class CheckerTest : public testing::Test {
   class Still final : public Engine {
    public:
     void load(const KernelImage&) override {}
-    RunResult run(const EntryArguments&, ChannelPort&, AccessObserver*) override { return {}; }
+    RunResult run(const EntryArguments&, ChannelPort&, AccessObserver*, JobObserver*) override { return {}; }
     dma::LocalStoreAddress position() const override { return at; }
     dma::LocalStoreAddress stack_pointer() const override { return {dma::kLocalStoreBytes - 512}; }
     void interrupt() override {}
@@ -74,7 +77,7 @@ class CheckerTest : public testing::Test {
   CheckerTest() {
     engine_.at = {image_.entry};
     checker_.on_load();
-    checker_.begin_run(image_);
+    checker_.begin_run(image_, stack_of(image_));
   }
 
   std::uint32_t object(const std::string& name) const {
@@ -187,11 +190,11 @@ TEST_F(CheckerTest, BytesFromOutsideCountAsWritten) {
   checker_.on_external_write({buffer_}, 4);
   load(buffer_, 4);
   EXPECT_EQ(rules(), Texts{});
-  checker_.begin_run(image_);
+  checker_.begin_run(image_, stack_of(image_));
   load(buffer_, 4);
   EXPECT_EQ(rules(), Texts{});
   checker_.on_load();
-  checker_.begin_run(image_);
+  checker_.begin_run(image_, stack_of(image_));
   load(buffer_, 4);
   EXPECT_EQ(rules(), Texts{"load-never-written"});
 }

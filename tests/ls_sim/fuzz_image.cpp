@@ -16,14 +16,15 @@ void require(bool condition) {
 
 void check(const ls_sim::KernelImage& image) {
   require(image.sizes.end <= dma::kLocalStoreBytes && image.sizes.total() <= dma::kLocalStoreBytes);
-  require(ls_sim::kEnvironmentBytes + image.bytes.size() <= image.sizes.end);
-  require(ls_sim::kEnvironmentBytes <= image.text_begin && image.text_begin <= image.entry);
+  require(image.begin >= ls_sim::kEnvironmentBytes);
+  require(image.begin + image.bytes.size() <= image.sizes.end);
+  require(image.begin <= image.text_begin && image.text_begin <= image.entry);
   require(image.entry < image.text_end && image.text_end <= image.rodata_begin);
   require(image.rodata_begin <= image.rodata_end && image.rodata_end <= image.data_begin);
   require(image.data_begin <= image.data_end);
-  require(image.data_end <= ls_sim::kEnvironmentBytes + image.bytes.size());
+  require(image.data_end <= image.begin + image.bytes.size());
   for (const ls_sim::ImageObject& object : image.objects) {
-    require(object.begin.value >= ls_sim::kEnvironmentBytes && object.begin.value < image.sizes.end);
+    require(object.begin.value >= image.begin && object.begin.value < image.sizes.end);
     require(object.bytes <= image.sizes.end - object.begin.value);
   }
 }

@@ -18,7 +18,7 @@ constexpr std::uint32_t number(Channel channel) { return static_cast<std::uint32
 class NoEngine final : public Engine {
  public:
   void load(const KernelImage&) override {}
-  RunResult run(const EntryArguments&, ChannelPort&, AccessObserver*) override { return {}; }
+  RunResult run(const EntryArguments&, ChannelPort&, AccessObserver*, JobObserver*) override { return {}; }
   dma::LocalStoreAddress position() const override { return {0x1234}; }
   dma::LocalStoreAddress stack_pointer() const override { return {0x1234}; }
   void interrupt() override {}

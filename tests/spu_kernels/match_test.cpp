@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "ppu/lattices.h"
+#include "softcell/ppu/job_system.h"
 #include "softcell/ppu/match_orchestrator.h"
 #include "softcell/ppu/shape_matching.h"
 #include "softcell/ppu/shapes.h"
@@ -41,8 +42,8 @@ class MatchRig {
         plan(lattice, half_width, masses),
         match_plan(lattice, plan),
         image_(test::kernel_image("match")),
-        pool_(memory_, options),
-        spes(memory_, pool_, image_, match_plan, bodies, bodies_per_job) {
+        jobs_(memory_, options, job_loop_),
+        spes(memory_, jobs_, image_, match_plan, bodies, bodies_per_job) {
     set(rest(), Vectors(lattice.particles.size(), Vector3d::Zero()));
     double largest = 0;
     for (const Vector3d& a : rest()) largest = std::max(largest, (a - rest()[0]).norm());
@@ -117,8 +118,8 @@ class MatchRig {
   }
 
   dma::AddressSpace memory_;
-  ls_sim::KernelImage image_;
-  ls_sim::SpePool pool_;
+  ls_sim::KernelImage image_, job_loop_ = test::kernel_image("job_loop");
+  ppu::JobSystem jobs_;
 
  public:
   ppu::MatchOrchestrator spes;
@@ -318,8 +319,8 @@ TEST(Match, RefusesABodyThatDoesNotFit) {
 
 TEST(Match, RefusesAJobWhosePlanDoesNotFit) {
   dma::AddressSpace memory;
-  ls_sim::SpePool pool(memory, {.spes = 1});
-  const ls_sim::KernelImage image = test::kernel_image("match");
+  const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), image = test::kernel_image("match");
+  ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   dma::Buffer<spu::MatchPlanHeader> plans(memory, "plans", 4);
   for (spu::MatchPlanHeader& plan : plans.span()) {
     plan.bytes = 128;
@@ -331,29 +332,29 @@ TEST(Match, RefusesAJobWhosePlanDoesNotFit) {
   plans[2].regions = 0x10000000;
   plans[3].slots = 0x05555556;  // whose bytes, as 32 bits, are few
   dma::Buffer<spu::MatchJob> descriptors(memory, "jobs", 4);
-  std::vector<ls_sim::Job> jobs;
+  ppu::JobChain chain(system, "refused", 4);
   for (std::size_t i = 0; i < 4; ++i) {
     descriptors[i].plan_ea = plans.ea(i).value;
     descriptors[i].body_count = 1;
-    jobs.push_back({&image, descriptors.ea(i), {}});
+    chain.add({system.place(image), descriptors.ea(i)});
   }
-  ls_sim::JobBatch batch;
-  pool.submit(batch, jobs);
-  batch.wait();
-  ASSERT_EQ(batch.failures().size(), 4u);
-  for (const auto& failure : batch.failures())
+  chain.kick();
+  chain.wait();
+  ASSERT_EQ(chain.failures().size(), 4u);
+  for (const auto& failure : chain.failures())
     EXPECT_NE(failure.message.find("status 1"), std::string::npos) << failure.message;
 }
 
 TEST(Match, AnEmptyJobIsDone) {
   dma::AddressSpace memory;
-  ls_sim::SpePool pool(memory, {.spes = 1});
-  const ls_sim::KernelImage image = test::kernel_image("match");
+  const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), image = test::kernel_image("match");
+  ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   dma::Buffer<spu::MatchJob> jobs(memory, "jobs", 1);
-  ls_sim::JobBatch batch;
-  pool.submit(batch, std::vector<ls_sim::Job>{{&image, jobs.ea(), {}}});
-  batch.wait();
-  EXPECT_TRUE(batch.failures().empty());
+  ppu::JobChain chain(system, "empty", 1);
+  chain.add({system.place(image), jobs.ea()});
+  chain.kick();
+  chain.wait();
+  EXPECT_TRUE(chain.failures().empty());
 }
 
 TEST(Match, ABlockOfAThousandFits) {

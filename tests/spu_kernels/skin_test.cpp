@@ -7,8 +7,8 @@
 #include <random>
 
 #include "softcell/ls_sim/findings.h"
-#include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/half.h"
+#include "softcell/ppu/job_system.h"
 #include "softcell/ppu/lattice.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_orchestrator.h"
@@ -27,8 +27,8 @@ class SkinRig {
       : lattice(ppu::voxelize(mesh, cell_size)),
         embedding(std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice))),
         image_(test::kernel_image("skin", options.findings != nullptr)),
-        pool_(memory_, options),
-        orchestrator_(memory_, pool_, image_) {
+        jobs_(memory_, options, job_loop_),
+        orchestrator_(memory_, jobs_, image_) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) positions.push_back(lattice.rest_position(i));
     orchestrator_.add(embedding, positions.size());
   }
@@ -69,8 +69,8 @@ class SkinRig {
 
  private:
   dma::AddressSpace memory_;
-  ls_sim::KernelImage image_;
-  ls_sim::SpePool pool_;
+  ls_sim::KernelImage image_, job_loop_ = test::kernel_image("job_loop");
+  ppu::JobSystem jobs_;
   ppu::SkinOrchestrator orchestrator_;
 };
 
@@ -172,7 +172,8 @@ TEST(Skin, AgreesWithItsScalarTwinToOneUnit) {
 
 TEST(Skin, RefusesAJobWithTooManyCorners) {
   dma::AddressSpace memory;
-  ls_sim::SpePool pool(memory, {.spes = 1});
+  const ls_sim::KernelImage job_loop = test::kernel_image("job_loop");
+  ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   const ls_sim::KernelImage image = test::kernel_image("skin");
   dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 3);
   jobs[0].window[0].count = spu::kSkinMaxCorners + 1;
@@ -180,36 +181,39 @@ TEST(Skin, RefusesAJobWithTooManyCorners) {
   jobs[1].window[1].count = 1;
   jobs[2].window[0].count = 0xFFFFFFFF;
   jobs[2].window[1].count = 2;
-  ls_sim::JobBatch batch;
-  pool.submit(batch, std::vector<ls_sim::Job>{
-                         {&image, jobs.ea(0), {}}, {&image, jobs.ea(1), {}}, {&image, jobs.ea(2), {}}});
+  ppu::JobChain batch(system, "refused", 3);
+  for (std::size_t i = 0; i < 3; ++i) batch.add({system.place(image), jobs.ea(i)});
+  batch.kick();
   batch.wait();
-  ASSERT_EQ(batch.failures().size(), 3u);
-  for (const auto& failure : batch.failures())
-    EXPECT_NE(failure.message.find("status 1"), std::string::npos) << failure.message;
+  ASSERT_EQ(batch.failures().size(), 1u);
+  const std::string& message = batch.failures()[0].message;
+  EXPECT_NE(message.find("status 1, and 2 more jobs failed"), std::string::npos) << message;
 }
 
 TEST(Skin, AnEmptyJobIsDone) {
   dma::AddressSpace memory;
-  ls_sim::SpePool pool(memory, {.spes = 1});
+  const ls_sim::KernelImage job_loop = test::kernel_image("job_loop");
+  ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   const ls_sim::KernelImage image = test::kernel_image("skin");
   dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 1);
-  ls_sim::JobBatch batch;
-  pool.submit(batch, std::vector<ls_sim::Job>{{&image, jobs.ea(), {}}});
+  ppu::JobChain batch(system, "empty", 1);
+  batch.add({system.place(image), jobs.ea()});
+  batch.kick();
   batch.wait();
   EXPECT_TRUE(batch.failures().empty());
 }
 
 TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
   dma::AddressSpace memory;
-  ls_sim::SpePool pool(memory, {.spes = 1});
+  const ls_sim::KernelImage job_loop = test::kernel_image("job_loop");
+  ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   ls_sim::KernelImage broken = test::kernel_image("skin");
   broken.bytes[broken.entry - ls_sim::kEnvironmentBytes] = std::byte{0x0F};  // ud2
   broken.bytes[broken.entry - ls_sim::kEnvironmentBytes + 1] = std::byte{0x0B};
   const ppu::TriangleMesh mesh = ppu::make_sphere(0.7f, 8);
   const ppu::Lattice lattice = ppu::voxelize(mesh, 0.35f);
   const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
-  ppu::SkinOrchestrator orchestrator(memory, pool, broken);
+  ppu::SkinOrchestrator orchestrator(memory, system, broken);
   const std::vector<spu::SkinCorner> corners(lattice.particles.size());
   orchestrator.add(embedding, corners.size());
   const std::span<const spu::SkinCorner> all(corners);

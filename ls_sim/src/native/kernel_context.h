@@ -22,7 +22,9 @@ struct Environment {
   std::uint64_t gate = 0;
   std::uint32_t mfc_lsa = 0, mfc_eah = 0, mfc_eal = 0, mfc_size = 0, mfc_tag = 0, mfc_tag_mask = 0;
   std::uint32_t access_bytes = 0, access_instruction = 0, access_stack_pointer = 0;
-  std::uint32_t reserved[21] = {};
+  std::uint32_t padding = 0;
+  std::uint64_t job_image_ea = 0, job_ea = 0;
+  std::uint32_t reserved[16] = {};
 };
 static_assert(sizeof(Environment) == 128);
 
@@ -35,6 +37,7 @@ enum class Operation : std::uint32_t {
   kHalt = 4,
   kTagStatus = 5,
   kAccess = 6,
+  kJob = 7,
   kFault = 0xFF'FFFF
 };
 

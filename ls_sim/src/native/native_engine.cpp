@@ -70,14 +70,15 @@ class NativeEngine final : public Engine {
     native::Environment environment;
     environment.gate = reinterpret_cast<std::uint64_t>(&native::gate);
     std::memcpy(base, &environment, sizeof environment);
-    std::byte* const bss = std::copy(image.bytes.begin(), image.bytes.end(), base + kEnvironmentBytes);
+    std::fill(base + kEnvironmentBytes, base + dma::kLocalStoreBytes, kFiller);
+    std::byte* const bss = std::copy(image.bytes.begin(), image.bytes.end(), base + image.begin);
     std::fill(bss, base + image.sizes.end, std::byte{0});
-    std::fill(base + image.sizes.end, base + dma::kLocalStoreBytes, kFiller);
     if (debugger_wanted_) debugger_symbols_ = std::make_unique<native::DebuggerSymbols>(image, base);
     data_as_linked_ = true;
   }
 
-  RunResult run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses) override;
+  RunResult run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses,
+                JobObserver* jobs) override;
   dma::LocalStoreAddress position() const override {
     return {static_cast<std::uint32_t>(context_.caller - arena()) & dma::kLocalStoreMask};
   }
@@ -94,12 +95,19 @@ class NativeEngine final : public Engine {
   const native::Environment& environment() const {
     return *reinterpret_cast<const native::Environment*>(local_store_.base());
   }
-  std::uint32_t stack_limit() const { return dma::kLocalStoreBytes - image_->sizes.stack; }
+  std::uint32_t stack_limit() const {
+    return image_->stack_top - image_->sizes.stack - (job_image_ == nullptr ? 0 : job_image_->sizes.stack);
+  }
+  std::uint32_t free_begin() const {
+    const KernelImage& lowest = job_image_ == nullptr ? *image_ : *job_image_;
+    return lowest.begin < stack_limit() ? lowest.sizes.end : kEnvironmentBytes;
+  }
 
   void prepare(const EntryArguments& arguments);
   void run_kernel();
   bool serve_request() noexcept;
   std::optional<RunResult> answer();
+  std::optional<dma::Fault> note_job();
   Access requested_access() const;
   ChannelReply answer_channel();
   std::optional<dma::Fault> check_stack() const;
@@ -116,12 +124,15 @@ class NativeEngine final : public Engine {
   LocalStore& local_store_;
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
+  const KernelImage* job_image_ = nullptr;  ///< that image_ has called
   const bool debugger_wanted_ = native::debugger_wanted();
   std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
-  bool data_as_linked_ = false;                                ///< nothing has run since load()
+  std::unique_ptr<native::DebuggerSymbols> debugger_job_symbols_;
+  bool data_as_linked_ = false;  ///< nothing has run since load()
   KernelContext context_;
-  ChannelPort* channels_ = nullptr;  // these four: of the run
+  ChannelPort* channels_ = nullptr;  // these five: of the run
   AccessObserver* accesses_ = nullptr;
+  JobObserver* jobs_ = nullptr;
   RunResult result_;
   std::exception_ptr failure_;
   std::uint32_t tag_mask_ = 0;  ///< as last written to the channel; the kernel's is in the environment
@@ -134,12 +145,13 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   // The initialised data start every run as they were linked, so that no job sees what another left. Right
   // after load() they are so already, and others may have written to them since.
   if (!std::exchange(data_as_linked_, false)) {
-    const std::uint32_t data_offset = image_->data_begin - kEnvironmentBytes;
+    const std::uint32_t data_offset = image_->data_begin - image_->begin;
     std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
                 local_store_.base() + image_->data_begin);
   }
   auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
   environment.mfc_tag_mask = tag_mask_ = 0;
+  job_image_ = nullptr;
   context_.entry = arena() + image_->entry;
   context_.arguments[0] = arguments.spe_id;
   context_.arguments[1] = arguments.argp;
@@ -149,7 +161,7 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
 
 /// Comes back when the run has ended; what the kernel asks for meanwhile is served by serve_request().
 void NativeEngine::run_kernel() {
-  const auto kernel = boost::context::detail::make_fcontext(local_store_.base() + dma::kLocalStoreBytes,
+  const auto kernel = boost::context::detail::make_fcontext(local_store_.base() + image_->stack_top,
                                                             image_->sizes.stack, native::kernel_start);
   context_.in_kernel = 1;
   std::atomic_signal_fence(std::memory_order_seq_cst);
@@ -159,8 +171,8 @@ void NativeEngine::run_kernel() {
   if (context_.operation == Operation::kFault) result_ = {0, classify_trap()};
 }
 
-RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels,
-                            AccessObserver* accesses) {
+RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses,
+                            JobObserver* jobs) {
   static thread_local const native::SignalStack signal_stack;  // as long as the thread: a run takes less time
   prepare(arguments);
   native::current_context() = &context_;
@@ -171,6 +183,7 @@ RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channe
   }
   channels_ = &channels;
   accesses_ = accesses;
+  jobs_ = jobs;
   run_kernel();
   {
     const std::scoped_lock lock(running_mutex_);
@@ -220,9 +233,38 @@ std::optional<RunResult> NativeEngine::answer() {
     if (accesses_ != nullptr) accesses_->on_access(requested_access());
     return std::nullopt;
   }
+  if (context_.operation == Operation::kJob) {
+    if (auto overflow = note_job()) return RunResult{0, std::move(overflow)};
+    return std::nullopt;
+  }
   ChannelReply reply = answer_channel();
   if (reply.fault) return RunResult{0, std::move(*reply.fault)};
   context_.reply = reply.value;
+  return std::nullopt;
+}
+
+/// A job has its own image at the bottom and its stack below its caller's; what it leaves behind is as a
+/// kernel's own.
+std::optional<dma::Fault> NativeEngine::note_job() {
+  if (jobs_ == nullptr) return std::nullopt;
+  if (context_.channel == 0) {
+    if (job_image_ != nullptr && written_below_stack())
+      return stack_overflow("bytes below the stack were written");
+    job_image_ = nullptr;
+    jobs_->on_job_end();
+    return std::nullopt;
+  }
+  const native::Environment& environment = this->environment();
+  const KernelImage* const last = job_image_;
+  job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
+  tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
+  if (job_image_ == nullptr) return std::nullopt;
+  if (debugger_wanted_ && job_image_ != last) {
+    debugger_job_symbols_ = std::make_unique<native::DebuggerSymbols>(*job_image_, local_store_.base());
+  }
+  const std::uint32_t end = stack_limit();
+  std::fill(local_store_.base() + std::max(free_begin(), end - std::min(end, kCanaryBytes)),
+            local_store_.base() + end, kFiller);
   return std::nullopt;
 }
 
@@ -268,7 +310,9 @@ ChannelReply NativeEngine::answer_channel() {
 }
 
 dma::Fault NativeEngine::stack_overflow(std::string detail) const {
-  return fault(dma::Rule::kStackOverflow, std::move(detail) + "; " + describe_stack(image_->sizes));
+  return fault(
+      dma::Rule::kStackOverflow,
+      std::move(detail) + "; " + describe_stack((job_image_ == nullptr ? image_ : job_image_)->sizes));
 }
 
 std::optional<dma::Fault> NativeEngine::check_stack() const {
@@ -283,7 +327,7 @@ std::optional<dma::Fault> NativeEngine::check_stack() const {
 
 bool NativeEngine::written_below_stack() const {
   const std::uint32_t end = stack_limit();
-  const std::uint32_t begin = std::max(image_->sizes.end, end - std::min(end, kCanaryBytes));
+  const std::uint32_t begin = std::max(free_begin(), end - std::min(end, kCanaryBytes));
   const std::byte* const base = local_store_.base();
   return std::any_of(base + begin, base + end, [](std::byte b) { return b != kFiller; });
 }
@@ -341,9 +385,9 @@ dma::Fault NativeEngine::classify_trap() const {
 std::uint32_t NativeEngine::stack_high_water() const {
   if (image_ == nullptr) return 0;
   const std::byte* const base = local_store_.base();
-  const std::byte* const top = base + dma::kLocalStoreBytes;
+  const std::byte* const top = base + image_->stack_top;
   const std::byte* const used =
-      std::find_if(base + image_->sizes.end, top, [](std::byte b) { return b != kFiller; });
+      std::find_if(base + free_begin(), top, [](std::byte b) { return b != kFiller; });
   return static_cast<std::uint32_t>(top - used);
 }
 

@@ -18,14 +18,17 @@ struct Environment {
   // Of a checked kernel's load or store, besides its address (see sdk/checked/report_accesses.cpp).
   uint32_t access_bytes;
   uint32_t access_instruction, access_stack_pointer;  ///< local-store addresses
-  uint32_t reserved[21];
+  uint32_t padding;
+  // Of a job that a kernel is about to call (see mark_job_begin()).
+  uint64_t job_image_ea, job_ea;
+  uint32_t reserved[16];
 };
 static_assert(sizeof(Environment) == 128, "what the link script leaves free");
 
 /// What is asked of the gate: operation = kind << 8 | channel. `value` is what is written, or the stop code.
 /// kTagStatus writes `value` to MFC_WrTagUpdate and then reads MFC_RdTagStat: one call for each wait.
 /// kAccess, with 1 as the channel for a store, reports a load or store of a checked kernel at local-store
-/// address `value`.
+/// address `value`. kJob says that a job begins (1 as the channel) or has ended.
 enum GateKind : uint32_t {
   kRead = 0,
   kWrite = 1,
@@ -33,7 +36,8 @@ enum GateKind : uint32_t {
   kStop = 3,
   kHalt = 4,
   kTagStatus = 5,
-  kAccess = 6
+  kAccess = 6,
+  kJob = 7
 };
 
 constexpr uintptr_t kLocalStoreMask = 0x3FFFF;
@@ -62,5 +66,14 @@ __attribute__((always_inline)) inline uint32_t call_gate(GateKind kind, uint32_t
   asm volatile("" ::: "memory");
   return reply;
 }
+
+/// Tells the emulator, for its messages and statistics, which job begins or has ended inside a kernel that
+/// runs many.
+__attribute__((always_inline)) inline void mark_job_begin(uint64_t image_ea, uint64_t job_ea) {
+  environment().job_image_ea = image_ea;
+  environment().job_ea = job_ea;
+  call_gate(kJob, 1, 0);
+}
+__attribute__((always_inline)) inline void mark_job_end() { call_gate(kJob, 0, 0); }
 
 }  // namespace softcell_sdk

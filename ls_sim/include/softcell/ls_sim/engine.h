@@ -24,6 +24,7 @@ struct EntryArguments {
 struct RunResult {
   std::uint32_t stop_code = 0;  ///< 0x2000 + status for a normal end; 0..0x3FFF
   std::optional<dma::Fault> fault;
+  dma::EffectiveAddress job = {};  ///< which job was under way when a kernel that runs many ended
 
   static constexpr std::uint32_t kNormalEnd = 0x2000;  // [libspe2, newlib] documented
   bool ended_normally() const { return !fault && (stop_code & ~0xFFu) == kNormalEnd; }
@@ -47,6 +48,17 @@ class AccessObserver {
   virtual void on_access(const Access& access) = 0;
 };
 
+/// Sees where jobs begin and end inside a kernel that runs many. Called by the thread that runs the SPE.
+class JobObserver {
+ public:
+  virtual ~JobObserver() = default;
+
+  /// @param image  where the job's image lies in main storage. @param job  what tells it from others.
+  /// @return  the image; null when nobody knows it.
+  virtual const KernelImage* on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) = 0;
+  virtual void on_job_end() = 0;
+};
+
 /// One engine belongs to one SPE and is called by that SPE's thread, except for interrupt().
 class Engine {
  public:
@@ -58,8 +70,9 @@ class Engine {
 
   /// Runs the resident image once. The initialised data are as linked; bss is as the last run left it.
   /// @param accesses  told of loads and stores of a checked image; may be null.
+  /// @param jobs      told of jobs inside the run; may be null.
   virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels,
-                        AccessObserver* accesses = nullptr) = 0;
+                        AccessObserver* accesses = nullptr, JobObserver* jobs = nullptr) = 0;
 
   /// Where the kernel is: an address within its last call of a channel, or the instruction that faulted;
   /// during a channel operation the one that waits for it.

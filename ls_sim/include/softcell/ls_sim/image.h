@@ -23,8 +23,9 @@ struct ImageSizes {
   std::uint32_t stack = 0;   ///< declared, at the top of the local store
   std::uint32_t budget = 0;  ///< declared: the most that total() may be
 
-  std::uint32_t end = 0;  ///< local-store address behind bss: environment, alignment and all sections
-  std::uint32_t total() const { return end + stack; }
+  std::uint32_t from = 0;  ///< local-store address where it begins, the environment included
+  std::uint32_t end = 0;   ///< local-store address behind bss: environment, alignment and all sections
+  std::uint32_t total() const { return end - from + stack; }
 };
 
 /// A variable of an image, from its symbol table.
@@ -36,7 +37,10 @@ struct ImageObject {
 
 struct KernelImage {
   std::string name;
-  std::vector<std::byte> bytes;  ///< from kEnvironmentBytes up to the end of data; bss follows, zeroed
+  std::uint32_t begin = kEnvironmentBytes;          ///< local-store address of the first byte
+  std::uint32_t stack_top = dma::kLocalStoreBytes;  ///< where its stack begins, to grow down; `begin` where
+                                                    ///< that is not the bottom
+  std::vector<std::byte> bytes;  ///< from `begin` up to the end of data; bss follows, zeroed
   std::uint32_t data_begin = 0;  ///< local-store address of the writable initialised data
   std::uint32_t data_end = 0;
   std::uint32_t entry = 0;                         ///< local-store address

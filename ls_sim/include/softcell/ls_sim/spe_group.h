@@ -1,6 +1,6 @@
 #pragma once
 // Up to six SPEs that the PPU side starts one by one, and what it sees of each: mailboxes, signals, proxy
-// DMA, local store. For jobs that any SPE may take, see SpePool.
+// DMA, local store. For jobs that any SPE may take, see ppu/job_system.h.
 //
 //   SpeGroup spes(memory, {.spes = 2});
 //   spes.start(0, image, {.spe_id = 0, .argp = data.ea().value});
@@ -15,6 +15,7 @@
 // at a mailbox or a status in vain; so a run is the same every time if one thread acts as the PPU.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -71,7 +72,8 @@ class ProblemState {
 
 class SpeGroup {
  public:
-  /// Maps the local stores into `memory`. @throws std::invalid_argument, std::runtime_error as SpePool.
+  /// Maps the local stores into `memory`. @throws std::invalid_argument, std::runtime_error options out of
+  /// range; a host without AVX2 and FMA.
   SpeGroup(dma::AddressSpace& memory, const SpeOptions& options);
 
   /// Stops what still runs.
@@ -97,6 +99,19 @@ class SpeGroup {
     start(spe);
   }
 
+  /// prepare() and start() for a kernel that runs for as long as it likes and calls others, jobs, at whose
+  /// begin and end it makes the marks of spu_kernels/common/job_mark.h: what has a deadline, a share in the
+  /// statistics and a place in the trace are the jobs. It need not be a checked image for its jobs to be
+  /// checked.
+  void start_resident(int spe, const KernelImage& image, const EntryArguments& arguments);
+
+  /// Names the image of jobs whose bytes lie at `ea`; it must outlive the group.
+  void register_job_image(dma::EffectiveAddress ea, const KernelImage& image);
+
+  /// Calls `listener` at the end of each run, on a thread of the group's, with no lock held; it may start the
+  /// SPE anew. To be set before the first start.
+  void on_end(std::function<void(int spe, const RunResult&)> listener);
+
   /// Waits until the run has ended; it always does, by its end, a fault, a deadlock or the deadline. Asked
   /// again, gives the same answer.
   /// @throws std::logic_error  the SPE was never started.
@@ -104,7 +119,7 @@ class SpeGroup {
 
   ProblemState& problem_state(int spe);
 
-  /// Exact when the SPE does not run, else as of its last run.
+  /// Exact when the SPE does not run, else as of its last run or job.
   SpeStatistics statistics(int spe) const;
 
   /// While one of these lives, somebody outside may still write to a mailbox, a signal or memory, and SPEs

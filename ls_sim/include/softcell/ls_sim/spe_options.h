@@ -1,5 +1,5 @@
 #pragma once
-// How SPEs run: shared by a pool of jobs (SpePool) and by SPEs started one by one (SpeGroup).
+// How SPEs run: shared by job systems and by SPEs started one by one (SpeGroup).
 
 #include <chrono>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 // Steps the bodies of one model on the SPEs: shape matching and damping by the kernel `match`.
 //
-//     MatchOrchestrator matching(memory, pool, image, plan, 150);   // 150 bodies of one model
+//     MatchOrchestrator matching(memory, jobs, image, plan, 150);   // 150 bodies of one model
 //     matching.positions(b)[i] = ..., matching.velocities(b)[i] = ...
 //     matching.step({.pull = alpha / h, .damping = k});
 //     ... = matching.velocities(b)[i]
@@ -16,7 +16,7 @@
 #include "match_job.h"
 #include "skin_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ls_sim/spe_pool.h"
+#include "softcell/ppu/job_system.h"
 #include "softcell/ppu/match_plan.h"
 
 namespace softcell::ppu {
@@ -33,14 +33,11 @@ class MatchOrchestrator {
  public:
   using Vector = spu::SkinCorner;  ///< x y z 0: what the kernels read
 
-  /// `memory`, `pool` and `match` must outlive the orchestrator; `match` is the image of the kernel match.
+  /// `memory`, `jobs` and `match` must outlive the orchestrator; `match` is the image of the kernel match.
   /// @param bodies_per_job  a job fetches the plan once and steps so many bodies
   /// @throws std::runtime_error  main memory is full.
-  MatchOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool& pool, const ls_sim::KernelImage& match,
+  MatchOrchestrator(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match,
                     const MatchPlan& plan, std::size_t bodies, std::size_t bodies_per_job = 16);
-  ~MatchOrchestrator();
-  MatchOrchestrator(const MatchOrchestrator&) = delete;
-  MatchOrchestrator& operator=(const MatchOrchestrator&) = delete;
 
   std::size_t bodies() const { return bodies_.size(); }
   std::span<Vector> positions(std::size_t body);   ///< metres; the step does not change them
@@ -51,7 +48,8 @@ class MatchOrchestrator {
   /// One step of all bodies: kick() and wait().
   void step(const MatchSettings& settings);
 
-  /// Starts a step. Nothing may be read or changed before wait() returns.
+  /// Starts a step. @pre the one before has been waited for. Nothing may be read or changed before wait()
+  /// returns.
   /// @throws std::invalid_argument  settings out of their ranges.
   void kick(const MatchSettings& settings);
 
@@ -67,7 +65,6 @@ class MatchOrchestrator {
   void reset(std::size_t body);
 
  private:
-  ls_sim::SpePool& pool_;
   std::uint32_t particles_, region_groups_;
   std::size_t vector_stride_, rotation_stride_;  // elements of one body, in whole lines
   dma::Buffer<std::byte> plan_;
@@ -76,9 +73,8 @@ class MatchOrchestrator {
   dma::Buffer<spu::MatchResult> results_;
   dma::Buffer<spu::MatchBody> bodies_;
   dma::Buffer<spu::MatchJob> descriptors_;
-  std::vector<ls_sim::Job> jobs_;
-  ls_sim::JobBatch batch_;
   bool in_flight_ = false;
+  JobChain chain_;  ///< last, so that it has ended before what its jobs work on goes
 };
 
 }  // namespace softcell::ppu

@@ -15,8 +15,8 @@
 
 #include "skin_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ls_sim/spe_pool.h"
 #include "softcell/ppu/embedding.h"
+#include "softcell/ppu/job_system.h"
 
 namespace softcell::ppu {
 
@@ -31,7 +31,7 @@ struct SkinnedBody {
 class SkinOrchestrator {
  public:
   /// All three must outlive the orchestrator. `skin` is the image of the kernel skin.
-  SkinOrchestrator(dma::AddressSpace& memory, ls_sim::SpePool& pool, const ls_sim::KernelImage& skin);
+  SkinOrchestrator(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& skin);
   ~SkinOrchestrator();
   SkinOrchestrator(const SkinOrchestrator&) = delete;
   SkinOrchestrator& operator=(const SkinOrchestrator&) = delete;
@@ -57,23 +57,26 @@ class SkinOrchestrator {
   SkinnedBody shown(std::size_t body) const;
 
   std::uint64_t late_frames() const { return late_frames_; }
-  std::size_t jobs_per_frame() const { return jobs_.size(); }
+  std::size_t jobs_per_frame() const { return jobs_per_frame_; }
   std::size_t vertices_per_frame() const { return vertices_; }
 
  private:
   struct Model;  // an embedding in main memory
   struct Body;   // a body's two halves
+  struct Frame;  // a chain for each half
 
+  void make_frame();
+  JobChain* chain_under_way();
   bool collect();
   void write_half(Body& body, std::span<const spu::SkinCorner> positions);
 
   dma::AddressSpace& memory_;
-  ls_sim::SpePool& pool_;
-  const ls_sim::KernelImage& skin_;
+  JobSystem& system_;
+  JobImage skin_;
   std::vector<std::unique_ptr<Model>> models_;
   std::vector<std::unique_ptr<Body>> bodies_;
-  std::vector<ls_sim::Job> jobs_;  // of one frame; rewritten by each kick
-  ls_sim::JobBatch batch_;
+  std::unique_ptr<Frame> frame_;  // what the SPEs work off; made when the first frame after an add() begins
+  std::size_t jobs_per_frame_ = 0;
   bool in_flight_ = false;
   int working_ = 0;  // the half that the SPEs write, or wrote last
   int shown_ = -1;   // the half that is complete

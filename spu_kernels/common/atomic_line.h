@@ -1,0 +1,33 @@
+#pragma once
+// Atomic changes of one 128-byte line of main storage.
+//
+//   do {
+//     load_and_reserve(&line, ea);
+//     line.count += 1;
+//   } while (!store_conditional(&line, ea));  // lost to somebody else: again with what is there now
+
+#include <spu_mfcio.h>
+#include <stdint.h>
+
+namespace softcell::spu {
+
+/// getllar: the line at `ea` (a multiple of 128, as is the address of `line`), reserved for this SPE until
+/// anybody writes to it.
+inline void load_and_reserve(void* line, uint64_t ea) {
+  mfc_getllar(line, ea, 0, 0);
+  mfc_read_atomic_status();
+}
+
+/// putllc: stores the line if the reservation still stands, and says whether it did.
+inline bool store_conditional(void* line, uint64_t ea) {
+  mfc_putllc(line, ea, 0, 0);
+  return (mfc_read_atomic_status() & MFC_PUTLLC_STATUS) == 0;
+}
+
+/// putlluc: stores the line whoever has reserved it.
+inline void store_line(void* line, uint64_t ea) {
+  mfc_putlluc(line, ea, 0, 0);
+  mfc_read_atomic_status();
+}
+
+}  // namespace softcell::spu

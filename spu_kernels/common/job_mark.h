@@ -1,0 +1,21 @@
+#pragma once
+// Tells an emulator where jobs begin and end inside a kernel that runs many, for its messages, statistics and
+// traces. On the hardware these are nothing.
+
+#include <stdint.h>
+
+#ifdef __SPU__
+namespace softcell::spu {
+inline void mark_job_begin(uint64_t, uint64_t) {}
+inline void mark_job_end() {}
+}  // namespace softcell::spu
+#else
+#include "softcell_environment.h"  // of the sdk
+namespace softcell::spu {
+/// @param image_ea  of the image that runs, @param job_ea  of what tells this job from others
+inline void mark_job_begin(uint64_t image_ea, uint64_t job_ea) {
+  softcell_sdk::mark_job_begin(image_ea, job_ea);
+}
+inline void mark_job_end() { softcell_sdk::mark_job_end(); }
+}  // namespace softcell::spu
+#endif

@@ -1,0 +1,161 @@
+// job_loop: resident on every SPE. Takes jobs from the chains of a board in main memory, fetches their images
+// when they are not resident, calls them, and sleeps when there is nothing to do. The PPU has no part in it.
+//
+//   array       direction   element                     count    alignment   DMA
+//   board       in, out     JobBoard                    1        128         getllar, putllc
+//   chain       in, out     ChainState                  1        128         getllar, putllc
+//   done        out         ChainDone                   1        128         putlluc
+//   job         in          JobDescriptor               1        128         one get
+//   image       in          bytes from kJobAreaBegin    any      128         gets of up to 16 KB, unless
+//   resident
+//
+//   look at the board -> for each chain: take a job -> image -> call -> count it finished -> take the next
+//   ...
+//         ^                                                                                     | none left
+//         +---- the board's line was written ---- sleep with the board reserved <--------------+
+//
+// argp: effective address of the JobBoard. Budget: 5 KB; it lies at the top of the local store with its
+// stack below it, so that jobs have the rest, as if they were alone.
+//
+// Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
+
+#include <spu_intrinsics.h>
+#include <spu_mfcio.h>
+
+#include "common/atomic_line.h"
+#include "common/dma.h"
+#include "common/job_mark.h"
+#include "job_chain.h"
+
+namespace softcell::spu {
+namespace {
+
+enum Tag : uint32_t { kTagImage = 0 };
+constexpr uint32_t kAllTags = 0xFFFFFFFFu;
+constexpr uintptr_t kLocalStoreMask = 0x3FFFF;
+
+struct alignas(128) LocalStoreMap {
+  JobBoard board;
+  ChainState chain;
+  ChainDone done;
+  JobDescriptor job;
+};
+LocalStoreMap ls;
+
+/// Whose image lies in the job area; 0: nobody's.
+uint64_t resident_image = 0;
+
+/// The pointer to a local-store address. On an SPU a pointer is that address; elsewhere the local store has a
+/// base.
+char* local_store(uint32_t address) {
+  return reinterpret_cast<char*>((reinterpret_cast<uintptr_t>(&ls) & ~kLocalStoreMask) | address);
+}
+
+/// The board has changed: whoever sleeps looks again.
+void wake_all(uint64_t board_ea) {
+  do {
+    load_and_reserve(&ls.board, board_ea);
+    ++ls.board.generation;
+  } while (!store_conditional(&ls.board, board_ea));
+}
+
+/// Takes a job of the chain that may begin now. @return false when there is none.
+bool take(uint64_t chain_ea, uint32_t& job) {
+  do {
+    load_and_reserve(&ls.chain, chain_ea);
+    if (ls.chain.next == ls.chain.stage_end) return false;
+    job = ls.chain.next++;
+  } while (!store_conditional(&ls.chain, chain_ea));
+  return true;
+}
+
+/// Initialised data begin each run as they were linked; the rest of a resident image stays.
+void fetch_image() {
+  const JobDescriptor& job = ls.job;
+  if (resident_image == job.image_ea) {
+    get_large(local_store(job.data_begin), job.image_ea + (job.data_begin - kJobAreaBegin), job.data_bytes,
+              kTagImage);
+  } else {
+    get_large(local_store(kJobAreaBegin), job.image_ea, job.image_bytes, kTagImage);
+    resident_image = job.image_ea;
+  }
+  wait_for_tag(kTagImage);
+  spu_sync_c();  // the instructions just written are what is executed
+}
+
+/// Runs one job. @return the status of its main; all its transfers are complete.
+uint32_t run(uint64_t spe_id, uint64_t descriptor_ea) {
+  mfc_get(&ls.job, descriptor_ea, sizeof ls.job, kTagImage, 0, 0);
+  wait_for_tag(kTagImage);
+  fetch_image();
+  using JobMain = int(uint64_t, uint64_t, uint64_t);
+  JobMain* const job_main = reinterpret_cast<JobMain*>(local_store(ls.job.entry));
+  mark_job_begin(ls.job.image_ea, descriptor_ea);
+  const int status = job_main(spe_id, ls.job.argp, ls.job.envp);
+  mark_job_end();
+  wait_for_tags(kAllTags);
+  return static_cast<uint32_t>(status) & 0xFF;
+}
+
+/// Counts a job as finished. The last one of a stage opens the next, or ends the chain.
+void finish(uint64_t board_ea, uint64_t chain_ea, uint32_t job, uint32_t status) {
+  bool stage_finished = false, chain_ended = false;
+  do {
+    load_and_reserve(&ls.chain, chain_ea);
+    ChainState& chain = ls.chain;
+    ++chain.finished;
+    if (status != 0) {
+      if (chain.failed == 0 || job < chain.failed_job) {
+        chain.failed_job = job;
+        chain.failed_status = status;
+      }
+      ++chain.failed;
+    }
+    stage_finished = chain.finished == chain.stage_end;
+    chain_ended = stage_finished && (ls.job.next_stage_end == 0 || chain.failed != 0);
+    if (stage_finished && !chain_ended) chain.stage_end = ls.job.next_stage_end;
+  } while (!store_conditional(&ls.chain, chain_ea));
+  if (chain_ended) {
+    ls.done.kick = ls.chain.kick;
+    store_line(&ls.done, ls.chain.done_ea);
+  } else if (stage_finished) {
+    wake_all(board_ea);
+  }
+}
+
+/// Works off what the board offers, the most urgent chain first. @return false when there was nothing.
+bool work(uint64_t spe_id, uint64_t board_ea) {
+  for (uint32_t c = 0; c < kMaxChains; ++c) {
+    const uint64_t chain_ea = ls.board.chains[c];
+    uint32_t job = 0;
+    if (chain_ea == 0 || !take(chain_ea, job)) continue;
+    const uint32_t status = run(spe_id, ls.chain.descriptors_ea + uint64_t{job} * sizeof(JobDescriptor));
+    finish(board_ea, chain_ea, job, status);
+    return true;
+  }
+  return false;
+}
+
+/// Sleeps until the board is no longer of this generation. With its line reserved no change can be missed:
+/// one before the reservation shows in the generation, one after it loses the reservation.
+void sleep_while(uint32_t generation, uint64_t board_ea) {
+  spu_write_event_mask(MFC_LLR_LOST_EVENT);
+  spu_write_event_ack(MFC_LLR_LOST_EVENT);
+  load_and_reserve(&ls.board, board_ea);
+  if (ls.board.generation == generation) spu_read_event_status();
+  spu_write_event_ack(MFC_LLR_LOST_EVENT);
+}
+
+}  // namespace
+}  // namespace softcell::spu
+
+int main(uint64_t spe_id, uint64_t argp, uint64_t) {
+  using namespace softcell::spu;
+  resident_image = 0;
+  for (;;) {
+    load_and_reserve(&ls.board, argp);
+    if (ls.board.stop != 0) return 0;
+    const uint32_t generation = ls.board.generation;
+    if (!work(spe_id, argp)) sleep_while(generation, argp);
+  }
+}

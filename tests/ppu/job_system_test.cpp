@@ -1,0 +1,415 @@
+#include "softcell/ppu/job_system.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <thread>
+
+#include "softcell/dma/buffer.h"
+#include "softcell/ls_sim/findings.h"
+#include "softcell/spu_kernels/images.h"
+#include "test_images.h"
+
+namespace softcell::ppu {
+namespace {
+
+using namespace std::chrono_literals;
+using ls_sim::KernelImage;
+using ls_sim::SpeOptions;
+using Words = std::array<std::uint32_t, 32>;
+
+/// What the kernel mixes is given.
+struct alignas(128) MixJob {
+  std::uint64_t left, right, out, pad[13];
+};
+
+KernelImage load_job_loop() {
+  for (const spu_kernels::ImageFile& file : spu_kernels::image_files()) {
+    if (file.name == "job_loop") return ls_sim::load_image(file.name, file.elf);
+  }
+  throw std::logic_error("no job_loop");
+}
+
+void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
+  }
+}
+
+class JobSystemTest : public testing::Test {
+ protected:
+  dma::Buffer<Words> make_lines(std::size_t count) {
+    dma::Buffer<Words> lines(memory_, "lines", count);
+    for (std::size_t i = 0; i < count; ++i) lines[i].fill(static_cast<std::uint32_t>(i));
+    return lines;
+  }
+
+  void expect_no_failures(const JobChain& chain) {
+    for (const JobFailure& failure : chain.failures()) ADD_FAILURE() << failure.message;
+  }
+
+  dma::AddressSpace memory_;
+  const KernelImage loop_ = load_job_loop();
+  const KernelImage adds_ = test_image("echo_arguments");
+};
+
+TEST_F(JobSystemTest, RunsEveryJobOnceForAnyNumberOfSpesAndAnySchedule) {
+  for (int spes = 1; spes <= 6; ++spes) {
+    for (const char* schedule : {"eager", "lazy", "random:1", "random:2"}) {
+      JobSystem jobs(memory_, {.spes = spes, .schedule = dma::parse_schedule(schedule)}, loop_);
+      auto lines = make_lines(100);
+      const JobImage adds = jobs.place(adds_);
+      JobChain chain(jobs, "adds", 100);
+      for (std::size_t i = 0; i < 100; ++i) chain.add({adds, lines.ea(i)});
+      chain.kick();
+      chain.wait();
+      expect_no_failures(chain);
+      for (std::size_t i = 0; i < 100; ++i) {
+        for (const std::uint32_t word : lines[i]) ASSERT_EQ(word, i + 1) << spes << " " << schedule;
+      }
+      std::uint64_t run = 0;
+      for (const ls_sim::SpeStatistics& s : jobs.statistics()) run += s.jobs;
+      EXPECT_EQ(run, 100u);
+    }
+  }
+}
+
+/// Lines that are mixed with their neighbours, stage after stage.
+std::vector<Words> mix(dma::AddressSpace& memory, const KernelImage& loop, const SpeOptions& options) {
+  constexpr std::size_t kLines = 13, kStages = 20;
+  const KernelImage image = test_image(options.findings != nullptr ? "mixes_checked" : "mixes");
+  JobSystem jobs(memory, options, loop);
+  const JobImage mixes = jobs.place(image);
+  std::array<dma::Buffer<Words>, 2> lines{dma::Buffer<Words>(memory, "even", kLines),
+                                          dma::Buffer<Words>(memory, "odd", kLines)};
+  for (std::size_t i = 0; i < kLines; ++i) lines[0][i].fill(static_cast<std::uint32_t>(i * i + 1));
+  dma::Buffer<MixJob> mix_jobs(memory, "jobs", kLines * kStages);
+  JobChain chain(jobs, "mix", kLines * kStages);
+  for (std::size_t stage = 0; stage < kStages; ++stage) {
+    const auto& from = lines[stage % 2];
+    for (std::size_t i = 0; i < kLines; ++i) {
+      mix_jobs[chain.size()] = {
+          from.ea(i).value, from.ea((i + 1) % kLines).value, lines[1 - stage % 2].ea(i).value, {}};
+      chain.add({mixes, mix_jobs.ea(chain.size())});
+    }
+    chain.sync();
+  }
+  chain.kick();
+  chain.wait();
+  for (const JobFailure& failure : chain.failures()) ADD_FAILURE() << failure.message;
+  return {lines[0].span().begin(), lines[0].span().end()};
+}
+
+TEST_F(JobSystemTest, AStageBeginsWhenTheOneBeforeHasEnded) {
+  std::vector<std::uint32_t> expected(13), next(13);
+  for (std::uint32_t i = 0; i < 13; ++i) expected[i] = i * i + 1;
+  for (int stage = 0; stage < 20; ++stage) {
+    for (std::size_t i = 0; i < 13; ++i) next[i] = 3 * expected[i] + expected[(i + 1) % 13];
+    expected.swap(next);
+  }
+  for (int spes = 1; spes <= 6; ++spes) {
+    for (const char* schedule : {"eager", "lazy", "random:1", "random:2", "random:3"}) {
+      const auto lines = mix(memory_, loop_, {.spes = spes, .schedule = dma::parse_schedule(schedule)});
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        for (const std::uint32_t word : lines[i]) ASSERT_EQ(word, expected[i]) << spes << " " << schedule;
+      }
+    }
+  }
+}
+
+TEST_F(JobSystemTest, ThousandsOfJobsOfTwoImages) {
+  constexpr std::size_t kJobs = 3000;
+  const KernelImage other = test_image("remembers");
+  JobSystem jobs(memory_, {.spes = 3}, loop_);
+  auto lines = make_lines(kJobs), counts = make_lines(kJobs);
+  const JobImage adds = jobs.place(adds_), remembers = jobs.place(other);
+  JobChain chain(jobs, "many", 2 * kJobs);
+  for (std::size_t i = 0; i < kJobs; ++i) {
+    chain.add({adds, lines.ea(i)});
+    chain.add({remembers, counts.ea(i)});
+  }
+  chain.kick();
+  chain.wait();
+  expect_no_failures(chain);
+  for (std::size_t i = 0; i < kJobs; ++i) {
+    ASSERT_EQ(lines[i][0], i + 1);
+    ASSERT_EQ(counts[i][0], 101u) << "initialised data are fresh for every job";
+  }
+}
+
+TEST_F(JobSystemTest, AChainIsKickedAgainAndAgain) {
+  JobSystem jobs(memory_, {.spes = 2}, loop_);
+  auto lines = make_lines(3);
+  const JobImage adds = jobs.place(adds_);
+  JobChain chain(jobs, "again", 3);
+  for (std::size_t i = 0; i < 3; ++i) chain.add({adds, lines.ea(i)}), chain.sync();
+  for (int kick = 0; kick < 2000; ++kick) {
+    chain.kick();
+    chain.wait();
+    ASSERT_TRUE(chain.failures().empty());
+  }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(lines[i][31], 2000 + i);
+  chain.clear();
+  chain.add({adds, lines.ea(1)});
+  chain.kick();
+  while (!chain.finished()) std::this_thread::yield();
+  EXPECT_EQ(lines[1][0], 2002u);
+  EXPECT_EQ(lines[2][0], 2002u);
+}
+
+TEST_F(JobSystemTest, ChainsRunBesideEachOther) {
+  JobSystem jobs(memory_, {.spes = 4}, loop_);
+  auto lines = make_lines(15 * 50);
+  const JobImage adds = jobs.place(adds_);
+  std::vector<std::unique_ptr<JobChain>> chains;
+  for (std::size_t c = 0; c < spu::kMaxChains; ++c) {
+    chains.push_back(std::make_unique<JobChain>(jobs, "chain", 50));
+    for (std::size_t i = 0; i < 50; ++i) chains[c]->add({adds, lines.ea(50 * c + i)});
+  }
+  EXPECT_THROW(JobChain(jobs, "one too many", 1), std::runtime_error);
+  for (int kick = 0; kick < 20; ++kick) {
+    for (auto& chain : chains) chain->kick();
+    for (auto& chain : chains) chain->wait();
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) ASSERT_EQ(lines[i][0], i + 20);
+}
+
+TEST_F(JobSystemTest, AnEarlierChainGoesFirst) {
+  const KernelImage endless = test_image("endless"), copies = test_image("mixes");
+  JobSystem jobs(memory_, {.spes = 1, .deadline = 300ms}, loop_);
+  auto lines = make_lines(3);
+  const JobImage adds = jobs.place(adds_), mixes = jobs.place(copies), blocks = jobs.place(endless);
+  JobChain urgent(jobs, "urgent", 1), later(jobs, "later", 1), blocker(jobs, "blocker", 1);
+  blocker.add({blocks, {}});
+  blocker.kick();  // the only SPE is busy while both others are kicked
+  std::this_thread::sleep_for(50ms);
+  dma::Buffer<MixJob> copy(memory_, "copy", 1);
+  copy[0] = {lines.ea(1).value, lines.ea(2).value, lines.ea(0).value, {}};
+  later.add({mixes, copy.ea()});
+  later.kick();
+  urgent.add({adds, lines.ea(1)});
+  urgent.kick();
+  later.wait();
+  EXPECT_TRUE(urgent.finished());
+  EXPECT_EQ(lines[0][0], 3 * 2 + 2u) << "the later chain's job saw what the urgent one has written";
+  blocker.wait();
+  EXPECT_EQ(blocker.failures().size(), 1u);
+}
+
+TEST_F(JobSystemTest, AnEmptyChainHasEnded) {
+  JobSystem jobs(memory_, {.spes = 1}, loop_);
+  JobChain chain(jobs, "empty", 0);
+  EXPECT_TRUE(chain.finished());
+  chain.sync();
+  chain.kick();
+  chain.wait();
+  EXPECT_TRUE(chain.failures().empty());
+  EXPECT_THROW(chain.add({jobs.place(adds_), {}}), std::length_error);
+}
+
+TEST_F(JobSystemTest, AJobThatReturnsAStatusFailsItsChainAfterItsStage) {
+  JobSystem jobs(memory_, {.spes = 2}, loop_);
+  auto lines = make_lines(4);
+  const JobImage adds = jobs.place(adds_);
+  JobChain chain(jobs, "refuses", 4);
+  chain.add({adds, lines.ea(0)});
+  chain.add({adds, lines.ea(1), {9}});
+  chain.add({adds, lines.ea(2)});
+  chain.sync();
+  chain.add({adds, lines.ea(3)});
+  chain.kick();
+  chain.wait();
+  ASSERT_EQ(chain.failures().size(), 1u);
+  EXPECT_EQ(chain.failures()[0].job, 1u);
+  expect_parts(chain.failures()[0].message, {"echo_arguments", "status 9"});
+  EXPECT_EQ(lines[2][0], 3u) << "jobs of the same stage run all the same";
+  EXPECT_EQ(lines[3][0], 3u) << "the next stage does not";
+}
+
+TEST_F(JobSystemTest, AJobThatFaultsIsNamedAndTheSpesGoOn) {
+  const KernelImage bad = test_image("bad_dma");
+  for (const char* schedule : {"eager", "lazy", "random:3"}) {
+    JobSystem jobs(memory_, {.spes = 2, .schedule = dma::parse_schedule(schedule)}, loop_);
+    auto lines = make_lines(3);
+    const JobImage adds = jobs.place(adds_), breaks = jobs.place(bad);
+    JobChain chain(jobs, "faults", 4);
+    chain.add({adds, lines.ea(0)});
+    chain.add({breaks, lines.ea(2), {24}});
+    chain.add({adds, lines.ea(1)});
+    chain.sync();
+    chain.add({adds, lines.ea(2)});
+    for (std::uint32_t kick = 1; kick <= 5; ++kick) {
+      chain.kick();
+      chain.wait();
+      ASSERT_EQ(chain.failures().size(), 1u);
+      EXPECT_EQ(chain.failures()[0].job, 1u);
+      expect_parts(chain.failures()[0].message, {"SPE ", "kernel bad_dma", "bad_dma.cpp:8", "24"});
+      EXPECT_EQ(lines[0][0], kick);
+      EXPECT_EQ(lines[1][0], 1 + kick);
+      EXPECT_EQ(lines[2][0], 2u);
+    }
+    chain.clear();
+    for (std::size_t i = 0; i < 3; ++i) chain.add({adds, lines.ea(i)});
+    chain.kick();
+    chain.wait();
+    expect_no_failures(chain);
+    EXPECT_EQ(lines[2][0], 3u);
+  }
+}
+
+TEST_F(JobSystemTest, EveryWayToCrashIsReported) {
+  for (const auto& [kernel, rule] :
+       {std::pair{"illegal_instruction", "illegal-instruction"},
+        std::pair{"read_effective_address", "effective-address-as-pointer"},
+        std::pair{"stack_overflow_deep", "stack-overflow"}, std::pair{"exits", "code 291"}}) {
+    const KernelImage image = test_image(kernel);
+    JobSystem jobs(memory_, {.spes = 1}, loop_);
+    auto lines = make_lines(1);
+    const JobImage crashes = jobs.place(image), adds = jobs.place(adds_);
+    JobChain chain(jobs, "crashes", 2);
+    chain.add({crashes, lines.ea(), {4096}});  // envp: a depth of stack
+    chain.add({adds, lines.ea()});
+    chain.kick();
+    chain.wait();
+    ASSERT_EQ(chain.failures().size(), 1u) << kernel;
+    expect_parts(chain.failures()[0].message, {kernel, rule});
+    EXPECT_EQ(lines[0][0], 1u) << kernel;
+  }
+}
+
+TEST_F(JobSystemTest, TheDeadlineIsThatOfAJobNotOfTheLoop) {
+  const KernelImage endless = test_image("endless");
+  JobSystem jobs(memory_, {.spes = 2, .deadline = 100ms}, loop_);
+  std::this_thread::sleep_for(300ms);  // idle for longer than the deadline
+  auto lines = make_lines(1);
+  const JobImage hangs = jobs.place(endless), adds = jobs.place(adds_);
+  JobChain chain(jobs, "hangs", 3);
+  chain.add({hangs, {}, {0}});
+  chain.add({hangs, {}, {1}});
+  chain.add({adds, lines.ea()});
+  chain.kick();
+  chain.wait();
+  ASSERT_EQ(chain.failures().size(), 2u);
+  for (const JobFailure& failure : chain.failures()) {
+    expect_parts(failure.message, {"kernel endless", "deadline-exceeded", "endless.cpp:"});
+  }
+  EXPECT_EQ(lines[0][0], 1u);
+}
+
+TEST_F(JobSystemTest, AnIdleSystemTakesNoTimeAndIsNoDeadlock) {
+  const auto cpu_time = [] {
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    return std::chrono::seconds(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+           std::chrono::microseconds(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  };
+  JobSystem jobs(memory_, {.spes = 6}, loop_);
+  auto lines = make_lines(1);
+  const JobImage adds = jobs.place(adds_);
+  JobChain chain(jobs, "once in a while", 1);
+  chain.add({adds, lines.ea()});
+  chain.kick();
+  chain.wait();
+  std::this_thread::sleep_for(20ms);  // the SPEs go to sleep
+  const auto before = cpu_time();
+  std::this_thread::sleep_for(300ms);
+  EXPECT_LT(cpu_time() - before, 30ms);
+  chain.kick();
+  chain.wait();
+  expect_no_failures(chain);
+  EXPECT_EQ(lines[0][0], 2u);
+}
+
+TEST_F(JobSystemTest, CheckedJobsAreChecked) {
+  for (const char* schedule : {"eager", "lazy", "random:7"}) {
+    ls_sim::Findings findings;
+    const SpeOptions options{.spes = 3, .schedule = dma::parse_schedule(schedule), .findings = &findings};
+    mix(memory_, loop_, options);
+    for (const ls_sim::Finding& finding : findings.list()) ADD_FAILURE() << finding.fault.message();
+
+    const KernelImage no_wait = test_image("no_wait_checked");
+    JobSystem jobs(memory_, options, loop_);
+    auto lines = make_lines(2);
+    JobChain chain(jobs, "finds", 2);
+    chain.add({jobs.place(no_wait), lines.ea(1), lines.ea(0)});
+    chain.sync();
+    chain.add({jobs.place(no_wait), lines.ea(1), lines.ea(0)});
+    chain.kick();
+    chain.wait();
+    expect_no_failures(chain);
+    const auto found = findings.list();
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].count, 64u);
+    EXPECT_EQ(found[0].fault.place, "no_wait.cpp:12");
+    EXPECT_EQ(found[0].fault.kernel, "no_wait_checked");
+    EXPECT_THROW(jobs.place(adds_), std::invalid_argument);
+  }
+}
+
+TEST_F(JobSystemTest, RefusesImagesThatAreNoJobs) {
+  JobSystem jobs(memory_, {.spes = 1}, loop_);
+  EXPECT_THROW(jobs.place(loop_), std::invalid_argument);
+  KernelImage large = adds_;
+  large.sizes.stack = loop_.begin - loop_.sizes.stack - large.sizes.end + 16;
+  EXPECT_THROW(jobs.place(large), std::invalid_argument);
+}
+
+TEST_F(JobSystemTest, RefusesOptionsOutOfRange) {
+  EXPECT_THROW(JobSystem(memory_, {.spes = 0}, loop_), std::invalid_argument);
+  EXPECT_THROW(JobSystem(memory_, {.spes = 7}, loop_), std::invalid_argument);
+  EXPECT_THROW(JobSystem(memory_, {.deadline = 0ms}, loop_), std::invalid_argument);
+}
+
+TEST_F(JobSystemTest, EndsAtOnceWhateverIsUnderWay) {
+  for (int round = 0; round < 50; ++round) {
+    JobSystem jobs(memory_, {.spes = 1 + round % 6}, loop_);
+    auto lines = make_lines(20);
+    const JobImage adds = jobs.place(adds_);
+    std::optional<JobChain> first(std::in_place, jobs, "first", 20),
+        second(std::in_place, jobs, "second", 20);
+    for (std::size_t i = 0; i < 10; ++i) first->add({adds, lines.ea(i)});
+    for (std::size_t i = 10; i < 20; ++i) second->add({adds, lines.ea(i)});
+    first->kick();
+    second->kick();
+    if (round % 2 == 0) first.reset();  // which waits
+    second.reset();
+    first.reset();
+    for (std::size_t i = 0; i < 20; ++i) ASSERT_EQ(lines[i][0], i + 1);
+  }
+}
+
+TEST_F(JobSystemTest, AReadWithoutAWaitShowsUnderTheLazySchedule) {
+  const KernelImage image = test_image("no_wait");
+  for (const auto& [schedule, expected] : {std::pair{"eager", 1u}, std::pair{"lazy", 0u}}) {
+    JobSystem jobs(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)}, loop_);
+    auto lines = make_lines(2);
+    JobChain chain(jobs, "no wait", 1);
+    chain.add({jobs.place(image), lines.ea(1), lines.ea()});
+    chain.kick();
+    chain.wait();
+    expect_no_failures(chain);
+    EXPECT_EQ(lines[0][0], expected) << schedule;
+  }
+}
+
+TEST_F(JobSystemTest, ComputesWithTheArithmeticOfTheSpu) {
+  const KernelImage image = test_image("arithmetic");
+  JobSystem jobs(memory_, {.spes = 1}, loop_);
+  dma::Buffer<std::array<float, 32>> out(memory_, "out", 1);
+  JobChain chain(jobs, "arithmetic", 1);
+  chain.add({jobs.place(image), out.ea()});
+  chain.kick();
+  chain.wait();
+  expect_no_failures(chain);
+  EXPECT_EQ(out[0][0], 1.0f);
+  EXPECT_EQ(out[0][4], std::nextafterf(1.0f, 0.0f));
+  EXPECT_EQ(out[0][8], 0.0f);
+  EXPECT_EQ(out[0][12], std::nextafterf(1.0f, 0.0f)) << "the mode was lost in a call out of the kernel";
+}
+
+}  // namespace
+}  // namespace softcell::ppu
