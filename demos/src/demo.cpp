@@ -146,7 +146,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const MakeDemo& 
     }
   }
   if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
-  demo->finish();
+  demo->stop();
   if (guard.interrupted()) {
     fmt::print(stderr, "softcell: interrupted after {} of {} frames; every frame that was written is whole\n",
                record.frames, frames);

@@ -31,8 +31,8 @@ class Demo {
 
   /// Simulates a frame of 1/60 s. @throws std::runtime_error  an SPE failed, or a body became NaN.
   virtual FrameTimes step() = 0;
-  /// Waits for what the SPEs still do, so that the newest frame is shown. @throws as step().
-  virtual void finish() = 0;
+  /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().
+  virtual void stop() = 0;
   virtual std::uint64_t state_hash() const = 0;
   virtual std::vector<ls_sim::SpeStatistics> spe_statistics() const = 0;
   virtual std::uint64_t late_frames() const = 0;

@@ -41,7 +41,7 @@ class Demo3d : public Demo {
             .vertices = simulation_.vertices()};
   }
   FrameTimes step() override { return simulation_.step(); }
-  void finish() override { simulation_.finish(); }
+  void stop() override { simulation_.stop(); }
   std::uint64_t state_hash() const override { return simulation_.state_hash(); }
   std::vector<ls_sim::SpeStatistics> spe_statistics() const override { return simulation_.spe_statistics(); }
   std::uint64_t late_frames() const override { return simulation_.late_frames(); }

@@ -155,6 +155,11 @@ void Simulation3d::finish() {
   if (s.orchestrator.drain()) s.newest = 1 - s.newest;
 }
 
+void Simulation3d::stop() {
+  finish();
+  state_->jobs.stop();
+}
+
 std::size_t Simulation3d::soft_bodies() const { return state_->soft_bodies.size(); }
 
 std::size_t Simulation3d::particles() const {

@@ -46,6 +46,9 @@ class Simulation3d {
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
 
+  /// Waits for the SPEs and ends what runs on them, so that their statistics and the trace are whole. No step
+  /// afterwards. @throws as step().
+  void stop();
   std::vector<ls_sim::SpeStatistics> spe_statistics() const;
   std::uint64_t late_frames() const;
 

@@ -85,6 +85,7 @@ struct JobSystem::State {
   State(dma::AddressSpace& space, const ls_sim::SpeOptions& options, const ls_sim::KernelImage& job_loop);
   ~State();
 
+  void stop();
   void on_run_ended(int spe, const ls_sim::RunResult& result);
   void record_failure(int spe, const ls_sim::RunResult& result);
   void start_loop(int spe);
@@ -123,7 +124,9 @@ JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& opti
   for (int spe = 0; spe < group.spes(); ++spe) start_loop(spe);
 }
 
-JobSystem::State::~State() {
+JobSystem::State::~State() { stop(); }
+
+void JobSystem::State::stop() {
   {
     const std::scoped_lock lock(mutex);
     stopping = true;
@@ -184,6 +187,8 @@ JobSystem::JobSystem(dma::AddressSpace& memory, const ls_sim::SpeOptions& option
     : state_(std::make_unique<State>(memory, options, job_loop)) {}
 
 JobSystem::~JobSystem() = default;
+
+void JobSystem::stop() { state_->stop(); }
 
 JobImage JobSystem::place(const ls_sim::KernelImage& image) {
   auto placed = std::find_if(state_->images.begin(), state_->images.end(),

@@ -74,6 +74,10 @@ class JobSystem {
   /// wanted.
   JobImage place(const ls_sim::KernelImage& image);
 
+  /// Ends the job loops. Then statistics and traces are whole: what the loops do between jobs is in both.
+  /// @pre all chains have finished; none is kicked afterwards.
+  void stop();
+
   /// Of each SPE, up to the last job that it has ended. Any thread.
   std::vector<ls_sim::SpeStatistics> statistics() const;
 
