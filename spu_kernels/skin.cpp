@@ -19,16 +19,15 @@
 #include <spu_mfcio.h>
 
 #include "common/dma.h"
-#include "common/half.h"
-#include "common/vector3.h"
+#include "common/lane_mask.h"
+#include "skin/cell.h"
+#include "skin/drawn_vertex.h"
 #include "skin_job.h"
 
 namespace softcell::spu {
 namespace {
 
 constexpr uint32_t kChunkGroups = 128;  // 16 KB in, the most one command moves, and 8 KB out
-constexpr float kFlat =
-    1e-12f;  // epsilon of the normals, in m^2: against the squared size of a cell, nothing
 
 enum Tag : uint32_t {
   kTagCorners = 0,  // the descriptor, then the corners
@@ -55,143 +54,40 @@ struct alignas(128) LocalStoreMap {
 static_assert(sizeof(LocalStoreMap) <= 84 * 1024, "leaves 12 KB of the budget for code and stack");
 LocalStoreMap ls;
 
-/// One component of a cell's trilinear map as a polynomial, each coefficient in all lanes:
-/// c + cx xi + cy eta + cz zeta + cxy xi eta + cyz eta zeta + czx zeta xi + cxyz xi eta zeta.
-struct Polynomial {
-  vec_float4 c, cx, cy, cz, cxy, cyz, czx, cxyz;
-};
-
-struct CellPolynomial {
-  Polynomial x, y, z;
-};
-
-inline CellPolynomial polynomial_of(vec_ushort8 corner) {
-  const vec_float4 x0 = ls.corner[spu_extract(corner, 0)];
-  const vec_float4 x1 = ls.corner[spu_extract(corner, 1)];
-  const vec_float4 x2 = ls.corner[spu_extract(corner, 2)];
-  const vec_float4 x3 = ls.corner[spu_extract(corner, 3)];
-  const vec_float4 x4 = ls.corner[spu_extract(corner, 4)];
-  const vec_float4 x5 = ls.corner[spu_extract(corner, 5)];
-  const vec_float4 x6 = ls.corner[spu_extract(corner, 6)];
-  const vec_float4 x7 = ls.corner[spu_extract(corner, 7)];
-  const vec_float4 cx = spu_sub(x1, x0), cy = spu_sub(x2, x0), cz = spu_sub(x4, x0);
-  const vec_float4 upper = spu_sub(x5, x4);
-  const vec_float4 cxy = spu_sub(spu_sub(x3, x2), cx);
-  const vec_float4 cyz = spu_sub(spu_sub(x6, x4), cy);
-  const vec_float4 czx = spu_sub(upper, cx);
-  const vec_float4 cxyz = spu_sub(spu_sub(spu_sub(x7, x6), upper), cxy);
-  const auto component = [&](vec_uchar16 splat) __attribute__((always_inline))->Polynomial {
-    const auto all = [splat](vec_float4 v) { return spu_shuffle(v, v, splat); };
-    return {all(x0), all(cx), all(cy), all(cz), all(cxy), all(cyz), all(czx), all(cxyz)};
-  };
-  const vec_uchar16 first = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-  const vec_uchar16 second = {4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7};
-  const vec_uchar16 third = {8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11};
-  return {component(first), component(second), component(third)};
-}
-
-/// One component of a position, and of the three columns of the deformation gradient: its derivatives by xi,
-/// eta, zeta.
-struct Component {
-  vec_float4 position, f1, f2, f3;
-};
-
-inline Component evaluate(const Polynomial& p, vec_float4 xi, vec_float4 eta, vec_float4 zeta) {
-  const vec_float4 along_xy = spu_madd(p.cxyz, zeta, p.cxy);
-  const vec_float4 along_y = spu_madd(p.cyz, zeta, p.cy);
-  const vec_float4 f1 = spu_madd(along_xy, eta, spu_madd(p.czx, zeta, p.cx));
-  const vec_float4 f2 = spu_madd(along_xy, xi, along_y);
-  const vec_float4 f3 = spu_madd(spu_madd(p.cxyz, xi, p.cyz), eta, spu_madd(p.czx, xi, p.cz));
-  const vec_float4 position = spu_madd(f1, xi, spu_madd(along_y, eta, spu_madd(p.cz, zeta, p.c)));
-  return {position, f1, f2, f3};
-}
-
+/// Four points of the surface; normals of any length.
 struct Surface {
   Vector3x4 position, normal;
 };
 
-/// normalize(cof(F) N + epsilon N): where the cell is flat and cof(F) vanishes, N is left, without a choice
-/// to be made. With F's columns f1 f2 f3, cof(F) N = Nx f2 x f3 + Ny f3 x f1 + Nz f1 x f2 = f2 x (Nx f3 - Nz
-/// f1) + Ny f3 x f1.
-inline Vector3x4 deformed_normal(const Vector3x4& f1, const Vector3x4& f2, const Vector3x4& f3,
-                                 const Vector3x4& rest) {
-  const Vector3x4 across = {spu_msub(f3.x, rest.x, spu_mul(f1.x, rest.z)),
-                            spu_msub(f3.y, rest.x, spu_mul(f1.y, rest.z)),
-                            spu_msub(f3.z, rest.x, spu_mul(f1.z, rest.z))};
-  const Vector3x4 n = scale_add(rest, spu_splats(kFlat), scale_add(cross(f3, f1), rest.y, cross(f2, across)));
-  return scale(n, reciprocal_sqrt(dot(n, n)));
-}
-
-/// Two halves to a word: what is drawn of one vector. The first in memory is in the high half.
-struct HalfVector {
-  vec_uint4 xy, zw;
-};
-
-/// `fourth` follows x y z, as a half in the high half of its word.
-inline HalfVector pack(vec_uint4 x, vec_uint4 y, vec_uint4 z, vec_uint4 fourth) {
-  const vec_uchar16 high_halves = {0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29};
-  return {spu_shuffle(x, y, high_halves), spu_shuffle(z, fourth, high_halves)};
-}
-
-constexpr uint32_t kHalfOneInHigh = 0x3C000000u;
-
-inline bool any_sign(vec_uint4 words) { return spu_extract(spu_orx(words), 0) >= 0x80000000u; }
-
-inline HalfVector to_half_any(const Vector3x4& v, vec_uint4 fourth) {
-  return pack(high_half_of_any(v.x), high_half_of_any(v.y), high_half_of_any(v.z), fourth);
-}
-
-/// The fast ways are for positive positions (the PPU side puts the origin below the body) and for normals
-/// without tiny components, which a flat side along an axis has.
-inline void to_half(const Surface& s, HalfVector& position, HalfVector& normal) {
-  const vec_uint4 one = spu_splats(kHalfOneInHigh), zero = spu_splats(0u);
-  const vec_uint4 odd_positions =
-      spu_or(spu_or(outside_positive_half_normal(s.position.x), outside_positive_half_normal(s.position.y)),
-             outside_positive_half_normal(s.position.z));
-  const vec_uint4 odd_normals = spu_or(spu_or(below_half_normal(s.normal.x), below_half_normal(s.normal.y)),
-                                       below_half_normal(s.normal.z));
-  position = pack(high_half_of_positive(s.position.x), high_half_of_positive(s.position.y),
-                  high_half_of_positive(s.position.z), one);
-  normal = pack(high_half_of_normal(s.normal.x), high_half_of_normal(s.normal.y),
-                high_half_of_normal(s.normal.z), zero);
-  if (__builtin_expect(any_sign(spu_or(odd_positions, odd_normals)), 0)) {
-    if (any_sign(odd_positions)) position = to_half_any(s.position, one);
-    if (any_sign(odd_normals)) normal = to_half_any(s.normal, zero);
-  }
-}
-
-/// Four vertices of 16 bytes: transposes the 4 x 4 words, one vertex to a quadword.
-inline void store(const HalfVector& position, const HalfVector& normal, vec_ushort8* out) {
-  const vec_uchar16 low = {0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23};
-  const vec_uchar16 high = {8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31};
-  const vec_uint4 a = spu_shuffle(position.xy, normal.xy, low), b = spu_shuffle(position.xy, normal.xy, high);
-  const vec_uint4 c = spu_shuffle(position.zw, normal.zw, low), d = spu_shuffle(position.zw, normal.zw, high);
-  out[0] = (vec_ushort8)spu_shuffle(a, c, low);
-  out[1] = (vec_ushort8)spu_shuffle(a, c, high);
-  out[2] = (vec_ushort8)spu_shuffle(b, d, low);
-  out[3] = (vec_ushort8)spu_shuffle(b, d, high);
-}
-
-inline void skin_group(const CellPolynomial& p, const Group& g, vec_ushort8* out) {
+__attribute__((always_inline)) inline Surface evaluate(const CellPolynomial& p, const Group& g) {
   const Component x = evaluate(p.x, g.xi, g.eta, g.zeta);
   const Component y = evaluate(p.y, g.xi, g.eta, g.zeta);
   const Component z = evaluate(p.z, g.xi, g.eta, g.zeta);
-  const Surface surface = {
-      {x.position, y.position, z.position},
-      deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
-  HalfVector position, normal;
-  to_half(surface, position, normal);
-  store(position, normal, out);
+  return {{x.position, y.position, z.position},
+          deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
 }
 
-/// One buffer of groups to one buffer of vertices.
+template <Positions kPositions>
+__attribute__((always_inline)) inline void finish(const Surface& s, vec_ushort8* out) {
+  const Vector3x4 unit = scale(s.normal, reciprocal_sqrt(dot(s.normal, s.normal)));
+  store(half_positions<kPositions>(s.position), half_normals(unit), out);
+}
+
+/// One buffer of groups, one or more, to one buffer of vertices.
+///
+/// A group is one chain of dependent operations, some 95 cycles long on a host whose arithmetic takes 40. So
+/// each pass of the loop evaluates a group and finishes the one before it, and the two overlap.
+template <Positions kPositions>
 void skin_chunk(const Group* groups, uint32_t count, vec_ushort8* vertices) {
-  CellPolynomial p = polynomial_of(groups[0].corner);
-  for (uint32_t i = 0; i < count; ++i) {
-    // A chunk may begin in the middle of a cell; the first group's polynomial is always made.
-    if (i != 0 && spu_extract(groups[i].continues, 0) == 0) p = polynomial_of(groups[i].corner);
-    skin_group(p, groups[i], vertices + 4 * i);
+  CellPolynomial p = polynomial_of(ls.corner, groups[0].corner);  // a chunk may begin in the middle of a cell
+  Surface before = evaluate(p, groups[0]);
+  for (uint32_t i = 1; i < count; ++i, vertices += 4) {
+    if (spu_extract(groups[i].continues, 0) == 0) p = polynomial_of(ls.corner, groups[i].corner);
+    const Surface surface = evaluate(p, groups[i]);
+    finish<kPositions>(before, vertices);
+    before = surface;
   }
+  finish<kPositions>(before, vertices);
 }
 
 inline uint32_t groups_in_chunk(uint32_t chunk) {
@@ -214,14 +110,21 @@ inline void put_chunk(uint32_t chunk) {
 }
 
 /// Fetches both windows of corners, one behind the other, and takes the origin off them.
-void load_corners() {
+/// @return  how positions between them have to be converted
+Positions load_corners() {
   const SkinWindow& first = ls.job.window[0];
   const SkinWindow& second = ls.job.window[1];
   get_large(ls.corner, first.ea, first.count * 16u, kTagCorners);
   get_large(ls.corner + first.count, second.ea, second.count * 16u, kTagCorners);
   wait_for_tag(kTagCorners);
   const vec_float4 origin = {ls.job.origin[0], ls.job.origin[1], ls.job.origin[2], 0.0f};
-  for (uint32_t i = 0; i < first.count + second.count; ++i) ls.corner[i] = spu_sub(ls.corner[i], origin);
+  vec_uint4 odd = spu_splats(0u);
+  for (uint32_t i = 0; i < first.count + second.count; ++i) {
+    ls.corner[i] = spu_sub(ls.corner[i], origin);
+    odd = note_odd(odd, ls.corner[i]);
+  }
+  const vec_uint4 xyz = {0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu, 0};
+  return any_negative(spu_and(odd, xyz)) ? Positions::kAny : Positions::kOrdinary;
 }
 
 }  // namespace
@@ -243,12 +146,14 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   //   is
   const uint32_t chunks = (ls.job.group_count + kChunkGroups - 1) / kChunkGroups;
   if (chunks != 0) fetch_chunk(0);
-  load_corners();
+  const Positions positions = load_corners();
+  const auto skin =
+      positions == Positions::kOrdinary ? skin_chunk<Positions::kOrdinary> : skin_chunk<Positions::kAny>;
   for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
     const uint32_t buffer = chunk & 1u;
     if (chunk + 1 < chunks) fetch_chunk(chunk + 1);
     wait_for_tags(1u << (kTagGroups + buffer) | 1u << (kTagVertices + buffer));
-    skin_chunk(ls.groups[buffer], groups_in_chunk(chunk), ls.vertices[buffer]);
+    skin(ls.groups[buffer], groups_in_chunk(chunk), ls.vertices[buffer]);
     put_chunk(chunk);
   }
   wait_for_tags(3u << kTagVertices);

@@ -10,21 +10,8 @@ namespace softcell::spu {
 constexpr unsigned int kHalfSmallestNormal = 0x38800000u;  // 2^-14
 constexpr unsigned int kHalfOverflow = 0x477FF000u;        // 65520
 
-/// Sign bit set in the lanes whose magnitude is too small for a normal binary16, zero among them.
-inline vec_uint4 below_half_normal(vec_float4 value) {
-  return spu_sub(spu_and((vec_uint4)value, spu_splats(0x7FFFFFFFu)), spu_splats(kHalfSmallestNormal));
-}
-
-/// Sign bit set in the lanes that are negative, too small for a normal binary16, or so large that they become
-/// infinite.
-inline vec_uint4 outside_positive_half_normal(vec_float4 value) {
-  const vec_uint4 bits = (vec_uint4)value;
-  return spu_or(spu_sub(bits, spu_splats(kHalfSmallestNormal)),
-                spu_add(bits, spu_splats(0x80000000u - kHalfOverflow)));
-}
-
-/// binary16 bits in the high half of each word; what is in the low half was cut off. For lanes whose sign bit
-/// is clear in outside_positive_half_normal().
+/// binary16 bits in the high half of each word; what is in the low half was cut off. For values from
+/// 2^-14, the smallest normal binary16, to below kHalfOverflow.
 inline vec_uint4 high_half_of_positive(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
   const vec_uint4 odd = spu_and(spu_rlmask(bits, -13), spu_splats(1u));
@@ -33,10 +20,14 @@ inline vec_uint4 high_half_of_positive(vec_float4 value) {
   return spu_sl(spu_add(spu_add(bits, odd), spu_splats(0xFFFu - (112u << 23))), 3);
 }
 
-/// The same for either sign. For lanes whose sign bit is clear in below_half_normal(), and whose magnitude is
-/// below kHalfOverflow.
-inline vec_uint4 high_half_of_normal(vec_float4 value) {
-  return spu_sel(high_half_of_positive(value), (vec_uint4)value, spu_splats(0x80000000u));
+/// The same for either sign; what is too small for a normal binary16 becomes zero. For magnitudes below
+/// kHalfOverflow.
+inline vec_uint4 high_half_or_zero(vec_float4 value) {
+  // A product rebiases the exponent as well, and flushes what passes below a float's own smallest normal.
+  const vec_uint4 bits = (vec_uint4)spu_mul(value, spu_splats(0x1p-112f));
+  const vec_uint4 odd = spu_and(spu_rlmask(bits, -13), spu_splats(1u));
+  const vec_uint4 rounded = spu_add(spu_add(bits, odd), spu_splats(0xFFFu));
+  return spu_or(spu_sl(rounded, 3), spu_and(bits, spu_splats(0x80000000u)));
 }
 
 /// binary16 bits in the high half of each word, the low half 0, for every bit pattern: subnormals, zero,
@@ -65,7 +56,7 @@ inline vec_uint4 high_half_of_any(vec_float4 value) {
   const vec_uint4 quiet = spu_and(spu_cmpeq(payload, spu_splats(0u)), spu_splats(0x200u));
   const vec_uint4 nan = spu_or(spu_or(infinity, payload), quiet);
 
-  vec_uint4 half = spu_rlmask(high_half_of_normal(value), -16);
+  vec_uint4 half = spu_rlmask(high_half_or_zero(value), -16);
   half = spu_sel(half, spu_or(sign, subnormal), spu_cmpgt(spu_splats(kHalfSmallestNormal), magnitude));
   half = spu_sel(half, spu_or(sign, infinity), spu_cmpgt(magnitude, spu_splats(kHalfOverflow - 1u)));
   return spu_sl(spu_sel(half, spu_or(sign, nan), spu_cmpgt(magnitude, spu_splats(0x7F800000u))), 16);

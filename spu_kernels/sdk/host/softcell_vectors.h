@@ -43,33 +43,35 @@ SC_SDK_INLINE Bytes flip_bytes(Bytes b) {
   }
 }
 
-/// The storage of N lanes and how to name them. As on the SPU the lanes left out are zero (here two at least
-/// are given: one alone would be an implicit conversion from a scalar).
+/// The storage of N lanes and how to name them. `mutable` is for g++: it takes a const variable of a class
+/// for read-only memory, unless it has a mutable member, and then keeps it in memory and not in a register.
+/// As on the SPU the lanes left out are zero (here two at least are given: one alone would be an implicit
+/// conversion from a scalar).
 template <class T, int N>
 struct Lanes;
 
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 2> {
-  Raw<T> raw;
+  mutable Raw<T> raw;
   Lanes() = default;
   constexpr Lanes(T l0, T l1) : raw{l0, l1} {}
 };
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 4> {
-  Raw<T> raw;
+  mutable Raw<T> raw;
   Lanes() = default;
   constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T()) : raw{l0, l1, l2, l3} {}
 };
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 8> {
-  Raw<T> raw;
+  mutable Raw<T> raw;
   Lanes() = default;
   constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T())
       : raw{l0, l1, l2, l3, l4, l5, l6, l7} {}
 };
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 16> {
-  Raw<T> raw;
+  mutable Raw<T> raw;
   Lanes() = default;
   constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T(),
                   T l8 = T(), T l9 = T(), T l10 = T(), T l11 = T(), T l12 = T(), T l13 = T(), T l14 = T(),
@@ -111,7 +113,7 @@ using vec_double2 = softcell_sdk::Vector<double>;
 /// the rest.
 struct SC_SDK_REGISTER qword {
   static constexpr int kWidth = 4;
-  softcell_sdk::Raw<unsigned int> raw;
+  mutable softcell_sdk::Raw<unsigned int> raw;
 
   qword() = default;
   template <class T>
