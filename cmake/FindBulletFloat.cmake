@@ -1,4 +1,5 @@
-# Bullet as its default package builds it, in single precision. Target BulletFloat::Bullet.
+# Bullet as its default package builds it, in single precision. Target BulletFloat::Bullet, and with Bullet's own soft
+# bodies BulletFloat::SoftBody.
 #
 # Debian also ships bullet-float64, with the same headers and other library names; a program that mixes the two
 # compiles, links and corrupts memory. So the package is asked for by name, and one that turns out to be in double
@@ -13,7 +14,7 @@ endif()
 
 find_path(BulletFloat_INCLUDE_DIR btBulletDynamicsCommon.h HINTS ${PC_BULLET_INCLUDE_DIRS} PATH_SUFFIXES bullet)
 set(bullet_libraries)
-foreach(library BulletDynamics BulletCollision LinearMath)  # in link order
+foreach(library BulletSoftBody BulletDynamics BulletCollision LinearMath)  # in link order
   find_library(BulletFloat_${library}_LIBRARY ${library} HINTS ${PC_BULLET_LIBRARY_DIRS})
   mark_as_advanced(BulletFloat_${library}_LIBRARY)
   list(APPEND bullet_libraries BulletFloat_${library}_LIBRARY)
@@ -28,7 +29,8 @@ if(BulletFloat_FOUND AND NOT TARGET BulletFloat::Bullet)
   add_library(BulletFloat::Bullet INTERFACE IMPORTED)
   # SYSTEM: its headers would not pass our warnings.
   target_include_directories(BulletFloat::Bullet SYSTEM INTERFACE ${BulletFloat_INCLUDE_DIR})
-  foreach(library IN LISTS bullet_libraries)
-    target_link_libraries(BulletFloat::Bullet INTERFACE ${${library}})
-  endforeach()
+  target_link_libraries(BulletFloat::Bullet INTERFACE
+    ${BulletFloat_BulletDynamics_LIBRARY} ${BulletFloat_BulletCollision_LIBRARY} ${BulletFloat_LinearMath_LIBRARY})
+  add_library(BulletFloat::SoftBody INTERFACE IMPORTED)
+  target_link_libraries(BulletFloat::SoftBody INTERFACE ${BulletFloat_BulletSoftBody_LIBRARY} BulletFloat::Bullet)
 endif()

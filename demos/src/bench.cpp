@@ -16,46 +16,79 @@
 namespace softcell::demos {
 namespace {
 
-constexpr int kRounds = 31;  // of which the minimum and the median are reported
+std::vector<Benchmark> all_benchmarks() {
+  std::vector<Benchmark> all;
+  add_solver_benchmarks(all);
+  add_bullet_benchmarks(all);
+  add_skin_benchmarks(all);
+  add_dma_benchmarks(all);
+  add_dispatch_benchmarks(all);
+  add_frame_benchmarks(all);
+  return all;
+}
 
-void measure(std::vector<Benchmark>& all) {
-  for (Benchmark& benchmark : all) benchmark.run();  // caches, first allocations
+/// Those whose name the user asks for, sorted, so that what is compared stands together.
+std::vector<Benchmark> chosen_benchmarks(const std::string& filter_text) {
+  std::vector<Benchmark> all = all_benchmarks();
+  try {
+    const std::regex filter(filter_text);
+    std::erase_if(all, [&](const Benchmark& b) { return !std::regex_search(b.name, filter); });
+  } catch (const std::regex_error&) {
+    throw UsageError("--filter " + filter_text + " is not a regular expression");
+  }
+  if (all.empty())
+    throw UsageError("--filter " + filter_text + " leaves no benchmark; --list shows their names");
+  std::ranges::sort(all, {}, &Benchmark::name);
+  return all;
+}
+
+/// What is measured of one benchmark.
+struct Measurement {
+  Work work;
+  std::vector<double> nanoseconds = {};  // per item, one for each round; sorted in the end
+
+  double least() const { return nanoseconds.front(); }
+  double median() const { return nanoseconds[nanoseconds.size() / 2]; }
+};
+
+std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int rounds) {
+  std::vector<Measurement> all;
+  for (const Benchmark& benchmark : benchmarks) {
+    all.push_back({benchmark.prepare()});
+    all.back().work.run();  // caches, first allocations
+  }
   // Round by round, so that a change of the machine's speed meets all alike.
-  for (int round = 0; round < kRounds; ++round) {
-    for (Benchmark& benchmark : all) {
+  for (int round = 0; round < rounds; ++round) {
+    for (Measurement& m : all) {
       const auto begin = std::chrono::steady_clock::now();
-      benchmark.run();
+      m.work.run();
       const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - begin;
-      benchmark.nanoseconds.push_back(elapsed.count() / static_cast<double>(benchmark.items));
+      m.nanoseconds.push_back(elapsed.count() / static_cast<double>(m.work.items));
     }
   }
-  for (Benchmark& benchmark : all) std::sort(benchmark.nanoseconds.begin(), benchmark.nanoseconds.end());
+  for (Measurement& m : all) std::ranges::sort(m.nanoseconds);
+  return all;
 }
 
 }  // namespace
 
 int run_bench(const BenchOptions& options) {
-  std::vector<Benchmark> all;
-  add_skin_benchmarks(all);
-  add_solver_benchmarks(all);
-  add_dma_benchmarks(all);
-  add_dispatch_benchmarks(all);
-  try {
-    const std::regex filter(options.filter);
-    std::erase_if(all, [&](const Benchmark& b) { return !std::regex_search(b.name, filter); });
-  } catch (const std::regex_error&) {
-    throw UsageError("--filter " + options.filter + " is not a regular expression");
+  const std::vector<Benchmark> benchmarks = chosen_benchmarks(options.filter);
+  if (options.list) {
+    for (const Benchmark& b : benchmarks) fmt::print("{}\n", b.name);
+    return 0;
   }
-  if (all.empty()) throw UsageError("--filter " + options.filter + " leaves no benchmark");
-  measure(all);
+  const std::vector<Measurement> all = measure(benchmarks, options.rounds);
 
   auto document = nlohmann::ordered_json::array();
-  fmt::print("{:<32} {:>10} {:>10} {:>9}   nanoseconds per item, {} rounds\n", "name", "minimum", "median",
-             "items", kRounds);
-  for (const Benchmark& b : all) {
-    const double least = b.nanoseconds.front(), median = b.nanoseconds[b.nanoseconds.size() / 2];
-    fmt::print("{:<32} {:>10.2f} {:>10.2f} {:>9}\n", b.name, least, median, b.items);
-    document.push_back({{"name", b.name}, {"ns_min", least}, {"ns_median", median}, {"items", b.items}});
+  fmt::print("{:<38} {:>12} {:>12} {:>9}   nanoseconds per item, {} rounds\n", "name", "minimum", "median",
+             "items", options.rounds);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& name = benchmarks[i].name;
+    const Measurement& m = all[i];
+    fmt::print("{:<38} {:>12.2f} {:>12.2f} {:>9}\n", name, m.least(), m.median(), m.work.items);
+    document.push_back(
+        {{"name", name}, {"ns_min", m.least()}, {"ns_median", m.median()}, {"items", m.work.items}});
   }
   if (options.json) write_json(*options.json, document);
   return 0;

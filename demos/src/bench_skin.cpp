@@ -15,9 +15,8 @@ constexpr std::size_t kSkinnedBodies = 8;  // in one frame, so that waking the S
 
 /// A body in a bent pose, so that nothing is a special case.
 struct SkinCase {
-  SkinCase(std::string body_name, const ppu::TriangleMesh& body_mesh, float cell_size)
-      : name(std::move(body_name)),
-        lattice(ppu::voxelize(body_mesh, cell_size)),
+  SkinCase(const ppu::TriangleMesh& body_mesh, float cell_size)
+      : lattice(ppu::voxelize(body_mesh, cell_size)),
         embedding(std::make_shared<ppu::Embedding>(ppu::embed(body_mesh, lattice))),
         kernel(load_kernel("skin")),
         job_loop(load_kernel("job_loop")),
@@ -53,7 +52,6 @@ struct SkinCase {
     }
   }
 
-  std::string name;
   ppu::Lattice lattice;
   std::shared_ptr<ppu::Embedding> embedding;
   dma::AddressSpace memory;
@@ -66,17 +64,25 @@ struct SkinCase {
   std::vector<std::vector<spu::SkinnedVertex>> scalar_out;    // of each body
 };
 
-void add_skin(std::vector<Benchmark>& all, const std::shared_ptr<SkinCase>& body) {
-  const std::size_t vertices = kSkinnedBodies * body->embedding->slot_of_vertex.size();
-  all.push_back({"skin/" + body->name + "/spe", vertices, [body] { body->run_spe(); }});
-  all.push_back({"skin/" + body->name + "/scalar", vertices, [body] { body->run_scalar(); }});
+void add_skin(std::vector<Benchmark>& all, const std::string& name,
+              std::function<std::shared_ptr<SkinCase>()> make) {
+  const Shared<SkinCase> shared(std::move(make));
+  const auto add = [&](const char* how, auto run) {
+    all.push_back({"skin/" + name + "/" + how, [=] {
+                     const auto rig = shared.get();
+                     return Work{kSkinnedBodies * rig->embedding->slot_of_vertex.size(), [=] { run(*rig); }};
+                   }});
+  };
+  add("spe", [](SkinCase& rig) { rig.run_spe(); });
+  add("scalar", [](SkinCase& rig) { rig.run_scalar(); });
 }
 
 }  // namespace
 
 void add_skin_benchmarks(std::vector<Benchmark>& all) {
-  add_skin(all, std::make_shared<SkinCase>("sphere", ppu::make_sphere(0.7f, 48), 0.28f));
-  add_skin(all, std::make_shared<SkinCase>("torus", ppu::make_torus(0.72f, 0.28f, 192, 80), 0.2f));
+  add_skin(all, "sphere", [] { return std::make_shared<SkinCase>(ppu::make_sphere(0.7f, 48), 0.28f); });
+  add_skin(all, "torus",
+           [] { return std::make_shared<SkinCase>(ppu::make_torus(0.72f, 0.28f, 192, 80), 0.2f); });
 }
 
 }  // namespace softcell::demos

@@ -80,29 +80,40 @@ class Memcpy {
   std::unique_ptr<Blocks> from_ = std::make_unique<Blocks>(), to_ = std::make_unique<Blocks>();
 };
 
+/// A benchmark of a rig that is made for it, or shared.
+template <typename Rig, typename Run>
+Benchmark on(const Shared<Rig>& shared, std::string name, std::size_t items, Run run) {
+  return {std::move(name), [=] { return Work{items, [rig = shared.get(), run] { run(*rig); }}; }};
+}
+
 }  // namespace
 
 void add_dma_benchmarks(std::vector<Benchmark>& all) {
-  const auto eager = std::make_shared<TransfersRig>();
-  const auto lazy = std::make_shared<TransfersRig>(dma::Schedule{dma::Schedule::kLazy});
-  const auto by_memcpy = std::make_shared<Memcpy>();
-  all.push_back({"dma/memcpy16k", kBlocks, [by_memcpy] { by_memcpy->run(); }});
-  all.push_back({"dma/get16k", kBlocks,
-                 [eager] { eager->move(spu::kTransferGet, kBlockBytes, kBlocks, kBlocksInFlight); }});
-  all.push_back({"dma/put16k", kBlocks,
-                 [eager] { eager->move(spu::kTransferPut, kBlockBytes, kBlocks, kBlocksInFlight); }});
-  all.push_back({"dma/command/eager", kCommands,
-                 [eager] { eager->move(spu::kTransferGet, 16, kCommands, kCommandsInFlight); }});
-  all.push_back({"dma/command/lazy", kCommands,
-                 [lazy] { lazy->move(spu::kTransferGet, 16, kCommands, kCommandsInFlight); }});
+  const Shared<TransfersRig> eager([] { return std::make_shared<TransfersRig>(); });
+  const Shared<TransfersRig> lazy(
+      [] { return std::make_shared<TransfersRig>(dma::Schedule{dma::Schedule::kLazy}); });
+  const Shared<Memcpy> by_memcpy([] { return std::make_shared<Memcpy>(); });
+  const auto blocks = [](spu::TransferDirection direction) {
+    return [=](TransfersRig& rig) { rig.move(direction, kBlockBytes, kBlocks, kBlocksInFlight); };
+  };
+  const auto commands = [](TransfersRig& rig) {
+    rig.move(spu::kTransferGet, 16, kCommands, kCommandsInFlight);
+  };
+  all.push_back(on(by_memcpy, "dma/memcpy16k", kBlocks, [](Memcpy& rig) { rig.run(); }));
+  all.push_back(on(eager, "dma/get16k", kBlocks, blocks(spu::kTransferGet)));
+  all.push_back(on(eager, "dma/put16k", kBlocks, blocks(spu::kTransferPut)));
+  all.push_back(on(eager, "dma/command/eager", kCommands, commands));
+  all.push_back(on(lazy, "dma/command/lazy", kCommands, commands));
 }
 
 void add_dispatch_benchmarks(std::vector<Benchmark>& all) {
-  const auto rig = std::make_shared<TransfersRig>();
-  all.push_back({"dispatch/queued", kQueuedJobs, [rig] { rig->run_empty_jobs(kQueuedJobs); }});
-  all.push_back({"dispatch/round_trip", 1, [rig] { rig->run_empty_jobs(1); }});
-  const auto six = std::make_shared<TransfersRig>(dma::Schedule{}, 6);
-  all.push_back({"dispatch/round_trip_6_spes", 1, [six] { six->run_empty_jobs(1); }});
+  const Shared<TransfersRig> one([] { return std::make_shared<TransfersRig>(); });
+  const Shared<TransfersRig> six([] { return std::make_shared<TransfersRig>(dma::Schedule{}, 6); });
+  const auto many = [](TransfersRig& rig) { rig.run_empty_jobs(kQueuedJobs); };
+  const auto single = [](TransfersRig& rig) { rig.run_empty_jobs(1); };
+  all.push_back(on(one, "dispatch/queued", kQueuedJobs, many));
+  all.push_back(on(one, "dispatch/round_trip", 1, single));
+  all.push_back(on(six, "dispatch/round_trip_6_spes", 1, single));
 }
 
 }  // namespace softcell::demos

@@ -1,19 +1,45 @@
 #pragma once
-// What `softcell bench` measures. One function for each group; each adds its cases.
+// What `softcell bench` measures. One function for each group; each adds its cases, and builds nothing yet:
+// only what is measured is built.
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace softcell::demos {
 
-/// One thing to measure: `run` does `items` items of work.
-struct Benchmark {
-  std::string name;
+/// A piece of work to be timed: `run` does `items` items of it.
+struct Work {
   std::size_t items = 0;
   std::function<void()> run;
-  std::vector<double> nanoseconds = {};  ///< per item, one for each round
+};
+
+/// One thing to measure.
+struct Benchmark {
+  std::string name;
+  std::function<Work()> prepare;  ///< builds what the work needs; called once
+};
+
+/// What several benchmarks share, made when the first of them is prepared.
+template <typename Rig>
+class Shared {
+ public:
+  explicit Shared(std::function<std::shared_ptr<Rig>()> make)
+      : state_(std::make_shared<State>(State{std::move(make), nullptr})) {}
+
+  const std::shared_ptr<Rig>& get() const {
+    if (!state_->rig) state_->rig = state_->make();
+    return state_->rig;
+  }
+
+ private:
+  struct State {
+    std::function<std::shared_ptr<Rig>()> make;
+    std::shared_ptr<Rig> rig;
+  };
+  std::shared_ptr<State> state_;
 };
 
 /// skin/<body>/<spe|scalar>: an item is a vertex.
@@ -23,12 +49,20 @@ void add_skin_benchmarks(std::vector<Benchmark>& all);
 /// `ppu` the PPU's solver, `naive` that one without shared sums.
 void add_solver_benchmarks(std::vector<Benchmark>& all);
 
+/// solver3d/<body>/w<n>/bullet-<pose|links>: a btSoftBody with a node for each of the body's particles, once
+/// as one region that is matched, once held by links; the same for every half-width. An item is a node.
+void add_bullet_benchmarks(std::vector<Benchmark>& all);
+
 /// dma/<get|put>16k and dma/memcpy16k: an item is 16 KB. dma/command/<schedule>: an item is one get of 16
 /// bytes, waits included.
 void add_dma_benchmarks(std::vector<Benchmark>& all);
 
-/// dispatch/queued: an item is an empty job of many that wait in a row; dispatch/round_trip: one that is
-/// submitted and waited for while its SPE sleeps.
+/// dispatch/queued: an item is an empty job of many in one stage; dispatch/round_trip: one that is kicked and
+/// waited for while its SPE sleeps, or all six.
 void add_dispatch_benchmarks(std::vector<Benchmark>& all);
+
+/// frame/<scene>: a whole frame of 1/60 s without its picture. frame/<scene>/spheres: the same scene with a
+/// loose Bullet sphere for each particle that Bullet has to do with, nothing matched or skinned.
+void add_frame_benchmarks(std::vector<Benchmark>& all);
 
 }  // namespace softcell::demos

@@ -21,6 +21,7 @@ using namespace softcell::demos;
 
 constexpr int kMaxFrames = 1'000'000;
 constexpr int kMinPixels = 16, kMaxPixels = 8192;
+constexpr int kMaxRounds = 100'000;
 constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
 constexpr const char* kTraceHelp = "Write a trace of what happened when; `softcell report` shows it";
 constexpr const char* kDmaValues = "eager|lazy|random:SEED";
@@ -188,8 +189,14 @@ class CommandLine {
 
   void add_bench() {
     CLI::App* b = app_.add_subcommand("bench", "Measure kernels, side by side in one run");
-    b->add_option("--filter", bench_.filter, "Only benchmarks whose name matches this regular expression")
+    b->add_option("--filter", bench_.filter,
+                  "Only benchmarks in whose name this regular expression is found; others are not even built")
         ->type_name("REGEX");
+    b->add_option("--rounds", bench_.rounds,
+                  "How often each is run, in turn; minimum and median are reported (default: 31)")
+        ->check(CLI::Range(1, kMaxRounds))
+        ->type_name("ROUNDS");
+    b->add_flag("--list", bench_.list, "Print the names of the benchmarks and measure nothing");
     b->add_option("--json", bench_.json, "Write the figures to this file as well")->type_name("FILE");
     b->callback([this] { chosen_ = [this] { return run_bench(bench_); }; });
   }

@@ -62,6 +62,8 @@ struct SpuExploreOptions {
 
 struct BenchOptions {
   std::string filter;  ///< regular expression; empty: all
+  int rounds = 31;     ///< in each of which every benchmark runs once
+  bool list = false;   ///< print names, measure nothing
   std::optional<std::filesystem::path> json;
 };
 

@@ -157,6 +157,31 @@ TEST(Command, DoesNotPutAModelIntoASceneWithoutAPlaceForIt) {
   EXPECT_NE(run.output.find("--mesh does not go with scene arena"), std::string::npos) << run.output;
 }
 
+TEST(Command, ListsBenchmarksWithoutRunningThem) {
+  const CommandResult run = run_softcell("bench --list --filter penguin150/w2");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(run.output,
+            "solver3d/penguin150/w2/bullet-links\nsolver3d/penguin150/w2/bullet-pose\n"
+            "solver3d/penguin150/w2/eigen\nsolver3d/penguin150/w2/naive\nsolver3d/penguin150/w2/ppu\n"
+            "solver3d/penguin150/w2/spe\n");
+}
+
+TEST(Command, MeasuresWhatItIsAskedTo) {
+  const ScratchFolder folder;
+  const std::string json = folder / "bench.json";
+  const CommandResult run =
+      run_softcell("bench --rounds 3 --filter 'penguin150/w1/(spe|eigen|bullet)' --json " + json);
+  EXPECT_EQ(run.status, 0) << run.output;
+  const auto document = read_json(json);
+  ASSERT_EQ(document.size(), 4u);
+  for (const auto& entry : document) {
+    EXPECT_EQ(entry["name"].get<std::string>().rfind("solver3d/penguin150/w1/", 0), 0u) << entry;
+    EXPECT_GT(entry["ns_min"].get<double>(), 0) << entry;
+    EXPECT_GE(entry["ns_median"].get<double>(), entry["ns_min"].get<double>()) << entry;
+    EXPECT_GE(entry["items"].get<int>(), 100) << entry;
+  }
+}
+
 TEST(Command, PrintsTheBudgetOfEveryKernel) {
   const ScratchFolder folder;
   const CommandResult run = run_softcell("spu budget --json " + (folder / "b.json"));
@@ -265,7 +290,8 @@ INSTANTIATE_TEST_SUITE_P(WrongUsage, CommandRefuses,
                                          Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
                                          Refusal{"report", 2, "trace"}, Refusal{"report %s/file", 2, "--out"},
                                          Refusal{"bench --filter [", 2, "regular expression"},
-                                         Refusal{"bench --filter nothing-is-called-so", 2, "no benchmark"}));
+                                         Refusal{"bench --rounds 0", 2, "--rounds"},
+                                         Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,

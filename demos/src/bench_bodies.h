@@ -1,0 +1,24 @@
+#pragma once
+// The bodies on which solvers are compared, as lattices.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "softcell/ppu/lattice.h"
+
+namespace softcell::demos {
+
+struct BenchBody {
+  std::string_view name;
+  ppu::Lattice (*make)();
+};
+
+/// block1000, torus, shell, penguin150 and car; about 150 to 1000 particles, 0.1 m apart.
+std::span<const BenchBody> bench_bodies();
+
+/// A bent pose of a body, the same for all solvers: where a particle is.
+Eigen::Vector3f bent_position(const ppu::Lattice& lattice, std::size_t particle);
+
+}  // namespace softcell::demos
