@@ -11,8 +11,12 @@
 #include <random>
 #include <vector>
 
+#include "spu_kernels/intrinsics_support.h"
+
 namespace softcell::spu {
 namespace {
+
+class KernelHalf : public test::SpuArithmetic {};
 
 std::uint32_t bits_of(float f) {
   std::uint32_t bits;
@@ -74,14 +78,14 @@ void expect_nearest(float f) {
   }
 }
 
-TEST(KernelHalf, KeepsEveryHalf) {
+TEST_F(KernelHalf, KeepsEveryHalf) {
   for (std::uint32_t half = 0; half <= 0xFFFF; ++half) {
     if ((half & 0x7C00) == 0x7C00) continue;  // infinities and NaNs: below
     ASSERT_EQ(kernel_half(static_cast<float>(value_of_half(static_cast<std::uint16_t>(half)))), half);
   }
 }
 
-TEST(KernelHalf, KeepsInfinitiesAndNansAsTheyAre) {
+TEST_F(KernelHalf, KeepsInfinitiesAndNansAsTheyAre) {
   EXPECT_EQ(kernel_half(float_of(0x7F800000)), 0x7C00);
   EXPECT_EQ(kernel_half(float_of(0xFF800000)), 0xFC00);
   for (std::uint32_t payload = 1; payload < 1024; ++payload) {
@@ -92,7 +96,7 @@ TEST(KernelHalf, KeepsInfinitiesAndNansAsTheyAre) {
   EXPECT_EQ(kernel_half(float_of(0x7F800001)), 0x7E00) << "a payload that does not fit still is a NaN";
 }
 
-TEST(KernelHalf, RoundsToTheNearestAtAndAroundEveryMiddle) {
+TEST_F(KernelHalf, RoundsToTheNearestAtAndAroundEveryMiddle) {
   for (std::uint32_t half = 0; half < 0x7BFF; ++half) {
     const double a = value_of_half(static_cast<std::uint16_t>(half)),
                  b = value_of_half(static_cast<std::uint16_t>(half + 1));
@@ -104,7 +108,7 @@ TEST(KernelHalf, RoundsToTheNearestAtAndAroundEveryMiddle) {
   }
 }
 
-TEST(KernelHalf, OverflowsWhereRoundingDoes) {
+TEST_F(KernelHalf, OverflowsWhereRoundingDoes) {
   EXPECT_EQ(kernel_half(65519.996f), 0x7BFF);
   EXPECT_EQ(kernel_half(65520.0f), 0x7C00);
   EXPECT_EQ(kernel_half(-1e30f), 0xFC00);
@@ -114,14 +118,14 @@ TEST(KernelHalf, OverflowsWhereRoundingDoes) {
   EXPECT_EQ(kernel_half(-0.0f), 0x8000);
 }
 
-TEST(KernelHalf, MakesZeroOfWhatIsTooSmallForANormalHalf) {
+TEST_F(KernelHalf, MakesZeroOfWhatIsTooSmallForANormalHalf) {
   for (const float f : {std::nextafterf(0x1p-14f, 0.0f), 0x1p-15f, 1e-30f, 0.0f}) {
     EXPECT_EQ(spu_extract(high_half_or_zero(spu_splats(f)), 0) >> 16, 0u) << f;
     EXPECT_EQ(spu_extract(high_half_or_zero(spu_splats(-f)), 0) >> 16 & 0x7FFF, 0u) << f;
   }
 }
 
-TEST(KernelHalf, AgreesWithTheDefinitionOnRandomBits) {
+TEST_F(KernelHalf, AgreesWithTheDefinitionOnRandomBits) {
   std::mt19937 random(1);
   for (int i = 0; i < 200'000; ++i) {
     const std::uint32_t bits = static_cast<std::uint32_t>(random());
