@@ -194,7 +194,7 @@ class CommandLine {
         ->type_name("REGEX");
     b->add_option("--rounds", bench_.rounds,
                   "How often each is run, in turn; minimum and median are reported (default: 31)")
-        ->check(CLI::Range(1, kMaxRounds))
+        ->check(CLI::Range(1, kMaxRounds).description(""))
         ->type_name("ROUNDS");
     b->add_flag("--list", bench_.list, "Print the names of the benchmarks and measure nothing");
     b->add_option("--json", bench_.json, "Write the figures to this file as well")->type_name("FILE");
