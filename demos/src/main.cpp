@@ -54,6 +54,13 @@ ls_sim::Clock parse_clock(const std::string& text) {
   throw UsageError("--clock " + text + ": give host or simulated");
 }
 
+View2d parse_view(const std::string& text) {
+  if (text == "dots") return View2d::kDots;
+  if (text == "lattice") return View2d::kLattice;
+  if (text == "filled") return View2d::kFilled;
+  throw UsageError("--view " + text + ": give dots, lattice or filled");
+}
+
 /// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
 class CommandLine {
  public:
@@ -76,15 +83,34 @@ class CommandLine {
     }
     if (!chosen_)
       throw UsageError(
-          "say what to do: demo 3d, spu run, spu explore, spu budget, scenes, bench, report, completion or "
-          "man");
+          "say what to do: demo 2d, demo 3d, spu run, spu explore, spu budget, scenes, bench, report, "
+          "completion or man");
     return chosen_();
   }
 
  private:
   void add_demo() {
-    CLI::App* demo = app_.add_subcommand("demo", "Run a demo: 3d");
-    CLI::App* d = demo->add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
+    CLI::App* demo = app_.add_subcommand("demo", "Run a demo: 2d, 3d");
+    add_demo_2d(*demo);
+    add_demo_3d(*demo);
+  }
+
+  void add_demo_2d(CLI::App& demo) {
+    CLI::App* d = demo.add_subcommand("2d", "Soft bodies in a Box2D world");
+    add_demo_options(*d, demo_2d_, "man");
+    d->add_option("--view", view_, "What is drawn of soft bodies (default: filled)")
+        ->type_name("dots|lattice|filled");
+    d->callback([this] {
+      chosen_ = [this] {
+        parse_texts(demo_2d_);
+        demo_2d_.view = parse_view(view_);
+        return run_demo_2d(demo_2d_);
+      };
+    });
+  }
+
+  void add_demo_3d(CLI::App& demo) {
+    CLI::App* d = demo.add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
     add_demo_options(*d, demo_3d_, "arena");
     d->add_option("--mesh", demo_3d_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)")
         ->type_name("FILE");
@@ -234,6 +260,7 @@ class CommandLine {
 
   CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
                 "softcell"};
+  Demo2dOptions demo_2d_;
   Demo3dOptions demo_3d_;
   KernelTaskOptions run_task_, explore_task_;
   SpuRunOptions run_;
@@ -242,6 +269,7 @@ class CommandLine {
   BenchOptions bench_;
   ReportOptions report_;
   std::string size_;
+  std::string view_ = "filled";
   std::string schedule_ = "eager";
   std::string clock_ = "host";
   std::string shell_;

@@ -40,6 +40,18 @@ struct Demo3dOptions : DemoOptions {
   bool lattice = false;                       ///< draw particles and links instead of the skinned meshes
 };
 
+/// What is drawn of soft bodies in two dimensions.
+enum class View2d : std::uint8_t {
+  kDots,     ///< particles, the outer ones as large as they are to others
+  kLattice,  ///< particles and the edges of cells
+  kFilled,   ///< the cells as one shape
+};
+
+/// The scene's default: man.
+struct Demo2dOptions : DemoOptions {
+  View2d view = View2d::kFilled;
+};
+
 struct BudgetOptions {
   std::optional<std::filesystem::path> json;
 };

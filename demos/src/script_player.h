@@ -1,95 +1,76 @@
 #pragma once
-// Does what a scene's script says, frame by frame. For soft bodies of either dimension.
+// Turns a scene's script into the events of each frame.
 
 #include <Eigen/Core>
-#include <cstddef>
+#include <cmath>
+#include <cstdint>
+#include <span>
 #include <vector>
 
+#include "input_event.h"
 #include "scripted_input.h"
 
 namespace softcell::demos {
 
-/// Used by one thread; allocates nothing after construction.
+/// Frames last 1/60 s and are counted from 0; what a script says happens at the frame that is nearest to its
+/// time. Used by one thread; the script outlives it.
 template <int Dimension>
 class ScriptPlayer {
  public:
-  using Vector = Eigen::Matrix<float, Dimension, 1>;
+  using Event = InputEvent<Dimension>;
+  using Vector = typename Event::Vector;
 
-  explicit ScriptPlayer(const ScriptedInput<Dimension>& script)
-      : script_(script), impulse_given_(script.impulses.size()), held_(script.drags.size()) {}
+  explicit ScriptPlayer(const ScriptedInput<Dimension>& script) : script_(script) {}
 
-  /// The gravity at `time`, in m/s^2: the last change's, or `initial` before the first.
-  float gravity_at(double time, float initial) const {
-    float gravity = initial;
-    double latest = -1;
+  /// What happens at the beginning of the frame. Good until the next call.
+  std::span<const Event> events_at(std::int64_t frame) {
+    events_.clear();
+    for (const float time : script_.resets) {
+      if (frame_at(time) == frame) events_.push_back({.action = Action::kReset});
+    }
+    for (const ScriptedPause& pause : script_.pauses) {
+      if (frame_at(pause.begin) == frame) events_.push_back({.action = Action::kPause});
+      if (frame_at(pause.end) == frame) events_.push_back({.action = Action::kResume});
+    }
     for (const GravityChange& change : script_.gravity) {
-      if (double{change.time} <= time && double{change.time} >= latest) {
-        gravity = change.gravity;
-        latest = double{change.time};
+      if (frame_at(change.time) == frame)
+        events_.push_back({.action = Action::kGravity, .value = Vector::Unit(1) * -change.gravity});
+    }
+    for (const auto& impulse : script_.impulses) {
+      if (frame_at(impulse.time) == frame) {
+        events_.push_back({.action = Action::kPush,
+                           .body = static_cast<std::uint32_t>(impulse.body),
+                           .value = impulse.velocity});
       }
     }
-    return gravity;
-  }
-
-  /// What happens at the beginning of the frame at `time` seconds.
-  /// @param body  body(number) is that soft body: it has positions(), velocities(), add_velocity() and
-  /// add_particle_velocity().
-  template <class BodyOf>
-  void act(double time, BodyOf body) {
-    for (std::size_t i = 0; i < script_.impulses.size(); ++i) {
-      const auto& impulse = script_.impulses[i];
-      if (impulse_given_[i] || time < double{impulse.time}) continue;
-      impulse_given_[i] = true;
-      body(impulse.body).add_velocity(impulse.velocity);
-    }
-    for (std::size_t i = 0; i < script_.drags.size(); ++i) drag(i, time, body);
+    for (std::uint32_t i = 0; i < script_.drags.size(); ++i) add_drag(i, frame);
+    return events_;
   }
 
  private:
-  static constexpr float kReach = 0.05f;  // seconds in which a held particle would be where the hand is
+  static std::int64_t frame_at(float time) { return std::llround(double{time} * 60); }
 
-  struct Held {
-    bool taken = false;
-    std::size_t particle = 0;
-  };
-
-  template <class BodyOf>
-  void drag(std::size_t i, double time, BodyOf body_of) {
-    const auto& drag = script_.drags[i];
-    if (time < double{drag.begin} || time >= double{drag.end}) return;
-    auto& body = body_of(drag.body);
-    Held& held = held_[i];
-    if (!held.taken) held = {true, nearest(body.positions(), drag.from)};
-    const auto share =
-        static_cast<float>((time - double{drag.begin}) / (double{drag.end} - double{drag.begin}));
-    const Vector hand = drag.from + share * (drag.to - drag.from);
-    const Vector wanted = (hand - position(body.positions()[held.particle])) / kReach;
-    body.add_particle_velocity(held.particle, wanted - Vector(body.velocities()[held.particle]));
-  }
-
-  /// Of a particle: in 3D it is a corner of the skinning job, in 2D a vector.
-  template <class Particle>
-  static Vector position(const Particle& p) {
-    if constexpr (Dimension == 3) {
-      return {p.x, p.y, p.z};
-    } else {
-      return p;
+  void add_drag(std::uint32_t hand, std::int64_t frame) {
+    const auto& drag = script_.drags[hand];
+    const std::int64_t begin = frame_at(drag.begin), end = frame_at(drag.end);
+    if (frame < begin || frame > end) return;
+    if (frame == begin) {
+      events_.push_back({.action = Action::kGrab,
+                         .hand = hand,
+                         .body = static_cast<std::uint32_t>(drag.body),
+                         .value = drag.from});
     }
-  }
-
-  template <class Positions>
-  static std::size_t nearest(const Positions& positions, const Vector& point) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < positions.size(); ++i) {
-      if ((position(positions[i]) - point).squaredNorm() < (position(positions[best]) - point).squaredNorm())
-        best = i;
+    if (frame == end) {
+      events_.push_back({.action = Action::kRelease, .hand = hand});
+      return;
     }
-    return best;
+    const auto share = static_cast<float>(frame - begin) / static_cast<float>(end - begin);
+    events_.push_back(
+        {.action = Action::kMoveHand, .hand = hand, .value = drag.from + share * (drag.to - drag.from)});
   }
 
   const ScriptedInput<Dimension>& script_;
-  std::vector<bool> impulse_given_;
-  std::vector<Held> held_;
+  std::vector<Event> events_;
 };
 
 }  // namespace softcell::demos

@@ -29,11 +29,18 @@ struct GravityChange {
   float gravity = 0;  ///< m/s^2 downwards, from then on
 };
 
+/// Time stands still; that of the script goes on.
+struct ScriptedPause {
+  float begin = 0, end = 0;  ///< seconds
+};
+
 template <int Dimension>
 struct ScriptedInput {
   std::vector<ScriptedImpulse<Dimension>> impulses;
   std::vector<ScriptedDrag<Dimension>> drags;
   std::vector<GravityChange> gravity;
+  std::vector<ScriptedPause> pauses;
+  std::vector<float> resets;  ///< seconds: everything is as it was at the beginning; the script goes on
 };
 
 }  // namespace softcell::demos

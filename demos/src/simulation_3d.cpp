@@ -6,6 +6,7 @@
 #include <array>
 #include <numbers>
 
+#include "controls.h"
 #include "kernel_samples.h"
 #include "script_player.h"
 #include "softcell/ppu/bullet_coupling.h"
@@ -61,6 +62,7 @@ struct Simulation3d::State {
   State(const Scene& scene_description, const SimulationOptions& options)
       : scene(scene_description),
         script(scene.script),
+        controls({0, -scene.gravity, 0}),
         soft_bodies(world.world()),
         skin(load_kernel("skin", options.findings != nullptr)),
         job_loop(load_kernel("job_loop")),
@@ -86,7 +88,6 @@ struct Simulation3d::State {
       snapshot.box_poses.resize(boxes.size());
       for (const auto& body : positions) snapshot.particles.emplace_back(body.size());
     }
-    world.set_gravity({0, -scene.gravity, 0});
     hand_over();
     orchestrator.drain();
     newest = 0;
@@ -103,10 +104,17 @@ struct Simulation3d::State {
     orchestrator.kick(positions);
   }
 
+  void reset() {
+    world.reset();
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b) soft_bodies[b].reset(scene.soft_bodies[b].position);
+    frame = 0;
+  }
+
   const Snapshot& shown() const { return snapshots[static_cast<std::size_t>(newest)]; }
 
   const Scene& scene;
   ScriptPlayer<3> script;
+  Controls<3> controls;
   ppu::BulletWorld world;
   ppu::BulletSoftBodies soft_bodies;
   std::vector<std::size_t> boxes;  // numbers in the world
@@ -120,7 +128,8 @@ struct Simulation3d::State {
   std::array<Snapshot, 2> snapshots;
   int newest = 1;  // the snapshot of the vertices that the orchestrator shows
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
-  long frame = 0;
+  std::int64_t script_frame = 0;  // counts frames without a break
+  std::int64_t frame = 0;         // simulated since the last reset
 };
 
 Simulation3d::Simulation3d(const Scene& scene, const SimulationOptions& options)
@@ -128,14 +137,19 @@ Simulation3d::Simulation3d(const Scene& scene, const SimulationOptions& options)
 
 Simulation3d::~Simulation3d() = default;
 
-FrameTimes Simulation3d::step() {
+FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   State& s = *state_;
   FrameTimes times;
-  const double time = static_cast<double>(s.frame++) / 60;
-  s.tilt = tilt_at(s.scene.tilt, time);
-  const float gravity = s.script.gravity_at(time, s.scene.gravity);
-  s.world.set_gravity(s.tilt.transpose() * Eigen::Vector3f(0, -gravity, 0));
-  s.script.act(time, [&](std::size_t body) -> ppu::SoftBody& { return s.soft_bodies[body]; });
+  const auto reset = [&s] { s.reset(); };
+  s.controls.take(s.script.events_at(s.script_frame++), s.soft_bodies, reset);
+  s.controls.take(events, s.soft_bodies, reset);
+  if (!s.controls.advance()) {
+    finish();
+    return times;
+  }
+  s.tilt = tilt_at(s.scene.tilt, static_cast<double>(s.frame++) / 60);
+  s.world.set_gravity(s.tilt.transpose() * s.controls.gravity());
+  s.controls.hands().pull(s.soft_bodies);
   const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
 
   const auto waiting = std::chrono::steady_clock::now();

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "input_event.h"
 #include "scene.h"
 #include "simulation_options.h"
 #include "softcell/ppu/skin_orchestrator.h"
@@ -23,9 +24,10 @@ class Simulation3d {
   Simulation3d(const Simulation3d&) = delete;
   Simulation3d& operator=(const Simulation3d&) = delete;
 
-  /// Simulates 1/60 s and hands its skinning to the SPEs; the frame before becomes the one that is shown.
+  /// Does what the scene's script says and then what `events` say, simulates 1/60 s and hands its skinning to
+  /// the SPEs; the frame before becomes the one that is shown. During a pause nothing moves.
   /// @throws std::runtime_error  when skinning the frame before failed; the sentence is the fault's.
-  FrameTimes step();
+  FrameTimes step(std::span<const InputEvent<3>> events = {});
 
   /// Waits for the SPEs, so that the newest frame is shown. @throws as step().
   void finish();

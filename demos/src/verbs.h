@@ -8,6 +8,7 @@
 namespace softcell::demos {
 
 /// @return the exit status: 0, 3 when checked kernels have findings, or 130 when interrupted.
+int run_demo_2d(const Demo2dOptions& options);
 int run_demo_3d(const Demo3dOptions& options);
 int run_scenes();
 int run_budget(const BudgetOptions& options);

@@ -16,6 +16,7 @@ namespace {
 struct RigidBody {
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> body;
+  btVector3 start;
 };
 
 double milliseconds(std::chrono::nanoseconds time) {
@@ -52,7 +53,7 @@ struct BulletWorld::Impl {
     auto body = std::make_unique<btRigidBody>(info);
     if (mass > 0) body->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(body.get());
-    bodies.push_back({std::move(shape), std::move(body)});
+    bodies.push_back({std::move(shape), std::move(body), to_bullet(position)});
     return bodies.size() - 1;
   }
 };
@@ -84,6 +85,20 @@ std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vecto
   hull->optimizeConvexHull();  // drops what lies inside: GJK looks at every point
   hull->recalcLocalAabb();
   return impl_->add(std::move(hull), 0, position, friction);
+}
+
+void BulletWorld::reset() {
+  for (RigidBody& rigid : impl_->bodies) {
+    btRigidBody& body = *rigid.body;
+    const btTransform start(btQuaternion::getIdentity(), rigid.start);
+    body.setWorldTransform(start);
+    body.setInterpolationWorldTransform(start);
+    body.setLinearVelocity({0, 0, 0});
+    body.setAngularVelocity({0, 0, 0});
+    body.clearForces();
+    impl_->world.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseProxy(),
+                                                                                 &impl_->dispatcher);
+  }
 }
 
 Eigen::Matrix4f BulletWorld::pose(std::size_t body) const {

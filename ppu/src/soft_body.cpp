@@ -52,9 +52,8 @@ SoftBody::SoftBody(std::shared_ptr<const SoftBodyModel> model, const Vector3f& p
       v_(model_->particles(), Vector3f::Zero()),
       corners_(model_->particles()),
       matcher_(model_->plan()) {
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    set_position(i, model_->lattice().rest_position(i) + position);
-  }
+  reset(position);
+  revision_ = 0;
 }
 
 void SoftBody::set_position(std::size_t particle, const Vector3f& position) {
@@ -82,6 +81,14 @@ void SoftBody::advance_inner(float step, const Vector3f& gravity) {
 
 void SoftBody::translate(const Vector3f& by) {
   for (std::size_t i = 0; i < x_.size(); ++i) set_position(i, x_[i] + by);
+  ++revision_;
+}
+
+void SoftBody::reset(const Vector3f& position) {
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    set_particle(i, model_->lattice().rest_position(i) + position, Vector3f::Zero());
+  }
+  matcher_.reset();
   ++revision_;
 }
 

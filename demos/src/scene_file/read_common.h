@@ -81,7 +81,19 @@ std::size_t read_body(FieldReader& event, const SceneOf& scene) {
   return static_cast<std::size_t>(found - scene.soft_bodies.begin());
 }
 
-/// The tables `impulse`, `drag` and `gravity` of the scene, after its soft bodies.
+/// The fields `begin` and `end` of an event that lasts. @throws SceneError  it ends before it begins.
+template <class Event>
+void read_duration(FieldReader& fields, Event& event) {
+  fields.number("begin", event.begin, kTime, Need::kRequired)
+      .number("end", event.end, kTime, Need::kRequired)
+      .finish();
+  if (event.end <= event.begin) {
+    throw SceneError(fields.place("end"), fmt::format("{} ends at {} s; it begins at {} s and must end later",
+                                                      fields.what(), event.end, event.begin));
+  }
+}
+
+/// The tables `impulse`, `drag`, `gravity`, `pause` and `reset` of the scene, after its soft bodies.
 template <int Dimension, class SceneOf>
 void read_script(FieldReader& fields, SceneOf& scene) {
   const auto impulses = fields.items("impulse", kMaxEvents);
@@ -98,16 +110,9 @@ void read_script(FieldReader& fields, SceneOf& scene) {
     FieldReader event(drags[i], item_name("drag", i));
     auto& drag = scene.script.drags.emplace_back();
     drag.body = read_body(event, scene);
-    event.number("begin", drag.begin, kTime, Need::kRequired)
-        .number("end", drag.end, kTime, Need::kRequired)
-        .template vector<Dimension>("from", drag.from, kCoordinate, Need::kRequired)
-        .template vector<Dimension>("to", drag.to, kCoordinate, Need::kRequired)
-        .finish();
-    if (drag.end <= drag.begin) {
-      throw SceneError(event.place("end"),
-                       fmt::format("{} ends at {} s; it begins at {} s and must end later", event.what(),
-                                   drag.end, drag.begin));
-    }
+    event.template vector<Dimension>("from", drag.from, kCoordinate, Need::kRequired)
+        .template vector<Dimension>("to", drag.to, kCoordinate, Need::kRequired);
+    read_duration(event, drag);
   }
   const auto changes = fields.items("gravity", kMaxEvents);
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -115,6 +120,17 @@ void read_script(FieldReader& fields, SceneOf& scene) {
     FieldReader(changes[i], item_name("gravity", i))
         .number("time", change.time, kTime, Need::kRequired)
         .number("value", change.gravity, kGravity, Need::kRequired)
+        .finish();
+  }
+  const auto pauses = fields.items("pause", kMaxEvents);
+  for (std::size_t i = 0; i < pauses.size(); ++i) {
+    FieldReader event(pauses[i], item_name("pause", i));
+    read_duration(event, scene.script.pauses.emplace_back());
+  }
+  const auto resets = fields.items("reset", kMaxEvents);
+  for (std::size_t i = 0; i < resets.size(); ++i) {
+    FieldReader(resets[i], item_name("reset", i))
+        .number("time", scene.script.resets.emplace_back(), kTime, Need::kRequired)
         .finish();
   }
 }

@@ -40,6 +40,9 @@ class BulletWorld {
   /// @throws std::invalid_argument  the mesh has no positions.
   std::size_t add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction);
 
+  /// Puts all rigid bodies back to where they were added, at rest, and forgets contacts.
+  void reset();
+
   Eigen::Matrix4f pose(std::size_t body) const;  ///< from the body's frame to the world's
   std::size_t rigid_bodies() const;
 

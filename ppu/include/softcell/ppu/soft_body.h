@@ -136,6 +136,8 @@ class SoftBody {
   // What its user may do between time steps. Each counts up revision(), by which a coupling notices.
 
   void translate(const Eigen::Vector3f& by);
+  /// Back to the undeformed shape at rest, the model's own origin at `position`.
+  void reset(const Eigen::Vector3f& position);
   /// Teleports: turns the body about its centre of mass, then moves it. Velocities turn with the body.
   void move_without_force(const Eigen::Quaternionf& rotation, const Eigen::Vector3f& translation);
   /// Back to the undeformed shape, centre, mean orientation and both momenta kept.

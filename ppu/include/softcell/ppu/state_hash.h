@@ -5,6 +5,7 @@
 #include <span>
 
 #include "softcell/ppu/soft_body.h"
+#include "softcell/ppu/soft_body_2d.h"
 
 namespace softcell::ppu {
 
@@ -12,6 +13,7 @@ namespace softcell::ppu {
 /// those before: state_hash(b, state_hash(a)). The order counts.
 /// @source  XXH3, the 64-bit variant; `before` is its seed
 std::uint64_t state_hash(const SoftBody& body, std::uint64_t before = 0);
+std::uint64_t state_hash(const SoftBody2d& body, std::uint64_t before = 0);
 
 /// Of several bodies, in order.
 std::uint64_t state_hash(std::span<const SoftBody* const> bodies);

@@ -1,0 +1,42 @@
+#pragma once
+// What a hand at the mouse, a scene's script or a recording does to a simulation: a short list of plain data
+// for each frame. They are all the same to it.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+
+namespace softcell::demos {
+
+enum class Action : std::uint8_t {
+  kGrab,        ///< hand: takes the particle nearest to `value` (m) of `body`; lets go of another
+  kMoveHand,    ///< hand: is at `value` (m) now; nothing when it holds nothing
+  kRelease,     ///< hand: lets go
+  kPush,        ///< `value` (m/s) is added to all particles of `body`
+  kGravity,     ///< `value` (m/s^2) is gravity from now on
+  kReset,       ///< everything is as it was at the beginning, gravity too; hands let go. A pause goes on.
+  kPause,       ///< time stands still
+  kResume,      ///< time goes on
+  kSingleStep,  ///< during a pause: one frame
+};
+inline constexpr int kActions = 9;
+
+/// For `body`: to grab, whichever has the nearest particle; to push, all.
+inline constexpr std::uint32_t kEveryBody = std::numeric_limits<std::uint32_t>::max();
+/// For `hand`: the user's. The hands of a script are numbered from 0, one for each drag.
+inline constexpr std::uint32_t kUsersHand = std::numeric_limits<std::uint32_t>::max();
+
+/// Happens at the beginning of a frame. What an action does not use is 0. Dimension: 2 or 3.
+template <int Dimension>
+struct InputEvent {
+  using Vector = Eigen::Matrix<float, Dimension, 1>;
+
+  Action action = Action::kPause;
+  std::uint32_t hand = 0;
+  std::uint32_t body = 0;
+  Vector value = Vector::Zero();
+
+  bool operator==(const InputEvent&) const = default;
+};
+
+}  // namespace softcell::demos

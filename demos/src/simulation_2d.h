@@ -1,0 +1,56 @@
+#pragma once
+// A scene in two dimensions at work: the Box2D world and the soft bodies in it. No pictures here.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "hands.h"
+#include "input_event.h"
+#include "scene_2d.h"
+#include "simulation_options.h"
+
+namespace softcell::demos {
+
+/// Where a rigid body is.
+struct Pose2d {
+  Eigen::Vector2f position{0, 0};  ///< of its own origin, metres
+  float cosine = 1, sine = 0;      ///< of its angle
+};
+
+/// Used by one thread. The state after a number of steps depends on the scene and the events alone.
+class Simulation2d {
+ public:
+  /// The scene must outlive it.
+  /// @throws std::runtime_error  a body cannot be made.
+  explicit Simulation2d(const Scene2d& scene);
+  ~Simulation2d();
+  Simulation2d(const Simulation2d&) = delete;
+  Simulation2d& operator=(const Simulation2d&) = delete;
+
+  /// Does what the scene's script says and then what `events` say, and simulates 1/60 s. During a pause
+  /// nothing moves.
+  /// @throws std::runtime_error  a body has become NaN.
+  FrameTimes step(std::span<const InputEvent<2>> events = {});
+
+  std::size_t soft_bodies() const;
+  std::size_t particles() const;
+  std::size_t rigid_bodies() const;  ///< that can move
+  /// Good until the next step(), which may be a reset.
+  const ppu::SoftBody2d& soft_body(std::size_t body) const;
+  Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
+  bool paused() const;
+  std::span<const Hands<2>::Held> held() const;
+  const Eigen::Vector2f& gravity() const;  ///< m/s^2
+
+  /// 64-bit hash over positions and velocities of all particles.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softcell::demos
