@@ -62,7 +62,7 @@ struct OutlineOf {
 
 render::Colour darker(const render::Colour& colour) { return 0.45f * colour; }
 render::Colour lighter(const render::Colour& colour) {
-  return 0.5f * colour + render::Colour::Constant(0.5f);
+  return 0.75f * colour + render::Colour::Constant(0.25f);
 }
 
 }  // namespace

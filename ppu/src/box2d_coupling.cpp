@@ -57,6 +57,7 @@ class CoupledBody {
   void end_step(float step) {
     gather();
     soft_.advance_inner(step, to_eigen(world_.GetGravity()));
+    soft_.keep_inner_inside();
   }
 
  private:

@@ -1,5 +1,6 @@
 #include "softcell/ppu/soft_body_2d.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -64,6 +65,19 @@ void SoftBody2d::advance_inner(float step, const Vector2f& gravity) {
   for (const std::uint32_t i : model_->inner()) {
     v_[i] += step * gravity;
     x_[i] += step * v_[i];
+  }
+}
+
+void SoftBody2d::keep_inner_inside() {
+  Eigen::AlignedBox2f box;
+  for (const std::uint32_t i : model_->outer()) box.extend(x_[i]);
+  for (const std::uint32_t i : model_->inner()) {
+    const Vector2f inside = x_[i].cwiseMax(box.min()).cwiseMin(box.max());
+    for (int axis = 0; axis < 2; ++axis) {
+      const float back = inside[axis] - x_[i][axis];
+      if (back * v_[i][axis] < 0) v_[i][axis] = 0;
+    }
+    x_[i] = inside;
   }
 }
 

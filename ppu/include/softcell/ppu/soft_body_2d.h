@@ -72,6 +72,9 @@ class SoftBody2d {
   void pull(float step);
   void limit_speed(float limit);
   void advance_inner(float step, const Eigen::Vector2f& gravity);
+  /// Inner particles that have left the box around the outer ones go back to its edge, and lose the velocity
+  /// with which they left: nothing else keeps those of a crushed body from sinking through the ground.
+  void keep_inner_inside();
   void set_particle(std::size_t particle, const Eigen::Vector2f& position, const Eigen::Vector2f& velocity) {
     x_[particle] = position;
     v_[particle] = velocity;
