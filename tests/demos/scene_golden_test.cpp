@@ -1,9 +1,11 @@
-// Both scenes at three moments, as pictures that were looked at.
+// Scenes at several moments, as pictures that were looked at.
 
 #include <gtest/gtest.h>
 
 #include "scene_file/scene_library.h"
 #include "scene_view.h"
+#include "scene_view_2d.h"
+#include "simulation_2d.h"
 #include "simulation_3d.h"
 #include "softcell/render/offscreen_context.h"
 #include "support/golden.h"
@@ -45,6 +47,59 @@ TEST(SceneGolden, TheLatticeViewLooksAsItDid) {
   render::Renderer renderer(*context, {.width = 480, .height = 270});
   SceneView view(scene, simulation, renderer, View::kLattice);
   EXPECT_TRUE(test::compare_with_golden(view.draw(), "drop_lattice"));
+}
+
+struct Moment2d {
+  const char* scene;
+  int frame;
+  View2d view;
+  const char* picture;
+};
+
+void PrintTo(const Moment2d& m, std::ostream* out) { *out << m.picture; }
+
+class SceneGolden2d : public testing::TestWithParam<Moment2d> {};
+
+TEST_P(SceneGolden2d, LooksAsItDid) {
+  const Scene2d scene = load_scene_2d(GetParam().scene);
+  Simulation2d simulation(scene);
+  for (int frame = 0; frame < GetParam().frame; ++frame) simulation.step();
+  const auto context = render::create_offscreen_context();
+  render::Renderer renderer(*context, {.width = 480, .height = 270});
+  SceneView2d view(scene, simulation, renderer, GetParam().view);
+  EXPECT_TRUE(test::compare_with_golden(view.draw(), GetParam().picture));
+}
+
+INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden2d,
+                         testing::Values(Moment2d{"man", 1, View2d::kFilled, "man_1"},
+                                         Moment2d{"man", 45, View2d::kFilled, "man_45"},
+                                         Moment2d{"man", 45, View2d::kDots, "man_45_dots"},
+                                         Moment2d{"man", 45, View2d::kLattice, "man_45_lattice"},
+                                         Moment2d{"stack", 60, View2d::kFilled, "stack_60"},
+                                         Moment2d{"two_way", 50, View2d::kFilled, "two_way_50"}));
+
+TEST(SceneGolden2d, AHandThatDragsTheManIsSeen) {
+  const Scene2d scene = load_scene_2d("man");
+  Simulation2d simulation(scene);
+  simulation.step(std::vector<InputEvent<2>>{
+      {.action = Action::kGrab, .hand = kUsersHand, .body = kEveryBody, .value = {-1.6f, 0.6f}},
+      {.action = Action::kMoveHand, .hand = kUsersHand, .value = {-3, 2}}});
+  for (int frame = 0; frame < 60; ++frame) simulation.step();
+  const auto context = render::create_offscreen_context();
+  render::Renderer renderer(*context, {.width = 480, .height = 270});
+  SceneView2d view(scene, simulation, renderer, View2d::kFilled);
+  EXPECT_TRUE(test::compare_with_golden(view.draw(), "man_dragged"));
+}
+
+TEST(SceneView2d, KnowsWhereAPixelIs) {
+  Scene2d scene;
+  scene.camera = {.centre = {1, 2}, .height = 5.4f};
+  const Simulation2d simulation(scene);
+  const auto context = render::create_offscreen_context();
+  render::Renderer renderer(*context, {.width = 480, .height = 270});
+  const SceneView2d view(scene, simulation, renderer, View2d::kDots);
+  EXPECT_LT((view.world_at(240, 135) - Eigen::Vector2f(1, 2)).norm(), 1e-5f);
+  EXPECT_LT((view.world_at(0, 0) - Eigen::Vector2f(1 - 4.8f, 2 + 2.7f)).norm(), 1e-5f);
 }
 
 }  // namespace

@@ -100,7 +100,8 @@ TEST(Script, AResetIn3dBeginsAnew) {
   EXPECT_EQ(first.shown_box_poses().back(), second.shown_box_poses().back());
   run(first, 20);
   run(second, 20);
-  const Eigen::Vector3f difference = first.soft_body(0).centre_of_mass() - second.soft_body(0).centre_of_mass();
+  const Eigen::Vector3f difference =
+      first.soft_body(0).centre_of_mass() - second.soft_body(0).centre_of_mass();
   EXPECT_LT(difference.norm(), 0.05f) << "Bullet does not sort contacts; they are in another order";
 }
 

@@ -9,15 +9,19 @@ namespace {
 
 using Eigen::Vector2f;
 
+/// Of rigid bodies: Box2D ends the process at a shape that has no area to speak of.
+constexpr float kSmallest = 0.01f;  // metres
+constexpr Range kRigidLength{.low = double{kSmallest}, .high = kFar};
+
 /// Four walls around the middle of the world; width and height are those of the room within.
 void read_framework(const Value& value, Scene2d& scene) {
   Vector2f room{8, 6};
   float thickness = 0.5f;
   render::Colour colour = render::srgb(0x9AA7B5);
   FieldReader(value, "framework")
-      .number("width", room.x(), kLength)
-      .number("height", room.y(), kLength)
-      .number("thickness", thickness, kLength)
+      .number("width", room.x(), kRigidLength)
+      .number("height", room.y(), kRigidLength)
+      .number("thickness", thickness, kRigidLength)
       .colour("colour", colour)
       .finish();
   const Vector2f middle = (room + Vector2f(thickness, thickness)) / 2;
@@ -56,7 +60,7 @@ std::vector<Vector2f> read_corners(FieldReader& fields) {
   return corners;
 }
 
-/// Whether every corner turns left, once around in all.
+/// Whether every corner turns left, once around in all, and lies at least kSmallest off each other side.
 bool is_convex(const std::vector<Vector2f>& corners) {
   const std::size_t n = corners.size();
   if (n < 3) return false;
@@ -65,7 +69,7 @@ bool is_convex(const std::vector<Vector2f>& corners) {
     for (std::size_t j = 0; j < n; ++j) {
       if (j == i || j == (i + 1) % n) continue;
       const Vector2f to = corners[j] - corners[i];
-      if (along.x() * to.y() - along.y() * to.x() <= 1e-6f * along.squaredNorm()) return false;
+      if (!(along.x() * to.y() - along.y() * to.x() >= kSmallest * along.norm())) return false;
     }
   }
   return true;
@@ -77,7 +81,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
     FieldReader fields(boxes[i], item_name("box", i));
     Box2dShape shape;
     RigidBody2d body = read_rigid_body(fields);
-    fields.vector<2>("size", shape.size, kLength, Need::kRequired).finish();
+    fields.vector<2>("size", shape.size, kRigidLength, Need::kRequired).finish();
     body.shape = shape;
     scene.rigid_bodies.push_back(body);
   }
@@ -86,7 +90,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
     FieldReader fields(circles[i], item_name("circle", i));
     CircleShape shape;
     RigidBody2d body = read_rigid_body(fields);
-    fields.number("radius", shape.radius, kLength, Need::kRequired).finish();
+    fields.number("radius", shape.radius, kRigidLength, Need::kRequired).finish();
     body.shape = shape;
     scene.rigid_bodies.push_back(body);
   }
@@ -97,8 +101,11 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
     PolygonShape shape{read_corners(fields)};
     fields.finish();
     if (!is_convex(shape.corners)) {
-      throw SceneError(fields.place("corners"),
-                       fields.what() + " must be convex and have 3 to 8 corners, counter-clockwise");
+      throw SceneError(
+          fields.place("corners"),
+          fmt::format("{} must be convex and have 3 to 8 corners, counter-clockwise, each at least {} m off "
+                      "the sides that it does not end",
+                      fields.what(), kSmallest));
     }
     body.shape = std::move(shape);
     scene.rigid_bodies.push_back(std::move(body));
