@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2f;
 
 /// Of rigid bodies: Box2D ends the process at a shape that has no area to speak of.
-constexpr float kSmallest = 0.01f;  // metres
-constexpr Range kRigidLength{.low = double{kSmallest}, .high = kFar};
+constexpr double kSmallest = 0.01;  // metres
+constexpr Range kRigidLength{.low = kSmallest, .high = kFar};
 
 /// Four walls around the middle of the world; width and height are those of the room within.
 void read_framework(const Value& value, Scene2d& scene) {
@@ -69,7 +69,8 @@ bool is_convex(const std::vector<Vector2f>& corners) {
     for (std::size_t j = 0; j < n; ++j) {
       if (j == i || j == (i + 1) % n) continue;
       const Vector2f to = corners[j] - corners[i];
-      if (!(along.x() * to.y() - along.y() * to.x() >= kSmallest * along.norm())) return false;
+      if (!(along.x() * to.y() - along.y() * to.x() >= static_cast<float>(kSmallest) * along.norm()))
+        return false;
     }
   }
   return true;
