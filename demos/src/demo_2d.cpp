@@ -25,7 +25,7 @@ class Demo2d : public Demo {
             .vertices = simulation_.particles()};
   }
   FrameTimes step() override { return simulation_.step(); }
-  void finish() override {}
+  void stop() override {}
   std::uint64_t state_hash() const override { return simulation_.state_hash(); }
   std::vector<ls_sim::SpeStatistics> spe_statistics() const override { return {}; }
   std::uint64_t late_frames() const override { return 0; }
