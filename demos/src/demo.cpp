@@ -67,7 +67,7 @@ nlohmann::ordered_json statistics_document(const DemoOptions& options, const Dem
       {"rigid_bodies", counts.rigid_bodies},
       {"particles", counts.particles},
       {"vertices", counts.vertices},
-      {"spes", options.spes},
+      {"spes", busy.size()},
       {"dma", dma::to_string(options.schedule)},
       {"ppu_ms", to_json(summarize(record.ppu_ms))},
       {"physics_ms", to_json(summarize(record.physics_ms))},
@@ -101,10 +101,13 @@ void print_summary(const nlohmann::ordered_json& s, const DemoOptions& options) 
       s["ppu_ms"]["mean"].get<double>(), s["skin_ms"]["mean"].get<double>(),
       s["physics_ms"]["mean"].get<double>(), s["picture_ms"]["mean"].get<double>());
   fmt::print("          {:.0f} frames a second without pictures\n", s["simulated_fps"].get<double>());
-  fmt::print(
-      "SPEs:     {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {} DMA commands, {:.1f} MB\n",
-      options.spes, 100 * mean, 100 * busiest, s["dma_commands"].get<std::uint64_t>(),
-      static_cast<double>(s["dma_bytes"].get<std::uint64_t>()) / 1e6);
+  if (!s["spe_busy"].empty()) {
+    fmt::print(
+        "SPEs:     {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {} DMA commands, {:.1f} "
+        "MB\n",
+        s["spes"].get<int>(), 100 * mean, 100 * busiest, s["dma_commands"].get<std::uint64_t>(),
+        static_cast<double>(s["dma_bytes"].get<std::uint64_t>()) / 1e6);
+  }
   fmt::print("state:    {}   picture: {}\n", s["state_hash"].get<std::string>(),
              s["image_hash"].get<std::string>());
   const auto where = [](const char* what, const std::optional<std::filesystem::path>& path) {
