@@ -24,6 +24,7 @@ std::vector<Benchmark> all_benchmarks() {
   add_dma_benchmarks(all);
   add_dispatch_benchmarks(all);
   add_frame_benchmarks(all);
+  add_frame_2d_benchmarks(all);
   return all;
 }
 

@@ -65,4 +65,7 @@ void add_dispatch_benchmarks(std::vector<Benchmark>& all);
 /// loose Bullet sphere for each particle that Bullet has to do with, nothing matched or skinned.
 void add_frame_benchmarks(std::vector<Benchmark>& all);
 
+/// frame/<scene>/circles: as spheres, with circles in Box2D.
+void add_frame_2d_benchmarks(std::vector<Benchmark>& all);
+
 }  // namespace softcell::demos
