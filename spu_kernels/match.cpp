@@ -21,6 +21,8 @@
 #include <spu_mfcio.h>
 
 #include "common/dma.h"
+#include "common/finite.h"
+#include "common/reciprocal.h"
 #include "match/step.h"
 #include "match_job.h"
 

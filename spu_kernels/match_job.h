@@ -5,18 +5,15 @@
 // A plan is what all bodies of one model share: constants of particles and regions, and the lists by which
 // sums are made. The PPU side writes it once (ppu/match_plan.h). Four particles, and four regions, stand
 // together, one to a lane; a last group that is not full is padded with particles of no mass and regions of
-// nothing.
-//
-// The kernel works on two buffers of slots; a slot is three quadwords: the payload of a particle, a bar, a
-// plate or a region. Slot 0 is always zero, particle i is in slot i + 1. Numbers of slots are written as
-// offsets in quadwords, 3 * slot.
+// nothing. Particle i is in slot i + 1; a slot is three quadwords.
 
 #include <stdint.h>
+
+#include "sum_list_job.h"
 
 namespace softcell::spu {
 
 constexpr uint32_t kMatchSlotBytes = 48;
-constexpr uint32_t kMatchOffsetUnit = 8;  ///< bytes
 
 /// Constants of four particles.
 struct alignas(16) MatchParticles {
@@ -43,15 +40,7 @@ struct alignas(16) MatchRotations {
 static_assert(sizeof(MatchRotations) == 64, "four quadwords");
 
 /// A plan's first line. The other parts follow at the given offsets, in bytes from the header's start, each a
-/// multiple of 16.
-///
-/// A sum list is a sequence of halfwords and makes slots 1, 2, 3, ... of one buffer from slots of the other:
-///
-///     chain:  terms (1 or more), steps (0 or more),
-///             terms x offset                the first sum is that of these slots
-///             steps x (offset, offset)      each further sum is the one before, plus the first, minus the
-///             second
-///     end:    0
+/// multiple of 16. Sum lists are those of sum_list_job.h.
 struct alignas(128) MatchPlanHeader {
   uint32_t bytes;               ///< of the whole plan, header included; a multiple of 128
   uint32_t particles;           ///< 1 or more
@@ -104,9 +93,6 @@ static_assert(sizeof(MatchJob) == 128, "one line");
 
 /// What the kernel's main returns.
 enum MatchStatus : uint32_t { kMatchDone = 0, kMatchTooLarge = 1 };
-
-/// Particles or regions in groups of four.
-constexpr uint32_t groups_of(uint32_t count) { return (count + 3) / 4; }
 
 /// Bytes of local store for a plan and one body's state, each part a multiple of 16 bytes.
 constexpr uint32_t match_plan_bytes(const MatchPlanHeader& plan) { return plan.bytes; }

@@ -21,6 +21,7 @@
 #include "common/lane_mask.h"
 #include "common/matrix3.h"
 #include "common/reciprocal.h"
+#include "common/unit_scale.h"
 #include "rotation_cold.h"
 
 namespace softcell::spu {
@@ -40,12 +41,6 @@ constexpr RotationEffort kAdaptive = {0, 6};
 constexpr float kRotationResidual = 2e-6f;  ///< some roundings
 constexpr float kRotationLost = 3e-3f;      ///< above it a lane starts again
 
-/// Where the magnitudes of A's elements, summed and times `weight`, are at most `floor`, A is rounding noise.
-struct RotationNoise {
-  vec_float4 weight;
-  vec_float4 floor;
-};
-
 struct Rotation4 {
   Matrix3x4 matrix;
   vec_float4 residual_square;  ///< of this matrix
@@ -53,11 +48,9 @@ struct Rotation4 {
 
 namespace rotation_detail {
 
-constexpr float kMu = 5e-4f;            // against matrices whose elements sum to 1..2
-constexpr float kLongestStep = 0.75f;   // of omega / 2: 1.3 rad
-constexpr int kPolishing = 6;           // iterations after a cold start
-constexpr float kLargestSum = 1.7e38f;  // of |A|'s elements; beyond it and below kSmallestSum A counts as 0
-constexpr float kSmallestSum = 1e-37f;
+constexpr float kMu = 5e-4f;           // against matrices whose elements sum to 1..2
+constexpr float kLongestStep = 0.75f;  // of omega / 2: 1.3 rad
+constexpr int kPolishing = 6;          // iterations after a cold start
 
 /// A at one candidate rotation. `minors` belong to 2 H: its adjugate and determinant.
 struct Estimate {
@@ -157,11 +150,7 @@ __attribute__((always_inline)) inline Matrix3x4 normalise(const Matrix3x4& a, co
       spu_add(spu_add(spu_add(absolute(a.x.x), absolute(a.x.y)), spu_add(absolute(a.x.z), absolute(a.y.x))),
               spu_add(spu_add(absolute(a.y.y), absolute(a.y.z)), spu_add(absolute(a.z.x), absolute(a.z.y)))),
       absolute(a.z.z));
-  const vec_uint4 exponent = spu_and((vec_uint4)sum, spu_splats(0x7F800000u));
-  const vec_uint4 noise = negative_lanes(spu_or(
-      less(spu_splats(kLargestSum), sum),
-      spu_or(not_less(noise_of.floor, spu_mul(sum, noise_of.weight)), less(sum, spu_splats(kSmallestSum)))));
-  const vec_float4 by = (vec_float4)spu_andc(spu_sub(spu_splats(0x7F000000u), exponent), noise);
+  const vec_float4 by = unit_scale(sum, noise_of).by;
   return {scale(a.x, by), scale(a.y, by), scale(a.z, by)};
 }
 

@@ -20,6 +20,7 @@
 
 #include "common/dma.h"
 #include "common/lane_mask.h"
+#include "common/reciprocal.h"
 #include "skin/cell.h"
 #include "skin/drawn_vertex.h"
 #include "skin_job.h"

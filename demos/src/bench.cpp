@@ -20,6 +20,7 @@ std::vector<Benchmark> all_benchmarks() {
   std::vector<Benchmark> all;
   add_solver_benchmarks(all);
   add_bullet_benchmarks(all);
+  add_solver_2d_benchmarks(all);
   add_skin_benchmarks(all);
   add_dma_benchmarks(all);
   add_dispatch_benchmarks(all);

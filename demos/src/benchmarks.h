@@ -53,6 +53,9 @@ void add_solver_benchmarks(std::vector<Benchmark>& all);
 /// as one region that is matched, once held by links; the same for every half-width. An item is a node.
 void add_bullet_benchmarks(std::vector<Benchmark>& all);
 
+/// solver2d/<body>/w<n>/<spe|eigen|ppu|naive>: likewise.
+void add_solver_2d_benchmarks(std::vector<Benchmark>& all);
+
 /// dma/<get|put>16k and dma/memcpy16k: an item is 16 KB. dma/command/<schedule>: an item is one get of 16
 /// bytes, waits included.
 void add_dma_benchmarks(std::vector<Benchmark>& all);

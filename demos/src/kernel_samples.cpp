@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "job_chain.h"
+#include "match_2d_job.h"
 #include "match_job.h"
 #include "skin_job.h"
 #include "softcell/dma/buffer.h"
@@ -11,6 +12,7 @@
 #include "softcell/ppu/embedding.h"
 #include "softcell/ppu/lattice.h"
 #include "softcell/ppu/match_plan.h"
+#include "softcell/ppu/match_plan_2d.h"
 #include "softcell/ppu/shape_matching.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/spu_kernels/images.h"
@@ -103,6 +105,26 @@ void run_match(Sample& sample) {
   }
 }
 
+/// A step of three bodies, as MatchOrchestrator2d makes it.
+void run_match_2d(Sample& sample) {
+  constexpr std::uint32_t kBodies = 3;
+  const std::vector<std::string> rows(9, "#########");
+  const ppu::Lattice2d lattice = ppu::lattice_2d_from_cells(ppu::cells_from_rows(rows), 0.5f);
+  const ppu::MatchPlan2d plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)});
+  dma::Buffer<std::byte> plan_bytes(sample.memory(), "plan", plan.bytes().size());
+  std::copy(plan.bytes().begin(), plan.bytes().end(), plan_bytes.span().begin());
+  const std::size_t stride = spu::match_2d_positions_stride(plan.header()) / sizeof(spu::MatchVector2d);
+  dma::Buffer<spu::MatchVector2d> positions(sample.memory(), "positions", kBodies * stride);
+  for (std::size_t body = 0; body < kBodies; ++body)
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i)
+      positions[body * stride + i] = {-lattice.rest_position(i).x(), lattice.rest_position(i).y()};
+  const dma::Buffer<std::byte> states(sample.memory(), "states",
+                                      kBodies * spu::match_2d_state_stride(plan.header()));
+  dma::Buffer<spu::MatchJob2d> job(sample.memory(), "job", 1);
+  job[0] = {plan_bytes.ea().value, positions.ea().value, states.ea().value, kBodies, 30, 0.1f, {}};
+  sample.run(job.ea());
+}
+
 void run_transfers(Sample& sample) {
   const dma::Buffer<std::byte> data(sample.memory(), "data", 1024);
   dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1);
@@ -143,6 +165,8 @@ std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
   Sample sample(kernel);
   if (kernel.name == "match") {
     run_match(sample);
+  } else if (kernel.name == "match_2d") {
+    run_match_2d(sample);
   } else if (kernel.name == "skin") {
     run_skin(sample);
   } else if (kernel.name == "transfers") {

@@ -38,14 +38,16 @@ class CoupledBody {
   std::int16_t group() const { return group_; }
   std::span<b2Body* const> particles() const { return particles_; }
 
-  /// Before Box2D's step: shape matching.
-  void begin_step(float step) {
+  // Before Box2D's step: what its user and Box2D have done, then shape matching, then the new velocities.
+
+  void begin_step() {
     if (soft_.revision() != seen_revision_) {
       place_particles();
     } else {
       gather();  // of velocities, mostly: the caller may have pushed particles
     }
-    soft_.pull(step);
+  }
+  void hand_over(float step) {
     soft_.limit_speed(Box2dSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing / step);
     const auto outer = soft_.model().outer();
     for (std::size_t i = 0; i < outer.size(); ++i) {
@@ -113,13 +115,33 @@ class CoupledBody {
 }  // namespace
 
 struct Box2dSoftBodies::Impl {
-  explicit Impl(b2World& w) : world(w) {}
+  Impl(b2World& w, Solver2d* s) : world(w), solver(s) {}
 
   template <typename Work>
   void timed(const Work& work) {
     const auto begin = std::chrono::steady_clock::now();
-    for (const auto& body : bodies) work(*body);
+    work();
     spent += std::chrono::steady_clock::now() - begin;
+  }
+
+  void begin_step(float step) {
+    for (const auto& body : bodies) body->begin_step();
+    pull(step);
+    for (const auto& body : bodies) body->hand_over(step);
+  }
+
+  void pull(float step) {
+    if (solver == nullptr) {
+      for (const auto& body : bodies) body->soft().pull(step);
+      return;
+    }
+    if (!solver_knows_bodies) {
+      std::vector<SoftBody2d*> all;
+      for (const auto& body : bodies) all.push_back(&body->soft());
+      solver->set_bodies(all);
+      solver_knows_bodies = true;
+    }
+    solver->pull(step);
   }
 
   /// The negative group nearest to 0 that no body has. @throws std::runtime_error  32,768 bodies are too
@@ -136,12 +158,15 @@ struct Box2dSoftBodies::Impl {
   }
 
   b2World& world;
+  Solver2d* const solver;
+  bool solver_knows_bodies = false;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
   std::unordered_map<const b2Body*, Particle> particles;
   std::chrono::nanoseconds spent{0};
 };
 
-Box2dSoftBodies::Box2dSoftBodies(b2World& world) : impl_(std::make_unique<Impl>(world)) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, Solver2d* solver)
+    : impl_(std::make_unique<Impl>(world, solver)) {}
 Box2dSoftBodies::~Box2dSoftBodies() = default;
 
 SoftBody2d& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel2d> model, const Vector2f& position) {
@@ -151,6 +176,7 @@ SoftBody2d& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel2d> model, c
   for (std::size_t i = 0; i < outer.size(); ++i) {
     impl_->particles[added.particles()[i]] = {&added.soft(), outer[i]};
   }
+  impl_->solver_knows_bodies = false;
   return added.soft();
 }
 
@@ -162,6 +188,7 @@ void Box2dSoftBodies::remove(const SoftBody2d& body) {
   }
   for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
   impl_->bodies.erase(found);
+  impl_->solver_knows_bodies = false;
 }
 
 void Box2dSoftBodies::step(float step, int velocity_iterations, int position_iterations) {
@@ -171,11 +198,13 @@ void Box2dSoftBodies::step(float step, int velocity_iterations, int position_ite
 }
 
 void Box2dSoftBodies::begin_step(float step) {
-  impl_->timed([&](CoupledBody& body) { body.begin_step(step); });
+  impl_->timed([&] { impl_->begin_step(step); });
 }
 
 void Box2dSoftBodies::end_step(float step) {
-  impl_->timed([&](CoupledBody& body) { body.end_step(step); });
+  impl_->timed([&] {
+    for (const auto& body : impl_->bodies) body->end_step(step);
+  });
 }
 
 std::size_t Box2dSoftBodies::size() const { return impl_->bodies.size(); }

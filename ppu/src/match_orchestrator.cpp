@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "match_orchestration.h"
+
 namespace softcell::ppu {
 
 namespace {
@@ -20,19 +22,6 @@ std::size_t stride_of(std::size_t count) {
   return (count + kPerLine - 1) / kPerLine * kPerLine;
 }
 
-void check(const char* name, float value, float most) {
-  if (!(value >= 0 && value <= most))
-    throw std::invalid_argument(std::string("MatchOrchestrator: ") + name + " " + std::to_string(value) +
-                                ": expected a finite number of 0 or more" +
-                                (most == 1 ? std::string(", at most 1") : std::string()));
-}
-
-std::size_t jobs_for(std::size_t bodies, std::size_t bodies_per_job) {
-  return (bodies + bodies_per_job - 1) / bodies_per_job;
-}
-
-constexpr dma::BufferOptions kInput{.spe_access = dma::SpeAccess::kRead};
-
 }  // namespace
 
 MatchOrchestrator::MatchOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
@@ -42,13 +31,13 @@ MatchOrchestrator::MatchOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
       region_groups_(spu::groups_of(plan.header().regions)),
       vector_stride_(stride_of<Vector>(particles_)),
       rotation_stride_(stride_of<spu::MatchRotations>(region_groups_)),
-      plan_(memory, "match plan", plan.bytes().size(), kInput),
-      positions_(memory, "match positions", bodies * vector_stride_, kInput),
+      plan_(memory, "match plan", plan.bytes().size(), kSpesOnlyRead),
+      positions_(memory, "match positions", bodies * vector_stride_, kSpesOnlyRead),
       velocities_(memory, "match velocities", bodies * vector_stride_),
       rotations_(memory, "match rotations", bodies * rotation_stride_),
       results_(memory, "match results", bodies),
-      bodies_(memory, "match bodies", bodies, kInput),
-      descriptors_(memory, "match jobs", jobs_for(bodies, bodies_per_job), kInput),
+      bodies_(memory, "match bodies", bodies, kSpesOnlyRead),
+      descriptors_(memory, "match jobs", jobs_for(bodies, bodies_per_job), kSpesOnlyRead),
       chain_(jobs, "match", jobs_for(bodies, bodies_per_job)) {
   std::memcpy(plan_.data(), plan.bytes().data(), plan.bytes().size());
   for (std::size_t b = 0; b < bodies; ++b) {
@@ -97,8 +86,8 @@ void MatchOrchestrator::step(const MatchSettings& settings) {
 }
 
 void MatchOrchestrator::kick(const MatchSettings& settings) {
-  check("pull", settings.pull, std::numeric_limits<float>::max());
-  check("damping", settings.damping, 1);
+  check_setting("pull", settings.pull, std::numeric_limits<float>::max());
+  check_setting("damping", settings.damping, 1);
   if (settings.least_iterations > settings.most_iterations)
     throw std::invalid_argument("MatchOrchestrator: at least " + std::to_string(settings.least_iterations) +
                                 " iterations, but at most " + std::to_string(settings.most_iterations));
@@ -118,18 +107,15 @@ void MatchOrchestrator::wait() {
   chain_.wait();
   if (!in_flight_) return;
   in_flight_ = false;
-  std::string failures;
-  for (const JobFailure& failure : chain_.failures()) failures += "; " + failure.message;
-  if (!failures.empty()) throw std::runtime_error("stepping soft bodies failed" + failures);
-  std::string bad;
+  check_jobs(chain_);
+  BadBodies bad;
   for (std::size_t b = 0; b < bodies(); ++b) {
     if (results_.data()[b].finite == 0)
-      bad += (bad.empty() ? "" : ", ") + std::to_string(b);
+      bad.add(b);
     else
       bodies_.span()[b].cold = 0;
   }
-  if (!bad.empty())
-    throw std::runtime_error("soft bodies with positions or velocities that are not finite numbers: " + bad);
+  bad.check();
 }
 
 }  // namespace softcell::ppu

@@ -5,18 +5,11 @@
 #include <limits>
 
 #include "matching_checks.h"
+#include "one_plate.h"
 #include "softcell/ppu/regions.h"
 
 namespace softcell::ppu {
 namespace {
-
-/// With all x equal, a plate is a whole region and a bar one of its columns: two levels of sums.
-std::vector<Eigen::Vector3i> as_one_plate(const std::vector<Eigen::Vector2i>& particles) {
-  std::vector<Eigen::Vector3i> grid;
-  grid.reserve(particles.size());
-  for (const Eigen::Vector2i& p : particles) grid.push_back({0, p.x(), p.y()});
-  return grid;
-}
 
 /// a x b.
 template <typename Vector>
@@ -51,8 +44,8 @@ MatchingPlan2d<Real>::MatchingPlan2d(const Lattice2d& lattice, int half_width, s
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double count = sizes[sums_.region_of()[i]];  // membership is symmetric: |R_i| = |r| of r = i
     const Vector x0 = (rest(i) - centre).template cast<Real>();
-    particles_.push_back(
-        {x0, static_cast<Real>(static_cast<double>(masses[i]) / count), static_cast<Real>(1 / count)});
+    particles_.push_back({x0, static_cast<Real>(static_cast<double>(masses[i]) / count),
+                          static_cast<Real>(1 / count), static_cast<Real>(masses[i])});
     farthest = std::max({farthest, std::abs(x0.x()), std::abs(x0.y())});
   }
   noise_floor_ = 4 * std::numeric_limits<Real>::epsilon() * farthest * farthest;

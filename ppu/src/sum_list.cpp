@@ -4,15 +4,9 @@
 #include <iterator>
 #include <optional>
 
-#include "match_job.h"
-
 namespace softcell::ppu {
 
 namespace {
-
-std::uint16_t offset_of(std::uint32_t slot) {
-  return static_cast<std::uint16_t>(slot * (spu::kMatchSlotBytes / spu::kMatchOffsetUnit));
-}
 
 struct Step {
   std::uint32_t joins = 0, leaves = 0;  // slots; 0 for none
@@ -39,7 +33,10 @@ std::optional<Step> step_to_next(const std::vector<Sum>& sums, std::size_t i, in
 
 }  // namespace
 
-SumList write_sum_list(const std::vector<Sum>& sums, int restart) {
+SumList write_sum_list(const std::vector<Sum>& sums, const SumListFormat& format) {
+  const auto offset_of = [&](std::uint32_t slot) {
+    return static_cast<std::uint16_t>(slot * (format.slot_bytes / spu::kSumOffsetUnit));
+  };
   SumList list;
   std::vector<std::uint16_t>& out = list.halfwords;
   for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -49,7 +46,7 @@ SumList write_sum_list(const std::vector<Sum>& sums, int restart) {
     out.push_back(0);
     for (const std::uint32_t slot : terms) out.push_back(offset_of(slot));
     list.additions += terms.size() - 1;
-    while (const std::optional<Step> step = step_to_next(sums, i, restart)) {
+    while (const std::optional<Step> step = step_to_next(sums, i, format.restart)) {
       out.push_back(offset_of(step->joins));
       out.push_back(offset_of(step->leaves));
       ++out[steps_at];

@@ -1,10 +1,12 @@
 #pragma once
-// Writes the sum lists of the kernel `match` (match_job.h): which slots are added to make each slot.
+// Writes sum lists (spu_kernels/sum_list_job.h): which slots are added to make each slot.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "sum_list_job.h"
 
 namespace softcell::ppu {
 
@@ -20,12 +22,17 @@ struct SumList {
   std::size_t additions = 0;  ///< and subtractions
 };
 
-/// The list that makes the sums in the given order. A sum is made from the one before it where both differ by
-/// at most one term that joins and one that leaves, unless a place that is a multiple of `restart` lies
-/// between.
-/// @pre  slots are at most kMaxSumSlot.
-SumList write_sum_list(const std::vector<Sum>& sums, int restart);
+/// How a list is written.
+struct SumListFormat {
+  std::uint32_t slot_bytes;  ///< a multiple of 8
+  int restart;               ///< chains end before places that are a multiple of it
 
-inline constexpr std::uint32_t kMaxSumSlot = 10922;  ///< its offset still fits a halfword
+  constexpr std::uint32_t max_slot() const { return 0xFFFF / (slot_bytes / spu::kSumOffsetUnit); }
+};
+
+/// The list that makes the sums in the given order. A sum is made from the one before it where both differ by
+/// at most one term that joins and one that leaves, unless a place where chains end lies between.
+/// @pre  slots are at most format.max_slot().
+SumList write_sum_list(const std::vector<Sum>& sums, const SumListFormat& format);
 
 }  // namespace softcell::ppu

@@ -18,29 +18,36 @@ inline void wait_for_tags(uint32_t mask) {
 /// Blocks until every command of one tag group is complete.
 inline void wait_for_tag(uint32_t tag) { wait_for_tags(1u << tag); }
 
-/// Queues as many gets as it takes to fetch `bytes` (a multiple of 16, 0 included) to `ls`, all in one tag
-/// group.
-inline void get_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
-  char* to = static_cast<char*>(ls);
+/// Calls move(ls, ea, size) for pieces that one command moves. `bytes` is a multiple of 16, 0 included.
+template <typename Move>
+inline void move_large(void* ls, uint64_t ea, uint32_t bytes, const Move& move) {
+  char* place = static_cast<char*>(ls);
   while (bytes != 0) {
     const uint32_t piece = bytes < kMaxTransferBytes ? bytes : kMaxTransferBytes;
-    mfc_get(to, ea, piece, tag, 0, 0);
-    to += piece;
+    move(place, ea, piece);
+    place += piece;
     ea += piece;
     bytes -= piece;
   }
 }
 
+/// Queues as many gets as it takes to fetch `bytes` (a multiple of 16, 0 included) to `ls`, all in one tag
+/// group.
+inline void get_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
+  move_large(ls, ea, bytes,
+             [tag](char* to, uint64_t from, uint32_t size) { mfc_get(to, from, size, tag, 0, 0); });
+}
+
+/// Likewise, each behind what its tag group holds already.
+inline void getf_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
+  move_large(ls, ea, bytes,
+             [tag](char* to, uint64_t from, uint32_t size) { mfc_getf(to, from, size, tag, 0, 0); });
+}
+
 /// Likewise puts.
 inline void put_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
-  char* from = static_cast<char*>(ls);
-  while (bytes != 0) {
-    const uint32_t piece = bytes < kMaxTransferBytes ? bytes : kMaxTransferBytes;
-    mfc_put(from, ea, piece, tag, 0, 0);
-    from += piece;
-    ea += piece;
-    bytes -= piece;
-  }
+  move_large(ls, ea, bytes,
+             [tag](char* from, uint64_t to, uint32_t size) { mfc_put(from, to, size, tag, 0, 0); });
 }
 
 }  // namespace softcell::spu

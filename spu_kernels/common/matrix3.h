@@ -3,6 +3,7 @@
 
 #include <spu_intrinsics.h>
 
+#include "common/reciprocal.h"
 #include "common/vector3.h"
 
 namespace softcell::spu {

@@ -32,15 +32,4 @@ inline Vector3x4 scale_add(const Vector3x4& a, vec_float4 s, const Vector3x4& b)
   return {spu_madd(a.x, s, b.x), spu_madd(a.y, s, b.y), spu_madd(a.z, s, b.z)};
 }
 
-/// 1 / sqrt(x) for normal x > 0, relative error below 5e-6: enough for a vector that becomes halves.
-/// Halving the exponent by an integer shift is right to 3.5 %; two Newton steps square that twice.
-/// spu_rsqrte() and one step would be three instructions less on an SPU, but thirty more on a host, which has
-/// to look the estimate up in a table.
-inline vec_float4 reciprocal_sqrt(vec_float4 x) {
-  const vec_float4 half_x = spu_mul(x, spu_splats(0.5f));
-  const vec_float4 y0 = (vec_float4)spu_sub(spu_splats(0x5F375A86u), spu_rlmask((vec_uint4)x, -1));
-  const vec_float4 y1 = spu_mul(y0, spu_nmsub(spu_mul(half_x, y0), y0, spu_splats(1.5f)));
-  return spu_mul(y1, spu_nmsub(spu_mul(half_x, y1), y1, spu_splats(1.5f)));
-}
-
 }  // namespace softcell::spu

@@ -16,11 +16,6 @@ struct Slot {
 };
 static_assert(sizeof(Slot) == kMatchSlotBytes, "as offsets count it");
 
-/// The slot at an offset of a sum list.
-inline const Slot& slot_at(const Slot* slots, uint32_t offset) {
-  return *reinterpret_cast<const Slot*>(reinterpret_cast<const char*>(slots) + offset * kMatchOffsetUnit);
-}
-
 /// MatchParticles as registers.
 struct ParticleConstants {
   vec_float4 rest_moment[4];

@@ -8,6 +8,7 @@
 
 #include <spu_intrinsics.h>
 
+#include "common/sums.h"
 #include "common/transpose.h"
 #include "match/local_store.h"
 #include "rotation.h"

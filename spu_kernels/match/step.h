@@ -10,11 +10,11 @@
 //   totals      <--                      goals, new velocities, momentum held
 //               -->   particles          and the same way again for damping, buffers exchanged
 
+#include "common/sums.h"
 #include "match/damping.h"
 #include "match/local_store.h"
 #include "match/localise.h"
 #include "match/matching.h"
-#include "match/sums.h"
 
 namespace softcell::spu {
 

@@ -9,32 +9,17 @@
 
 #include "../../ppu/src/sum_list.h"
 #include "lattices.h"
+#include "sum_list_interpreter.h"
 
 namespace softcell::ppu {
 namespace {
 
-using Slots = std::vector<double>;  // one number stands for a payload
+using test::Slots;
 
-/// What the kernel does with a list, without its arithmetic.
+constexpr SumListFormat kFormat{spu::kMatchSlotBytes, 16};
+
 Slots run(const std::uint16_t* list, const Slots& in, std::size_t slots) {
-  constexpr std::size_t kUnits = spu::kMatchSlotBytes / spu::kMatchOffsetUnit;
-  const auto at = [&](std::uint16_t offset) {
-    EXPECT_EQ(offset % kUnits, 0u);
-    return in.at(offset / kUnits);
-  };
-  Slots out(slots, 0.0);
-  std::size_t next = 1;
-  while (const std::uint16_t terms = *list++) {
-    std::uint16_t steps = *list++;
-    double sum = 0;
-    for (std::uint16_t i = 0; i < terms; ++i) sum += at(*list++);
-    out.at(next++) = sum;
-    for (; steps != 0; --steps, list += 2) {
-      sum += at(list[0]) - at(list[1]);
-      out.at(next++) = sum;
-    }
-  }
-  return out;
+  return test::run_sum_list(list, in, slots, spu::kMatchSlotBytes);
 }
 
 TEST(SumList, ChainsFollowARowAndStartAnew) {
@@ -44,7 +29,7 @@ TEST(SumList, ChainsFollowARowAndStartAnew) {
     for (int j = std::max(0, i - 2); j <= i + 2; ++j) sum.terms.push_back(static_cast<std::uint32_t>(j + 1));
     sums.push_back(sum);
   }
-  const SumList list = write_sum_list(sums, 16);
+  const SumList list = write_sum_list(sums, kFormat);
   std::vector<std::pair<int, int>> chains;  // terms, steps
   for (const std::uint16_t* p = list.halfwords.data(); *p != 0; p += 2 + p[0] + 2 * p[1])
     chains.emplace_back(p[0], p[1]);
@@ -53,8 +38,8 @@ TEST(SumList, ChainsFollowARowAndStartAnew) {
 }
 
 TEST(SumList, ASumThatDiffersByMoreIsWrittenOut) {
-  const SumList list =
-      write_sum_list({{{0, 0, 0}, 0, {1, 2, 3}}, {{0, 0, 0}, 1, {3, 4, 5}}, {{0, 0, 0}, 2, {3, 3, 5}}}, 16);
+  const SumList list = write_sum_list(
+      {{{0, 0, 0}, 0, {1, 2, 3}}, {{0, 0, 0}, 1, {3, 4, 5}}, {{0, 0, 0}, 2, {3, 3, 5}}}, kFormat);
   Slots in = {0, 1, 10, 100, 1000, 10000};
   EXPECT_EQ(run(list.halfwords.data(), in, 4), (Slots{0, 111, 11100, 10200}));
 }
@@ -62,7 +47,7 @@ TEST(SumList, ASumThatDiffersByMoreIsWrittenOut) {
 TEST(SumList, PlacesBelowZeroAreInBlocksToo) {
   std::vector<Sum> sums;
   for (int place = -3; place < 3; ++place) sums.push_back({{0, 0, 0}, place, {1}});
-  const SumList list = write_sum_list(sums, 16);
+  const SumList list = write_sum_list(sums, kFormat);
   EXPECT_EQ(list.halfwords[1], 2);  // -3, -2, -1; then anew
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "common/finite.h"
 #include "common/matrix3.h"
 #include "common/reciprocal.h"
 #include "common/transpose.h"
@@ -160,7 +161,7 @@ TEST_F(MatchStages, MomentsMotionsAndGoals) {
     const Vector3d x0 = at(p.rest, lane);
     p.constants.rest_moment[lane] = {static_cast<float>(2 * x0.x()), static_cast<float>(2 * x0.y()),
                                      static_cast<float>(2 * x0.z()), 2.0f};
-    p.constants.region[lane] = static_cast<uint32_t>(lane + 1) * kMatchSlotBytes / kMatchOffsetUnit;
+    p.constants.region[lane] = static_cast<uint32_t>(lane + 1) * kMatchSlotBytes / kSumOffsetUnit;
   }
   std::array<Slot, 5> slots;
   match_moments(p.constants, p.x, &slots[1]);

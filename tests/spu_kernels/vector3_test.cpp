@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "common/reciprocal.h"
+
 namespace softcell::spu {
 namespace {
 

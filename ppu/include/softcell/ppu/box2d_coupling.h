@@ -20,11 +20,13 @@
 #include <memory>
 
 #include "softcell/ppu/soft_body_2d.h"
+#include "softcell/ppu/solver_2d.h"
 
 namespace softcell::ppu {
 
 /// The soft bodies of one world, used by the thread that steps it. Box2D has no callback before a step, so
-/// the step goes through here. A NaN in a particle throws std::runtime_error out of begin_step().
+/// the step goes through here. A NaN in a particle throws std::runtime_error out of begin_step(), and so does
+/// a body that the solver cannot take.
 class Box2dSoftBodies {
  public:
   /// A particle moves at most this many cells in one step; faster ones are slowed down, which takes momentum
@@ -32,8 +34,10 @@ class Box2dSoftBodies {
   /// Box2D's continuous collision's concern.
   static constexpr float kMaxTravelInCells = 1.0f;
 
-  /// @param world  outlives this.
-  explicit Box2dSoftBodies(b2World& world);
+  /// @param world   outlives this.
+  /// @param solver  computes shape matching, of this world alone: SpeSolver2d does it on the SPEs. Outlives
+  ///                this; null: the thread that steps the world does it.
+  explicit Box2dSoftBodies(b2World& world, Solver2d* solver = nullptr);
   /// Removes all bodies.
   ~Box2dSoftBodies();
   Box2dSoftBodies(const Box2dSoftBodies&) = delete;

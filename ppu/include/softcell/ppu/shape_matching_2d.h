@@ -38,6 +38,7 @@ class MatchingPlan2d {
     Vector x0;                  ///< rest position relative to rest_centre()
     Real modified_mass;         ///< m~, kg
     Real inverse_region_count;  ///< 1 / |R_i|
+    Real mass;                  ///< m, kg
   };
   struct Region {
     Vector c0;          ///< rest centre relative to rest_centre()

@@ -63,6 +63,7 @@ class SoftBody2d {
                       const Eigen::Vector2f& position = Eigen::Vector2f::Zero());
 
   const SoftBodyModel2d& model() const { return *model_; }
+  const std::shared_ptr<const SoftBodyModel2d>& shared_model() const { return model_; }
   std::span<const Eigen::Vector2f> positions() const { return x_; }   ///< metres, of each particle
   std::span<const Eigen::Vector2f> velocities() const { return v_; }  ///< m/s, of each particle
   const ShapeMatcher2d<float>& matcher() const { return matcher_; }

@@ -1,0 +1,48 @@
+#pragma once
+// What the plans of the kernels match and match_2d have in common.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace softcell::ppu {
+
+/// A plan in lines of 128 bytes, ready to be copied to main memory: a `Header` and what it points to.
+/// Immutable, the same bytes on every host.
+template <typename Header>
+class KernelPlan {
+ public:
+  /// Sums start anew at every kRestart-th place of the lattice, so that rounding errors stay those of a short
+  /// row and a tile of a large lattice that begins at such a place has the same bits.
+  static constexpr int kRestart = 16;
+
+  const Header& header() const { return *reinterpret_cast<const Header*>(lines_.data()); }
+  std::span<const std::byte> bytes() const {  ///< header() first; a multiple of 128
+    return std::as_bytes(std::span(lines_));
+  }
+
+  /// Particle -> the place of its region among the plan's: group number / 4, lane number % 4.
+  std::span<const std::uint32_t> region_of() const { return region_of_; }
+
+  /// Additions and subtractions of slots that one sum up takes.
+  std::size_t additions() const { return additions_; }
+
+ protected:
+  void assign(const std::vector<std::byte>& bytes) {
+    lines_.resize((bytes.size() + sizeof(Line) - 1) / sizeof(Line));
+    std::memcpy(lines_.data(), bytes.data(), bytes.size());
+  }
+
+  std::vector<std::uint32_t> region_of_;
+  std::size_t additions_ = 0;
+
+ private:
+  struct alignas(128) Line {
+    std::byte bytes[128];
+  };
+  std::vector<Line> lines_;
+};
+
+}  // namespace softcell::ppu

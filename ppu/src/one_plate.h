@@ -1,0 +1,17 @@
+#pragma once
+// A lattice in two dimensions as SumPlan takes it.
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace softcell::ppu {
+
+/// With all x equal, a plate is a whole region and a bar one of its columns: two levels of sums.
+inline std::vector<Eigen::Vector3i> as_one_plate(const std::vector<Eigen::Vector2i>& particles) {
+  std::vector<Eigen::Vector3i> grid;
+  grid.reserve(particles.size());
+  for (const Eigen::Vector2i& p : particles) grid.push_back({0, p.x(), p.y()});
+  return grid;
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,60 @@
+#pragma once
+// Sums of slots by a sum list (sum_list_job.h): from particles to bars, bars to plates, plates to regions.
+// [LSM07]
+//
+// Along a row, neighbouring bars differ by one particle that joins and one that leaves. A chain adds the
+// difference of the two, so a sum costs the same for every half-width. The lists say where a chain starts
+// anew: rounding errors do not pile up along a body.
+
+#include <spu_intrinsics.h>
+#include <stdint.h>
+
+#include "sum_list_job.h"
+
+namespace softcell::spu {
+
+/// The slot at an offset of a sum list.
+template <typename Slot>
+inline const Slot& slot_at(const Slot* slots, uint32_t offset) {
+  return *reinterpret_cast<const Slot*>(reinterpret_cast<const char*>(slots) + offset * kSumOffsetUnit);
+}
+
+/// out[1], out[2], ... by `list`. Of each slot, a struct of `vec_float4 row[]`, the first `kRows` rows.
+template <int kRows, typename Slot>
+__attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, Slot* out) {
+  static_assert(kRows >= 1 && kRows <= 3, "what is unrolled below");
+  const auto for_rows = [](const auto& work) __attribute__((always_inline)) {
+    work(0);
+    if constexpr (kRows > 1) work(1);
+    if constexpr (kRows > 2) work(2);
+  };
+  for (;;) {
+    const uint32_t terms = list[0];
+    if (terms == 0) return;
+    const uint32_t steps = list[1];
+    list += 2;
+
+    vec_float4 sum[kRows];
+    const Slot& first = slot_at(in, list[0]);
+    for_rows([&](int k) __attribute__((always_inline)) { sum[k] = first.row[k]; });
+    for (uint32_t i = 1; i < terms; ++i) {
+      const Slot& term = slot_at(in, list[i]);
+      for_rows([&](int k) __attribute__((always_inline)) { sum[k] = spu_add(sum[k], term.row[k]); });
+    }
+    list += terms;
+    ++out;
+    for_rows([&](int k) __attribute__((always_inline)) { out->row[k] = sum[k]; });
+
+    const uint16_t* const end = list + 2 * steps;
+    for (; list != end; list += 2) {
+      const Slot &joins = slot_at(in, list[0]), &leaves = slot_at(in, list[1]);
+      ++out;
+      for_rows([&](int k) __attribute__((always_inline)) {
+        sum[k] = spu_add(sum[k], spu_sub(joins.row[k], leaves.row[k]));
+        out->row[k] = sum[k];
+      });
+    }
+  }
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,133 @@
+// A Box2D world whose soft bodies are matched on SPEs, beside one that does it itself.
+
+#include "softcell/ppu/spe_solver_2d.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lattices_2d.h"
+#include "soft_body_2d_scenes.h"
+#include "spu_kernels/kernel_image.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector2f;
+
+SoftBodySettings rubber() {
+  return {.cell_size = 0.1f, .half_width = 2, .density = 5, .alpha = 0.5f, .damping = 0.1f};
+}
+
+std::shared_ptr<const SoftBodyModel2d> man() { return make_soft_body_model(test::man132(), rubber()); }
+
+/// SPEs and what matches on them.
+struct Spes {
+  explicit Spes(const ls_sim::SpeOptions& options = {.spes = 2}) : jobs(memory, options, job_loop) {}
+
+  dma::AddressSpace memory;
+  ls_sim::KernelImage job_loop = softcell::test::kernel_image("job_loop"),
+                      match_2d = softcell::test::kernel_image("match_2d");
+  JobSystem jobs;
+  SpeSolver2d solver{memory, jobs, match_2d};
+};
+
+/// Two men and a block fall on a floor and each other.
+struct Pile {
+  explicit Pile(Solver2d* solver) : soft(box2d, solver) {
+    b2PolygonShape floor;
+    floor.SetAsBox(20, 1, {0, -1}, 0);
+    const b2BodyDef fixed;
+    box2d.CreateBody(&fixed)->CreateFixture(&floor, 0);
+    const auto model = man();
+    soft.add(model, {0, 0.1f});
+    soft.add(rectangle_model({5, 4}, rubber()), {0.6f, 2.2f});
+    soft.add(model, {0.3f, 3});
+  }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) soft.step(1.0f / 120);
+  }
+  /// Positions and velocities of all particles.
+  std::vector<Vector2f> state() const {
+    std::vector<Vector2f> all;
+    for (std::size_t b = 0; b < soft.size(); ++b) {
+      all.insert(all.end(), soft[b].positions().begin(), soft[b].positions().end());
+      all.insert(all.end(), soft[b].velocities().begin(), soft[b].velocities().end());
+    }
+    return all;
+  }
+
+  b2World box2d{{0, -9.81f}};
+  Box2dSoftBodies soft;
+};
+
+TEST(SpeSolver2d, GoesWithTheSolverOfThePpu) {
+  Spes spes;
+  Pile here(nullptr), there(&spes.solver);
+  // Until rounding errors have grown by contacts.
+  for (const int steps : {1, 30}) {
+    here.run(steps);
+    there.run(steps);
+    for (std::size_t b = 0; b < here.soft.size(); ++b)
+      for (std::size_t i = 0; i < here.soft[b].positions().size(); ++i)
+        ASSERT_LT((here.soft[b].positions()[i] - there.soft[b].positions()[i]).norm(), 1e-4f)
+            << "after " << steps << ", body " << b << ", particle " << i;
+  }
+  EXPECT_GT(spes.solver.time_waited().count(), 0);
+}
+
+TEST(SpeSolver2d, GivesTheSameBitsForAnyNumberOfSpesAndEverySchedule) {
+  std::vector<Vector2f> expected;
+  for (const int spes : {1, 3, 6}) {
+    for (const char* schedule : {"eager", "lazy", "random:3"}) {
+      Spes machine({.spes = spes, .schedule = dma::parse_schedule(schedule)});
+      Pile pile(&machine.solver);
+      pile.run(240);
+      for (std::size_t b = 0; b < pile.soft.size(); ++b) ASSERT_LT(pile.soft[b].deformation(), 1.0f);
+      if (expected.empty()) expected = pile.state();
+      ASSERT_EQ(pile.state(), expected) << spes << " SPEs, " << schedule;
+    }
+  }
+}
+
+TEST(SpeSolver2d, BodiesComeAndGo) {
+  Spes spes;
+  b2World world({0, -9.81f});
+  Box2dSoftBodies soft(world, &spes.solver);
+  soft.step(0.01f);  // nobody
+  SoftBody2d& first = soft.add(man(), {0, 0});
+  soft.step(0.01f);
+  SoftBody2d& second = soft.add(rectangle_model({3, 3}, rubber()), {5, 0});
+  for (int i = 0; i < 50; ++i) soft.step(0.01f);
+  EXPECT_NEAR(first.velocities()[0].y(), -9.81f * 0.51f, 1e-3f);
+  EXPECT_NEAR(second.velocities()[0].y(), -9.81f * 0.50f, 1e-3f);
+  soft.remove(first);
+  soft.step(0.01f);
+  EXPECT_NEAR(second.velocities()[0].y(), -9.81f * 0.51f, 1e-3f);
+  soft.remove(second);
+  soft.step(0.01f);
+}
+
+TEST(SpeSolver2d, ABodyThatIsNoNumberStopsTheStep) {
+  Spes spes;
+  b2World world({0, 0});
+  Box2dSoftBodies soft(world, &spes.solver);
+  soft.add(man(), {0, 0}).add_particle_velocity(7, {std::nanf(""), 0});
+  EXPECT_THROW(soft.step(0.01f), std::runtime_error);
+}
+
+TEST(SpeSolver2d, ABodyTooLargeForAnSpeIsRefusedByTheFirstStep) {
+  Spes spes;
+  b2World world({0, 0});
+  Box2dSoftBodies soft(world, &spes.solver);
+  soft.add(rectangle_model({45, 45}, rubber()), {0, 0});
+  try {
+    soft.step(0.01f);
+    FAIL() << "taken";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("2116 particles"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ppu
