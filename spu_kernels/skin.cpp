@@ -70,7 +70,7 @@ __attribute__((always_inline)) inline Surface evaluate(const CellPolynomial& p, 
 
 template <Positions kPositions>
 __attribute__((always_inline)) inline void finish(const Surface& s, vec_ushort8* out) {
-  const Vector3x4 unit = scale(s.normal, reciprocal_sqrt(dot(s.normal, s.normal)));
+  const Vector3x4 unit = scale(s.normal, rough_reciprocal_sqrt(dot(s.normal, s.normal)));
   store(half_positions<kPositions>(s.position), half_normals(unit), out);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// Four floats to four binary16 numbers, exactly: round to nearest, ties to even, in integer arithmetic, since
-// the SPU's own floating point truncates.
+// Four floats to four binary16 numbers: the nearest, of two equally near the larger in magnitude; in integer
+// arithmetic, since the SPU's own floating point truncates. (Ties to even would be three operations more for
+// each, and no nearer.)
 
 #include <spu_intrinsics.h>
 
@@ -13,11 +14,9 @@ constexpr unsigned int kHalfOverflow = 0x477FF000u;        // 65520
 /// binary16 bits in the high half of each word; what is in the low half was cut off. For values from
 /// 2^-14, the smallest normal binary16, to below kHalfOverflow.
 inline vec_uint4 high_half_of_positive(vec_float4 value) {
-  const vec_uint4 bits = (vec_uint4)value;
-  const vec_uint4 odd = spu_and(spu_rlmask(bits, -13), spu_splats(1u));
   // Rebias the exponent (127 to 15) and round in one addition; a carry out of the fraction moves the
   // exponent, as it should.
-  return spu_sl(spu_add(spu_add(bits, odd), spu_splats(0xFFFu - (112u << 23))), 3);
+  return spu_sl(spu_add((vec_uint4)value, spu_splats(0x1000u - (112u << 23))), 3);
 }
 
 /// The same for either sign; what is too small for a normal binary16 becomes zero. For magnitudes below
@@ -25,8 +24,7 @@ inline vec_uint4 high_half_of_positive(vec_float4 value) {
 inline vec_uint4 high_half_or_zero(vec_float4 value) {
   // A product rebiases the exponent as well, and flushes what passes below a float's own smallest normal.
   const vec_uint4 bits = (vec_uint4)spu_mul(value, spu_splats(0x1p-112f));
-  const vec_uint4 odd = spu_and(spu_rlmask(bits, -13), spu_splats(1u));
-  const vec_uint4 rounded = spu_add(spu_add(bits, odd), spu_splats(0xFFFu));
+  const vec_uint4 rounded = spu_add(bits, spu_splats(0x1000u));
   return spu_or(spu_sl(rounded, 3), spu_and(bits, spu_splats(0x80000000u)));
 }
 
@@ -44,10 +42,8 @@ inline vec_uint4 high_half_of_any(vec_float4 value) {
   const vec_uint4 shift = spu_sel(wanted, spu_splats(25u), spu_cmpgt(wanted, spu_splats(25u)));
   const vec_int4 right = (vec_int4)spu_sub(spu_splats(0u), shift);
   const vec_uint4 fraction = spu_or(spu_and(magnitude, spu_splats(0x7FFFFFu)), spu_splats(0x800000u));
-  const vec_uint4 odd = spu_and(spu_rlmask(fraction, right), spu_splats(1u));
-  const vec_uint4 almost_half =
-      spu_sub(spu_sl(spu_splats(1u), spu_sub(shift, spu_splats(1u))), spu_splats(1u));
-  const vec_uint4 subnormal = spu_rlmask(spu_add(spu_add(fraction, almost_half), odd), right);
+  const vec_uint4 half_unit = spu_sl(spu_splats(1u), spu_sub(shift, spu_splats(1u)));
+  const vec_uint4 subnormal = spu_rlmask(spu_add(fraction, half_unit), right);
 
   // A NaN keeps the top of its payload; one whose payload lies lower gets the quiet bit, so that it stays
   // one.
