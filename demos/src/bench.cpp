@@ -21,6 +21,7 @@ std::vector<Benchmark> all_benchmarks() {
   add_solver_benchmarks(all);
   add_bullet_benchmarks(all);
   add_solver_2d_benchmarks(all);
+  add_rotation_benchmarks(all);
   add_skin_benchmarks(all);
   add_dma_benchmarks(all);
   add_dispatch_benchmarks(all);

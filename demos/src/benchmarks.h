@@ -56,6 +56,11 @@ void add_bullet_benchmarks(std::vector<Benchmark>& all);
 /// solver2d/<body>/w<n>/<spe|eigen|ppu|naive>: likewise.
 void add_solver_2d_benchmarks(std::vector<Benchmark>& all);
 
+/// rotation/<random|converged>/<spe|ppu>: an item is one region's matrix. `random`: any matrix, from
+/// quaternions that say nothing; as many iterations as it takes. `converged`: a step's turn of 0.01 rad; two
+/// iterations.
+void add_rotation_benchmarks(std::vector<Benchmark>& all);
+
 /// dma/<get|put>16k and dma/memcpy16k: an item is 16 KB. dma/command/<schedule>: an item is one get of 16
 /// bytes, waits included.
 void add_dma_benchmarks(std::vector<Benchmark>& all);

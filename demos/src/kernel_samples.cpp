@@ -6,6 +6,7 @@
 #include "job_chain.h"
 #include "match_2d_job.h"
 #include "match_job.h"
+#include "rotations_job.h"
 #include "skin_job.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/spe_group.h"
@@ -125,6 +126,20 @@ void run_match_2d(Sample& sample) {
   sample.run(job.ea());
 }
 
+/// Rotations that are far off and one that has to be found anew: the deepest ways.
+void run_rotations(Sample& sample) {
+  dma::Buffer<spu::RotationMatrices> matrices(sample.memory(), "matrices", 1);
+  dma::Buffer<spu::MatchRotations> starts(sample.memory(), "starts", 1);
+  const dma::Buffer<spu::MatchRotations> found(sample.memory(), "found", 1);
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    for (std::size_t diagonal : {0, 4, 8}) matrices[0].element[diagonal][lane] = lane == 0 ? 1.0f : -1.0f;
+    starts[0].w[lane] = 1;
+  }
+  dma::Buffer<spu::RotationsJob> job(sample.memory(), "job", 1);
+  job[0] = {matrices.ea().value, starts.ea().value, found.ea().value, 1, 1, 0, 6, {}};
+  sample.run(job.ea());
+}
+
 void run_transfers(Sample& sample) {
   const dma::Buffer<std::byte> data(sample.memory(), "data", 1024);
   dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1);
@@ -169,6 +184,8 @@ std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
     run_match_2d(sample);
   } else if (kernel.name == "skin") {
     run_skin(sample);
+  } else if (kernel.name == "rotations") {
+    run_rotations(sample);
   } else if (kernel.name == "transfers") {
     run_transfers(sample);
   } else if (kernel.name == "job_loop") {

@@ -29,8 +29,8 @@ inline vec_uint4 high_half_or_zero(vec_float4 value) {
 }
 
 /// binary16 bits in the high half of each word, the low half 0, for every bit pattern: subnormals, zero,
-/// infinity; a NaN stays one.
-inline vec_uint4 high_half_of_any(vec_float4 value) {
+/// infinity; a NaN stays one. Long, and for what is rare: a function of its own.
+__attribute__((noinline)) inline vec_uint4 high_half_of_any(vec_float4 value) {
   const vec_uint4 bits = (vec_uint4)value;
   const vec_uint4 magnitude = spu_and(bits, spu_splats(0x7FFFFFFFu));
   const vec_uint4 sign = spu_and(spu_rlmask(bits, -16), spu_splats(0x8000u));

@@ -10,6 +10,7 @@ extern "C" {
 extern const std::byte softcell_image_match[], softcell_image_match_end[];
 extern const std::byte softcell_image_job_loop[], softcell_image_job_loop_end[];
 SC_DECLARE(match_2d)
+SC_DECLARE(rotations)
 SC_DECLARE(skin)
 SC_DECLARE(transfers)
 }
@@ -29,7 +30,7 @@ std::span<const ImageFile> image_files() {
                 .checked_elf = {}},
       // A checked match would not fit in a local store.
       ImageFile{.name = "match", .elf = {softcell_image_match, softcell_image_match_end}, .checked_elf = {}},
-      SC_FILE(match_2d), SC_FILE(skin), SC_FILE(transfers)};
+      SC_FILE(match_2d), SC_FILE(rotations), SC_FILE(skin), SC_FILE(transfers)};
 #undef SC_FILE
   return files;
 }

@@ -1,0 +1,37 @@
+#pragma once
+// The contract of the kernel `rotations`, which measures what is otherwise part of `match`: matrices in main
+// memory to the rotations nearest to them. Freestanding; included by the kernel and by the PPU side.
+
+#include <stdint.h>
+
+#include "match_job.h"
+
+namespace softcell::spu {
+
+/// Four 3x3 matrices by rows, an element of each in one quadword.
+struct alignas(16) RotationMatrices {
+  float element[9][4];
+};
+static_assert(sizeof(RotationMatrices) == 144, "nine quadwords");
+
+/// Most groups of four in one job: the kernel holds them all in local store.
+constexpr uint32_t kRotationsMaxGroups = 256;
+
+/// The job's descriptor, one line in main memory.
+struct alignas(128) RotationsJob {
+  uint64_t matrices_ea;  ///< group_count RotationMatrices, a multiple of 16 (128 is fastest); any of finite
+                         ///< numbers
+  uint64_t starts_ea;    ///< group_count MatchRotations, likewise aligned; unit quaternions, last step's
+  uint64_t found_ea;     ///< room for as many, likewise aligned
+  uint32_t group_count;  ///< 0..kRotationsMaxGroups
+  uint32_t repeats;      ///< how often the same is done from the start
+  uint32_t least_iterations;  ///< of each rotation; 2 and 2 for a fixed effort, 0 and 6 to go by the residual
+  uint32_t most_iterations;
+  uint32_t pad[22];
+};
+static_assert(sizeof(RotationsJob) == 128, "one line");
+
+/// What the kernel's main returns.
+enum RotationsStatus : uint32_t { kRotationsDone = 0, kRotationsTooMany = 1 };
+
+}  // namespace softcell::spu
