@@ -17,67 +17,100 @@
 namespace softcell::demos {
 namespace {
 
-constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f;
-constexpr std::size_t kParticlesAtOnce = 16'000;  // so many in one measurement: waking the SPE does not count
+constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f, kDensity = 1000;
 
-struct SolverCase {
-  SolverCase(ppu::Lattice body, int half_width)
+/// What all solvers work on: several bodies of one model, so that none has one body's data in its caches.
+struct Model {
+  Model(ppu::Lattice body, int half_width)
       : lattice(std::move(body)),
         plan(std::make_shared<const ppu::MatchingPlan<float>>(lattice, half_width,
-                                                              ppu::particle_masses(lattice, 1000))),
-        jobs(memory, {.spes = 1}, job_loop),
-        bodies(std::max<std::size_t>(1, kParticlesAtOnce / lattice.particles.size())),
-        spes(memory, jobs, kernel, ppu::MatchPlan(lattice, *plan), bodies),
-        eigen(plan),
-        shared_sums(plan, ppu::SumMethod::kBarPlateCube),
-        naive_sums(plan, ppu::SumMethod::kNaive) {
+                                                              ppu::particle_masses(lattice, kDensity))),
+        bodies(std::max<std::size_t>(1, kBenchParticles / lattice.particles.size())) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) x.push_back(bent_position(lattice, i));
-    v.resize(x.size());
-    for (std::size_t b = 0; b < bodies; ++b)
-      for (std::size_t i = 0; i < x.size(); ++i) spes.positions(b)[i] = {x[i].x(), x[i].y(), x[i].z(), 0};
   }
 
-  void run_spes() {
-    for (std::size_t b = 0; b < bodies; ++b) std::ranges::fill(spes.velocities(b), spu::SkinCorner{});
-    spes.step({.pull = kAlpha / kStep, .damping = kDamping, .least_iterations = 2, .most_iterations = 2});
-  }
-
-  void run_eigen() {
-    std::ranges::fill(v, Eigen::Vector3f::Zero());
-    eigen.step(x, v, kAlpha, kStep, kDamping);
-  }
-
-  void run_ppu(ppu::ShapeMatcher<float>& matcher) {
-    std::ranges::fill(v, Eigen::Vector3f::Zero());
-    matcher.step_velocities(x, v, kAlpha, kStep, kDamping);
-  }
+  std::size_t particles() const { return bodies * x.size(); }
 
   ppu::Lattice lattice;
   std::shared_ptr<const ppu::MatchingPlan<float>> plan;
-  dma::AddressSpace memory;
-  ls_sim::KernelImage job_loop = load_kernel("job_loop"), kernel = load_kernel("match");
-  ppu::JobSystem jobs;
   std::size_t bodies;
-  ppu::MatchOrchestrator spes;
-  EigenSolver eigen;
-  ppu::ShapeMatcher<float> shared_sums, naive_sums;
-  std::vector<Eigen::Vector3f> x, v;
+  std::vector<Eigen::Vector3f> x;  // of each
+};
+
+/// The kernel match on one SPE.
+class SpeBodies {
+ public:
+  explicit SpeBodies(const Model& model)
+      : jobs_(memory_, {.spes = 1}, job_loop_),
+        spes_(memory_, jobs_, kernel_, ppu::MatchPlan(model.lattice, *model.plan), model.bodies),
+        bodies_(model.bodies) {
+    for (std::size_t b = 0; b < bodies_; ++b) {
+      for (std::size_t i = 0; i < model.x.size(); ++i)
+        spes_.positions(b)[i] = {model.x[i].x(), model.x[i].y(), model.x[i].z(), 0};
+    }
+  }
+
+  void step() {
+    for (std::size_t b = 0; b < bodies_; ++b) std::ranges::fill(spes_.velocities(b), spu::SkinCorner{});
+    spes_.step({.pull = kAlpha / kStep, .damping = kDamping, .least_iterations = 2, .most_iterations = 2});
+  }
+
+ private:
+  dma::AddressSpace memory_;
+  ls_sim::KernelImage job_loop_ = load_kernel("job_loop"), kernel_ = load_kernel("match");
+  ppu::JobSystem jobs_;
+  ppu::MatchOrchestrator spes_;
+  std::size_t bodies_;
+};
+
+void step(EigenSolver& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
+  solver.step(x, v, kAlpha, kStep, kDamping);
+}
+void step(ppu::ShapeMatcher<float>& solver, std::span<const Eigen::Vector3f> x,
+          std::span<Eigen::Vector3f> v) {
+  solver.step_velocities(x, v, kAlpha, kStep, kDamping);
+}
+
+/// A solver of the PPU's for each body.
+template <typename Solver>
+class PpuBodies {
+ public:
+  template <typename... Arguments>
+  explicit PpuBodies(const Model& model, Arguments... arguments) {
+    for (std::size_t b = 0; b < model.bodies; ++b)
+      bodies_.push_back({Solver(model.plan, arguments...), model.x, std::vector(model.x)});
+  }
+
+  void step() {
+    for (Body& body : bodies_) {
+      std::ranges::fill(body.v, Eigen::Vector3f::Zero());
+      demos::step(body.solver, body.x, body.v);
+    }
+  }
+
+ private:
+  struct Body {
+    Solver solver;
+    std::vector<Eigen::Vector3f> x, v;
+  };
+  std::vector<Body> bodies_;
 };
 
 void add_solver(std::vector<Benchmark>& all, const BenchBody& body, int half_width) {
-  const Shared<SolverCase> shared(
-      [make = body.make, half_width] { return std::make_shared<SolverCase>(make(), half_width); });
-  const auto add = [&](std::string_view solver, auto run, bool many_bodies = false) {
+  const Shared<Model> shared(
+      [make = body.make, half_width] { return std::make_shared<Model>(make(), half_width); });
+  const auto add = [&](std::string_view solver, auto make) {
     all.push_back({fmt::format("solver3d/{}/w{}/{}", body.name, half_width, solver), [=] {
-                     const auto rig = shared.get();
-                     return Work{(many_bodies ? rig->bodies : 1) * rig->x.size(), [=] { run(*rig); }};
+                     const auto bodies = make(*shared.get());
+                     return Work{shared.get()->particles(), [bodies] { bodies->step(); }};
                    }});
   };
-  add(
-      "spe", [](SolverCase& rig) { rig.run_spes(); }, true);
-  add("eigen", [](SolverCase& rig) { rig.run_eigen(); });
-  add("ppu", [](SolverCase& rig) { rig.run_ppu(rig.shared_sums); });
-  add("naive", [](SolverCase& rig) { rig.run_ppu(rig.naive_sums); });
+  using Matchers = PpuBodies<ppu::ShapeMatcher<float>>;
+  add("spe", [](const Model& model) { return std::make_shared<SpeBodies>(model); });
+  add("eigen", [](const Model& model) { return std::make_shared<PpuBodies<EigenSolver>>(model); });
+  add("ppu",
+      [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kBarPlateCube); });
+  add("naive", [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kNaive); });
 }
 
 }  // namespace
