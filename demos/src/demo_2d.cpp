@@ -14,7 +14,8 @@ namespace {
 /// A scene, its simulation and its view.
 class Demo2d : public Demo {
  public:
-  Demo2d(Scene2d scene, View2d view) : scene_(std::move(scene)), simulation_(scene_), kind_(view) {}
+  Demo2d(Scene2d scene, const SimulationOptions& how, const Demo2dOptions& options)
+      : scene_(std::move(scene)), simulation_(scene_, how, options.engine), kind_(options.view) {}
 
   const std::string& scene_name() const override { return scene_.name; }
   int frames() const override { return scene_.frames; }
@@ -25,9 +26,9 @@ class Demo2d : public Demo {
             .vertices = simulation_.particles()};
   }
   FrameTimes step() override { return simulation_.step(); }
-  void stop() override {}
+  void stop() override { simulation_.stop(); }
   std::uint64_t state_hash() const override { return simulation_.state_hash(); }
-  std::vector<ls_sim::SpeStatistics> spe_statistics() const override { return {}; }
+  std::vector<ls_sim::SpeStatistics> spe_statistics() const override { return simulation_.spe_statistics(); }
   std::uint64_t late_frames() const override { return 0; }
   void make_view(render::Renderer& renderer) override { view_.emplace(scene_, simulation_, renderer, kind_); }
   const render::Image& draw() override { return view_->draw(); }
@@ -42,8 +43,8 @@ class Demo2d : public Demo {
 }  // namespace
 
 int run_demo_2d(const Demo2dOptions& options) {
-  return run_demo(options, "demo 2d", [&](const SimulationOptions&) {
-    return std::make_unique<Demo2d>(load_scene_2d(options.scene.value_or("man")), options.view);
+  return run_demo(options, "demo 2d", [&](const SimulationOptions& how) {
+    return std::make_unique<Demo2d>(load_scene_2d(options.scene.value_or("man")), how, options);
   });
 }
 

@@ -61,6 +61,12 @@ View2d parse_view(const std::string& text) {
   throw UsageError("--view " + text + ": give dots, lattice or filled");
 }
 
+Engine parse_engine(const std::string& text) {
+  if (text == "spe") return Engine::kSpes;
+  if (text == "reference") return Engine::kReference;
+  throw UsageError("--engine " + text + ": give spe or reference");
+}
+
 /// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
 class CommandLine {
  public:
@@ -96,13 +102,16 @@ class CommandLine {
   }
 
   void add_demo_2d(CLI::App& demo) {
-    CLI::App* d = demo.add_subcommand("2d", "Soft bodies in a Box2D world");
+    CLI::App* d = demo.add_subcommand("2d", "Soft bodies in a Box2D world, stepped on six emulated SPEs");
     add_demo_options(*d, demo_2d_, "man");
     d->add_option("--view", view_, "What is drawn of soft bodies (default: filled)")
         ->type_name("dots|lattice|filled");
+    d->add_option("--engine", engine_, "Who computes shape matching: the SPEs, or the PPU (default: spe)")
+        ->type_name("spe|reference");
     d->callback([this] {
       chosen_ = [this] {
         parse_texts(demo_2d_);
+        demo_2d_.engine = parse_engine(engine_);
         demo_2d_.view = parse_view(view_);
         return run_demo_2d(demo_2d_);
       };
@@ -270,6 +279,7 @@ class CommandLine {
   ReportOptions report_;
   std::string size_;
   std::string view_ = "filled";
+  std::string engine_ = "spe";
   std::string schedule_ = "eager";
   std::string clock_ = "host";
   std::string shell_;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kernel_task.h"
+#include "simulation_options.h"
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/spe_options.h"
 
@@ -50,6 +51,7 @@ enum class View2d : std::uint8_t {
 /// The scene's default: man.
 struct Demo2dOptions : DemoOptions {
   View2d view = View2d::kFilled;
+  Engine engine = Engine::kSpes;
 };
 
 struct BudgetOptions {

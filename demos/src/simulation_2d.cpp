@@ -12,8 +12,11 @@
 #include <optional>
 
 #include "controls.h"
+#include "kernel_samples.h"
 #include "script_player.h"
 #include "softcell/ppu/box2d_coupling.h"
+#include "softcell/ppu/job_system.h"
+#include "softcell/ppu/spe_solver_2d.h"
 #include "softcell/ppu/state_hash.h"
 
 namespace softcell::demos {
@@ -79,7 +82,7 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction)
 
 /// Everything that moves. A reset makes it anew, so that nothing is left of what was: no contact, no impulse.
 struct World {
-  World(const Scene2d& scene, const Models& models) {
+  World(const Scene2d& scene, const Models& models, ppu::Solver2d* solver) : soft_bodies(world, solver) {
     // A body that sleeps would not notice that gravity changes.
     world.SetAllowSleeping(false);
     for (const RigidBody2d& body : scene.rigid_bodies)
@@ -89,20 +92,44 @@ struct World {
 
   b2World world{{0, 0}};
   std::vector<b2Body*> rigid_bodies;
-  ppu::Box2dSoftBodies soft_bodies{world};
+  ppu::Box2dSoftBodies soft_bodies;
+};
+
+/// The SPEs, and the solver that works on them.
+struct Spes {
+  explicit Spes(const SimulationOptions& options)
+      : match_2d(load_kernel("match_2d", options.findings != nullptr)),
+        job_loop(load_kernel("job_loop")),
+        jobs(memory,
+             {.spes = options.spes,
+              .schedule = options.schedule,
+              .findings = options.findings,
+              .trace = options.trace},
+             job_loop),
+        solver(memory, jobs, match_2d) {}
+
+  dma::AddressSpace memory;
+  ls_sim::KernelImage match_2d, job_loop;
+  ppu::JobSystem jobs;
+  ppu::SpeSolver2d solver;
 };
 
 }  // namespace
 
 struct Simulation2d::State {
-  explicit State(const Scene2d& scene_description)
+  State(const Scene2d& scene_description, const SimulationOptions& options, Engine engine)
       : scene(scene_description), script(scene.script), controls({0, -scene.gravity}) {
+    if (engine == Engine::kSpes) spes.emplace(options);
     for (const SoftBody2dPlacement& body : scene.soft_bodies)
       models.push_back(ppu::make_soft_body_model(body.lattice(), body.settings, body.contact_radius));
     reset();
   }
 
-  void reset() { world.emplace(scene, models); }
+  void reset() { world.emplace(scene, models, spes ? &spes->solver : nullptr); }
+
+  std::chrono::nanoseconds waited() const {
+    return spes ? spes->solver.time_waited() : std::chrono::nanoseconds{0};
+  }
 
   /// The soft bodies of the world that there is at the moment of asking: a reset replaces it.
   struct Bodies {
@@ -115,12 +142,14 @@ struct Simulation2d::State {
   Models models;
   ScriptPlayer<2> script;
   Controls<2> controls;
+  std::optional<Spes> spes;
   std::optional<World> world;
   Bodies bodies{world};
   std::int64_t frame = 0;  // of the script: counts without a break
 };
 
-Simulation2d::Simulation2d(const Scene2d& scene) : state_(std::make_unique<State>(scene)) {}
+Simulation2d::Simulation2d(const Scene2d& scene, const SimulationOptions& options, Engine engine)
+    : state_(std::make_unique<State>(scene, options, engine)) {}
 Simulation2d::~Simulation2d() = default;
 
 FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
@@ -132,7 +161,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   if (!s.controls.advance()) return {};
 
   World& world = *s.world;
-  const auto matched_before = world.soft_bodies.time_spent();
+  const auto matched_before = world.soft_bodies.time_spent(), waited_before = s.waited();
   world.world.SetGravity(to_box2d(s.controls.gravity()));
   for (int i = 0; i < s.scene.substeps; ++i) {
     s.controls.hands().pull(s.bodies);
@@ -141,8 +170,21 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
 
   using Milliseconds = std::chrono::duration<double, std::milli>;
   const double all = Milliseconds(std::chrono::steady_clock::now() - begin).count();
-  const double ppu = Milliseconds(world.soft_bodies.time_spent() - matched_before).count();
-  return {.physics_ms = all - ppu, .ppu_ms = ppu};
+  const double coupling = Milliseconds(world.soft_bodies.time_spent() - matched_before).count();
+  const double waiting = Milliseconds(s.waited() - waited_before).count();
+  FrameTimes times;
+  times.physics_ms = all - coupling;
+  times.ppu_ms = coupling - waiting;
+  times.skin_wait_ms = waiting;
+  return times;
+}
+
+void Simulation2d::stop() {
+  if (state_->spes) state_->spes->jobs.stop();
+}
+
+std::vector<ls_sim::SpeStatistics> Simulation2d::spe_statistics() const {
+  return state_->spes ? state_->spes->jobs.statistics() : std::vector<ls_sim::SpeStatistics>{};
 }
 
 std::size_t Simulation2d::soft_bodies() const { return state_->models.size(); }

@@ -1,5 +1,6 @@
 #pragma once
-// A scene in two dimensions at work: the Box2D world and the soft bodies in it. No pictures here.
+// A scene in two dimensions at work: the Box2D world, the soft bodies in it, and the SPEs that step them. No
+// pictures here.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "input_event.h"
 #include "scene_2d.h"
 #include "simulation_options.h"
+#include "softcell/ls_sim/statistics.h"
 
 namespace softcell::demos {
 
@@ -20,20 +22,25 @@ struct Pose2d {
   float cosine = 1, sine = 0;      ///< of its angle
 };
 
-/// Used by one thread. The state after a number of steps depends on the scene and the events alone.
+/// Used by one thread. The state after a number of steps depends on the scene, the events and the engine, on
+/// nothing else.
 class Simulation2d {
  public:
   /// The scene must outlive it.
-  /// @throws std::runtime_error  a body cannot be made.
-  explicit Simulation2d(const Scene2d& scene);
+  /// @throws std::runtime_error  a body cannot be made, main memory is full, the host cannot run kernels.
+  explicit Simulation2d(const Scene2d& scene, const SimulationOptions& options = {},
+                        Engine engine = Engine::kSpes);
   ~Simulation2d();
   Simulation2d(const Simulation2d&) = delete;
   Simulation2d& operator=(const Simulation2d&) = delete;
 
   /// Does what the scene's script says and then what `events` say, and simulates 1/60 s. During a pause
   /// nothing moves.
-  /// @throws std::runtime_error  a body has become NaN.
+  /// @throws std::runtime_error  a body has become NaN, is too large for an SPE, or an SPE failed.
   FrameTimes step(std::span<const InputEvent<2>> events = {});
+
+  /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().
+  void stop();
 
   std::size_t soft_bodies() const;
   std::size_t particles() const;
@@ -47,6 +54,8 @@ class Simulation2d {
 
   /// 64-bit hash over positions and velocities of all particles.
   std::uint64_t state_hash() const;
+
+  std::vector<ls_sim::SpeStatistics> spe_statistics() const;  ///< none of the reference engine
 
  private:
   struct State;

@@ -1,10 +1,18 @@
 #pragma once
 
+#include <cstdint>
+
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/spe_options.h"
 #include "softcell/ls_sim/trace.h"
 
 namespace softcell::demos {
+
+/// Who computes shape matching.
+enum class Engine : std::uint8_t {
+  kSpes,
+  kReference,  ///< the PPU's own solver, to compare with; it differs in last bits
+};
 
 /// How a scene is simulated; none of it changes the result.
 struct SimulationOptions {

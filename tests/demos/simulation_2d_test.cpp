@@ -147,6 +147,31 @@ TEST(Simulation2d, TheSameEventsGiveTheSameState) {
   EXPECT_EQ(play(), play());
 }
 
+TEST(Simulation2d, TheNumberOfSpesAndTheOrderOfTransfersDoNotMatter) {
+  const Scene2d scene = load_scene_2d("stack");
+  const auto play = [&](const SimulationOptions& options) {
+    Simulation2d simulation(scene, options);
+    simulation.step(std::vector<Event>{hand(Action::kGrab, {0, 0}), hand(Action::kMoveHand, {3, 2})});
+    run(simulation, 60);
+    return simulation.state_hash();
+  };
+  const std::uint64_t with_six = play({});
+  for (int spes = 1; spes < 6; ++spes) EXPECT_EQ(play({.spes = spes}), with_six) << spes << " SPEs";
+  for (const char* const schedule : {"lazy", "random:1"})
+    EXPECT_EQ(play({.schedule = dma::parse_schedule(schedule)}), with_six) << schedule;
+}
+
+TEST(Simulation2d, TheReferenceIsCloseToTheSpes) {
+  const Scene2d scene = load_scene_2d("man");
+  Simulation2d spes(scene), reference(scene, {}, Engine::kReference);
+  run(spes, 30);
+  run(reference, 30);
+  EXPECT_NE(spes.state_hash(), reference.state_hash()) << "the SPU rounds towards zero";
+  for (std::size_t i = 0; i < spes.particles(); ++i) {
+    EXPECT_LT((spes.soft_body(0).positions()[i] - reference.soft_body(0).positions()[i]).norm(), 1e-4f);
+  }
+}
+
 TEST(Simulation2d, AnInputIsSeenInTheVeryNextStep) {
   const Scene2d scene = load_scene_2d("man");
   Simulation2d quiet(scene), pushed(scene);
