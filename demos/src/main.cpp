@@ -61,6 +61,12 @@ View2d parse_view(const std::string& text) {
   throw UsageError("--view " + text + ": give dots, lattice or filled");
 }
 
+Solver parse_engine(const std::string& text) {
+  if (text.empty() || text == "native") return Solver::kSpe;
+  if (text == "reference") return Solver::kReference;
+  throw UsageError("--engine " + text + ": give native or reference");
+}
+
 /// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
 class CommandLine {
  public:
@@ -112,6 +118,9 @@ class CommandLine {
   void add_demo_3d(CLI::App& demo) {
     CLI::App* d = demo.add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
     add_demo_options(*d, demo_3d_, "arena");
+    d->add_option("--engine", engine_,
+                  "Who does shape matching: native, the SPEs (default), or reference, the PPU with Eigen")
+        ->type_name("native|reference");
     d->add_option("--mesh", demo_3d_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)")
         ->type_name("FILE");
     d->add_option("--cell", demo_3d_.cell,
@@ -146,7 +155,8 @@ class CommandLine {
         ->type_name("SPES");
     d.add_option("--dma", schedule_, kDmaHelp)->type_name(kDmaValues);
     d.add_flag("--checked", options.checked,
-               "Run the instrumented flavour of the kernels; findings end with status 3");
+               "Run the instrumented flavour of the kernels; findings end with status 3. Shape matching is "
+               "then done by the PPU: its instrumented kernel does not fit in a local store");
     d.add_option("--trace", options.trace, kTraceHelp)->type_name("FILE");
     d.add_option("--json", options.json, "Write statistics to this file")->type_name("FILE");
     d.add_flag("--quiet", options.quiet, "Print nothing but what goes wrong");
@@ -155,6 +165,14 @@ class CommandLine {
   void parse_texts(DemoOptions& options) const {
     if (!size_.empty()) options.size = parse_size(size_);
     options.schedule = parse_dma(schedule_);
+    options.solver = parse_engine(engine_);
+    if (options.checked) {
+      if (engine_ == "native")
+        throw UsageError(
+            "--checked does not go with --engine native: the instrumented kernel of shape "
+            "matching does not fit in a local store");
+      options.solver = Solver::kReference;
+    }
   }
 
   void add_spu() {
@@ -271,6 +289,7 @@ class CommandLine {
   std::string size_;
   std::string view_ = "filled";
   std::string schedule_ = "eager";
+  std::string engine_;
   std::string clock_ = "host";
   std::string shell_;
   std::function<int()> chosen_;

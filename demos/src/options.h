@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kernel_task.h"
+#include "simulation_options.h"
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/spe_options.h"
 
@@ -26,9 +27,10 @@ struct DemoOptions {
   std::optional<std::filesystem::path> video;
   std::optional<std::filesystem::path> json;
   PictureSize size;
+  Solver solver = Solver::kSpe;
   int spes = 6;
   dma::Schedule schedule{};
-  bool checked = false;  ///< run instrumented kernels
+  bool checked = false;  ///< run instrumented kernels; dynamics then stay on the PPU
   std::optional<std::filesystem::path> trace;
   bool quiet = false;  ///< nothing but what goes wrong, not even progress on a terminal
 };

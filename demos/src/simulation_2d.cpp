@@ -142,7 +142,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   using Milliseconds = std::chrono::duration<double, std::milli>;
   const double all = Milliseconds(std::chrono::steady_clock::now() - begin).count();
   const double ppu = Milliseconds(world.soft_bodies.time_spent() - matched_before).count();
-  return {.physics_ms = all - ppu, .ppu_ms = ppu};
+  return {.physics_ms = all - ppu, .ppu_ms = ppu, .solve_ms = ppu};
 }
 
 std::size_t Simulation2d::soft_bodies() const { return state_->models.size(); }

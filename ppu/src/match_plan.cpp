@@ -139,9 +139,9 @@ float inverse_mass_of(const MatchingPlan<float>& matching) {
 
 void check_size(std::size_t particles, std::size_t slots, std::uint64_t bytes) {
   if (slots <= kMaxSumSlot && bytes <= spu::kMatchArenaBytes) return;
-  throw std::runtime_error("a soft body of " + std::to_string(particles) + " particles needs " +
-                           std::to_string(bytes) + " bytes of local store; the kernel match has " +
-                           std::to_string(spu::kMatchArenaBytes));
+  throw BodyTooLarge("a soft body of " + std::to_string(particles) + " particles needs " +
+                     std::to_string(bytes) + " bytes of local store; the kernel match has " +
+                     std::to_string(spu::kMatchArenaBytes));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "match_job.h"
@@ -11,6 +12,12 @@
 #include "softcell/ppu/shape_matching.h"
 
 namespace softcell::ppu {
+
+/// Plan and state of one body need more local store than the kernel has; the sentence states both.
+class BodyTooLarge : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// A plan in lines of 128 bytes, ready to be copied to main memory. Immutable, the same bytes on every host.
 ///
@@ -23,8 +30,7 @@ class MatchPlan {
  public:
   static constexpr int kRestart = 16;
 
-  /// @throws std::runtime_error  plan and state of one body need more local store than the kernel has; the
-  ///         sentence states both.
+  /// @throws BodyTooLarge
   MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching);
 
   const spu::MatchPlanHeader& header() const;
