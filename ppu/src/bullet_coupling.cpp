@@ -45,6 +45,7 @@ class CoupledBody {
   /// Before the solver: what the caller may have done to the body or, mostly to velocities, its particles.
   void begin_substep() {
     if (was_changed()) {
+      still_for_ = 0;
       wake();
       place_particles();
     } else if (!soft_.asleep()) {
@@ -78,7 +79,9 @@ class CoupledBody {
   /// After Bullet has integrated: outer particles are taken over, inner ones follow.
   void end_substep(float step, const std::optional<SleepSettings>& sleep) {
     if (soft_.asleep()) {
-      if (sleep && !was_touched()) return;
+      const bool falls_another_way = world_.getGravity() != gravity_asleep_;
+      if (sleep && !falls_another_way && !was_touched()) return;
+      if (falls_another_way) still_for_ = 0;
       wake();
     }
     gather();
@@ -87,21 +90,22 @@ class CoupledBody {
   }
 
  private:
-  /// Bullet has woken a particle, because something that moves touches it, or falls another way.
+  /// Bullet has woken a particle, because something that moves touches it.
   bool was_touched() const {
-    return world_.getGravity() != gravity_asleep_ ||
-           std::any_of(particles_.begin(), particles_.end(), [](const btRigidBody& particle) {
-             return particle.getActivationState() != ISLAND_SLEEPING;
-           });
+    return std::any_of(particles_.begin(), particles_.end(), [](const btRigidBody& particle) {
+      return particle.getActivationState() != ISLAND_SLEEPING;
+    });
   }
 
   void wake() {
     soft_.set_asleep(false);
-    for (btRigidBody& particle : particles_) particle.forceActivationState(DISABLE_DEACTIVATION);
+    for (btRigidBody& particle : particles_) {
+      particle.forceActivationState(DISABLE_DEACTIVATION);
+      particle.setGravity(world_.getGravity());  // Bullet tells only those that are awake
+    }
   }
 
-  /// Of two bodies that lean on each other the one that sleeps first is woken at once by the other. It does
-  /// not count anew then, so that it is asleep again when the other falls asleep too.
+  /// A body that was woken by a touch does not count anew: still slow, it falls asleep again at once.
   void fall_asleep_when_still(float step, const SleepSettings& settings) {
     const auto is_slow = [&](const Eigen::Vector3f& v) {
       return v.squaredNorm() < settings.speed * settings.speed;

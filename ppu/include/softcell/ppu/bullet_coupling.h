@@ -29,7 +29,7 @@ namespace softcell::ppu {
 
 /// When bodies may sleep. A body at rest costs its coupling next to nothing then, and its solver nothing.
 struct SleepSettings {
-  float speed = 0.02f;  ///< m/s: slower than this are all particles of a body that rests
+  float speed = 0.05f;  ///< m/s: slower than this are all particles of a body that rests
   float seconds = 1;    ///< for so long
 };
 
@@ -81,7 +81,8 @@ class BulletSoftBodies {
   void begin_ahead(float step);
 
   /// From now on bodies at rest sleep, until something moving touches them, gravity changes, or they are
-  /// changed; or never again, which is how it begins.
+  /// changed; or never again, which is how it begins. Bodies that lean on each other may keep each other
+  /// awake.
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   SoftBodyTimes times() const;
