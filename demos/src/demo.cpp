@@ -25,24 +25,34 @@ constexpr int kExitInterrupted = 130;  // as a shell reports a process that SIGI
 
 /// What a run measured.
 struct RunRecord {
-  std::vector<double> physics_ms, ppu_ms, skin_ms, skin_wait_ms;
+  std::vector<double> physics_ms, ppu_ms, gather_ms, solve_ms, apply_ms, skin_ms, solver_wait_ms,
+      skin_wait_ms;
   double seconds = 0;  // of the frame loop, pictures included
   int frames = 0;
 
   void add(const FrameTimes& times) {
     physics_ms.push_back(times.physics_ms);
     ppu_ms.push_back(times.ppu_ms);
+    gather_ms.push_back(times.gather_ms);
+    solve_ms.push_back(times.solve_ms);
+    apply_ms.push_back(times.apply_ms);
     skin_ms.push_back(times.skin_ms);
+    solver_wait_ms.push_back(times.solver_wait_ms);
     skin_wait_ms.push_back(times.skin_wait_ms);
     ++frames;
   }
 
+  /// What softcell takes of the PPU's time in a frame of 1/60 s.
+  double ppu_share() const { return frames == 0 ? 0 : sum(ppu_ms) / frames * 60 / 1000; }
+
   /// Frames a second without pictures.
   double simulated_fps() const {
-    const auto sum = [](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
-    const double total = sum(physics_ms) + sum(ppu_ms) + sum(skin_wait_ms);
+    const double total = sum(physics_ms) + sum(ppu_ms) + sum(solver_wait_ms) + sum(skin_wait_ms);
     return total > 0 ? 1000.0 * frames / total : 0;
   }
+
+ private:
+  static double sum(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 };
 
 nlohmann::ordered_json to_json(const Summary& s) {
@@ -69,9 +79,15 @@ nlohmann::ordered_json statistics_document(const DemoOptions& options, const Dem
       {"vertices", counts.vertices},
       {"spes", busy.size()},
       {"dma", dma::to_string(options.schedule)},
+      {"engine", options.solver == Solver::kSpe ? "native" : "reference"},
       {"ppu_ms", to_json(summarize(record.ppu_ms))},
+      {"ppu_share", record.ppu_share()},
+      {"gather_ms", to_json(summarize(record.gather_ms))},
+      {"solve_ms", to_json(summarize(record.solve_ms))},
+      {"apply_ms", to_json(summarize(record.apply_ms))},
       {"physics_ms", to_json(summarize(record.physics_ms))},
       {"skin_ms", to_json(summarize(record.skin_ms))},
+      {"solver_wait_ms", to_json(summarize(record.solver_wait_ms))},
       {"skin_wait_ms", to_json(summarize(record.skin_wait_ms))},
       {"picture_ms", to_json(summarize(pictures.milliseconds()))},
       {"simulated_fps", record.simulated_fps()},
@@ -96,9 +112,11 @@ void print_summary(const nlohmann::ordered_json& s, const DemoOptions& options) 
              s["scene"].get<std::string>(), s["frames"].get<int>(), s["bodies"].get<int>(),
              s["rigid_bodies"].get<int>(), s["particles"].get<int>(), s["vertices"].get<int>());
   fmt::print(
-      "a frame:  PPU {:.2f} ms (of it {:.3f} ms to hand over the skinning), physics {:.2f} ms, pictures "
-      "{:.1f} ms\n",
-      s["ppu_ms"]["mean"].get<double>(), s["skin_ms"]["mean"].get<double>(),
+      "a frame:  PPU {:.3f} ms, {:.1f} % of 1/60 s (gather {:.3f}, solve {:.3f}, apply {:.3f}, hand over "
+      "the skinning {:.3f}), physics {:.2f} ms, pictures {:.1f} ms\n",
+      s["ppu_ms"]["mean"].get<double>(), 100 * s["ppu_share"].get<double>(),
+      s["gather_ms"]["mean"].get<double>(), s["solve_ms"]["mean"].get<double>(),
+      s["apply_ms"]["mean"].get<double>(), s["skin_ms"]["mean"].get<double>(),
       s["physics_ms"]["mean"].get<double>(), s["picture_ms"]["mean"].get<double>());
   fmt::print("          {:.0f} frames a second without pictures\n", s["simulated_fps"].get<double>());
   if (!s["spe_busy"].empty()) {
@@ -130,7 +148,8 @@ int run_demo(const DemoOptions& options, std::string_view verb, const MakeDemo& 
   ls_sim::Findings findings;
   std::optional<ls_sim::Trace> trace;
   if (options.trace) trace.emplace(options.spes);
-  const std::unique_ptr<Demo> demo = make({.spes = options.spes,
+  const std::unique_ptr<Demo> demo = make({.solver = options.solver,
+                                           .spes = options.spes,
                                            .schedule = options.schedule,
                                            .findings = options.checked ? &findings : nullptr,
                                            .trace = trace ? &*trace : nullptr});

@@ -15,7 +15,7 @@ namespace {
 class Demo2d : public Demo {
  public:
   Demo2d(Scene2d scene, const SimulationOptions& how, const Demo2dOptions& options)
-      : scene_(std::move(scene)), simulation_(scene_, how, options.engine), kind_(options.view) {}
+      : scene_(std::move(scene)), simulation_(scene_, how), kind_(options.view) {}
 
   const std::string& scene_name() const override { return scene_.name; }
   int frames() const override { return scene_.frames; }

@@ -61,10 +61,10 @@ View2d parse_view(const std::string& text) {
   throw UsageError("--view " + text + ": give dots, lattice or filled");
 }
 
-Engine parse_engine(const std::string& text) {
-  if (text == "spe") return Engine::kSpes;
-  if (text == "reference") return Engine::kReference;
-  throw UsageError("--engine " + text + ": give spe or reference");
+Solver parse_engine(const std::string& text) {
+  if (text.empty() || text == "native") return Solver::kSpe;
+  if (text == "reference") return Solver::kReference;
+  throw UsageError("--engine " + text + ": give native or reference");
 }
 
 /// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
@@ -106,12 +106,9 @@ class CommandLine {
     add_demo_options(*d, demo_2d_, "man");
     d->add_option("--view", view_, "What is drawn of soft bodies (default: filled)")
         ->type_name("dots|lattice|filled");
-    d->add_option("--engine", engine_, "Who computes shape matching: the SPEs, or the PPU (default: spe)")
-        ->type_name("spe|reference");
     d->callback([this] {
       chosen_ = [this] {
         parse_texts(demo_2d_);
-        demo_2d_.engine = parse_engine(engine_);
         demo_2d_.view = parse_view(view_);
         return run_demo_2d(demo_2d_);
       };
@@ -131,6 +128,7 @@ class CommandLine {
     d->callback([this] {
       chosen_ = [this] {
         parse_texts(demo_3d_);
+        if (demo_3d_.checked) match_on_ppu(demo_3d_);
         return run_demo_3d(demo_3d_);
       };
     });
@@ -154,8 +152,12 @@ class CommandLine {
         ->check(CLI::Range(1, 6).description(""))
         ->type_name("SPES");
     d.add_option("--dma", schedule_, kDmaHelp)->type_name(kDmaValues);
+    d.add_option("--engine", engine_,
+                 "Who does shape matching: native, the SPEs (default), or reference, the PPU with Eigen")
+        ->type_name("native|reference");
     d.add_flag("--checked", options.checked,
-               "Run the instrumented flavour of the kernels; findings end with status 3");
+               "Run the instrumented flavour of the kernels; findings end with status 3. In 3D shape "
+               "matching is then done by the PPU: its instrumented kernel does not fit in a local store");
     d.add_option("--trace", options.trace, kTraceHelp)->type_name("FILE");
     d.add_option("--json", options.json, "Write statistics to this file")->type_name("FILE");
     d.add_flag("--quiet", options.quiet, "Print nothing but what goes wrong");
@@ -164,6 +166,15 @@ class CommandLine {
   void parse_texts(DemoOptions& options) const {
     if (!size_.empty()) options.size = parse_size(size_);
     options.schedule = parse_dma(schedule_);
+    options.solver = parse_engine(engine_);
+  }
+
+  void match_on_ppu(DemoOptions& options) const {
+    if (engine_ == "native")
+      throw UsageError(
+          "--checked does not go with --engine native: the instrumented kernel of shape matching in 3D does "
+          "not fit in a local store");
+    options.solver = Solver::kReference;
   }
 
   void add_spu() {
@@ -279,8 +290,8 @@ class CommandLine {
   ReportOptions report_;
   std::string size_;
   std::string view_ = "filled";
-  std::string engine_ = "spe";
   std::string schedule_ = "eager";
+  std::string engine_;
   std::string clock_ = "host";
   std::string shell_;
   std::function<int()> chosen_;

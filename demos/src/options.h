@@ -27,6 +27,7 @@ struct DemoOptions {
   std::optional<std::filesystem::path> video;
   std::optional<std::filesystem::path> json;
   PictureSize size;
+  Solver solver = Solver::kSpe;
   int spes = 6;
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
@@ -51,7 +52,6 @@ enum class View2d : std::uint8_t {
 /// The scene's default: man.
 struct Demo2dOptions : DemoOptions {
   View2d view = View2d::kFilled;
-  Engine engine = Engine::kSpes;
 };
 
 struct BudgetOptions {

@@ -117,9 +117,9 @@ struct Spes {
 }  // namespace
 
 struct Simulation2d::State {
-  State(const Scene2d& scene_description, const SimulationOptions& options, Engine engine)
+  State(const Scene2d& scene_description, const SimulationOptions& options)
       : scene(scene_description), script(scene.script), controls({0, -scene.gravity}) {
-    if (engine == Engine::kSpes) spes.emplace(options);
+    if (options.solver == Solver::kSpe) spes.emplace(options);
     for (const SoftBody2dPlacement& body : scene.soft_bodies)
       models.push_back(ppu::make_soft_body_model(body.lattice(), body.settings, body.contact_radius));
     reset();
@@ -148,8 +148,8 @@ struct Simulation2d::State {
   std::int64_t frame = 0;  // of the script: counts without a break
 };
 
-Simulation2d::Simulation2d(const Scene2d& scene, const SimulationOptions& options, Engine engine)
-    : state_(std::make_unique<State>(scene, options, engine)) {}
+Simulation2d::Simulation2d(const Scene2d& scene, const SimulationOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
 Simulation2d::~Simulation2d() = default;
 
 FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
@@ -175,7 +175,8 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   FrameTimes times;
   times.physics_ms = all - coupling;
   times.ppu_ms = coupling - waiting;
-  times.skin_wait_ms = waiting;
+  times.solve_ms = times.ppu_ms;
+  times.solver_wait_ms = waiting;
   return times;
 }
 

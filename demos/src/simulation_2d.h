@@ -28,8 +28,7 @@ class Simulation2d {
  public:
   /// The scene must outlive it.
   /// @throws std::runtime_error  a body cannot be made, main memory is full, the host cannot run kernels.
-  explicit Simulation2d(const Scene2d& scene, const SimulationOptions& options = {},
-                        Engine engine = Engine::kSpes);
+  explicit Simulation2d(const Scene2d& scene, const SimulationOptions& options = {});
   ~Simulation2d();
   Simulation2d(const Simulation2d&) = delete;
   Simulation2d& operator=(const Simulation2d&) = delete;

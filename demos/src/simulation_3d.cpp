@@ -1,7 +1,5 @@
 #include "simulation_3d.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -12,6 +10,8 @@
 #include "softcell/ppu/bullet_coupling.h"
 #include "softcell/ppu/bullet_world.h"
 #include "softcell/ppu/deterministic_math.h"
+#include "softcell/ppu/processor_time.h"
+#include "softcell/ppu/spe_solver.h"
 #include "softcell/ppu/state_hash.h"
 
 namespace softcell::demos {
@@ -24,12 +24,8 @@ double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Processor time of this thread. Handing over wakes threads that stand for SPEs and share the host's cores
-/// with this one; what they take is no time of the PPU's.
-double thread_milliseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) / 1e6;
+double milliseconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double, std::milli>(time).count();
 }
 
 /// From the ground's frame to the observer's: first about x, then about z.
@@ -63,15 +59,17 @@ struct Simulation3d::State {
       : scene(scene_description),
         script(scene.script),
         controls({0, -scene.gravity, 0}),
-        soft_bodies(world.world()),
-        skin(load_kernel("skin", options.findings != nullptr)),
         job_loop(load_kernel("job_loop")),
+        match(load_kernel("match")),
+        skin(load_kernel("skin", options.findings != nullptr)),
         jobs(memory,
              {.spes = options.spes,
               .schedule = options.schedule,
               .findings = options.findings,
               .trace = options.trace},
              job_loop),
+        solver(make_solver(options.solver)),
+        soft_bodies(world.world(), *solver),
         orchestrator(memory, jobs, skin) {
     for (const RigidBox& box : scene.boxes) {
       boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
@@ -93,7 +91,13 @@ struct Simulation3d::State {
     newest = 0;
   }
 
-  /// Copies what belongs to the vertices beside them and starts the SPEs.
+  std::unique_ptr<ppu::SoftBodySolver> make_solver(Solver wanted) {
+    if (wanted == Solver::kSpe) return std::make_unique<ppu::SpeSolver>(memory, jobs, match);
+    return std::make_unique<ppu::PpuSolver>();
+  }
+
+  /// Copies what belongs to the vertices beside them and starts the SPEs: with the next step's dynamics,
+  /// which go first, and the skinning. They work while the frame before is drawn.
   void hand_over() {
     Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
     for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
@@ -101,7 +105,10 @@ struct Simulation3d::State {
       std::copy(positions[b].begin(), positions[b].end(), snapshot.particles[b].begin());
     }
     snapshot.tilt = tilt;
+    const auto before = ppu::processor_time();
     orchestrator.kick(positions);
+    skin_time = ppu::processor_time() - before;
+    soft_bodies.begin_ahead(kFrameSeconds / static_cast<float>(scene.substeps));
   }
 
   void reset() {
@@ -116,20 +123,22 @@ struct Simulation3d::State {
   ScriptPlayer<3> script;
   Controls<3> controls;
   ppu::BulletWorld world;
-  ppu::BulletSoftBodies soft_bodies;
   std::vector<std::size_t> boxes;  // numbers in the world
 
   dma::AddressSpace memory;
-  ls_sim::KernelImage skin, job_loop;
+  ls_sim::KernelImage job_loop, match, skin;
   ppu::JobSystem jobs;
+  std::unique_ptr<ppu::SoftBodySolver> solver;
+  ppu::BulletSoftBodies soft_bodies;
   ppu::SkinOrchestrator orchestrator;
   std::vector<std::span<const spu::SkinCorner>> positions;
 
   std::array<Snapshot, 2> snapshots;
   int newest = 1;  // the snapshot of the vertices that the orchestrator shows
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
-  std::int64_t script_frame = 0;  // counts frames without a break
-  std::int64_t frame = 0;         // simulated since the last reset
+  std::int64_t script_frame = 0;          // counts frames without a break
+  std::int64_t frame = 0;                 // simulated since the last reset
+  std::chrono::nanoseconds skin_time{0};  // of the PPU, to hand over the last frame
 };
 
 Simulation3d::Simulation3d(const Scene& scene, const SimulationOptions& options)
@@ -150,17 +159,22 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.tilt = tilt_at(s.scene.tilt, static_cast<double>(s.frame++) / 60);
   s.world.set_gravity(s.tilt.transpose() * s.controls.gravity());
   s.controls.hands().pull(s.soft_bodies);
+  const ppu::SoftBodyTimes begin = s.soft_bodies.times();
   const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
 
   const auto waiting = std::chrono::steady_clock::now();
   finish();
   times.skin_wait_ms = milliseconds_since(waiting);
 
-  const double before = thread_milliseconds();
   s.hand_over();
-  times.skin_ms = thread_milliseconds() - before;
+  const ppu::SoftBodyTimes end = s.soft_bodies.times();
   times.physics_ms = step.physics_ms;
-  times.ppu_ms = step.soft_body_ms + times.skin_ms;
+  times.gather_ms = milliseconds(end.gather - begin.gather);
+  times.solve_ms = milliseconds(end.solve - begin.solve);
+  times.apply_ms = milliseconds(end.apply - begin.apply);
+  times.skin_ms = milliseconds(s.skin_time);
+  times.ppu_ms = times.gather_ms + times.solve_ms + times.apply_ms + times.skin_ms;
+  times.solver_wait_ms = milliseconds(end.wait - begin.wait);
   return times;
 }
 

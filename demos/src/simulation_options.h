@@ -8,14 +8,15 @@
 
 namespace softcell::demos {
 
-/// Who computes shape matching.
-enum class Engine : std::uint8_t {
-  kSpes,
-  kReference,  ///< the PPU's own solver, to compare with; it differs in last bits
+/// Who does shape matching and damping.
+enum class Solver {
+  kSpe,       ///< the kernels, on the SPEs
+  kReference  ///< the PPU, with Eigen
 };
 
-/// How a scene is simulated; none of it changes the result.
+/// How a scene is simulated. Only the solver changes the result, and that by rounding.
 struct SimulationOptions {
+  Solver solver = Solver::kSpe;
   int spes = 6;
   dma::Schedule schedule{};
   ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked
@@ -24,11 +25,15 @@ struct SimulationOptions {
 
 /// Milliseconds of one frame, measured on the PPU thread.
 struct FrameTimes {
-  double physics_ms = 0;  ///< in Bullet or Box2D
-  double ppu_ms = 0;      ///< in softcell: shape matching, coupling, handing over the skinning
-  double skin_ms = 0;     ///< of ppu_ms: handing over the skinning, in processor time of the thread
+  double physics_ms = 0;      ///< in Bullet or Box2D
+  double ppu_ms = 0;          ///< in softcell, in processor time of the thread: the sum of the next four
+  double gather_ms = 0;       ///< taking particles over from the engine
+  double solve_ms = 0;        ///< handing the solver's work over and taking it back, or doing it
+  double apply_ms = 0;        ///< giving the engine the new velocities
+  double skin_ms = 0;         ///< handing over the skinning
+  double solver_wait_ms = 0;  ///< by the clock, until the solver had finished; in none of the above
   double skin_wait_ms =
-      0;  ///< waiting for the SPEs, which only a run without a window does; in none of the above
+      0;  ///< waiting for the skinning, which only a run without a window does; in none of the above
 };
 
 }  // namespace softcell::demos

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "bullet_hook.h"
 #include "bullet_vector.h"
 #include "contact_sphere.h"
+#include "softcell/ppu/processor_time.h"
 
 namespace softcell::ppu {
 namespace {
@@ -37,14 +39,36 @@ class CoupledBody {
   SoftBody& soft() { return soft_; }
   const SoftBody& soft() const { return soft_; }
 
-  /// Before Bullet integrates: shape matching.
-  void begin_substep(float step) {
-    if (soft_.revision() != seen_revision_) {
+  /// Whether the body's user has changed it since the last substep.
+  bool was_changed() const { return soft_.revision() != seen_revision_; }
+
+  /// Before the solver: what the caller may have done to the body or, mostly to velocities, its particles.
+  void begin_substep() {
+    if (was_changed()) {
+      still_for_ = 0;
+      wake();
       place_particles();
-    } else {
-      gather();  // of velocities, mostly: the caller may have pushed particles
+    } else if (!soft_.asleep()) {
+      gather();
     }
-    soft_.pull(step);
+  }
+
+  /// Whether particles are no longer as they were gathered last.
+  bool was_pushed() const {
+    if (soft_.asleep()) return false;
+    const auto outer = soft_.model().outer();
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+      const btRigidBody& particle = particles_[i];
+      if (to_eigen(particle.getLinearVelocity()) != soft_.velocities()[outer[i]] ||
+          to_eigen(particle.getWorldTransform().getOrigin()) != soft_.position(outer[i]))
+        return true;
+    }
+    return false;
+  }
+
+  /// Behind the solver: Bullet integrates with the new velocities.
+  void apply(float step) {
+    if (soft_.asleep()) return;
     soft_.limit_speed(BulletSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing / step);
     const auto outer = soft_.model().outer();
     for (std::size_t i = 0; i < outer.size(); ++i) {
@@ -53,12 +77,52 @@ class CoupledBody {
   }
 
   /// After Bullet has integrated: outer particles are taken over, inner ones follow.
-  void end_substep(float step) {
+  void end_substep(float step, const std::optional<SleepSettings>& sleep) {
+    if (soft_.asleep()) {
+      const bool falls_another_way = world_.getGravity() != gravity_asleep_;
+      if (sleep && !falls_another_way && !was_touched()) return;
+      if (falls_another_way) still_for_ = 0;
+      wake();
+    }
     gather();
     soft_.advance_inner(step, to_eigen(world_.getGravity()));
+    if (sleep) fall_asleep_when_still(step, *sleep);
   }
 
  private:
+  /// Bullet has woken a particle, because something that moves touches it.
+  bool was_touched() const {
+    return std::any_of(particles_.begin(), particles_.end(), [](const btRigidBody& particle) {
+      return particle.getActivationState() != ISLAND_SLEEPING;
+    });
+  }
+
+  void wake() {
+    soft_.set_asleep(false);
+    for (btRigidBody& particle : particles_) {
+      particle.forceActivationState(DISABLE_DEACTIVATION);
+      particle.setGravity(world_.getGravity());  // Bullet tells only those that are awake
+    }
+  }
+
+  /// A body that was woken by a touch does not count anew: still slow, it falls asleep again at once.
+  void fall_asleep_when_still(float step, const SleepSettings& settings) {
+    const auto is_slow = [&](const Eigen::Vector3f& v) {
+      return v.squaredNorm() < settings.speed * settings.speed;
+    };
+    const bool still = std::all_of(soft_.velocities().begin(), soft_.velocities().end(), is_slow);
+    still_for_ = still ? still_for_ + step : 0;
+    if (still_for_ < settings.seconds) return;
+    for (std::size_t i = 0; i < soft_.velocities().size(); ++i)
+      soft_.set_velocity(i, Eigen::Vector3f::Zero());
+    for (btRigidBody& particle : particles_) {
+      particle.setLinearVelocity(btVector3(0, 0, 0));
+      particle.forceActivationState(ISLAND_SLEEPING);
+    }
+    gravity_asleep_ = world_.getGravity();
+    soft_.set_asleep(true);
+  }
+
   void add_particle(std::uint32_t number) {
     // No inertia: a sphere that turned would roll, and a body on rolling particles has no friction.
     btRigidBody::btRigidBodyConstructionInfo info(soft_.model().masses()[number], nullptr, &shape_,
@@ -105,47 +169,97 @@ class CoupledBody {
   ContactSphere shape_;
   std::deque<btRigidBody> particles_;  // a deque: Bullet keeps their addresses
   std::uint32_t seen_revision_ = 0;
+  float still_for_ = 0;  // seconds
+  btVector3 gravity_asleep_{0, 0, 0};
 };
+
+/// Adds the processor time of a piece of work.
+template <typename Work>
+void timed(std::chrono::nanoseconds& time, const Work& work) {
+  const auto begin = processor_time();
+  work();
+  time += processor_time() - begin;
+}
 
 }  // namespace
 
 struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
-  explicit Impl(btDiscreteDynamicsWorld& w) : world(w) {
+  Impl(btDiscreteDynamicsWorld& w, SoftBodySolver* other) : world(w), solver(other ? *other : ppu) {
     BulletHook::attach(world, *this);
     world.addAction(this);
   }
   ~Impl() override {
+    settle();
+    for (SoftBody* const body : soft) solver.forget(*body);
     bodies.clear();
     world.removeAction(this);
     BulletHook::detach(world, *this);
   }
 
-  template <typename Work>
-  void timed(const Work& work) {
+  void begin_substep(float step) override {
     const auto begin = std::chrono::steady_clock::now();
-    for (const auto& body : bodies) work(*body);
+    timed(times.gather, [&] {
+      if (ahead != step || std::any_of(bodies.begin(), bodies.end(), [](const auto& body) {
+            return body->was_changed() || body->was_pushed();
+          })) {
+        settle();
+        for (const auto& body : bodies) {
+          if (body->was_changed()) solver.forget(body->soft());
+          body->begin_substep();
+        }
+      }
+    });
+    timed(times.solve, [&] {
+      if (ahead == 0) solver.kick(soft, step);
+      ahead = 0;
+      const auto waiting = std::chrono::steady_clock::now();
+      solver.finish();
+      times.wait += std::chrono::steady_clock::now() - waiting;
+    });
+    timed(times.apply, [&] {
+      for (const auto& body : bodies) body->apply(step);
+    });
     BulletHook::find(world)->add_time(std::chrono::steady_clock::now() - begin);
   }
 
-  void begin_substep(float step) override {
-    timed([&](CoupledBody& body) { body.begin_substep(step); });
-  }
   /// Bullet's actions run once per substep, after it has integrated.
   void updateAction(btCollisionWorld*, btScalar step) override {
-    timed([&](CoupledBody& body) { body.end_substep(step); });
+    const auto begin = std::chrono::steady_clock::now();
+    timed(times.gather, [&] {
+      for (const auto& body : bodies) body->end_substep(step, sleep);
+    });
+    BulletHook::find(world)->add_time(std::chrono::steady_clock::now() - begin);
   }
   void debugDraw(btIDebugDraw*) override {}
 
+  /// What was begun ahead is of no use.
+  void settle() {
+    if (std::exchange(ahead, 0.0f) != 0) solver.drop();
+  }
+
   btDiscreteDynamicsWorld& world;
+  PpuSolver ppu;
+  SoftBodySolver& solver;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
+  std::vector<SoftBody*> soft;  // of `bodies`
+  std::optional<SleepSettings> sleep;
+  float ahead = 0;  // length of the substep that the solver has begun; 0: none
+  SoftBodyTimes times;
 };
 
-BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world) : impl_(std::make_unique<Impl>(world)) {}
+BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world)
+    : impl_(std::make_unique<Impl>(world, nullptr)) {}
+BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver)
+    : impl_(std::make_unique<Impl>(world, &solver)) {}
 BulletSoftBodies::~BulletSoftBodies() = default;
 
 SoftBody& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position) {
-  return impl_->bodies.emplace_back(std::make_unique<CoupledBody>(impl_->world, std::move(model), position))
-      ->soft();
+  impl_->settle();
+  SoftBody& soft =
+      impl_->bodies.emplace_back(std::make_unique<CoupledBody>(impl_->world, std::move(model), position))
+          ->soft();
+  impl_->soft.push_back(&soft);
+  return soft;
 }
 
 void BulletSoftBodies::remove(const SoftBody& body) {
@@ -154,8 +268,21 @@ void BulletSoftBodies::remove(const SoftBody& body) {
   if (found == impl_->bodies.end()) {
     throw std::invalid_argument("the soft body to be removed is not in this world");
   }
+  impl_->settle();
+  impl_->solver.forget(body);
+  impl_->soft.erase(impl_->soft.begin() + (found - impl_->bodies.begin()));
   impl_->bodies.erase(found);
 }
+
+void BulletSoftBodies::begin_ahead(float step) {
+  impl_->settle();
+  timed(impl_->times.solve, [&] { impl_->solver.kick(impl_->soft, step); });
+  impl_->ahead = step;
+}
+
+void BulletSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) { impl_->sleep = settings; }
+
+SoftBodyTimes BulletSoftBodies::times() const { return impl_->times; }
 
 std::size_t BulletSoftBodies::size() const { return impl_->bodies.size(); }
 SoftBody& BulletSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }

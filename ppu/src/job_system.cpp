@@ -127,6 +127,8 @@ JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& opti
 JobSystem::State::~State() { stop(); }
 
 void JobSystem::State::stop() {
+  for (JobChain* const chain : chains)
+    if (chain != nullptr) chain->wait();
   {
     const std::scoped_lock lock(mutex);
     stopping = true;

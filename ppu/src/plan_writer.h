@@ -5,9 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "softcell/ppu/kernel_plan.h"
 
 namespace softcell::ppu {
 
@@ -54,13 +55,13 @@ float inverse_body_mass(const Particles& particles) {
   return static_cast<float>(1 / mass);
 }
 
-/// @throws std::runtime_error  the body needs more local store than `kernel` has for it.
+/// @throws BodyTooLarge  the body needs more local store than `kernel` has for it.
 inline void check_fits(const char* kernel, std::size_t particles, std::uint64_t needed,
                        std::uint32_t there_are) {
   if (needed <= there_are) return;
-  throw std::runtime_error("a soft body of " + std::to_string(particles) + " particles needs " +
-                           std::to_string(needed) + " bytes of local store; the kernel " + kernel + " has " +
-                           std::to_string(there_are));
+  throw BodyTooLarge("a soft body of " + std::to_string(particles) + " particles needs " +
+                     std::to_string(needed) + " bytes of local store; the kernel " + kernel + " has " +
+                     std::to_string(there_are));
 }
 
 }  // namespace softcell::ppu

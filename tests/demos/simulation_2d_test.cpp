@@ -163,7 +163,7 @@ TEST(Simulation2d, TheNumberOfSpesAndTheOrderOfTransfersDoNotMatter) {
 
 TEST(Simulation2d, TheReferenceIsCloseToTheSpes) {
   const Scene2d scene = load_scene_2d("man");
-  Simulation2d spes(scene), reference(scene, {}, Engine::kReference);
+  Simulation2d spes(scene), reference(scene, {.solver = Solver::kReference});
   run(spes, 30);
   run(reference, 30);
   EXPECT_NE(spes.state_hash(), reference.state_hash()) << "the SPU rounds towards zero";

@@ -12,17 +12,36 @@
 // substep's length; positions are Bullet's own business, because moving a body spoils its contacts. Inner
 // particles, which nothing can touch, are integrated here.
 //
-//     substep:  [pull: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
+//     substep:  [solver: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
+//
+// Shape matching is done by a SoftBodySolver: on the calling thread, unless another is given.
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <Eigen/Core>
 #include <chrono>
 #include <memory>
+#include <optional>
 
-#include "softcell/ppu/soft_body.h"
+#include "softcell/ppu/soft_body_solver.h"
 
 namespace softcell::ppu {
+
+/// When bodies may sleep. A body at rest costs its coupling next to nothing then, and its solver nothing.
+struct SleepSettings {
+  float speed = 0.05f;  ///< m/s: slower than this are all particles of a body that rests
+  float seconds = 1;    ///< for so long
+};
+
+/// Where the time goes that soft bodies take inside stepSimulation(), since the beginning.
+struct SoftBodyTimes {
+  std::chrono::nanoseconds gather{0};  ///< processor time: particles from Bullet, inner ones integrated
+  std::chrono::nanoseconds solve{0};   ///< processor time of the solver on this thread
+  std::chrono::nanoseconds apply{0};   ///< processor time: velocities to Bullet
+  std::chrono::nanoseconds wait{0};  ///< by the clock, until the solver had finished; no work for this thread
+
+  std::chrono::nanoseconds processor() const { return gather + solve + apply; }
+};
 
 /// The soft bodies of one world. Several of these may share a world.
 ///
@@ -42,6 +61,8 @@ class BulletSoftBodies {
 
   /// @param world  outlives this.
   explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);
+  /// @param solver  outlives this, and serves nobody else.
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver);
   /// Removes all bodies and leaves the world as it was found.
   ~BulletSoftBodies();
   BulletSoftBodies(const BulletSoftBodies&) = delete;
@@ -53,6 +74,18 @@ class BulletSoftBodies {
 
   /// @throws std::invalid_argument  the body is not one of these.
   void remove(const SoftBody& body);
+
+  /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
+  /// else. Changes no result: when bodies are changed after all, or the substep has another length, the work
+  /// is done again. Call it between steps.
+  void begin_ahead(float step);
+
+  /// From now on bodies at rest sleep, until something moving touches them, gravity changes, or they are
+  /// changed; or never again, which is how it begins. Bodies that lean on each other may keep each other
+  /// awake.
+  void let_sleep(const std::optional<SleepSettings>& settings);
+
+  SoftBodyTimes times() const;
 
   std::size_t size() const;
   SoftBody& operator[](std::size_t index);  ///< in the order of add()

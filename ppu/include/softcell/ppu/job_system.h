@@ -74,8 +74,8 @@ class JobSystem {
   /// wanted.
   JobImage place(const ls_sim::KernelImage& image);
 
-  /// Ends the job loops. Then statistics and traces are whole: what the loops do between jobs is in both.
-  /// @pre all chains have finished; none is kicked afterwards.
+  /// Waits for all chains and ends the job loops. Then statistics and traces are whole: what the loops do
+  /// between jobs is in both. No chain may be kicked afterwards.
   void stop();
 
   /// Of each SPE, up to the last job that it has ended. Any thread.

@@ -5,9 +5,16 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 namespace softcell::ppu {
+
+/// Plan and state of one body need more local store than the kernel has; the sentence states both.
+class BodyTooLarge : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// A plan in lines of 128 bytes, ready to be copied to main memory: a `Header` and what it points to.
 /// Immutable, the same bytes on every host.

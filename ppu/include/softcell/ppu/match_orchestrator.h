@@ -8,30 +8,16 @@
 //
 // Positions, velocities and rotations live in main memory, where the SPEs work on them.
 
-#include <cstdint>
-#include <memory>
-#include <span>
 #include <vector>
 
-#include "match_job.h"
-#include "skin_job.h"
-#include "softcell/dma/buffer.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/match_plan.h"
+#include "softcell/ppu/match_bodies.h"
 
 namespace softcell::ppu {
-
-struct MatchSettings {
-  float pull = 0;                      ///< alpha / h, 1/s, not negative
-  float damping = 0;                   ///< k, 0..1
-  std::uint32_t least_iterations = 0;  ///< of each rotation; 2 and 2 for a fixed effort,
-  std::uint32_t most_iterations = 6;   ///< 0 and 6 to go by the residual
-};
 
 /// Used by one thread at a time.
 class MatchOrchestrator {
  public:
-  using Vector = spu::SkinCorner;  ///< x y z 0: what the kernels read
+  using Vector = MatchBodies::Vector;
 
   /// `memory`, `jobs` and `match` must outlive the orchestrator; `match` is the image of the kernel match.
   /// @param bodies_per_job  a job fetches the plan once and steps so many bodies
@@ -40,41 +26,35 @@ class MatchOrchestrator {
                     const MatchPlan& plan, std::size_t bodies, std::size_t bodies_per_job = 16);
 
   std::size_t bodies() const { return bodies_.size(); }
-  std::span<Vector> positions(std::size_t body);   ///< metres; the step does not change them
-  std::span<Vector> velocities(std::size_t body);  ///< m/s
+  std::span<Vector> positions(std::size_t body) { return bodies_.positions(body); }    ///< metres
+  std::span<Vector> velocities(std::size_t body) { return bodies_.velocities(body); }  ///< m/s
   /// Of the plan's regions, in groups of four: see MatchPlan::region_of().
-  std::span<const spu::MatchRotations> rotations(std::size_t body) const;
+  std::span<const spu::MatchRotations> rotations(std::size_t body) const { return bodies_.rotations(body); }
 
   /// One step of all bodies: kick() and wait().
   void step(const MatchSettings& settings);
 
   /// Starts a step. @pre the one before has been waited for. Nothing may be read or changed before wait()
-  /// returns.
-  /// @throws std::invalid_argument  settings out of their ranges.
+  /// returns. @throws std::invalid_argument  settings out of their ranges.
   void kick(const MatchSettings& settings);
 
   /// @throws std::runtime_error  a job failed, or a body has positions or velocities that are no numbers;
-  /// those
-  ///         bodies are as they were before the step.
+  ///         those bodies are as they were before the step.
   void wait();
 
   /// The largest |axial(R^T A)| of the last step over the sum of |A|'s elements, roughly radians.
-  float residual(std::size_t body) const;
+  float residual(std::size_t body) const { return bodies_.residual(body); }
 
   /// Forgets a body's rotations: after a teleport. Its next step starts cold; that is also how a body begins.
-  void reset(std::size_t body);
+  void reset(std::size_t body) { bodies_.reset(body); }
 
  private:
-  std::uint32_t particles_, region_groups_;
-  std::size_t vector_stride_, rotation_stride_;  // elements of one body, in whole lines
-  dma::Buffer<std::byte> plan_;
-  dma::Buffer<Vector> positions_, velocities_;
-  dma::Buffer<spu::MatchRotations> rotations_;
-  dma::Buffer<spu::MatchResult> results_;
-  dma::Buffer<spu::MatchBody> bodies_;
-  dma::Buffer<spu::MatchJob> descriptors_;
+  JobImage match_;
+  MatchBodies bodies_;
+  std::vector<std::size_t> all_;  // 0, 1, 2, ...
+  std::size_t bodies_per_job_;
   bool in_flight_ = false;
-  JobChain chain_;  ///< last, so that it has ended before what its jobs work on goes
+  JobChain chain_;  // last, so that it has ended before what its jobs work on goes
 };
 
 }  // namespace softcell::ppu

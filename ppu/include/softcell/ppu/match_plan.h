@@ -14,8 +14,7 @@ namespace softcell::ppu {
 /// likewise.
 class MatchPlan : public KernelPlan<spu::MatchPlanHeader> {
  public:
-  /// @throws std::runtime_error  plan and state of one body need more local store than the kernel has; the
-  ///         sentence states both.
+  /// @throws BodyTooLarge
   MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching);
 };
 

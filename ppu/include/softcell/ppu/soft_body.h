@@ -133,6 +133,13 @@ class SoftBody {
     corners_[particle] = {position.x(), position.y(), position.z(), 0};
   }
 
+  /// What a solver has made of a velocity.
+  void set_velocity(std::size_t particle, const Eigen::Vector3f& velocity) { v_[particle] = velocity; }
+
+  /// A body that sleeps is left as it is: no solver steps it. Couplings put bodies to sleep and wake them.
+  bool asleep() const { return asleep_; }
+  void set_asleep(bool asleep) { asleep_ = asleep; }
+
   // What its user may do between time steps. Each counts up revision(), by which a coupling notices.
 
   void translate(const Eigen::Vector3f& by);
@@ -161,6 +168,7 @@ class SoftBody {
   std::vector<spu::SkinCorner> corners_;  // x_ again
   ShapeMatcher<float> matcher_;
   std::uint32_t revision_ = 0;
+  bool asleep_ = false;
 };
 
 }  // namespace softcell::ppu

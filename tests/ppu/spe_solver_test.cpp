@@ -1,0 +1,226 @@
+// Soft bodies in a Bullet world, stepped by SPEs: against the PPU's solver, and against what must be true
+// whoever steps them.
+
+#include "softcell/ppu/spe_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "soft_body_scenes.h"
+#include "softcell/ppu/state_hash.h"
+#include "spu_kernels/kernel_image.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+SoftBodySettings rubber() {
+  return {.cell_size = 0.2f, .half_width = 2, .density = 200, .alpha = 0.5f, .damping = 0.1f};
+}
+
+/// A Bullet world whose soft bodies are stepped by SPEs.
+struct SpeWorld {
+  explicit SpeWorld(int spes = 2, const char* schedule = "eager")
+      : jobs(memory, {.spes = spes, .schedule = dma::parse_schedule(schedule)}, job_loop),
+        solver(memory, jobs, match),
+        soft(bullet.world(), solver) {}
+
+  void add_floor() { bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f); }
+  void run(int frames) {
+    for (int i = 0; i < frames; ++i) bullet.step(kFrame, 2);
+  }
+  std::uint64_t jobs_done() const {
+    std::uint64_t sum = 0;
+    for (const ls_sim::SpeStatistics& spe : jobs.statistics()) sum += spe.jobs;
+    return sum;
+  }
+
+  dma::AddressSpace memory;
+  ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match = test::kernel_image("match");
+  JobSystem jobs;
+  SpeSolver solver;
+  BulletWorld bullet;
+  BulletSoftBodies soft;
+};
+
+/// Bent, and moving in a way that no rigid body does.
+void bend(SoftBody& body) {
+  for (std::size_t i = 0; i < body.model().particles(); ++i) {
+    const Vector3f x = body.position(i);
+    body.set_particle(i, x + Vector3f(0.3f * x.y() * x.y(), 0, 0), {x.z(), 0.5f * x.x() * x.x(), -x.y()});
+  }
+  body.translate({0, 0, 0});  // so that couplings notice
+}
+
+TEST(SpeSolver, AgreesWithThePpuInOneStepFromTheSameState) {
+  const auto model = block_model({5, 4, 3}, rubber());
+  SpeWorld world;
+  SoftBody on_spe(model), on_ppu(model);
+  bend(on_spe);
+  bend(on_ppu);
+  SoftBody* const one[] = {&on_spe};
+  PpuSolver ppu;
+  SoftBody* const other[] = {&on_ppu};
+  const float size = 0.2f * 5;
+  constexpr float kStep = 1.0f / 120;
+  for (int step = 0; step < 3; ++step) {
+    world.solver.kick(one, kStep);
+    ppu.kick(other, kStep);
+    world.solver.finish();
+    ppu.finish();
+    for (std::size_t i = 0; i < model->particles(); ++i) {
+      // A velocity is the pull by alpha / h times the distance to the goal.
+      const float goal_error =
+          (on_spe.velocities()[i] - on_ppu.velocities()[i]).norm() * kStep / rubber().alpha;
+      ASSERT_LE(goal_error, 1e-5f * size) << "step " << step << ", particle " << i;
+    }
+    for (std::size_t i = 0; i < model->particles(); ++i) {
+      on_spe.set_velocity(i, on_ppu.velocities()[i]);  // the same state again
+    }
+  }
+}
+
+std::uint64_t hash_of_a_run(int spes, const char* schedule, bool ahead) {
+  SpeWorld world(spes, schedule);
+  world.add_floor();
+  const auto block = block_model({3, 3, 3}, rubber()), bar = block_model({6, 1, 2}, rubber());
+  const SoftBody* const bodies[] = {&world.soft.add(block, {0, 1, 0}), &world.soft.add(bar, {0.5f, 2, 0}),
+                                    &world.soft.add(block, {0.2f, 3, 0})};
+  for (int frame = 0; frame < 60; ++frame) {
+    world.bullet.step(kFrame, 2);
+    if (frame == 30) world.soft[0].add_velocity({1, 2, 0});
+    if (ahead) world.soft.begin_ahead(kFrame / 2);
+  }
+  return state_hash(bodies);
+}
+
+TEST(SpeSolver, GivesTheSameBytesOnAnySpesUnderEverySchedule) {
+  const std::uint64_t expected = hash_of_a_run(1, "eager", true);
+  for (const char* schedule : {"eager", "lazy", "random:1"})
+    for (const int spes : {1, 3, 6})
+      EXPECT_EQ(hash_of_a_run(spes, schedule, true), expected) << schedule << ", " << spes << " SPEs";
+}
+
+TEST(SpeSolver, WorkBegunAheadChangesNothing) {
+  SpeWorld plain, early;
+  const auto model = block_model({3, 3, 3}, rubber());
+  for (SpeWorld* const world : {&plain, &early}) {
+    world->add_floor();
+    world->soft.add(model, {0, 0.5f, 0});
+  }
+  for (int frame = 0; frame < 90; ++frame) {
+    plain.bullet.step(kFrame, 2);
+    early.bullet.step(kFrame, 2);
+    early.soft.begin_ahead(kFrame / 2);
+  }
+  EXPECT_EQ(state_hash(plain.soft[0]), state_hash(early.soft[0]));
+}
+
+TEST(SpeSolver, WorkBegunAheadIsDoneAgainWhenABodyIsPushedOrTheStepIsAnother) {
+  SpeWorld world;
+  SoftBody& body = world.soft.add(block_model({2, 2, 2}, rubber()), {0, 0, 0});
+  world.bullet.set_gravity(Vector3f::Zero());
+  world.soft.begin_ahead(kFrame);
+  body.add_velocity({1, 0, 0});
+  world.bullet.step(kFrame, 1);
+  EXPECT_NEAR(body.velocities()[0].x(), 1, 1e-5);
+  world.soft.begin_ahead(kFrame);
+  world.bullet.step(kFrame / 4, 1);
+  EXPECT_NEAR(body.velocities()[0].x(), 1, 1e-5);
+  EXPECT_NEAR(body.centre_of_mass().x(), kFrame + kFrame / 4, 1e-4);
+}
+
+TEST(SpeSolver, RestsOnAFloorInShape) {
+  SpeWorld world;
+  world.add_floor();
+  SoftBody& body = world.soft.add(block_model({4, 4, 4}, rubber()), {0, 0.3f, 0});
+  world.run(600);
+  EXPECT_LT(fastest(body), 0.02f);
+  EXPECT_LT(deformation(body), 0.05f * 0.8f);
+  EXPECT_GT(body.bounds().low.y(), 0);
+}
+
+TEST(SpeSolver, BodiesComeAndGoAndTheOthersKeepTheirShape) {
+  SpeWorld world;
+  world.bullet.set_gravity(Vector3f::Zero());
+  const auto block = block_model({3, 2, 2}, rubber()), bar = block_model({5, 1, 1}, rubber());
+  SoftBody& first = world.soft.add(block, {0, 0, 0});
+  SoftBody& second = world.soft.add(bar, {0, 3, 0});
+  world.run(2);
+  SoftBody& third = world.soft.add(block, {0, 6, 0});
+  first.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(2.5f, Vector3f(1, 2, 3).normalized())),
+                           {4, 0, 0});
+  world.run(2);
+  world.soft.begin_ahead(kFrame / 2);
+  world.soft.remove(second);
+  world.run(2);
+  EXPECT_LT(fastest(first), 1e-3f);  // a teleported body has no reason to move
+  EXPECT_LT(deformation(first), 1e-4f);
+  EXPECT_LT(fastest(third), 1e-3f);
+}
+
+TEST(SpeSolver, ABodyTooLargeForALocalStoreIsSteppedByThePpu) {
+  SpeWorld world;
+  world.bullet.set_gravity(Vector3f::Zero());
+  SoftBody& large = world.soft.add(block_model({11, 10, 10}, rubber()), {0, 0, 0});
+  SoftBody& small = world.soft.add(block_model({2, 2, 2}, rubber()), {0, 5, 0});
+  bend(large);
+  bend(small);
+  const float before_large = deformation(large), before_small = deformation(small);
+  world.run(60);
+  EXPECT_LT(deformation(large), before_large);
+  EXPECT_LT(deformation(small), before_small);
+  EXPECT_GT(world.jobs_done(), 0u);
+}
+
+TEST(SpeSolver, ANanIsReported) {
+  SpeWorld world;
+  SoftBody& body = world.soft.add(block_model({2, 2, 2}, rubber()), {0, 0, 0});
+  world.run(1);
+  body.set_particle(0, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 0, 0});
+  body.translate({0, 0, 0});
+  EXPECT_THROW(world.run(1), std::runtime_error);
+}
+
+TEST(SpeSolver, SleepingBodiesHaveNoJob) {
+  SpeWorld world;
+  world.add_floor();
+  world.soft.let_sleep(SleepSettings{});
+  const auto model = block_model({3, 3, 3}, rubber());
+  SoftBody& low = world.soft.add(model, {0, 0.1f, 0});
+  SoftBody& high = world.soft.add(model, {3, 0.2f, 0});
+  world.run(400);
+  ASSERT_TRUE(low.asleep() && high.asleep());
+  const std::uint64_t before = world.jobs_done();
+  const std::uint64_t state = state_hash(low);
+  world.run(30);
+  EXPECT_EQ(world.jobs_done(), before);
+  EXPECT_EQ(state_hash(low), state);
+
+  high.translate({-3, 1, 0});  // what is changed wakes
+  world.run(2);
+  EXPECT_FALSE(high.asleep());
+  EXPECT_TRUE(low.asleep());
+  EXPECT_GT(world.jobs_done(), before);
+  world.run(40);  // and so does what it falls upon
+  EXPECT_FALSE(low.asleep());
+  EXPECT_NE(state_hash(low), state);
+}
+
+TEST(SpeSolver, ASleepingBodyWakesWhenGravityTurns) {
+  SpeWorld world;
+  world.add_floor();
+  world.soft.let_sleep(SleepSettings{});
+  SoftBody& body = world.soft.add(block_model({3, 3, 3}, rubber()), {0, 0.1f, 0});
+  world.run(400);
+  ASSERT_TRUE(body.asleep());
+  world.bullet.set_gravity({9.81f, -2, 0});
+  world.run(10);
+  EXPECT_FALSE(body.asleep());
+  EXPECT_GT(fastest(body), 0.1f);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
