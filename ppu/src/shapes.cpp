@@ -52,6 +52,13 @@ struct Surface {
   }
 };
 
+/// Its box centred on 0, all of it `factor` times as large.
+void centre_and_scale(Surface& surface, double factor) {
+  Vector3d low = surface.positions.front(), high = low;
+  for (const Vector3d& p : surface.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  for (Vector3d& p : surface.positions) p = factor * (p - 0.5 * (low + high));
+}
+
 TriangleMesh smooth_mesh(const Surface& surface) {
   std::vector<Eigen::Vector3f> positions;
   positions.reserve(surface.positions.size());
@@ -234,6 +241,19 @@ Surface car_antenna() {
   return antenna;
 }
 
+Surface ellipsoid(const Vector3d& middle, const Vector3d& half_axes, int n) {
+  Surface surface = unit_sphere(n);
+  for (Vector3d& p : surface.positions) p = middle + p.cwiseProduct(half_axes);
+  return surface;
+}
+
+/// A flipper on the side of `side` (-1 or 1): it stands off towards its tip.
+Surface penguin_flipper(double side) {
+  Surface flipper = ellipsoid({0.27 * side, 0.46, 0}, {0.045, 0.21, 0.1}, 6);
+  for (Vector3d& p : flipper.positions) p.x() += 0.35 * side * (0.46 - p.y());
+  return flipper;
+}
+
 }  // namespace
 
 TriangleMesh make_sphere(float radius, int subdivisions) {
@@ -317,10 +337,22 @@ TriangleMesh make_car(float length) {
   car.append(leaning_plate({-0.24, 0.17, 0}, {0.05, 0.17, 0.17}, 0.25));  // seat back
   car.append(leaning_plate({0.19, 0.13, 0}, {0.03, 0.09, 0.18}, 0.6));    // windscreen
   car.append(car_antenna());
-  Vector3d low = car.positions.front(), high = low;
-  for (const Vector3d& p : car.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  for (Vector3d& p : car.positions) p = static_cast<double>(length) * (p - 0.5 * (low + high));
+  centre_and_scale(car, static_cast<double>(length));
   return smooth_mesh(car);
+}
+
+TriangleMesh make_penguin(float height) {
+  require_length(height, "a penguin's height");
+  // In units of its height: feet at 0, x to its left, z forwards.
+  Surface penguin = ellipsoid({0, 0.4, 0}, {0.27, 0.38, 0.25}, 12);
+  penguin.append(ellipsoid({0, 0.83, 0.01}, {0.17, 0.17, 0.17}, 9));
+  penguin.append(ellipsoid({0, 0.82, 0.19}, {0.045, 0.035, 0.12}, 5));  // beak
+  for (const double side : {-1.0, 1.0}) {
+    penguin.append(penguin_flipper(side));
+    penguin.append(ellipsoid({0.13 * side, 0.04, 0.1}, {0.09, 0.04, 0.15}, 5));  // foot
+  }
+  centre_and_scale(penguin, static_cast<double>(height));
+  return smooth_mesh(penguin);
 }
 
 TriangleMesh make_cone(float radius, float height, int segments) {

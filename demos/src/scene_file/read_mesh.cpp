@@ -50,6 +50,12 @@ ppu::TriangleMesh car(FieldReader& fields) {
   return ppu::make_car(length);
 }
 
+ppu::TriangleMesh penguin(FieldReader& fields) {
+  float height = 1;
+  fields.number("height", height, kLength).finish();
+  return ppu::make_penguin(height);
+}
+
 template <ppu::TriangleMesh (*make)(float, float, int)>
 ppu::TriangleMesh round(FieldReader& fields) {
   float radius = 0.5f, height = 1;
@@ -67,10 +73,10 @@ ppu::TriangleMesh wedge(FieldReader& fields) {
   return ppu::make_wedge(size);
 }
 
-constexpr std::array<std::string_view, 7> kKinds{"box",    "car",   "cone", "cylinder",
-                                                 "sphere", "torus", "wedge"};
-constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 7> kMakers{
-    box, car, round<ppu::make_cone>, round<ppu::make_cylinder>, sphere, torus, wedge};
+constexpr std::array<std::string_view, 8> kKinds{"box",     "car",    "cone",  "cylinder",
+                                                 "penguin", "sphere", "torus", "wedge"};
+constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 8> kMakers{
+    box, car, round<ppu::make_cone>, round<ppu::make_cylinder>, penguin, sphere, torus, wedge};
 
 ppu::TriangleMesh primitive(const Value& value, const std::string& owner) {
   FieldReader fields(value, "the shape of " + owner);
