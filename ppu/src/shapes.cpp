@@ -345,11 +345,11 @@ TriangleMesh make_penguin(float height) {
   require_length(height, "a penguin's height");
   // In units of its height: feet at 0, x to its left, z forwards.
   Surface penguin = ellipsoid({0, 0.4, 0}, {0.27, 0.38, 0.25}, 12);
-  penguin.append(ellipsoid({0, 0.83, 0.01}, {0.17, 0.17, 0.17}, 9));
-  penguin.append(ellipsoid({0, 0.82, 0.19}, {0.045, 0.035, 0.12}, 5));  // beak
+  penguin.append(ellipsoid({0, 0.83, 0.01}, {0.17, 0.17, 0.17}, 10));
+  penguin.append(ellipsoid({0, 0.82, 0.19}, {0.045, 0.035, 0.12}, 6));  // beak
   for (const double side : {-1.0, 1.0}) {
     penguin.append(penguin_flipper(side));
-    penguin.append(ellipsoid({0.13 * side, 0.04, 0.1}, {0.09, 0.04, 0.15}, 5));  // foot
+    penguin.append(ellipsoid({0.13 * side, 0.04, 0.1}, {0.09, 0.04, 0.15}, 6));  // foot
   }
   centre_and_scale(penguin, static_cast<double>(height));
   return smooth_mesh(penguin);
