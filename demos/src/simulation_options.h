@@ -20,7 +20,7 @@ struct FrameTimes {
   double ppu_ms = 0;      ///< in softcell: shape matching, coupling, handing over the skinning
   double skin_ms = 0;     ///< of ppu_ms: handing over the skinning, in processor time of the thread
   double skin_wait_ms =
-      0;  ///< waiting for the SPEs, which only a run without a window does; in none of the above
+      0;  ///< waiting for the SPEs, so that pictures are the same on every host; in none of the above
 };
 
 }  // namespace softcell::demos
