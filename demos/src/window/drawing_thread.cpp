@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "softcell/render/overlay.h"
 
@@ -31,6 +34,14 @@ class Rate {
   int pictures_ = 0;
   double rate_ = 0;
 };
+
+/// Without a GPU, several samples a pixel and fine shadows take more than half of a picture's time: in a
+/// window that time is better spent on more pictures.
+bool draws_in_software(const render::Renderer& renderer) {
+  const std::string_view description = renderer.description();
+  return description.find("llvmpipe") != std::string_view::npos ||
+         description.find("softpipe") != std::string_view::npos;
+}
 
 }  // namespace
 
@@ -68,11 +79,17 @@ void DrawingThread::run(std::promise<void> ready) {
     render::GlContext& context = window_.context();
     context.make_current();
     const Page& first = pages_.next();  // the other thread waits
-    render::Renderer renderer(context, {.width = first.width, .height = first.height});
-    demo_.make_view(renderer);
+    render::RendererSettings settings{.width = first.width, .height = first.height};
+    std::optional<render::Renderer> renderer(std::in_place, context, settings);
+    if (draws_in_software(*renderer)) {
+      settings.samples = 1;
+      settings.shadow_map_size /= 2;
+      renderer.emplace(context, settings);
+    }
+    demo_.make_view(*renderer);
     is_ready = true;
     ready.set_value();
-    draw_all(renderer, scale_);
+    draw_all(*renderer, scale_);
   } catch (...) {
     if (is_ready) {
       failure_ = std::current_exception();
