@@ -1,6 +1,7 @@
 #pragma once
 // What events have made of a run: its gravity, who holds what, whether time stands still.
 
+#include <optional>
 #include <span>
 
 #include "hands.h"
@@ -19,9 +20,9 @@ class Controls {
 
   /// Does what the events say, in their order.
   /// @param bodies  the soft bodies: see Hands
-  /// @param reset   reset() makes bodies and world what they were at the beginning
-  template <class Bodies, class Reset>
-  void take(std::span<const Event> events, Bodies& bodies, const Reset& reset) {
+  /// @param world   reset() makes bodies and world what they were at the beginning, home(i) the soft body i
+  template <class Bodies, class World>
+  void take(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
       switch (event.action) {
         case Action::kGrab:
@@ -34,9 +35,7 @@ class Controls {
           hands_.release(event.hand);
           break;
         case Action::kPush:
-          for (std::size_t b = 0; b < bodies.size(); ++b) {
-            if (event.body == kEveryBody || event.body == b) bodies[b].add_velocity(event.value);
-          }
+          for_each(event.body, bodies, [&](std::size_t b) { bodies[b].add_velocity(event.value); });
           break;
         case Action::kGravity:
           gravity_ = event.value;
@@ -44,7 +43,8 @@ class Controls {
         case Action::kReset:
           hands_.release_all();
           gravity_ = initial_gravity_;
-          reset();
+          tilt_.reset();
+          world.reset();
           break;
         case Action::kPause:
           paused_ = true;
@@ -54,6 +54,12 @@ class Controls {
           break;
         case Action::kSingleStep:
           single_step_ = true;
+          break;
+        case Action::kHome:
+          for_each(event.body, bodies, [&](std::size_t b) { world.home(b); });
+          break;
+        case Action::kTilt:
+          tilt_ = event.value;
           break;
       }
     }
@@ -66,13 +72,22 @@ class Controls {
     return goes_on;
   }
 
-  const Vector& gravity() const { return gravity_; }  ///< m/s^2
+  const Vector& gravity() const { return gravity_; }           ///< m/s^2
+  const std::optional<Vector>& tilt() const { return tilt_; }  ///< radians; none: as the scene has it
   const Hands<Dimension>& hands() const { return hands_; }
   bool paused() const { return paused_; }
 
  private:
+  template <class Bodies, class Do>
+  static void for_each(std::uint32_t body, const Bodies& bodies, const Do& act) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (body == kEveryBody || body == b) act(b);
+    }
+  }
+
   Hands<Dimension> hands_;
   Vector initial_gravity_, gravity_;
+  std::optional<Vector> tilt_;
   bool paused_ = false, single_step_ = false;
 };
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 
 #include "demo_pictures.h"
@@ -13,9 +12,11 @@
 #include "json_file.h"
 #include "kernel_report.h"
 #include "progress_bar.h"
+#include "run_record.h"
 #include "softcell/render/offscreen_context.h"
 #include "statistics.h"
 #include "usage_error.h"
+#include "window/play.h"
 
 namespace softcell::demos {
 namespace {
@@ -23,44 +24,12 @@ namespace {
 constexpr int kExitFindings = 3;
 constexpr int kExitInterrupted = 130;  // as a shell reports a process that SIGINT ended
 
-/// What a run measured.
-struct RunRecord {
-  std::vector<double> physics_ms, ppu_ms, gather_ms, solve_ms, apply_ms, skin_ms, solver_wait_ms,
-      skin_wait_ms;
-  double seconds = 0;  // of the frame loop, pictures included
-  int frames = 0;
-
-  void add(const FrameTimes& times) {
-    physics_ms.push_back(times.physics_ms);
-    ppu_ms.push_back(times.ppu_ms);
-    gather_ms.push_back(times.gather_ms);
-    solve_ms.push_back(times.solve_ms);
-    apply_ms.push_back(times.apply_ms);
-    skin_ms.push_back(times.skin_ms);
-    solver_wait_ms.push_back(times.solver_wait_ms);
-    skin_wait_ms.push_back(times.skin_wait_ms);
-    ++frames;
-  }
-
-  /// What softcell takes of the PPU's time in a frame of 1/60 s.
-  double ppu_share() const { return frames == 0 ? 0 : sum(ppu_ms) / frames * 60 / 1000; }
-
-  /// Frames a second without pictures.
-  double simulated_fps() const {
-    const double total = sum(physics_ms) + sum(ppu_ms) + sum(solver_wait_ms) + sum(skin_wait_ms);
-    return total > 0 ? 1000.0 * frames / total : 0;
-  }
-
- private:
-  static double sum(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
-};
-
 nlohmann::ordered_json to_json(const Summary& s) {
   return {{"mean", s.mean}, {"p50", s.p50}, {"p99", s.p99}, {"max", s.max}};
 }
 
 nlohmann::ordered_json statistics_document(const DemoOptions& options, const Demo& demo,
-                                           const RunRecord& record, const Pictures& pictures) {
+                                           const RunRecord& record) {
   const DemoCounts counts = demo.counts();
   std::vector<double> busy;
   std::uint64_t bytes = 0, commands = 0, jobs = 0;
@@ -89,7 +58,8 @@ nlohmann::ordered_json statistics_document(const DemoOptions& options, const Dem
       {"skin_ms", to_json(summarize(record.skin_ms))},
       {"solver_wait_ms", to_json(summarize(record.solver_wait_ms))},
       {"skin_wait_ms", to_json(summarize(record.skin_wait_ms))},
-      {"picture_ms", to_json(summarize(pictures.milliseconds()))},
+      {"picture_ms", to_json(summarize(record.picture_ms))},
+      {"pictures", record.picture_ms.size()},
       {"simulated_fps", record.simulated_fps()},
       {"seconds", record.seconds},
       {"late_frames", demo.late_frames()},
@@ -98,7 +68,7 @@ nlohmann::ordered_json statistics_document(const DemoOptions& options, const Dem
       {"dma_bytes", bytes},
       {"dma_commands", commands},
       {"state_hash", fmt::format("{:016x}", demo.state_hash())},
-      {"image_hash", fmt::format("{:016x}", pictures.last_hash())},
+      {"image_hash", fmt::format("{:016x}", record.image_hash)},
   };
 }
 
@@ -126,64 +96,86 @@ void print_summary(const nlohmann::ordered_json& s, const DemoOptions& options) 
         s["spes"].get<int>(), 100 * mean, 100 * busiest, s["dma_commands"].get<std::uint64_t>(),
         static_cast<double>(s["dma_bytes"].get<std::uint64_t>()) / 1e6);
   }
+  if (!options.headless) {
+    fmt::print("shown:    {:.1f} pictures a second\n", static_cast<double>(s["pictures"].get<std::size_t>()) /
+                                                           std::max(s["seconds"].get<double>(), 1e-9));
+  }
   fmt::print("state:    {}   picture: {}\n", s["state_hash"].get<std::string>(),
              s["image_hash"].get<std::string>());
   const auto where = [](const char* what, const std::optional<std::filesystem::path>& path) {
-    if (path) fmt::print("{:<9} {}\n", what, path->string());
+    if (path) fmt::print("{:<10}{}\n", what, path->string());
   };
   where("frames:", options.out);
   where("video:", options.video);
+  where("recording:", options.record);
   where("trace:", options.trace);
   where("figures:", options.json);
 }
 
-}  // namespace
-
-int run_demo(const DemoOptions& options, std::string_view verb, const MakeDemo& make) {
-  if (!options.headless) {
-    throw UsageError(
-        "this version has no window yet: run it with --headless, and --out or --video to see something");
-  }
+Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDemo& make,
+                 const SimulationOptions& how) {
   render::pin_software_rasterizer();
-  ls_sim::Findings findings;
-  std::optional<ls_sim::Trace> trace;
-  if (options.trace) trace.emplace(options.spes);
-  const std::unique_ptr<Demo> demo = make({.solver = options.solver,
-                                           .spes = options.spes,
-                                           .schedule = options.schedule,
-                                           .findings = options.checked ? &findings : nullptr,
-                                           .trace = trace ? &*trace : nullptr});
-  const int frames = options.frames.value_or(demo->frames());
+  Run run{.demo = make(how), .record = {}};
+  Demo& demo = *run.demo;
+  RunRecord& record = run.record;
+  const int frames = options.frames.value_or(demo.frames());
 
-  RunRecord record;
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
-  Pictures pictures(options, *demo);
+  Pictures pictures(options, demo);
   {
     ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames), options.quiet);
     for (int frame = 0; frame < frames && !guard.interrupted(); ++frame) {
-      record.add(demo->step());
+      record.add(demo.step());
       if (pictures.every_frame()) pictures.take(frame);
       bar.show(static_cast<std::size_t>(frame) + 1);
     }
   }
   if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
-  demo->stop();
-  if (guard.interrupted()) {
+  demo.stop();
+  demo.save_recording();
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  record.interrupted = guard.interrupted();
+  if (record.interrupted) {
     fmt::print(stderr, "softcell: interrupted after {} of {} frames; every frame that was written is whole\n",
                record.frames, frames);
-    return kExitInterrupted;
+    return run;
   }
-  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   pictures.finish();
+  record.picture_ms = pictures.milliseconds();
+  record.image_hash = pictures.last_hash();
+  return run;
+}
 
-  auto statistics = statistics_document(options, *demo, record, pictures);
+}  // namespace
+
+int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {
+  if (!options.headless && (options.out || options.video)) {
+    throw UsageError("--out and --video write pictures without a window: give --headless too");
+  }
+  // A recording and a trace are of one scene.
+  const std::vector<MakeDemo> scenes =
+      load(!options.headless && !options.record && !options.replay && !options.trace);
+  ls_sim::Findings findings;
+  std::optional<ls_sim::Trace> trace;
+  if (options.trace) trace.emplace(options.spes);
+  const SimulationOptions how{.solver = options.solver,
+                              .spes = options.spes,
+                              .schedule = options.schedule,
+                              .findings = options.checked ? &findings : nullptr,
+                              .trace = trace ? &*trace : nullptr};
+  const Run run =
+      options.headless ? run_headless(options, verb, scenes.front(), how) : play(options, verb, scenes, how);
+  if (run.record.interrupted) return kExitInterrupted;
+
+  auto statistics = statistics_document(options, *run.demo, run.record);
   const std::vector<ls_sim::Finding> found = findings.list();
   if (options.checked) statistics["findings"] = to_json(std::span(found));
   if (trace) trace->write(*options.trace);
   if (options.json) write_json(*options.json, statistics);
   if (!options.quiet) print_summary(statistics, options);
   print_findings(found);
+  run.demo->check_replay();
   return found.empty() ? 0 : kExitFindings;
 }
 

@@ -136,18 +136,21 @@ class CommandLine {
 
   /// What all demos have.
   void add_demo_options(CLI::App& d, DemoOptions& options, const std::string& default_scene) {
-    d.add_flag("--headless", options.headless, "Run without a window");
+    d.add_flag("--headless", options.headless, "Run without a window, as fast as it goes");
     d.add_option(
          "--scene", options.scene,
          "Scene by name, or a scene file; `softcell scenes` lists them (default: " + default_scene + ")")
         ->type_name("SCENE");
     d.add_option("--frames", options.frames,
-                 "Frames of 1/60 s to simulate (default: the scene's, mostly 300)")
+                 "Frames of 1/60 s to simulate (default: the replay's; else the scene's, mostly 300, or in a "
+                 "window as many as you like)")
         ->check(CLI::Range(1, kMaxFrames).description(""))
         ->type_name("FRAMES");
-    d.add_option("--out", options.out, "Folder for numbered PNG frames")->type_name("DIR");
-    d.add_option("--video", options.video, "Write an MP4 video (needs ffmpeg)")->type_name("FILE");
-    d.add_option("--size", size_, "Picture size in pixels (default: 1280x720)")->type_name("WIDTHxHEIGHT");
+    d.add_option("--out", options.out, "Folder for numbered PNG frames (with --headless)")->type_name("DIR");
+    d.add_option("--video", options.video, "Write an MP4 video (with --headless; needs ffmpeg)")
+        ->type_name("FILE");
+    d.add_option("--size", size_, "Size of pictures in pixels, or of the window (default: 1280x720)")
+        ->type_name("WIDTHxHEIGHT");
     d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)")
         ->check(CLI::Range(1, 6).description(""))
         ->type_name("SPES");
@@ -158,6 +161,12 @@ class CommandLine {
     d.add_flag("--checked", options.checked,
                "Run the instrumented flavour of the kernels; findings end with status 3. In 3D shape "
                "matching is then done by the PPU: its instrumented kernel does not fit in a local store");
+    d.add_option("--record", options.record, "Write what happens in each frame, to be done again by --replay")
+        ->type_name("FILE");
+    d.add_option(
+         "--replay", options.replay,
+         "Do again what --record wrote, in place of the scene's script (default scene: the recorded one)")
+        ->type_name("FILE");
     d.add_option("--trace", options.trace, kTraceHelp)->type_name("FILE");
     d.add_option("--json", options.json, "Write statistics to this file")->type_name("FILE");
     d.add_flag("--quiet", options.quiet, "Print nothing but what goes wrong");

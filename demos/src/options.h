@@ -32,6 +32,8 @@ struct DemoOptions {
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
   std::optional<std::filesystem::path> trace;
+  std::optional<std::filesystem::path> record;  ///< where to write what happens
+  std::optional<std::filesystem::path> replay;  ///< a recording to do again, in place of the scene's script
   bool quiet = false;  ///< nothing but what goes wrong, not even progress on a terminal
 };
 
@@ -48,6 +50,8 @@ enum class View2d : std::uint8_t {
   kLattice,  ///< particles and the edges of cells
   kFilled,   ///< the cells as one shape
 };
+
+inline constexpr int kViews2d = 3;
 
 /// The scene's default: man.
 struct Demo2dOptions : DemoOptions {

@@ -13,4 +13,11 @@ ppu::Lattice2d SoftBody2dPlacement::lattice() const {
   return lattice;
 }
 
+Eigen::Vector2f Camera2d::point_at(int x, int y, int picture_width, int picture_height) const {
+  const float metres = height / static_cast<float>(picture_height);
+  const Eigen::Vector2f middle = 0.5f * Eigen::Vector2i(picture_width, picture_height).cast<float>();
+  return centre +
+         metres * Eigen::Vector2f(static_cast<float>(x) - middle.x(), middle.y() - static_cast<float>(y));
+}
+
 }  // namespace softcell::demos

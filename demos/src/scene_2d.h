@@ -46,6 +46,10 @@ struct RigidBody2d {
 struct Camera2d {
   Eigen::Vector2f centre{0, 0};
   float height = 10;  ///< of the part of the world that the picture shows, metres
+
+  /// The point of the world, in metres, at (x, y) of a picture, counted from its upper left corner in the
+  /// units of its size.
+  Eigen::Vector2f point_at(int x, int y, int picture_width, int picture_height) const;
 };
 
 struct Scene2d {

@@ -1,5 +1,8 @@
 #include "scene_view.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "softcell/ppu/shapes.h"
 
 namespace softcell::demos {
@@ -16,6 +19,21 @@ std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice& lattice) 
     }
   }
   return links;
+}
+
+/// The camera where the user has moved it: about the point it looks at, and never over the top.
+render::Camera orbited(render::Camera camera, const Look& look) {
+  if (look.turn == 0 && look.rise == 0 && look.distance == 1) return camera;  // the scene's own, to the bit
+  constexpr float kLowest = 0.03f, kHighest = 1.5f;                           // above the horizon, radians
+  const Eigen::Vector3f from_target = camera.eye - camera.target;
+  const float distance = from_target.norm();
+  const float turn = std::atan2(from_target.x(), from_target.z()) + look.turn;
+  const float rise = std::clamp(std::asin(std::clamp(from_target.y() / distance, -1.0f, 1.0f)) + look.rise,
+                                kLowest, kHighest);
+  const Eigen::Vector3f direction(std::cos(rise) * std::sin(turn), std::sin(rise),
+                                  std::cos(rise) * std::cos(turn));
+  camera.eye = camera.target + look.distance * distance * direction;
+  return camera;
 }
 
 }  // namespace
@@ -43,28 +61,26 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
     const ppu::SoftBodyModel& model = simulation_.model(b);
     const auto& colour = scene_.soft_bodies[b].colour;
     skinned_.push_back({.mesh = renderer_.add_mesh(model.embedding().indices), .colour = colour});
-    if (view_ == View::kLattice) {
-      LatticeBuffers& buffers = lattice_buffers_[b];
-      buffers.particles.resize(model.lattice().particles.size());
-      buffers.links = links_of(model.lattice());
-      lattices_.push_back({buffers.particles, buffers.links, model.lattice().spacing * 0.12f, colour});
-    }
+    LatticeBuffers& buffers = lattice_buffers_[b];
+    buffers.particles.resize(model.lattice().particles.size());
+    buffers.links = links_of(model.lattice());
+    lattices_.push_back({buffers.particles, buffers.links, model.lattice().spacing * 0.12f, colour});
   }
 }
 
-void SceneView::update_lattices() {
+void SceneView::update_lattices(const Shown3d& shown) {
   for (std::size_t b = 0; b < lattice_buffers_.size(); ++b) {
-    const auto corners = simulation_.shown_particles(b);
+    const auto& corners = shown.bodies[b].particles;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       lattice_buffers_[b].particles[i] = {corners[i].x, corners[i].y, corners[i].z};
     }
   }
 }
 
-render::Camera SceneView::tilted_camera() const {
+render::Camera SceneView::tilted_camera(const Shown3d& shown, const Look& look) const {
   // The world is simulated in the ground's frame; what tilts there is the observer.
-  const Eigen::Matrix3f to_ground = simulation_.shown_tilt().transpose();
-  render::Camera camera = scene_.camera;
+  const Eigen::Matrix3f to_ground = shown.tilt.transpose();
+  render::Camera camera = orbited(scene_.camera, look);
   camera.eye = to_ground * camera.eye;
   camera.target = to_ground * camera.target;
   camera.up = to_ground * camera.up;
@@ -72,27 +88,30 @@ render::Camera SceneView::tilted_camera() const {
 }
 
 const render::Image& SceneView::draw() {
-  const auto poses = simulation_.shown_box_poses();
-  for (std::size_t i = 0; i < poses.size(); ++i) statics_[i].pose = poses[i];
+  simulation_.show(now_);
+  draw(now_, {.view = static_cast<int>(view_)});
+  return renderer_.pixels();
+}
+
+void SceneView::draw(const Shown3d& shown, const Look& look) {
+  for (std::size_t i = 0; i < shown.box_poses.size(); ++i) statics_[i].pose = shown.box_poses[i];
 
   render::FrameDescription frame;
-  frame.camera = tilted_camera();
+  frame.camera = tilted_camera(shown, look);
   frame.light = scene_.light;
-  frame.light.toward = simulation_.shown_tilt().transpose() * scene_.light.toward;
+  frame.light.toward = shown.tilt.transpose() * scene_.light.toward;
   frame.statics = statics_;
-  if (view_ == View::kMesh) {
+  if (static_cast<View>(look.view) == View::kMesh) {
     for (std::size_t b = 0; b < skinned_.size(); ++b) {
-      const ppu::SkinnedBody body = simulation_.shown(b);
-      renderer_.update_mesh(skinned_[b].mesh, std::as_bytes(body.vertices));
-      skinned_[b].origin = body.origin;
+      renderer_.update_mesh(skinned_[b].mesh, std::as_bytes(std::span(shown.bodies[b].vertices)));
+      skinned_[b].origin = shown.bodies[b].origin;
     }
     frame.skinned = skinned_;
   } else {
-    update_lattices();
+    update_lattices(shown);
     frame.lattices = lattices_;
   }
   renderer_.render(frame);
-  return renderer_.pixels();
 }
 
 }  // namespace softcell::demos

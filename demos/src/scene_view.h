@@ -8,13 +8,16 @@
 #include <vector>
 
 #include "scene.h"
+#include "shown.h"
 #include "simulation_3d.h"
 #include "softcell/render/renderer.h"
+#include "window/look.h"
 
 namespace softcell::demos {
 
 /// What of the soft bodies is drawn.
-enum class View { kMesh, kLattice };
+enum class View : std::uint8_t { kMesh, kLattice };
+inline constexpr int kViews = 2;
 
 /// Holds the meshes of one simulation in one renderer. Both must outlive it.
 class SceneView {
@@ -24,14 +27,18 @@ class SceneView {
   /// Draws the newest frame that the SPEs have finished.
   const render::Image& draw();
 
+  /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer.
+  void draw(const Shown3d& shown, const Look& look);
+
  private:
-  void update_lattices();
-  render::Camera tilted_camera() const;
+  void update_lattices(const Shown3d& shown);
+  render::Camera tilted_camera(const Shown3d& shown, const Look& look) const;
 
   const Scene& scene_;
   const Simulation3d& simulation_;
   render::Renderer& renderer_;
   View view_;
+  Shown3d now_;
 
   std::vector<render::SkinnedDraw> skinned_;
   std::vector<render::StaticDraw> statics_;  // boxes, then obstacles

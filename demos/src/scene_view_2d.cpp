@@ -105,6 +105,7 @@ void SceneView2d::add_back_wall() {
 
 void SceneView2d::add_soft_body(const ppu::SoftBodyModel2d& model) {
   Body& body = bodies_.emplace_back();
+  body.model = &model;
   body.particles.resize(model.particles());
   body.outer.resize(model.outer().size());
   body.inner.resize(model.inner().size());
@@ -124,9 +125,9 @@ void SceneView2d::add_soft_body(const ppu::SoftBodyModel2d& model) {
   body.mesh = renderer_.add_mesh(indices);
 }
 
-void SceneView2d::place_rigid_bodies() {
-  for (std::size_t i = 0; i < scene_.rigid_bodies.size(); ++i) {
-    const Pose2d pose = simulation_.rigid_pose(i);
+void SceneView2d::place_rigid_bodies(const std::vector<Pose2d>& poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose2d& pose = poses[i];
     Eigen::Matrix4f& matrix = statics_[i].pose;
     matrix.topLeftCorner<2, 2>() << pose.cosine, -pose.sine, pose.sine, pose.cosine;
     matrix.topRightCorner<2, 1>() = pose.position;
@@ -142,21 +143,19 @@ void SceneView2d::place_rigid_bodies() {
   }
 }
 
-void SceneView2d::place_particles(std::size_t b) {
-  Body& body = bodies_[b];
-  const ppu::SoftBody2d& soft = simulation_.soft_body(b);
-  const auto positions = soft.positions();
+void SceneView2d::place_particles(Body& body, const std::vector<Vector2f>& positions) const {
   const auto place = [&](std::uint32_t particle) {
     return Vector3f(positions[particle].x(), positions[particle].y(), 0);
   };
   for (std::uint32_t i = 0; i < positions.size(); ++i) body.particles[i] = place(i);
-  std::transform(soft.model().outer().begin(), soft.model().outer().end(), body.outer.begin(), place);
-  std::transform(soft.model().inner().begin(), soft.model().inner().end(), body.inner.begin(), place);
+  const ppu::SoftBodyModel2d& model = *body.model;
+  std::transform(model.outer().begin(), model.outer().end(), body.outer.begin(), place);
+  std::transform(model.inner().begin(), model.inner().end(), body.inner.begin(), place);
 }
 
 void SceneView2d::draw_as_dots(std::size_t b) {
   const Body& body = bodies_[b];
-  const ppu::SoftBodyModel2d& model = simulation_.soft_body(b).model();
+  const ppu::SoftBodyModel2d& model = *body.model;
   const render::Colour& colour = scene_.soft_bodies[b].colour;
   // The outer particles as large as they are to others.
   lattices_.push_back({body.outer, {}, model.contact_radius(), colour});
@@ -165,15 +164,13 @@ void SceneView2d::draw_as_dots(std::size_t b) {
 
 void SceneView2d::draw_as_lattice(std::size_t b) {
   const Body& body = bodies_[b];
-  const float radius = 0.13f * simulation_.soft_body(b).model().lattice().spacing;
+  const float radius = 0.13f * body.model->lattice().spacing;
   lattices_.push_back({body.particles, body.edges, radius, scene_.soft_bodies[b].colour});
 }
 
-void SceneView2d::draw_filled(std::size_t b) {
+void SceneView2d::draw_filled(std::size_t b, const std::vector<Vector2f>& positions) {
   Body& body = bodies_[b];
-  const ppu::SoftBody2d& soft = simulation_.soft_body(b);
-  const Vector2f origin = soft.positions().front();
-  const auto positions = soft.positions();
+  const Vector2f origin = positions.front();
   vertices_.resize(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vector2f p = positions[i] - origin;
@@ -187,25 +184,28 @@ void SceneView2d::draw_filled(std::size_t b) {
   lattices_.push_back({body.particles, body.outline, 0, darker(colour)});
 }
 
-void SceneView2d::draw_hands() {
+void SceneView2d::draw_hands(const Shown2d& shown) {
   hands_.clear();
-  for (const Hands<2>::Held& held : simulation_.held()) {
-    const Vector2f& particle = simulation_.soft_body(held.body).positions()[held.particle];
-    const float z = 2 * kPlateDepth * scene_.camera.height;
-    hands_.push_back(
-        {Vector3f(particle.x(), particle.y(), z), Vector3f(held.target.x(), held.target.y(), z)});
-  }
+  const float z = 2 * kPlateDepth * scene_.camera.height;
+  for (const auto& [particle, hand] : shown.hands)
+    hands_.push_back({Vector3f(particle.x(), particle.y(), z), Vector3f(hand.x(), hand.y(), z)});
   for (const auto& hand : hands_)
     lattices_.push_back({hand, kHandLink, 0.008f * scene_.camera.height, render::srgb(0x202428)});
 }
 
 const render::Image& SceneView2d::draw() {
+  simulation_.show(now_);
+  draw(now_, view_);
+  return renderer_.pixels();
+}
+
+void SceneView2d::draw(const Shown2d& shown, View2d view) {
   skinned_.clear();
   lattices_.clear();
-  place_rigid_bodies();
+  place_rigid_bodies(shown.rigid_poses);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    place_particles(b);
-    switch (view_) {
+    place_particles(bodies_[b], shown.particles[b]);
+    switch (view) {
       case View2d::kDots:
         draw_as_dots(b);
         break;
@@ -213,11 +213,11 @@ const render::Image& SceneView2d::draw() {
         draw_as_lattice(b);
         break;
       case View2d::kFilled:
-        draw_filled(b);
+        draw_filled(b, shown.particles[b]);
         break;
     }
   }
-  draw_hands();
+  draw_hands(shown);
 
   const float height = scene_.camera.height;
   const Vector3f centre(scene_.camera.centre.x(), scene_.camera.centre.y(), 0);
@@ -235,13 +235,6 @@ const render::Image& SceneView2d::draw() {
   frame.statics = statics_;
   frame.lattices = lattices_;
   renderer_.render(frame);
-  return renderer_.pixels();
-}
-
-Vector2f SceneView2d::world_at(float x, float y) const {
-  const auto width = static_cast<float>(renderer_.width()), height = static_cast<float>(renderer_.height());
-  const float metres_per_pixel = scene_.camera.height / height;
-  return scene_.camera.centre + metres_per_pixel * Vector2f(x - width / 2, height / 2 - y);
 }
 
 }  // namespace softcell::demos

@@ -20,20 +20,18 @@ class SceneView2d {
  public:
   SceneView2d(const Scene2d& scene, const Simulation2d& simulation, render::Renderer& renderer, View2d view);
 
-  void set_view(View2d view) { view_ = view; }
-
   /// Draws the simulation as it is now.
   const render::Image& draw();
 
-  /// The point of the world, in metres, that the picture shows at this pixel, counted from its upper left
-  /// corner.
-  Eigen::Vector2f world_at(float x, float y) const;
+  /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer.
+  void draw(const Shown2d& shown, View2d view);
 
  private:
   using Link = std::array<std::uint32_t, 2>;
 
   /// What is drawn of a soft body, its buffers filled anew for each picture.
   struct Body {
+    const ppu::SoftBodyModel2d* model;
     render::MeshId mesh;
     std::vector<Eigen::Vector3f> particles;  // all, in order
     std::vector<Eigen::Vector3f> outer, inner;
@@ -45,17 +43,18 @@ class SceneView2d {
   void add_rigid_body(const RigidBody2d& body);
   void add_back_wall();
   void add_soft_body(const ppu::SoftBodyModel2d& model);
-  void place_rigid_bodies();
-  void place_particles(std::size_t body);
+  void place_rigid_bodies(const std::vector<Pose2d>& poses);
+  void place_particles(Body& body, const std::vector<Eigen::Vector2f>& positions) const;
   void draw_as_dots(std::size_t body);
   void draw_as_lattice(std::size_t body);
-  void draw_filled(std::size_t body);
-  void draw_hands();
+  void draw_filled(std::size_t body, const std::vector<Eigen::Vector2f>& positions);
+  void draw_hands(const Shown2d& shown);
 
   const Scene2d& scene_;
   const Simulation2d& simulation_;
   render::Renderer& renderer_;
   View2d view_;
+  Shown2d now_;
 
   std::vector<render::StaticDraw> statics_;  // rigid bodies in order, then what does not move
   std::vector<Body> bodies_;

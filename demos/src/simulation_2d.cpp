@@ -126,6 +126,7 @@ struct Simulation2d::State {
   }
 
   void reset() { world.emplace(scene, models, spes ? &spes->solver : nullptr); }
+  void home(std::size_t body) { world->soft_bodies[body].reset(scene.soft_bodies[body].position); }
 
   std::chrono::nanoseconds waited() const {
     return spes ? spes->solver.time_waited() : std::chrono::nanoseconds{0};
@@ -145,7 +146,8 @@ struct Simulation2d::State {
   std::optional<Spes> spes;
   std::optional<World> world;
   Bodies bodies{world};
-  std::int64_t frame = 0;  // of the script: counts without a break
+  std::vector<InputEvent<2>> events;  // of the last step
+  std::int64_t frame = 0;             // of the script: counts without a break
 };
 
 Simulation2d::Simulation2d(const Scene2d& scene, const SimulationOptions& options)
@@ -155,9 +157,10 @@ Simulation2d::~Simulation2d() = default;
 FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   State& s = *state_;
   const auto begin = std::chrono::steady_clock::now();
-  const auto reset = [&s] { s.reset(); };
-  s.controls.take(s.script.events_at(s.frame++), s.bodies, reset);
-  s.controls.take(events, s.bodies, reset);
+  const auto scripted = s.script.events_at(s.frame++);
+  s.events.assign(scripted.begin(), scripted.end());
+  s.events.insert(s.events.end(), events.begin(), events.end());
+  s.controls.take(s.events, s.bodies, s);
   if (!s.controls.advance()) return {};
 
   World& world = *s.world;
@@ -188,6 +191,8 @@ std::vector<ls_sim::SpeStatistics> Simulation2d::spe_statistics() const {
   return state_->spes ? state_->spes->jobs.statistics() : std::vector<ls_sim::SpeStatistics>{};
 }
 
+std::span<const InputEvent<2>> Simulation2d::last_events() const { return state_->events; }
+
 std::size_t Simulation2d::soft_bodies() const { return state_->models.size(); }
 
 std::size_t Simulation2d::particles() const {
@@ -214,6 +219,20 @@ Pose2d Simulation2d::rigid_pose(std::size_t body) const {
 bool Simulation2d::paused() const { return state_->controls.paused(); }
 std::span<const Hands<2>::Held> Simulation2d::held() const { return state_->controls.hands().held(); }
 const Vector2f& Simulation2d::gravity() const { return state_->controls.gravity(); }
+
+void Simulation2d::show(Shown2d& shown) const {
+  shown.particles.resize(soft_bodies());
+  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+    const auto positions = soft_body(b).positions();
+    shown.particles[b].assign(positions.begin(), positions.end());
+  }
+  shown.rigid_poses.clear();
+  for (std::size_t i = 0; i < state_->scene.rigid_bodies.size(); ++i)
+    shown.rigid_poses.push_back(rigid_pose(i));
+  shown.hands.clear();
+  for (const Hands<2>::Held& held : held())
+    shown.hands.push_back({shown.particles[held.body][held.particle], held.target});
+}
 
 std::uint64_t Simulation2d::state_hash() const {
   std::uint64_t hash = 0;

@@ -11,16 +11,11 @@
 #include "hands.h"
 #include "input_event.h"
 #include "scene_2d.h"
+#include "shown.h"
 #include "simulation_options.h"
 #include "softcell/ls_sim/statistics.h"
 
 namespace softcell::demos {
-
-/// Where a rigid body is.
-struct Pose2d {
-  Eigen::Vector2f position{0, 0};  ///< of its own origin, metres
-  float cosine = 1, sine = 0;      ///< of its angle
-};
 
 /// Used by one thread. The state after a number of steps depends on the scene, the events and the engine, on
 /// nothing else.
@@ -41,6 +36,9 @@ class Simulation2d {
   /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().
   void stop();
 
+  /// What the last step() did at its beginning: the script's events, then those it was given.
+  std::span<const InputEvent<2>> last_events() const;
+
   std::size_t soft_bodies() const;
   std::size_t particles() const;
   std::size_t rigid_bodies() const;  ///< that can move
@@ -50,6 +48,9 @@ class Simulation2d {
   bool paused() const;
   std::span<const Hands<2>::Held> held() const;
   const Eigen::Vector2f& gravity() const;  ///< m/s^2
+
+  /// Copies what a picture needs, as it is now.
+  void show(Shown2d& shown) const;
 
   /// 64-bit hash over positions and velocities of all particles.
   std::uint64_t state_hash() const;

@@ -28,21 +28,23 @@ double milliseconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// From the ground's frame to the observer's: first about x, then about z.
-Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
-  const double grown = std::clamp((time - double{script.begin}) / kTiltGrowsFor, 0.0, 1.0);
-  const auto angle = [&](float amplitude, float period) {
-    const double phase = 2 * std::numbers::pi * (time - double{script.begin}) / double{period};
-    return grown * double{amplitude} * ppu::sine(phase);
-  };
-  const double ax = angle(script.amplitude_x, script.period_x),
-               az = angle(script.amplitude_z, script.period_z);
+/// From the ground's frame to the observer's: first about x, then about z. Radians.
+Eigen::Matrix3f tilted_by(double ax, double az) {
   const auto sx = static_cast<float>(ppu::sine(ax)), cx = static_cast<float>(ppu::cosine(ax));
   const auto sz = static_cast<float>(ppu::sine(az)), cz = static_cast<float>(ppu::cosine(az));
   Eigen::Matrix3f about_x, about_z;
   about_x << 1, 0, 0, 0, cx, -sx, 0, sx, cx;
   about_z << cz, -sz, 0, sz, cz, 0, 0, 0, 1;
   return about_z * about_x;
+}
+
+Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
+  const double grown = std::clamp((time - double{script.begin}) / kTiltGrowsFor, 0.0, 1.0);
+  const auto angle = [&](float amplitude, float period) {
+    const double phase = 2 * std::numbers::pi * (time - double{script.begin}) / double{period};
+    return grown * double{amplitude} * ppu::sine(phase);
+  };
+  return tilted_by(angle(script.amplitude_x, script.period_x), angle(script.amplitude_z, script.period_z));
 }
 
 }  // namespace
@@ -113,9 +115,10 @@ struct Simulation3d::State {
 
   void reset() {
     world.reset();
-    for (std::size_t b = 0; b < soft_bodies.size(); ++b) soft_bodies[b].reset(scene.soft_bodies[b].position);
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
     frame = 0;
   }
+  void home(std::size_t body) { soft_bodies[body].reset(scene.soft_bodies[body].position); }
 
   const Snapshot& shown() const { return snapshots[static_cast<std::size_t>(newest)]; }
 
@@ -136,6 +139,7 @@ struct Simulation3d::State {
   std::array<Snapshot, 2> snapshots;
   int newest = 1;  // the snapshot of the vertices that the orchestrator shows
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
+  std::vector<InputEvent<3>> events;      // of the last step
   std::int64_t script_frame = 0;          // counts frames without a break
   std::int64_t frame = 0;                 // simulated since the last reset
   std::chrono::nanoseconds skin_time{0};  // of the PPU, to hand over the last frame
@@ -149,14 +153,18 @@ Simulation3d::~Simulation3d() = default;
 FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   State& s = *state_;
   FrameTimes times;
-  const auto reset = [&s] { s.reset(); };
-  s.controls.take(s.script.events_at(s.script_frame++), s.soft_bodies, reset);
-  s.controls.take(events, s.soft_bodies, reset);
+  const auto scripted = s.script.events_at(s.script_frame++);
+  s.events.assign(scripted.begin(), scripted.end());
+  s.events.insert(s.events.end(), events.begin(), events.end());
+  s.controls.take(s.events, s.soft_bodies, s);
   if (!s.controls.advance()) {
     finish();
     return times;
   }
-  s.tilt = tilt_at(s.scene.tilt, static_cast<double>(s.frame++) / 60);
+  const auto& tilt = s.controls.tilt();
+  s.tilt = tilt ? tilted_by(double{tilt->x()}, double{tilt->z()})
+                : tilt_at(s.scene.tilt, static_cast<double>(s.frame) / 60);
+  ++s.frame;
   s.world.set_gravity(s.tilt.transpose() * s.controls.gravity());
   s.controls.hands().pull(s.soft_bodies);
   const ppu::SoftBodyTimes begin = s.soft_bodies.times();
@@ -187,6 +195,8 @@ void Simulation3d::stop() {
   finish();
   state_->jobs.stop();
 }
+
+std::span<const InputEvent<3>> Simulation3d::last_events() const { return state_->events; }
 
 std::size_t Simulation3d::soft_bodies() const { return state_->soft_bodies.size(); }
 
@@ -223,6 +233,22 @@ std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body)
 std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return state_->shown().box_poses; }
 
 const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
+
+void Simulation3d::show(Shown3d& to) const {
+  to.bodies.resize(soft_bodies());
+  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+    const ppu::SkinnedBody skinned = shown(b);
+    const auto particles = shown_particles(b);
+    to.bodies[b].vertices.assign(skinned.vertices.begin(), skinned.vertices.end());
+    to.bodies[b].origin = skinned.origin;
+    to.bodies[b].particles.assign(particles.begin(), particles.end());
+  }
+  to.box_poses.assign(shown_box_poses().begin(), shown_box_poses().end());
+  to.tilt = shown_tilt();
+}
+
+bool Simulation3d::paused() const { return state_->controls.paused(); }
+const Eigen::Vector3f& Simulation3d::gravity() const { return state_->controls.gravity(); }
 
 std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->jobs.statistics(); }
 

@@ -10,6 +10,7 @@
 
 #include "input_event.h"
 #include "scene.h"
+#include "shown.h"
 #include "simulation_options.h"
 #include "softcell/ppu/skin_orchestrator.h"
 
@@ -32,6 +33,9 @@ class Simulation3d {
   /// Waits for the SPEs, so that the newest frame is shown. @throws as step().
   void finish();
 
+  /// What the last step() did at its beginning: the script's events, then those it was given.
+  std::span<const InputEvent<3>> last_events() const;
+
   std::size_t soft_bodies() const;
   std::size_t particles() const;
   std::size_t vertices() const;  ///< of the meshes
@@ -47,6 +51,13 @@ class Simulation3d {
   std::span<const spu::SkinCorner> shown_particles(std::size_t body) const;
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
+
+  /// Copies all of it.
+  void show(Shown3d& shown) const;
+
+  // Of the events so far:
+  bool paused() const;
+  const Eigen::Vector3f& gravity() const;  ///< m/s^2
 
   /// Waits for the SPEs and ends what runs on them, so that their statistics and the trace are whole. No step
   /// afterwards. @throws as step().

@@ -33,7 +33,7 @@ struct FrameTimes {
   double skin_ms = 0;         ///< handing over the skinning
   double solver_wait_ms = 0;  ///< by the clock, until the solver had finished; in none of the above
   double skin_wait_ms =
-      0;  ///< waiting for the skinning, which only a run without a window does; in none of the above
+      0;  ///< waiting for the SPEs, so that pictures are the same on every host; in none of the above
 };
 
 }  // namespace softcell::demos

@@ -175,6 +175,7 @@ void main() {
   float squared = dot(at, at);
   float distance = sqrt(squared);
   float coverage = clamp((1.0 - distance) / max(fwidth(distance), 1e-4) + 0.5, 0.0, 1.0);
+  if (coverage == 0.0) discard;  // a single sample a pixel has no coverage to take it from
   vec3 n = mat3(view_to_world) * vec3(at, sqrt(max(1.0 - squared, 0.0)));
   result = vec4(shade(centre + radius * n, n, shadow_position, colour.rgb), coverage);
 }

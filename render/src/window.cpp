@@ -13,6 +13,12 @@ namespace {
   throw std::runtime_error(what + " (SDL: " + SDL_GetError() + ")");
 }
 
+/// What a user can look at. Left to itself, SDL would take its "offscreen" driver where there is no display.
+/// Asked without a folder for its socket, Wayland's library writes a line of its own.
+const char* displays() {
+  return SDL_getenv("XDG_RUNTIME_DIR") == nullptr ? "x11,KMSDRM" : "x11,wayland,KMSDRM";
+}
+
 /// SDL's video, input and controllers for the life of the object.
 class SdlSession {
  public:
@@ -20,6 +26,7 @@ class SdlSession {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C is the program's own
     SDL_SetHint(SDL_HINT_VIDEO_HIGHDPI_DISABLED, "0");
     SDL_SetHint(SDL_HINT_JOYSTICK_HIDAPI_PS3, "1");  // the report's controller; off by default on Linux
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, displays());
     SDL_SetMainReady();
     if (SDL_Init(SDL_INIT_VIDEO | SDL_INIT_GAMECONTROLLER | SDL_INIT_SENSOR) != 0) {
       refuse(
@@ -107,9 +114,13 @@ class Window::GlSurface final : public Surface {
 /// Without OpenGL on the display: drawn in memory, copied by the display server's simplest means.
 class Window::CopiedSurface final : public Surface {
  public:
-  explicit CopiedSurface(SDL_Window* window) : window_(window), context_(create_offscreen_context()) {}
-  GlContext& context() override { return *context_; }
-  void release() override {}
+  explicit CopiedSurface(SDL_Window* window) : window_(window) { context(); }
+  /// Made by the thread that uses it: one in memory cannot be handed from thread to thread.
+  GlContext& context() override {
+    if (!context_) context_ = create_offscreen_context();
+    return *context_;
+  }
+  void release() override { context_.reset(); }
   void pixel_size(int& width, int& height) const override { SDL_GetWindowSize(window_, &width, &height); }
   void show(Renderer& renderer) override {
     const Image& image = renderer.pixels();

@@ -103,15 +103,10 @@ TEST(SceneGolden2d, AHandThatDragsTheManIsSeen) {
   EXPECT_TRUE(test::compare_with_golden(view.draw(), "man_dragged"));
 }
 
-TEST(SceneView2d, KnowsWhereAPixelIs) {
-  Scene2d scene;
-  scene.camera = {.centre = {1, 2}, .height = 5.4f};
-  const Simulation2d simulation(scene);
-  const auto context = render::create_offscreen_context();
-  render::Renderer renderer(*context, {.width = 480, .height = 270});
-  const SceneView2d view(scene, simulation, renderer, View2d::kDots);
-  EXPECT_LT((view.world_at(240, 135) - Eigen::Vector2f(1, 2)).norm(), 1e-5f);
-  EXPECT_LT((view.world_at(0, 0) - Eigen::Vector2f(1 - 4.8f, 2 + 2.7f)).norm(), 1e-5f);
+TEST(Camera2d, KnowsWhereAPixelIs) {
+  const Camera2d camera{.centre = {1, 2}, .height = 5.4f};
+  EXPECT_LT((camera.point_at(240, 135, 480, 270) - Eigen::Vector2f(1, 2)).norm(), 1e-5f);
+  EXPECT_LT((camera.point_at(0, 0, 480, 270) - Eigen::Vector2f(1 - 4.8f, 2 + 2.7f)).norm(), 1e-5f);
 }
 
 }  // namespace

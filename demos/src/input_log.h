@@ -1,0 +1,101 @@
+#pragma once
+// Where the events of a run come from when it is a replay, and where they go when it is recorded.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "options.h"
+#include "recording.h"
+#include "scene_hash.h"
+
+namespace softcell::demos {
+
+/// Used by one thread. Call in this order: the constructor, begin(), events_at() and note() for each frame,
+/// save(), check().
+template <int Dimension>
+class InputLog {
+ public:
+  using Event = InputEvent<Dimension>;
+
+  /// Reads the recording that the options ask for. @throws std::runtime_error  as read_recording().
+  explicit InputLog(const DemoOptions& options) : file_(options.record) {
+    if (options.replay) {
+      replay_ = read_recording<Dimension>(*options.replay);
+      replay_name_ = options.replay->string();
+    }
+  }
+
+  /// Of the scene that was recorded; none: this is no replay.
+  std::optional<std::string> scene_name() const {
+    return replay_ ? std::optional(replay_->scene) : std::nullopt;
+  }
+
+  /// Takes the scene's script away when this is a replay: its events are in the recording.
+  /// @throws std::runtime_error  the recording is of another scene.
+  template <class SceneOfDimension>
+  void begin(SceneOfDimension& scene) {
+    record_.scene = recordable_name(scene.name);
+    record_.scene_hash = scene_hash(scene);
+    if (!replay_) return;
+    if (replay_->scene_hash != record_.scene_hash) refuse_scene();
+    scene.script = {};
+  }
+
+  bool replays() const { return replay_.has_value(); }
+  /// The recording's. @pre replays()
+  std::int64_t frames() const { return replay_->frames; }
+
+  /// What the recording has for the frame; frames are asked for in order. Good until the next call.
+  std::span<const Event> events_at(std::int64_t frame) {
+    events_.clear();
+    if (!replay_) return events_;
+    const auto& recorded = replay_->events;
+    for (; next_ < recorded.size() && recorded[next_].frame == frame; ++next_)
+      events_.push_back(recorded[next_].event);
+    return events_;
+  }
+
+  /// What happened at the beginning of the frame. @throws std::runtime_error  the recording is full.
+  void note(std::int64_t frame, std::span<const Event> events) {
+    record_.frames = frame + 1;
+    if (!file_) return;
+    if (record_.frames > kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents)
+      throw std::runtime_error(file_->string() + ": the recording is as long as one may be");
+    for (const Event& event : events) record_.events.push_back({frame, event});
+  }
+
+  /// Writes the recording, if one is asked for. @throws std::runtime_error  it cannot be written.
+  void save(std::uint64_t state_hash) {
+    record_.state_hash = state_hash;
+    if (file_) write_recording(*file_, record_);
+  }
+
+  /// @throws std::runtime_error  all of the recording was done again and did not end in its state.
+  void check() const {
+    if (!replay_ || record_.frames != replay_->frames || record_.state_hash == replay_->state_hash) return;
+    throw std::runtime_error(
+        replay_name_ +
+        ": the replay ends in another state than the recording; Bullet's and Box2D's last "
+        "bits depend on the machine and its C library");
+  }
+
+ private:
+  [[noreturn]] void refuse_scene() const {
+    throw std::runtime_error(replay_name_ + ": a recording of " +
+                             (replay_->scene == record_.scene
+                                  ? "another version of the scene " + record_.scene
+                                  : "the scene " + replay_->scene + ", and this is " + record_.scene) +
+                             "; give the one that was recorded with --scene");
+  }
+
+  std::optional<std::filesystem::path> file_;
+  std::optional<Recording<Dimension>> replay_;
+  std::string replay_name_;
+  std::size_t next_ = 0;  // event of the replay
+  std::vector<Event> events_;
+  Recording<Dimension> record_;
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,37 @@
+#pragma once
+// All that a picture needs of a simulation, of one moment: copied, so that it can be drawn while the
+// simulation goes on.
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "skin_job.h"
+
+namespace softcell::demos {
+
+/// Where a rigid body of two dimensions is.
+struct Pose2d {
+  Eigen::Vector2f position{0, 0};  ///< of its own origin, metres
+  float cosine = 1, sine = 0;      ///< of its angle
+};
+
+/// Metres.
+struct Shown2d {
+  std::vector<std::vector<Eigen::Vector2f>> particles;  ///< of each soft body
+  std::vector<Pose2d> rigid_poses;                      ///< of Scene2d::rigid_bodies, in order
+  std::vector<std::array<Eigen::Vector2f, 2>> hands;    ///< the particle that is held, and the hand
+};
+
+struct Shown3d {
+  struct Body {
+    std::vector<spu::SkinnedVertex> vertices;  ///< relative to `origin`
+    Eigen::Vector3f origin{0, 0, 0};
+    std::vector<spu::SkinCorner> particles;
+  };
+  std::vector<Body> bodies;
+  std::vector<Eigen::Matrix4f> box_poses;              ///< of Scene::boxes, in order
+  Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();  ///< from the ground's frame to the observer's
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,125 @@
+#include "drawing_thread.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "softcell/render/overlay.h"
+
+namespace softcell::demos {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+constexpr float kTextScale = 1.3f;
+
+/// Pictures a second, over half a second.
+class Rate {
+ public:
+  void count(Clock::time_point now) {
+    ++pictures_;
+    const double seconds = Seconds(now - since_).count();
+    if (seconds < 0.5) return;
+    rate_ = pictures_ / seconds;
+    since_ = now;
+    pictures_ = 0;
+  }
+  double per_second() const { return rate_; }
+
+ private:
+  Clock::time_point since_ = Clock::now();
+  int pictures_ = 0;
+  double rate_ = 0;
+};
+
+/// Without a GPU, several samples a pixel and fine shadows take more than half of a picture's time: in a
+/// window that time is better spent on more pictures.
+bool draws_in_software(const render::Renderer& renderer) {
+  const std::string_view description = renderer.description();
+  return description.find("llvmpipe") != std::string_view::npos ||
+         description.find("softpipe") != std::string_view::npos;
+}
+
+}  // namespace
+
+DrawingThread::DrawingThread(render::Window& window, Demo& demo)
+    : window_(window), demo_(demo), scale_(kTextScale * window.density()) {
+  pages_.next().width = window.width();
+  pages_.next().height = window.height();
+  window_.release();
+  std::promise<void> promise;
+  std::future<void> ready = promise.get_future();
+  thread_ = std::thread([this, p = std::move(promise)]() mutable { run(std::move(p)); });
+  try {
+    ready.get();
+  } catch (...) {
+    thread_.join();
+    throw;
+  }
+}
+
+DrawingThread::~DrawingThread() {
+  pages_.close();
+  if (thread_.joinable()) thread_.join();
+}
+
+const std::vector<double>& DrawingThread::finish() {
+  pages_.close();
+  if (thread_.joinable()) thread_.join();
+  if (failure_) std::rethrow_exception(failure_);
+  return picture_ms_;
+}
+
+void DrawingThread::run(std::promise<void> ready) {
+  bool is_ready = false;
+  try {
+    render::GlContext& context = window_.context();
+    context.make_current();
+    const Page& first = pages_.next();  // the other thread waits
+    render::RendererSettings settings{.width = first.width, .height = first.height};
+    std::optional<render::Renderer> renderer(std::in_place, context, settings);
+    if (draws_in_software(*renderer)) {
+      settings.samples = 1;
+      settings.shadow_map_size /= 2;
+      renderer.emplace(context, settings);
+    }
+    demo_.make_view(*renderer);
+    is_ready = true;
+    ready.set_value();
+    draw_all(*renderer, scale_);
+  } catch (...) {
+    if (is_ready) {
+      failure_ = std::current_exception();
+      failed_ = true;
+    } else {
+      ready.set_exception(std::current_exception());
+    }
+  }
+  window_.release();
+}
+
+void DrawingThread::draw_all(render::Renderer& renderer, float scale) {
+  render::Overlay overlay(scale);
+  Rate rate;
+  auto before = Clock::now() - std::chrono::milliseconds(16);
+  while (pages_.wait()) {
+    const auto begin = Clock::now();
+    const Page& page = pages_.current();
+    if (page.width != renderer.width() || page.height != renderer.height())
+      renderer.resize(std::max(page.width, 1), std::max(page.height, 1));
+    demo_.draw_published(page.look);
+    overlay.begin(renderer.width(), renderer.height(), static_cast<float>(Seconds(begin - before).count()));
+    draw_page(page, scale, rate.per_second());
+    renderer.draw_overlay(overlay.font(), overlay.end());
+    window_.show(renderer);
+    before = begin;
+    const auto end = Clock::now();
+    rate.count(end);
+    picture_ms_.push_back(Seconds(end - begin).count() * 1e3);
+  }
+}
+
+}  // namespace softcell::demos

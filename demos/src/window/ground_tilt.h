@@ -1,0 +1,40 @@
+#pragma once
+// How the user tilts the ground of a scene of three dimensions: arrow keys, a controller's left stick, its
+// motion sensor. They add up.
+
+#include <SDL.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+namespace softcell::demos {
+
+/// Angles are in radians: about x (below 0: the far side is lower) and about z (below 0: the right side is).
+class GroundTilt {
+ public:
+  static constexpr float kMost = 0.35f;          ///< about either axis: 20 degrees
+  static constexpr float kMostInAFrame = 0.03f;  ///< however fast the user is
+
+  void take(const SDL_Event& event);
+
+  /// The ground is level again, until the user does something.
+  void forget();
+
+  /// (about x, 0, about z) for the frame that begins. None: as in the frame before, or as the scene has it.
+  std::optional<Eigen::Vector3f> next_frame();
+
+ private:
+  void take_key(const SDL_KeyboardEvent& key);
+  void take_axis(const SDL_ControllerAxisEvent& axis);
+  void take_sensor(const SDL_ControllerSensorEvent& sensor);
+
+  struct Arrows {
+    float left = 0, right = 0, away = 0, near = 0;
+  } held_;                        // 1: the key is down
+  Eigen::Vector2f stick_{0, 0};   // -1..1: to the right, towards the user
+  Eigen::Vector2f sensor_{0, 0};  // angles
+  Eigen::Vector2f angles_{0, 0};  // about x, about z
+};
+
+}  // namespace softcell::demos

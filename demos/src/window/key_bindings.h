@@ -1,0 +1,47 @@
+#pragma once
+// Which key and which button of a controller does what: for the input, and for the help page.
+
+#include <SDL.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace softcell::demos {
+
+enum class Command : std::uint8_t {
+  kJump,
+  kHome,
+  kReset,
+  kPause,
+  kSingleStep,
+  kGravityOnOff,
+  kMoreGravity,
+  kLessGravity,
+  kGravityLeft,
+  kGravityRight,
+  kGravityUp,
+  kGravityDown,
+  kNextView,
+  kNextScene,
+  kStatistics,
+  kHelp,
+  kQuit,
+};
+
+struct KeyBinding {
+  Command command;
+  SDL_Keycode key;
+  SDL_GameControllerButton button;  ///< SDL_CONTROLLER_BUTTON_INVALID: none
+  const char* key_name;
+  const char* does;
+  bool repeats = false;     ///< while the key is held
+  bool only_in_2d = false;  ///< in 3D the key has another use
+};
+
+std::span<const KeyBinding> key_bindings();
+
+/// What an event asks for: a key or button that goes down. None: nothing, or it is no such event.
+std::optional<Command> command_of(const SDL_Event& event, int dimension);
+
+}  // namespace softcell::demos

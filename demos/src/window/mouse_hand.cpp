@@ -1,0 +1,40 @@
+#include "mouse_hand.h"
+
+namespace softcell::demos {
+
+void MouseHand::take(const SDL_Event& event, std::vector<InputEvent<2>>& events) {
+  switch (event.type) {
+    case SDL_WINDOWEVENT:
+      if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
+        width_ = event.window.data1;
+        height_ = event.window.data2;
+      }
+      break;
+    case SDL_MOUSEBUTTONDOWN:
+      if (event.button.button != SDL_BUTTON_LEFT) break;
+      holds_ = true;
+      events.push_back({.action = Action::kGrab,
+                        .hand = kUsersHand,
+                        .body = kEveryBody,
+                        .value = camera_.point_at(event.button.x, event.button.y, width_, height_)});
+      break;
+    case SDL_MOUSEMOTION:
+      if (holds_) move(event.motion, events);
+      break;
+    case SDL_MOUSEBUTTONUP:
+      if (event.button.button != SDL_BUTTON_LEFT || !holds_) break;
+      holds_ = false;
+      events.push_back({.action = Action::kRelease, .hand = kUsersHand});
+      break;
+    default:
+      break;
+  }
+}
+
+void MouseHand::move(const SDL_MouseMotionEvent& motion, std::vector<InputEvent<2>>& events) const {
+  if (events.empty() || events.back().action != Action::kMoveHand)
+    events.push_back({.action = Action::kMoveHand, .hand = kUsersHand});
+  events.back().value = camera_.point_at(motion.x, motion.y, width_, height_);
+}
+
+}  // namespace softcell::demos

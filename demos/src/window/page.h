@@ -1,0 +1,30 @@
+#pragma once
+// What stands over the picture in a window: the figures of the frame, and help.
+
+#include <cstdint>
+#include <string>
+
+#include "../demo.h"
+#include "look.h"
+
+namespace softcell::demos {
+
+struct Page {
+  Look look;
+  int width = 0, height = 0;  ///< of the window, pixels
+
+  std::string scene;
+  int dimension = 2;
+  DemoCounts counts;
+  FrameTimes times;
+  bool paused = false, replays = false;
+  std::size_t spes = 0;         ///< at work
+  double spe_ms = 0;            ///< of the busiest SPE, in the frame before
+  std::uint64_t dma_bytes = 0;  ///< in the frame before
+};
+
+/// Calls Dear ImGui between begin() and end() of an overlay.
+/// @param scale  of the text  @param shown_per_second  pictures that the window showed of late
+void draw_page(const Page& page, float scale, double shown_per_second);
+
+}  // namespace softcell::demos

@@ -1,0 +1,120 @@
+#include "play.h"
+
+#include <SDL.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "../interrupt.h"
+#include "controllers.h"
+#include "drawing_thread.h"
+#include "frame_clock.h"
+#include "user_input.h"
+
+namespace softcell::demos {
+namespace {
+
+/// What the SPEs did since it was asked last.
+class SpeUse {
+ public:
+  void add_to(Page& page, const std::vector<ls_sim::SpeStatistics>& now) {
+    before_.resize(now.size());
+    page.spes = now.size();
+    page.spe_ms = 0;
+    page.dma_bytes = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const std::chrono::duration<double, std::milli> busy = now[i].busy - before_[i].busy;
+      page.spe_ms = std::max(page.spe_ms, busy.count());
+      page.dma_bytes += now[i].dma.bytes() - before_[i].dma.bytes();
+    }
+    before_ = now;
+  }
+
+ private:
+  std::vector<ls_sim::SpeStatistics> before_;
+};
+
+/// One scene in the window.
+class Scene {
+ public:
+  Scene(render::Window& window, Demo& demo) : window_(window), demo_(demo), drawing_(window, demo) {}
+
+  void take(const SDL_Event& event) { demo_.input().take(event); }
+
+  void step() {
+    const FrameTimes times = demo_.step();
+    record_.add(times);
+    demo_.publish();
+    Page& page = drawing_.next_page();
+    page = {.look = demo_.input().look(),
+            .width = window_.width(),
+            .height = window_.height(),
+            .scene = demo_.scene_name(),
+            .dimension = demo_.dimension(),
+            .counts = demo_.counts(),
+            .times = times,
+            .paused = demo_.paused(),
+            .replays = demo_.replays(),
+            .spes = 0,
+            .spe_ms = 0,
+            .dma_bytes = 0};
+    spe_use_.add_to(page, demo_.spe_statistics());
+    drawing_.show();
+  }
+
+  bool ends(const std::optional<int>& frames) const {
+    const int last = frames.value_or(demo_.replays() ? demo_.frames() : std::numeric_limits<int>::max());
+    return drawing_.failed() || demo_.input().wants_to_quit() || record_.frames >= last;
+  }
+
+  RunRecord finish() {
+    record_.picture_ms = drawing_.finish();
+    record_.seconds = std::chrono::duration<double>(FrameClock::Clock::now() - begin_).count();
+    demo_.stop();
+    demo_.save_recording();
+    return std::move(record_);
+  }
+
+ private:
+  render::Window& window_;
+  Demo& demo_;
+  DrawingThread drawing_;
+  SpeUse spe_use_;
+  RunRecord record_;
+  FrameClock::Clock::time_point begin_ = FrameClock::Clock::now();
+};
+
+}  // namespace
+
+Run play(const DemoOptions& options, std::string_view verb, const std::vector<MakeDemo>& scenes,
+         const SimulationOptions& how) {
+  render::Window window(
+      {.title = "softcell " + std::string(verb), .width = options.size.width, .height = options.size.height});
+  const InterruptGuard guard;
+  Controllers controllers;
+  FrameClock clock;
+  std::optional<Look> look;
+  for (std::size_t number = 0;; number = (number + 1) % scenes.size()) {
+    Run run{.demo = scenes[number](how), .record = {}};
+    if (look) run.demo->input().set_look(*look);
+    Scene scene(window, *run.demo);
+    bool next = false;
+    while (!next && !scene.ends(options.frames) && !guard.interrupted()) {
+      clock.wait();
+      SDL_Event event;
+      while (SDL_PollEvent(&event) != 0) {
+        controllers.take(event);
+        scene.take(event);
+      }
+      scene.step();
+      next = run.demo->input().wants_next_scene() && scenes.size() > 1;
+    }
+    run.record = scene.finish();
+    run.record.interrupted = guard.interrupted();
+    if (!next) return run;
+    look = run.demo->input().look();
+  }
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# The demos' windows under a virtual X server, with a real mouse and keys: what the user does is in the recording, and the replay
+# ends in the same state, in a window and without. Without a display they say so in one sentence.
+#   play_test.sh SOFTCELL [FOLDER FOR SCREENSHOTS]
+set -euo pipefail
+softcell=$1
+folder=$(mktemp -d)
+shots=${2:-$folder}
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
+fail() { echo "play_test: $*" >&2; sed 's/^/softcell: /' "$folder"/log >&2 || true; exit 1; }
+
+# No display: one sentence, the way out, status 1.
+for demo in 2d 3d; do
+  status=0
+  env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER "$softcell" demo $demo >"$folder/log" 2>&1 || status=$?
+  [ "$status" = 1 ] || fail "demo $demo ends with status $status without a display"
+  [ "$(wc -l <"$folder/log")" = 1 ] || fail "demo $demo says more than one line without a display"
+  grep -q -- '--headless' "$folder/log" || fail "demo $demo does not name --headless"
+done
+
+# Pictures are for runs without a window.
+status=0
+"$softcell" demo 2d --out "$folder/frames" >"$folder/log" 2>&1 || status=$?
+[ "$status" = 2 ] && grep -q -- '--headless' "$folder/log" || fail "a window accepts --out"
+
+# No OpenGL on the display: drawn in memory and copied.
+SDL_VIDEODRIVER=dummy "$softcell" demo 2d --frames 5 >"$folder/log" 2>&1 || fail "fails on the dummy driver"
+grep -q '5 frames' "$folder/log" || fail "does not end after --frames"
+
+Xvfb -displayfd 3 -screen 0 1400x800x24 3>"$folder/display" 2>/dev/null &
+for _ in $(seq 100); do [ -s "$folder/display" ] && break; sleep 0.1; done
+[ -s "$folder/display" ] || fail "Xvfb did not start"
+export DISPLAY=:$(cat "$folder/display")
+unset WAYLAND_DISPLAY SDL_VIDEODRIVER
+
+# start VERB OPTIONS...: runs softcell and waits for its window.
+start() {
+  "$softcell" demo "$@" >"$folder/log" 2>&1 &
+  pid=$!
+  window=$(timeout 60 xdotool search --sync --onlyvisible --name "softcell demo $1" | head -1) || fail "no window"
+  xdotool windowfocus --sync "$window"
+  sleep 1
+}
+# finish: the user closes the window.
+finish() {
+  xdotool key Escape
+  wait "$pid" || fail "ends with status $?"
+}
+recorded() { grep -Eq "^[0-9]+ $1" "$folder/$2.rec" || fail "'$1' is not in the recording: $(cat "$folder/$2.rec")"; }
+hash_of() { sed -n 's/^state: *\([0-9a-f]*\).*/\1/p' "$folder/log"; }
+# same_again VERB NAME: the replay ends in the recorded state, without a window and in one.
+same_again() {
+  local hash
+  hash=$(hash_of)
+  for how in --headless --size=640x360; do
+    "$softcell" demo "$1" --replay "$folder/$2.rec" "$how" --spes 2 >"$folder/log" 2>&1 || fail "the replay fails ($how)"
+    [ "$(hash_of)" = "$hash" ] || fail "the replay ends in $(hash_of), not in $hash ($how)"
+  done
+}
+# shot NAME: a picture of the window, as soon as it shows more than a plain background.
+shot() {
+  for _ in $(seq 100); do
+    import -window "$window" "$shots/$1.png"
+    [ "$(identify -format %k "$shots/$1.png")" -gt 100 ] && return
+    sleep 0.1
+  done
+  fail "$1: the window does not show the scene"
+}
+
+# Two dimensions: grab the man, drag him, throw him; gravity; views; help.
+start 2d --record "$folder/play.rec"
+xdotool mousemove --window "$window" 640 360 mousedown 1
+for x in 700 760 820 880; do xdotool mousemove --window "$window" $x 200; sleep 0.1; done
+shot demo2d_dragged
+xdotool mouseup 1 key Up key plus key space
+sleep 0.3
+xdotool key v key F1
+sleep 0.5
+shot demo2d_help
+finish
+for event in 'grab user all' 'move user' 'release user' 'gravity 0 9' 'gravity 0 10' 'push all 0 5'; do recorded "$event" play; done
+same_again 2d play
+
+# Three dimensions: tilt, jump, look from elsewhere, back to the beginning.
+start 3d --record "$folder/play3.rec"
+xdotool keydown Right
+sleep 0.7
+xdotool keyup Right key space
+xdotool mousemove --window "$window" 640 360 mousedown 1 mousemove --window "$window" 800 330 mouseup 1
+sleep 0.7
+shot demo3d_tilted
+xdotool key BackSpace key p
+finish
+for event in 'tilt 0 0 -0.35' 'push all 0 5 0' 'home all' 'pause'; do recorded "$event" play3; done
+same_again 3d play3
+
+# On to the next scene, in a window of another size.
+start 3d --size 400x300
+xdotool key n
+sleep 1.5
+xdotool windowsize "$window" 500 400
+sleep 0.5
+shot demo3d_next
+[ "$(identify -format %wx%h "$shots/demo3d_next.png")" = 500x400 ] || fail "the picture does not follow the window's size"
+finish
+grep -q '^scene arena' "$folder/log" && fail "the next scene is the first again"
+
+# With a number of frames it closes by itself.
+"$softcell" demo 2d --frames 30 --json "$folder/stats.json" >"$folder/log" 2>&1 || fail "fails with --frames"
+grep -q '"frames": 30' "$folder/stats.json" || fail "not 30 frames"

@@ -1,0 +1,63 @@
+#pragma once
+// What a wild user might do.
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "input_event.h"
+
+namespace softcell::demos::test {
+
+/// Any action; values of a few metres, metres a second or metres a second squared, and less than a right
+/// angle.
+template <int Dimension>
+InputEvent<Dimension> random_event(std::mt19937& random) {
+  using Event = InputEvent<Dimension>;
+  const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
+  Event event;
+  // The last action, tilting, is for 3D.
+  event.action = static_cast<Action>(below(Dimension == 3 ? kActions : kActions - 1));
+  const auto use_hand = [&] { event.hand = below(3) == 0 ? below(4) : kUsersHand; };
+  const auto use_body = [&] { event.body = below(3) == 0 ? below(6) : kEveryBody; };
+  const auto use_value = [&](float size) {
+    for (int i = 0; i < Dimension; ++i)
+      event.value[i] = size * (static_cast<float>(random()) / static_cast<float>(random.max()) * 2 - 1);
+  };
+  switch (event.action) {
+    case Action::kGrab:
+      use_hand();
+      use_body();
+      use_value(3);
+      break;
+    case Action::kMoveHand:
+      use_hand();
+      use_value(3);
+      break;
+    case Action::kRelease:
+      use_hand();
+      break;
+    case Action::kPush:
+      use_body();
+      use_value(4);
+      break;
+    case Action::kGravity:
+      use_value(15);
+      break;
+    case Action::kHome:
+      use_body();
+      break;
+    case Action::kTilt:
+      use_value(0.5f);
+      event.value[1] = 0;
+      break;
+    case Action::kReset:
+    case Action::kPause:
+    case Action::kResume:
+    case Action::kSingleStep:
+      break;
+  }
+  return event;
+}
+
+}  // namespace softcell::demos::test

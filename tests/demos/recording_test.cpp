@@ -1,0 +1,274 @@
+// Recordings: what is written is read back, what is broken is refused, and a replay is the run again.
+
+#include "recording.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "input_log.h"
+#include "random_events.h"
+#include "scene_file/scene_library.h"
+#include "scratch_folder.h"
+#include "simulation_2d.h"
+#include "simulation_3d.h"
+
+namespace softcell::demos {
+namespace {
+
+using test::random_event;
+
+template <int Dimension>
+Recording<Dimension> random_recording(std::uint32_t seed, std::size_t events) {
+  std::mt19937 random(seed);
+  Recording<Dimension> recording{
+      .scene = "a scene", .scene_hash = random(), .frames = 0, .state_hash = random()};
+  std::int64_t frame = 0;
+  for (std::size_t i = 0; i < events; ++i) {
+    frame += random() % 3;
+    recording.events.push_back({frame, random_event<Dimension>(random)});
+  }
+  recording.frames = frame + 10;
+  return recording;
+}
+
+/// Text of a recording around these lines, its checksum right.
+std::string with_lines(const std::string& lines) {
+  const std::string text =
+      "softcell recording 1\ndimension 2\nscene man\nscene_hash 0123456789abcdef\n" + lines;
+  return text + fmt::format("end {:016x}\n", recording_checksum(text));
+}
+
+testing::AssertionResult contains(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "'" << text << "' does not say: " << part;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_recording<2>(text);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Recording, AThousandRandomEventsAreReadBackAsTheyWere) {
+  const auto flat = random_recording<2>(1, 1000);
+  const auto solid = random_recording<3>(2, 1000);
+  EXPECT_EQ(parse_recording<2>(to_text(flat)), flat);
+  EXPECT_EQ(parse_recording<3>(to_text(solid)), solid);
+}
+
+TEST(Recording, ExtremeNumbersAreReadBackAsTheyWere) {
+  Recording<2> recording{
+      .scene = "\xc3\xa4", .scene_hash = ~0ull, .frames = kMaxRecordedFrames, .state_hash = 0};
+  using Limits = std::numeric_limits<float>;
+  for (const float value :
+       {-0.0f, 0.1f, Limits::min(), Limits::denorm_min(), Limits::max(), Limits::lowest()}) {
+    recording.events.push_back({kMaxRecordedFrames - 1, {.action = Action::kPush, .value = {value, value}}});
+    const Recording<2> again = parse_recording<2>(to_text(recording));
+    EXPECT_EQ(std::signbit(again.events.back().event.value.x()), std::signbit(value));
+    EXPECT_EQ(again, recording);
+  }
+}
+
+TEST(Recording, EveryTruncationIsRefused) {
+  const std::string text = to_text(random_recording<2>(3, 20));
+  for (std::size_t size = 0; size < text.size(); ++size)
+    EXPECT_THROW(parse_recording<2>(text.substr(0, size)), std::runtime_error) << size;
+  EXPECT_TRUE(contains(refusal(text.substr(0, text.size() / 2)), "it is not whole"));
+  EXPECT_TRUE(contains(refusal(text + "x\n"), "something follows the last line"));
+}
+
+TEST(Recording, EveryChangedByteIsRefused) {
+  const std::string text = to_text(random_recording<2>(4, 20));
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    for (const int bit : {0, 3, 5, 7}) {
+      std::string changed = text;
+      changed[i] = static_cast<char>(changed[i] ^ (1 << bit));
+      EXPECT_THROW(parse_recording<2>(changed), std::runtime_error) << "byte " << i << ", bit " << bit;
+    }
+  }
+}
+
+TEST(Recording, WhatIsWrongIsSaidWithItsLine) {
+  const std::string end = "frames 10\nstate_hash 0000000000000000\n";
+  EXPECT_EQ(refusal(with_lines("0 reset\n" + end)), "accepted");
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {with_lines("0 jump\n" + end), "line 5: there is no action 'jump'"},
+      {with_lines("0 tilt 0 0\n" + end), "line 5: there is no action 'tilt'"},
+      {with_lines("3 reset\n2 pause\n" + end), "line 6: the frame '2' is no number from 3 to 9999999"},
+      {with_lines("-1 reset\n" + end), "line 5: the frame '-1' is no number from 0 to 9999999"},
+      {with_lines("10 reset\n" + end), "line 6: the number of frames '10' is no number from 11 to 10000000"},
+      {with_lines("0 gravity 0 nan\n" + end), "line 5: 'nan' is no finite number"},
+      {with_lines("0 gravity 0 1e99\n" + end), "line 5: '1e99' is no finite number"},
+      {with_lines("0 gravity 0\n" + end), "line 5: a number is missing"},
+      {with_lines("0 gravity 0 1 2\n" + end), "line 5: '2' is more than belongs here"},
+      {with_lines("0 release 4294967295\n" + end),
+       "line 5: a hand '4294967295' is no number from 0 to 4294967294"},
+      {with_lines("0 home userland\n" + end), "line 5: a body 'userland' is no number from 0 to 4294967294"},
+      {with_lines(std::string(1000, '0') + "\n" + end), "line 5: is longer than any line of a recording"},
+      {"P6 1 1\n", "line 1: this is no recording: it does not begin with 'softcell recording'"},
+      {"softcell recording 2\n",
+       "line 1: a recording of another version, ' 2'; this softcell reads version 1"},
+      {"softcell recording 1\ndimension 3\n",
+       "line 2: this is a recording of demo 3d, and here runs demo 2d"},
+      {"softcell recording 1\ndimension 4\n", "line 2: the dimension '4' is no number from 2 to 3"},
+      {"softcell recording 1\ndimension 2\nscene \n",
+       "line 3: the scene has no name, or one with control characters"},
+      {"softcell recording 1\ndimension 2\nscene man\nscene_hash 12\n",
+       "line 4: the scene's hash '12' is no number of 16 hexadecimal digits"},
+      {"", "line 1: the file ends here, before its line 'end': it is not whole"},
+  };
+  for (const auto& [text, sentence] : cases) EXPECT_EQ(refusal(text), sentence);
+}
+
+TEST(Recording, AFileThatIsNoneIsRefusedByName) {
+  EXPECT_THROW(read_recording<2>("/dev/zero"), std::runtime_error);
+  EXPECT_THROW(read_recording<2>("/nowhere/at.all"), std::runtime_error);
+  EXPECT_THROW(read_recording<2>("/"), std::runtime_error);
+  EXPECT_THROW(write_recording<2>("/nowhere/at.all", {.scene = "s"}), std::runtime_error);
+}
+
+// A run and its replay, by way of the file.
+
+template <class Simulation, int Dimension>
+std::uint64_t run(Simulation& simulation, InputLog<Dimension>& log, std::int64_t frames, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<InputEvent<Dimension>> events;
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    events.clear();
+    if (log.replays()) {
+      const auto recorded = log.events_at(frame);
+      events.assign(recorded.begin(), recorded.end());
+    } else {
+      for (std::uint32_t i = static_cast<std::uint32_t>(random() % 5); i > 0; --i)
+        events.push_back(random_event<Dimension>(random));
+    }
+    simulation.step(events);
+    log.note(frame, simulation.last_events());
+  }
+  log.save(simulation.state_hash());
+  return simulation.state_hash();
+}
+
+constexpr const char* kScene2d =
+    "dimension = 2\n[framework]\nwidth = 6\nheight = 5\n[[soft_body]]\nname = \"b\"\ncell_size = 0.4\n"
+    "rows = [\"###\", \"#.#\"]\n[[drag]]\nbody = \"b\"\nbegin = 0.1\nend = 0.5\nfrom = [0, 0]\nto = [2, 1]\n";
+
+TEST(Replay, OfRandomInputEndsInTheSameState2d) {
+  const tests::ScratchFolder scratch;
+  DemoOptions recorded, repeated;
+  recorded.record = repeated.replay = scratch.path() / "run.rec";
+  repeated.record = scratch.path() / "again.rec";
+  Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
+  Scene2d again = scene;
+
+  InputLog<2> first(recorded);
+  first.begin(scene);
+  Simulation2d simulation(scene);
+  const std::uint64_t state = run(simulation, first, 500, 5);
+
+  InputLog<2> second(repeated);
+  EXPECT_EQ(second.scene_name(), "s");
+  EXPECT_EQ(second.frames(), 500);
+  second.begin(again);
+  EXPECT_TRUE(again.script.drags.empty()) << "the script's events are in the recording";
+  Simulation2d repeat(again);
+  EXPECT_EQ(run(repeat, second, 500, 0), state);
+  second.check();
+
+  const auto recording = read_recording<2>(*recorded.record);
+  EXPECT_GT(recording.events.size(), 900u);
+  EXPECT_EQ(read_recording<2>(*repeated.record), recording) << "a replay can be recorded too";
+}
+
+TEST(Replay, EndsInTheSameStateForAnyNumberOfSpesAndSchedule3d) {
+  const tests::ScratchFolder scratch;
+  DemoOptions recorded, repeated;
+  recorded.record = repeated.replay = scratch.path() / "run.rec";
+  const Scene scene = std::get<Scene>(
+      parse_scene("[framework]\n[[box]]\nsize = [0.3, 0.3, 0.3]\nmass = 5\nposition = [0.4, 0.6, 0]\n"
+                  "[[soft_body]]\nname = \"cube\"\ncell_size = 0.25\nposition = [0, 1.2, 0]\n"
+                  "shape = { kind = \"box\", size = [0.5, 0.5, 0.5] }\n",
+                  "s.toml"));
+  InputLog<3> first(recorded);
+  Scene played = scene;
+  first.begin(played);
+  Simulation3d simulation(played, {});
+  const std::uint64_t state = run(simulation, first, 120, 6);
+  for (const auto& [spes, schedule] : {std::pair{1, "lazy"}, {3, "random:7"}, {6, "eager"}}) {
+    InputLog<3> second(repeated);
+    second.begin(played);
+    Simulation3d repeat(played, {.spes = spes, .schedule = dma::parse_schedule(schedule)});
+    EXPECT_EQ(run(repeat, second, 120, 0), state) << spes << " SPEs, " << schedule;
+    second.check();
+  }
+}
+
+TEST(Replay, OfAnotherSceneIsRefused) {
+  const tests::ScratchFolder scratch;
+  DemoOptions recorded, repeated;
+  recorded.record = repeated.replay = scratch.path() / "run.rec";
+  Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
+  InputLog<2> log(recorded);
+  log.begin(scene);
+  log.save(0);
+  const auto refusal_of = [&](Scene2d other) -> std::string {
+    try {
+      InputLog<2>(repeated).begin(other);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  Scene2d other = scene;
+  other.camera.height = 1;
+  other.script = {};
+  other.soft_bodies[0].colour = {0, 0, 0};
+  EXPECT_EQ(refusal_of(other), "accepted") << "looks and script are not what a recording depends on";
+  other.soft_bodies[0].settings.alpha *= 0.999f;
+  EXPECT_TRUE(contains(refusal_of(other), "another version of the scene s"));
+  other.name = "t";
+  EXPECT_TRUE(contains(refusal_of(other), "a recording of the scene s, and this is t"));
+}
+
+TEST(Replay, ThatEndsInAnotherStateIsSaidSo) {
+  const tests::ScratchFolder scratch;
+  DemoOptions options;
+  options.replay = scratch.path() / "run.rec";
+  Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
+  write_recording<2>(
+      *options.replay,
+      {.scene = "s", .scene_hash = scene_hash(scene), .frames = 2, .state_hash = 7, .events = {}});
+  InputLog<2> log(options);
+  log.begin(scene);
+  log.note(0, {});
+  log.save(8);
+  EXPECT_NO_THROW(log.check()) << "not all of it was done again";
+  log.note(1, {});
+  log.save(8);
+  EXPECT_THROW(log.check(), std::runtime_error);
+  log.save(7);
+  EXPECT_NO_THROW(log.check());
+}
+
+TEST(SceneHash, DependsOnEachPartOfTheSimulation) {
+  const Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
+  std::vector<Scene2d> others(8, scene);
+  others[0].gravity += 1;
+  others[1].substeps += 1;
+  others[2].friction += 0.1f;
+  others[3].soft_bodies[0].cells.pop_back();
+  others[4].soft_bodies[0].position.x() += 1e-6f;
+  others[5].rigid_bodies.back().angle += 0.1f;
+  others[6].soft_bodies[0].settings.frequency = 2.0f;
+  others[7].rigid_bodies.back().shape = CircleShape{};
+  for (std::size_t i = 0; i < others.size(); ++i) EXPECT_NE(scene_hash(others[i]), scene_hash(scene)) << i;
+}
+
+}  // namespace
+}  // namespace softcell::demos

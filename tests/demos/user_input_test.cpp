@@ -1,0 +1,340 @@
+// What keys, mouse and controllers mean, told to the input as SDL tells it; no window.
+
+#include "window/user_input.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "options.h"
+#include "window/controllers.h"
+
+namespace softcell::demos {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+SDL_Event key(Uint32 type, SDL_Keycode code, bool repeat = false) {
+  SDL_Event event{};
+  event.key.type = type;
+  event.key.repeat = repeat;
+  event.key.keysym.sym = code;
+  return event;
+}
+SDL_Event press(SDL_Keycode code) { return key(SDL_KEYDOWN, code); }
+
+SDL_Event mouse_button(Uint32 type, int x, int y, Uint8 button = SDL_BUTTON_LEFT) {
+  SDL_Event event{};
+  event.button.type = type;
+  event.button.button = button;
+  event.button.x = x;
+  event.button.y = y;
+  return event;
+}
+
+SDL_Event mouse_to(int x, int y) {
+  SDL_Event event{};
+  event.motion.type = SDL_MOUSEMOTION;
+  event.motion.x = x;
+  event.motion.y = y;
+  return event;
+}
+
+SDL_Event accelerometer(float x, float y, float z) {
+  SDL_Event event{};
+  event.csensor.type = SDL_CONTROLLERSENSORUPDATE;
+  event.csensor.sensor = SDL_SENSOR_ACCEL;
+  event.csensor.data[0] = x;
+  event.csensor.data[1] = y;
+  event.csensor.data[2] = z;
+  return event;
+}
+
+/// The input of a picture of 800 x 600 that shows 8 m x 6 m about (1, 2).
+UserInput<2> input_2d() {
+  UserInput<2> input(kViews2d, {MouseHand({.centre = {1, 2}, .height = 6}, 800, 600)});
+  input.follow({0, -10}, false);
+  return input;
+}
+
+template <int Dimension>
+std::vector<InputEvent<Dimension>> frame_of(UserInput<Dimension>& input,
+                                            const std::vector<SDL_Event>& events) {
+  for (const SDL_Event& event : events) input.take(event);
+  const auto frame = input.next_frame();
+  return {frame.begin(), frame.end()};
+}
+
+using Events2d = std::vector<InputEvent<2>>;
+using Events3d = std::vector<InputEvent<3>>;
+
+TEST(UserInput, TheMouseTakesAParticleDragsItAndLetsGo) {
+  UserInput<2> input = input_2d();
+  const auto grab = frame_of(input, {mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300)});
+  EXPECT_EQ(grab,
+            (Events2d{{.action = Action::kGrab, .hand = kUsersHand, .body = kEveryBody, .value = {1, 2}}}));
+  const auto moves = frame_of(input, {mouse_to(400, 400), mouse_to(0, 0)});
+  EXPECT_EQ(moves, (Events2d{{.action = Action::kMoveHand, .hand = kUsersHand, .value = {-3, 5}}}))
+      << "only where the mouse is at last counts";
+  const auto release = frame_of(input, {mouse_to(800, 600), mouse_button(SDL_MOUSEBUTTONUP, 800, 600)});
+  EXPECT_EQ(release, (Events2d{{.action = Action::kMoveHand, .hand = kUsersHand, .value = {5, -1}},
+                               {.action = Action::kRelease, .hand = kUsersHand}}));
+  EXPECT_TRUE(frame_of(input, {mouse_to(1, 1)}).empty()) << "a hand that holds nothing";
+}
+
+TEST(UserInput, OnlyTheLeftButtonTakes) {
+  UserInput<2> input = input_2d();
+  EXPECT_TRUE(frame_of(input, {mouse_button(SDL_MOUSEBUTTONDOWN, 1, 1, SDL_BUTTON_RIGHT), mouse_to(2, 2),
+                               mouse_button(SDL_MOUSEBUTTONUP, 1, 1)})
+                  .empty());
+}
+
+TEST(UserInput, TheMouseFollowsTheWindowsSize) {
+  UserInput<2> input = input_2d();
+  SDL_Event resized{};
+  resized.window.type = SDL_WINDOWEVENT;
+  resized.window.event = SDL_WINDOWEVENT_SIZE_CHANGED;
+  resized.window.data1 = 300;
+  resized.window.data2 = 100;
+  const auto grab = frame_of(input, {resized, mouse_button(SDL_MOUSEBUTTONDOWN, 150, 0)});
+  ASSERT_EQ(grab.size(), 1u);
+  EXPECT_LT((grab[0].value - Vector2f(1, 5)).norm(), 1e-5f);
+}
+
+TEST(UserInput, GravityHasFourDirectionsAnyStrengthAndOff) {
+  UserInput<2> input = input_2d();
+  const auto gravity_after = [&](SDL_Keycode code) -> Vector2f {
+    const auto events = frame_of(input, {press(code)});
+    if (events.size() != 1 || events[0].action != Action::kGravity) {
+      ADD_FAILURE() << "no change of gravity";
+      return {0, 0};
+    }
+    input.follow(events[0].value, false);
+    return events[0].value;
+  };
+  EXPECT_EQ(gravity_after(SDLK_UP), Vector2f(0, 10));
+  EXPECT_EQ(gravity_after(SDLK_LEFT), Vector2f(-10, 0));
+  EXPECT_EQ(gravity_after(SDLK_RIGHT), Vector2f(10, 0));
+  EXPECT_EQ(gravity_after(SDLK_PLUS), Vector2f(11, 0));
+  EXPECT_EQ(gravity_after(SDLK_EQUALS), Vector2f(12, 0)) << "plus without shift";
+  EXPECT_EQ(gravity_after(SDLK_KP_MINUS), Vector2f(11, 0));
+  EXPECT_EQ(gravity_after(SDLK_g), Vector2f(0, 0));
+  EXPECT_EQ(gravity_after(SDLK_g), Vector2f(11, 0)) << "on again, as it was";
+  EXPECT_EQ(gravity_after(SDLK_g), Vector2f(0, 0));
+  EXPECT_EQ(gravity_after(SDLK_DOWN), Vector2f(0, -11)) << "on again, downwards";
+}
+
+TEST(UserInput, GravityNeverPullsTheOtherWayNorGrowsWithoutBound) {
+  UserInput<2> input = input_2d();
+  for (int i = 0; i < 30; ++i) input.take(press(SDLK_MINUS));
+  EXPECT_EQ(input.next_frame().back().value, Vector2f(0, 0));
+  for (int i = 0; i < 2000; ++i) input.take(key(SDL_KEYDOWN, SDLK_PLUS, true));
+  EXPECT_EQ(input.next_frame().back().value, Vector2f(0, -UserInput<2>::kMostGravity));
+}
+
+TEST(UserInput, PausesAndGoesOn) {
+  UserInput<2> input = input_2d();
+  EXPECT_EQ(frame_of(input, {press(SDLK_p)}), (Events2d{{.action = Action::kPause}}));
+  EXPECT_EQ(frame_of(input, {press(SDLK_PERIOD)}), (Events2d{{.action = Action::kSingleStep}}));
+  EXPECT_EQ(frame_of(input, {press(SDLK_p)}), (Events2d{{.action = Action::kResume}}));
+  input.follow({0, -10}, true);
+  EXPECT_EQ(frame_of(input, {press(SDLK_p)}), (Events2d{{.action = Action::kResume}})) << "a script paused";
+}
+
+TEST(UserInput, AHeldKeyActsOnceExceptWhereItHelps) {
+  UserInput<2> input = input_2d();
+  for (const KeyBinding& binding : key_bindings()) {
+    if (binding.command == Command::kQuit) continue;
+    const auto repeated = command_of(key(SDL_KEYDOWN, binding.key, true), 2);
+    EXPECT_EQ(repeated.has_value(), binding.repeats) << binding.key_name;
+    EXPECT_EQ(command_of(press(binding.key), 2), binding.command) << binding.key_name;
+    EXPECT_EQ(command_of(key(SDL_KEYUP, binding.key), 2), std::nullopt) << binding.key_name;
+  }
+}
+
+TEST(UserInput, WhatTheWindowDoesIsNoEvent) {
+  UserInput<2> input = input_2d();
+  EXPECT_TRUE(frame_of(input, {press(SDLK_v), press(SDLK_s), press(SDLK_F1)}).empty());
+  EXPECT_EQ(input.look().view, 1);
+  EXPECT_FALSE(input.look().statistics);
+  EXPECT_TRUE(input.look().help);
+  input.take(press(SDLK_v));
+  input.take(press(SDLK_v));
+  EXPECT_EQ(input.look().view, 0) << "after the last view comes the first";
+  EXPECT_FALSE(input.wants_next_scene());
+  input.take(press(SDLK_n));
+  EXPECT_TRUE(input.wants_next_scene());
+  EXPECT_FALSE(input.wants_to_quit());
+  input.take(press(SDLK_ESCAPE));
+  EXPECT_TRUE(input.wants_to_quit());
+  UserInput<2> closed = input_2d();
+  SDL_Event quit{};
+  quit.type = SDL_QUIT;
+  closed.take(quit);
+  EXPECT_TRUE(closed.wants_to_quit());
+}
+
+TEST(UserInput, JumpsResetsAndGoesHomeIn3d) {
+  UserInput<3> input(2, {});
+  EXPECT_EQ(
+      frame_of(input, {press(SDLK_SPACE), press(SDLK_BACKSPACE), press(SDLK_r)}),
+      (Events3d{{.action = Action::kPush, .body = kEveryBody, .value = {0, UserInput<3>::kJumpSpeed, 0}},
+                {.action = Action::kHome, .body = kEveryBody},
+                {.action = Action::kReset}}));
+}
+
+/// What the ground is tilted by after so many frames that begin with `tilt`.
+Vector3f tilt_after(UserInput<3>& input, int frames, Vector3f tilt = {0, 0, 0}) {
+  for (int i = 0; i < frames; ++i) {
+    for (const InputEvent<3>& event : input.next_frame()) {
+      if (event.action != Action::kTilt) continue;
+      EXPECT_LE((event.value - tilt).cwiseAbs().maxCoeff(), GroundTilt::kMostInAFrame + 1e-6f);
+      tilt = event.value;
+    }
+  }
+  EXPECT_TRUE(input.next_frame().empty()) << "what does not change is no event";
+  return tilt;
+}
+
+TEST(UserInput, ArrowsTiltTheGroundWhileTheyAreHeld) {
+  UserInput<3> input(2, {});
+  EXPECT_TRUE(input.next_frame().empty()) << "until then the ground is as the scene has it";
+  input.take(press(SDLK_RIGHT));
+  EXPECT_EQ(tilt_after(input, 20), Vector3f(0, 0, -GroundTilt::kMost)) << "the right side is lower";
+  input.take(press(SDLK_UP));
+  EXPECT_EQ(tilt_after(input, 20, {0, 0, -GroundTilt::kMost}),
+            Vector3f(-GroundTilt::kMost, 0, -GroundTilt::kMost));
+  input.take(key(SDL_KEYUP, SDLK_RIGHT));
+  input.take(key(SDL_KEYUP, SDLK_UP));
+  EXPECT_EQ(tilt_after(input, 20, {-GroundTilt::kMost, 0, -GroundTilt::kMost}), Vector3f(0, 0, 0));
+}
+
+TEST(UserInput, TheMotionSensorTiltsTheGroundAsItIsHeld) {
+  UserInput<3> input(2, {});
+  const float angle = 0.2f, g = SDL_STANDARD_GRAVITY;
+  // Rolled to the right, its right side lower: what holds it up comes from the left.
+  input.take(accelerometer(-g * std::sin(angle), g * std::cos(angle), 0));
+  const Vector3f rolled = tilt_after(input, 20);
+  EXPECT_LT((rolled - Vector3f(0, 0, -angle)).norm(), 0.01f);
+  // Its far side lower: it comes from the player's side.
+  input.take(accelerometer(0, g * std::cos(angle), g * std::sin(angle)));
+  const Vector3f pitched = tilt_after(input, 20, rolled);
+  EXPECT_LT((pitched - Vector3f(-angle, 0, 0)).norm(), 0.01f);
+  input.take(accelerometer(0, -g, 0.1f));
+  const Vector3f over = tilt_after(input, 40, pitched);
+  EXPECT_FLOAT_EQ(over.x(), -GroundTilt::kMost) << "upside down: no further";
+  input.take(accelerometer(0, std::numeric_limits<float>::quiet_NaN(), 0));
+  EXPECT_EQ(tilt_after(input, 40, over), over) << "no sense: ignored";
+}
+
+TEST(UserInput, TheMouseMovesTheCameraIn3d) {
+  UserInput<3> input(2, {});
+  SDL_Event drag = mouse_to(0, 0);
+  drag.motion.state = SDL_BUTTON_LMASK;
+  drag.motion.xrel = 100;
+  drag.motion.yrel = 10'000;
+  SDL_Event wheel{};
+  wheel.wheel.type = SDL_MOUSEWHEEL;
+  wheel.wheel.preciseY = 2;
+  EXPECT_TRUE(frame_of(input, {drag, wheel}).empty()) << "the simulation does not notice";
+  EXPECT_LT(input.look().turn, -0.1f);
+  EXPECT_EQ(input.look().rise, 1.5f) << "not over the top";
+  EXPECT_LT(input.look().distance, 0.9f);
+  const Look before = input.look();
+  frame_of(input, {mouse_to(50, 50)});
+  EXPECT_EQ(input.look().turn, before.turn) << "no button is held";
+}
+
+/// A controller that SDL believes in: events go through SDL's own mapping of buttons and axes.
+class VirtualController : public testing::Test {
+ protected:
+  void SetUp() override {
+    SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
+    SDL_SetMainReady();
+    ASSERT_EQ(SDL_Init(SDL_INIT_GAMECONTROLLER), 0) << SDL_GetError();
+    SDL_VirtualJoystickDesc description{};
+    description.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
+    description.type = SDL_JOYSTICK_TYPE_GAMECONTROLLER;
+    description.naxes = SDL_CONTROLLER_AXIS_MAX;
+    description.nbuttons = SDL_CONTROLLER_BUTTON_MAX;
+    index_ = SDL_JoystickAttachVirtualEx(&description);
+    ASSERT_GE(index_, 0) << SDL_GetError();
+    pump();
+    joystick_ = SDL_JoystickOpen(index_);
+    ASSERT_NE(joystick_, nullptr) << SDL_GetError();
+  }
+  void TearDown() override {
+    if (joystick_ != nullptr) SDL_JoystickClose(joystick_);
+    controllers_ = {};
+    SDL_Quit();
+  }
+
+  void pump() {
+    SDL_Event event;
+    SDL_PumpEvents();
+    while (SDL_PollEvent(&event) != 0) {
+      controllers_.take(event);
+      input_.take(event);
+    }
+  }
+  void press_button(SDL_GameControllerButton button) {
+    ASSERT_EQ(SDL_JoystickSetVirtualButton(joystick_, button, SDL_PRESSED), 0);
+    pump();
+    ASSERT_EQ(SDL_JoystickSetVirtualButton(joystick_, button, SDL_RELEASED), 0);
+    pump();
+  }
+
+  int index_ = -1;
+  SDL_Joystick* joystick_ = nullptr;
+  Controllers controllers_;
+  UserInput<3> input_{2, {}};
+};
+
+TEST_F(VirtualController, ItsButtonsDoWhatTheHelpSays) {
+  press_button(SDL_CONTROLLER_BUTTON_X);
+  press_button(SDL_CONTROLLER_BUTTON_BACK);
+  press_button(SDL_CONTROLLER_BUTTON_START);
+  const auto frame = input_.next_frame();
+  ASSERT_EQ(frame.size(), 3u);
+  EXPECT_EQ(frame[0].action, Action::kPush) << "the square: jump";
+  EXPECT_EQ(frame[1].action, Action::kHome);
+  EXPECT_EQ(frame[2].action, Action::kReset);
+  press_button(SDL_CONTROLLER_BUTTON_A);
+  EXPECT_EQ(input_.look().view, 1);
+  press_button(SDL_CONTROLLER_BUTTON_B);
+  EXPECT_TRUE(input_.wants_next_scene());
+}
+
+TEST_F(VirtualController, ItsLeftStickTiltsTheGround) {
+  ASSERT_EQ(SDL_JoystickSetVirtualAxis(joystick_, SDL_CONTROLLER_AXIS_LEFTX, 3000), 0);
+  pump();
+  EXPECT_EQ(tilt_after(input_, 20), Vector3f(0, 0, 0)) << "a stick that nobody touches";
+  ASSERT_EQ(SDL_JoystickSetVirtualAxis(joystick_, SDL_CONTROLLER_AXIS_LEFTX, 32767), 0);
+  ASSERT_EQ(SDL_JoystickSetVirtualAxis(joystick_, SDL_CONTROLLER_AXIS_LEFTY, -32768), 0);
+  pump();
+  EXPECT_EQ(tilt_after(input_, 20), Vector3f(-GroundTilt::kMost, 0, -GroundTilt::kMost)) << "right and away";
+}
+
+TEST_F(VirtualController, ItsMotionSensorArrivesThroughTheQueue) {
+  // SDL 2 has no virtual sensors; the event is the one that a real one makes.
+  SDL_Event event = accelerometer(SDL_STANDARD_GRAVITY, SDL_STANDARD_GRAVITY, 0);
+  ASSERT_EQ(SDL_PushEvent(&event), 1) << SDL_GetError();
+  pump();
+  EXPECT_FLOAT_EQ(tilt_after(input_, 20).z(), GroundTilt::kMost);
+}
+
+TEST_F(VirtualController, ThatIsPulledOutLetsTheGroundGoBack) {
+  ASSERT_EQ(SDL_JoystickSetVirtualAxis(joystick_, SDL_CONTROLLER_AXIS_LEFTX, 32767), 0);
+  pump();
+  const Vector3f tilted = tilt_after(input_, 20);
+  EXPECT_FLOAT_EQ(tilted.z(), -GroundTilt::kMost);
+  ASSERT_EQ(SDL_JoystickDetachVirtual(index_), 0);
+  pump();
+  EXPECT_EQ(tilt_after(input_, 20, tilted), Vector3f(0, 0, 0));
+}
+
+}  // namespace
+}  // namespace softcell::demos
