@@ -39,7 +39,7 @@ return {
   framework = { half_width = 4, height = 1.6, thickness = 0.3, front_opacity = 0.15 },
   camera = { eye = { 0, 6.5, 13 }, target = { 0, 3.2, 0 }, tan_half_fov_y = 0.42, near = 1, far = 60 },
   light = { shadow_radius = 9 },
-  materials = { penguin = { cell_size = 0.13, half_width = 2, density = 250, alpha = 0.3, damping = 0.1 } },
+  materials = { penguin = { cell_size = 0.15, half_width = 2, density = 250, alpha = 0.3, damping = 0.1 } },
   box = boxes,
   obstacle = obstacles,
   soft_body = bodies,

@@ -300,7 +300,7 @@ INSTANTIATE_TEST_SUITE_P(WrongUsage, CommandRefuses,
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
-    testing::Values(Refusal{SC_DEMO "--scene nowhere", 1, "arena, drop"},
+    testing::Values(Refusal{SC_DEMO "--scene nowhere", 1, "there are: arena, "},
                     Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"},
                     Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
                     Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},

@@ -61,7 +61,8 @@ TEST(Script, WorksInTwoDimensions) {
                                     "[[impulse]]\ntime = 0\nbody = \"b\"\nvelocity = [1, 2]\n"
                                     "[[pause]]\nbegin = 1\nend = 2\n[[reset]]\ntime = 3\n",
                                     "s.toml"));
-  Simulation2d simulation(scene);
+  // The reference solver leaves a body at rest exactly as it is; truncation on the SPEs does not.
+  Simulation2d simulation(scene, {.solver = Solver::kReference});
   const std::uint64_t at_the_beginning = simulation.state_hash();
   int frame = 0;
   const auto run_until = [&](int end) {

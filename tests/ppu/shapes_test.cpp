@@ -28,7 +28,7 @@ const Shape kShapes[] = {
     {"torus", [] { return make_torus(0.4f, 0.15f, 48, 24); }, {1.1f, 0.3f, 1.1f}, 0.98, 0xf00fe81c18bdb44du},
     {"box", [] { return make_box(kBoxSize, 0.1f); }, kBoxSize, 0.9999, 0xeaa1ac282c499a58u},
     {"car", [] { return make_car(1); }, {1, 1.26f, 0.64f}, 0.5, 0xd1b32eb6ae719811u},
-    {"penguin", [] { return make_penguin(1); }, {0.71f, 1, 0.56f}, 0.5, 0x5f281f6a3e0c1c12u},
+    {"penguin", [] { return make_penguin(1); }, {0.71f, 1, 0.56f}, 0.5, 0x8ec7071c36589cfcu},
     {"cone", [] { return make_cone(0.5f, 2, 32); }, {1, 2, 1}, 0.9, 0x9b404c04d2d715b6u},
     {"cylinder", [] { return make_cylinder(0.5f, 2, 32); }, {1, 2, 1}, 0.99, 0xbd8067e22e45e33fu},
     {"wedge", [] { return make_wedge(kWedgeSize); }, kWedgeSize, 0.9999, 0x723a5b31e10ae042u},

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "builtin_files.h"
 #include "field_reader.h"
 #include "lua_document.h"
@@ -19,13 +21,24 @@ int read_dimension(FieldReader& root) {
   return dimension;
 }
 
+Value read_document(const SourceText& text) {
+  return text.is_lua() ? run_lua(text.text, text.name) : parse_toml(text.text, text.name);
+}
+
 std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
                                         const std::optional<OwnModel>& model = std::nullopt) {
-  const SourceText& text = source.main();
-  const Value document = text.is_lua() ? run_lua(text.text, text.name) : parse_toml(text.text, text.name);
+  const Value document = read_document(source.main());
   FieldReader root(document, "a scene");
   if (read_dimension(root) == 2) return read_scene_2d(root, source);
   return read_scene_3d(root, source, model);
+}
+
+/// What a script returns for a scene to use: see read_lattice_2d.h.
+bool is_lattice(const Value& document) {
+  const Table* const table = std::get_if<Table>(&document.data);
+  return table != nullptr && std::ranges::any_of(*table, [](const Field& field) {
+           return field.name == "cells" || field.name == "rows";
+         });
 }
 
 }  // namespace
@@ -34,8 +47,9 @@ const std::vector<SceneListing>& list_scenes() {
   static const std::vector<SceneListing> scenes = [] {
     std::vector<SceneListing> found;
     for (const BuiltinFile& file : builtin_files()) {
-      if (!file.name.ends_with(".toml")) continue;
-      const Value document = parse_toml(file.text, std::make_shared<const std::string>(file.name));
+      const Value document =
+          read_document({std::string(file.text), std::make_shared<const std::string>(file.name)});
+      if (is_lattice(document)) continue;
       SceneListing& scene = found.emplace_back();
       scene.file = file.name;
       scene.name = file.name.substr(0, file.name.rfind('.'));
