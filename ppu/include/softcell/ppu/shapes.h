@@ -23,7 +23,8 @@ TriangleMesh make_box(const Eigen::Vector3f& size, float step);
 /// antenna at the rear that is about as high as the car is long.
 TriangleMesh make_car(float length);
 
-/// A penguin `height` metres high: a body, a head with a beak, two flippers and two feet. It looks towards +z.
+/// A penguin `height` metres high: a body, a head with a beak, two flippers and two feet. It looks towards
+/// +z.
 TriangleMesh make_penguin(float height);
 
 /// A spike: a cone about the y axis, its tip up; `segments` 3..2048.
