@@ -8,18 +8,27 @@
 
 #include "softcell/ls_sim/image.h"
 
-#define SC_TEST_KERNELS(X)                                                                                \
-  X(echo_arguments)                                                                                       \
-  X(remembers)                                                                                            \
-  X(stack_overflow_deep)                                                                                  \
-  X(read_effective_address)                                                                               \
-  X(outside_local_store)                                                                                  \
-  X(illegal_instruction)                                                                                  \
-  X(endless)                                                                                              \
-  X(bad_dma)                                                                                              \
-  X(no_wait)                                                                                              \
-  X(padded) X(arithmetic) X(waits) X(pings) X(doubles) X(increments) X(locks) X(queues) X(meets) X(mixes) \
-      X(exits)
+#define SC_TEST_KERNELS(X)  \
+  X(echo_arguments)         \
+  X(remembers)              \
+  X(stack_overflow_deep)    \
+  X(read_effective_address) \
+  X(outside_local_store)    \
+  X(illegal_instruction)    \
+  X(endless)                \
+  X(bad_dma)                \
+  X(no_wait)                \
+  X(padded)                 \
+  X(arithmetic)             \
+  X(waits)                  \
+  X(pings)                  \
+  X(doubles)                \
+  X(increments)             \
+  X(locks)                  \
+  X(queues)                 \
+  X(meets)                  \
+  X(mixes)                  \
+  X(exits)
 
 extern "C" {
 #define SC_DECLARE(name)                                                         \
