@@ -28,7 +28,7 @@ void validate(const MatchSettings& settings) {
   check_setting("pull", settings.pull, std::numeric_limits<float>::max());
   check_setting("damping", settings.damping, 1);
   if (settings.least_iterations > settings.most_iterations)
-    throw std::invalid_argument("MatchSettings: at least " + std::to_string(settings.least_iterations) +
+    throw std::invalid_argument("matching on SPEs: at least " + std::to_string(settings.least_iterations) +
                                 " iterations, but at most " + std::to_string(settings.most_iterations));
 }
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
-#include <string>
+
+#include "match_orchestration.h"
 
 namespace softcell::ppu {
 namespace {
@@ -125,9 +126,7 @@ void SpeSolver::finish() {
   for (SoftBody* const body : large_) body->pull(step_);
   chain_->wait();
   if (chain_->size() == 0) return;
-  std::string failures;
-  for (const JobFailure& failure : chain_->failures()) failures += "; " + failure.message;
-  if (!failures.empty()) throw std::runtime_error("stepping soft bodies failed" + failures);
+  check_jobs(*chain_);
   for (const auto& group : groups_) {
     if (!group->awake.empty() && !group->bodies->take_results().empty())
       throw std::runtime_error("a soft body has positions or velocities that are not finite numbers");
