@@ -41,6 +41,7 @@ set(SOFTCELL_SPU_CHECK_FLAGS
 # What the checked flavour is compiled with: a call before each load and store, to spu_kernels/sdk/checked. Why which compiler gets
 # which is written there.
 set(SOFTCELL_CHECKED_FLAGS
+  -DSOFTCELL_CHECKED  # a kernel that fills the local store has to make do with less of it then
   "$<$<CXX_COMPILER_ID:GNU>:-fsanitize=thread;SHELL:--param tsan-instrument-func-entry-exit=0>"
   "$<$<CXX_COMPILER_ID:Clang>:-fsanitize=kernel-address>"
   "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-instrumentation-with-call-threshold=0 -mllvm -asan-opt=0>"

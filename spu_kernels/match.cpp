@@ -31,12 +31,18 @@ namespace {
 
 enum Tag : uint32_t { kTagIn = 0, kTagOut = 1 };
 
+#ifdef SOFTCELL_CHECKED
+constexpr uint32_t kArenaBytes = kMatchCheckedArenaBytes;
+#else
+constexpr uint32_t kArenaBytes = kMatchArenaBytes;
+#endif
+
 /// Everything this kernel keeps in local store beside its code and stack.
 struct alignas(128) LocalStoreMap {
   MatchJob job;
   MatchBody body;
   MatchResult result;
-  alignas(128) char arena[kMatchArenaBytes];
+  alignas(128) char arena[kArenaBytes];
 };
 LocalStoreMap ls;
 
@@ -46,7 +52,7 @@ const MatchPlanHeader& plan() { return *reinterpret_cast<const MatchPlanHeader*>
 bool load_plan() {
   mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader), kTagIn, 0, 0);
   wait_for_tag(kTagIn);
-  if (!match_fits(plan())) return false;
+  if (!match_fits(plan(), kArenaBytes)) return false;
   get_large(ls.arena + sizeof(MatchPlanHeader), ls.job.plan_ea + sizeof(MatchPlanHeader),
             plan().bytes - static_cast<uint32_t>(sizeof(MatchPlanHeader)), kTagIn);
   wait_for_tag(kTagIn);

@@ -107,14 +107,14 @@ constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
          match_momenta_bytes(plan) + 2 * match_buffer_bytes(plan);
 }
 
-/// What the kernel has for all that.
-constexpr uint32_t kMatchArenaBytes = 216 * 1024;
+/// What the kernel has for all that; its instrumented flavour has twice the code and less room.
+constexpr uint32_t kMatchArenaBytes = 216 * 1024, kMatchCheckedArenaBytes = 176 * 1024;
 
-/// Whether a plan and one body's state fit. Any numbers may stand in the header.
-constexpr bool match_fits(const MatchPlanHeader& plan) {
-  const uint32_t most = kMatchArenaBytes / 16;  // of anything; below it, sizes do not overflow
-  return plan.bytes <= kMatchArenaBytes && plan.particles <= most && plan.regions <= most &&
-         plan.slots <= most && match_local_store_bytes(plan) <= kMatchArenaBytes;
+/// Whether a plan and one body's state fit in so many bytes. Any numbers may stand in the header.
+constexpr bool match_fits(const MatchPlanHeader& plan, uint32_t arena_bytes) {
+  const uint32_t most = arena_bytes / 16;  // of anything; below it, sizes do not overflow
+  return plan.bytes <= arena_bytes && plan.particles <= most && plan.regions <= most && plan.slots <= most &&
+         match_local_store_bytes(plan) <= arena_bytes;
 }
 
 }  // namespace softcell::spu

@@ -128,7 +128,6 @@ class CommandLine {
     d->callback([this] {
       chosen_ = [this] {
         parse_texts(demo_3d_);
-        if (demo_3d_.checked) match_on_ppu(demo_3d_);
         return run_demo_3d(demo_3d_);
       };
     });
@@ -159,8 +158,7 @@ class CommandLine {
                  "Who does shape matching: native, the SPEs (default), or reference, the PPU with Eigen")
         ->type_name("native|reference");
     d.add_flag("--checked", options.checked,
-               "Run the instrumented flavour of the kernels; findings end with status 3. In 3D shape "
-               "matching is then done by the PPU: its instrumented kernel does not fit in a local store");
+               "Run the instrumented flavour of the kernels; findings end with status 3");
     d.add_option("--record", options.record, "Write what happens in each frame, to be done again by --replay")
         ->type_name("FILE");
     d.add_option(
@@ -176,14 +174,6 @@ class CommandLine {
     if (!size_.empty()) options.size = parse_size(size_);
     options.schedule = parse_dma(schedule_);
     options.solver = parse_engine(engine_);
-  }
-
-  void match_on_ppu(DemoOptions& options) const {
-    if (engine_ == "native")
-      throw UsageError(
-          "--checked does not go with --engine native: the instrumented kernel of shape matching in 3D does "
-          "not fit in a local store");
-    options.solver = Solver::kReference;
   }
 
   void add_spu() {

@@ -62,7 +62,7 @@ struct Simulation3d::State {
         script(scene.script),
         controls({0, -scene.gravity, 0}),
         job_loop(load_kernel("job_loop")),
-        match(load_kernel("match")),
+        match(load_kernel("match", options.findings != nullptr)),
         skin(load_kernel("skin", options.findings != nullptr)),
         jobs(memory,
              {.spes = options.spes,

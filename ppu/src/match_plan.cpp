@@ -39,7 +39,7 @@ constexpr SumListFormat kFormat{spu::kMatchSlotBytes, MatchPlan::kRestart};
 
 }  // namespace
 
-MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching) {
+MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching, std::uint32_t arena_bytes) {
   const SumPlan& sums = matching.sums();
   const Stations stations(lattice.particles, sums);
   const Order bars(stations.bars), plates(stations.plates), regions(stations.regions);
@@ -51,8 +51,7 @@ MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching
       1 + std::max({4 * particle_groups, bars.item.size(), plates.item.size(), 4 * region_groups});
   // Before lists are written, whose offsets would not fit: what the buffers need at least.
   static_assert(2 * spu::kMatchSlotBytes * kFormat.max_slot() > spu::kMatchArenaBytes);
-  check_fits("match", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatchSlotBytes,
-             spu::kMatchArenaBytes);
+  check_fits("match", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatchSlotBytes, arena_bytes);
 
   std::vector<spu::MatchParticles> particle_constants;
   for (std::size_t i = 0; i < matching.particles(); i += 4)
@@ -93,7 +92,7 @@ MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching
   header.grid = origin_grid(lattice.spacing);
   header.inverse_mass = inverse_body_mass(matching.particle_constants());
   header.bytes = writer.size();
-  check_fits("match", matching.particles(), spu::match_local_store_bytes(header), spu::kMatchArenaBytes);
+  check_fits("match", matching.particles(), spu::match_local_store_bytes(header), arena_bytes);
   assign(writer.finish(header));
 }
 

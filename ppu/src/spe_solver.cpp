@@ -20,9 +20,9 @@ std::size_t bodies_per_job(std::size_t bodies, int spes) {
 
 /// Nothing when the bodies do not fit a local store.
 std::optional<MatchBodies> make_bodies(dma::AddressSpace& memory, const SoftBodyModel& model,
-                                       std::size_t count) {
+                                       std::size_t count, std::uint32_t arena_bytes) {
   try {
-    return MatchBodies(memory, MatchPlan(model.lattice(), *model.plan()), count);
+    return MatchBodies(memory, MatchPlan(model.lattice(), *model.plan(), arena_bytes), count);
   } catch (const BodyTooLarge&) {
     return std::nullopt;
   }
@@ -45,7 +45,10 @@ struct SpeSolver::Member {
 };
 
 SpeSolver::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match)
-    : memory_(memory), jobs_(jobs), match_(jobs.place(match)) {}
+    : memory_(memory),
+      jobs_(jobs),
+      match_(jobs.place(match)),
+      arena_bytes_(match.checked ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes) {}
 
 SpeSolver::~SpeSolver() = default;
 
@@ -71,7 +74,7 @@ void SpeSolver::regroup(std::span<SoftBody* const> bodies) {
   }
   std::size_t jobs = 0;
   for (const auto& group : groups) {
-    group->bodies = make_bodies(memory_, *group->model, group->count);
+    group->bodies = make_bodies(memory_, *group->model, group->count, arena_bytes_);
     if (group->bodies) jobs += group->count;
   }
   for (const Member& member : members) {

@@ -7,8 +7,8 @@
   extern const std::byte softcell_image_##kernel##_checked[], softcell_image_##kernel##_checked_end[];
 
 extern "C" {
-extern const std::byte softcell_image_match[], softcell_image_match_end[];
 extern const std::byte softcell_image_job_loop[], softcell_image_job_loop_end[];
+SC_DECLARE(match)
 SC_DECLARE(match_2d)
 SC_DECLARE(rotations)
 SC_DECLARE(skin)
@@ -24,13 +24,14 @@ std::span<const ImageFile> image_files() {
     .name = #kernel, .elf = {softcell_image_##kernel, softcell_image_##kernel##_end},          \
     .checked_elf = {softcell_image_##kernel##_checked, softcell_image_##kernel##_checked_end}, \
   }
-  static const std::array files{
-      ImageFile{.name = "job_loop",
-                .elf = {softcell_image_job_loop, softcell_image_job_loop_end},
-                .checked_elf = {}},
-      // A checked match would not fit in a local store.
-      ImageFile{.name = "match", .elf = {softcell_image_match, softcell_image_match_end}, .checked_elf = {}},
-      SC_FILE(match_2d), SC_FILE(rotations), SC_FILE(skin), SC_FILE(transfers)};
+  static const std::array files{ImageFile{.name = "job_loop",
+                                          .elf = {softcell_image_job_loop, softcell_image_job_loop_end},
+                                          .checked_elf = {}},
+                                SC_FILE(match),
+                                SC_FILE(match_2d),
+                                SC_FILE(rotations),
+                                SC_FILE(skin),
+                                SC_FILE(transfers)};
 #undef SC_FILE
   return files;
 }

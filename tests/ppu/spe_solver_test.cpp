@@ -2,6 +2,7 @@
 // whoever steps them.
 
 #include "softcell/ppu/spe_solver.h"
+#include "softcell/ls_sim/findings.h"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +23,11 @@ SoftBodySettings rubber() {
 
 /// A Bullet world whose soft bodies are stepped by SPEs.
 struct SpeWorld {
-  explicit SpeWorld(int spes = 2, const char* schedule = "eager")
-      : jobs(memory, {.spes = spes, .schedule = dma::parse_schedule(schedule)}, job_loop),
+  /// @param findings  where the instrumented kernel reports; null: it is not instrumented
+  explicit SpeWorld(int spes = 2, const char* schedule = "eager", ls_sim::Findings* findings = nullptr)
+      : match(test::kernel_image("match", findings != nullptr)),
+        jobs(memory, {.spes = spes, .schedule = dma::parse_schedule(schedule), .findings = findings},
+             job_loop),
         solver(memory, jobs, match),
         soft(bullet.world(), solver) {}
 
@@ -38,7 +42,7 @@ struct SpeWorld {
   }
 
   dma::AddressSpace memory;
-  ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match = test::kernel_image("match");
+  ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match;
   JobSystem jobs;
   SpeSolver solver;
   BulletWorld bullet;
@@ -82,8 +86,9 @@ TEST(SpeSolver, AgreesWithThePpuInOneStepFromTheSameState) {
   }
 }
 
-std::uint64_t hash_of_a_run(int spes, const char* schedule, bool ahead) {
-  SpeWorld world(spes, schedule);
+std::uint64_t hash_of_a_run(int spes, const char* schedule, bool ahead,
+                            ls_sim::Findings* findings = nullptr) {
+  SpeWorld world(spes, schedule, findings);
   world.add_floor();
   const auto block = block_model({3, 3, 3}, rubber()), bar = block_model({6, 1, 2}, rubber());
   const SoftBody* const bodies[] = {&world.soft.add(block, {0, 1, 0}), &world.soft.add(bar, {0.5f, 2, 0}),
@@ -94,6 +99,21 @@ std::uint64_t hash_of_a_run(int spes, const char* schedule, bool ahead) {
     if (ahead) world.soft.begin_ahead(kFrame / 2);
   }
   return state_hash(bodies);
+}
+
+TEST(SpeSolver, TheCheckedKernelFindsNothingAndGivesTheSameBytes) {
+  const std::uint64_t expected = hash_of_a_run(1, "eager", true);
+  for (const char* schedule : {"eager", "lazy", "random:1"}) {
+    ls_sim::Findings findings;
+    EXPECT_EQ(hash_of_a_run(2, schedule, true, &findings), expected) << schedule;
+    for (const ls_sim::Finding& finding : findings.list()) ADD_FAILURE() << finding.fault.message();
+  }
+}
+
+TEST(SpeSolver, ABodyThatFillsALocalStoreIsTooLargeForTheCheckedKernel) {
+  const auto model = block_model({9, 9, 9}, rubber());
+  EXPECT_NO_THROW(MatchPlan(model->lattice(), *model->plan()));
+  EXPECT_THROW(MatchPlan(model->lattice(), *model->plan(), spu::kMatchCheckedArenaBytes), BodyTooLarge);
 }
 
 TEST(SpeSolver, GivesTheSameBytesOnAnySpesUnderEverySchedule) {

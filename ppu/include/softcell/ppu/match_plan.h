@@ -14,8 +14,11 @@ namespace softcell::ppu {
 /// likewise.
 class MatchPlan : public KernelPlan<spu::MatchPlanHeader> {
  public:
+  /// @param arena_bytes  what the kernel has for plan and state: kMatchArenaBytes, or of its instrumented
+  ///                     flavour kMatchCheckedArenaBytes.
   /// @throws BodyTooLarge
-  MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching);
+  MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching,
+            std::uint32_t arena_bytes = spu::kMatchArenaBytes);
 };
 
 }  // namespace softcell::ppu

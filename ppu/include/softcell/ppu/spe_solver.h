@@ -41,6 +41,7 @@ class SpeSolver final : public SoftBodySolver {
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
   JobImage match_;
+  std::uint32_t arena_bytes_;  ///< of that flavour of the kernel
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<Member> members_;  // in the order of kick()
   std::vector<SoftBody*> large_;
