@@ -126,7 +126,9 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   {
     ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames), options.quiet);
     for (int frame = 0; frame < frames && !guard.interrupted(); ++frame) {
-      record.add(demo.step());
+      const FrameTimes times = demo.step();
+      record.add(times);
+      pictures.follow(times);
       if (pictures.every_frame()) pictures.take(frame);
       bar.show(static_cast<std::size_t>(frame) + 1);
     }
@@ -153,6 +155,9 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (!options.headless && (options.out || options.video)) {
     throw UsageError("--out and --video write pictures without a window: give --headless too");
   }
+  if (!options.headless && options.statistics)
+    throw UsageError(
+        "--statistics is for pictures without a window: give --headless too; in a window S shows them");
   // A recording and a trace are of one scene.
   const std::vector<MakeDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);

@@ -47,11 +47,24 @@ Pictures::Pictures(const DemoOptions& options, Demo& demo) : demo_(demo) {
   renderer_ = std::make_unique<render::Renderer>(
       *context_, render::RendererSettings{.width = options.size.width, .height = options.size.height});
   demo_.make_view(*renderer_);
+  if (options.statistics) statistics_.emplace();
+}
+
+void Pictures::follow(const FrameTimes& times) {
+  if (statistics_)
+    statistics_->page = statistics_->pages.next(demo_, times, {}, renderer_->width(), renderer_->height());
+}
+
+const render::Image& Pictures::draw() {
+  const render::Image& image = demo_.draw();
+  if (!statistics_) return image;
+  draw_statistics(statistics_->page, kTextScale, statistics_->overlay, *renderer_);
+  return renderer_->pixels();
 }
 
 void Pictures::take(int frame) {
   const auto begin = std::chrono::steady_clock::now();
-  const render::Image& image = demo_.draw();
+  const render::Image& image = draw();
   if (folder_) folder_->write(frame, image);
   if (video_) video_->add_frame(image);
   hash_ = render::image_hash(image);

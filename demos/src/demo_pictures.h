@@ -12,6 +12,7 @@
 #include "softcell/render/gl_context.h"
 #include "softcell/render/renderer.h"
 #include "softcell/render/video.h"
+#include "window/demo_pages.h"
 
 namespace softcell::demos {
 
@@ -35,6 +36,9 @@ class Pictures {
 
   bool every_frame() const { return folder_ || video_; }
 
+  /// After each frame: what the statistics over a picture of it say.
+  void follow(const FrameTimes& times);
+
   void take(int frame);
   /// Completes the video.
   void finish();
@@ -43,11 +47,20 @@ class Pictures {
   const std::vector<double>& milliseconds() const { return milliseconds_; }  ///< of each picture
 
  private:
+  const render::Image& draw();
+
   Demo& demo_;
   std::optional<FrameFolder> folder_;
   std::unique_ptr<render::VideoWriter> video_;
   std::unique_ptr<render::GlContext> context_;
   std::unique_ptr<render::Renderer> renderer_;
+  /// Figures over the pictures.
+  struct Statistics {
+    render::Overlay overlay{kTextScale};
+    DemoPages pages;
+    Page page;
+  };
+  std::optional<Statistics> statistics_;
   std::uint64_t hash_ = 0;
   std::vector<double> milliseconds_;
 };

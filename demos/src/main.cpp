@@ -148,6 +148,8 @@ class CommandLine {
     d.add_option("--out", options.out, "Folder for numbered PNG frames (with --headless)")->type_name("DIR");
     d.add_option("--video", options.video, "Write an MP4 video (with --headless; needs ffmpeg)")
         ->type_name("FILE");
+    d.add_flag("--statistics", options.statistics,
+               "Draw each frame's figures over its picture (with --headless; in a window S does)");
     d.add_option("--size", size_, "Size of pictures in pixels, or of the window (default: 1280x720)")
         ->type_name("WIDTHxHEIGHT");
     d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)")

@@ -26,6 +26,7 @@ struct DemoOptions {
   std::optional<std::filesystem::path> out;  ///< folder for numbered frames
   std::optional<std::filesystem::path> video;
   std::optional<std::filesystem::path> json;
+  bool statistics = false;  ///< of each frame, over its picture
   PictureSize size;
   Solver solver = Solver::kSpe;
   int spes = 6;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "input_log.h"
 #include "scene_file/scene_library.h"
 #include "scene_view.h"
 #include "scene_view_2d.h"
@@ -9,6 +10,7 @@
 #include "simulation_3d.h"
 #include "softcell/render/offscreen_context.h"
 #include "support/golden.h"
+#include "window/page.h"
 
 namespace softcell::demos {
 namespace {
@@ -43,10 +45,11 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden,
 // Nothing tilts here, and no sine is taken: late moments are as safe as early ones. docs/figures.md shows
 // them.
 INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
-                         testing::Values(Moment{"penguin", 1}, Moment{"torus_on_spike", 180},
-                                         Moment{"sphere_on_wall", 50}, Moment{"bumper_car", 55},
-                                         Moment{"small_object", 150}, Moment{"contact_before", 180},
-                                         Moment{"contact_after", 180}, Moment{"penguins", 1}));
+                         testing::Values(Moment{"cell", 119}, Moment{"penguin", 1},
+                                         Moment{"torus_on_spike", 180}, Moment{"sphere_on_wall", 50},
+                                         Moment{"bumper_car", 55}, Moment{"small_object", 150},
+                                         Moment{"contact_before", 180}, Moment{"contact_after", 180},
+                                         Moment{"penguins", 1}));
 
 class SceneGoldenLattice : public testing::TestWithParam<const char*> {};
 
@@ -90,17 +93,49 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden2d,
                                          Moment2d{"stack", 60, View2d::kFilled, "stack_60"},
                                          Moment2d{"two_way", 50, View2d::kFilled, "two_way_50"}));
 
-TEST(SceneGolden2d, AHandThatDragsTheManIsSeen) {
-  const Scene2d scene = load_scene_2d("man");
+/// What a hand does to the man was recorded: `ci/figures` plays the recordings once more when the state's
+/// bits or their format change.
+class SceneGoldenReplay : public testing::TestWithParam<const char*> {};
+
+TEST_P(SceneGoldenReplay, LooksAsItDidAndEndsInItsState) {
+  DemoOptions options;
+  options.replay = std::filesystem::path(SOFTCELL_RECORDINGS_DIR) / (std::string(GetParam()) + ".rec");
+  InputLog<2> log(options);
+  Scene2d scene = load_scene_2d(log.scene_name().value());
+  log.begin(scene);
   Simulation2d simulation(scene);
-  simulation.step(std::vector<InputEvent<2>>{
-      {.action = Action::kGrab, .hand = kUsersHand, .body = kEveryBody, .value = {-1.6f, 0.6f}},
-      {.action = Action::kMoveHand, .hand = kUsersHand, .value = {-3, 2}}});
-  for (int frame = 0; frame < 60; ++frame) simulation.step();
+  for (std::int64_t frame = 0; frame < log.frames(); ++frame) {
+    simulation.step(log.events_at(frame));
+    log.note(frame, simulation.last_events());
+  }
+  log.save(simulation.state_hash());
+  EXPECT_NO_THROW(log.check());
   const auto context = render::create_offscreen_context();
   render::Renderer renderer(*context, {.width = 480, .height = 270});
   SceneView2d view(scene, simulation, renderer, View2d::kFilled);
-  EXPECT_TRUE(test::compare_with_golden(view.draw(), "man_dragged"));
+  EXPECT_TRUE(test::compare_with_golden(view.draw(), GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Figures, SceneGoldenReplay, testing::Values("man_dragged", "man_kneeling"));
+
+TEST(SceneGolden2d, StatisticsStandOverThePicture) {
+  const Scene2d scene = load_scene_2d("man");
+  Simulation2d simulation(scene);
+  for (int frame = 0; frame < 45; ++frame) simulation.step();
+  const auto context = render::create_offscreen_context();
+  render::Renderer renderer(*context, {.width = 640, .height = 360});
+  SceneView2d view(scene, simulation, renderer, View2d::kFilled);
+  view.draw();
+  render::Overlay overlay(kTextScale);
+  // Measured figures are others in every run; how they look is not.
+  const Page page{.scene = scene.name,
+                  .counts = {.soft_bodies = 1, .particles = simulation.particles()},
+                  .times = {.physics_ms = 0.25, .ppu_ms = 0.125},
+                  .spes = 6,
+                  .spe_ms = 0.0625,
+                  .dma_bytes = 54321};
+  draw_statistics(page, kTextScale, overlay, renderer);
+  EXPECT_TRUE(test::compare_with_golden(renderer.pixels(), "man_statistics"));
 }
 
 TEST(Camera2d, KnowsWhereAPixelIs) {

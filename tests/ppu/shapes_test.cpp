@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <ostream>
@@ -9,6 +10,7 @@
 
 #include "ppu/mesh_checks.h"
 #include "softcell/ppu/deterministic_math.h"
+#include "softcell/ppu/lattice.h"
 
 namespace softcell::ppu {
 namespace {
@@ -31,6 +33,13 @@ const Shape kShapes[] = {
     {"penguin", [] { return make_penguin(1); }, {0.71f, 1, 0.56f}, 0.5, 0x8ec7071c36589cfcu},
     {"cone", [] { return make_cone(0.5f, 2, 32); }, {1, 2, 1}, 0.9, 0x9b404c04d2d715b6u},
     {"cylinder", [] { return make_cylinder(0.5f, 2, 32); }, {1, 2, 1}, 0.99, 0xbd8067e22e45e33fu},
+    {"marked_cells",
+     [] {
+       return make_marked_cells(0.5f, {0.2f, 0.7f, 0.5f});
+     },
+     {1, 0.5f, 0.5f},
+     0.98,
+     0x0u},
     {"wedge", [] { return make_wedge(kWedgeSize); }, kWedgeSize, 0.9999, 0x723a5b31e10ae042u},
 };
 
@@ -75,6 +84,20 @@ TEST(Torus, KeepsItsTubeRadius) {
   }
 }
 
+TEST(MarkedCells, FillTwoCellsOfALatticeAndNoMore) {
+  const Eigen::Vector3f ball(0.2f, 0.7f, 0.5f);
+  const TriangleMesh mesh = make_marked_cells(0.5f, ball);
+  const Lattice lattice = voxelize(mesh, 0.5f);
+  EXPECT_EQ(lattice.cells.size(), 2u);
+  EXPECT_EQ(lattice.particles.size(), 12u);
+  // The ball's middle is where it was asked for: its vertices lie around it.
+  const Eigen::Vector3f middle = lattice.rest_position(0) + 0.5f * ball;
+  const auto near = std::count_if(mesh.positions.begin(), mesh.positions.end(), [&](const auto& p) {
+    return std::abs((p - middle).norm() - 0.03f) < 1e-5f;
+  });
+  EXPECT_EQ(near, static_cast<std::ptrdiff_t>(make_sphere(0.03f, 6).positions.size()));
+}
+
 TEST(Volumes, ApproachTheirFormulas) {
   EXPECT_NEAR(volume(make_sphere(1, 40)), 4.0 / 3 * kPi, 0.01);
   EXPECT_NEAR(volume(make_torus(2, 0.5f, 200, 100)), 2 * kPi * 2 * kPi * 0.25, 0.01);
@@ -116,6 +139,9 @@ TEST(Shapes, RefuseSizesThatMakeNoShape) {
   EXPECT_THROW(make_car(INFINITY), std::invalid_argument);
   EXPECT_THROW(make_cone(1, 1, 2), std::invalid_argument);
   EXPECT_THROW(make_penguin(0), std::invalid_argument);
+  EXPECT_THROW(make_marked_cells(0, {0.5f, 0.5f, 0.5f}), std::invalid_argument);
+  EXPECT_THROW(make_marked_cells(1, {0.5f, 0.5f, 0.95f}), std::invalid_argument);
+  EXPECT_THROW(make_marked_cells(1, {0.5f, NAN, 0.5f}), std::invalid_argument);
 }
 
 }  // namespace

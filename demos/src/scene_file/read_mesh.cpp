@@ -73,10 +73,17 @@ ppu::TriangleMesh wedge(FieldReader& fields) {
   return ppu::make_wedge(size);
 }
 
-constexpr std::array<std::string_view, 8> kKinds{"box",     "car",    "cone",  "cylinder",
+ppu::TriangleMesh marked_cells(FieldReader& fields) {
+  float size = 1;
+  Eigen::Vector3f ball{0.5f, 0.5f, 0.5f};
+  fields.number("size", size, kLength).vector("ball", ball, {.low = 0.1, .high = 0.9}).finish();
+  return ppu::make_marked_cells(size, ball);
+}
+
+constexpr std::array<std::string_view, 9> kKinds{"box",     "car",    "cone",  "cylinder", "marked_cells",
                                                  "penguin", "sphere", "torus", "wedge"};
-constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 8> kMakers{
-    box, car, round<ppu::make_cone>, round<ppu::make_cylinder>, penguin, sphere, torus, wedge};
+constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 9> kMakers{
+    box, car, round<ppu::make_cone>, round<ppu::make_cylinder>, marked_cells, penguin, sphere, torus, wedge};
 
 ppu::TriangleMesh primitive(const Value& value, const std::string& owner) {
   FieldReader fields(value, "the shape of " + owner);

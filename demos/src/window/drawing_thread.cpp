@@ -14,8 +14,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr float kTextScale = 1.3f;
-
 /// Pictures a second, over half a second.
 class Rate {
  public:

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdarg>
+#include <optional>
 
 #include "frame_clock.h"
 #include "key_bindings.h"
@@ -27,7 +28,8 @@ IM_FMTARGS(2) void row(const char* name, const char* format, ...) {
   va_end(values);
 }
 
-void draw_statistics(const Page& page, double shown_per_second) {
+/// @param shown_per_second  none: no window shows it
+void draw_figures(const Page& page, const std::optional<double>& shown_per_second) {
   const double frame_ms = std::chrono::duration<double, std::milli>(FrameClock::kFrame).count();
   const double used_ms = page.times.physics_ms + page.times.ppu_ms;
   if (!ImGui::BeginTable("figures", 2)) return;
@@ -41,7 +43,7 @@ void draw_statistics(const Page& page, double shown_per_second) {
     row("busiest SPE", "%.2f ms", page.spe_ms);
     row("DMA", "%.1f KB a frame", static_cast<double>(page.dma_bytes) / 1000);
   }
-  row("shown", "%.0f pictures a second", shown_per_second);
+  if (shown_per_second) row("shown", "%.0f pictures a second", *shown_per_second);
   ImGui::EndTable();
 }
 
@@ -67,6 +69,8 @@ void draw_help(int dimension) {
   ImGui::EndTable();
 }
 
+constexpr float kMargin = 10;  // at scale 1, pixels
+
 template <class Draw>
 void draw_box(const char* name, const ImVec2& position, const ImVec2& pivot, const Draw& draw) {
   ImGui::SetNextWindowPos(position, ImGuiCond_Always, pivot);
@@ -75,13 +79,27 @@ void draw_box(const char* name, const ImVec2& position, const ImVec2& pivot, con
   ImGui::End();
 }
 
+void draw_statistics_box(const Page& page, float scale, const std::optional<double>& shown_per_second) {
+  draw_box("statistics", {kMargin * scale, kMargin * scale}, {0, 0},
+           [&] { draw_figures(page, shown_per_second); });
+}
+
 }  // namespace
 
+void draw_statistics(const Page& page, float scale, render::Overlay& overlay, render::Renderer& renderer) {
+  // Dear ImGui makes a box as large as what was in it the time before, and hides it the first time.
+  for (const bool for_size : {true, false}) {
+    overlay.begin(renderer.width(), renderer.height(), 1.0f / 60);
+    draw_statistics_box(page, scale, std::nullopt);
+    const render::OverlayMesh& mesh = overlay.end();
+    if (!for_size) renderer.draw_overlay(overlay.font(), mesh);
+  }
+}
+
 void draw_page(const Page& page, float scale, double shown_per_second) {
-  const float margin = 10 * scale;
+  const float margin = kMargin * scale;
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
-  if (page.look.statistics)
-    draw_box("statistics", {margin, margin}, {0, 0}, [&] { draw_statistics(page, shown_per_second); });
+  if (page.look.statistics) draw_statistics_box(page, scale, shown_per_second);
   if (page.look.help) {
     draw_box("help", {width / 2, height / 2}, {0.5f, 0.5f}, [&] { draw_help(page.dimension); });
   } else {

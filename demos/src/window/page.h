@@ -23,8 +23,15 @@ struct Page {
   std::uint64_t dma_bytes = 0;  ///< in the frame before
 };
 
-/// Calls Dear ImGui between begin() and end() of an overlay.
+inline constexpr float kTextScale = 1.3f;  ///< of a page's text on displays of usual density
+
+/// In a window: the figures, and help or how to get it. Calls Dear ImGui between begin() and end() of an
+/// overlay.
 /// @param scale  of the text  @param shown_per_second  pictures that the window showed of late
 void draw_page(const Page& page, float scale, double shown_per_second);
+
+/// Draws the figures over the renderer's last frame, which is no window's.
+/// @param scale  of the text, as the overlay's
+void draw_statistics(const Page& page, float scale, render::Overlay& overlay, render::Renderer& renderer);
 
 }  // namespace softcell::demos

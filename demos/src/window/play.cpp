@@ -2,38 +2,18 @@
 
 #include <SDL.h>
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 
 #include "../interrupt.h"
 #include "controllers.h"
+#include "demo_pages.h"
 #include "drawing_thread.h"
 #include "frame_clock.h"
 #include "user_input.h"
 
 namespace softcell::demos {
 namespace {
-
-/// What the SPEs did since it was asked last.
-class SpeUse {
- public:
-  void add_to(Page& page, const std::vector<ls_sim::SpeStatistics>& now) {
-    before_.resize(now.size());
-    page.spes = now.size();
-    page.spe_ms = 0;
-    page.dma_bytes = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      const std::chrono::duration<double, std::milli> busy = now[i].busy - before_[i].busy;
-      page.spe_ms = std::max(page.spe_ms, busy.count());
-      page.dma_bytes += now[i].dma.bytes() - before_[i].dma.bytes();
-    }
-    before_ = now;
-  }
-
- private:
-  std::vector<ls_sim::SpeStatistics> before_;
-};
 
 /// One scene in the window.
 class Scene {
@@ -46,20 +26,7 @@ class Scene {
     const FrameTimes times = demo_.step();
     record_.add(times);
     demo_.publish();
-    Page& page = drawing_.next_page();
-    page = {.look = demo_.input().look(),
-            .width = window_.width(),
-            .height = window_.height(),
-            .scene = demo_.scene_name(),
-            .dimension = demo_.dimension(),
-            .counts = demo_.counts(),
-            .times = times,
-            .paused = demo_.paused(),
-            .replays = demo_.replays(),
-            .spes = 0,
-            .spe_ms = 0,
-            .dma_bytes = 0};
-    spe_use_.add_to(page, demo_.spe_statistics());
+    drawing_.next_page() = pages_.next(demo_, times, demo_.input().look(), window_.width(), window_.height());
     drawing_.show();
   }
 
@@ -80,7 +47,7 @@ class Scene {
   render::Window& window_;
   Demo& demo_;
   DrawingThread drawing_;
-  SpeUse spe_use_;
+  DemoPages pages_;
   RunRecord record_;
   FrameClock::Clock::time_point begin_ = FrameClock::Clock::now();
 };

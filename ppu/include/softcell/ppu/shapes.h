@@ -37,4 +37,10 @@ TriangleMesh make_cylinder(float radius, float height, int segments);
 /// at +x.
 TriangleMesh make_wedge(const Eigen::Vector3f& size);
 
+/// The edges of two cells of `size` metres, side by side along x, as bars; in the first cell a ball, and the
+/// lines through it to the cell's six sides. A lattice of cells of the same size has just these cells: it
+/// shows where a vertex within a cell goes when the cell's corners move.
+/// @param ball  where it is, in shares of the cell; each 0.1 to 0.9
+TriangleMesh make_marked_cells(float size, const Eigen::Vector3f& ball);
+
 }  // namespace softcell::ppu
