@@ -30,7 +30,7 @@ local function add(name, x, colour, moved)
   end
 end
 
-add("at rest", -3.1, "#4FA35A", function(_, _, corner)
+add("at rest", -2.75, "#4FA35A", function(_, _, corner)
   return corner
 end)
 add("one edge moved", 0, "#C23B3B", function(column, row, corner)
@@ -39,7 +39,7 @@ add("one edge moved", 0, "#C23B3B", function(column, row, corner)
   end
   return corner
 end)
-add("turned", 3.1, "#2E7FC2", function(_, _, corner)
+add("turned", 2.75, "#2E7FC2", function(_, _, corner)
   local cosine, sine = 0.866, 0.5
   return { cosine * corner[1] - sine * corner[2], sine * corner[1] + cosine * corner[2] }
 end)
@@ -48,7 +48,7 @@ return {
   title = "figure 4.5: what is within a cell goes with its corners",
   world = { gravity = 0, frames = 180 },
   pictures = { 119 },
-  camera = { eye = { 0, 1.5, 14 }, target = { 0, 1.25, 0 }, tan_half_fov_y = 0.19, near = 5, far = 30 },
+  camera = { eye = { 0, 1.5, 14 }, target = { 0, 1.25, 0 }, tan_half_fov_y = 0.165, near = 5, far = 30 },
   light = { toward = { -0.3, 0.6, 1 }, shadow_radius = 7 },
   soft_body = bodies,
   drag = drags,

@@ -416,37 +416,40 @@ TriangleMesh make_wedge(const Eigen::Vector3f& size) {
 
 TriangleMesh make_marked_cells(float size, const Eigen::Vector3f& ball) {
   require_length(size, "a cell's size");
-  if (!(ball.minCoeff() >= 0.1f && ball.maxCoeff() <= 0.9f))
-    throw std::invalid_argument("a ball in a cell must be at 0.1 to 0.9 of it, in each direction");
-  // In units of a cell, whose low corner is at 0; the bars lie within their own cell.
-  constexpr float kBar = 0.04f, kLine = 0.016f, kBallRadius = 0.06f;
+  for (const float share : ball) {
+    if (!(share >= 0.1f && share <= 0.9f))
+      throw std::invalid_argument("a ball in a cell must be at 0.1 to 0.9 of it, in each direction");
+  }
+  // In units of a cell, with the first cell's low corner at 0; nothing reaches out of the two cells.
+  constexpr float kLine = 0.03f, kBallRadius = 0.09f;
+  // Bars of the three directions differ in width, so that none has an edge in common with another.
+  constexpr std::array<float, 3> kBars{0.06f, 0.054f, 0.048f};
+  constexpr float kLow = kBars[0] / 2, kHigh = 1 - kLow;
   TriangleMesh mesh;
-  const auto add = [&](const TriangleMesh& part, const Eigen::Vector3f& at) {
+  const auto add = [&](const TriangleMesh& part, const Eigen::Vector3f& middle) {
     const auto base = static_cast<std::uint32_t>(mesh.positions.size());
     for (const Eigen::Vector3f& p : part.positions)
-      mesh.positions.emplace_back(size * (p + at - Eigen::Vector3f(1, 0.5f, 0.5f)));
+      mesh.positions.emplace_back(size * (p + middle - Eigen::Vector3f(1, 0.5f, 0.5f)));
     mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
     for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({a + base, b + base, c + base});
   };
-  /// A bar as long as a cell, along an axis, by its middle.
-  const auto add_bar = [&](int axis, float width, const Eigen::Vector3f& middle) {
+  // A bar along an axis has a vertex wherever a cell ends.
+  const auto add_bar = [&](int axis, float length, float width, const Eigen::Vector3f& middle) {
     Eigen::Vector3f edges = Eigen::Vector3f::Constant(width);
-    edges[axis] = 1;
+    edges[axis] = length;
     add(make_box(edges, 1), middle);
   };
-  constexpr float kLow = kBar / 2, kHigh = 1 - kBar / 2;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const float u : {kLow, kHigh}) {
-      for (const float v : {kLow, kHigh}) {
-        Eigen::Vector3f middle = Eigen::Vector3f::Constant(0.5f);
-        middle[(axis + 1) % 3] = u, middle[(axis + 2) % 3] = v;
-        add_bar(axis, kBar, middle);
-        add_bar(axis, kBar, middle + Eigen::Vector3f::UnitX());
-      }
+  for (const float u : {kLow, kHigh}) {
+    for (const float v : {kLow, kHigh}) add_bar(0, 2, kBars[0], {1, u, v});
+    for (const float x : {kLow, 1.0f, 1 + kHigh}) {
+      add_bar(1, 1, kBars[1], {x, 0.5f, u});
+      add_bar(2, 1, kBars[2], {x, u, 0.5f});
     }
-    Eigen::Vector3f through_ball = ball;
-    through_ball[axis] = 0.5f;
-    add_bar(axis, kLine, through_ball);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Vector3f middle = ball;
+    middle[axis] = 0.5f;
+    add_bar(axis, 1, kLine, middle);
   }
   add(make_sphere(kBallRadius, 6), ball);
   return mesh;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -156,6 +157,55 @@ TEST(Command, RefusesABadSceneInOneLineWithItsPlace) {
                             ":2:1: world has no field 'gravitty'; did you mean 'gravity'?\n");
 }
 
+TEST(Command, DrawsTheFiguresOverAPictureWhereItIsAsked) {
+  const ScratchFolder folder;
+  const std::string run = "demo 2d --headless --quiet --frames 1 --size 640x360 --out ";
+  ASSERT_EQ(run_softcell(run + (folder / "plain")).status, 0);
+  ASSERT_EQ(run_softcell(run + (folder / "figures") + " --statistics").status, 0);
+  const render::Image plain = render::read_png(folder / "plain/frame_00000.png");
+  const render::Image figures = render::read_png(folder / "figures/frame_00000.png");
+  ASSERT_EQ(plain.rgba.size(), figures.rgba.size());
+  // They stand in the upper left corner, and are as wide as their text: some hundred pixels.
+  const auto same_rows = [&](int top, int bottom) {
+    return std::equal(plain.pixel(0, top), plain.pixel(0, bottom), figures.pixel(0, top));
+  };
+  EXPECT_FALSE(same_rows(20, 160));
+  EXPECT_TRUE(same_rows(200, 359));
+  EXPECT_NE(0, std::memcmp(plain.pixel(150, 100), figures.pixel(150, 100), 4)) << "the box is whole";
+}
+
+TEST(Command, RefusesAReplayOfAnotherVersionOrSceneInOneSentence) {
+  const ScratchFolder folder;
+  const auto scene = [&](const char* gravity) {
+    write_file(folder / "mine.toml", "dimension = 2\n[world]\ngravity = " + std::string(gravity) +
+                                         "\n[framework]\n[[soft_body]]\ncell_size = 0.4\nrows = [\"##\"]\n");
+    return "--scene " + (folder / "mine.toml");
+  };
+  const std::string demo = "demo 2d --headless --quiet --size 32x32 ", recording = folder / "run.rec";
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run = run_softcell(arguments);
+    EXPECT_EQ(run.status, 1) << arguments;
+    EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+    return run.output;
+  };
+  ASSERT_EQ(run_softcell(demo + scene("3") + " --frames 2 --record " + recording).status, 0);
+  ASSERT_EQ(run_softcell(demo + scene("3") + " --replay " + recording).status, 0);
+  const std::string begin = "softcell: " + recording + ": ";
+  EXPECT_EQ(refusal(demo + scene("4") + " --replay " + recording),
+            begin +
+                "a recording of another version of the scene mine; give the one that was recorded with "
+                "--scene\n");
+  EXPECT_EQ(refusal(demo + "--scene man --replay " + recording),
+            begin +
+                "a recording of the scene mine, and this is man; give the one that was recorded with "
+                "--scene\n");
+  EXPECT_EQ(refusal("demo 3d --headless --replay " + recording),
+            begin + "line 2: this is a recording of demo 2d, and here runs demo 3d\n");
+  write_file(recording, "softcell recording 2\ndimension 2\n");
+  EXPECT_EQ(refusal(demo + "--replay " + recording),
+            begin + "line 1: a recording of another version, ' 2'; this softcell reads version 1\n");
+}
+
 TEST(Command, DoesNotPutAModelIntoASceneWithoutAPlaceForIt) {
   const ScratchFolder folder;
   write_file(folder / "cube.obj", kCube);
@@ -293,6 +343,7 @@ INSTANTIATE_TEST_SUITE_P(WrongUsage, CommandRefuses,
                                          Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
                                          Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
                                          Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
+                                         Refusal{"demo 2d --statistics", 2, "--headless"},
                                          Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
                                          Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
                                          Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},

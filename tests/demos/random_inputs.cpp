@@ -77,7 +77,9 @@ struct Outcome {
 };
 
 Outcome play(const Scene2d& scene, std::uint32_t seed, float gravity) {
-  Outcome outcome{.recording = {.scene = scene.name, .scene_hash = scene_hash(scene)}};
+  Outcome outcome;
+  outcome.recording.scene = scene.name;
+  outcome.recording.scene_hash = scene_hash(scene);
   Simulation2d simulation(scene);
   RandomPlay input(seed, gravity);
   for (std::int64_t frame = 0; frame < kTenSeconds && !outcome.wrong; ++frame) {

@@ -128,12 +128,14 @@ TEST(SceneGolden2d, StatisticsStandOverThePicture) {
   view.draw();
   render::Overlay overlay(kTextScale);
   // Measured figures are others in every run; how they look is not.
-  const Page page{.scene = scene.name,
-                  .counts = {.soft_bodies = 1, .particles = simulation.particles()},
-                  .times = {.physics_ms = 0.25, .ppu_ms = 0.125},
-                  .spes = 6,
-                  .spe_ms = 0.0625,
-                  .dma_bytes = 54321};
+  Page page;
+  page.scene = scene.name;
+  page.counts = {.soft_bodies = 1, .particles = simulation.particles()};
+  page.times.physics_ms = 0.25;
+  page.times.ppu_ms = 0.125;
+  page.spes = 6;
+  page.spe_ms = 0.0625;
+  page.dma_bytes = 54321;
   draw_statistics(page, kTextScale, overlay, renderer);
   EXPECT_TRUE(test::compare_with_golden(renderer.pixels(), "man_statistics"));
 }
