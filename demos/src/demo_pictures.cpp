@@ -47,7 +47,7 @@ Pictures::Pictures(const DemoOptions& options, Demo& demo) : demo_(demo) {
   renderer_ = std::make_unique<render::Renderer>(
       *context_, render::RendererSettings{.width = options.size.width, .height = options.size.height});
   demo_.make_view(*renderer_);
-  if (options.statistics) statistics_.emplace();
+  if (options.statistics) statistics_ = std::make_unique<Statistics>();
 }
 
 void Pictures::follow(const FrameTimes& times) {

@@ -60,7 +60,7 @@ class Pictures {
     DemoPages pages;
     Page page;
   };
-  std::optional<Statistics> statistics_;
+  std::unique_ptr<Statistics> statistics_;
   std::uint64_t hash_ = 0;
   std::vector<double> milliseconds_;
 };
