@@ -48,7 +48,9 @@ SpeSolver::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::K
     : memory_(memory),
       jobs_(jobs),
       match_(jobs.place(match)),
-      arena_bytes_(match.checked ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes) {}
+      arena_bytes_(match.checked ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes) {
+  regroup({});  // a world without soft bodies steps, too
+}
 
 SpeSolver::~SpeSolver() = default;
 

@@ -148,6 +148,17 @@ TEST(Command, RunsTheUsersOwnScene) {
   EXPECT_EQ(read_json(folder / "s.json")["scene"], "mine");
 }
 
+TEST(Command, RunsAnEmptyScene) {
+  const ScratchFolder folder;
+  for (const std::string dimension : {"2", "3"}) {
+    write_file(folder / "empty.toml", "dimension = " + dimension + "\n");
+    const CommandResult run = run_softcell(
+        "demo " + dimension + "d --headless --frames 2 --size 64x48 --scene " + (folder / "empty.toml"));
+    EXPECT_EQ(run.status, 0) << run.output;
+    EXPECT_NE(run.output.find("0 soft bodies"), std::string::npos) << run.output;
+  }
+}
+
 TEST(Command, RefusesABadSceneInOneLineWithItsPlace) {
   const ScratchFolder folder;
   write_file(folder / "bad.toml", "[world]\ngravitty = 3\n");

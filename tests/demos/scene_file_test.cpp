@@ -329,6 +329,19 @@ INSTANTIATE_TEST_SUITE_P(
                 "height = 256 }\n",
                 "bad.toml:2:1: a lattice may have at most 65536 particles"}));
 
+TEST_F(SceneFile, MoreVerticesThanAnyPictureShowsAreRefusedWithinTwoSeconds) {
+  EXPECT_BEGINS(
+      refusal("fat.lua",
+              "local tori = {}\nfor i = 1, 256 do\ntori[i] = { cell_size = 0.3, shape = { kind = "
+              "'torus', ring_segments = 512, tube_segments = 512 } }\nend\nreturn { soft_body = tori }"),
+      "fat.lua:5: the scene's meshes have 2097152 vertices and more; 2000000 are the most");
+  EXPECT_BEGINS(
+      refusal("fat_obstacles.lua",
+              "local tori = {}\nfor i = 1, 256 do\ntori[i] = { shape = { kind = 'torus', ring_segments "
+              "= 512, tube_segments = 512 } }\nend\nreturn { obstacle = tori }"),
+      "fat_obstacles.lua:5: the scene's meshes have 2097152 vertices and more; 2000000 are the most");
+}
+
 class PathTrick : public SceneFile, public testing::WithParamInterface<const char*> {};
 
 TEST_P(PathTrick, DoesNotLeaveTheFolder) {
@@ -453,6 +466,7 @@ TEST(NearestName, FindsSlipsAndNothingElse) {
   EXPECT_EQ(nearest_name("gravitty", known), "gravity");
   EXPECT_EQ(nearest_name("frction", known), "friction");
   EXPECT_EQ(nearest_name("ub", known), "up");
+  EXPECT_EQ(nearest_name("grvty", known), "gravity");
   EXPECT_EQ(nearest_name("colour", known), "");
   EXPECT_EQ(nearest_name(std::string(100'000, 'x'), known), "");
 }

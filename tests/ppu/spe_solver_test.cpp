@@ -152,6 +152,14 @@ TEST(SpeSolver, WorkBegunAheadIsDoneAgainWhenABodyIsPushedOrTheStepIsAnother) {
   EXPECT_NEAR(body.centre_of_mass().x(), kFrame + kFrame / 4, 1e-4);
 }
 
+TEST(SpeSolver, AWorldWithoutSoftBodiesStepsToo) {
+  SpeWorld world;
+  world.add_floor();
+  world.soft.begin_ahead(kFrame / 2);
+  world.run(2);
+  EXPECT_EQ(world.jobs_done(), 0u);
+}
+
 TEST(SpeSolver, RestsOnAFloorInShape) {
   SpeWorld world;
   world.add_floor();

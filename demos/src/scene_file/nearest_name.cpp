@@ -30,10 +30,11 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
       64;  // nobody mistypes a longer one; the work is the product of lengths
   if (name.size() > kLongestName) return {};
   std::string_view nearest;
-  std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
+  std::size_t least = kLongestName;
   for (const std::string_view candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);
-    if (distance < least) least = distance, nearest = candidate;
+    const std::size_t most = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    if (distance <= most && distance < least) least = distance, nearest = candidate;
   }
   return nearest;
 }

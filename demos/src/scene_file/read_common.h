@@ -13,6 +13,7 @@ namespace softcell::demos {
 inline constexpr std::size_t kMaxSoftBodies = 256, kMaxRigidBodies = 1000, kMaxEvents = 1000,
                              kMaxPictures = 1000;
 inline constexpr std::uint32_t kMaxParticlesOfScene = 200'000;
+inline constexpr std::size_t kMaxVerticesOfScene = 2'000'000;
 inline constexpr int kMaxFrames = 1'000'000;
 inline constexpr int kMaxSubsteps = 64;
 inline constexpr double kMaxGravity = 1000;  // m/s^2

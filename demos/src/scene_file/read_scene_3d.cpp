@@ -58,6 +58,22 @@ RigidBox read_box(const Value& value, std::size_t index) {
   return box;
 }
 
+/// Counts the vertices of a scene's meshes: more than a picture shows are refused before they cost anything
+/// else.
+class VertexCount {
+ public:
+  void add(const ppu::TriangleMesh& mesh, const Place& place) {
+    vertices_ += mesh.positions.size();
+    if (vertices_ > kMaxVerticesOfScene) {
+      throw SceneError(place, fmt::format("the scene's meshes have {} vertices and more; {} are the most",
+                                          vertices_, kMaxVerticesOfScene));
+    }
+  }
+
+ private:
+  std::size_t vertices_ = 0;
+};
+
 Obstacle read_obstacle(const Value& value, std::size_t index, const SceneSource& source) {
   FieldReader fields(value, item_name("obstacle", index));
   Obstacle obstacle;
@@ -113,13 +129,16 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
 }
 
 void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
-                      const std::optional<OwnModel>& model, Scene& scene) {
+                      const std::optional<OwnModel>& model, VertexCount& vertices, Scene& scene) {
   bool place_taken = false;
-  std::size_t particles = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const OwnModel* own = model && !place_taken ? &*model : nullptr;
     place_taken = read_soft_body(items[i], i, source, materials, own, scene) || place_taken;
-    particles += count_particles(scene.soft_bodies.back(), items[i].place);
+    vertices.add(scene.soft_bodies.back().mesh, items[i].place);
+  }
+  std::size_t particles = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    particles += count_particles(scene.soft_bodies[i], items[i].place);
     if (particles > kMaxParticlesOfScene) {
       throw SceneError(items[i].place, fmt::format("the scene has {} particles and more; {} are the most",
                                                    particles, kMaxParticlesOfScene));
@@ -190,9 +209,12 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   const auto soft_bodies = root.items("soft_body", kMaxSoftBodies);
   if (framework != nullptr) read_framework(*framework, scene);
   for (std::size_t i = 0; i < boxes.size(); ++i) scene.boxes.push_back(read_box(boxes[i], i));
-  for (std::size_t i = 0; i < obstacles.size(); ++i)
+  VertexCount vertices;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
     scene.obstacles.push_back(read_obstacle(obstacles[i], i, source));
-  read_soft_bodies(soft_bodies, source, materials, model, scene);
+    vertices.add(scene.obstacles.back().mesh, obstacles[i].place);
+  }
+  read_soft_bodies(soft_bodies, source, materials, model, vertices, scene);
   read_script<3>(root, scene);
   if (camera != nullptr) read_camera(*camera, scene.camera);
   if (light != nullptr) read_light(*light, scene.light);
