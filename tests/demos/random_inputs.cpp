@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "progress_bar.h"
 #include "random_play.h"
@@ -112,49 +113,77 @@ std::uint64_t replay(const Scene2d& scene, const Recording<2>& recording, const 
   return simulation.state_hash();
 }
 
-/// What is wrong with the input, if anything is; its recording is left then. Raises `farthest`.
-std::optional<std::string> try_input(const Scene2d& scene, const Options& options, std::uint32_t seed,
-                                     float& farthest) {
-  const Outcome outcome = play(scene, seed, options.gravity);
-  farthest = std::max(farthest, outcome.farthest);
-  std::optional<std::string> wrong = outcome.wrong;
-  // As it comes back from its file.
-  const auto recording = parse_recording<2>(to_text(outcome.recording));
-  for (std::size_t i = 0; i < kWays.size() && !wrong; ++i) {
-    const std::uint64_t state = replay(scene, recording, kWays[i]);
-    if (state != recording.state_hash)
-      wrong = fmt::format("{} SPEs with --dma {} end in the state {:016x}, six in {:016x}", kWays[i].spes,
-                          kWays[i].schedule, state, recording.state_hash);
+std::filesystem::path file_of(const Options& options, std::uint32_t seed) {
+  return options.folder / fmt::format("random_input_{}.rec", seed);
+}
+
+/// Says what is wrong with an input, and leaves it.
+void complain(const Options& options, std::uint32_t seed, const Recording<2>& recording,
+              const std::string& wrong) {
+  const auto file = file_of(options, seed);
+  write_recording<2>(file, recording);
+  fmt::print(stderr, "random_inputs: input {}: {}; see {}\n", seed, wrong, file.string());
+}
+
+/// Plays all inputs. @return their recordings; none when one of them failed
+std::vector<Recording<2>> play_all(const Scene2d& scene, const Options& options) {
+  std::vector<Recording<2>> recordings;
+  float farthest = -std::numeric_limits<float>::infinity();
+  std::uint32_t failed = 0;
+  ProgressBar bar("playing", options.count, false);
+  for (std::uint32_t seed = 1; seed <= options.count; ++seed) {
+    const Outcome outcome = play(scene, seed, options.gravity);
+    farthest = std::max(farthest, outcome.farthest);
+    if (outcome.wrong) {
+      ++failed;
+      complain(options, seed, outcome.recording, *outcome.wrong);
+    } else if (options.keep) {
+      write_recording<2>(file_of(options, seed), outcome.recording);
+    }
+    // As it comes back from its file.
+    recordings.push_back(parse_recording<2>(to_text(outcome.recording)));
+    bar.show(seed);
   }
-  if (wrong || options.keep) {
-    const auto file = options.folder / fmt::format("random_input_{}.rec", seed);
-    write_recording<2>(file, outcome.recording);
-    if (wrong) return fmt::format("input {}: {}; see {}", seed, *wrong, file.string());
+  fmt::print("{} random inputs of ten seconds, gravity up to {} m/s^2 along each axis: ", options.count,
+             options.gravity);
+  if (failed > 0) {
+    fmt::print("{} failed\n", failed);
+    return {};
   }
-  return std::nullopt;
+  fmt::print("nothing left the framework, all stayed {:.4f} m and more inside\n", -farthest);
+  return recordings;
+}
+
+/// @return whether all recordings end in their states.
+bool replay_all(const Scene2d& scene, const Options& options, const std::vector<Recording<2>>& recordings,
+                const Way& way) {
+  std::uint32_t failed = 0;
+  const std::string name = fmt::format("--spes {} --dma {}", way.spes, way.schedule);
+  ProgressBar bar(name, recordings.size(), false);
+  for (std::uint32_t i = 0; i < recordings.size(); ++i) {
+    const std::uint64_t state = replay(scene, recordings[i], way);
+    if (state != recordings[i].state_hash) {
+      ++failed;
+      complain(options, i + 1, recordings[i],
+               fmt::format("with {} it ends in the state {:016x}, not in {:016x}", name, state,
+                           recordings[i].state_hash));
+    }
+    bar.show(i + 1);
+  }
+  fmt::print("replayed with {}: {}\n", name,
+             failed == 0 ? "the same states" : fmt::format("{} end in other states", failed));
+  std::fflush(stdout);
+  return failed == 0;
 }
 
 int run(const Options& options) {
-  Scene2d scene = load_scene_2d("man");
-  float farthest = -std::numeric_limits<float>::infinity();
-  std::uint32_t failed = 0;
-  ProgressBar bar("random inputs", options.count, false);
-  for (std::uint32_t seed = 1; seed <= options.count; ++seed) {
-    if (const auto wrong = try_input(scene, options, seed, farthest)) {
-      ++failed;
-      fmt::print(stderr, "random_inputs: {}\n", *wrong);
-    }
-    bar.show(seed);
-  }
-  fmt::print("{} random inputs of ten seconds, gravity up to {} m/s^2 along each axis, each run in {} ways: ",
-             options.count, options.gravity, 1 + kWays.size());
-  if (failed > 0) {
-    fmt::print("{} failed\n", failed);
-    return 1;
-  }
-  fmt::print("nothing left the framework (nearest to its wall: {:.4f} m inside), one state for all ways\n",
-             -farthest);
-  return 0;
+  const Scene2d scene = load_scene_2d("man");
+  const auto recordings = play_all(scene, options);
+  std::fflush(stdout);
+  if (recordings.empty()) return 1;
+  bool good = true;
+  for (const Way& way : kWays) good = replay_all(scene, options, recordings, way) && good;
+  return good ? 0 : 1;
 }
 
 }  // namespace
