@@ -191,6 +191,42 @@ TEST(BulletSoftBodies, AFallFromFarStopsAtTheFloor) {
   }
 }
 
+/// After what was done to it: normal gravity for some seconds, then none.
+float deformation_after_a_rest(World& world, const SoftBody& body) {
+  world.bullet.set_gravity({0, -9.81f, 0});
+  world.run(6, 4);
+  world.bullet.set_gravity({0, 0, 0});
+  world.run(6, 4);
+  return deformation(body);
+}
+
+// The report's bodies were stuck after such a fall.
+TEST(BulletSoftBodies, AFallOfTenMetresAtAGravityOf300DoesNotGetThemStuck) {
+  World world;
+  world.bullet.set_gravity({0, -300, 0});
+  world.add_floor();
+  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 10, 0});
+  world.run(5, 4);
+  EXPECT_LT(body.centre_of_mass().y(), 1);
+  world.bullet.set_gravity({0, -9.81f, 0});
+  world.run(6, 4);
+  EXPECT_GT(body.bounds().low.y(), 0) << "it lies on the floor";
+  EXPECT_LT(deformation_after_a_rest(world, body), 0.02f) << "it did not get its shape back";
+}
+
+// The report's torus collapsed and became a smaller one.
+TEST(BulletSoftBodies, AVeryFlexibleTorusGetsItsShapeBack) {
+  SoftBodySettings jelly{.cell_size = 0.2f, .half_width = 1, .density = 200, .alpha = 0.02f, .damping = 0.1f};
+  const auto torus = make_soft_body_model(make_torus(0.7f, 0.25f, 48, 24), jelly);
+  World world;
+  world.bullet.set_gravity({0, -300, 0});
+  world.add_floor();
+  SoftBody& body = world.soft.add(torus, {0, 1, 0});
+  world.run(3, 4);
+  EXPECT_GT(deformation(body), 0.3f) << "it was crushed";
+  EXPECT_LT(deformation_after_a_rest(world, body), 0.1f) << "half a cell";
+}
+
 /// Seconds of a period of the stretching of a block in free space.
 double measured_period(float frequency, float step) {
   World world;
