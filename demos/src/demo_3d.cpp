@@ -14,14 +14,12 @@
 namespace softcell::demos {
 namespace {
 
-constexpr double kDefaultCellsAlongModel = 8;
-
 std::optional<OwnModel> load_model(const Demo3dOptions& options) {
   if (!options.mesh) return std::nullopt;
   OwnModel model{.mesh = ppu::import_mesh(*options.mesh)};
   const ppu::Bounds box = ppu::bounds(model.mesh);
   const double longest = (box.high - box.low).maxCoeff();
-  model.cell_size = static_cast<float>(options.cell.value_or(longest / kDefaultCellsAlongModel));
+  model.cell_size = static_cast<float>(options.cell.value_or(longest / options.cells));
   ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
   // Refused here, in the model's own units, before the scene scales both: the sentence has the user's
   // numbers.

@@ -11,6 +11,7 @@
 #include "command_line/manual_page.h"
 #include "command_line/shell_completion.h"
 #include "kernel_task_options.h"
+#include "softcell/ppu/lattice.h"
 #include "usage_error.h"
 #include "verbs.h"
 
@@ -120,9 +121,14 @@ class CommandLine {
     add_demo_options(*d, demo_3d_, "arena");
     d->add_option("--mesh", demo_3d_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)")
         ->type_name("FILE");
-    d->add_option("--cell", demo_3d_.cell,
-                  "Edge of a lattice cell in the model's units (default: its longest side / 8)")
+    CLI::Option* const cells =
+        d->add_option("--cells", demo_3d_.cells, "Lattice cells along the model's longest side (default: 8)")
+            ->needs("--mesh")
+            ->check(CLI::Range(2, ppu::kMaxLatticeCellsPerAxis).description(""))
+            ->type_name("CELLS");
+    d->add_option("--cell", demo_3d_.cell, "Edge of a lattice cell in the model's units, in place of --cells")
         ->needs("--mesh")
+        ->excludes(cells)
         ->type_name("LENGTH");
     d->add_flag("--lattice", demo_3d_.lattice, "Draw particles and links instead of meshes");
     d->callback([this] {

@@ -41,7 +41,8 @@ struct DemoOptions {
 /// The scene's default: arena, or drop when a mesh is given.
 struct Demo3dOptions : DemoOptions {
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
-  std::optional<double> cell;                 ///< cell size in the model's own units
+  int cells = 8;                              ///< along the model's longest side
+  std::optional<double> cell;                 ///< their size in the model's own units, in place of `cells`
   bool lattice = false;                       ///< draw particles and links instead of the skinned meshes
 };
 

@@ -96,6 +96,20 @@ TEST(Command, DropsTheUsersOwnModel) {
   EXPECT_EQ(read_json(folder / "s.json")["bodies"], 1);
 }
 
+TEST(Command, CountsCellsAlongTheUsersModelWhateverItsUnits) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  const auto particles = [&](const std::string& cells) {
+    const CommandResult run = run_softcell("demo 3d --headless --frames 1 --size 64x48 --mesh " +
+                                           (folder / "cube.obj") + cells + " --json " + (folder / "s.json"));
+    EXPECT_EQ(run.status, 0) << run.output;
+    return read_json(folder / "s.json")["particles"].get<int>();
+  };
+  EXPECT_EQ(particles(""), 9 * 9 * 9);
+  EXPECT_EQ(particles(" --cells 4"), 5 * 5 * 5);
+  EXPECT_EQ(particles(" --cell 0.2"), 6 * 6 * 6);
+}
+
 TEST(Command, TracesADemoAndMakesAPageOfIt) {
   const ScratchFolder folder;
   const CommandResult run = run_softcell(kDrop + std::string("--frames 3 --spes 2 --trace ") +
@@ -338,31 +352,32 @@ TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
 
 #define SC_DEMO "demo 3d --headless --frames 1 --size 32x32 "
 
-INSTANTIATE_TEST_SUITE_P(WrongUsage, CommandRefuses,
-                         testing::Values(Refusal{"", 2, "say what to do"}, Refusal{"dance", 2, "dance"},
-                                         Refusal{"demo", 2, "say what to do"}, Refusal{"demo 4d", 2, "4d"},
-                                         Refusal{SC_DEMO "--bogus", 2, "--bogus"},
-                                         Refusal{SC_DEMO "--spes 7", 2, "1"},
-                                         Refusal{SC_DEMO "--spes 0", 2, "6"},
-                                         Refusal{SC_DEMO "--spes two", 2, "--spes"},
-                                         Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
-                                         Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
-                                         Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
-                                         Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
-                                         Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
-                                         Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
-                                         Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
-                                         Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
-                                         Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
-                                         Refusal{"demo 2d --statistics", 2, "--headless"},
-                                         Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
-                                         Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
-                                         Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
-                                         Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
-                                         Refusal{"report", 2, "trace"}, Refusal{"report %s/file", 2, "--out"},
-                                         Refusal{"bench --filter [", 2, "regular expression"},
-                                         Refusal{"bench --rounds 0", 2, "--rounds"},
-                                         Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
+INSTANTIATE_TEST_SUITE_P(
+    WrongUsage, CommandRefuses,
+    testing::Values(Refusal{"", 2, "say what to do"}, Refusal{"dance", 2, "dance"},
+                    Refusal{"demo", 2, "say what to do"}, Refusal{"demo 4d", 2, "4d"},
+                    Refusal{SC_DEMO "--bogus", 2, "--bogus"}, Refusal{SC_DEMO "--spes 7", 2, "1"},
+                    Refusal{SC_DEMO "--spes 0", 2, "6"}, Refusal{SC_DEMO "--spes two", 2, "--spes"},
+                    Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
+                    Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
+                    Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
+                    Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
+                    Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
+                    Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
+                    Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
+                    Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
+                    Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
+                    Refusal{"demo 2d --statistics", 2, "--headless"},
+                    Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
+                    Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
+                    Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.2 --cells 4", 2, "--cells"},
+                    Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"}, Refusal{"report", 2, "trace"},
+                    Refusal{"report %s/file", 2, "--out"},
+                    Refusal{"bench --filter [", 2, "regular expression"},
+                    Refusal{"bench --rounds 0", 2, "--rounds"},
+                    Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
