@@ -100,8 +100,9 @@ void print_summary(const nlohmann::ordered_json& s, const DemoOptions& options) 
     fmt::print("shown:    {:.1f} pictures a second\n", static_cast<double>(s["pictures"].get<std::size_t>()) /
                                                            std::max(s["seconds"].get<double>(), 1e-9));
   }
-  fmt::print("state:    {}   picture: {}\n", s["state_hash"].get<std::string>(),
-             s["image_hash"].get<std::string>());
+  fmt::print("state:    {}", s["state_hash"].get<std::string>());
+  if (options.headless) fmt::print("   picture: {}", s["image_hash"].get<std::string>());
+  fmt::print("\n");
   const auto where = [](const char* what, const std::optional<std::filesystem::path>& path) {
     if (path) fmt::print("{:<10}{}\n", what, path->string());
   };

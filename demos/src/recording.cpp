@@ -173,8 +173,8 @@ void read_header(Reader& reader, Recording<Dimension>& recording) {
   if (!title.starts_with(kTitle))
     reader.refuse("this is no recording: it does not begin with 'softcell recording'");
   if (title != fmt::format("{} {}", kTitle, kVersion)) {
-    reader.refuse(fmt::format("a recording of another version, '{}'; this softcell reads version {}",
-                              Reader::quotable(title.substr(kTitle.size())), kVersion));
+    reader.refuse(fmt::format("a recording of another version, '{}'; this softcell reads '{} {}'",
+                              Reader::quotable(title), kTitle, kVersion));
   }
   reader.next_line();
   reader.key("dimension");

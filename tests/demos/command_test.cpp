@@ -228,7 +228,9 @@ TEST(Command, RefusesAReplayOfAnotherVersionOrSceneInOneSentence) {
             begin + "line 2: this is a recording of demo 2d, and here runs demo 3d\n");
   write_file(recording, "softcell recording 2\ndimension 2\n");
   EXPECT_EQ(refusal(demo + "--replay " + recording),
-            begin + "line 1: a recording of another version, ' 2'; this softcell reads version 1\n");
+            begin +
+                "line 1: a recording of another version, 'softcell recording 2'; this softcell reads "
+                "'softcell recording 1'\n");
 }
 
 TEST(Command, DoesNotPutAModelIntoASceneWithoutAPlaceForIt) {

@@ -113,7 +113,8 @@ TEST(Recording, WhatIsWrongIsSaidWithItsLine) {
       {with_lines(std::string(1000, '0') + "\n" + end), "line 5: is longer than any line of a recording"},
       {"P6 1 1\n", "line 1: this is no recording: it does not begin with 'softcell recording'"},
       {"softcell recording 2\n",
-       "line 1: a recording of another version, ' 2'; this softcell reads version 1"},
+       "line 1: a recording of another version, 'softcell recording 2'; this softcell reads 'softcell "
+       "recording 1'"},
       {"softcell recording 1\ndimension 3\n",
        "line 2: this is a recording of demo 3d, and here runs demo 2d"},
       {"softcell recording 1\ndimension 4\n", "line 2: the dimension '4' is no number from 2 to 3"},
