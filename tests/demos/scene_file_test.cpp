@@ -461,6 +461,32 @@ TEST_F(SceneFile, AnErrorInALatticeNamesTheLatticesFile) {
                 "l.lua:2: a lattice has no field 'cell'; did you mean 'cells'?");
 }
 
+TEST_F(SceneFile, LatticesThatAreSlowTogetherAreRefused) {
+  std::string scene = "dimension = 2\n";
+  for (int i = 0; i < 40; ++i) {
+    const std::string name = "slow" + std::to_string(i) + ".lua";
+    write(name, "local x = 0\nfor i = 1, 4e6 do x = x + i end\nreturn { cells = { { 0, 0 } } }");
+    scene += "[[soft_body]]\ncell_size = 1\nlattice = \"" + name + "\"\n";
+  }
+  const std::string file = write("slow.toml", scene);
+  try {
+    load_scene_2d(file);
+    ADD_FAILURE() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(
+        std::string(error.what()).find("the scripts of the scene's lattices ran for more than 1 second"),
+        std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(SceneFile, ALatticeOfManyBodiesRunsOnce) {
+  write("long.lua", "local x = 0\nfor i = 1, 2e6 do x = x + i end\nreturn { rows = { '##' } }");
+  std::string scene = "dimension = 2\n";
+  for (int i = 0; i < 200; ++i) scene += "[[soft_body]]\ncell_size = 1\nlattice = \"long.lua\"\n";
+  EXPECT_EQ(load_scene_2d(write("many.toml", scene)).soft_bodies.size(), 200u);
+}
+
 TEST(NearestName, FindsSlipsAndNothingElse) {
   constexpr std::array<std::string_view, 3> known{"gravity", "friction", "up"};
   EXPECT_EQ(nearest_name("gravitty", known), "gravity");

@@ -1,8 +1,10 @@
 #include "read_lattice_2d.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "lua_document.h"
+#include "lua_sandbox.h"
 #include "softcell/ppu/lattice_2d.h"
 
 namespace softcell::demos {
@@ -110,9 +112,29 @@ Cells read_lattice_file(const SourceText& file, const Place& place) {
   return rows.empty() ? read_cells(cells, "a lattice") : read_rows(rows, "a lattice");
 }
 
+/// Processor time of the child processes that have ended.
+double childrens_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 }  // namespace
 
-Cells read_lattice_2d(FieldReader& body, const SceneSource& source) {
+LatticeFiles::LatticeFiles(const SceneSource& source) : source_(source), begin_(childrens_seconds()) {}
+
+const Cells& LatticeFiles::cells(const std::string& file, const Place& place) {
+  if (const auto found = known_.find(file); found != known_.end()) return found->second;
+  if (childrens_seconds() - begin_ > kLuaSeconds)
+    throw SceneError(
+        place, fmt::format("the scripts of the scene's lattices ran for more than {} second", kLuaSeconds));
+  return known_.emplace(file, read_lattice_file(source_.text(file, place), place)).first->second;
+}
+
+Cells read_lattice_2d(FieldReader& body, LatticeFiles& files) {
   const auto rows = body.items("rows", static_cast<std::size_t>(kMaxCells));
   const Value* shape = body.field("shape");
   std::string file;
@@ -121,7 +143,7 @@ Cells read_lattice_2d(FieldReader& body, const SceneSource& source) {
   if (given != 1) throw SceneError(body.place(), body.what() + " needs one of rows, shape and lattice");
   if (shape != nullptr) return read_shape(*shape, body.what());
   if (!rows.empty()) return read_rows(rows, body.what());
-  return read_lattice_file(source.text(file, body.place("lattice")), body.place("lattice"));
+  return files.cells(file, body.place("lattice"));
 }
 
 }  // namespace softcell::demos

@@ -113,7 +113,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
   }
 }
 
-SoftBody2dPlacement read_soft_body(const Value& value, std::size_t index, const SceneSource& source,
+SoftBody2dPlacement read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices,
                                    const Materials& materials, double step) {
   constexpr Range kContactRadius{.low = 0, .high = 1, .low_excluded = true};
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
@@ -124,7 +124,7 @@ SoftBody2dPlacement read_soft_body(const Value& value, std::size_t index, const 
       .vector<2>("position", body.position, kCoordinate)
       .number("contact_radius", body.contact_radius, kContactRadius);
   const Material material = materials.read(fields);
-  body.cells = read_lattice_2d(fields, source);
+  body.cells = read_lattice_2d(fields, lattices);
   if (material.settings.cell_size <= 0)
     throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
   body.settings = material.settings_for(step);
@@ -133,9 +133,10 @@ SoftBody2dPlacement read_soft_body(const Value& value, std::size_t index, const 
 
 void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
                       Scene2d& scene) {
+  LatticeFiles lattices(source);
   std::size_t particles = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    scene.soft_bodies.push_back(read_soft_body(items[i], i, source, materials, step_of(scene)));
+    scene.soft_bodies.push_back(read_soft_body(items[i], i, lattices, materials, step_of(scene)));
     try {
       particles += scene.soft_bodies.back().lattice().particles.size();
     } catch (const std::runtime_error& error) {
