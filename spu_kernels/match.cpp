@@ -74,17 +74,6 @@ void store_body(const BodyMap& map) {
   put_large(map.rotations, ls.body.rotations_ea, match_rotations_bytes(plan()), kTagOut);
 }
 
-/// The square root of the largest lane.
-float root_of_largest(vec_float4 squares) {
-  float largest = spu_extract(squares, 0);
-  for (int lane = 1; lane < 4; ++lane) {
-    const float other = spu_extract(squares, lane);
-    if (other > largest) largest = other;
-  }
-  const vec_float4 square = spu_splats(largest);
-  return largest > 0 ? spu_extract(spu_mul(square, reciprocal_sqrt(square)), 0) : 0;
-}
-
 void step(const BodyMap& map) {
   const uint32_t particles = plan().particles;
   load_body(map);
@@ -92,13 +81,15 @@ void step(const BodyMap& map) {
   vec_float4* const v = particle_quadwords(map.velocities);
   ls.result = {0, all_finite(x, particles) && all_finite(v, particles), {0, 0}};
   if (ls.result.finite != 0) {
-    to_components(map.positions, particles, origin_of(x, particles, plan().grid));
+    vec_float4 samples[kMatchSamples];
+    for (uint32_t i = 0; i < kMatchSamples; ++i) samples[i] = x[plan().samples[i]];
+    to_components(map.positions, particles, origin_of(samples, kMatchSamples, plan().grid));
     to_components(map.velocities, particles, spu_splats(0.0f));
     const vec_float4 residual = step_body(map, {ls.body.pull,
                                                 ls.body.damping,
                                                 {ls.job.least_iterations, ls.job.most_iterations},
                                                 ls.body.cold != 0});
-    ls.result.residual = root_of_largest(residual);
+    ls.result.residual_square = largest_lane(residual);
     to_particles(map.velocities, map.particle_groups);
     store_body(map);
   }

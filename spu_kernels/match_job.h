@@ -14,6 +14,9 @@
 namespace softcell::spu {
 
 constexpr uint32_t kMatchSlotBytes = 48;
+constexpr uint32_t kMatchSamples = 16;      ///< particles whose mean position is the body's origin
+constexpr float kMatchPullLimit = 0x1p28f;  ///< of MatchHold's unit
+constexpr uint32_t kTwistSlotBytes = 32;    ///< where damping has slots of its own: match_tiles_job.h
 
 /// Constants of four particles.
 struct alignas(16) MatchParticles {
@@ -39,6 +42,13 @@ struct alignas(16) MatchRotations {
 };
 static_assert(sizeof(MatchRotations) == 64, "four quadwords");
 
+/// How the pull is kept from moving the body as a whole: match/hold.h.
+struct MatchHold {
+  float scale;  ///< 1 / (kg m): m (g - x) times this is below kMatchPullLimit for pulls up to a sixteenth of
+                ///< the body; a power of two
+  float share;  ///< 1 / (scale times the body's mass)
+};
+
 /// A plan's first line. The other parts follow at the given offsets, in bytes from the header's start, each a
 /// multiple of 16. Sum lists are those of sum_list_job.h.
 struct alignas(128) MatchPlanHeader {
@@ -52,11 +62,12 @@ struct alignas(128) MatchPlanHeader {
   uint32_t bars_of_regions;     ///< offset of a sum list: from each particle's region
   uint32_t plates;              ///< offset of a sum list: from bars
   uint32_t regions_of_plates;   ///< offset of a sum list: from plates
-  float noise_floor;   ///< m^2: a region whose |A_r| is at most this times M_r has all its particles on one
-                       ///< point
-  float grid;          ///< metres: the body's origin is a multiple of this power of two
-  float inverse_mass;  ///< 1 / kg, of the body
-  uint32_t pad[19];
+  float noise_floor;  ///< m^2: a region whose |A_r| is at most this times M_r has all its particles on one
+                      ///< point
+  float grid;         ///< metres: the body's origin is a multiple of this power of two
+  MatchHold hold;
+  uint32_t samples[kMatchSamples];  ///< numbers of particles all over the body, at any places
+  uint32_t pad[2];
 };
 static_assert(sizeof(MatchPlanHeader) == 128, "one line");
 
@@ -75,8 +86,9 @@ static_assert(sizeof(MatchBody) == 128, "one line");
 
 /// What one body's step came to.
 struct alignas(16) MatchResult {
-  float residual;   ///< the largest |axial(R^T A)| over the sum of |A|'s elements, roughly radians
-  uint32_t finite;  ///< 0: a position or velocity is infinite or no number, and nothing was written
+  float residual_square;  ///< the square of the largest |axial(R^T A)| over the sum of |A|'s elements, which
+                          ///< is roughly radians
+  uint32_t finite;        ///< 0: a position or velocity is infinite or no number, and nothing was written
   uint32_t pad[2];
 };
 

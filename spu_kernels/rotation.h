@@ -184,9 +184,15 @@ __attribute__((noinline)) inline void improve_rotations(const RotationProblem* p
     bool all_good = pass >= effort.least;
     for (uint32_t g = 0; g < count; ++g) {
       const Estimate e = estimate(problems[g].a, q[g]);
-      if (pass >= effort.least && !any_negative(spu_or(e.indefinite, less(good, e.residual_square))))
+      if (pass < effort.least) {
+        q[g] = improve(e, q[g]);
         continue;
-      q[g] = improve(e, q[g]);
+      }
+      // Lanes that are good stay as they are: what a region gets does not depend on its neighbours in a
+      // group.
+      const vec_uint4 bad = spu_or(e.indefinite, less(good, e.residual_square));
+      if (!any_negative(bad)) continue;
+      q[g] = select(q[g], improve(e, q[g]), negative_lanes(bad));
       all_good = false;
     }
     if (all_good) return;

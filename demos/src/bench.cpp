@@ -22,6 +22,7 @@ std::vector<Benchmark> all_benchmarks() {
   add_bullet_benchmarks(all);
   add_solver_2d_benchmarks(all);
   add_rotation_benchmarks(all);
+  add_tiles_benchmarks(all);
   add_skin_benchmarks(all);
   add_dma_benchmarks(all);
   add_dispatch_benchmarks(all);

@@ -16,6 +16,7 @@
 #include "softcell/ppu/match_plan_2d.h"
 #include "softcell/ppu/shape_matching.h"
 #include "softcell/ppu/shapes.h"
+#include "softcell/ppu/tiled_match.h"
 #include "softcell/spu_kernels/images.h"
 #include "transfers_job.h"
 
@@ -140,6 +141,25 @@ void run_rotations(Sample& sample) {
   sample.run(job.ea());
 }
 
+/// All passes over a body in tiles, rotations from nothing and then from the last step.
+void run_match_tiles(Sample& sample) {
+  const ppu::Lattice lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
+  const ppu::TilePlan plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)},
+                           {.planes = 3, .rows = 3});
+  ppu::TiledMemory body(sample.memory(), plan);
+  for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+    const Eigen::Vector3f x = lattice.rest_position(i);
+    body.positions()[plan.place_of()[i]] = {-x.x(), x.y(), x.z(), 0};
+  }
+  for (int step = 0; step < 2; ++step) {
+    body.begin_step({.pull = 30, .damping = 0.1f});
+    for (const spu::TilePass pass : {spu::kTileGather, spu::kTileScatter, spu::kTileTwist, spu::kTileDamp})
+      for (std::size_t tile = 0; tile < body.tiles(); ++tile)
+        if (const auto job = body.job(pass, tile)) sample.run(*job);
+    body.end_step();
+  }
+}
+
 void run_transfers(Sample& sample) {
   const dma::Buffer<std::byte> data(sample.memory(), "data", 1024);
   dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1);
@@ -182,6 +202,8 @@ std::uint32_t measure_stack(const ls_sim::KernelImage& kernel) {
     run_match(sample);
   } else if (kernel.name == "match_2d") {
     run_match_2d(sample);
+  } else if (kernel.name == "match_tiles") {
+    run_match_tiles(sample);
   } else if (kernel.name == "skin") {
     run_skin(sample);
   } else if (kernel.name == "rotations") {

@@ -24,6 +24,8 @@ Arena::Arena(EffectiveAddress base, std::uint64_t bytes) : base_(base), bytes_(b
     throw std::runtime_error("cannot reserve " + std::to_string(bytes >> 20) +
                              " MB of host address space for emulated memory");
   }
+  // What SPEs stream through is far more than the host's translation buffers cover with small pages.
+  madvise(pages, bytes, MADV_HUGEPAGE);
   host_ = static_cast<std::byte*>(pages);
   free_.emplace(0, bytes);
 }

@@ -70,8 +70,8 @@ Lattice2d lattice_2d_from_cells(std::span<const Vector2i> cells, float spacing,
     for (unsigned k = 0; k < 4; ++k) lattice.particles.push_back(corner_of(cell, k));
   }
   sort_and_unite(lattice.particles);
-  if (lattice.particles.size() > kMaxLatticeParticles) {
-    throw std::runtime_error("a lattice may have at most " + std::to_string(kMaxLatticeParticles) +
+  if (lattice.particles.size() > kMaxLattice2dParticles) {
+    throw std::runtime_error("a lattice may have at most " + std::to_string(kMaxLattice2dParticles) +
                              " particles; this one has " + std::to_string(lattice.particles.size()));
   }
   for (const Vector2i& cell : lattice.cells) {

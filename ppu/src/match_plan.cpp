@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "lattice_sums.h"
+#include "match_constants.h"
 #include "plan_writer.h"
-#include "sum_order.h"
 
 namespace softcell::ppu {
 
@@ -14,8 +15,7 @@ spu::MatchParticles particles_at(const MatchingPlan<float>& matching, std::size_
   spu::MatchParticles group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < matching.particles(); ++lane) {
     const auto& particle = matching.particle_constants()[first + lane];
-    for (int d = 0; d < 3; ++d) group.rest_moment[lane][d] = particle.modified_mass * particle.x0[d];
-    group.rest_moment[lane][3] = particle.modified_mass;
+    std::ranges::copy(rest_moment(particle), group.rest_moment[lane]);
     group.inverse_mass[lane] = 1 / particle.mass;
     group.mass[lane] = particle.mass;
     group.region[lane] = (region_of[first + lane] + 1) * (spu::kMatchSlotBytes / spu::kSumOffsetUnit);
@@ -23,10 +23,12 @@ spu::MatchParticles particles_at(const MatchingPlan<float>& matching, std::size_
   return group;
 }
 
-spu::MatchRegions regions_at(const MatchingPlan<float>& matching, std::size_t first, const Order& order) {
+/// @param first  rank of the first of four regions
+spu::MatchRegions regions_at(const MatchingPlan<float>& matching, std::size_t first,
+                             const LatticeSums& order) {
   spu::MatchRegions group{};
-  for (std::size_t lane = 0; lane < 4 && first + lane < order.item.size(); ++lane) {
-    const auto& region = matching.region_constants()[order.item[first + lane]];
+  for (std::size_t lane = 0; lane < 4 && first + lane < order.regions.size(); ++lane) {
+    const auto& region = matching.region_constants()[order.region_at_slot[first + lane + 1]];
     group.centre_x[lane] = region.c0.x();
     group.centre_y[lane] = region.c0.y();
     group.centre_z[lane] = region.c0.z();
@@ -35,20 +37,19 @@ spu::MatchRegions regions_at(const MatchingPlan<float>& matching, std::size_t fi
   return group;
 }
 
-constexpr SumListFormat kFormat{spu::kMatchSlotBytes, MatchPlan::kRestart};
+constexpr SumListFormat kFormat{spu::kMatchSlotBytes, kSumRestart};
 
 }  // namespace
 
 MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching, std::uint32_t arena_bytes) {
   const SumPlan& sums = matching.sums();
-  const Stations stations(lattice.particles, sums);
-  const Order bars(stations.bars), plates(stations.plates), regions(stations.regions);
-  for (const std::uint32_t r : sums.region_of()) region_of_.push_back(regions.slot[r] - 1);
+  LatticeSums order(lattice, sums, sum_restart_of_rows(lattice, matching.half_width()));
+  for (const std::uint32_t r : sums.region_of()) region_of_.push_back(order.region_slot[r] - 1);
 
   const std::size_t particle_groups = (matching.particles() + 3) / 4,
                     region_groups = (sums.regions() + 3) / 4;
-  const std::size_t slots =
-      1 + std::max({4 * particle_groups, bars.item.size(), plates.item.size(), 4 * region_groups});
+  const std::size_t slots = 1 + std::max({4 * particle_groups, order.bars_of_particles.size(),
+                                          order.plates.size(), 4 * region_groups});
   // Before lists are written, whose offsets would not fit: what the buffers need at least.
   static_assert(2 * spu::kMatchSlotBytes * kFormat.max_slot() > spu::kMatchArenaBytes);
   check_fits("match", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatchSlotBytes, arena_bytes);
@@ -58,21 +59,12 @@ MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching
     particle_constants.push_back(particles_at(matching, i, region_of_));
   std::vector<spu::MatchRegions> region_constants;
   for (std::size_t r = 0; r < sums.regions(); r += 4)
-    region_constants.push_back(regions_at(matching, r, regions));
+    region_constants.push_back(regions_at(matching, r, order));
 
-  const auto particle_slot = [](std::uint32_t i) { return i + 1; };
-  const auto region_slot = [&](std::uint32_t r) { return regions.slot[r]; };
-  const auto bar_slot = [&](std::uint32_t b) { return bars.slot[b]; };
-  const auto plate_slot = [&](std::uint32_t p) { return plates.slot[p]; };
-  const auto from = [](const Csr& lists) { return [&lists](std::uint32_t item) { return lists[item]; }; };
-  const SumList from_particles =
-      ordered_sum_list(stations.bars, bars, from(sums.particles_of_bar()), particle_slot, kFormat);
-  const SumList from_regions =
-      ordered_sum_list(stations.bars, bars, from(sums.regions_of_bar()), region_slot, kFormat);
-  const SumList of_plates =
-      ordered_sum_list(stations.plates, plates, from(sums.bars_of_plate()), bar_slot, kFormat);
-  const SumList of_regions = ordered_sum_list(stations.regions, regions, from(sums.plates_of_region()),
-                                              plate_slot, kFormat, 4 * region_groups - sums.regions());
+  for (std::size_t pad = sums.regions(); pad < 4 * region_groups; ++pad) order.regions.push_nothing();
+  const auto list = [](const SumLevel& level) { return write_sum_list(level, spu::kMatchSlotBytes); };
+  const SumList from_particles = list(order.bars_of_particles), from_regions = list(order.bars_of_regions);
+  const SumList of_plates = list(order.plates), of_regions = list(order.regions);
   additions_ = from_particles.additions + of_plates.additions + of_regions.additions;
 
   PlanWriter writer(sizeof(spu::MatchPlanHeader));
@@ -90,7 +82,8 @@ MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching
   header.regions_of_plates = writer.append(of_regions.halfwords);
   header.noise_floor = matching.noise_floor();
   header.grid = origin_grid(lattice.spacing);
-  header.inverse_mass = inverse_body_mass(matching.particle_constants());
+  header.hold = hold_of(lattice, matching);
+  std::ranges::copy(samples_of(matching), header.samples);
   header.bytes = writer.size();
   check_fits("match", matching.particles(), spu::match_local_store_bytes(header), arena_bytes);
   assign(writer.finish(header));

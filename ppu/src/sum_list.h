@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "softcell/ppu/lattice.h"
 #include "sum_list_job.h"
 
 namespace softcell::ppu {
@@ -16,6 +17,27 @@ struct Sum {
   int place;                         ///< along the row
   std::vector<std::uint32_t> terms;  ///< slots, ascending; one may come twice
 };
+
+/// Sums in the order in which they are made, slots 1, 2, 3, ..., and how each is made.
+struct SumLevel {
+  struct Rule {
+    bool follows = false;                 ///< made from the sum before it: that plus `joins` minus `leaves`
+    std::uint32_t joins = 0, leaves = 0;  ///< slots; 0 for none
+  };
+  Csr terms;
+  std::vector<Rule> rules;
+
+  std::size_t size() const { return rules.size(); }
+  /// One more sum, always zero.
+  void push_nothing() {
+    terms.push(std::array<std::uint32_t, 1>{0});
+    rules.emplace_back();
+  }
+};
+
+/// A sum follows the one before it where both differ by at most one term that joins and one that leaves,
+/// unless a place that is a multiple of `restart` lies between.
+SumLevel sum_level(const std::vector<Sum>& sums, int restart);
 
 struct SumList {
   std::vector<std::uint16_t> halfwords;
@@ -30,9 +52,18 @@ struct SumListFormat {
   constexpr std::uint32_t max_slot() const { return 0xFFFF / (slot_bytes / spu::kSumOffsetUnit); }
 };
 
-/// The list that makes the sums in the given order. A sum is made from the one before it where both differ by
-/// at most one term that joins and one that leaves, unless a place where chains end lies between.
-/// @pre  slots are at most format.max_slot().
-SumList write_sum_list(const std::vector<Sum>& sums, const SumListFormat& format);
+/// A slot as sum lists have it.
+constexpr std::uint16_t sum_list_offset(std::uint32_t slot, std::uint32_t slot_bytes) {
+  return static_cast<std::uint16_t>(slot * (slot_bytes / spu::kSumOffsetUnit));
+}
+
+/// The list that makes all sums of a level.
+/// @pre  slots are at most SumListFormat::max_slot().
+SumList write_sum_list(const SumLevel& level, std::uint32_t slot_bytes);
+
+/// The same from the sums.
+inline SumList write_sum_list(const std::vector<Sum>& sums, const SumListFormat& format) {
+  return write_sum_list(sum_level(sums, format.restart), format.slot_bytes);
+}
 
 }  // namespace softcell::ppu

@@ -31,10 +31,10 @@ Order::Order(const std::vector<Station>& stations) : item(stations.size()), slot
   for (std::uint32_t rank = 0; rank < item.size(); ++rank) slot[item[rank]] = rank + 1;
 }
 
-SumList ordered_sum_list(const std::vector<Station>& stations, const Order& order,
-                         const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
-                         const std::function<std::uint32_t(std::uint32_t)>& slot_of,
-                         const SumListFormat& format, std::size_t padding) {
+std::vector<Sum> ordered_sums(const std::vector<Station>& stations, const Order& order,
+                              const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
+                              const std::function<std::uint32_t(std::uint32_t)>& slot_of,
+                              std::size_t padding) {
   std::vector<Sum> sums;
   for (const std::uint32_t item : order.item) {
     Sum sum{stations[item].row, stations[item].place, {}};
@@ -43,7 +43,7 @@ SumList ordered_sum_list(const std::vector<Station>& stations, const Order& orde
     sums.push_back(std::move(sum));
   }
   for (std::size_t i = 0; i < padding; ++i) sums.push_back({{}, 0, {0}});
-  return write_sum_list(sums, format);
+  return sums;
 }
 
 }  // namespace softcell::ppu

@@ -41,12 +41,20 @@ struct Order {
   explicit Order(const std::vector<Station>& stations);
 };
 
-/// The sum list that makes all items in their order, and after them `padding` sums of nothing.
+/// All items in their order, and after them `padding` sums of nothing.
 /// @param terms    of an item: what is added up
 /// @param slot_of  where a term is found
-SumList ordered_sum_list(const std::vector<Station>& stations, const Order& order,
-                         const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
-                         const std::function<std::uint32_t(std::uint32_t)>& slot_of,
-                         const SumListFormat& format, std::size_t padding = 0);
+std::vector<Sum> ordered_sums(const std::vector<Station>& stations, const Order& order,
+                              const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
+                              const std::function<std::uint32_t(std::uint32_t)>& slot_of,
+                              std::size_t padding = 0);
+
+/// The sum list that makes them.
+inline SumList ordered_sum_list(const std::vector<Station>& stations, const Order& order,
+                                const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
+                                const std::function<std::uint32_t(std::uint32_t)>& slot_of,
+                                const SumListFormat& format, std::size_t padding = 0) {
+  return write_sum_list(ordered_sums(stations, order, terms, slot_of, padding), format);
+}
 
 }  // namespace softcell::ppu

@@ -23,4 +23,14 @@ inline vec_float4 absolute(vec_float4 v) {
   return (vec_float4)spu_and((vec_uint4)v, spu_splats(0x7FFFFFFFu));
 }
 
+/// The largest of four numbers.
+inline float largest_lane(vec_float4 v) {
+  float largest = spu_extract(v, 0);
+  for (int lane = 1; lane < 4; ++lane) {
+    const float other = spu_extract(v, lane);
+    if (other > largest) largest = other;
+  }
+  return largest;
+}
+
 }  // namespace softcell::spu

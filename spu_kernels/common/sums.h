@@ -31,6 +31,18 @@ __attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, S
   for (;;) {
     const uint32_t terms = list[0];
     if (terms == 0) return;
+    if (__builtin_expect(terms >= kSumRun, 0)) {
+      const uint16_t* const end = ++list + 3 * (terms - kSumRun);
+      for (; list != end; list += 3) {
+        const Slot &before = slot_at(in, list[0]), &joins = slot_at(in, list[1]);
+        const Slot& leaves = slot_at(in, list[2]);
+        ++out;
+        for_rows([&](int k) __attribute__((always_inline)) {
+          out->row[k] = spu_add(before.row[k], spu_sub(joins.row[k], leaves.row[k]));
+        });
+      }
+      continue;
+    }
     const uint32_t steps = list[1];
     list += 2;
 

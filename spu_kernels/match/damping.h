@@ -17,14 +17,14 @@
 namespace softcell::spu {
 
 /// m~ of four particles.
-inline vec_float4 modified_mass(const ParticleConstants& p) {
-  return interleave_high(interleave_high(p.rest_moment[0], p.rest_moment[2]),
-                         interleave_high(p.rest_moment[1], p.rest_moment[3]));
+inline vec_float4 modified_mass(const RestMoments& rest_moment) {
+  return interleave_high(interleave_high(rest_moment[0], rest_moment[2]),
+                         interleave_high(rest_moment[1], rest_moment[3]));
 }
 
 /// Four particles' payload.
-inline void twist_moments(const ParticleConstants& p, const Vector3x4& x, const Vector3x4& v, Slot* out) {
-  const vec_float4 mass = modified_mass(p);
+/// @param mass  m~
+inline void twist_moments(vec_float4 mass, const Vector3x4& x, const Vector3x4& v, Slot* out) {
   const Vector3x4 momentum = scale(v, mass), moment = scale(x, mass);
   const Vector3x4 l = cross(x, momentum);
   store_row(out, 0, {momentum.x, momentum.y, momentum.z, spu_mul(moment.x, x.x)});
@@ -66,20 +66,21 @@ inline Vector3x4 angular_velocity(const Symmetric3x4& c, const Vector3x4& l, vec
                inverse);
 }
 
-/// Sums of four regions to their twists, in place.
-/// @param moment       sum m~ x of each, as match_regions() left it
-inline void twist_regions(const RegionConstants& r, const Vector3x4& moment, Slot* slots,
+/// Sums of four regions to their twists: the first two rows of four slots, their own or others.
+/// @param moment  sum m~ x of each, as match_regions() left it
+/// @param by      1 / M of each
+template <typename AnySlot>
+inline void twist_regions(vec_float4 by, const Vector3x4& moment, const Slot* sums, AnySlot* slots,
                           vec_float4 noise_floor) {
-  const Rows4 x = load_row(slots, 0), y = load_row(slots, 1), z = load_row(slots, 2);
+  const Rows4 x = load_row(sums, 0), y = load_row(sums, 1), z = load_row(sums, 2);
   const Vector3x4 p = {x.a, x.b, x.c};
-  const Vector3x4 c = scale(moment, r.inverse_mass);
+  const Vector3x4 c = scale(moment, by);
   const Vector3x4 orbital = cross(c, p);
   const Vector3x4 l = {spu_sub(y.a, orbital.x), spu_sub(y.b, orbital.y), spu_sub(y.c, orbital.z)};
   const Symmetric3x4 second = {spu_nmsub(moment.x, c.x, x.d), spu_nmsub(moment.y, c.y, y.d),
                                spu_nmsub(moment.z, c.z, z.d), spu_nmsub(moment.x, c.y, z.a),
                                spu_nmsub(moment.y, c.z, z.b), spu_nmsub(moment.z, c.x, z.c)};
   // Per mass: the sizes of determinants do not depend on the body's.
-  const vec_float4 by = r.inverse_mass;
   const Vector3x4 omega =
       angular_velocity({spu_mul(second.xx, by), spu_mul(second.yy, by), spu_mul(second.zz, by),
                         spu_mul(second.xy, by), spu_mul(second.yz, by), spu_mul(second.zx, by)},
@@ -92,15 +93,17 @@ inline void twist_regions(const RegionConstants& r, const Vector3x4& moment, Slo
 }
 
 /// The velocities of four particles, less `damping` times what is not rigid motion of their regions.
-inline Vector3x4 damp(const ParticleConstants& p, const Slot* totals, const Vector3x4& x, const Vector3x4& v,
-                      vec_float4 damping) {
+/// @param share   1 / |R_i| of each
+/// @param region  offsets of their regions' totals
+template <typename AnySlot>
+inline Vector3x4 damp(vec_float4 share, const uint32_t (&region)[4], const AnySlot* totals,
+                      const Vector3x4& x, const Vector3x4& v, vec_float4 damping) {
   const auto row = [&](int k) __attribute__((always_inline)) {
-    return transpose({slot_at(totals, p.region[0]).row[k], slot_at(totals, p.region[1]).row[k],
-                      slot_at(totals, p.region[2]).row[k], slot_at(totals, p.region[3]).row[k]});
+    return transpose({slot_at(totals, region[0]).row[k], slot_at(totals, region[1]).row[k],
+                      slot_at(totals, region[2]).row[k], slot_at(totals, region[3]).row[k]});
   };
   const Rows4 b = row(0), omega = row(1);
   const Vector3x4 turning = cross({omega.a, omega.b, omega.c}, x);
-  const vec_float4 share = spu_mul(modified_mass(p), p.inverse_mass);  // 1 / |R_i|
   const auto component = [&](vec_float4 sum, vec_float4 turn, vec_float4 before)
       __attribute__((always_inline)) {
     return spu_madd(damping, spu_msub(share, spu_add(sum, turn), before), before);

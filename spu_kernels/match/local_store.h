@@ -16,9 +16,18 @@ struct Slot {
 };
 static_assert(sizeof(Slot) == kMatchSlotBytes, "as offsets count it");
 
+/// A payload of two rows: what comes down for damping, where slots are made for nothing else.
+struct TwistSlot {
+  vec_float4 row[2];
+};
+static_assert(sizeof(TwistSlot) == kTwistSlotBytes, "as offsets count it");
+
+/// m~ (x0 y0 z0 1) of four particles.
+using RestMoments = vec_float4[4];
+
 /// MatchParticles as registers.
 struct ParticleConstants {
-  vec_float4 rest_moment[4];
+  RestMoments rest_moment;
   vec_float4 inverse_mass, mass;
   uint32_t region[4];
 };
@@ -44,7 +53,8 @@ struct BodyMap {
   const RegionConstants* regions;
   const uint16_t *bars_of_particles, *bars_of_regions, *plates, *regions_of_plates;
   uint32_t particle_groups, region_groups;
-  float noise_floor, inverse_mass;  // the header's
+  float noise_floor;  // the header's
+  MatchHold hold;
 
   Vectors4* positions;  // relative to the body's origin
   Vectors4* velocities;
@@ -71,7 +81,7 @@ inline BodyMap map_of(char* arena) {
   map.plates = list(plan.plates);
   map.regions_of_plates = list(plan.regions_of_plates);
   map.noise_floor = plan.noise_floor;
-  map.inverse_mass = plan.inverse_mass;
+  map.hold = plan.hold;
   map.particle_groups = groups_of(plan.particles);
   map.region_groups = groups_of(plan.regions);
   map.positions = reinterpret_cast<Vectors4*>(take(match_vectors_bytes(plan)));

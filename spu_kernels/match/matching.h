@@ -16,9 +16,9 @@
 namespace softcell::spu {
 
 /// Four particles' payload.
-inline void match_moments(const ParticleConstants& p, const Vector3x4& x, Slot* out) {
+inline void match_moments(const RestMoments& rest_moment, const Vector3x4& x, Slot* out) {
   const auto particle = [&](int lane) __attribute__((always_inline)) {
-    const vec_float4 moment = p.rest_moment[lane];
+    const vec_float4 moment = rest_moment[lane];
     out[lane].row[0] = spu_mul(spu_splats(spu_extract(x.x, lane)), moment);
     out[lane].row[1] = spu_mul(spu_splats(spu_extract(x.y, lane)), moment);
     out[lane].row[2] = spu_mul(spu_splats(spu_extract(x.z, lane)), moment);
@@ -34,7 +34,8 @@ inline Rows4 load_row(const Slot* slots, int k) {
   return transpose({slots[0].row[k], slots[1].row[k], slots[2].row[k], slots[3].row[k]});
 }
 
-inline void store_row(Slot* slots, int k, const Rows4& components) {
+template <typename AnySlot>
+inline void store_row(AnySlot* slots, int k, const Rows4& components) {
   const Rows4 t = transpose(components);
   slots[0].row[k] = t.a;
   slots[1].row[k] = t.b;
@@ -46,10 +47,10 @@ inline void store_row(Slot* slots, int k, const Rows4& components) {
 inline RotationProblem* problem_at(Slot* slots) { return reinterpret_cast<RotationProblem*>(slots); }
 static_assert(sizeof(RotationProblem) == 4 * sizeof(Slot), "one takes the other's place");
 
-/// Sums of four regions to A and P, in place.
-__attribute__((always_inline)) inline void make_problem(const RegionConstants& r, Slot* slots,
-                                                        vec_float4 noise_floor) {
-  const Rows4 x = load_row(slots, 0), y = load_row(slots, 1), z = load_row(slots, 2);
+/// Sums of four regions to A and P, in the place of four slots: their own, or others.
+__attribute__((always_inline)) inline void make_problem(const RegionConstants& r, const Slot* sums,
+                                                        Slot* slots, vec_float4 noise_floor) {
+  const Rows4 x = load_row(sums, 0), y = load_row(sums, 1), z = load_row(sums, 2);
   const auto row_of_a = [&](const Rows4& sum) __attribute__((always_inline))->Vector3x4 {
     return {spu_nmsub(sum.d, r.centre.x, sum.a), spu_nmsub(sum.d, r.centre.y, sum.b),
             spu_nmsub(sum.d, r.centre.z, sum.c)};
@@ -71,14 +72,16 @@ __attribute__((always_inline)) inline void store_motions(const RegionConstants& 
 }
 
 /// The goals of four particles.
-inline Vector3x4 goals(const ParticleConstants& p, const Slot* totals) {
-  const Slot &a = slot_at(totals, p.region[0]), &b = slot_at(totals, p.region[1]);
-  const Slot &c = slot_at(totals, p.region[2]), &d = slot_at(totals, p.region[3]);
+/// @param region  offsets of their regions' totals
+inline Vector3x4 goals(const RestMoments& rest_moment, vec_float4 inverse_mass, const uint32_t (&region)[4],
+                       const Slot* totals) {
+  const Slot &a = slot_at(totals, region[0]), &b = slot_at(totals, region[1]);
+  const Slot &c = slot_at(totals, region[2]), &d = slot_at(totals, region[3]);
   const auto component = [&](int k) __attribute__((always_inline)) {
     const vec_float4 sum =
-        sums_of_rows({spu_mul(a.row[k], p.rest_moment[0]), spu_mul(b.row[k], p.rest_moment[1]),
-                      spu_mul(c.row[k], p.rest_moment[2]), spu_mul(d.row[k], p.rest_moment[3])});
-    return spu_mul(sum, p.inverse_mass);
+        sums_of_rows({spu_mul(a.row[k], rest_moment[0]), spu_mul(b.row[k], rest_moment[1]),
+                      spu_mul(c.row[k], rest_moment[2]), spu_mul(d.row[k], rest_moment[3])});
+    return spu_mul(sum, inverse_mass);
   };
   return {component(0), component(1), component(2)};
 }

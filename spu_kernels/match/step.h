@@ -7,11 +7,12 @@
 //               -->   regions: sums become motions in place
 //   bars        <--
 //               -->   plates
-//   totals      <--                      goals, new velocities, momentum held
+//   totals      <--                      goals, new velocities, the body held
 //               -->   particles          and the same way again for damping, buffers exchanged
 
 #include "common/sums.h"
 #include "match/damping.h"
+#include "match/hold.h"
 #include "match/local_store.h"
 #include "match/localise.h"
 #include "match/matching.h"
@@ -40,53 +41,47 @@ struct StepOptions {
   bool cold;
 };
 
-/// Sums to motions, in place, and the momenta. In blocks that are small enough for the first-level cache of a
-/// host and long enough to overlap iterations.
-/// @return the largest square of a rotation's residual in each lane
-inline vec_float4 match_regions(const BodyMap& map, Slot* sums, const StepOptions& options) {
+/// Sums of regions to their motions. In blocks that are small enough for the first-level cache of a host and
+/// long enough to overlap iterations.
+/// @param motions  four slots for each of `groups`: those of the sums, or others
+/// @param keep     is told each group's sum m~ x: keep(group, momentum)
+/// @param worst   becomes the largest square of a rotation's residual in each lane
+template <typename Keep>
+inline void match_regions(const RegionConstants* regions, Quaternion4* rotations, const Slot* sums,
+                          Slot* motions, uint32_t groups, vec_float4 noise_floor, const StepOptions& options,
+                          const Keep& keep, vec_float4& worst) {
   constexpr uint32_t kBlock = 8;
-  const vec_float4 noise_floor = spu_splats(map.noise_floor);
-  vec_float4 worst = spu_splats(0.0f);
-  for (uint32_t first = 0; first < map.region_groups; first += kBlock) {
-    const uint32_t left = map.region_groups - first, count = left < kBlock ? left : kBlock;
-    const RegionConstants* const regions = map.regions + first;
-    Quaternion4* const rotations = map.rotations + first;
-    Slot* const slots = sums + 1 + 4 * first;
+  for (uint32_t first = 0; first < groups; first += kBlock) {
+    const uint32_t left = groups - first, count = left < kBlock ? left : kBlock;
+    Slot* const slots = motions + 4 * first;
 
-    for (uint32_t g = 0; g < count; ++g) make_problem(regions[g], slots + 4 * g, noise_floor);
-    if (!options.cold) improve_rotations(problem_at(slots), rotations, count, options.effort);
+    for (uint32_t g = 0; g < count; ++g)
+      make_problem(regions[first + g], sums + 4 * (first + g), slots + 4 * g, noise_floor);
+    if (!options.cold) improve_rotations(problem_at(slots), rotations + first, count, options.effort);
     for (uint32_t g = 0; g < count; ++g) {
       const RotationProblem& problem = *problem_at(slots + 4 * g);
       const Vector3x4 momentum = problem.payload;
-      const Rotation4 found =
-          options.cold ? find_rotation(problem, rotations[g]) : rotation_of(problem, rotations[g]);
-      map.momenta[first + g] = momentum;
-      store_motions(regions[g], found.matrix, momentum, slots + 4 * g);
+      const Rotation4 found = options.cold ? find_rotation(problem, rotations[first + g])
+                                           : rotation_of(problem, rotations[first + g]);
+      keep(first + g, momentum);
+      store_motions(regions[first + g], found.matrix, momentum, slots + 4 * g);
       worst = spu_sel(worst, found.residual_square, negative_lanes(less(worst, found.residual_square)));
     }
   }
-  return worst;
 }
 
-/// From sums of motions to velocities: v += pull (g - x).
-/// @return  sum m (g - x) in each lane
-inline Vector3x4 pull_particles(const BodyMap& map, const Slot* totals, vec_float4 pull) {
-  const vec_float4 zero = spu_splats(0.0f);
-  Vector3x4 moment = {zero, zero, zero};
+/// From sums of motions to velocities: v += pull (g - x); less what that gives the body as a whole.
+inline void pull_particles(const BodyMap& map, const Slot* totals, float pull) {
+  const vec_float4 pull4 = spu_splats(pull), scale4 = spu_splats(map.hold.scale);
+  PullSum pulls = no_pulls();
   for (uint32_t g = 0; g < map.particle_groups; ++g) {
-    const Vector3x4 to_goal = difference(goals(map.particles[g], totals), map.positions[g].v);
-    map.velocities[g].v = scale_add(to_goal, pull, map.velocities[g].v);
-    moment = scale_add(to_goal, map.particles[g].mass, moment);
+    const ParticleConstants& p = map.particles[g];
+    const Vector3x4 to_goal =
+        difference(goals(p.rest_moment, p.inverse_mass, p.region, totals), map.positions[g].v);
+    map.velocities[g].v = scale_add(to_goal, pull4, map.velocities[g].v);
+    add_pulls(pulls, to_goal, spu_mul(p.mass, scale4));
   }
-  return moment;
-}
-
-/// Takes off the velocities what the pull has given the body as a whole. It should be nothing and is a
-/// rounding error; but truncation errs to one side, and a body at rest would begin to drift.
-inline void hold_momentum(const BodyMap& map, const Vector3x4& moment, float pull) {
-  const vec_float4 share = spu_splats(pull * map.inverse_mass);
-  const Vector3x4 drift = {spu_mul(sum_of_lanes(moment.x), share), spu_mul(sum_of_lanes(moment.y), share),
-                           spu_mul(sum_of_lanes(moment.z), share)};
+  const Vector3x4 drift = drift_of(pulls, pull * map.hold.share);
   for (uint32_t g = 0; g < map.particle_groups; ++g)
     map.velocities[g].v = difference(map.velocities[g].v, drift);
 }
@@ -97,23 +92,34 @@ inline void hold_momentum(const BodyMap& map, const Vector3x4& moment, float pul
 inline vec_float4 step_body(const BodyMap& map, const StepOptions& options) {
   Slot *const a = map.first, *const b = map.second;
 
+  const vec_float4 noise_floor = spu_splats(map.noise_floor);
+
   for (uint32_t g = 0; g < map.particle_groups; ++g)
-    match_moments(map.particles[g], map.positions[g].v, a + 1 + 4 * g);
+    match_moments(map.particles[g].rest_moment, map.positions[g].v, a + 1 + 4 * g);
   sum_up(map, a, b);
-  const vec_float4 residual = match_regions(map, b, options);
+  vec_float4 residual = spu_splats(0.0f);
+  match_regions(
+      map.regions, map.rotations, b + 1, b + 1, map.region_groups, noise_floor, options,
+      [&](uint32_t g, const Vector3x4& momentum)
+          __attribute__((always_inline)) { map.momenta[g] = momentum; },
+      residual);
   sum_down<3>(map, b, a);
-  hold_momentum(map, pull_particles(map, a, spu_splats(options.pull)), options.pull);
+  pull_particles(map, a, options.pull);
   if (!(options.damping > 0)) return residual;
 
   for (uint32_t g = 0; g < map.particle_groups; ++g)
-    twist_moments(map.particles[g], map.positions[g].v, map.velocities[g].v, b + 1 + 4 * g);
+    twist_moments(modified_mass(map.particles[g].rest_moment), map.positions[g].v, map.velocities[g].v,
+                  b + 1 + 4 * g);
   sum_up(map, b, a);
   for (uint32_t g = 0; g < map.region_groups; ++g)
-    twist_regions(map.regions[g], map.momenta[g], a + 1 + 4 * g, spu_splats(map.noise_floor));
+    twist_regions(map.regions[g].inverse_mass, map.momenta[g], a + 1 + 4 * g, a + 1 + 4 * g, noise_floor);
   sum_down<2>(map, a, b);
-  for (uint32_t g = 0; g < map.particle_groups; ++g)
+  for (uint32_t g = 0; g < map.particle_groups; ++g) {
+    const ParticleConstants& p = map.particles[g];
+    const vec_float4 share = spu_mul(modified_mass(p.rest_moment), p.inverse_mass);
     map.velocities[g].v =
-        damp(map.particles[g], b, map.positions[g].v, map.velocities[g].v, spu_splats(options.damping));
+        damp(share, p.region, b, map.positions[g].v, map.velocities[g].v, spu_splats(options.damping));
+  }
   return residual;
 }
 

@@ -120,8 +120,8 @@ TEST(LatticeFromCells, TakesNegativeIndicesAndRefusesWhatPassesTheLimits) {
   constexpr int kFar = std::numeric_limits<int>::max() - 1;
   EXPECT_THROW(lattice_from_cells(std::vector<Vector3i>{{-kFar, 0, 0}, {kFar, 0, 0}}, 1, {0, 0, 0}),
                std::runtime_error);
-  EXPECT_NO_THROW(lattice_from_cells(test::block_cells(63, 31, 31), 1, {0, 0, 0}));  // 65536 particles
-  EXPECT_THROW(lattice_from_cells(test::block_cells(64, 31, 31), 1, {0, 0, 0}), std::runtime_error);  // 66560
+  EXPECT_NO_THROW(lattice_from_cells(test::block_cells(255, 63, 63), 1, {0, 0, 0}));  // 2^20 particles
+  EXPECT_THROW(lattice_from_cells(test::block_cells(255, 64, 63), 1, {0, 0, 0}), std::runtime_error);
   EXPECT_THROW(lattice_from_cells({}, 1, {0, 0, 0}), std::runtime_error);
   for (const float spacing : {0.0f, -1.0f, NAN, INFINITY})
     EXPECT_THROW(lattice_from_cells(test::block_cells(1, 1, 1), spacing, {0, 0, 0}), std::runtime_error);
@@ -267,9 +267,9 @@ TEST(Voxelize, RefusesCellsTooSmallForTheLimits) {
                   .find("is too small: the mesh is 1 m long and may be at most 256 cells long"),
               std::string::npos)
         << message_of(mesh, cell_size);
-  for (const float cell_size : {0.02f, 1.0f / 256})
+  for (const float cell_size : {0.0095f, 1.0f / 256})
     EXPECT_NE(message_of(mesh, cell_size)
-                  .find("is too small: the lattice would have more than 65536 particles; use about"),
+                  .find("is too small: the lattice would have more than 1048576 particles; use about"),
               std::string::npos)
         << message_of(mesh, cell_size);
   EXPECT_EQ(message_of(mesh, 0.0265f), "no error");

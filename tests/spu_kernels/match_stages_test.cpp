@@ -164,7 +164,7 @@ TEST_F(MatchStages, MomentsMotionsAndGoals) {
     p.constants.region[lane] = static_cast<uint32_t>(lane + 1) * kMatchSlotBytes / kSumOffsetUnit;
   }
   std::array<Slot, 5> slots;
-  match_moments(p.constants, p.x, &slots[1]);
+  match_moments(p.constants.rest_moment, p.x, &slots[1]);
   for (int lane = 0; lane < 4; ++lane) {
     const Vector3d x = at(p.x, lane), x0 = at(p.rest, lane);
     for (int k = 0; k < 3; ++k) {
@@ -177,7 +177,7 @@ TEST_F(MatchStages, MomentsMotionsAndGoals) {
   // Of one particle each, so that A = 0 and what comes down moves the particle's rest position to where it
   // is.
   const RegionConstants regions = {p.rest, spu_splats(0.5f)};
-  make_problem(regions, &slots[1], spu_splats(1e-6f));
+  make_problem(regions, &slots[1], &slots[1], spu_splats(1e-6f));
   const RotationProblem problem = *problem_at(&slots[1]);
   for (int lane = 0; lane < 4; ++lane) {
     EXPECT_EQ(at(problem.a.x, lane), Vector3d::Zero());  // noise
@@ -186,7 +186,8 @@ TEST_F(MatchStages, MomentsMotionsAndGoals) {
   const Quaternion4 q = turn({next4(), next4(), next4(), next4()}, {next4(), next4(), next4()});
   const Matrix3x4 r = matrix_of(q);
   store_motions(regions, r, problem.payload, &slots[1]);
-  const Vector3x4 goal = goals(p.constants, slots.data());
+  const Vector3x4 goal =
+      goals(p.constants.rest_moment, p.constants.inverse_mass, p.constants.region, slots.data());
   for (int lane = 0; lane < 4; ++lane) {
     EXPECT_LT((at(goal, lane) - at(p.x, lane)).norm(), 2e-6);
     EXPECT_NEAR(at(slots[static_cast<std::size_t>(lane) + 1].row[1], 2), at(r.y.z, lane), 0);

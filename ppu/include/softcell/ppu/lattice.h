@@ -31,7 +31,7 @@ struct Csr {
 };
 
 inline constexpr std::uint32_t kMaxLatticeParticles =
-    65536;  ///< particle numbers are 16 bits wide on the SPE side
+    1u << 20;  ///< far fewer fit 256 MB of main memory: see TiledMatch
 inline constexpr int kMaxLatticeCellsPerAxis = 256;
 
 struct Lattice {

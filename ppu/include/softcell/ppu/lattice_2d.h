@@ -15,6 +15,8 @@
 
 namespace softcell::ppu {
 
+inline constexpr std::uint32_t kMaxLattice2dParticles = 65536;
+
 struct Lattice2d {
   float spacing = 0;                       ///< edge of a cell in metres
   Eigen::Vector2f origin{0, 0};            ///< position of grid index (0, 0)
@@ -31,7 +33,7 @@ struct Lattice2d {
 };
 
 /// A lattice from cells given by their grid indices (any order, repeats ignored).
-/// @throws std::runtime_error  no cells; spacing not positive and finite; more than kMaxLatticeParticles
+/// @throws std::runtime_error  no cells; spacing not positive and finite; more than kMaxLattice2dParticles
 /// particles or kMaxLatticeCellsPerAxis cells along an axis.
 Lattice2d lattice_2d_from_cells(std::span<const Eigen::Vector2i> cells, float spacing,
                                 const Eigen::Vector2f& origin = {0, 0});

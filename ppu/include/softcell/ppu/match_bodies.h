@@ -1,6 +1,7 @@
 #pragma once
 // Bodies of one model in main memory, as the kernel `match` steps them.
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,7 +38,7 @@ class MatchBodies {
   /// Of the plan's regions, in groups of four: see MatchPlan::region_of().
   std::span<const spu::MatchRotations> rotations(std::size_t body) const;
   /// The largest |axial(R^T A)| of the last step over the sum of |A|'s elements, roughly radians.
-  float residual(std::size_t body) const { return results_.data()[body].residual; }
+  float residual(std::size_t body) const { return std::sqrt(results_.data()[body].residual_square); }
 
   /// Forgets a body's rotations: its next step starts cold. That is also how a body begins.
   void reset(std::size_t body);

@@ -1,0 +1,39 @@
+#pragma once
+// Gives out slots of a local store in blocks, and takes them back when nobody will ask for them again.
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace softcell::ppu {
+
+/// First fit. Time goes on from call to call.
+class SlotBlocks {
+ public:
+  /// Slot 0 is nobody's: it is always zero.
+  std::uint32_t take(std::uint32_t count, int last_use) {
+    std::uint32_t begin = 1;
+    auto before = blocks_.begin();
+    for (; before != blocks_.end() && before->begin < begin + count; ++before) begin = before->end;
+    blocks_.insert(before, {begin, begin + count, last_use});
+    most_ = std::max(most_, begin + count);
+    return begin;
+  }
+
+  /// Frees what had its last use before `time`.
+  void free_before(int time) {
+    std::erase_if(blocks_, [&](const Block& block) { return block.last_use < time; });
+  }
+
+  std::uint32_t most() const { return most_; }  ///< slots that were ever needed, slot 0 included
+
+ private:
+  struct Block {
+    std::uint32_t begin, end;
+    int last_use;
+  };
+  std::vector<Block> blocks_;  // ascending
+  std::uint32_t most_ = 1;
+};
+
+}  // namespace softcell::ppu

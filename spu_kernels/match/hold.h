@@ -1,0 +1,81 @@
+#pragma once
+// Keeps the pull from moving the body as a whole.
+//
+// The sum of m (g - x) over a body is nothing but for rounding; but truncation errs to one side, and a body
+// at rest would begin to drift. So it is summed up and taken off the velocities again. The sum is one of
+// integers: exact, hence the same whatever the order, and a body's particles may be summed up by many SPEs.
+
+#include <spu_intrinsics.h>
+#include <stdint.h>
+
+#include "common/lane_mask.h"
+#include "common/vector3.h"
+#include "match_job.h"
+
+namespace softcell::spu {
+
+/// The sum of some m (g - x), in units of 1 / MatchHold::scale: 65536 times `high`, plus `low`, over all
+/// lanes. Up to 65,536 particles in each lane.
+struct PullSum {
+  vec_int4 high[3];
+  vec_uint4 low[3];
+  vec_uint4 far;  ///< top bit set: a pull is too far for its unit, and the sum means nothing
+};
+constexpr uint32_t kPullSumWords = 28;
+static_assert(sizeof(PullSum) == 4 * kPullSumWords, "seven quadwords");
+
+inline PullSum no_pulls() {
+  const vec_int4 zero = spu_splats(0);
+  const vec_uint4 none = spu_splats(0u);
+  return {{zero, zero, zero}, {none, none, none}, none};
+}
+
+/// @param weight  m times MatchHold::scale
+inline void add_pulls(PullSum& sum, const Vector3x4& to_goal, vec_float4 weight) {
+  const vec_float4 pulls[3] = {spu_mul(to_goal.x, weight), spu_mul(to_goal.y, weight),
+                               spu_mul(to_goal.z, weight)};
+  for (int d = 0; d < 3; ++d) {
+    const vec_int4 units = spu_convts(pulls[d], 0);
+    sum.high[d] = spu_add(sum.high[d], spu_rlmaska(units, -16));
+    sum.low[d] = spu_add(sum.low[d], spu_and((vec_uint4)units, spu_splats(0xFFFFu)));
+    sum.far = spu_or(sum.far, not_less(absolute(pulls[d]), spu_splats(kMatchPullLimit)));
+  }
+}
+
+/// Moves what `low` has above 16 bits to `high`, so that 65,536 such sums may be added up.
+inline void carry(PullSum& sum) {
+  for (int d = 0; d < 3; ++d) {
+    sum.high[d] = spu_add(sum.high[d], (vec_int4)spu_rlmask(sum.low[d], -16));
+    sum.low[d] = spu_and(sum.low[d], spu_splats(0xFFFFu));
+  }
+}
+
+/// @pre both are carried, or few
+inline void add_sums(PullSum& sum, const PullSum& other) {
+  for (int d = 0; d < 3; ++d) {
+    sum.high[d] = spu_add(sum.high[d], other.high[d]);
+    sum.low[d] = spu_add(sum.low[d], other.low[d]);
+  }
+  sum.far = spu_or(sum.far, other.far);
+}
+
+/// The velocity that all pulls together give the body, to be taken off again.
+/// @param share  MatchHold::share times the pull, 1 / s
+inline Vector3x4 drift_of(PullSum sum, float share) {
+  carry(sum);
+  const bool far = any_negative(sum.far);
+  const auto component = [&](int d) {
+    int32_t high = 0;
+    uint32_t low = 0;
+    for (int lane = 0; lane < 4; ++lane) {
+      high += spu_extract(sum.high[d], lane);
+      low += spu_extract(sum.low[d], lane);
+    }
+    high += static_cast<int32_t>(low >> 16);
+    const float units = static_cast<float>(high) * 65536.0f + static_cast<float>(low & 0xFFFFu);
+    return spu_splats(far ? 0.0f : units * share);
+  };
+  return {component(0), component(1), component(2)};
+}
+
+}  // namespace softcell::spu

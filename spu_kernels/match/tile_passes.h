@@ -1,0 +1,257 @@
+#pragma once
+// The four passes of the kernel `match_tiles`, a slice at a time: what to fetch, what to do with it.
+// match_tiles_job.h has the whole.
+
+#include "common/dma.h"
+#include "common/finite.h"
+#include "common/sums.h"
+#include "match/damping.h"
+#include "match/hold.h"
+#include "match/localise.h"
+#include "match/matching.h"
+#include "match/step.h"
+#include "match/tile_store.h"
+
+namespace softcell::spu {
+
+/// A tag group for each side of the double buffer, and one for what has a place of its own to leave from.
+enum TileTag : uint32_t { kTagSide0 = 0, kTagSide1 = 1, kTagOut = 2 };
+
+/// What all passes know of the body.
+struct TilePassContext {
+  const TiledBody& body;
+  vec_float4 origin;
+  Vector3x4 drift;  // what the pulls have given the body as a whole; not before `twist`
+};
+
+/// Bytes of main memory before a place, for `bytes` a group.
+inline uint64_t before(uint32_t place, uint32_t bytes) { return static_cast<uint64_t>(place / 4) * bytes; }
+
+inline const uint16_t* list_at(const char* lists, uint32_t offset) {
+  return reinterpret_cast<const uint16_t*>(lists + offset);
+}
+
+/// Bars, plates and what they are for, slots to slots.
+template <int kRows, typename AnySlot>
+inline void sum_slice(const TileSlice& slice, const char* lists, AnySlot* slots) {
+  // A list writes behind what it is given.
+  const char* const bars = lists + slice.bars_list;
+  sum_slots<kRows>(list_at(bars, 0), slots, slots + slice.bars_slot - 1);
+  sum_slots<kRows>(list_at(bars, slice.plates_list), slots, slots + slice.plates_slot - 1);
+  sum_slots<kRows>(list_at(bars, slice.sums_list), slots, slots + slice.sums_slot - 1);
+}
+
+inline bool finite_groups(Vectors4* groups, uint32_t count) {
+  return all_finite(particle_quadwords(groups), 4 * count);
+}
+
+/// gather: positions to motions of regions.
+class GatherPass {
+ public:
+  GatherPass(const TilePassContext& context, const UpStore& store)
+      : body_(context.body), origin_(context.origin), store_(store) {}
+
+  void fetch(const TileSlice& slice, uint32_t s) {
+    const UpSide& side = store_.side[s];
+    getf_large(side.rotations, body_.rotations_in_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_large(side.lists, body_.lists_ea + slice.lists, slice.lists_bytes, s);
+    get_large(side.positions, body_.positions_ea + before(slice.input, 64), slice.input_groups * 64, s);
+    get_large(side.rest, body_.rest_ea + before(slice.input, 64), slice.input_groups * 64, s);
+    get_large(side.regions, body_.regions_ea + before(slice.output, 64), slice.output_groups * 64, s);
+  }
+
+  void work(const TileSlice& slice, uint32_t s) {
+    const UpSide& side = store_.side[s];
+    finite_ = finite_ && finite_groups(side.positions, slice.input_groups);
+    to_components(side.positions, 4 * slice.input_groups, origin_);
+    for (uint32_t g = 0; g < slice.input_groups; ++g)
+      match_moments(side.rest[g], side.positions[g].v, store_.slots + slice.input_slot + 4 * g);
+    sum_slice<3>(slice, side.lists, store_.slots);
+
+    wait_for_tag(kTagOut);
+    MomentumConstants* const momenta = store_.momenta;
+    const StepOptions options = {
+        body_.pull, body_.damping, {body_.least_iterations, body_.most_iterations}, body_.cold != 0};
+    match_regions(
+        side.regions, side.rotations, store_.slots + slice.sums_slot, store_.motions, slice.output_groups,
+        spu_splats(body_.noise_floor), options,
+        [&](uint32_t g, const Vector3x4& momentum) __attribute__((always_inline)) {
+          momenta[g] = {momentum, side.regions[g].inverse_mass};
+        },
+        worst_);
+    put_large(side.rotations, body_.rotations_out_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    put_large(store_.motions, body_.motions_ea + before(slice.output, 4 * kMatchSlotBytes),
+              slice.output_groups * 4 * kMatchSlotBytes, kTagOut);
+    put_large(store_.momenta, body_.momenta_ea + before(slice.output, 64), slice.output_groups * 64, kTagOut);
+  }
+
+  void report(TileReport& report) const {
+    report.residual_square = largest_lane(worst_);
+    report.positions_finite = finite_;
+  }
+
+ private:
+  const TiledBody& body_;
+  const vec_float4 origin_;
+  const UpStore& store_;
+  vec_float4 worst_ = spu_splats(0.0f);
+  bool finite_ = true;
+};
+
+/// twist: positions and velocities to twists of regions.
+class TwistPass {
+ public:
+  TwistPass(const TilePassContext& context, const UpStore& store) : context_(context), store_(store) {}
+
+  void fetch(const TileSlice& slice, uint32_t s) {
+    const UpSide& side = store_.side[s];
+    const TiledBody& body = context_.body;
+    get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
+    get_large(side.positions, body.positions_ea + before(slice.input, 64), slice.input_groups * 64, s);
+    get_large(side.velocities, body.held_ea + before(slice.input, 48), slice.input_groups * 48, s);
+    get_large(side.modified_mass, body.modified_ea + before(slice.input, 16), slice.input_groups * 16, s);
+    get_large(side.momenta, body.momenta_ea + before(slice.output, 64), slice.output_groups * 64, s);
+  }
+
+  void work(const TileSlice& slice, uint32_t s) {
+    const UpSide& side = store_.side[s];
+    to_components(side.positions, 4 * slice.input_groups, context_.origin);
+    for (uint32_t g = 0; g < slice.input_groups; ++g)
+      twist_moments(side.modified_mass[g], side.positions[g].v,
+                    difference(side.velocities[g], context_.drift), store_.slots + slice.input_slot + 4 * g);
+    sum_slice<3>(slice, side.lists, store_.slots);
+
+    wait_for_tag(kTagOut);
+    const vec_float4 noise_floor = spu_splats(context_.body.noise_floor);
+    TwistSlot* const twists = reinterpret_cast<TwistSlot*>(store_.motions);
+    for (uint32_t g = 0; g < slice.output_groups; ++g) {
+      const MomentumConstants& m = side.momenta[g];
+      twist_regions(m.inverse_mass, m.momentum, store_.slots + slice.sums_slot + 4 * g, twists + 4 * g,
+                    noise_floor);
+    }
+    put_large(twists, context_.body.motions_ea + before(slice.output, 4 * kTwistSlotBytes),
+              slice.output_groups * 4 * kTwistSlotBytes, kTagOut);
+  }
+
+ private:
+  const TilePassContext& context_;
+  const UpStore& store_;
+};
+
+/// scatter: motions of regions to pulled velocities.
+class ScatterPass {
+ public:
+  ScatterPass(const TilePassContext& context, const DownStore& store) : context_(context), store_(store) {}
+
+  void fetch(const TileSlice& slice, uint32_t s) {
+    const DownSide& side = store_.side[s];
+    const TiledBody& body = context_.body;
+    get_large(side.velocities, body.velocities_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
+    get_large(store_.slots + slice.input_slot, body.motions_ea + before(slice.input, 4 * kMatchSlotBytes),
+              slice.input_groups * 4 * kMatchSlotBytes, s);
+    get_large(side.positions, body.positions_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_large(side.rest, body.rest_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_large(side.weights, body.weights_ea + before(slice.output, 32), slice.output_groups * 32, s);
+  }
+
+  void work(const TileSlice& slice, uint32_t s) {
+    const DownSide& side = store_.side[s];
+    const TiledBody& body = context_.body;
+    sum_slice<3>(slice, side.lists, store_.slots);
+
+    finite_ = finite_ && finite_groups(side.velocities, slice.output_groups);
+    to_components(side.positions, 4 * slice.output_groups, context_.origin);
+    to_components(side.velocities, 4 * slice.output_groups, spu_splats(0.0f));
+    const vec_float4 pull = spu_splats(body.pull), scale = spu_splats(body.hold.scale);
+    const auto* const region = reinterpret_cast<const uint32_t(*)[4]>(side.lists);
+    for (uint32_t g = 0; g < slice.output_groups; ++g) {
+      const WeightConstants& weights = side.weights[g];
+      const Vector3x4 to_goal =
+          difference(goals(side.rest[g], weights.inverse_mass, region[g], store_.slots), side.positions[g].v);
+      // Padding has no goal.
+      const vec_uint4 padding = spu_cmpeq((vec_uint4)weights.mass, spu_splats(0u));
+      const vec_float4 own_pull = (vec_float4)spu_andc((vec_uint4)pull, padding);
+      side.held[g] = scale_add(to_goal, own_pull, side.velocities[g].v);
+      add_pulls(pulls_, to_goal, spu_mul(weights.mass, scale));
+    }
+    put_large(side.held, body.held_ea + before(slice.output, 48), slice.output_groups * 48, s);
+  }
+
+  void report(TileReport& report) {
+    carry(pulls_);
+    report.velocities_finite = finite_;
+    *reinterpret_cast<PullSum*>(report.pulls) = pulls_;
+  }
+
+ private:
+  const TilePassContext& context_;
+  const DownStore& store_;
+  PullSum pulls_ = no_pulls();
+  bool finite_ = true;
+};
+
+/// damp: twists of regions to velocities; or, where there is no damping, what `scatter` has left less the
+/// drift.
+class DampPass {
+ public:
+  DampPass(const TilePassContext& context, const DownStore& store)
+      : context_(context), store_(store), damping_(context.body.damping > 0) {}
+
+  void fetch(const TileSlice& slice, uint32_t s) {
+    const DownSide& side = store_.side[s];
+    const TiledBody& body = context_.body;
+    get_large(side.held, body.held_ea + before(slice.output, 48), slice.output_groups * 48, s);
+    if (!damping_) return;
+    get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
+    get_large(slots() + slice.input_slot, body.motions_ea + before(slice.input, 4 * kTwistSlotBytes),
+              slice.input_groups * 4 * kTwistSlotBytes, s);
+    get_large(side.positions, body.positions_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_large(side.weights, body.weights_ea + before(slice.output, 32), slice.output_groups * 32, s);
+    get_large(side.modified_mass, body.modified_ea + before(slice.output, 16), slice.output_groups * 16, s);
+  }
+
+  void work(const TileSlice& slice, uint32_t s) {
+    const DownSide& side = store_.side[s];
+    if (damping_) {
+      sum_slice<2>(slice, side.lists, slots());
+      to_components(side.positions, 4 * slice.output_groups, context_.origin);
+    }
+    wait_for_tag(kTagOut);
+    const vec_float4 damping = spu_splats(context_.body.damping);
+    const auto* const region = reinterpret_cast<const uint32_t(*)[4]>(side.lists);
+    for (uint32_t g = 0; g < slice.output_groups; ++g) {
+      Vector3x4 v = difference(side.held[g], context_.drift);
+      if (damping_) {
+        const vec_float4 share = spu_mul(side.modified_mass[g], side.weights[g].inverse_mass);
+        v = damp(share, region[g], slots(), side.positions[g].v, v, damping);
+      }
+      store_.damped[g].v = v;
+    }
+    to_particles(store_.damped, slice.output_groups);
+    put_large(store_.damped, context_.body.velocities_ea + before(slice.output, 64), slice.output_groups * 64,
+              kTagOut);
+  }
+
+ private:
+  /// Slots of two rows, in the place of the others.
+  TwistSlot* slots() const { return reinterpret_cast<TwistSlot*>(store_.slots); }
+
+  const TilePassContext& context_;
+  const DownStore& store_;
+  const bool damping_;
+};
+
+/// All slices of a tile, the next on its way while one is worked on.
+template <typename Pass>
+inline void run_slices(Pass& pass, const TileSlice* slices, uint32_t count) {
+  pass.fetch(slices[0], 0);
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t s = i & 1;
+    if (i + 1 < count) pass.fetch(slices[i + 1], s ^ 1);
+    wait_for_tag(s);
+    pass.work(slices[i], s);
+  }
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,114 @@
+#pragma once
+// Where the kernel `match_tiles` keeps a slice and what goes on from slice to slice.
+
+#include "match/local_store.h"
+#include "match_tiles_job.h"
+
+namespace softcell::spu {
+
+struct WeightConstants {
+  vec_float4 inverse_mass, mass;
+};
+static_assert(sizeof(WeightConstants) == sizeof(TileWeights), "the same bytes");
+
+struct MomentumConstants {
+  Vector3x4 momentum;  // sum m~ x
+  vec_float4 inverse_mass;
+};
+static_assert(sizeof(MomentumConstants) == sizeof(TileMomenta), "the same bytes");
+
+static_assert(sizeof(RestMoments) == sizeof(TileRest), "the same bytes");
+
+/// One side of the double buffer, from particles to regions.
+struct UpSide {
+  char* lists;
+  Vectors4* positions;
+  RestMoments* rest;           // gather
+  Vector3x4* velocities;       // twist, in the same place
+  vec_float4* modified_mass;   // twist
+  RegionConstants* regions;    // gather
+  MomentumConstants* momenta;  // twist, in the same place
+  Quaternion4* rotations;      // gather
+};
+
+/// One side of the double buffer, from regions to particles.
+struct DownSide {
+  char* lists;
+  Vectors4* positions;
+  Vectors4* velocities;  // scatter
+  Vector3x4* held;       // scatter: out; damp: in
+  RestMoments* rest;     // scatter
+  WeightConstants* weights;
+  vec_float4* modified_mass;  // damp
+};
+
+/// Hands out parts of the arena, one behind the other.
+class Arena {
+ public:
+  explicit Arena(char* begin) : free_(begin) {}
+
+  template <typename T>
+  T* take(uint32_t bytes) {
+    T* const part = reinterpret_cast<T*>(free_);
+    free_ += bytes;
+    return part;
+  }
+
+ private:
+  char* free_;
+};
+
+struct UpStore {
+  TileSlice* slices;
+  UpSide side[2];
+  Slot* motions;  // out
+  MomentumConstants* momenta;
+  Slot* slots;
+};
+
+struct DownStore {
+  TileSlice* slices;
+  DownSide side[2];
+  Vectors4* damped;  // damp: out
+  Slot* slots;
+};
+
+inline UpStore up_store(char* arena, const TileLimits& limits) {
+  Arena free(arena);
+  UpStore store;
+  store.slices = free.take<TileSlice>(limits.slices * static_cast<uint32_t>(sizeof(TileSlice)));
+  for (UpSide& side : store.side) {
+    side.lists = free.take<char>(limits.lists_bytes);
+    side.positions = free.take<Vectors4>(64 * limits.input_groups);
+    side.rest = free.take<RestMoments>(64 * limits.input_groups);
+    side.velocities = reinterpret_cast<Vector3x4*>(side.rest);
+    side.modified_mass = free.take<vec_float4>(16 * limits.input_groups);
+    side.regions = free.take<RegionConstants>(64 * limits.output_groups);
+    side.momenta = reinterpret_cast<MomentumConstants*>(side.regions);
+    side.rotations = free.take<Quaternion4>(64 * limits.output_groups);
+  }
+  store.motions = free.take<Slot>(4 * kMatchSlotBytes * limits.output_groups);
+  store.momenta = free.take<MomentumConstants>(64 * limits.output_groups);
+  store.slots = free.take<Slot>(0);
+  return store;
+}
+
+inline DownStore down_store(char* arena, const TileLimits& limits) {
+  Arena free(arena);
+  DownStore store;
+  store.slices = free.take<TileSlice>(limits.slices * static_cast<uint32_t>(sizeof(TileSlice)));
+  for (DownSide& side : store.side) {
+    side.lists = free.take<char>(limits.lists_bytes);
+    side.positions = free.take<Vectors4>(64 * limits.output_groups);
+    side.velocities = free.take<Vectors4>(64 * limits.output_groups);
+    side.held = free.take<Vector3x4>(48 * limits.output_groups);
+    side.rest = free.take<RestMoments>(64 * limits.output_groups);
+    side.weights = free.take<WeightConstants>(32 * limits.output_groups);
+    side.modified_mass = free.take<vec_float4>(16 * limits.output_groups);
+  }
+  store.damped = store.side[0].velocities;  // which damp has no use for
+  store.slots = free.take<Slot>(0);
+  return store;
+}
+
+}  // namespace softcell::spu

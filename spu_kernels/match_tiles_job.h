@@ -1,0 +1,167 @@
+#pragma once
+// The contract of the kernel `match_tiles`: one body that no local store holds, cut into tiles that all SPEs
+// work on. Plain data in main memory, the same bytes for both sides.
+//
+// A step is four passes over the body, each of which ends where particles need what neighbouring tiles know:
+//
+//   gather   x                 -->  sums of regions -->  R, motions                        over the regions
+//   scatter  motions           -->  sums of motions -->  goals, v'                         over the particles
+//   twist    x, v'             -->  sums of regions -->  omega, b                          over the regions
+//   damp     omega, b          -->  their sums      -->  v                                 over the particles
+//
+// A tile is some rows (y) of some planes (x) of the lattice, over its whole height (z). A job takes one tile
+// through one pass, a plane at a time, a slice: what comes in is one stretch of main memory, of the tile's
+// rows and half-width more on either side; what goes out is one stretch, its own rows. Sums over planes go on
+// from slice to slice. While one slice is worked on the next is fetched.
+//
+// The PPU side lays all that out (ppu/tile_plan.h): which slots hold what, and when one is free again. Sums
+// are made by the rules of match_job.h, with the same chains as if the body were whole, so the bits are the
+// same.
+//
+// Particles and regions have places: numbers by plane, tile row and number, each plane of a tile padded to
+// groups of four with particles of no mass and regions of nothing.
+
+#include <stdint.h>
+
+#include "match_job.h"
+
+namespace softcell::spu {
+
+/// One slice of a tile, in one direction: `up` from particles to regions, `down` from regions to particles.
+/// Slots are numbers here, offsets in sum lists; for `damp`, whose slots have two rows, these are others.
+struct alignas(64) TileSlice {
+  uint32_t input;         ///< first place that comes in; a multiple of 4
+  uint32_t input_groups;  ///< of four; 0: nothing comes in
+  uint32_t input_slot;
+  uint32_t bars_slot, plates_slot, sums_slot;  ///< where the three lists begin to write
+  uint32_t output;                             ///< first place that goes out; a multiple of 4
+  uint32_t output_groups;                      ///< 0: nothing is ready yet
+  uint32_t lists;                              ///< offset from TiledBody::lists_ea, a multiple of 16; bytes
+  uint32_t lists_bytes;                        ///< a multiple of 16
+  uint32_t plates_list, sums_list;             ///< offsets of lists from the first, that of bars; bytes, even
+  uint32_t bars_list;  ///< offset from `lists`; before it, down: the offsets of each output
+                       ///< particle's totals, four words to a group
+  uint32_t pad[3];
+};
+static_assert(sizeof(TileSlice) == 64, "four quadwords");
+
+/// Constants of four particles, for the passes that want them.
+struct alignas(16) TileRest {
+  float rest_moment[4][4];  ///< as in MatchParticles
+};
+struct alignas(16) TileWeights {
+  float inverse_mass[4];  ///< 1 / kg; 0 for padding
+  float mass[4];
+};
+struct alignas(16) TileModified {
+  float mass[4];  ///< m~
+};
+
+/// v' of four particles: what `scatter` leaves to the passes behind it.
+struct alignas(16) TileHeld {
+  float x[4], y[4], z[4];
+};
+
+/// What `gather` leaves to `twist` of four regions.
+struct alignas(16) TileMomenta {
+  float x[4], y[4], z[4];  ///< sum m~ x
+  float inverse_mass[4];
+};
+
+/// What one tile has found. Two lines: each pass has one of its own.
+struct alignas(128) TileReport {
+  float residual_square;      ///< the largest; by `gather`
+  uint32_t positions_finite;  ///< likewise
+  uint32_t pad0[30];
+  uint32_t pulls[28];          ///< a PullSum; by `scatter`
+  uint32_t velocities_finite;  ///< likewise
+  uint32_t pad1[3];
+};
+static_assert(sizeof(TileReport) == 256, "two lines");
+constexpr uint32_t kTileReportLine = 128;
+
+/// The most of anything that a slice of either direction has.
+struct TileLimits {
+  uint32_t slices;        ///< of a tile
+  uint32_t input_groups;  ///< of a slice
+  uint32_t output_groups;
+  uint32_t lists_bytes;
+  uint32_t slots;
+};
+
+/// One body. Two lines in main memory.
+struct alignas(128) TiledBody {
+  uint64_t positions_ea;      ///< x y z 0 of each place, metres
+  uint64_t velocities_ea;     ///< x y z 0 of each place, m/s; changed in place by `damp`
+  uint64_t held_ea;           ///< v' between passes: x, y, z of four places together, 48 bytes
+  uint64_t rotations_in_ea;   ///< MatchRotations of each group of regions: the last step's,
+  uint64_t rotations_out_ea;  ///< and this one's
+  uint64_t motions_ea;  ///< of each region's place: a slot with (R, t); then one of two rows, (b, omega)
+  uint64_t momenta_ea;  ///< TileMomenta of each group of regions
+  uint64_t reports_ea;  ///< a TileReport of each tile
+  uint64_t lists_ea;
+  uint64_t rest_ea;      ///< TileRest of each group of particles
+  uint64_t weights_ea;   ///< TileWeights
+  uint64_t modified_ea;  ///< TileModified
+  uint64_t regions_ea;   ///< MatchRegions of each group of regions
+  uint32_t tiles;
+  float pull;     ///< alpha / h, 1/s
+  float damping;  ///< k, 0..1
+  uint32_t cold;  ///< not 0: the rotations say nothing yet, only what they leave open
+  uint32_t least_iterations, most_iterations;
+  float noise_floor, grid;  ///< as in MatchPlanHeader
+  MatchHold hold;
+  uint32_t samples[kMatchSamples];  ///< places
+  TileLimits up, down;
+  uint32_t pad[2];
+};
+static_assert(sizeof(TiledBody) == 256, "two lines");
+
+enum TilePass : uint32_t { kTileGather = 0, kTileScatter = 1, kTileTwist = 2, kTileDamp = 3 };
+
+/// The job's descriptor: one tile, one pass.
+struct alignas(128) TileJob {
+  uint64_t body_ea;    ///< a TiledBody
+  uint64_t slices_ea;  ///< TileSlice of the pass's direction
+  uint32_t slice_count;
+  uint32_t tile;
+  uint32_t pass;  ///< a TilePass
+  uint32_t pad[25];
+};
+static_assert(sizeof(TileJob) == 128, "one line");
+
+/// What main returns.
+enum TileStatus : uint32_t { kTileDone = 0, kTileTooLarge = 1 };
+
+/// Bytes of local store for one direction: slices, two sides of a double buffer, what goes out, slots. Any
+/// numbers below 65536 may stand in the limits.
+constexpr uint32_t tile_up_side_bytes(const TileLimits& up) {
+  return up.lists_bytes + up.input_groups * (64 + 64 + 16) + up.output_groups * (64 + 64);
+}
+constexpr uint32_t tile_down_side_bytes(const TileLimits& down) {
+  return down.lists_bytes + down.output_groups * (64 + 64 + 48 + 64 + 32 + 16);
+}
+constexpr uint32_t tile_up_bytes(const TileLimits& up) {
+  return up.slices * static_cast<uint32_t>(sizeof(TileSlice)) + 2 * tile_up_side_bytes(up) +
+         up.output_groups * (4 * kMatchSlotBytes + static_cast<uint32_t>(sizeof(TileMomenta))) +
+         up.slots * kMatchSlotBytes;
+}
+constexpr uint32_t tile_down_bytes(const TileLimits& down) {
+  return down.slices * static_cast<uint32_t>(sizeof(TileSlice)) + 2 * tile_down_side_bytes(down) +
+         down.slots * kMatchSlotBytes;
+}
+
+/// What the kernel has for all that.
+constexpr uint32_t kTileArenaBytes = 208 * 1024;
+
+constexpr bool tile_limits_small(const TileLimits& limits) {
+  constexpr uint32_t most = kTileArenaBytes / 16;  // below it, sizes do not overflow
+  return limits.slices <= most && limits.input_groups <= most && limits.output_groups <= most &&
+         limits.lists_bytes <= kTileArenaBytes && limits.slots <= most;
+}
+constexpr bool tile_fits(const TileLimits& up, const TileLimits& down) {
+  return tile_limits_small(up) && tile_limits_small(down) && tile_up_bytes(up) <= kTileArenaBytes &&
+         tile_down_bytes(down) <= kTileArenaBytes;
+}
+
+}  // namespace softcell::spu
