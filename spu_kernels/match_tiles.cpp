@@ -30,13 +30,19 @@
 namespace softcell::spu {
 namespace {
 
+#ifdef SOFTCELL_CHECKED
+constexpr uint32_t kArenaBytes = kTileCheckedArenaBytes;
+#else
+constexpr uint32_t kArenaBytes = kTileArenaBytes;
+#endif
+
 /// Everything this kernel keeps in local store beside its code and stack.
 struct alignas(128) LocalStoreMap {
   TileJob job;
   TiledBody body;
   TileReport report;  // one pass writes one half
   vec_float4 samples[kMatchSamples];
-  alignas(128) char arena[kTileArenaBytes];
+  alignas(128) char arena[kArenaBytes];
 };
 LocalStoreMap ls;
 
@@ -133,7 +139,7 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   mfc_get(&ls.job, argp, sizeof(TileJob), kTagOut, 0, 0);
   wait_for_tag(kTagOut);
   load_body();
-  if (!tile_fits(ls.body.up, ls.body.down)) return kTileTooLarge;
+  if (!tile_fits(ls.body.up, ls.body.down, kArenaBytes)) return kTileTooLarge;
   if (ls.job.slice_count == 0) return kTileDone;
 
   const vec_float4 zero = spu_splats(0.0f);

@@ -151,17 +151,17 @@ constexpr uint32_t tile_down_bytes(const TileLimits& down) {
          down.slots * kMatchSlotBytes;
 }
 
-/// What the kernel has for all that.
-constexpr uint32_t kTileArenaBytes = 208 * 1024;
+/// What the kernel has for all that; its instrumented flavour has more code and less room.
+constexpr uint32_t kTileArenaBytes = 208 * 1024, kTileCheckedArenaBytes = 144 * 1024;
 
 constexpr bool tile_limits_small(const TileLimits& limits) {
   constexpr uint32_t most = kTileArenaBytes / 16;  // below it, sizes do not overflow
   return limits.slices <= most && limits.input_groups <= most && limits.output_groups <= most &&
          limits.lists_bytes <= kTileArenaBytes && limits.slots <= most;
 }
-constexpr bool tile_fits(const TileLimits& up, const TileLimits& down) {
-  return tile_limits_small(up) && tile_limits_small(down) && tile_up_bytes(up) <= kTileArenaBytes &&
-         tile_down_bytes(down) <= kTileArenaBytes;
+constexpr bool tile_fits(const TileLimits& up, const TileLimits& down, uint32_t arena_bytes) {
+  return tile_limits_small(up) && tile_limits_small(down) && tile_up_bytes(up) <= arena_bytes &&
+         tile_down_bytes(down) <= arena_bytes;
 }
 
 }  // namespace softcell::spu

@@ -153,7 +153,7 @@ void run_match_tiles(Sample& sample) {
   }
   for (int step = 0; step < 2; ++step) {
     body.begin_step({.pull = 30, .damping = 0.1f});
-    for (const spu::TilePass pass : {spu::kTileGather, spu::kTileScatter, spu::kTileTwist, spu::kTileDamp})
+    for (const spu::TilePass pass : ppu::kTilePasses)
       for (std::size_t tile = 0; tile < body.tiles(); ++tile)
         if (const auto job = body.job(pass, tile)) sample.run(*job);
     body.end_step();

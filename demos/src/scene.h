@@ -19,6 +19,8 @@ struct SoftBodyPlacement {
   ppu::TriangleMesh mesh;
   ppu::SoftBodySettings settings;
   Eigen::Vector3f position{0, 0, 0};  ///< where the mesh's own origin goes
+  float twist =
+      0;  ///< rad/s: how fast its two ends along x turn about x at the beginning, against each other
   render::Colour colour{0.8f, 0.8f, 0.8f};
 };
 

@@ -47,6 +47,19 @@ Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
   return tilted_by(angle(script.amplitude_x, script.period_x), angle(script.amplitude_z, script.period_z));
 }
 
+/// Has the body's two ends along x turn about x against each other, the middle at rest.
+/// @param rate  rad/s, of one end against the other
+void twist(ppu::SoftBody& body, float rate) {
+  if (rate == 0) return;
+  const ppu::Bounds box = body.bounds();
+  const Eigen::Vector3f middle = 0.5f * (box.low + box.high);
+  for (std::size_t i = 0; i < body.model().particles(); ++i) {
+    const Eigen::Vector3f r = body.position(i) - middle;
+    const float turn = rate * r.x() / (box.high.x() - box.low.x());
+    body.add_particle_velocity(i, turn * Eigen::Vector3f::UnitX().cross(r));
+  }
+}
+
 }  // namespace
 
 struct Simulation3d::State {
@@ -63,6 +76,7 @@ struct Simulation3d::State {
         controls({0, -scene.gravity, 0}),
         job_loop(load_kernel("job_loop")),
         match(load_kernel("match", options.findings != nullptr)),
+        match_tiles(load_kernel("match_tiles", options.findings != nullptr)),
         skin(load_kernel("skin", options.findings != nullptr)),
         jobs(memory,
              {.spes = options.spes,
@@ -80,7 +94,8 @@ struct Simulation3d::State {
       world.add_convex(obstacle.mesh, obstacle.position, scene.friction);
     for (const SoftBodyPlacement& placement : scene.soft_bodies) {
       const auto model = ppu::make_soft_body_model(placement.mesh, placement.settings);
-      const ppu::SoftBody& body = soft_bodies.add(model, placement.position);
+      ppu::SoftBody& body = soft_bodies.add(model, placement.position);
+      twist(body, placement.twist);
       orchestrator.add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()), model->particles());
       positions.push_back(body.positions());
     }
@@ -94,7 +109,7 @@ struct Simulation3d::State {
   }
 
   std::unique_ptr<ppu::SoftBodySolver> make_solver(Solver wanted) {
-    if (wanted == Solver::kSpe) return std::make_unique<ppu::SpeSolver>(memory, jobs, match);
+    if (wanted == Solver::kSpe) return std::make_unique<ppu::SpeSolver>(memory, jobs, match, match_tiles);
     return std::make_unique<ppu::PpuSolver>();
   }
 
@@ -118,7 +133,10 @@ struct Simulation3d::State {
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
     frame = 0;
   }
-  void home(std::size_t body) { soft_bodies[body].reset(scene.soft_bodies[body].position); }
+  void home(std::size_t body) {
+    soft_bodies[body].reset(scene.soft_bodies[body].position);
+    twist(soft_bodies[body], scene.soft_bodies[body].twist);
+  }
 
   const Snapshot& shown() const { return snapshots[static_cast<std::size_t>(newest)]; }
 
@@ -129,7 +147,7 @@ struct Simulation3d::State {
   std::vector<std::size_t> boxes;  // numbers in the world
 
   dma::AddressSpace memory;
-  ls_sim::KernelImage job_loop, match, skin;
+  ls_sim::KernelImage job_loop, match, match_tiles, skin;
   ppu::JobSystem jobs;
   std::unique_ptr<ppu::SoftBodySolver> solver;
   ppu::BulletSoftBodies soft_bodies;

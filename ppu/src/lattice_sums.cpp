@@ -34,7 +34,7 @@ LatticeSums::LatticeSums(const Lattice& lattice, const SumPlan& sums, int plate_
   for (auto i = static_cast<std::uint32_t>(sums.particles()); i-- > 0;) home[sums.region_of()[i]] = i;
 }
 
-int rows_that_fit(const Lattice& lattice, int half_width) {
+int rows_that_fit(const Lattice& lattice, int half_width, std::uint32_t arena_bytes) {
   const auto [low, high] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.z(); });
   const std::uint64_t height = static_cast<std::uint64_t>(high.z() - low.z()) + 1;
   const auto w = static_cast<std::uint64_t>(half_width);
@@ -52,14 +52,12 @@ int rows_that_fit(const Lattice& lattice, int half_width) {
     return std::max(spu::tile_up_bytes(up), spu::tile_down_bytes(down));
   };
   int rows = 1;
-  while (rows < kMaxLatticeCellsPerAxis &&
-         bytes(static_cast<std::uint64_t>(rows) + 1) <= spu::kTileArenaBytes)
-    ++rows;
+  while (rows < kMaxLatticeCellsPerAxis && bytes(static_cast<std::uint64_t>(rows) + 1) <= arena_bytes) ++rows;
   return rows;
 }
 
 int sum_restart_of_rows(const Lattice& lattice, int half_width) {
-  return std::min(rows_that_fit(lattice, half_width), kSumRestart);
+  return std::min(rows_that_fit(lattice, half_width, spu::kTileArenaBytes), kSumRestart);
 }
 
 }  // namespace softcell::ppu

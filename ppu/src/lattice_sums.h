@@ -30,9 +30,10 @@ inline constexpr int kSumRestart = KernelPlan<spu::MatchPlanHeader>::kRestart;
 
 /// Rows (y) of a lattice that a tile may have, judged by the lattice's height (z): as many as the local store
 /// of the kernel match_tiles holds, at least one.
-int rows_that_fit(const Lattice& lattice, int half_width);
+/// @param arena_bytes  as TilePlan's
+int rows_that_fit(const Lattice& lattice, int half_width, std::uint32_t arena_bytes);
 
-/// The same, at most kSumRestart.
+/// The same of the kernel as it is, at most kSumRestart: what sums are does not hang on flavours.
 int sum_restart_of_rows(const Lattice& lattice, int half_width);
 
 }  // namespace softcell::ppu

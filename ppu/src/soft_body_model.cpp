@@ -6,6 +6,19 @@
 #include "softcell/ppu/soft_body.h"
 
 namespace softcell::ppu {
+namespace {
+
+std::vector<bool> corners_of_outer_cells(const Lattice& lattice) {
+  const std::vector<bool> on_boundary = outer_particles(lattice);
+  std::vector<bool> result = on_boundary;
+  for (const auto& cell : lattice.corners) {
+    if (std::none_of(cell.begin(), cell.end(), [&](std::uint32_t i) { return on_boundary[i]; })) continue;
+    for (const std::uint32_t i : cell) result[i] = true;
+  }
+  return result;
+}
+
+}  // namespace
 
 SoftBodyModel::SoftBodyModel(Lattice lattice, Embedding embedding, const SoftBodySettings& settings)
     : settings_(settings),
@@ -17,12 +30,8 @@ SoftBodyModel::SoftBodyModel(Lattice lattice, Embedding embedding, const SoftBod
   for (const float m : masses_) mass += m;
   mass_ = static_cast<float>(mass);
 
-  const std::vector<bool> on_boundary = outer_particles(lattice_);
-  std::vector<bool> is_outer = on_boundary;
-  for (const auto& cell : lattice_.corners) {
-    if (std::none_of(cell.begin(), cell.end(), [&](std::uint32_t i) { return on_boundary[i]; })) continue;
-    for (const std::uint32_t i : cell) is_outer[i] = true;
-  }
+  const std::vector<bool> is_outer =
+      settings.contacts ? corners_of_outer_cells(lattice_) : std::vector<bool>(lattice_.particles.size());
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
 }
 

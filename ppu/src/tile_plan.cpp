@@ -24,13 +24,13 @@ constexpr int kMostPlanes = 64;   // slices of a tile are kept in the local stor
 int round_up(int count, int step) { return (count + step - 1) / step * step; }
 
 /// Tiles begin where sums start anew, so that they make no sums twice for a chain's sake.
-TileGrid grid_for(const Lattice& lattice, int half_width, TileShape shape) {
+TileGrid grid_for(const Lattice& lattice, int half_width, TileShape shape, std::uint32_t arena_bytes) {
   const auto [low, high] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.x(); });
   const int planes = high.x() - low.x() + 1;
   const auto [front, back] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.y(); });
   const int rows = back.y() - front.y() + 1;
 
-  const int fit = rows_that_fit(lattice, half_width);
+  const int fit = rows_that_fit(lattice, half_width, arena_bytes);
   const int tile_rows = shape.rows > 0      ? shape.rows
                         : fit < kSumRestart ? fit
                                             : fit / kSumRestart * kSumRestart;
@@ -50,13 +50,14 @@ std::vector<Eigen::Vector3i> homes(const Lattice& lattice, const LatticeSums& or
 
 }  // namespace
 
-TilePlan::TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, TileShape shape) {
+TilePlan::TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, TileShape shape,
+                   std::uint32_t arena_bytes) {
   if (shape.planes < 0 || shape.rows < 0)
     throw std::invalid_argument("TilePlan: a tile of " + std::to_string(shape.planes) + " planes and " +
                                 std::to_string(shape.rows) + " rows; expected 0 or more of both");
   const SumPlan& sums = matching.sums();
   const LatticeSums order(lattice, sums, sum_restart_of_rows(lattice, matching.half_width()));
-  const TileGrid grid = grid_for(lattice, matching.half_width(), shape);
+  const TileGrid grid = grid_for(lattice, matching.half_width(), shape, arena_bytes);
   const TilePlaces particles(grid, lattice.particles), regions(grid, homes(lattice, order));
 
   TileScheduler scheduler(lattice, sums, matching.half_width(), order, grid, particles, regions);
@@ -73,11 +74,11 @@ TilePlan::TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, 
   body_.tiles = static_cast<std::uint32_t>(tiles_.size());
   body_.up = scheduler.limits(Direction::kUp);
   body_.down = scheduler.limits(Direction::kDown);
-  if (!spu::tile_fits(body_.up, body_.down))
-    throw std::runtime_error(
+  if (!spu::tile_fits(body_.up, body_.down, arena_bytes))
+    throw BodyTooLarge(
         "a tile of " + std::to_string(grid.rows) + " rows of a soft body needs " +
         std::to_string(std::max(spu::tile_up_bytes(body_.up), spu::tile_down_bytes(body_.down))) +
-        " bytes of local store; the kernel match_tiles has " + std::to_string(spu::kTileArenaBytes) +
+        " bytes of local store; the kernel match_tiles has " + std::to_string(arena_bytes) +
         "; turn the body so that its lattice is lower along z");
   body_.noise_floor = matching.noise_floor();
   body_.grid = origin_grid(lattice.spacing);

@@ -13,8 +13,6 @@ namespace softcell::ppu {
 
 namespace {
 
-constexpr std::size_t kPasses = 4;
-
 /// A buffer with what is in `items`.
 template <typename T>
 dma::Buffer<T> copied(dma::AddressSpace& memory, const char* name, std::span<const T> items) {
@@ -51,7 +49,7 @@ TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
       motions_(memory, "tiled motions", plan.region_places() * spu::kMatchSlotBytes),
       momenta_(memory, "tiled momenta", plan.region_places() / 4),
       reports_(memory, "tiled reports", plan.tiles().size()),
-      jobs_(memory, "tiled jobs", kPasses * plan.tiles().size(), kSpesOnlyRead) {
+      jobs_(memory, "tiled jobs", kTilePasses.size() * plan.tiles().size(), kSpesOnlyRead) {
   spu::TiledBody& body = body_[0];
   body = plan.body();
   body.positions_ea = positions_.ea().value;
@@ -93,8 +91,14 @@ TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
 
 std::optional<dma::EffectiveAddress> TiledMemory::job(spu::TilePass pass, std::size_t tile) const {
   const std::size_t number = pass * tiles() + tile;
-  if (jobs_[number].slice_count == 0) return std::nullopt;
+  const bool damped = body_.data()[0].damping > 0;
+  if (jobs_.data()[number].slice_count == 0 || (pass == spu::kTileTwist && !damped)) return std::nullopt;
   return jobs_.ea(number);
+}
+
+void TiledMemory::add_jobs(JobChain& chain, const JobImage& match_tiles, spu::TilePass pass) const {
+  for (std::size_t tile = 0; tile < tiles(); ++tile)
+    if (const auto argp = job(pass, tile)) chain.add({.image = match_tiles, .argp = *argp});
 }
 
 float TiledMemory::residual() const {
@@ -130,22 +134,7 @@ void TiledMemory::end_step() {
 
 TiledMatch::TiledMatch(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match_tiles,
                        const TilePlan& plan)
-    : image_(jobs.place(match_tiles)),
-      memory_(memory, plan),
-      chain_(jobs, "tiles", kPasses * plan.tiles().size()) {
-  make_chain(damped_);
-}
-
-void TiledMatch::make_chain(bool damped) {
-  damped_ = damped;
-  chain_.clear();
-  for (const spu::TilePass pass : {spu::kTileGather, spu::kTileScatter, spu::kTileTwist, spu::kTileDamp}) {
-    if (pass == spu::kTileTwist && !damped) continue;
-    for (std::size_t tile = 0; tile < tiles(); ++tile)
-      if (const auto job = memory_.job(pass, tile)) chain_.add({.image = image_, .argp = *job});
-    chain_.sync();
-  }
-}
+    : image_(jobs.place(match_tiles)), memory_(memory, plan), chain_(jobs, "tiles", memory_.most_jobs()) {}
 
 void TiledMatch::step(const MatchSettings& settings) {
   kick(settings);
@@ -154,7 +143,11 @@ void TiledMatch::step(const MatchSettings& settings) {
 
 void TiledMatch::kick(const MatchSettings& settings) {
   memory_.begin_step(settings);
-  if ((settings.damping > 0) != damped_) make_chain(settings.damping > 0);
+  chain_.clear();
+  for (const spu::TilePass pass : kTilePasses) {
+    memory_.add_jobs(chain_, image_, pass);
+    chain_.sync();
+  }
   chain_.kick();
   in_flight_ = true;
 }

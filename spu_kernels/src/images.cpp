@@ -8,9 +8,9 @@
 
 extern "C" {
 extern const std::byte softcell_image_job_loop[], softcell_image_job_loop_end[];
-extern const std::byte softcell_image_match_tiles[], softcell_image_match_tiles_end[];
 SC_DECLARE(match)
 SC_DECLARE(match_2d)
+SC_DECLARE(match_tiles)
 SC_DECLARE(rotations)
 SC_DECLARE(skin)
 SC_DECLARE(transfers)
@@ -30,10 +30,7 @@ std::span<const ImageFile> image_files() {
                                           .checked_elf = {}},
                                 SC_FILE(match),
                                 SC_FILE(match_2d),
-                                // Checked, this would not fit a local store.
-                                ImageFile{.name = "match_tiles",
-                                          .elf = {softcell_image_match_tiles, softcell_image_match_tiles_end},
-                                          .checked_elf = {}},
+                                SC_FILE(match_tiles),
                                 SC_FILE(rotations),
                                 SC_FILE(skin),
                                 SC_FILE(transfers)};

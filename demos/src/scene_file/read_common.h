@@ -12,7 +12,7 @@ namespace softcell::demos {
 // More than these no host plays, and a slip of the pen is more likely.
 inline constexpr std::size_t kMaxSoftBodies = 256, kMaxRigidBodies = 1000, kMaxEvents = 1000,
                              kMaxPictures = 1000;
-inline constexpr std::uint32_t kMaxParticlesOfScene = 200'000;
+inline constexpr std::uint32_t kMaxParticlesOfScene = 300'000;
 inline constexpr std::size_t kMaxVerticesOfScene = 2'000'000;
 inline constexpr int kMaxFrames = 1'000'000;
 inline constexpr int kMaxSubsteps = 64;

@@ -11,6 +11,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::array<std::string_view, 2> kPatterns{"plain", "tiles"};
+constexpr Range kTwist{.low = -1000, .high = 1000};  // rad/s
 
 /// A floor whose upper side is at y = 0, and four walls on it. The wall towards +z, where cameras are, may be
 /// glass.
@@ -108,12 +109,15 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
   SoftBodyPlacement& body = scene.soft_bodies.emplace_back();
   std::optional<float> own_model_side, above;
+  bool contacts = true;
   body.name = "body " + std::to_string(index + 1);
   fields.text("name", body.name)
       .colour("colour", body.colour)
       .vector<3>("position", body.position, kCoordinate)
       .number("above", above, kCoordinate)
-      .number("own_model_side", own_model_side, kLength);
+      .number("own_model_side", own_model_side, kLength)
+      .number("twist", body.twist, kTwist)
+      .flag("contacts", contacts);
   Material material = materials.read(fields);
   body.mesh = read_mesh(fields, source);
   const bool replaced = model != nullptr && own_model_side;
@@ -124,6 +128,7 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
   if (material.settings.cell_size <= 0)
     throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
   body.settings = material.settings_for(step_of(scene));
+  body.settings.contacts = contacts;
   if (above) body.position.y() = *above - ppu::bounds(body.mesh).low.y();
   return replaced;
 }

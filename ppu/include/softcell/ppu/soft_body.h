@@ -31,6 +31,7 @@ struct SoftBodySettings {
   float alpha = 0.5f;     ///< 0..1: the share of the way to its goal that a particle makes up for in one step
   float damping = 0.05f;  ///< 0..1: the share of the deviation from rigid motion taken away in one step
   float friction = 0.6f;  ///< coefficient of the particles; Bullet multiplies it with the other body's
+  bool contacts = true;   ///< false: nothing touches the body, which is then all inner particles
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
   std::optional<float> damping_time = {};  ///< s, in place of damping: deviations fall to 1/e in this time
 
@@ -55,9 +56,10 @@ class SoftBodyModel {
   std::span<const float> masses() const { return masses_; }  ///< kg, of each particle
   float mass() const { return mass_; }                       ///< kg, of the body
 
-  /// Particle numbers, ascending. Outer particles collide: all corners of the cells at the lattice's
-  /// boundary, which makes them two deep. One layer would keep things out, but a body that is pressed flat on
-  /// a floor would push its second layer, which the mesh hangs on too, through the first and the floor.
+  /// Particle numbers, ascending. Outer particles collide, none of a body without contacts: all corners of
+  /// the cells at the lattice's boundary, which makes them two deep. One layer would keep things out, but a
+  /// body that is pressed flat on a floor would push its second layer, which the mesh hangs on too, through
+  /// the first and the floor.
   std::span<const std::uint32_t> outer() const { return outer_; }
   std::span<const std::uint32_t> inner() const { return inner_; }
 

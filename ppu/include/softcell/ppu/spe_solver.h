@@ -1,7 +1,7 @@
 #pragma once
-// Shape matching and damping of soft bodies on the SPEs, by the kernel `match`.
+// Shape matching and damping of soft bodies on the SPEs, by the kernels `match` and `match_tiles`.
 //
-//     SpeSolver solver(memory, jobs, image);            // image of the kernel match
+//     SpeSolver solver(memory, jobs, match, match_tiles);   // the kernels' images
 //     BulletSoftBodies soft_bodies(world, solver);
 //
 //     kick():    positions, velocities --> main memory    one chain of jobs: bodies of one model share a plan
@@ -19,11 +19,14 @@ namespace softcell::ppu {
 /// SoftBody::matcher() says nothing, and a body restored from a copy starts from the rotations of the last
 /// step.
 ///
-/// Bodies that are too large for a local store are stepped by the PPU, while the SPEs step the others.
+/// A body that fits a local store is stepped whole by one SPE, with others of its model; a larger one in
+/// tiles by all of them. What does not even fit in tiles, a lattice some hundreds of particles high (z) with
+/// wide regions, the PPU steps while the SPEs step the others.
 class SpeSolver final : public SoftBodySolver {
  public:
-  /// All three must outlive the solver.
-  SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match);
+  /// All four must outlive the solver.
+  SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match,
+            const ls_sim::KernelImage& match_tiles);
   ~SpeSolver() override;
 
   void kick(std::span<SoftBody* const> bodies, float step) override;
@@ -37,14 +40,18 @@ class SpeSolver final : public SoftBodySolver {
 
   bool knows(std::span<SoftBody* const> bodies) const;
   void regroup(std::span<SoftBody* const> bodies);
+  void find_place(Group& group, std::size_t bodies);
+  void take_over(Member& member, Member& old);
+  void hand_over(Member& member);
+  void take_back(const Member& member);
 
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
-  JobImage match_;
-  std::uint32_t arena_bytes_;  ///< of that flavour of the kernel
+  JobImage match_, match_tiles_;
+  bool checked_;  // the kernels' flavour
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<Member> members_;  // in the order of kick()
-  std::vector<SoftBody*> large_;
+  std::vector<SoftBody*> left_to_ppu_;
   float step_ = 0;
   std::unique_ptr<JobChain> chain_;  // last, so that it has ended before what its jobs work on goes
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "match_tiles_job.h"
+#include "softcell/ppu/kernel_plan.h"
 #include "softcell/ppu/lattice.h"
 #include "softcell/ppu/shape_matching.h"
 
@@ -35,10 +36,12 @@ class TilePlan {
     std::vector<spu::TileSlice> down, damp;  ///< of `scatter`, and the same for `damp`
   };
 
-  /// @throws std::runtime_error     a slice does not fit a local store: the lattice is too high (z). The
-  ///                                sentence states how many bytes it takes.
+  /// @param arena_bytes  what the kernel has for a tile: kTileArenaBytes, or of its instrumented flavour
+  ///                     kTileCheckedArenaBytes. Says nothing about the result.
+  /// @throws BodyTooLarge           a slice does not fit a local store: the lattice is too high (z).
   /// @throws std::invalid_argument  a shape below zero.
-  TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, TileShape shape = {});
+  TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, TileShape shape = {},
+           std::uint32_t arena_bytes = spu::kTileArenaBytes);
 
   std::span<const Tile> tiles() const { return tiles_; }
 

@@ -10,6 +10,7 @@
 //
 // The same bits as MatchOrchestrator's on a body that fits.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -21,6 +22,9 @@
 #include "softcell/ppu/tile_plan.h"
 
 namespace softcell::ppu {
+
+/// In the order of a step.
+inline constexpr std::array kTilePasses{spu::kTileGather, spu::kTileScatter, spu::kTileTwist, spu::kTileDamp};
 
 /// A body in tiles as it lies in main memory, and the jobs of its step, for whoever runs them.
 class TiledMemory {
@@ -35,12 +39,20 @@ class TiledMemory {
   std::span<Vector> positions() { return positions_.span(); }
   std::span<Vector> velocities() { return velocities_.span(); }
 
-  /// The address of one job's descriptor; none where a tile has nothing to do in that pass.
-  std::optional<dma::EffectiveAddress> job(spu::TilePass pass, std::size_t tile) const;
-
   /// Before the jobs run. @throws std::invalid_argument  settings out of their ranges.
   void begin_step(const MatchSettings& settings);
-  /// After. @throws std::runtime_error  positions or velocities are no numbers; nothing has changed.
+
+  /// The descriptor of one job of the step begun; none where a tile has nothing to do in that pass.
+  std::optional<dma::EffectiveAddress> job(spu::TilePass pass, std::size_t tile) const;
+
+  /// The jobs of one pass of the step begun. All of a pass, in the order of kTilePasses, must have ended
+  /// before one of the next begins; bodies may go through a pass together.
+  void add_jobs(JobChain& chain, const JobImage& match_tiles, spu::TilePass pass) const;
+  /// The most jobs that a step has.
+  std::size_t most_jobs() const { return jobs_.size(); }
+
+  /// When all have ended. @throws std::runtime_error  positions or velocities are no numbers; nothing has
+  /// changed.
   void end_step();
   /// As TiledMatch.
   float residual() const;
@@ -98,11 +110,8 @@ class TiledMatch {
   void reset() { memory_.reset(); }
 
  private:
-  void make_chain(bool damped);
-
   JobImage image_;
   TiledMemory memory_;
-  bool damped_ = true;  // what chain_ does
   bool in_flight_ = false;
   JobChain chain_;  ///< last, so that it has ended before what its jobs work on goes
 };
