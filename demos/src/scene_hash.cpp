@@ -56,13 +56,13 @@ class Hash {
     add(positions, triangles);  // normals are looks
   }
   void take(const ppu::SoftBodySettings& settings) {
-    const auto& [cell_size, half_width, density, alpha, damping, friction, frequency, damping_time] =
-        settings;
-    add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
+    const auto& [cell_size, half_width, density, alpha, damping, friction, contacts, frequency,
+                 damping_time] = settings;
+    add(cell_size, half_width, density, alpha, damping, friction, contacts, frequency, damping_time);
   }
   void take(const SoftBodyPlacement& body) {
-    const auto& [name, mesh, settings, position, colour] = body;
-    add(mesh, settings, position);
+    const auto& [name, mesh, settings, position, twist, colour] = body;
+    add(mesh, settings, position, twist);
   }
   void take(const RigidBox& box) {
     const auto& [size, mass, position, colour, opacity, pattern] = box;

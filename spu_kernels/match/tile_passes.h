@@ -68,7 +68,6 @@ class GatherPass {
       match_moments(side.rest[g], side.positions[g].v, store_.slots + slice.input_slot + 4 * g);
     sum_slice<3>(slice, side.lists, store_.slots);
 
-    wait_for_tag(kTagOut);
     MomentumConstants* const momenta = store_.momenta;
     const StepOptions options = {
         body_.pull, body_.damping, {body_.least_iterations, body_.most_iterations}, body_.cold != 0};
@@ -121,7 +120,6 @@ class TwistPass {
                     difference(side.velocities[g], context_.drift), store_.slots + slice.input_slot + 4 * g);
     sum_slice<3>(slice, side.lists, store_.slots);
 
-    wait_for_tag(kTagOut);
     const vec_float4 noise_floor = spu_splats(context_.body.noise_floor);
     TwistSlot* const twists = reinterpret_cast<TwistSlot*>(store_.motions);
     for (uint32_t g = 0; g < slice.output_groups; ++g) {
@@ -217,7 +215,6 @@ class DampPass {
       sum_slice<2>(slice, side.lists, slots());
       to_components(side.positions, 4 * slice.output_groups, context_.origin);
     }
-    wait_for_tag(kTagOut);
     const vec_float4 damping = spu_splats(context_.body.damping);
     const auto* const region = reinterpret_cast<const uint32_t(*)[4]>(side.lists);
     for (uint32_t g = 0; g < slice.output_groups; ++g) {
@@ -242,14 +239,15 @@ class DampPass {
   const bool damping_;
 };
 
-/// All slices of a tile, the next on its way while one is worked on.
+/// All slices of a tile, the next on its way while one is worked on. What the one before puts out from a place
+/// of its own has left by then.
 template <typename Pass>
 inline void run_slices(Pass& pass, const TileSlice* slices, uint32_t count) {
   pass.fetch(slices[0], 0);
   for (uint32_t i = 0; i < count; ++i) {
     const uint32_t s = i & 1;
     if (i + 1 < count) pass.fetch(slices[i + 1], s ^ 1);
-    wait_for_tag(s);
+    wait_for_tags(1u << s | 1u << kTagOut);
     pass.work(slices[i], s);
   }
 }
