@@ -51,6 +51,12 @@ class Hash {
     std::visit([this](const auto& alternative) { this->take(alternative); }, value);
   }
 
+  /// What scenes did not always have says nothing where it is as it always was: older recordings still fit.
+  template <class Value>
+  void add_unless(const Value& value, const Value& usual) {
+    if (value != usual) add(value);
+  }
+
   void take(const ppu::TriangleMesh& mesh) {
     const auto& [positions, normals, triangles] = mesh;
     add(positions, triangles);  // normals are looks
@@ -58,11 +64,13 @@ class Hash {
   void take(const ppu::SoftBodySettings& settings) {
     const auto& [cell_size, half_width, density, alpha, damping, friction, contacts, frequency,
                  damping_time] = settings;
-    add(cell_size, half_width, density, alpha, damping, friction, contacts, frequency, damping_time);
+    add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
+    add_unless(contacts, true);
   }
   void take(const SoftBodyPlacement& body) {
     const auto& [name, mesh, settings, position, twist, colour] = body;
-    add(mesh, settings, position, twist);
+    add(mesh, settings, position);
+    add_unless(twist, 0.0f);
   }
   void take(const RigidBox& box) {
     const auto& [size, mass, position, colour, opacity, pattern] = box;
