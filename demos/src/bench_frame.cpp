@@ -87,6 +87,7 @@ void add_frame_benchmarks(std::vector<Benchmark>& all) {
     all.push_back(frames_of<SoftFrames>(scene, ""));
     all.push_back(frames_of<SphereFrames>(scene, "/spheres"));
   }
+  all.push_back(frames_of<SoftFrames>("big", ""));  // nothing touches it
 }
 
 }  // namespace softcell::demos
