@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "input_log.h"
+#include "replayed.h"
 #include "scene_file/scene_library.h"
 #include "scene_view.h"
 #include "scene_view_2d.h"
@@ -93,26 +93,13 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden2d,
                                          Moment2d{"stack", 60, View2d::kFilled, "stack_60"},
                                          Moment2d{"two_way", 50, View2d::kFilled, "two_way_50"}));
 
-/// What a hand does to the man was recorded: `ci/figures` plays the recordings once more when the state's
-/// bits or their format change.
 class SceneGoldenReplay : public testing::TestWithParam<const char*> {};
 
 TEST_P(SceneGoldenReplay, LooksAsItDidAndEndsInItsState) {
-  DemoOptions options;
-  options.replay = std::filesystem::path(SOFTCELL_RECORDINGS_DIR) / (std::string(GetParam()) + ".rec");
-  InputLog<2> log(options);
-  Scene2d scene = load_scene_2d(log.scene_name().value());
-  log.begin(scene);
-  Simulation2d simulation(scene);
-  for (std::int64_t frame = 0; frame < log.frames(); ++frame) {
-    simulation.step(log.events_at(frame));
-    log.note(frame, simulation.last_events());
-  }
-  log.save(simulation.state_hash());
-  EXPECT_NO_THROW(log.check());
+  const Replayed replayed(GetParam());
   const auto context = render::create_offscreen_context();
   render::Renderer renderer(*context, {.width = 480, .height = 270});
-  SceneView2d view(scene, simulation, renderer, View2d::kFilled);
+  SceneView2d view(replayed.scene(), replayed.simulation(), renderer, View2d::kFilled);
   EXPECT_TRUE(test::compare_with_golden(view.draw(), GetParam()));
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "random_play.h"
+#include "replayed.h"
 #include "scene_file/scene_library.h"
 
 namespace softcell::demos {
@@ -20,6 +21,17 @@ Event hand(Action action, const Vector2f& at = {0, 0}) { return test::users_hand
 
 void run(Simulation2d& simulation, int frames) {
   for (int i = 0; i < frames; ++i) simulation.step();
+}
+
+/// Lets go of the man.
+void expect_return_to_shape(Simulation2d& simulation, const Scene2d& scene) {
+  simulation.step(
+      std::vector<Event>{hand(Action::kRelease), {.action = Action::kGravity, .value = {0, -scene.gravity}}});
+  run(simulation, kTenSeconds);
+  // Without gravity nothing presses him, and he has his very shape again.
+  simulation.step(std::vector<Event>{{.action = Action::kGravity}});
+  run(simulation, 2 * kTenSeconds);
+  EXPECT_LT(simulation.soft_body(0).deformation(), 0.5f * scene.soft_bodies[0].settings.cell_size);
 }
 
 class DraggedIntoACorner : public testing::TestWithParam<float> {};
@@ -39,16 +51,20 @@ TEST_P(DraggedIntoACorner, TheManReturnsToHisShape) {
     ASSERT_LE(outside(simulation, scene), 0) << "frame " << frame;
   }
   EXPECT_GT(most, 0.5f) << "metres: he was dragged hard";
-  simulation.step(
-      std::vector<Event>{hand(Action::kRelease), {.action = Action::kGravity, .value = {0, -scene.gravity}}});
-  run(simulation, kTenSeconds);
-  // Without gravity nothing presses him, and he has his very shape again.
-  simulation.step(std::vector<Event>{{.action = Action::kGravity}});
-  run(simulation, 2 * kTenSeconds);
-  EXPECT_LT(simulation.soft_body(0).deformation(), 0.5f * scene.soft_bodies[0].settings.cell_size);
+  expect_return_to_shape(simulation, scene);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gravity, DraggedIntoACorner, testing::Values(9.81f, -9.81f, 0.0f, 300.0f));
+
+TEST(DraggedIntoACornerByARecordedHand, TheManReturnsToHisShape) {
+  float most = 0;
+  Replayed replayed("man_in_a_corner", [&](const Replayed& now) {
+    most = std::max(most, now.simulation().soft_body(0).deformation());
+    EXPECT_LE(outside(now.simulation(), now.scene()), 0);
+  });
+  EXPECT_GT(most, 0.5f) << "metres: he was dragged hard";
+  expect_return_to_shape(replayed.simulation(), replayed.scene());
+}
 
 // A thousand of them, and in many ways: see ci/random-inputs.
 TEST(Framework, KeepsEverythingInAtAnyInput) {
