@@ -47,6 +47,13 @@ class Pictures {
   const std::vector<double>& milliseconds() const { return milliseconds_; }  ///< of each picture
 
  private:
+  /// Figures over the pictures.
+  struct Statistics {
+    render::Overlay overlay{kTextScale};
+    DemoPages pages;
+    Page page;
+  };
+
   const render::Image& draw();
 
   Demo& demo_;
@@ -54,13 +61,7 @@ class Pictures {
   std::unique_ptr<render::VideoWriter> video_;
   std::unique_ptr<render::GlContext> context_;
   std::unique_ptr<render::Renderer> renderer_;
-  /// Figures over the pictures.
-  struct Statistics {
-    render::Overlay overlay{kTextScale};
-    DemoPages pages;
-    Page page;
-  };
-  std::unique_ptr<Statistics> statistics_;
+  std::unique_ptr<Statistics> statistics_;  // where they are asked for
   std::uint64_t hash_ = 0;
   std::vector<double> milliseconds_;
 };
