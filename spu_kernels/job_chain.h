@@ -3,14 +3,18 @@
 // `job_loop` that works them off.
 //
 //   JobBoard (a line)      ChainState (a line)         JobDescriptor (a line each)
-//   generation             next, stage_end, finished   [ stage 0 ......... | stage 1 ... | stage 2 ]
+//   generation, asleep     next, stage_end, finished   [ stage 0 ......... | stage 1 ... | stage 2 ]
 //   chains[] ----------->  descriptors_ea ------------> ^ next              ^ stage_end
 //                          done_ea ------> ChainDone    jobs of one stage run in any order; the next stage
-//                                                       begins when all of them have finished
+//   JobBell (a line each)                               begins when all of them have finished
 //
 // Everybody changes the board and a chain's state by getllar and putllc only (the PPU side by its
-// equivalent), so each is one line. SPEs that find nothing to do reserve the board and sleep until it
-// changes.
+// equivalent), so each is one line.
+//
+// An SPE that finds nothing to do enters itself in `asleep`, provided that the generation is still the one at
+// which it has looked, and sleeps with its own bell reserved. To wake it, one takes its bit away and rings its
+// bell. A kick wakes one SPE; whoever takes a job and leaves others wakes the next. So never more are woken
+// than there are jobs, and the PPU pays for one.
 
 #include <stdint.h>
 
@@ -63,9 +67,17 @@ static_assert(sizeof(ChainDone) == 128, "one line");
 constexpr uint32_t kMaxChains = 15;
 struct alignas(128) JobBoard {
   uint32_t generation;          ///< changes when there may be new work
-  uint32_t stop;                ///< not 0: the job loops are to end
+  uint16_t stop;                ///< not 0: the job loops are to end
+  uint16_t asleep;              ///< bit s: SPE s sleeps until its bell is rung
   uint64_t chains[kMaxChains];  ///< of a ChainState each; 0: none
 };
 static_assert(sizeof(JobBoard) == 128, "one line");
+
+/// What an SPE sleeps at, one for each. It takes the ring back itself before it enters itself as asleep.
+struct alignas(128) JobBell {
+  uint32_t rung;  ///< not 0: wake up
+  uint32_t pad[31];
+};
+static_assert(sizeof(JobBell) == 128, "one line");
 
 }  // namespace softcell::spu

@@ -3,6 +3,7 @@
 //
 //   array       direction   element                     count    alignment   DMA
 //   board       in, out     JobBoard                    1        128         getllar, putllc
+//   bell        in, out     JobBell                     1        128         getllar, putlluc
 //   chain       in, out     ChainState                  1        128         getllar, putllc
 //   done        out         ChainDone                   1        128         putlluc
 //   job         in          JobDescriptor               1        128         one get
@@ -10,11 +11,11 @@
 //   resident
 //
 //   look at the board -> for each chain: take a job -> image -> call -> count it finished -> take the next
-//   ...
+//   ...                                 `-> others are left: wake an SPE
 //         ^                                                                                     | none left
-//         +---- the board's line was written ---- sleep with the board reserved <--------------+
+//         +---- its bell was rung ---- enter the board as asleep, sleep with the bell reserved <+
 //
-// argp: effective address of the JobBoard. Budget: 5 KB; it lies at the top of the local store with its
+// argp: effective address of the JobBoard; envp: of the JobBells, one for each SPE. Budget: 5 KB; it lies at the top of the local store with its
 // stack below it, so that jobs have the rest, as if they were alone.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
@@ -36,6 +37,7 @@ constexpr uintptr_t kLocalStoreMask = 0x3FFFF;
 
 struct alignas(128) LocalStoreMap {
   JobBoard board;
+  JobBell bell;
   ChainState chain;
   ChainDone done;
   JobDescriptor job;
@@ -45,18 +47,45 @@ LocalStoreMap ls;
 /// Whose image lies in the job area; 0: nobody's.
 uint64_t resident_image = 0;
 
+/// Who this is, and where everybody looks.
+struct Post {
+  uint64_t spe_id;
+  uint64_t board_ea;
+  uint64_t bells_ea;
+
+  uint16_t bit() const { return static_cast<uint16_t>(1u << spe_id); }
+  uint64_t bell_ea(uint64_t spe) const { return bells_ea + spe * sizeof(JobBell); }
+};
+
 /// The pointer to a local-store address. On an SPU a pointer is that address; elsewhere the local store has a
 /// base.
 char* local_store(uint32_t address) {
   return reinterpret_cast<char*>((reinterpret_cast<uintptr_t>(&ls) & ~kLocalStoreMask) | address);
 }
 
-/// The board has changed: whoever sleeps looks again.
-void wake_all(uint64_t board_ea) {
+/// There may be new work: whoever has looked and is about to sleep looks again.
+void announce_work(const Post& post) {
   do {
-    load_and_reserve(&ls.board, board_ea);
+    load_and_reserve(&ls.board, post.board_ea);
     ++ls.board.generation;
-  } while (!store_conditional(&ls.board, board_ea));
+  } while (!store_conditional(&ls.board, post.board_ea));
+}
+
+void set_bell(const Post& post, uint64_t spe, uint32_t rung) {
+  ls.bell.rung = rung;
+  store_line(&ls.bell, post.bell_ea(spe));
+}
+
+/// Wakes one of the SPEs that sleep, if any does.
+void wake_one(const Post& post) {
+  uint64_t sleeper = 0;
+  do {
+    load_and_reserve(&ls.board, post.board_ea);
+    if (ls.board.asleep == 0) return;
+    for (sleeper = 0; (ls.board.asleep >> sleeper & 1) == 0;) ++sleeper;
+    ls.board.asleep = static_cast<uint16_t>(ls.board.asleep & ~(1u << sleeper));
+  } while (!store_conditional(&ls.board, post.board_ea));
+  set_bell(post, sleeper, 1);
 }
 
 /// Takes a job of the chain that may begin now. @return false when there is none.
@@ -98,7 +127,7 @@ uint32_t run(uint64_t spe_id, uint64_t descriptor_ea) {
 }
 
 /// Counts a job as finished. The last one of a stage opens the next, or ends the chain.
-void finish(uint64_t board_ea, uint64_t chain_ea, uint32_t job, uint32_t status) {
+void finish(const Post& post, uint64_t chain_ea, uint32_t job, uint32_t status) {
   bool stage_finished = false, chain_ended = false;
   do {
     load_and_reserve(&ls.chain, chain_ea);
@@ -119,43 +148,66 @@ void finish(uint64_t board_ea, uint64_t chain_ea, uint32_t job, uint32_t status)
     ls.done.kick = ls.chain.kick;
     store_line(&ls.done, ls.chain.done_ea);
   } else if (stage_finished) {
-    wake_all(board_ea);
+    announce_work(post);
   }
 }
 
 /// Works off what the board offers, the most urgent chain first. @return false when there was nothing.
-bool work(uint64_t spe_id, uint64_t board_ea) {
+bool work(const Post& post) {
   for (uint32_t c = 0; c < kMaxChains; ++c) {
     const uint64_t chain_ea = ls.board.chains[c];
     uint32_t job = 0;
     if (chain_ea == 0 || !take(chain_ea, job)) continue;
-    const uint32_t status = run(spe_id, ls.chain.descriptors_ea + uint64_t{job} * sizeof(JobDescriptor));
-    finish(board_ea, chain_ea, job, status);
+    const uint64_t descriptor_ea = ls.chain.descriptors_ea + uint64_t{job} * sizeof(JobDescriptor);
+    // Who has entered itself as asleep since the board was looked at, has looked at the chains after that.
+    if (ls.chain.next != ls.chain.stage_end && ls.board.asleep != 0) wake_one(post);
+    const uint32_t status = run(post.spe_id, descriptor_ea);
+    finish(post, chain_ea, job, status);
     return true;
   }
   return false;
 }
 
-/// Sleeps until the board is no longer of this generation. With its line reserved no change can be missed:
-/// one before the reservation shows in the generation, one after it loses the reservation.
-void sleep_while(uint32_t generation, uint64_t board_ea) {
+/// Enters this SPE in the board as asleep. @return false when there may be work after all.
+bool enter(const Post& post, uint32_t generation) {
+  do {
+    load_and_reserve(&ls.board, post.board_ea);
+    if (ls.board.generation != generation || ls.board.stop != 0) return false;
+    ls.board.asleep = static_cast<uint16_t>(ls.board.asleep | post.bit());
+  } while (!store_conditional(&ls.board, post.board_ea));
+  return true;
+}
+
+/// Sleeps until somebody rings. With the bell's line reserved no ring can be missed: one before the
+/// reservation shows in the line, one after it loses the reservation.
+void sleep_at_bell(const Post& post) {
   spu_write_event_mask(MFC_LLR_LOST_EVENT);
+  for (;;) {
+    spu_write_event_ack(MFC_LLR_LOST_EVENT);
+    load_and_reserve(&ls.bell, post.bell_ea(post.spe_id));
+    if (ls.bell.rung != 0) break;
+    spu_read_event_status();
+  }
   spu_write_event_ack(MFC_LLR_LOST_EVENT);
-  load_and_reserve(&ls.board, board_ea);
-  if (ls.board.generation == generation) spu_read_event_status();
-  spu_write_event_ack(MFC_LLR_LOST_EVENT);
+}
+
+/// Nothing was found at this generation.
+void rest(const Post& post, uint32_t generation) {
+  set_bell(post, post.spe_id, 0);
+  if (enter(post, generation)) sleep_at_bell(post);
 }
 
 }  // namespace
 }  // namespace softcell::spu
 
-int main(uint64_t spe_id, uint64_t argp, uint64_t) {
+int main(uint64_t spe_id, uint64_t argp, uint64_t envp) {
   using namespace softcell::spu;
+  const Post post = {spe_id, argp, envp};
   resident_image = 0;
   for (;;) {
-    load_and_reserve(&ls.board, argp);
+    load_and_reserve(&ls.board, post.board_ea);
     if (ls.board.stop != 0) return 0;
     const uint32_t generation = ls.board.generation;
-    if (!work(spe_id, argp)) sleep_while(generation, argp);
+    if (!work(post)) rest(post, generation);
   }
 }

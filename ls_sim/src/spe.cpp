@@ -111,8 +111,12 @@ const KernelImage* Spe::on_job_begin(dma::EffectiveAddress image, dma::Effective
   return job_->image;
 }
 
-void Spe::on_job_end() {
+std::optional<dma::Fault> Spe::on_job_returned() {
   if (is_checked_job()) checker_->end_run();
+  return mfc_.drain();
+}
+
+void Spe::on_job_end() {
   count_job(image_under_way(), statistics_.jobs, job_->begin, false);
   job_.reset();
   const SpeMonitor::Lock lock = monitor_.lock();

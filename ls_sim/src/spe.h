@@ -70,6 +70,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
  private:
   void on_reservation_lost() override;
   const KernelImage* on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) override;
+  std::optional<dma::Fault> on_job_returned() override;
   void on_job_end() override;
 
   /// The channels of a kernel that runs jobs: checked while one of these is.

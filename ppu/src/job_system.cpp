@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +12,7 @@ namespace {
 
 using spu::ChainDone;
 using spu::ChainState;
+using spu::JobBell;
 using spu::JobBoard;
 using spu::JobDescriptor;
 
@@ -35,6 +37,15 @@ Line change_line(dma::Reservations& reservations, dma::ReservationHolder& holder
   } while (
       !reservations.store_conditional(holder, at.ea(), host_of(at), reinterpret_cast<std::byte*>(&line)));
   return line;
+}
+
+/// @throws std::invalid_argument  the image lies where its jobs would.
+const ls_sim::KernelImage& require_loop(const ls_sim::KernelImage& image) {
+  if (image.begin == spu::kJobAreaBegin) {
+    throw std::invalid_argument("kernel " + image.name +
+                                " lies at the bottom of the local store, where jobs do: it is no job loop");
+  }
+  return image;
 }
 
 /// @throws std::invalid_argument  the job loop could not call this image.
@@ -86,10 +97,22 @@ struct JobSystem::State {
   ~State();
 
   void stop();
+  void kick(JobChain& chain, const ChainState& state);
+
+  // With the mutex.
   void on_run_ended(int spe, const ls_sim::RunResult& result);
-  void record_failure(int spe, const ls_sim::RunResult& result);
+  bool record_failure(int spe, const ls_sim::RunResult& result);
+  void end_loops();
+  void start_loops();
   void start_loop(int spe);
-  void wake_loops();
+  void ring(int spe);
+  void announce_work();
+  void fail_unfinished();
+  void tell_end(JobChain& chain, std::uint32_t kick);
+  template <class Line, class Change>
+  Line change(dma::Buffer<Line>& at, const Change& how) {
+    return change_line(memory.reservations(), holder, at, how);
+  }
 
   struct Placed {
     const ls_sim::KernelImage* kernel;
@@ -100,12 +123,15 @@ struct JobSystem::State {
   const ls_sim::KernelImage& loop;
   bool wants_checked;
   dma::Buffer<JobBoard> board;
+  dma::Buffer<JobBell> bells;  // of each SPE
   std::vector<Placed> images;
 
-  std::mutex mutex;  // guards all below; taken by SPEs' threads when a job has ended by a fault
+  std::mutex mutex;  // guards all below; taken by SPEs' threads when a loop has ended
   dma::ReservationHolder holder;
   std::array<JobChain*, spu::kMaxChains> chains{};
   bool stopping = false;
+  int loops_left = 0;     // that have not ended
+  std::string breakdown;  // why all loops end or have ended, where one has failed by itself
 
   ls_sim::SpeGroup group;
   ls_sim::SpeGroup::Outside outside;  // the PPU side may always kick a chain
@@ -114,14 +140,19 @@ struct JobSystem::State {
 JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& options,
                         const ls_sim::KernelImage& job_loop)
     : memory(space),
-      loop(job_loop),
+      loop(require_loop(job_loop)),
       wants_checked(options.findings != nullptr),
       board(space, "job board", 1),
+      bells(space, "job bells", dma::kSpeCount),
       holder(space.reservations()),
       group(space, options),
       outside(group) {
-  group.on_end([this](int spe, const ls_sim::RunResult& result) { on_run_ended(spe, result); });
-  for (int spe = 0; spe < group.spes(); ++spe) start_loop(spe);
+  group.on_end([this](int spe, const ls_sim::RunResult& result) {
+    const std::scoped_lock lock(mutex);
+    on_run_ended(spe, result);
+  });
+  const std::scoped_lock lock(mutex);
+  start_loops();
 }
 
 JobSystem::State::~State() { stop(); }
@@ -132,33 +163,82 @@ void JobSystem::State::stop() {
   {
     const std::scoped_lock lock(mutex);
     stopping = true;
-    change_line(memory.reservations(), holder, board, [](JobBoard& line) {
-      line.stop = 1;
-      ++line.generation;
-    });
+    end_loops();
   }
   for (int spe = 0; spe < group.spes(); ++spe) group.wait(spe);
 }
 
-void JobSystem::State::start_loop(int spe) {
-  group.start_resident(spe, loop, {static_cast<std::uint64_t>(spe), board.ea().value, 0});
+/// They end when they have finished what they are at.
+void JobSystem::State::end_loops() {
+  change(board, [](JobBoard& line) {
+    line.stop = 1;
+    ++line.generation;
+  });
+  for (int spe = 0; spe < group.spes(); ++spe) ring(spe);
 }
 
-void JobSystem::State::wake_loops() {
+void JobSystem::State::start_loops() {
+  change(board, [](JobBoard& line) { line.stop = 0; });
+  for (int spe = 0; spe < group.spes(); ++spe) start_loop(spe);
+}
+
+void JobSystem::State::start_loop(int spe) {
+  change(board, [spe](JobBoard& line) { line.asleep = static_cast<std::uint16_t>(line.asleep & ~(1u << spe)); });
+  group.start_resident(spe, loop, {static_cast<std::uint64_t>(spe), board.ea().value, bells.ea().value});
+  ++loops_left;
+}
+
+void JobSystem::State::ring(int spe) {
+  const JobBell rung{.rung = 1, .pad = {}};
+  const auto which = static_cast<std::size_t>(spe);
+  memory.reservations().store_line(holder, bells.ea(which), reinterpret_cast<std::byte*>(&bells[which]),
+                                   reinterpret_cast<const std::byte*>(&rung));
+}
+
+/// Wakes one SPE at most: it wakes the next if it leaves work.
+void JobSystem::State::announce_work() {
+  int sleeper = 0;
+  change(board, [&sleeper](JobBoard& line) {
+    ++line.generation;
+    sleeper = std::countr_zero(line.asleep);
+    line.asleep = static_cast<std::uint16_t>(line.asleep & (line.asleep - 1));
+  });
+  if (sleeper < group.spes()) ring(sleeper);
+}
+
+void JobSystem::State::kick(JobChain& chain, const ChainState& state) {
   const std::scoped_lock lock(mutex);
-  change_line(memory.reservations(), holder, board, [](JobBoard& line) { ++line.generation; });
+  memory.reservations().store_line(holder, chain.state_.ea(), host_of(chain.state_),
+                                   reinterpret_cast<const std::byte*>(&state));
+  if (loops_left == 0 && !stopping) {
+    breakdown.clear();
+    start_loops();
+  } else {
+    announce_work();
+  }
 }
 
 /// On the SPE's thread. A job loop ends when it is told to, or with the job that it has called, by a fault or
-/// a stop instruction; then another takes its place.
+/// a stop instruction: then another takes its place. When it ends for another reason, a job may be lost.
 void JobSystem::State::on_run_ended(int spe, const ls_sim::RunResult& result) {
-  const std::scoped_lock lock(mutex);
-  if (result.job.value != 0) record_failure(spe, result);
-  if (!stopping) start_loop(spe);
+  --loops_left;
+  const bool was_told = stopping || !breakdown.empty();
+  const bool is_known = result.job.value != 0 && record_failure(spe, result);
+  if (!was_told && is_known) {
+    start_loop(spe);
+  } else if (!was_told) {
+    breakdown = (result.fault ? result.fault->message()
+                              : "SPE " + std::to_string(spe) + ", kernel " + loop.name +
+                                    ": ended with stop code " + std::to_string(result.stop_code)) +
+                "; the loop has ended without naming a job, so that all jobs under way are lost";
+    end_loops();
+  }
+  if (loops_left == 0 && !breakdown.empty()) fail_unfinished();
 }
 
 /// Does what the loop would have done: counts the job, as failed. A stage that fails is the chain's last.
-void JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) {
+/// @return  false when it is no chain's job.
+bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) {
   for (JobChain* chain : chains) {
     if (chain == nullptr) continue;
     const std::uint64_t offset = result.job.value - chain->descriptors_.ea().value;
@@ -168,7 +248,7 @@ void JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
                                                 : "SPE " + std::to_string(spe) + ", kernel " +
                                                       chain->kernels_[job]->name + ": stopped with code " +
                                                       std::to_string(result.stop_code)});
-    const ChainState state = change_line(memory.reservations(), holder, chain->state_, [&](ChainState& line) {
+    const ChainState state = change(chain->state_, [&](ChainState& line) {
       ++line.finished;
       if (line.failed == 0 || job < line.failed_job) {
         line.failed_job = job;
@@ -176,12 +256,38 @@ void JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
       }
       ++line.failed;
     });
-    if (state.finished != state.stage_end) return;
-    const ChainDone done{.kick = state.kick, .pad = {}};
-    memory.reservations().store_line(holder, chain->done_.ea(), host_of(chain->done_),
-                                     reinterpret_cast<const std::byte*>(&done));
-    return;
+    if (state.finished == state.stage_end) tell_end(*chain, state.kick);
+    return true;
   }
+  return false;
+}
+
+/// No loop runs, and none will before the next kick: what has not ended now never would.
+void JobSystem::State::fail_unfinished() {
+  for (JobChain* chain : chains) {
+    if (chain == nullptr) continue;
+    ChainDone done;
+    memory.reservations().load_and_reserve(holder, chain->done_.ea(), host_of(chain->done_),
+                                           reinterpret_cast<std::byte*>(&done));
+    const auto jobs = static_cast<std::uint32_t>(chain->size());
+    const ChainState state = change(chain->state_, [&](ChainState& line) {
+      if (line.kick == done.kick) return;
+      line.next = line.stage_end;  // for nobody to take
+      if (line.failed++ == 0) {
+        line.failed_job = jobs;
+        line.failed_status = kFaulted;
+      }
+    });
+    if (state.kick == done.kick) continue;
+    chain->faults_.push_back({jobs, breakdown});
+    tell_end(*chain, state.kick);
+  }
+}
+
+void JobSystem::State::tell_end(JobChain& chain, std::uint32_t kick) {
+  const ChainDone done{.kick = kick, .pad = {}};
+  memory.reservations().store_line(holder, chain.done_.ea(), host_of(chain.done_),
+                                   reinterpret_cast<const std::byte*>(&done));
 }
 
 JobSystem::JobSystem(dma::AddressSpace& memory, const ls_sim::SpeOptions& options,
@@ -295,10 +401,8 @@ void JobChain::kick() {
   state.done_ea = done_.ea().value;
   state.kick = ++kicks_;
   state.stage_end = stage_ends_.front();
-  system_.state_->memory.reservations().store_line(*holder_, state_.ea(), host_of(state_),
-                                                   reinterpret_cast<const std::byte*>(&state));
   under_way_ = true;
-  system_.state_->wake_loops();
+  system_.state_->kick(*this, state);
 }
 
 /// Looks at the last line, and reserves it, so that the listener hears of its next change.

@@ -95,6 +95,49 @@ TEST(LoadImage, ReadsSizesAndDeclarationsOfALinkedKernel) {
   EXPECT_EQ(image.data_end - image.data_begin, 4u);
 }
 
+TEST(LoadImage, ReadsAnImageThatLiesElsewhere) {
+  const KernelImage image = test_image("resides");
+  EXPECT_EQ(image.begin, 0x20000u);
+  EXPECT_EQ(image.text_begin, 0x20000u);
+  EXPECT_EQ(image.stack_top, 0x20000u) << "its stack grows down from where it begins";
+  EXPECT_EQ(image.sizes.from, 0x20000u);
+  EXPECT_EQ(image.sizes.total(), image.sizes.end - 0x20000 + 1024)
+      << "what lies below is not its own, nor is the environment";
+  EXPECT_EQ(image.bytes.size(), image.data_end - image.begin);
+  EXPECT_GE(image.entry, image.text_begin);
+  EXPECT_LT(image.entry, image.text_end);
+  for (const ImageObject& object : image.objects) EXPECT_GE(object.begin.value, image.data_begin);
+}
+
+TEST(LoadImage, RefusesAnImageThatLiesWhereNoneCan) {
+  for (const std::uint64_t place : {0x0ull, 0x20010ull, 0x20040ull, 0x40000ull, 0x10000020000ull}) {
+    const auto resident = test_elf("resides");
+    Bytes file(resident.begin(), resident.end());
+    change<Elf64_Phdr>(file, load_segment_offset(file), [&](Elf64_Phdr& s) { s.p_vaddr = place; });
+    EXPECT_NE(refusal(file).find("multiple of 128 from local-store address 0x80 on"), std::string::npos)
+        << place << ": " << refusal(file);
+  }
+}
+
+TEST(LoadImage, RefusesASegmentThatIsNotWhereItsSectionsAre) {
+  for (const std::uint64_t place : {0x80ull, 0x10000ull, 0x30000ull}) {
+    const auto resident = test_elf("resides");
+    Bytes file(resident.begin(), resident.end());
+    change<Elf64_Phdr>(file, load_segment_offset(file), [&](Elf64_Phdr& s) { s.p_vaddr = place; });
+    EXPECT_NE(refusal(file).find("do not end where _end says"), std::string::npos) << refusal(file);
+  }
+}
+
+TEST(LoadImage, RefusesAStackThatHasNoRoomBelowTheImage) {
+  const auto resident = test_elf("resides");
+  for (const auto& [stack, fits] : {std::pair{0x20000u - 0x80u, true}, {0x20000u - 0x70u, false}}) {
+    Bytes file(resident.begin(), resident.end());
+    const std::size_t at = read<Elf64_Shdr>(file, section_offset(file, ".softcell.kernel")).sh_offset;
+    change<std::uint32_t>(file, at + 4, [wanted = stack](std::uint32_t& word) { word = wanted; });
+    EXPECT_EQ(refusal(file) == "accepted", fits) << refusal(file);
+  }
+}
+
 TEST(LoadImage, RefusesWhatIsNoElfFile) {
   EXPECT_EQ(refusal(Bytes(100, std::byte{7})), "kernel image k: not an ELF file");
   EXPECT_NE(refusal({}).find("truncated: the ELF header"), std::string::npos);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
+#include <cstring>
 #include <thread>
 
 #include "softcell/ls_sim/engine.h"
@@ -54,6 +55,21 @@ TEST_F(NativeEngineTest, EndsWithTheStatusOfMain) {
   ASSERT_FALSE(result.fault);
   EXPECT_EQ(result.stop_code, 0x2000u + 42u);
   EXPECT_EQ(result.status(), 42u);
+}
+
+TEST_F(NativeEngineTest, RunsAnImageWhereItIsLinked) {
+  run("resides", {.argp = 0x1000});
+  ASSERT_EQ(port_.commands.size(), 1u);
+  std::array<std::uint32_t, 4> report{};  // code, data, stack, value
+  std::memcpy(report.data(), local_store_.base() + port_.commands[0].lsa.value, sizeof report);
+  EXPECT_EQ(report[0], image_.entry);
+  EXPECT_GE(report[1], image_.data_begin);
+  EXPECT_LT(report[1], image_.sizes.end);
+  EXPECT_LT(report[2], image_.begin);
+  EXPECT_GE(report[2], image_.begin - image_.sizes.stack);
+  EXPECT_EQ(report[3], 7u);
+  EXPECT_GT(engine_->stack_high_water(), 0u);
+  EXPECT_LE(engine_->stack_high_water(), image_.sizes.stack);
 }
 
 TEST_F(NativeEngineTest, PassesCommandsThroughTheChannelsOfTheMfc) {

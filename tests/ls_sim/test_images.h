@@ -28,7 +28,12 @@
   X(queues)                 \
   X(meets)                  \
   X(mixes)                  \
-  X(exits)
+  X(exits)                  \
+  X(overwrites)             \
+  X(gets_over)              \
+  X(leaves_a_stall)         \
+  X(resides)                \
+  X(breaks_down)
 
 extern "C" {
 #define SC_DECLARE(name)                                                         \

@@ -300,6 +300,126 @@ TEST_F(JobSystemTest, TheDeadlineIsThatOfAJobNotOfTheLoop) {
   EXPECT_EQ(lines[0][0], 1u);
 }
 
+TEST_F(JobSystemTest, AJobThatWaitsForWhatNeverComesEndsAtTheDeadline) {
+  const KernelImage image = test_image("waits");
+  JobSystem jobs(memory_, {.spes = 2, .deadline = 100ms}, loop_);
+  JobChain chain(jobs, "waits", 3);
+  const JobImage waits = jobs.place(image);
+  for (const std::uint64_t channel : {29, 3, 0}) chain.add({waits, {channel}, {0x2}});
+  chain.kick();
+  chain.wait();
+  ASSERT_EQ(chain.failures().size(), 3u);
+  for (const JobFailure& failure : chain.failures()) {
+    expect_parts(failure.message, {"SPE ", "kernel waits", "deadline-exceeded", "waits.cpp:"});
+  }
+}
+
+TEST_F(JobSystemTest, AJobThatOverwritesTheLoopIsNamed) {
+  const KernelImage image = test_image("overwrites");
+  JobSystem jobs(memory_, {.spes = 2}, loop_);
+  auto lines = make_lines(1);
+  const JobImage overwrites = jobs.place(image), adds = jobs.place(adds_);
+  std::uint32_t kick = 0;
+  for (std::uint32_t lsa = loop_.begin; lsa < loop_.sizes.end; lsa += 16) {
+    JobChain chain(jobs, "overwrites", 2), good(jobs, "good", 1);
+    chain.add({overwrites, {lsa}});
+    chain.kick();
+    chain.wait();
+    ASSERT_EQ(chain.failures().size(), 1u) << std::hex << lsa;
+    expect_parts(chain.failures()[0].message, {"SPE ", "kernel overwrites", "outside-objects", "job_loop"});
+    good.add({adds, lines.ea()});
+    good.kick();
+    good.wait();
+    expect_no_failures(good);
+    ASSERT_EQ(lines[0][0], ++kick);
+  }
+}
+
+TEST_F(JobSystemTest, ATransferIntoTheLoopIsNamed) {
+  const KernelImage image = test_image("gets_over");
+  for (const char* schedule : {"eager", "lazy", "random:1", "random:2"}) {
+    for (const std::uint32_t lsa : {loop_.begin, loop_.data_end, loop_.sizes.end - 256}) {
+      JobSystem jobs(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)}, loop_);
+      auto lines = make_lines(100);
+      JobChain chain(jobs, "gets over", 1);
+      chain.add({jobs.place(image), lines.ea(99), {lsa & ~127u}});
+      chain.kick();
+      chain.wait();
+      ASSERT_EQ(chain.failures().size(), 1u) << schedule << " " << std::hex << lsa;
+      expect_parts(chain.failures()[0].message, {"kernel gets_over", "outside-objects", "job_loop"});
+    }
+  }
+}
+
+TEST_F(JobSystemTest, AJobThatLeavesAStalledListIsNamed) {
+  const KernelImage image = test_image("leaves_a_stall");
+  for (const char* schedule : {"eager", "lazy", "random:1"}) {
+    JobSystem jobs(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)}, loop_);
+    auto lines = make_lines(1);
+    JobChain chain(jobs, "stalls", 2);
+    chain.add({jobs.place(image), lines.ea()});
+    chain.add({jobs.place(adds_), lines.ea()});
+    chain.kick();
+    chain.wait();
+    ASSERT_EQ(chain.failures().size(), 1u);
+    expect_parts(chain.failures()[0].message, {"kernel leaves_a_stall", "list-stalled-for-ever"});
+    EXPECT_EQ(lines[0][0], 1u);
+  }
+}
+
+/// Wherever the loop's stack is damaged, at the latest its own fault ends the wait.
+TEST_F(JobSystemTest, ADamagedStackOfTheLoopHangsNobody) {
+  const KernelImage image = test_image("overwrites");
+  JobSystem jobs(memory_, {.spes = 2, .deadline = 500ms}, loop_);
+  auto lines = make_lines(1);
+  const JobImage overwrites = jobs.place(image), adds = jobs.place(adds_);
+  std::size_t failed = 0;
+  for (std::uint32_t lsa = loop_.begin - loop_.sizes.stack; lsa < loop_.begin; lsa += 16) {
+    JobChain chain(jobs, "overwrites", 4);
+    chain.add({overwrites, {lsa}});
+    chain.add({adds, lines.ea()});
+    chain.sync();
+    chain.add({overwrites, {lsa}});
+    chain.kick();
+    chain.wait();
+    failed += chain.failures().size();
+    chain.clear();
+    chain.add({adds, lines.ea()});
+    chain.kick();
+    chain.wait();
+    for (const JobFailure& failure : chain.failures()) expect_parts(failure.message, {"job_loop"});
+  }
+  EXPECT_GT(failed, 0u);
+}
+
+TEST_F(JobSystemTest, AFaultThatNamesNoJobFailsTheChainsUnderWay) {
+  const KernelImage broken = test_image("breaks_down");
+  for (int spes = 1; spes <= 6; ++spes) {
+    JobSystem jobs(memory_, {.spes = spes}, broken);
+    JobChain first(jobs, "first", 3), second(jobs, "second", 1);
+    const JobImage adds = jobs.place(adds_);
+    auto lines = make_lines(4);
+    for (std::size_t i = 0; i < 3; ++i) first.add({adds, lines.ea(i)});
+    second.add({adds, lines.ea(3)});
+    for (int kick = 0; kick < 20; ++kick) {
+      first.kick();
+      first.wait();
+      ASSERT_EQ(first.failures().size(), 1u);
+      expect_parts(first.failures()[0].message, {"SPE ", "breaks_down", "without naming a job"});
+    }
+    first.kick();
+    second.kick();
+    second.wait();
+    first.wait();
+    ASSERT_EQ(second.failures().size(), 1u);
+    ASSERT_EQ(first.failures().size(), 1u);
+  }
+}
+
+TEST_F(JobSystemTest, RefusesALoopThatLeavesNoRoomForJobs) {
+  EXPECT_THROW(JobSystem(memory_, {.spes = 1}, adds_), std::invalid_argument);
+}
+
 TEST_F(JobSystemTest, AnIdleSystemTakesNoTimeAndIsNoDeadlock) {
   const auto cpu_time = [] {
     rusage used{};
@@ -322,6 +442,51 @@ TEST_F(JobSystemTest, AnIdleSystemTakesNoTimeAndIsNoDeadlock) {
   chain.wait();
   expect_no_failures(chain);
   EXPECT_EQ(lines[0][0], 2u);
+}
+
+TEST_F(JobSystemTest, NoMoreSpesAreWokenThanThereAreJobs) {
+  constexpr std::size_t kEventStatus = 0;  // the channel at which a loop sleeps
+  constexpr std::uint64_t kKicks = 100;
+  for (const std::size_t count : {1u, 2u, 4u}) {
+    JobSystem jobs(memory_, {.spes = 6}, loop_);
+    auto lines = make_lines(count);
+    const JobImage adds = jobs.place(adds_);
+    JobChain chain(jobs, "few", count);
+    for (std::size_t i = 0; i < count; ++i) chain.add({adds, lines.ea(i)});
+    for (std::uint64_t kick = 0; kick < kKicks; ++kick) {
+      std::this_thread::sleep_for(1ms);  // the SPEs go to sleep
+      chain.kick();
+      chain.wait();
+    }
+    expect_no_failures(chain);
+    jobs.stop();
+    std::uint64_t sleeps = 0;
+    for (const ls_sim::SpeStatistics& spe : jobs.statistics()) sleeps += spe.waits[kEventStatus].count;
+    EXPECT_GE(sleeps, 6u);
+    EXPECT_LE(sleeps, kKicks * count + 6) << "each SPE sleeps once more, until it is told to end";
+  }
+}
+
+TEST_F(JobSystemTest, AllSpesAreWokenWhenThereIsWorkForAll) {
+  const KernelImage image = test_image("meets");
+  JobSystem jobs(memory_, {.spes = 6, .deadline = 20s}, loop_);
+  auto lines = make_lines(7);  // a barrier, and a line of each SPE
+  const JobImage meets = jobs.place(image), adds = jobs.place(adds_);
+  auto alone = make_lines(1);
+  JobChain chain(jobs, "meets", 13);
+  for (int i = 0; i < 6; ++i) chain.add({meets, lines.ea(), {1}});
+  chain.sync();
+  chain.add({adds, alone.ea()});  // one goes on, and wakes the others for the next stage
+  chain.sync();
+  for (int i = 0; i < 6; ++i) chain.add({meets, lines.ea(), {1}});
+  for (int kick = 0; kick < 50; ++kick) {
+    lines[0] = {0, 0, 6};
+    if (kick % 10 == 0) std::this_thread::sleep_for(2ms);  // the SPEs go to sleep
+    chain.kick();
+    chain.wait();
+    expect_no_failures(chain);
+    ASSERT_TRUE(chain.failures().empty());
+  }
 }
 
 TEST_F(JobSystemTest, CheckedJobsAreChecked) {

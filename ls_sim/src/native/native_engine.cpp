@@ -7,8 +7,10 @@
 #include <cstring>
 #include <exception>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "debugger_symbols.h"
 #include "kernel_context.h"
@@ -108,6 +110,9 @@ class NativeEngine final : public Engine {
   bool serve_request() noexcept;
   std::optional<RunResult> answer();
   std::optional<dma::Fault> note_job();
+  std::optional<dma::Fault> end_job();
+  std::span<const std::byte> variables_of_caller() const;
+  std::optional<dma::Fault> check_caller() const;
   Access requested_access() const;
   ChannelReply answer_channel();
   std::optional<dma::Fault> check_stack() const;
@@ -128,7 +133,8 @@ class NativeEngine final : public Engine {
   const bool debugger_wanted_ = native::debugger_wanted();
   std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
   std::unique_ptr<native::DebuggerSymbols> debugger_job_symbols_;
-  bool data_as_linked_ = false;  ///< nothing has run since load()
+  bool data_as_linked_ = false;              ///< nothing has run since load()
+  std::vector<std::byte> caller_variables_;  ///< of image_, as they were when it called job_image_
   KernelContext context_;
   ChannelPort* channels_ = nullptr;  // these five: of the run
   AccessObserver* accesses_ = nullptr;
@@ -247,17 +253,13 @@ std::optional<RunResult> NativeEngine::answer() {
 /// kernel's own.
 std::optional<dma::Fault> NativeEngine::note_job() {
   if (jobs_ == nullptr) return std::nullopt;
-  if (context_.channel == 0) {
-    if (job_image_ != nullptr && written_below_stack())
-      return stack_overflow("bytes below the stack were written");
-    job_image_ = nullptr;
-    jobs_->on_job_end();
-    return std::nullopt;
-  }
+  if (context_.channel == 0) return end_job();
   const native::Environment& environment = this->environment();
   const KernelImage* const last = job_image_;
   job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
   tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
+  const std::span<const std::byte> variables = variables_of_caller();
+  caller_variables_.assign(variables.begin(), variables.end());
   if (job_image_ == nullptr) return std::nullopt;
   if (debugger_wanted_ && job_image_ != last) {
     debugger_job_symbols_ = std::make_unique<native::DebuggerSymbols>(*job_image_, local_store_.base());
@@ -266,6 +268,40 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   std::fill(local_store_.base() + std::max(free_begin(), end - std::min(end, kCanaryBytes)),
             local_store_.base() + end, kFiller);
   return std::nullopt;
+}
+
+std::optional<dma::Fault> NativeEngine::end_job() {
+  if (auto broken = jobs_->on_job_returned()) return broken;
+  if (job_image_ != nullptr && written_below_stack())
+    return stack_overflow("bytes below the stack were written");
+  if (auto damage = check_caller()) return damage;
+  job_image_ = nullptr;
+  jobs_->on_job_end();
+  return std::nullopt;
+}
+
+std::span<const std::byte> NativeEngine::variables_of_caller() const {
+  return {local_store_.base() + image_->data_begin, image_->sizes.end - image_->data_begin};
+}
+
+/// While a job runs nobody but the job can have changed its caller's image, which would fail later and in any
+/// way at all: then the job is no longer known.
+std::optional<dma::Fault> NativeEngine::check_caller() const {
+  const std::byte* const code = local_store_.base() + image_->begin;
+  const std::byte* const variables = variables_of_caller().data();
+  const std::size_t code_bytes = image_->data_begin - image_->begin;
+  const bool code_intact = debugger_wanted_ ||  // whose breakpoints are written into it
+                           std::memcmp(code, image_->bytes.data(), code_bytes) == 0;
+  if (code_intact && std::memcmp(variables, caller_variables_.data(), caller_variables_.size()) == 0)
+    return std::nullopt;
+  const std::byte* const at =
+      code_intact ? std::mismatch(caller_variables_.begin(), caller_variables_.end(), variables).second
+                  : std::mismatch(code, code + code_bytes, image_->bytes.data()).first;
+  return fault(dma::Rule::kOutsideObjects,
+               "the job wrote to local-store address " +
+                   hexadecimal(static_cast<std::uint64_t>(at - local_store_.base())) + ", where kernel " +
+                   image_->name + ", which has called it, has its " +
+                   (code_intact ? "variables" : "instructions or constants"));
 }
 
 Access NativeEngine::requested_access() const {
@@ -335,6 +371,9 @@ bool NativeEngine::written_below_stack() const {
 dma::Fault NativeEngine::classify_trap() const {
   const native::Trap& trap = context_.trap;
   const std::uintptr_t at = trap.instruction - arena();
+  if (job_image_ != nullptr) {
+    if (auto damage = check_caller()) return *damage;  // whatever came of it
+  }
   const std::string where = at < dma::kLocalStoreBytes
                                 ? "the instruction at local-store address " + hexadecimal(at)
                                 : "an instruction outside the local store";

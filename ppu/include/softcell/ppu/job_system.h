@@ -51,16 +51,21 @@ struct Job {
 
 /// Why a job failed: the fault's message, or the status that the kernel returned.
 struct JobFailure {
-  std::size_t job = 0;  ///< its number in the chain
+  std::size_t job = 0;  ///< its number in the chain; the number of jobs where nobody knows which it was
   std::string message;
 };
 
-/// Up to six SPEs with a job loop each. They sleep while there is nothing to do.
+/// Up to six SPEs with a job loop each. They sleep while there is nothing to do; no more are woken than there
+/// are jobs.
+///
+/// A job that fails is its chain's affair. Where a loop itself fails, its job is not known: all loops end with
+/// what they are at, the chains that have not ended by then fail, and the next kick starts the loops anew.
 class JobSystem {
  public:
   /// @param options   the deadline is that of a job; findings: jobs must then be checked images.
   /// @param job_loop  the image of the kernel job_loop; outlives the system.
-  /// @throws std::invalid_argument, std::runtime_error  as SpeGroup.
+  /// @throws std::invalid_argument  a loop that lies where jobs do; as SpeGroup.
+  /// @throws std::runtime_error     as SpeGroup.
   JobSystem(dma::AddressSpace& memory, const ls_sim::SpeOptions& options,
             const ls_sim::KernelImage& job_loop);
 
