@@ -12,9 +12,9 @@
 // equivalent), so each is one line.
 //
 // An SPE that finds nothing to do enters itself in `asleep`, provided that the generation is still the one at
-// which it has looked, and sleeps with its own bell reserved. To wake it, one takes its bit away and rings its
-// bell. A kick wakes one SPE; whoever takes a job and leaves others wakes the next. So never more are woken
-// than there are jobs, and the PPU pays for one.
+// which it has looked, and sleeps with its own bell reserved. To wake it, one takes its bit away and rings
+// its bell. A kick wakes one SPE; whoever takes a job and leaves others wakes the next. So never more are
+// woken than there are jobs, and the PPU pays for one.
 
 #include <stdint.h>
 

@@ -55,6 +55,10 @@ struct Measurement {
   double median() const { return nanoseconds[nanoseconds.size() / 2]; }
 };
 
+std::chrono::nanoseconds spent(const Work& work) {
+  return work.spent ? work.spent() : std::chrono::steady_clock::now().time_since_epoch();
+}
+
 std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int rounds) {
   std::vector<Measurement> all;
   for (const Benchmark& benchmark : benchmarks) {
@@ -64,9 +68,9 @@ std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int r
   // Round by round, so that a change of the machine's speed meets all alike.
   for (int round = 0; round < rounds; ++round) {
     for (Measurement& m : all) {
-      const auto begin = std::chrono::steady_clock::now();
+      const std::chrono::nanoseconds begin = spent(m.work);
       m.work.run();
-      const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - begin;
+      const std::chrono::duration<double, std::nano> elapsed = spent(m.work) - begin;
       m.nanoseconds.push_back(elapsed.count() / static_cast<double>(m.work.items));
     }
   }

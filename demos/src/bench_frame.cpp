@@ -4,13 +4,18 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <chrono>
+#include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "benchmarks.h"
+#include "kernel_samples.h"
 #include "scene_file/scene_library.h"
 #include "simulation_3d.h"
 #include "softcell/ppu/bullet_world.h"
+#include "softcell/ppu/spe_solver.h"
 
 namespace softcell::demos {
 namespace {
@@ -25,11 +30,46 @@ class SoftFrames {
     for (int i = 0; i < kFramesBefore; ++i) step();
   }
 
-  void step() { simulation_.step(); }
+  void step() { ppu_milliseconds_ += simulation_.step().ppu_ms; }
+
+  /// Processor time of softcell on the PPU, in all frames.
+  std::chrono::nanoseconds ppu_time() const {
+    return std::chrono::nanoseconds(std::llround(1e6 * ppu_milliseconds_));
+  }
+
+  const Scene& scene() const { return scene_; }
+  const Simulation3d& simulation() const { return simulation_; }
 
  private:
   Scene scene_;
   Simulation3d simulation_;
+  double ppu_milliseconds_ = 0;
+};
+
+/// A substep's shape matching and damping of a scene's bodies as they are, again and again, on one SPE.
+class SolverSteps {
+ public:
+  explicit SolverSteps(const SoftFrames& frames)
+      : step_(kFrameSeconds / static_cast<float>(frames.scene().substeps)) {
+    for (std::size_t b = 0; b < frames.simulation().soft_bodies(); ++b)
+      bodies_.push_back(frames.simulation().soft_body(b));
+    for (ppu::SoftBody& body : bodies_) pointers_.push_back(&body);
+  }
+
+  void step() {
+    solver_.kick(pointers_, step_);
+    solver_.drop();
+  }
+
+ private:
+  float step_;
+  std::vector<ppu::SoftBody> bodies_;  // copies
+  std::vector<ppu::SoftBody*> pointers_;
+  dma::AddressSpace memory_;
+  ls_sim::KernelImage match_ = load_kernel("match"), tiles_ = load_kernel("match_tiles"),
+                      job_loop_ = load_kernel("job_loop");
+  ppu::JobSystem jobs_{memory_, {.spes = 1}, job_loop_};
+  ppu::SpeSolver solver_{memory_, jobs_, match_, tiles_};
 };
 
 /// The scene's outer particles as rigid spheres of the size and mass that they have for Bullet.
@@ -72,22 +112,33 @@ class SphereFrames {
   int substeps_ = 1;
 };
 
-template <typename Frames>
-Benchmark frames_of(const std::string& scene, const char* kind) {
-  return {"frame/" + scene + kind, [=] {
-            const auto frames = std::make_shared<Frames>(scene);
-            return Work{1, [=] { frames->step(); }};
-          }};
+void add_scene(std::vector<Benchmark>& all, const std::string& scene) {
+  const Shared<SoftFrames> shared([=] { return std::make_shared<SoftFrames>(scene); });
+  const std::string name = "frame/" + scene;
+  all.push_back({name, [=] {
+                   const auto frames = shared.get();
+                   return Work{1, [=] { frames->step(); }};
+                 }});
+  all.push_back({name + "/ppu", [=] {
+                   const auto frames = shared.get();
+                   return Work{1, [=] { frames->step(); }, [=] { return frames->ppu_time(); }};
+                 }});
+  all.push_back({name + "/solver", [=] {
+                   const auto steps = std::make_shared<SolverSteps>(*shared.get());
+                   return Work{1, [=] { steps->step(); }};
+                 }});
 }
 
 }  // namespace
 
 void add_frame_benchmarks(std::vector<Benchmark>& all) {
-  for (const char* scene : {"arena"}) {
-    all.push_back(frames_of<SoftFrames>(scene, ""));
-    all.push_back(frames_of<SphereFrames>(scene, "/spheres"));
-  }
-  all.push_back(frames_of<SoftFrames>("big", ""));  // nothing touches it
+  add_scene(all, "arena");
+  add_scene(all, "penguins");
+  add_scene(all, "big");  // nothing touches it
+  all.push_back({"frame/arena/spheres", [] {
+                   const auto frames = std::make_shared<SphereFrames>("arena");
+                   return Work{1, [=] { frames->step(); }};
+                 }});
 }
 
 }  // namespace softcell::demos

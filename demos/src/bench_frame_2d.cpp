@@ -6,6 +6,8 @@
 #include <box2d/b2_polygon_shape.h>
 #include <box2d/b2_world.h>
 
+#include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,11 +28,17 @@ class SoftFrames2d {
  public:
   explicit SoftFrames2d(const std::string& scene) : scene_(load_scene_2d(scene)), simulation_(scene_) {}
 
-  void step() { simulation_.step(); }
+  void step() { ppu_milliseconds_ += simulation_.step().ppu_ms; }
+
+  /// Processor time of softcell on the PPU, in all frames.
+  std::chrono::nanoseconds ppu_time() const {
+    return std::chrono::nanoseconds(std::llround(1e6 * ppu_milliseconds_));
+  }
 
  private:
   Scene2d scene_;
   Simulation2d simulation_;
+  double ppu_milliseconds_ = 0;
 };
 
 /// A scene of walls and soft bodies, with a loose circle for each particle: what Box2D alone costs, all of
@@ -78,21 +86,33 @@ class CircleFrames {
 };
 
 template <typename Frames>
-Benchmark frames_of(const std::string& scene, const char* kind) {
-  return {"frame/" + scene + kind, [=] {
-            const auto frames = std::make_shared<Frames>(scene);
-            for (int i = 0; i < kFramesBefore; ++i) frames->step();
-            return Work{kFrames, [=] {
-                          for (int i = 0; i < kFrames; ++i) frames->step();
-                        }};
+Shared<Frames> frames_of(const std::string& scene) {
+  return Shared<Frames>([=] {
+    const auto frames = std::make_shared<Frames>(scene);
+    for (int i = 0; i < kFramesBefore; ++i) frames->step();
+    return frames;
+  });
+}
+
+template <typename Frames>
+Work work_of(const std::shared_ptr<Frames>& frames) {
+  return {kFrames, [=] {
+            for (int i = 0; i < kFrames; ++i) frames->step();
           }};
 }
 
 }  // namespace
 
 void add_frame_2d_benchmarks(std::vector<Benchmark>& all) {
-  all.push_back(frames_of<SoftFrames2d>("man", ""));
-  all.push_back(frames_of<CircleFrames>("man", "/circles"));
+  const auto man = frames_of<SoftFrames2d>("man");
+  const auto circles = frames_of<CircleFrames>("man");
+  all.push_back({"frame/man", [=] { return work_of(man.get()); }});
+  all.push_back({"frame/man/ppu", [=] {
+                   Work work = work_of(man.get());
+                   work.spent = [frames = man.get()] { return frames->ppu_time(); };
+                   return work;
+                 }});
+  all.push_back({"frame/man/circles", [=] { return work_of(circles.get()); }});
 }
 
 }  // namespace softcell::demos

@@ -2,6 +2,7 @@
 // What `softcell bench` measures. One function for each group; each adds its cases, and builds nothing yet:
 // only what is measured is built.
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -14,6 +15,8 @@ namespace softcell::demos {
 struct Work {
   std::size_t items = 0;
   std::function<void()> run;
+  /// What counts, as a time that has passed up to now; null: the clock's.
+  std::function<std::chrono::nanoseconds()> spent = {};
 };
 
 /// One thing to measure.
@@ -73,11 +76,13 @@ void add_dma_benchmarks(std::vector<Benchmark>& all);
 /// waited for while its SPE sleeps, or all six.
 void add_dispatch_benchmarks(std::vector<Benchmark>& all);
 
-/// frame/<scene>: a whole frame of 1/60 s without its picture. frame/<scene>/spheres: the same scene with a
-/// loose Bullet sphere for each particle that Bullet has to do with, nothing matched or skinned.
+/// frame/<scene>: a whole frame of 1/60 s without its picture, by the clock. Of the same frames, .../ppu: the
+/// processor time that the PPU spends on soft bodies, the engine apart. .../solver: one step of shape
+/// matching and damping of the scene's bodies on one SPE, nothing else. .../spheres: frames of the same scene
+/// with a loose Bullet sphere for each particle that Bullet has to do with, nothing matched or skinned.
 void add_frame_benchmarks(std::vector<Benchmark>& all);
 
-/// frame/<scene>/circles: as spheres, with circles in Box2D.
+/// frame/<scene>, .../ppu; .../circles: as spheres, with circles in Box2D.
 void add_frame_2d_benchmarks(std::vector<Benchmark>& all);
 
 }  // namespace softcell::demos

@@ -183,7 +183,8 @@ void JobSystem::State::start_loops() {
 }
 
 void JobSystem::State::start_loop(int spe) {
-  change(board, [spe](JobBoard& line) { line.asleep = static_cast<std::uint16_t>(line.asleep & ~(1u << spe)); });
+  change(board,
+         [spe](JobBoard& line) { line.asleep = static_cast<std::uint16_t>(line.asleep & ~(1u << spe)); });
   group.start_resident(spe, loop, {static_cast<std::uint64_t>(spe), board.ea().value, bells.ea().value});
   ++loops_left;
 }

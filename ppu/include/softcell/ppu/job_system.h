@@ -58,8 +58,9 @@ struct JobFailure {
 /// Up to six SPEs with a job loop each. They sleep while there is nothing to do; no more are woken than there
 /// are jobs.
 ///
-/// A job that fails is its chain's affair. Where a loop itself fails, its job is not known: all loops end with
-/// what they are at, the chains that have not ended by then fail, and the next kick starts the loops anew.
+/// A job that fails is its chain's affair. Where a loop itself fails, its job is not known: all loops end
+/// with what they are at, the chains that have not ended by then fail, and the next kick starts the loops
+/// anew.
 class JobSystem {
  public:
   /// @param options   the deadline is that of a job; findings: jobs must then be checked images.
