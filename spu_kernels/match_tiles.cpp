@@ -163,6 +163,6 @@ int main(uint64_t, uint64_t argp, uint64_t) {
       damp(context);
       break;
   }
-  wait_for_tags(1u << kTagSide0 | 1u << kTagSide1 | 1u << kTagOut);
+  wait_for_tags(1u << kTagSide0 | 1u << kTagSide1 | 1u << kTagOut | 1u << kTagTouch);
   return kTileDone;
 }

@@ -50,6 +50,17 @@ std::uint64_t bytes_moved(const MfcCommand& command, std::span<const std::byte> 
   }
 }
 
+/// Has the host fetch what is mapped of a range ahead of its use, as the hardware would.
+void touch(StoragePort& port, const MfcCommand& command) {
+  constexpr std::uint32_t kHostLineBytes = 64;
+  constexpr int kSecondLevel = 2;
+  const auto place = port.resolve(command.ea, command.size, SpeAccess::kNone);
+  if (std::holds_alternative<Fault>(place)) return;
+  const std::byte* const begin = std::get<StoragePlace>(place).host;
+  for (std::uint32_t at = 0; at < command.size; at += kHostLineBytes)
+    __builtin_prefetch(begin + at, 0, kSecondLevel);
+}
+
 }  // namespace
 
 Mfc::Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedule,
@@ -126,7 +137,10 @@ std::variant<Transfer, Fault> Mfc::transfer_of(const MfcCommand& command, Comman
       return put(local, port_.resolve(command.ea, kSignalBytes, SpeAccess::kWrite), kSignalBytes);
     case CommandKind::kCacheHint: {
       // Touching (sdcrt, sdcrtst) is free of faults, as the PowerPC's dcbt is.
-      if (command.opcode() == MfcOpcode::sdcrt || command.opcode() == MfcOpcode::sdcrtst) return Transfer();
+      if (command.opcode() == MfcOpcode::sdcrt || command.opcode() == MfcOpcode::sdcrtst) {
+        touch(port_, command);
+        return Transfer();
+      }
       const bool zeroes = command.opcode() == MfcOpcode::sdcrz;
       auto lines =
           port_.resolve_lines(command.ea, command.size, zeroes ? SpeAccess::kWrite : SpeAccess::kNone);

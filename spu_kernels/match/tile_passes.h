@@ -15,7 +15,44 @@
 namespace softcell::spu {
 
 /// A tag group for each side of the double buffer, and one for what has a place of its own to leave from.
-enum TileTag : uint32_t { kTagSide0 = 0, kTagSide1 = 1, kTagOut = 2 };
+enum TileTag : uint32_t { kTagSide0 = 0, kTagSide1 = 1, kTagOut = 2, kTagTouch = 3 };
+
+/// Hints to main memory: what the slice after next will fetch and the next will put out. Given a few at a
+/// time between pieces of work, so that memory has them ready without anybody having waited.
+class Touches {
+ public:
+  /// @pre there are fewer than kMost
+  void add(uint64_t ea, uint32_t bytes) {
+    if (bytes != 0) ranges_[count_++] = {ea, bytes};
+  }
+
+  __attribute__((noinline)) void give_some() {
+    for (int i = 0; i < kAtOnce; ++i) give_one();
+  }
+
+  /// @pre all are given, or will never be
+  void clear() { count_ = next_ = 0; }
+
+  void give_all() {
+    while (next_ < count_) give_one();
+  }
+
+ private:
+  struct Range {
+    uint64_t ea;
+    uint32_t bytes;
+  };
+  static constexpr int kMost = 8, kAtOnce = 2;
+
+  void give_one() {
+    if (next_ == count_) return;
+    touch_large(ranges_[next_].ea, ranges_[next_].bytes, kTagTouch);
+    ++next_;
+  }
+
+  Range ranges_[kMost];
+  uint32_t count_ = 0, next_ = 0;
+};
 
 /// What all passes know of the body.
 struct TilePassContext {
@@ -33,12 +70,16 @@ inline const uint16_t* list_at(const char* lists, uint32_t offset) {
 
 /// Bars, plates and what they are for, slots to slots.
 template <int kRows, typename AnySlot>
-inline void sum_slice(const TileSlice& slice, const char* lists, AnySlot* slots) {
+inline void sum_slice(const TileSlice& slice, const char* lists, AnySlot* slots, Touches& touches) {
   // A list writes behind what it is given.
   const char* const bars = lists + slice.bars_list;
+  touches.give_some();
   sum_slots<kRows>(list_at(bars, 0), slots, slots + slice.bars_slot - 1);
+  touches.give_some();
   sum_slots<kRows>(list_at(bars, slice.plates_list), slots, slots + slice.plates_slot - 1);
+  touches.give_some();
   sum_slots<kRows>(list_at(bars, slice.sums_list), slots, slots + slice.sums_slot - 1);
+  touches.give_some();
 }
 
 inline bool finite_groups(Vectors4* groups, uint32_t count) {
@@ -60,13 +101,24 @@ class GatherPass {
     get_large(side.regions, body_.regions_ea + before(slice.output, 64), slice.output_groups * 64, s);
   }
 
-  void work(const TileSlice& slice, uint32_t s) {
+  void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
+    touches.add(body_.positions_ea + before(coming.input, 64), coming.input_groups * 64);
+    touches.add(body_.rest_ea + before(coming.input, 64), coming.input_groups * 64);
+    touches.add(body_.rotations_in_ea + before(coming.output, 64), coming.output_groups * 64);
+    touches.add(body_.regions_ea + before(coming.output, 64), coming.output_groups * 64);
+    touches.add(body_.rotations_out_ea + before(leaving.output, 64), leaving.output_groups * 64);
+    touches.add(body_.motions_ea + before(leaving.output, 4 * kMatchSlotBytes),
+                leaving.output_groups * 4 * kMatchSlotBytes);
+    touches.add(body_.momenta_ea + before(leaving.output, 64), leaving.output_groups * 64);
+  }
+
+  void work(const TileSlice& slice, uint32_t s, Touches& touches) {
     const UpSide& side = store_.side[s];
     finite_ = finite_ && finite_groups(side.positions, slice.input_groups);
     to_components(side.positions, 4 * slice.input_groups, origin_);
     for (uint32_t g = 0; g < slice.input_groups; ++g)
       match_moments(side.rest[g], side.positions[g].v, store_.slots + slice.input_slot + 4 * g);
-    sum_slice<3>(slice, side.lists, store_.slots);
+    sum_slice<3>(slice, side.lists, store_.slots, touches);
 
     MomentumConstants* const momenta = store_.momenta;
     const StepOptions options = {
@@ -112,13 +164,23 @@ class TwistPass {
     get_large(side.momenta, body.momenta_ea + before(slice.output, 64), slice.output_groups * 64, s);
   }
 
-  void work(const TileSlice& slice, uint32_t s) {
+  void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
+    const TiledBody& body = context_.body;
+    touches.add(body.positions_ea + before(coming.input, 64), coming.input_groups * 64);
+    touches.add(body.held_ea + before(coming.input, 48), coming.input_groups * 48);
+    touches.add(body.modified_ea + before(coming.input, 16), coming.input_groups * 16);
+    touches.add(body.momenta_ea + before(coming.output, 64), coming.output_groups * 64);
+    touches.add(body.motions_ea + before(leaving.output, 4 * kTwistSlotBytes),
+                leaving.output_groups * 4 * kTwistSlotBytes);
+  }
+
+  void work(const TileSlice& slice, uint32_t s, Touches& touches) {
     const UpSide& side = store_.side[s];
     to_components(side.positions, 4 * slice.input_groups, context_.origin);
     for (uint32_t g = 0; g < slice.input_groups; ++g)
       twist_moments(side.modified_mass[g], side.positions[g].v,
                     difference(side.velocities[g], context_.drift), store_.slots + slice.input_slot + 4 * g);
-    sum_slice<3>(slice, side.lists, store_.slots);
+    sum_slice<3>(slice, side.lists, store_.slots, touches);
 
     const vec_float4 noise_floor = spu_splats(context_.body.noise_floor);
     TwistSlot* const twists = reinterpret_cast<TwistSlot*>(store_.motions);
@@ -153,10 +215,21 @@ class ScatterPass {
     get_large(side.weights, body.weights_ea + before(slice.output, 32), slice.output_groups * 32, s);
   }
 
-  void work(const TileSlice& slice, uint32_t s) {
+  void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
+    const TiledBody& body = context_.body;
+    touches.add(body.motions_ea + before(coming.input, 4 * kMatchSlotBytes),
+                coming.input_groups * 4 * kMatchSlotBytes);
+    touches.add(body.velocities_ea + before(coming.output, 64), coming.output_groups * 64);
+    touches.add(body.positions_ea + before(coming.output, 64), coming.output_groups * 64);
+    touches.add(body.rest_ea + before(coming.output, 64), coming.output_groups * 64);
+    touches.add(body.weights_ea + before(coming.output, 32), coming.output_groups * 32);
+    touches.add(body.held_ea + before(leaving.output, 48), leaving.output_groups * 48);
+  }
+
+  void work(const TileSlice& slice, uint32_t s, Touches& touches) {
     const DownSide& side = store_.side[s];
     const TiledBody& body = context_.body;
-    sum_slice<3>(slice, side.lists, store_.slots);
+    sum_slice<3>(slice, side.lists, store_.slots, touches);
 
     finite_ = finite_ && finite_groups(side.velocities, slice.output_groups);
     to_components(side.positions, 4 * slice.output_groups, context_.origin);
@@ -209,10 +282,22 @@ class DampPass {
     get_large(side.modified_mass, body.modified_ea + before(slice.output, 16), slice.output_groups * 16, s);
   }
 
-  void work(const TileSlice& slice, uint32_t s) {
+  void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
+    const TiledBody& body = context_.body;
+    touches.add(body.held_ea + before(coming.output, 48), coming.output_groups * 48);
+    touches.add(body.velocities_ea + before(leaving.output, 64), leaving.output_groups * 64);
+    if (!damping_) return;
+    touches.add(body.motions_ea + before(coming.input, 4 * kTwistSlotBytes),
+                coming.input_groups * 4 * kTwistSlotBytes);
+    touches.add(body.positions_ea + before(coming.output, 64), coming.output_groups * 64);
+    touches.add(body.weights_ea + before(coming.output, 32), coming.output_groups * 32);
+    touches.add(body.modified_ea + before(coming.output, 16), coming.output_groups * 16);
+  }
+
+  void work(const TileSlice& slice, uint32_t s, Touches& touches) {
     const DownSide& side = store_.side[s];
     if (damping_) {
-      sum_slice<2>(slice, side.lists, slots());
+      sum_slice<2>(slice, side.lists, slots(), touches);
       to_components(side.positions, 4 * slice.output_groups, context_.origin);
     }
     const vec_float4 damping = spu_splats(context_.body.damping);
@@ -239,16 +324,20 @@ class DampPass {
   const bool damping_;
 };
 
-/// All slices of a tile, the next on its way while one is worked on. What the one before puts out from a place
-/// of its own has left by then.
+/// All slices of a tile, the next on its way while one is worked on. What the one before puts out from a
+/// place of its own has left by then.
 template <typename Pass>
 inline void run_slices(Pass& pass, const TileSlice* slices, uint32_t count) {
+  Touches touches;
   pass.fetch(slices[0], 0);
   for (uint32_t i = 0; i < count; ++i) {
     const uint32_t s = i & 1;
+    touches.clear();
+    if (i + 2 < count) pass.touch(slices[i + 2], slices[i + 1], touches);
     if (i + 1 < count) pass.fetch(slices[i + 1], s ^ 1);
     wait_for_tags(1u << s | 1u << kTagOut);
-    pass.work(slices[i], s);
+    pass.work(slices[i], s, touches);
+    touches.give_all();
   }
 }
 
