@@ -98,6 +98,8 @@ int run_bench(const BenchOptions& options) {
     document.push_back(
         {{"name", name}, {"ns_min", m.least()}, {"ns_median", m.median()}, {"items", m.work.items}});
   }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].work.note) fmt::print("\n{}: {}", benchmarks[i].name, all[i].work.note());
   if (options.json) write_json(*options.json, document);
   return 0;
 }

@@ -17,6 +17,7 @@ struct Work {
   std::function<void()> run;
   /// What counts, as a time that has passed up to now; null: the clock's.
   std::function<std::chrono::nanoseconds()> spent = {};
+  std::function<std::string()> note = {};  ///< what else is worth saying, found out after all is measured
 };
 
 /// One thing to measure.

@@ -44,7 +44,7 @@ inline void getf_large(void* ls, uint64_t ea, uint32_t bytes, uint32_t tag) {
              [tag](char* to, uint64_t from, uint32_t size) { mfc_getf(to, from, size, tag, 0, 0); });
 }
 
-/// Hints that `bytes` at `ea` will be read, or written, soon. They count as commands of the tag group.
+/// Hints that `bytes` at `ea` will be read or written soon: commands of the tag group that move nothing.
 inline void touch_large(uint64_t ea, uint32_t bytes, uint32_t tag) {
   move_large(nullptr, ea, bytes,
              [tag](char*, uint64_t from, uint32_t size) { mfc_sdcrt(from, size, tag, 0, 0); });
