@@ -54,6 +54,8 @@ class SolverSteps {
     for (std::size_t b = 0; b < frames.simulation().soft_bodies(); ++b)
       bodies_.push_back(frames.simulation().soft_body(b));
     for (ppu::SoftBody& body : bodies_) pointers_.push_back(&body);
+    solver_.kick(pointers_, step_);
+    solver_.finish();  // once, so that rotations are known: those of a step that is dropped are not
   }
 
   void step() {

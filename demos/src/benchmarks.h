@@ -65,8 +65,8 @@ void add_solver_2d_benchmarks(std::vector<Benchmark>& all);
 /// iterations.
 void add_rotation_benchmarks(std::vector<Benchmark>& all);
 
-/// solver3d/<big|bigcube>/w2/spe: over 200,000 particles in tiles; an item is a particle. `big` is a mattress,
-/// whose shape suits tiles, `bigcube` one that does not.
+/// solver3d/<big|bigcube>/w2/spe: over 200,000 particles in tiles; an item is a particle. `big` is a
+/// mattress, whose shape suits tiles, `bigcube` one that does not.
 void add_tiles_benchmarks(std::vector<Benchmark>& all);
 
 /// dma/<get|put>16k and dma/memcpy16k: an item is 16 KB. dma/command/<schedule>: an item is one get of 16
