@@ -20,7 +20,6 @@
 
 #include "common/dma.h"
 #include "common/lane_mask.h"
-#include "common/reciprocal.h"
 #include "skin/cell.h"
 #include "skin/drawn_vertex.h"
 #include "skin_job.h"
@@ -55,40 +54,37 @@ struct alignas(128) LocalStoreMap {
 static_assert(sizeof(LocalStoreMap) <= 84 * 1024, "leaves 12 KB of the budget for code and stack");
 LocalStoreMap ls;
 
-/// Four points of the surface; normals of any length.
+/// Four points of the surface: positions as they are drawn, normals of any length.
 struct Surface {
-  Vector3x4 position, normal;
+  HalfVectors position;
+  Vector3x4 normal;
 };
 
-__attribute__((always_inline)) inline Surface evaluate(const CellPolynomial& p, const Group& g) {
+template <Positions kPositions>
+__attribute__((always_inline)) inline Surface surface_of(const CellPolynomial& p, const Group& g) {
   const Component x = evaluate(p.x, g.xi, g.eta, g.zeta);
   const Component y = evaluate(p.y, g.xi, g.eta, g.zeta);
   const Component z = evaluate(p.z, g.xi, g.eta, g.zeta);
-  return {{x.position, y.position, z.position},
+  return {half_positions<kPositions>({x.position, y.position, z.position}),
           deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
-}
-
-template <Positions kPositions>
-__attribute__((always_inline)) inline void finish(const Surface& s, vec_ushort8* out) {
-  const Vector3x4 unit = scale(s.normal, rough_reciprocal_sqrt(dot(s.normal, s.normal)));
-  store(half_positions<kPositions>(s.position), half_normals(unit), out);
 }
 
 /// One buffer of groups, one or more, to one buffer of vertices.
 ///
 /// A group is one chain of dependent operations, some 95 cycles long on a host whose arithmetic takes 40. So
-/// each pass of the loop evaluates a group and finishes the one before it, and the two overlap.
+/// each pass of the loop evaluates a group and finishes the normals of the one before it, and the two
+/// overlap.
 template <Positions kPositions>
 void skin_chunk(const Group* groups, uint32_t count, vec_ushort8* vertices) {
   CellPolynomial p = polynomial_of(ls.corner, groups[0].corner);  // a chunk may begin in the middle of a cell
-  Surface before = evaluate(p, groups[0]);
+  Surface before = surface_of<kPositions>(p, groups[0]);
   for (uint32_t i = 1; i < count; ++i, vertices += 4) {
     if (spu_extract(groups[i].continues, 0) == 0) p = polynomial_of(ls.corner, groups[i].corner);
-    const Surface surface = evaluate(p, groups[i]);
-    finish<kPositions>(before, vertices);
+    const Surface surface = surface_of<kPositions>(p, groups[i]);
+    store(before.position, half_normals<kPositions>(before.normal), vertices);
     before = surface;
   }
-  finish<kPositions>(before, vertices);
+  store(before.position, half_normals<kPositions>(before.normal), vertices);
 }
 
 inline uint32_t groups_in_chunk(uint32_t chunk) {

@@ -19,13 +19,20 @@ inline vec_uint4 high_half_of_positive(vec_float4 value) {
   return spu_sl(spu_add((vec_uint4)value, spu_splats(0x1000u - (112u << 23))), 3);
 }
 
-/// The same for either sign; what is too small for a normal binary16 becomes zero. For magnitudes below
-/// kHalfOverflow.
-inline vec_uint4 high_half_or_zero(vec_float4 value) {
-  // A product rebiases the exponent as well, and flushes what passes below a float's own smallest normal.
-  const vec_uint4 bits = (vec_uint4)spu_mul(value, spu_splats(0x1p-112f));
+/// A float times this has the exponent of a binary16, and is flushed where that has no normal number.
+constexpr float kHalfRebias = 0x1p-112f;
+
+/// The same for either sign, of a value times kHalfRebias; what is too small for a normal binary16 becomes
+/// zero. For magnitudes below kHalfOverflow.
+inline vec_uint4 high_half_of_rebiased(vec_float4 rebiased) {
+  const vec_uint4 bits = (vec_uint4)rebiased;
   const vec_uint4 rounded = spu_add(bits, spu_splats(0x1000u));
   return spu_or(spu_sl(rounded, 3), spu_and(bits, spu_splats(0x80000000u)));
+}
+
+/// Likewise of the value itself.
+inline vec_uint4 high_half_or_zero(vec_float4 value) {
+  return high_half_of_rebiased(spu_mul(value, spu_splats(kHalfRebias)));
 }
 
 /// binary16 bits in the high half of each word, the low half 0, for every bit pattern: subnormals, zero,

@@ -21,7 +21,8 @@ struct CellPolynomial {
 
 /// @param corners  x y z and anything
 /// @param index    of the cell's eight corners; corner k = bx + 2 by + 4 bz
-inline CellPolynomial polynomial_of(const vec_float4* corners, vec_ushort8 index) {
+__attribute__((always_inline)) inline CellPolynomial polynomial_of(const vec_float4* corners,
+                                                                   vec_ushort8 index) {
   const vec_float4 x0 = corners[spu_extract(index, 0)], x1 = corners[spu_extract(index, 1)];
   const vec_float4 x2 = corners[spu_extract(index, 2)], x3 = corners[spu_extract(index, 3)];
   const vec_float4 x4 = corners[spu_extract(index, 4)], x5 = corners[spu_extract(index, 5)];

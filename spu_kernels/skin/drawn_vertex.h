@@ -4,6 +4,7 @@
 #include <spu_intrinsics.h>
 
 #include "common/half.h"
+#include "common/reciprocal.h"
 #include "common/vector3.h"
 
 namespace softcell::spu {
@@ -50,9 +51,21 @@ inline HalfVectors half_positions(const Vector3x4& v) {
   }
 }
 
-/// Unit vectors, the fourth component 0.
+/// Vectors of any length brought to unit length, the fourth component 0. Rebiasing is part of that in a cell
+/// of ordinary size, where a vector is no longer than 2^14 (the product of two diagonals) and its reciprocal,
+/// rebiased, a normal float.
+template <Positions kPositions>
 inline HalfVectors half_normals(const Vector3x4& v) {
-  return {pack(high_half_or_zero(v.x), high_half_or_zero(v.y)), pack(high_half_or_zero(v.z), spu_splats(0u))};
+  const vec_float4 squared = dot(v, v);
+  if constexpr (kPositions == Positions::kOrdinary) {
+    const Vector3x4 unit = scale(v, rough_reciprocal_sqrt(squared, kHalfRebias));
+    return {pack(high_half_of_rebiased(unit.x), high_half_of_rebiased(unit.y)),
+            pack(high_half_of_rebiased(unit.z), spu_splats(0u))};
+  } else {
+    const Vector3x4 unit = scale(v, rough_reciprocal_sqrt(squared));
+    return {pack(high_half_or_zero(unit.x), high_half_or_zero(unit.y)),
+            pack(high_half_or_zero(unit.z), spu_splats(0u))};
+  }
 }
 
 /// Transposes the 4 x 4 pairs: a vertex to a quadword.
