@@ -46,8 +46,7 @@ class SoftFrames {
   double ppu_milliseconds_ = 0;
 };
 
-/// A substep's shape matching and damping of a scene's bodies where they are, again and again, on one SPE,
-/// with what the PPU does to hand them over and take them back. Velocities grow, which costs nothing.
+/// A substep's shape matching and damping of a scene's bodies as they are, again and again, on one SPE.
 class SolverSteps {
  public:
   explicit SolverSteps(const SoftFrames& frames)
@@ -61,7 +60,7 @@ class SolverSteps {
 
   void step() {
     solver_.kick(pointers_, step_);
-    solver_.finish();  // drop() would begin with the same old rotations each time
+    solver_.drop();
   }
 
  private:
