@@ -181,7 +181,13 @@ std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
     }
   }
   atomic_status_ = atomic_status_.value_or(0) | status;
-  if (observer_ != nullptr) observer_->on_complete(commands_issued_);
+  if (observer_ != nullptr) {
+    if (status == kPutllcFailed) {
+      observer_->on_reservation_lost(commands_issued_);
+    } else {
+      observer_->on_complete(commands_issued_);
+    }
+  }
   pass_a_moment();
   return std::nullopt;
 }

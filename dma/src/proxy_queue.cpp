@@ -104,4 +104,6 @@ void ProxyQueue::on_complete(std::uint64_t number) {
   starts_due_ += static_cast<int>(std::erase(starting_, number));
 }
 
+void ProxyQueue::on_reservation_lost(std::uint64_t number) { on_complete(number); }
+
 }  // namespace softcell::dma

@@ -92,7 +92,13 @@ void SpeTrace::on_issue(std::uint64_t number, const dma::MfcCommand& command, st
   if (index != EventLog<TracedCommand>::kDropped) events_->in_flight.push_back({number, index});
 }
 
-void SpeTrace::on_complete(std::uint64_t number) {
+void SpeTrace::on_complete(std::uint64_t number) { complete(number); }
+
+void SpeTrace::on_reservation_lost(std::uint64_t number) {
+  if (TracedCommand* command = complete(number)) command->bytes = 0;
+}
+
+TracedCommand* SpeTrace::complete(std::uint64_t number) {
   auto& in_flight = events_->in_flight;
   // From the newest: what completes is often what was issued last.
   for (std::size_t i = in_flight.size(); i-- > 0;) {
@@ -102,8 +108,9 @@ void SpeTrace::on_complete(std::uint64_t number) {
     command.completed = true;
     in_flight[i] = in_flight.back();
     in_flight.pop_back();
-    return;
+    return &command;
   }
+  return nullptr;
 }
 
 Trace::Trace(int spes, std::size_t most_events) : begin_(trace_now()) {

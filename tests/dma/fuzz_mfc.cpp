@@ -54,6 +54,7 @@ class Books final : public MfcObserver {
   void on_complete(std::uint64_t number) override {
     require(under_way.erase(number) == 1, "a command ends once, after its issue");
   }
+  void on_reservation_lost(std::uint64_t number) override { on_complete(number); }
   std::set<std::uint64_t> under_way;
   std::uint64_t issued = 0;
 };

@@ -146,8 +146,13 @@ class Recorder final : public MfcObserver {
     EXPECT_TRUE(issued.contains(number)) << "issued before it is complete";
     completed.push_back(number);
   }
+  void on_reservation_lost(std::uint64_t number) override {
+    EXPECT_TRUE(issued.contains(number)) << "issued before it fails";
+    failed.push_back(number);
+  }
   std::map<std::uint64_t, Issued> issued;
   std::vector<std::uint64_t> completed;
+  std::vector<std::uint64_t> failed;
 };
 
 TEST_P(MfcProgress, AnObserverSeesEachCommandComeAndGoOnce) {
@@ -197,8 +202,18 @@ TEST(MfcObservers, SeeALineCommandLeaveAtOnce) {
   Recorder recorder;
   MfcBench bench(kEager);
   bench.mfc.set_observer(&recorder);
+  bench.issue(MfcOpcode::getllar, 0, 0, 0, 0);
   bench.issue(MfcOpcode::putllc, 0, 0, 0, 0);
-  EXPECT_EQ(recorder.completed, std::vector<std::uint64_t>{1});
+  EXPECT_EQ(recorder.completed, (std::vector<std::uint64_t>{1, 2}));
+}
+
+TEST(MfcObservers, AreToldOfAPutllcThatMovedNothing) {
+  Recorder recorder;
+  MfcBench bench(kEager);
+  bench.mfc.set_observer(&recorder);
+  bench.issue(MfcOpcode::putllc, 0, 0, 0, 0);
+  EXPECT_TRUE(recorder.completed.empty());
+  EXPECT_EQ(recorder.failed, std::vector<std::uint64_t>{1});
 }
 
 }  // namespace

@@ -136,6 +136,22 @@ TEST(Trace, NamesEveryProcessAndRow) {
   EXPECT_EQ(rows, (std::set<std::string>{"jobs", "waits", "DMA 1", "DMA 2"}));
 }
 
+TEST(Trace, GivesNoBytesToAPutllcThatMovedNone) {
+  Trace trace(1);
+  dma::MfcCommand command = get(0x1000, 128, 0);
+  command.word = static_cast<std::uint32_t>(dma::MfcOpcode::putllc);
+  trace.spe(0).on_issue(1, command, 128);
+  trace.spe(0).on_reservation_lost(1);
+  trace.spe(0).on_issue(2, command, 128);
+  trace.spe(0).on_complete(2);
+  const std::vector<json> commands = events(written(trace), "dma");
+  ASSERT_EQ(commands.size(), 2u);
+  EXPECT_EQ(commands[0]["args"]["bytes"], 0);
+  EXPECT_EQ(commands[0]["args"]["size"], 128);
+  EXPECT_EQ(commands[0]["args"]["completed"], true);
+  EXPECT_EQ(commands[1]["args"]["bytes"], 128);
+}
+
 TEST(Trace, PutsCommandsInFlightAtTheSameTimeOnRowsOfTheirOwn) {
   Trace trace(1);
   SpeTrace& spe = trace.spe(0);

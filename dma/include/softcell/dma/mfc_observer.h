@@ -19,6 +19,9 @@ class MfcObserver {
 
   /// All its bytes have moved.
   virtual void on_complete(std::uint64_t number) = 0;
+
+  /// In place of `on_complete`: a putllc that found its reservation lost. Nothing has moved.
+  virtual void on_reservation_lost(std::uint64_t number) = 0;
 };
 
 }  // namespace softcell::dma

@@ -70,6 +70,7 @@ class ProxyQueue : private MfcObserver {
   // Called by the MFC, with the mutex held.
   void on_issue(std::uint64_t number, const MfcCommand& command, std::uint64_t bytes) override;
   void on_complete(std::uint64_t number) override;
+  void on_reservation_lost(std::uint64_t number) override;
 
   template <class Step>
   auto with_mfc(Step&& step);

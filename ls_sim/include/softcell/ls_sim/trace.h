@@ -19,6 +19,7 @@ using TraceTime = std::int64_t;
 TraceTime trace_now();
 
 struct SpeEvents;
+struct TracedCommand;
 
 /// One SPE's part of a trace. Used by the thread that runs the SPE. Recording an event is a look at the clock
 /// and an append: it allocates only when the memory grows. Past the limit of a trace, further events are
@@ -46,10 +47,15 @@ class SpeTrace final : public dma::MfcObserver {
   // ended its job, is drawn to the end of that job.
   void on_issue(std::uint64_t number, const dma::MfcCommand& command, std::uint64_t bytes) override;
   void on_complete(std::uint64_t number) override;
+  void on_reservation_lost(std::uint64_t number) override;
 
  private:
   friend class Trace;
   explicit SpeTrace(std::size_t most_events);
+
+  /// Ends a command that is under way. Null when the log had no room for it.
+  TracedCommand* complete(std::uint64_t number);
+
   std::unique_ptr<SpeEvents> events_;
 };
 
