@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "lattices.h"
+#include "particle_vectors.h"
 #include "softcell/ppu/regions.h"
 #include "support/allocation_counter.h"
 
@@ -20,6 +21,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using test::largest_difference;
 using test::Random;
 
 constexpr int kLargestHalfWidth = 4;
@@ -56,11 +58,7 @@ class Body {
 
   const std::vector<Vector3d>& rest() const { return rest_; }
   double mass(std::size_t i) const { return static_cast<double>(masses_[i]); }
-  double total_mass() const {
-    double sum = 0;
-    for (std::size_t i = 0; i < masses_.size(); ++i) sum += mass(i);
-    return sum;
-  }
+  double total_mass() const { return test::total_mass(masses_); }
   ShapeMatcher<Real>& matcher() { return matcher_; }
 
   static std::vector<Vector> narrow(const std::vector<Vector3d>& x) {
@@ -106,22 +104,6 @@ std::vector<float> uneven_masses(std::size_t count, std::uint64_t seed) {
   return masses;
 }
 
-double largest_difference(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).cwiseAbs().maxCoeff());
-  return largest;
-}
-
-/// Runs a check on every lattice with every half width.
-template <typename Check>
-void for_all_bodies(const Check& check) {
-  for (const auto& [name, lattice] : test::all_lattices())
-    for (int w = 1; w <= kLargestHalfWidth; ++w) {
-      SCOPED_TRACE(name + ", w = " + std::to_string(w));
-      check(lattice, w);
-    }
-}
-
 template <typename Real>
 class Matching : public ::testing::Test {
  public:
@@ -135,7 +117,7 @@ using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(Matching, Reals);
 
 TYPED_TEST(Matching, KeepsLinearAndAngularMomentum) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     using Real = TypeParam;
     Body<Real> body(lattice, w, uneven_masses(lattice.particles.size(), 7));
     const Matrix3d turned = Random(3).rotation().toRotationMatrix();
@@ -154,7 +136,7 @@ TYPED_TEST(Matching, KeepsLinearAndAngularMomentum) {
 }
 
 TYPED_TEST(Matching, DampingKeepsMomentaAndAddsNoEnergy) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     using Real = TypeParam;
     Body<Real> body(lattice, w, uneven_masses(lattice.particles.size(), 8));
     const auto x = Body<Real>::rounded(sum(body.rest(), noise(body.rest().size(), 0.02, 5)));
@@ -178,7 +160,7 @@ TYPED_TEST(Matching, DampingKeepsMomentaAndAddsNoEnergy) {
 }
 
 TYPED_TEST(Matching, LeavesRigidMotionAlone) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     using Real = TypeParam;
     Body<Real> body(lattice, w);
     const Matrix3d turned = Random(9).rotation().toRotationMatrix();
@@ -195,7 +177,7 @@ TYPED_TEST(Matching, LeavesRigidMotionAlone) {
 }
 
 TYPED_TEST(Matching, TurnsWithTheBody) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     using Real = TypeParam;
     const Matrix3d turned = Random(10).rotation().toRotationMatrix();
     const Vector3d shift(0.7, -0.4, 0.9);
@@ -262,7 +244,7 @@ TYPED_TEST(Matching, DoesNotDependOnTheNumberingOfParticles) {
 }
 
 TYPED_TEST(Matching, DoesNotDependOnTheScaleOfTheMasses) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     std::vector<float> masses = uneven_masses(lattice.particles.size(), 14), heavy = masses;
     for (float& mass : heavy) mass *= 1024;  // exact
     Body<TypeParam> body(lattice, w, masses), other(lattice, w, heavy);
@@ -275,7 +257,7 @@ TYPED_TEST(Matching, DoesNotDependOnTheScaleOfTheMasses) {
 }
 
 TYPED_TEST(Matching, NaiveAndSharedSumsGiveTheSameBits) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     Body<TypeParam> shared(lattice, w), naive(lattice, w, {}, SumMethod::kNaive);
     auto x = sum(shared.rest(), noise(shared.rest().size(), 0.02, 17)),
          v = noise(shared.rest().size(), 0.5, 18);
@@ -340,7 +322,7 @@ TYPED_TEST(Matching, PartsThatDoNotTouchDoNotInfluenceEachOther) {
 }
 
 TYPED_TEST(Matching, FlattenedCollapsedAndInvertedBodiesGetProperRotationsAndFiniteGoals) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     for (const Vector3d& scale :
          {Vector3d(1, 1, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 0), Vector3d(1, 1, -1),
           Vector3d(-0.5, -0.5, -0.5), Vector3d(1e-6, 1e-6, 1e-6), Vector3d(1e3, 1e3, 1e3)}) {
@@ -372,7 +354,7 @@ TYPED_TEST(Matching, WorksFarFromTheOriginOfTheWorld) {
 }
 
 TYPED_TEST(Matching, FloatAndDoubleAgree) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     Body<TypeParam> body(lattice, w);
     Body<double> oracle(lattice, w, {}, SumMethod::kNaive);
     const auto x = sum(body.rest(), noise(body.rest().size(), 0.03, 26)),
@@ -491,7 +473,7 @@ TYPED_TEST(Matching, RefusesMassesThatAreNone) {
 }
 
 TYPED_TEST(Matching, RegionMassesAddUpToTheBody) {
-  for_all_bodies([](const Lattice& lattice, int w) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
     const auto masses = uneven_masses(lattice.particles.size(), 35);
     const MatchingPlan<TypeParam> plan(lattice, w, masses);
     double regions = 0, body = 0;
