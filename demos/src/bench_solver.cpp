@@ -63,7 +63,7 @@ class SpeBodies {
   std::size_t bodies_;
 };
 
-void step(EigenSolver& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
+void step(EigenSolver<3>& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
   solver.step(x, v, kAlpha, kStep, kDamping);
 }
 void step(ppu::ShapeMatcher<float>& solver, std::span<const Eigen::Vector3f> x,
@@ -107,7 +107,7 @@ void add_solver(std::vector<Benchmark>& all, const BenchBody& body, int half_wid
   };
   using Matchers = PpuBodies<ppu::ShapeMatcher<float>>;
   add("spe", [](const Model& model) { return std::make_shared<SpeBodies>(model); });
-  add("eigen", [](const Model& model) { return std::make_shared<PpuBodies<EigenSolver>>(model); });
+  add("eigen", [](const Model& model) { return std::make_shared<PpuBodies<EigenSolver<3>>>(model); });
   add("ppu",
       [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kBarPlateCube); });
   add("naive", [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kNaive); });

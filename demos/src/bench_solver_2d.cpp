@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "benchmarks.h"
-#include "eigen_solver_2d.h"
+#include "eigen_solver.h"
 #include "kernel_samples.h"
 #include "softcell/ppu/job_system.h"
 #include "softcell/ppu/match_orchestrator_2d.h"
@@ -83,7 +83,7 @@ struct SolverCase2d {
   std::size_t bodies;
   ppu::MatchPlan2d kernel_plan;
   ppu::MatchOrchestrator2d spes;
-  EigenSolver2d eigen;
+  EigenSolver<2> eigen;
   ppu::ShapeMatcher2d<float> shared_sums, naive_sums;
   std::vector<Eigen::Vector2f> x, v;
 };

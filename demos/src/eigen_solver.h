@@ -1,6 +1,6 @@
 #pragma once
-// Shape matching and damping as one writes it with Eigen: bars, plates and regions, vectors and 3x3 matrices,
-// nothing laid out by hand. What the kernel is measured against.
+// Shape matching and damping as one writes it with Eigen: bars, plates and regions, vectors and small
+// matrices, nothing laid out by hand. What the kernels are measured against.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,54 +9,82 @@
 #include <vector>
 
 #include "softcell/ppu/shape_matching.h"
+#include "softcell/ppu/shape_matching_2d.h"
 #include "softcell/ppu/summation.h"
 
 namespace softcell::demos {
 
-/// One body. The same sums, plans and rotations as ppu::ShapeMatcher<float>.
+/// What differs between two and three dimensions.
+template <int Dimension>
+struct EigenTypes;
+template <>
+struct EigenTypes<2> {
+  using Plan = ppu::MatchingPlan2d<float>;
+  using Spin = float;          ///< an angular velocity or momentum
+  using SecondMoment = float;  ///< m~ |x|^2
+  struct Attitude {};          ///< no start is needed to find a rotation
+};
+template <>
+struct EigenTypes<3> {
+  using Plan = ppu::MatchingPlan<float>;
+  using Spin = Eigen::Vector3f;
+  using SecondMoment = Eigen::Matrix3f;  ///< m~ x x^T
+  using Attitude = Eigen::Quaternionf;   ///< of the step before
+};
+
+/// One body. The same sums, plans and rotations as ppu::ShapeMatcher<float> and ppu::ShapeMatcher2d<float>.
+template <int Dimension>
 class EigenSolver {
  public:
-  explicit EigenSolver(std::shared_ptr<const ppu::MatchingPlan<float>> plan);
+  using Types = EigenTypes<Dimension>;
+  using Vector = Eigen::Matrix<float, Dimension, 1>;
+  using Matrix = Eigen::Matrix<float, Dimension, Dimension>;
+
+  explicit EigenSolver(std::shared_ptr<const typename Types::Plan> plan);
 
   /// v += alpha (g - x) / h, then damping. @pre  one element per particle.
-  void step(std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v, float alpha, float h,
-            float damping);
+  void step(std::span<const Vector> x, std::span<Vector> v, float alpha, float h, float damping);
 
  private:
   struct Moments {  // m~x, m~x x0^T
-    Eigen::Vector3f p;
-    Eigen::Matrix3f a;
+    Vector p;
+    Matrix a;
     Moments& operator+=(const Moments& other);
   };
-  struct Momenta {  // m~v, x × m~v, m~x x^T
-    Eigen::Vector3f p, l;
-    Eigen::Matrix3f q;
+  struct Momenta {  // m~v, x × m~v
+    Vector p;
+    typename Types::Spin l;
+    typename Types::SecondMoment q;
     Momenta& operator+=(const Momenta& other);
   };
   struct Motion {  // t, R
-    Eigen::Vector3f t;
-    Eigen::Matrix3f r;
+    Vector t;
+    Matrix r;
     Motion& operator+=(const Motion& other);
   };
   struct Twist {  // b, omega
-    Eigen::Vector3f b, omega;
+    Vector b;
+    typename Types::Spin omega;
     Twist& operator+=(const Twist& other);
   };
 
-  void match(std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v, float rate);
-  void damp(std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v, float damping);
+  void match(std::span<const Vector> x, std::span<Vector> v, float rate);
+  void damp(std::span<const Vector> x, std::span<Vector> v, float damping);
 
-  std::shared_ptr<const ppu::MatchingPlan<float>> plan_;
+  std::shared_ptr<const typename Types::Plan> plan_;
   std::vector<Moments> particle_moments_, region_moments_;
   std::vector<Momenta> particle_momenta_, region_momenta_;
   std::vector<Motion> motions_, motion_totals_;
   std::vector<Twist> twists_, twist_totals_;
-  std::vector<Eigen::Vector3f> centres_;
-  std::vector<Eigen::Quaternionf> rotations_;
+  std::vector<Vector> centres_;
+  std::vector<typename Types::Attitude> attitudes_;
   ppu::SumScratch<Moments> moments_scratch_;
   ppu::SumScratch<Momenta> momenta_scratch_;
   ppu::SumScratch<Motion> motion_scratch_;
   ppu::SumScratch<Twist> twist_scratch_;
 };
+
+extern template class EigenSolver<2>;
+extern template class EigenSolver<3>;
 
 }  // namespace softcell::demos

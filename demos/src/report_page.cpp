@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "embedded_files.h"
 #include "report_data.h"
-#include "report_files.h"
 
 namespace softcell::demos {
 namespace {
@@ -23,6 +23,12 @@ std::string fill_in(std::string_view text,
     text.remove_prefix(at + marker.size());
   }
   return result.append(text);
+}
+
+std::string_view page_file(std::string_view name) {
+  const EmbeddedFile* const file = find_embedded(embedded_report(), name);
+  if (file == nullptr) throw std::logic_error("the build has left out report/" + std::string(name));
+  return file->text;
 }
 
 std::string escape_html(std::string_view text) {
@@ -65,13 +71,15 @@ std::string embeddable(const nlohmann::ordered_json& data) {
 
 std::string report_page(const TraceFile& trace, std::string_view title) {
   std::string script;
-  for (const std::string_view part : report_scripts()) script.append(part).append("\n");
+  for (const EmbeddedFile& file : embedded_report()) {
+    if (file.name.ends_with(".js")) script.append(file.text).append("\n");
+  }
   const std::string safe_title = escape_html(title), data = embeddable(report_data(trace));
-  return fill_in(report_template(), {{"@title@", safe_title},
-                                     {"@style@", report_style()},
-                                     {"@name@", safe_title},
-                                     {"@data@", data},
-                                     {"@script@", script}});
+  return fill_in(page_file("page.html"), {{"@title@", safe_title},
+                                          {"@style@", page_file("style.css")},
+                                          {"@name@", safe_title},
+                                          {"@data@", data},
+                                          {"@script@", script}});
 }
 
 }  // namespace softcell::demos

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "builtin_files.h"
+#include "../embedded_files.h"
 #include "field_reader.h"
 #include "lua_document.h"
 #include "read_scene_2d.h"
@@ -46,12 +46,11 @@ bool is_lattice(const Value& document) {
 const std::vector<SceneListing>& list_scenes() {
   static const std::vector<SceneListing> scenes = [] {
     std::vector<SceneListing> found;
-    for (const BuiltinFile& file : builtin_files()) {
+    for (const EmbeddedFile& file : embedded_scenes()) {
       const Value document =
           read_document({std::string(file.text), std::make_shared<const std::string>(file.name)});
       if (is_lattice(document)) continue;
       SceneListing& scene = found.emplace_back();
-      scene.file = file.name;
       scene.name = file.name.substr(0, file.name.rfind('.'));
       FieldReader root(document, "a scene");
       scene.dimension = read_dimension(root);

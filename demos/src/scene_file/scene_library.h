@@ -16,12 +16,11 @@ namespace softcell::demos {
 
 struct SceneListing {
   std::string name;   ///< by which it is found: "arena"
-  std::string file;   ///< "arena.toml"
   int dimension = 3;  ///< 2 or 3
   std::string title;  ///< one line
 };
 
-/// The scenes that are part of the command, sorted by name. All are TOML.
+/// The scenes that are part of the command, sorted by name. Reads all of them, once.
 const std::vector<SceneListing>& list_scenes();
 
 /// The user's own model, which takes the place of a body that has a place to give: `own_model_side`.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "../embedded_files.h"
 #include "../read_file.h"
-#include "builtin_files.h"
 #include "scene_library.h"
 
 namespace softcell::demos {
@@ -16,14 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSystemData = "/usr/share";
 
-const BuiltinFile* find_builtin(std::string_view name) {
-  const auto files = builtin_files();
-  const auto found =
-      std::find_if(files.begin(), files.end(), [&](const BuiltinFile& file) { return file.name == name; });
-  return found == files.end() ? nullptr : &*found;
-}
-
-SourceText builtin_text(const BuiltinFile& file) {
+SourceText embedded_text(const EmbeddedFile& file) {
   return {std::string(file.text), std::make_shared<const std::string>(file.name)};
 }
 
@@ -59,10 +52,13 @@ bool is_printable(const std::string& name) {
 
 SceneSource SceneSource::find(std::string_view name_or_file) {
   SceneSource source;
-  for (const SceneListing& scene : list_scenes()) {
-    if (scene.name != name_or_file) continue;
-    source.main_ = builtin_text(*find_builtin(scene.file));
-    return source;
+  // By its file, not by list_scenes(): that reads every scene, and runs those in Lua.
+  for (const std::string_view ending : {".toml", ".lua"}) {
+    const std::string file = fmt::format("{}{}", name_or_file, ending);
+    if (const EmbeddedFile* embedded = find_embedded(embedded_scenes(), file)) {
+      source.main_ = embedded_text(*embedded);
+      return source;
+    }
   }
   const fs::path path{name_or_file};
   if (path.extension() != ".toml" && path.extension() != ".lua") {
@@ -105,7 +101,8 @@ fs::path SceneSource::locate(const std::string& file, const Place& place) const 
 
 SourceText SceneSource::text(const std::string& file, const Place& place) const {
   if (!folder_) {
-    if (const BuiltinFile* builtin = find_builtin(file)) return builtin_text(*builtin);
+    if (const EmbeddedFile* embedded = find_embedded(embedded_scenes(), file))
+      return embedded_text(*embedded);
   }
   const fs::path path = locate(file, place);
   try {
