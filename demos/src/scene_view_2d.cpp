@@ -195,17 +195,17 @@ void SceneView2d::draw_hands(const Shown2d& shown) {
 
 const render::Image& SceneView2d::draw() {
   simulation_.show(now_);
-  draw(now_, view_);
+  draw(now_, {.view = static_cast<int>(view_)});
   return renderer_.pixels();
 }
 
-void SceneView2d::draw(const Shown2d& shown, View2d view) {
+void SceneView2d::draw(const Shown2d& shown, const Look& look) {
   skinned_.clear();
   lattices_.clear();
   place_rigid_bodies(shown.rigid_poses);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     place_particles(bodies_[b], shown.particles[b]);
-    switch (view) {
+    switch (static_cast<View2d>(look.view)) {
       case View2d::kDots:
         draw_as_dots(b);
         break;

@@ -12,6 +12,7 @@
 #include "scene_2d.h"
 #include "simulation_2d.h"
 #include "softcell/render/renderer.h"
+#include "window/look.h"
 
 namespace softcell::demos {
 
@@ -24,7 +25,7 @@ class SceneView2d {
   const render::Image& draw();
 
   /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer.
-  void draw(const Shown2d& shown, View2d view);
+  void draw(const Shown2d& shown, const Look& look);
 
  private:
   using Link = std::array<std::uint32_t, 2>;

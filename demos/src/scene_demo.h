@@ -1,0 +1,106 @@
+#pragma once
+// What the demos of both dimensions do alike: step a scene from its user or its replay, note what happened,
+// publish and draw it; and load the scenes to go through.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "demo.h"
+#include "input_log.h"
+#include "scene_file/scene_library.h"
+#include "window/latest.h"
+#include "window/user_input.h"
+
+namespace softcell::demos {
+
+/// A scene, its simulation, its log and its view.
+/// @tparam Types  names those of one dimension: kDimension, Scene, Simulation, Shown (what a picture needs),
+///                SceneView (what draws it) and View (an enumeration, of which there are kViews).
+template <class Types>
+class SceneDemo : public Demo {
+ public:
+  static constexpr int kDimension = Types::kDimension;
+  using Scene = typename Types::Scene;
+  using Log = InputLog<kDimension>;
+
+  SceneDemo(Scene scene, Log log, const SimulationOptions& how, typename Types::View view,
+            const Pointing<kDimension>& pointing)
+      : scene_(std::move(scene)),
+        log_(std::move(log)),
+        simulation_(scene_, how),
+        kind_(view),
+        input_(Types::kViews, pointing) {
+    input_.set_look({.view = static_cast<int>(kind_)});
+    input_.follow(simulation_.gravity(), simulation_.paused());
+  }
+
+  const std::string& scene_name() const override { return scene_.name; }
+  int frames() const override { return log_.replays() ? static_cast<int>(log_.frames()) : scene_.frames; }
+  FrameTimes step() override {
+    const auto from_user = input_.next_frame();
+    const FrameTimes times = simulation_.step(log_.replays() ? log_.events_at(frame_) : from_user);
+    log_.note(frame_++, simulation_.last_events());
+    input_.follow(simulation_.gravity(), simulation_.paused());
+    return times;
+  }
+  void stop() override { simulation_.stop(); }
+  std::uint64_t state_hash() const override { return simulation_.state_hash(); }
+  std::vector<ls_sim::SpeStatistics> spe_statistics() const override { return simulation_.spe_statistics(); }
+  void save_recording() override { log_.save(state_hash()); }
+  void check_replay() const override { log_.check(); }
+  void make_view(render::Renderer& renderer) override { view_.emplace(scene_, simulation_, renderer, kind_); }
+  const render::Image& draw() override { return view_->draw(); }
+
+  WindowInput& input() override { return input_; }
+  int dimension() const override { return kDimension; }
+  bool paused() const override { return simulation_.paused(); }
+  bool replays() const override { return log_.replays(); }
+  void publish() override {
+    simulation_.show(shown_.next());
+    shown_.publish();
+  }
+  void draw_published(const Look& look) override {
+    shown_.update();
+    view_->draw(shown_.current(), look);
+  }
+
+ protected:
+  const typename Types::Simulation& simulation() const { return simulation_; }
+
+ private:
+  Scene scene_;
+  Log log_;
+  std::int64_t frame_ = 0;
+  typename Types::Simulation simulation_;
+  typename Types::View kind_;
+  UserInput<kDimension> input_;
+  Latest<typename Types::Shown> shown_;
+  std::optional<typename Types::SceneView> view_;
+};
+
+/// @param log    has begun `first`.
+/// @param first  the scene to begin with; with `all` those of its dimension that come with softcell follow.
+/// @param load   of a built-in scene's name.
+/// @tparam OneDemo  a SceneDemo, made of a scene, a log, SimulationOptions and the options.
+template <class OneDemo, class Options>
+std::vector<MakeDemo> demos_of(const Options& options, const typename OneDemo::Log& log,
+                               const typename OneDemo::Scene& first, bool all,
+                               typename OneDemo::Scene (*load)(std::string_view)) {
+  std::vector<MakeDemo> demos;
+  const auto add = [&](const typename OneDemo::Scene& scene) {
+    demos.push_back([&options, scene, log](const SimulationOptions& how) {
+      return std::make_unique<OneDemo>(scene, log, how, options);
+    });
+  };
+  add(first);
+  if (!all) return demos;
+  for (const SceneListing& listing : list_scenes()) {
+    if (listing.dimension == OneDemo::kDimension && listing.name != first.name) add(load(listing.name));
+  }
+  return demos;
+}
+
+}  // namespace softcell::demos
