@@ -84,7 +84,7 @@ same_again 2d play
 # Three dimensions: tilt, jump, look from elsewhere, back to the beginning.
 start 3d --record "$folder/play3.rec"
 xdotool keydown Right
-sleep 0.7
+sleep 2  # the tilt grows to its limit in a fifth of it, on a machine that keeps up
 xdotool keyup Right key space
 xdotool mousemove --window "$window" 640 360 mousedown 1 mousemove --window "$window" 800 330 mouseup 1
 sleep 0.7

@@ -47,7 +47,7 @@ class Child {
 
   /// All that the child writes, until it ends or the time is over.
   std::string answer() const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kLuaWallSeconds);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kLuaAnswerSeconds);
     std::string message;
     std::array<char, 65536> buffer;
     while (message.size() <= 2 * MessageWriter::kMaxBytes) {

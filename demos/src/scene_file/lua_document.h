@@ -16,10 +16,10 @@ namespace softcell::demos {
 /// hold stay locked in it.
 /// @param file  as errors name it.
 /// @throws SceneError  a mistake in the chunk, data that is not plain, or a limit passed. Never takes longer
-/// than kLuaWallSeconds and a little.
+/// than kLuaAnswerSeconds and a little.
 Value run_lua(std::string_view chunk, const std::shared_ptr<const std::string>& file);
 
 /// Seconds after which a child that has not answered is killed.
-inline constexpr double kLuaWallSeconds = 1.6;
+inline constexpr double kLuaAnswerSeconds = 1.8;
 
 }  // namespace softcell::demos

@@ -42,12 +42,18 @@ constexpr Library kLibraries[] = {
 // Lua's own table.insert moves items in a loop without end when the length is not what it seems.
 constexpr const char* kPrelude = "function table.insert(t, value) t[#t + 1] = value end";
 
+double seconds(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 class Sandbox {
  public:
   explicit Sandbox(int descriptor) : descriptor_(descriptor) {}
 
   [[noreturn]] void run(std::string_view chunk) {
-    clock_gettime(CLOCK_MONOTONIC, &begin_);
+    begin_ = seconds(CLOCK_MONOTONIC);
     state_ = lua_newstate(allocate, this);
     if (state_ == nullptr) fail(0, "there is no memory for Lua");
     lua_atpanic(state_, [](lua_State* state) -> int { of(state).fail_with_error(LUA_ERRRUN); });
@@ -92,12 +98,9 @@ class Sandbox {
       sandbox.line_ = record->currentline;
       return;
     }
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    const double seconds = static_cast<double>(now.tv_sec - sandbox.begin_.tv_sec) +
-                           1e-9 * static_cast<double>(now.tv_nsec - sandbox.begin_.tv_nsec);
     // Not an error of Lua's, which a chunk might catch: the process ends here.
-    if (seconds > kLuaSeconds) {
+    if (seconds(CLOCK_PROCESS_CPUTIME_ID) > kLuaSeconds ||
+        seconds(CLOCK_MONOTONIC) - sandbox.begin_ > kLuaWallSeconds) {
       sandbox.fail(sandbox.line_, fmt::format("the script ran for more than {} second here", kLuaSeconds));
     }
   }
@@ -180,7 +183,7 @@ class Sandbox {
   lua_State* state_ = nullptr;
   std::size_t bytes_ = 0;
   int line_ = 1;  // at which the chunk is; before it runs, its first
-  timespec begin_{};
+  double begin_ = 0;
 };
 
 /// The process's address space now, in bytes: what it inherited is no fault of the chunk's.
@@ -217,7 +220,7 @@ constexpr bool kLimitProcess = true;
 void run_sandboxed(std::string_view chunk, int descriptor) {
   constexpr rlim_t kSpareBytes = rlim_t{192} << 20;  // Lua's, the message's, and the allocator's own
   if (kLimitProcess) set_limit(RLIMIT_AS, address_space() + kSpareBytes);
-  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(kLuaSeconds)));
+  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(kLuaWallSeconds)));
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, 0);
   if (kLimitProcess) set_limit(RLIMIT_NOFILE, 0);
