@@ -30,12 +30,18 @@ inline PullSum no_pulls() {
   return {{zero, zero, zero}, {none, none, none}, none};
 }
 
+/// Truncation of the units would be the very error that the sum is to take away.
+inline vec_int4 to_nearest(vec_float4 units) {
+  const vec_int4 halves = spu_convts(units, 1);
+  return spu_rlmaska(spu_add(spu_add(halves, 1), spu_rlmaska(halves, -31)), -1);
+}
+
 /// @param weight  m times MatchHold::scale
 inline void add_pulls(PullSum& sum, const Vector3x4& to_goal, vec_float4 weight) {
   const vec_float4 pulls[3] = {spu_mul(to_goal.x, weight), spu_mul(to_goal.y, weight),
                                spu_mul(to_goal.z, weight)};
   for (int d = 0; d < 3; ++d) {
-    const vec_int4 units = spu_convts(pulls[d], 0);
+    const vec_int4 units = to_nearest(pulls[d]);
     sum.high[d] = spu_add(sum.high[d], spu_rlmaska(units, -16));
     sum.low[d] = spu_add(sum.low[d], spu_and((vec_uint4)units, spu_splats(0xFFFFu)));
     sum.far = spu_or(sum.far, not_less(absolute(pulls[d]), spu_splats(kMatchPullLimit)));

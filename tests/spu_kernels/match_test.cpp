@@ -243,6 +243,8 @@ TEST(Match, RestStaysRest) {
         rig.advance(1.0 / 60);
       }
       EXPECT_LT(largest_difference(rig.velocities(), zero(rig.masses.size())), allowed);
+      EXPECT_LT(momentum(rig.masses, rig.velocities()).norm() / total_mass(rig.masses), 3e-8)
+          << "m/s: it drifts";
       EXPECT_LT(largest_difference(rig.positions(), rig.rest()), 10 * allowed);
     }
   }
