@@ -22,6 +22,23 @@ GlObject compile(const GladGLContext& gl, GLenum kind, std::initializer_list<con
   return shader;
 }
 
+GlObject new_program(const GladGLContext& gl) {
+  return {gl, gl.CreateProgram(), [](const GladGLContext& g, GLuint name) { g.DeleteProgram(name); }};
+}
+
+void link(const GladGLContext& gl, const GlObject& program, std::initializer_list<GLuint> shaders) {
+  for (const GLuint shader : shaders) gl.AttachShader(program.name(), shader);
+  gl.LinkProgram(program.name());
+  GLint linked = 0;
+  gl.GetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+  if (linked == 0) {
+    std::array<char, 2000> log{};
+    gl.GetProgramInfoLog(program.name(), static_cast<GLsizei>(log.size()), nullptr, log.data());
+    throw std::runtime_error(std::string("OpenGL does not link a program: ") + log.data());
+  }
+  for (const GLuint shader : shaders) gl.DetachShader(program.name(), shader);
+}
+
 }  // namespace
 
 GlObject make_buffer(const GladGLContext& gl) {
@@ -58,20 +75,17 @@ GlObject make_program(const GladGLContext& gl, std::initializer_list<const char*
                       std::initializer_list<const char*> fragment_parts) {
   const GlObject vertex = compile(gl, GL_VERTEX_SHADER, vertex_parts);
   const GlObject fragment = compile(gl, GL_FRAGMENT_SHADER, fragment_parts);
-  GlObject program(gl, gl.CreateProgram(),
-                   [](const GladGLContext& g, GLuint name) { g.DeleteProgram(name); });
-  gl.AttachShader(program.name(), vertex.name());
-  gl.AttachShader(program.name(), fragment.name());
-  gl.LinkProgram(program.name());
-  GLint linked = 0;
-  gl.GetProgramiv(program.name(), GL_LINK_STATUS, &linked);
-  if (linked == 0) {
-    std::array<char, 2000> log{};
-    gl.GetProgramInfoLog(program.name(), static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error(std::string("OpenGL does not link a program: ") + log.data());
-  }
-  gl.DetachShader(program.name(), vertex.name());
-  gl.DetachShader(program.name(), fragment.name());
+  GlObject program = new_program(gl);
+  link(gl, program, {vertex.name(), fragment.name()});
+  return program;
+}
+
+GlObject make_capturing_program(const GladGLContext& gl, std::initializer_list<const char*> vertex_parts,
+                                const char* captured) {
+  const GlObject vertex = compile(gl, GL_VERTEX_SHADER, vertex_parts);
+  GlObject program = new_program(gl);
+  gl.TransformFeedbackVaryings(program.name(), 1, &captured, GL_INTERLEAVED_ATTRIBS);
+  link(gl, program, {vertex.name()});
   return program;
 }
 

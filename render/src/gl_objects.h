@@ -47,4 +47,9 @@ GlObject make_framebuffer(const GladGLContext& gl);
 GlObject make_program(const GladGLContext& gl, std::initializer_list<const char*> vertex_parts,
                       std::initializer_list<const char*> fragment_parts);
 
+/// A vertex shader alone, whose output `captured` goes into the buffer bound for transform feedback.
+/// @throws std::runtime_error  with the driver's log.
+GlObject make_capturing_program(const GladGLContext& gl, std::initializer_list<const char*> vertex_parts,
+                                const char* captured);
+
 }  // namespace softcell::render

@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "cell_skinner.h"
 #include "gl_objects.h"
 #include "overlay_painter.h"
 #include "shaders.h"
@@ -73,6 +75,7 @@ struct MeshBuffers {
   GLsizei index_count = 0;
   std::size_t vertices_needed = 0;  ///< the largest index and one
   bool filled = false;              ///< the vertices have been given
+  std::optional<CellMesh> cells;    ///< what the vertices are made from, unless they are given
 };
 
 std::size_t bytes_of(std::size_t count, std::size_t size) { return count * size; }
@@ -115,6 +118,9 @@ struct Renderer::State {
   void make_picture_buffers();
   void make_shadow_map();
   MeshBuffers make_mesh(const void* indices, std::size_t index_count) const;
+  MeshBuffers make_skinned_mesh(std::span<const std::uint32_t> indices) const;
+  MeshId add(MeshBuffers buffers);
+  void filled(MeshId id, std::size_t bytes);
   const MeshBuffers& mesh(MeshId id) const;
   const MeshBuffers& mesh(StaticMeshId id) const;
 
@@ -165,7 +171,9 @@ struct Renderer::State {
   GlObject empty_layout;  ///< for the background, which has no vertices
   std::unique_ptr<Programs> programs;
   std::unique_ptr<OverlayPainter> overlay;  ///< made when it is first asked for
+  std::unique_ptr<CellSkinner> skinner;     ///< likewise
   std::vector<MeshBuffers> skinned;
+  std::uint64_t uploaded_bytes = 0;
   std::vector<MeshBuffers> statics;
   Image picture;
 };
@@ -290,6 +298,30 @@ MeshBuffers Renderer::State::make_mesh(const void* indices, std::size_t index_co
   gl.EnableVertexAttribArray(kPositionAttribute);
   gl.EnableVertexAttribArray(kNormalAttribute);
   return buffers;
+}
+
+MeshBuffers Renderer::State::make_skinned_mesh(std::span<const std::uint32_t> indices) const {
+  if (indices.size() % 3 != 0) {
+    throw std::invalid_argument(std::to_string(indices.size()) + " indices are no whole triangles");
+  }
+  MeshBuffers buffers = make_mesh(indices.data(), indices.size());
+  for (const std::uint32_t index : indices) {
+    buffers.vertices_needed = std::max<std::size_t>(buffers.vertices_needed, std::size_t{index} + 1);
+  }
+  gl.VertexAttribPointer(kPositionAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes,
+                         buffer_offset(0));
+  gl.VertexAttribPointer(kNormalAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes, buffer_offset(8));
+  return buffers;
+}
+
+MeshId Renderer::State::add(MeshBuffers buffers) {
+  skinned.push_back(std::move(buffers));
+  return {static_cast<std::uint32_t>(skinned.size() - 1)};
+}
+
+void Renderer::State::filled(MeshId id, std::size_t bytes) {
+  skinned[id.value].filled = true;
+  uploaded_bytes += bytes;
 }
 
 const MeshBuffers& Renderer::State::mesh(MeshId id) const {
@@ -465,27 +497,15 @@ Renderer::Renderer(GlContext& context, const RendererSettings& settings)
 Renderer::~Renderer() = default;
 
 MeshId Renderer::add_mesh(std::span<const std::uint32_t> indices) {
-  if (indices.size() % 3 != 0) {
-    throw std::invalid_argument(std::to_string(indices.size()) + " indices are no whole triangles");
-  }
   State& state = *state_;
   state.context.make_current();
-  MeshBuffers buffers = state.make_mesh(indices.data(), indices.size());
-  for (const std::uint32_t index : indices) {
-    buffers.vertices_needed = std::max<std::size_t>(buffers.vertices_needed, std::size_t{index} + 1);
-  }
-  const GladGLContext& gl = state.gl;
-  gl.VertexAttribPointer(kPositionAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes,
-                         buffer_offset(0));
-  gl.VertexAttribPointer(kNormalAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes, buffer_offset(8));
-  state.skinned.push_back(std::move(buffers));
-  return {static_cast<std::uint32_t>(state.skinned.size() - 1)};
+  return state.add(state.make_skinned_mesh(indices));
 }
 
 void Renderer::update_mesh(MeshId id, std::span<const std::byte> vertices) {
   State& state = *state_;
-  if (id.value >= state.skinned.size()) throw std::invalid_argument("no mesh " + std::to_string(id.value));
-  MeshBuffers& buffers = state.skinned[id.value];
+  const MeshBuffers& buffers = state.mesh(id);
+  if (buffers.cells) throw std::invalid_argument("a mesh of cells is given corners, not vertices");
   if (vertices.size() % kSkinnedVertexBytes != 0 ||
       vertices.size() / kSkinnedVertexBytes < buffers.vertices_needed) {
     throw std::invalid_argument(std::to_string(vertices.size()) + " bytes of vertices for a mesh of " +
@@ -497,8 +517,41 @@ void Renderer::update_mesh(MeshId id, std::span<const std::byte> vertices) {
   // New storage in place of the old, which a frame in progress may still read.
   state.gl.BufferData(GL_ARRAY_BUFFER, size, nullptr, GL_STREAM_DRAW);
   state.gl.BufferSubData(GL_ARRAY_BUFFER, 0, size, vertices.data());
-  buffers.filled = true;
+  state.filled(id, vertices.size());
 }
+
+MeshId Renderer::add_cell_mesh(std::span<const std::uint32_t> indices, std::span<const CellVertex> vertices,
+                               std::size_t corner_count) {
+  State& state = *state_;
+  state.context.make_current();
+  MeshBuffers buffers = state.make_skinned_mesh(indices);
+  if (buffers.vertices_needed > vertices.size()) {
+    throw std::invalid_argument("vertex " + std::to_string(buffers.vertices_needed - 1) + " of " +
+                                std::to_string(vertices.size()));
+  }
+  if (state.skinner == nullptr) state.skinner = std::make_unique<CellSkinner>(state.gl);
+  // Its own storage for as long as it lives: the GPU reads what it has written itself, in order.
+  state.gl.BufferData(GL_ARRAY_BUFFER,
+                      static_cast<GLsizeiptr>(bytes_of(vertices.size(), kSkinnedVertexBytes)), nullptr,
+                      GL_STREAM_COPY);
+  buffers.cells.emplace(state.gl, vertices, corner_count);
+  return state.add(std::move(buffers));
+}
+
+void Renderer::update_corners(MeshId id, std::span<const std::byte> corners, const Eigen::Vector3f& origin) {
+  State& state = *state_;
+  const MeshBuffers& buffers = state.mesh(id);
+  if (!buffers.cells) throw std::invalid_argument("mesh " + std::to_string(id.value) + " has no cells");
+  if (corners.size() != bytes_of(buffers.cells->corner_count, kCellCornerBytes)) {
+    throw std::invalid_argument(std::to_string(corners.size()) + " bytes of corners for a mesh of " +
+                                std::to_string(buffers.cells->corner_count) + " corners of 16 bytes");
+  }
+  state.context.make_current();
+  state.skinner->skin(*buffers.cells, corners, origin, buffers.vertices);
+  state.filled(id, corners.size());
+}
+
+std::uint64_t Renderer::uploaded_bytes() const { return state_->uploaded_bytes; }
 
 StaticMeshId Renderer::add_static_mesh(std::span<const Eigen::Vector3f> positions,
                                        std::span<const Eigen::Vector3f> normals,

@@ -19,6 +19,19 @@ using Triangle = std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from
 /// Bytes of one skinned vertex: four binary16 of position (x y z, the fourth unused) and four of normal.
 inline constexpr std::size_t kSkinnedVertexBytes = 16;
 
+/// A vertex that hangs in a cell of eight corners: where the corners go, it follows trilinearly, and its
+/// normal with it.
+struct CellVertex {
+  std::array<std::uint32_t, 8>
+      corner{};                     ///< which of the mesh's corners; the cell's corner k = bx + 2 by + 4 bz
+  Eigen::Vector3f place{0, 0, 0};   ///< in the cell, 0..1 from corner 0 towards corners 1, 2 and 4
+  Eigen::Vector3f normal{0, 0, 1};  ///< while the cell is a cube along the axes; unit length
+};
+static_assert(sizeof(CellVertex) == 56, "uploaded as it is");
+
+/// Bytes of one corner of cells: four floats, x y z in metres and one that is not read.
+inline constexpr std::size_t kCellCornerBytes = 16;
+
 struct RendererSettings {
   int width = 960;
   int height = 540;
@@ -46,8 +59,25 @@ class Renderer {
   /// Replaces the vertices, kSkinnedVertexBytes each, in the host's byte order. The bytes are copied before
   /// it returns.
   /// @throws std::invalid_argument  fewer vertices than the indices speak of, or a broken last one, or no
-  /// such mesh.
+  /// such mesh, or one of cells.
   void update_mesh(MeshId mesh, std::span<const std::byte> vertices);
+
+  /// A mesh whose vertices the GPU makes from the corners of cells, given anew by update_corners(); until
+  /// then it draws nothing. Drawn like one of add_mesh().
+  /// @param indices  as for add_mesh(), into `vertices`
+  /// @throws std::invalid_argument  a count of indices that is no multiple of three, an index or a corner out
+  /// of range, or more corners than the GPU takes (OpenGL 3.3 promises 65,536).
+  MeshId add_cell_mesh(std::span<const std::uint32_t> indices, std::span<const CellVertex> vertices,
+                       std::size_t corner_count);
+
+  /// Replaces the corners, kCellCornerBytes each, in the host's byte order, and makes the vertices. The bytes
+  /// are copied before it returns. Vertices are rounded to binary16 relative to `origin`, which the mesh's
+  /// SkinnedDraw is to have as its origin.
+  /// @throws std::invalid_argument  another number of corners, or no such mesh of cells.
+  void update_corners(MeshId mesh, std::span<const std::byte> corners, const Eigen::Vector3f& origin);
+
+  /// Bytes that update_mesh() and update_corners() have been given since the beginning.
+  std::uint64_t uploaded_bytes() const;
 
   /// A mesh that stays as it is, with one unit normal per position.
   /// @throws std::invalid_argument  another number of normals than positions, or an index out of range.
