@@ -60,6 +60,7 @@ nlohmann::ordered_json statistics_document(const DemoOptions& options, const Dem
       {"skin_wait_ms", to_json(summarize(record.skin_wait_ms))},
       {"picture_ms", to_json(summarize(record.picture_ms))},
       {"pictures", record.picture_ms.size()},
+      {"upload_bytes", record.upload_bytes_of_a_picture()},
       {"simulated_fps", record.simulated_fps()},
       {"seconds", record.seconds},
       {"late_frames", demo.late_frames()},
@@ -146,6 +147,7 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   }
   pictures.finish();
   record.picture_ms = pictures.milliseconds();
+  record.upload_bytes = pictures.upload_bytes();
   record.image_hash = pictures.last_hash();
   return run;
 }

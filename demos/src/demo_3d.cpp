@@ -33,10 +33,16 @@ struct Types3d {
   static constexpr int kViews = demos::kViews;
 };
 
+SimulationOptions skinned_by(Skin skin, SimulationOptions how) {
+  how.skin = skin;
+  return how;
+}
+
 class Demo3d final : public SceneDemo<Types3d> {
  public:
   Demo3d(const Scene& scene, const Log& log, const SimulationOptions& how, const Demo3dOptions& options)
-      : SceneDemo(scene, log, how, options.lattice ? View::kLattice : View::kMesh, {}) {}
+      : SceneDemo(scene, log, skinned_by(options.skin, how), options.lattice ? View::kLattice : View::kMesh,
+                  {}) {}
 
   DemoCounts counts() const override {
     return {.soft_bodies = simulation().soft_bodies(),

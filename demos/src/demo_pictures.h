@@ -44,6 +44,7 @@ class Pictures {
   void finish();
 
   std::uint64_t last_hash() const { return hash_; }
+  std::uint64_t upload_bytes() const { return renderer_->uploaded_bytes(); }
   const std::vector<double>& milliseconds() const { return milliseconds_; }  ///< of each picture
 
  private:

@@ -68,6 +68,12 @@ Solver parse_engine(const std::string& text) {
   throw UsageError("--engine " + text + ": give native or reference");
 }
 
+Skin parse_skin(const std::string& text) {
+  if (text.empty() || text == "spe") return Skin::kSpe;
+  if (text == "gpu") return Skin::kGpu;
+  throw UsageError("--skin " + text + ": give spe or gpu");
+}
+
 /// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
 class CommandLine {
  public:
@@ -131,9 +137,13 @@ class CommandLine {
         ->excludes(cells)
         ->type_name("LENGTH");
     d->add_flag("--lattice", demo_3d_.lattice, "Draw particles and links instead of meshes");
+    d->add_option("--skin", skin_,
+                  "Who makes mesh vertices from particles: spe (default), or gpu, a vertex shader")
+        ->type_name("spe|gpu");
     d->callback([this] {
       chosen_ = [this] {
         parse_texts(demo_3d_);
+        demo_3d_.skin = parse_skin(skin_);
         return run_demo_3d(demo_3d_);
       };
     });
@@ -299,6 +309,7 @@ class CommandLine {
   std::string view_ = "filled";
   std::string schedule_ = "eager";
   std::string engine_;
+  std::string skin_;
   std::string clock_ = "host";
   std::string shell_;
   std::function<int()> chosen_;

@@ -44,6 +44,7 @@ struct Demo3dOptions : DemoOptions {
   int cells = 8;                              ///< along the model's longest side
   std::optional<double> cell;                 ///< their size in the model's own units, in place of `cells`
   bool lattice = false;                       ///< draw particles and links instead of the skinned meshes
+  Skin skin = Skin::kSpe;
 };
 
 /// What is drawn of soft bodies in two dimensions.

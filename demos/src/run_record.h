@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <numeric>
 #include <vector>
@@ -13,6 +14,7 @@ struct RunRecord {
   std::vector<double> physics_ms, ppu_ms, gather_ms, solve_ms, apply_ms, skin_ms, solver_wait_ms,
       skin_wait_ms;                ///< of each frame
   std::vector<double> picture_ms;  ///< of each picture
+  std::uint64_t upload_bytes = 0;  ///< of vertices or particles, for all pictures
   double seconds = 0;              ///< of the frame loop, pictures included
   int frames = 0;
   std::uint64_t image_hash = 0;  ///< of the last picture; a window's are not read back
@@ -32,6 +34,10 @@ struct RunRecord {
 
   /// What softcell takes of the PPU's time in a frame of 1/60 s.
   double ppu_share() const { return frames == 0 ? 0 : sum(ppu_ms) / frames * 60 / 1000; }
+
+  std::uint64_t upload_bytes_of_a_picture() const {
+    return picture_ms.empty() ? 0 : upload_bytes / picture_ms.size();
+  }
 
   /// Frames a second without pictures.
   double simulated_fps() const {

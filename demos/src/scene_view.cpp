@@ -21,6 +21,24 @@ std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice& lattice) 
   return links;
 }
 
+/// How the vertices that the kernel `skin` would write hang in the lattice: for the GPU to make them.
+std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
+  std::vector<render::CellVertex> vertices;
+  vertices.reserve(4 * embedding.groups.size());
+  for (const ppu::SkinPart& part : embedding.parts) {
+    for (std::uint32_t g = 0; g < part.group_count; ++g) {
+      const spu::SkinGroup& group = embedding.groups[part.first_group + g];
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        render::CellVertex& vertex = vertices.emplace_back();
+        for (std::size_t k = 0; k < 8; ++k) vertex.corner[k] = part.particle(group.corner[k]);
+        vertex.place = {group.xi[lane], group.eta[lane], group.zeta[lane]};
+        vertex.normal = {group.normal_x[lane], group.normal_y[lane], group.normal_z[lane]};
+      }
+    }
+  }
+  return vertices;
+}
+
 /// The camera where the user has moved it: about the point it looks at, and never over the top.
 render::Camera orbited(render::Camera camera, const Look& look) {
   if (look.turn == 0 && look.rise == 0 && look.distance == 1) return camera;  // the scene's own, to the bit
@@ -60,11 +78,29 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
   for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
     const ppu::SoftBodyModel& model = simulation_.model(b);
     const auto& colour = scene_.soft_bodies[b].colour;
-    skinned_.push_back({.mesh = renderer_.add_mesh(model.embedding().indices), .colour = colour});
+    skinned_.push_back({.mesh = add_skinned_mesh(model), .colour = colour});
     LatticeBuffers& buffers = lattice_buffers_[b];
     buffers.particles.resize(model.lattice().particles.size());
     buffers.links = links_of(model.lattice());
     lattices_.push_back({buffers.particles, buffers.links, model.lattice().spacing * 0.12f, colour});
+  }
+}
+
+render::MeshId SceneView::add_skinned_mesh(const ppu::SoftBodyModel& model) {
+  const ppu::Embedding& embedding = model.embedding();
+  if (simulation_.skin() == Skin::kSpe) return renderer_.add_mesh(embedding.indices);
+  return renderer_.add_cell_mesh(embedding.indices, cell_vertices(embedding), model.particles());
+}
+
+void SceneView::update_meshes(const Shown3d& shown) {
+  for (std::size_t b = 0; b < skinned_.size(); ++b) {
+    const Shown3d::Body& body = shown.bodies[b];
+    if (simulation_.skin() == Skin::kSpe) {
+      renderer_.update_mesh(skinned_[b].mesh, std::as_bytes(std::span(body.vertices)));
+    } else {
+      renderer_.update_corners(skinned_[b].mesh, std::as_bytes(std::span(body.particles)), body.origin);
+    }
+    skinned_[b].origin = body.origin;
   }
 }
 
@@ -102,10 +138,7 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
   frame.light.toward = shown.tilt.transpose() * scene_.light.toward;
   frame.statics = statics_;
   if (static_cast<View>(look.view) == View::kMesh) {
-    for (std::size_t b = 0; b < skinned_.size(); ++b) {
-      renderer_.update_mesh(skinned_[b].mesh, std::as_bytes(std::span(shown.bodies[b].vertices)));
-      skinned_[b].origin = shown.bodies[b].origin;
-    }
+    update_meshes(shown);
     frame.skinned = skinned_;
   } else {
     update_lattices(shown);

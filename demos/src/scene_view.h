@@ -31,6 +31,8 @@ class SceneView {
   void draw(const Shown3d& shown, const Look& look);
 
  private:
+  render::MeshId add_skinned_mesh(const ppu::SoftBodyModel& model);
+  void update_meshes(const Shown3d& shown);
   void update_lattices(const Shown3d& shown);
   render::Camera tilted_camera(const Shown3d& shown, const Look& look) const;
 

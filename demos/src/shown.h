@@ -25,7 +25,7 @@ struct Shown2d {
 
 struct Shown3d {
   struct Body {
-    std::vector<spu::SkinnedVertex> vertices;  ///< relative to `origin`
+    std::vector<spu::SkinnedVertex> vertices;  ///< relative to `origin`; none when the GPU makes them
     Eigen::Vector3f origin{0, 0, 0};
     std::vector<spu::SkinCorner> particles;
   };

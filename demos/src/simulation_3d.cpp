@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <optional>
 
 #include "controls.h"
 #include "kernel_samples.h"
@@ -67,6 +68,7 @@ struct Simulation3d::State {
   struct Snapshot {
     std::vector<Eigen::Matrix4f> box_poses;
     std::vector<std::vector<spu::SkinCorner>> particles;
+    std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
     Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
   };
 
@@ -77,7 +79,6 @@ struct Simulation3d::State {
         job_loop(load_kernel("job_loop")),
         match(load_kernel("match", options.findings != nullptr)),
         match_tiles(load_kernel("match_tiles", options.findings != nullptr)),
-        skin(load_kernel("skin", options.findings != nullptr)),
         jobs(memory,
              {.spes = options.spes,
               .schedule = options.schedule,
@@ -85,8 +86,11 @@ struct Simulation3d::State {
               .trace = options.trace},
              job_loop),
         solver(make_solver(options.solver)),
-        soft_bodies(world.world(), *solver),
-        orchestrator(memory, jobs, skin) {
+        soft_bodies(world.world(), *solver) {
+    if (options.skin == Skin::kSpe) {
+      skin = load_kernel("skin", options.findings != nullptr);
+      orchestrator.emplace(memory, jobs, *skin);
+    }
     for (const RigidBox& box : scene.boxes) {
       boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
     }
@@ -96,16 +100,19 @@ struct Simulation3d::State {
       const auto model = ppu::make_soft_body_model(placement.mesh, placement.settings);
       ppu::SoftBody& body = soft_bodies.add(model, placement.position);
       twist(body, placement.twist);
-      orchestrator.add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()), model->particles());
+      if (orchestrator)
+        orchestrator->add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()),
+                          model->particles());
       positions.push_back(body.positions());
+      vertices += model->embedding().slot_of_vertex.size();
     }
     for (Snapshot& snapshot : snapshots) {
       snapshot.box_poses.resize(boxes.size());
       for (const auto& body : positions) snapshot.particles.emplace_back(body.size());
+      snapshot.origins.resize(positions.size());
     }
     hand_over();
-    orchestrator.drain();
-    newest = 0;
+    take_over();
   }
 
   std::unique_ptr<ppu::SoftBodySolver> make_solver(Solver wanted) {
@@ -113,19 +120,38 @@ struct Simulation3d::State {
     return std::make_unique<ppu::PpuSolver>();
   }
 
-  /// Copies what belongs to the vertices beside them and starts the SPEs: with the next step's dynamics,
-  /// which go first, and the skinning. They work while the frame before is drawn.
+  /// Copies what a picture needs and starts the SPEs: with the next step's dynamics, which go first, and the
+  /// skinning. They work while the frame before is drawn.
   void hand_over() {
     Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
     for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
-    for (std::size_t b = 0; b < positions.size(); ++b) {
-      std::copy(positions[b].begin(), positions[b].end(), snapshot.particles[b].begin());
-    }
     snapshot.tilt = tilt;
-    const auto before = ppu::processor_time();
-    orchestrator.kick(positions);
-    skin_time = ppu::processor_time() - before;
+    if (orchestrator) {
+      copy_particles(snapshot);
+      const auto before = ppu::processor_time();
+      orchestrator->kick(positions);
+      skin_time = ppu::processor_time() - before;
+    } else {
+      const auto before = ppu::processor_time();
+      copy_particles(snapshot);
+      for (std::size_t b = 0; b < positions.size(); ++b) snapshot.origins[b] = ppu::skin_origin(positions[b]);
+      skin_time = ppu::processor_time() - before;
+    }
+    handed_over = true;
     soft_bodies.begin_ahead(kFrameSeconds / static_cast<float>(scene.substeps));
+  }
+
+  void copy_particles(Snapshot& snapshot) const {
+    for (std::size_t b = 0; b < positions.size(); ++b)
+      std::copy(positions[b].begin(), positions[b].end(), snapshot.particles[b].begin());
+  }
+
+  /// Waits for the SPEs; what was handed over is shown from now on.
+  void take_over() {
+    if (!handed_over) return;
+    handed_over = false;
+    if (orchestrator) orchestrator->drain();
+    newest = 1 - newest;
   }
 
   void reset() {
@@ -147,15 +173,18 @@ struct Simulation3d::State {
   std::vector<std::size_t> boxes;  // numbers in the world
 
   dma::AddressSpace memory;
-  ls_sim::KernelImage job_loop, match, match_tiles, skin;
+  ls_sim::KernelImage job_loop, match, match_tiles;
+  std::optional<ls_sim::KernelImage> skin;  // none: the GPU does it
   ppu::JobSystem jobs;
   std::unique_ptr<ppu::SoftBodySolver> solver;
   ppu::BulletSoftBodies soft_bodies;
-  ppu::SkinOrchestrator orchestrator;
+  std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::span<const spu::SkinCorner>> positions;
+  std::size_t vertices = 0;
 
   std::array<Snapshot, 2> snapshots;
-  int newest = 1;  // the snapshot of the vertices that the orchestrator shows
+  int newest = 1;            // the snapshot that is shown: of the vertices that the orchestrator shows
+  bool handed_over = false;  // the other snapshot is the next one
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
   std::vector<InputEvent<3>> events;      // of the last step
   std::int64_t script_frame = 0;          // counts frames without a break
@@ -204,10 +233,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   return times;
 }
 
-void Simulation3d::finish() {
-  State& s = *state_;
-  if (s.orchestrator.drain()) s.newest = 1 - s.newest;
-}
+void Simulation3d::finish() { state_->take_over(); }
 
 void Simulation3d::stop() {
   finish();
@@ -224,7 +250,9 @@ std::size_t Simulation3d::particles() const {
   return sum;
 }
 
-std::size_t Simulation3d::vertices() const { return state_->orchestrator.vertices_per_frame(); }
+std::size_t Simulation3d::vertices() const { return state_->vertices; }
+
+Skin Simulation3d::skin() const { return state_->orchestrator ? Skin::kSpe : Skin::kGpu; }
 
 std::size_t Simulation3d::rigid_bodies() const {
   return static_cast<std::size_t>(std::count_if(state_->scene.boxes.begin(), state_->scene.boxes.end(),
@@ -242,7 +270,10 @@ std::uint64_t Simulation3d::state_hash() const {
   return hash;
 }
 
-ppu::SkinnedBody Simulation3d::shown(std::size_t body) const { return state_->orchestrator.shown(body); }
+ppu::SkinnedBody Simulation3d::shown(std::size_t body) const {
+  if (state_->orchestrator) return state_->orchestrator->shown(body);
+  return {.vertices = {}, .origin = state_->shown().origins[body]};
+}
 
 std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body) const {
   return state_->shown().particles[body];
@@ -270,6 +301,8 @@ const Eigen::Vector3f& Simulation3d::gravity() const { return state_->controls.g
 
 std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->jobs.statistics(); }
 
-std::uint64_t Simulation3d::late_frames() const { return state_->orchestrator.late_frames(); }
+std::uint64_t Simulation3d::late_frames() const {
+  return state_->orchestrator ? state_->orchestrator->late_frames() : 0;
+}
 
 }  // namespace softcell::demos

@@ -40,6 +40,7 @@ class Simulation3d {
   std::size_t particles() const;
   std::size_t vertices() const;  ///< of the meshes
   std::size_t rigid_bodies() const;
+  Skin skin() const;  ///< who makes the vertices
   const ppu::SoftBodyModel& model(std::size_t body) const;
   const ppu::SoftBody& soft_body(std::size_t body) const;
 
@@ -47,7 +48,7 @@ class Simulation3d {
   std::uint64_t state_hash() const;
 
   // The frame that is shown: all of one moment. Before the first step that is the beginning.
-  ppu::SkinnedBody shown(std::size_t body) const;
+  ppu::SkinnedBody shown(std::size_t body) const;  ///< without vertices when the GPU makes them
   std::span<const spu::SkinCorner> shown_particles(std::size_t body) const;
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's

@@ -14,9 +14,16 @@ enum class Solver {
   kReference  ///< the PPU, with Eigen
 };
 
+/// Who makes mesh vertices from particles, in three dimensions.
+enum class Skin {
+  kSpe,  ///< the kernel `skin`, on the SPEs
+  kGpu   ///< whoever draws, from the particles
+};
+
 /// How a scene is simulated. Only the solver changes the result, and that by rounding.
 struct SimulationOptions {
   Solver solver = Solver::kSpe;
+  Skin skin = Skin::kSpe;
   int spes = 6;
   dma::Schedule schedule{};
   ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked

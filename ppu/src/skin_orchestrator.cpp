@@ -31,17 +31,6 @@ struct SkinOrchestrator::Body {
 
 namespace {
 
-/// A point below all particles by a margin that is not tiny against the body, so that every relative
-/// coordinate is a normal half float with an error far below its unit in the last place.
-Eigen::Vector3f origin_below(std::span<const SkinCorner> positions) {
-  Eigen::Vector3f low(positions[0].x, positions[0].y, positions[0].z), high = low;
-  for (const SkinCorner& p : positions) {
-    low = low.cwiseMin(Eigen::Vector3f(p.x, p.y, p.z));
-    high = high.cwiseMax(Eigen::Vector3f(p.x, p.y, p.z));
-  }
-  return low - Eigen::Vector3f::Constant((high - low).maxCoeff() / 16);
-}
-
 constexpr dma::BufferOptions kInput{.spe_access = dma::SpeAccess::kRead};
 constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .element_bytes = 2};
 
@@ -54,6 +43,15 @@ struct SkinOrchestrator::Frame {
               JobChain(system, "skinning, second half", jobs)} {}
   std::array<JobChain, 2> chain;
 };
+
+Eigen::Vector3f skin_origin(std::span<const SkinCorner> positions) {
+  Eigen::Vector3f low(positions[0].x, positions[0].y, positions[0].z), high = low;
+  for (const SkinCorner& p : positions) {
+    low = low.cwiseMin(Eigen::Vector3f(p.x, p.y, p.z));
+    high = high.cwiseMax(Eigen::Vector3f(p.x, p.y, p.z));
+  }
+  return low - Eigen::Vector3f::Constant((high - low).maxCoeff() / 16);
+}
 
 SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
                                    const ls_sim::KernelImage& skin)
@@ -86,7 +84,6 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
   }
   bodies_.push_back(std::move(body));
   jobs_per_frame_ += shared.parts.size();
-  vertices_ += shared.slot_of_vertex.size();
   return bodies_.size() - 1;
 }
 
@@ -97,7 +94,7 @@ void SkinOrchestrator::write_half(Body& body, std::span<const SkinCorner> positi
                                 std::to_string(positions.size()) + " positions");
   }
   std::memcpy(half.corners.data(), positions.data(), positions.size_bytes());
-  half.origin = origin_below(positions);
+  half.origin = skin_origin(positions);
 
   const Embedding& embedding = *body.model->embedding;
   for (std::size_t i = 0; i < embedding.parts.size(); ++i) {

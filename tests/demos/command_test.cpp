@@ -65,6 +65,27 @@ TEST(Command, LeavesNumberedFramesAndStatistics) {
   EXPECT_GT(stats["dma_bytes"].get<std::uint64_t>(), 0u);
 }
 
+TEST(Command, SkinsOnTheGpuFromTheParticlesAlone) {
+  const ScratchFolder folder;
+  const auto statistics_of = [&](const std::string& skin) {
+    const std::string file = folder / (skin + ".json");
+    const CommandResult run = run_softcell(kDrop + ("--frames 3 --skin " + skin) + " --json " + file);
+    EXPECT_EQ(run.status, 0) << run.output;
+    return read_json(file);
+  };
+  const auto spe = statistics_of("spe"), gpu = statistics_of("gpu");
+  EXPECT_EQ(gpu["state_hash"], spe["state_hash"]);
+  EXPECT_EQ(gpu["vertices"], spe["vertices"]);
+  EXPECT_EQ(gpu["upload_bytes"], 16 * gpu["particles"].get<int>());
+  EXPECT_GE(spe["upload_bytes"], 16 * spe["vertices"].get<int>());
+  EXPECT_LT(gpu["spe_jobs"], spe["spe_jobs"]);
+  EXPECT_LT(gpu["dma_bytes"], spe["dma_bytes"]);
+
+  const CommandResult wrong = run_softcell(kDrop + std::string("--frames 1 --skin cpu"));
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.output.find("--skin cpu: give spe or gpu"), std::string::npos) << wrong.output;
+}
+
 TEST(Command, TheLastPictureIsTheSameWithAndWithoutFiles) {
   const ScratchFolder folder;
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out") + " --json " +

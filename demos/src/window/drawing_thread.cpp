@@ -64,11 +64,11 @@ DrawingThread::~DrawingThread() {
   if (thread_.joinable()) thread_.join();
 }
 
-const std::vector<double>& DrawingThread::finish() {
+const Drawn& DrawingThread::finish() {
   pages_.close();
   if (thread_.joinable()) thread_.join();
   if (failure_) std::rethrow_exception(failure_);
-  return picture_ms_;
+  return drawn_;
 }
 
 void DrawingThread::run(std::promise<void> ready) {
@@ -116,8 +116,9 @@ void DrawingThread::draw_all(render::Renderer& renderer, float scale) {
     before = begin;
     const auto end = Clock::now();
     rate.count(end);
-    picture_ms_.push_back(Seconds(end - begin).count() * 1e3);
+    drawn_.picture_ms.push_back(Seconds(end - begin).count() * 1e3);
   }
+  drawn_.upload_bytes = renderer.uploaded_bytes();
 }
 
 }  // namespace softcell::demos

@@ -3,6 +3,7 @@
 // picture.
 
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <future>
 #include <thread>
@@ -14,6 +15,12 @@
 #include "softcell/render/window.h"
 
 namespace softcell::demos {
+
+/// What drawing has come to.
+struct Drawn {
+  std::vector<double> picture_ms;  ///< of each picture
+  std::uint64_t upload_bytes = 0;  ///< see render::Renderer::uploaded_bytes()
+};
 
 /// Made, used and destroyed by the thread that steps the demo and polls the window's events. While it lives,
 /// the window's context is this thread's.
@@ -32,9 +39,8 @@ class DrawingThread {
   /// Has the newest published frame of the demo drawn, under next_page(), unless a newer one comes first.
   void show() { pages_.publish(); }
 
-  /// Waits for the picture in work. Pictures so far took so long, in milliseconds.
-  /// @throws what went wrong with one
-  const std::vector<double>& finish();
+  /// Waits for the picture in work. @throws what went wrong with one
+  const Drawn& finish();
   bool failed() const { return failed_; }
 
  private:
@@ -47,7 +53,7 @@ class DrawingThread {
   float scale_;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;
-  std::vector<double> picture_ms_;
+  Drawn drawn_;
   std::thread thread_;
 };
 

@@ -36,7 +36,9 @@ class Scene {
   }
 
   RunRecord finish() {
-    record_.picture_ms = drawing_.finish();
+    const Drawn& drawn = drawing_.finish();
+    record_.picture_ms = drawn.picture_ms;
+    record_.upload_bytes = drawn.upload_bytes;
     record_.seconds = std::chrono::duration<double>(FrameClock::Clock::now() - begin_).count();
     demo_.stop();
     demo_.save_recording();

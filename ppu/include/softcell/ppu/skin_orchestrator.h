@@ -27,6 +27,11 @@ struct SkinnedBody {
   Eigen::Vector3f origin{0, 0, 0};  ///< world position, metres
 };
 
+/// What skinned vertices are relative to: a point below all particles by a margin that is not tiny against
+/// the body, so that every relative coordinate is a normal half float with an error far below its unit in the
+/// last place. @pre at least one position
+Eigen::Vector3f skin_origin(std::span<const spu::SkinCorner> positions);
+
 /// Used by the PPU thread alone.
 class SkinOrchestrator {
  public:
@@ -58,7 +63,6 @@ class SkinOrchestrator {
 
   std::uint64_t late_frames() const { return late_frames_; }
   std::size_t jobs_per_frame() const { return jobs_per_frame_; }
-  std::size_t vertices_per_frame() const { return vertices_; }
 
  private:
   struct Model;  // an embedding in main memory
@@ -80,7 +84,6 @@ class SkinOrchestrator {
   bool in_flight_ = false;
   int working_ = 0;  // the half that the SPEs write, or wrote last
   int shown_ = -1;   // the half that is complete
-  std::size_t vertices_ = 0;
   std::uint64_t late_frames_ = 0;
 };
 
