@@ -150,15 +150,17 @@ struct Renderer::State {
   std::string description;
 
   struct Programs {
-    explicit Programs(const GladGLContext& gl)
-        : surface(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, kShaderLighting, kSurfaceFragment}),
-          tiles(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, kShaderLighting, kTilesFragment}),
+    /// @param sun  one of the two ways in which shaders.h has sunlight
+    Programs(const GladGLContext& gl, const char* sun)
+        : surface(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, sun, kShaderLighting, kSurfaceFragment}),
+          tiles(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, sun, kShaderLighting, kTilesFragment}),
           shadow(gl, {kShaderFrame, kShadowVertex}, {kShaderFrame, kShadowFragment}),
-          particle(gl, {kShaderFrame, kParticleVertex}, {kShaderFrame, kShaderLighting, kParticleFragment}),
+          particle(gl, {kShaderFrame, kParticleVertex},
+                   {kShaderFrame, sun, kShaderLighting, kParticleFragment}),
           particle_shadow(gl, {kShaderFrame, kParticleShadowVertex}, {kShaderFrame, kParticleShadowFragment}),
-          link(gl, {kShaderFrame, kLinkVertex}, {kShaderFrame, kShaderLighting, kLinkFragment}),
+          link(gl, {kShaderFrame, kLinkVertex}, {kShaderFrame, sun, kShaderLighting, kLinkFragment}),
           background(gl, {kShaderFrame, kBackgroundVertex},
-                     {kShaderFrame, kShaderLighting, kBackgroundFragment}) {}
+                     {kShaderFrame, sun, kShaderLighting, kBackgroundFragment}) {}
     Program surface, tiles, shadow, particle, particle_shadow, link, background;
   };
 
@@ -201,7 +203,7 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
   description = context.backend_name() + ", " + reinterpret_cast<const char*>(gl.GetString(GL_RENDERER)) +
                 ", " + std::to_string(samples) + " samples";
 
-  programs = std::make_unique<Programs>(gl);
+  programs = std::make_unique<Programs>(gl, settings.soft_shadows ? kSoftSunlight : kQuickSunlight);
   make_picture_buffers();
   make_shadow_map();
   frame_buffer = make_buffer(gl);

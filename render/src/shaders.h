@@ -23,18 +23,25 @@ layout(std140) uniform Frame {
 };
 )glsl";
 
-/// Light and tone, for every lit fragment.
-inline constexpr char kShaderLighting[] = R"glsl(
+/// Share of the sun that arrives, one of the two for every lit fragment. Four taps, each an interpolation of
+/// 2 x 2 comparisons, spread to cover 3.5 x 3.5 texels; or one, which costs a quarter: without a GPU, that is
+/// half of what lighting a pixel costs.
+inline constexpr char kSoftSunlight[] = R"glsl(
 uniform sampler2DShadow shadow_map;
-
-// Share of the sun that arrives. Four taps, each an interpolation of 2 x 2 comparisons, spread to cover 3.5 x 3.5 texels.
 float sunlight(vec3 at) {
   at.z = min(at.z, 1.0);  // behind the map's depth the sun shines, as it does beside it
   float d = 0.75 * shadow_texel.x;
   return 0.25 * (texture(shadow_map, at + vec3(-d, -d, 0.0)) + texture(shadow_map, at + vec3(d, -d, 0.0)) +
                  texture(shadow_map, at + vec3(-d, d, 0.0)) + texture(shadow_map, at + vec3(d, d, 0.0)));
 }
+)glsl";
+inline constexpr char kQuickSunlight[] = R"glsl(
+uniform sampler2DShadow shadow_map;
+float sunlight(vec3 at) { return texture(shadow_map, vec3(at.xy, min(at.z, 1.0))); }
+)glsl";
 
+/// Light and tone, for every lit fragment, after one of the above.
+inline constexpr char kShaderLighting[] = R"glsl(
 // Linear light to sRGB, a fit in square roots within 0.002 of the curve.
 vec3 encode(vec3 x) {
   vec3 s1 = sqrt(x);

@@ -82,6 +82,7 @@ void DrawingThread::run(std::promise<void> ready) {
     if (draws_in_software(*renderer)) {
       settings.samples = 1;
       settings.shadow_map_size /= 2;
+      settings.soft_shadows = false;
       renderer.emplace(context, settings);
     }
     demo_.make_view(*renderer);

@@ -37,6 +37,7 @@ struct RendererSettings {
   int height = 540;
   int samples = 4;             ///< of multisampling; taken down to what the context can do; 1 is none
   int shadow_map_size = 1536;  ///< texels a side
+  bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice as long
 };
 
 /// One sun with soft-edged shadows, light from sky and ground, tone mapping and sRGB encoding, four samples a
