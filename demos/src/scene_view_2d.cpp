@@ -16,6 +16,10 @@ using Eigen::Vector3f;
 constexpr float kPlateDepth = 0.03f;  // of rigid bodies
 constexpr float kBackWall = 0.04f;    // behind z = 0
 constexpr float kEye = 50;            // so far away that what is 4 % nearer looks 1 permille larger
+// How far around a thing the picture depends on it: shadows fall down and to the right on what is at most a
+// tenth behind, under a light that is half as high as it is near, and their edges are soft.
+constexpr float kShadowReach = 0.08f;
+constexpr float kHandRadius = 0.008f;
 constexpr int kCirclePoints = 48;
 constexpr float kMarkRadius = 0.12f, kMarkDistance = 0.65f;  // shares of a circle's radius
 
@@ -72,7 +76,13 @@ SceneView2d::SceneView2d(const Scene2d& scene, const Simulation2d& simulation, r
     : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view) {
   for (const RigidBody2d& body : scene_.rigid_bodies) add_rigid_body(body);
   add_back_wall();
-  for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) add_soft_body(simulation_.soft_body(b).model());
+  std::vector<float> margins;
+  for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
+    const ppu::SoftBodyModel2d& model = simulation_.soft_body(b).model();
+    add_soft_body(model);
+    margins.push_back(std::max(model.contact_radius(), 0.2f * model.lattice().spacing));
+  }
+  moved_.emplace(scene_, std::move(margins));
 }
 
 void SceneView2d::add_plate(const std::vector<Vector2f>& corners, const render::Colour& colour) {
@@ -190,7 +200,32 @@ void SceneView2d::draw_hands(const Shown2d& shown) {
   for (const auto& [particle, hand] : shown.hands)
     hands_.push_back({Vector3f(particle.x(), particle.y(), z), Vector3f(hand.x(), hand.y(), z)});
   for (const auto& hand : hands_)
-    lattices_.push_back({hand, kHandLink, 0.008f * scene_.camera.height, render::srgb(0x202428)});
+    lattices_.push_back({hand, kHandLink, kHandRadius * scene_.camera.height, render::srgb(0x202428)});
+}
+
+std::optional<render::PixelRect> SceneView2d::changes(const Shown2d& shown, View2d view) {
+  const Moved2d::Box moved = moved_->since_last(shown);
+  if (drawn_view_ != view) {
+    drawn_view_ = view;
+    return std::nullopt;
+  }
+  if (moved.isEmpty()) return render::PixelRect{};
+  const Camera2d& camera = scene_.camera;
+  const float pixels = static_cast<float>(renderer_.height()) / camera.height;  // of a metre
+  const auto from_middle = [&](float metres, int side) {
+    return static_cast<float>(side) / 2 + pixels * metres;
+  };
+  const Vector2f reach = Vector2f::Constant(kShadowReach * camera.height + 2 / pixels);
+  const Vector2f low = moved.min() - reach - camera.centre, high = moved.max() + reach - camera.centre;
+  // A body that has gone far away must not leave the range of numbers either.
+  const auto pixel = [&](float at, int side) {
+    return static_cast<int>(std::clamp(at, -1.0f, static_cast<float>(side) + 1));
+  };
+  const int width = renderer_.width(), height = renderer_.height();
+  return render::PixelRect{.left = pixel(from_middle(low.x(), width), width),
+                           .top = pixel(from_middle(-high.y(), height), height),
+                           .right = pixel(from_middle(high.x(), width), width) + 1,
+                           .bottom = pixel(from_middle(-low.y(), height), height) + 1};
 }
 
 const render::Image& SceneView2d::draw() {
@@ -234,6 +269,7 @@ void SceneView2d::draw(const Shown2d& shown, const Look& look) {
   frame.skinned = skinned_;
   frame.statics = statics_;
   frame.lattices = lattices_;
+  frame.changes = changes(shown, view);
   renderer_.render(frame);
 }
 

@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "moved_2d.h"
 #include "options.h"
 #include "scene_2d.h"
 #include "simulation_2d.h"
@@ -24,7 +26,8 @@ class SceneView2d {
   /// Draws the simulation as it is now.
   const render::Image& draw();
 
-  /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer.
+  /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer, of
+  /// which only what has moved is drawn anew: nobody else may draw frames with it.
   void draw(const Shown2d& shown, const Look& look);
 
  private:
@@ -50,6 +53,7 @@ class SceneView2d {
   void draw_as_lattice(std::size_t body);
   void draw_filled(std::size_t body, const std::vector<Eigen::Vector2f>& positions);
   void draw_hands(const Shown2d& shown);
+  std::optional<render::PixelRect> changes(const Shown2d& shown, View2d view);
 
   const Scene2d& scene_;
   const Simulation2d& simulation_;
@@ -62,6 +66,9 @@ class SceneView2d {
   std::vector<std::array<Eigen::Vector3f, 1>> marks_;  // of circles: one sees them turn
   std::vector<std::size_t> circles_;                   // whose marks they are
   std::vector<std::array<Eigen::Vector3f, 2>> hands_;  // the particle, the hand
+
+  std::optional<Moved2d> moved_;
+  std::optional<View2d> drawn_view_;  // of the picture before
 
   // The frame in making.
   std::vector<render::SkinnedDraw> skinned_;

@@ -14,6 +14,8 @@ namespace softcell::demos {
 struct Pose2d {
   Eigen::Vector2f position{0, 0};  ///< of its own origin, metres
   float cosine = 1, sine = 0;      ///< of its angle
+
+  bool operator==(const Pose2d&) const = default;
 };
 
 /// Metres.

@@ -125,6 +125,7 @@ struct Renderer::State {
   const MeshBuffers& mesh(StaticMeshId id) const;
 
   void check(const FrameDescription& frame) const;
+  PixelRect part_to_draw(const std::optional<PixelRect>& changes) const;
   void upload_frame(const FrameDescription& frame);
   void upload_lattice(const LatticeDraw& lattice);
   void draw_shadow_map(const FrameDescription& frame);
@@ -148,6 +149,7 @@ struct Renderer::State {
   int largest_side = 0;  ///< of a picture or texture, in pixels
   int samples = 1;
   std::string description;
+  bool has_picture = false;  ///< of the last frame, before it is resolved
 
   struct Programs {
     /// @param sun  one of the two ways in which shaders.h has sunlight
@@ -260,6 +262,7 @@ void Renderer::State::make_picture_buffers() {
                              std::to_string(height) + " pixels");
   }
   picture = Image(width, height);
+  has_picture = false;
 }
 
 void Renderer::State::make_shadow_map() {
@@ -348,6 +351,12 @@ void Renderer::State::check(const FrameDescription& frame) const {
       }
     }
   }
+}
+
+PixelRect Renderer::State::part_to_draw(const std::optional<PixelRect>& changes) const {
+  if (!changes || !has_picture) return {0, 0, width, height};
+  return {std::max(changes->left, 0), std::max(changes->top, 0), std::min(changes->right, width),
+          std::min(changes->bottom, height)};
 }
 
 void Renderer::State::upload_frame(const FrameDescription& frame) {
@@ -596,10 +605,17 @@ void Renderer::render(const FrameDescription& frame) {
   state.upload_frame(frame);
   gl.Enable(GL_DEPTH_TEST);
   gl.BindTexture(GL_TEXTURE_2D, state.shadow_map.name());
-  state.draw_shadow_map(frame);
-  state.draw_opaque(frame);
-  state.draw_background();
-  state.draw_translucent(frame);
+  const PixelRect part = state.part_to_draw(frame.changes);
+  if (part.left < part.right && part.top < part.bottom) {
+    state.draw_shadow_map(frame);
+    gl.Enable(GL_SCISSOR_TEST);
+    gl.Scissor(part.left, state.height - part.bottom, part.right - part.left, part.bottom - part.top);
+    state.draw_opaque(frame);
+    state.draw_background();
+    state.draw_translucent(frame);
+    gl.Disable(GL_SCISSOR_TEST);
+    state.has_picture = true;
+  }
 
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.sampled_framebuffer.name());
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.resolved_framebuffer.name());

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "pinned_context.h"
+#include "softcell/render/image_compare.h"
 #include "test_scene.h"
 
 namespace softcell::render {
@@ -114,6 +116,58 @@ TEST_F(RendererTest, ShowsNewVerticesFromTheNextFrameOn) {
   const Image& image = draw(frame);
   EXPECT_LT(brightness(pixel_at(image, 0.2f, 0.2f)), 10);
   EXPECT_GT(brightness(pixel_at(image, -1.3f, 0.2f)), 300);
+}
+
+TEST_F(RendererTest, DrawsOnlyWhereThePictureChanges) {
+  SkinnedDraw item = add(ground_triangle());
+  FrameDescription frame = view_from_above();
+  frame.changes = PixelRect{0, 0, 10, 10};  // there is no last frame: everything is drawn
+  frame.skinned = std::span(&item, 1);
+  const Image first = draw(frame);
+  EXPECT_GT(brightness(pixel_at(first, 0.2f, 0.2f)), 300);
+
+  item.origin = {-1, 0, -1};
+  frame.changes.reset();
+  const Image all = draw(frame);
+  item.origin = {0, 0, 0};
+  draw(frame);
+  item.origin = {-1, 0, -1};
+  const PixelRect part{.left = 60, .top = -5, .right = 110, .bottom = 120};
+  frame.changes = part;
+  const Image& image = draw(frame);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const bool inside = x >= part.left && x < part.right && y < part.bottom;
+      const std::uint8_t* const expected = (inside ? all : first).pixel(x, y);
+      ASSERT_TRUE(std::equal(expected, expected + 4, image.pixel(x, y))) << x << ' ' << y;
+    }
+  }
+
+  frame.changes = PixelRect{};  // nowhere
+  item.origin = {9, 9, 9};
+  const Image before = image;
+  EXPECT_EQ(draw(frame), before);
+  renderer_.resize(kSide / 2, kSide / 2);
+  item.origin = {0, 0, 0};
+  EXPECT_GT(brightness(draw(frame).pixel(kSide / 4 + 5, kSide / 4 + 5)), 300);
+}
+
+TEST_F(RendererTest, QuickShadowsFallWhereSoftOnesDo) {
+  const StaticMeshId floor = test::add_unit_box(renderer_);
+  Renderer quick(pinned_context(), {.width = kSide, .height = kSide, .soft_shadows = false});
+  ASSERT_EQ(test::add_unit_box(quick).value, floor.value);
+  const std::array<StaticDraw, 2> boxes{
+      StaticDraw{
+          .mesh = floor, .pose = test::box_pose({0, -0.05f, 0}, {4, 0.1f, 4}), .colour = srgb(0xFFFFFF)},
+      StaticDraw{
+          .mesh = floor, .pose = test::box_pose({0, 0.5f, 0}, {1, 0.1f, 1}), .colour = srgb(0xFFFFFF)}};
+  FrameDescription frame = view_from_above();
+  frame.statics = boxes;
+  const Image& soft = draw(frame);
+  quick.render(frame);
+  const ImageDifference difference = compare(quick.pixels(), soft);
+  EXPECT_GT(difference.over_2, 20u);  // the edges
+  EXPECT_LT(difference.over_2, difference.pixels / 50);
 }
 
 TEST_F(RendererTest, HidesTheInnerSideUnlessAskedForBoth) {

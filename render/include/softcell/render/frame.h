@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "softcell/render/camera.h"
@@ -75,6 +76,11 @@ struct Light {
   float shadow_radius = 10;
 };
 
+/// Pixels, counted from the upper left corner of the picture; `right` and `bottom` are the first outside.
+struct PixelRect {
+  int left = 0, top = 0, right = 0, bottom = 0;
+};
+
 struct FrameDescription {
   Camera camera;
   Light light;
@@ -83,6 +89,9 @@ struct FrameDescription {
   std::span<const LatticeDraw> lattices;
   Colour background_top = srgb(0x5B7FA6);
   Colour background_bottom = srgb(0xDCE6EE);
+  /// Outside of this the picture is that of the renderer's last frame, shadows included, and need not be
+  /// drawn again; the caller knows. None: it may differ everywhere.
+  std::optional<PixelRect> changes = {};
 };
 
 }  // namespace softcell::render

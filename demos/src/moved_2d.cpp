@@ -1,0 +1,54 @@
+#include "moved_2d.h"
+
+#include <algorithm>
+
+namespace softcell::demos {
+namespace {
+
+struct RadiusOf {
+  float operator()(const Box2dShape& box) const { return box.size.norm() / 2; }
+  float operator()(const CircleShape& circle) const { return circle.radius; }
+  float operator()(const PolygonShape& polygon) const {
+    float radius = 0;
+    for (const Eigen::Vector2f& corner : polygon.corners) radius = std::max(radius, corner.norm());
+    return radius;
+  }
+};
+
+void extend(Moved2d::Box& box, const Eigen::Vector2f& centre, float radius) {
+  box.extend(centre - Eigen::Vector2f::Constant(radius));
+  box.extend(centre + Eigen::Vector2f::Constant(radius));
+}
+
+}  // namespace
+
+Moved2d::Moved2d(const Scene2d& scene, std::vector<float> margins)
+    : margins_(std::move(margins)), poses_(scene.rigid_bodies.size()) {
+  for (const RigidBody2d& body : scene.rigid_bodies) radii_.push_back(std::visit(RadiusOf{}, body.shape));
+}
+
+Moved2d::Box Moved2d::restless(const Shown2d& now) const {
+  Box box;
+  for (std::size_t b = 0; b < now.particles.size(); ++b) {
+    for (const Eigen::Vector2f& particle : now.particles[b]) extend(box, particle, margins_[b]);
+  }
+  for (const auto& [particle, hand] : now.hands) {
+    box.extend(particle);
+    box.extend(hand);
+  }
+  return box;
+}
+
+Moved2d::Box Moved2d::since_last(const Shown2d& now) {
+  const Box restless_now = restless(now);
+  Box moved = restless_.merged(restless_now);
+  restless_ = restless_now;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    if (poses_[i] == now.rigid_poses[i]) continue;
+    for (const Pose2d& pose : {poses_[i], now.rigid_poses[i]}) extend(moved, pose.position, radii_[i]);
+    poses_[i] = now.rigid_poses[i];
+  }
+  return moved;
+}
+
+}  // namespace softcell::demos
