@@ -17,12 +17,12 @@ class ScenesIn2d : public testing::TestWithParam<const char*> {
  protected:
   /// The picture of somebody who has drawn nothing before.
   render::Image whole(const Simulation2d& simulation, View2d view) {
-    render::Renderer renderer(*context_, kSettings);
-    return SceneView2d(scene_, simulation, renderer, view).draw();
+    return SceneView2d(scene_, simulation, other_, view).draw();
   }
 
   const Scene2d scene_ = load_scene_2d(GetParam());
   const std::unique_ptr<render::GlContext> context_ = render::create_offscreen_context();
+  render::Renderer other_{*context_, kSettings};
 };
 
 TEST_P(ScenesIn2d, LookAsIfAllWereDrawn) {
