@@ -87,6 +87,21 @@ TEST(Moved2d, IsTheOldAndTheNewPlaceOfWhatMoves) {
   EXPECT_TRUE(moved.since_last(shown).isEmpty());
 }
 
+// What makes sixty pictures a second without a GPU.
+TEST(Moved2d, IsLittleOfThePictureOfTheMan) {
+  const Scene2d scene = load_scene_2d("man");
+  Simulation2d simulation(scene);
+  Moved2d moved(scene, {simulation.soft_body(0).model().contact_radius()});
+  Shown2d shown;
+  const float picture = scene.camera.height * scene.camera.height * 16 / 9;
+  for (int frame = 0; frame < 120; ++frame) {
+    simulation.step();
+    simulation.show(shown);
+    const Moved2d::Box box = moved.since_last(shown);
+    if (frame > 0) EXPECT_LT(box.volume(), 0.4f * picture) << "frame " << frame;
+  }
+}
+
 TEST(Moved2d, TakesSoftBodiesAndHandsForRestless) {
   Shown2d shown{.particles = {{{1, 1}, {2, 1}}}, .rigid_poses = {}, .hands = {}};
   Moved2d moved({}, {0.25f});
