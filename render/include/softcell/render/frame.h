@@ -90,7 +90,8 @@ struct FrameDescription {
   Colour background_top = srgb(0x5B7FA6);
   Colour background_bottom = srgb(0xDCE6EE);
   /// Outside of this the picture is that of the renderer's last frame, shadows included, and need not be
-  /// drawn again; the caller knows. None: it may differ everywhere.
+  /// drawn again; the caller knows. What lies at its edge may be drawn or not. None: it may differ
+  /// everywhere.
   std::optional<PixelRect> changes = {};
 };
 
