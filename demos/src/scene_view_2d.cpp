@@ -269,7 +269,7 @@ void SceneView2d::draw(const Shown2d& shown, const Look& look) {
   frame.skinned = skinned_;
   frame.statics = statics_;
   frame.lattices = lattices_;
-  frame.changes = changes(shown, view);
+  frame.changes = changes(shown, static_cast<View2d>(look.view));
   renderer_.render(frame);
 }
 

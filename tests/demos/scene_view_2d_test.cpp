@@ -53,13 +53,13 @@ TEST_P(ScenesIn2d, LookAsIfAllWereDrawnAfterAnotherViewAndSize) {
   SceneView2d drawn(scene_, simulation, renderer, View2d::kFilled);
   Shown2d shown;
   simulation.show(shown);
-  drawn.draw(shown, View2d::kFilled);
-  drawn.draw(shown, View2d::kDots);
+  drawn.draw(shown, {.view = static_cast<int>(View2d::kFilled)});
+  drawn.draw(shown, {.view = static_cast<int>(View2d::kDots)});
   EXPECT_EQ(renderer.pixels(), whole(simulation, View2d::kDots));
   renderer.resize(120, 90);
-  drawn.draw(shown, View2d::kDots);
+  drawn.draw(shown, {.view = static_cast<int>(View2d::kDots)});
   renderer.resize(kSettings.width, kSettings.height);
-  drawn.draw(shown, View2d::kDots);
+  drawn.draw(shown, {.view = static_cast<int>(View2d::kDots)});
   EXPECT_EQ(renderer.pixels(), whole(simulation, View2d::kDots));
 }
 
