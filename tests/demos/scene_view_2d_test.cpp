@@ -98,7 +98,9 @@ TEST(Moved2d, IsLittleOfThePictureOfTheMan) {
     simulation.step();
     simulation.show(shown);
     const Moved2d::Box box = moved.since_last(shown);
-    if (frame > 0) EXPECT_LT(box.volume(), 0.4f * picture) << "frame " << frame;
+    if (frame > 0) {
+      EXPECT_LT(box.volume(), 0.4f * picture) << "frame " << frame;
+    }
   }
 }
 
