@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "particle_under.h"
+#include "scene_camera.h"
 #include "scene_demo.h"
 #include "scene_view.h"
 #include "simulation_3d.h"
@@ -41,9 +43,16 @@ SimulationOptions skinned_by(Skin skin, SimulationOptions how) {
 class Demo3d final : public SceneDemo<Types3d> {
  public:
   Demo3d(const Scene& scene, const Log& log, const SimulationOptions& how, const Demo3dOptions& options)
-      : SceneDemo(scene, log, skinned_by(options.skin, how), options.lattice ? View::kLattice : View::kMesh,
-                  {}) {}
+      : SceneDemo(scene, log, skinned_by(options.skin, how), options.view,
+                  {.tilt = {},
+                   .hand = MouseReach([this](const Look& look) { return eye(look); },
+                                      [this](const Ray& ray) { return particle_under(ray, simulation()); },
+                                      options.size.width, options.size.height)}) {}
 
+  FrameTimes step() override {
+    simulation().note_contacts(static_cast<View>(input().look().view) == View::kContacts);
+    return SceneDemo::step();
+  }
   DemoCounts counts() const override {
     return {.soft_bodies = simulation().soft_bodies(),
             .rigid_bodies = simulation().rigid_bodies(),
@@ -51,6 +60,9 @@ class Demo3d final : public SceneDemo<Types3d> {
             .vertices = simulation().vertices()};
   }
   std::uint64_t late_frames() const override { return simulation().late_frames(); }
+
+ private:
+  render::Camera eye(const Look& look) const { return seen_from(scene(), look, simulation().shown_tilt()); }
 };
 
 }  // namespace

@@ -62,6 +62,14 @@ View2d parse_view(const std::string& text) {
   throw UsageError("--view " + text + ": give dots, lattice or filled");
 }
 
+View parse_view_3d(const std::string& text) {
+  if (text == "mesh") return View::kMesh;
+  if (text == "lattice") return View::kLattice;
+  if (text == "rotations") return View::kRotations;
+  if (text == "contacts") return View::kContacts;
+  throw UsageError("--view " + text + ": give mesh, lattice, rotations or contacts");
+}
+
 Solver parse_engine(const std::string& text) {
   if (text.empty() || text == "native") return Solver::kSpe;
   if (text == "reference") return Solver::kReference;
@@ -136,7 +144,8 @@ class CommandLine {
         ->needs("--mesh")
         ->excludes(cells)
         ->type_name("LENGTH");
-    d->add_flag("--lattice", demo_3d_.lattice, "Draw particles and links instead of meshes");
+    d->add_option("--view", view_3d_, "What is drawn of soft bodies (default: mesh)")
+        ->type_name("mesh|lattice|rotations|contacts");
     d->add_option("--skin", skin_,
                   "Who makes mesh vertices from particles: spe (default), or gpu, a vertex shader")
         ->type_name("spe|gpu");
@@ -144,6 +153,7 @@ class CommandLine {
       chosen_ = [this] {
         parse_texts(demo_3d_);
         demo_3d_.skin = parse_skin(skin_);
+        demo_3d_.view = parse_view_3d(view_3d_);
         return run_demo_3d(demo_3d_);
       };
     });
@@ -307,6 +317,7 @@ class CommandLine {
   ReportOptions report_;
   std::string size_;
   std::string view_ = "filled";
+  std::string view_3d_ = "mesh";
   std::string schedule_ = "eager";
   std::string engine_;
   std::string skin_;

@@ -38,12 +38,22 @@ struct DemoOptions {
   bool quiet = false;  ///< nothing but what goes wrong, not even progress on a terminal
 };
 
+/// What is drawn in three dimensions.
+enum class View : std::uint8_t {
+  kMesh,       ///< the skinned meshes
+  kLattice,    ///< particles and the edges of cells
+  kRotations,  ///< how shape matching has turned the region of each particle: axes, x red, y green, z blue
+  kContacts,   ///< where bodies press on each other, and which way
+};
+
+inline constexpr int kViews = 4;
+
 /// The scene's default: arena, or drop when a mesh is given.
 struct Demo3dOptions : DemoOptions {
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
   int cells = 8;                              ///< along the model's longest side
   std::optional<double> cell;                 ///< their size in the model's own units, in place of `cells`
-  bool lattice = false;                       ///< draw particles and links instead of the skinned meshes
+  View view = View::kMesh;
   Skin skin = Skin::kSpe;
 };
 

@@ -68,7 +68,9 @@ class SceneDemo : public Demo {
   }
 
  protected:
+  const Scene& scene() const { return scene_; }
   const typename Types::Simulation& simulation() const { return simulation_; }
+  typename Types::Simulation& simulation() { return simulation_; }
 
  private:
   Scene scene_;

@@ -1,13 +1,12 @@
 #include "scene_view.h"
 
-#include <algorithm>
-#include <cmath>
-
+#include "scene_camera.h"
 #include "softcell/ppu/shapes.h"
 
 namespace softcell::demos {
 namespace {
 
+constexpr float kVeil = 0.3f;     // opacity of what marks must be seen through
 constexpr float kBoxFaces = 100;  // metres: larger than any box, so that each face is one square
 
 std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice& lattice) {
@@ -39,21 +38,6 @@ std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
   return vertices;
 }
 
-/// The camera where the user has moved it: about the point it looks at, and never over the top.
-render::Camera orbited(render::Camera camera, const Look& look) {
-  if (look.turn == 0 && look.rise == 0 && look.distance == 1) return camera;  // the scene's own, to the bit
-  constexpr float kLowest = 0.03f, kHighest = 1.5f;                           // above the horizon, radians
-  const Eigen::Vector3f from_target = camera.eye - camera.target;
-  const float distance = from_target.norm();
-  const float turn = std::atan2(from_target.x(), from_target.z()) + look.turn;
-  const float rise = std::clamp(std::asin(std::clamp(from_target.y() / distance, -1.0f, 1.0f)) + look.rise,
-                                kLowest, kHighest);
-  const Eigen::Vector3f direction(std::cos(rise) * std::sin(turn), std::sin(rise),
-                                  std::cos(rise) * std::cos(turn));
-  camera.eye = camera.target + look.distance * distance * direction;
-  return camera;
-}
-
 }  // namespace
 
 SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer,
@@ -79,6 +63,7 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
     const ppu::SoftBodyModel& model = simulation_.model(b);
     const auto& colour = scene_.soft_bodies[b].colour;
     skinned_.push_back({.mesh = add_skinned_mesh(model), .colour = colour});
+    rotations_.add_body(model.plan());
     LatticeBuffers& buffers = lattice_buffers_[b];
     buffers.particles.resize(model.lattice().particles.size());
     buffers.links = links_of(model.lattice());
@@ -113,14 +98,40 @@ void SceneView::update_lattices(const Shown3d& shown) {
   }
 }
 
-render::Camera SceneView::tilted_camera(const Shown3d& shown, const Look& look) const {
-  // The world is simulated in the ground's frame; what tilts there is the observer.
-  const Eigen::Matrix3f to_ground = shown.tilt.transpose();
-  render::Camera camera = orbited(scene_.camera, look);
-  camera.eye = to_ground * camera.eye;
-  camera.target = to_ground * camera.target;
-  camera.up = to_ground * camera.up;
-  return camera;
+void SceneView::draw_mesh(const Shown3d& shown, float opacity) {
+  update_meshes(shown);
+  for (render::SkinnedDraw& item : skinned_) item.opacity = opacity;
+  frame_.skinned = skinned_;
+}
+
+void SceneView::draw_lattice(const Shown3d& shown) {
+  update_lattices(shown);
+  frame_.lattices = lattices_;
+}
+
+void SceneView::draw_rotations(const Shown3d& shown) {
+  constexpr std::array<std::uint32_t, 3> kRedGreenBlue{0xD03020, 0x208030, 0x2050D0};
+  rotations_.update(shown.bodies);
+  marks_.clear();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Lines& lines = rotations_.axes()[axis];
+    marks_.push_back({lines.ends, lines.links, 0, render::srgb(kRedGreenBlue[axis])});
+  }
+  frame_.lattices = marks_;
+}
+
+void SceneView::draw_contacts(const Shown3d& shown) {
+  constexpr float kRadius = 0.025f, kLength = 0.3f;  // metres
+  draw_mesh(shown, kVeil);
+  points_.clear();
+  normals_.clear();
+  for (const ppu::Contact& contact : shown.contacts) {
+    points_.push_back(contact.position);
+    normals_.add(contact.position, contact.position + kLength * contact.normal);
+  }
+  marks_ = {{points_, {}, kRadius, render::srgb(0xC02018)},
+            {normals_.ends, normals_.links, 0, render::srgb(0xC02018)}};
+  frame_.lattices = marks_;
 }
 
 const render::Image& SceneView::draw() {
@@ -132,19 +143,26 @@ const render::Image& SceneView::draw() {
 void SceneView::draw(const Shown3d& shown, const Look& look) {
   for (std::size_t i = 0; i < shown.box_poses.size(); ++i) statics_[i].pose = shown.box_poses[i];
 
-  render::FrameDescription frame;
-  frame.camera = tilted_camera(shown, look);
-  frame.light = scene_.light;
-  frame.light.toward = shown.tilt.transpose() * scene_.light.toward;
-  frame.statics = statics_;
-  if (static_cast<View>(look.view) == View::kMesh) {
-    update_meshes(shown);
-    frame.skinned = skinned_;
-  } else {
-    update_lattices(shown);
-    frame.lattices = lattices_;
+  frame_ = {};
+  frame_.camera = seen_from(scene_, look, shown.tilt);
+  frame_.light = scene_.light;
+  frame_.light.toward = shown.tilt.transpose() * scene_.light.toward;
+  frame_.statics = statics_;
+  switch (static_cast<View>(look.view)) {
+    case View::kMesh:
+      draw_mesh(shown, 1);
+      break;
+    case View::kLattice:
+      draw_lattice(shown);
+      break;
+    case View::kRotations:
+      draw_rotations(shown);
+      break;
+    case View::kContacts:
+      draw_contacts(shown);
+      break;
   }
-  renderer_.render(frame);
+  renderer_.render(frame_);
 }
 
 }  // namespace softcell::demos

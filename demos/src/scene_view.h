@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "options.h"
+#include "rotation_axes.h"
 #include "scene.h"
 #include "shown.h"
 #include "simulation_3d.h"
@@ -14,10 +16,6 @@
 #include "window/look.h"
 
 namespace softcell::demos {
-
-/// What of the soft bodies is drawn.
-enum class View : std::uint8_t { kMesh, kLattice };
-inline constexpr int kViews = 2;
 
 /// Holds the meshes of one simulation in one renderer. Both must outlive it.
 class SceneView {
@@ -34,7 +32,10 @@ class SceneView {
   render::MeshId add_skinned_mesh(const ppu::SoftBodyModel& model);
   void update_meshes(const Shown3d& shown);
   void update_lattices(const Shown3d& shown);
-  render::Camera tilted_camera(const Shown3d& shown, const Look& look) const;
+  void draw_mesh(const Shown3d& shown, float opacity);
+  void draw_lattice(const Shown3d& shown);
+  void draw_rotations(const Shown3d& shown);
+  void draw_contacts(const Shown3d& shown);
 
   const Scene& scene_;
   const Simulation3d& simulation_;
@@ -50,6 +51,11 @@ class SceneView {
   };
   std::vector<LatticeBuffers> lattice_buffers_;
   std::vector<render::LatticeDraw> lattices_;
+  RotationAxes rotations_;
+  std::vector<Eigen::Vector3f> points_;  // contacts
+  Lines normals_;                        // at contacts
+  std::vector<render::LatticeDraw> marks_;
+  render::FrameDescription frame_;  // the one in making
 };
 
 }  // namespace softcell::demos

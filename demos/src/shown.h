@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "skin_job.h"
+#include "softcell/ppu/bullet_world.h"
 
 namespace softcell::demos {
 
@@ -33,6 +34,7 @@ struct Shown3d {
   };
   std::vector<Body> bodies;
   std::vector<Eigen::Matrix4f> box_poses;              ///< of Scene::boxes, in order
+  std::vector<ppu::Contact> contacts;                  ///< if they are noted
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();  ///< from the ground's frame to the observer's
 };
 

@@ -69,6 +69,7 @@ struct Simulation3d::State {
     std::vector<Eigen::Matrix4f> box_poses;
     std::vector<std::vector<spu::SkinCorner>> particles;
     std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
+    std::vector<ppu::Contact> contacts;
     Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
   };
 
@@ -126,6 +127,7 @@ struct Simulation3d::State {
     Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
     for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
     snapshot.tilt = tilt;
+    copy_contacts(snapshot);
     if (orchestrator) {
       copy_particles(snapshot);
       const auto before = ppu::processor_time();
@@ -144,6 +146,11 @@ struct Simulation3d::State {
   void copy_particles(Snapshot& snapshot) const {
     for (std::size_t b = 0; b < positions.size(); ++b)
       std::copy(positions[b].begin(), positions[b].end(), snapshot.particles[b].begin());
+  }
+
+  void copy_contacts(Snapshot& snapshot) const {
+    snapshot.contacts.clear();
+    if (notes_contacts) world.contacts(snapshot.contacts);
   }
 
   /// Waits for the SPEs; what was handed over is shown from now on.
@@ -181,6 +188,7 @@ struct Simulation3d::State {
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::span<const spu::SkinCorner>> positions;
   std::size_t vertices = 0;
+  bool notes_contacts = false;
 
   std::array<Snapshot, 2> snapshots;
   int newest = 1;            // the snapshot that is shown: of the vertices that the orchestrator shows
@@ -206,6 +214,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.controls.take(s.events, s.soft_bodies, s);
   if (!s.controls.advance()) {
     finish();
+    s.copy_contacts(s.snapshots[static_cast<std::size_t>(s.newest)]);  // the world stands as it is shown
     return times;
   }
   const auto& tilt = s.controls.tilt();
@@ -281,6 +290,10 @@ std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body)
 
 std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return state_->shown().box_poses; }
 
+std::span<const ppu::Contact> Simulation3d::shown_contacts() const { return state_->shown().contacts; }
+
+void Simulation3d::note_contacts(bool on) { state_->notes_contacts = on; }
+
 const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
 
 void Simulation3d::show(Shown3d& to) const {
@@ -293,6 +306,7 @@ void Simulation3d::show(Shown3d& to) const {
     to.bodies[b].particles.assign(particles.begin(), particles.end());
   }
   to.box_poses.assign(shown_box_poses().begin(), shown_box_poses().end());
+  to.contacts.assign(shown_contacts().begin(), shown_contacts().end());
   to.tilt = shown_tilt();
 }
 

@@ -12,6 +12,7 @@
 #include "scene.h"
 #include "shown.h"
 #include "simulation_options.h"
+#include "softcell/ppu/bullet_world.h"
 #include "softcell/ppu/skin_orchestrator.h"
 
 namespace softcell::demos {
@@ -52,6 +53,11 @@ class Simulation3d {
   std::span<const spu::SkinCorner> shown_particles(std::size_t body) const;
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
+
+  /// Only of frames simulated while note_contacts() was on, and of those of a pause.
+  std::span<const ppu::Contact> shown_contacts() const;
+  /// From the next step() on contacts are copied, or not, which is how it begins.
+  void note_contacts(bool on);
 
   /// Copies all of it.
   void show(Shown3d& shown) const;

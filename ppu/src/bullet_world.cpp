@@ -125,6 +125,19 @@ StepTimes BulletWorld::step(float seconds, int substeps) {
   return {.physics_ms = milliseconds(all - soft), .soft_body_ms = milliseconds(soft)};
 }
 
+void BulletWorld::contacts(std::vector<Contact>& contacts) const {
+  contacts.clear();
+  const btDispatcher& dispatcher = impl_->dispatcher;
+  for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *impl_->dispatcher.getManifoldByIndexInternal(m);
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      const btManifoldPoint& point = manifold.getContactPoint(p);
+      if (point.getAppliedImpulse() <= 0) continue;
+      contacts.push_back({to_eigen(point.getPositionWorldOnB()), to_eigen(point.m_normalWorldOnB)});
+    }
+  }
+}
+
 btDiscreteDynamicsWorld& BulletWorld::world() { return impl_->world; }
 const btDiscreteDynamicsWorld& BulletWorld::world() const { return impl_->world; }
 

@@ -64,6 +64,20 @@ TEST_P(SceneGoldenLattice, LooksAsItDid) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneGoldenLattice, testing::Values("drop", "penguin"));
 
+TEST(SceneGoldenViews, LookAsTheyDid) {
+  const Scene scene = load_scene_3d("torus_on_spike");
+  Simulation3d simulation(scene, {});
+  simulation.note_contacts(true);
+  for (int frame = 0; frame < 180; ++frame) simulation.step();
+  simulation.finish();
+  const auto context = render::create_offscreen_context();
+  render::Renderer renderer(*context, {.width = 480, .height = 270});
+  for (const auto& [view, name] : {std::pair(View::kRotations, "torus_on_spike_rotations"),
+                                   std::pair(View::kContacts, "torus_on_spike_contacts")}) {
+    EXPECT_TRUE(test::compare_with_golden(SceneView(scene, simulation, renderer, view).draw(), name));
+  }
+}
+
 struct Moment2d {
   const char* scene;
   int frame;

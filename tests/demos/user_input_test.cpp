@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "options.h"
@@ -334,6 +335,76 @@ TEST_F(VirtualController, ThatIsPulledOutLetsTheGroundGoBack) {
   ASSERT_EQ(SDL_JoystickDetachVirtual(index_), 0);
   pump();
   EXPECT_EQ(tilt_after(input_, 20, tilted), Vector3f(0, 0, 0));
+}
+
+/// A hand that sees from 10 m above the origin, 8 m x 6 m of the ground in a window of 800 x 600, and reaches
+/// what is within a metre of (1, 0, 1).
+MouseReach reach_from_above() {
+  const auto eye = [](const Look&) {
+    return render::Camera{.eye = {0, 10, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .tan_half_fov_y = 0.3f};
+  };
+  const auto pick = [](const Ray& ray) -> std::optional<Vector3f> {
+    const Vector3f ground = ray.from - ray.from.y() / ray.along.y() * ray.along;
+    if ((ground - Vector3f(1, 0, 1)).norm() > 1) return std::nullopt;
+    return Vector3f(1, 0.5f, 1);
+  };
+  return {eye, pick, 800, 600};
+}
+
+TEST(UserInput3d, TheMouseTakesAParticleAndMovesItInThePlaneThatFacesTheEye) {
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390));
+  auto events = input.next_frame();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].action, Action::kGrab);
+  EXPECT_EQ(events[0].hand, kUsersHand);
+  EXPECT_EQ(events[0].body, kEveryBody);
+  EXPECT_EQ(events[0].value, Vector3f(1, 0.5f, 1));
+
+  SDL_Event motion = mouse_to(100, 100);
+  motion.motion.state = SDL_BUTTON_LMASK;
+  motion.motion.xrel = -400;
+  input.take(motion);
+  motion.motion.x = 600;
+  motion.motion.y = 300;
+  input.take(motion);
+  events = input.next_frame();
+  ASSERT_EQ(events.size(), 1u) << "the last place counts";
+  EXPECT_EQ(events[0].action, Action::kMoveHand);
+  // 200 pixels are 2 m on the ground, and 0.95 of that half a metre above it.
+  EXPECT_LT((events[0].value - Vector3f(1.9f, 0.5f, 0)).norm(), 1e-4f);
+  EXPECT_EQ(input.look().turn, 0) << "the camera stays";
+
+  input.take(mouse_button(SDL_MOUSEBUTTONUP, 600, 300));
+  events = input.next_frame();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].action, Action::kRelease);
+}
+
+TEST(UserInput3d, WhereThereIsNothingToTakeTheMouseTurnsTheCamera) {
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 100, 100));
+  SDL_Event motion = mouse_to(150, 100);
+  motion.motion.state = SDL_BUTTON_LMASK;
+  motion.motion.xrel = 50;
+  input.take(motion);
+  input.take(mouse_button(SDL_MOUSEBUTTONUP, 150, 100));
+  // Nor does any other button take anything.
+  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390, SDL_BUTTON_RIGHT));
+  EXPECT_TRUE(input.next_frame().empty());
+  EXPECT_LT(input.look().turn, 0);
+}
+
+TEST(UserInput3d, TheMouseKnowsTheWindowsSize) {
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  SDL_Event resized{};
+  resized.type = SDL_WINDOWEVENT;
+  resized.window.event = SDL_WINDOWEVENT_SIZE_CHANGED;
+  resized.window.data1 = 400;
+  resized.window.data2 = 300;
+  input.take(resized);
+  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 255, 195));
+  ASSERT_EQ(input.next_frame().size(), 1u);
 }
 
 }  // namespace

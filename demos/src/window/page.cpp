@@ -63,7 +63,7 @@ void draw_help(int dimension) {
   if (dimension == 2) {
     row("mouse", "drag a particle, and throw it");
   } else {
-    row("mouse", "drag: the camera about the scene; wheel: nearer");
+    row("mouse", "drag a particle, and throw it; else the camera about the scene; wheel: nearer");
     row("arrows", "tilt the ground (controller: left stick, motion sensor)");
   }
   ImGui::EndTable();

@@ -42,7 +42,7 @@ void UserInput<Dimension>::take(const SDL_Event& event) {
   if constexpr (Dimension == 2) {
     pointing_.hand.take(event, coming_);
   } else {
-    move_camera(event, look_);
+    if (!pointing_.hand.take(event, look_, coming_)) move_camera(event, look_);
     pointing_.tilt.take(event);
   }
 }

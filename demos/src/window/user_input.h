@@ -14,6 +14,7 @@
 #include "key_bindings.h"
 #include "look.h"
 #include "mouse_hand.h"
+#include "mouse_reach.h"
 
 namespace softcell::demos {
 
@@ -41,7 +42,8 @@ class WindowInput {
   bool quit_ = false, next_scene_ = false;
 };
 
-/// Where the mouse is: a hand in two dimensions. In three it moves the camera, and the ground can be tilted.
+/// What is pointed with: the mouse, a hand in two dimensions and in three, and there what tilts the ground. A
+/// mouse that takes nothing moves the camera in three.
 template <int Dimension>
 struct Pointing;
 template <>
@@ -51,6 +53,7 @@ struct Pointing<2> {
 template <>
 struct Pointing<3> {
   GroundTilt tilt;
+  MouseReach hand;
 };
 
 template <int Dimension>

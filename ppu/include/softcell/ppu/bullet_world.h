@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "softcell/ppu/mesh.h"
 
@@ -15,6 +16,12 @@ namespace softcell::ppu {
 struct StepTimes {
   double physics_ms = 0;    ///< in Bullet
   double soft_body_ms = 0;  ///< in BulletSoftBodies, called by Bullet
+};
+
+/// A point at which two bodies press on each other.
+struct Contact {
+  Eigen::Vector3f position{0, 0, 0};  ///< metres, in the world
+  Eigen::Vector3f normal{0, 1, 0};    ///< unit length, from the second body to the first
 };
 
 /// Owns the world and its rigid bodies. Metres, kilograms, seconds; y is up; gravity is 9.81 m/s^2 downwards
@@ -52,6 +59,10 @@ class BulletWorld {
   /// @throws std::invalid_argument  seconds not positive, or no substeps.
   /// @throws std::runtime_error     a soft body has become NaN.
   StepTimes step(float seconds, int substeps);
+
+  /// Replaces what is in `contacts` by those of the last substep, soft bodies' particles included. Touching
+  /// without pressing does not count.
+  void contacts(std::vector<Contact>& contacts) const;
 
   /// For BulletSoftBodies, and for whatever is not offered here.
   btDiscreteDynamicsWorld& world();

@@ -1,0 +1,40 @@
+#include "rotation_axes.h"
+
+namespace softcell::demos {
+
+void Lines::clear() {
+  ends.clear();
+  links.clear();
+}
+
+void Lines::add(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  const auto first = static_cast<std::uint32_t>(ends.size());
+  ends.push_back(from);
+  ends.push_back(to);
+  links.push_back({first, first + 1});
+}
+
+void RotationAxes::add_body(std::shared_ptr<const ppu::MatchingPlan<float>> plan) {
+  matchers_.emplace_back(std::move(plan));
+}
+
+void RotationAxes::update(const std::vector<Shown3d::Body>& bodies) {
+  constexpr float kLengthInCells = 0.45f;  // neighbours' axes do not meet
+  for (Lines& lines : axes_) lines.clear();
+  for (std::size_t b = 0; b < matchers_.size(); ++b) {
+    ppu::ShapeMatcher<float>& matcher = matchers_[b];
+    positions_.clear();
+    for (const spu::SkinCorner& p : bodies[b].particles) positions_.emplace_back(p.x, p.y, p.z);
+    goals_.resize(positions_.size());
+    matcher.goals(positions_, goals_);
+    const float length = kLengthInCells * matcher.plan().spacing();
+    const auto region_of = matcher.plan().sums().region_of();
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      const Eigen::Matrix3f rotation = matcher.rotations()[region_of[i]].toRotationMatrix();
+      for (int axis = 0; axis < 3; ++axis)
+        axes_[static_cast<std::size_t>(axis)].add(positions_[i], positions_[i] + length * rotation.col(axis));
+    }
+  }
+}
+
+}  // namespace softcell::demos
