@@ -53,7 +53,9 @@ TEST(ParticleUnder, IsTheNearestOneThatTheRayMeets) {
   ASSERT_TRUE(found);
   EXPECT_LT((*found - middle).head<2>().norm(), reach);
   for (const spu::SkinCorner& p : positions) {
-    if ((Vector3f(p.x, p.y, p.z) - middle).head<2>().norm() < reach) EXPECT_LE(p.z, found->z());
+    if ((Vector3f(p.x, p.y, p.z) - middle).head<2>().norm() < reach) {
+      EXPECT_LE(p.z, found->z());
+    }
   }
   EXPECT_FALSE(particle_under({.from = ray.from, .along = Vector3f::UnitZ()}, simulation))
       << "it lies behind";

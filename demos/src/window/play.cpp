@@ -16,9 +16,9 @@ namespace softcell::demos {
 namespace {
 
 /// One scene in the window.
-class Scene {
+class PlayedScene {
  public:
-  Scene(render::Window& window, Demo& demo) : window_(window), demo_(demo), drawing_(window, demo) {}
+  PlayedScene(render::Window& window, Demo& demo) : window_(window), demo_(demo), drawing_(window, demo) {}
 
   void take(const SDL_Event& event) { demo_.input().take(event); }
 
@@ -67,7 +67,7 @@ Run play(const DemoOptions& options, std::string_view verb, const std::vector<Ma
   for (std::size_t number = 0;; number = (number + 1) % scenes.size()) {
     Run run{.demo = scenes[number](how), .record = {}};
     if (look) run.demo->input().set_look(*look);
-    Scene scene(window, *run.demo);
+    PlayedScene scene(window, *run.demo);
     bool next = false;
     while (!next && !scene.ends(options.frames) && !guard.interrupted()) {
       clock.wait();
