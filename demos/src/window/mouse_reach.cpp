@@ -1,6 +1,11 @@
 #include "mouse_reach.h"
 
+#include <utility>
+
 namespace softcell::demos {
+
+MouseReach::MouseReach(Eye eye, Pick pick, int width, int height)
+    : eye_(std::move(eye)), pick_(std::move(pick)), width_(width), height_(height) {}
 
 bool MouseReach::take(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events) {
   switch (event.type) {

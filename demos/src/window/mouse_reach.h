@@ -26,8 +26,7 @@ class MouseReach {
   /// Reaches nothing.
   MouseReach() = default;
   /// @param width, height  of the window, in the units in which SDL gives the mouse
-  MouseReach(Eye eye, Pick pick, int width, int height)
-      : eye_(std::move(eye)), pick_(std::move(pick)), width_(width), height_(height) {}
+  MouseReach(Eye eye, Pick pick, int width, int height);
 
   /// Appends what the event means. Of moves that follow one another, the last counts.
   /// @return true: the event was the hand's
