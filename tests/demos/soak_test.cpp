@@ -65,6 +65,34 @@ void expect_nothing_lost(const Simulation3d& simulation) {
     ASSERT_TRUE(pose.allFinite() && pose(1, 3) > -0.6f) << pose;
 }
 
+/// Root of the particles' mean squared distance from their middle.
+template <typename Position>
+double radius_of_gyration(const ppu::SoftBody& body, const Position& position) {
+  const std::size_t count = body.model().particles();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squares = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d x = position(i).template cast<double>();
+    sum += x;
+    squares += x.squaredNorm();
+  }
+  const auto n = static_cast<double>(count);
+  return std::sqrt(squares / n - (sum / n).squaredNorm());
+}
+
+/// Of what touches the world. Particles inside of a body have no contacts: a crush may take them lower for a
+/// moment, and a particle of the shell half a cell, which Bullet pushes out again.
+void expect_shells_above_the_floor(const Simulation3d& simulation) {
+  for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
+    const ppu::SoftBody& body = simulation.soft_body(b);
+    for (const std::uint32_t i : body.model().outer()) {
+      const Eigen::Vector3f x = body.position(i);
+      ASSERT_TRUE(x.allFinite() && x.y() > -0.1f)
+          << arena().soft_bodies[b].name << " is at " << x.transpose();
+    }
+  }
+}
+
 TEST(Soak, NothingIsLostInALongTime) {
   const int seconds = wanted_seconds();
   Simulation3d simulation(arena(), {});
@@ -83,6 +111,31 @@ TEST(Soak, NothingIsLostInALongTime) {
   // more, goes on and on.
   const double third = *std::max_element(memory.begin(), memory.begin() + seconds / 3);
   EXPECT_LT(memory.back(), third + 2) << "MB; after a third of the time it was " << third;
+}
+
+/// As the report says: with a gravity of 300 m/s^2 soft bodies go on as always, as long as they cannot gain
+/// speed by a fall.
+TEST(Soak, AGravityOf300Holds) {
+  Simulation3d simulation(arena(), {});
+  using Event = InputEvent<3>;
+  simulation.step(std::vector<Event>{{.action = Action::kTilt, .value = {0, 0, 0}}});
+  for (int frame = 0; frame < 3 * kFramesASecond; ++frame) simulation.step();  // all lies on the floor
+  simulation.step(std::vector<Event>{{.action = Action::kGravity, .value = {0, -300, 0}}});
+  for (int frame = 0; frame < 10 * kFramesASecond; ++frame) {
+    simulation.step();
+    ASSERT_NO_FATAL_FAILURE(expect_shells_above_the_floor(simulation)) << "frame " << frame;
+  }
+  simulation.step(std::vector<Event>{{.action = Action::kGravity, .value = {0, -9.81f, 0}}});
+  for (int frame = 0; frame < 5 * kFramesASecond; ++frame) simulation.step();
+  ASSERT_NO_FATAL_FAILURE(expect_nothing_lost(simulation));
+  // ... and have their shapes again, but for what their own weight does to them.
+  for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
+    const ppu::SoftBody& body = simulation.soft_body(b);
+    const double size = radius_of_gyration(body, [&](std::size_t i) { return body.position(i); });
+    const double at_rest =
+        radius_of_gyration(body, [&](std::size_t i) { return body.model().lattice().rest_position(i); });
+    EXPECT_NEAR(size / at_rest, 1, 0.1) << arena().soft_bodies[b].name;
+  }
 }
 
 }  // namespace
