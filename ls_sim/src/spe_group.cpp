@@ -168,8 +168,7 @@ class Door final : public ProblemState {
 }  // namespace
 
 struct SpeGroup::State final : RunSource {
-  State(dma::AddressSpace& memory, const SpeOptions& options)
-      : threads(memory, options, SpeMonitor::PpuSide::kActs, *this) {
+  State(dma::AddressSpace& memory, const SpeOptions& options) : threads(memory, options, *this) {
     try {
       for (int spe = 0; spe < options.spes; ++spe) {
         threads.spe(spe).set_job_images(&job_images);
@@ -260,8 +259,6 @@ struct SpeGroup::State final : RunSource {
       }
     }
   }
-
-  void on_taken(int) override {}
 
   void on_ended(int spe, const Run&, RunResult&& result) override {
     orders[index(spe)].result = std::move(result);

@@ -16,9 +16,8 @@ constexpr std::uint32_t kTurnMagnitudes = 6;
 
 }  // namespace
 
-SpeMonitor::SpeMonitor(const SpeOptions& options, PpuSide ppu_side)
+SpeMonitor::SpeMonitor(const SpeOptions& options)
     : takes_turns_(options.interleaving == Interleaving::kTurns),
-      ppu_side_(ppu_side),
       random_(options.schedule.seed, kTurnStream) {}
 
 void SpeMonitor::start(int spe, const KernelImage& image, HostTime now, bool timed) {
@@ -114,7 +113,6 @@ bool SpeMonitor::any(State state) const {
 }
 
 bool SpeMonitor::ppu_acts() const {
-  if (ppu_side_ == PpuSide::kStaysAway) return false;
   return ppu_waits_.empty() ||
          std::any_of(ppu_waits_.begin(), ppu_waits_.end(), [](const auto* ready) { return (*ready)(); });
 }

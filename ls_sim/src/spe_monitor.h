@@ -48,11 +48,7 @@ class SpeMonitor {
   using Lock = std::unique_lock<std::mutex>;
   using HostTime = std::chrono::steady_clock::time_point;
 
-  /// Whether whoever started the SPEs may end their waits. One who acts does so at any time but in
-  /// ppu_wait().
-  enum class PpuSide : std::uint8_t { kActs, kStaysAway };
-
-  SpeMonitor(const SpeOptions& options, PpuSide ppu_side);
+  explicit SpeMonitor(const SpeOptions& options);
 
   Lock lock() { return Lock(mutex_); }
 
@@ -96,7 +92,7 @@ class SpeMonitor {
   void wake(int spe);
   void wake_ppu();
 
-  // The PPU side. All with the lock.
+  // The PPU side, which may end the SPEs' waits at any time but in ppu_wait(). All with the lock.
 
   /// Sleeps until `ready`, which is asked with the lock; meanwhile the PPU side does not act.
   void ppu_wait(Lock& lock, const std::function<bool()>& ready);
@@ -140,7 +136,6 @@ class SpeMonitor {
   void declare_deadlock();
 
   const bool takes_turns_;
-  const PpuSide ppu_side_;
 
   std::mutex mutex_;  // guards all below, and what SPEs wait for
   std::array<Member, dma::kSpeCount> members_;

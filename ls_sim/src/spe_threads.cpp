@@ -36,9 +36,8 @@ const SpeOptions& checked(const SpeOptions& options) {
 
 }  // namespace
 
-SpeThreads::SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor::PpuSide ppu_side,
-                       RunSource& source)
-    : options_(checked(options)), source_(source), monitor_(options, ppu_side) {
+SpeThreads::SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, RunSource& source)
+    : options_(checked(options)), source_(source), monitor_(options) {
   for (int number = 0; number < options_.spes; ++number) {
     workers_.push_back(std::make_unique<Spe>(number, memory, options_, monitor_));
   }
@@ -82,7 +81,6 @@ RunResult SpeThreads::run(int number, const Run& run, SpeMonitor::Lock& lock) {
                           .detail = "the kernel was stopped before its first instruction"}};
   }
   lock.unlock();
-  source_.on_taken(number);
   RunResult result = spe(number).run(run);
   lock.lock();
   return result;

@@ -21,9 +21,6 @@ class RunSource {
   /// @return  nothing when the thread is to end.
   virtual std::optional<Run> next_run(int spe, SpeMonitor::Lock& lock) = 0;
 
-  /// It is on its way. Without the lock, which is the time to wake others.
-  virtual void on_taken(int spe) = 0;
-
   /// With the lock; the SPE no longer runs.
   virtual void on_ended(int spe, const Run& run, RunResult&& result) = 0;
 };
@@ -33,8 +30,7 @@ class SpeThreads {
   /// @param source  outlives this; called as soon as the threads run, before the constructor returns.
   /// @throws std::invalid_argument  options out of range.
   /// @throws std::runtime_error     when the host cannot run native kernels.
-  SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor::PpuSide ppu_side,
-             RunSource& source);
+  SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, RunSource& source);
 
   ~SpeThreads() { join(); }
   SpeThreads(const SpeThreads&) = delete;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cstring>
+#include <thread>
 
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/channel_name.h"
@@ -23,6 +25,36 @@ class NoEngine final : public Engine {
   dma::LocalStoreAddress stack_pointer() const override { return {0x1234}; }
   void interrupt() override {}
   std::uint32_t stack_high_water() const override { return 0; }
+};
+
+/// A PPU that does nothing but wait, as long as this lives.
+class WaitingPpu {
+ public:
+  explicit WaitingPpu(SpeMonitor& monitor) : monitor_(monitor), thread_([this] { wait(); }) {
+    waits_.wait(false);
+  }
+  ~WaitingPpu() {
+    const SpeMonitor::Lock lock = monitor_.lock();
+    over_ = true;
+    monitor_.wake_ppu();
+  }
+  WaitingPpu(const WaitingPpu&) = delete;
+  WaitingPpu& operator=(const WaitingPpu&) = delete;
+
+ private:
+  void wait() {
+    SpeMonitor::Lock lock = monitor_.lock();
+    monitor_.ppu_wait(lock, [this] {
+      waits_ = true;
+      waits_.notify_one();
+      return over_;
+    });
+  }
+
+  SpeMonitor& monitor_;
+  std::atomic<bool> waits_ = false;
+  bool over_ = false;  // guarded by the monitor's lock
+  std::jthread thread_;
 };
 
 /// One SPE that nobody else ever writes to, so that every sleep is a deadlock at once.
@@ -69,7 +101,8 @@ class SpuChannelsTest : public testing::Test {
   dma::Buffer<std::array<std::uint32_t, 32>> lines_{memory_, "lines", 17};
   alignas(128) std::array<std::byte, dma::kLocalStoreBytes> local_store_{};
   dma::Mfc mfc_{local_store_, memory_, options_.schedule};
-  SpeMonitor monitor_{options_, SpeMonitor::PpuSide::kStaysAway};
+  SpeMonitor monitor_{options_};
+  WaitingPpu ppu_{monitor_};
   SpeRegisters registers_;
   NoEngine engine_;
   SpeStatistics statistics_;
