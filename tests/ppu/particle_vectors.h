@@ -15,7 +15,8 @@ namespace softcell::ppu::test {
 template <class Vector>
 double largest_difference(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, static_cast<double>((a[i] - b[i]).cwiseAbs().maxCoeff()));
   return largest;
 }
 
