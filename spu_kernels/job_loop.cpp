@@ -7,8 +7,7 @@
 //   chain       in, out     ChainState                  1        128         getllar, putllc
 //   done        out         ChainDone                   1        128         putlluc
 //   job         in          JobDescriptor               1        128         one get
-//   image       in          bytes from kJobAreaBegin    any      128         gets of up to 16 KB, unless
-//   resident
+//   image       in          bytes from kJobAreaBegin    any      128         gets; none if resident
 //
 //   look at the board -> for each chain: take a job -> image -> call -> count it finished -> take the next
 //   ...                                 `-> others are left: wake an SPE
