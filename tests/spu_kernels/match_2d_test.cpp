@@ -38,6 +38,10 @@ Vector2d random_vector(Random& random) {
   return {x, y};
 }
 
+/// A multiple of 2^-20, which a float holds exactly up to 16. (Not by way of float and back: g++ 12 leaves
+/// both conversions of a pair out, -O2 -fsanitize=thread.)
+Vector2d rounded(const Vector2d& v) { return (v * 0x1p20).array().round() * 0x1p-20; }
+
 spu::MatchVector2d of(const Vector2d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
 
 /// Bodies of one model on SPEs.
@@ -132,7 +136,7 @@ Vectors deformed(const MatchRig2d& rig, std::uint64_t seed, double noise) {
   for (Vector2d p : rig.rest()) {
     p.x() += 0.3 * p.y() * p.y() / rig.size;
     p = turn * p + shift + noise * random_vector(random);
-    x.push_back((p * 0x1p20).array().round() * 0x1p-20);  // which a float holds up to 16
+    x.push_back(rounded(p));
   }
   return x;
 }
@@ -140,8 +144,7 @@ Vectors deformed(const MatchRig2d& rig, std::uint64_t seed, double noise) {
 Vectors random_velocities(const MatchRig2d& rig, std::uint64_t seed, double fastest) {
   Random random(seed);
   Vectors v;
-  for (std::size_t i = 0; i < rig.masses.size(); ++i)
-    v.push_back((random_vector(random) * fastest).cast<float>().cast<double>());
+  for (std::size_t i = 0; i < rig.masses.size(); ++i) v.push_back(rounded(random_vector(random) * fastest));
   return v;
 }
 
@@ -253,9 +256,8 @@ TEST(Match2d, DampingKeepsMomentaAndAddsNoEnergy) {
       EXPECT_LT(std::abs(rig.angular_momentum(x, change)) / total_mass(rig.masses), kMomentum);
     }
     rig.set(x, v);
-    const Vectors before = rig.velocities();
     rig.step({.pull = 0, .damping = 0});
-    EXPECT_EQ(largest_difference(rig.velocities(), before), 0);
+    EXPECT_EQ(largest_difference(rig.velocities(), v), 0);
   });
 }
 
