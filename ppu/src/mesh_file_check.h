@@ -4,6 +4,7 @@
 // what the library delivers.
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace softcell::ppu {
@@ -19,6 +20,9 @@ inline constexpr std::size_t kMaxPolygonCorners = 255;
 struct MeshFileContents {
   std::size_t triangles = 0;  ///< after its polygons are cut: corners - 2 for each
   bool has_normals = false;   ///< one for every corner, to be used
+  /// What of the file the library is to see: no more than the geometry, where the library could be harmed by
+  /// the rest. None: all of it.
+  std::string geometry = {};
 };
 
 /// Checks all of a file: syntax, that nothing is missing at its end, finite numbers, indices in range, faces

@@ -1,5 +1,6 @@
 // Wavefront OBJ: polygons only; materials, groups and smoothing groups are skipped, curves and surfaces
-// refused.
+// refused. The library gets none of what is skipped: it follows the names of material libraries, even into
+// places where there is nothing, and has been seen to write outside its memory on the way.
 
 #include <algorithm>
 #include <array>
@@ -39,17 +40,30 @@ class ObjCheck {
       numbers(words, {3, 4, 6, 7});
       if (words.size() == 5 && lines_.finite_number(words[4]) == 0) lines_.refuse("a vertex has weight 0");
       ++counts_[0];
+      keep("v", words);
     } else if (keyword == "vt") {
       numbers(words, {1, 2, 3});
       ++counts_[1];
+      keep("vt", words);
     } else if (keyword == "vn") {
       numbers(words, {3});
       ++counts_[2];
+      keep("vn", words);
     } else if (keyword == "f" || keyword == "fo") {
       face(words);
+      keep("f", words);
     } else if (std::find(kSkipped.begin(), kSkipped.end(), keyword) == kSkipped.end()) {
       lines_.refuse(in_quotes(keyword) + " is not a statement of an OBJ file of polygons");
     }
+  }
+
+  void keep(std::string_view keyword, const std::vector<std::string_view>& words) {
+    contents_.geometry += keyword;
+    for (std::size_t i = 1; i < words.size() && !words[i].starts_with('#'); ++i) {
+      contents_.geometry += ' ';
+      contents_.geometry += words[i];
+    }
+    contents_.geometry += '\n';
   }
 
   void numbers(const std::vector<std::string_view>& words, std::initializer_list<std::size_t> allowed) {

@@ -268,6 +268,10 @@ void require_mesh(const Header& header) {
   if (corners == nullptr || corners->count_type == nullptr || corners->type->kind == Type::kReal) {
     refuse("its faces have no list of whole numbers 'vertex_indices'");
   }
+  if (face->find({"vertex_indices"}) != nullptr && face->find({"vertex_index"}) != nullptr) {
+    refuse("its faces have both 'vertex_indices' and 'vertex_index'; one of them was expected");
+  }
+  if (header.find("tristrips") != nullptr) refuse("it has triangle strips; faces alone were expected");
 }
 
 }  // namespace

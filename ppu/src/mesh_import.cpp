@@ -228,7 +228,8 @@ TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format) {
   const std::string extension = extension_of(format);
   Assimp::Importer importer;
   keep_only(importer, extension);
-  importer.SetIOHandler(new SingleFile("mesh." + extension, bytes));  // the importer deletes it
+  const std::string_view shown = contents.geometry.empty() ? bytes : contents.geometry;
+  importer.SetIOHandler(new SingleFile("mesh." + extension, shown));  // the importer deletes it
   const aiScene* scene = importer.ReadFile("mesh." + extension, aiProcess_Triangulate);
   if (scene == nullptr) refuse(one_line(importer.GetErrorString()));
 

@@ -243,6 +243,16 @@ TEST_F(MeshImport, DropsTrianglesWithoutArea) {
   EXPECT_EQ(import("a.obj", kTriangle + "v 2 0 0\nf 1 2 3\nf 1 2 2\nf 1 2 4\n").triangles.size(), 1u);
 }
 
+TEST_F(MeshImport, LooksForNoMaterialsWhateverTheirNames) {
+  // The library clears such names of their detours, and wrote before the beginning of this one.
+  const std::string no_name =
+      "mtllib a:::::::::::://////////:::://////////:::://////////////////a::::/1///////:/::::"
+      "::::::::::::::::::///////////////////$clr.zmbi3 4\n";
+  const std::string groups = "g a\nusemtl b\nl 1 2\np 1\n";
+  EXPECT_EQ(hash(import("a.obj", kTriangle + no_name + groups + "f 1 2 3\n" + no_name)),
+            hash(import("b.obj", kTriangle + "f 1 2 3\n")));
+}
+
 TEST_F(MeshImport, GivesTheSameBitsAgain) {
   const std::string text = as_obj(make_car(1), false);
   EXPECT_EQ(hash(import("a.obj", text)), hash(import("b.obj", text)));
@@ -380,6 +390,18 @@ TEST_F(MeshImport, RefusesBrokenPlyHeaders) {
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty int vertex_indices\nend_header\n0 0 0\n3\n",
       "no list of whole numbers 'vertex_indices'");
+  // The library takes the last of both, and stops the program at a face without corners.
+  const std::string vertices =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string list = "property list uchar int ", points = "0 0 0\n1 0 0\n0 1 0\n";
+  expect_refused("a.ply",
+                 vertices + "element face 1\n" + list + "vertex_indices\n" + list +
+                     "vertex_index\nend_header\n" + points + "3 0 1 2 0\n",
+                 "both 'vertex_indices' and 'vertex_index'");
+  expect_refused("a.ply",
+                 vertices + "element face 1\n" + list + "vertex_indices\nelement tristrips 1\n" + list +
+                     "vertex_indices\nend_header\n" + points + "3 0 1 2\n3 0 1 2\n",
+                 "triangle strips");
 }
 
 TEST_F(MeshImport, RefusesBrokenBinaryPly) {
