@@ -92,9 +92,3 @@ TEST(GpuSkinShown, IsOneFrameLate) {
 
 }  // namespace
 }  // namespace softcell::demos
-
-int main(int argc, char** argv) {
-  softcell::render::pin_software_rasterizer();
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -9,6 +9,7 @@
 
 #include "kernel_buffers.h"
 #include "scratch_folder.h"
+#include "support/text_file.h"
 #include "usage_error.h"
 
 namespace softcell::demos {
@@ -125,10 +126,7 @@ TEST(KernelBuffers, AreWrittenToTheirFilesAndResetBetweenRuns) {
     auto* host = std::get<std::byte*>(memory.resolve(ea, text.size(), dma::SpeAccess::kWrite));
     std::memcpy(host, text.data(), text.size());
   };
-  const auto contents = [&](const std::string& name) {
-    std::ifstream file(folder / name, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(file), {});
-  };
+  const auto contents = [&](const std::string& name) { return test::text_of(folder / name); };
   write(0, "after!");
   write(1, "new");
   buffers.write_files();

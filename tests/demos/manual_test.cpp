@@ -5,22 +5,19 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <regex>
 
 #include "scene_file/scene_library.h"
 #include "scratch_folder.h"
 #include "simulation_3d.h"
 #include "softcell/ppu/stiffness.h"
+#include "support/text_file.h"
 
 namespace softcell::demos {
 namespace {
 
 const std::string& manual() {
-  static const std::string text = [] {
-    std::ifstream file(SOFTCELL_USER_MANUAL_MD);
-    return std::string(std::istreambuf_iterator<char>(file), {});
-  }();
+  static const std::string text = test::text_of(SOFTCELL_USER_MANUAL_MD);
   return text;
 }
 

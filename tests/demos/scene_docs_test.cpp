@@ -3,20 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 #include <regex>
 
 #include "scene_file/scene_library.h"
 #include "scratch_folder.h"
+#include "support/text_file.h"
 
 namespace softcell::demos {
 namespace {
 
 const std::string& document() {
-  static const std::string text = [] {
-    std::ifstream file(SOFTCELL_SCENES_MD);
-    return std::string(std::istreambuf_iterator<char>(file), {});
-  }();
+  static const std::string text = test::text_of(SOFTCELL_SCENES_MD);
   return text;
 }
 

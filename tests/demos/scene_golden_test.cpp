@@ -149,9 +149,3 @@ TEST(Camera2d, KnowsWhereAPixelIs) {
 
 }  // namespace
 }  // namespace softcell::demos
-
-int main(int argc, char** argv) {
-  softcell::render::pin_software_rasterizer();
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

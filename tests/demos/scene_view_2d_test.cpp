@@ -122,9 +122,3 @@ TEST(Moved2d, TakesSoftBodiesAndHandsForRestless) {
 
 }  // namespace
 }  // namespace softcell::demos
-
-int main(int argc, char** argv) {
-  softcell::render::pin_software_rasterizer();
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -10,6 +10,7 @@
 
 #include "run_command.h"
 #include "scratch_folder.h"
+#include "support/text_file.h"
 
 namespace softcell::tests {
 namespace {
@@ -30,8 +31,7 @@ void write_floats(const std::string& path, const std::vector<float>& values) {
 }
 
 std::vector<float> read_floats(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  const std::string bytes = test::text_of(path);
   std::vector<float> values(bytes.size() / sizeof(float));
   std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
   return values;

@@ -11,6 +11,7 @@
 #include "report_page.h"
 #include "scratch_folder.h"
 #include "softcell/ls_sim/trace.h"
+#include "support/text_file.h"
 
 namespace softcell::demos {
 namespace {
@@ -50,8 +51,7 @@ std::string written() {
   trace.spe(0).on_job(image(), 8, now, now + 1, false);
   const ScratchFolder folder;
   trace.write(folder / "trace.json");
-  std::ifstream file(folder / "trace.json", std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  return test::text_of(folder / "trace.json");
 }
 
 TEST(TraceFile, ReadsWhatTraceWrites) {
