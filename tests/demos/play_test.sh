@@ -3,6 +3,7 @@
 # ends in the same state, in a window and without. Without a display they say so in one sentence.
 #   play_test.sh SOFTCELL [FOLDER FOR SCREENSHOTS]
 set -euo pipefail
+source "$(dirname "$0")/../../ci/virtual-display"
 softcell=$1
 folder=$(mktemp -d)
 shots=${2:-$folder}
@@ -27,11 +28,7 @@ status=0
 SDL_VIDEODRIVER=dummy "$softcell" demo 2d --frames 5 >"$folder/log" 2>&1 || fail "fails on the dummy driver"
 grep -q '5 frames' "$folder/log" || fail "does not end after --frames"
 
-Xvfb -displayfd 3 -screen 0 1400x800x24 3>"$folder/display" 2>/dev/null &
-for _ in $(seq 100); do [ -s "$folder/display" ] && break; sleep 0.1; done
-[ -s "$folder/display" ] || fail "Xvfb did not start"
-export DISPLAY=:$(cat "$folder/display")
-unset WAYLAND_DISPLAY SDL_VIDEODRIVER
+start_virtual_display "$folder" 1400x800 || fail "Xvfb did not start"
 
 # start VERB OPTIONS...: runs softcell and waits for its window.
 start() {

@@ -3,6 +3,7 @@
 # display it says so in one sentence.
 #   window_test.sh PROBE
 set -euo pipefail
+source "$(dirname "$0")/../../ci/virtual-display"
 probe=$1
 folder=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
@@ -20,11 +21,7 @@ SDL_VIDEODRIVER=dummy "$probe" once >"$folder/log" 2>&1 || fail "failed on the d
 grep -q 'shown 320 x 180' "$folder/log" || fail "showed nothing on the dummy driver"
 
 # A virtual display with OpenGL.
-Xvfb -displayfd 3 -screen 0 800x600x24 3>"$folder/display" 2>/dev/null &
-for _ in $(seq 100); do [ -s "$folder/display" ] && break; sleep 0.1; done
-[ -s "$folder/display" ] || fail "Xvfb did not start"
-export DISPLAY=:$(cat "$folder/display")
-unset WAYLAND_DISPLAY SDL_VIDEODRIVER
+start_virtual_display "$folder" 800x600 || fail "Xvfb did not start"
 "$probe" >"$folder/log" 2>&1 &
 pid=$!
 expect() { for _ in $(seq 100); do grep -q "$1" "$folder/log" && return; sleep 0.1; done; fail "no '$1'"; }
