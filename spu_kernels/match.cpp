@@ -59,8 +59,6 @@ bool load_plan() {
   return true;
 }
 
-void clear(Slot& slot) { slot.row[0] = slot.row[1] = slot.row[2] = spu_splats(0.0f); }
-
 void load_body(const BodyMap& map) {
   const uint32_t vectors = plan().particles * 16;
   get_large(map.positions, ls.body.positions_ea, vectors, kTagIn);

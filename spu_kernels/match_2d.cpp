@@ -98,8 +98,8 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   if (!load_plan()) return kMatch2dTooLarge;
 
   const ArenaMap2d map = map_of_2d(ls.arena);
-  map.plan.first[0].row[0] = spu_splats(0.0f);
-  map.plan.second[0].row[0] = spu_splats(0.0f);
+  clear(map.plan.first[0]);
+  clear(map.plan.second[0]);
   fetch(map.body[0], 0, kTagBody);
   for (uint32_t i = 0; i < ls.job.body_count; ++i) {
     const uint32_t place = i % 2, other = 1 - place;

@@ -57,8 +57,6 @@ void load_body() {
   wait_for_tag(kTagOut);
 }
 
-void clear(Slot& slot) { slot.row[0] = slot.row[1] = slot.row[2] = spu_splats(0.0f); }
-
 /// What all tiles have found.
 struct Findings {
   PullSum pulls = no_pulls();
@@ -85,20 +83,15 @@ Findings read_reports() {
 
 template <typename Pass, typename Store>
 void run(Pass& pass, const Store& store) {
+  get_large(store.slices, ls.job.slices_ea, ls.job.slice_count * static_cast<uint32_t>(sizeof(TileSlice)),
+            kTagOut);
+  wait_for_tag(kTagOut);
   clear(store.slots[0]);
   run_slices(pass, store.slices, ls.job.slice_count);
 }
 
-template <typename Store>
-void load_slices(const Store& store) {
-  get_large(store.slices, ls.job.slices_ea, ls.job.slice_count * static_cast<uint32_t>(sizeof(TileSlice)),
-            kTagOut);
-  wait_for_tag(kTagOut);
-}
-
 void gather(const TilePassContext& context) {
   const UpStore store = up_store(ls.arena, ls.body.up);
-  load_slices(store);
   GatherPass pass(context, store);
   run(pass, store);
   ls.report = {};
@@ -108,7 +101,6 @@ void gather(const TilePassContext& context) {
 
 void scatter(const TilePassContext& context) {
   const DownStore store = down_store(ls.arena, ls.body.down);
-  load_slices(store);
   ScatterPass pass(context, store);
   run(pass, store);
   ls.report = {};
@@ -118,14 +110,12 @@ void scatter(const TilePassContext& context) {
 
 void twist(const TilePassContext& context) {
   const UpStore store = up_store(ls.arena, ls.body.up);
-  load_slices(store);
   TwistPass pass(context, store);
   run(pass, store);
 }
 
 void damp(const TilePassContext& context) {
   const DownStore store = down_store(ls.arena, ls.body.down);
-  load_slices(store);
   DampPass pass(context, store);
   run(pass, store);
 }

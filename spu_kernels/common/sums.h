@@ -13,6 +13,12 @@
 
 namespace softcell::spu {
 
+/// A slot that adds nothing: what slot 0 of every buffer is.
+template <typename Slot>
+inline void clear(Slot& slot) {
+  for (vec_float4& row : slot.row) row = spu_splats(0.0f);
+}
+
 /// The slot at an offset of a sum list.
 template <typename Slot>
 inline const Slot& slot_at(const Slot* slots, uint32_t offset) {

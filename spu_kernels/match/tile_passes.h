@@ -17,13 +17,39 @@ namespace softcell::spu {
 /// A tag group for each side of the double buffer, and one for what has a place of its own to leave from.
 enum TileTag : uint32_t { kTagSide0 = 0, kTagSide1 = 1, kTagOut = 2, kTagTouch = 3 };
 
+/// A stretch of main memory.
+struct Range {
+  uint64_t ea;
+  uint32_t bytes;
+};
+
+/// What an array of main memory has for a slice's input, `bytes` for each group of four places.
+inline Range input_of(const TileSlice& slice, uint64_t array_ea, uint32_t bytes) {
+  return {array_ea + static_cast<uint64_t>(slice.input / 4) * bytes, slice.input_groups * bytes};
+}
+
+/// Likewise for its output.
+inline Range output_of(const TileSlice& slice, uint64_t array_ea, uint32_t bytes) {
+  return {array_ea + static_cast<uint64_t>(slice.output / 4) * bytes, slice.output_groups * bytes};
+}
+
+inline void get_range(void* ls, const Range& range, uint32_t tag) {
+  get_large(ls, range.ea, range.bytes, tag);
+}
+inline void getf_range(void* ls, const Range& range, uint32_t tag) {
+  getf_large(ls, range.ea, range.bytes, tag);
+}
+inline void put_range(void* ls, const Range& range, uint32_t tag) {
+  put_large(ls, range.ea, range.bytes, tag);
+}
+
 /// Hints to main memory: what the slice after next will fetch and the next will put out. Given a few at a
 /// time between pieces of work, so that memory has them ready without anybody having waited.
 class Touches {
  public:
   /// @pre there are fewer than kMost
-  void add(uint64_t ea, uint32_t bytes) {
-    if (bytes != 0) ranges_[count_++] = {ea, bytes};
+  void add(const Range& range) {
+    if (range.bytes != 0) ranges_[count_++] = range;
   }
 
   __attribute__((noinline)) void give_some() {
@@ -38,10 +64,6 @@ class Touches {
   }
 
  private:
-  struct Range {
-    uint64_t ea;
-    uint32_t bytes;
-  };
   static constexpr int kMost = 8, kAtOnce = 2;
 
   void give_one() {
@@ -60,9 +82,6 @@ struct TilePassContext {
   vec_float4 origin;
   Vector3x4 drift;  // what the pulls have given the body as a whole; not before `twist`
 };
-
-/// Bytes of main memory before a place, for `bytes` a group.
-inline uint64_t before(uint32_t place, uint32_t bytes) { return static_cast<uint64_t>(place / 4) * bytes; }
 
 inline const uint16_t* list_at(const char* lists, uint32_t offset) {
   return reinterpret_cast<const uint16_t*>(lists + offset);
@@ -94,22 +113,21 @@ class GatherPass {
 
   void fetch(const TileSlice& slice, uint32_t s) {
     const UpSide& side = store_.side[s];
-    getf_large(side.rotations, body_.rotations_in_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    getf_range(side.rotations, output_of(slice, body_.rotations_in_ea, 64), s);
     get_large(side.lists, body_.lists_ea + slice.lists, slice.lists_bytes, s);
-    get_large(side.positions, body_.positions_ea + before(slice.input, 64), slice.input_groups * 64, s);
-    get_large(side.rest, body_.rest_ea + before(slice.input, 64), slice.input_groups * 64, s);
-    get_large(side.regions, body_.regions_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_range(side.positions, input_of(slice, body_.positions_ea, 64), s);
+    get_range(side.rest, input_of(slice, body_.rest_ea, 64), s);
+    get_range(side.regions, output_of(slice, body_.regions_ea, 64), s);
   }
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
-    touches.add(body_.positions_ea + before(coming.input, 64), coming.input_groups * 64);
-    touches.add(body_.rest_ea + before(coming.input, 64), coming.input_groups * 64);
-    touches.add(body_.rotations_in_ea + before(coming.output, 64), coming.output_groups * 64);
-    touches.add(body_.regions_ea + before(coming.output, 64), coming.output_groups * 64);
-    touches.add(body_.rotations_out_ea + before(leaving.output, 64), leaving.output_groups * 64);
-    touches.add(body_.motions_ea + before(leaving.output, 4 * kMatchSlotBytes),
-                leaving.output_groups * 4 * kMatchSlotBytes);
-    touches.add(body_.momenta_ea + before(leaving.output, 64), leaving.output_groups * 64);
+    touches.add(input_of(coming, body_.positions_ea, 64));
+    touches.add(input_of(coming, body_.rest_ea, 64));
+    touches.add(output_of(coming, body_.rotations_in_ea, 64));
+    touches.add(output_of(coming, body_.regions_ea, 64));
+    touches.add(output_of(leaving, body_.rotations_out_ea, 64));
+    touches.add(output_of(leaving, body_.motions_ea, 4 * kMatchSlotBytes));
+    touches.add(output_of(leaving, body_.momenta_ea, 64));
   }
 
   void work(const TileSlice& slice, uint32_t s, Touches& touches) {
@@ -130,10 +148,9 @@ class GatherPass {
           momenta[g] = {momentum, side.regions[g].inverse_mass};
         },
         worst_);
-    put_large(side.rotations, body_.rotations_out_ea + before(slice.output, 64), slice.output_groups * 64, s);
-    put_large(store_.motions, body_.motions_ea + before(slice.output, 4 * kMatchSlotBytes),
-              slice.output_groups * 4 * kMatchSlotBytes, kTagOut);
-    put_large(store_.momenta, body_.momenta_ea + before(slice.output, 64), slice.output_groups * 64, kTagOut);
+    put_range(side.rotations, output_of(slice, body_.rotations_out_ea, 64), s);
+    put_range(store_.motions, output_of(slice, body_.motions_ea, 4 * kMatchSlotBytes), kTagOut);
+    put_range(store_.momenta, output_of(slice, body_.momenta_ea, 64), kTagOut);
   }
 
   void report(TileReport& report) const {
@@ -158,20 +175,19 @@ class TwistPass {
     const UpSide& side = store_.side[s];
     const TiledBody& body = context_.body;
     get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
-    get_large(side.positions, body.positions_ea + before(slice.input, 64), slice.input_groups * 64, s);
-    get_large(side.velocities, body.held_ea + before(slice.input, 48), slice.input_groups * 48, s);
-    get_large(side.modified_mass, body.modified_ea + before(slice.input, 16), slice.input_groups * 16, s);
-    get_large(side.momenta, body.momenta_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_range(side.positions, input_of(slice, body.positions_ea, 64), s);
+    get_range(side.velocities, input_of(slice, body.held_ea, 48), s);
+    get_range(side.modified_mass, input_of(slice, body.modified_ea, 16), s);
+    get_range(side.momenta, output_of(slice, body.momenta_ea, 64), s);
   }
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
     const TiledBody& body = context_.body;
-    touches.add(body.positions_ea + before(coming.input, 64), coming.input_groups * 64);
-    touches.add(body.held_ea + before(coming.input, 48), coming.input_groups * 48);
-    touches.add(body.modified_ea + before(coming.input, 16), coming.input_groups * 16);
-    touches.add(body.momenta_ea + before(coming.output, 64), coming.output_groups * 64);
-    touches.add(body.motions_ea + before(leaving.output, 4 * kTwistSlotBytes),
-                leaving.output_groups * 4 * kTwistSlotBytes);
+    touches.add(input_of(coming, body.positions_ea, 64));
+    touches.add(input_of(coming, body.held_ea, 48));
+    touches.add(input_of(coming, body.modified_ea, 16));
+    touches.add(output_of(coming, body.momenta_ea, 64));
+    touches.add(output_of(leaving, body.motions_ea, 4 * kTwistSlotBytes));
   }
 
   void work(const TileSlice& slice, uint32_t s, Touches& touches) {
@@ -189,8 +205,7 @@ class TwistPass {
       twist_regions(m.inverse_mass, m.momentum, store_.slots + slice.sums_slot + 4 * g, twists + 4 * g,
                     noise_floor);
     }
-    put_large(twists, context_.body.motions_ea + before(slice.output, 4 * kTwistSlotBytes),
-              slice.output_groups * 4 * kTwistSlotBytes, kTagOut);
+    put_range(twists, output_of(slice, context_.body.motions_ea, 4 * kTwistSlotBytes), kTagOut);
   }
 
  private:
@@ -206,24 +221,22 @@ class ScatterPass {
   void fetch(const TileSlice& slice, uint32_t s) {
     const DownSide& side = store_.side[s];
     const TiledBody& body = context_.body;
-    get_large(side.velocities, body.velocities_ea + before(slice.output, 64), slice.output_groups * 64, s);
+    get_range(side.velocities, output_of(slice, body.velocities_ea, 64), s);
     get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
-    get_large(store_.slots + slice.input_slot, body.motions_ea + before(slice.input, 4 * kMatchSlotBytes),
-              slice.input_groups * 4 * kMatchSlotBytes, s);
-    get_large(side.positions, body.positions_ea + before(slice.output, 64), slice.output_groups * 64, s);
-    get_large(side.rest, body.rest_ea + before(slice.output, 64), slice.output_groups * 64, s);
-    get_large(side.weights, body.weights_ea + before(slice.output, 32), slice.output_groups * 32, s);
+    get_range(store_.slots + slice.input_slot, input_of(slice, body.motions_ea, 4 * kMatchSlotBytes), s);
+    get_range(side.positions, output_of(slice, body.positions_ea, 64), s);
+    get_range(side.rest, output_of(slice, body.rest_ea, 64), s);
+    get_range(side.weights, output_of(slice, body.weights_ea, 32), s);
   }
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
     const TiledBody& body = context_.body;
-    touches.add(body.motions_ea + before(coming.input, 4 * kMatchSlotBytes),
-                coming.input_groups * 4 * kMatchSlotBytes);
-    touches.add(body.velocities_ea + before(coming.output, 64), coming.output_groups * 64);
-    touches.add(body.positions_ea + before(coming.output, 64), coming.output_groups * 64);
-    touches.add(body.rest_ea + before(coming.output, 64), coming.output_groups * 64);
-    touches.add(body.weights_ea + before(coming.output, 32), coming.output_groups * 32);
-    touches.add(body.held_ea + before(leaving.output, 48), leaving.output_groups * 48);
+    touches.add(input_of(coming, body.motions_ea, 4 * kMatchSlotBytes));
+    touches.add(output_of(coming, body.velocities_ea, 64));
+    touches.add(output_of(coming, body.positions_ea, 64));
+    touches.add(output_of(coming, body.rest_ea, 64));
+    touches.add(output_of(coming, body.weights_ea, 32));
+    touches.add(output_of(leaving, body.held_ea, 48));
   }
 
   void work(const TileSlice& slice, uint32_t s, Touches& touches) {
@@ -246,7 +259,7 @@ class ScatterPass {
       side.held[g] = scale_add(to_goal, own_pull, side.velocities[g].v);
       add_pulls(pulls_, to_goal, spu_mul(weights.mass, scale));
     }
-    put_large(side.held, body.held_ea + before(slice.output, 48), slice.output_groups * 48, s);
+    put_range(side.held, output_of(slice, body.held_ea, 48), s);
   }
 
   void report(TileReport& report) {
@@ -272,26 +285,24 @@ class DampPass {
   void fetch(const TileSlice& slice, uint32_t s) {
     const DownSide& side = store_.side[s];
     const TiledBody& body = context_.body;
-    get_large(side.held, body.held_ea + before(slice.output, 48), slice.output_groups * 48, s);
+    get_range(side.held, output_of(slice, body.held_ea, 48), s);
     if (!damping_) return;
     get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
-    get_large(slots() + slice.input_slot, body.motions_ea + before(slice.input, 4 * kTwistSlotBytes),
-              slice.input_groups * 4 * kTwistSlotBytes, s);
-    get_large(side.positions, body.positions_ea + before(slice.output, 64), slice.output_groups * 64, s);
-    get_large(side.weights, body.weights_ea + before(slice.output, 32), slice.output_groups * 32, s);
-    get_large(side.modified_mass, body.modified_ea + before(slice.output, 16), slice.output_groups * 16, s);
+    get_range(slots() + slice.input_slot, input_of(slice, body.motions_ea, 4 * kTwistSlotBytes), s);
+    get_range(side.positions, output_of(slice, body.positions_ea, 64), s);
+    get_range(side.weights, output_of(slice, body.weights_ea, 32), s);
+    get_range(side.modified_mass, output_of(slice, body.modified_ea, 16), s);
   }
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
     const TiledBody& body = context_.body;
-    touches.add(body.held_ea + before(coming.output, 48), coming.output_groups * 48);
-    touches.add(body.velocities_ea + before(leaving.output, 64), leaving.output_groups * 64);
+    touches.add(output_of(coming, body.held_ea, 48));
+    touches.add(output_of(leaving, body.velocities_ea, 64));
     if (!damping_) return;
-    touches.add(body.motions_ea + before(coming.input, 4 * kTwistSlotBytes),
-                coming.input_groups * 4 * kTwistSlotBytes);
-    touches.add(body.positions_ea + before(coming.output, 64), coming.output_groups * 64);
-    touches.add(body.weights_ea + before(coming.output, 32), coming.output_groups * 32);
-    touches.add(body.modified_ea + before(coming.output, 16), coming.output_groups * 16);
+    touches.add(input_of(coming, body.motions_ea, 4 * kTwistSlotBytes));
+    touches.add(output_of(coming, body.positions_ea, 64));
+    touches.add(output_of(coming, body.weights_ea, 32));
+    touches.add(output_of(coming, body.modified_ea, 16));
   }
 
   void work(const TileSlice& slice, uint32_t s, Touches& touches) {
@@ -311,8 +322,7 @@ class DampPass {
       store_.damped[g].v = v;
     }
     to_particles(store_.damped, slice.output_groups);
-    put_large(store_.damped, context_.body.velocities_ea + before(slice.output, 64), slice.output_groups * 64,
-              kTagOut);
+    put_range(store_.damped, output_of(slice, context_.body.velocities_ea, 64), kTagOut);
   }
 
  private:
