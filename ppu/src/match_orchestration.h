@@ -1,9 +1,10 @@
 #pragma once
-// What the orchestrators of the kernels match and match_2d share.
+// What the orchestrators of the kernels match, match_tiles and match_2d share.
 
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "softcell/dma/address_space.h"
 #include "softcell/ppu/job_system.h"
@@ -29,6 +30,15 @@ inline void check_jobs(const JobChain& chain) {
   std::string failures;
   for (const JobFailure& failure : chain.failures()) failures += "; " + failure.message;
   if (!failures.empty()) throw std::runtime_error("stepping soft bodies failed" + failures);
+}
+
+/// Waits for the chain. @param in_flight  whether a step was kicked that nobody has waited for; false then
+/// @return  its value before: there is something to take back. @throws as check_jobs()
+inline bool take_back(JobChain& chain, bool& in_flight) {
+  chain.wait();
+  if (!std::exchange(in_flight, false)) return false;
+  check_jobs(chain);
+  return true;
 }
 
 /// Bodies whose data are no numbers.

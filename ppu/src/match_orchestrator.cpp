@@ -30,10 +30,7 @@ void MatchOrchestrator::kick(const MatchSettings& settings) {
 }
 
 void MatchOrchestrator::wait() {
-  chain_.wait();
-  if (!in_flight_) return;
-  in_flight_ = false;
-  check_jobs(chain_);
+  if (!take_back(chain_, in_flight_)) return;
   BadBodies bad;
   for (const std::size_t body : bodies_.take_results()) bad.add(body);
   bad.check();

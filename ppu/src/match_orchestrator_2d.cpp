@@ -105,10 +105,7 @@ void MatchOrchestrator2d::kick(std::span<const Settings> settings) {
 }
 
 void MatchOrchestrator2d::wait() {
-  chain_.wait();
-  if (!in_flight_) return;
-  in_flight_ = false;
-  check_jobs(chain_);
+  if (!take_back(chain_, in_flight_)) return;
   BadBodies bad;
   std::size_t number = 0;
   for (const Bodies& model : models_) {

@@ -66,7 +66,7 @@ bool SpeSolver::knows(std::span<SoftBody* const> bodies) const {
 }
 
 /// Whole where they fit, else in tiles. Plans of tiles take a while: a model's is made once.
-void SpeSolver::find_place(Group& group, std::size_t bodies) {
+void SpeSolver::find_place(Group& group) {
   const SoftBodyModel& model = *group.model;
   const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const auto& old) {
     return old->model == group.model && old->tiles != nullptr;
@@ -77,7 +77,7 @@ void SpeSolver::find_place(Group& group, std::size_t bodies) {
   }
   try {
     const std::uint32_t arena_bytes = checked_ ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes;
-    group.bodies.emplace(memory_, MatchPlan(model.lattice(), *model.plan(), arena_bytes), bodies);
+    group.bodies.emplace(memory_, MatchPlan(model.lattice(), *model.plan(), arena_bytes), group.count);
     return;
   } catch (const BodyTooLarge&) {
     // Then in tiles.
@@ -114,7 +114,7 @@ void SpeSolver::regroup(std::span<SoftBody* const> bodies) {
     member.group = group->get();
     member.number = (*group)->count++;
   }
-  for (const auto& group : groups) find_place(*group, group->count);
+  for (const auto& group : groups) find_place(*group);
   std::size_t jobs = 0;
   for (Member& member : members) {
     const auto old = std::find_if(members_.begin(), members_.end(), [&](const Member& known) {

@@ -153,10 +153,7 @@ void TiledMatch::kick(const MatchSettings& settings) {
 }
 
 void TiledMatch::wait() {
-  chain_.wait();
-  if (!in_flight_) return;
-  in_flight_ = false;
-  check_jobs(chain_);
+  if (!take_back(chain_, in_flight_)) return;
   memory_.end_step();
 }
 

@@ -40,7 +40,7 @@ class SpeSolver final : public SoftBodySolver {
 
   bool knows(std::span<SoftBody* const> bodies) const;
   void regroup(std::span<SoftBody* const> bodies);
-  void find_place(Group& group, std::size_t bodies);
+  void find_place(Group& group);
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
   void take_back(const Member& member);
