@@ -6,17 +6,11 @@
 #include <cstdint>
 #include <cstring>
 
-#if defined(__SANITIZE_THREAD__)
-#define SC_THREAD_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define SC_THREAD_SANITIZER 1
-#endif
-#endif
+#include "softcell/dma/sanitizers.h"
 
 namespace softcell::dma {
 
-#if defined(SC_THREAD_SANITIZER)
+#if SC_THREAD_SANITIZER
 // The sanitizer's own accesses of 16 bytes: as builtins, the compilers know atomic ones of up to 8.
 __extension__ typedef unsigned __int128 TsanQuadword;
 extern "C" TsanQuadword __tsan_atomic128_load(const volatile void* from, int order);
@@ -33,7 +27,7 @@ void copy_unit(std::byte* to, const std::byte* from) {
 /// An aligned access of 16 bytes is indivisible on every x86 with AVX, and ordered as all others. The
 /// volatile keeps the compiler from cutting it or making a memcpy of a loop.
 inline void copy_quadword(std::byte* to, const std::byte* from) {
-#if defined(SC_THREAD_SANITIZER)
+#if SC_THREAD_SANITIZER
   __tsan_atomic128_store(to, __tsan_atomic128_load(from, __ATOMIC_ACQUIRE), __ATOMIC_RELEASE);
 #else
   typedef long long Quadword __attribute__((vector_size(16), may_alias));

@@ -14,6 +14,7 @@
 
 #include "scene_file/scene_library.h"
 #include "simulation_3d.h"
+#include "softcell/dma/sanitizers.h"
 
 namespace softcell::demos {
 namespace {
@@ -21,11 +22,7 @@ namespace {
 constexpr int kFramesASecond = 60;
 
 // A sanitizer keeps freed memory for a while, so that there is nothing to be learnt from its amount.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kMemoryIsMeasured = false;
-#else
-constexpr bool kMemoryIsMeasured = true;
-#endif
+constexpr bool kMemoryIsMeasured = SC_ADDRESS_SANITIZER == 0 && SC_THREAD_SANITIZER == 0;
 
 /// Of this process, resident, in megabytes.
 double memory_in_use() {

@@ -9,13 +9,14 @@
 #include "kernel_samples.h"
 #include "scene_file/scene_library.h"
 #include "simulation_3d.h"
+#include "softcell/dma/sanitizers.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_scalar.h"
 
 namespace softcell::demos {
 namespace {
 
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(NDEBUG) && !SC_ADDRESS_SANITIZER && !SC_THREAD_SANITIZER
 constexpr bool kOptimised = true;
 #else
 constexpr bool kOptimised = false;

@@ -13,6 +13,7 @@
 #include <span>
 
 #include "lua_result.h"
+#include "softcell/dma/sanitizers.h"
 #include "value_message.h"
 
 namespace softcell::demos {
@@ -203,17 +204,7 @@ void set_limit(__rlimit_resource resource, rlim_t value) {
 
 // The address sanitizer's runtime maps memory as it likes and reads /proc when an exception is thrown. What a
 // script has cannot open files, and Lua's allocator keeps its limit, there too.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kLimitProcess = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kLimitProcess = false;
-#else
-constexpr bool kLimitProcess = true;
-#endif
-#else
-constexpr bool kLimitProcess = true;
-#endif
+constexpr bool kLimitProcess = SC_ADDRESS_SANITIZER == 0;
 
 }  // namespace
 
