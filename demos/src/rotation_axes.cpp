@@ -14,13 +14,10 @@ void Lines::add(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
   links.push_back({first, first + 1});
 }
 
-void RotationAxes::add_body(std::shared_ptr<const ppu::MatchingPlan<float>> plan) {
-  matchers_.emplace_back(std::move(plan));
-}
-
 void RotationAxes::update(const std::vector<Shown3d::Body>& bodies) {
   constexpr float kLengthInCells = 0.45f;  // neighbours' axes do not meet
   for (Lines& lines : axes_) lines.clear();
+  while (matchers_.size() < plans_.size()) matchers_.emplace_back(plans_[matchers_.size()]);
   for (std::size_t b = 0; b < matchers_.size(); ++b) {
     ppu::ShapeMatcher<float>& matcher = matchers_[b];
     positions_.clear();

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "shown.h"
@@ -24,7 +25,7 @@ struct Lines {
 /// are shown, so that it does not matter who solved the step, and where that keeps its rotations.
 class RotationAxes {
  public:
-  void add_body(std::shared_ptr<const ppu::MatchingPlan<float>> plan);
+  void add_body(std::shared_ptr<const ppu::MatchingPlan<float>> plan) { plans_.push_back(std::move(plan)); }
 
   /// @param bodies  of which as many as there are in here, in order
   void update(const std::vector<Shown3d::Body>& bodies);
@@ -33,7 +34,8 @@ class RotationAxes {
   const std::array<Lines, 3>& axes() const { return axes_; }
 
  private:
-  std::vector<ppu::ShapeMatcher<float>> matchers_;
+  std::vector<std::shared_ptr<const ppu::MatchingPlan<float>>> plans_;
+  std::vector<ppu::ShapeMatcher<float>> matchers_;  // made when they are first asked for: most runs never do
   std::vector<Eigen::Vector3f> positions_, goals_;
   std::array<Lines, 3> axes_;
 };
