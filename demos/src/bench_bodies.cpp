@@ -23,10 +23,7 @@ ppu::Lattice lattice_where(const Eigen::Vector3i& size, const Inside& inside) {
 
 double square(double v) { return v * v; }
 
-/// 10 x 10 x 10 particles.
-ppu::Lattice block1000() {
-  return lattice_where({9, 9, 9}, [](double, double, double) { return true; });
-}
+ppu::Lattice block1000() { return bench_block({10, 10, 10}); }
 
 /// A ring of 10 cells with a tube of 4.
 ppu::Lattice torus() {
@@ -67,6 +64,10 @@ constexpr std::array<BenchBody, 5> kBodies{
     {{"block1000", block1000}, {"torus", torus}, {"shell", shell}, {"penguin150", penguin150}, {"car", car}}};
 
 }  // namespace
+
+ppu::Lattice bench_block(const Eigen::Vector3i& particles) {
+  return lattice_where(particles - Eigen::Vector3i::Ones(), [](double, double, double) { return true; });
+}
 
 std::span<const BenchBody> bench_bodies() { return kBodies; }
 

@@ -18,6 +18,9 @@ struct BenchBody {
 /// block1000, torus, shell, penguin150 and car; about 150 to 1000 particles, 0.1 m apart.
 std::span<const BenchBody> bench_bodies();
 
+/// A block, likewise. @param particles  along each axis
+ppu::Lattice bench_block(const Eigen::Vector3i& particles);
+
 /// Particles in one measurement, in as many bodies as that makes: waking an SPE does not count then, and the
 /// data of all bodies are more than the nearest caches hold, as in a scene.
 inline constexpr std::size_t kBenchParticles = 16'000;

@@ -4,8 +4,6 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <chrono>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "benchmarks.h"
 #include "kernel_samples.h"
 #include "scene_file/scene_library.h"
+#include "scene_frames.h"
 #include "simulation_3d.h"
 #include "softcell/ppu/bullet_world.h"
 #include "softcell/ppu/spe_solver.h"
@@ -23,28 +22,7 @@ namespace {
 constexpr int kFramesBefore = 120;  // so that bodies lie on each other when measuring begins
 constexpr float kFrameSeconds = 1.0f / 60;
 
-/// A scene as it is simulated, skinning included.
-class SoftFrames {
- public:
-  explicit SoftFrames(const std::string& scene) : scene_(load_scene_3d(scene)), simulation_(scene_, {}) {
-    for (int i = 0; i < kFramesBefore; ++i) step();
-  }
-
-  void step() { ppu_milliseconds_ += simulation_.step().ppu_ms; }
-
-  /// Processor time of softcell on the PPU, in all frames.
-  std::chrono::nanoseconds ppu_time() const {
-    return std::chrono::nanoseconds(std::llround(1e6 * ppu_milliseconds_));
-  }
-
-  const Scene& scene() const { return scene_; }
-  const Simulation3d& simulation() const { return simulation_; }
-
- private:
-  Scene scene_;
-  Simulation3d simulation_;
-  double ppu_milliseconds_ = 0;
-};
+using SoftFrames = SceneFrames<Scene, Simulation3d>;
 
 /// A substep's shape matching and damping of a scene's bodies as they are, again and again, on one SPE.
 class SolverSteps {
@@ -115,7 +93,8 @@ class SphereFrames {
 };
 
 void add_scene(std::vector<Benchmark>& all, const std::string& scene) {
-  const Shared<SoftFrames> shared([=] { return std::make_shared<SoftFrames>(scene); });
+  const Shared<SoftFrames> shared(
+      [=] { return std::make_shared<SoftFrames>(load_scene_3d(scene), kFramesBefore); });
   const std::string name = "frame/" + scene;
   all.push_back({name, [=] {
                    const auto frames = shared.get();

@@ -6,14 +6,13 @@
 #include <box2d/b2_polygon_shape.h>
 #include <box2d/b2_world.h>
 
-#include <chrono>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "benchmarks.h"
 #include "scene_file/scene_library.h"
+#include "scene_frames.h"
 #include "simulation_2d.h"
 
 namespace softcell::demos {
@@ -23,23 +22,7 @@ constexpr int kFramesBefore = 300;  // so that all is on the floor when measurin
 constexpr int kFrames = 20;         // in one measurement
 constexpr float kFrameSeconds = 1.0f / 60;
 
-/// A scene as it is simulated.
-class SoftFrames2d {
- public:
-  explicit SoftFrames2d(const std::string& scene) : scene_(load_scene_2d(scene)), simulation_(scene_) {}
-
-  void step() { ppu_milliseconds_ += simulation_.step().ppu_ms; }
-
-  /// Processor time of softcell on the PPU, in all frames.
-  std::chrono::nanoseconds ppu_time() const {
-    return std::chrono::nanoseconds(std::llround(1e6 * ppu_milliseconds_));
-  }
-
- private:
-  Scene2d scene_;
-  Simulation2d simulation_;
-  double ppu_milliseconds_ = 0;
-};
+using SoftFrames2d = SceneFrames<Scene2d, Simulation2d>;
 
 /// A scene of walls and soft bodies, with a loose circle for each particle: what Box2D alone costs, all of
 /// them colliding.
@@ -57,6 +40,7 @@ class CircleFrames {
       for (std::size_t i = 0; i < model->particles(); ++i)
         add_circle(model->lattice().rest_position(i) + placement.position, model->contact_radius());
     }
+    for (int i = 0; i < kFramesBefore; ++i) step();
   }
 
   void step() {
@@ -86,15 +70,6 @@ class CircleFrames {
 };
 
 template <typename Frames>
-Shared<Frames> frames_of(const std::string& scene) {
-  return Shared<Frames>([=] {
-    const auto frames = std::make_shared<Frames>(scene);
-    for (int i = 0; i < kFramesBefore; ++i) frames->step();
-    return frames;
-  });
-}
-
-template <typename Frames>
 Work work_of(const std::shared_ptr<Frames>& frames) {
   return {kFrames, [=] {
             for (int i = 0; i < kFrames; ++i) frames->step();
@@ -104,15 +79,15 @@ Work work_of(const std::shared_ptr<Frames>& frames) {
 }  // namespace
 
 void add_frame_2d_benchmarks(std::vector<Benchmark>& all) {
-  const auto man = frames_of<SoftFrames2d>("man");
-  const auto circles = frames_of<CircleFrames>("man");
+  const Shared<SoftFrames2d> man(
+      [] { return std::make_shared<SoftFrames2d>(load_scene_2d("man"), kFramesBefore); });
   all.push_back({"frame/man", [=] { return work_of(man.get()); }});
   all.push_back({"frame/man/ppu", [=] {
                    Work work = work_of(man.get());
                    work.spent = [frames = man.get()] { return frames->ppu_time(); };
                    return work;
                  }});
-  all.push_back({"frame/man/circles", [=] { return work_of(circles.get()); }});
+  all.push_back({"frame/man/circles", [] { return work_of(std::make_shared<CircleFrames>("man")); }});
 }
 
 }  // namespace softcell::demos

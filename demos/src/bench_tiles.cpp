@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "bench_bodies.h"
 #include "benchmarks.h"
 #include "kernel_samples.h"
 #include "softcell/ppu/shape_matching.h"
@@ -104,14 +105,7 @@ class LargeBody {
 void add_block(std::vector<Benchmark>& all, const char* name, const Eigen::Vector3i& particles,
                int half_width) {
   all.push_back({fmt::format("solver3d/{}/w{}/spe", name, half_width), [particles, half_width] {
-                   std::vector<Eigen::Vector3i> cells;
-                   for (int x = 0; x + 1 < particles.x(); ++x)
-                     for (int y = 0; y + 1 < particles.y(); ++y)
-                       for (int z = 0; z + 1 < particles.z(); ++z) cells.emplace_back(x, y, z);
-                   const Eigen::Vector3f origin =
-                       -0.05f * (particles.cast<float>() - Eigen::Vector3f::Ones());
-                   const auto body =
-                       std::make_shared<LargeBody>(ppu::lattice_from_cells(cells, 0.1f, origin), half_width);
+                   const auto body = std::make_shared<LargeBody>(bench_block(particles), half_width);
                    return Work{.items = static_cast<std::size_t>(particles.prod()),
                                .run = [body] { body->run(); },
                                .note = [body] { return body->shares(); }};
