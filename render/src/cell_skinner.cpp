@@ -7,9 +7,9 @@ namespace softcell::render {
 namespace {
 
 // The trilinear map of a cell as a polynomial in the vertex's place, term by term as the kernel `skin` has
-// it: what is left between the two is how each operation rounds. Vertices become binary16 by the kernel's
-// rule too, to the nearest, ties to even; a GPU that drew them unrounded would show edges up to half a unit
-// away.
+// it: what is left between the two is how each operation rounds. Vertices become binary16, too, to the
+// nearest (ties to even, where the kernel's go away from zero); a GPU that drew them unrounded would show
+// edges up to half a unit away.
 constexpr char kVertex[] = R"glsl(#version 330 core
 layout(location = 0) in uvec4 lower_corners;  // corner k = bx + 2 by + 4 bz of the cell
 layout(location = 1) in uvec4 upper_corners;
