@@ -157,8 +157,7 @@ class BinaryValues {
   double value(const Type& type) {
     if (rest_.size() < type.size) refuse("it ends before all the elements that its header promises");
     std::array<char, 8> raw{};
-    std::copy_n(rest_.begin(), type.size, raw.begin());
-    if (swap_) std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(type.size));
+    for (std::size_t i = 0; i < type.size; ++i) raw[swap_ ? type.size - 1 - i : i] = rest_[i];
     rest_.remove_prefix(type.size);
     switch (type.kind) {
       case Type::kReal:

@@ -22,11 +22,13 @@ constexpr GLuint kPositionAttribute = 0;
 constexpr GLuint kNormalAttribute = 1;
 constexpr GLuint kFrameBinding = 0;
 
-/// The uniform block `Frame` of shaders.h, std140.
+/// The uniform block `Frame` of shaders.h, std140. Eigen would align matrices to what the widest registers
+/// of the build want.
 struct FrameBlock {
-  Eigen::Matrix4f view_projection;
-  Eigen::Matrix4f light_projection;
-  Eigen::Matrix4f view_to_world;
+  using Matrix = Eigen::Matrix<float, 4, 4, Eigen::DontAlign>;
+  Matrix view_projection;
+  Matrix light_projection;
+  Matrix view_to_world;
   Eigen::Vector4f eye;
   Eigen::Vector4f toward_light;
   Eigen::Vector4f light_colour;
