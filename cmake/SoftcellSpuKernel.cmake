@@ -56,8 +56,9 @@ function(softcell_compile_spu_sources target)
   # The project's own flags come first on the command line; these win over them.
   target_compile_options(${target} PRIVATE
     -U_FORTIFY_SOURCE ${SOFTCELL_KERNEL_FLAGS}
-    # No gcse: it spills more than it saves here, and a real SPU g++ 9 needs to go without it too (it miscompiles).
-    "$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns;-fno-gcse>"
+    # No gcse: it spills more than it saves here, and a real SPU g++ 9 needs to go without it too (it miscompiles). No scev-cprop: a
+    # pointer that a short loop has moved on is not to be calculated again behind it.
+    "$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns;-fno-gcse;-fno-tree-scev-cprop>"
     "SHELL:-include ${SOFTCELL_SDK_DIR}/host/softcell_entry.h" ${arg_OPTIONS})
   target_include_directories(${target} PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/.. ${arg_INCLUDES})
 endfunction()

@@ -135,9 +135,9 @@ __attribute__((always_inline)) inline Quaternion4 improve(const Estimate& e, con
   return turn(q, half);
 }
 
-/// Top bit set where the answer cannot be trusted.
-inline vec_uint4 lost(const Estimate& e) {
-  return spu_or(e.indefinite, less(spu_splats(kRotationLost * kRotationLost), e.residual_square));
+/// Top bit set where the residual says that the answer is none.
+inline vec_uint4 far_off(const Estimate& e) {
+  return less(spu_splats(kRotationLost * kRotationLost), e.residual_square);
 }
 
 inline Quaternion4 select(const Quaternion4& a, const Quaternion4& b, vec_uint4 mask) {
@@ -175,15 +175,19 @@ __attribute__((always_inline)) inline Matrix3x4 normalised(const Matrix3x4& a, c
 /// One iteration is a chain of dependent operations and takes five times as long as its operations would.
 /// Groups do not depend on each other: a pass makes one iteration of all of them, for the processor, or the
 /// compiler that unrolls it, to overlap.
-/// @param q  unit to 1e-5; in: last step's. out: unit to 5e-6.
+/// @param q           unit to 1e-5; in: last step's. out: unit to 5e-6.
+/// @param indefinite  out, for each group: top bit set where H was not positive at the last look
 __attribute__((noinline)) inline void improve_rotations(const RotationProblem* problems, Quaternion4* q,
-                                                        uint32_t count, RotationEffort effort) {
+                                                        vec_uint4* indefinite, uint32_t count,
+                                                        RotationEffort effort) {
   using namespace rotation_detail;
   const vec_float4 good = spu_splats(kRotationResidual * kRotationResidual);
+  for (uint32_t g = 0; g < count; ++g) indefinite[g] = spu_splats(0u);
   for (uint32_t pass = 0; pass < effort.most; ++pass) {
     bool all_good = pass >= effort.least;
     for (uint32_t g = 0; g < count; ++g) {
       const Estimate e = estimate(problems[g].a, q[g]);
+      indefinite[g] = e.indefinite;
       if (pass < effort.least) {
         q[g] = improve(e, q[g]);
         continue;
@@ -211,8 +215,10 @@ __attribute__((noinline)) inline Rotation4 start_again(const RotationProblem& pr
                                                        vec_uint4 mask) {
   const Quaternion4 found = davenport(problem.a, q);
   Quaternion4 polished = found;
-  improve_rotations(&problem, &polished, 1, {kPolishing, kPolishing});
-  const vec_uint4 failed = negative_lanes(lost(estimate_slowly(problem.a, polished)));
+  vec_uint4 indefinite;
+  improve_rotations(&problem, &polished, &indefinite, 1, {kPolishing, kPolishing});
+  const Estimate last = estimate_slowly(problem.a, polished);
+  const vec_uint4 failed = negative_lanes(spu_or(last.indefinite, far_off(last)));
   q = select(q, select(polished, found, failed), mask);
   const Estimate e = estimate_slowly(problem.a, q);
   return {e.r, e.residual_square};
@@ -222,11 +228,16 @@ __attribute__((noinline)) inline Rotation4 start_again(const RotationProblem& pr
 
 /// The matrices of quaternions that improve_rotations() has made. Lanes that are lost all the same start
 /// cold, and change `q`.
-__attribute__((always_inline)) inline Rotation4 rotation_of(const RotationProblem& problem, Quaternion4& q) {
+///
+/// Lost is what is far off, or was in a place without a minimum nearby when it was last looked at. Whether H
+/// is positive here is not asked again, which would be half of the work: from where it was, Newton's method
+/// does not come to a saddle but by a hair's breadth, and the next step's first look would find it there.
+__attribute__((always_inline)) inline Rotation4 rotation_of(const RotationProblem& problem, Quaternion4& q,
+                                                            vec_uint4 indefinite) {
   using namespace rotation_detail;
   const Estimate e = estimate(problem.a, q);
-  const vec_uint4 restart = lost(e);
-  if (__builtin_expect(any_negative(restart), 0)) return start_again(problem, q, negative_lanes(restart));
+  const vec_uint4 lost = spu_or(indefinite, far_off(e));
+  if (__builtin_expect(any_negative(lost), 0)) return start_again(problem, q, negative_lanes(lost));
   return {e.r, e.residual_square};
 }
 

@@ -46,8 +46,10 @@ void find_block(uint32_t first, uint32_t count) {
     ls.problems[g] = {normalised(ls.matrices[first + g], {one, zero}), {zero, zero, zero}};
     q[g] = ls.starts[first + g];
   }
-  improve_rotations(ls.problems, q, count, effort);
-  for (uint32_t g = 0; g < count; ++g) ls.problems[g].a = rotation_of(ls.problems[g], q[g]).matrix;
+  vec_uint4 indefinite[kBlock];
+  improve_rotations(ls.problems, q, indefinite, count, effort);
+  for (uint32_t g = 0; g < count; ++g)
+    ls.problems[g].a = rotation_of(ls.problems[g], q[g], indefinite[g]).matrix;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "softcell/ppu/lattice.h"
@@ -44,9 +45,40 @@ struct SumList {
   std::size_t additions = 0;  ///< and subtractions
 };
 
+/// Writes a list sum by sum. Slots are offsets here; 0 is the slot that adds nothing.
+class SumListWriter {
+ public:
+  /// A chain's first sum: of `terms`, none for nothing.
+  void begin(std::span<const std::uint16_t> terms);
+  /// The sum after the last one, in its chain.
+  /// @pre  follows_chain()
+  void follow(std::uint16_t joins, std::uint16_t leaves) { steps_.push_back({joins, leaves}); }
+  /// The sum after one that a chain of another list has made.
+  void go_on(std::uint16_t before, std::uint16_t joins, std::uint16_t leaves);
+
+  /// Whether the last sum was one of a chain.
+  bool follows_chain() const { return !terms_.empty(); }
+
+  /// The list, ended. @pre nothing more is written
+  SumList finish();
+
+ private:
+  struct Step {
+    std::uint16_t joins, leaves;
+  };
+  void end_chain();
+  void push(std::size_t halfword) { list_.halfwords.push_back(static_cast<std::uint16_t>(halfword)); }
+
+  SumList list_;
+  std::vector<std::uint16_t> terms_;  ///< of the chain under way
+  std::vector<Step> steps_;
+  std::size_t run_at_ = 0;  ///< where the length of the run under way stands; meaningless unless in_run_
+  bool in_run_ = false;
+};
+
 /// How a list is written.
 struct SumListFormat {
-  std::uint32_t slot_bytes;  ///< a multiple of 8
+  std::uint32_t slot_bytes;  ///< a multiple of 4
   int restart;               ///< chains end before places that are a multiple of it
 
   constexpr std::uint32_t max_slot() const { return 0xFFFF / (slot_bytes / spu::kSumOffsetUnit); }

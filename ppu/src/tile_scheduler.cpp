@@ -222,37 +222,28 @@ void TileScheduler::append_list(int kind, const Block& block, std::vector<std::u
   const auto offset = [&](int of, std::uint32_t slot) {
     return sum_list_offset(local(of, slot), slot_bytes_);
   };
-  std::size_t open_chain = 0, open_run = 0;  // where its length stands; 0: none
+  SumListWriter writer;
+  std::vector<std::uint16_t> terms;
   std::uint32_t previous = 0;
   for (const std::uint32_t slot : block.slots) {
     const SumLevel::Rule rule = slot == 0 ? SumLevel::Rule{} : sums.rules[slot - 1];
     if (!rule.follows) {
-      const std::span<const std::uint32_t> terms =
-          slot == 0 ? std::span<const std::uint32_t>{} : sums.terms[slot - 1];
-      out.push_back(static_cast<std::uint16_t>(std::max<std::size_t>(1, terms.size())));
-      open_chain = out.size();
-      out.push_back(0);
-      for (const std::uint32_t term : terms) out.push_back(offset(kind - 1, term));
-      if (terms.empty()) out.push_back(0);  // padding is nothing
-      open_run = 0;
-    } else if (open_chain != 0 && previous + 1 == slot) {
-      ++out[open_chain];
-      out.push_back(offset(kind - 1, rule.joins));
-      out.push_back(offset(kind - 1, rule.leaves));
-    } else {
-      if (open_run == 0) {
-        open_run = out.size();
-        out.push_back(spu::kSumRun);
+      terms.clear();
+      if (slot != 0) {  // padding is nothing
+        for (const std::uint32_t term : sums.terms[slot - 1]) terms.push_back(offset(kind - 1, term));
       }
-      ++out[open_run];
-      out.push_back(offset(kind, slot - 1));
-      out.push_back(offset(kind - 1, rule.joins));
-      out.push_back(offset(kind - 1, rule.leaves));
-      open_chain = 0;
+      writer.begin(terms);
+    } else {
+      const std::uint16_t joins = offset(kind - 1, rule.joins), leaves = offset(kind - 1, rule.leaves);
+      if (writer.follows_chain() && previous + 1 == slot)
+        writer.follow(joins, leaves);
+      else
+        writer.go_on(offset(kind, slot - 1), joins, leaves);
     }
     previous = slot;
   }
-  out.push_back(0);
+  const std::vector<std::uint16_t> list = writer.finish().halfwords;
+  out.insert(out.end(), list.begin(), list.end());
 }
 
 spu::TileSlice TileScheduler::written(const Slice& slice) {

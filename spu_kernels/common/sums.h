@@ -49,28 +49,37 @@ __attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, S
       }
       continue;
     }
-    const uint32_t steps = list[1];
-    list += 2;
+    const uint32_t growing = list[1], sliding = list[2], shrinking = list[3];
+    list += 4;
 
     vec_float4 sum[kRows];
-    const Slot& first = slot_at(in, list[0]);
+    const Slot& first = slot_at(in, *list++);
     for_rows([&](int k) __attribute__((always_inline)) { sum[k] = first.row[k]; });
-    for (uint32_t i = 1; i < terms; ++i) {
-      const Slot& term = slot_at(in, list[i]);
-      for_rows([&](int k) __attribute__((always_inline)) { sum[k] = spu_add(sum[k], term.row[k]); });
-    }
-    list += terms;
-    ++out;
-    for_rows([&](int k) __attribute__((always_inline)) { out->row[k] = sum[k]; });
-
-    const uint16_t* const end = list + 2 * steps;
-    for (; list != end; list += 2) {
-      const Slot &joins = slot_at(in, list[0]), &leaves = slot_at(in, list[1]);
+    const auto join = [&](uint32_t offset) __attribute__((always_inline)) {
+      const Slot& joins = slot_at(in, offset);
+      for_rows([&](int k) __attribute__((always_inline)) { sum[k] = spu_add(sum[k], joins.row[k]); });
+    };
+    const auto put = [&]() __attribute__((always_inline)) {
       ++out;
+      for_rows([&](int k) __attribute__((always_inline)) { out->row[k] = sum[k]; });
+    };
+    for (const uint16_t* const end = list + (terms - 1); list != end; ++list) join(*list);
+    put();
+    for (const uint16_t* const end = list + growing; list != end; ++list) {
+      join(*list);
+      put();
+    }
+    for (const uint16_t* const end = list + 2 * sliding; list != end; list += 2) {
+      const Slot &joins = slot_at(in, list[0]), &leaves = slot_at(in, list[1]);
       for_rows([&](int k) __attribute__((always_inline)) {
         sum[k] = spu_add(sum[k], spu_sub(joins.row[k], leaves.row[k]));
-        out->row[k] = sum[k];
       });
+      put();
+    }
+    for (const uint16_t* const end = list + shrinking; list != end; ++list) {
+      const Slot& leaves = slot_at(in, *list);
+      for_rows([&](int k) __attribute__((always_inline)) { sum[k] = spu_sub(sum[k], leaves.row[k]); });
+      put();
     }
   }
 }

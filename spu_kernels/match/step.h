@@ -51,18 +51,20 @@ inline void match_regions(const RegionConstants* regions, Quaternion4* rotations
                           Slot* motions, uint32_t groups, vec_float4 noise_floor, const StepOptions& options,
                           const Keep& keep, vec_float4& worst) {
   constexpr uint32_t kBlock = 8;
+  vec_uint4 indefinite[kBlock];
   for (uint32_t first = 0; first < groups; first += kBlock) {
     const uint32_t left = groups - first, count = left < kBlock ? left : kBlock;
     Slot* const slots = motions + 4 * first;
 
     for (uint32_t g = 0; g < count; ++g)
       make_problem(regions[first + g], sums + 4 * (first + g), slots + 4 * g, noise_floor);
-    if (!options.cold) improve_rotations(problem_at(slots), rotations + first, count, options.effort);
+    if (!options.cold)
+      improve_rotations(problem_at(slots), rotations + first, indefinite, count, options.effort);
     for (uint32_t g = 0; g < count; ++g) {
       const RotationProblem& problem = *problem_at(slots + 4 * g);
       const Vector3x4 momentum = problem.payload;
       const Rotation4 found = options.cold ? find_rotation(problem, rotations[first + g])
-                                           : rotation_of(problem, rotations[first + g]);
+                                           : rotation_of(problem, rotations[first + g], indefinite[g]);
       keep(first + g, momentum);
       store_motions(regions[first + g], found.matrix, momentum, slots + 4 * g);
       worst = spu_sel(worst, found.residual_square, negative_lanes(less(worst, found.residual_square)));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <numeric>
 
@@ -30,11 +31,42 @@ TEST(SumList, ChainsFollowARowAndStartAnew) {
     sums.push_back(sum);
   }
   const SumList list = write_sum_list(sums, kFormat);
-  std::vector<std::pair<int, int>> chains;  // terms, steps
-  for (const std::uint16_t* p = list.halfwords.data(); *p != 0; p += 2 + p[0] + 2 * p[1])
-    chains.emplace_back(p[0], p[1]);
-  EXPECT_EQ(chains, (std::vector<std::pair<int, int>>{{3, 15}, {5, 3}, {5, 15}, {5, 3}}));
-  EXPECT_EQ(list.additions, std::size_t{2 + 4 + 4 + 4 + 2 * 36});
+  std::vector<std::array<int, 4>> chains;  // terms, growing, sliding, shrinking
+  for (const std::uint16_t* p = list.halfwords.data(); *p != 0; p += 4 + p[0] + p[1] + 2 * p[2] + p[3])
+    chains.push_back({p[0], p[1], p[2], p[3]});
+  EXPECT_EQ(chains,
+            (std::vector<std::array<int, 4>>{{3, 2, 13, 0}, {5, 0, 3, 0}, {5, 0, 15, 0}, {5, 0, 3, 0}}));
+  EXPECT_EQ(list.additions, std::size_t{2 + 4 + 4 + 4 + 2 + 2 * 34});
+}
+
+TEST(SumList, AWindowComesInAndGoesOutWithoutAddingNothing) {
+  std::vector<Sum> sums;
+  for (int i = 0; i < 6; ++i) {
+    Sum sum{{0, 0, 0}, i, {}};
+    for (int j = std::max(0, i - 2); j <= std::min(5, i + 2); ++j)
+      sum.terms.push_back(static_cast<std::uint32_t>(j + 1));
+    sums.push_back(sum);
+  }
+  const SumList list = write_sum_list(sums, kFormat);
+  const auto o = [](std::uint32_t slot) { return sum_list_offset(slot, spu::kMatchSlotBytes); };
+  EXPECT_EQ(list.halfwords, (std::vector<std::uint16_t>{3, 2, 1, 2, o(1), o(2), o(3), o(4), o(5), o(6), o(1),
+                                                        o(2), o(3), 0}));
+  EXPECT_EQ(list.additions, std::size_t{2 + 2 + 2 + 2});
+}
+
+TEST(SumList, AWindowWithAGapSlidesOverNothing) {
+  SumListWriter writer;
+  const auto o = [](std::uint32_t slot) { return sum_list_offset(slot, spu::kMatchSlotBytes); };
+  const std::uint16_t first[] = {o(1)};
+  writer.begin(first);
+  writer.follow(o(2), 0);
+  writer.follow(0, o(1));
+  writer.follow(o(3), 0);
+  writer.follow(0, o(2));
+  const SumList list = writer.finish();
+  EXPECT_EQ(list.halfwords, (std::vector<std::uint16_t>{1, 1, 2, 1, o(1), o(2), 0, o(1), o(3), 0, o(2), 0}));
+  Slots in = {0, 1, 10, 100};
+  EXPECT_EQ(run(list.halfwords.data(), in, 6), (Slots{0, 1, 11, 10, 110, 100}));
 }
 
 TEST(SumList, ASumThatDiffersByMoreIsWrittenOut) {
@@ -48,7 +80,7 @@ TEST(SumList, PlacesBelowZeroAreInBlocksToo) {
   std::vector<Sum> sums;
   for (int place = -3; place < 3; ++place) sums.push_back({{0, 0, 0}, place, {1}});
   const SumList list = write_sum_list(sums, kFormat);
-  EXPECT_EQ(list.halfwords[1], 2);  // -3, -2, -1; then anew
+  EXPECT_EQ(list.halfwords[1], 2);  // -3, -2, -1, to which nothing is added; then anew
 }
 
 /// Every list of a plan, against sums over the regions' members.

@@ -22,14 +22,13 @@ inline Slots run_sum_list(const std::uint16_t* list, const Slots& in, std::size_
   Slots out(slots, 0.0);
   std::size_t next = 1;
   while (const std::uint16_t terms = *list++) {
-    std::uint16_t steps = *list++;
+    std::uint16_t growing = *list++, sliding = *list++, shrinking = *list++;
     double sum = 0;
     for (std::uint16_t i = 0; i < terms; ++i) sum += at(*list++);
     out.at(next++) = sum;
-    for (; steps != 0; --steps, list += 2) {
-      sum += at(list[0]) - at(list[1]);
-      out.at(next++) = sum;
-    }
+    for (; growing != 0; --growing) out.at(next++) = sum += at(*list++);
+    for (; sliding != 0; --sliding, list += 2) out.at(next++) = sum += at(list[0]) - at(list[1]);
+    for (; shrinking != 0; --shrinking) out.at(next++) = sum -= at(*list++);
   }
   return out;
 }

@@ -146,15 +146,17 @@ class Match2dTwin {
     Slots out(header_.slots);
     std::size_t next = 1;
     while (const std::uint16_t terms = *list++) {
-      std::uint16_t steps = *list++;
+      std::uint16_t growing = *list++, sliding = *list++, shrinking = *list++;
       Payload sum = at(*list++);
-      for (std::uint16_t i = 1; i < terms; ++i, ++list)
-        for (std::size_t k = 0; k < 4; ++k) sum[k] += at(*list)[k];
+      const auto add = [&](std::uint16_t offset, float sign) {
+        for (std::size_t k = 0; k < 4; ++k) sum[k] += sign * at(offset)[k];
+      };
+      for (std::uint16_t i = 1; i < terms; ++i) add(*list++, 1);
       out.at(next++) = sum;
-      for (; steps != 0; --steps, list += 2) {
+      for (; growing != 0; --growing, out.at(next++) = sum) add(*list++, 1);
+      for (; sliding != 0; --sliding, list += 2, out.at(next++) = sum)
         for (std::size_t k = 0; k < 4; ++k) sum[k] += at(list[0])[k] - at(list[1])[k];
-        out.at(next++) = sum;
-      }
+      for (; shrinking != 0; --shrinking, out.at(next++) = sum) add(*list++, -1);
     }
     return out;
   }

@@ -124,22 +124,45 @@ TEST_F(MatchStages, WhatIsNoNumberIsFound) {
 }
 
 TEST_F(MatchStages, SumSlotsFollowsItsList) {
-  std::vector<Slot> in(6), out(5);
+  std::vector<Slot> in(7), out(7);
   for (Slot& slot : in) slot = {{next4(), next4(), next4()}};
-  // Slot 1 + 2 + 3; that, plus 4 minus 1; slot 5 alone.
-  const uint16_t list[] = {3, 1, 6, 12, 18, 24, 6, 1, 0, 30, 0};
+  const auto o = [](int slot) { return static_cast<uint16_t>(slot * sizeof(Slot) / kSumOffsetUnit); };
+  const uint16_t list[] = {3,
+                           1,
+                           1,
+                           1,  // a chain of
+                           o(1),
+                           o(2),
+                           o(3),  // slots 1 + 2 + 3,
+                           o(4),  // plus 4,
+                           o(5),
+                           o(1),  // plus 5 minus 1,
+                           o(2),  // minus 2;
+                           1,
+                           0,
+                           0,
+                           0,     // another of
+                           o(6),  // slot 6 alone;
+                           kSumRun + 1,
+                           o(1),
+                           o(2),
+                           o(3),  // a run: slot 1, plus 2 minus 3
+                           0};
   sum_slots<3>(list, in.data(), out.data());
   for (std::size_t k = 0; k < 3; ++k) {
     for (int lane = 0; lane < 4; ++lane) {
       const auto term = [&](std::size_t slot) { return at(in[slot].row[k], lane); };
       EXPECT_NEAR(at(out[1].row[k], lane), term(1) + term(2) + term(3), 1e-6);
-      EXPECT_NEAR(at(out[2].row[k], lane), term(2) + term(3) + term(4), 1e-6);
-      EXPECT_EQ(at(out[3].row[k], lane), term(5));
+      EXPECT_NEAR(at(out[2].row[k], lane), term(1) + term(2) + term(3) + term(4), 1e-6);
+      EXPECT_NEAR(at(out[3].row[k], lane), term(2) + term(3) + term(4) + term(5), 1e-6);
+      EXPECT_NEAR(at(out[4].row[k], lane), term(3) + term(4) + term(5), 1e-6);
+      EXPECT_EQ(at(out[5].row[k], lane), term(6));
+      EXPECT_NEAR(at(out[6].row[k], lane), term(1) + term(2) - term(3), 1e-6);
     }
   }
-  std::vector<Slot> two_rows(5, Slot{{spu_splats(7.0f), spu_splats(7.0f), spu_splats(7.0f)}});
+  std::vector<Slot> two_rows(7, Slot{{spu_splats(7.0f), spu_splats(7.0f), spu_splats(7.0f)}});
   sum_slots<2>(list, in.data(), two_rows.data());
-  for (std::size_t slot = 1; slot <= 3; ++slot) {
+  for (std::size_t slot = 1; slot <= 6; ++slot) {
     EXPECT_EQ(lanes(two_rows[slot].row[1]), lanes(out[slot].row[1]));
     EXPECT_EQ(at(two_rows[slot].row[2], 0), 7);  // left alone
   }

@@ -75,8 +75,9 @@ RotationNoise noise_below(float floor) { return {spu_splats(1.0f), spu_splats(fl
 void update(Batch& batch, RotationEffort effort, float floor = 0) {
   run(batch, [&](const Matrix3x4& a, Quaternion4& q) {
     const RotationProblem problem = {normalised(a, noise_below(floor)), {}};
-    improve_rotations(&problem, &q, 1, effort);
-    return rotation_of(problem, q);
+    vec_uint4 indefinite;
+    improve_rotations(&problem, &q, &indefinite, 1, effort);
+    return rotation_of(problem, q, indefinite);
   });
 }
 
