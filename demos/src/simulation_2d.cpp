@@ -14,6 +14,7 @@
 #include "controls.h"
 #include "kernel_samples.h"
 #include "script_player.h"
+#include "shared_models.h"
 #include "softcell/ppu/box2d_coupling.h"
 #include "softcell/ppu/job_system.h"
 #include "softcell/ppu/spe_solver_2d.h"
@@ -114,14 +115,25 @@ struct Spes {
   ppu::SpeSolver2d solver;
 };
 
+Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
+  return shared_models(
+      bodies.size(),
+      [&](std::size_t i, std::size_t j) {
+        return bodies[i].settings == bodies[j].settings && bodies[i].cells == bodies[j].cells &&
+               bodies[i].contact_radius == bodies[j].contact_radius;
+      },
+      [&](std::size_t i) {
+        return ppu::make_soft_body_model(bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius);
+      });
+}
+
 }  // namespace
 
 struct Simulation2d::State {
   State(const Scene2d& scene_description, const SimulationOptions& options)
       : scene(scene_description), script(scene.script), controls({0, -scene.gravity}) {
     if (options.solver == Solver::kSpe) spes.emplace(options);
-    for (const SoftBody2dPlacement& body : scene.soft_bodies)
-      models.push_back(ppu::make_soft_body_model(body.lattice(), body.settings, body.contact_radius));
+    models = models_of(scene.soft_bodies);
     reset();
   }
 

@@ -8,6 +8,7 @@
 #include "controls.h"
 #include "kernel_samples.h"
 #include "script_player.h"
+#include "shared_models.h"
 #include "softcell/ppu/bullet_coupling.h"
 #include "softcell/ppu/bullet_world.h"
 #include "softcell/ppu/deterministic_math.h"
@@ -61,6 +62,16 @@ void twist(ppu::SoftBody& body, float rate) {
   }
 }
 
+std::vector<std::shared_ptr<const ppu::SoftBodyModel>> models_of(
+    const std::vector<SoftBodyPlacement>& bodies) {
+  return shared_models(
+      bodies.size(),
+      [&](std::size_t i, std::size_t j) {
+        return bodies[i].settings == bodies[j].settings && bodies[i].mesh == bodies[j].mesh;
+      },
+      [&](std::size_t i) { return ppu::make_soft_body_model(bodies[i].mesh, bodies[i].settings); });
+}
+
 }  // namespace
 
 struct Simulation3d::State {
@@ -97,8 +108,10 @@ struct Simulation3d::State {
     }
     for (const Obstacle& obstacle : scene.obstacles)
       world.add_convex(obstacle.mesh, obstacle.position, scene.friction);
-    for (const SoftBodyPlacement& placement : scene.soft_bodies) {
-      const auto model = ppu::make_soft_body_model(placement.mesh, placement.settings);
+    const auto models = models_of(scene.soft_bodies);
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const SoftBodyPlacement& placement = scene.soft_bodies[i];
+      const auto& model = models[i];
       ppu::SoftBody& body = soft_bodies.add(model, placement.position);
       twist(body, placement.twist);
       if (orchestrator)

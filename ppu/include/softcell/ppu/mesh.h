@@ -14,6 +14,8 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+
+  bool operator==(const TriangleMesh&) const = default;
 };
 
 struct Bounds {

@@ -38,6 +38,8 @@ struct SoftBodySettings {
   /// alpha and damping of a time step of `step` seconds. @throws as validate().
   float alpha_of_step(float step) const;
   float damping_of_step(float step) const;
+
+  bool operator==(const SoftBodySettings&) const = default;
 };
 
 /// @throws std::runtime_error  a value is out of its range; the sentence names it and the range.
