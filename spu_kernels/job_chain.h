@@ -40,7 +40,8 @@ struct alignas(128) JobDescriptor {
 };
 static_assert(sizeof(JobDescriptor) == 128, "one line");
 
-/// How far a chain has come. The PPU side writes it anew for each kick.
+/// How far a chain has come. The PPU side writes it anew for each kick. Its line outlives the chain, for SPEs
+/// that have read the board before the chain went.
 struct alignas(128) ChainState {
   uint64_t descriptors_ea;  ///< of the first JobDescriptor
   uint64_t done_ea;         ///< of the ChainDone

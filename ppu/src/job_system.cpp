@@ -22,20 +22,21 @@ constexpr dma::BufferOptions kRead{.spe_access = dma::SpeAccess::kRead};
 constexpr std::uint32_t kFaulted = 0x100;
 
 template <class Line>
-std::byte* host_of(dma::Buffer<Line>& line) {
-  return reinterpret_cast<std::byte*>(line.data());
+std::byte* host_of(dma::Buffer<Line>& lines, std::size_t index = 0) {
+  return reinterpret_cast<std::byte*>(&lines[index]);
 }
 
 /// Changes a line that SPEs change too.
 template <class Line, class Change>
 Line change_line(dma::Reservations& reservations, dma::ReservationHolder& holder, dma::Buffer<Line>& at,
-                 const Change& change) {
+                 const Change& change, std::size_t index = 0) {
   Line line;
   do {
-    reservations.load_and_reserve(holder, at.ea(), host_of(at), reinterpret_cast<std::byte*>(&line));
+    reservations.load_and_reserve(holder, at.ea(index), host_of(at, index),
+                                  reinterpret_cast<std::byte*>(&line));
     change(line);
-  } while (
-      !reservations.store_conditional(holder, at.ea(), host_of(at), reinterpret_cast<std::byte*>(&line)));
+  } while (!reservations.store_conditional(holder, at.ea(index), host_of(at, index),
+                                           reinterpret_cast<std::byte*>(&line)));
   return line;
 }
 
@@ -110,8 +111,8 @@ struct JobSystem::State {
   void fail_unfinished();
   void tell_end(JobChain& chain, std::uint32_t kick);
   template <class Line, class Change>
-  Line change(dma::Buffer<Line>& at, const Change& how) {
-    return change_line(memory.reservations(), holder, at, how);
+  Line change(dma::Buffer<Line>& at, const Change& how, std::size_t index = 0) {
+    return change_line(memory.reservations(), holder, at, how, index);
   }
 
   struct Placed {
@@ -124,6 +125,9 @@ struct JobSystem::State {
   bool wants_checked;
   dma::Buffer<JobBoard> board;
   dma::Buffer<JobBell> bells;  // of each SPE
+  /// Of each chain, by its place on the board. They stay when a chain goes: an SPE that has read the board
+  /// before looks at the line after, and finds nothing there to take, or a job of the next chain.
+  dma::Buffer<ChainState> chain_states;
   std::vector<Placed> images;
 
   std::mutex mutex;  // guards all below; taken by SPEs' threads when a loop has ended
@@ -144,6 +148,7 @@ JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& opti
       wants_checked(options.findings != nullptr),
       board(space, "job board", 1),
       bells(space, "job bells", dma::kSpeCount),
+      chain_states(space, "job chains", spu::kMaxChains),
       holder(space.reservations()),
       group(space, options),
       outside(group) {
@@ -209,7 +214,8 @@ void JobSystem::State::announce_work() {
 
 void JobSystem::State::kick(JobChain& chain, const ChainState& state) {
   const std::scoped_lock lock(mutex);
-  memory.reservations().store_line(holder, chain.state_.ea(), host_of(chain.state_),
+  memory.reservations().store_line(holder, chain_states.ea(chain.board_slot_),
+                                   host_of(chain_states, chain.board_slot_),
                                    reinterpret_cast<const std::byte*>(&state));
   if (loops_left == 0 && !stopping) {
     breakdown.clear();
@@ -249,14 +255,17 @@ bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
                                                 : "SPE " + std::to_string(spe) + ", kernel " +
                                                       chain->kernels_[job]->name + ": stopped with code " +
                                                       std::to_string(result.stop_code)});
-    const ChainState state = change(chain->state_, [&](ChainState& line) {
-      ++line.finished;
-      if (line.failed == 0 || job < line.failed_job) {
-        line.failed_job = job;
-        line.failed_status = kFaulted;
-      }
-      ++line.failed;
-    });
+    const ChainState state = change(
+        chain_states,
+        [&](ChainState& line) {
+          ++line.finished;
+          if (line.failed == 0 || job < line.failed_job) {
+            line.failed_job = job;
+            line.failed_status = kFaulted;
+          }
+          ++line.failed;
+        },
+        chain->board_slot_);
     if (state.finished == state.stage_end) tell_end(*chain, state.kick);
     return true;
   }
@@ -271,14 +280,17 @@ void JobSystem::State::fail_unfinished() {
     memory.reservations().load_and_reserve(holder, chain->done_.ea(), host_of(chain->done_),
                                            reinterpret_cast<std::byte*>(&done));
     const auto jobs = static_cast<std::uint32_t>(chain->size());
-    const ChainState state = change(chain->state_, [&](ChainState& line) {
-      if (line.kick == done.kick) return;
-      line.next = line.stage_end;  // for nobody to take
-      if (line.failed++ == 0) {
-        line.failed_job = jobs;
-        line.failed_status = kFaulted;
-      }
-    });
+    const ChainState state = change(
+        chain_states,
+        [&](ChainState& line) {
+          if (line.kick == done.kick) return;
+          line.next = line.stage_end;  // for nobody to take
+          if (line.failed++ == 0) {
+            line.failed_job = jobs;
+            line.failed_status = kFaulted;
+          }
+        },
+        chain->board_slot_);
     if (state.kick == done.kick) continue;
     chain->faults_.push_back({jobs, breakdown});
     tell_end(*chain, state.kick);
@@ -328,7 +340,6 @@ int JobSystem::spes() const { return state_->group.spes(); }
 JobChain::JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs)
     : system_(system),
       descriptors_(system.state_->memory, name + ": jobs", std::max<std::size_t>(most_jobs, 1), kRead),
-      state_(system.state_->memory, name + ": state", 1),
       done_(system.state_->memory, name + ": done", 1),
       listener_(std::make_unique<DoneListener>()),
       holder_(
@@ -342,16 +353,19 @@ JobChain::JobChain(JobSystem& system, const std::string& name, std::size_t most_
   }
   *slot = this;
   board_slot_ = static_cast<std::size_t>(slot - shared.chains.begin());
-  change_line(shared.memory.reservations(), shared.holder, shared.board,
-              [&](JobBoard& line) { line.chains[board_slot_] = state_.ea().value; });
+  // Nothing that the last chain here has left.
+  shared.change(
+      shared.chain_states, [](ChainState& line) { line = {}; }, board_slot_);
+  shared.change(shared.board, [&](JobBoard& line) {
+    line.chains[board_slot_] = shared.chain_states.ea(board_slot_).value;
+  });
 }
 
 JobChain::~JobChain() {
   wait();
   JobSystem::State& shared = *system_.state_;
   const std::scoped_lock lock(shared.mutex);
-  change_line(shared.memory.reservations(), shared.holder, shared.board,
-              [&](JobBoard& line) { line.chains[board_slot_] = 0; });
+  shared.change(shared.board, [&](JobBoard& line) { line.chains[board_slot_] = 0; });
   shared.chains[board_slot_] = nullptr;
 }
 
@@ -424,11 +438,13 @@ void JobChain::wait() {
 }
 
 void JobChain::collect() {
+  JobSystem::State& shared = *system_.state_;
   ChainState state;
-  system_.state_->memory.reservations().load_and_reserve(*holder_, state_.ea(), host_of(state_),
-                                                         reinterpret_cast<std::byte*>(&state));
+  shared.memory.reservations().load_and_reserve(*holder_, shared.chain_states.ea(board_slot_),
+                                                host_of(shared.chain_states, board_slot_),
+                                                reinterpret_cast<std::byte*>(&state));
   {
-    const std::scoped_lock lock(system_.state_->mutex);
+    const std::scoped_lock lock(shared.mutex);
     failures_ = std::move(faults_);
     faults_.clear();
   }

@@ -335,6 +335,20 @@ TEST_F(JobSystemTest, AJobThatOverwritesTheLoopIsNamed) {
   }
 }
 
+/// An SPE that has found a chain on the board may look at its state when the chain is no more.
+TEST_F(JobSystemTest, ChainsMayGoWhileSpesLookForWork) {
+  JobSystem jobs(memory_, {.spes = 6}, loop_);
+  auto lines = make_lines(6);
+  const JobImage adds = jobs.place(adds_);
+  for (int i = 0; i < 10000; ++i) {
+    JobChain chain(jobs, "short", 6);
+    for (std::size_t line = 0; line < 6; ++line) chain.add({adds, lines.ea(line)});
+    chain.kick();
+    chain.wait();
+    ASSERT_TRUE(chain.failures().empty()) << i << ": " << chain.failures()[0].message;
+  }
+}
+
 TEST_F(JobSystemTest, ATransferIntoTheLoopIsNamed) {
   const KernelImage image = test_image("gets_over");
   for (const char* schedule : {"eager", "lazy", "random:1", "random:2"}) {

@@ -141,7 +141,6 @@ class JobChain {
   JobSystem& system_;
   std::size_t board_slot_ = 0;
   dma::Buffer<spu::JobDescriptor> descriptors_;
-  dma::Buffer<spu::ChainState> state_;
   dma::Buffer<spu::ChainDone> done_;
   std::unique_ptr<DoneListener> listener_;
   std::unique_ptr<dma::ReservationHolder> holder_;
