@@ -101,12 +101,7 @@ struct Spes {
   explicit Spes(const SimulationOptions& options)
       : match_2d(load_kernel("match_2d", options.findings != nullptr)),
         job_loop(load_kernel("job_loop")),
-        jobs(memory,
-             {.spes = options.spes,
-              .schedule = options.schedule,
-              .findings = options.findings,
-              .trace = options.trace},
-             job_loop),
+        jobs(memory, options.spe_options(), job_loop),
         solver(memory, jobs, match_2d) {}
 
   dma::AddressSpace memory;

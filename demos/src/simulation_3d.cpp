@@ -91,12 +91,7 @@ struct Simulation3d::State {
         job_loop(load_kernel("job_loop")),
         match(load_kernel("match", options.findings != nullptr)),
         match_tiles(load_kernel("match_tiles", options.findings != nullptr)),
-        jobs(memory,
-             {.spes = options.spes,
-              .schedule = options.schedule,
-              .findings = options.findings,
-              .trace = options.trace},
-             job_loop),
+        jobs(memory, options.spe_options(), job_loop),
         solver(make_solver(options.solver)),
         soft_bodies(world.world(), *solver) {
     if (options.skin == Skin::kSpe) {

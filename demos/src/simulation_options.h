@@ -28,6 +28,10 @@ struct SimulationOptions {
   dma::Schedule schedule{};
   ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked
   ls_sim::Trace* trace = nullptr;        ///< of at least as many SPEs; null: nothing is recorded
+
+  ls_sim::SpeOptions spe_options() const {
+    return {.spes = spes, .schedule = schedule, .findings = findings, .trace = trace};
+  }
 };
 
 /// Milliseconds of one frame, measured on the PPU thread.

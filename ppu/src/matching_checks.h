@@ -1,5 +1,5 @@
 #pragma once
-// What both shape matchers, of two and three dimensions, ask of their arguments.
+// What both shape matchers, of two and three dimensions, ask of their arguments and do with them first.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,18 +8,16 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace softcell::ppu {
 
-/// @throws std::invalid_argument  not one positive, finite mass per particle.
-inline void check_masses(std::span<const float> masses, std::size_t particles) {
-  if (masses.size() != particles)
-    throw std::invalid_argument("MatchingPlan: " + std::to_string(masses.size()) + " masses for " +
-                                std::to_string(particles) + " particles");
-  for (std::size_t i = 0; i < masses.size(); ++i)
-    if (!(masses[i] > 0) || !std::isfinite(masses[i]))
-      throw std::invalid_argument("MatchingPlan: the mass of particle " + std::to_string(i) + " is " +
-                                  std::to_string(masses[i]) + " kg; expected a positive number");
+/// @throws std::invalid_argument  not one vector per particle in both.
+inline void check_sizes(std::size_t particles, std::size_t positions, std::size_t others) {
+  if (positions != particles || others != particles)
+    throw std::invalid_argument("ShapeMatcher: expected one vector per particle, " +
+                                std::to_string(particles) + "; got " + std::to_string(positions) + " and " +
+                                std::to_string(others));
 }
 
 /// @throws std::invalid_argument  a number outside its range.
@@ -52,6 +50,21 @@ Eigen::Matrix<double, Vector::RowsAtCompileTime, 1> finite_mean(std::span<const 
     throw std::runtime_error(std::string("soft body: the ") + what + " " + who + " is not a finite number");
   }
   return sum / static_cast<double>(vectors.size());
+}
+
+/// Positions relative to a point in the body. A grid point, so that it does not move with every step; far
+/// from the world's origin the sums would otherwise cancel to nothing.
+/// @throws  as finite_mean()
+template <typename Vector>
+void localise(std::span<const Vector> positions, typename Vector::Scalar spacing,
+              std::vector<Vector>& local) {
+  using Real = typename Vector::Scalar;
+  const auto mean = finite_mean<Vector>(positions, "position");
+  const double s = static_cast<double>(spacing);
+  Vector origin;
+  for (int d = 0; d < Vector::RowsAtCompileTime; ++d)
+    origin[d] = static_cast<Real>(std::floor(mean[d] / s + 0.5) * s);
+  for (std::size_t i = 0; i < positions.size(); ++i) local[i] = positions[i] - origin;
 }
 
 }  // namespace softcell::ppu

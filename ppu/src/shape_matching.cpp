@@ -7,7 +7,6 @@
 #include <string>
 
 #include "matching_checks.h"
-#include "softcell/ppu/regions.h"
 #include "softcell/ppu/rotation.h"
 
 namespace softcell::ppu {
@@ -58,57 +57,6 @@ Vector3<Real> angular_velocity(const Real (&c)[6], const Vector3<Real>& l, Real 
 }  // namespace
 
 template <typename Real>
-MatchingPlan<Real>::MatchingPlan(const Lattice& lattice, int half_width, std::span<const float> masses)
-    : sums_(lattice, find_regions(lattice, half_width)),
-      half_width_(half_width),
-      spacing_(static_cast<Real>(lattice.spacing)) {
-  check_masses(masses, lattice.particles.size());
-
-  const auto rest = [&](std::size_t i) -> Vector3<double> {
-    return lattice.origin.cast<double>() +
-           static_cast<double>(lattice.spacing) * lattice.particles[i].cast<double>();
-  };
-  double body_mass = 0;
-  Vector3<double> weighted = Vector3<double>::Zero();
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    body_mass += static_cast<double>(masses[i]);
-    weighted += static_cast<double>(masses[i]) * rest(i);
-  }
-  const Vector3<double> centre = weighted / body_mass;
-  rest_centre_ = centre.cast<Real>();
-
-  std::vector<double> sizes;  // of each region
-  for (std::size_t r = 0; r < sums_.regions(); ++r)
-    sizes.push_back(static_cast<double>(sums_.members(r).size()));
-
-  Real farthest = 0;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const double mass = static_cast<double>(masses[i]);
-    const double region_count = sizes[sums_.region_of()[i]];  // membership is symmetric: |R_i| = |r| of r = i
-    Particle particle;
-    particle.x0 = (rest(i) - centre).template cast<Real>();
-    particle.modified_mass = static_cast<Real>(mass / region_count);
-    particle.inverse_region_count = static_cast<Real>(1 / region_count);
-    particle.mass = static_cast<Real>(mass);
-    particles_.push_back(particle);
-    for (int d = 0; d < 3; ++d) farthest = std::max(farthest, std::abs(particle.x0[d]));
-  }
-  noise_floor_ = 4 * std::numeric_limits<Real>::epsilon() * farthest * farthest;
-
-  // Summed from the rounded constants, so that a body at rest has its centres exactly where they belong.
-  for (std::size_t r = 0; r < sums_.regions(); ++r) {
-    double mass = 0;
-    Vector3<double> moment = Vector3<double>::Zero();
-    for (const std::uint32_t i : sums_.members(r)) {
-      const double modified = static_cast<double>(particles_[i].modified_mass);
-      mass += modified;
-      moment += modified * particles_[i].x0.template cast<double>();
-    }
-    regions_.push_back({(moment / mass).cast<Real>(), static_cast<Real>(mass), static_cast<Real>(1 / mass)});
-  }
-}
-
-template <typename Real>
 ShapeMatcher<Real>::ShapeMatcher(std::shared_ptr<const MatchingPlan<Real>> plan, SumMethod method)
     : plan_(std::move(plan)),
       method_(method),
@@ -137,7 +85,7 @@ void ShapeMatcher<Real>::reset() {
 
 template <typename Real>
 void ShapeMatcher<Real>::goals(std::span<const Vector> x, std::span<Vector> g) {
-  check_sizes(x.size(), g.size());
+  check_sizes(plan_->particles(), x.size(), g.size());
   match(x);
   std::copy(goals_.begin(), goals_.end(), g.begin());
 }
@@ -145,7 +93,7 @@ void ShapeMatcher<Real>::goals(std::span<const Vector> x, std::span<Vector> g) {
 template <typename Real>
 void ShapeMatcher<Real>::step_velocities(std::span<const Vector> x, std::span<Vector> v, Real alpha, Real h,
                                          Real damping) {
-  check_sizes(x.size(), v.size());
+  check_sizes(plan_->particles(), x.size(), v.size());
   check_step(static_cast<double>(alpha), static_cast<double>(damping), static_cast<double>(h));
   finite_mean<Vector>(v, "velocity");
 
@@ -156,27 +104,8 @@ void ShapeMatcher<Real>::step_velocities(std::span<const Vector> x, std::span<Ve
 }
 
 template <typename Real>
-void ShapeMatcher<Real>::check_sizes(std::size_t positions, std::size_t others) const {
-  if (positions != plan_->particles() || others != plan_->particles())
-    throw std::invalid_argument("ShapeMatcher: expected one vector per particle, " +
-                                std::to_string(plan_->particles()) + "; got " + std::to_string(positions) +
-                                " and " + std::to_string(others));
-}
-
-/// Positions relative to a point in the body. A grid point, so that it does not move with every step; far
-/// from the world's origin the sums would otherwise cancel to nothing.
-template <typename Real>
-void ShapeMatcher<Real>::localise(std::span<const Vector> x) {
-  const Vector3<double> mean = finite_mean<Vector>(x, "position");
-  const double s = static_cast<double>(plan_->spacing());
-  Vector origin;
-  for (int d = 0; d < 3; ++d) origin[d] = static_cast<Real>(std::floor(mean[d] / s + 0.5) * s);
-  for (std::size_t i = 0; i < x.size(); ++i) x_[i] = x[i] - origin;
-}
-
-template <typename Real>
 void ShapeMatcher<Real>::match(std::span<const Vector> x) {
-  localise(x);
+  localise<Vector>(x, plan_->spacing(), x_);
 
   // Per particle: m~x, m~x x0^T.
   const auto particles = plan_->particle_constants();
@@ -282,8 +211,6 @@ void ShapeMatcher<Real>::down(const std::vector<Payload>& values, SumScratch<Pay
     sum_down<Payload>(sums, values, scratch, totals);
 }
 
-template class MatchingPlan<float>;
-template class MatchingPlan<double>;
 template class ShapeMatcher<float>;
 template class ShapeMatcher<double>;
 

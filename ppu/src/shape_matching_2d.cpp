@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "matching_checks.h"
-#include "one_plate.h"
-#include "softcell/ppu/regions.h"
 
 namespace softcell::ppu {
 namespace {
@@ -18,50 +15,6 @@ auto cross(const Vector& a, const Vector& b) {
 }
 
 }  // namespace
-
-template <typename Real>
-MatchingPlan2d<Real>::MatchingPlan2d(const Lattice2d& lattice, int half_width, std::span<const float> masses)
-    : sums_(as_one_plate(lattice.particles), find_regions(lattice.neighbours, half_width)),
-      spacing_(static_cast<Real>(lattice.spacing)) {
-  check_masses(masses, lattice.particles.size());
-  const auto rest = [&](std::size_t i) -> Eigen::Vector2d {
-    return lattice.origin.cast<double>() +
-           static_cast<double>(lattice.spacing) * lattice.particles[i].cast<double>();
-  };
-  double body_mass = 0;
-  Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    body_mass += static_cast<double>(masses[i]);
-    weighted += static_cast<double>(masses[i]) * rest(i);
-  }
-  const Eigen::Vector2d centre = weighted / body_mass;
-  rest_centre_ = centre.cast<Real>();
-
-  std::vector<double> sizes;
-  for (std::size_t r = 0; r < sums_.regions(); ++r)
-    sizes.push_back(static_cast<double>(sums_.members(r).size()));
-  Real farthest = 0;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const double count = sizes[sums_.region_of()[i]];  // membership is symmetric: |R_i| = |r| of r = i
-    const Vector x0 = (rest(i) - centre).template cast<Real>();
-    particles_.push_back({x0, static_cast<Real>(static_cast<double>(masses[i]) / count),
-                          static_cast<Real>(1 / count), static_cast<Real>(masses[i])});
-    farthest = std::max({farthest, std::abs(x0.x()), std::abs(x0.y())});
-  }
-  noise_floor_ = 4 * std::numeric_limits<Real>::epsilon() * farthest * farthest;
-
-  // Summed from the rounded constants, so that a body at rest has its centres exactly where they belong.
-  for (std::size_t r = 0; r < sums_.regions(); ++r) {
-    double mass = 0;
-    Eigen::Vector2d moment = Eigen::Vector2d::Zero();
-    for (const std::uint32_t i : sums_.members(r)) {
-      const double modified = static_cast<double>(particles_[i].modified_mass);
-      mass += modified;
-      moment += modified * particles_[i].x0.template cast<double>();
-    }
-    regions_.push_back({(moment / mass).cast<Real>(), static_cast<Real>(mass), static_cast<Real>(1 / mass)});
-  }
-}
 
 template <typename Real>
 ShapeMatcher2d<Real>::ShapeMatcher2d(std::shared_ptr<const MatchingPlan2d<Real>> plan, SumMethod method)
@@ -83,7 +36,7 @@ void ShapeMatcher2d<Real>::reset() {
 
 template <typename Real>
 void ShapeMatcher2d<Real>::goals(std::span<const Vector> x, std::span<Vector> g) {
-  check_sizes(x.size(), g.size());
+  check_sizes(plan_->particles(), x.size(), g.size());
   match(x);
   for (std::size_t i = 0; i < g.size(); ++i) g[i] = x[i] + pulls_[i];
 }
@@ -91,7 +44,7 @@ void ShapeMatcher2d<Real>::goals(std::span<const Vector> x, std::span<Vector> g)
 template <typename Real>
 void ShapeMatcher2d<Real>::step_velocities(std::span<const Vector> x, std::span<Vector> v, Real alpha, Real h,
                                            Real damping) {
-  check_sizes(x.size(), v.size());
+  check_sizes(plan_->particles(), x.size(), v.size());
   check_step(static_cast<double>(alpha), static_cast<double>(damping), static_cast<double>(h));
   finite_mean<Vector>(v, "velocity");
   match(x);
@@ -101,26 +54,8 @@ void ShapeMatcher2d<Real>::step_velocities(std::span<const Vector> x, std::span<
 }
 
 template <typename Real>
-void ShapeMatcher2d<Real>::check_sizes(std::size_t positions, std::size_t others) const {
-  if (positions != plan_->particles() || others != plan_->particles())
-    throw std::invalid_argument("ShapeMatcher: expected one vector per particle, " +
-                                std::to_string(plan_->particles()) + "; got " + std::to_string(positions) +
-                                " and " + std::to_string(others));
-}
-
-/// Positions relative to a grid point in the body: see ShapeMatcher.
-template <typename Real>
-void ShapeMatcher2d<Real>::localise(std::span<const Vector> x) {
-  const Eigen::Vector2d mean = finite_mean<Vector>(x, "position");
-  const double s = static_cast<double>(plan_->spacing());
-  Vector origin;
-  for (int d = 0; d < 2; ++d) origin[d] = static_cast<Real>(std::floor(mean[d] / s + 0.5) * s);
-  for (std::size_t i = 0; i < x.size(); ++i) x_[i] = x[i] - origin;
-}
-
-template <typename Real>
 void ShapeMatcher2d<Real>::match(std::span<const Vector> x) {
-  localise(x);
+  localise<Vector>(x, plan_->spacing(), x_);
   // Per particle: m~x, m~ x.x0, m~ x0 x x.
   const auto particles = plan_->particle_constants();
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -210,8 +145,6 @@ void ShapeMatcher2d<Real>::down() {
     sum_down<Payload>(plan_->sums(), of_regions_, scratch_, totals_);
 }
 
-template class MatchingPlan2d<float>;
-template class MatchingPlan2d<double>;
 template class ShapeMatcher2d<float>;
 template class ShapeMatcher2d<double>;
 

@@ -17,62 +17,13 @@
 #include <vector>
 
 #include "softcell/ppu/lanes.h"
-#include "softcell/ppu/lattice.h"
+#include "softcell/ppu/matching_plan.h"
 #include "softcell/ppu/summation.h"
 
 namespace softcell::ppu {
 
 /// Both give the same bits. Naive sums are the reference: (2w+1)^3 additions per particle and quantity.
 enum class SumMethod { kNaive, kBarPlateCube };
-
-/// What all bodies of one model share: constants of particles and regions at rest. Immutable.
-template <typename Real>
-class MatchingPlan {
- public:
-  using Vector = Eigen::Matrix<Real, 3, 1>;
-
-  /// @param half_width  w, 0..kMaxHalfWidth; 1 to 4 are useful.
-  /// @param masses      kg, one per particle, positive and finite. Scaling all of them changes no result.
-  /// @throws std::invalid_argument  masses not as stated.
-  /// @throws std::runtime_error     as find_regions().
-  MatchingPlan(const Lattice& lattice, int half_width, std::span<const float> masses);
-
-  std::size_t particles() const { return particles_.size(); }
-  std::size_t regions() const { return regions_.size(); }  ///< distinct ones; see SumPlan
-  int half_width() const { return half_width_; }
-  Real spacing() const { return spacing_; }  ///< metres
-  const SumPlan& sums() const { return sums_; }
-  const Vector& rest_centre() const {
-    return rest_centre_;
-  }  ///< centre of mass at rest, in the lattice's frame
-
-  struct Particle {
-    Vector x0;                  ///< rest position relative to rest_centre()
-    Real modified_mass;         ///< m~, kg
-    Real inverse_region_count;  ///< 1 / |R_i|
-    Real mass;                  ///< kg
-  };
-  struct Region {
-    Vector c0;          ///< rest centre relative to rest_centre()
-    Real mass;          ///< M_r = sum of m~, kg
-    Real inverse_mass;  ///< 1 / M_r
-  };
-  std::span<const Particle> particle_constants() const { return particles_; }
-  std::span<const Region> region_constants() const { return regions_; }
-
-  /// Below this times M_r, a region's A_r is rounding noise: all its particles sit on one point. Square
-  /// metres.
-  Real noise_floor() const { return noise_floor_; }
-
- private:
-  SumPlan sums_;
-  int half_width_;
-  Real spacing_;
-  Vector rest_centre_;
-  Real noise_floor_;
-  std::vector<Particle> particles_;
-  std::vector<Region> regions_;
-};
 
 /// The moving state of one body: the rotation of each region, and scratch memory. Copy it to save and
 /// restore. Allocates nothing after construction. Not thread safe: one thread at a time for one matcher;
@@ -128,8 +79,6 @@ class ShapeMatcher {
   using Motion = Lanes<Real, 12>;   // comes down: t_r and R_r
   using Twist = Lanes<Real, 8>;     // comes down for damping: b_r, omega_r, two spare lanes
 
-  void check_sizes(std::size_t positions, std::size_t others) const;
-  void localise(std::span<const Vector> x);
   void match(std::span<const Vector> x);
   void damp(std::span<Vector> v, Real damping);
   void up();
@@ -151,8 +100,6 @@ class ShapeMatcher {
   SumScratch<Lanes<Real, 8>> scratch8_;
 };
 
-extern template class MatchingPlan<float>;
-extern template class MatchingPlan<double>;
 extern template class ShapeMatcher<float>;
 extern template class ShapeMatcher<double>;
 

@@ -13,52 +13,11 @@
 #include <vector>
 
 #include "softcell/ppu/lanes.h"
-#include "softcell/ppu/lattice_2d.h"
+#include "softcell/ppu/matching_plan.h"
 #include "softcell/ppu/shape_matching.h"
 #include "softcell/ppu/summation.h"
 
 namespace softcell::ppu {
-
-/// What all bodies of one model share. Immutable. See MatchingPlan.
-template <typename Real>
-class MatchingPlan2d {
- public:
-  using Vector = Eigen::Matrix<Real, 2, 1>;
-
-  /// Arguments and errors as MatchingPlan's.
-  MatchingPlan2d(const Lattice2d& lattice, int half_width, std::span<const float> masses);
-
-  std::size_t particles() const { return particles_.size(); }
-  std::size_t regions() const { return regions_.size(); }  ///< distinct ones
-  Real spacing() const { return spacing_; }                ///< metres
-  const SumPlan& sums() const { return sums_; }
-  const Vector& rest_centre() const { return rest_centre_; }
-
-  struct Particle {
-    Vector x0;                  ///< rest position relative to rest_centre()
-    Real modified_mass;         ///< m~, kg
-    Real inverse_region_count;  ///< 1 / |R_i|
-    Real mass;                  ///< m, kg
-  };
-  struct Region {
-    Vector c0;          ///< rest centre relative to rest_centre()
-    Real mass;          ///< M_r, kg
-    Real inverse_mass;  ///< 1 / M_r
-  };
-  std::span<const Particle> particle_constants() const { return particles_; }
-  std::span<const Region> region_constants() const { return regions_; }
-
-  /// Below this times M_r, C and S are rounding noise. Square metres.
-  Real noise_floor() const { return noise_floor_; }
-
- private:
-  SumPlan sums_;
-  Real spacing_;
-  Vector rest_centre_;
-  Real noise_floor_;
-  std::vector<Particle> particles_;
-  std::vector<Region> regions_;
-};
 
 /// The moving state of one body, as ShapeMatcher.
 template <typename Real>
@@ -84,8 +43,6 @@ class ShapeMatcher2d {
  private:
   using Payload = Lanes<Real, 4>;
 
-  void check_sizes(std::size_t positions, std::size_t others) const;
-  void localise(std::span<const Vector> x);
   void match(std::span<const Vector> x);
   void damp(std::span<Vector> v, Real damping);
   void up();
@@ -101,8 +58,6 @@ class ShapeMatcher2d {
   SumScratch<Payload> scratch_;
 };
 
-extern template class MatchingPlan2d<float>;
-extern template class MatchingPlan2d<double>;
 extern template class ShapeMatcher2d<float>;
 extern template class ShapeMatcher2d<double>;
 
