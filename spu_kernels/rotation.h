@@ -135,9 +135,10 @@ __attribute__((always_inline)) inline Quaternion4 improve(const Estimate& e, con
   return turn(q, half);
 }
 
-/// Top bit set where the residual says that the answer is none.
-inline vec_uint4 far_off(const Estimate& e) {
-  return less(spu_splats(kRotationLost * kRotationLost), e.residual_square);
+/// Top bit set where the answer cannot be trusted.
+/// @param indefinite  what is known of H: of the same estimate, or of the one before
+inline vec_uint4 lost(const Estimate& e, vec_uint4 indefinite) {
+  return spu_or(indefinite, less(spu_splats(kRotationLost * kRotationLost), e.residual_square));
 }
 
 inline Quaternion4 select(const Quaternion4& a, const Quaternion4& b, vec_uint4 mask) {
@@ -218,7 +219,7 @@ __attribute__((noinline)) inline Rotation4 start_again(const RotationProblem& pr
   vec_uint4 indefinite;
   improve_rotations(&problem, &polished, &indefinite, 1, {kPolishing, kPolishing});
   const Estimate last = estimate_slowly(problem.a, polished);
-  const vec_uint4 failed = negative_lanes(spu_or(last.indefinite, far_off(last)));
+  const vec_uint4 failed = negative_lanes(lost(last, last.indefinite));
   q = select(q, select(polished, found, failed), mask);
   const Estimate e = estimate_slowly(problem.a, q);
   return {e.r, e.residual_square};
@@ -236,8 +237,8 @@ __attribute__((always_inline)) inline Rotation4 rotation_of(const RotationProble
                                                             vec_uint4 indefinite) {
   using namespace rotation_detail;
   const Estimate e = estimate(problem.a, q);
-  const vec_uint4 lost = spu_or(indefinite, far_off(e));
-  if (__builtin_expect(any_negative(lost), 0)) return start_again(problem, q, negative_lanes(lost));
+  const vec_uint4 restart = lost(e, indefinite);
+  if (__builtin_expect(any_negative(restart), 0)) return start_again(problem, q, negative_lanes(restart));
   return {e.r, e.residual_square};
 }
 

@@ -114,6 +114,10 @@ struct JobSystem::State {
   Line change(dma::Buffer<Line>& at, const Change& how, std::size_t index = 0) {
     return change_line(memory.reservations(), holder, at, how, index);
   }
+  template <class Change>
+  ChainState change_state(const JobChain& chain, const Change& how) {
+    return change(chain_states, how, chain.board_slot_);
+  }
 
   struct Placed {
     const ls_sim::KernelImage* kernel;
@@ -197,7 +201,7 @@ void JobSystem::State::start_loop(int spe) {
 void JobSystem::State::ring(int spe) {
   const JobBell rung{.rung = 1, .pad = {}};
   const auto which = static_cast<std::size_t>(spe);
-  memory.reservations().store_line(holder, bells.ea(which), reinterpret_cast<std::byte*>(&bells[which]),
+  memory.reservations().store_line(holder, bells.ea(which), host_of(bells, which),
                                    reinterpret_cast<const std::byte*>(&rung));
 }
 
@@ -255,17 +259,14 @@ bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
                                                 : "SPE " + std::to_string(spe) + ", kernel " +
                                                       chain->kernels_[job]->name + ": stopped with code " +
                                                       std::to_string(result.stop_code)});
-    const ChainState state = change(
-        chain_states,
-        [&](ChainState& line) {
-          ++line.finished;
-          if (line.failed == 0 || job < line.failed_job) {
-            line.failed_job = job;
-            line.failed_status = kFaulted;
-          }
-          ++line.failed;
-        },
-        chain->board_slot_);
+    const ChainState state = change_state(*chain, [&](ChainState& line) {
+      ++line.finished;
+      if (line.failed == 0 || job < line.failed_job) {
+        line.failed_job = job;
+        line.failed_status = kFaulted;
+      }
+      ++line.failed;
+    });
     if (state.finished == state.stage_end) tell_end(*chain, state.kick);
     return true;
   }
@@ -280,17 +281,14 @@ void JobSystem::State::fail_unfinished() {
     memory.reservations().load_and_reserve(holder, chain->done_.ea(), host_of(chain->done_),
                                            reinterpret_cast<std::byte*>(&done));
     const auto jobs = static_cast<std::uint32_t>(chain->size());
-    const ChainState state = change(
-        chain_states,
-        [&](ChainState& line) {
-          if (line.kick == done.kick) return;
-          line.next = line.stage_end;  // for nobody to take
-          if (line.failed++ == 0) {
-            line.failed_job = jobs;
-            line.failed_status = kFaulted;
-          }
-        },
-        chain->board_slot_);
+    const ChainState state = change_state(*chain, [&](ChainState& line) {
+      if (line.kick == done.kick) return;
+      line.next = line.stage_end;  // for nobody to take
+      if (line.failed++ == 0) {
+        line.failed_job = jobs;
+        line.failed_status = kFaulted;
+      }
+    });
     if (state.kick == done.kick) continue;
     chain->faults_.push_back({jobs, breakdown});
     tell_end(*chain, state.kick);
@@ -354,8 +352,7 @@ JobChain::JobChain(JobSystem& system, const std::string& name, std::size_t most_
   *slot = this;
   board_slot_ = static_cast<std::size_t>(slot - shared.chains.begin());
   // Nothing that the last chain here has left.
-  shared.change(
-      shared.chain_states, [](ChainState& line) { line = {}; }, board_slot_);
+  shared.change_state(*this, [](ChainState& line) { line = {}; });
   shared.change(shared.board, [&](JobBoard& line) {
     line.chains[board_slot_] = shared.chain_states.ea(board_slot_).value;
   });

@@ -52,7 +52,6 @@ MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching
                                           order.plates.size(), 4 * region_groups});
   // Before lists are written, whose offsets would not fit: what the buffers need at least.
   static_assert(2 * spu::kMatchSlotBytes * kFormat.max_slot() > spu::kMatchArenaBytes);
-
   check_fits("match", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatchSlotBytes, arena_bytes);
 
   std::vector<spu::MatchParticles> particle_constants;

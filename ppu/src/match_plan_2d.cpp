@@ -55,7 +55,6 @@ MatchPlan2d::MatchPlan2d(const Lattice2d& lattice, const MatchingPlan2d<float>& 
   const std::size_t slots = 1 + std::max({4 * particle_groups, bars.item.size(), 4 * region_groups});
   // Before lists are written, whose offsets would not fit: what the buffers need at least.
   static_assert(2 * spu::kMatch2dSlotBytes * kFormat.max_slot() > spu::kMatch2dArenaBytes);
-
   check_fits("match_2d", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatch2dSlotBytes,
              spu::kMatch2dArenaBytes);
 
