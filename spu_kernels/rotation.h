@@ -116,7 +116,10 @@ __attribute__((always_inline)) inline Vector3x4 newton_half(const Estimate& e) {
 }
 
 /// omega / 2 where Newton's step is none or goes too far: along the gradient, and no longer than it may be.
-__attribute__((noinline)) inline Vector3x4 safe_half(const Estimate& e, const Vector3x4& newton) {
+/// Estimates once more, from what is in memory anyway: handed over, the estimate would go there each time.
+__attribute__((noinline)) inline Vector3x4 safe_half(const Matrix3x4& a, const Quaternion4& q) {
+  const Estimate e = estimate(a, q);
+  const Vector3x4 newton = newton_half(e);
   const vec_float4 step = reciprocal(spu_madd(spu_splats(2.0f), absolute(e.trace), spu_splats(2.0f)));
   const vec_uint4 indefinite = negative_lanes(e.indefinite);
   const Vector3x4 half = {spu_sel(newton.x, spu_mul(e.gradient.x, step), indefinite),
@@ -128,10 +131,12 @@ __attribute__((noinline)) inline Vector3x4 safe_half(const Estimate& e, const Ve
   return scale(half, spu_sel(spu_splats(1.0f), shorter, far));
 }
 
-__attribute__((always_inline)) inline Quaternion4 improve(const Estimate& e, const Quaternion4& q) {
+/// @param e  estimate(a, q)
+__attribute__((always_inline)) inline Quaternion4 improve(const Estimate& e, const Matrix3x4& a,
+                                                          const Quaternion4& q) {
   Vector3x4 half = newton_half(e);
   const vec_uint4 far = less(spu_splats(kLongestStep * kLongestStep), dot(half, half));
-  if (__builtin_expect(any_negative(spu_or(e.indefinite, far)), 0)) half = safe_half(e, half);
+  if (__builtin_expect(any_negative(spu_or(e.indefinite, far)), 0)) half = safe_half(a, q);
   return turn(q, half);
 }
 
@@ -190,14 +195,14 @@ __attribute__((noinline)) inline void improve_rotations(const RotationProblem* p
       const Estimate e = estimate(problems[g].a, q[g]);
       indefinite[g] = e.indefinite;
       if (pass < effort.least) {
-        q[g] = improve(e, q[g]);
+        q[g] = improve(e, problems[g].a, q[g]);
         continue;
       }
       // Lanes that are good stay as they are: what a region gets does not depend on its neighbours in a
       // group.
       const vec_uint4 bad = spu_or(e.indefinite, less(good, e.residual_square));
       if (!any_negative(bad)) continue;
-      q[g] = select(q[g], improve(e, q[g]), negative_lanes(bad));
+      q[g] = select(q[g], improve(e, problems[g].a, q[g]), negative_lanes(bad));
       all_good = false;
     }
     if (all_good) return;
