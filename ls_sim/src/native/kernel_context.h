@@ -41,6 +41,10 @@ enum class Operation : std::uint32_t {
   kFault = 0xFF'FFFF
 };
 
+constexpr std::uint32_t request_of(Operation operation, std::uint32_t channel = 0) {
+  return static_cast<std::uint32_t>(operation) << 8 | channel;
+}
+
 /// How the processor stopped the kernel.
 struct Trap {
   int signal = 0;
@@ -65,8 +69,8 @@ struct KernelContext {
   void* engine = nullptr;  ///< for serve()
 
   // The request of the kernel and the worker's answer.
-  Operation operation = Operation::kStop;
-  std::uint32_t channel = 0;
+  std::uint32_t request = request_of(Operation::kStop);  ///< an Operation, and in 8 bits below it a channel:
+                                                         ///< one word, which can be read as it was stored
   std::uint32_t value = 0;
   std::uint32_t reply = 0;
   std::uintptr_t caller = 0;         ///< in the kernel's call of the gate: its last byte
@@ -76,6 +80,9 @@ struct KernelContext {
   // What main is called with.
   std::uintptr_t entry = 0;
   std::uint64_t arguments[3] = {};
+
+  Operation operation() const { return static_cast<Operation>(request >> 8); }
+  std::uint32_t channel() const { return request & 0xFFu; }
 
   // For the signal handler.
   std::uintptr_t arena = 0;
@@ -90,8 +97,9 @@ KernelContext*& current_context();
 /// First function on the kernel's stack: sets the SPU's arithmetic, calls main, asks for the stop.
 void kernel_start(boost::context::detail::transfer_t transfer);
 
-/// Called by kernels through the environment: operation is kind << 8 | channel.
-std::uint32_t gate(std::uint32_t operation, std::uint32_t value);
+/// Called by kernels through the environment.
+/// @param request  as KernelContext's
+std::uint32_t gate(std::uint32_t request, std::uint32_t value);
 
 /// First function on the landing stack.
 void land();

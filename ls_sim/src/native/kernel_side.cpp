@@ -60,15 +60,13 @@ void kernel_start(boost::context::detail::transfer_t transfer) {
   using Main = int(std::uint64_t, std::uint64_t, std::uint64_t);
   const int status = reinterpret_cast<Main*>(context.entry)(context.arguments[0], context.arguments[1],
                                                             context.arguments[2]);
-  gate(static_cast<std::uint32_t>(Operation::kStop) << 8,
-       0x2000u | (static_cast<std::uint32_t>(status) & 0xFFu));
+  gate(request_of(Operation::kStop), 0x2000u | (static_cast<std::uint32_t>(status) & 0xFFu));
   __builtin_trap();  // an ended run is never resumed
 }
 
-std::uint32_t gate(std::uint32_t operation, std::uint32_t value) {
+std::uint32_t gate(std::uint32_t request, std::uint32_t value) {
   KernelContext& context = *context_of_thread;
-  context.operation = static_cast<Operation>(operation >> 8);
-  context.channel = operation & 0xFFu;
+  context.request = request;
   context.value = value;
   context.caller = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)) - 1;
   context.stack_pointer = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
@@ -80,7 +78,7 @@ std::uint32_t gate(std::uint32_t operation, std::uint32_t value) {
 
 void land() {
   KernelContext& context = *current_context();
-  context.operation = Operation::kFault;
+  context.request = request_of(Operation::kFault);
   context.caller = context.trap.instruction;
   leave(context);
 }

@@ -174,7 +174,7 @@ void NativeEngine::run_kernel() {
   boost::context::detail::jump_fcontext(kernel, &context_);
   std::atomic_signal_fence(std::memory_order_seq_cst);
   context_.in_kernel = 0;
-  if (context_.operation == Operation::kFault) result_ = {0, classify_trap()};
+  if (context_.operation() == Operation::kFault) result_ = {0, classify_trap()};
 }
 
 RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses,
@@ -225,21 +225,21 @@ bool NativeEngine::serve_request() noexcept {
 
 /// @return  how the run ends, or nothing when the kernel goes on with context_.reply.
 std::optional<RunResult> NativeEngine::answer() {
-  if (context_.operation == Operation::kAccess)
+  if (context_.operation() == Operation::kAccess)
     context_.caller = arena() + requested_access().instruction.value;
   if (auto overflow = check_stack()) return RunResult{0, std::move(overflow)};
   if (context_.interrupted != 0)
     return RunResult{0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
-  if (context_.operation == Operation::kStop) return RunResult{context_.value & 0x3FFFu, std::nullopt};
-  if (context_.operation == Operation::kHalt) {
+  if (context_.operation() == Operation::kStop) return RunResult{context_.value & 0x3FFFu, std::nullopt};
+  if (context_.operation() == Operation::kHalt) {
     return RunResult{
         0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
   }
-  if (context_.operation == Operation::kAccess) {
+  if (context_.operation() == Operation::kAccess) {
     if (accesses_ != nullptr) accesses_->on_access(requested_access());
     return std::nullopt;
   }
-  if (context_.operation == Operation::kJob) {
+  if (context_.operation() == Operation::kJob) {
     if (auto overflow = note_job()) return RunResult{0, std::move(overflow)};
     return std::nullopt;
   }
@@ -253,7 +253,7 @@ std::optional<RunResult> NativeEngine::answer() {
 /// kernel's own.
 std::optional<dma::Fault> NativeEngine::note_job() {
   if (jobs_ == nullptr) return std::nullopt;
-  if (context_.channel == 0) return end_job();
+  if (context_.channel() == 0) return end_job();
   const native::Environment& environment = this->environment();
   const KernelImage* const last = job_image_;
   job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
@@ -308,32 +308,38 @@ Access NativeEngine::requested_access() const {
   const native::Environment& environment = this->environment();
   return {.lsa = {context_.value & dma::kLocalStoreMask},
           .bytes = environment.access_bytes & dma::kLocalStoreMask,
-          .is_store = context_.channel != 0,
+          .is_store = context_.channel() != 0,
           .instruction = {environment.access_instruction & dma::kLocalStoreMask},
           .stack_pointer = {environment.access_stack_pointer & dma::kLocalStoreMask}};
 }
 
 ChannelReply NativeEngine::answer_channel() {
   const native::Environment& environment = this->environment();
-  if (context_.operation == Operation::kWrite && context_.channel == number(Channel::kMfcCmd)) {
-    return channels_->issue({.word = context_.value,
-                             .lsa = {environment.mfc_lsa},
-                             .ea = {std::uint64_t{environment.mfc_eah} << 32 | environment.mfc_eal},
-                             .size = environment.mfc_size,
-                             .tag = environment.mfc_tag});
+  if (context_.request == native::request_of(Operation::kWrite, number(Channel::kMfcCmd))) {
+    // One by one, as the kernel stored them: the processor does not forward two stores to one load, and the
+    // volatile keeps the compiler from making one of two.
+    const auto word = [](const std::uint32_t& stored) {
+      return static_cast<const volatile std::uint32_t&>(stored);
+    };
+    return channels_->issue(
+        {.word = context_.value,
+         .lsa = {word(environment.mfc_lsa)},
+         .ea = {std::uint64_t{word(environment.mfc_eah)} << 32 | word(environment.mfc_eal)},
+         .size = word(environment.mfc_size),
+         .tag = word(environment.mfc_tag)});
   }
   if (environment.mfc_tag_mask != tag_mask_) {
     tag_mask_ = environment.mfc_tag_mask;
     ChannelReply reply = channels_->write(number(Channel::kMfcWrTagMask), tag_mask_);
     if (reply.fault) return reply;
   }
-  switch (context_.operation) {
+  switch (context_.operation()) {
     case Operation::kRead:
-      return channels_->read(context_.channel);
+      return channels_->read(context_.channel());
     case Operation::kWrite:
-      return channels_->write(context_.channel, context_.value);
+      return channels_->write(context_.channel(), context_.value);
     case Operation::kCount:
-      return channels_->count(context_.channel);
+      return channels_->count(context_.channel());
     case Operation::kTagStatus: {
       ChannelReply reply = channels_->write(number(Channel::kMfcWrTagUpdate), context_.value);
       return reply.fault ? std::move(reply) : channels_->read(number(Channel::kMfcRdTagStat));
@@ -355,7 +361,7 @@ std::optional<dma::Fault> NativeEngine::check_stack() const {
   const auto pointer = context_.stack_pointer - arena();
   if (pointer < stack_limit())
     return stack_overflow("the stack pointer is at local-store address " + hexadecimal(pointer));
-  if (context_.operation == Operation::kStop && written_below_stack()) {
+  if (context_.operation() == Operation::kStop && written_below_stack()) {
     return stack_overflow("bytes below the stack were written");
   }
   return std::nullopt;
