@@ -68,6 +68,7 @@ std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int r
   // Round by round, so that a change of the machine's speed meets all alike.
   for (int round = 0; round < rounds; ++round) {
     for (Measurement& m : all) {
+      if (m.work.before) m.work.before();
       const std::chrono::nanoseconds begin = spent(m.work);
       m.work.run();
       const std::chrono::duration<double, std::nano> elapsed = spent(m.work) - begin;

@@ -13,6 +13,7 @@
 #include "softcell/dma/buffer.h"
 #include "softcell/ppu/job_system.h"
 #include "softcell/ppu/rotation.h"
+#include "spe_waker.h"
 
 namespace softcell::demos {
 namespace {
@@ -86,6 +87,8 @@ class RotationRig {
     if (!chain_.failures().empty()) throw std::runtime_error(chain_.failures().front().message);
   }
 
+  void wake() { waker_.wake(); }
+
   void run_ppu() {
     for (const RotationCase& c : cases_) {
       Eigen::Quaternionf rotation = c.start;
@@ -98,6 +101,7 @@ class RotationRig {
   dma::AddressSpace memory_;
   ls_sim::KernelImage kernel_ = load_kernel("rotations"), job_loop_ = load_kernel("job_loop");
   ppu::JobSystem jobs_{memory_, {.spes = 1}, job_loop_};
+  SpeWaker waker_{jobs_};
   ppu::JobChain chain_{jobs_, "rotations", 1};
   dma::Buffer<spu::RotationMatrices> matrices_;
   dma::Buffer<spu::MatchRotations> starts_, found_;
@@ -110,7 +114,10 @@ void add_rotation(std::vector<Benchmark>& all, const std::string& name, Rotation
   const Shared<RotationRig> shared(
       [=] { return std::make_shared<RotationRig>(make, least_iterations, most_iterations); });
   all.push_back({"rotation/" + name + "/spe", [=] {
-                   return Work{kRepeats * kMatrices, [rig = shared.get()] { rig->run_spe(); }};
+                   const auto rig = shared.get();
+                   return Work{.items = kRepeats * kMatrices,
+                               .run = [rig] { rig->run_spe(); },
+                               .before = [rig] { rig->wake(); }};
                  }});
   all.push_back({"rotation/" + name + "/ppu", [=] {
                    return Work{kMatrices, [rig = shared.get()] { rig->run_ppu(); }};

@@ -7,6 +7,7 @@
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_orchestrator.h"
 #include "softcell/ppu/skin_scalar.h"
+#include "spe_waker.h"
 
 namespace softcell::demos {
 namespace {
@@ -21,6 +22,7 @@ struct SkinCase {
         kernel(load_kernel("skin")),
         job_loop(load_kernel("job_loop")),
         jobs(memory, {.spes = 1}, job_loop),
+        waker(jobs),
         orchestrator(memory, jobs, kernel),
         scalar_out(kSkinnedBodies, std::vector<spu::SkinnedVertex>(4 * embedding->groups.size())) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
@@ -57,6 +59,7 @@ struct SkinCase {
   dma::AddressSpace memory;
   ls_sim::KernelImage kernel, job_loop;
   ppu::JobSystem jobs;
+  SpeWaker waker;
   ppu::SkinOrchestrator orchestrator;
   std::vector<Eigen::Vector3f> positions;
   std::vector<spu::SkinCorner> corners;
@@ -70,7 +73,9 @@ void add_skin(std::vector<Benchmark>& all, const std::string& name,
   const auto add = [&](const char* how, auto run) {
     all.push_back({"skin/" + name + "/" + how, [=] {
                      const auto rig = shared.get();
-                     return Work{kSkinnedBodies * rig->embedding->slot_of_vertex.size(), [=] { run(*rig); }};
+                     return Work{.items = kSkinnedBodies * rig->embedding->slot_of_vertex.size(),
+                                 .run = [=] { run(*rig); },
+                                 .before = [=] { rig->waker.wake(); }};
                    }});
   };
   add("spe", [](SkinCase& rig) { rig.run_spe(); });

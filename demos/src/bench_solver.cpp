@@ -13,6 +13,7 @@
 #include "softcell/ppu/job_system.h"
 #include "softcell/ppu/match_orchestrator.h"
 #include "softcell/ppu/shape_matching.h"
+#include "spe_waker.h"
 
 namespace softcell::demos {
 namespace {
@@ -21,11 +22,12 @@ constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f, kDensity = 10
 
 /// What all solvers work on: several bodies of one model, so that none has one body's data in its caches.
 struct Model {
-  Model(ppu::Lattice body, int half_width)
+  /// @param copies  0: as many as make kBenchParticles
+  Model(ppu::Lattice body, int half_width, std::size_t copies = 0)
       : lattice(std::move(body)),
         plan(std::make_shared<const ppu::MatchingPlan<float>>(lattice, half_width,
                                                               ppu::particle_masses(lattice, kDensity))),
-        bodies(std::max<std::size_t>(1, kBenchParticles / lattice.particles.size())) {
+        bodies(copies != 0 ? copies : std::max<std::size_t>(1, kBenchParticles / lattice.particles.size())) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) x.push_back(bent_position(lattice, i));
   }
 
@@ -54,11 +56,13 @@ class SpeBodies {
     for (std::size_t b = 0; b < bodies_; ++b) std::ranges::fill(spes_.velocities(b), spu::SkinCorner{});
     spes_.step({.pull = kAlpha / kStep, .damping = kDamping, .least_iterations = 2, .most_iterations = 2});
   }
+  void wake() { waker_.wake(); }
 
  private:
   dma::AddressSpace memory_;
   ls_sim::KernelImage job_loop_ = load_kernel("job_loop"), kernel_ = load_kernel("match");
   ppu::JobSystem jobs_;
+  SpeWaker waker_{jobs_};
   ppu::MatchOrchestrator spes_;
   std::size_t bodies_;
 };
@@ -102,7 +106,9 @@ void add_solver(std::vector<Benchmark>& all, const BenchBody& body, int half_wid
   const auto add = [&](std::string_view solver, auto make) {
     all.push_back({fmt::format("solver3d/{}/w{}/{}", body.name, half_width, solver), [=] {
                      const auto bodies = make(*shared.get());
-                     return Work{shared.get()->particles(), [bodies] { bodies->step(); }};
+                     Work work{shared.get()->particles(), [bodies] { bodies->step(); }};
+                     if constexpr (requires { bodies->wake(); }) work.before = [bodies] { bodies->wake(); };
+                     return work;
                    }});
   };
   using Matchers = PpuBodies<ppu::ShapeMatcher<float>>;
@@ -118,6 +124,11 @@ void add_solver(std::vector<Benchmark>& all, const BenchBody& body, int half_wid
 void add_solver_benchmarks(std::vector<Benchmark>& all) {
   for (const BenchBody& body : bench_bodies())
     for (int w = 1; w <= 4; ++w) add_solver(all, body, w);
+  all.push_back({"solver3d/one1000/w2/spe", [] {
+                   const Model model(bench_block({10, 10, 10}), 2, 1);
+                   const auto body = std::make_shared<SpeBodies>(model);
+                   return Work{model.particles(), [body] { body->step(); }};
+                 }});
 }
 
 }  // namespace softcell::demos

@@ -11,6 +11,7 @@
 #include "softcell/ppu/job_system.h"
 #include "softcell/ppu/match_orchestrator_2d.h"
 #include "softcell/ppu/shape_matching_2d.h"
+#include "spe_waker.h"
 
 namespace softcell::demos {
 namespace {
@@ -44,6 +45,7 @@ struct SolverCase2d {
         plan(std::make_shared<const ppu::MatchingPlan2d<float>>(lattice, half_width,
                                                                 ppu::particle_masses(lattice, 1000))),
         jobs(memory, {.spes = 1}, job_loop),
+        waker(jobs),
         bodies(std::max<std::size_t>(1, kParticlesAtOnce / lattice.particles.size())),
         kernel_plan(lattice, *plan),
         spes(memory, jobs, kernel, std::vector{ppu::MatchOrchestrator2d::Model{&kernel_plan, bodies}}),
@@ -80,6 +82,7 @@ struct SolverCase2d {
   dma::AddressSpace memory;
   ls_sim::KernelImage kernel = load_kernel("match_2d"), job_loop = load_kernel("job_loop");
   ppu::JobSystem jobs;
+  SpeWaker waker;
   std::size_t bodies;
   ppu::MatchPlan2d kernel_plan;
   ppu::MatchOrchestrator2d spes;
@@ -92,10 +95,12 @@ void add_solver(std::vector<Benchmark>& all, const std::string& body, ppu::Latti
                 int half_width) {
   const Shared<SolverCase2d> shared(
       [make, half_width] { return std::make_shared<SolverCase2d>(make(), half_width); });
-  const auto add = [&](std::string_view solver, auto run, bool many_bodies = false) {
+  const auto add = [&](std::string_view solver, auto run, bool on_spes = false) {
     all.push_back({fmt::format("solver2d/{}/w{}/{}", body, half_width, solver), [=] {
                      const auto rig = shared.get();
-                     return Work{(many_bodies ? rig->bodies : 1) * rig->x.size(), [=] { run(*rig); }};
+                     Work work{(on_spes ? rig->bodies : 1) * rig->x.size(), [=] { run(*rig); }};
+                     if (on_spes) work.before = [=] { rig->waker.wake(); };
+                     return work;
                    }});
   };
   add(

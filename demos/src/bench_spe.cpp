@@ -86,6 +86,15 @@ Benchmark on(const Shared<Rig>& shared, std::string name, std::size_t items, Run
   return {std::move(name), [=] { return Work{items, [rig = shared.get(), run] { run(*rig); }}; }};
 }
 
+/// The same on SPEs that are awake.
+template <typename Run>
+Benchmark on_awake(const Shared<TransfersRig>& shared, std::string name, std::size_t items, Run run) {
+  return {std::move(name), [=] {
+            const auto rig = shared.get();
+            return Work{.items = items, .run = [=] { run(*rig); }, .before = [=] { rig->run_empty_jobs(1); }};
+          }};
+}
+
 }  // namespace
 
 void add_dma_benchmarks(std::vector<Benchmark>& all) {
@@ -100,10 +109,10 @@ void add_dma_benchmarks(std::vector<Benchmark>& all) {
     rig.move(spu::kTransferGet, 16, kCommands, kCommandsInFlight);
   };
   all.push_back(on(by_memcpy, "dma/memcpy16k", kBlocks, [](Memcpy& rig) { rig.run(); }));
-  all.push_back(on(eager, "dma/get16k", kBlocks, blocks(spu::kTransferGet)));
-  all.push_back(on(eager, "dma/put16k", kBlocks, blocks(spu::kTransferPut)));
-  all.push_back(on(eager, "dma/command/eager", kCommands, commands));
-  all.push_back(on(lazy, "dma/command/lazy", kCommands, commands));
+  all.push_back(on_awake(eager, "dma/get16k", kBlocks, blocks(spu::kTransferGet)));
+  all.push_back(on_awake(eager, "dma/put16k", kBlocks, blocks(spu::kTransferPut)));
+  all.push_back(on_awake(eager, "dma/command/eager", kCommands, commands));
+  all.push_back(on_awake(lazy, "dma/command/lazy", kCommands, commands));
 }
 
 void add_dispatch_benchmarks(std::vector<Benchmark>& all) {
@@ -111,7 +120,7 @@ void add_dispatch_benchmarks(std::vector<Benchmark>& all) {
   const Shared<TransfersRig> six([] { return std::make_shared<TransfersRig>(dma::Schedule{}, 6); });
   const auto many = [](TransfersRig& rig) { rig.run_empty_jobs(kQueuedJobs); };
   const auto single = [](TransfersRig& rig) { rig.run_empty_jobs(1); };
-  all.push_back(on(one, "dispatch/queued", kQueuedJobs, many));
+  all.push_back(on_awake(one, "dispatch/queued", kQueuedJobs, many));
   all.push_back(on(one, "dispatch/round_trip", 1, single));
   all.push_back(on(six, "dispatch/round_trip_6_spes", 1, single));
 }

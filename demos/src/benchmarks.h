@@ -18,6 +18,7 @@ struct Work {
   /// What counts, as a time that has passed up to now; null: the clock's.
   std::function<std::chrono::nanoseconds()> spent = {};
   std::function<std::string()> note = {};  ///< what else is worth saying, found out after all is measured
+  std::function<void()> before = {};      ///< right before each run, and not timed; null: nothing
 };
 
 /// One thing to measure.
@@ -50,7 +51,8 @@ class Shared {
 void add_skin_benchmarks(std::vector<Benchmark>& all);
 
 /// solver3d/<body>/w<n>/<spe|eigen|ppu|naive>: an item is a particle. `eigen` is as one writes it with Eigen,
-/// `ppu` the PPU's solver, `naive` that one without shared sums.
+/// `ppu` the PPU's solver, `naive` that one without shared sums. solver3d/one1000/w2/spe: a body of 1000
+/// particles by itself, handed over and waited for.
 void add_solver_benchmarks(std::vector<Benchmark>& all);
 
 /// solver3d/<body>/w<n>/bullet-<pose|links>: a btSoftBody with a node for each of the body's particles, once
