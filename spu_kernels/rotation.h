@@ -176,28 +176,45 @@ __attribute__((always_inline)) inline Matrix3x4 normalised(const Matrix3x4& a, c
   return rotation_detail::normalise(a, noise);
 }
 
-/// Turns `count` groups of four quaternions towards the optima, as far as `effort` says.
+namespace rotation_detail {
+
+/// One iteration of all groups, one or more.
 ///
-/// One iteration is a chain of dependent operations and takes five times as long as its operations would.
-/// Groups do not depend on each other: a pass makes one iteration of all of them, for the processor, or the
-/// compiler that unrolls it, to overlap.
+/// It is a chain of dependent operations and takes five times as long as its operations would. Groups do not
+/// depend on each other: each round estimates one and finishes the one before it, for the processor to
+/// overlap.
+__attribute__((always_inline)) inline void improve_all(const RotationProblem* problems, Quaternion4* q,
+                                                       vec_uint4* indefinite, uint32_t count) {
+  Estimate before = estimate(problems[0].a, q[0]);
+  indefinite[0] = before.indefinite;
+  for (uint32_t g = 1; g < count; ++g) {
+    const Estimate e = estimate(problems[g].a, q[g]);
+    indefinite[g] = e.indefinite;
+    q[g - 1] = improve(before, problems[g - 1].a, q[g - 1]);
+    before = e;
+  }
+  q[count - 1] = improve(before, problems[count - 1].a, q[count - 1]);
+}
+
+}  // namespace rotation_detail
+
+/// Turns `count` groups of four quaternions towards the optima, as far as `effort` says.
 /// @param q           unit to 1e-5; in: last step's. out: unit to 5e-6.
+/// @param count       one or more
 /// @param indefinite  out, for each group: top bit set where H was not positive at the last look
 __attribute__((noinline)) inline void improve_rotations(const RotationProblem* problems, Quaternion4* q,
                                                         vec_uint4* indefinite, uint32_t count,
                                                         RotationEffort effort) {
   using namespace rotation_detail;
-  const vec_float4 good = spu_splats(kRotationResidual * kRotationResidual);
   for (uint32_t g = 0; g < count; ++g) indefinite[g] = spu_splats(0u);
-  for (uint32_t pass = 0; pass < effort.most; ++pass) {
-    bool all_good = pass >= effort.least;
+  for (uint32_t pass = 0; pass < effort.least; ++pass) improve_all(problems, q, indefinite, count);
+
+  const vec_float4 good = spu_splats(kRotationResidual * kRotationResidual);
+  for (uint32_t pass = effort.least; pass < effort.most; ++pass) {
+    bool all_good = true;
     for (uint32_t g = 0; g < count; ++g) {
       const Estimate e = estimate(problems[g].a, q[g]);
       indefinite[g] = e.indefinite;
-      if (pass < effort.least) {
-        q[g] = improve(e, problems[g].a, q[g]);
-        continue;
-      }
       // Lanes that are good stay as they are: what a region gets does not depend on its neighbours in a
       // group.
       const vec_uint4 bad = spu_or(e.indefinite, less(good, e.residual_square));

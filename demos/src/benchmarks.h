@@ -18,7 +18,7 @@ struct Work {
   /// What counts, as a time that has passed up to now; null: the clock's.
   std::function<std::chrono::nanoseconds()> spent = {};
   std::function<std::string()> note = {};  ///< what else is worth saying, found out after all is measured
-  std::function<void()> before = {};      ///< right before each run, and not timed; null: nothing
+  std::function<void()> before = {};       ///< right before each run, and not timed; null: nothing
 };
 
 /// One thing to measure.
