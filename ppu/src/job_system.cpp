@@ -280,9 +280,10 @@ void JobSystem::State::fail_unfinished() {
     ChainDone done;
     memory.reservations().load_and_reserve(holder, chain->done_.ea(), host_of(chain->done_),
                                            reinterpret_cast<std::byte*>(&done));
-    const auto jobs = static_cast<std::uint32_t>(chain->size());
+    std::uint32_t jobs = 0;
     const ChainState state = change_state(*chain, [&](ChainState& line) {
-      if (line.kick == done.kick) return;
+      if (line.kick == done.kick) return;  // not under way: its owner may be filling it
+      jobs = static_cast<std::uint32_t>(chain->size());
       line.next = line.stage_end;  // for nobody to take
       if (line.failed++ == 0) {
         line.failed_job = jobs;

@@ -430,6 +430,25 @@ TEST_F(JobSystemTest, AFaultThatNamesNoJobFailsTheChainsUnderWay) {
   }
 }
 
+TEST_F(JobSystemTest, AChainMayBeFilledWhileTheLoopsBreakDown) {
+  const KernelImage broken = test_image("breaks_down");
+  JobSystem jobs(memory_, {.spes = 2}, broken);
+  JobChain kicked(jobs, "kicked", 1), filled(jobs, "filled", 100);
+  const JobImage adds = jobs.place(adds_);
+  auto lines = make_lines(2);
+  kicked.add({adds, lines.ea(0)});
+  for (int kick = 0; kick < 20; ++kick) {
+    kicked.kick();
+    for (int job = 0; job < 2000; ++job) {  // no look at the chain between: it would put both in an order
+      if (filled.size() == 100) filled.clear();
+      filled.add({adds, lines.ea(1)});
+    }
+    kicked.wait();
+    ASSERT_EQ(kicked.failures().size(), 1u);
+    ASSERT_TRUE(filled.failures().empty());
+  }
+}
+
 TEST_F(JobSystemTest, RefusesALoopThatLeavesNoRoomForJobs) {
   EXPECT_THROW(JobSystem(memory_, {.spes = 1}, adds_), std::invalid_argument);
 }
