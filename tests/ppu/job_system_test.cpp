@@ -381,7 +381,7 @@ TEST_F(JobSystemTest, AJobThatLeavesAStalledListIsNamed) {
   }
 }
 
-/// Wherever the loop's stack is damaged, at the latest its own fault ends the wait.
+/// Wherever the loop's stack is damaged: where its frames are the job is named, below them nothing happens.
 TEST_F(JobSystemTest, ADamagedStackOfTheLoopHangsNobody) {
   const KernelImage image = test_image("overwrites");
   JobSystem jobs(memory_, {.spes = 2, .deadline = 500ms}, loop_);
@@ -397,13 +397,14 @@ TEST_F(JobSystemTest, ADamagedStackOfTheLoopHangsNobody) {
     chain.kick();
     chain.wait();
     failed += chain.failures().size();
+    for (const JobFailure& failure : chain.failures()) expect_parts(failure.message, {"kernel overwrites"});
     chain.clear();
     chain.add({adds, lines.ea()});
     chain.kick();
     chain.wait();
-    for (const JobFailure& failure : chain.failures()) expect_parts(failure.message, {"job_loop"});
+    ASSERT_TRUE(chain.failures().empty()) << chain.failures()[0].message;
   }
-  EXPECT_GT(failed, 0u);
+  EXPECT_GT(failed, 2u);
 }
 
 TEST_F(JobSystemTest, AFaultThatNamesNoJobFailsTheChainsUnderWay) {

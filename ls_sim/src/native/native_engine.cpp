@@ -36,6 +36,8 @@ using native::Operation;
 
 constexpr std::byte kFiller{0xA5};
 constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
+constexpr std::uint32_t kGateLinkBytes =
+    16;  // of the gate's frame: its caller's frame pointer and where it returns to
 constexpr std::size_t kLandingStackBytes = 16 * 1024;
 
 std::string hexadecimal(std::uint64_t value) {
@@ -112,6 +114,7 @@ class NativeEngine final : public Engine {
   std::optional<dma::Fault> note_job();
   std::optional<dma::Fault> end_job();
   std::span<const std::byte> variables_of_caller() const;
+  std::span<const std::byte> frames_of_caller() const;
   std::optional<dma::Fault> check_caller() const;
   Access requested_access() const;
   ChannelReply answer_channel();
@@ -135,6 +138,8 @@ class NativeEngine final : public Engine {
   std::unique_ptr<native::DebuggerSymbols> debugger_job_symbols_;
   bool data_as_linked_ = false;              ///< nothing has run since load()
   std::vector<std::byte> caller_variables_;  ///< of image_, as they were when it called job_image_
+  std::vector<std::byte> caller_frames_;     ///< likewise its stack, from caller_frames_begin_ on
+  std::uint32_t caller_frames_begin_ = 0;
   KernelContext context_;
   ChannelPort* channels_ = nullptr;  // these five: of the run
   AccessObserver* accesses_ = nullptr;
@@ -260,6 +265,9 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
   const std::span<const std::byte> variables = variables_of_caller();
   caller_variables_.assign(variables.begin(), variables.end());
+  caller_frames_begin_ = static_cast<std::uint32_t>(context_.stack_pointer - arena()) + kGateLinkBytes;
+  const std::span<const std::byte> frames = frames_of_caller();
+  caller_frames_.assign(frames.begin(), frames.end());
   if (job_image_ == nullptr) return std::nullopt;
   if (debugger_wanted_ && job_image_ != last) {
     debugger_job_symbols_ = std::make_unique<native::DebuggerSymbols>(*job_image_, local_store_.base());
@@ -284,6 +292,13 @@ std::span<const std::byte> NativeEngine::variables_of_caller() const {
   return {local_store_.base() + image_->data_begin, image_->sizes.end - image_->data_begin};
 }
 
+/// What the caller has on its stack when it tells of a job. It writes nothing there before it tells of the
+/// job's end, but for what lies behind the gate's frame: how it returns.
+std::span<const std::byte> NativeEngine::frames_of_caller() const {
+  const std::uint32_t top = image_->stack_top;
+  return {local_store_.base() + std::min(caller_frames_begin_, top), local_store_.base() + top};
+}
+
 /// While a job runs nobody but the job can have changed its caller's image, which would fail later and in any
 /// way at all: then the job is no longer known.
 std::optional<dma::Fault> NativeEngine::check_caller() const {
@@ -292,16 +307,24 @@ std::optional<dma::Fault> NativeEngine::check_caller() const {
   const std::size_t code_bytes = image_->data_begin - image_->begin;
   const bool code_intact = debugger_wanted_ ||  // whose breakpoints are written into it
                            std::memcmp(code, image_->bytes.data(), code_bytes) == 0;
-  if (code_intact && std::memcmp(variables, caller_variables_.data(), caller_variables_.size()) == 0)
+  const bool variables_intact =
+      std::memcmp(variables, caller_variables_.data(), caller_variables_.size()) == 0;
+  const std::byte* const frames = frames_of_caller().data();
+  if (code_intact && variables_intact &&
+      std::memcmp(frames, caller_frames_.data(), caller_frames_.size()) == 0)
     return std::nullopt;
   const std::byte* const at =
-      code_intact ? std::mismatch(caller_variables_.begin(), caller_variables_.end(), variables).second
-                  : std::mismatch(code, code + code_bytes, image_->bytes.data()).first;
+      !code_intact ? std::mismatch(code, code + code_bytes, image_->bytes.data()).first
+      : !variables_intact
+          ? std::mismatch(caller_variables_.begin(), caller_variables_.end(), variables).second
+          : std::mismatch(caller_frames_.begin(), caller_frames_.end(), frames).second;
   return fault(dma::Rule::kOutsideObjects,
                "the job wrote to local-store address " +
                    hexadecimal(static_cast<std::uint64_t>(at - local_store_.base())) + ", where kernel " +
                    image_->name + ", which has called it, has its " +
-                   (code_intact ? "variables" : "instructions or constants"));
+                   (!code_intact        ? "instructions or constants"
+                    : !variables_intact ? "variables"
+                                        : "stack"));
 }
 
 Access NativeEngine::requested_access() const {
