@@ -292,39 +292,36 @@ std::span<const std::byte> NativeEngine::variables_of_caller() const {
   return {local_store_.base() + image_->data_begin, image_->sizes.end - image_->data_begin};
 }
 
-/// What the caller has on its stack when it tells of a job. It writes nothing there before it tells of the
-/// job's end, but for what lies behind the gate's frame: how it returns.
+/// The caller's frames from where it tells of a job. It writes nothing there before it tells of the job's
+/// end; where the gate returns to, which is another place each time, lies below.
 std::span<const std::byte> NativeEngine::frames_of_caller() const {
   const std::uint32_t top = image_->stack_top;
   return {local_store_.base() + std::min(caller_frames_begin_, top), local_store_.base() + top};
 }
 
-/// While a job runs nobody but the job can have changed its caller's image, which would fail later and in any
-/// way at all: then the job is no longer known.
+/// While a job runs nobody but the job can have changed its caller's image or frames, which would fail later
+/// and in any way at all: then the job is no longer known.
 std::optional<dma::Fault> NativeEngine::check_caller() const {
-  const std::byte* const code = local_store_.base() + image_->begin;
-  const std::byte* const variables = variables_of_caller().data();
+  struct Part {
+    const char* name;
+    std::span<const std::byte> now, before;
+  };
   const std::size_t code_bytes = image_->data_begin - image_->begin;
-  const bool code_intact = debugger_wanted_ ||  // whose breakpoints are written into it
-                           std::memcmp(code, image_->bytes.data(), code_bytes) == 0;
-  const bool variables_intact =
-      std::memcmp(variables, caller_variables_.data(), caller_variables_.size()) == 0;
-  const std::byte* const frames = frames_of_caller().data();
-  if (code_intact && variables_intact &&
-      std::memcmp(frames, caller_frames_.data(), caller_frames_.size()) == 0)
-    return std::nullopt;
-  const std::byte* const at =
-      !code_intact ? std::mismatch(code, code + code_bytes, image_->bytes.data()).first
-      : !variables_intact
-          ? std::mismatch(caller_variables_.begin(), caller_variables_.end(), variables).second
-          : std::mismatch(caller_frames_.begin(), caller_frames_.end(), frames).second;
-  return fault(dma::Rule::kOutsideObjects,
-               "the job wrote to local-store address " +
-                   hexadecimal(static_cast<std::uint64_t>(at - local_store_.base())) + ", where kernel " +
-                   image_->name + ", which has called it, has its " +
-                   (!code_intact        ? "instructions or constants"
-                    : !variables_intact ? "variables"
-                                        : "stack"));
+  const Part parts[] = {{"instructions or constants",
+                         {local_store_.base() + image_->begin, code_bytes},
+                         {image_->bytes.data(), code_bytes}},
+                        {"variables", variables_of_caller(), caller_variables_},
+                        {"stack", frames_of_caller(), caller_frames_}};
+  // Breakpoints of a debugger are written into the code.
+  for (const Part& part : std::span(parts).subspan(debugger_wanted_ ? 1 : 0)) {
+    if (std::memcmp(part.now.data(), part.before.data(), part.before.size()) == 0) continue;
+    const std::byte* const at = std::to_address(std::ranges::mismatch(part.now, part.before).in1);
+    return fault(dma::Rule::kOutsideObjects,
+                 "the job wrote to local-store address " +
+                     hexadecimal(static_cast<std::uint64_t>(at - local_store_.base())) + ", where kernel " +
+                     image_->name + ", which has called it, has its " + part.name);
+  }
+  return std::nullopt;
 }
 
 Access NativeEngine::requested_access() const {
