@@ -207,10 +207,11 @@ __attribute__((noinline)) inline void improve_rotations(const RotationProblem* p
                                                         RotationEffort effort) {
   using namespace rotation_detail;
   for (uint32_t g = 0; g < count; ++g) indefinite[g] = spu_splats(0u);
-  for (uint32_t pass = 0; pass < effort.least; ++pass) improve_all(problems, q, indefinite, count);
+  const uint32_t least = effort.least < effort.most ? effort.least : effort.most;
+  for (uint32_t pass = 0; pass < least; ++pass) improve_all(problems, q, indefinite, count);
 
   const vec_float4 good = spu_splats(kRotationResidual * kRotationResidual);
-  for (uint32_t pass = effort.least; pass < effort.most; ++pass) {
+  for (uint32_t pass = least; pass < effort.most; ++pass) {
     bool all_good = true;
     for (uint32_t g = 0; g < count; ++g) {
       const Estimate e = estimate(problems[g].a, q[g]);
