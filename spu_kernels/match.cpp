@@ -3,11 +3,11 @@
 //   array       direction  element                     count                     alignment
 //   job         in         MatchJob, 128 bytes         1                         128
 //   plan        in         MatchPlanHeader and lists   once a job                128
-//   body        in         MatchBody, 128 bytes        one for each body         128
-//   positions   in         x y z 0, 16 bytes           one for each particle     16
-//   velocities  in, out    x y z 0, 16 bytes           one for each particle     16
-//   rotations   in, out    MatchRotations, 64 bytes    one for four regions      16
-//   result      out        MatchResult, 16 bytes       1                         16
+//   bodies      in         MatchBody, 16 bytes         one for each body         128
+//   positions   in         x y z 0, 16 bytes           one for each particle     16, of a body
+//   state       in, out    MatchResult, then           one for each body         16, of a body
+//                          x y z 0 of velocities, then one for each particle
+//                          MatchRotations, 64 bytes    one for four regions
 //
 // A body is stepped whole: between its stages nothing goes through main memory. Particles are corners of the
 // lattice's cells, so their positions are all that skinning needs, and those do not change here.
@@ -29,7 +29,10 @@
 namespace softcell::spu {
 namespace {
 
-enum Tag : uint32_t { kTagIn = 0, kTagOut = 1 };
+/// Of the job and the plan, and of the body that is stepped.
+enum Tag : uint32_t { kTagJob = 0, kTagBody = 1 };
+
+constexpr uint32_t kBodiesAtOnce = 64;  // of which the kernel knows where they are
 
 #ifdef SOFTCELL_CHECKED
 constexpr uint32_t kArenaBytes = kMatchCheckedArenaBytes;
@@ -40,8 +43,7 @@ constexpr uint32_t kArenaBytes = kMatchArenaBytes;
 /// Everything this kernel keeps in local store beside its code and stack.
 struct alignas(128) LocalStoreMap {
   MatchJob job;
-  MatchBody body;
-  MatchResult result;
+  alignas(128) MatchBody bodies[kBodiesAtOnce];
   alignas(128) char arena[kArenaBytes];
 };
 LocalStoreMap ls;
@@ -50,48 +52,39 @@ const MatchPlanHeader& plan() { return *reinterpret_cast<const MatchPlanHeader*>
 
 /// @return false when plan and state do not fit the arena; only the header is there then.
 bool load_plan() {
-  mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader), kTagIn, 0, 0);
-  wait_for_tag(kTagIn);
+  mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader), kTagJob, 0, 0);
+  wait_for_tag(kTagJob);
   if (!match_fits(plan(), kArenaBytes)) return false;
   get_large(ls.arena + sizeof(MatchPlanHeader), ls.job.plan_ea + sizeof(MatchPlanHeader),
-            plan().bytes - static_cast<uint32_t>(sizeof(MatchPlanHeader)), kTagIn);
-  wait_for_tag(kTagIn);
+            plan().bytes - static_cast<uint32_t>(sizeof(MatchPlanHeader)), kTagJob);
+  wait_for_tag(kTagJob);
   return true;
 }
 
-void load_body(const BodyMap& map) {
-  const uint32_t vectors = plan().particles * 16;
-  get_large(map.positions, ls.body.positions_ea, vectors, kTagIn);
-  get_large(map.velocities, ls.body.velocities_ea, vectors, kTagIn);
-  get_large(map.rotations, ls.body.rotations_ea, match_rotations_bytes(plan()), kTagIn);
-  wait_for_tag(kTagIn);
-}
-
-void store_body(const BodyMap& map) {
-  put_large(map.velocities, ls.body.velocities_ea, plan().particles * 16, kTagOut);
-  put_large(map.rotations, ls.body.rotations_ea, match_rotations_bytes(plan()), kTagOut);
-}
-
-void step(const BodyMap& map) {
+/// One body, which waits for the one before it to leave.
+void step(const MatchBody& body, const BodyMap& map) {
   const uint32_t particles = plan().particles;
-  load_body(map);
+  getf_large(map.positions, body.positions_ea, particles * 16, kTagBody);
+  getf_large(map.result, body.state_ea, match_state_bytes(plan()), kTagBody);
+  wait_for_tag(kTagBody);
+
   vec_float4* const x = particle_quadwords(map.positions);
   vec_float4* const v = particle_quadwords(map.velocities);
-  ls.result = {0, all_finite(x, particles) && all_finite(v, particles), {0, 0}};
-  if (ls.result.finite != 0) {
-    vec_float4 samples[kMatchSamples];
-    for (uint32_t i = 0; i < kMatchSamples; ++i) samples[i] = x[plan().samples[i]];
-    to_components(map.positions, particles, origin_of(samples, kMatchSamples, plan().grid));
-    to_components(map.velocities, particles, spu_splats(0.0f));
-    const vec_float4 residual = step_body(map, {ls.body.pull,
-                                                ls.body.damping,
-                                                {ls.job.least_iterations, ls.job.most_iterations},
-                                                ls.body.cold != 0});
-    ls.result.residual_square = largest_lane(residual);
-    to_particles(map.velocities, map.particle_groups);
-    store_body(map);
+  const bool cold = map.result->cold != 0;
+  if (!all_finite(x, particles) || !all_finite(v, particles)) {
+    *map.result = {0, 0, cold, 0};
+    mfc_put(map.result, body.state_ea, sizeof(MatchResult), kTagBody, 0, 0);
+    return;
   }
-  mfc_put(&ls.result, ls.body.result_ea, sizeof(MatchResult), kTagOut, 0, 0);
+  vec_float4 samples[kMatchSamples];
+  for (uint32_t i = 0; i < kMatchSamples; ++i) samples[i] = x[plan().samples[i]];
+  to_components(map.positions, particles, origin_of(samples, kMatchSamples, plan().grid));
+  to_components(map.velocities, particles, spu_splats(0.0f));
+  const vec_float4 residual =
+      step_body(map, {ls.job.pull, ls.job.damping, {ls.job.least_iterations, ls.job.most_iterations}, cold});
+  to_particles(map.velocities, map.particle_groups);
+  *map.result = {largest_lane(residual), 1, 0, 0};
+  put_large(map.result, body.state_ea, match_state_bytes(plan()), kTagBody);
 }
 
 }  // namespace
@@ -100,20 +93,21 @@ void step(const BodyMap& map) {
 /// argp: effective address of a MatchJob. Returns a MatchStatus.
 int main(uint64_t, uint64_t argp, uint64_t) {
   using namespace softcell::spu;
-  mfc_get(&ls.job, argp, sizeof(MatchJob), kTagIn, 0, 0);
-  wait_for_tag(kTagIn);
+  mfc_get(&ls.job, argp, sizeof(MatchJob), kTagJob, 0, 0);
+  wait_for_tag(kTagJob);
   if (ls.job.body_count == 0) return kMatchDone;
   if (!load_plan()) return kMatchTooLarge;
 
   const BodyMap map = map_of(ls.arena);
   clear(map.first[0]);
   clear(map.second[0]);
-  for (uint32_t i = 0; i < ls.job.body_count; ++i) {
-    mfc_get(&ls.body, ls.job.bodies_ea + static_cast<uint64_t>(i) * sizeof(MatchBody), sizeof(MatchBody),
-            kTagIn, 0, 0);
-    wait_for_tags(1u << kTagIn | 1u << kTagOut);  // the body before has left
-    step(map);
+  for (uint32_t first = 0; first < ls.job.body_count; first += kBodiesAtOnce) {
+    const uint32_t left = ls.job.body_count - first, count = left < kBodiesAtOnce ? left : kBodiesAtOnce;
+    mfc_get(ls.bodies, ls.job.bodies_ea + static_cast<uint64_t>(first) * sizeof(MatchBody),
+            count * static_cast<uint32_t>(sizeof(MatchBody)), kTagJob, 0, 0);
+    wait_for_tag(kTagJob);
+    for (uint32_t i = 0; i < count; ++i) step(ls.bodies[i], map);
   }
-  wait_for_tag(kTagOut);
+  wait_for_tag(kTagBody);
   return kMatchDone;
 }

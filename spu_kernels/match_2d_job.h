@@ -102,13 +102,12 @@ constexpr uint32_t match_2d_state_bytes(const MatchPlanHeader2d& plan) {
          groups_of(plan.regions) * static_cast<uint32_t>(sizeof(MatchDirections));
 }
 
-/// From one body to the next, in whole lines.
-constexpr uint32_t match_2d_whole_lines(uint32_t bytes) { return (bytes + 127) / 128 * 128; }
+/// From one body to the next.
 constexpr uint32_t match_2d_positions_stride(const MatchPlanHeader2d& plan) {
-  return match_2d_whole_lines(match_2d_vectors_bytes(plan));
+  return whole_lines(match_2d_vectors_bytes(plan));
 }
 constexpr uint32_t match_2d_state_stride(const MatchPlanHeader2d& plan) {
-  return match_2d_whole_lines(match_2d_state_bytes(plan));
+  return whole_lines(match_2d_state_bytes(plan));
 }
 
 /// Bytes of local store: the plan, two bodies (one is fetched while the other is stepped), centres of

@@ -71,52 +71,63 @@ struct alignas(128) MatchPlanHeader {
 };
 static_assert(sizeof(MatchPlanHeader) == 128, "one line");
 
-/// One body. One line in main memory.
-struct alignas(128) MatchBody {
-  uint64_t positions_ea;   ///< x y z and 0 of each particle, metres; a multiple of 16 (128 is fastest)
-  uint64_t velocities_ea;  ///< x y z and 0 of each particle, m/s; changed in place; likewise aligned
-  uint64_t rotations_ea;   ///< MatchRotations of all groups of regions; changed in place; likewise aligned
-  uint64_t result_ea;      ///< a MatchResult, a multiple of 16
-  float pull;              ///< alpha / h, 1/s
-  float damping;           ///< k, 0..1
-  uint32_t cold;           ///< not 0: the rotations say nothing yet, only what they leave open
-  uint32_t pad[21];
-};
-static_assert(sizeof(MatchBody) == 128, "one line");
-
-/// What one body's step came to.
+/// What one body's step came to: the first quadword of its state.
 struct alignas(16) MatchResult {
   float residual_square;  ///< the square of the largest |axial(R^T A)| over the sum of |A|'s elements, which
                           ///< is roughly radians
-  uint32_t finite;        ///< 0: a position or velocity is infinite or no number, and nothing was written
-  uint32_t pad[2];
+  uint32_t finite;  ///< 0: a position or velocity is infinite or no number, and nothing else was written
+  uint32_t cold;    ///< in: not 0: the rotations say nothing yet, only what they leave open; out: 0
+  uint32_t pad;
+};
+
+/// Where one body is. Both are multiples of 16 (128 is fastest).
+struct alignas(16) MatchBody {
+  uint64_t positions_ea;  ///< x y z and 0 of each particle, metres; not changed
+  uint64_t state_ea;      ///< changed in place: a MatchResult; then x y z and 0 of each particle, m/s, padded
+                          ///< to groups of four; then MatchRotations of all groups of regions
 };
 
 /// The job's descriptor, one line in main memory: bodies of one model, stepped one after the other.
 struct alignas(128) MatchJob {
   uint64_t plan_ea;           ///< a MatchPlanHeader and what follows it, 128-byte aligned
-  uint64_t bodies_ea;         ///< body_count MatchBody, 128-byte aligned
+  uint64_t bodies_ea;         ///< body_count MatchBody, a multiple of 16
   uint32_t body_count;        ///< any number, 0 included
+  float pull;                 ///< alpha / h, 1/s
+  float damping;              ///< k, 0..1
   uint32_t least_iterations;  ///< of each rotation; 2 and 2 for a fixed effort, 0 and 6 to go by the residual
   uint32_t most_iterations;
-  uint32_t pad[25];
+  uint32_t pad[23];
 };
 static_assert(sizeof(MatchJob) == 128, "one line");
 
 /// What the kernel's main returns.
 enum MatchStatus : uint32_t { kMatchDone = 0, kMatchTooLarge = 1 };
 
-/// Bytes of local store for a plan and one body's state, each part a multiple of 16 bytes.
-constexpr uint32_t match_plan_bytes(const MatchPlanHeader& plan) { return plan.bytes; }
+/// Bytes of one body's positions, or velocities, padding included.
 constexpr uint32_t match_vectors_bytes(const MatchPlanHeader& plan) { return groups_of(plan.particles) * 64; }
-constexpr uint32_t match_rotations_bytes(const MatchPlanHeader& plan) {
-  return groups_of(plan.regions) * static_cast<uint32_t>(sizeof(MatchRotations));
+
+/// Where a body's rotations begin in its state, and where that ends.
+constexpr uint32_t match_rotations_at(const MatchPlanHeader& plan) {
+  return static_cast<uint32_t>(sizeof(MatchResult)) + match_vectors_bytes(plan);
 }
+constexpr uint32_t match_state_bytes(const MatchPlanHeader& plan) {
+  return match_rotations_at(plan) + groups_of(plan.regions) * static_cast<uint32_t>(sizeof(MatchRotations));
+}
+
+/// From one body to the next, in local store from one part to the next.
+constexpr uint32_t match_positions_stride(const MatchPlanHeader& plan) {
+  return whole_lines(match_vectors_bytes(plan));
+}
+constexpr uint32_t match_state_stride(const MatchPlanHeader& plan) {
+  return whole_lines(match_state_bytes(plan));
+}
+
+/// Bytes of local store: the plan, one body, momenta of regions, two buffers of slots.
 constexpr uint32_t match_momenta_bytes(const MatchPlanHeader& plan) { return groups_of(plan.regions) * 48; }
 constexpr uint32_t match_buffer_bytes(const MatchPlanHeader& plan) { return plan.slots * kMatchSlotBytes; }
 constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
-  return match_plan_bytes(plan) + 2 * match_vectors_bytes(plan) + match_rotations_bytes(plan) +
-         match_momenta_bytes(plan) + 2 * match_buffer_bytes(plan);
+  return plan.bytes + match_positions_stride(plan) + match_state_stride(plan) + match_momenta_bytes(plan) +
+         2 * match_buffer_bytes(plan);
 }
 
 /// What the kernel has for all that; its instrumented flavour has twice the code and less room.

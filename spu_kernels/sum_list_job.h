@@ -1,6 +1,6 @@
 #pragma once
-// What the plans of the kernels match, match_2d and match_tiles share: groups of four, and lists by which
-// sums are made. Plain data, the same bytes for both sides.
+// What the plans of the kernels match, match_2d and match_tiles share: groups of four, whole lines, and lists
+// by which sums are made. Plain data, the same bytes for both sides.
 //
 // A kernel works on two buffers of slots: a slot is the payload of a particle, a bar, a plate or a region,
 // some quadwords. Slot 0 is always zero. A sum list is a sequence of halfwords and makes slots 1, 2, 3, ...
@@ -29,5 +29,8 @@ constexpr uint32_t kSumRun = 0x8000;
 
 /// Particles or regions in groups of four.
 constexpr uint32_t groups_of(uint32_t count) { return (count + 3) / 4; }
+
+/// Bytes from one body's array to the next body's.
+constexpr uint32_t whole_lines(uint32_t bytes) { return (bytes + 127) / 128 * 128; }
 
 }  // namespace softcell::spu

@@ -84,25 +84,19 @@ void run_match(Sample& sample) {
     const Eigen::Vector3f x = lattice.rest_position(i);
     positions[i] = {-x.x(), x.y(), x.z(), 0};
   }
-  const dma::Buffer<spu::SkinCorner> velocities(sample.memory(), "velocities", particles);
-  const dma::Buffer<spu::MatchRotations> rotations(sample.memory(), "rotations",
-                                                   spu::groups_of(plan.header().regions));
-  const dma::Buffer<spu::MatchResult> result(sample.memory(), "result", 1);
+  dma::Buffer<std::byte> state(sample.memory(), "state", spu::match_state_bytes(plan.header()));
   dma::Buffer<spu::MatchBody> body(sample.memory(), "body", 1);
-  body[0].positions_ea = positions.ea().value;
-  body[0].velocities_ea = velocities.ea().value;
-  body[0].rotations_ea = rotations.ea().value;
-  body[0].result_ea = result.ea().value;
-  body[0].pull = 30;
-  body[0].damping = 0.1f;
+  body[0] = {positions.ea().value, state.ea().value};
   dma::Buffer<spu::MatchJob> job(sample.memory(), "job", 1);
   job[0].plan_ea = plan_bytes.ea().value;
   job[0].bodies_ea = body.ea().value;
   job[0].body_count = 1;
+  job[0].pull = 30;
+  job[0].damping = 0.1f;
   job[0].most_iterations = 6;
   // Rotations from nothing, then from the last step: the deepest ways through the kernel.
   for (const std::uint32_t cold : {1u, 0u}) {
-    body[0].cold = cold;
+    reinterpret_cast<spu::MatchResult*>(state.data())->cold = cold;
     sample.run(job.ea());
   }
 }

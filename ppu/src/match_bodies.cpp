@@ -10,20 +10,6 @@
 
 namespace softcell::ppu {
 
-namespace {
-
-constexpr std::size_t kLine = 128;
-
-/// Elements in whole lines: every body's data begin on one.
-template <typename T>
-std::size_t stride_of(std::size_t count) {
-  static_assert(kLine % sizeof(T) == 0);
-  constexpr std::size_t kPerLine = kLine / sizeof(T);
-  return (count + kPerLine - 1) / kPerLine * kPerLine;
-}
-
-}  // namespace
-
 void validate(const MatchSettings& settings) {
   check_setting("pull", settings.pull, std::numeric_limits<float>::max());
   check_setting("damping", settings.damping, 1);
@@ -33,44 +19,44 @@ void validate(const MatchSettings& settings) {
 }
 
 MatchBodies::MatchBodies(dma::AddressSpace& memory, const MatchPlan& plan, std::size_t bodies)
-    : particles_(plan.header().particles),
-      region_groups_(spu::groups_of(plan.header().regions)),
-      vector_stride_(stride_of<Vector>(particles_)),
-      rotation_stride_(stride_of<spu::MatchRotations>(region_groups_)),
-      plan_(memory, "match plan", plan.bytes().size(), kSpesOnlyRead),
-      positions_(memory, "match positions", bodies * vector_stride_, kSpesOnlyRead),
-      velocities_(memory, "match velocities", bodies * vector_stride_),
-      rotations_(memory, "match rotations", bodies * rotation_stride_),
-      results_(memory, "match results", bodies),
-      lines_(memory, "match bodies", bodies, kSpesOnlyRead),
-      descriptors_(memory, "match jobs", bodies, kSpesOnlyRead),
-      cold_(bodies) {
-  std::memcpy(plan_.data(), plan.bytes().data(), plan.bytes().size());
+    : header_(plan.header()),
+      plan_(memory, "match plan", header_.bytes, kSpesOnlyRead),
+      positions_(memory, "match positions", bodies * spu::match_positions_stride(header_),
+                 of_floats(kSpesOnlyRead)),
+      states_(memory, "match states", bodies * spu::match_state_stride(header_), of_floats()),
+      places_(memory, "match bodies", bodies, kSpesOnlyRead),
+      descriptors_(memory, "match jobs", bodies, kSpesOnlyRead) {
+  std::memcpy(plan_.data(), plan.bytes().data(), header_.bytes);
   for (std::size_t b = 0; b < bodies; ++b) reset(b);
 }
 
 std::span<MatchBodies::Vector> MatchBodies::positions(std::size_t body) {
-  return positions_.span().subspan(body * vector_stride_, particles_);
+  std::byte* const at = positions_.data() + body * spu::match_positions_stride(header_);
+  return {reinterpret_cast<Vector*>(at), header_.particles};
 }
 
 std::span<MatchBodies::Vector> MatchBodies::velocities(std::size_t body) {
-  return velocities_.span().subspan(body * vector_stride_, particles_);
+  return {reinterpret_cast<Vector*>(state(body) + sizeof(spu::MatchResult)), header_.particles};
+}
+
+std::span<spu::MatchRotations> MatchBodies::rotations(std::size_t body) {
+  std::byte* const at = state(body) + spu::match_rotations_at(header_);
+  return {reinterpret_cast<spu::MatchRotations*>(at), spu::groups_of(header_.regions)};
 }
 
 std::span<const spu::MatchRotations> MatchBodies::rotations(std::size_t body) const {
-  return {rotations_.data() + body * rotation_stride_, region_groups_};
+  return const_cast<MatchBodies*>(this)->rotations(body);
 }
 
 void MatchBodies::reset(std::size_t body) {
-  for (spu::MatchRotations& group : rotations_.span().subspan(body * rotation_stride_, rotation_stride_))
-    group = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 1}};
-  cold_[body] = true;
+  std::ranges::fill(rotations(body),
+                    spu::MatchRotations{{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 1}});
+  result(body).cold = 1;
 }
 
 void MatchBodies::take_rotations(std::size_t body, const MatchBodies& other, std::size_t other_body) {
-  const std::span<const spu::MatchRotations> from = other.rotations(other_body);
-  std::copy(from.begin(), from.end(), rotations_.data() + body * rotation_stride_);
-  cold_[body] = other.cold_[other_body];
+  std::ranges::copy(other.rotations(other_body), rotations(body).begin());
+  result(body).cold = other.result(other_body).cold;
 }
 
 void MatchBodies::add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
@@ -78,36 +64,27 @@ void MatchBodies::add_jobs(JobChain& chain, const JobImage& match, const MatchSe
   validate(settings);
   stepped_.assign(bodies.begin(), bodies.end());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const std::size_t body = bodies[i];
-    lines_[i] = {};
-    lines_[i].positions_ea = positions_.ea(body * vector_stride_).value;
-    lines_[i].velocities_ea = velocities_.ea(body * vector_stride_).value;
-    lines_[i].rotations_ea = rotations_.ea(body * rotation_stride_).value;
-    lines_[i].result_ea = results_.ea(body).value;
-    lines_[i].pull = settings.pull;
-    lines_[i].damping = settings.damping;
-    lines_[i].cold = cold_[body] ? 1 : 0;
+    places_[i].positions_ea = positions_.ea(bodies[i] * spu::match_positions_stride(header_)).value;
+    places_[i].state_ea = states_.ea(bodies[i] * spu::match_state_stride(header_)).value;
   }
-  for (std::size_t first = 0, job = 0; first < bodies.size(); first += bodies_per_job, ++job) {
-    descriptors_[job] = {};
-    descriptors_[job].plan_ea = plan_.ea().value;
-    descriptors_[job].bodies_ea = lines_.ea(first).value;
-    descriptors_[job].body_count =
-        static_cast<std::uint32_t>(std::min(bodies_per_job, bodies.size() - first));
-    descriptors_[job].least_iterations = settings.least_iterations;
-    descriptors_[job].most_iterations = settings.most_iterations;
-    chain.add({.image = match, .argp = descriptors_.ea(job)});
+  for (std::size_t first = 0, number = 0; first < bodies.size(); first += bodies_per_job, ++number) {
+    spu::MatchJob& job = descriptors_[number];
+    job = {};
+    job.plan_ea = plan_.ea().value;
+    job.bodies_ea = places_.ea(first).value;
+    job.body_count = static_cast<std::uint32_t>(std::min(bodies_per_job, bodies.size() - first));
+    job.pull = settings.pull;
+    job.damping = settings.damping;
+    job.least_iterations = settings.least_iterations;
+    job.most_iterations = settings.most_iterations;
+    chain.add({.image = match, .argp = descriptors_.ea(number)});
   }
 }
 
 std::vector<std::size_t> MatchBodies::take_results() {
   std::vector<std::size_t> bad;
-  for (const std::size_t body : stepped_) {
-    if (results_.data()[body].finite == 0)
-      bad.push_back(body);
-    else
-      cold_[body] = false;
-  }
+  for (const std::size_t body : stepped_)
+    if (result(body).finite == 0) bad.push_back(body);
   return bad;
 }
 

@@ -13,6 +13,12 @@ namespace softcell::ppu {
 
 inline constexpr dma::BufferOptions kSpesOnlyRead{.spe_access = dma::SpeAccess::kRead};
 
+/// Of a buffer of bytes that holds words.
+inline dma::BufferOptions of_floats(dma::BufferOptions options = {}) {
+  options.element_bytes = sizeof(float);
+  return options;
+}
+
 inline std::size_t jobs_for(std::size_t bodies, std::size_t bodies_per_job) {
   return (bodies + bodies_per_job - 1) / bodies_per_job;
 }

@@ -16,11 +16,6 @@ std::size_t jobs_for_all(std::span<const MatchOrchestrator2d::Model> models, std
   return jobs;
 }
 
-dma::BufferOptions of_floats(dma::BufferOptions options = {}) {
-  options.element_bytes = sizeof(float);
-  return options;
-}
-
 }  // namespace
 
 MatchOrchestrator2d::Bodies::Bodies(dma::AddressSpace& memory, const Model& model, std::size_t bodies_per_job)

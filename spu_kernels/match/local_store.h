@@ -57,6 +57,7 @@ struct BodyMap {
   MatchHold hold;
 
   Vectors4* positions;  // relative to the body's origin
+  MatchResult* result;  // the state: this and the next two, one behind the other
   Vectors4* velocities;
   Quaternion4* rotations;
   Vector3x4* momenta;    // of each region: sum m~ x
@@ -67,7 +68,7 @@ struct BodyMap {
 inline BodyMap map_of(char* arena) {
   const MatchPlanHeader& plan = *reinterpret_cast<const MatchPlanHeader*>(arena);
   const auto list = [&](uint32_t offset) { return reinterpret_cast<const uint16_t*>(arena + offset); };
-  char* free = arena + match_plan_bytes(plan);
+  char* free = arena + plan.bytes;
   const auto take = [&](uint32_t bytes) {
     char* const part = free;
     free += bytes;
@@ -84,9 +85,11 @@ inline BodyMap map_of(char* arena) {
   map.hold = plan.hold;
   map.particle_groups = groups_of(plan.particles);
   map.region_groups = groups_of(plan.regions);
-  map.positions = reinterpret_cast<Vectors4*>(take(match_vectors_bytes(plan)));
-  map.velocities = reinterpret_cast<Vectors4*>(take(match_vectors_bytes(plan)));
-  map.rotations = reinterpret_cast<Quaternion4*>(take(match_rotations_bytes(plan)));
+  map.positions = reinterpret_cast<Vectors4*>(take(match_positions_stride(plan)));
+  char* const state = take(match_state_stride(plan));
+  map.result = reinterpret_cast<MatchResult*>(state);
+  map.velocities = reinterpret_cast<Vectors4*>(state + sizeof(MatchResult));
+  map.rotations = reinterpret_cast<Quaternion4*>(state + match_rotations_at(plan));
   map.momenta = reinterpret_cast<Vector3x4*>(take(match_momenta_bytes(plan)));
   map.first = reinterpret_cast<Slot*>(take(match_buffer_bytes(plan)));
   map.second = reinterpret_cast<Slot*>(take(match_buffer_bytes(plan)));

@@ -32,13 +32,13 @@ class MatchBodies {
   /// @throws std::runtime_error  main memory is full.
   MatchBodies(dma::AddressSpace& memory, const MatchPlan& plan, std::size_t bodies);
 
-  std::size_t size() const { return cold_.size(); }
+  std::size_t size() const { return places_.size(); }
   std::span<Vector> positions(std::size_t body);   ///< metres; a step does not change them
   std::span<Vector> velocities(std::size_t body);  ///< m/s
   /// Of the plan's regions, in groups of four: see MatchPlan::region_of().
   std::span<const spu::MatchRotations> rotations(std::size_t body) const;
   /// The largest |axial(R^T A)| of the last step over the sum of |A|'s elements, roughly radians.
-  float residual(std::size_t body) const { return std::sqrt(results_.data()[body].residual_square); }
+  float residual(std::size_t body) const { return std::sqrt(result(body).residual_square); }
 
   /// Forgets a body's rotations: its next step starts cold. That is also how a body begins.
   void reset(std::size_t body);
@@ -57,16 +57,20 @@ class MatchBodies {
   std::vector<std::size_t> take_results();
 
  private:
-  std::uint32_t particles_, region_groups_;
-  std::size_t vector_stride_, rotation_stride_;  // elements of one body, in whole lines
-  dma::Buffer<std::byte> plan_;
-  dma::Buffer<Vector> positions_, velocities_;
-  dma::Buffer<spu::MatchRotations> rotations_;
-  dma::Buffer<spu::MatchResult> results_;
-  dma::Buffer<spu::MatchBody> lines_;       // of the bodies to be stepped
+  std::byte* state(std::size_t body) { return states_.data() + body * spu::match_state_stride(header_); }
+  const std::byte* state(std::size_t body) const { return const_cast<MatchBodies*>(this)->state(body); }
+  const spu::MatchResult& result(std::size_t body) const {
+    return *reinterpret_cast<const spu::MatchResult*>(state(body));
+  }
+  /// Writable views of what the accessors above show.
+  spu::MatchResult& result(std::size_t body) { return *reinterpret_cast<spu::MatchResult*>(state(body)); }
+  std::span<spu::MatchRotations> rotations(std::size_t body);
+
+  spu::MatchPlanHeader header_;
+  dma::Buffer<std::byte> plan_, positions_, states_;
+  dma::Buffer<spu::MatchBody> places_;      // of the bodies to be stepped
   dma::Buffer<spu::MatchJob> descriptors_;  // at most one for each body
   std::vector<std::size_t> stepped_;        // by the jobs added last
-  std::vector<bool> cold_;
 };
 
 }  // namespace softcell::ppu
