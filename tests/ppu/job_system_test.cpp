@@ -2,16 +2,20 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <thread>
 
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/trace.h"
 #include "softcell/spu_kernels/images.h"
+#include "support/text_file.h"
 #include "test_images.h"
 
 namespace softcell::ppu {
@@ -448,6 +452,25 @@ TEST_F(JobSystemTest, AChainMayBeFilledWhileTheLoopsBreakDown) {
     ASSERT_EQ(kicked.failures().size(), 1u);
     ASSERT_TRUE(filled.failures().empty());
   }
+}
+
+/// Jobs have their stacks where the loop keeps a watch when it runs alone.
+TEST_F(JobSystemTest, LoopsThatHaveRunJobsEndWithoutAFault) {
+  ls_sim::Trace trace(2);
+  JobSystem jobs(memory_, {.spes = 2, .trace = &trace}, loop_);
+  const auto lines = make_lines(8);
+  JobChain chain(jobs, "adds", lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) chain.add({jobs.place(adds_), lines.ea(i)});
+  chain.kick();
+  chain.wait();
+  expect_no_failures(chain);
+  jobs.stop();
+  const std::filesystem::path file = testing::TempDir() + "loops_end_" + std::to_string(getpid()) + ".json";
+  trace.write(file);
+  const std::string text = test::text_of(file);
+  std::filesystem::remove(file);
+  EXPECT_NE(text.find("echo_arguments"), std::string::npos);
+  EXPECT_EQ(text.find("stack-overflow"), std::string::npos);
 }
 
 TEST_F(JobSystemTest, RefusesALoopThatLeavesNoRoomForJobs) {

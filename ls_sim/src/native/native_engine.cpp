@@ -35,6 +35,7 @@ using native::KernelContext;
 using native::Operation;
 
 constexpr std::byte kFiller{0xA5};
+constexpr bool is_filler(std::byte b) { return b == kFiller; }
 constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
 constexpr std::uint32_t kGateLinkBytes =
     16;  // of the gate's frame: its caller's frame pointer and where it returns to
@@ -119,7 +120,8 @@ class NativeEngine final : public Engine {
   Access requested_access() const;
   ChannelReply answer_channel();
   std::optional<dma::Fault> check_stack() const;
-  bool written_below_stack() const;
+  std::span<std::byte> canary() const;
+  bool written_below_stack() const { return !std::ranges::all_of(canary(), is_filler); }
   dma::Fault classify_trap() const;
   dma::Fault stack_overflow(std::string detail) const;
 
@@ -272,9 +274,7 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   if (debugger_wanted_ && job_image_ != last) {
     debugger_job_symbols_ = std::make_unique<native::DebuggerSymbols>(*job_image_, local_store_.base());
   }
-  const std::uint32_t end = stack_limit();
-  std::fill(local_store_.base() + std::max(free_begin(), end - std::min(end, kCanaryBytes)),
-            local_store_.base() + end, kFiller);
+  std::ranges::fill(canary(), kFiller);
   return std::nullopt;
 }
 
@@ -284,6 +284,7 @@ std::optional<dma::Fault> NativeEngine::end_job() {
     return stack_overflow("bytes below the stack were written");
   if (auto damage = check_caller()) return damage;
   job_image_ = nullptr;
+  std::ranges::fill(canary(), kFiller);  // where the job had its stack
   jobs_->on_job_end();
   return std::nullopt;
 }
@@ -387,11 +388,11 @@ std::optional<dma::Fault> NativeEngine::check_stack() const {
   return std::nullopt;
 }
 
-bool NativeEngine::written_below_stack() const {
+/// Bytes below the stack of whoever runs, which nobody writes while it does.
+std::span<std::byte> NativeEngine::canary() const {
   const std::uint32_t end = stack_limit();
   const std::uint32_t begin = std::max(free_begin(), end - std::min(end, kCanaryBytes));
-  const std::byte* const base = local_store_.base();
-  return std::any_of(base + begin, base + end, [](std::byte b) { return b != kFiller; });
+  return {local_store_.base() + begin, local_store_.base() + end};
 }
 
 dma::Fault NativeEngine::classify_trap() const {
@@ -451,8 +452,7 @@ std::uint32_t NativeEngine::stack_high_water() const {
   if (image_ == nullptr) return 0;
   const std::byte* const base = local_store_.base();
   const std::byte* const top = base + image_->stack_top;
-  const std::byte* const used =
-      std::find_if(base + free_begin(), top, [](std::byte b) { return b != kFiller; });
+  const std::byte* const used = std::find_if_not(base + free_begin(), top, is_filler);
   return static_cast<std::uint32_t>(top - used);
 }
 
