@@ -42,16 +42,39 @@ class CoupledBody {
   /// Whether the body's user has changed it since the last substep.
   bool was_changed() const { return soft_.revision() != seen_revision_; }
 
+  /// Whether what is known of its rotations is of no use since then.
+  bool was_reset() const { return soft_.resets() != seen_resets_; }
+
   /// Before the solver: what the caller may have done to the body or, mostly to velocities, its particles.
   void begin_substep() {
     if (was_changed()) {
-      still_for_ = 0;
-      wake();
+      rouse();
       place_particles();
     } else if (!soft_.asleep()) {
       gather();
     }
   }
+
+  /// The box around its particles as Bullet knows them. @pre it has some
+  Bounds box() const {
+    Bounds box{to_eigen(particles_[0].getWorldTransform().getOrigin()), {}};
+    box.high = box.low;
+    for (const btRigidBody& particle : particles_) {
+      box.low = box.low.cwiseMin(to_eigen(particle.getWorldTransform().getOrigin()));
+      box.high = box.high.cwiseMax(to_eigen(particle.getWorldTransform().getOrigin()));
+    }
+    return box;
+  }
+
+  /// Wakes the body if it sleeps and may have lain on another, which was in `gone` and is there no longer.
+  void lose(const Bounds& gone) {
+    if (!soft_.asleep() || particles_.empty()) return;
+    const Bounds own = box();
+    const Eigen::Vector3f reach = Eigen::Vector3f::Constant(soft_.model().lattice().spacing);
+    if ((own.low - reach - gone.high).maxCoeff() < 0 && (gone.low - own.high - reach).maxCoeff() < 0) rouse();
+  }
+
+  bool can_be_touched() const { return !particles_.empty(); }
 
   /// Whether particles are no longer as they were gathered last.
   bool was_pushed() const {
@@ -97,6 +120,12 @@ class CoupledBody {
     return std::any_of(particles_.begin(), particles_.end(), [](const btRigidBody& particle) {
       return particle.getActivationState() != ISLAND_SLEEPING;
     });
+  }
+
+  /// It sleeps when it has been still for as long again.
+  void rouse() {
+    still_for_ = 0;
+    wake();
   }
 
   void wake() {
@@ -164,15 +193,18 @@ class CoupledBody {
     }
   }
 
-  /// The body was moved by its user: so are its particles, and their contacts are forgotten.
+  /// The body was changed by its user: so are its particles, and contacts of those that are elsewhere now are
+  /// forgotten.
   void place_particles() {
     seen_revision_ = soft_.revision();
+    seen_resets_ = soft_.resets();
     const auto outer = soft_.model().outer();
     for (std::size_t i = 0; i < outer.size(); ++i) {
       btRigidBody& particle = particles_[i];
+      particle.setLinearVelocity(to_bullet(soft_.velocities()[outer[i]]));
+      if (to_eigen(particle.getWorldTransform().getOrigin()) == soft_.position(outer[i])) continue;
       particle.getWorldTransform().setOrigin(to_bullet(soft_.position(outer[i])));
       particle.setInterpolationWorldTransform(particle.getWorldTransform());
-      particle.setLinearVelocity(to_bullet(soft_.velocities()[outer[i]]));
       world_.getPairCache()->cleanProxyFromPairs(particle.getBroadphaseProxy(), world_.getDispatcher());
     }
   }
@@ -181,7 +213,7 @@ class CoupledBody {
   SoftBody soft_;
   ContactSphere shape_;
   std::vector<btRigidBody> particles_;  // never grows: Bullet keeps their addresses
-  std::uint32_t seen_revision_ = 0;
+  std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
   float still_for_ = 0;  // seconds
   btVector3 gravity_asleep_{0, 0, 0};
 };
@@ -217,7 +249,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
           })) {
         settle();
         for (const auto& body : bodies) {
-          if (body->was_changed()) solver.forget(body->soft());
+          if (body->was_reset()) solver.forget(body->soft());
+          if (body->was_changed()) tell_others(*body);
           body->begin_substep();
         }
       }
@@ -244,6 +277,14 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     BulletHook::find(world)->add_time(std::chrono::steady_clock::now() - begin);
   }
   void debugDraw(btIDebugDraw*) override {}
+
+  /// Nobody may sleep on a body that goes, or may go, from where Bullet knows it.
+  void tell_others(const CoupledBody& leaving) {
+    if (!leaving.can_be_touched()) return;
+    const Bounds box = leaving.box();
+    for (const auto& body : bodies)
+      if (body.get() != &leaving) body->lose(box);
+  }
 
   /// What was begun ahead is of no use.
   void settle() {
@@ -284,6 +325,7 @@ void BulletSoftBodies::remove(const SoftBody& body) {
   impl_->settle();
   impl_->solver.forget(body);
   impl_->soft.erase(impl_->soft.begin() + (found - impl_->bodies.begin()));
+  impl_->tell_others(**found);
   impl_->bodies.erase(found);
 }
 

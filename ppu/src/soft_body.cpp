@@ -53,7 +53,24 @@ SoftBody::SoftBody(std::shared_ptr<const SoftBodyModel> model, const Vector3f& p
       corners_(model_->particles()),
       matcher_(model_->plan()) {
   reset(position);
-  revision_ = 0;
+  revision_ = resets_ = 0;
+}
+
+SoftBody& SoftBody::operator=(const SoftBody& saved) {
+  model_ = saved.model_;
+  x_ = saved.x_;
+  v_ = saved.v_;
+  corners_ = saved.corners_;
+  matcher_ = saved.matcher_;
+  asleep_ = saved.asleep_;
+  ++revision_;
+  ++resets_;
+  return *this;
+}
+
+void SoftBody::forget_rotations() {
+  matcher_.reset();
+  ++resets_;
 }
 
 void SoftBody::set_position(std::size_t particle, const Vector3f& position) {
@@ -88,7 +105,7 @@ void SoftBody::reset(const Vector3f& position) {
   for (std::size_t i = 0; i < x_.size(); ++i) {
     set_particle(i, model_->lattice().rest_position(i) + position, Vector3f::Zero());
   }
-  matcher_.reset();
+  forget_rotations();
   ++revision_;
 }
 
@@ -101,7 +118,7 @@ void SoftBody::move_without_force(const Eigen::Quaternionf& rotation, const Vect
     const Vector3d v = turn * v_[i].cast<double>();
     set_particle(i, x.cast<float>(), v.cast<float>());
   }
-  matcher_.reset();
+  forget_rotations();
   ++revision_;
 }
 
@@ -123,7 +140,7 @@ void SoftBody::reset_deformation() {
   // The undeformed body has another inertia: the turn that gives it the same angular momentum. A lattice is
   // at least a cell in each direction, so its inertia can be inverted.
   const Vector3d omega = motion_of(*this).inertia.inverse() * motion.spin;
-  matcher_.reset();
+  forget_rotations();
   add_angular_velocity(omega.cast<float>());
 }
 

@@ -49,6 +49,15 @@ SoftBody2d::SoftBody2d(std::shared_ptr<const SoftBodyModel2d> model, const Vecto
   revision_ = 0;
 }
 
+SoftBody2d& SoftBody2d::operator=(const SoftBody2d& saved) {
+  model_ = saved.model_;
+  x_ = saved.x_;
+  v_ = saved.v_;
+  matcher_ = saved.matcher_;
+  ++revision_;
+  return *this;
+}
+
 void SoftBody2d::pull(float step) {
   const SoftBodySettings& settings = model_->settings();
   matcher_.step_velocities(x_, v_, settings.alpha_of_step(step), step, settings.damping_of_step(step));

@@ -115,20 +115,30 @@ void SpeSolver::regroup(std::span<SoftBody* const> bodies) {
     member.number = (*group)->count++;
   }
   for (const auto& group : groups) find_place(*group);
+
+  // All that may fail comes before anything is taken from what there is.
   std::size_t jobs = 0;
   for (Member& member : members) {
-    const auto old = std::find_if(members_.begin(), members_.end(), [&](const Member& known) {
-      return known.body == member.body && known.group->model == member.group->model;
-    });
-    if (old != members_.end()) take_over(member, *old);
+    const Member* const old = known_as(member);
     const Group& group = *member.group;
-    if (group.tiles && !member.tiled) member.tiled = std::make_unique<TiledMemory>(memory_, *group.tiles);
-    jobs += member.tiled ? member.tiled->most_jobs() : 1;
+    if (group.tiles && old == nullptr) member.tiled = std::make_unique<TiledMemory>(memory_, *group.tiles);
+    const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
+    jobs += tiled != nullptr ? tiled->most_jobs() : 1;
   }
-  chain_.reset();
-  chain_ = std::make_unique<JobChain>(jobs_, "soft bodies", jobs);
+  auto chain = std::make_unique<JobChain>(jobs_, "soft bodies", jobs);
+  for (Member& member : members)
+    if (Member* const old = known_as(member)) take_over(member, *old);
+  chain_ = std::move(chain);
   groups_ = std::move(groups);
   members_ = std::move(members);
+}
+
+/// The same body in the layout of before, or null.
+SpeSolver::Member* SpeSolver::known_as(const Member& member) {
+  const auto old = std::find_if(members_.begin(), members_.end(), [&](const Member& known) {
+    return known.body == member.body && known.group->model == member.group->model;
+  });
+  return old == members_.end() ? nullptr : &*old;
 }
 
 /// Positions and velocities to main memory.
@@ -193,7 +203,12 @@ void SpeSolver::take_back(const Member& member) {
 }
 
 void SpeSolver::finish() {
-  for (SoftBody* const body : left_to_ppu_) body->pull(step_);
+  try {
+    for (SoftBody* const body : left_to_ppu_) body->pull(step_);
+  } catch (...) {
+    chain_->wait();  // its jobs work on what the next kick() changes
+    throw;
+  }
   chain_->wait();
   if (chain_->size() == 0) return;
   check_jobs(*chain_);

@@ -370,6 +370,92 @@ TEST(BulletSoftBodies, ATeleportIsToldToBullet) {
   EXPECT_NEAR(body.bounds().low.y(), body.model().contact_radius(), 0.01f);
 }
 
+/// The PPU's solver, which keeps a record of what it is to forget.
+class RecordingSolver final : public SoftBodySolver {
+ public:
+  void kick(std::span<SoftBody* const> bodies, float step) override { ppu_.kick(bodies, step); }
+  void finish() override { ppu_.finish(); }
+  void drop() override { ppu_.drop(); }
+  void forget(const SoftBody& body) override { forgotten.push_back(&body); }
+
+  std::vector<const SoftBody*> forgotten;
+
+ private:
+  PpuSolver ppu_;
+};
+
+TEST(BulletSoftBodies, OnlyATeleportMakesTheSolverForget) {
+  BulletWorld bullet;
+  RecordingSolver solver;
+  BulletSoftBodies soft(bullet.world(), solver);
+  SoftBody& body = soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0, 0});
+  bullet.step(kFrame, 2);
+  body.add_velocity({1, 0, 0});
+  body.add_particle_velocity(0, {0, 1, 0});
+  body.translate({0, 1, 0});
+  bullet.step(kFrame, 2);
+  EXPECT_TRUE(solver.forgotten.empty());
+  body.move_without_force(Eigen::Quaternionf(0, 1, 0, 0), {0, 0, 0});
+  bullet.step(kFrame, 2);
+  EXPECT_EQ(solver.forgotten, std::vector<const SoftBody*>{&body});
+}
+
+/// A contact that goes on is warm-started with the impulse of the substep before.
+TEST(BulletSoftBodies, APushLeavesContactsAlone) {
+  World world;
+  world.add_floor();
+  SoftBody& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.05f, 0});
+  world.run(1);
+  const auto lasting = [&] {
+    int sum = 0;
+    btDispatcher& dispatcher = *world.bullet.world().getDispatcher();
+    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+      const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+      for (int p = 0; p < manifold.getNumContacts(); ++p)
+        sum += manifold.getContactPoint(p).getLifeTime() > 2 ? 1 : 0;
+    }
+    return sum;
+  };
+  const int before = lasting();
+  ASSERT_GT(before, 0);
+  body.add_particle_velocity(body.model().outer()[0], {0, 0, 1e-6f});
+  world.bullet.step(kFrame, 2);
+  EXPECT_GE(lasting(), before);
+}
+
+TEST(BulletSoftBodies, ASavedBodyIsRestoredAsAWhole) {
+  World world;
+  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 9, 0});
+  world.run(0.5f);
+  const SoftBody saved = body;
+  world.run(0.5f);
+  body = saved;
+  EXPECT_NE(body.revision(), saved.revision());
+  world.bullet.step(kFrame, 2);
+  for (std::size_t i = 0; i < body.model().particles(); ++i)
+    ASSERT_LT((body.position(i) - saved.position(i)).norm(), 6 * kFrame) << i;
+  EXPECT_LT(deformation(body), 1e-3f);
+}
+
+TEST(BulletSoftBodies, WhatSleptOnABodyFallsWhenThatGoesAway) {
+  for (const bool removed : {true, false}) {
+    World world;
+    world.add_floor();
+    world.soft.let_sleep(SleepSettings{.speed = 0.5f, .seconds = 0.2f});
+    const auto model = block_model({3, 3, 3}, stiff(0.2f));
+    SoftBody& low = world.soft.add(model, {0, 0.05f, 0});
+    SoftBody& high = world.soft.add(model, {0, 0.85f, 0});
+    world.run(4);
+    ASSERT_TRUE(low.asleep() && high.asleep());
+    if (removed)
+      world.soft.remove(low);
+    else
+      low.translate({5, 0, 0});
+    world.run(2);
+    EXPECT_NEAR(high.bounds().low.y(), model->contact_radius(), 0.02f) << removed;
+  }
+}
+
 TEST(BulletSoftBodies, CanBeRemovedOneByOne) {
   World world;
   world.add_floor();

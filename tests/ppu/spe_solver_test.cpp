@@ -294,6 +294,40 @@ TEST(SpeSolver, ALargeBodyKeepsItsRotationsWhenOthersComeAndForgetsThemWhenItIsT
   EXPECT_LT(deformation(large), 2e-4f);
 }
 
+TEST(SpeSolver, ALargeBodyStaysWithTheSpesWhenThereIsNoRoomForAnother) {
+  SpeWorld world;
+  world.bullet.set_gravity(Vector3f::Zero());
+  const auto model = large_model();
+  world.soft.add(model, {0, 0, 0});
+  world.run(1);
+  std::vector<dma::Buffer<std::byte>> rest;
+  for (std::size_t bytes = 128 << 20; bytes >= 1024; bytes /= 2) {
+    try {
+      for (;;) rest.emplace_back(world.memory, "rest", bytes);
+    } catch (const std::runtime_error&) {  // then less of it
+    }
+  }
+  SoftBody& second = world.soft.add(model, {0, 9, 0});
+  EXPECT_THROW(world.run(1), std::runtime_error);
+  world.soft.remove(second);
+  rest.clear();
+  const std::uint64_t before = world.jobs_done();
+  world.run(1);
+  EXPECT_GT(world.jobs_done(), before);
+}
+
+TEST(SpeSolver, ANanThatThePpuFindsLeavesNoJobUnderWay) {
+  SpeWorld world;
+  SoftBody& huge = world.soft.add(huge_model(), {0, 0, 0});
+  world.soft.add(large_model(), {0, 30, 0});
+  world.run(1);
+  huge.set_particle(0, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 0, 0});
+  huge.translate({0, 0, 0});
+  EXPECT_THROW(world.run(1), std::runtime_error);
+  world.soft.remove(huge);
+  world.run(1);
+}
+
 TEST(SpeSolver, ANanInALargeBodyIsReported) {
   SpeWorld world;
   SoftBody& body = world.soft.add(large_model(), {0, 0, 0});

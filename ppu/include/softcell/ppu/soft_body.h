@@ -105,12 +105,17 @@ std::shared_ptr<const SoftBodyModel> make_soft_body_model(const TriangleMesh& me
 std::shared_ptr<const SoftBodyModel> make_soft_body_model(Lattice lattice, const SoftBodySettings& settings);
 
 /// Positions and velocities of one body's particles. Used by one thread at a time; allocates nothing after
-/// construction. The state is plain: copy a SoftBody to save it, assign to restore.
+/// construction. Copy a SoftBody to save it, assign to restore.
 class SoftBody {
  public:
   /// At rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody(std::shared_ptr<const SoftBodyModel> model,
                     const Eigen::Vector3f& position = Eigen::Vector3f::Zero());
+  ~SoftBody() = default;
+  SoftBody(const SoftBody&) = default;
+  SoftBody(SoftBody&&) = default;
+  /// A change by its user, as those below.
+  SoftBody& operator=(const SoftBody& saved);
 
   const SoftBodyModel& model() const { return *model_; }
   const std::shared_ptr<const SoftBodyModel>& shared_model() const { return model_; }
@@ -144,7 +149,8 @@ class SoftBody {
   bool asleep() const { return asleep_; }
   void set_asleep(bool asleep) { asleep_ = asleep; }
 
-  // What its user may do between time steps. Each counts up revision(), by which a coupling notices.
+  // What its user may do between time steps. Each counts up revision(), by which a coupling notices, and
+  // those after which the rotations of the last step say nothing count up resets() too.
 
   void translate(const Eigen::Vector3f& by);
   /// Back to the undeformed shape at rest, the model's own origin at `position`.
@@ -158,6 +164,7 @@ class SoftBody {
   /// m/s, to every particle: adds a turn about the centre of mass, in rad/s.
   void add_angular_velocity(const Eigen::Vector3f& dw);
   std::uint32_t revision() const { return revision_; }
+  std::uint32_t resets() const { return resets_; }
 
   Eigen::Vector3f centre_of_mass() const;    ///< metres
   Eigen::Vector3f linear_momentum() const;   ///< kg m/s
@@ -166,12 +173,13 @@ class SoftBody {
 
  private:
   void set_position(std::size_t particle, const Eigen::Vector3f& position);
+  void forget_rotations();
 
   std::shared_ptr<const SoftBodyModel> model_;
   std::vector<Eigen::Vector3f> x_, v_;
   std::vector<spu::SkinCorner> corners_;  // x_ again
   ShapeMatcher<float> matcher_;
-  std::uint32_t revision_ = 0;
+  std::uint32_t revision_ = 0, resets_ = 0;
   bool asleep_ = false;
 };
 

@@ -55,12 +55,17 @@ std::shared_ptr<const SoftBodyModel2d> make_soft_body_model(
     float contact_radius_in_cells = SoftBodyModel2d::kContactRadiusInCells);
 
 /// Positions and velocities of one body's particles. Used by one thread at a time; allocates nothing after
-/// construction. The state is plain: copy it to save it, assign to restore.
+/// construction. Copy a SoftBody2d to save it, assign to restore.
 class SoftBody2d {
  public:
   /// At rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody2d(std::shared_ptr<const SoftBodyModel2d> model,
                       const Eigen::Vector2f& position = Eigen::Vector2f::Zero());
+  ~SoftBody2d() = default;
+  SoftBody2d(const SoftBody2d&) = default;
+  SoftBody2d(SoftBody2d&&) = default;
+  /// A change by its user, as those below.
+  SoftBody2d& operator=(const SoftBody2d& saved);
 
   const SoftBodyModel2d& model() const { return *model_; }
   const std::shared_ptr<const SoftBodyModel2d>& shared_model() const { return model_; }

@@ -41,6 +41,7 @@ class SpeSolver final : public SoftBodySolver {
   bool knows(std::span<SoftBody* const> bodies) const;
   void regroup(std::span<SoftBody* const> bodies);
   void find_place(Group& group);
+  Member* known_as(const Member& member);
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
   void take_back(const Member& member);
