@@ -13,6 +13,13 @@
 using namespace softcell::ppu;
 
 int main(int argc, char** argv) try {
+  // What the soft body is made of. First, because it throws if there is no such file.
+  SoftBodySettings jelly;
+  jelly.cell_size = 0.2f;  // metres
+  jelly.density = 300;     // kg/m^3
+  jelly.damping = 0.2f;
+  const auto model = make_soft_body_model(import_mesh(argc > 1 ? argv[1] : "jelly.obj"), jelly);
+
   // A Bullet world as in any program.
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
@@ -30,12 +37,7 @@ int main(int argc, char** argv) try {
   box.setWorldTransform(btTransform(btQuaternion::getIdentity(), {0, 3, 0}));
   world.addRigidBody(&box);
 
-  // The soft body: seven lines.
-  SoftBodySettings jelly;
-  jelly.cell_size = 0.2f;  // metres
-  jelly.density = 300;     // kg/m^3
-  jelly.damping = 0.2f;
-  const auto model = make_soft_body_model(import_mesh(argc > 1 ? argv[1] : "jelly.obj"), jelly);
+  // The soft body.
   BulletSoftBodies soft_bodies(world);
   SoftBody& body = soft_bodies.add(model, {0, 0.6f, 0});
 
