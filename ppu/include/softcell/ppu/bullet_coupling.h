@@ -47,8 +47,8 @@ struct SoftBodyTimes {
 ///
 /// What it installs in the world: an internal pre-tick callback and an overlap filter, each calling the one
 /// found there, and an action. The world's user info stays the caller's own. A callback or filter that the
-/// caller installs later must call the one it replaces, or soft bodies lose their shape, and must be taken out
-/// before the last of these goes: what it calls is no more then.
+/// caller installs later must call the one it replaces, or soft bodies lose their shape, and must be taken
+/// out before the last of these goes: what it calls is no more then.
 ///
 /// Used by the thread that steps the world. Allocates nothing in stepSimulation(); Bullet may.
 /// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
