@@ -3,7 +3,7 @@
 //   array       direction  element                     count                     alignment
 //   job         in         MatchJob, 128 bytes         1                         128
 //   plan        in         MatchPlanHeader and lists   once a job                128
-//   bodies      in         MatchBody, 16 bytes         one for each body         128
+//   bodies      in         MatchBody, 16 bytes         one for each body         16
 //   positions   in         x y z 0, 16 bytes           one for each particle     16, of a body
 //   state       in, out    MatchResult, then           one for each body         16, of a body
 //                          x y z 0 of velocities, then one for each particle

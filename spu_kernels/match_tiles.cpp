@@ -15,6 +15,7 @@
 //               out        twists
 //   damp        in         lists, twists, positions, velocities between passes, weights, modified masses
 //               out        velocities
+//   Undamped, damp has of these in only velocities between passes, and nobody runs twist.
 //
 // Budget: 245 KB. 208 KB for two sides of a double buffer and slots, the rest for code and 4 KB of stack.
 //

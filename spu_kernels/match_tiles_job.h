@@ -122,7 +122,7 @@ enum TilePass : uint32_t { kTileGather = 0, kTileScatter = 1, kTileTwist = 2, kT
 /// The job's descriptor: one tile, one pass.
 struct alignas(128) TileJob {
   uint64_t body_ea;    ///< a TiledBody
-  uint64_t slices_ea;  ///< TileSlice of the pass's direction
+  uint64_t slices_ea;  ///< TileSlice of the pass's direction, a multiple of 16
   uint32_t slice_count;
   uint32_t tile;
   uint32_t pass;  ///< a TilePass

@@ -1,4 +1,4 @@
--- 150 penguins of about 150 particles each fall through bars and posts, as in the first figure of Rivers and James.
+-- 150 penguins of 160 particles each fall through bars and posts, as in the first figure of Rivers and James.
 local boxes, obstacles, bodies = {}, {}, {}
 
 -- Two layers of bars, crosswise, and posts between which the heap comes to rest.
@@ -33,7 +33,7 @@ for layer = 0, 5 do
 end
 
 return {
-  title = "150 soft penguins of 150 particles fall through bars and posts",
+  title = "150 soft penguins of 160 particles fall through bars and posts",
   pictures = { 1, 60, 150 },
   world = { frames = 360 },
   framework = { half_width = 4, height = 1.6, thickness = 0.3, front_opacity = 0.15 },

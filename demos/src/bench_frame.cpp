@@ -33,7 +33,8 @@ class SolverSteps {
       bodies_.push_back(frames.simulation().soft_body(b));
     for (ppu::SoftBody& body : bodies_) pointers_.push_back(&body);
     solver_.kick(pointers_, step_);
-    solver_.finish();  // once, so that rotations are known: those of a step that is dropped are not
+    // Once, so that rotations are known: of a dropped step a body in tiles does not keep them.
+    solver_.finish();
   }
 
   void step() {

@@ -13,5 +13,5 @@ struct SaxpyJob {
 };
 static_assert(sizeof(SaxpyJob) % 16 == 0, "moved by one DMA command");
 
-/// What main returns.
-enum SaxpyStatus { kSaxpyDone = 0, kSaxpyCountNotMultipleOf4 = 1, kSaxpyNoSpes = 2 };
+/// What main returns. Too many is what does not fit saxpy_no_wait, which has no blocks.
+enum SaxpyStatus { kSaxpyDone = 0, kSaxpyCountNotMultipleOf4 = 1, kSaxpyNoSpes = 2, kSaxpyTooMany = 3 };

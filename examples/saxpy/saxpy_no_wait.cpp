@@ -24,7 +24,8 @@ void wait(uint32_t tag) {
 int main(uint64_t, uint64_t argp, uint64_t) {
   mfc_get(&job, argp, sizeof job, 0, 0, 0);
   wait(0);
-  if (job.count % 4 != 0 || job.count > kMostFloats) return kSaxpyCountNotMultipleOf4;
+  if (job.count % 4 != 0) return kSaxpyCountNotMultipleOf4;
+  if (job.count > kMostFloats) return kSaxpyTooMany;
 
   const uint32_t count = static_cast<uint32_t>(job.count);
   const vec_float4 a = (vec_float4)spu_splats(static_cast<uint32_t>(job.a));

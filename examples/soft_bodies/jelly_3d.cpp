@@ -13,21 +13,21 @@
 using namespace softcell::ppu;
 
 int main(int argc, char** argv) try {
-  // A Bullet world as in any program.
+  // A Bullet world as in any program, made behind its bodies: it must go before them.
+  btStaticPlaneShape ground({0, 1, 0}, 0);
+  btRigidBody floor(0, nullptr, &ground);
+  btBoxShape cube({0.25f, 0.25f, 0.25f});
+  btVector3 inertia;
+  cube.calculateLocalInertia(8, inertia);
+  btRigidBody box(8, nullptr, &cube, inertia);
+  box.setWorldTransform(btTransform(btQuaternion::getIdentity(), {0, 3, 0}));
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
   world.setGravity({0, -9.81f, 0});
-  btStaticPlaneShape ground({0, 1, 0}, 0);
-  btRigidBody floor(0, nullptr, &ground);
   world.addRigidBody(&floor);
-  btBoxShape cube({0.25f, 0.25f, 0.25f});
-  btVector3 inertia;
-  cube.calculateLocalInertia(8, inertia);
-  btRigidBody box(8, nullptr, &cube, inertia);
-  box.setWorldTransform(btTransform(btQuaternion::getIdentity(), {0, 3, 0}));
   world.addRigidBody(&box);
 
   // The soft body: seven lines.
@@ -46,8 +46,6 @@ int main(int argc, char** argv) try {
                 (frame + 1) / 60.0, static_cast<double>(box.getWorldTransform().getOrigin().y()),
                 static_cast<double>(body.centre_of_mass().y()));
   }
-  world.removeRigidBody(&box);
-  world.removeRigidBody(&floor);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "jelly_3d: %s\n", error.what());

@@ -1,6 +1,5 @@
 #pragma once
-// The trilinear map of one lattice cell, in float or double. fastlsm.md, section 10; corner k = bx + 2 by + 4
-// bz.
+// The trilinear map of one lattice cell, in float or double; corner k = bx + 2 by + 4 bz.  [LSM07, embedding]
 //
 //   N_k      = prod_d (b_d ? xi_d : 1 - xi_d)                            weights; they sum to 1
 //   dN_k/dxi_d = (b_d ? +1 : -1) prod_{e != d} (b_e ? xi_e : 1 - xi_e)     gradient, in units of the cell's
@@ -14,8 +13,8 @@
 
 namespace softcell::ppu {
 
-/// Of |cof(F) N| in m^4: below it the cell is flat and says nothing about the normal. The kernel `skin` has
-/// the same bound.
+/// Of |cof(F) N|^2 in m^4: below it the cell is flat and says nothing about the normal. The kernel `skin` has
+/// no bound: it adds kFlat N (skin/cell.h).
 inline constexpr double kSmallestNormalSquared = 1e-20;
 
 template <class Real>

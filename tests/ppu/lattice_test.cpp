@@ -193,7 +193,7 @@ TEST(Voxelize, FillsTheInsideAndLeavesTheHoles) {
   EXPECT_EQ(std::ranges::count(torus.cells, Vector3i(3, 3, 13)), 1);   // inside the tube
 }
 
-TEST(Voxelize, ADoubleWalledMeshIsHollow) {
+TEST(Voxelize, FillsTheCavityOfADoubleWalledMesh) {
   TriangleMesh mesh = box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f});
   TriangleMesh inner = box({-0.27f, -0.27f, -0.27f}, {0.27f, 0.27f, 0.27f});
   for (auto& triangle : inner.triangles) std::swap(triangle[1], triangle[2]);

@@ -276,7 +276,7 @@ TEST(MatchTiles, ABodyThatIsNoNumberIsLeftAlone) {
   EXPECT_EQ(first_difference(tiled.velocities(), untouched.velocities()), -1);
 }
 
-TEST(MatchTiles, WorkIsSpreadOverAllSpes) {
+TEST(MatchTiles, AStepTakesEachTileThroughFourPasses) {
   const Model model(ppu::test::block(95, 63, 4), 2);
   TiledBody tiled(model, {}, {.spes = 6});
   const Vectors x = model.deformed(1, 0.01);

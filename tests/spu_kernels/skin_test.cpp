@@ -118,11 +118,9 @@ TEST(Skin, FollowsInvertedAndFlattenedCells) {
   SkinRig rig(ppu::make_sphere(0.7f, 12), 0.28f);
   for (Vector3f& p : rig.positions) p.x() = -p.x();
   rig.expect_oracle(kUlpAtTwo, 0.005);
-  for (Vector3f& p : rig.positions) p.x() = 0.25f;  // no volume: the rest normal, and no NaN
-  const ppu::SkinnedBody body = rig.skin();
-  for (const spu::SkinnedVertex& v : body.vertices) {
-    for (int d = 0; d < 3; ++d) ASSERT_LE(v.normal[d] & 0x7FFF, 0x3C00);
-  }
+  // No volume: along x, or the rest normal where that has no part along x; and no NaN.
+  for (Vector3f& p : rig.positions) p.x() = 0.25f;
+  rig.expect_oracle(kUlpAtTwo, 0.005);
 }
 
 TEST(Skin, WorksFarFromTheWorldsOrigin) {

@@ -24,9 +24,10 @@
 
 namespace softcell::ppu {
 
-/// The soft bodies of one world, used by the thread that steps it. Box2D has no callback before a step, so
-/// the step goes through here. A NaN in a particle throws std::runtime_error out of begin_step(), and so does
-/// a body that the solver cannot take.
+/// All soft bodies of one world, which has only one of these; used by the thread that steps it. Box2D has no
+/// callback before a step, so the step goes through here. Negative collision groups are its own, one for each
+/// body, from -1 downwards: a fixture of the caller in such a group never meets that body. A NaN in a
+/// particle throws std::runtime_error out of begin_step(), and so does a body that the solver cannot take.
 class Box2dSoftBodies {
  public:
   /// A particle moves at most this many cells in one step; faster ones are slowed down, which takes momentum

@@ -47,7 +47,8 @@ struct SoftBodyTimes {
 ///
 /// What it installs in the world: an internal pre-tick callback and an overlap filter, each calling the one
 /// found there, and an action. The world's user info stays the caller's own. A callback or filter that the
-/// caller installs later must call the one it replaces, or soft bodies lose their shape.
+/// caller installs later must call the one it replaces, or soft bodies lose their shape, and must be taken
+/// out before the last of these goes: what it calls is no more then.
 ///
 /// Used by the thread that steps the world. Allocates nothing in stepSimulation(); Bullet may.
 /// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
@@ -76,8 +77,9 @@ class BulletSoftBodies {
   void remove(const SoftBody& body);
 
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
-  /// else. Changes no result: when bodies are changed after all, or the substep has another length, the work
-  /// is done again. Call it between steps.
+  /// else. When bodies are changed after all, or the substep has another length, that work is dropped and
+  /// done again: the result is the same but for what SoftBodySolver::drop() says of rotations. Call it
+  /// between steps.
   void begin_ahead(float step);
 
   /// From now on bodies at rest sleep, until something moving touches them, gravity changes, they are

@@ -42,7 +42,8 @@ struct Lattice {
   std::vector<Eigen::Vector3i> cells;  ///< grid index of each cell's low corner, sorted likewise
   std::vector<std::array<std::uint32_t, 8>>
       corners;              ///< of each cell: particle numbers, corner k = bx + 2 by + 4 bz
-  std::vector<float> fill;  ///< of each cell: the share of its volume inside the mesh, 0.25..1
+  std::vector<float> fill;  ///< of each cell that a triangle touches: the share of its volume inside the
+                            ///< mesh, 0.25..1; of all others 1, also in closed cavities
   Csr neighbours;  ///< of each particle: the particles with which it shares a cell, ascending, itself
                    ///< excluded
 

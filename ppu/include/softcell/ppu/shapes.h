@@ -1,7 +1,8 @@
 #pragma once
-// Procedural closed meshes, their boxes centred on 0, y up, deterministic on every host (no libm in their
-// coordinates). Lengths in metres, positive and finite; std::invalid_argument otherwise, and for counts below
-// those stated.
+// Procedural closed meshes, y up, deterministic on every host (no libm in their coordinates). Their boxes are
+// centred on 0; a cone's, cylinder's or torus's along x only if it has an even number of segments around y,
+// its axis always is. Lengths in metres, positive and finite; std::invalid_argument otherwise, and for counts
+// outside of those stated.
 
 #include "softcell/ppu/mesh.h"
 

@@ -22,7 +22,9 @@ class SoftBodySolver {
   /// @throws std::runtime_error  a particle is NaN or infinite, or an SPE failed.
   virtual void finish() = 0;
 
-  /// Waits for what kick() has begun and changes nothing.
+  /// Waits for what kick() has begun and changes no body. SPEs may have found rotations by then, from which
+  /// those of the next step start: it has the same result where they had converged, else one within the
+  /// tolerance of that iteration.
   virtual void drop() = 0;
 
   /// What is known of the body from earlier steps is of no use any more: it was teleported, or goes.

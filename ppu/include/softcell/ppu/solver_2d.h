@@ -14,7 +14,8 @@ class Solver2d {
   virtual ~Solver2d() = default;
 
   /// The bodies of the steps to come, in an order that says nothing. They stay where they are until the next
-  /// call.
+  /// call. What directions of regions a solver has kept from the last step is forgotten here, not when a body
+  /// is reset. It shows only where a region has none of its own: all in one point, or a mirror image.
   /// @throws std::runtime_error  a body that this solver cannot take.
   virtual void set_bodies(std::span<SoftBody2d* const> bodies) = 0;
 
