@@ -16,8 +16,7 @@
 namespace softcell::ppu {
 
 /// The result is the same bits for any number of SPEs. Its rotations live in main memory, not in the bodies:
-/// SoftBody::matcher() says nothing, and a body restored from a copy starts from the rotations of the last
-/// step.
+/// SoftBody::matcher() says nothing, and a body restored from a copy starts without any.
 ///
 /// A body that fits a local store is stepped whole by one SPE, with others of its model; a larger one in
 /// tiles by all of them. What does not even fit in tiles, a lattice some hundreds of particles high (z) with
