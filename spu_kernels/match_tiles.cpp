@@ -10,12 +10,12 @@
 //   gather      in         lists, positions, rest moments, regions, rotations
 //               out        rotations, motions, momenta
 //   scatter     in         lists, motions, positions, velocities, rest moments, weights
-//               out        velocities between passes
-//   twist       in         lists, positions, velocities between passes, modified masses, momenta
+//               out        pulled particles
+//   twist       in         lists, pulled particles, momenta
 //               out        twists
-//   damp        in         lists, twists, positions, velocities between passes, weights, modified masses
+//   damp        in         lists, twists, pulled particles
 //               out        velocities
-//   Undamped, damp has of these in only velocities between passes, and nobody runs twist.
+//   Undamped, damp has of these in only pulled particles, and nobody runs twist.
 //
 // Budget: 245 KB. 208 KB for two sides of a double buffer and slots, the rest for code and 4 KB of stack.
 //

@@ -53,14 +53,15 @@ struct alignas(16) TileWeights {
   float inverse_mass[4];  ///< 1 / kg; 0 for padding
   float mass[4];
 };
-struct alignas(16) TileModified {
-  float mass[4];  ///< m~
-};
 
-/// v' of four particles: what `scatter` leaves to the passes behind it.
-struct alignas(16) TileHeld {
-  float x[4], y[4], z[4];
+/// What `scatter` leaves of four particles to the passes behind it: all that these want, in one line.
+struct alignas(128) TilePulled {
+  float x[4], y[4], z[4];     ///< position about the body's origin, metres
+  float vx[4], vy[4], vz[4];  ///< v', m/s
+  float modified_mass[4];     ///< m~, kg; 0 for padding
+  float share[4];             ///< 1 / |R_i|; 0 for padding
 };
+static_assert(sizeof(TilePulled) == 128, "one line");
 
 /// What `gather` leaves to `twist` of four regions.
 struct alignas(16) TileMomenta {
@@ -93,17 +94,16 @@ struct TileLimits {
 struct alignas(128) TiledBody {
   uint64_t positions_ea;      ///< x y z 0 of each place, metres
   uint64_t velocities_ea;     ///< x y z 0 of each place, m/s; changed in place by `damp`
-  uint64_t held_ea;           ///< v' between passes: x, y, z of four places together, 48 bytes
+  uint64_t pulled_ea;         ///< TilePulled of each group of particles
   uint64_t rotations_in_ea;   ///< MatchRotations of each group of regions: the last step's,
   uint64_t rotations_out_ea;  ///< and this one's
   uint64_t motions_ea;  ///< of each region's place: a slot with (R, t); then one of two rows, (b, omega)
   uint64_t momenta_ea;  ///< TileMomenta of each group of regions
   uint64_t reports_ea;  ///< a TileReport of each tile
   uint64_t lists_ea;
-  uint64_t rest_ea;      ///< TileRest of each group of particles
-  uint64_t weights_ea;   ///< TileWeights
-  uint64_t modified_ea;  ///< TileModified
-  uint64_t regions_ea;   ///< MatchRegions of each group of regions
+  uint64_t rest_ea;     ///< TileRest of each group of particles
+  uint64_t weights_ea;  ///< TileWeights
+  uint64_t regions_ea;  ///< MatchRegions of each group of regions
   uint32_t tiles;
   float pull;     ///< alpha / h, 1/s
   float damping;  ///< k, 0..1
@@ -113,7 +113,7 @@ struct alignas(128) TiledBody {
   MatchHold hold;
   uint32_t samples[kMatchSamples];  ///< places
   TileLimits up, down;
-  uint32_t pad[2];
+  uint32_t pad[4];
 };
 static_assert(sizeof(TiledBody) == 256, "two lines");
 
@@ -136,10 +136,11 @@ enum TileStatus : uint32_t { kTileDone = 0, kTileTooLarge = 1 };
 /// Bytes of local store for one direction: slices, two sides of a double buffer, what goes out, slots. Any
 /// numbers below 65536 may stand in the limits.
 constexpr uint32_t tile_up_side_bytes(const TileLimits& up) {
-  return up.lists_bytes + up.input_groups * (64 + 64 + 16) + up.output_groups * (64 + 64);
+  return up.lists_bytes + up.input_groups * static_cast<uint32_t>(sizeof(TilePulled)) +
+         up.output_groups * (64 + 64);
 }
 constexpr uint32_t tile_down_side_bytes(const TileLimits& down) {
-  return down.lists_bytes + down.output_groups * (64 + 64 + 48 + 64 + 32 + 16);
+  return down.lists_bytes + down.output_groups * (64 + 64 + 64 + 32);
 }
 constexpr uint32_t tile_up_bytes(const TileLimits& up) {
   return up.slices * static_cast<uint32_t>(sizeof(TileSlice)) + 2 * tile_up_side_bytes(up) +
@@ -148,7 +149,7 @@ constexpr uint32_t tile_up_bytes(const TileLimits& up) {
 }
 constexpr uint32_t tile_down_bytes(const TileLimits& down) {
   return down.slices * static_cast<uint32_t>(sizeof(TileSlice)) + 2 * tile_down_side_bytes(down) +
-         down.slots * kMatchSlotBytes;
+         down.output_groups * static_cast<uint32_t>(sizeof(TilePulled)) + down.slots * kMatchSlotBytes;
 }
 
 /// What the kernel has for all that; its instrumented flavour has more code and less room.

@@ -89,14 +89,12 @@ TilePlan::TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, 
   place_of_.assign(particles.all_places().begin(), particles.all_places().end());
   rest_.resize(particles.size() / 4);
   weights_.resize(rest_.size());
-  modified_.resize(rest_.size());
   for (std::uint32_t i = 0; i < matching.particles(); ++i) {
     const auto& particle = matching.particle_constants()[i];
     const std::uint32_t group = place_of_[i] / 4, lane = place_of_[i] % 4;
     std::ranges::copy(rest_moment(particle), rest_[group].rest_moment[lane]);
     weights_[group].inverse_mass[lane] = 1 / particle.mass;
     weights_[group].mass[lane] = particle.mass;
-    modified_[group].mass[lane] = particle.modified_mass;
   }
   regions_.resize(regions.size() / 4);
   for (std::uint32_t r = 0; r < sums.regions(); ++r) {

@@ -39,11 +39,10 @@ TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
       slices_(copied<spu::TileSlice>(memory, "tiled slices", all_slices(plan))),
       rest_(copied(memory, "tiled rest moments", plan.rest())),
       weights_(copied(memory, "tiled weights", plan.weights())),
-      modified_(copied(memory, "tiled modified masses", plan.modified())),
       regions_(copied(memory, "tiled regions", plan.regions())),
       positions_(memory, "tiled positions", plan.places(), kSpesOnlyRead),
       velocities_(memory, "tiled velocities", plan.places()),
-      held_(memory, "tiled velocities between passes", plan.places() / 4),
+      pulled_(memory, "tiled particles between passes", plan.places() / 4),
       rotations_(memory, "tiled rotations", plan.region_places() / 4),
       next_rotations_(memory, "tiled rotations to be", plan.region_places() / 4),
       motions_(memory, "tiled motions", plan.region_places() * spu::kMatchSlotBytes),
@@ -54,14 +53,13 @@ TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
   body = plan.body();
   body.positions_ea = positions_.ea().value;
   body.velocities_ea = velocities_.ea().value;
-  body.held_ea = held_.ea().value;
+  body.pulled_ea = pulled_.ea().value;
   body.motions_ea = motions_.ea().value;
   body.momenta_ea = momenta_.ea().value;
   body.reports_ea = reports_.ea().value;
   body.lists_ea = lists_.ea().value;
   body.rest_ea = rest_.ea().value;
   body.weights_ea = weights_.ea().value;
-  body.modified_ea = modified_.ea().value;
   body.regions_ea = regions_.ea().value;
 
   std::size_t first_slice = 0;

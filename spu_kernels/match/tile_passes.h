@@ -17,6 +17,8 @@ namespace softcell::spu {
 /// A tag group for each side of the double buffer, and one for what has a place of its own to leave from.
 enum TileTag : uint32_t { kTagSide0 = 0, kTagSide1 = 1, kTagOut = 2, kTagTouch = 3 };
 
+constexpr uint32_t kPulledBytes = sizeof(TilePulled);
+
 /// A stretch of main memory.
 struct Range {
   uint64_t ea;
@@ -166,7 +168,7 @@ class GatherPass {
   bool finite_ = true;
 };
 
-/// twist: positions and velocities to twists of regions.
+/// twist: positions and pulled velocities to twists of regions.
 class TwistPass {
  public:
   TwistPass(const TilePassContext& context, const UpStore& store) : context_(context), store_(store) {}
@@ -175,27 +177,24 @@ class TwistPass {
     const UpSide& side = store_.side[s];
     const TiledBody& body = context_.body;
     get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
-    get_range(side.positions, input_of(slice, body.positions_ea, 64), s);
-    get_range(side.velocities, input_of(slice, body.held_ea, 48), s);
-    get_range(side.modified_mass, input_of(slice, body.modified_ea, 16), s);
+    get_range(side.pulled, input_of(slice, body.pulled_ea, kPulledBytes), s);
     get_range(side.momenta, output_of(slice, body.momenta_ea, 64), s);
   }
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
     const TiledBody& body = context_.body;
-    touches.add(input_of(coming, body.positions_ea, 64));
-    touches.add(input_of(coming, body.held_ea, 48));
-    touches.add(input_of(coming, body.modified_ea, 16));
+    touches.add(input_of(coming, body.pulled_ea, kPulledBytes));
     touches.add(output_of(coming, body.momenta_ea, 64));
     touches.add(output_of(leaving, body.motions_ea, 4 * kTwistSlotBytes));
   }
 
   void work(const TileSlice& slice, uint32_t s, Touches& touches) {
     const UpSide& side = store_.side[s];
-    to_components(side.positions, 4 * slice.input_groups, context_.origin);
-    for (uint32_t g = 0; g < slice.input_groups; ++g)
-      twist_moments(side.modified_mass[g], side.positions[g].v,
-                    difference(side.velocities[g], context_.drift), store_.slots + slice.input_slot + 4 * g);
+    for (uint32_t g = 0; g < slice.input_groups; ++g) {
+      const Pulled4& p = side.pulled[g];
+      twist_moments(p.modified_mass, p.x, difference(p.v, context_.drift),
+                    store_.slots + slice.input_slot + 4 * g);
+    }
     sum_slice<3>(slice, side.lists, store_.slots, touches);
 
     const vec_float4 noise_floor = spu_splats(context_.body.noise_floor);
@@ -236,7 +235,7 @@ class ScatterPass {
     touches.add(output_of(coming, body.positions_ea, 64));
     touches.add(output_of(coming, body.rest_ea, 64));
     touches.add(output_of(coming, body.weights_ea, 32));
-    touches.add(output_of(leaving, body.held_ea, 48));
+    touches.add(output_of(leaving, body.pulled_ea, kPulledBytes));
   }
 
   void work(const TileSlice& slice, uint32_t s, Touches& touches) {
@@ -251,15 +250,18 @@ class ScatterPass {
     const auto* const region = reinterpret_cast<const uint32_t(*)[4]>(side.lists);
     for (uint32_t g = 0; g < slice.output_groups; ++g) {
       const WeightConstants& weights = side.weights[g];
+      const Vector3x4& x = side.positions[g].v;
       const Vector3x4 to_goal =
-          difference(goals(side.rest[g], weights.inverse_mass, region[g], store_.slots), side.positions[g].v);
+          difference(goals(side.rest[g], weights.inverse_mass, region[g], store_.slots), x);
       // Padding has no goal.
       const vec_uint4 padding = spu_cmpeq((vec_uint4)weights.mass, spu_splats(0u));
       const vec_float4 own_pull = (vec_float4)spu_andc((vec_uint4)pull, padding);
-      side.held[g] = scale_add(to_goal, own_pull, side.velocities[g].v);
+      const vec_float4 mass = modified_mass(side.rest[g]);
+      store_.pulled[g] = {x, scale_add(to_goal, own_pull, side.velocities[g].v), mass,
+                          spu_mul(mass, weights.inverse_mass)};
       add_pulls(pulls_, to_goal, spu_mul(weights.mass, scale));
     }
-    put_range(side.held, output_of(slice, body.held_ea, 48), s);
+    put_range(store_.pulled, output_of(slice, body.pulled_ea, kPulledBytes), kTagOut);
   }
 
   void report(TileReport& report) {
@@ -285,41 +287,28 @@ class DampPass {
   void fetch(const TileSlice& slice, uint32_t s) {
     const DownSide& side = store_.side[s];
     const TiledBody& body = context_.body;
-    get_range(side.held, output_of(slice, body.held_ea, 48), s);
+    get_range(side.pulled, output_of(slice, body.pulled_ea, kPulledBytes), s);
     if (!damping_) return;
     get_large(side.lists, body.lists_ea + slice.lists, slice.lists_bytes, s);
     get_range(slots() + slice.input_slot, input_of(slice, body.motions_ea, 4 * kTwistSlotBytes), s);
-    get_range(side.positions, output_of(slice, body.positions_ea, 64), s);
-    get_range(side.weights, output_of(slice, body.weights_ea, 32), s);
-    get_range(side.modified_mass, output_of(slice, body.modified_ea, 16), s);
   }
 
   void touch(const TileSlice& coming, const TileSlice& leaving, Touches& touches) const {
     const TiledBody& body = context_.body;
-    touches.add(output_of(coming, body.held_ea, 48));
+    touches.add(output_of(coming, body.pulled_ea, kPulledBytes));
     touches.add(output_of(leaving, body.velocities_ea, 64));
-    if (!damping_) return;
-    touches.add(input_of(coming, body.motions_ea, 4 * kTwistSlotBytes));
-    touches.add(output_of(coming, body.positions_ea, 64));
-    touches.add(output_of(coming, body.weights_ea, 32));
-    touches.add(output_of(coming, body.modified_ea, 16));
+    if (damping_) touches.add(input_of(coming, body.motions_ea, 4 * kTwistSlotBytes));
   }
 
   void work(const TileSlice& slice, uint32_t s, Touches& touches) {
     const DownSide& side = store_.side[s];
-    if (damping_) {
-      sum_slice<2>(slice, side.lists, slots(), touches);
-      to_components(side.positions, 4 * slice.output_groups, context_.origin);
-    }
+    if (damping_) sum_slice<2>(slice, side.lists, slots(), touches);
     const vec_float4 damping = spu_splats(context_.body.damping);
     const auto* const region = reinterpret_cast<const uint32_t(*)[4]>(side.lists);
     for (uint32_t g = 0; g < slice.output_groups; ++g) {
-      Vector3x4 v = difference(side.held[g], context_.drift);
-      if (damping_) {
-        const vec_float4 share = spu_mul(side.modified_mass[g], side.weights[g].inverse_mass);
-        v = damp(share, region[g], slots(), side.positions[g].v, v, damping);
-      }
-      store_.damped[g].v = v;
+      const Pulled4& p = side.pulled[g];
+      const Vector3x4 v = difference(p.v, context_.drift);
+      store_.damped[g].v = damping_ ? damp(p.share, region[g], slots(), p.x, v, damping) : v;
     }
     to_particles(store_.damped, slice.output_groups);
     put_range(store_.damped, output_of(slice, context_.body.velocities_ea, 64), kTagOut);

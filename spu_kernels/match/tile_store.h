@@ -11,6 +11,13 @@ struct WeightConstants {
 };
 static_assert(sizeof(WeightConstants) == sizeof(TileWeights), "the same bytes");
 
+/// TilePulled as registers.
+struct Pulled4 {
+  Vector3x4 x, v;
+  vec_float4 modified_mass, share;
+};
+static_assert(sizeof(Pulled4) == sizeof(TilePulled), "the same bytes");
+
 struct MomentumConstants {
   Vector3x4 momentum;  // sum m~ x
   vec_float4 inverse_mass;
@@ -22,10 +29,9 @@ static_assert(sizeof(RestMoments) == sizeof(TileRest), "the same bytes");
 /// One side of the double buffer, from particles to regions.
 struct UpSide {
   char* lists;
-  Vectors4* positions;
+  Vectors4* positions;         // gather
   RestMoments* rest;           // gather
-  Vector3x4* velocities;       // twist, in the same place
-  vec_float4* modified_mass;   // twist
+  Pulled4* pulled;             // twist, in the place of both
   RegionConstants* regions;    // gather
   MomentumConstants* momenta;  // twist, in the same place
   Quaternion4* rotations;      // gather
@@ -34,12 +40,11 @@ struct UpSide {
 /// One side of the double buffer, from regions to particles.
 struct DownSide {
   char* lists;
-  Vectors4* positions;
-  Vectors4* velocities;  // scatter
-  Vector3x4* held;       // scatter: out; damp: in
-  RestMoments* rest;     // scatter
-  WeightConstants* weights;
-  vec_float4* modified_mass;  // damp
+  Vectors4* positions;       // scatter
+  Vectors4* velocities;      // scatter
+  RestMoments* rest;         // scatter
+  WeightConstants* weights;  // scatter
+  Pulled4* pulled;           // damp, in the place of the first two
 };
 
 /// Hands out parts of the arena, one behind the other.
@@ -69,7 +74,8 @@ struct UpStore {
 struct DownStore {
   TileSlice* slices;
   DownSide side[2];
-  Vectors4* damped;  // damp: out
+  Pulled4* pulled;   // scatter: out
+  Vectors4* damped;  // damp: out, in the same place
   Slot* slots;
 };
 
@@ -81,8 +87,7 @@ inline UpStore up_store(char* arena, const TileLimits& limits) {
     side.lists = free.take<char>(limits.lists_bytes);
     side.positions = free.take<Vectors4>(64 * limits.input_groups);
     side.rest = free.take<RestMoments>(64 * limits.input_groups);
-    side.velocities = reinterpret_cast<Vector3x4*>(side.rest);
-    side.modified_mass = free.take<vec_float4>(16 * limits.input_groups);
+    side.pulled = reinterpret_cast<Pulled4*>(side.positions);
     side.regions = free.take<RegionConstants>(64 * limits.output_groups);
     side.momenta = reinterpret_cast<MomentumConstants*>(side.regions);
     side.rotations = free.take<Quaternion4>(64 * limits.output_groups);
@@ -101,12 +106,12 @@ inline DownStore down_store(char* arena, const TileLimits& limits) {
     side.lists = free.take<char>(limits.lists_bytes);
     side.positions = free.take<Vectors4>(64 * limits.output_groups);
     side.velocities = free.take<Vectors4>(64 * limits.output_groups);
-    side.held = free.take<Vector3x4>(48 * limits.output_groups);
     side.rest = free.take<RestMoments>(64 * limits.output_groups);
     side.weights = free.take<WeightConstants>(32 * limits.output_groups);
-    side.modified_mass = free.take<vec_float4>(16 * limits.output_groups);
+    side.pulled = reinterpret_cast<Pulled4*>(side.positions);
   }
-  store.damped = store.side[0].velocities;  // which damp has no use for
+  store.pulled = free.take<Pulled4>(static_cast<uint32_t>(sizeof(Pulled4)) * limits.output_groups);
+  store.damped = reinterpret_cast<Vectors4*>(store.pulled);
   store.slots = free.take<Slot>(0);
   return store;
 }

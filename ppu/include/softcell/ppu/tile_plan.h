@@ -57,7 +57,6 @@ class TilePlan {
   std::span<const std::byte> lists() const { return std::as_bytes(std::span(lists_)); }
   std::span<const spu::TileRest> rest() const { return rest_; }
   std::span<const spu::TileWeights> weights() const { return weights_; }
-  std::span<const spu::TileModified> modified() const { return modified_; }
   std::span<const spu::MatchRegions> regions() const { return regions_; }
 
  private:
@@ -67,7 +66,6 @@ class TilePlan {
   std::vector<std::uint32_t> lists_;
   std::vector<spu::TileRest> rest_;
   std::vector<spu::TileWeights> weights_;
-  std::vector<spu::TileModified> modified_;
   std::vector<spu::MatchRegions> regions_;
 };
 

@@ -64,10 +64,9 @@ class TiledMemory {
   dma::Buffer<spu::TileSlice> slices_;
   dma::Buffer<spu::TileRest> rest_;
   dma::Buffer<spu::TileWeights> weights_;
-  dma::Buffer<spu::TileModified> modified_;
   dma::Buffer<spu::MatchRegions> regions_;
   dma::Buffer<Vector> positions_, velocities_;
-  dma::Buffer<spu::TileHeld> held_;
+  dma::Buffer<spu::TilePulled> pulled_;
   dma::Buffer<spu::MatchRotations> rotations_, next_rotations_;
   dma::Buffer<std::byte> motions_;
   dma::Buffer<spu::TileMomenta> momenta_;
