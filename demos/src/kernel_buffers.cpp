@@ -1,11 +1,9 @@
 #include "kernel_buffers.h"
 
 #include <algorithm>
-#include <deque>
 #include <stdexcept>
 
 #include "read_file.h"
-#include "softcell/ls_sim/whole_file.h"
 
 namespace softcell::demos {
 namespace {
@@ -64,15 +62,12 @@ std::uint64_t KernelBuffers::word(const ArgumentSpec& argument) const {
   return std::get<std::uint64_t>(argument);
 }
 
-void KernelBuffers::write_files() const {
-  std::deque<ls_sim::WholeFile> files;  // none takes its place before all are written
+void KernelBuffers::write_files(OutputFiles& files) const {
   for (const Slot& slot : slots_) {
     if (slot.spec->direction == BufferSpec::kIn) continue;
     const auto bytes = slot.memory.span();
-    files.emplace_back(slot.spec->file)
-        .write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
+    files.open(slot.spec->file).write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
   }
-  for (ls_sim::WholeFile& file : files) file.commit();
 }
 
 }  // namespace softcell::demos

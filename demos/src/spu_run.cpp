@@ -9,6 +9,7 @@
 #include "kernel_file.h"
 #include "kernel_report.h"
 #include "kernel_run.h"
+#include "output_files.h"
 #include "softcell/ls_sim/trace.h"
 #include "verbs.h"
 
@@ -27,13 +28,15 @@ int run_spu_run(const SpuRunOptions& options) {
                  {.schedule = options.schedule, .clock = options.clock, .trace = trace ? &*trace : nullptr});
 
   const int status = exit_status(image, run);
-  if (status == 0) buffers.write_files();
-  if (trace) trace->write(*options.trace);
+  OutputFiles files;
+  if (status == 0) buffers.write_files(files);
+  if (trace) trace->write(files.open(*options.trace));
   if (options.json) {
     auto document = to_json(image, run);
     document["dma_schedule"] = dma::to_string(options.schedule);
-    write_json(*options.json, document);
+    write_json(files.open(*options.json), document);
   }
+  files.commit();
   print_statistics(image, run);
   print_problems(image, run);
   return status;

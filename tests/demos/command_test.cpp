@@ -338,6 +338,36 @@ TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
   EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"out"}) << "no part of a video is left";
 }
 
+TEST(Command, RefusesWhatItCannotWriteBeforeALongRun) {
+  for (const std::string run :
+       {"demo 2d --headless --frames 1000000 --record /proc/a.rec", "bench --json /proc/bench.json",
+        "demo 3d --headless --frames 1000000 --trace /proc/t.json",
+        "demo 2d --headless --frames 1000000 --json /proc/s.json"}) {
+    const CommandResult refused = run_shell("timeout 20 " SOFTCELL_COMMAND " " + run);
+    EXPECT_EQ(refused.status, 1) << run << ": " << refused.output;
+    EXPECT_EQ(refused.output.rfind("softcell: cannot write /proc/", 0), 0u) << refused.output;
+  }
+}
+
+TEST(Command, ReplacesTheRecordingThatItReplays) {
+  const ScratchFolder folder;
+  const std::string recording = folder / "run.rec";
+  const std::string demo = "demo 2d --headless --quiet --frames 2 --size 32x32 --record " + recording;
+  ASSERT_EQ(run_softcell(demo).status, 0);
+  const CommandResult again = run_softcell(demo + " --replay " + recording);
+  EXPECT_EQ(again.status, 0) << again.output;
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"run.rec"});
+}
+
+TEST(Command, ABenchmarkThatIsInterruptedLeavesNoFile) {
+  const ScratchFolder folder;
+  const CommandResult run = run_shell("timeout --signal=INT 2 " SOFTCELL_COMMAND
+                                      " bench --filter dma/get16k --rounds 100000 --json " +
+                                      (folder / "b.json"));
+  EXPECT_NE(run.output.find("interrupted"), std::string::npos) << run.output;
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
 struct Refusal {
   const char* arguments;  ///< %s is a scratch folder with cube.obj and some broken files
   int status;

@@ -142,6 +142,17 @@ TEST_F(SpuCommand, WritesOutFilesOfTheSizeAskedFor) {
   EXPECT_EQ(y[99], 198.f);
 }
 
+TEST_F(SpuCommand, WritesAllItsFilesOrNone) {
+  const auto before = read_floats(folder_ / "y.bin");
+  for (const std::string option : {"--json /proc/s.json", "--trace /proc/t.json", "--json /dev/full",
+                                   "--trace /dev/full", "--json /", "--out z=/proc/z.bin:64"}) {
+    const CommandResult run = run_softcell("spu run " + kSaxpy + saxpy_options() + option);
+    EXPECT_EQ(run.status, 1) << option << ": " << run.output;
+    EXPECT_EQ(read_floats(folder_ / "y.bin"), before) << option;
+    EXPECT_FALSE(exists(folder_ / "y.bin.part")) << option;
+  }
+}
+
 TEST_F(SpuCommand, WritesATrace) {
   const CommandResult run =
       run_softcell("spu run " + kSaxpy + saxpy_options(2) + "--trace " + (folder_ / "t.json"));
