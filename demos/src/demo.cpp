@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "demo_pictures.h"
+#include "distinct_files.h"
 #include "interrupt.h"
 #include "json_file.h"
 #include "kernel_report.h"
@@ -162,6 +163,10 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (!options.headless && options.statistics)
     throw UsageError(
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
+  check_distinct({{"--video", options.video},
+                  {"--record", options.record},
+                  {"--trace", options.trace},
+                  {"--json", options.json}});
   // A recording and a trace are of one scene.
   const std::vector<MakeDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);

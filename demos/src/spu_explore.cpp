@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "interrupt.h"
 #include "json_file.h"
@@ -124,6 +125,11 @@ class Explorer {
 
 }  // namespace
 
-int run_spu_explore(const SpuExploreOptions& options) { return Explorer(options).explore(); }
+int run_spu_explore(const SpuExploreOptions& options) {
+  std::vector<NamedFile> files = written_files(options.task);  // by the run that is printed to see it again
+  files.push_back({"--json", options.json});
+  check_distinct(files);
+  return Explorer(options).explore();
+}
 
 }  // namespace softcell::demos

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "json_file.h"
 #include "kernel_file.h"
@@ -17,6 +18,10 @@ namespace softcell::demos {
 
 int run_spu_run(const SpuRunOptions& options) {
   const KernelTask& task = options.task;
+  std::vector<NamedFile> outputs = written_files(task);
+  outputs.push_back({"--trace", options.trace});
+  outputs.push_back({"--json", options.json});
+  check_distinct(outputs);
   const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked);
   dma::AddressSpace memory;
   const KernelBuffers buffers(memory, task);

@@ -338,6 +338,28 @@ TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
   EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"out"}) << "no part of a video is left";
 }
 
+TEST(Command, RefusesTwoOutputsInOneFile) {
+  const ScratchFolder folder;
+  write_file(folder / "t.json", "a trace");
+  const std::string demo = "demo 2d --headless --frames 1 --size 32x32 ",
+                    here = "cd " + folder.path().string();
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run = run_shell(here + " && " SOFTCELL_COMMAND " " + arguments);
+    EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
+    EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"t.json"}) << arguments;
+    return run.output;
+  };
+  EXPECT_EQ(refusal(demo + "--json same --trace ./same")
+                .rfind("softcell: --trace and --json are one file, same", 0),
+            0u);
+  EXPECT_NE(refusal(demo + "--record same --json " + (folder / "same")).find("--record and --json"),
+            std::string::npos);
+  EXPECT_NE(refusal(demo + "--video same --json same").find("--video and --json"), std::string::npos);
+  EXPECT_NE(refusal("report t.json --out ./t.json").find("the trace and --out are one file"),
+            std::string::npos);
+  EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
+}
+
 TEST(Command, RefusesWhatItCannotWriteBeforeALongRun) {
   for (const std::string run :
        {"demo 2d --headless --frames 1000000 --record /proc/a.rec", "bench --json /proc/bench.json",

@@ -153,6 +153,18 @@ TEST_F(SpuCommand, WritesAllItsFilesOrNone) {
   }
 }
 
+TEST_F(SpuCommand, RefusesTwoOutputsInOneFile) {
+  const std::string file = folder_ / "y.bin";
+  for (const std::string& option : {"--json " + file, "--trace " + file, "--out z=" + file + ":64",
+                                    "--trace " + (folder_ / "same") + " --json " + (folder_ / "./same")}) {
+    const CommandResult run = run_softcell("spu run " + kSaxpy + saxpy_options() + option);
+    EXPECT_EQ(run.status, 2) << option << ": " << run.output;
+    EXPECT_NE(run.output.find("are one file"), std::string::npos) << run.output;
+    EXPECT_EQ(read_floats(file)[1], 1.f) << option;
+  }
+  EXPECT_EQ(run_softcell("spu explore " + kSaxpy + saxpy_options() + "--json " + file).status, 2);
+}
+
 TEST_F(SpuCommand, WritesATrace) {
   const CommandResult run =
       run_softcell("spu run " + kSaxpy + saxpy_options(2) + "--trace " + (folder_ / "t.json"));
