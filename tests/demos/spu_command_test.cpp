@@ -165,6 +165,14 @@ TEST_F(SpuCommand, RefusesTwoOutputsInOneFile) {
   EXPECT_EQ(run_softcell("spu explore " + kSaxpy + saxpy_options() + "--json " + file).status, 2);
 }
 
+TEST_F(SpuCommand, TheImageMayStandBehindTheBuffers) {
+  const CommandResult run =
+      run_softcell("spu run --in x=" + (folder_ / "x.bin") + " --inout y=" + (folder_ / "y.bin") + " " +
+                   kSaxpy + " --arg f32:2 @x @y 10000 1 0");
+  ASSERT_EQ(run.status, 0) << run.output;
+  expect_result();
+}
+
 TEST_F(SpuCommand, WritesATrace) {
   const CommandResult run =
       run_softcell("spu run " + kSaxpy + saxpy_options(2) + "--trace " + (folder_ / "t.json"));
