@@ -90,6 +90,8 @@ std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int r
 }  // namespace
 
 int run_bench(const BenchOptions& options) {
+  if (options.list && options.json)
+    throw UsageError("--list measures nothing that --json could write: leave one of them out");
   const std::vector<Benchmark> benchmarks = chosen_benchmarks(options.filter);
   if (options.list) {
     for (const Benchmark& b : benchmarks) fmt::print("{}\n", b.name);

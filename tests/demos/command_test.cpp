@@ -448,6 +448,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"report %s/file", 2, "--out"},
                     Refusal{"bench --filter [", 2, "regular expression"},
                     Refusal{"bench --rounds 0", 2, "--rounds"},
+                    Refusal{"bench --list --json %s/l.json", 2, "--list measures nothing"},
                     Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
 
 INSTANTIATE_TEST_SUITE_P(
