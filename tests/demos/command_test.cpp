@@ -454,6 +454,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
     testing::Values(Refusal{SC_DEMO "--scene nowhere", 1, "there are: arena, "},
+                    Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is no file"},
                     Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"},
                     Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
                     Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},

@@ -1,6 +1,7 @@
 // softcell spu run and spu explore as a user meets them, with the kernels of examples/saxpy.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstring>
@@ -171,6 +172,22 @@ TEST_F(SpuCommand, TheImageMayStandBehindTheBuffers) {
                    kSaxpy + " --arg f32:2 @x @y 10000 1 0");
   ASSERT_EQ(run.status, 0) << run.output;
   expect_result();
+}
+
+TEST_F(SpuCommand, ReadsOnlyFilesThatFit) {
+  const auto refusal = [&](const std::string& file) {
+    const CommandResult run =
+        run_shell("timeout 20 " SOFTCELL_COMMAND " spu run " + kTalk + " --in x=" + file);
+    EXPECT_EQ(run.status, 1) << run.output;
+    return run.output;
+  };
+  std::ofstream(folder_ / "empty.bin").close();
+  EXPECT_NE(refusal(folder_ / "empty.bin").find("is empty"), std::string::npos);
+  std::ofstream(folder_ / "huge.bin").close();
+  std::filesystem::resize_file(folder_ / "huge.bin", std::uintmax_t{1} << 40);  // of holes
+  EXPECT_NE(refusal(folder_ / "huge.bin").find("of 1099511627776 bytes does not fit"), std::string::npos);
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_NE(refusal(folder_ / "pipe").find("pipe: it is no file"), std::string::npos);
 }
 
 TEST_F(SpuCommand, WritesATrace) {
@@ -351,7 +368,10 @@ INSTANTIATE_TEST_SUITE_P(BadInput, SpuCommandRefuses,
                                          Refusal{"spu run --checked " SOFTCELL_COMMAND, 1, ".spu.elf"},
                                          Refusal{"spu run " + kTalk + " --in x=/no/such/file", 1,
                                                  "/no/such/file"},
-                                         Refusal{"spu run " + kTalk + " --in x=/dev/null", 1, "empty"},
+                                         Refusal{"spu run " + kTalk + " --in x=/dev/zero", 1,
+                                                 "cannot read /dev/zero: it is no file"},
+                                         Refusal{"spu run " + kTalk + " --inout x=/dev/null", 1, "no file"},
+                                         Refusal{"spu run /dev/zero", 1, "/dev/zero: it is no file"},
                                          Refusal{"spu run " + kTalk + " --out x=f:300M", 1, "does not fit"}));
 
 }  // namespace
