@@ -390,6 +390,14 @@ TEST(Command, ABenchmarkThatIsInterruptedLeavesNoFile) {
   EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
+TEST(Command, SaysWhenWhatItPrintsIsLost) {
+  for (const char* verb : {"scenes", "man", "spu budget", "bench --list", "completion bash", "--help"}) {
+    const CommandResult run = run_shell(std::string(SOFTCELL_COMMAND) + " " + verb + " 2>&1 >/dev/full");
+    EXPECT_EQ(run.status, 1) << verb;
+    EXPECT_NE(run.output.find("No space left"), std::string::npos) << verb << ": " << run.output;
+  }
+}
+
 struct Refusal {
   const char* arguments;  ///< %s is a scratch folder with cube.obj and some broken files
   int status;
@@ -425,31 +433,45 @@ TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
 
 INSTANTIATE_TEST_SUITE_P(
     WrongUsage, CommandRefuses,
-    testing::Values(Refusal{"", 2, "say what to do"}, Refusal{"dance", 2, "dance"},
-                    Refusal{"demo", 2, "say what to do"}, Refusal{"demo 4d", 2, "4d"},
-                    Refusal{SC_DEMO "--bogus", 2, "--bogus"}, Refusal{SC_DEMO "--spes 7", 2, "1"},
-                    Refusal{SC_DEMO "--spes 0", 2, "6"}, Refusal{SC_DEMO "--spes two", 2, "--spes"},
-                    Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
-                    Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
-                    Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
-                    Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
-                    Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
-                    Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
-                    Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
-                    Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
-                    Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
-                    Refusal{"demo 2d --statistics", 2, "--headless"},
-                    Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
-                    Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
-                    Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
-                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
-                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.2 --cells 4", 2, "--cells"},
-                    Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"}, Refusal{"report", 2, "trace"},
-                    Refusal{"report %s/file", 2, "--out"},
-                    Refusal{"bench --filter [", 2, "regular expression"},
-                    Refusal{"bench --rounds 0", 2, "--rounds"},
-                    Refusal{"bench --list --json %s/l.json", 2, "--list measures nothing"},
-                    Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
+    testing::Values(
+        Refusal{"", 2, "say what to do: demo 2d, demo 3d, spu run"},
+        Refusal{"demo", 2, "say what to do: demo 2d, demo 3d ("},
+        Refusal{"spu", 2, "say what to do: spu run, spu explore, spu budget ("},
+        Refusal{"dance", 2, "softcell has no command 'dance'; there are: demo, spu, scenes,"},
+        Refusal{"demo 4d", 2, "softcell demo has no command '4d'; there are: 2d, 3d ("},
+        Refusal{"demo 3d 2d", 2, "the argument '2d' is one too many"},
+        Refusal{"scenes x", 2, "'x' is one too many: softcell scenes takes nothing but options"},
+        Refusal{"spu run a b", 2, "'b' is one too many: softcell spu run takes IMAGE and options"},
+        Refusal{SC_DEMO "--bogus", 2, "softcell demo 3d has no option --bogus ("},
+        Refusal{SC_DEMO "-x", 2, "softcell demo 3d has no option -x ("},
+        Refusal{"demo 3d --fram 3", 2, "has no option --fram; did you mean --frames?"},
+        Refusal{"report --outt a b", 2, "has no option --outt; did you mean --out?"},
+        Refusal{"demo 3d --frames 3 --frames 4", 2, "--frames is given 2 times; give it once"},
+        Refusal{"demo 3d --frames", 2, "--frames needs a value behind it: FRAMES"},
+        Refusal{"spu budget --jsn", 2, "(softcell spu budget --help lists what is allowed)"},
+        Refusal{"demo 2d --size 0x0", 2, "(softcell demo 2d --help lists what is allowed)"},
+        Refusal{SC_DEMO "--spes 7", 2, "1"}, Refusal{SC_DEMO "--spes 0", 2, "6"},
+        Refusal{SC_DEMO "--spes two", 2, "--spes"},
+        Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
+        Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
+        Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
+        Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
+        Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
+        Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
+        Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
+        Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
+        Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
+        Refusal{"demo 2d --statistics", 2, "--headless"},
+        Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
+        Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
+        Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.2 --cells 4", 2, "--cells"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"},
+        Refusal{"report", 2, "softcell report needs TRACE"}, Refusal{"report %s/file", 2, "--out"},
+        Refusal{"bench --filter [", 2, "regular expression"}, Refusal{"bench --rounds 0", 2, "--rounds"},
+        Refusal{"bench --list --json %s/l.json", 2, "--list measures nothing"},
+        Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
