@@ -9,12 +9,16 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "interrupt.h"
 #include "json_file.h"
+#include "output_files.h"
 #include "usage_error.h"
 #include "verbs.h"
 
 namespace softcell::demos {
 namespace {
+
+constexpr int kExitInterrupted = 130;
 
 std::vector<Benchmark> all_benchmarks() {
   std::vector<Benchmark> all;
@@ -59,15 +63,19 @@ std::chrono::nanoseconds spent(const Work& work) {
   return work.spent ? work.spent() : std::chrono::steady_clock::now().time_since_epoch();
 }
 
-std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int rounds) {
+/// Incomplete when interrupted.
+std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int rounds,
+                                 const InterruptGuard& guard) {
   std::vector<Measurement> all;
   for (const Benchmark& benchmark : benchmarks) {
+    if (guard.interrupted()) return all;
     all.push_back({benchmark.prepare()});
     all.back().work.run();  // caches, first allocations
   }
   // Round by round, so that a change of the machine's speed meets all alike.
   for (int round = 0; round < rounds; ++round) {
     for (Measurement& m : all) {
+      if (guard.interrupted()) return all;
       if (m.work.before) m.work.before();
       const std::chrono::nanoseconds begin = spent(m.work);
       m.work.run();
@@ -82,12 +90,21 @@ std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int r
 }  // namespace
 
 int run_bench(const BenchOptions& options) {
+  if (options.list && options.json)
+    throw UsageError("--list measures nothing that --json could write: leave one of them out");
   const std::vector<Benchmark> benchmarks = chosen_benchmarks(options.filter);
   if (options.list) {
     for (const Benchmark& b : benchmarks) fmt::print("{}\n", b.name);
     return 0;
   }
-  const std::vector<Measurement> all = measure(benchmarks, options.rounds);
+  OutputFiles files;
+  ls_sim::WholeFile* const json = files.open(options.json);
+  const InterruptGuard guard;
+  const std::vector<Measurement> all = measure(benchmarks, options.rounds, guard);
+  if (guard.interrupted()) {
+    fmt::print(stderr, "softcell: interrupted; nothing is reported of a part of the rounds\n");
+    return kExitInterrupted;
+  }
 
   auto document = nlohmann::ordered_json::array();
   fmt::print("{:<38} {:>12} {:>12} {:>9}   nanoseconds per item, {} rounds\n", "name", "minimum", "median",
@@ -101,7 +118,8 @@ int run_bench(const BenchOptions& options) {
   }
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].work.note) fmt::print("\n{}: {}", benchmarks[i].name, all[i].work.note());
-  if (options.json) write_json(*options.json, document);
+  if (json != nullptr) write_json(*json, document);
+  files.commit();
   return 0;
 }
 

@@ -7,12 +7,15 @@
 
 #include "json_file.h"
 #include "kernel_samples.h"
+#include "output_files.h"
 #include "softcell/dma/addresses.h"
 #include "verbs.h"
 
 namespace softcell::demos {
 
 int run_budget(const BudgetOptions& options) {
+  OutputFiles files;
+  ls_sim::WholeFile* const json = files.open(options.json);
   auto document = nlohmann::ordered_json::array();
   std::string over;
   fmt::print("{:<10} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}\n", "kernel", "text", "rodata",
@@ -37,7 +40,8 @@ int run_budget(const BudgetOptions& options) {
                           s.total() - s.budget);
     }
   }
-  if (options.json) write_json(*options.json, document);
+  if (json != nullptr) write_json(*json, document);
+  files.commit();
   if (!over.empty()) throw std::runtime_error(over);
   return 0;
 }

@@ -8,9 +8,11 @@
 #include <optional>
 
 #include "demo_pictures.h"
+#include "distinct_files.h"
 #include "interrupt.h"
 #include "json_file.h"
 #include "kernel_report.h"
+#include "output_files.h"
 #include "progress_bar.h"
 #include "run_record.h"
 #include "softcell/render/offscreen_context.h"
@@ -161,9 +163,17 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (!options.headless && options.statistics)
     throw UsageError(
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
+  check_distinct({{"--video", options.video},
+                  {"--record", options.record},
+                  {"--trace", options.trace},
+                  {"--json", options.json}});
   // A recording and a trace are of one scene.
   const std::vector<MakeDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);
+  // What cannot be written is no surprise at the end of a long run.
+  OutputFiles files;
+  ls_sim::WholeFile* const trace_file = files.open(options.trace);
+  ls_sim::WholeFile* const json_file = files.open(options.json);
   ls_sim::Findings findings;
   std::optional<ls_sim::Trace> trace;
   if (options.trace) trace.emplace(options.spes);
@@ -179,8 +189,9 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   auto statistics = statistics_document(options, *run.demo, run.record);
   const std::vector<ls_sim::Finding> found = findings.list();
   if (options.checked) statistics["findings"] = to_json(std::span(found));
-  if (trace) trace->write(*options.trace);
-  if (options.json) write_json(*options.json, statistics);
+  if (trace) trace->write(*trace_file);
+  if (json_file != nullptr) write_json(*json_file, statistics);
+  files.commit();
   if (!options.quiet) print_summary(statistics, options);
   print_findings(found);
   run.demo->check_replay();

@@ -2,6 +2,7 @@
 // Where the events of a run come from when it is a replay, and where they go when it is recorded.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include "options.h"
 #include "recording.h"
 #include "scene_hash.h"
+#include "softcell/ls_sim/whole_file.h"
 
 namespace softcell::demos {
 
@@ -20,7 +22,7 @@ class InputLog {
   using Event = InputEvent<Dimension>;
 
   /// Reads the recording that the options ask for. @throws std::runtime_error  as read_recording().
-  explicit InputLog(const DemoOptions& options) : file_(options.record) {
+  explicit InputLog(const DemoOptions& options) : path_(options.record) {
     if (options.replay) {
       replay_ = read_recording<Dimension>(*options.replay);
       replay_name_ = options.replay->string();
@@ -32,15 +34,18 @@ class InputLog {
     return replay_ ? std::optional(replay_->scene) : std::nullopt;
   }
 
-  /// Takes the scene's script away when this is a replay: its events are in the recording.
-  /// @throws std::runtime_error  the recording is of another scene.
+  /// Takes the scene's script away when this is a replay: its events are in the recording. Opens the file of
+  /// what is recorded, so that one that cannot be written is no surprise at the end of a long run.
+  /// @throws std::runtime_error  the replay is of another scene, or the file cannot be written.
   template <class SceneOfDimension>
   void begin(SceneOfDimension& scene) {
     record_.scene = recordable_name(scene.name);
     record_.scene_hash = scene_hash(scene);
-    if (!replay_) return;
-    if (replay_->scene_hash != record_.scene_hash) refuse_scene();
-    scene.script = {};
+    if (replay_) {
+      if (replay_->scene_hash != record_.scene_hash) refuse_scene();
+      scene.script = {};
+    }
+    if (path_) file_ = std::make_shared<ls_sim::WholeFile>(*path_);
   }
 
   bool replays() const { return replay_.has_value(); }
@@ -62,14 +67,16 @@ class InputLog {
     record_.frames = frame + 1;
     if (!file_) return;
     if (record_.frames > kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents)
-      throw std::runtime_error(file_->string() + ": the recording is as long as one may be");
+      throw std::runtime_error(path_->string() + ": the recording is as long as one may be");
     for (const Event& event : events) record_.events.push_back({frame, event});
   }
 
-  /// Writes the recording, if one is asked for. @throws std::runtime_error  it cannot be written.
+  /// Writes the recording, if one is asked for; once. @throws std::runtime_error  it cannot be written.
   void save(std::uint64_t state_hash) {
     record_.state_hash = state_hash;
-    if (file_) write_recording(*file_, record_);
+    if (!file_) return;
+    file_->write(to_text(record_));
+    file_->commit();
   }
 
   /// @throws std::runtime_error  all of the recording was done again and did not end in its state.
@@ -90,7 +97,8 @@ class InputLog {
                              "; give the one that was recorded with --scene");
   }
 
-  std::optional<std::filesystem::path> file_;
+  std::optional<std::filesystem::path> path_;  // of what is recorded
+  std::shared_ptr<ls_sim::WholeFile> file_;    // of all copies; one of them saves
   std::optional<Recording<Dimension>> replay_;
   std::string replay_name_;
   std::size_t next_ = 0;  // event of the replay

@@ -2,14 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "softcell/ls_sim/whole_file.h"
-
 namespace softcell::demos {
 
-void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& document) {
-  ls_sim::WholeFile file(path);
+void write_json(ls_sim::WholeFile& file, const nlohmann::ordered_json& document) {
   file.write(document.dump(2) + "\n");
-  file.commit();
 }
 
 }  // namespace softcell::demos

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+
+#include "softcell/ls_sim/whole_file.h"
 
 namespace softcell::demos {
 
-/// Writes the document; the file appears whole or not at all.
+/// Writes the document into a file that the caller commits.
 /// @throws std::runtime_error  naming the file and why it cannot be written.
-void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& document);
+void write_json(ls_sim::WholeFile& file, const nlohmann::ordered_json& document);
 
 }  // namespace softcell::demos

@@ -1,29 +1,33 @@
 #include "kernel_buffers.h"
 
 #include <algorithm>
-#include <deque>
 #include <stdexcept>
 
 #include "read_file.h"
-#include "softcell/ls_sim/whole_file.h"
 
 namespace softcell::demos {
 namespace {
 
+void check_fits(const BufferSpec& spec, std::uint64_t bytes, std::uint64_t free_bytes) {
+  if (bytes <= free_bytes) return;
+  throw std::runtime_error("buffer " + spec.name + " of " + std::to_string(bytes) +
+                           " bytes does not fit: main memory has " + std::to_string(free_bytes) +
+                           " bytes left");
+}
+
 std::vector<std::byte> initial_bytes(const BufferSpec& spec, std::uint64_t free_bytes) {
-  if (spec.direction != BufferSpec::kOut) {
-    auto bytes = read_file(spec.file);
-    if (bytes.empty())
-      throw std::runtime_error("buffer " + spec.name + ": " + spec.file.string() +
-                               " is empty, and a buffer has at least one byte");
-    return bytes;
+  if (spec.direction == BufferSpec::kOut) {
+    check_fits(spec, spec.bytes, free_bytes);
+    return std::vector<std::byte>(spec.bytes);
   }
-  if (spec.bytes > free_bytes) {
-    throw std::runtime_error("buffer " + spec.name + " of " + std::to_string(spec.bytes) +
-                             " bytes does not fit: main memory has " + std::to_string(free_bytes) +
-                             " bytes left");
-  }
-  return std::vector<std::byte>(spec.bytes);
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(spec.file, error);
+  if (!error) check_fits(spec, size, free_bytes);  // before it is read
+  auto bytes = read_file(spec.file, free_bytes);
+  if (bytes.empty())
+    throw std::runtime_error("buffer " + spec.name + ": " + spec.file.string() +
+                             " is empty, and a buffer has at least one byte");
+  return bytes;
 }
 
 }  // namespace
@@ -64,15 +68,12 @@ std::uint64_t KernelBuffers::word(const ArgumentSpec& argument) const {
   return std::get<std::uint64_t>(argument);
 }
 
-void KernelBuffers::write_files() const {
-  std::deque<ls_sim::WholeFile> files;  // none takes its place before all are written
+void KernelBuffers::write_files(OutputFiles& files) const {
   for (const Slot& slot : slots_) {
     if (slot.spec->direction == BufferSpec::kIn) continue;
     const auto bytes = slot.memory.span();
-    files.emplace_back(slot.spec->file)
-        .write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
+    files.open(slot.spec->file).write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
   }
-  for (ls_sim::WholeFile& file : files) file.commit();
 }
 
 }  // namespace softcell::demos

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernel_task.h"
+#include "output_files.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/engine.h"
 
@@ -33,9 +34,9 @@ class KernelBuffers {
   };
   std::span<const Slot> slots() const { return slots_; }
 
-  /// Makes the files of --out and --inout: all of them, each whole. @throws std::runtime_error  naming the
-  /// file.
-  void write_files() const;
+  /// Adds the files of --out and --inout, written and not committed.
+  /// @throws std::runtime_error  naming the file.
+  void write_files(OutputFiles& files) const;
 
  private:
   const Slot& slot(std::string_view buffer) const;

@@ -14,6 +14,9 @@ namespace {
 constexpr std::string_view kSuffix = ".spu.elf";
 constexpr std::string_view kCheckedSuffix = ".checked.spu.elf";
 
+/// With all that a debugger wants to know, far more than an image of 256 KB needs.
+constexpr std::uint64_t kMostImageBytes = std::uint64_t{256} << 20;
+
 /// The file that holds the flavour asked for.
 std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked) {
   const std::string text = file.string();
@@ -60,7 +63,7 @@ std::string built_in_names() {
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
   if (std::error_code ignored; std::filesystem::exists(image, ignored)) {
     const std::filesystem::path file = flavour_of(image, checked);
-    return ls_sim::load_image(kernel_name(file), read_file(file));
+    return ls_sim::load_image(kernel_name(file), read_file(file, kMostImageBytes));
   }
   if (is_built_in(image)) return load_kernel(image, checked);
   throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +

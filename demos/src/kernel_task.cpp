@@ -137,12 +137,19 @@ std::chrono::milliseconds parse_deadline(const std::string& text) {
   return std::chrono::milliseconds(std::lround(*seconds * 1000));
 }
 
-void check(const KernelTask& task) {
-  std::set<std::string_view> names;
-  std::set<std::filesystem::path> written;
+std::vector<NamedFile> written_files(const KernelTask& task) {
+  std::vector<NamedFile> files;
   for (const BufferSpec& buffer : task.buffers) {
-    if (buffer.direction != BufferSpec::kIn && !written.insert(buffer.file).second)
-      throw UsageError("two buffers would be written to " + buffer.file.string());
+    if (buffer.direction != BufferSpec::kIn)
+      files.push_back({option(buffer.direction) + buffer.name, buffer.file});
+  }
+  return files;
+}
+
+void check(const KernelTask& task) {
+  check_distinct(written_files(task));
+  std::set<std::string_view> names;
+  for (const BufferSpec& buffer : task.buffers) {
     if (!names.insert(buffer.name).second)
       throw UsageError("two buffers are called " + buffer.name + "; each needs a name of its own");
   }

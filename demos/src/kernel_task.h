@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "distinct_files.h"
+
 namespace softcell::demos {
 
 /// A buffer in main storage that is filled from a file, written to one, or both.
@@ -63,6 +65,9 @@ std::uint32_t parse_mbox_value(const std::string& text);
 
 /// "2.5": seconds, positive.
 std::chrono::milliseconds parse_deadline(const std::string& text);
+
+/// The files of --out and --inout.
+std::vector<NamedFile> written_files(const KernelTask& task);
 
 /// Refuses what no single option shows: two buffers of one name or to one file, arguments that name none.
 void check(const KernelTask& task);

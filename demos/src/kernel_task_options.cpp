@@ -32,15 +32,18 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
                   "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number")
       ->check(CLI::Range(1, 6).description(""))
       ->type_name("SPES");
+  // One buffer behind each: the next word may be IMAGE.
   verb.add_option("--in", in_, "A buffer that the kernel reads, filled from the file")
-      ->expected(1)
       ->take_all()
+      ->allow_extra_args(false)
       ->type_name("NAME=FILE");
   verb.add_option("--out", out_, "A buffer of zeros that becomes the file when the run succeeds")
       ->take_all()
+      ->allow_extra_args(false)
       ->type_name("NAME=FILE:SIZE");
   verb.add_option("--inout", inout_, "A buffer filled from the file, which is replaced when the run succeeds")
       ->take_all()
+      ->allow_extra_args(false)
       ->type_name("NAME=FILE");
   verb.add_option("--arg", arguments_,
                   "Words of 64 bits: integers, f32:VALUE, @NAME (a buffer's address), #NAME (its bytes); "

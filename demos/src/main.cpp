@@ -2,14 +2,19 @@
 // exit status.
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <new>
 #include <regex>
+#include <stdexcept>
 
 #include "command_line/command_tree.h"
 #include "command_line/manual_page.h"
 #include "command_line/shell_completion.h"
+#include "command_line/usage_sentence.h"
 #include "kernel_task_options.h"
 #include "softcell/ppu/lattice.h"
 #include "usage_error.h"
@@ -86,6 +91,7 @@ Skin parse_skin(const std::string& text) {
 class CommandLine {
  public:
   CommandLine() {
+    app_.require_subcommand(0, 1);
     app_.set_version_flag("--version", "softcell " SOFTCELL_VERSION);
     add_demo();
     add_spu();
@@ -100,18 +106,19 @@ class CommandLine {
       app_.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
       if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
-      throw UsageError(error.what());
+      throw UsageError(usage_sentence(app_, error));
     }
-    if (!chosen_)
-      throw UsageError(
-          "say what to do: demo 2d, demo 3d, spu run, spu explore, spu budget, scenes, bench, report, "
-          "completion or man");
+    if (!chosen_) throw UsageError(verbs_sentence(app_));
     return chosen_();
   }
+
+  /// That was called; the command itself before run().
+  std::string verb() const { return called_verb(app_); }
 
  private:
   void add_demo() {
     CLI::App* demo = app_.add_subcommand("demo", "Run a demo: 2d, 3d");
+    demo->require_subcommand(0, 1);
     add_demo_2d(*demo);
     add_demo_3d(*demo);
   }
@@ -206,6 +213,7 @@ class CommandLine {
 
   void add_spu() {
     CLI::App* spu = app_.add_subcommand("spu", "SPU kernels: run, explore, budget");
+    spu->require_subcommand(0, 1);
     add_spu_run(*spu);
     add_spu_explore(*spu);
     CLI::App* b = spu->add_subcommand(
@@ -276,7 +284,7 @@ class CommandLine {
 
   void add_report() {
     CLI::App* r = app_.add_subcommand("report", "Make a page to look at of what --trace recorded");
-    r->add_option("trace", report_.trace, "The file that --trace wrote")->required()->type_name("FILE");
+    r->add_option("TRACE", report_.trace, "The file that --trace wrote")->required()->type_name("FILE");
     r->add_option("--out", report_.out, "HTML page to write; it opens offline")
         ->required()
         ->type_name("FILE");
@@ -333,15 +341,29 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// What was printed may still wait in the stream, and a full disk shows when it goes out.
+void finish_printing() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw std::runtime_error(std::string("cannot write to standard output: ") + std::strerror(errno));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    return CommandLine().run(argc, argv);
-  } catch (const UsageError& error) {
-    std::fprintf(stderr, "softcell: %s (softcell --help lists what is allowed)\n",
-                 one_line(error.what()).c_str());
-    return 2;
+    CommandLine command_line;
+    try {
+      const int status = command_line.run(argc, argv);
+      finish_printing();
+      return status;
+    } catch (const UsageError& error) {
+      std::fprintf(stderr, "softcell: %s (%s --help lists what is allowed)\n", one_line(error.what()).c_str(),
+                   command_line.verb().c_str());
+      return 2;
+    }
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "softcell: there is not enough memory\n");
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "softcell: %s\n", one_line(error.what()).c_str());
     return 1;

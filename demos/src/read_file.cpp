@@ -1,26 +1,55 @@
 #include "read_file.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
-#include <span>
 #include <stdexcept>
 #include <string>
 
 namespace softcell::demos {
+namespace {
 
-std::vector<std::byte> read_file(const std::filesystem::path& path) {
-  const auto refuse = [&](const std::string& why) {
-    throw std::runtime_error("cannot read " + path.string() + ": " + why);
-  };
-  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) refuse("it is a folder");
+constexpr std::uint64_t kBytesAtOnce = 1 << 20;
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw std::runtime_error("cannot read " + path.string() + ": " + why);
+}
+
+void check_kind(const std::filesystem::path& path) {
+  std::error_code ignored;  // what cannot be looked at, opening it will say
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (std::filesystem::is_directory(status)) refuse(path, "it is a folder");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    refuse(path, "it is no file");
+}
+
+}  // namespace
+
+std::vector<std::byte> read_file(const std::filesystem::path& path, std::uint64_t most_bytes) {
+  check_kind(path);
   std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(std::strerror(errno));
-  const std::vector<char> characters{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) refuse("the host reports an error");
-  const auto bytes = std::as_bytes(std::span(characters));
-  return {bytes.begin(), bytes.end()};
+  if (!file) refuse(path, std::strerror(errno));
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > most_bytes)
+    refuse(path, fmt::format("it has {} bytes, and may have {} at most", size, most_bytes));
+  std::vector<std::byte> bytes;
+  if (!error) bytes.reserve(size + kBytesAtOnce);
+  // By what is read, not by the size that was seen: a file may grow, and those of /proc say 0.
+  while (file) {
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + std::min(kBytesAtOnce, most_bytes + 1 - begin));
+    file.read(reinterpret_cast<char*>(bytes.data() + begin),
+              static_cast<std::streamsize>(bytes.size() - begin));
+    bytes.resize(begin + static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() > most_bytes)
+      refuse(path, fmt::format("it has more than the {} bytes that it may have", most_bytes));
+  }
+  if (file.bad()) refuse(path, "the host reports an error");
+  return bytes;
 }
 
 }  // namespace softcell::demos

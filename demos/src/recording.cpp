@@ -284,7 +284,7 @@ Recording<Dimension> read_recording(const std::filesystem::path& path) {
       throw std::runtime_error(
           fmt::format("{}: a file of {} bytes; a recording has at most {}", path.string(), size, kMaxFile));
   }
-  const std::vector<std::byte> bytes = read_file(path);
+  const std::vector<std::byte> bytes = read_file(path, kMaxFile);
   try {
     return parse_recording<Dimension>({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const std::runtime_error& refused) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "distinct_files.h"
 #include "report_page.h"
 #include "softcell/ls_sim/whole_file.h"
 #include "verbs.h"
@@ -9,9 +10,10 @@
 namespace softcell::demos {
 
 int run_report(const ReportOptions& options) {
+  check_distinct({{"the trace", options.trace}, {"--out", options.out}});
+  ls_sim::WholeFile file(options.out);
   const TraceFile trace = read_trace(options.trace);
   const std::string page = report_page(trace, options.trace.filename().string());
-  ls_sim::WholeFile file(options.out);
   file.write(page);
   file.commit();
 

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "interrupt.h"
 #include "json_file.h"
 #include "kernel_file.h"
 #include "kernel_outcome.h"
 #include "kernel_report.h"
+#include "output_files.h"
 #include "progress_bar.h"
 #include "verbs.h"
 
@@ -25,7 +27,8 @@ class Explorer {
   explicit Explorer(const SpuExploreOptions& options)
       : options_(options),
         image_(load_kernel_file(options.task.image, options.task.checked)),
-        buffers_(memory_, options.task) {}
+        buffers_(memory_, options.task),
+        json_(files_.open(options.json)) {}
 
   int explore() {
     const InterruptGuard guard;
@@ -41,7 +44,8 @@ class Explorer {
                  options_.seeds);
       return kExitInterrupted;
     }
-    if (options_.json) write_json(*options_.json, document());
+    if (json_ != nullptr) write_json(*json_, document());
+    files_.commit();
     report();
     return exit_status();
   }
@@ -111,6 +115,8 @@ class Explorer {
   const ls_sim::KernelImage image_;
   dma::AddressSpace memory_;
   KernelBuffers buffers_;
+  OutputFiles files_;
+  ls_sim::WholeFile* const json_;  // opened first: what cannot be written is no surprise after a long search
   std::uint64_t tried_ = 0;
   KernelRun first_run_;
   KernelOutcome first_;
@@ -119,6 +125,11 @@ class Explorer {
 
 }  // namespace
 
-int run_spu_explore(const SpuExploreOptions& options) { return Explorer(options).explore(); }
+int run_spu_explore(const SpuExploreOptions& options) {
+  std::vector<NamedFile> files = written_files(options.task);  // by the run that is printed to see it again
+  files.push_back({"--json", options.json});
+  check_distinct(files);
+  return Explorer(options).explore();
+}
 
 }  // namespace softcell::demos

@@ -4,11 +4,13 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "json_file.h"
 #include "kernel_file.h"
 #include "kernel_report.h"
 #include "kernel_run.h"
+#include "output_files.h"
 #include "softcell/ls_sim/trace.h"
 #include "verbs.h"
 
@@ -16,6 +18,10 @@ namespace softcell::demos {
 
 int run_spu_run(const SpuRunOptions& options) {
   const KernelTask& task = options.task;
+  std::vector<NamedFile> outputs = written_files(task);
+  outputs.push_back({"--trace", options.trace});
+  outputs.push_back({"--json", options.json});
+  check_distinct(outputs);
   const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked);
   dma::AddressSpace memory;
   const KernelBuffers buffers(memory, task);
@@ -27,13 +33,15 @@ int run_spu_run(const SpuRunOptions& options) {
                  {.schedule = options.schedule, .clock = options.clock, .trace = trace ? &*trace : nullptr});
 
   const int status = exit_status(image, run);
-  if (status == 0) buffers.write_files();
-  if (trace) trace->write(*options.trace);
+  OutputFiles files;
+  if (status == 0) buffers.write_files(files);
+  if (trace) trace->write(files.open(*options.trace));
   if (options.json) {
     auto document = to_json(image, run);
     document["dma_schedule"] = dma::to_string(options.schedule);
-    write_json(*options.json, document);
+    write_json(files.open(*options.json), document);
   }
+  files.commit();
   print_statistics(image, run);
   print_problems(image, run);
   return status;

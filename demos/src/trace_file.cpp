@@ -200,7 +200,7 @@ TraceFile read_trace(const std::filesystem::path& path) {
   if (std::error_code error; std::filesystem::file_size(path, error) > kMostFileBytes && !error) {
     throw std::runtime_error("trace " + path.string() + " is larger than 4 GB");
   }
-  const std::vector<std::byte> bytes = read_file(path);
+  const std::vector<std::byte> bytes = read_file(path, kMostFileBytes);
   try {
     return parse_trace({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const std::runtime_error& error) {

@@ -127,11 +127,15 @@ int Trace::spes() const { return static_cast<int>(spes_.size()); }
 
 void Trace::write(const std::filesystem::path& path) const {
   WholeFile file(path);
+  write(file);
+  file.commit();
+}
+
+void Trace::write(WholeFile& file) const {
   TraceWriter writer(file, begin_);
   std::vector<const SpeEvents*> spes;
   for (const auto& spe : spes_) spes.push_back(spe->events_.get());
   writer.write(spes);
-  file.commit();
 }
 
 }  // namespace softcell::ls_sim

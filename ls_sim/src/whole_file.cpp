@@ -18,24 +18,30 @@ WholeFile::WholeFile(std::filesystem::path path) : path_(std::move(path)) {
   }
 }
 
-WholeFile::~WholeFile() {
-  if (file_ == nullptr) return;
-  std::fclose(file_);
-  if (temporary_ != path_) std::remove(temporary_.c_str());
-}
+WholeFile::~WholeFile() { discard(); }
 
 void WholeFile::write(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(errno);
 }
 
+void WholeFile::finish() {
+  if (file_ != nullptr && std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
+}
+
 void WholeFile::commit() {
-  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
+  finish();
   if (temporary_ != path_ && std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
+  settled_ = true;
+}
+
+void WholeFile::discard() {
+  if (std::exchange(settled_, true)) return;
+  if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
+  if (temporary_ != path_) std::remove(temporary_.c_str());
 }
 
 void WholeFile::fail(int error) {
-  if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
-  if (temporary_ != path_) std::remove(temporary_.c_str());
+  discard();
   throw std::runtime_error("cannot write " + path_.string() + ": " + std::strerror(error));
 }
 

@@ -338,6 +338,66 @@ TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
   EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"out"}) << "no part of a video is left";
 }
 
+TEST(Command, RefusesTwoOutputsInOneFile) {
+  const ScratchFolder folder;
+  write_file(folder / "t.json", "a trace");
+  const std::string demo = "demo 2d --headless --frames 1 --size 32x32 ",
+                    here = "cd " + folder.path().string();
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run = run_shell(here + " && " SOFTCELL_COMMAND " " + arguments);
+    EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
+    EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"t.json"}) << arguments;
+    return run.output;
+  };
+  EXPECT_EQ(refusal(demo + "--json same --trace ./same")
+                .rfind("softcell: --trace and --json are one file, same", 0),
+            0u);
+  EXPECT_NE(refusal(demo + "--record same --json " + (folder / "same")).find("--record and --json"),
+            std::string::npos);
+  EXPECT_NE(refusal(demo + "--video same --json same").find("--video and --json"), std::string::npos);
+  EXPECT_NE(refusal("report t.json --out ./t.json").find("the trace and --out are one file"),
+            std::string::npos);
+  EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
+}
+
+TEST(Command, RefusesWhatItCannotWriteBeforeALongRun) {
+  for (const std::string run :
+       {"demo 2d --headless --frames 1000000 --record /proc/a.rec", "bench --json /proc/bench.json",
+        "demo 3d --headless --frames 1000000 --trace /proc/t.json",
+        "demo 2d --headless --frames 1000000 --json /proc/s.json"}) {
+    const CommandResult refused = run_shell("timeout 20 " SOFTCELL_COMMAND " " + run);
+    EXPECT_EQ(refused.status, 1) << run << ": " << refused.output;
+    EXPECT_EQ(refused.output.rfind("softcell: cannot write /proc/", 0), 0u) << refused.output;
+  }
+}
+
+TEST(Command, ReplacesTheRecordingThatItReplays) {
+  const ScratchFolder folder;
+  const std::string recording = folder / "run.rec";
+  const std::string demo = "demo 2d --headless --quiet --frames 2 --size 32x32 --record " + recording;
+  ASSERT_EQ(run_softcell(demo).status, 0);
+  const CommandResult again = run_softcell(demo + " --replay " + recording);
+  EXPECT_EQ(again.status, 0) << again.output;
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"run.rec"});
+}
+
+TEST(Command, ABenchmarkThatIsInterruptedLeavesNoFile) {
+  const ScratchFolder folder;
+  const CommandResult run = run_shell("timeout --signal=INT 2 " SOFTCELL_COMMAND
+                                      " bench --filter dma/get16k --rounds 100000 --json " +
+                                      (folder / "b.json"));
+  EXPECT_NE(run.output.find("interrupted"), std::string::npos) << run.output;
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+TEST(Command, SaysWhenWhatItPrintsIsLost) {
+  for (const char* verb : {"scenes", "man", "spu budget", "bench --list", "completion bash", "--help"}) {
+    const CommandResult run = run_shell(std::string(SOFTCELL_COMMAND) + " " + verb + " 2>&1 >/dev/full");
+    EXPECT_EQ(run.status, 1) << verb;
+    EXPECT_NE(run.output.find("No space left"), std::string::npos) << verb << ": " << run.output;
+  }
+}
+
 struct Refusal {
   const char* arguments;  ///< %s is a scratch folder with cube.obj and some broken files
   int status;
@@ -373,34 +433,50 @@ TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
 
 INSTANTIATE_TEST_SUITE_P(
     WrongUsage, CommandRefuses,
-    testing::Values(Refusal{"", 2, "say what to do"}, Refusal{"dance", 2, "dance"},
-                    Refusal{"demo", 2, "say what to do"}, Refusal{"demo 4d", 2, "4d"},
-                    Refusal{SC_DEMO "--bogus", 2, "--bogus"}, Refusal{SC_DEMO "--spes 7", 2, "1"},
-                    Refusal{SC_DEMO "--spes 0", 2, "6"}, Refusal{SC_DEMO "--spes two", 2, "--spes"},
-                    Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
-                    Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
-                    Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
-                    Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
-                    Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
-                    Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
-                    Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
-                    Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
-                    Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
-                    Refusal{"demo 2d --statistics", 2, "--headless"},
-                    Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
-                    Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
-                    Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
-                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
-                    Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.2 --cells 4", 2, "--cells"},
-                    Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"}, Refusal{"report", 2, "trace"},
-                    Refusal{"report %s/file", 2, "--out"},
-                    Refusal{"bench --filter [", 2, "regular expression"},
-                    Refusal{"bench --rounds 0", 2, "--rounds"},
-                    Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
+    testing::Values(
+        Refusal{"", 2, "say what to do: demo 2d, demo 3d, spu run"},
+        Refusal{"demo", 2, "say what to do: demo 2d, demo 3d ("},
+        Refusal{"spu", 2, "say what to do: spu run, spu explore, spu budget ("},
+        Refusal{"dance", 2, "softcell has no command 'dance'; there are: demo, spu, scenes,"},
+        Refusal{"demo 4d", 2, "softcell demo has no command '4d'; there are: 2d, 3d ("},
+        Refusal{"demo 3d 2d", 2, "the argument '2d' is one too many"},
+        Refusal{"scenes x", 2, "'x' is one too many: softcell scenes takes nothing but options"},
+        Refusal{"spu run a b", 2, "'b' is one too many: softcell spu run takes IMAGE and options"},
+        Refusal{SC_DEMO "--bogus", 2, "softcell demo 3d has no option --bogus ("},
+        Refusal{SC_DEMO "-x", 2, "softcell demo 3d has no option -x ("},
+        Refusal{"demo 3d --fram 3", 2, "has no option --fram; did you mean --frames?"},
+        Refusal{"report --outt a b", 2, "has no option --outt; did you mean --out?"},
+        Refusal{"demo 3d --frames 3 --frames 4", 2, "--frames is given 2 times; give it once"},
+        Refusal{"demo 3d --frames", 2, "--frames needs a value behind it: FRAMES"},
+        Refusal{"spu budget --jsn", 2, "(softcell spu budget --help lists what is allowed)"},
+        Refusal{"demo 2d --size 0x0", 2, "(softcell demo 2d --help lists what is allowed)"},
+        Refusal{SC_DEMO "--spes 7", 2, "1"}, Refusal{SC_DEMO "--spes 0", 2, "6"},
+        Refusal{SC_DEMO "--spes two", 2, "--spes"},
+        Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
+        Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
+        Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
+        Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
+        Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
+        Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
+        Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
+        Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
+        Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
+        Refusal{"demo 2d --statistics", 2, "--headless"},
+        Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
+        Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
+        Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.2 --cells 4", 2, "--cells"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"},
+        Refusal{"report", 2, "softcell report needs TRACE"}, Refusal{"report %s/file", 2, "--out"},
+        Refusal{"bench --filter [", 2, "regular expression"}, Refusal{"bench --rounds 0", 2, "--rounds"},
+        Refusal{"bench --list --json %s/l.json", 2, "--list measures nothing"},
+        Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
     testing::Values(Refusal{SC_DEMO "--scene nowhere", 1, "there are: arena, "},
+                    Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is no file"},
                     Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"},
                     Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
                     Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},

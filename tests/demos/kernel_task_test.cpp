@@ -129,7 +129,10 @@ TEST(KernelBuffers, AreWrittenToTheirFilesAndResetBetweenRuns) {
   const auto contents = [&](const std::string& name) { return test::text_of(folder / name); };
   write(0, "after!");
   write(1, "new");
-  buffers.write_files();
+  OutputFiles files;
+  buffers.write_files(files);
+  EXPECT_EQ(contents("x.bin"), "before") << "until all are committed";
+  files.commit();
   EXPECT_EQ(contents("x.bin"), "after!");
   EXPECT_EQ(contents("y.bin"), "new");
 

@@ -1,6 +1,7 @@
 // softcell spu run and spu explore as a user meets them, with the kernels of examples/saxpy.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstring>
@@ -140,6 +141,53 @@ TEST_F(SpuCommand, WritesOutFilesOfTheSizeAskedFor) {
   const std::vector<float> y = read_floats(folder_ / "new.bin");
   ASSERT_EQ(y.size(), kCount);
   EXPECT_EQ(y[99], 198.f);
+}
+
+TEST_F(SpuCommand, WritesAllItsFilesOrNone) {
+  const auto before = read_floats(folder_ / "y.bin");
+  for (const std::string option : {"--json /proc/s.json", "--trace /proc/t.json", "--json /dev/full",
+                                   "--trace /dev/full", "--json /", "--out z=/proc/z.bin:64"}) {
+    const CommandResult run = run_softcell("spu run " + kSaxpy + saxpy_options() + option);
+    EXPECT_EQ(run.status, 1) << option << ": " << run.output;
+    EXPECT_EQ(read_floats(folder_ / "y.bin"), before) << option;
+    EXPECT_FALSE(exists(folder_ / "y.bin.part")) << option;
+  }
+}
+
+TEST_F(SpuCommand, RefusesTwoOutputsInOneFile) {
+  const std::string file = folder_ / "y.bin";
+  for (const std::string& option : {"--json " + file, "--trace " + file, "--out z=" + file + ":64",
+                                    "--trace " + (folder_ / "same") + " --json " + (folder_ / "./same")}) {
+    const CommandResult run = run_softcell("spu run " + kSaxpy + saxpy_options() + option);
+    EXPECT_EQ(run.status, 2) << option << ": " << run.output;
+    EXPECT_NE(run.output.find("are one file"), std::string::npos) << run.output;
+    EXPECT_EQ(read_floats(file)[1], 1.f) << option;
+  }
+  EXPECT_EQ(run_softcell("spu explore " + kSaxpy + saxpy_options() + "--json " + file).status, 2);
+}
+
+TEST_F(SpuCommand, TheImageMayStandBehindTheBuffers) {
+  const CommandResult run =
+      run_softcell("spu run --in x=" + (folder_ / "x.bin") + " --inout y=" + (folder_ / "y.bin") + " " +
+                   kSaxpy + " --arg f32:2 @x @y 10000 1 0");
+  ASSERT_EQ(run.status, 0) << run.output;
+  expect_result();
+}
+
+TEST_F(SpuCommand, ReadsOnlyFilesThatFit) {
+  const auto refusal = [&](const std::string& file) {
+    const CommandResult run =
+        run_shell("timeout 20 " SOFTCELL_COMMAND " spu run " + kTalk + " --in x=" + file);
+    EXPECT_EQ(run.status, 1) << run.output;
+    return run.output;
+  };
+  std::ofstream(folder_ / "empty.bin").close();
+  EXPECT_NE(refusal(folder_ / "empty.bin").find("is empty"), std::string::npos);
+  std::ofstream(folder_ / "huge.bin").close();
+  std::filesystem::resize_file(folder_ / "huge.bin", std::uintmax_t{1} << 40);  // of holes
+  EXPECT_NE(refusal(folder_ / "huge.bin").find("of 1099511627776 bytes does not fit"), std::string::npos);
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_NE(refusal(folder_ / "pipe").find("pipe: it is no file"), std::string::npos);
 }
 
 TEST_F(SpuCommand, WritesATrace) {
@@ -320,7 +368,10 @@ INSTANTIATE_TEST_SUITE_P(BadInput, SpuCommandRefuses,
                                          Refusal{"spu run --checked " SOFTCELL_COMMAND, 1, ".spu.elf"},
                                          Refusal{"spu run " + kTalk + " --in x=/no/such/file", 1,
                                                  "/no/such/file"},
-                                         Refusal{"spu run " + kTalk + " --in x=/dev/null", 1, "empty"},
+                                         Refusal{"spu run " + kTalk + " --in x=/dev/zero", 1,
+                                                 "cannot read /dev/zero: it is no file"},
+                                         Refusal{"spu run " + kTalk + " --inout x=/dev/null", 1, "no file"},
+                                         Refusal{"spu run /dev/zero", 1, "/dev/zero: it is no file"},
                                          Refusal{"spu run " + kTalk + " --out x=f:300M", 1, "does not fit"}));
 
 }  // namespace

@@ -32,7 +32,7 @@ SourceText read_text(const fs::path& path) {
     throw std::runtime_error(fmt::format("{} has {} bytes; a scene file has at most {}", path.string(), size,
                                          SceneSource::kMaxTextBytes));
   }
-  const auto bytes = read_file(path);
+  const auto bytes = read_file(path, SceneSource::kMaxTextBytes);
   return {std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
           std::make_shared<const std::string>(path.string())};
 }

@@ -18,6 +18,7 @@ namespace softcell::ls_sim {
 using TraceTime = std::int64_t;
 TraceTime trace_now();
 
+class WholeFile;
 struct SpeEvents;
 struct TracedCommand;
 
@@ -78,6 +79,8 @@ class Trace {
   /// the construction of the trace. The file appears whole or not at all.
   /// @throws std::runtime_error  the file cannot be written; the sentence says why.
   void write(const std::filesystem::path& file) const;
+  /// The same into a file that the caller commits.
+  void write(WholeFile& file) const;
 
  private:
   std::vector<std::unique_ptr<SpeTrace>> spes_;

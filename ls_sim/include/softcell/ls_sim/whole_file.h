@@ -23,14 +23,21 @@ class WholeFile {
   WholeFile& operator=(const WholeFile&) = delete;
 
   void write(std::string_view bytes);
+
+  /// Ends the writing, the file still under its temporary name. Of several files that belong together, finish
+  /// all before the first is committed: a full disk shows here.
+  void finish();
+  /// finish(), where that is not done yet, and the file takes its place.
   void commit();
 
  private:
+  void discard();
   [[noreturn]] void fail(int error);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;  ///< the path itself when written in place
-  std::FILE* file_ = nullptr;
+  std::FILE* file_ = nullptr;        ///< null: finished
+  bool settled_ = false;             ///< in its place, or discarded
 };
 
 }  // namespace softcell::ls_sim

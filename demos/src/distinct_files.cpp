@@ -1,0 +1,45 @@
+#include "distinct_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "usage_error.h"
+
+namespace softcell::demos {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Links followed as far as there are files.
+fs::path one_spelling(const fs::path& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error).lexically_normal();
+  const fs::path canonical = fs::weakly_canonical(absolute, error);
+  return error ? absolute : canonical;
+}
+
+bool is_device_or_pipe(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+}  // namespace
+
+bool is_one_file(const fs::path& a, const fs::path& b) {
+  return !is_device_or_pipe(a) && one_spelling(a) == one_spelling(b);
+}
+
+void check_distinct(const std::vector<NamedFile>& files) {
+  for (auto one = files.begin(); one != files.end(); ++one) {
+    const auto same = std::find_if(files.begin(), one, [&](const NamedFile& other) {
+      return one->file && other.file && is_one_file(*one->file, *other.file);
+    });
+    if (same == one) continue;
+    throw UsageError(fmt::format("{} and {} are one file, {}; give each a file of its own", same->name,
+                                 one->name, one->file->string()));
+  }
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace softcell::demos {
+
+/// A file that a command was given, and for what: "--json".
+struct NamedFile {
+  std::string name;
+  std::optional<std::filesystem::path> file;  ///< none: not given
+};
+
+/// Whatever way the two paths are spelled. Devices and pipes are nobody's own: nothing is lost in them.
+bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// For files that are written, and one that must not be replaced.
+/// @throws UsageError  two of them are one file, of which one would be lost.
+void check_distinct(const std::vector<NamedFile>& files);
+
+}  // namespace softcell::demos
