@@ -217,6 +217,17 @@ height = 3
   EXPECT_EQ(scene.script.drags.size(), 1u);
 }
 
+TEST_F(SceneFile, APolygonStandsAtItsCentroidAndWhereItsCornersAre) {
+  const RigidBody2d body =
+      load_scene_2d(write("s.toml",
+                          "dimension = 2\n[[polygon]]\nposition = [1, 2]\nangle = 1.5707963\n"
+                          "corners = [[6, 0], [9, 0], [6, 3]]\n"))
+          .rigid_bodies.at(0);
+  EXPECT_LT((body.position - Eigen::Vector2f(0, 9)).norm(), 1e-5f) << "(7, 1), turned, from (1, 2)";
+  const auto& corners = std::get<PolygonShape>(body.shape).corners;
+  EXPECT_EQ(corners, (std::vector<Eigen::Vector2f>{{-1, -1}, {2, -1}, {-1, 2}}));
+}
+
 TEST(Scenes, AreListedWithDimensionAndTitleAndAllLoad) {
   ASSERT_GE(list_scenes().size(), 3u);
   for (const SceneListing& listing : list_scenes()) {
@@ -316,6 +327,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "bad.toml:3:1: polygon 1 must be convex"},
         BadToml{"dimension = 2\n[[polygon]]\ncorners = [[0, 0], [1, 0], [1, 0.001]]\n",
                 "bad.toml:3:1: polygon 1 must be convex"},
+        BadToml{"dimension = 2\n[[polygon]]\ncorners = [[0, 0], [100, 0], [100, 0.05]]\n",
+                "bad.toml:3:1: polygon 1 must be convex"},
+        BadToml{
+            "dimension = 2\n[[circle]]\nradius = 1\nmass = 1e-40\n",
+            "bad.toml:4:1: mass of circle 1 is 1e-40; it must be 0, which does not move, or a number from "
+            "1e-06"},
+        BadToml{"[[box]]\nsize = [1, 1, 1]\nmass = 1e-9\n", "bad.toml:3:1: mass of box 1 is 1e-09; it must"},
         BadToml{"dimension = 2\n[[box]]\nsize = [1, 1e-9]\n",
                 "bad.toml:3:12: number 2 in size of box 1 is 1e-09; it must be a number from 0.01"},
         BadToml{"[[pause]]\nbegin = 2\nend = 1\n", "bad.toml:3:1: pause 1 ends at 1 s"},

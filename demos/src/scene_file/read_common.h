@@ -18,6 +18,7 @@ inline constexpr int kMaxFrames = 1'000'000;
 inline constexpr int kMaxSubsteps = 64;
 inline constexpr double kMaxGravity = 1000;  // m/s^2
 inline constexpr double kMaxMass = 1e6;      // kg
+inline constexpr double kLeastMass = 1e-6;   // kg; of what moves: floats have inverses of masses and inertias
 inline constexpr double kMaxTime = 1e5;      // seconds
 inline constexpr double kMaxSpeed = 1000;    // m/s
 inline constexpr Range kGravity{.low = -kMaxGravity, .high = kMaxGravity};
@@ -61,6 +62,17 @@ void read_world(FieldReader& fields, SceneOf& scene) {
         read_integer(pictures[i], fmt::format("number {} of pictures", i + 1), 1, scene.frames));
   }
   std::sort(scene.pictures.begin(), scene.pictures.end());
+}
+
+/// The field `mass` of a rigid body. @throws SceneError
+inline void read_mass(FieldReader& fields, float& mass) {
+  fields.number("mass", mass, kMass);
+  if (mass > 0 && mass < static_cast<float>(kLeastMass)) {
+    throw SceneError(
+        fields.place("mass"),
+        fmt::format("mass of {} is {}; it must be 0, which does not move, or a number from {} to {}",
+                    fields.what(), mass, kLeastMass, kMaxMass));
+  }
 }
 
 /// Seconds of a substep.

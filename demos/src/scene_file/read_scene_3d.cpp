@@ -47,9 +47,9 @@ void read_framework(const Value& value, Scene& scene) {
 RigidBox read_box(const Value& value, std::size_t index) {
   RigidBox box;
   std::size_t pattern = 0;
-  FieldReader(value, item_name("box", index))
-      .vector<3>("size", box.size, kLength, Need::kRequired)
-      .number("mass", box.mass, kMass)
+  FieldReader fields(value, item_name("box", index));
+  read_mass(fields, box.mass);
+  fields.vector<3>("size", box.size, kLength, Need::kRequired)
       .vector<3>("position", box.position, kCoordinate)
       .colour("colour", box.colour)
       .number("opacity", box.opacity, kShare)
