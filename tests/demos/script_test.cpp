@@ -77,6 +77,32 @@ TEST(Script, WorksInTwoDimensions) {
   EXPECT_EQ(simulation.state_hash(), at_the_beginning) << "there is no gravity, and the impulse is over";
 }
 
+/// The first and the last frame of each stretch at which time stands still.
+std::vector<std::pair<int, int>> stillness(const std::vector<ScriptedPause>& pauses, int frames) {
+  ScriptedInput<2> script;
+  script.pauses = pauses;
+  ScriptPlayer<2> player(script);
+  std::vector<std::pair<int, int>> stretches;
+  bool paused = false;
+  for (int frame = 0; frame < frames; ++frame) {
+    const bool before = paused;
+    for (const InputEvent<2>& event : player.events_at(frame)) paused = event.action == Action::kPause;
+    if (paused && !before) stretches.emplace_back(frame, frame);
+    if (paused) stretches.back().second = frame;
+  }
+  return stretches;
+}
+
+TEST(Script, PausesThatTouchOrOverlapEndWithTheLast) {
+  using Stretches = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(stillness({{1, 2}, {2, 3}}, 300), (Stretches{{60, 179}}));
+  EXPECT_EQ(stillness({{2, 3}, {1, 2}}, 300), (Stretches{{60, 179}}));
+  EXPECT_EQ(stillness({{1, 3}, {2, 4}}, 300), (Stretches{{60, 239}}));
+  EXPECT_EQ(stillness({{2, 3}, {1, 4}}, 300), (Stretches{{60, 239}}));
+  EXPECT_EQ(stillness({{1, 2}, {3, 4}}, 300), (Stretches{{60, 119}, {180, 239}}));
+  EXPECT_EQ(stillness({{1, 1.001f}, {2, 3}}, 300), (Stretches{{120, 179}})) << "shorter than a frame";
+}
+
 TEST(Script, AResetIn3dBeginsAnew) {
   const char* const kFalling =
       "[framework]\n[[box]]\nsize = [0.3, 0.3, 0.3]\nmass = 5\nposition = [0.4, 0.6, 0]\n"
