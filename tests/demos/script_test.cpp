@@ -132,5 +132,51 @@ TEST(Script, AResetIn3dBeginsAnew) {
   EXPECT_LT(difference.norm(), 0.05f) << "Bullet does not sort contacts; they are in another order";
 }
 
+/// Positions of a body's particles: those that are shown, or those that there are.
+std::vector<Eigen::Vector3f> points(std::span<const spu::SkinCorner> corners) {
+  std::vector<Eigen::Vector3f> points;
+  for (const spu::SkinCorner& corner : corners) points.emplace_back(corner.x, corner.y, corner.z);
+  return points;
+}
+
+class ShownDuringAPause : public testing::TestWithParam<Skin> {};
+
+TEST_P(ShownDuringAPause, IsWhatHomeAndResetPutElsewhere) {
+  const Scene scene = std::get<Scene>(
+      parse_scene("[framework]\n[tilt]\namplitude_x = 0.5\n[[box]]\nsize = [0.3, 0.3, 0.3]\nmass = 5\n"
+                  "position = [1, 2, 0]\n[[soft_body]]\ncell_size = 0.25\nposition = [0, 3, 0]\n"
+                  "shape = { kind = \"box\", size = [0.5, 0.5, 0.5] }\n",
+                  "s.toml"));
+  Simulation3d simulation(scene, {.skin = GetParam()});
+  const auto at_the_beginning = points(simulation.shown_particles(0));
+  const Eigen::Vector3f origin = simulation.shown(0).origin;
+  const Eigen::Matrix4f box = simulation.shown_box_poses().back();
+  const auto expect_the_beginning = [&](const char* after) {
+    EXPECT_EQ(points(simulation.shown_particles(0)), at_the_beginning) << after;
+    EXPECT_EQ(points(simulation.soft_body(0).positions()), at_the_beginning) << after;
+    EXPECT_EQ(simulation.shown(0).origin, origin) << after;
+  };
+  using Events = std::vector<InputEvent<3>>;
+  run(simulation, 30);
+  simulation.step(Events{{.action = Action::kPause}});
+  EXPECT_NE(points(simulation.shown_particles(0)), at_the_beginning);
+  simulation.step(Events{{.action = Action::kHome, .body = kEveryBody}});
+  expect_the_beginning("home");
+  EXPECT_NE(simulation.shown_box_poses().back(), box) << "the box falls on from where it is";
+  simulation.step(Events{{.action = Action::kResume}});
+  run(simulation, 30);
+  simulation.step(Events{{.action = Action::kReset}, {.action = Action::kPause}});
+  expect_the_beginning("reset");
+  EXPECT_EQ(simulation.shown_box_poses().back(), box);
+  EXPECT_EQ(simulation.shown_tilt(), Eigen::Matrix3f::Identity());
+  run(simulation, 1);
+  expect_the_beginning("a frame later");
+  simulation.step(Events{{.action = Action::kResume}});
+  simulation.finish();
+  EXPECT_NE(points(simulation.shown_particles(0)), at_the_beginning);
+}
+
+INSTANTIATE_TEST_SUITE_P(Skins, ShownDuringAPause, testing::Values(Skin::kSpe, Skin::kGpu));
+
 }  // namespace
 }  // namespace softcell::demos
