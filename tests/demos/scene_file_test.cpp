@@ -322,6 +322,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "bad.toml:1:"},
         BadToml{"[[impulse]]\ntime = 0\nbody = \"x\"\nvelocity = [0, 0, 0]\n",
                 "bad.toml:3:1: there is no soft body 'x'"},
+        BadToml{
+            "[materials.a]\ncell_size = 0.2\n"
+            "[[soft_body]]\nname = \"x\"\nmaterial = \"a\"\nshape = { kind = \"sphere\" }\n"
+            "[[soft_body]]\nname = \"x\"\nmaterial = \"a\"\nshape = { kind = \"sphere\" }\n",
+            "bad.toml:8:1: soft body 1 and soft body 2 have the same name, 'x'; give one of them another"},
+        BadToml{"dimension = 2\n[[soft_body]]\nname = \"body 2\"\ncell_size = 1\nrows = [\"#\"]\n"
+                "[[soft_body]]\ncell_size = 1\nrows = [\"#\"]\n",
+                "bad.toml:6:1: soft body 1 and soft body 2 have the same name, 'body 2'"},
         BadToml{"[camera]\neye = [0, 0, 0]\n", "bad.toml:"},
         BadToml{"dimension = 2\n[[polygon]]\ncorners = [[0, 0], [0, 1], [1, 0]]\n",
                 "bad.toml:3:1: polygon 1 must be convex"},

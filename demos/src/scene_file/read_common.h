@@ -81,6 +81,21 @@ double step_of(const SceneOf& scene) {
   return 1.0 / 60 / scene.substeps;
 }
 
+/// Events name soft bodies, so that each must have a name of its own, the default names included.
+/// @param fields  of the scene's last soft body. @throws SceneError  another has its name.
+template <class SceneOf>
+void check_name(const FieldReader& fields, const SceneOf& scene) {
+  const auto& bodies = scene.soft_bodies;
+  const auto first = std::find_if(bodies.begin(), bodies.end(),
+                                  [&](const auto& body) { return body.name == bodies.back().name; });
+  const auto index = static_cast<std::size_t>(first - bodies.begin());
+  if (index + 1 == bodies.size()) return;
+  throw SceneError(fields.place("name"),
+                   fmt::format("{} and {} have the same name, '{}'; give one of them another",
+                               item_name("soft body", index), item_name("soft body", bodies.size() - 1),
+                               bodies.back().name));
+}
+
 /// The number of the soft body that an event names. @throws SceneError  none has that name.
 template <class SceneOf>
 std::size_t read_body(FieldReader& event, const SceneOf& scene) {

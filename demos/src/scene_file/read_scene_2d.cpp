@@ -147,22 +147,22 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
   }
 }
 
-SoftBody2dPlacement read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices,
-                                   const Materials& materials, double step) {
+void read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices, const Materials& materials,
+                    Scene2d& scene) {
   constexpr Range kContactRadius{.low = 0, .high = 1, .low_excluded = true};
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
-  SoftBody2dPlacement body;
+  SoftBody2dPlacement& body = scene.soft_bodies.emplace_back();
   body.name = "body " + std::to_string(index + 1);
   fields.text("name", body.name)
       .colour("colour", body.colour)
       .vector<2>("position", body.position, kCoordinate)
       .number("contact_radius", body.contact_radius, kContactRadius);
+  check_name(fields, scene);
   const Material material = materials.read(fields);
   body.cells = read_lattice_2d(fields, lattices);
   if (material.settings.cell_size <= 0)
     throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
-  body.settings = material.settings_for(step);
-  return body;
+  body.settings = material.settings_for(step_of(scene));
 }
 
 void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
@@ -170,7 +170,7 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
   LatticeFiles lattices(source);
   std::size_t particles = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    scene.soft_bodies.push_back(read_soft_body(items[i], i, lattices, materials, step_of(scene)));
+    read_soft_body(items[i], i, lattices, materials, scene);
     try {
       particles += scene.soft_bodies.back().lattice().particles.size();
     } catch (const std::runtime_error& error) {

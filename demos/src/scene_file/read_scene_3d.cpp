@@ -118,6 +118,7 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
       .number("own_model_side", own_model_side, kLength)
       .number("twist", body.twist, kTwist)
       .flag("contacts", contacts);
+  check_name(fields, scene);
   Material material = materials.read(fields);
   body.mesh = read_mesh(fields, source);
   const bool replaced = model != nullptr && own_model_side;
