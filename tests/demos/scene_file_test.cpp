@@ -314,6 +314,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "bad.toml:3:1: there is no material 'ruber'; did you mean 'rubber'?"},
         BadToml{"[[soft_body]]\nshape = { kind = \"sphere\" }\n",
                 "bad.toml:1:1: soft body 1 needs the field 'cell_size'"},
+        BadToml{
+            "[materials.a]\nhalf_width = 1\n[[soft_body]]\nmaterial = \"a\"\nshape = { kind = \"sphere\" }\n",
+            "bad.toml:3:1: soft body 1 needs the field 'cell_size'"},
+        BadToml{"dimension = 2\n[[soft_body]]\nrows = [\"#\"]\n",
+                "bad.toml:2:1: soft body 1 needs the field 'cell_size'"},
+        BadToml{"[[soft_body]]\ncel_size = 0.2\nshape = { kind = \"sphere\" }\n",
+                "bad.toml:2:1: soft body 1 has no field 'cel_size'; did you mean 'cell_size'?"},
         BadToml{"[[soft_body]]\ncell_size = 0.2\nshape = { kind = \"ball\" }\n",
                 "bad.toml:3:11: kind of the shape of soft body 1 is 'ball'; it must be one of box, car,"},
         BadToml{"[[soft_body]]\ncell_size = 0.2\nmesh = \"none.obj\"\n",

@@ -160,8 +160,6 @@ void read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
   check_name(fields, scene);
   const Material material = materials.read(fields);
   body.cells = read_lattice_2d(fields, lattices);
-  if (material.settings.cell_size <= 0)
-    throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
   body.settings = material.settings_for(step_of(scene));
 }
 

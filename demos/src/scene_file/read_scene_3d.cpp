@@ -126,8 +126,6 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
     take_place(body, *model, *own_model_side);
     material.settings.cell_size = body.settings.cell_size;
   }
-  if (material.settings.cell_size <= 0)
-    throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
   body.settings = material.settings_for(step_of(scene));
   body.settings.contacts = contacts;
   if (above) body.position.y() = *above - ppu::bounds(body.mesh).low.y();
