@@ -212,6 +212,16 @@ TEST(Simulation2d, RigidBodiesOfAnySizeAndPlaceMove) {
     EXPECT_TRUE(simulation.rigid_pose(i).position.allFinite()) << i;
 }
 
+TEST(Simulation2d, TheLightestAndSmallestMaterialMoves) {
+  const Scene2d scene = std::get<Scene2d>(parse_scene(
+      "dimension = 2\n[[soft_body]]\ncell_size = 0.001\ndensity = 0.001\ncontact_radius = 0.01\n"
+      "shape = { kind = \"disc\" }\n[[box]]\nsize = [0.1, 0.01]\nposition = [0, -0.02]\n",
+      "s.toml"));
+  Simulation2d simulation(scene);
+  run(simulation, 60);
+  EXPECT_GT(simulation.soft_body(0).centre_of_mass().y(), -0.02f) << "it lies on the box";
+}
+
 TEST(Simulation2d, HandsOfNothingAndBodiesThatAreNotThereDoNothing) {
   const Scene2d scene = load_scene_2d("man");
   Simulation2d quiet(scene), told(scene);

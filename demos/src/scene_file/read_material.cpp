@@ -11,7 +11,9 @@
 namespace softcell::demos {
 namespace {
 
-constexpr Range kDensity{.low = 0, .high = 1e6, .low_excluded = true};
+// Least values: of what is smaller, and far lighter than air, masses and inertias soon are no floats.
+constexpr Range kCellSize{.low = 0.001, .high = kFar};
+constexpr Range kDensity{.low = 0.001, .high = 1e6};
 constexpr Range kFriction{.low = 0, .high = 100};
 constexpr Range kFrequency{.low = 0, .high = 1e6};
 constexpr Range kModulus{.low = 0, .high = 1e9, .low_excluded = true};
@@ -37,7 +39,7 @@ void read_fields(FieldReader& fields, Material& material, Need cell_size) {
   // What is stated takes the place of what the material before said in another way.
   if (one_of(fields, {"alpha", "frequency", "modulus"})) s.frequency.reset(), material.modulus.reset();
   if (one_of(fields, {"damping", "damping_time"})) s.damping_time.reset();
-  fields.number("cell_size", s.cell_size, kLength, cell_size)
+  fields.number("cell_size", s.cell_size, kCellSize, cell_size)
       .integer("half_width", s.half_width, 0, ppu::kMaxHalfWidth)
       .number("density", s.density, kDensity)
       .number("alpha", s.alpha, kShare)

@@ -149,7 +149,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
 
 void read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices, const Materials& materials,
                     Scene2d& scene) {
-  constexpr Range kContactRadius{.low = 0, .high = 1, .low_excluded = true};
+  constexpr Range kContactRadius{.low = 0.01, .high = 1};
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
   SoftBody2dPlacement& body = scene.soft_bodies.emplace_back();
   body.name = "body " + std::to_string(index + 1);
