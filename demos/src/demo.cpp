@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -127,7 +129,7 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
   Pictures pictures(options, demo);
-  {
+  try {
     ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames), options.quiet);
     for (int frame = 0; frame < frames && !guard.interrupted(); ++frame) {
       const FrameTimes times = demo.step();
@@ -136,9 +138,12 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
       if (pictures.every_frame()) pictures.take(frame);
       bar.show(static_cast<std::size_t>(frame) + 1);
     }
+    if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
+    demo.stop();
+  } catch (...) {
+    save_recording_of_failure(demo);
+    throw;
   }
-  if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
-  demo.stop();
   demo.save_recording();
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.interrupted = guard.interrupted();
@@ -155,6 +160,14 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
 }
 
 }  // namespace
+
+void save_recording_of_failure(Demo& demo) noexcept {
+  try {
+    demo.save_recording();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softcell: %s\n", error.what());
+  }
+}
 
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {
   if (!options.headless && (options.out || options.video)) {

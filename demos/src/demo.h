@@ -67,6 +67,11 @@ class Demo {
   virtual void draw_published(const Look& look) = 0;
 };
 
+/// For a run that ends with an error: saves the recording of its frames so far, the one that failed included,
+/// because that is the run that one wants to see again. What goes wrong with that is printed: the error is
+/// what ends the run.
+void save_recording_of_failure(Demo& demo) noexcept;
+
 /// Sets a scene up that is loaded already.
 using MakeDemo = std::function<std::unique_ptr<Demo>(const SimulationOptions&)>;
 /// Loads the scene that the options ask for; with `all` those of the same dimension that come with softcell,

@@ -64,10 +64,11 @@ class InputLog {
 
   /// What happened at the beginning of the frame. @throws std::runtime_error  the recording is full.
   void note(std::int64_t frame, std::span<const Event> events) {
+    const bool full =
+        frame >= kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents;
+    if (file_ && full) throw std::runtime_error(path_->string() + ": the recording is as long as one may be");
     record_.frames = frame + 1;
     if (!file_) return;
-    if (record_.frames > kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents)
-      throw std::runtime_error(path_->string() + ": the recording is as long as one may be");
     for (const Event& event : events) record_.events.push_back({frame, event});
   }
 

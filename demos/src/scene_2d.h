@@ -32,7 +32,7 @@ struct CircleShape {
 };
 /// Convex, 3 to 8 corners, counter-clockwise.
 struct PolygonShape {
-  std::vector<Eigen::Vector2f> corners;  ///< metres, about the body's position
+  std::vector<Eigen::Vector2f> corners;  ///< metres, about the body's position, which is their centroid
 };
 
 struct RigidBody2d {

@@ -41,8 +41,7 @@ class SceneDemo : public Demo {
   int frames() const override { return log_.replays() ? static_cast<int>(log_.frames()) : scene_.frames; }
   FrameTimes step() override {
     const auto from_user = input_.next_frame();
-    const FrameTimes times = simulation_.step(log_.replays() ? log_.events_at(frame_) : from_user);
-    log_.note(frame_++, simulation_.last_events());
+    const FrameTimes times = step_simulation(log_.replays() ? log_.events_at(frame_) : from_user);
     input_.follow(simulation_.gravity(), simulation_.paused());
     return times;
   }
@@ -73,6 +72,19 @@ class SceneDemo : public Demo {
   typename Types::Simulation& simulation() { return simulation_; }
 
  private:
+  /// Notes the frame also when it fails, so that a replay fails as well.
+  FrameTimes step_simulation(std::span<const InputEvent<kDimension>> events) {
+    FrameTimes times;
+    try {
+      times = simulation_.step(events);
+    } catch (...) {
+      log_.note(frame_++, simulation_.last_events());
+      throw;
+    }
+    log_.note(frame_++, simulation_.last_events());
+    return times;
+  }
+
   Scene scene_;
   Log log_;
   std::int64_t frame_ = 0;

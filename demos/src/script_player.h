@@ -28,10 +28,7 @@ class ScriptPlayer {
     for (const float time : script_.resets) {
       if (frame_at(time) == frame) events_.push_back({.action = Action::kReset});
     }
-    for (const ScriptedPause& pause : script_.pauses) {
-      if (frame_at(pause.begin) == frame) events_.push_back({.action = Action::kPause});
-      if (frame_at(pause.end) == frame) events_.push_back({.action = Action::kResume});
-    }
+    add_pauses(frame);
     for (const GravityChange& change : script_.gravity) {
       if (frame_at(change.time) == frame)
         events_.push_back({.action = Action::kGravity, .value = Vector::Unit(1) * -change.gravity});
@@ -49,6 +46,21 @@ class ScriptPlayer {
 
  private:
   static std::int64_t frame_at(float time) { return std::llround(double{time} * 60); }
+
+  /// Pauses may touch and overlap: time goes on where the last of them ends. One that ends at the frame at
+  /// which it begins is none.
+  void add_pauses(std::int64_t frame) {
+    bool begins = false, ends = false, covered = false;
+    for (const ScriptedPause& pause : script_.pauses) {
+      const std::int64_t begin = frame_at(pause.begin), end = frame_at(pause.end);
+      if (begin == end) continue;
+      begins = begins || begin == frame;
+      ends = ends || end == frame;
+      covered = covered || (begin <= frame && frame < end);
+    }
+    if (ends && !covered) events_.push_back({.action = Action::kResume});
+    if (begins) events_.push_back({.action = Action::kPause});
+  }
 
   void add_drag(std::uint32_t hand, std::int64_t frame) {
     const auto& drag = script_.drags[hand];

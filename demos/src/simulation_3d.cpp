@@ -62,6 +62,13 @@ void twist(ppu::SoftBody& body, float rate) {
   }
 }
 
+/// Whether bodies are elsewhere after the events though no time has passed.
+bool puts_elsewhere(std::span<const InputEvent<3>> events) {
+  return std::any_of(events.begin(), events.end(), [](const InputEvent<3>& event) {
+    return event.action == Action::kHome || event.action == Action::kReset;
+  });
+}
+
 std::vector<std::shared_ptr<const ppu::SoftBodyModel>> models_of(
     const std::vector<SoftBodyPlacement>& bodies) {
   return shared_models(
@@ -172,6 +179,7 @@ struct Simulation3d::State {
   void reset() {
     world.reset();
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
+    tilt.setIdentity();
     frame = 0;
   }
   void home(std::size_t body) {
@@ -222,6 +230,10 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.controls.take(s.events, s.soft_bodies, s);
   if (!s.controls.advance()) {
     finish();
+    if (puts_elsewhere(s.events)) {
+      s.hand_over();
+      finish();
+    }
     s.copy_contacts(s.snapshots[static_cast<std::size_t>(s.newest)]);  // the world stands as it is shown
     return times;
   }

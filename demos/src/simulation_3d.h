@@ -27,7 +27,8 @@ class Simulation3d {
   Simulation3d& operator=(const Simulation3d&) = delete;
 
   /// Does what the scene's script says and then what `events` say, simulates 1/60 s and hands its skinning to
-  /// the SPEs; the frame before becomes the one that is shown. During a pause nothing moves.
+  /// the SPEs; the frame before becomes the one that is shown. During a pause nothing moves; what an
+  /// event puts elsewhere is shown at once.
   /// @throws std::runtime_error  when skinning the frame before failed; the sentence is the fault's.
   FrameTimes step(std::span<const InputEvent<3>> events = {});
 

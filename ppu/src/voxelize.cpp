@@ -20,6 +20,10 @@ using Eigen::Vector3i;
 /// cells long.
 constexpr double kHair = 5e-5;
 
+/// In cells: what stands out of the grid by more is put on its side, before the touch of no cell reaches it.
+/// The grid lets the mesh stand out by a hair, and the rounding of its origin may add as much again.
+constexpr double kMostOutside = 0.9 * kHair;
+
 std::string metres(double value) {
   std::ostringstream text;
   text.precision(4);
@@ -39,7 +43,7 @@ class Grid {
   /// Marks the cells that the triangle touches.
   void add_surface(const std::array<Vector3d, 3>& corners) {
     std::array<Vector3d, 3> triangle;
-    for (int k = 0; k < 3; ++k) triangle[k] = (corners[k] - origin_) / spacing_;
+    for (int k = 0; k < 3; ++k) triangle[k] = not_outside((corners[k] - origin_) / spacing_);
     Vector3i low, high;
     for (int d = 0; d < 3; ++d) {
       const auto [least, most] = std::minmax({triangle[0][d], triangle[1][d], triangle[2][d]});
@@ -106,6 +110,14 @@ class Grid {
 
  private:
   enum class Kind : std::uint8_t { kInside, kSurface, kOutside };
+
+  Vector3d not_outside(Vector3d point) const {
+    for (int d = 0; d < 3; ++d) {
+      if (point[d] < -kMostOutside) point[d] = 0;
+      if (point[d] > size_[d] + kMostOutside) point[d] = size_[d];
+    }
+    return point;
+  }
 
   /// Of a cell from -1 to size: the layer of padding included.
   std::size_t number(const Vector3i& cell) const {

@@ -10,6 +10,7 @@
 
 #include "input_log.h"
 #include "random_events.h"
+#include "run_command.h"
 #include "scene_file/scene_library.h"
 #include "scratch_folder.h"
 #include "simulation_2d.h"
@@ -255,6 +256,45 @@ TEST(Replay, ThatEndsInAnotherStateIsSaidSo) {
   EXPECT_THROW(log.check(), std::runtime_error);
   log.save(7);
   EXPECT_NO_THROW(log.check());
+}
+
+// A particle that is no number ends a run.
+TEST(Replay, OfARunThatFailedFailsAgain) {
+  const tests::ScratchFolder scratch;
+  const std::filesystem::path bad = scratch.path() / "bad.rec", again = scratch.path() / "again.rec";
+  const InputEvent<3> push{.action = Action::kPush, .body = kEveryBody, .value = {3e38f, 0, 0}};
+  const Recording<3> recording{.scene = "drop",
+                               .scene_hash = scene_hash(load_scene_3d("drop")),
+                               .frames = 9,
+                               .state_hash = 0,
+                               .events = {{3, push}, {3, push}, {3, push}}};
+  write_recording<3>(bad, recording);
+  const auto replay = [](const std::filesystem::path& file, const std::string& options) {
+    return tests::run_softcell("demo 3d --headless --quiet --size 32x32 --replay " + file.string() + options);
+  };
+  const tests::CommandResult first = replay(bad, " --record " + again.string());
+  EXPECT_EQ(first.status, 1) << first.output;
+  const auto recorded = read_recording<3>(again);
+  EXPECT_EQ(recorded.events, recording.events);
+  EXPECT_EQ(recorded.frames, 4) << "the last is the one that failed";
+  const tests::CommandResult second = replay(again, "");
+  EXPECT_EQ(second.status, 1);
+  EXPECT_EQ(second.output, first.output);
+}
+
+TEST(Replay, OfARunThatFailedAndCannotBeRecordedHasTheFirstErrorsStatus) {
+  const tests::ScratchFolder scratch;
+  const std::filesystem::path bad = scratch.path() / "bad.rec";
+  const InputEvent<3> push{.action = Action::kPush, .body = kEveryBody, .value = {3e38f, 0, 0}};
+  write_recording<3>(bad, {.scene = "drop",
+                           .scene_hash = scene_hash(load_scene_3d("drop")),
+                           .frames = 1,
+                           .state_hash = 0,
+                           .events = {{0, push}, {0, push}, {0, push}}});
+  const tests::CommandResult result = tests::run_softcell(
+      "demo 3d --headless --quiet --size 32x32 --record /nowhere/at.all --replay " + bad.string());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_TRUE(contains(result.output, "/nowhere/at.all"));
 }
 
 TEST(SceneHash, DependsOnEachPartOfTheSimulation) {

@@ -217,6 +217,17 @@ height = 3
   EXPECT_EQ(scene.script.drags.size(), 1u);
 }
 
+TEST_F(SceneFile, APolygonStandsAtItsCentroidAndWhereItsCornersAre) {
+  const RigidBody2d body =
+      load_scene_2d(write("s.toml",
+                          "dimension = 2\n[[polygon]]\nposition = [1, 2]\nangle = 1.5707963\n"
+                          "corners = [[6, 0], [9, 0], [6, 3]]\n"))
+          .rigid_bodies.at(0);
+  EXPECT_LT((body.position - Eigen::Vector2f(0, 9)).norm(), 1e-5f) << "(7, 1), turned, from (1, 2)";
+  const auto& corners = std::get<PolygonShape>(body.shape).corners;
+  EXPECT_EQ(corners, (std::vector<Eigen::Vector2f>{{-1, -1}, {2, -1}, {-1, 2}}));
+}
+
 TEST(Scenes, AreListedWithDimensionAndTitleAndAllLoad) {
   ASSERT_GE(list_scenes().size(), 3u);
   for (const SceneListing& listing : list_scenes()) {
@@ -289,7 +300,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadToml{"box = 3\n", "bad.toml:1:1: box of a scene is 3; it must be an array"},
         BadToml{"[[box]]\nmass = 1\n", "bad.toml:1:1: box 1 needs the field 'size'"},
         BadToml{"[[box]]\nsize = [1, 1]\n",
-                "bad.toml:2:1: size of box 1 is an array; it must be an array of 3 numbers"},
+                "bad.toml:2:1: size of box 1 is an array of 2; it must be an array of 3 numbers"},
         BadToml{"[[box]]\nsize = [1, 0, 1]\n",
                 "bad.toml:2:12: number 2 in size of box 1 is 0; it must be a number above 0"},
         BadToml{"[[box]]\nsize = [1, 1e-60, 1]\n", "bad.toml:2:12: number 2 in size of box 1 is 1e-60"},
@@ -299,23 +310,53 @@ INSTANTIATE_TEST_SUITE_P(
         BadToml{"title = 1979-05-27\n", "bad.toml:1:9: a scene has no dates or times"},
         BadToml{"[materials.a]\nalpha = 1\nmodulus = 3\n",
                 "bad.toml:3:1: material 'a' has both alpha and modulus; give one"},
+        BadToml{"[materials.a]\ndensity = 1e-40\n",
+                "bad.toml:2:1: density of material 'a' is 1e-40; it must be a number from 0.001 to"},
+        BadToml{"[[soft_body]]\ndensity = 1e-9\ncell_size = 0.2\nshape = { kind = \"sphere\" }\n",
+                "bad.toml:2:1: density of soft body 1 is 1e-09; it must be a number from 0.001 to"},
+        BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1e-15\nrows = [\"#\"]\n",
+                "bad.toml:3:1: cell_size of soft body 1 is 1e-15; it must be a number from 0.001 to"},
+        BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\nrows = [\"#\"]\ncontact_radius = 1e-9\n",
+                "bad.toml:5:1: contact_radius of soft body 1 is 1e-09; it must be a number from 0.01 to 1"},
         BadToml{"[materials.rubber]\n[[soft_body]]\nmaterial = \"ruber\"\nshape = { kind = \"sphere\" }\n",
                 "bad.toml:3:1: there is no material 'ruber'; did you mean 'rubber'?"},
         BadToml{"[[soft_body]]\nshape = { kind = \"sphere\" }\n",
                 "bad.toml:1:1: soft body 1 needs the field 'cell_size'"},
-        BadToml{"[[soft_body]]\nshape = { kind = \"ball\" }\n",
-                "bad.toml:2:11: kind of the shape of soft body 1 is 'ball'; it must be one of box, car,"},
+        BadToml{
+            "[materials.a]\nhalf_width = 1\n[[soft_body]]\nmaterial = \"a\"\nshape = { kind = \"sphere\" }\n",
+            "bad.toml:3:1: soft body 1 needs the field 'cell_size'"},
+        BadToml{"dimension = 2\n[[soft_body]]\nrows = [\"#\"]\n",
+                "bad.toml:2:1: soft body 1 needs the field 'cell_size'"},
+        BadToml{"[[soft_body]]\ncel_size = 0.2\nshape = { kind = \"sphere\" }\n",
+                "bad.toml:2:1: soft body 1 has no field 'cel_size'; did you mean 'cell_size'?"},
+        BadToml{"[[soft_body]]\ncell_size = 0.2\nshape = { kind = \"ball\" }\n",
+                "bad.toml:3:11: kind of the shape of soft body 1 is 'ball'; it must be one of box, car,"},
         BadToml{"[[soft_body]]\ncell_size = 0.2\nmesh = \"none.obj\"\n",
                 "bad.toml:3:1: there is no mesh file 'none.obj'"},
         BadToml{"[[soft_body]]\ncell_size = 0.004\nshape = { kind = \"box\", size = [1, 1, 1] }\n",
                 "bad.toml:1:"},
         BadToml{"[[impulse]]\ntime = 0\nbody = \"x\"\nvelocity = [0, 0, 0]\n",
                 "bad.toml:3:1: there is no soft body 'x'"},
+        BadToml{
+            "[materials.a]\ncell_size = 0.2\n"
+            "[[soft_body]]\nname = \"x\"\nmaterial = \"a\"\nshape = { kind = \"sphere\" }\n"
+            "[[soft_body]]\nname = \"x\"\nmaterial = \"a\"\nshape = { kind = \"sphere\" }\n",
+            "bad.toml:8:1: soft body 1 and soft body 2 have the same name, 'x'; give one of them another"},
+        BadToml{"dimension = 2\n[[soft_body]]\nname = \"body 2\"\ncell_size = 1\nrows = [\"#\"]\n"
+                "[[soft_body]]\ncell_size = 1\nrows = [\"#\"]\n",
+                "bad.toml:6:1: soft body 1 and soft body 2 have the same name, 'body 2'"},
         BadToml{"[camera]\neye = [0, 0, 0]\n", "bad.toml:"},
         BadToml{"dimension = 2\n[[polygon]]\ncorners = [[0, 0], [0, 1], [1, 0]]\n",
                 "bad.toml:3:1: polygon 1 must be convex"},
         BadToml{"dimension = 2\n[[polygon]]\ncorners = [[0, 0], [1, 0], [1, 0.001]]\n",
                 "bad.toml:3:1: polygon 1 must be convex"},
+        BadToml{"dimension = 2\n[[polygon]]\ncorners = [[0, 0], [100, 0], [100, 0.05]]\n",
+                "bad.toml:3:1: polygon 1 must be convex"},
+        BadToml{
+            "dimension = 2\n[[circle]]\nradius = 1\nmass = 1e-40\n",
+            "bad.toml:4:1: mass of circle 1 is 1e-40; it must be 0, which does not move, or a number from "
+            "1e-06"},
+        BadToml{"[[box]]\nsize = [1, 1, 1]\nmass = 1e-9\n", "bad.toml:3:1: mass of box 1 is 1e-09; it must"},
         BadToml{"dimension = 2\n[[box]]\nsize = [1, 1e-9]\n",
                 "bad.toml:3:12: number 2 in size of box 1 is 1e-09; it must be a number from 0.01"},
         BadToml{"[[pause]]\nbegin = 2\nend = 1\n", "bad.toml:3:1: pause 1 ends at 1 s"},

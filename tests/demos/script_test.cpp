@@ -77,6 +77,32 @@ TEST(Script, WorksInTwoDimensions) {
   EXPECT_EQ(simulation.state_hash(), at_the_beginning) << "there is no gravity, and the impulse is over";
 }
 
+/// The first and the last frame of each stretch at which time stands still.
+std::vector<std::pair<int, int>> stillness(const std::vector<ScriptedPause>& pauses, int frames) {
+  ScriptedInput<2> script;
+  script.pauses = pauses;
+  ScriptPlayer<2> player(script);
+  std::vector<std::pair<int, int>> stretches;
+  bool paused = false;
+  for (int frame = 0; frame < frames; ++frame) {
+    const bool before = paused;
+    for (const InputEvent<2>& event : player.events_at(frame)) paused = event.action == Action::kPause;
+    if (paused && !before) stretches.emplace_back(frame, frame);
+    if (paused) stretches.back().second = frame;
+  }
+  return stretches;
+}
+
+TEST(Script, PausesThatTouchOrOverlapEndWithTheLast) {
+  using Stretches = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(stillness({{1, 2}, {2, 3}}, 300), (Stretches{{60, 179}}));
+  EXPECT_EQ(stillness({{2, 3}, {1, 2}}, 300), (Stretches{{60, 179}}));
+  EXPECT_EQ(stillness({{1, 3}, {2, 4}}, 300), (Stretches{{60, 239}}));
+  EXPECT_EQ(stillness({{2, 3}, {1, 4}}, 300), (Stretches{{60, 239}}));
+  EXPECT_EQ(stillness({{1, 2}, {3, 4}}, 300), (Stretches{{60, 119}, {180, 239}}));
+  EXPECT_EQ(stillness({{1, 1.001f}, {2, 3}}, 300), (Stretches{{120, 179}})) << "shorter than a frame";
+}
+
 TEST(Script, AResetIn3dBeginsAnew) {
   const char* const kFalling =
       "[framework]\n[[box]]\nsize = [0.3, 0.3, 0.3]\nmass = 5\nposition = [0.4, 0.6, 0]\n"
@@ -105,6 +131,52 @@ TEST(Script, AResetIn3dBeginsAnew) {
       first.soft_body(0).centre_of_mass() - second.soft_body(0).centre_of_mass();
   EXPECT_LT(difference.norm(), 0.05f) << "Bullet does not sort contacts; they are in another order";
 }
+
+/// Positions of a body's particles: those that are shown, or those that there are.
+std::vector<Eigen::Vector3f> points(std::span<const spu::SkinCorner> corners) {
+  std::vector<Eigen::Vector3f> points;
+  for (const spu::SkinCorner& corner : corners) points.emplace_back(corner.x, corner.y, corner.z);
+  return points;
+}
+
+class ShownDuringAPause : public testing::TestWithParam<Skin> {};
+
+TEST_P(ShownDuringAPause, IsWhatHomeAndResetPutElsewhere) {
+  const Scene scene = std::get<Scene>(
+      parse_scene("[framework]\n[tilt]\namplitude_x = 0.5\n[[box]]\nsize = [0.3, 0.3, 0.3]\nmass = 5\n"
+                  "position = [1, 2, 0]\n[[soft_body]]\ncell_size = 0.25\nposition = [0, 3, 0]\n"
+                  "shape = { kind = \"box\", size = [0.5, 0.5, 0.5] }\n",
+                  "s.toml"));
+  Simulation3d simulation(scene, {.skin = GetParam()});
+  const auto at_the_beginning = points(simulation.shown_particles(0));
+  const Eigen::Vector3f origin = simulation.shown(0).origin;
+  const Eigen::Matrix4f box = simulation.shown_box_poses().back();
+  const auto expect_the_beginning = [&](const char* after) {
+    EXPECT_EQ(points(simulation.shown_particles(0)), at_the_beginning) << after;
+    EXPECT_EQ(points(simulation.soft_body(0).positions()), at_the_beginning) << after;
+    EXPECT_EQ(simulation.shown(0).origin, origin) << after;
+  };
+  using Events = std::vector<InputEvent<3>>;
+  run(simulation, 30);
+  simulation.step(Events{{.action = Action::kPause}});
+  EXPECT_NE(points(simulation.shown_particles(0)), at_the_beginning);
+  simulation.step(Events{{.action = Action::kHome, .body = kEveryBody}});
+  expect_the_beginning("home");
+  EXPECT_NE(simulation.shown_box_poses().back(), box) << "the box falls on from where it is";
+  simulation.step(Events{{.action = Action::kResume}});
+  run(simulation, 30);
+  simulation.step(Events{{.action = Action::kReset}, {.action = Action::kPause}});
+  expect_the_beginning("reset");
+  EXPECT_EQ(simulation.shown_box_poses().back(), box);
+  EXPECT_EQ(simulation.shown_tilt(), Eigen::Matrix3f::Identity());
+  run(simulation, 1);
+  expect_the_beginning("a frame later");
+  simulation.step(Events{{.action = Action::kResume}});
+  simulation.finish();
+  EXPECT_NE(points(simulation.shown_particles(0)), at_the_beginning);
+}
+
+INSTANTIATE_TEST_SUITE_P(Skins, ShownDuringAPause, testing::Values(Skin::kSpe, Skin::kGpu));
 
 }  // namespace
 }  // namespace softcell::demos

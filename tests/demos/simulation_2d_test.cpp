@@ -188,6 +188,40 @@ TEST(Simulation2d, AResetIsTheBeginningInAllBits) {
   EXPECT_EQ(used.state_hash(), fresh.state_hash());
 }
 
+// Box2D ends the process at a shape without area or inertia.
+TEST(Simulation2d, RigidBodiesOfAnySizeAndPlaceMove) {
+  std::string text = "dimension = 2\n";
+  const auto add = [&](const std::string& kind, const std::string& shape) {
+    for (const char* const mass : {"0.000001", "1", "1000000"}) {
+      text += "[[" + kind + "]]\n" + shape + "\nmass = " + mass + "\n";
+      text += "[[" + kind + "]]\n" + shape + "\nangle = 2\nposition = [-9000, 9000]\nmass = " + mass + "\n";
+    }
+  };
+  add("polygon", "corners = [[100, 1], [100.1, 1], [100.1, 1.1], [100, 1.1]]");
+  add("polygon", "corners = [[9999, 1], [9999.02, 1], [9999.02, 1.02]]");
+  add("polygon", "corners = [[-10000, -10000], [10000, -10000], [10000, 10000], [-10000, 10000]]");
+  add("polygon", "corners = [[0, 0], [7000, 6950], [7050, 7050], [6950, 7000]]");
+  add("box", "size = [0.01, 10000]");
+  add("box", "size = [0.01, 0.01]");
+  add("circle", "radius = 0.01");
+  add("circle", "radius = 10000");
+  const Scene2d scene = std::get<Scene2d>(parse_scene(text, "s.toml"));
+  Simulation2d simulation(scene, {.solver = Solver::kReference});
+  run(simulation, 3);
+  for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i)
+    EXPECT_TRUE(simulation.rigid_pose(i).position.allFinite()) << i;
+}
+
+TEST(Simulation2d, TheLightestAndSmallestMaterialMoves) {
+  const Scene2d scene = std::get<Scene2d>(parse_scene(
+      "dimension = 2\n[[soft_body]]\ncell_size = 0.001\ndensity = 0.001\ncontact_radius = 0.01\n"
+      "shape = { kind = \"disc\" }\n[[box]]\nsize = [0.1, 0.01]\nposition = [0, -0.02]\n",
+      "s.toml"));
+  Simulation2d simulation(scene);
+  run(simulation, 60);
+  EXPECT_GT(simulation.soft_body(0).centre_of_mass().y(), -0.02f) << "it lies on the box";
+}
+
 TEST(Simulation2d, HandsOfNothingAndBodiesThatAreNotThereDoNothing) {
   const Scene2d scene = load_scene_2d("man");
   Simulation2d quiet(scene), told(scene);

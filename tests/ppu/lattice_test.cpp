@@ -8,6 +8,7 @@
 #include <set>
 
 #include "lattices.h"
+#include "softcell/ppu/embedding.h"
 #include "softcell/ppu/shapes.h"
 
 namespace softcell::ppu {
@@ -161,6 +162,25 @@ TEST(Voxelize, ABoxOfWholeCellsIsThatManyCells) {
     expect_covers(lattice, mesh);
     for (const float fill : lattice.fill) EXPECT_NEAR(fill, 1, 1e-3);
     EXPECT_NEAR(total_mass(lattice, 1000), 350, 0.1);
+  }
+}
+
+// Far from the origin, where the grid's own origin is rounded by as much as the mesh's coordinates.
+TEST(Voxelize, ABoxThatStandsOutOfItsGridByRoundingIsSolid) {
+  constexpr float kUlp = 0x1p-17f;  // of 64 to 128
+  for (int d = 0; d < 3; ++d) {
+    for (const float at : {70.0f, 77.7f, -79.9f, 78.9f, -70.00001f}) {
+      for (int k = -14; k <= 14; ++k) {
+        Vector3f low(0, 0, 0), high(1, 1, 1);
+        low[d] = at, high[d] = at + 1 + static_cast<float>(k) * kUlp;
+        const TriangleMesh mesh = box(low, high);
+        const Lattice lattice = voxelize(mesh, 0.1f);
+        const std::size_t cells = lattice.cells.size();
+        EXPECT_TRUE(cells == 1000 || cells == 1100) << cells << " of " << low[d] << " to " << high[d];
+        expect_covers(lattice, mesh);
+        EXPECT_NO_THROW(embed(mesh, lattice)) << low[d] << " to " << high[d];
+      }
+    }
   }
 }
 

@@ -24,6 +24,8 @@ std::string shown(const Value& value) {
     constexpr std::size_t kShown = 40;
     return text->size() <= kShown ? "'" + *text + "'" : "'" + text->substr(0, kShown) + "...'";
   }
+  if (const auto* array = std::get_if<Array>(&value.data))
+    return fmt::format("an array of {}", array->size());
   return std::string(kind_of(value));
 }
 

@@ -18,6 +18,7 @@ inline constexpr int kMaxFrames = 1'000'000;
 inline constexpr int kMaxSubsteps = 64;
 inline constexpr double kMaxGravity = 1000;  // m/s^2
 inline constexpr double kMaxMass = 1e6;      // kg
+inline constexpr double kLeastMass = 1e-6;   // kg; of what moves: floats have inverses of masses and inertias
 inline constexpr double kMaxTime = 1e5;      // seconds
 inline constexpr double kMaxSpeed = 1000;    // m/s
 inline constexpr Range kGravity{.low = -kMaxGravity, .high = kMaxGravity};
@@ -63,10 +64,36 @@ void read_world(FieldReader& fields, SceneOf& scene) {
   std::sort(scene.pictures.begin(), scene.pictures.end());
 }
 
+/// The field `mass` of a rigid body. @throws SceneError
+inline void read_mass(FieldReader& fields, float& mass) {
+  fields.number("mass", mass, kMass);
+  if (mass > 0 && mass < static_cast<float>(kLeastMass)) {
+    throw SceneError(
+        fields.place("mass"),
+        fmt::format("mass of {} is {}; it must be 0, which does not move, or a number from {} to {}",
+                    fields.what(), mass, kLeastMass, kMaxMass));
+  }
+}
+
 /// Seconds of a substep.
 template <class SceneOf>
 double step_of(const SceneOf& scene) {
   return 1.0 / 60 / scene.substeps;
+}
+
+/// Events name soft bodies, so that each must have a name of its own, the default names included.
+/// @param fields  of the scene's last soft body. @throws SceneError  another has its name.
+template <class SceneOf>
+void check_name(const FieldReader& fields, const SceneOf& scene) {
+  const auto& bodies = scene.soft_bodies;
+  const auto first = std::find_if(bodies.begin(), bodies.end(),
+                                  [&](const auto& body) { return body.name == bodies.back().name; });
+  const auto index = static_cast<std::size_t>(first - bodies.begin());
+  if (index + 1 == bodies.size()) return;
+  throw SceneError(fields.place("name"),
+                   fmt::format("{} and {} have the same name, '{}'; give one of them another",
+                               item_name("soft body", index), item_name("soft body", bodies.size() - 1),
+                               bodies.back().name));
 }
 
 /// The number of the soft body that an event names. @throws SceneError  none has that name.

@@ -11,7 +11,9 @@
 namespace softcell::demos {
 namespace {
 
-constexpr Range kDensity{.low = 0, .high = 1e6, .low_excluded = true};
+// Least values: of what is smaller, and far lighter than air, masses and inertias soon are no floats.
+constexpr Range kCellSize{.low = 0.001, .high = kFar};
+constexpr Range kDensity{.low = 0.001, .high = 1e6};
 constexpr Range kFriction{.low = 0, .high = 100};
 constexpr Range kFrequency{.low = 0, .high = 1e6};
 constexpr Range kModulus{.low = 0, .high = 1e9, .low_excluded = true};
@@ -31,12 +33,13 @@ bool one_of(const FieldReader& fields, std::initializer_list<std::string_view> n
   return !first.empty();
 }
 
-void read_fields(FieldReader& fields, Material& material) {
+/// @param cell_size  whether the fields must have it
+void read_fields(FieldReader& fields, Material& material, Need cell_size) {
   ppu::SoftBodySettings& s = material.settings;
   // What is stated takes the place of what the material before said in another way.
   if (one_of(fields, {"alpha", "frequency", "modulus"})) s.frequency.reset(), material.modulus.reset();
   if (one_of(fields, {"damping", "damping_time"})) s.damping_time.reset();
-  fields.number("cell_size", s.cell_size, kLength)
+  fields.number("cell_size", s.cell_size, kCellSize, cell_size)
       .integer("half_width", s.half_width, 0, ppu::kMaxHalfWidth)
       .number("density", s.density, kDensity)
       .number("alpha", s.alpha, kShare)
@@ -62,7 +65,7 @@ Materials::Materials(const Value* table) {
   if (table == nullptr) return;
   for (const auto& [name, value] : as_table(*table, "materials")) {
     FieldReader fields(value, "material '" + name + "'");
-    read_fields(fields, by_name_[name]);
+    read_fields(fields, by_name_[name], Need::kOptional);
     fields.finish();
   }
 }
@@ -83,7 +86,7 @@ Material Materials::read(FieldReader& body) const {
     }
     material = found->second;
   }
-  read_fields(body, material);
+  read_fields(body, material, material.settings.cell_size > 0 ? Need::kOptional : Need::kRequired);
   return material;
 }
 

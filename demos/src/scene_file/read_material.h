@@ -24,7 +24,8 @@ class Materials {
   explicit Materials(const Value* table);
 
   /// A soft body's material: the one it names, and over it the fields that it states itself.
-  /// @throws SceneError  also when no cell size is stated anywhere.
+  /// A cell size that is stated nowhere is a field that the body lacks: its finish() says so.
+  /// @throws SceneError
   Material read(FieldReader& body) const;
 
  private:

@@ -3,15 +3,20 @@
 #include "read_common.h"
 #include "read_lattice_2d.h"
 #include "read_material.h"
+#include "softcell/ppu/deterministic_math.h"
 
 namespace softcell::demos {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector2f;
 
 /// Of rigid bodies: Box2D ends the process at a shape that has no area to speak of.
 constexpr double kSmallest = 0.01;  // metres
 constexpr Range kRigidLength{.low = kSmallest, .high = kFar};
+/// Of a polygon's length, how far a corner lies off the other sides at least: in floats, Box2D's, a thinner
+/// one loses its corners.
+constexpr double kThinnest = 0.001;
 
 /// Four walls around the middle of the world; width and height are those of the room within.
 void read_framework(const Value& value, Scene2d& scene) {
@@ -39,8 +44,8 @@ void read_framework(const Value& value, Scene2d& scene) {
 RigidBody2d read_rigid_body(FieldReader& fields) {
   constexpr Range kAngle{.low = -100, .high = 100};
   RigidBody2d body;
-  fields.number("mass", body.mass, kMass)
-      .vector<2>("position", body.position, kCoordinate)
+  read_mass(fields, body.mass);
+  fields.vector<2>("position", body.position, kCoordinate)
       .number("angle", body.angle, kAngle)
       .colour("colour", body.colour);
   return body;
@@ -60,20 +65,48 @@ std::vector<Vector2f> read_corners(FieldReader& fields) {
   return corners;
 }
 
-/// Whether every corner turns left, once around in all, and lies at least kSmallest off each other side.
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Whether every corner turns left, once around in all, and lies far enough off each other side.
 bool is_convex(const std::vector<Vector2f>& corners) {
   const std::size_t n = corners.size();
   if (n < 3) return false;
+  double longest = 0;
+  for (const Vector2f& corner : corners)
+    longest = std::max(longest, double{(corner - corners.front()).norm()});
+  const double least = std::max(kSmallest, kThinnest * longest);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vector2f along = corners[(i + 1) % n] - corners[i];
+    const Vector2d along = (corners[(i + 1) % n] - corners[i]).cast<double>();
     for (std::size_t j = 0; j < n; ++j) {
       if (j == i || j == (i + 1) % n) continue;
-      const Vector2f to = corners[j] - corners[i];
-      if (!(along.x() * to.y() - along.y() * to.x() >= static_cast<float>(kSmallest) * along.norm()))
-        return false;
+      const Vector2d to = (corners[j] - corners[i]).cast<double>();
+      if (!(cross(along, to) >= least * along.norm())) return false;
     }
   }
   return true;
+}
+
+Vector2d centroid(const std::vector<Vector2f>& corners) {
+  const Vector2d first = corners.front().cast<double>();
+  Vector2d moment{0, 0};
+  double area = 0;
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const Vector2d a = corners[i - 1].cast<double>() - first, b = corners[i].cast<double>() - first;
+    moment += cross(a, b) * (a + b) / 3;
+    area += cross(a, b);
+  }
+  return first + moment / area;
+}
+
+/// Has the body stand at the middle of its polygon, which stays where it is. Box2D takes an inertia about the
+/// body's position and takes away what the distance adds: of a small polygon far away nothing would be left,
+/// and it ends the process.
+void stand_at_centroid(RigidBody2d& body, PolygonShape& polygon) {
+  const Vector2d middle = centroid(polygon.corners);
+  for (Vector2f& corner : polygon.corners) corner = (corner.cast<double>() - middle).cast<float>();
+  const double sine = ppu::sine(double{body.angle}), cosine = ppu::cosine(double{body.angle});
+  const Vector2d turned{cosine * middle.x() - sine * middle.y(), sine * middle.x() + cosine * middle.y()};
+  body.position = (body.position.cast<double>() + turned).cast<float>();
 }
 
 void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
@@ -104,31 +137,30 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
     if (!is_convex(shape.corners)) {
       throw SceneError(
           fields.place("corners"),
-          fmt::format("{} must be convex and have 3 to 8 corners, counter-clockwise, each at least {} m off "
-                      "the sides that it does not end",
-                      fields.what(), kSmallest));
+          fmt::format("{} must be convex and have 3 to 8 corners, counter-clockwise, each at least {} m, and "
+                      "{} of its length, off the sides that it does not end",
+                      fields.what(), kSmallest, kThinnest));
     }
+    stand_at_centroid(body, shape);
     body.shape = std::move(shape);
     scene.rigid_bodies.push_back(std::move(body));
   }
 }
 
-SoftBody2dPlacement read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices,
-                                   const Materials& materials, double step) {
-  constexpr Range kContactRadius{.low = 0, .high = 1, .low_excluded = true};
+void read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices, const Materials& materials,
+                    Scene2d& scene) {
+  constexpr Range kContactRadius{.low = 0.01, .high = 1};
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
-  SoftBody2dPlacement body;
+  SoftBody2dPlacement& body = scene.soft_bodies.emplace_back();
   body.name = "body " + std::to_string(index + 1);
   fields.text("name", body.name)
       .colour("colour", body.colour)
       .vector<2>("position", body.position, kCoordinate)
       .number("contact_radius", body.contact_radius, kContactRadius);
+  check_name(fields, scene);
   const Material material = materials.read(fields);
   body.cells = read_lattice_2d(fields, lattices);
-  if (material.settings.cell_size <= 0)
-    throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
-  body.settings = material.settings_for(step);
-  return body;
+  body.settings = material.settings_for(step_of(scene));
 }
 
 void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
@@ -136,7 +168,7 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
   LatticeFiles lattices(source);
   std::size_t particles = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    scene.soft_bodies.push_back(read_soft_body(items[i], i, lattices, materials, step_of(scene)));
+    read_soft_body(items[i], i, lattices, materials, scene);
     try {
       particles += scene.soft_bodies.back().lattice().particles.size();
     } catch (const std::runtime_error& error) {

@@ -47,9 +47,9 @@ void read_framework(const Value& value, Scene& scene) {
 RigidBox read_box(const Value& value, std::size_t index) {
   RigidBox box;
   std::size_t pattern = 0;
-  FieldReader(value, item_name("box", index))
-      .vector<3>("size", box.size, kLength, Need::kRequired)
-      .number("mass", box.mass, kMass)
+  FieldReader fields(value, item_name("box", index));
+  read_mass(fields, box.mass);
+  fields.vector<3>("size", box.size, kLength, Need::kRequired)
       .vector<3>("position", box.position, kCoordinate)
       .colour("colour", box.colour)
       .number("opacity", box.opacity, kShare)
@@ -118,6 +118,7 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
       .number("own_model_side", own_model_side, kLength)
       .number("twist", body.twist, kTwist)
       .flag("contacts", contacts);
+  check_name(fields, scene);
   Material material = materials.read(fields);
   body.mesh = read_mesh(fields, source);
   const bool replaced = model != nullptr && own_model_side;
@@ -125,8 +126,6 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
     take_place(body, *model, *own_model_side);
     material.settings.cell_size = body.settings.cell_size;
   }
-  if (material.settings.cell_size <= 0)
-    throw SceneError(fields.place(), fields.what() + " needs the field 'cell_size'");
   body.settings = material.settings_for(step_of(scene));
   body.settings.contacts = contacts;
   if (above) body.position.y() = *above - ppu::bounds(body.mesh).low.y();

@@ -41,7 +41,6 @@ class PlayedScene {
     record_.upload_bytes = drawn.upload_bytes;
     record_.seconds = std::chrono::duration<double>(FrameClock::Clock::now() - begin_).count();
     demo_.stop();
-    demo_.save_recording();
     return std::move(record_);
   }
 
@@ -69,17 +68,23 @@ Run play(const DemoOptions& options, std::string_view verb, const std::vector<Ma
     if (look) run.demo->input().set_look(*look);
     PlayedScene scene(window, *run.demo);
     bool next = false;
-    while (!next && !scene.ends(options.frames) && !guard.interrupted()) {
-      clock.wait();
-      SDL_Event event;
-      while (SDL_PollEvent(&event) != 0) {
-        controllers.take(event);
-        scene.take(event);
+    try {
+      while (!next && !scene.ends(options.frames) && !guard.interrupted()) {
+        clock.wait();
+        SDL_Event event;
+        while (SDL_PollEvent(&event) != 0) {
+          controllers.take(event);
+          scene.take(event);
+        }
+        scene.step();
+        next = run.demo->input().wants_next_scene() && scenes.size() > 1;
       }
-      scene.step();
-      next = run.demo->input().wants_next_scene() && scenes.size() > 1;
+      run.record = scene.finish();
+    } catch (...) {
+      save_recording_of_failure(*run.demo);
+      throw;
     }
-    run.record = scene.finish();
+    run.demo->save_recording();
     run.record.interrupted = guard.interrupted();
     if (!next) return run;
     look = run.demo->input().look();
