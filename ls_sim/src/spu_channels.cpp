@@ -294,12 +294,10 @@ ChannelReply SpuChannels::sleep_until(Channel channel, Attempt&& attempt) {
       lock.lock();
       continue;
     }
-    const Sleep sleep = sleep_at(channel);
-    switch (to_.monitor.sleep(lock, to_.spe, sleep)) {
+    const Woken woken = to_.monitor.sleep(lock, to_.spe, sleep_at(channel));
+    clock_.skip(to_.monitor.slept_ticks(to_.spe));
+    switch (woken) {
       case Woken::kToLook:
-        break;
-      case Woken::kTimePassed:
-        clock_.skip(*sleep.simulated_ticks);
         break;
       case Woken::kDeadlock: {
         dma::Fault fault{dma::Rule::kDeadlock};

@@ -190,6 +190,43 @@ TEST_F(SpeGroupTest, HoursOfSimulatedTimePassAtOnce) {
   EXPECT_FALSE(group.wait(0).fault);
 }
 
+class SimulatedSleep : public SpeGroupTest, public testing::WithParamInterface<Interleaving> {
+ protected:
+  /// The status of SPE 0 of the kernel `sleeps`, where the other one sleeps that many ticks and then signals.
+  RunResult sleep_beside(std::uint64_t own_ticks, std::uint64_t others_ticks) {
+    const KernelImage image = test_image("sleeps");
+    SpeGroup group(memory_,
+                   {.spes = 2, .deadline = 500ms, .clock = Clock::kSimulated, .interleaving = GetParam()});
+    const auto signal = group.problem_state(0).local_store_ea().value +
+                        static_cast<std::uint64_t>(dma::SpeRegister::kSignal1);
+    const SpeGroup::Outside until_both_run(group);
+    group.start(1, image, {.spe_id = 1, .argp = signal, .envp = others_ticks});
+    group.start(0, image, {.spe_id = 0, .envp = own_ticks});
+    return group.wait(0);
+  }
+};
+
+TEST_P(SimulatedSleep, PassesForAllWhoSleep) {
+  for (const std::uint64_t longer : {100u, 101u, 150u}) {  // the same time as well: a tie
+    const RunResult result = sleep_beside(100, longer);
+    ASSERT_FALSE(result.fault) << result.fault->message();
+    EXPECT_LE(result.status(), 2u) << longer;
+  }
+}
+
+TEST_P(SimulatedSleep, CountsForOneThatIsWokenBySomethingElse) {
+  const RunResult result = sleep_beside(0, 1500);
+  ASSERT_FALSE(result.fault) << result.fault->message();
+  // Where runs are free, the other may have slept before this one began to count.
+  if (GetParam() == Interleaving::kTurns) {
+    EXPECT_GE(result.status(), 140u);
+  }
+  EXPECT_LE(result.status(), 160u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Interleavings, SimulatedSleep,
+                         testing::Values(Interleaving::kFree, Interleaving::kTurns));
+
 // ---- deadlocks
 
 TEST_F(SpeGroupTest, TwoThatWaitForEachOthersSignalsAreADeadlock) {

@@ -32,6 +32,7 @@
   X(overwrites)             \
   X(gets_over)              \
   X(leaves_a_stall)         \
+  X(sleeps)                 \
   X(resides)                \
   X(breaks_down)
 
