@@ -1,6 +1,9 @@
 #include "softcell/ls_sim/spe_group.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstring>
@@ -11,6 +14,7 @@
 
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/local_store_port.h"
+#include "softcell/dma/sanitizers.h"
 #include "softcell/ls_sim/trace.h"
 #include "test_images.h"
 
@@ -26,6 +30,41 @@ constexpr std::uint64_t kEventStat = 0, kSignal1 = 3, kSignal2 = 4, kDecrementer
 
 constexpr std::uint64_t kInMboxEvent = 0x10, kDecrementerEvent = 0x20, kOutMboxEvent = 0x80,
                         kSignal2Event = 0x100, kLostReservationEvent = 0x400;
+
+/// Lets the process make so many threads more, as long as this lives: their stacks are made large, and the
+/// address space has room for these only.
+class RoomForThreads {
+ public:
+  explicit RoomForThreads(std::uint64_t threads) {
+    pthread_attr_init(&attributes_);
+    pthread_getattr_default_np(&attributes_);
+    pthread_attr_t large = attributes_;
+    pthread_attr_setstacksize(&large, kStackBytes);
+    pthread_setattr_default_np(&large);
+    getrlimit(RLIMIT_AS, &limit_);
+    rlimit low = limit_;
+    low.rlim_cur = address_space_in_use() + threads * kStackBytes + kStackBytes / 2;
+    setrlimit(RLIMIT_AS, &low);
+  }
+  ~RoomForThreads() {
+    setrlimit(RLIMIT_AS, &limit_);
+    pthread_setattr_default_np(&attributes_);
+  }
+  RoomForThreads(const RoomForThreads&) = delete;
+  RoomForThreads& operator=(const RoomForThreads&) = delete;
+
+ private:
+  static constexpr std::uint64_t kStackBytes = std::uint64_t{1} << 30;
+
+  static std::uint64_t address_space_in_use() {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  }
+
+  pthread_attr_t attributes_{};
+  rlimit limit_{};
+};
 
 class SpeGroupTest : public testing::Test {
  protected:
@@ -414,6 +453,12 @@ TEST_F(SpeGroupTest, LeavesNobodyBehind) {
   }  // each of them is stopped
   SpeGroup again(memory_, {.spes = 3});
   EXPECT_EQ(again.spes(), 3);
+}
+
+TEST_F(SpeGroupTest, AThreadThatCannotBeMadeIsAnErrorAndNoWait) {
+  if (SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER) GTEST_SKIP() << "it needs all the address space it wants";
+  const RoomForThreads room_for_two(2);
+  EXPECT_THROW(SpeGroup(memory_, {.spes = 6}), std::runtime_error);
 }
 
 TEST_F(SpeGroupTest, AFaultNamesSpeKernelAndPlace) {
