@@ -443,6 +443,23 @@ TEST_F(SpeGroupTest, RefusesWhatMakesNoSense) {
   EXPECT_THROW(SpeGroup(memory_, {.spes = 2, .trace = &trace}), std::invalid_argument);
 }
 
+TEST_F(SpeGroupTest, AnEndOfNoJobIsAFault) {
+  const KernelImage image = test_image("marks_jobs");
+  SpeGroup group(memory_, {.spes = 1});
+  const auto run = [&](const EntryArguments& arguments) {
+    group.start_resident(0, image, arguments);
+    return group.wait(0);
+  };
+  for (const std::uint64_t before : {0u, 2u}) {
+    EXPECT_FALSE(run({.argp = before}).fault);
+    const RunResult result = run({.argp = before, .envp = 1});
+    ASSERT_TRUE(result.fault);
+    EXPECT_EQ(result.fault->rule, dma::Rule::kIllegalChannel);
+    EXPECT_NE(result.fault->message().find("no job was under way"), std::string::npos)
+        << result.fault->message();
+  }
+}
+
 TEST_F(SpeGroupTest, LeavesNobodyBehind) {
   const KernelImage endless = test_image("endless");
   for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {

@@ -33,6 +33,7 @@
   X(gets_over)              \
   X(leaves_a_stall)         \
   X(sleeps)                 \
+  X(marks_jobs)             \
   X(resides)                \
   X(breaks_down)
 
