@@ -417,6 +417,26 @@ TEST_F(SpeGroupTest, AProxyCommandWithStartBeginsThePreparedRun) {
   EXPECT_EQ(group.wait(0).status(), 3u);
 }
 
+TEST_F(SpeGroupTest, AProxyCommandWithStartWaitsForTheWholeImage) {
+  if (SC_THREAD_SANITIZER) GTEST_SKIP() << "the command's bytes meet those of the image, as they may";
+  const dma::Buffer<std::array<std::uint32_t, 32>> line(memory_, "line", 1);
+  SpeGroup group(memory_, {.spes = 1});
+  const KernelImage image = test_image("echo_arguments");
+  std::jthread other([&](const std::stop_token& over) {
+    while (!over.stop_requested()) {
+      group.problem_state(0).issue_proxy(
+          {.word = 0x48, .lsa = {0x30000}, .ea = line.ea(), .size = 128, .tag = 0});
+    }
+  });
+  for (std::uint64_t run = 1; run <= 300; ++run) {
+    group.prepare(0, image, {.argp = line.ea().value, .envp = run & 0xFF});
+    while (group.statistics(0).jobs != run) std::this_thread::yield();
+    const RunResult result = group.wait(0);
+    ASSERT_FALSE(result.fault) << result.fault->message();
+    ASSERT_EQ(result.status(), run & 0xFF);
+  }
+}
+
 TEST_F(SpeGroupTest, RefusesProxyCommandsWithTheSpesNumber) {
   SpeGroup group(memory_, {.spes = 2});
   const auto fault = group.problem_state(1).issue_proxy({.word = 0xD0});
