@@ -76,6 +76,7 @@ class Engine {
   /// Runs the resident image once. The initialised data are as linked; bss is as the last run left it.
   /// @param accesses  told of loads and stores of a checked image; may be null.
   /// @param jobs      told of jobs inside the run; may be null.
+  /// @throws  what a channel or an observer has thrown, once the run has ended.
   virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels,
                         AccessObserver* accesses = nullptr, JobObserver* jobs = nullptr) = 0;
 
