@@ -105,6 +105,10 @@ bool is_absolute(const Elf64_Rela& relocation) {
 void refuse_relocations(const ElfFile& elf) {
   for (const auto& [name, header] : elf.sections()) {
     if ((header.sh_type != SHT_RELA && header.sh_type != SHT_REL) || header.sh_size == 0) continue;
+    if (header.sh_type == SHT_REL) {
+      elf.refuse("its section " + std::string(name) +
+                 " has relocations without addends (SHT_REL); a 64-bit x86 linker makes SHT_RELA ones");
+    }
     const bool is_loaded = (header.sh_flags & SHF_ALLOC) != 0 || name == ".rela.dyn";
     const bool is_of_image = header.sh_info < elf.sections().size() &&
                              (elf.sections()[header.sh_info].header.sh_flags & SHF_ALLOC) != 0;

@@ -1,6 +1,7 @@
 #include "spe.h"
 
 #include <algorithm>
+#include <exception>
 
 #include "softcell/ls_sim/source_lines.h"
 #include "softcell/ls_sim/trace.h"
@@ -35,7 +36,7 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
 
 RunResult Spe::run(const Run& run) {
   run_ = &run;
-  RunResult result = execute(run);
+  RunResult result = execute_or_fail(run);
   channels_.end_run();
   if (result.fault) {
     result.fault->spe = number_;
@@ -51,6 +52,15 @@ RunResult Spe::run(const Run& run) {
 
 const KernelImage& Spe::image_under_way() const {
   return job_ && job_->image != nullptr ? *job_->image : *run_->image;
+}
+
+/// Nobody above this thread would catch what the host throws, and it ends this run only.
+RunResult Spe::execute_or_fail(const Run& run) {
+  try {
+    return execute(run);
+  } catch (const std::exception& error) {
+    return {0, dma::Fault{.rule = dma::Rule::kHostFailure, .detail = error.what()}};
+  }
 }
 
 RunResult Spe::execute(const Run& run) {
@@ -90,6 +100,7 @@ dma::LocalStoreAddress Spe::position_of(const dma::Fault& fault) const {
 }
 
 void Spe::load(const KernelImage& image) {
+  resident_ = nullptr;
   engine_->load(image);
   if (checker_ != nullptr) checker_->on_load();
   resident_ = &image;

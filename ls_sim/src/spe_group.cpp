@@ -213,10 +213,13 @@ struct SpeGroup::State final : RunSource {
       if (monitor().runs(spe)) {
         throw std::logic_error("SPE " + std::to_string(spe) + " still runs; wait for its end first");
       }
-      orders[index(spe)].prepared =
-          Run{.image = &image, .arguments = arguments, .number = runs_prepared++, .resident = resident};
+      orders[index(spe)].prepared.reset();
     }
+    // Nothing is prepared meanwhile: a proxy command with start must not begin a run of half an image.
     threads.spe(spe).load(image);
+    const SpeMonitor::Lock lock = monitor().lock();
+    orders[index(spe)].prepared =
+        Run{.image = &image, .arguments = arguments, .number = runs_prepared++, .resident = resident};
   }
 
   void move_proxies() {

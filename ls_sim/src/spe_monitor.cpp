@@ -62,6 +62,7 @@ Woken SpeMonitor::sleep(Lock& lock, int spe, const Sleep& sleep) {
   m.state = State::kAsleep;
   m.woken = Woken::kToLook;
   m.sleep = sleep;
+  m.slept_ticks = 0;
   give_up_turn(spe);
   while (!may_go_on(spe)) {
     if (!sleep.until || m.state == State::kRunnable) {
@@ -150,20 +151,30 @@ void SpeMonitor::draw_turn() {
 }
 
 /// Everybody sleeps. @return  whether time alone ends that: the host's will, simulated time is made to pass.
+/// It passes for all who sleep, so that one who sleeps often and briefly does not keep the others asleep.
 bool SpeMonitor::let_time_pass() {
-  int next = kNobody;
-  for (int spe = 0; spe < dma::kSpeCount; ++spe) {
-    const Member& m = member(spe);
+  std::optional<std::uint64_t> ticks;
+  for (const Member& m : members_) {
     if (m.state != State::kAsleep) continue;
     if (m.sleep.until) return true;
-    if (m.sleep.simulated_ticks &&
-        (next == kNobody || *m.sleep.simulated_ticks < *member(next).sleep.simulated_ticks)) {
-      next = spe;
-    }
+    if (!m.sleep.simulated_ticks) continue;
+    ticks = std::min(ticks.value_or(*m.sleep.simulated_ticks), *m.sleep.simulated_ticks);
   }
-  if (next == kNobody) return false;
-  wake_with(next, Woken::kTimePassed);
+  if (!ticks) return false;
+  for (Member& m : members_) {
+    if (m.state == State::kAsleep) pass_ticks(m, *ticks);
+  }
+  if (takes_turns_) draw_turn();
   return true;
+}
+
+void SpeMonitor::pass_ticks(Member& m, std::uint64_t ticks) {
+  m.slept_ticks += ticks;
+  if (!m.sleep.simulated_ticks) return;
+  *m.sleep.simulated_ticks -= ticks;
+  if (*m.sleep.simulated_ticks != 0) return;
+  m.state = State::kRunnable;
+  if (!takes_turns_) m.wake_up.notify_one();
 }
 
 void SpeMonitor::declare_deadlock() {

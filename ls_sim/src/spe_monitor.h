@@ -38,9 +38,8 @@ struct Sleep {
 /// Why an SPE no longer sleeps. It may have been woken for nothing: it looks again at what it waited for.
 enum class Woken : std::uint8_t {
   kToLook,
-  kTimePassed,  ///< its simulated_ticks, in which nobody had anything to do
-  kDeadlock,    ///< deadlock() says why
-  kStopped,     ///< by stop()
+  kDeadlock,  ///< deadlock() says why
+  kStopped,   ///< by stop()
 };
 
 class SpeMonitor {
@@ -84,6 +83,9 @@ class SpeMonitor {
   /// Sleeps until somebody calls wake(), or as Woken says.
   Woken sleep(Lock& lock, int spe, const Sleep& sleep);
 
+  /// Ticks of simulated time that went by in the SPE's last sleep, whatever ended it. With the lock.
+  std::uint64_t slept_ticks(int spe) const { return members_[static_cast<std::size_t>(spe)].slept_ticks; }
+
   /// Who waits for what; of the last deadlock. With the lock.
   const std::string& deadlock() const { return deadlock_; }
 
@@ -113,6 +115,7 @@ class SpeMonitor {
     const KernelImage* image = nullptr;
     std::optional<HostTime> started;  ///< what has a deadline
     Sleep sleep;
+    std::uint64_t slept_ticks = 0;  ///< simulated, in this sleep so far
     std::condition_variable wake_up;
   };
 
@@ -133,6 +136,7 @@ class SpeMonitor {
   void settle();
   void draw_turn();
   bool let_time_pass();
+  void pass_ticks(Member& member, std::uint64_t ticks);
   void declare_deadlock();
 
   const bool takes_turns_;

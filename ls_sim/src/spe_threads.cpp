@@ -41,10 +41,24 @@ SpeThreads::SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, Run
   for (int number = 0; number < options_.spes; ++number) {
     workers_.push_back(std::make_unique<Spe>(number, memory, options_, monitor_));
   }
-  for (int number = 0; number < options_.spes; ++number) {
-    threads_.emplace_back([this, number] { work(number); });
+  try {
+    for (int number = 0; number < options_.spes; ++number) {
+      threads_.emplace_back([this, number] { work(number); });
+    }
+    watchdog_ = std::jthread([this] { watch(); });
+  } catch (...) {
+    begin_work(Beginning::kNever);  // or those that were made would wait for runs that nobody gives
+    throw;
   }
-  watchdog_ = std::jthread([this] { watch(); });
+  begin_work(Beginning::kNow);
+}
+
+void SpeThreads::begin_work(Beginning beginning) {
+  {
+    const SpeMonitor::Lock lock = monitor_.lock();
+    beginning_ = beginning;
+  }
+  began_.notify_all();
 }
 
 void SpeThreads::join() {
@@ -65,6 +79,8 @@ void SpeThreads::stop_runs() {
 void SpeThreads::work(int number) {
   leave_the_ppu_its_core();
   SpeMonitor::Lock lock = monitor_.lock();
+  began_.wait(lock, [this] { return beginning_ != Beginning::kNotYet; });
+  if (beginning_ == Beginning::kNever) return;
   while (const std::optional<Run> next = source_.next_run(number, lock)) {
     RunResult result = run(number, *next, lock);
     monitor_.end(number);

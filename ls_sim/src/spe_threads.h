@@ -3,6 +3,7 @@
 // take too long.
 
 #include <condition_variable>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -27,9 +28,9 @@ class RunSource {
 
 class SpeThreads {
  public:
-  /// @param source  outlives this; called as soon as the threads run, before the constructor returns.
+  /// @param source  outlives this; called as soon as all threads run, before the constructor returns.
   /// @throws std::invalid_argument  options out of range.
-  /// @throws std::runtime_error     when the host cannot run native kernels.
+  /// @throws std::runtime_error     when the host cannot run native kernels, or has no thread left.
   SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, RunSource& source);
 
   ~SpeThreads() { join(); }
@@ -52,6 +53,9 @@ class SpeThreads {
   }
 
  private:
+  enum class Beginning : std::uint8_t { kNotYet, kNow, kNever };
+
+  void begin_work(Beginning beginning);
   void work(int number);
   RunResult run(int number, const Run& run, SpeMonitor::Lock& lock);
   void watch();
@@ -61,8 +65,10 @@ class SpeThreads {
   SpeMonitor monitor_;
   std::vector<std::unique_ptr<Spe>> workers_;
 
-  std::condition_variable watchdog_wake_up_;
-  bool stops_runs_ = false, closed_ = false;  // guarded by the monitor's lock
+  // Guarded by the monitor's lock:
+  std::condition_variable began_, watchdog_wake_up_;
+  Beginning beginning_ = Beginning::kNotYet;
+  bool stops_runs_ = false, closed_ = false;
 
   std::vector<std::jthread> threads_;
   std::jthread watchdog_;

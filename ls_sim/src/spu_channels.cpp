@@ -117,21 +117,26 @@ ChannelReply SpuChannels::write(std::uint32_t channel, std::uint32_t value) {
 ChannelReply SpuChannels::count(std::uint32_t channel) {
   if (!begin_operation()) return stopped(channel);
   if (channel_access(channel) == ChannelAccess::kNone) return illegal(channel, "count of");
+  const std::uint32_t slots = count_now(static_cast<Channel>(channel));
+  // A loop that only counts asks nothing else: it is to hear of what the passing time has brought to light.
+  if (auto fault = to_.mfc.take_fault()) return reply_of(std::move(fault));
+  return {slots, {}};
+}
+
+std::uint32_t SpuChannels::count_now(Channel channel) {
   dma::Mfc& mfc = to_.mfc;
-  const auto reply = [](int slots) { return ChannelReply{static_cast<std::uint32_t>(slots), {}}; };
-  switch (static_cast<Channel>(channel)) {
+  switch (channel) {
     case Channel::kMfcCmd:
-      return reply(mfc.free_slots());
+      return static_cast<std::uint32_t>(mfc.free_slots());
     case Channel::kMfcRdTagStat:
-      return reply(mfc.tag_status_count());
+      return static_cast<std::uint32_t>(mfc.tag_status_count());
     case Channel::kMfcRdListStallStat:
-      return reply(mfc.list_stall_count());
+      return static_cast<std::uint32_t>(mfc.list_stall_count());
     case Channel::kMfcRdAtomicStat:
-      return reply(mfc.atomic_status_count());
+      return static_cast<std::uint32_t>(mfc.atomic_status_count());
     default:
       mfc.visit();
-      if (auto fault = mfc.take_fault()) return reply_of(std::move(fault));
-      return {count_register(static_cast<Channel>(channel)), {}};
+      return count_register(channel);
   }
 }
 
@@ -294,12 +299,10 @@ ChannelReply SpuChannels::sleep_until(Channel channel, Attempt&& attempt) {
       lock.lock();
       continue;
     }
-    const Sleep sleep = sleep_at(channel);
-    switch (to_.monitor.sleep(lock, to_.spe, sleep)) {
+    const Woken woken = to_.monitor.sleep(lock, to_.spe, sleep_at(channel));
+    clock_.skip(to_.monitor.slept_ticks(to_.spe));
+    switch (woken) {
       case Woken::kToLook:
-        break;
-      case Woken::kTimePassed:
-        clock_.skip(*sleep.simulated_ticks);
         break;
       case Woken::kDeadlock: {
         dma::Fault fault{dma::Rule::kDeadlock};

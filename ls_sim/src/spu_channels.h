@@ -78,6 +78,7 @@ class SpuChannels final : public ChannelPort {
   // The other channels.
   ChannelReply read_register(Channel channel);
   ChannelReply write_register(Channel channel, std::uint32_t value);
+  std::uint32_t count_now(Channel channel);
   std::uint32_t count_register(Channel channel);
   template <class Attempt>
   ChannelReply attempt_or_sleep(Channel channel, Attempt&& attempt);

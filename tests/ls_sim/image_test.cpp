@@ -216,6 +216,14 @@ TEST(LoadImage, RefusesARelocation) {
             "kernel image k: a relocation is left: an absolute pointer is stored in its static data");
 }
 
+TEST(LoadImage, RefusesRelocationsWithoutAddends) {
+  Bytes file = good_elf();
+  change<Elf64_Shdr>(file, section_offset(file, ".rela.text"), [](Elf64_Shdr& s) { s.sh_type = SHT_REL; });
+  EXPECT_EQ(refusal(file),
+            "kernel image k: its section .rela.text has relocations without addends (SHT_REL); a 64-bit x86 "
+            "linker makes SHT_RELA ones");
+}
+
 TEST(LoadImage, RefusesAnAbsoluteAddressAmongTheRelocationsThatTheLinkKept) {
   Bytes file = good_elf();
   const auto table = read<Elf64_Shdr>(file, section_offset(file, ".rela.text"));

@@ -197,6 +197,16 @@ INSTANTIATE_TEST_SUITE_P(
                   "before the local store"},
         FaultCase{"illegal_instruction", {}, dma::Rule::kIllegalInstruction, "local-store address"}));
 
+TEST_F(NativeEngineTest, AFileThatNoDebuggerCanReadIsNoObstacle) {
+  setenv("SOFTCELL_GDB", "1", 1);
+  engine_ = make_native_engine(local_store_);
+  unsetenv("SOFTCELL_GDB");
+  image_ = test_image("echo_arguments");
+  image_.elf = std::make_shared<const std::vector<std::byte>>(16);
+  ASSERT_NO_THROW(engine_->load(image_));
+  EXPECT_EQ(engine_->run({.argp = 0x1000, .envp = 7}, port_).status(), 7u);
+}
+
 TEST_F(NativeEngineTest, AShallowStackIsNoFaultAndIsMeasured) {
   EXPECT_FALSE(run("stack_overflow_deep", {.envp = 2}).fault);
   const std::uint32_t shallow = engine_->stack_high_water();

@@ -1,6 +1,9 @@
 #include "softcell/ls_sim/spe_group.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstring>
@@ -11,6 +14,7 @@
 
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/local_store_port.h"
+#include "softcell/dma/sanitizers.h"
 #include "softcell/ls_sim/trace.h"
 #include "test_images.h"
 
@@ -26,6 +30,41 @@ constexpr std::uint64_t kEventStat = 0, kSignal1 = 3, kSignal2 = 4, kDecrementer
 
 constexpr std::uint64_t kInMboxEvent = 0x10, kDecrementerEvent = 0x20, kOutMboxEvent = 0x80,
                         kSignal2Event = 0x100, kLostReservationEvent = 0x400;
+
+/// Lets the process make so many threads more, as long as this lives: their stacks are made large, and the
+/// address space has room for these only.
+class RoomForThreads {
+ public:
+  explicit RoomForThreads(std::uint64_t threads) {
+    pthread_attr_init(&attributes_);
+    pthread_getattr_default_np(&attributes_);
+    pthread_attr_t large = attributes_;
+    pthread_attr_setstacksize(&large, kStackBytes);
+    pthread_setattr_default_np(&large);
+    getrlimit(RLIMIT_AS, &limit_);
+    rlimit low = limit_;
+    low.rlim_cur = address_space_in_use() + threads * kStackBytes + kStackBytes / 2;
+    setrlimit(RLIMIT_AS, &low);
+  }
+  ~RoomForThreads() {
+    setrlimit(RLIMIT_AS, &limit_);
+    pthread_setattr_default_np(&attributes_);
+  }
+  RoomForThreads(const RoomForThreads&) = delete;
+  RoomForThreads& operator=(const RoomForThreads&) = delete;
+
+ private:
+  static constexpr std::uint64_t kStackBytes = std::uint64_t{1} << 30;
+
+  static std::uint64_t address_space_in_use() {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  }
+
+  pthread_attr_t attributes_{};
+  rlimit limit_{};
+};
 
 class SpeGroupTest : public testing::Test {
  protected:
@@ -190,6 +229,43 @@ TEST_F(SpeGroupTest, HoursOfSimulatedTimePassAtOnce) {
   EXPECT_FALSE(group.wait(0).fault);
 }
 
+class SimulatedSleep : public SpeGroupTest, public testing::WithParamInterface<Interleaving> {
+ protected:
+  /// The status of SPE 0 of the kernel `sleeps`, where the other one sleeps that many ticks and then signals.
+  RunResult sleep_beside(std::uint64_t own_ticks, std::uint64_t others_ticks) {
+    const KernelImage image = test_image("sleeps");
+    SpeGroup group(memory_,
+                   {.spes = 2, .deadline = 500ms, .clock = Clock::kSimulated, .interleaving = GetParam()});
+    const auto signal = group.problem_state(0).local_store_ea().value +
+                        static_cast<std::uint64_t>(dma::SpeRegister::kSignal1);
+    const SpeGroup::Outside until_both_run(group);
+    group.start(1, image, {.spe_id = 1, .argp = signal, .envp = others_ticks});
+    group.start(0, image, {.spe_id = 0, .envp = own_ticks});
+    return group.wait(0);
+  }
+};
+
+TEST_P(SimulatedSleep, PassesForAllWhoSleep) {
+  for (const std::uint64_t longer : {100u, 101u, 150u}) {  // the same time as well: a tie
+    const RunResult result = sleep_beside(100, longer);
+    ASSERT_FALSE(result.fault) << result.fault->message();
+    EXPECT_LE(result.status(), 2u) << longer;
+  }
+}
+
+TEST_P(SimulatedSleep, CountsForOneThatIsWokenBySomethingElse) {
+  const RunResult result = sleep_beside(0, 1500);
+  ASSERT_FALSE(result.fault) << result.fault->message();
+  // Where runs are free, the other may have slept before this one began to count.
+  if (GetParam() == Interleaving::kTurns) {
+    EXPECT_GE(result.status(), 140u);
+  }
+  EXPECT_LE(result.status(), 160u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Interleavings, SimulatedSleep,
+                         testing::Values(Interleaving::kFree, Interleaving::kTurns));
+
 // ---- deadlocks
 
 TEST_F(SpeGroupTest, TwoThatWaitForEachOthersSignalsAreADeadlock) {
@@ -341,6 +417,26 @@ TEST_F(SpeGroupTest, AProxyCommandWithStartBeginsThePreparedRun) {
   EXPECT_EQ(group.wait(0).status(), 3u);
 }
 
+TEST_F(SpeGroupTest, AProxyCommandWithStartWaitsForTheWholeImage) {
+  if (SC_THREAD_SANITIZER) GTEST_SKIP() << "the command's bytes meet those of the image, as they may";
+  const dma::Buffer<std::array<std::uint32_t, 32>> line(memory_, "line", 1);
+  SpeGroup group(memory_, {.spes = 1});
+  const KernelImage image = test_image("echo_arguments");
+  std::jthread other([&](const std::stop_token& over) {
+    while (!over.stop_requested()) {
+      group.problem_state(0).issue_proxy(
+          {.word = 0x48, .lsa = {0x30000}, .ea = line.ea(), .size = 128, .tag = 0});
+    }
+  });
+  for (std::uint64_t run = 1; run <= 300; ++run) {
+    group.prepare(0, image, {.argp = line.ea().value, .envp = run & 0xFF});
+    while (group.statistics(0).jobs != run) std::this_thread::yield();
+    const RunResult result = group.wait(0);
+    ASSERT_FALSE(result.fault) << result.fault->message();
+    ASSERT_EQ(result.status(), run & 0xFF);
+  }
+}
+
 TEST_F(SpeGroupTest, RefusesProxyCommandsWithTheSpesNumber) {
   SpeGroup group(memory_, {.spes = 2});
   const auto fault = group.problem_state(1).issue_proxy({.word = 0xD0});
@@ -367,6 +463,23 @@ TEST_F(SpeGroupTest, RefusesWhatMakesNoSense) {
   EXPECT_THROW(SpeGroup(memory_, {.spes = 2, .trace = &trace}), std::invalid_argument);
 }
 
+TEST_F(SpeGroupTest, AnEndOfNoJobIsAFault) {
+  const KernelImage image = test_image("marks_jobs");
+  SpeGroup group(memory_, {.spes = 1});
+  const auto run = [&](const EntryArguments& arguments) {
+    group.start_resident(0, image, arguments);
+    return group.wait(0);
+  };
+  for (const std::uint64_t before : {0u, 2u}) {
+    EXPECT_FALSE(run({.argp = before}).fault);
+    const RunResult result = run({.argp = before, .envp = 1});
+    ASSERT_TRUE(result.fault);
+    EXPECT_EQ(result.fault->rule, dma::Rule::kIllegalChannel);
+    EXPECT_NE(result.fault->message().find("no job was under way"), std::string::npos)
+        << result.fault->message();
+  }
+}
+
 TEST_F(SpeGroupTest, LeavesNobodyBehind) {
   const KernelImage endless = test_image("endless");
   for (const Interleaving interleaving : {Interleaving::kFree, Interleaving::kTurns}) {
@@ -377,6 +490,12 @@ TEST_F(SpeGroupTest, LeavesNobodyBehind) {
   }  // each of them is stopped
   SpeGroup again(memory_, {.spes = 3});
   EXPECT_EQ(again.spes(), 3);
+}
+
+TEST_F(SpeGroupTest, AThreadThatCannotBeMadeIsAnErrorAndNoWait) {
+  if (SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER) GTEST_SKIP() << "it needs all the address space it wants";
+  const RoomForThreads room_for_two(2);
+  EXPECT_THROW(SpeGroup(memory_, {.spes = 6}), std::runtime_error);
 }
 
 TEST_F(SpeGroupTest, AFaultNamesSpeKernelAndPlace) {

@@ -358,6 +358,22 @@ TEST_F(LazySpuChannels, ATransferOfItsOwnMayEndTheWait) {
   EXPECT_EQ(rule_of(channels_.read(number(Channel::kSpuRdInMbox))), dma::Rule::kEaNotMapped);
 }
 
+TEST_F(LazySpuChannels, ACountThatIsPolledTellsOfAFaultOfAnElement) {
+  const std::array<std::uint32_t, 2> list{0x0000'0080, 0x0000'0000};
+  for (const Channel channel : {Channel::kMfcCmd, Channel::kMfcRdTagStat, Channel::kMfcRdListStallStat,
+                                Channel::kMfcRdAtomicStat, Channel::kSpuRdInMbox}) {
+    mfc_.begin_job(0);
+    std::memcpy(&local_store_[0x2000], list.data(), sizeof list);
+    command(0x44, 0x1000, list_at(0x2000), sizeof list, 5);
+    write(Channel::kMfcWrTagMask, 1u << 5);
+    write(Channel::kMfcWrTagUpdate, 2);
+    ChannelReply reply;
+    for (std::uint64_t i = 0; i <= dma::Mfc::kMostVisits && !reply.fault; ++i)
+      reply = channels_.count(number(channel));
+    EXPECT_EQ(rule_of(reply), dma::Rule::kEaNotMapped) << channel_name(number(channel));
+  }
+}
+
 TEST_F(LazySpuChannels, ATagWaitIsAWaitWhenSomethingIsQueued) {
   write(Channel::kMfcWrTagMask, 1);
   for (const std::uint64_t waits : {0u, 1u}) {

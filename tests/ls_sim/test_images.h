@@ -32,6 +32,8 @@
   X(overwrites)             \
   X(gets_over)              \
   X(leaves_a_stall)         \
+  X(sleeps)                 \
+  X(marks_jobs)             \
   X(resides)                \
   X(breaks_down)
 

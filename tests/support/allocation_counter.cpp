@@ -2,15 +2,20 @@
 
 #include "allocation_counter.h"
 
+#include <atomic>
+#include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 namespace {
 
 thread_local std::size_t count = 0;
+std::atomic<std::size_t> refused_from = std::numeric_limits<std::size_t>::max();
 
 void* allocate(std::size_t bytes, std::size_t alignment) noexcept {
   ++count;
+  if (bytes >= refused_from.load(std::memory_order_relaxed)) return nullptr;
   if (bytes == 0) bytes = 1;
   if (alignment <= alignof(std::max_align_t)) return std::malloc(bytes);
   return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
@@ -24,6 +29,8 @@ void* allocate_or_throw(std::size_t bytes, std::size_t alignment) {
 }  // namespace
 
 std::size_t softcell::test::allocations() { return count; }
+
+void softcell::test::refuse_allocations_from(std::size_t bytes) { refused_from = bytes; }
 
 // Every form that the library has a form of its own for: what is allocated here must not be freed there.
 void* operator new(std::size_t bytes) { return allocate_or_throw(bytes, 1); }

@@ -9,4 +9,7 @@ namespace softcell::test {
 /// Since the program began, by the calling thread.
 std::size_t allocations();
 
+/// From now on allocations of so many bytes or more fail, by whatever thread.
+void refuse_allocations_from(std::size_t bytes);
+
 }  // namespace softcell::test

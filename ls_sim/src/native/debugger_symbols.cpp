@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 
 #include "../elf_file.h"
@@ -141,7 +142,12 @@ struct DebuggerSymbols::Entry {
 };
 
 DebuggerSymbols::DebuggerSymbols(const KernelImage& image, const std::byte* base) {
-  std::vector<std::byte> file = relocate_debug_file(image, reinterpret_cast<std::uintptr_t>(base));
+  std::vector<std::byte> file;
+  try {
+    file = relocate_debug_file(image, reinterpret_cast<std::uintptr_t>(base));
+  } catch (const std::runtime_error&) {
+    return;  // a file that cannot be read shows nothing; the kernel runs without
+  }
   if (file.empty()) return;
   entry_ = std::make_unique<Entry>();
   entry_->file = std::move(file);

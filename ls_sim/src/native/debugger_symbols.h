@@ -20,6 +20,7 @@ bool debugger_wanted();
 
 /// The image's file with all its addresses moved up by `base`; empty when it has no debug information, or
 /// lost the relocations that moving it takes.
+/// @throws std::runtime_error  one sentence, when the file is damaged.
 std::vector<std::byte> relocate_debug_file(const KernelImage& image, std::uint64_t base);
 
 /// While it lives, gdb knows the image at `base`. Any thread.
@@ -32,7 +33,7 @@ class DebuggerSymbols {
 
  private:
   struct Entry;
-  std::unique_ptr<Entry> entry_;  ///< null when there is nothing to show
+  std::unique_ptr<Entry> entry_;  ///< null when there is nothing to show, or the file is damaged
 };
 
 }  // namespace softcell::ls_sim::native

@@ -26,6 +26,7 @@ thread_local KernelContext* context_of_thread = nullptr;
 // function(context) on another stack, as a plain call: a jump there and back by Boost.Context costs three
 // times as much, for it exchanges registers that a call keeps, an x87 mode that nobody uses, and the
 // processor predicts no return behind it. The unwinder finds its way from the worker's stack to the kernel's.
+// How much Boost has saved on `stack` depends on its version, so that its alignment is made here.
 extern "C" bool softcell_call_on_stack(ServeRequest* function, KernelContext* context, void* stack);
 asm(R"(
         .text
@@ -39,6 +40,7 @@ softcell_call_on_stack:
         movq    %rsp, %rbp
         .cfi_def_cfa_register %rbp
         movq    %rdx, %rsp
+        andq    $-16, %rsp
         movq    %rdi, %rax
         movq    %rsi, %rdi
         callq   *%rax

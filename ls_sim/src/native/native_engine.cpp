@@ -134,7 +134,8 @@ class NativeEngine final : public Engine {
   LocalStore& local_store_;
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
-  const KernelImage* job_image_ = nullptr;  ///< that image_ has called
+  const KernelImage* job_image_ = nullptr;  ///< that image_ has called; null when it is not known
+  bool job_under_way_ = false;
   const bool debugger_wanted_ = native::debugger_wanted();
   std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
   std::unique_ptr<native::DebuggerSymbols> debugger_job_symbols_;
@@ -165,6 +166,7 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
   environment.mfc_tag_mask = tag_mask_ = 0;
   job_image_ = nullptr;
+  job_under_way_ = false;
   context_.entry = arena() + image_->entry;
   context_.arguments[0] = arguments.spe_id;
   context_.arguments[1] = arguments.argp;
@@ -263,6 +265,7 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   if (context_.channel() == 0) return end_job();
   const native::Environment& environment = this->environment();
   const KernelImage* const last = job_image_;
+  job_under_way_ = true;
   job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
   tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
   const std::span<const std::byte> variables = variables_of_caller();
@@ -279,11 +282,17 @@ std::optional<dma::Fault> NativeEngine::note_job() {
 }
 
 std::optional<dma::Fault> NativeEngine::end_job() {
+  if (!std::exchange(job_under_way_, false)) {
+    return fault(dma::Rule::kIllegalChannel,
+                 "the kernel told the environment of a job's end, and no job was under way");
+  }
   if (auto broken = jobs_->on_job_returned()) return broken;
   if (job_image_ != nullptr && written_below_stack())
     return stack_overflow("bytes below the stack were written");
   if (auto damage = check_caller()) return damage;
   job_image_ = nullptr;
+  caller_variables_.clear();
+  caller_frames_.clear();
   std::ranges::fill(canary(), kFiller);  // where the job had its stack
   jobs_->on_job_end();
   return std::nullopt;

@@ -57,7 +57,7 @@ class JobObserver {
   /// @return  the image; null when nobody knows it.
   virtual const KernelImage* on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) = 0;
 
-  /// The job's main has returned: completes what the job has in flight. @return  a fault of that.
+  /// The main of the job that began last has returned: completes what the job has in flight. @return  a fault of that.
   virtual std::optional<dma::Fault> on_job_returned() = 0;
 
   /// The job has ended well, and its caller goes on. After a fault it is not called: the run ends.
@@ -76,6 +76,7 @@ class Engine {
   /// Runs the resident image once. The initialised data are as linked; bss is as the last run left it.
   /// @param accesses  told of loads and stores of a checked image; may be null.
   /// @param jobs      told of jobs inside the run; may be null.
+  /// @throws  what a channel or an observer has thrown, once the run has ended.
   virtual RunResult run(const EntryArguments& arguments, ChannelPort& channels,
                         AccessObserver* accesses = nullptr, JobObserver* jobs = nullptr) = 0;
 

@@ -1,0 +1,33 @@
+// What the host throws on an SPE's thread ends the run, not the process.
+
+#include <gtest/gtest.h>
+
+#include "../support/allocation_counter.h"
+#include "softcell/ls_sim/spe_group.h"
+#include "test_images.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+TEST(HostFailure, EndsTheRunAndNotTheProcess) {
+  const KernelImage image = test_image("marks_jobs");
+  const EntryArguments one_job{.argp = 1};
+  dma::AddressSpace memory;
+  SpeGroup group(memory, {.spes = 1});
+  // Where a job begins, the engine keeps its caller's variables.
+  test::refuse_allocations_from(image.sizes.bss);
+  group.start_resident(0, image, one_job);
+  const RunResult result = group.wait(0);
+  test::refuse_allocations_from(static_cast<std::size_t>(-1));
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->rule, dma::Rule::kHostFailure);
+  EXPECT_EQ(result.fault->spe, 0);
+  EXPECT_EQ(result.fault->kernel, "marks_jobs");
+  EXPECT_NE(result.fault->message().find("bad_alloc"), std::string::npos) << result.fault->message();
+
+  group.start_resident(0, image, one_job);
+  EXPECT_FALSE(group.wait(0).fault) << "the SPE goes on";
+}
+
+}  // namespace
+}  // namespace softcell::ls_sim
