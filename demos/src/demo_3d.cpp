@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "own_model.h"
 #include "particle_under.h"
 #include "scene_camera.h"
 #include "scene_demo.h"
@@ -11,19 +12,6 @@
 
 namespace softcell::demos {
 namespace {
-
-std::optional<OwnModel> load_model(const Demo3dOptions& options) {
-  if (!options.mesh) return std::nullopt;
-  OwnModel model{.mesh = ppu::import_mesh(*options.mesh)};
-  const ppu::Bounds box = ppu::bounds(model.mesh);
-  const double longest = (box.high - box.low).maxCoeff();
-  model.cell_size = static_cast<float>(options.cell.value_or(longest / options.cells));
-  ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
-  // Refused here, in the model's own units, before the scene scales both: the sentence has the user's
-  // numbers.
-  ppu::voxelize(model.mesh, model.cell_size);
-  return model;
-}
 
 struct Types3d {
   static constexpr int kDimension = 3;
@@ -69,7 +57,7 @@ class Demo3d final : public SceneDemo<Types3d> {
 
 int run_demo_3d(const Demo3dOptions& options) {
   return run_demo(options, "demo 3d", [&](bool all) {
-    const std::optional<OwnModel> model = load_model(options);
+    const std::optional<OwnModel> model = load_own_model(options);
     InputLog<3> log(options);
     const std::string usual = model ? "drop" : "arena";
     Scene scene = load_scene_3d(options.scene.value_or(log.scene_name().value_or(usual)), model);

@@ -1,0 +1,74 @@
+#include "own_model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "softcell/ppu/lattice.h"
+#include "usage_error.h"
+
+namespace softcell::demos {
+namespace {
+
+/// @param longest  side of the model's box
+double cell_size(const Demo3dOptions& options, double longest) {
+  if (!options.cell) return longest / options.cells;
+  const double cell = *options.cell;
+  if (cell >= longest) {
+    throw std::runtime_error(fmt::format(
+        "--cell {}: one cell would hold the whole model, which is {:.4g} long; give less than that", cell,
+        longest));
+  }
+  if (cell * ppu::kMaxLatticeCellsPerAxis < longest) {
+    throw std::runtime_error(fmt::format(
+        "--cell {}: the model is {:.4g} long and may be at most {} cells long; give {:.4g} or more", cell,
+        longest, ppu::kMaxLatticeCellsPerAxis, longest / ppu::kMaxLatticeCellsPerAxis * 1.001));
+  }
+  return cell;
+}
+
+bool fits(const ppu::TriangleMesh& mesh, double cell) {
+  try {
+    ppu::voxelize(mesh, static_cast<float>(cell));
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+/// Says what is wrong with cells of this size, or with the model, when something is. It is refused here,
+/// before the scene scales both.
+void check_lattice(const Demo3dOptions& options, const ppu::TriangleMesh& mesh, double longest, double cell) {
+  if (fits(mesh, cell)) return;
+  constexpr double kCoarser = 1.2;  // few tries, and near enough
+  double enough = cell * kCoarser;
+  while (enough < longest && !fits(mesh, enough)) enough *= kCoarser;
+  if (enough >= longest) ppu::voxelize(mesh, static_cast<float>(cell));  // whose sentence is about the mesh
+  const std::string too_many =
+      fmt::format("the lattice would have more than {} particles", ppu::kMaxLatticeParticles);
+  if (options.cell) {
+    throw std::runtime_error(
+        fmt::format("--cell {}: {}; {:.4g} is large enough", *options.cell, too_many, enough));
+  }
+  throw std::runtime_error(fmt::format("--cells {}: {}; {} are few enough", options.cells, too_many,
+                                       static_cast<int>(longest / enough)));
+}
+
+}  // namespace
+
+std::optional<OwnModel> load_own_model(const Demo3dOptions& options) {
+  if (!options.mesh) return std::nullopt;
+  if (options.cell && !(*options.cell > 0 && std::isfinite(*options.cell)))
+    throw UsageError(fmt::format("--cell {}: give a length above 0, in the model's units", *options.cell));
+  OwnModel model{.mesh = ppu::import_mesh(*options.mesh)};
+  const ppu::Bounds box = ppu::bounds(model.mesh);
+  const double longest = (box.high - box.low).maxCoeff();
+  const double cell = cell_size(options, longest);
+  ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
+  check_lattice(options, model.mesh, longest, cell);
+  model.cell_size = static_cast<float>(cell);
+  return model;
+}
+
+}  // namespace softcell::demos
