@@ -112,6 +112,19 @@ TEST_P(MfcAtomic, PutqllucWaitsItsTurnAndHasNoAtomicStatus) {
   EXPECT_EQ(bench.buffer_at(256 + 127), 8);
 }
 
+// A flag line told by putqlluc is the usual way to say that the data before it are there.
+TEST_P(MfcAtomic, PutqllucDoesNotOvertakeAnEarlierPutOfItsTag) {
+  MfcBench bench(GetParam());
+  bench.fill_store(0, 4096, 8);
+  bench.issue(MfcOpcode::put, 0, 1024, 4096, 1);
+  bench.issue(MfcOpcode::putqlluc, 0, 256, 0, 1);
+  do {
+    if (bench.buffer_at(256) != 8) continue;
+    ASSERT_EQ(std::count(&bench.buffer[1024], &bench.buffer[1024] + 4096, std::byte{8}), 4096);
+  } while (bench.mfc.advance());
+  EXPECT_EQ(bench.buffer_at(256), 8);
+}
+
 // A buffer owns its last line whole, so that a counter alone may be used by line commands.
 TEST_P(MfcAtomic, ReachTheLineOfASmallBuffer) {
   MfcBench bench(GetParam());
