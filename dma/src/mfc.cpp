@@ -180,7 +180,7 @@ std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
       status = kPutllcFailed;
     }
   }
-  atomic_status_ = atomic_status_.value_or(0) | status;
+  atomic_status_ = status;
   if (observer_ != nullptr) {
     if (status == kPutllcFailed) {
       observer_->on_reservation_lost(commands_issued_);
