@@ -406,7 +406,6 @@ std::optional<Fault> Mfc::write_list_stall_ack(std::uint32_t tag) {
     const int slot = std::countr_zero(rest);
     list_transfers_[slot].resume();
     commands_[slot].due = visits_ + kMostVisits;
-    if (list_transfers_[slot].is_done()) complete(slot);  // the last element had stalled
   }
   pass_a_moment();
   if (suspended_by_) return suspension();
