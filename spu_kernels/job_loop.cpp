@@ -14,8 +14,9 @@
 //         ^                                                                                     | none left
 //         +---- its bell was rung ---- enter the board as asleep, sleep with the bell reserved <+
 //
-// argp: effective address of the JobBoard; envp: of the JobBells, one for each SPE. Budget: 5 KB; it lies at
-// the top of the local store with its stack below it, so that jobs have the rest, as if they were alone.
+// argp: effective address of the JobBoard; envp: of the JobBells, one for each SPE. Budget: 4608 bytes; it
+// lies at the top of the local store with its stack below it, so that jobs have the rest, as if they were
+// alone.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
 

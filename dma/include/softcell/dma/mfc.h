@@ -73,9 +73,8 @@ class Mfc {
 
   /// MFC_WrTagUpdate: asks for the status of the tags that are in the mask now.
   /// @param condition  0 immediate, which also cancels an open request; 1 any tag complete; 2 all complete.
-  /// @return  nothing, or the fault tag-update-condition (another value) or tag-update-pending (1 or 2 while
-  /// a
-  ///          request is open).
+  /// @return  nothing, or a fault: tag-update-condition (another value), or tag-update-pending (1 or 2 while
+  ///          a request is open).
   std::optional<Fault> write_tag_update(std::uint32_t condition);
 
   /// MFC_RdTagStat: completes transfers until the requested condition holds, and ends the request.
