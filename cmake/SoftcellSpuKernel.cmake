@@ -109,7 +109,8 @@ function(softcell_add_spu_kernel name)
       OPTIONS ${SOFTCELL_CHECKED_FLAGS})
     math(EXPR checked_stack "${arg_STACK_BYTES} + ${SOFTCELL_CHECKED_STACK_BYTES}")
     softcell_link_spu_image(${name}_checked IMAGE ${checked_image} CHECKED 1
-      OBJECTS ${name}_checked_objects softcell_report_accesses STACK_BYTES ${checked_stack} BUDGET_BYTES 262144)
+      OBJECTS ${name}_checked_objects softcell_report_accesses STACK_BYTES ${checked_stack} BUDGET_BYTES 262144
+      RESIDENT_AT ${arg_RESIDENT_AT})
     add_custom_target(${name}_checked_image ALL DEPENDS ${checked_image})
     set_target_properties(${name}_checked_image PROPERTIES SOFTCELL_IMAGE ${checked_image})
   endif()

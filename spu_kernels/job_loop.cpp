@@ -189,6 +189,7 @@ void sleep_at_bell(const Post& post) {
     spu_read_event_status();
   }
   spu_write_event_ack(MFC_LLR_LOST_EVENT);
+  spu_write_event_mask(0);  // a job begins with an empty one, as a program of its own would
 }
 
 /// Nothing was found at this generation.

@@ -30,7 +30,6 @@ class Arena {
   void free(EffectiveAddress ea, std::uint64_t bytes);
 
   std::byte* host(EffectiveAddress ea) const { return host_ + (ea.value - base_.value); }
-  bool contains(EffectiveAddress ea) const { return ea.value - base_.value < bytes_; }
 
   std::uint64_t bytes() const { return bytes_; }
   std::uint64_t free_bytes() const;

@@ -34,8 +34,8 @@ std::variant<ListElement, Fault> ListTransfer::open_next(std::span<std::byte> lo
     transfers_[open_++] = get ? Transfer::get(place, local, bytes) : Transfer::put(local, place, bytes);
   }
   cursor_ = element.next(cursor_);
-  stalls_ = element.stalls();
   ++next_;
+  stalls_ = element.stalls() && next_ < count();
   return element;
 }
 

@@ -180,7 +180,7 @@ std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
       status = kPutllcFailed;
     }
   }
-  atomic_status_ = atomic_status_.value_or(0) | status;
+  atomic_status_ = status;
   if (observer_ != nullptr) {
     if (status == kPutllcFailed) {
       observer_->on_reservation_lost(commands_issued_);
@@ -406,7 +406,6 @@ std::optional<Fault> Mfc::write_list_stall_ack(std::uint32_t tag) {
     const int slot = std::countr_zero(rest);
     list_transfers_[slot].resume();
     commands_[slot].due = visits_ + kMostVisits;
-    if (list_transfers_[slot].is_done()) complete(slot);  // the last element had stalled
   }
   pass_a_moment();
   if (suspended_by_) return suspension();

@@ -144,7 +144,7 @@ bool Mfc::open_next_element(int slot) {
   const auto& element = std::get<ListElement>(opened);
   ++traffic.elements;
   traffic.bytes += element.size();
-  traffic.stalls += element.stalls() ? 1 : 0;
+  traffic.stalls += list.stalls() ? 1 : 0;
   return true;
 }
 

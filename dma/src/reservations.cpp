@@ -64,8 +64,8 @@ void for_each_line(EffectiveAddress ea, std::uint32_t bytes, Piece&& piece) {
 // reservation and then looks for long copies, all sequentially consistent, so that at least one sees the
 // other:
 //
-//   long copy   announce lines --> any reservation among them?  no: one memcpy.  yes: line by line, with
-//   locks getllar     announce line  --> any long copy over it?       wait for its end, then copy the line
+//   long copy   announce lines --> any reservation among them?  no: one memcpy; yes: line by line, locked
+//   getllar     announce line  --> any long copy over it?       wait for its end, then copy the line
 //
 // A long copy waits for nobody while it is announced. A write copies first and loses reservations after, and
 // putllc gives its own up last, so that a line is seen as reserved until all of it has arrived.

@@ -110,13 +110,13 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
   tags_issued_ |= 1u << (command.tag % dma::kTagCount);
   if (command.kind() == CommandKind::kCacheHint) return reply;
   if (command.kind() == CommandKind::kQueuedLine) end_reservation(command);
-  check_ranges(in_flight_.add(std::move(in_flight)), 0);
+  check_ranges(in_flight_.add(std::move(in_flight)));
   return reply;
 }
 
-void Checker::check_ranges(CommandInFlight& command, std::size_t first) {
-  for (std::size_t i = first; i < command.ranges.size(); ++i)
-    check_local_range(command.command, command.ranges[i], command.writes_local_store);
+void Checker::check_ranges(CommandInFlight& command) {
+  for (const MovedRange& range : command.ranges)
+    check_local_range(command.command, range, command.writes_local_store);
   if (const CommandInFlight* const other = in_flight_.conflicting(command)) {
     report(Rule::kTransfersOverlap, to_.engine.position(), "in flight: " + describe(*other), command.command);
   }
@@ -232,7 +232,7 @@ void Checker::on_list_acknowledged(std::uint32_t tag) {
     if (!command.has_stalled || command.command.tag != tag) continue;
     command.has_stalled = false;
     add_ranges(command, to_.local_store);
-    check_ranges(command, 0);
+    check_ranges(command);
   }
 }
 

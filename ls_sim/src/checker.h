@@ -73,7 +73,7 @@ class Checker final : public ChannelPort, public AccessObserver {
 
   void check_store(const Access& access);
   void check_load(const Access& access);
-  void check_ranges(CommandInFlight& command, std::size_t first);
+  void check_ranges(CommandInFlight& command);
   void check_line_command(const dma::MfcCommand& command);
   void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);
   void end_reservation(const dma::MfcCommand& by);

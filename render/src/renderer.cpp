@@ -1,11 +1,11 @@
 #include "softcell/render/renderer.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cell_skinner.h"
@@ -117,7 +117,7 @@ struct Renderer::State {
   ~State() { context.make_current(); }  // then the members' objects are deleted
 
   void require_drawable(int side) const;
-  void make_picture_buffers();
+  void make_picture_buffers(int new_width, int new_height);
   void make_shadow_map();
   MeshBuffers make_mesh(const void* indices, std::size_t index_count) const;
   MeshBuffers make_skinned_mesh(std::span<const std::uint32_t> indices) const;
@@ -208,7 +208,7 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
                 ", " + std::to_string(samples) + " samples";
 
   programs = std::make_unique<Programs>(gl, settings.soft_shadows ? kSoftSunlight : kQuickSunlight);
-  make_picture_buffers();
+  make_picture_buffers(width, height);
   make_shadow_map();
   frame_buffer = make_buffer(gl);
   empty_layout = make_vertex_array(gl);
@@ -232,38 +232,48 @@ void Renderer::State::require_drawable(int side) const {
                            " pixels a side cannot be drawn; 1 to " + std::to_string(largest_side) + " can");
 }
 
-void Renderer::State::make_picture_buffers() {
-  const auto storage = [this](const GlObject& buffer, int count, GLenum format) {
+/// Where it throws, all stays as it was.
+void Renderer::State::make_picture_buffers(int new_width, int new_height) {
+  const auto refuse = [&](const char* what) {
+    throw std::runtime_error(description + ": no " + what + " of " + std::to_string(new_width) + " by " +
+                             std::to_string(new_height) + " pixels");
+  };
+  const auto storage = [&](const GlObject& buffer, int count, GLenum format) {
     gl.BindRenderbuffer(GL_RENDERBUFFER, buffer.name());
-    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, width, height);
+    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, new_width, new_height);
   };
-  const auto require_complete = [this] {
-    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw std::runtime_error(description + ": no framebuffer of " + std::to_string(width) + " by " +
-                               std::to_string(height) + " pixels");
-    }
+  const auto require_complete = [&] {
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) refuse("framebuffer");
   };
-  sampled_framebuffer = make_framebuffer(gl);
-  sampled_colour = make_renderbuffer(gl);
-  sampled_depth = make_renderbuffer(gl);
-  storage(sampled_colour, samples > 1 ? samples : 0, GL_RGBA8);
-  storage(sampled_depth, samples > 1 ? samples : 0, GL_DEPTH_COMPONENT24);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, sampled_framebuffer.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, sampled_colour.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, sampled_depth.name());
+  GlObject new_sampled_framebuffer = make_framebuffer(gl);
+  GlObject new_sampled_colour = make_renderbuffer(gl);
+  GlObject new_sampled_depth = make_renderbuffer(gl);
+  storage(new_sampled_colour, samples > 1 ? samples : 0, GL_RGBA8);
+  storage(new_sampled_depth, samples > 1 ? samples : 0, GL_DEPTH_COMPONENT24);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, new_sampled_framebuffer.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                             new_sampled_colour.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, new_sampled_depth.name());
   require_complete();
 
-  resolved_framebuffer = make_framebuffer(gl);
-  resolved_colour = make_renderbuffer(gl);
-  storage(resolved_colour, 0, GL_RGBA8);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, resolved_framebuffer.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolved_colour.name());
+  GlObject new_resolved_framebuffer = make_framebuffer(gl);
+  GlObject new_resolved_colour = make_renderbuffer(gl);
+  storage(new_resolved_colour, 0, GL_RGBA8);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, new_resolved_framebuffer.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                             new_resolved_colour.name());
   require_complete();
-  if (gl.GetError() != GL_NO_ERROR) {
-    throw std::runtime_error(description + ": no memory for a picture of " + std::to_string(width) + " by " +
-                             std::to_string(height) + " pixels");
-  }
-  picture = Image(width, height);
+  if (gl.GetError() != GL_NO_ERROR) refuse("memory for a picture");
+  Image new_picture(new_width, new_height);
+
+  width = new_width;
+  height = new_height;
+  sampled_framebuffer = std::move(new_sampled_framebuffer);
+  sampled_colour = std::move(new_sampled_colour);
+  sampled_depth = std::move(new_sampled_depth);
+  resolved_framebuffer = std::move(new_resolved_framebuffer);
+  resolved_colour = std::move(new_resolved_colour);
+  picture = std::move(new_picture);
   has_picture = false;
 }
 
@@ -663,9 +673,7 @@ void Renderer::resize(int width, int height) {
   if (width == state.width && height == state.height) return;
   for (const int side : {width, height}) state.require_drawable(side);
   state.context.make_current();
-  state.width = width;
-  state.height = height;
-  state.make_picture_buffers();
+  state.make_picture_buffers(width, height);
 }
 
 int Renderer::width() const { return state_->width; }

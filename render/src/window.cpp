@@ -2,6 +2,7 @@
 
 #include <SDL.h>
 
+#include <memory>
 #include <stdexcept>
 
 #include "softcell/render/offscreen_context.h"
@@ -124,14 +125,14 @@ class Window::CopiedSurface final : public Surface {
   void pixel_size(int& width, int& height) const override { SDL_GetWindowSize(window_, &width, &height); }
   void show(Renderer& renderer) override {
     const Image& image = renderer.pixels();
-    SDL_Surface* const picture =
+    const std::unique_ptr<SDL_Surface, decltype(&SDL_FreeSurface)> picture(
         SDL_CreateRGBSurfaceWithFormatFrom(const_cast<std::uint8_t*>(image.rgba.data()), image.width,
-                                           image.height, 32, 4 * image.width, SDL_PIXELFORMAT_RGBA32);
+                                           image.height, 32, 4 * image.width, SDL_PIXELFORMAT_RGBA32),
+        &SDL_FreeSurface);
     SDL_Surface* const screen = SDL_GetWindowSurface(window_);
     if (picture == nullptr || screen == nullptr) refuse("the window takes no picture");
-    SDL_SetSurfaceBlendMode(picture, SDL_BLENDMODE_NONE);
-    SDL_BlitScaled(picture, nullptr, screen, nullptr);
-    SDL_FreeSurface(picture);
+    SDL_SetSurfaceBlendMode(picture.get(), SDL_BLENDMODE_NONE);
+    SDL_BlitScaled(picture.get(), nullptr, screen, nullptr);
     SDL_UpdateWindowSurface(window_);
   }
 

@@ -47,7 +47,8 @@ TEST(MfcCommand, PredicatesFollowFromTheName) {
     const bool ordered = get || put || name.starts_with("sndsig");
     EXPECT_EQ(of(code).is_get(), get) << name;
     EXPECT_EQ(of(code).is_put(), put) << name;
-    EXPECT_EQ(of(code).has_fence(), ordered && name.find('f') != std::string::npos) << name;
+    EXPECT_EQ(of(code).has_fence(), (ordered && name.find('f') != std::string::npos) || name == "putqlluc")
+        << name;
     EXPECT_EQ(of(code).has_barrier(),
               (ordered && name.find('b') != std::string::npos) || name == "mfceieio" || name == "mfcsync")
         << name;

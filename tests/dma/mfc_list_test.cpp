@@ -134,13 +134,14 @@ TEST_P(MfcList, ElementsBehindAStalledOneMayBeRewritten) {
   EXPECT_TRUE(bench.store_holds(0x1000, 1024, 64));
 }
 
-TEST_P(MfcList, AStallAtTheLastElementWaitsForItsAcknowledgementToo) {
+TEST_P(MfcList, TheLastElementDoesNotStall) {
   ListBench bench(GetParam());
-  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(64, 0)}, 3);
-  EXPECT_EQ(bench.stall_status(), 1u << 3);
-  EXPECT_EQ(bench.wait_immediate(1u << 3), 0u);
-  ASSERT_FALSE(bench.mfc.write_list_stall_ack(3));
+  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.element(64, 0), bench.stalling(64, 64)}, 3);
+  bench.issue_list(MfcOpcode::getl, 0x2000, {bench.stalling(64, 0)}, 3, 0x31000);
   EXPECT_EQ(bench.wait_all(1u << 3), 1u << 3);
+  EXPECT_TRUE(bench.store_holds(0x1000, 0, 128));
+  EXPECT_EQ(bench.mfc.list_stall_count(), 0);
+  EXPECT_EQ(bench.mfc.statistics().get_list.stalls, 0u);
 }
 
 TEST_P(MfcList, OnlyCommandsOrderedBehindAStalledListWaitForIt) {
@@ -160,14 +161,15 @@ TEST_P(MfcList, OnlyCommandsOrderedBehindAStalledListWaitForIt) {
 TEST_P(MfcList, AWaitForAnyPassesByATagThatHasStalled) {
   ListBench bench(GetParam());
   bench.issue(MfcOpcode::get, 0x2000, 2048, 64, 4);
-  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(64, 0)}, 3);
+  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(64, 0), bench.element(64, 64)}, 3);
   EXPECT_EQ(bench.wait_any(1u << 3 | 1u << 4), 1u << 4);
   EXPECT_TRUE(bench.store_holds(0x2000, 2048, 64));
 }
 
 TEST_P(MfcList, ALoopThatPollsForAStallComesToAnEnd) {
   ListBench bench(GetParam());
-  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.element(4096, 0), bench.stalling(4096, 4096)}, 3);
+  bench.issue_list(MfcOpcode::getl, 0x1000,
+                   {bench.element(4096, 0), bench.stalling(4096, 4096), bench.element(16, 0)}, 3);
   int polls = 0;
   while (bench.mfc.list_stall_count() == 0) ASSERT_LT(++polls, 100000);
   EXPECT_EQ(bench.stall_status(), 1u << 3);
@@ -176,9 +178,9 @@ TEST_P(MfcList, ALoopThatPollsForAStallComesToAnEnd) {
 
 TEST_P(MfcList, OneAcknowledgementIsForAllListsOfATagThatHaveStalled) {
   ListBench bench(GetParam());
-  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(64, 0)}, 3, 0x30000);
-  bench.issue_list(MfcOpcode::getl, 0x2000, {bench.stalling(64, 0)}, 3, 0x31000);
-  bench.issue_list(MfcOpcode::getl, 0x3000, {bench.stalling(64, 0)}, 5, 0x32000);
+  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(64, 0), bench.element(64, 64)}, 3, 0x30000);
+  bench.issue_list(MfcOpcode::getl, 0x2000, {bench.stalling(64, 0), bench.element(64, 64)}, 3, 0x31000);
+  bench.issue_list(MfcOpcode::getl, 0x3000, {bench.stalling(64, 0), bench.element(64, 64)}, 5, 0x32000);
   std::uint32_t stalled = 0;
   while (bench.mfc.advance()) {
   }
@@ -401,7 +403,8 @@ TEST(MfcListStall, AQueueFullOfStalledListsTakesNoMore) {
   for (const Schedule& schedule : all_schedules()) {
     ListBench bench(schedule);
     for (std::uint32_t i = 0; i < 16; ++i) {
-      bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0)}, 3, 0x30000 + i * 8);
+      bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0), bench.element(16, 0)}, 3,
+                       0x30000 + i * 16);
     }
     const auto refused = bench.mfc.issue(command(MfcOpcode::get, 0, bench.buffer.ea(), 16, 4));
     ASSERT_TRUE(refused) << to_string(schedule);
@@ -424,7 +427,7 @@ TEST(MfcListStall, ReadingItsStatusWithNothingThatStallsNeverEnds) {
   expect_fault("MFC_RdListStallStat was read, and no list that stalls is queued");
   bench.issue_list(MfcOpcode::getl, 0x1000, {bench.element(16, 0)}, 3);
   expect_fault("MFC_RdListStallStat was read, and no list that stalls is queued");
-  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0)}, 3);
+  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   EXPECT_EQ(bench.stall_status(), 1u << 3);
   expect_fault(
       "MFC_RdListStallStat was read again, and the list that has stalled waits for its tag in "
@@ -433,7 +436,7 @@ TEST(MfcListStall, ReadingItsStatusWithNothingThatStallsNeverEnds) {
 
 TEST(MfcListStall, AnAcknowledgementNeedsAStalledListOfItsTag) {
   ListBench bench(kEager);
-  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0)}, 3);
+  bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   for (const std::uint32_t tag : {4u, 32u, 35u}) {
     const std::optional<Fault> fault = bench.mfc.write_list_stall_ack(tag);
     ASSERT_TRUE(fault);

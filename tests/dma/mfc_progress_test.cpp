@@ -92,7 +92,7 @@ TEST_P(MfcProgress, AdvanceMovesAllThatCanMoveAndSaysWhenNothingCan) {
 
 TEST_P(MfcProgress, TheTagStatusEventComesWhenTheRequestBecomesTrue) {
   MfcBench bench(GetParam());
-  bench.issue_list(MfcOpcode::getl, 0, {bench.stalling(16, 0)}, 3);
+  bench.issue_list(MfcOpcode::getl, 0, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   while (bench.mfc.advance()) {
   }
   bench.mfc.take_events();
@@ -111,7 +111,7 @@ TEST_P(MfcProgress, TheTagStatusEventComesWhenTheRequestBecomesTrue) {
 
 TEST_P(MfcProgress, TheListStallEventComesWhenAListStalls) {
   MfcBench bench(GetParam());
-  bench.issue_list(MfcOpcode::getl, 0, {bench.element(16, 0), bench.stalling(16, 0)}, 3);
+  bench.issue_list(MfcOpcode::getl, 0, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   while (bench.mfc.advance()) {
   }
   EXPECT_EQ(bench.mfc.take_events(), Mfc::kListStallEvent);

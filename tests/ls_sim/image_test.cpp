@@ -109,6 +109,13 @@ TEST(LoadImage, ReadsAnImageThatLiesElsewhere) {
   for (const ImageObject& object : image.objects) EXPECT_GE(object.begin.value, image.data_begin);
 }
 
+TEST(LoadImage, TheCheckedFlavourLiesWhereTheOtherDoes) {
+  const KernelImage image = test_image("resides_checked");
+  EXPECT_TRUE(image.checked);
+  EXPECT_EQ(image.begin, 0x20000u);
+  EXPECT_EQ(image.stack_top, 0x20000u);
+}
+
 TEST(LoadImage, RefusesAnImageThatLiesWhereNoneCan) {
   for (const std::uint64_t place : {0x0ull, 0x20010ull, 0x20040ull, 0x40000ull, 0x10000020000ull}) {
     const auto resident = test_elf("resides");

@@ -34,6 +34,7 @@
   X(leaves_a_stall)         \
   X(sleeps)                 \
   X(marks_jobs)             \
+  X(sees_mask)              \
   X(resides)                \
   X(breaks_down)
 

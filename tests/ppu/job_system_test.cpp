@@ -473,6 +473,20 @@ TEST_F(JobSystemTest, LoopsThatHaveRunJobsEndWithoutAFault) {
   EXPECT_EQ(text.find("stack-overflow"), std::string::npos);
 }
 
+TEST_F(JobSystemTest, AJobBeginsWithAnEmptyEventMaskThoughItsLoopHasSlept) {
+  JobSystem jobs(memory_, {.spes = 1}, loop_);
+  const KernelImage image = test_image("sees_mask");
+  const JobImage sees_mask = jobs.place(image);
+  JobChain chain(jobs, "sees_mask", 1);
+  chain.add({sees_mask, {}});
+  for (int kick = 0; kick < 3; ++kick) {
+    std::this_thread::sleep_for(20ms);  // the loop finds nothing to do
+    chain.kick();
+    chain.wait();
+    expect_no_failures(chain);
+  }
+}
+
 TEST_F(JobSystemTest, RefusesALoopThatLeavesNoRoomForJobs) {
   EXPECT_THROW(JobSystem(memory_, {.spes = 1}, adds_), std::invalid_argument);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "pinned_context.h"
 #include "softcell/render/image_compare.h"
@@ -47,6 +48,26 @@ test::SkinnedMesh ground_triangle() {
   mesh.indices = {0, 1, 2};
   return mesh;
 }
+
+/// The pinned context, whose framebuffers may be made to fail.
+class FailingContext final : public GlContext {
+ public:
+  void make_current() override { pinned_context().make_current(); }
+  Function function(const char* name) const override {
+    const Function real = pinned_context().function(name);
+    if (std::string_view(name) != "glCheckFramebufferStatus") return real;
+    check_ = reinterpret_cast<Check*>(real);
+    return reinterpret_cast<Function>(&check);
+  }
+  std::string backend_name() const override { return pinned_context().backend_name(); }
+
+  static inline bool fails = false;
+
+ private:
+  using Check = unsigned int(unsigned int target);
+  static unsigned int check(unsigned int target) { return fails ? 0 : check_(target); }
+  static inline Check* check_ = nullptr;
+};
 
 class RendererTest : public testing::Test {
  protected:
@@ -153,6 +174,23 @@ TEST_F(RendererTest, DrawsOnlyWhereThePictureChanges) {
   renderer_.resize(kSide / 2, kSide / 2);
   item.origin = {0, 0, 0};
   EXPECT_GT(brightness(draw(frame).pixel(kSide / 4 + 5, kSide / 4 + 5)), 300);
+}
+
+TEST(Renderer, AResizeThatFailsLeavesThePictureAsItWas) {
+  FailingContext context;
+  Renderer renderer(context, {.width = kSide, .height = kSide});
+  FrameDescription frame = view_from_above();
+  frame.background_top = srgb(0xFF0000);
+  renderer.render(frame);
+  const Image before = renderer.pixels();
+  FailingContext::fails = true;
+  EXPECT_THROW(renderer.resize(kSide / 2, kSide + 1), std::runtime_error);
+  FailingContext::fails = false;
+  EXPECT_EQ(renderer.width(), kSide);
+  EXPECT_EQ(renderer.height(), kSide);
+  EXPECT_EQ(renderer.pixels(), before);
+  renderer.render(frame);
+  EXPECT_EQ(renderer.pixels(), before);
 }
 
 TEST_F(RendererTest, QuickShadowsFallWhereSoftOnesDo) {

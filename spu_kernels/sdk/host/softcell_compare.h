@@ -1,6 +1,6 @@
 #pragma once
-// Compares of integers lane by lane: all ones or zero, in unsigned lanes; and halts.  [LEXT, compare
-// intrinsics] documented Floats are compared in softcell_single.h, doubles in softcell_double.h.
+// Compares of integers lane by lane: all ones or zero, in unsigned lanes; and halts. Floats are compared in
+// softcell_single.h, doubles in softcell_double.h.  [LEXT, compare intrinsics] documented
 
 #include "softcell_environment.h"
 #include "softcell_lanes.h"

@@ -4,13 +4,15 @@
 // Kernels run with the host's arithmetic truncating, denormal operands and results flushed to zero. Inside
 // the range that both formats share, one host instruction is one SPU instruction. Arithmetic differs from an
 // SPU's in these cases only:
+//
 //   - a magnitude of 2^128 or more, as operand or exact result: the SPU has one ordinary binade more and
-//   saturates at 0x7FFFFFFF;
-//     the host stops at 0x7F7FFFFF, and takes those operands for infinities and NaNs;
+//     saturates at 0x7FFFFFFF; the host stops at 0x7F7FFFFF, and takes those operands for infinities and
+//     NaNs;
 //   - the sign of a zero that comes from underflow, or from adding nothing but negative zeros: the SPU's
-//   zeros are positive;
+//     zeros are positive;
 //   - constants that are denormal: a compiler may compute with them before the program runs, without
-//   flushing.
+//     flushing.
+//
 // A product that is exactly zero is +0 as on the SPU, since it is fused with an addition of +0. Compares,
 // conversions and estimates (here and in softcell_convert.h, softcell_estimate.h) work on integers and are
 // right for every bit pattern.

@@ -4,6 +4,8 @@
 //
 //   elements   0  1  2 [3  4  5  6] 7  8s 9 ...        [ ] open: fetched, not all moved
 //                                         s  stalls and notifies once it and all before it have moved
+//
+// The last element never stalls, whatever its bit. [CBEA, MFC list commands] documented
 
 #include <array>
 #include <cstddef>
@@ -45,8 +47,10 @@ class ListTransfer {
   /// All up to an element with the stall bit has moved: nothing goes on until resume().
   bool is_stalled() const { return stalls_ && open_ == 0; }
   void resume() { stalls_ = false; }
+  /// Whether it has stalled behind the element fetched last, or will.
+  bool stalls() const { return stalls_; }
 
-  bool is_done() const { return next_ == count() && open_ == 0 && !stalls_; }
+  bool is_done() const { return next_ == count() && open_ == 0; }
 
   const MfcCommand& command() const { return command_; }
   /// The index of the element to be fetched next.
@@ -60,7 +64,7 @@ class ListTransfer {
   LocalStoreAddress cursor_;  // of the next element's bytes
   std::uint32_t next_ = 0;
   std::uint32_t open_ = 0;
-  bool stalls_ = false;  // the element fetched last has the stall bit
+  bool stalls_ = false;  // the element fetched last has the stall bit, and others follow
   std::array<Transfer, kWindow> transfers_;
 };
 

@@ -73,9 +73,8 @@ class Mfc {
 
   /// MFC_WrTagUpdate: asks for the status of the tags that are in the mask now.
   /// @param condition  0 immediate, which also cancels an open request; 1 any tag complete; 2 all complete.
-  /// @return  nothing, or the fault tag-update-condition (another value) or tag-update-pending (1 or 2 while
-  /// a
-  ///          request is open).
+  /// @return  nothing, or a fault: tag-update-condition (another value), or tag-update-pending (1 or 2 while
+  ///          a request is open).
   std::optional<Fault> write_tag_update(std::uint32_t condition);
 
   /// MFC_RdTagStat: completes transfers until the requested condition holds, and ends the request.
@@ -98,9 +97,9 @@ class Mfc {
   /// @return  nothing, or the fault list-stall-ack-tag when no list of this tag has stalled.
   std::optional<Fault> write_list_stall_ack(std::uint32_t tag);
 
-  /// MFC_RdAtomicStat: what the atomic commands since the last read have done: bit 4 getllar, bit 2 putlluc,
-  /// bit 1 a putllc that failed; a single putllc that stored gives 0.
-  /// @return  the bits; or the fault atomic-status-not-expected, where the hardware would wait for ever.
+  /// MFC_RdAtomicStat: what the last getllar, putllc or putlluc has done: 4 a getllar, 2 a putlluc, 1 a
+  /// putllc that failed, 0 one that stored. That of a command before it, not read until then, is lost.
+  /// @return  the status; or the fault atomic-status-not-expected, where the hardware would wait for ever.
   std::variant<std::uint32_t, Fault> read_atomic_status();
 
   /// 1 when read_atomic_status() would not wait, else 0. Asking takes time.

@@ -55,8 +55,11 @@ struct MfcCommand {
   constexpr bool is_get() const { return (word & 0xFFF0) == 0x40; }
   /// Local store to main storage, in any form.
   constexpr bool is_put() const { return (word & 0xFFE0) == 0x20; }
-  /// Waits for every earlier command of its tag; true for the f forms only.
-  constexpr bool has_fence() const { return has_order_bits() && (word & 0x02) != 0; }
+  /// Waits for every earlier command of its tag: the f forms, and putqlluc, whose fence its name does not
+  /// show. [CBEA, MFC atomic update commands] documented
+  constexpr bool has_fence() const {
+    return (has_order_bits() && (word & 0x02) != 0) || opcode() == MfcOpcode::putqlluc;
+  }
   /// As a fence, and later commands of its tag wait for it; true for the b forms, mfceieio and mfcsync. (What
   /// these two order beyond the tag, accesses of other units, is in order here anyway.)
   constexpr bool has_barrier() const {

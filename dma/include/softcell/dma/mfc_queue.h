@@ -20,8 +20,10 @@ constexpr SlotSet slot_bit(int slot) { return static_cast<SlotSet>(1u << slot); 
 ///
 ///   plain               waits for earlier barriers of its tag, and for earlier `barrier` commands of any
 ///   fence               waits for every earlier command of its tag
-///   barrier             as fence, and later commands of its tag wait for it; mfceieio and mfcsync are
-///   barriers `barrier` command   waits for every earlier command, and every later one waits for it
+///   barrier             as fence, and later commands of its tag wait for it
+///   `barrier` command   waits for every earlier command, and every later one waits for it
+///
+/// putqlluc is a fence, mfceieio and mfcsync are barriers.
 ///
 /// [CBEA, MFC command ordering] documented
 class MfcQueue {

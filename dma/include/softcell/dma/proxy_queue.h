@@ -43,9 +43,8 @@ class ProxyQueue : private MfcObserver {
   ProxyQueue& operator=(const ProxyQueue&) = delete;
 
   /// Queues a command. With all slots taken, completes one first.
-  /// @return  nothing, or the rule that it breaks: those of Mfc::issue(), or not-on-proxy-queue. Then nothing
-  /// is
-  ///          queued.
+  /// @return  nothing, or the rule that it breaks, and then nothing is queued: those of Mfc::issue(), or
+  ///          not-on-proxy-queue.
   std::optional<Fault> issue(const MfcCommand& command);
 
   /// Those of these tags that have no command queued (Prxy_TagStatus). Asking takes time.
