@@ -57,7 +57,8 @@ class JobObserver {
   /// @return  the image; null when nobody knows it.
   virtual const KernelImage* on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) = 0;
 
-  /// The main of the job that began last has returned: completes what the job has in flight. @return  a fault of that.
+  /// The main of the job that began last has returned: completes what the job has in flight. @return  a fault
+  /// of that.
   virtual std::optional<dma::Fault> on_job_returned() = 0;
 
   /// The job has ended well, and its caller goes on. After a fault it is not called: the run ends.
