@@ -4,9 +4,7 @@ add_library(softcell_options INTERFACE)
 target_compile_options(softcell_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wpedantic -Werror
   # A contracted multiply-add rounds once where the source rounds twice: results would depend on the compiler.
-  -ffp-contract=off
-  # g++ 12 leaves out the rounding of (double)(float)x where its SLP vectorizer makes a pair of two.
-  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
+  -ffp-contract=off)
 if(SOFTCELL_SANITIZE)
   target_compile_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   # Instrumented code confuses GCC's flow analysis: it warns of std::regex's own members.

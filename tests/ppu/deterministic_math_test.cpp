@@ -61,20 +61,5 @@ TEST(DeterministicMath, HasTheSameBitsEverywhere) {
   EXPECT_EQ(sum, 14621454030132895366u);
 }
 
-/// As g++ 12 may leave the rounding out where it makes a pair of two.
-[[gnu::noinline]] void round_both(const double* from, double* to) {
-  const auto a = static_cast<float>(from[0]), b = static_cast<float>(from[1]);
-  to[0] = static_cast<double>(a);
-  to[1] = static_cast<double>(b);
-}
-
-TEST(DeterministicMath, DoublesMadeFloatsAreRounded) {
-  const double from[2] = {0.1, 0.2};
-  double to[2];
-  round_both(from, to);
-  EXPECT_EQ(to[0], double{0.1f});
-  EXPECT_EQ(to[1], double{0.2f});
-}
-
 }  // namespace
 }  // namespace softcell::ppu
