@@ -213,10 +213,10 @@ TEST(Simulation2d, RigidBodiesOfAnySizeAndPlaceMove) {
 }
 
 TEST(Simulation2d, TheLightestAndSmallestMaterialMoves) {
-  const Scene2d scene = std::get<Scene2d>(parse_scene(
-      "dimension = 2\n[[soft_body]]\ncell_size = 0.001\ndensity = 0.001\ncontact_radius = 0.01\n"
-      "shape = { kind = \"disc\" }\n[[box]]\nsize = [0.1, 0.01]\nposition = [0, -0.02]\n",
-      "s.toml"));
+  const Scene2d scene = std::get<Scene2d>(
+      parse_scene("dimension = 2\n[[soft_body]]\ncell_size = 0.001\ndensity = 0.001\ncontact_radius = 0.01\n"
+                  "shape = { kind = \"disc\" }\n[[box]]\nsize = [0.1, 0.01]\nposition = [0, -0.02]\n",
+                  "s.toml"));
   Simulation2d simulation(scene);
   run(simulation, 60);
   EXPECT_GT(simulation.soft_body(0).centre_of_mass().y(), -0.02f) << "it lies on the box";
