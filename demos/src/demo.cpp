@@ -180,6 +180,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
                   {"--record", options.record},
                   {"--trace", options.trace},
                   {"--json", options.json}});
+  make_picture_folders(options);  // where other outputs may be wanted, too
   // A recording and a trace are of one scene.
   const std::vector<MakeDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);

@@ -16,13 +16,23 @@ constexpr int kFramesPerSecond = 60;
 
 }  // namespace
 
-FrameFolder::FrameFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+void make_picture_folders(const DemoOptions& options) {
   std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (!std::filesystem::is_directory(folder_)) {
-    throw std::runtime_error("--out " + folder_.string() +
-                             " is not a folder and cannot be made one: " + error.message());
+  if (options.out) {
+    std::filesystem::create_directories(*options.out, error);
+    if (!std::filesystem::is_directory(*options.out)) {
+      throw std::runtime_error("--out " + options.out->string() +
+                               " is not a folder and cannot be made one: " + error.message());
+    }
   }
+  if (options.video) {
+    // What is wrong with the folder, the writer will say.
+    if (const auto parent = options.video->parent_path(); !parent.empty())
+      std::filesystem::create_directories(parent, error);
+  }
+}
+
+FrameFolder::FrameFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
   static const std::regex numbered("frame_[0-9]{5,}\\.png");
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     if (std::regex_match(entry.path().filename().string(), numbered)) std::filesystem::remove(entry.path());
@@ -36,10 +46,6 @@ void FrameFolder::write(int frame, const render::Image& image) const {
 Pictures::Pictures(const DemoOptions& options, Demo& demo) : demo_(demo) {
   if (options.out) folder_.emplace(*options.out);
   if (options.video) {
-    if (const auto parent = options.video->parent_path(); !parent.empty()) {
-      std::error_code ignored;  // what is wrong with the folder, the writer will say
-      std::filesystem::create_directories(parent, ignored);
-    }
     video_ = std::make_unique<render::VideoWriter>(*options.video, options.size.width, options.size.height,
                                                    kFramesPerSecond);
   }

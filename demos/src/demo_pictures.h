@@ -16,10 +16,14 @@
 
 namespace softcell::demos {
 
+/// Makes the folders that pictures and videos go to. @throws std::runtime_error  --out is no folder and
+/// cannot be made one.
+void make_picture_folders(const DemoOptions& options);
+
 /// The folder of numbered frames. Frames of an earlier run are removed, so that what is there is of one run.
 class FrameFolder {
  public:
-  /// @throws std::runtime_error  it is no folder and cannot be made one.
+  /// @pre the folder is there
   explicit FrameFolder(std::filesystem::path folder);
 
   void write(int frame, const render::Image& image) const;

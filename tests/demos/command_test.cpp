@@ -97,6 +97,16 @@ TEST(Command, TheLastPictureIsTheSameWithAndWithoutFiles) {
   EXPECT_EQ(read_json(folder / "a.json")["state_hash"], read_json(folder / "b.json")["state_hash"]);
 }
 
+TEST(Command, OtherOutputsMayLieInTheFoldersOfPictures) {
+  const ScratchFolder folder;
+  const std::string out = folder / "new/frames";
+  const CommandResult run = run_softcell(kDrop + ("--frames 2 --out " + out) + " --json " + out +
+                                         "/s.json --record " + out + "/r.rec --trace " + out + "/t.json");
+  ASSERT_EQ(run.status, 0) << run.output;
+  for (const char* file : {"/s.json", "/r.rec", "/t.json", "/frame_00001.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + file)) << file;
+}
+
 TEST(Command, ASecondRunReplacesTheFramesOfTheFirst) {
   const ScratchFolder folder;
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out")).status, 0);
