@@ -18,8 +18,6 @@
 namespace softcell::demos {
 namespace {
 
-constexpr int kExitInterrupted = 130;
-
 std::vector<Benchmark> all_benchmarks() {
   std::vector<Benchmark> all;
   add_solver_benchmarks(all);

@@ -26,7 +26,6 @@ namespace softcell::demos {
 namespace {
 
 constexpr int kExitFindings = 3;
-constexpr int kExitInterrupted = 130;  // as a shell reports a process that SIGINT ended
 
 nlohmann::ordered_json to_json(const Summary& s) {
   return {{"mean", s.mean}, {"p50", s.p50}, {"p99", s.p99}, {"max", s.max}};
@@ -129,7 +128,7 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
   Pictures pictures(options, demo);
-  try {
+  run_recorded(demo, [&] {
     ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames), options.quiet);
     for (int frame = 0; frame < frames && !guard.interrupted(); ++frame) {
       const FrameTimes times = demo.step();
@@ -140,11 +139,7 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
     }
     if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
     demo.stop();
-  } catch (...) {
-    save_recording_of_failure(demo);
-    throw;
-  }
-  demo.save_recording();
+  });
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.interrupted = guard.interrupted();
   if (record.interrupted) {
@@ -161,12 +156,18 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
 
 }  // namespace
 
-void save_recording_of_failure(Demo& demo) noexcept {
+void run_recorded(Demo& demo, const std::function<void()>& work) {
   try {
-    demo.save_recording();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "softcell: %s\n", error.what());
+    work();
+  } catch (...) {
+    try {
+      demo.save_recording();
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "softcell: %s\n", error.what());
+    }
+    throw;
   }
+  demo.save_recording();
 }
 
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {

@@ -69,10 +69,10 @@ class Demo {
   virtual void draw_published(const Look& look) = 0;
 };
 
-/// For a run that ends with an error: saves the recording of its frames so far, the one that failed included,
-/// because that is the run that one wants to see again. What goes wrong with that is printed: the error is
-/// what ends the run.
-void save_recording_of_failure(Demo& demo) noexcept;
+/// Does the work and saves the recording of its frames, also when it fails, the frame that failed included:
+/// that is the run that one wants to see again. What goes wrong with saving is only printed then: the work's
+/// error is what ends the run.
+void run_recorded(Demo& demo, const std::function<void()>& work);
 
 /// Sets a scene up that is loaded already.
 using MakeDemo = std::function<std::unique_ptr<Demo>(const SimulationOptions&)>;

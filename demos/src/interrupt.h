@@ -3,6 +3,9 @@
 
 namespace softcell::demos {
 
+/// Exit status of what was interrupted, as a shell reports a process that SIGINT ended.
+constexpr int kExitInterrupted = 130;
+
 /// While it lives, SIGINT and SIGTERM only set a flag. One at a time.
 class InterruptGuard {
  public:

@@ -275,15 +275,6 @@ void write_recording(const std::filesystem::path& path, const Recording<Dimensio
 
 template <int Dimension>
 Recording<Dimension> read_recording(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_directory(path, error)) {
-    // A device or a pipe might never end.
-    if (!std::filesystem::is_regular_file(path, error))
-      throw std::runtime_error("cannot read " + path.string() + ": it is no file");
-    if (const auto size = std::filesystem::file_size(path, error); !error && size > kMaxFile)
-      throw std::runtime_error(
-          fmt::format("{}: a file of {} bytes; a recording has at most {}", path.string(), size, kMaxFile));
-  }
   const std::vector<std::byte> bytes = read_file(path, kMaxFile);
   try {
     return parse_recording<Dimension>({reinterpret_cast<const char*>(bytes.data()), bytes.size()});

@@ -17,7 +17,7 @@
 namespace softcell::demos {
 namespace {
 
-constexpr int kExitDifference = 1, kExitInterrupted = 130;
+constexpr int kExitDifference = 1;
 constexpr std::uint64_t kFirstSeed = 1;
 
 dma::Schedule schedule_of(std::uint64_t seed) { return {dma::Schedule::kRandom, seed}; }

@@ -197,9 +197,6 @@ TraceFile parse_trace(std::string_view text) {
 }
 
 TraceFile read_trace(const std::filesystem::path& path) {
-  if (std::error_code error; std::filesystem::file_size(path, error) > kMostFileBytes && !error) {
-    throw std::runtime_error("trace " + path.string() + " is larger than 4 GB");
-  }
   const std::vector<std::byte> bytes = read_file(path, kMostFileBytes);
   try {
     return parse_trace({reinterpret_cast<const char*>(bytes.data()), bytes.size()});

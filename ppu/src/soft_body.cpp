@@ -52,20 +52,12 @@ SoftBody::SoftBody(std::shared_ptr<const SoftBodyModel> model, const Vector3f& p
       v_(model_->particles(), Vector3f::Zero()),
       corners_(model_->particles()),
       matcher_(model_->plan()) {
-  reset(position);
-  revision_ = resets_ = 0;
+  place_at_rest(position);
 }
 
-SoftBody& SoftBody::operator=(const SoftBody& saved) {
-  model_ = saved.model_;
-  x_ = saved.x_;
-  v_ = saved.v_;
-  corners_ = saved.corners_;
-  matcher_ = saved.matcher_;
-  asleep_ = saved.asleep_;
-  ++revision_;
-  ++resets_;
-  return *this;
+void SoftBody::place_at_rest(const Vector3f& position) {
+  for (std::size_t i = 0; i < x_.size(); ++i)
+    set_particle(i, model_->lattice().rest_position(i) + position, Vector3f::Zero());
 }
 
 void SoftBody::forget_rotations() {
@@ -102,9 +94,7 @@ void SoftBody::translate(const Vector3f& by) {
 }
 
 void SoftBody::reset(const Vector3f& position) {
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    set_particle(i, model_->lattice().rest_position(i) + position, Vector3f::Zero());
-  }
+  place_at_rest(position);
   forget_rotations();
   ++revision_;
 }

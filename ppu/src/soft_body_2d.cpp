@@ -45,17 +45,12 @@ std::shared_ptr<const SoftBodyModel2d> make_soft_body_model(Lattice2d lattice,
 
 SoftBody2d::SoftBody2d(std::shared_ptr<const SoftBodyModel2d> model, const Vector2f& position)
     : model_(std::move(model)), x_(model_->particles()), v_(model_->particles()), matcher_(model_->plan()) {
-  reset(position);
-  revision_ = 0;
+  place_at_rest(position);
 }
 
-SoftBody2d& SoftBody2d::operator=(const SoftBody2d& saved) {
-  model_ = saved.model_;
-  x_ = saved.x_;
-  v_ = saved.v_;
-  matcher_ = saved.matcher_;
-  ++revision_;
-  return *this;
+void SoftBody2d::place_at_rest(const Vector2f& position) {
+  for (std::size_t i = 0; i < x_.size(); ++i)
+    set_particle(i, model_->lattice().rest_position(i) + position, Vector2f::Zero());
 }
 
 void SoftBody2d::pull(float step) {
@@ -96,9 +91,7 @@ void SoftBody2d::translate(const Vector2f& by) {
 }
 
 void SoftBody2d::reset(const Vector2f& position) {
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    set_particle(i, model_->lattice().rest_position(i) + position, Vector2f::Zero());
-  }
+  place_at_rest(position);
   matcher_.reset();
   ++revision_;
 }

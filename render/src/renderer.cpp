@@ -66,6 +66,12 @@ struct Program {
   GLint radius;
 };
 
+/// What a picture is drawn in, and what its samples are resolved to.
+struct PictureBuffers {
+  GlObject sampled_framebuffer, sampled_colour, sampled_depth;
+  GlObject resolved_framebuffer, resolved_colour;
+};
+
 /// Triangles on the GPU.
 struct MeshBuffers {
   explicit MeshBuffers(const GladGLContext& gl)
@@ -169,8 +175,7 @@ struct Renderer::State {
   };
 
   // The framebuffer with its samples, the one they are resolved into, and the shadow map.
-  GlObject sampled_framebuffer, sampled_colour, sampled_depth;
-  GlObject resolved_framebuffer, resolved_colour;
+  PictureBuffers picture_buffers;
   GlObject shadow_framebuffer, shadow_map;
   GlObject frame_buffer;  ///< the uniform block
   GlObject lattice_layout, lattice_vertices, lattice_indices;
@@ -245,35 +250,31 @@ void Renderer::State::make_picture_buffers(int new_width, int new_height) {
   const auto require_complete = [&] {
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) refuse("framebuffer");
   };
-  GlObject new_sampled_framebuffer = make_framebuffer(gl);
-  GlObject new_sampled_colour = make_renderbuffer(gl);
-  GlObject new_sampled_depth = make_renderbuffer(gl);
-  storage(new_sampled_colour, samples > 1 ? samples : 0, GL_RGBA8);
-  storage(new_sampled_depth, samples > 1 ? samples : 0, GL_DEPTH_COMPONENT24);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, new_sampled_framebuffer.name());
+  PictureBuffers made;
+  made.sampled_framebuffer = make_framebuffer(gl);
+  made.sampled_colour = make_renderbuffer(gl);
+  made.sampled_depth = make_renderbuffer(gl);
+  storage(made.sampled_colour, samples > 1 ? samples : 0, GL_RGBA8);
+  storage(made.sampled_depth, samples > 1 ? samples : 0, GL_DEPTH_COMPONENT24);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, made.sampled_framebuffer.name());
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                             new_sampled_colour.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, new_sampled_depth.name());
+                             made.sampled_colour.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made.sampled_depth.name());
   require_complete();
 
-  GlObject new_resolved_framebuffer = make_framebuffer(gl);
-  GlObject new_resolved_colour = make_renderbuffer(gl);
-  storage(new_resolved_colour, 0, GL_RGBA8);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, new_resolved_framebuffer.name());
+  made.resolved_framebuffer = make_framebuffer(gl);
+  made.resolved_colour = make_renderbuffer(gl);
+  storage(made.resolved_colour, 0, GL_RGBA8);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, made.resolved_framebuffer.name());
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                             new_resolved_colour.name());
+                             made.resolved_colour.name());
   require_complete();
   if (gl.GetError() != GL_NO_ERROR) refuse("memory for a picture");
-  Image new_picture(new_width, new_height);
 
+  picture = Image(new_width, new_height);
+  picture_buffers = std::move(made);
   width = new_width;
   height = new_height;
-  sampled_framebuffer = std::move(new_sampled_framebuffer);
-  sampled_colour = std::move(new_sampled_colour);
-  sampled_depth = std::move(new_sampled_depth);
-  resolved_framebuffer = std::move(new_resolved_framebuffer);
-  resolved_colour = std::move(new_resolved_colour);
-  picture = std::move(new_picture);
   has_picture = false;
 }
 
@@ -464,7 +465,7 @@ void Renderer::State::draw_surface(const StaticDraw& item) const {
 }
 
 void Renderer::State::draw_opaque(const FrameDescription& frame) {
-  gl.BindFramebuffer(GL_FRAMEBUFFER, sampled_framebuffer.name());
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_buffers.sampled_framebuffer.name());
   gl.Viewport(0, 0, width, height);
   gl.Clear(GL_DEPTH_BUFFER_BIT);  // the background covers what nothing else does
   for (const SkinnedDraw& item : frame.skinned) {
@@ -629,8 +630,8 @@ void Renderer::render(const FrameDescription& frame) {
     state.has_picture = true;
   }
 
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.sampled_framebuffer.name());
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.resolved_framebuffer.name());
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.sampled_framebuffer.name());
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
   gl.BlitFramebuffer(0, 0, state.width, state.height, 0, 0, state.width, state.height, GL_COLOR_BUFFER_BIT,
                      GL_NEAREST);
 }
@@ -638,7 +639,7 @@ void Renderer::render(const FrameDescription& frame) {
 const Image& Renderer::pixels() {
   State& state = *state_;
   state.context.make_current();
-  state.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.resolved_framebuffer.name());
+  state.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
   state.gl.ReadPixels(0, 0, state.width, state.height, GL_RGBA, GL_UNSIGNED_BYTE, state.picture.rgba.data());
   // OpenGL counts rows from the bottom.
   const std::ptrdiff_t row_bytes = std::ptrdiff_t{4} * state.width;
@@ -653,7 +654,7 @@ void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh) {
   State& state = *state_;
   state.context.make_current();
   if (state.overlay == nullptr) state.overlay = std::make_unique<OverlayPainter>(state.gl);
-  state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.resolved_framebuffer.name());
+  state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
   state.overlay->draw(font, mesh, state.width, state.height);
 }
 
@@ -661,7 +662,7 @@ void Renderer::present(int width, int height) {
   State& state = *state_;
   state.context.make_current();
   const GladGLContext& gl = state.gl;
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.resolved_framebuffer.name());
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   const bool same = width == state.width && height == state.height;
   gl.BlitFramebuffer(0, 0, state.width, state.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,

@@ -1,6 +1,7 @@
 #include "usage_sentence.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <string_view>
@@ -20,12 +21,6 @@ std::vector<const CLI::App*> called(const CLI::App& top) {
   return chain;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::string unknown_option(const std::string& verb, const CommandVerb& tree, const std::string& argument) {
   const std::string name = argument.substr(0, argument.find('='));
   std::vector<std::string_view> known;
@@ -41,7 +36,7 @@ std::string unknown_option(const std::string& verb, const CommandVerb& tree, con
 std::string unknown_verb(const std::string& verb, const CommandVerb& tree, const std::string& argument) {
   std::vector<std::string> known;
   for (const CommandVerb& below : tree.verbs) known.push_back(below.name);
-  return fmt::format("{} has no command '{}'; there are: {}", verb, argument, joined(known));
+  return fmt::format("{} has no command '{}'; there are: {}", verb, argument, fmt::join(known, ", "));
 }
 
 std::string one_argument_too_many(const std::string& verb, const CommandVerb& tree,
@@ -50,8 +45,9 @@ std::string one_argument_too_many(const std::string& verb, const CommandVerb& tr
   for (const CommandOption& option : tree.options) {
     if (option.positional) taken.push_back(option.names.front());
   }
-  return fmt::format("the argument '{}' is one too many: {} takes {}", argument, verb,
-                     taken.empty() ? "nothing but options" : joined(taken) + " and options");
+  return fmt::format(
+      "the argument '{}' is one too many: {} takes {}", argument, verb,
+      taken.empty() ? "nothing but options" : fmt::format("{} and options", fmt::join(taken, ", ")));
 }
 
 /// @param argument  that nobody takes.
@@ -105,7 +101,7 @@ std::string verbs_sentence(const CLI::App& top) {
   std::vector<std::string> verbs;
   for (const CommandLeaf& leaf : leaves_of(command_tree(*called(top).back())))
     verbs.push_back(path + leaf.path);
-  return "say what to do: " + joined(verbs);
+  return fmt::format("say what to do: {}", fmt::join(verbs, ", "));
 }
 
 }  // namespace softcell::demos

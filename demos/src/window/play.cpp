@@ -68,7 +68,7 @@ Run play(const DemoOptions& options, std::string_view verb, const std::vector<Ma
     if (look) run.demo->input().set_look(*look);
     PlayedScene scene(window, *run.demo);
     bool next = false;
-    try {
+    run_recorded(*run.demo, [&] {
       while (!next && !scene.ends(options.frames) && !guard.interrupted()) {
         clock.wait();
         SDL_Event event;
@@ -80,11 +80,7 @@ Run play(const DemoOptions& options, std::string_view verb, const std::vector<Ma
         next = run.demo->input().wants_next_scene() && scenes.size() > 1;
       }
       run.record = scene.finish();
-    } catch (...) {
-      save_recording_of_failure(*run.demo);
-      throw;
-    }
-    run.demo->save_recording();
+    });
     run.record.interrupted = guard.interrupted();
     if (!next) return run;
     look = run.demo->input().look();

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "skin_job.h"
+#include "softcell/ppu/change_count.h"
 #include "softcell/ppu/embedding.h"
 #include "softcell/ppu/lattice.h"
 #include "softcell/ppu/mesh.h"
@@ -105,17 +106,12 @@ std::shared_ptr<const SoftBodyModel> make_soft_body_model(const TriangleMesh& me
 std::shared_ptr<const SoftBodyModel> make_soft_body_model(Lattice lattice, const SoftBodySettings& settings);
 
 /// Positions and velocities of one body's particles. Used by one thread at a time; allocates nothing after
-/// construction. Copy a SoftBody to save it, assign to restore.
+/// construction. Copy a SoftBody to save it, assign to restore: a change by its user, as those below.
 class SoftBody {
  public:
   /// At rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody(std::shared_ptr<const SoftBodyModel> model,
                     const Eigen::Vector3f& position = Eigen::Vector3f::Zero());
-  ~SoftBody() = default;
-  SoftBody(const SoftBody&) = default;
-  SoftBody(SoftBody&&) = default;
-  /// A change by its user, as those below.
-  SoftBody& operator=(const SoftBody& saved);
 
   const SoftBodyModel& model() const { return *model_; }
   const std::shared_ptr<const SoftBodyModel>& shared_model() const { return model_; }
@@ -163,8 +159,8 @@ class SoftBody {
   void add_particle_velocity(std::size_t particle, const Eigen::Vector3f& dv);  ///< m/s
   /// m/s, to every particle: adds a turn about the centre of mass, in rad/s.
   void add_angular_velocity(const Eigen::Vector3f& dw);
-  std::uint32_t revision() const { return revision_; }
-  std::uint32_t resets() const { return resets_; }
+  std::uint32_t revision() const { return revision_.count(); }
+  std::uint32_t resets() const { return resets_.count(); }
 
   Eigen::Vector3f centre_of_mass() const;    ///< metres
   Eigen::Vector3f linear_momentum() const;   ///< kg m/s
@@ -173,13 +169,14 @@ class SoftBody {
 
  private:
   void set_position(std::size_t particle, const Eigen::Vector3f& position);
+  void place_at_rest(const Eigen::Vector3f& position);
   void forget_rotations();
 
   std::shared_ptr<const SoftBodyModel> model_;
   std::vector<Eigen::Vector3f> x_, v_;
   std::vector<spu::SkinCorner> corners_;  // x_ again
   ShapeMatcher<float> matcher_;
-  std::uint32_t revision_ = 0, resets_ = 0;
+  ChangeCount revision_, resets_;
   bool asleep_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "softcell/ppu/change_count.h"
 #include "softcell/ppu/lattice_2d.h"
 #include "softcell/ppu/shape_matching_2d.h"
 #include "softcell/ppu/soft_body.h"
@@ -55,17 +56,12 @@ std::shared_ptr<const SoftBodyModel2d> make_soft_body_model(
     float contact_radius_in_cells = SoftBodyModel2d::kContactRadiusInCells);
 
 /// Positions and velocities of one body's particles. Used by one thread at a time; allocates nothing after
-/// construction. Copy a SoftBody2d to save it, assign to restore.
+/// construction. Copy a SoftBody2d to save it, assign to restore: a change by its user, as those below.
 class SoftBody2d {
  public:
   /// At rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody2d(std::shared_ptr<const SoftBodyModel2d> model,
                       const Eigen::Vector2f& position = Eigen::Vector2f::Zero());
-  ~SoftBody2d() = default;
-  SoftBody2d(const SoftBody2d&) = default;
-  SoftBody2d(SoftBody2d&&) = default;
-  /// A change by its user, as those below.
-  SoftBody2d& operator=(const SoftBody2d& saved);
 
   const SoftBodyModel2d& model() const { return *model_; }
   const std::shared_ptr<const SoftBodyModel2d>& shared_model() const { return model_; }
@@ -93,7 +89,7 @@ class SoftBody2d {
   void reset(const Eigen::Vector2f& position);
   void add_velocity(const Eigen::Vector2f& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Eigen::Vector2f& dv);  ///< m/s
-  std::uint32_t revision() const { return revision_; }
+  std::uint32_t revision() const { return revision_.count(); }
 
   Eigen::Vector2f centre_of_mass() const;   ///< metres
   Eigen::Vector2f linear_momentum() const;  ///< kg m/s
@@ -103,10 +99,12 @@ class SoftBody2d {
   float deformation() const;
 
  private:
+  void place_at_rest(const Eigen::Vector2f& position);
+
   std::shared_ptr<const SoftBodyModel2d> model_;
   std::vector<Eigen::Vector2f> x_, v_;
   ShapeMatcher2d<float> matcher_;
-  std::uint32_t revision_ = 0;
+  ChangeCount revision_;
 };
 
 }  // namespace softcell::ppu
