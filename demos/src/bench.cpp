@@ -95,9 +95,9 @@ int run_bench(const BenchOptions& options) {
     for (const Benchmark& b : benchmarks) fmt::print("{}\n", b.name);
     return 0;
   }
+  const InterruptGuard guard;
   OutputFiles files;
   ls_sim::WholeFile* const json = files.open(options.json);
-  const InterruptGuard guard;
   const std::vector<Measurement> all = measure(benchmarks, options.rounds, guard);
   if (guard.interrupted()) {
     fmt::print(stderr, "softcell: interrupted; nothing is reported of a part of the rounds\n");

@@ -7,15 +7,13 @@
 
 #include "json_file.h"
 #include "kernel_samples.h"
-#include "output_files.h"
 #include "softcell/dma/addresses.h"
+#include "softcell/ls_sim/whole_file.h"
 #include "verbs.h"
 
 namespace softcell::demos {
 
 int run_budget(const BudgetOptions& options) {
-  OutputFiles files;
-  ls_sim::WholeFile* const json = files.open(options.json);
   auto document = nlohmann::ordered_json::array();
   std::string over;
   fmt::print("{:<10} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}\n", "kernel", "text", "rodata",
@@ -40,8 +38,11 @@ int run_budget(const BudgetOptions& options) {
                           s.total() - s.budget);
     }
   }
-  if (json != nullptr) write_json(*json, document);
-  files.commit();
+  if (options.json) {
+    ls_sim::WholeFile file(*options.json);
+    write_json(file, document);
+    file.commit();
+  }
   if (!over.empty()) throw std::runtime_error(over);
   return 0;
 }

@@ -118,14 +118,18 @@ void print_summary(const nlohmann::ordered_json& s, const DemoOptions& options) 
 }
 
 Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDemo& make,
-                 const SimulationOptions& how) {
+                 const SimulationOptions& how, const InterruptGuard& guard) {
   render::pin_software_rasterizer();
   Run run{.demo = make(how), .record = {}};
   Demo& demo = *run.demo;
   RunRecord& record = run.record;
+  record.interrupted = guard.interrupted();
+  if (record.interrupted) {
+    fmt::print(stderr, "softcell: interrupted before the first frame\n");
+    return run;
+  }
   const int frames = options.frames.value_or(demo.frames());
 
-  const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
   Pictures pictures(options, demo);
   run_recorded(demo, [&] {
@@ -181,6 +185,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
                   {"--record", options.record},
                   {"--trace", options.trace},
                   {"--json", options.json}});
+  const InterruptGuard guard;     // before the first file is opened: nothing is to be left of any
   make_picture_folders(options);  // where other outputs may be wanted, too
   // A recording and a trace are of one scene.
   const std::vector<MakeDemo> scenes =
@@ -197,8 +202,8 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
                               .schedule = options.schedule,
                               .findings = options.checked ? &findings : nullptr,
                               .trace = trace ? &*trace : nullptr};
-  const Run run =
-      options.headless ? run_headless(options, verb, scenes.front(), how) : play(options, verb, scenes, how);
+  const Run run = options.headless ? run_headless(options, verb, scenes.front(), how, guard)
+                                   : play(options, verb, scenes, how, guard);
   if (run.record.interrupted) return kExitInterrupted;
 
   auto statistics = statistics_document(options, *run.demo, run.record);

@@ -69,7 +69,7 @@ class Demo {
   virtual void draw_published(const Look& look) = 0;
 };
 
-/// Does the work and saves the recording of its frames, also when it fails, the frame that failed included:
+/// Does the work and saves the recording of its frames, also when it fails, a frame that failed included:
 /// that is the run that one wants to see again. What goes wrong with saving is only printed then: the work's
 /// error is what ends the run.
 void run_recorded(Demo& demo, const std::function<void()>& work);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "softcell/ls_sim/whole_file.h"
 #include "usage_error.h"
 
 namespace softcell::demos {
@@ -11,12 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Links followed as far as there are files.
+/// Links followed as far as there are files; what is behind them then is normalised, as `..` of a link is not
+/// the folder that the link is in.
 fs::path one_spelling(const fs::path& path) {
   std::error_code error;
-  const fs::path absolute = fs::absolute(path, error).lexically_normal();
+  const fs::path absolute = fs::absolute(path, error);
   const fs::path canonical = fs::weakly_canonical(absolute, error);
-  return error ? absolute : canonical;
+  return error ? absolute.lexically_normal() : canonical;
 }
 
 bool is_device_or_pipe(const fs::path& path) {
@@ -28,7 +30,10 @@ bool is_device_or_pipe(const fs::path& path) {
 }  // namespace
 
 bool is_one_file(const fs::path& a, const fs::path& b) {
-  return !is_device_or_pipe(a) && one_spelling(a) == one_spelling(b);
+  if (is_device_or_pipe(a) || is_device_or_pipe(b)) return false;
+  const fs::path one = one_spelling(a), other = one_spelling(b);
+  return one == other || ls_sim::WholeFile::temporary_name(one) == other ||
+         one == ls_sim::WholeFile::temporary_name(other);
 }
 
 void check_distinct(const std::vector<NamedFile>& files) {

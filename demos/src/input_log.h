@@ -62,14 +62,25 @@ class InputLog {
     return events_;
   }
 
-  /// What happened at the beginning of the frame. @throws std::runtime_error  the recording is full.
+  /// What happened at the beginning of the frame. A recording without room for it is given up, as nothing
+  /// is known of the state before it: require_room().
   void note(std::int64_t frame, std::span<const Event> events) {
-    const bool full =
-        frame >= kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents;
-    if (file_ && full) throw std::runtime_error(path_->string() + ": the recording is as long as one may be");
     record_.frames = frame + 1;
     if (!file_) return;
+    full_ = frame >= kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents;
+    if (full_) {
+      file_.reset();
+      return;
+    }
     for (const Event& event : events) record_.events.push_back({frame, event});
+  }
+
+  /// @throws std::runtime_error  the recording was given up.
+  void require_room() const {
+    if (!full_) return;
+    throw std::runtime_error(path_->string() + ": a recording has at most " +
+                             std::to_string(kMaxRecordedFrames) + " frames and " +
+                             std::to_string(kMaxRecordedEvents) + " events; nothing is recorded");
   }
 
   /// Writes the recording, if one is asked for; once. @throws std::runtime_error  it cannot be written.
@@ -100,6 +111,7 @@ class InputLog {
 
   std::optional<std::filesystem::path> path_;  // of what is recorded
   std::shared_ptr<ls_sim::WholeFile> file_;    // of all copies; one of them saves
+  bool full_ = false;
   std::optional<Recording<Dimension>> replay_;
   std::string replay_name_;
   std::size_t next_ = 0;  // event of the replay

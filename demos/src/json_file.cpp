@@ -6,6 +6,7 @@ namespace softcell::demos {
 
 void write_json(ls_sim::WholeFile& file, const nlohmann::ordered_json& document) {
   file.write(document.dump(2) + "\n");
+  file.finish();
 }
 
 }  // namespace softcell::demos

@@ -6,7 +6,7 @@
 
 namespace softcell::demos {
 
-/// Writes the document into a file that the caller commits.
+/// Writes the document, all that is in the file, which the caller commits.
 /// @throws std::runtime_error  naming the file and why it cannot be written.
 void write_json(ls_sim::WholeFile& file, const nlohmann::ordered_json& document);
 

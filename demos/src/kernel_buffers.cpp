@@ -72,7 +72,9 @@ void KernelBuffers::write_files(OutputFiles& files) const {
   for (const Slot& slot : slots_) {
     if (slot.spec->direction == BufferSpec::kIn) continue;
     const auto bytes = slot.memory.span();
-    files.open(slot.spec->file).write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
+    ls_sim::WholeFile& file = files.open(slot.spec->file);
+    file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
+    file.finish();
   }
 }
 

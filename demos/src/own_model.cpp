@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scene_file/read_common.h"
 #include "softcell/ppu/lattice.h"
 #include "usage_error.h"
 
@@ -15,7 +16,8 @@ namespace {
 double cell_size(const Demo3dOptions& options, double longest) {
   if (!options.cell) return longest / options.cells;
   const double cell = *options.cell;
-  if (cell >= longest) {
+  constexpr double kNearlyAll = 0.999;  // of the model: what is left would be a rounding of a cell
+  if (cell > kNearlyAll * longest) {
     throw std::runtime_error(fmt::format(
         "--cell {}: one cell would hold the whole model, which is {:.4g} long; give less than that", cell,
         longest));
@@ -30,8 +32,7 @@ double cell_size(const Demo3dOptions& options, double longest) {
 
 bool fits(const ppu::TriangleMesh& mesh, double cell) {
   try {
-    ppu::voxelize(mesh, static_cast<float>(cell));
-    return true;
+    return ppu::voxelize(mesh, static_cast<float>(cell)).particles.size() <= kMaxParticlesOfScene;
   } catch (const std::runtime_error&) {
     return false;
   }
@@ -46,7 +47,7 @@ void check_lattice(const Demo3dOptions& options, const ppu::TriangleMesh& mesh, 
   while (enough < longest && !fits(mesh, enough)) enough *= kCoarser;
   if (enough >= longest) ppu::voxelize(mesh, static_cast<float>(cell));  // whose sentence is about the mesh
   const std::string too_many =
-      fmt::format("the lattice would have more than {} particles", ppu::kMaxLatticeParticles);
+      fmt::format("the lattice would have more than {} particles", kMaxParticlesOfScene);
   if (options.cell) {
     throw std::runtime_error(
         fmt::format("--cell {}: {}; {:.4g} is large enough", *options.cell, too_many, enough));

@@ -11,9 +11,9 @@ namespace softcell::demos {
 
 int run_report(const ReportOptions& options) {
   check_distinct({{"the trace", options.trace}, {"--out", options.out}});
-  ls_sim::WholeFile file(options.out);
   const TraceFile trace = read_trace(options.trace);
   const std::string page = report_page(trace, options.trace.filename().string());
+  ls_sim::WholeFile file(options.out);
   file.write(page);
   file.commit();
 

@@ -82,6 +82,7 @@ class SceneDemo : public Demo {
       throw;
     }
     log_.note(frame_++, simulation_.last_events());
+    log_.require_room();
     return times;
   }
 

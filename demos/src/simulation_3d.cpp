@@ -165,7 +165,7 @@ struct Simulation3d::State {
 
   void copy_contacts(Snapshot& snapshot) const {
     snapshot.contacts.clear();
-    if (notes_contacts) world.contacts(snapshot.contacts);
+    if (notes_contacts && contacts_stand) world.contacts(snapshot.contacts);
   }
 
   /// Waits for the SPEs; what was handed over is shown from now on.
@@ -205,6 +205,7 @@ struct Simulation3d::State {
   std::vector<std::span<const spu::SkinCorner>> positions;
   std::size_t vertices = 0;
   bool notes_contacts = false;
+  bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
 
   std::array<Snapshot, 2> snapshots;
   int newest = 1;            // the snapshot that is shown: of the vertices that the orchestrator shows
@@ -231,6 +232,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   if (!s.controls.advance()) {
     finish();
     if (puts_elsewhere(s.events)) {
+      s.contacts_stand = false;
       s.hand_over();
       finish();
     }
@@ -245,6 +247,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.controls.hands().pull(s.soft_bodies);
   const ppu::SoftBodyTimes begin = s.soft_bodies.times();
   const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
+  s.contacts_stand = true;
 
   const auto waiting = std::chrono::steady_clock::now();
   finish();

@@ -55,7 +55,8 @@ class Simulation3d {
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
 
-  /// Only of frames simulated while note_contacts() was on, and of those of a pause.
+  /// Only of frames simulated while note_contacts() was on, and of those of a pause in which no body was put
+  /// elsewhere: what it touches there is found with the next simulated frame.
   std::span<const ppu::Contact> shown_contacts() const;
   /// From the next step() on contacts are copied, or not, which is how it begins.
   void note_contacts(bool on);

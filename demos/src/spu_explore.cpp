@@ -31,15 +31,14 @@ class Explorer {
         json_(files_.open(options.json)) {}
 
   int explore() {
-    const InterruptGuard guard;
     {
       ProgressBar bar("spu explore", options_.seeds, options_.quiet);
-      while (tried_ < options_.seeds && differences_.empty() && !guard.interrupted()) {
+      while (tried_ < options_.seeds && differences_.empty() && !guard_.interrupted()) {
         try_next_seed();
         if (!options_.quiet) bar.show(tried_);
       }
     }
-    if (guard.interrupted() && differences_.empty()) {
+    if (guard_.interrupted() && differences_.empty()) {
       fmt::print(stderr, "softcell: interrupted; {} of {} seeds gave the same outcome\n", tried_,
                  options_.seeds);
       return kExitInterrupted;
@@ -115,6 +114,7 @@ class Explorer {
   const ls_sim::KernelImage image_;
   dma::AddressSpace memory_;
   KernelBuffers buffers_;
+  const InterruptGuard guard_;
   OutputFiles files_;
   ls_sim::WholeFile* const json_;  // opened first: what cannot be written is no surprise after a long search
   std::uint64_t tried_ = 0;

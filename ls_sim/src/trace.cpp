@@ -136,6 +136,7 @@ void Trace::write(WholeFile& file) const {
   std::vector<const SpeEvents*> spes;
   for (const auto& spe : spes_) spes.push_back(spe->events_.get());
   writer.write(spes);
+  file.finish();
 }
 
 }  // namespace softcell::ls_sim

@@ -67,10 +67,12 @@ class CoupledBody {
   }
 
   /// Wakes the body if it sleeps and may have lain on another, which was in `gone` and is there no longer.
-  void lose(const Bounds& gone) {
+  void lose(const CoupledBody& other, const Bounds& gone) {
     if (!soft_.asleep() || particles_.empty()) return;
+    constexpr float kGive = 1.2f;  // bodies that rest on each other are not quite as far apart as they touch
     const Bounds own = box();
-    const Eigen::Vector3f reach = Eigen::Vector3f::Constant(soft_.model().lattice().spacing);
+    const Eigen::Vector3f reach = Eigen::Vector3f::Constant(
+        kGive * (soft_.model().soft_contact_radius() + other.soft_.model().soft_contact_radius()));
     if ((own.low - reach - gone.high).maxCoeff() < 0 && (gone.low - own.high - reach).maxCoeff() < 0) rouse();
   }
 
@@ -283,7 +285,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!leaving.can_be_touched()) return;
     const Bounds box = leaving.box();
     for (const auto& body : bodies)
-      if (body.get() != &leaving) body->lose(box);
+      if (body.get() != &leaving) body->lose(leaving, box);
   }
 
   /// What was begun ahead is of no use.

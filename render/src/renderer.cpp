@@ -250,6 +250,7 @@ void Renderer::State::make_picture_buffers(int new_width, int new_height) {
   const auto require_complete = [&] {
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) refuse("framebuffer");
   };
+  gl.GetError();  // of a size that was refused before, which a framebuffer's status had told first
   PictureBuffers made;
   made.sampled_framebuffer = make_framebuffer(gl);
   made.sampled_colour = make_renderbuffer(gl);

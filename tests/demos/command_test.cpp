@@ -139,6 +139,9 @@ TEST(Command, CountsCellsAlongTheUsersModelWhateverItsUnits) {
   EXPECT_EQ(particles(""), 9 * 9 * 9);
   EXPECT_EQ(particles(" --cells 4"), 5 * 5 * 5);
   EXPECT_EQ(particles(" --cell 0.2"), 6 * 6 * 6);
+  write_file(folder / "own.toml",
+             "[[soft_body]]\nname = \"without cell_size\"\nown_model_side = 2\nshape = { kind = \"box\" }\n");
+  EXPECT_EQ(particles(" --cells 4 --scene " + (folder / "own.toml")), 5 * 5 * 5);
 }
 
 TEST(Command, TracesADemoAndMakesAPageOfIt) {
@@ -365,9 +368,52 @@ TEST(Command, RefusesTwoOutputsInOneFile) {
   EXPECT_NE(refusal(demo + "--record same --json " + (folder / "same")).find("--record and --json"),
             std::string::npos);
   EXPECT_NE(refusal(demo + "--video same --json same").find("--video and --json"), std::string::npos);
+  EXPECT_NE(refusal(demo + "--json s --trace s.part").find("--trace and --json"), std::string::npos);
   EXPECT_NE(refusal("report t.json --out ./t.json").find("the trace and --out are one file"),
             std::string::npos);
   EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
+}
+
+// The folder above the one that a link stands for is not the folder that the link is in.
+TEST(Command, KnowsOneFileThroughALinkedFolder) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder / "other/sub");
+  std::filesystem::create_directory_symlink(folder / "other/sub", folder / "link");
+  const std::string demo = "cd " + folder.path().string() +
+                           " && " SOFTCELL_COMMAND
+                           " demo 2d --headless --quiet --frames 1 --size 32x32 --trace link/../x.json ";
+  EXPECT_EQ(run_shell(demo + "--json other/x.json").status, 2);
+  EXPECT_EQ(run_shell(demo + "--json x.json").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "x.json"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "other/x.json"));
+}
+
+TEST(Command, LeavesNothingWhenInterruptedBeforeTheFirstFrame) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_shell("cd " + folder.path().string() +
+                " && " SOFTCELL_COMMAND
+                " demo 3d --headless --scene big --frames 1 --json j --trace t --record r & child=$!; "
+                "while [ ! -e " +
+                (folder / "j.part") + " ]; do sleep 0.01; done; kill -TERM $child; wait $child");
+  EXPECT_EQ(run.status, 130) << run.output;
+  EXPECT_EQ(run.output, "softcell: interrupted before the first frame\n");
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+// A pipe's opening waits for its reader, and this one reads the second behind the first's end.
+TEST(Command, WritesIntoPipesOneAfterTheOther) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_shell("cd " + folder.path().string() +
+                " && mkfifo p q && (cat p >trace; cat q >json) & "
+                "cd " +
+                folder.path().string() +
+                "; while [ ! -p q ]; do sleep 0.01; done; timeout 60 " SOFTCELL_COMMAND
+                " demo 2d --headless --quiet --frames 1 --size 32x32 --trace p --json q && wait");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_GT(std::filesystem::file_size(folder / "trace"), 100u);
+  EXPECT_GT(std::filesystem::file_size(folder / "json"), 100u);
 }
 
 TEST(Command, RefusesWhatItCannotWriteBeforeALongRun) {
@@ -502,6 +548,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.001", 1, "--cell 0.001: the model is 1 long"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.005", 1, "--cell 0.005: the lattice would have"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --cells 200", 1, "--cells 200: the lattice would have"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.01", 1, "--cell 0.01: the lattice would have"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.9999", 1, "--cell 0.9999: one cell would hold"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --out %s/file", 1, "file"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --out /proc/frames", 1, "/proc/frames"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --trace /proc/t.json", 1, "/proc/t.json"},

@@ -292,9 +292,35 @@ TEST(Replay, OfARunThatFailedAndCannotBeRecordedHasTheFirstErrorsStatus) {
                            .state_hash = 0,
                            .events = {{0, push}, {0, push}, {0, push}}});
   const tests::CommandResult result = tests::run_softcell(
-      "demo 3d --headless --quiet --size 32x32 --record /nowhere/at.all --replay " + bad.string());
+      "demo 3d --headless --quiet --size 32x32 --record /dev/full --replay " + bad.string());
   EXPECT_EQ(result.status, 1);
-  EXPECT_TRUE(contains(result.output, "/nowhere/at.all"));
+  EXPECT_TRUE(contains(result.output, "cannot write /dev/full: No space left"));
+  EXPECT_TRUE(contains(result.output, "not finite"));
+}
+
+// What is known of its state is of a frame that it has no room for.
+TEST(Recording, ThatIsFullIsGivenUp) {
+  const tests::ScratchFolder scratch;
+  DemoOptions options;
+  options.record = scratch.path() / "full.rec";
+  Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
+  {
+    InputLog<2> log(options);
+    log.begin(scene);
+    const std::vector<InputEvent<2>> events(kMaxRecordedEvents - 1);
+    log.note(0, events);
+    log.note(1, std::span(events).first(1));
+    EXPECT_NO_THROW(log.require_room());
+    log.note(2, std::span(events).first(1));
+    try {
+      log.require_room();
+      FAIL();
+    } catch (const std::runtime_error& error) {
+      EXPECT_TRUE(contains(error.what(), "full.rec: a recording has at most 10000000 frames and 2000000 ev"));
+    }
+    log.save(0);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(scratch.path()));
 }
 
 TEST(SceneHash, DependsOnEachPartOfTheSimulation) {

@@ -114,6 +114,14 @@ TEST(ShownContacts, AreNotedWhenAskedFor) {
   simulation.note_contacts(true);
   simulation.step(std::vector<InputEvent<3>>{{.action = Action::kPause}});
   EXPECT_FALSE(simulation.shown_contacts().empty());
+  // Of what a body touches where it is put then, nobody knows before time goes on.
+  simulation.step(std::vector<InputEvent<3>>{{.action = Action::kHome, .body = kEveryBody}});
+  EXPECT_TRUE(simulation.shown_contacts().empty());
+  simulation.step();
+  EXPECT_TRUE(simulation.shown_contacts().empty());
+  simulation.step(std::vector<InputEvent<3>>{{.action = Action::kResume}});
+  for (int frame = 0; frame < 120; ++frame) simulation.step();
+  EXPECT_FALSE(simulation.shown_contacts().empty());
 }
 
 TEST(Contacts, OfABoxOnTheFloorPointUpwards) {

@@ -438,21 +438,26 @@ TEST(BulletSoftBodies, ASavedBodyIsRestoredAsAWhole) {
 }
 
 TEST(BulletSoftBodies, WhatSleptOnABodyFallsWhenThatGoesAway) {
-  for (const bool removed : {true, false}) {
-    World world;
-    world.add_floor();
-    world.soft.let_sleep(SleepSettings{.speed = 0.5f, .seconds = 0.2f});
-    const auto model = block_model({3, 3, 3}, stiff(0.2f));
-    SoftBody& low = world.soft.add(model, {0, 0.05f, 0});
-    SoftBody& high = world.soft.add(model, {0, 0.85f, 0});
-    world.run(4);
-    ASSERT_TRUE(low.asleep() && high.asleep());
-    if (removed)
-      world.soft.remove(low);
-    else
-      low.translate({5, 0, 0});
-    world.run(2);
-    EXPECT_NEAR(high.bounds().low.y(), model->contact_radius(), 0.02f) << removed;
+  const auto fine = block_model({3, 3, 3}, stiff(0.2f)), coarse = block_model({3, 3, 3}, stiff(0.5f));
+  for (const auto& below : {fine, coarse}) {
+    for (const bool removed : {true, false}) {
+      World world;
+      world.add_floor();
+      world.soft.let_sleep(SleepSettings{.speed = 0.5f, .seconds = 0.2f});
+      SoftBody& low = world.soft.add(below, {0, 0.05f, 0});
+      // Above one of its particles, as far away as the two can be.
+      const float height = low.bounds().high.y();
+      SoftBody& high = world.soft.add(
+          fine, {0, height + 1.05f * (fine->soft_contact_radius() + below->soft_contact_radius()), 0});
+      world.run(4);
+      ASSERT_TRUE(low.asleep() && high.asleep());
+      if (removed)
+        world.soft.remove(low);
+      else
+        low.translate({9, 0, 0});
+      world.run(4);
+      EXPECT_NEAR(high.bounds().low.y(), fine->contact_radius(), 0.02f) << removed;
+    }
   }
 }
 

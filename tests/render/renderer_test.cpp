@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "pinned_context.h"
 #include "softcell/render/image_compare.h"
@@ -49,15 +50,17 @@ test::SkinnedMesh ground_triangle() {
   return mesh;
 }
 
-/// The pinned context, whose framebuffers may be made to fail.
+/// The pinned context, whose framebuffers may be made to fail for want of memory.
 class FailingContext final : public GlContext {
  public:
   void make_current() override { pinned_context().make_current(); }
   Function function(const char* name) const override {
     const Function real = pinned_context().function(name);
-    if (std::string_view(name) != "glCheckFramebufferStatus") return real;
-    check_ = reinterpret_cast<Check*>(real);
-    return reinterpret_cast<Function>(&check);
+    if (std::string_view(name) == "glCheckFramebufferStatus") {
+      check_ = reinterpret_cast<Check*>(real);
+      return reinterpret_cast<Function>(&check);
+    }
+    return std::string_view(name) == "glGetError" ? reinterpret_cast<Function>(&error) : real;
   }
   std::string backend_name() const override { return pinned_context().backend_name(); }
 
@@ -65,8 +68,15 @@ class FailingContext final : public GlContext {
 
  private:
   using Check = unsigned int(unsigned int target);
-  static unsigned int check(unsigned int target) { return fails ? 0 : check_(target); }
+  static unsigned int check(unsigned int target) {
+    if (!fails) return check_(target);
+    constexpr unsigned int kOutOfMemory = 0x0505;
+    error_ = kOutOfMemory;
+    return 0;
+  }
+  static unsigned int error() { return std::exchange(error_, 0u); }
   static inline Check* check_ = nullptr;
+  static inline unsigned int error_ = 0;
 };
 
 class RendererTest : public testing::Test {
@@ -191,6 +201,8 @@ TEST(Renderer, AResizeThatFailsLeavesThePictureAsItWas) {
   EXPECT_EQ(renderer.pixels(), before);
   renderer.render(frame);
   EXPECT_EQ(renderer.pixels(), before);
+  renderer.resize(kSide / 2, kSide / 2);  // of what was wrong before nothing is left
+  EXPECT_EQ(renderer.width(), kSide / 2);
 }
 
 TEST_F(RendererTest, QuickShadowsFallWhereSoftOnesDo) {

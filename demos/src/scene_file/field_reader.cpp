@@ -43,7 +43,8 @@ std::optional<float> number_within(const Value& value, Range range) {
     return x <= range.high && (range.low_excluded ? x > range.low : x >= range.low);
   };
   if (!inside(*number) || (range.low_excluded && !inside(double{single}))) return std::nullopt;
-  return single;
+  // What is not 0 stays so: a mass of 0 does not move.
+  return single == 0 && *number != 0 ? std::nextafter(0.0f, *number > 0 ? 1.0f : -1.0f) : single;
 }
 
 std::string list(std::span<const std::string_view> names) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "../scripted_input.h"
 #include "field_reader.h"
 
 namespace softcell::demos {
@@ -19,8 +20,9 @@ inline constexpr int kMaxSubsteps = 64;
 inline constexpr double kMaxGravity = 1000;  // m/s^2
 inline constexpr double kMaxMass = 1e6;      // kg
 inline constexpr double kLeastMass = 1e-6;   // kg; of what moves: floats have inverses of masses and inertias
-inline constexpr double kMaxTime = 1e5;      // seconds
-inline constexpr double kMaxSpeed = 1000;    // m/s
+inline constexpr double kLeastCellSize = 0.001;  // metres; likewise
+inline constexpr double kMaxTime = 1e5;          // seconds
+inline constexpr double kMaxSpeed = 1000;        // m/s
 inline constexpr Range kGravity{.low = -kMaxGravity, .high = kMaxGravity};
 inline constexpr Range kMass{.low = 0, .high = kMaxMass};
 inline constexpr Range kTime{.low = 0, .high = kMaxTime};

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "nearest_name.h"
+#include "read_common.h"
 #include "softcell/ppu/regions.h"
 #include "softcell/ppu/stiffness.h"
 
@@ -12,7 +13,7 @@ namespace softcell::demos {
 namespace {
 
 // Least values: of what is smaller, and far lighter than air, masses and inertias soon are no floats.
-constexpr Range kCellSize{.low = 0.001, .high = kFar};
+constexpr Range kCellSize{.low = kLeastCellSize, .high = kFar};
 constexpr Range kDensity{.low = 0.001, .high = 1e6};
 constexpr Range kFriction{.low = 0, .high = 100};
 constexpr Range kFrequency{.low = 0, .high = 1e6};
@@ -70,7 +71,7 @@ Materials::Materials(const Value* table) {
   }
 }
 
-Material Materials::read(FieldReader& body) const {
+Material Materials::read(FieldReader& body, Need cell_size) const {
   Material material;
   std::string name;
   body.text("material", name);
@@ -86,7 +87,7 @@ Material Materials::read(FieldReader& body) const {
     }
     material = found->second;
   }
-  read_fields(body, material, material.settings.cell_size > 0 ? Need::kOptional : Need::kRequired);
+  read_fields(body, material, material.settings.cell_size > 0 ? Need::kOptional : cell_size);
   return material;
 }
 

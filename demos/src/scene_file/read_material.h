@@ -24,9 +24,9 @@ class Materials {
   explicit Materials(const Value* table);
 
   /// A soft body's material: the one it names, and over it the fields that it states itself.
-  /// A cell size that is stated nowhere is a field that the body lacks: its finish() says so.
+  /// @param cell_size  whether one must be stated in either: where not, the body's finish() says so
   /// @throws SceneError
-  Material read(FieldReader& body) const;
+  Material read(FieldReader& body, Need cell_size) const;
 
  private:
   std::map<std::string, Material, std::less<>> by_name_;

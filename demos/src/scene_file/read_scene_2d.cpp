@@ -158,7 +158,7 @@ void read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
       .vector<2>("position", body.position, kCoordinate)
       .number("contact_radius", body.contact_radius, kContactRadius);
   check_name(fields, scene);
-  const Material material = materials.read(fields);
+  const Material material = materials.read(fields, Need::kRequired);
   body.cells = read_lattice_2d(fields, lattices);
   body.settings = material.settings_for(step_of(scene));
 }

@@ -12,6 +12,7 @@ using Eigen::Vector3f;
 
 constexpr std::array<std::string_view, 2> kPatterns{"plain", "tiles"};
 constexpr Range kTwist{.low = -1000, .high = 1000};  // rad/s
+constexpr Range kOwnModelSide{.low = kLeastCellSize * ppu::kMaxLatticeCellsPerAxis, .high = kFar};
 
 /// A floor whose upper side is at y = 0, and four walls on it. The wall towards +z, where cameras are, may be
 /// glass.
@@ -115,13 +116,13 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
       .colour("colour", body.colour)
       .vector<3>("position", body.position, kCoordinate)
       .number("above", above, kCoordinate)
-      .number("own_model_side", own_model_side, kLength)
+      .number("own_model_side", own_model_side, kOwnModelSide)
       .number("twist", body.twist, kTwist)
       .flag("contacts", contacts);
   check_name(fields, scene);
-  Material material = materials.read(fields);
-  body.mesh = read_mesh(fields, source);
   const bool replaced = model != nullptr && own_model_side;
+  Material material = materials.read(fields, replaced ? Need::kOptional : Need::kRequired);
+  body.mesh = read_mesh(fields, source);
   if (replaced) {
     take_place(body, *model, *own_model_side);
     material.settings.cell_size = body.settings.cell_size;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <optional>
 
-#include "../interrupt.h"
 #include "controllers.h"
 #include "demo_pages.h"
 #include "drawing_thread.h"
@@ -56,15 +55,16 @@ class PlayedScene {
 }  // namespace
 
 Run play(const DemoOptions& options, std::string_view verb, const std::vector<MakeDemo>& scenes,
-         const SimulationOptions& how) {
+         const SimulationOptions& how, const InterruptGuard& guard) {
   render::Window window(
       {.title = "softcell " + std::string(verb), .width = options.size.width, .height = options.size.height});
-  const InterruptGuard guard;
   Controllers controllers;
   FrameClock clock;
   std::optional<Look> look;
   for (std::size_t number = 0;; number = (number + 1) % scenes.size()) {
     Run run{.demo = scenes[number](how), .record = {}};
+    run.record.interrupted = guard.interrupted();
+    if (run.record.interrupted) return run;
     if (look) run.demo->input().set_look(*look);
     PlayedScene scene(window, *run.demo);
     bool next = false;

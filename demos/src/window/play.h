@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../interrupt.h"
 #include "../run_record.h"
 
 namespace softcell::demos {
@@ -13,6 +14,6 @@ namespace softcell::demos {
 /// @return the last scene's run
 /// @throws std::runtime_error  there is no display: the sentence says how to do without; or as Demo::step().
 Run play(const DemoOptions& options, std::string_view verb, const std::vector<MakeDemo>& scenes,
-         const SimulationOptions& how);
+         const SimulationOptions& how, const InterruptGuard& guard);
 
 }  // namespace softcell::demos

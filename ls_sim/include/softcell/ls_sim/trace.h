@@ -79,7 +79,7 @@ class Trace {
   /// the construction of the trace. The file appears whole or not at all.
   /// @throws std::runtime_error  the file cannot be written; the sentence says why.
   void write(const std::filesystem::path& file) const;
-  /// The same into a file that the caller commits.
+  /// The same, all that is in a file that the caller commits.
   void write(WholeFile& file) const;
 
  private:

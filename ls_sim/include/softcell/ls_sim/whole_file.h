@@ -8,7 +8,8 @@
 namespace softcell::ls_sim {
 
 /// Written under a temporary name beside its own and renamed at the end, so that no half-written file is left
-/// as if it were whole. A device or a pipe is written to directly: it cannot be replaced by renaming.
+/// as if it were whole. A device or a pipe is written to directly, as it cannot be replaced by renaming, and
+/// opened at the first byte only, as a pipe's opening waits for its reader.
 ///
 ///   WholeFile file(path);
 ///   file.write(text);
@@ -22,6 +23,7 @@ class WholeFile {
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
+  /// Before finish(). More than one call for a file of several parts.
   void write(std::string_view bytes);
 
   /// Ends the writing, the file still under its temporary name. Of several files that belong together, finish
@@ -30,13 +32,17 @@ class WholeFile {
   /// finish(), where that is not done yet, and the file takes its place.
   void commit();
 
+  /// Where a file of this name is written until it is whole.
+  static std::filesystem::path temporary_name(const std::filesystem::path& path);
+
  private:
+  void open();
   void discard();
   [[noreturn]] void fail(int error);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;  ///< the path itself when written in place
-  std::FILE* file_ = nullptr;        ///< null: finished
+  std::FILE* file_ = nullptr;        ///< null: finished, or a device's or pipe's before the first byte
   bool settled_ = false;             ///< in its place, or discarded
 };
 

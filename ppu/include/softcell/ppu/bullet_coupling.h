@@ -83,9 +83,10 @@ class BulletSoftBodies {
   void begin_ahead(float step);
 
   /// From now on bodies at rest sleep, until something moving touches them, gravity changes, they are
-  /// changed, or a soft body is changed or removed on which they may have lain; or never again, which is
-  /// how it begins. Bodies that lean on each other may keep each other awake. Who removes a rigid body wakes
-  /// what lay on it, as in Bullet: a soft body by add_velocity() of nothing.
+  /// changed, or a soft body of these is changed or removed on which they may have lain; or never again,
+  /// which is how it begins. Bodies that lean on each other may keep each other awake. Who removes a rigid
+  /// body, or a soft one of others that share the world, wakes what lay on it, as in Bullet: a soft body by
+  /// add_velocity() of nothing.
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   SoftBodyTimes times() const;
