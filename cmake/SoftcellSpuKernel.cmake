@@ -60,6 +60,7 @@ function(softcell_compile_spu_sources target)
     # pointer that a short loop has moved on is not to be calculated again behind it.
     "$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns;-fno-gcse;-fno-tree-scev-cprop>"
     "SHELL:-include ${SOFTCELL_SDK_DIR}/host/softcell_entry.h" ${arg_OPTIONS})
+  set_target_properties(${target} PROPERTIES CXX_STANDARD 17)  # CMake's own option goes last
   target_include_directories(${target} PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/.. ${arg_INCLUDES})
 endfunction()
 

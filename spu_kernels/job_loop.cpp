@@ -119,6 +119,7 @@ uint32_t run(uint64_t spe_id, uint64_t descriptor_ea) {
   fetch_image();
   using JobMain = int(uint64_t, uint64_t, uint64_t);
   JobMain* const job_main = reinterpret_cast<JobMain*>(local_store(ls.job.entry));
+  mfc_write_tag_mask(0);  // as a program of its own finds it
   mark_job_begin(ls.job.image_ea, descriptor_ea);
   const int status = job_main(spe_id, ls.job.argp, ls.job.envp);
   mark_job_end();

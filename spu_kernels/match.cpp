@@ -78,7 +78,7 @@ void step(const MatchBody& body, const BodyMap& map) {
   }
   vec_float4 samples[kMatchSamples];
   for (uint32_t i = 0; i < kMatchSamples; ++i) samples[i] = x[plan().samples[i]];
-  to_components(map.positions, particles, origin_of(samples, kMatchSamples, plan().grid));
+  to_components(map.positions, particles, origin_of(samples, plan().grid));
   to_components(map.velocities, particles, spu_splats(0.0f));
   const vec_float4 residual =
       step_body(map, {ls.job.pull, ls.job.damping, {ls.job.least_iterations, ls.job.most_iterations}, cold});

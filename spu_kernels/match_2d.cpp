@@ -55,17 +55,21 @@ bool load_plan() {
   return true;
 }
 
-uint64_t positions_ea(uint32_t body) {
-  return ls.job.positions_ea + static_cast<uint64_t>(body) * match_2d_positions_stride(plan());
-}
-uint64_t state_ea(uint32_t body) {
-  return ls.job.states_ea + static_cast<uint64_t>(body) * match_2d_state_stride(plan());
+/// Where a body is in main memory.
+struct BodyPlace {
+  uint64_t positions_ea, state_ea;
+};
+
+/// Of the body behind: a sum, as an SPU has no 64-bit product.
+BodyPlace behind(const BodyPlace& body) {
+  return {body.positions_ea + match_2d_positions_stride(plan()),
+          body.state_ea + match_2d_state_stride(plan())};
 }
 
 /// Starts fetching a body; what was put from its place before goes first.
-void fetch(const BodyMap2d& map, uint32_t body, uint32_t tag) {
-  getf_large(map.positions, positions_ea(body), match_2d_vectors_bytes(plan()), tag);
-  getf_large(map.result, state_ea(body), match_2d_state_bytes(plan()), tag);
+void fetch(const BodyMap2d& map, const BodyPlace& body, uint32_t tag) {
+  getf_large(map.positions, body.positions_ea, match_2d_vectors_bytes(plan()), tag);
+  getf_large(map.result, body.state_ea, match_2d_state_bytes(plan()), tag);
 }
 
 /// One body in local store, as it came and as it goes.
@@ -79,7 +83,8 @@ uint32_t step(const PlanMap2d& map, const BodyMap2d& body) {
   *body.result = {all_finite(x, pairs) && all_finite(v, pairs), {0, 0, 0}};
   if (body.result->finite == 0) return sizeof(MatchResult2d);
 
-  to_components(body.positions, map.particle_groups, origin_of_pairs(x, particles, plan().grid));
+  to_components(body.positions, map.particle_groups,
+                origin_of_pairs(x, particles, plan().inverse_particles, plan().grid));
   to_components(body.velocities, map.particle_groups, spu_splats(0.0f));
   step_body(map, body, ls.job.pull, ls.job.damping);
   to_pairs(body.velocities, map.particle_groups);
@@ -100,13 +105,16 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   const ArenaMap2d map = map_of_2d(ls.arena);
   clear(map.plan.first[0]);
   clear(map.plan.second[0]);
-  fetch(map.body[0], 0, kTagBody);
+  BodyPlace body = {ls.job.positions_ea, ls.job.states_ea};
+  fetch(map.body[0], body, kTagBody);
   for (uint32_t i = 0; i < ls.job.body_count; ++i) {
-    const uint32_t place = i % 2, other = 1 - place;
-    if (i + 1 < ls.job.body_count) fetch(map.body[other], i + 1, kTagBody + other);
-    wait_for_tag(kTagBody + place);
-    const uint32_t bytes = step(map.plan, map.body[place]);
-    put_large(map.body[place].result, state_ea(i), bytes, kTagBody + place);
+    const uint32_t side = i % 2, other = 1 - side;
+    const BodyPlace next = behind(body);
+    if (i + 1 < ls.job.body_count) fetch(map.body[other], next, kTagBody + other);
+    wait_for_tag(kTagBody + side);
+    const uint32_t bytes = step(map.plan, map.body[side]);
+    put_large(map.body[side].result, body.state_ea, bytes, kTagBody + side);
+    body = next;
   }
   wait_for_tags(1u << kTagBody | 1u << (kTagBody + 1));
   return kMatch2dDone;

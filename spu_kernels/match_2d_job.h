@@ -63,7 +63,8 @@ struct alignas(128) MatchPlanHeader2d {
   float noise_floor;            ///< m^2: a region whose |C| + |S| is at most this times M_r has no direction
   float grid;                   ///< metres: the body's origin is a multiple of this power of two
   float inverse_mass;           ///< 1 / kg, of the body
-  uint32_t pad[20];
+  float inverse_particles;      ///< 1 / particles: an SPU's division may err, by which bit its compiler says
+  uint32_t pad[19];
 };
 static_assert(sizeof(MatchPlanHeader2d) == 128, "one line");
 

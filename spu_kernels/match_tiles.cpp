@@ -91,11 +91,17 @@ void run(Pass& pass, const Store& store) {
   run_slices(pass, store.slices, ls.job.slice_count);
 }
 
+/// Without a call of memset(), which a local store has not.
+void clear_report() {
+  auto* const quadwords = reinterpret_cast<vec_uint4*>(&ls.report);
+  for (uint32_t i = 0; i < sizeof(TileReport) / 16; ++i) quadwords[i] = spu_splats(0u);
+}
+
 void gather(const TilePassContext& context) {
   const UpStore store = up_store(ls.arena, ls.body.up);
   GatherPass pass(context, store);
   run(pass, store);
-  ls.report = {};
+  clear_report();
   pass.report(ls.report);
   mfc_put(&ls.report, report_ea(), kTileReportLine, kTagOut, 0, 0);
 }
@@ -104,7 +110,7 @@ void scatter(const TilePassContext& context) {
   const DownStore store = down_store(ls.arena, ls.body.down);
   ScatterPass pass(context, store);
   run(pass, store);
-  ls.report = {};
+  clear_report();
   pass.report(ls.report);
   mfc_put(ls.report.pulls, report_ea() + kTileReportLine, kTileReportLine, kTagOut, 0, 0);
 }
@@ -134,7 +140,7 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   if (ls.job.slice_count == 0) return kTileDone;
 
   const vec_float4 zero = spu_splats(0.0f);
-  TilePassContext context = {ls.body, origin_of(ls.samples, kMatchSamples, ls.body.grid), {zero, zero, zero}};
+  TilePassContext context = {ls.body, origin_of(ls.samples, ls.body.grid), {zero, zero, zero}};
   if (ls.job.pass == kTileTwist || ls.job.pass == kTileDamp) {
     const Findings found = read_reports();
     if (!found.finite) return kTileDone;  // the body stays as it was

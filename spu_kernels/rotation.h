@@ -38,8 +38,8 @@ constexpr RotationEffort kTwoIterations = {2, 2};
 /// As many as it takes to come below kRotationResidual: none for a body at rest.
 constexpr RotationEffort kAdaptive = {0, 6};
 
-constexpr float kRotationResidual = 2e-6f;  ///< some roundings
-constexpr float kRotationLost = 3e-3f;      ///< above it a lane starts again
+constexpr float kRotationResidual = 2e-6f;       ///< some roundings
+constexpr float kRotationLost = 0x1.89374cp-9f;  ///< 0.003: above it a lane starts again
 
 struct Rotation4 {
   Matrix3x4 matrix;
@@ -48,9 +48,9 @@ struct Rotation4 {
 
 namespace rotation_detail {
 
-constexpr float kMu = 5e-4f;           // against matrices whose elements sum to 1..2
-constexpr float kLongestStep = 0.75f;  // of omega / 2: 1.3 rad
-constexpr int kPolishing = 6;          // iterations after a cold start
+constexpr float kMu = 0x1.0624dep-11f;  // 0.0005, against matrices whose elements sum to 1..2
+constexpr float kLongestStep = 0.75f;   // of omega / 2: 1.3 rad
+constexpr int kPolishing = 6;           // iterations after a cold start
 
 /// A at one candidate rotation. `minors` belong to 2 H: its adjugate and determinant.
 struct Estimate {
@@ -162,8 +162,8 @@ __attribute__((always_inline)) inline Matrix3x4 normalise(const Matrix3x4& a, co
 
 }  // namespace rotation_detail
 
-/// Four matrices, scaled, and room for what else belongs to them.
-struct RotationProblem {
+/// Four matrices, scaled, and room for what else belongs to them. Made in the place of what they come from.
+struct __attribute__((may_alias)) RotationProblem {
   Matrix3x4 a;        ///< as normalised() makes it
   Vector3x4 payload;  ///< not looked at
 };

@@ -18,9 +18,9 @@ namespace softcell::spu {
 
 namespace rotation_detail {
 
-constexpr float kPastWeight = 1e-4f;  // of the rotation before, in a matrix whose elements sum to 1..2
-constexpr int kJacobiSweeps = 6;      // four or five do
-constexpr float kTiny = 1e-30f;       // keeps 0 / 0 away
+constexpr float kPastWeight = 1e-4f;      // of the rotation before, in a matrix whose elements sum to 1..2
+constexpr int kJacobiSweeps = 6;          // four or five do
+constexpr float kTiny = 0x1.4484cp-100f;  // 1e-30: keeps 0 / 0 away
 
 struct Symmetric4 {
   vec_float4 m[4][4];

@@ -221,7 +221,7 @@ ChannelReply Checker::read(std::uint32_t channel) {
 
 void Checker::on_list_stall(std::uint32_t tags) {
   for (CommandInFlight& command : in_flight_.all()) {
-    if (!command.is_list() || (tags >> command.command.tag & 1u) == 0) continue;
+    if (!command.can_stall() || (tags >> command.command.tag & 1u) == 0) continue;
     command.has_stalled = true;
     command.ranges.clear();  // of the elements up to the one that has stalled
   }

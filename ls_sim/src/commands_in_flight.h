@@ -38,6 +38,8 @@ struct CommandInFlight {
       {};  ///< numbers of the commands that are complete before this one starts
 
   bool is_list() const { return command.kind() == dma::CommandKind::kList; }
+  /// Elements are left behind one that stalls; the last one never does.
+  bool can_stall() const { return is_list() && next_element < command.size / dma::kListElementBytes; }
 };
 
 /// What a command moves, for as many elements of a list as go before the next stall. Reads the list from the

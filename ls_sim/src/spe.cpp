@@ -36,16 +36,24 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
 
 RunResult Spe::run(const Run& run) {
   run_ = &run;
-  RunResult result = execute_or_fail(run);
+  RunResult result = guarded([&] { return execute(run); });
   channels_.end_run();
-  if (result.fault) {
-    result.fault->spe = number_;
-    result.fault->kernel = image_under_way().name;
-  }
   if (job_) result.job = job_->ea;
+  const auto name = [&](dma::Fault& fault) {
+    fault.spe = number_;
+    fault.kernel = image_under_way().name;
+  };
+  if (result.fault) name(*result.fault);
+  RunResult accounting = guarded([&] {
+    account(run, result);
+    return RunResult{};
+  });
+  if (accounting.fault && !result.fault) {
+    result = std::move(accounting);
+    name(*result.fault);
+  }
   // Whatever a kernel that failed did to its local store goes with it.
   if (result.fault || options_.reload_always) resident_ = nullptr;
-  account(run, result);
   job_.reset();
   return result;
 }
@@ -55,9 +63,10 @@ const KernelImage& Spe::image_under_way() const {
 }
 
 /// Nobody above this thread would catch what the host throws, and it ends this run only.
-RunResult Spe::execute_or_fail(const Run& run) {
+template <class Work>
+RunResult Spe::guarded(const Work& work) {
   try {
-    return execute(run);
+    return work();
   } catch (const std::exception& error) {
     return {0, dma::Fault{.rule = dma::Rule::kHostFailure, .detail = error.what()}};
   }

@@ -95,7 +95,8 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   const KernelImage& image_under_way() const;
   bool is_checked_job() const;
   StackRange stack_of_job() const;
-  RunResult execute_or_fail(const Run& run);
+  template <class Work>
+  RunResult guarded(const Work& work);
   RunResult execute(const Run& run);
   RunResult run_engine(const Run& run);
   dma::LocalStoreAddress position_of(const dma::Fault& fault) const;

@@ -88,6 +88,7 @@ MatchPlan2d::MatchPlan2d(const Lattice2d& lattice, const MatchingPlan2d<float>& 
   header.regions_of_bars = writer.append(of_regions.halfwords);
   header.noise_floor = matching.noise_floor();
   header.grid = origin_grid(lattice.spacing);
+  header.inverse_particles = 1 / static_cast<float>(header.particles);
   header.inverse_mass = inverse_body_mass(matching.particle_constants());
   header.bytes = writer.size();
   check_fits("match_2d", matching.particles(), spu::match_2d_local_store_bytes(header),

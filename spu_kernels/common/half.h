@@ -23,9 +23,10 @@ inline vec_uint4 high_half_of_positive(vec_float4 value) {
 constexpr float kHalfRebias = 0x1p-112f;
 
 /// The same for either sign, of a value times kHalfRebias; what is too small for a normal binary16 becomes
-/// zero. For magnitudes below kHalfOverflow.
+/// zero, and zero has no sign. For magnitudes below kHalfOverflow.
 inline vec_uint4 high_half_of_rebiased(vec_float4 rebiased) {
-  const vec_uint4 bits = (vec_uint4)rebiased;
+  // What an SPU flushes is +0 already; on a host, which keeps the sign, the sum makes it so.
+  const vec_uint4 bits = (vec_uint4)spu_add(rebiased, spu_splats(0.0f));
   const vec_uint4 rounded = spu_add(bits, spu_splats(0x1000u));
   return spu_or(spu_sl(rounded, 3), spu_and(bits, spu_splats(0x80000000u)));
 }

@@ -13,10 +13,11 @@ namespace softcell::spu {
 /// A quadword to a particle, as they come from main memory.
 inline vec_float4* particle_quadwords(Vectors4* groups) { return reinterpret_cast<vec_float4*>(groups); }
 
-/// The mean of `count` positions, a quadword each, rounded to the grid.
-inline vec_float4 origin_of(const vec_float4* x, uint32_t count, float grid) {
-  const vec_float4 sum = sum_of_differences(x, count, x[0]);
-  return rounded_to_grid(spu_madd(sum, spu_splats(1.0f / static_cast<float>(count)), x[0]), grid);
+/// The mean of kMatchSamples positions, a quadword each, rounded to the grid.
+inline vec_float4 origin_of(const vec_float4* x, float grid) {
+  constexpr float kShare = 1.0f / kMatchSamples;
+  const vec_float4 sum = sum_of_differences(x, kMatchSamples, x[0]);
+  return rounded_to_grid(spu_madd(sum, spu_splats(kShare), x[0]), grid);
 }
 
 /// Turns groups of four quadwords, a particle each, into groups of components, `origin` subtracted. Lanes

@@ -51,9 +51,9 @@ static_assert(sizeof(RotationProblem) == 4 * sizeof(Slot), "one takes the other'
 __attribute__((always_inline)) inline void make_problem(const RegionConstants& r, const Slot* sums,
                                                         Slot* slots, vec_float4 noise_floor) {
   const Rows4 x = load_row(sums, 0), y = load_row(sums, 1), z = load_row(sums, 2);
-  const auto row_of_a = [&](const Rows4& sum) __attribute__((always_inline))->Vector3x4 {
-    return {spu_nmsub(sum.d, r.centre.x, sum.a), spu_nmsub(sum.d, r.centre.y, sum.b),
-            spu_nmsub(sum.d, r.centre.z, sum.c)};
+  const auto row_of_a = [&](const Rows4& sum) __attribute__((always_inline)) {
+    return Vector3x4{spu_nmsub(sum.d, r.centre.x, sum.a), spu_nmsub(sum.d, r.centre.y, sum.b),
+                     spu_nmsub(sum.d, r.centre.z, sum.c)};
   };
   *problem_at(slots) = {normalised({row_of_a(x), row_of_a(y), row_of_a(z)}, {r.inverse_mass, noise_floor}),
                         {x.d, y.d, z.d}};

@@ -31,11 +31,12 @@ inline void pad_pairs(vec_float4* pairs, uint32_t count, vec_float4 v) {
 }
 
 /// The mean of `count` positions, rounded to the grid, twice in a quadword. @pre  padded with the first
-inline vec_float4 origin_of_pairs(const vec_float4* pairs, uint32_t count, float grid) {
+/// @param inverse_count  1 / count
+inline vec_float4 origin_of_pairs(const vec_float4* pairs, uint32_t count, float inverse_count, float grid) {
   const vec_float4 base = first_of_pair(pairs[0]);
   const vec_float4 sum = sum_of_differences(pairs, 2 * groups_of(count), base);
   const vec_float4 both = spu_add(first_of_pair(sum), second_of_pair(sum));
-  return rounded_to_grid(spu_madd(both, spu_splats(1.0f / static_cast<float>(count)), base), grid);
+  return rounded_to_grid(spu_madd(both, spu_splats(inverse_count), base), grid);
 }
 
 /// Two quadwords of pairs, less `origin`, as components.

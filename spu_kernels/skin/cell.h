@@ -33,9 +33,9 @@ __attribute__((always_inline)) inline CellPolynomial polynomial_of(const vec_flo
   const vec_float4 cyz = spu_sub(spu_sub(x6, x4), cy);
   const vec_float4 czx = spu_sub(upper, cx);
   const vec_float4 cxyz = spu_sub(spu_sub(spu_sub(x7, x6), upper), cxy);
-  const auto component = [&](vec_uchar16 splat) __attribute__((always_inline))->Polynomial {
+  const auto component = [&](vec_uchar16 splat) __attribute__((always_inline)) {
     const auto all = [splat](vec_float4 v) { return spu_shuffle(v, v, splat); };
-    return {all(x0), all(cx), all(cy), all(cz), all(cxy), all(cyz), all(czx), all(cxyz)};
+    return Polynomial{all(x0), all(cx), all(cy), all(cz), all(cxy), all(cyz), all(czx), all(cxyz)};
   };
   const vec_uchar16 first = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
   const vec_uchar16 second = {4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7, 4, 5, 6, 7};

@@ -47,7 +47,9 @@ inline HalfVectors half_positions(const Vector3x4& v) {
     return {pack(high_half_of_positive(v.x), high_half_of_positive(v.y)),
             pack(high_half_of_positive(v.z), one)};
   } else {
-    return {pack(high_half_of_any(v.x), high_half_of_any(v.y)), pack(high_half_of_any(v.z), one)};
+    const vec_float4 zero = spu_splats(0.0f);  // takes the sign from zeros, as in high_half_of_rebiased()
+    return {pack(high_half_of_any(spu_add(v.x, zero)), high_half_of_any(spu_add(v.y, zero))),
+            pack(high_half_of_any(spu_add(v.z, zero)), one)};
   }
 }
 

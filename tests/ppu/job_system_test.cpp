@@ -18,6 +18,8 @@
 #include "support/text_file.h"
 #include "test_images.h"
 
+extern "C" const std::byte softcell_image_fills_up[], softcell_image_fills_up_end[];
+
 namespace softcell::ppu {
 namespace {
 
@@ -484,6 +486,24 @@ TEST_F(JobSystemTest, AJobBeginsWithAnEmptyEventMaskThoughItsLoopHasSlept) {
     chain.kick();
     chain.wait();
     expect_no_failures(chain);
+  }
+}
+
+TEST_F(JobSystemTest, AResidentJobKeepsItsVariablesUpToItsCallersStack) {
+  JobSystem jobs(memory_, {.spes = 1}, loop_);
+  const KernelImage image =
+      ls_sim::load_image("fills_up", {softcell_image_fills_up, softcell_image_fills_up_end});
+  const JobImage fills_up = jobs.place(image);
+  JobChain chain(jobs, "fills_up", 1);
+  chain.add({fills_up, {}});
+  chain.kick();
+  chain.wait();
+  for (int kick = 0; kick < 2; ++kick) {
+    chain.kick();
+    chain.wait();
+    ASSERT_EQ(chain.failures().size(), 1u);
+    EXPECT_NE(chain.failures().front().message.find('7'), std::string::npos)
+        << chain.failures().front().message;
   }
 }
 

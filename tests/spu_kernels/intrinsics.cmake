@@ -18,6 +18,13 @@ add_test(NAME spu_intrinsics.every_documented_name_is_tested
   COMMAND ${CMAKE_COMMAND} -DCHECK=${SOFTCELL_SDK_DIR}/check -DTESTS=${CMAKE_CURRENT_LIST_DIR}
     -P ${CMAKE_CURRENT_LIST_DIR}/check_names.cmake)
 
+# What no declaration shows: where a host's compiler and an SPU's read the same source otherwise.
+find_program(SOFTCELL_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
+add_test(NAME spu_syntax.sources_mean_the_same
+  COMMAND ${SOFTCELL_SYSTEM_PYTHON} -B ${CMAKE_CURRENT_LIST_DIR}/check_sources.py
+    ${PROJECT_SOURCE_DIR}/spu_kernels ${PROJECT_SOURCE_DIR}/examples/saxpy ${PROJECT_SOURCE_DIR}/tests/zoo)
+set_tests_properties(spu_syntax.sources_mean_the_same PROPERTIES LABELS kernel)
+
 # host_refused/*.cpp must not compile with the host's headers, for the reason in their first line.
 file(GLOB host_refused CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/host_refused/*.cpp)
 foreach(source IN LISTS host_refused)

@@ -84,18 +84,18 @@ TEST_F(MatchStages, QuaternionsTurnAndBecomeMatrices) {
 }
 
 TEST_F(MatchStages, LocaliseSubtractsAPointOfTheGridAndComesBack) {
-  constexpr uint32_t kCount = 7;
-  Vectors4 groups[2];
+  constexpr uint32_t kCount = 7;  // that are localised, of those whose mean is the origin
+  Vectors4 groups[kMatchSamples / 4];
   vec_float4* const x = particle_quadwords(groups);
-  std::array<std::array<float, 4>, kCount> before;
-  for (uint32_t i = 0; i < kCount; ++i) {
+  std::array<std::array<float, 4>, kMatchSamples> before;
+  for (uint32_t i = 0; i < kMatchSamples; ++i) {
     before[i] = {100 + next(), -50 + next(), next(), 0};
     x[i] = test::vector_of<vec_float4>(before[i]);
   }
-  const vec_float4 origin = origin_of(x, kCount, 0.0625f);
+  const vec_float4 origin = origin_of(x, 0.0625f);
   for (int d = 0; d < 3; ++d) {
     double mean = 0;
-    for (const auto& p : before) mean += double{p[static_cast<std::size_t>(d)]} / kCount;
+    for (const auto& p : before) mean += double{p[static_cast<std::size_t>(d)]} / kMatchSamples;
     EXPECT_NEAR(at(origin, d), mean, 0.07);
     EXPECT_EQ(std::fmod(at(origin, d), 0.0625), 0);
   }

@@ -80,6 +80,7 @@ class NativeEngine final : public Engine {
     std::fill(bss, base + image.sizes.end, std::byte{0});
     if (debugger_wanted_) debugger_symbols_ = std::make_unique<native::DebuggerSymbols>(image, base);
     data_as_linked_ = true;
+    last_job_end_ = 0;
   }
 
   RunResult run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses,
@@ -105,7 +106,7 @@ class NativeEngine final : public Engine {
   }
   std::uint32_t free_begin() const {
     const KernelImage& lowest = job_image_ == nullptr ? *image_ : *job_image_;
-    return lowest.begin < stack_limit() ? lowest.sizes.end : kEnvironmentBytes;
+    return lowest.begin < stack_limit() ? lowest.sizes.end : std::max(kEnvironmentBytes, last_job_end_);
   }
 
   void prepare(const EntryArguments& arguments);
@@ -136,6 +137,7 @@ class NativeEngine final : public Engine {
   const KernelImage* image_ = nullptr;
   const KernelImage* job_image_ = nullptr;  ///< that image_ has called; null when it is not known
   bool job_under_way_ = false;
+  std::uint32_t last_job_end_ = 0;  ///< where the image ends that was called last, which stays; 0: none was
   const bool debugger_wanted_ = native::debugger_wanted();
   std::unique_ptr<native::DebuggerSymbols> debugger_symbols_;  ///< of the image; null when nobody debugs
   std::unique_ptr<native::DebuggerSymbols> debugger_job_symbols_;
@@ -266,7 +268,11 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   const native::Environment& environment = this->environment();
   const KernelImage* const last = job_image_;
   job_under_way_ = true;
+  job_image_ = nullptr;
+  last_job_end_ =
+      stack_limit();  // of an image that is not known, it may be anywhere below its caller's stack
   job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
+  if (job_image_ != nullptr) last_job_end_ = job_image_->sizes.end;
   tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
   const std::span<const std::byte> variables = variables_of_caller();
   caller_variables_.assign(variables.begin(), variables.end());

@@ -4,7 +4,7 @@
 #include <spu_mfcio.h>
 
 int main(uint64_t, uint64_t argp, uint64_t) {
-  alignas(128) uint32_t rows[512];
+  alignas(16) uint32_t rows[512];
   mfc_get(rows, argp, sizeof rows, 0, 0, 0);
   mfc_write_tag_mask(1u << 0);
   mfc_read_tag_status_all();
