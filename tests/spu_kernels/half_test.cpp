@@ -121,7 +121,7 @@ TEST_F(KernelHalf, OverflowsWhereRoundingDoes) {
 TEST_F(KernelHalf, MakesZeroOfWhatIsTooSmallForANormalHalf) {
   for (const float f : {std::nextafterf(0x1p-14f, 0.0f), 0x1p-15f, 1e-30f, 0.0f}) {
     EXPECT_EQ(spu_extract(high_half_or_zero(spu_splats(f)), 0) >> 16, 0u) << f;
-    EXPECT_EQ(spu_extract(high_half_or_zero(spu_splats(-f)), 0) >> 16 & 0x7FFF, 0u) << f;
+    EXPECT_EQ(spu_extract(high_half_or_zero(spu_splats(-f)), 0) >> 16, 0u) << "no sign";
   }
 }
 
