@@ -96,8 +96,8 @@ class InputLog {
     if (!replay_ || record_.frames != replay_->frames || record_.state_hash == replay_->state_hash) return;
     throw std::runtime_error(
         replay_name_ +
-        ": the replay ends in another state than the recording; Bullet's and Box2D's last "
-        "bits depend on the machine and its C library");
+        ": the replay ends in another state than the recording; it depends on --engine, and the last bits of "
+        "Bullet and Box2D on the machine and its C library");
   }
 
  private:
@@ -106,7 +106,8 @@ class InputLog {
                              (replay_->scene == record_.scene
                                   ? "another version of the scene " + record_.scene
                                   : "the scene " + replay_->scene + ", and this is " + record_.scene) +
-                             "; give the one that was recorded with --scene");
+                             "; give the one that was recorded with --scene" +
+                             (Dimension == 3 ? ", and the --mesh and the cells that it had" : ""));
   }
 
   std::optional<std::filesystem::path> path_;  // of what is recorded

@@ -2,8 +2,12 @@
 // What the demos of both dimensions do alike: step a scene from its user or its replay, note what happened,
 // publish and draw it; and load the scenes to go through.
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,7 +102,9 @@ class SceneDemo : public Demo {
 
 /// @param log    has begun `first`.
 /// @param first  the scene to begin with; with `all` those of its dimension that come with softcell follow.
-/// @param load   of a built-in scene's name.
+/// @param load   of a built-in scene's name. One that cannot be loaded, as its model is not installed, is
+/// left out
+///               with a sentence.
 /// @tparam OneDemo  a SceneDemo, made of a scene, a log, SimulationOptions and the options.
 template <class OneDemo, class Options>
 std::vector<MakeDemo> demos_of(const Options& options, const typename OneDemo::Log& log,
@@ -113,7 +119,12 @@ std::vector<MakeDemo> demos_of(const Options& options, const typename OneDemo::L
   add(first);
   if (!all) return demos;
   for (const SceneListing& listing : list_scenes()) {
-    if (listing.dimension == OneDemo::kDimension && listing.name != first.name) add(load(listing.name));
+    if (listing.dimension != OneDemo::kDimension || listing.name == first.name) continue;
+    try {
+      add(load(listing.name));
+    } catch (const std::runtime_error& error) {
+      fmt::print(stderr, "softcell: scene {} is left out: {}\n", listing.name, error.what());
+    }
   }
   return demos;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -33,7 +34,7 @@ class Explorer {
   int explore() {
     {
       ProgressBar bar("spu explore", options_.seeds, options_.quiet);
-      while (tried_ < options_.seeds && differences_.empty() && !guard_.interrupted()) {
+      while (tried_ < options_.seeds && differences_.empty() && !endless() && !guard_.interrupted()) {
         try_next_seed();
         if (!options_.quiet) bar.show(tried_);
       }
@@ -50,6 +51,13 @@ class Explorer {
   }
 
  private:
+  /// Where the host's clock stops a run is another place each time: there is nothing to compare.
+  bool endless() const {
+    return std::ranges::any_of(first_run_.spes, [](const SpeRun& spe) {
+      return spe.result.fault && spe.result.fault->rule == dma::Rule::kDeadlineExceeded;
+    });
+  }
+
   std::uint64_t last_seed() const { return kFirstSeed + tried_ - 1; }
 
   void try_next_seed() {
@@ -69,12 +77,22 @@ class Explorer {
     return differences_.empty() ? demos::exit_status(image_, first_run_) : kExitDifference;
   }
 
+  bool replaces_inputs() const {
+    return std::ranges::any_of(buffers_.slots(), [](const KernelBuffers::Slot& slot) {
+      return slot.spec->direction == BufferSpec::kInOut;
+    });
+  }
+
   std::string reproduction(std::uint64_t seed) const {
     return fmt::format("softcell spu run {} --dma random:{} --clock simulated", options_.task_text, seed);
   }
 
   void report() const {
     print_problems(image_, first_run_);
+    if (endless()) {
+      fmt::print("kernel {}: the run did not end, so that there is nothing to compare\n", image_.name);
+      return;
+    }
     if (differences_.empty()) {
       fmt::print("kernel {}: the same outcome under {} seed{}{}\n", image_.name, tried_,
                  tried_ == 1 ? "" : "s", exit_status() == 0 ? "" : ", and it is not a good one");
@@ -88,7 +106,9 @@ class Explorer {
       fmt::print("{}\n", difference.sentence(fmt::format("seed {}", kFirstSeed),
                                              fmt::format("seed {}", last_seed())));
     }
-    fmt::print("to see either again:\n  {}\n  {}\n", reproduction(kFirstSeed), reproduction(last_seed()));
+    fmt::print("to see either again{}:\n  {}\n  {}\n",
+               replaces_inputs() ? " (each replaces the files of --inout: keep copies)" : "",
+               reproduction(kFirstSeed), reproduction(last_seed()));
   }
 
   nlohmann::ordered_json document() const {

@@ -329,6 +329,15 @@ TEST_F(SpuCommand, ExploreReportsAFaultThatEverySeedHas) {
   EXPECT_NE(run.output.find("under 3 seeds"), std::string::npos) << run.output;
 }
 
+TEST_F(SpuCommand, ExploreComparesNothingOfARunThatDoesNotEnd) {
+  const CommandResult run =
+      run_softcell("spu explore " + kTalk + " --in-mbox 5 --deadline 0.2 --json " + (folder_ / "e.json"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("deadline-exceeded"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("nothing to compare"), std::string::npos) << run.output;
+  EXPECT_EQ(read_json(folder_ / "e.json")["differs"], false);
+}
+
 struct Refusal {
   std::string arguments;
   int status;

@@ -99,7 +99,7 @@ void draw_statistics(const Page& page, float scale, render::Overlay& overlay, re
 void draw_page(const Page& page, float scale, double shown_per_second) {
   const float margin = kMargin * scale;
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
-  if (page.look.statistics) draw_statistics_box(page, scale, shown_per_second);
+  if (page.look.statistics && !page.look.help) draw_statistics_box(page, scale, shown_per_second);
   if (page.look.help) {
     draw_box("help", {width / 2, height / 2}, {0.5f, 0.5f}, [&] { draw_help(page.dimension); });
   } else {
