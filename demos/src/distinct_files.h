@@ -13,8 +13,7 @@ struct NamedFile {
   std::optional<std::filesystem::path> file;  ///< none: not given
 };
 
-/// Whatever way the two paths are spelled; also when one is where the other is written until it is whole.
-/// Devices and pipes are nobody's own: nothing is lost in them.
+/// Whatever way the two paths are spelled. Devices and pipes are nobody's own: nothing is lost in them.
 bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// For files that are written, and one that must not be replaced.
