@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "distinct_files.h"
 #include "options.h"
 #include "simulation_options.h"
 #include "softcell/ls_sim/statistics.h"
@@ -68,6 +69,9 @@ class Demo {
   /// make_view() by the same, while they wait.
   virtual void draw_published(const Look& look) = 0;
 };
+
+/// The files that the options ask for, pictures in folders aside.
+std::vector<NamedFile> written_files(const DemoOptions& options);
 
 /// Does the work and saves the recording of its frames, also when it fails, a frame that failed included:
 /// that is the run that one wants to see again. What goes wrong with saving is only printed then: the work's

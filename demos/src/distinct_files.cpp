@@ -45,4 +45,10 @@ void check_distinct(const std::vector<NamedFile>& files) {
   }
 }
 
+void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written) {
+  for (const NamedFile& input : read) {
+    for (const NamedFile& output : written) check_distinct({input, output});
+  }
+}
+
 }  // namespace softcell::demos

@@ -20,4 +20,8 @@ bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b)
 /// @throws UsageError  two of them are one file, of which one would be lost.
 void check_distinct(const std::vector<NamedFile>& files);
 
+/// For files that are read, of which two may be one, and files that are written.
+/// @throws UsageError  one that is read would be replaced.
+void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
+
 }  // namespace softcell::demos

@@ -129,6 +129,7 @@ int run_spu_explore(const SpuExploreOptions& options) {
   std::vector<NamedFile> files = written_files(options.task);  // by the run that is printed to see it again
   files.push_back({"--json", options.json});
   check_distinct(files);
+  check_kept(read_files(options.task), files);
   return Explorer(options).explore();
 }
 

@@ -22,6 +22,7 @@ int run_spu_run(const SpuRunOptions& options) {
   outputs.push_back({"--trace", options.trace});
   outputs.push_back({"--json", options.json});
   check_distinct(outputs);
+  check_kept(read_files(task), outputs);
   const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked);
   dma::AddressSpace memory;
   const KernelBuffers buffers(memory, task);

@@ -373,6 +373,39 @@ TEST(Command, RefusesTwoOutputsInOneFile) {
   EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
 }
 
+TEST(Command, RefusesToReplaceWhatItReads) {
+  const ScratchFolder folder;
+  const std::string scene = "dimension = 2\n";
+  write_file(folder / "f.toml", scene);
+  write_file(folder / "m.obj", kCube);
+  write_file(folder / "r.rec", "a recording");
+  const auto before = files_in(folder.path());
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run =
+        run_shell("cd " + folder.path().string() + " && timeout 20 " SOFTCELL_COMMAND " " + arguments);
+    EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
+    EXPECT_EQ(files_in(folder.path()), before) << arguments;
+    return run.output;
+  };
+  const std::string demo = "demo 2d --headless --frames 1 --size 32x32 ";
+  for (const std::string output : {"--record", "--trace", "--json"}) {
+    EXPECT_NE(refusal(demo + "--scene f.toml " + output + " ./f.toml")
+                  .find("the scene and " + output + " are one file, ./f.toml; give each a file of its own"),
+              std::string::npos);
+    EXPECT_NE(refusal("demo 3d --headless --mesh m.obj " + output + " m.obj")
+                  .find("--mesh and " + output + " are one file, m.obj"),
+              std::string::npos);
+  }
+  for (const std::string output : {"--trace", "--json"}) {
+    EXPECT_NE(refusal(demo + "--replay r.rec " + output + " r.rec").find("--replay and " + output),
+              std::string::npos);
+  }
+  // A built-in scene is no file.
+  const CommandResult named = run_shell("cd " + folder.path().string() + " && " SOFTCELL_COMMAND " " + demo +
+                                        "--scene man --json man");
+  EXPECT_EQ(named.status, 0) << named.output;
+}
+
 // The folder above the one that a link stands for is not the folder that the link is in.
 TEST(Command, KnowsOneFileThroughALinkedFolder) {
   const ScratchFolder folder;

@@ -175,6 +175,31 @@ TEST_F(SpuCommand, RefusesTwoOutputsInOneFile) {
   EXPECT_EQ(run_softcell("spu explore " + kSaxpy + saxpy_options() + "--json " + file).status, 2);
 }
 
+TEST_F(SpuCommand, RefusesToReplaceWhatItReads) {
+  for (const char* flavour : {"k.spu.elf", "k.checked.spu.elf"})
+    std::filesystem::copy_file(kSaxpy, folder_ / flavour);
+  const std::string image = folder_ / "k.spu.elf", checked = folder_ / "k.checked.spu.elf",
+                    x = folder_ / "x.bin";
+  const auto size_before = std::filesystem::file_size(image);
+  const auto refusal = [&](const std::string& options) {
+    const std::string arguments = image + saxpy_options() + options;
+    const CommandResult run = run_softcell("spu run " + arguments);
+    EXPECT_EQ(run.status, 2) << options << ": " << run.output;
+    EXPECT_EQ(run_softcell("spu explore " + arguments).status, 2) << options;
+    EXPECT_EQ(std::filesystem::file_size(image), size_before) << options;
+    EXPECT_EQ(read_floats(x).size(), kCount) << options;
+    return run.output;
+  };
+  EXPECT_NE(refusal("--out z=" + image + ":64").find("the kernel image and --out z "), std::string::npos);
+  EXPECT_NE(refusal("--json " + image).find("the kernel image and --json "), std::string::npos);
+  EXPECT_NE(refusal("--checked --json " + image).find("the kernel image and --json "), std::string::npos);
+  EXPECT_NE(refusal("--checked --json " + checked).find("the kernel image and --json "), std::string::npos);
+  EXPECT_NE(refusal("--json " + x).find("--in x and --json "), std::string::npos);
+  EXPECT_NE(refusal("--out z=" + x + ":64").find("--in x and --out z "), std::string::npos);
+  EXPECT_NE(refusal("--inout z=" + x).find("--in x and --inout z "), std::string::npos);
+  EXPECT_EQ(run_softcell("spu run " + image + saxpy_options() + "--trace " + x).status, 2);
+}
+
 TEST_F(SpuCommand, TheImageMayStandBehindTheBuffers) {
   const CommandResult run =
       run_softcell("spu run --in x=" + (folder_ / "x.bin") + " --inout y=" + (folder_ / "y.bin") + " " +
