@@ -43,9 +43,9 @@ class Explorer {
                  options_.seeds);
       return kExitInterrupted;
     }
+    report();  // before the file, which perhaps cannot be written
     if (json_ != nullptr) write_json(*json_, document());
     files_.commit();
-    report();
     return exit_status();
   }
 

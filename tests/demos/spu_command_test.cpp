@@ -257,6 +257,20 @@ TEST_F(SpuCommand, AFaultIsOneSentenceWithItsPlaceAndLeavesNoOutput) {
   EXPECT_EQ(json["spes"][0]["fault"]["rule"], "ea-alignment");
 }
 
+TEST_F(SpuCommand, SaysWhatTheKernelDidWhenAFileCannotBeWritten) {
+  for (const std::string verb : {"spu run ", "spu explore --seeds 3 "}) {
+    const CommandResult fault = run_softcell(verb + kTalk + " --in-mbox 2 --in x=" + (folder_ / "x.bin") +
+                                             " --arg @x --json /dev/full");
+    EXPECT_EQ(fault.status, 1) << fault.output;
+    EXPECT_NE(fault.output.find("ea-alignment"), std::string::npos) << fault.output;
+    EXPECT_NE(fault.output.find("softcell: cannot write /dev/full: No space left"), std::string::npos)
+        << fault.output;
+  }
+  const CommandResult good = run_softcell("spu run " + kSaxpy + saxpy_options() + "--json /dev/full");
+  EXPECT_EQ(good.status, 1) << good.output;
+  EXPECT_NE(good.output.find("local store: text"), std::string::npos) << good.output;
+}
+
 TEST_F(SpuCommand, AStatusThatIsNotZeroIsAFailure) {
   const CommandResult status = run_softcell("spu run " + kTalk + " --in-mbox 1");
   EXPECT_EQ(status.status, 1);
