@@ -158,6 +158,11 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   return run;
 }
 
+bool is_mp4(const std::filesystem::path& file) {
+  const std::filesystem::path ending = file.extension();
+  return ending == ".mp4" || ending == ".MP4";
+}
+
 /// No output takes another's place or that of what the demo reads.
 void check_files(const DemoOptions& options) {
   std::vector<NamedFile> written = written_files(options);
@@ -198,6 +203,8 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (!options.headless && options.statistics)
     throw UsageError(
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
+  if (options.video && !is_mp4(*options.video))
+    throw UsageError("--video " + options.video->string() + ": give a file name that ends in .mp4");
   check_files(options);
   const InterruptGuard guard;     // before the first file is opened: nothing is to be left of any
   make_picture_folders(options);  // where other outputs may be wanted, too

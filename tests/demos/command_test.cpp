@@ -367,7 +367,7 @@ TEST(Command, RefusesTwoOutputsInOneFile) {
             0u);
   EXPECT_NE(refusal(demo + "--record same --json " + (folder / "same")).find("--record and --json"),
             std::string::npos);
-  EXPECT_NE(refusal(demo + "--video same --json same").find("--video and --json"), std::string::npos);
+  EXPECT_NE(refusal(demo + "--video same.mp4 --json same.mp4").find("--video and --json"), std::string::npos);
   EXPECT_NE(refusal("report t.json --out ./t.json").find("the trace and --out are one file"),
             std::string::npos);
   EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
@@ -488,6 +488,20 @@ TEST(Command, ABenchmarkThatIsInterruptedLeavesNoFile) {
   EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
+TEST(Command, SaysWhenTheDiskIsFullBeforeAVideosEnd) {
+  const ScratchFolder folder;
+  const auto on_small_disk = [&](const std::string& line) {
+    return run_shell("unshare --map-root-user --mount sh -c 'mount -t tmpfs -o size=32k tmpfs " +
+                     folder.path().string() + " && cd " + folder.path().string() + " && { " + line + "; }'");
+  };
+  if (on_small_disk("true").status != 0) GTEST_SKIP() << "here nobody may mount a disk";
+  const CommandResult run = on_small_disk(SOFTCELL_COMMAND
+                                          " demo 3d --headless --scene drop --size 640x360 --frames 60 "
+                                          "--quiet --video v.mp4; echo status $?; ls -A");
+  EXPECT_EQ(run.output.rfind("softcell: cannot write the video v.mp4: ffmpeg: ", 0), 0u) << run.output;
+  EXPECT_TRUE(run.output.ends_with(" v.mp4: No space left on device\nstatus 1\n")) << run.output;
+}
+
 TEST(Command, SaysWhenWhatItPrintsIsLost) {
   for (const char* verb : {"scenes", "man", "spu budget", "bench --list", "completion bash", "--help"}) {
     const CommandResult run = run_shell(std::string(SOFTCELL_COMMAND) + " " + verb + " 2>&1 >/dev/full");
@@ -559,6 +573,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
         Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
         Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
+        Refusal{SC_DEMO "--video %s/v.webm", 2, "v.webm: give a file name that ends in .mp4"},
+        Refusal{SC_DEMO "--video ''", 2, "--video : give a file name that ends in .mp4"},
         Refusal{"demo 2d --statistics", 2, "--headless"},
         Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
         Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
