@@ -10,13 +10,13 @@
 #include <optional>
 
 #include "demo_pictures.h"
-#include "distinct_files.h"
 #include "interrupt.h"
 #include "json_file.h"
 #include "kernel_report.h"
 #include "output_files.h"
 #include "progress_bar.h"
 #include "run_record.h"
+#include "scene_file/scene_library.h"
 #include "softcell/render/offscreen_context.h"
 #include "statistics.h"
 #include "usage_error.h"
@@ -158,7 +158,29 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   return run;
 }
 
+bool is_mp4(const std::filesystem::path& file) {
+  const std::filesystem::path ending = file.extension();
+  return ending == ".mp4" || ending == ".MP4";
+}
+
+/// No output takes another's place or that of what the demo reads.
+void check_files(const DemoOptions& options) {
+  std::vector<NamedFile> written = written_files(options);
+  check_distinct(written);
+  if (options.scene && is_scene_file(*options.scene)) check_kept({{"the scene", *options.scene}}, written);
+  // A recording may take the place of the one that is replayed.
+  std::erase_if(written, [](const NamedFile& file) { return file.name == "--record"; });
+  check_kept({{"--replay", options.replay}}, written);
+}
+
 }  // namespace
+
+std::vector<NamedFile> written_files(const DemoOptions& options) {
+  return {{"--video", options.video},
+          {"--record", options.record},
+          {"--trace", options.trace},
+          {"--json", options.json}};
+}
 
 void run_recorded(Demo& demo, const std::function<void()>& work) {
   try {
@@ -181,10 +203,9 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (!options.headless && options.statistics)
     throw UsageError(
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
-  check_distinct({{"--video", options.video},
-                  {"--record", options.record},
-                  {"--trace", options.trace},
-                  {"--json", options.json}});
+  if (options.video && !is_mp4(*options.video))
+    throw UsageError("--video " + options.video->string() + ": give a file name that ends in .mp4");
+  check_files(options);
   const InterruptGuard guard;     // before the first file is opened: nothing is to be left of any
   make_picture_folders(options);  // where other outputs may be wanted, too
   // A recording and a trace are of one scene.

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "distinct_files.h"
 #include "options.h"
 #include "simulation_options.h"
 #include "softcell/ls_sim/statistics.h"
@@ -69,6 +70,9 @@ class Demo {
   virtual void draw_published(const Look& look) = 0;
 };
 
+/// The files that the options ask for, pictures in folders aside.
+std::vector<NamedFile> written_files(const DemoOptions& options);
+
 /// Does the work and saves the recording of its frames, also when it fails, a frame that failed included:
 /// that is the run that one wants to see again. What goes wrong with saving is only printed then: the work's
 /// error is what ends the run.
@@ -83,7 +87,8 @@ using LoadScenes = std::function<std::vector<MakeDemo>(bool all)>;
 /// Runs a demo, in a window or without; steps it, writes its pictures, reports what it cost.
 /// @param verb  "demo 3d"   @param load  is called once, before threads are started: scenes in Lua fork
 /// @return the exit status: 0, 3 when checked kernels have findings, or 130 when interrupted.
-/// @throws UsageError  files are asked for that a window does not write.
+/// @throws UsageError  files are asked for that a window does not write, a video that is no MP4, or a file in
+///                     the place of another that is written or read.
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load);
 
 }  // namespace softcell::demos

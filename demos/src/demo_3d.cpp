@@ -56,6 +56,7 @@ class Demo3d final : public SceneDemo<Types3d> {
 }  // namespace
 
 int run_demo_3d(const Demo3dOptions& options) {
+  check_kept({{"--mesh", options.mesh}}, written_files(options));
   return run_demo(options, "demo 3d", [&](bool all) {
     const std::optional<OwnModel> model = load_own_model(options);
     InputLog<3> log(options);

@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Links followed as far as there are files; what is behind them then is normalised, as `..` of a link is not
-/// the folder that the link is in.
+/// Links followed as far as there are files, and to the file that a link stands for when that is still to be
+/// made; what is behind them then is normalised, as `..` of a link is not the folder that the link is in.
 fs::path one_spelling(const fs::path& path) {
   std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
+  const fs::path absolute = fs::absolute(ls_sim::WholeFile::behind_links(path), error);
   const fs::path canonical = fs::weakly_canonical(absolute, error);
   return error ? absolute.lexically_normal() : canonical;
 }
@@ -31,9 +31,7 @@ bool is_device_or_pipe(const fs::path& path) {
 
 bool is_one_file(const fs::path& a, const fs::path& b) {
   if (is_device_or_pipe(a) || is_device_or_pipe(b)) return false;
-  const fs::path one = one_spelling(a), other = one_spelling(b);
-  return one == other || ls_sim::WholeFile::temporary_name(one) == other ||
-         one == ls_sim::WholeFile::temporary_name(other);
+  return one_spelling(a) == one_spelling(b);
 }
 
 void check_distinct(const std::vector<NamedFile>& files) {
@@ -44,6 +42,12 @@ void check_distinct(const std::vector<NamedFile>& files) {
     if (same == one) continue;
     throw UsageError(fmt::format("{} and {} are one file, {}; give each a file of its own", same->name,
                                  one->name, one->file->string()));
+  }
+}
+
+void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written) {
+  for (const NamedFile& input : read) {
+    for (const NamedFile& output : written) check_distinct({input, output});
   }
 }
 

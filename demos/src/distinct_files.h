@@ -13,12 +13,15 @@ struct NamedFile {
   std::optional<std::filesystem::path> file;  ///< none: not given
 };
 
-/// Whatever way the two paths are spelled; also when one is where the other is written until it is whole.
-/// Devices and pipes are nobody's own: nothing is lost in them.
+/// Whatever way the two paths are spelled. Devices and pipes are nobody's own: nothing is lost in them.
 bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// For files that are written, and one that must not be replaced.
 /// @throws UsageError  two of them are one file, of which one would be lost.
 void check_distinct(const std::vector<NamedFile>& files);
+
+/// For files that are read, of which two may be one, and files that are written.
+/// @throws UsageError  one that is read would be replaced.
+void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
 }  // namespace softcell::demos

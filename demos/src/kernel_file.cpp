@@ -60,11 +60,15 @@ std::string built_in_names() {
 
 }  // namespace
 
+std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(image, ignored)) return std::nullopt;
+  return flavour_of(image, checked);
+}
+
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
-  if (std::error_code ignored; std::filesystem::exists(image, ignored)) {
-    const std::filesystem::path file = flavour_of(image, checked);
-    return ls_sim::load_image(kernel_name(file), read_file(file, kMostImageBytes));
-  }
+  if (const auto file = find_kernel_file(image, checked))
+    return ls_sim::load_image(kernel_name(*file), read_file(*file, kMostImageBytes));
   if (is_built_in(image)) return load_kernel(image, checked);
   throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
                            built_in_names() + ")");

@@ -1,10 +1,16 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "softcell/ls_sim/image.h"
 
 namespace softcell::demos {
+
+/// The file that load_kernel_file() reads; none when the kernel is one of this project's.
+/// @throws std::runtime_error  one sentence: there is no such flavour.
+std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked);
 
 /// Loads a kernel by the path of its .spu.elf file, or by name when it is one of this project's.
 /// @param checked  take its instrumented flavour: NAME.checked.spu.elf beside NAME.spu.elf.

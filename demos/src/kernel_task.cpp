@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "kernel_file.h"
 #include "usage_error.h"
 
 namespace softcell::demos {
@@ -141,6 +142,19 @@ std::vector<NamedFile> written_files(const KernelTask& task) {
   std::vector<NamedFile> files;
   for (const BufferSpec& buffer : task.buffers) {
     if (buffer.direction != BufferSpec::kIn)
+      files.push_back({option(buffer.direction) + buffer.name, buffer.file});
+  }
+  return files;
+}
+
+std::vector<NamedFile> read_files(const KernelTask& task) {
+  std::vector<NamedFile> files;
+  if (const auto image = find_kernel_file(task.image, task.checked)) {
+    files.push_back({"the kernel image", task.image});
+    files.push_back({"the kernel image", image});
+  }
+  for (const BufferSpec& buffer : task.buffers) {
+    if (buffer.direction == BufferSpec::kIn)
       files.push_back({option(buffer.direction) + buffer.name, buffer.file});
   }
   return files;

@@ -69,6 +69,10 @@ std::chrono::milliseconds parse_deadline(const std::string& text);
 /// The files of --out and --inout.
 std::vector<NamedFile> written_files(const KernelTask& task);
 
+/// The kernel image, if it is a file, in both its flavours when it is checked, and the files of --in.
+/// @throws std::runtime_error  one sentence: there is no such flavour.
+std::vector<NamedFile> read_files(const KernelTask& task);
+
 /// Refuses what no single option shows: two buffers of one name or to one file, arguments that name none.
 void check(const KernelTask& task);
 

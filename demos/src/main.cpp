@@ -179,7 +179,8 @@ class CommandLine {
         ->check(CLI::Range(1, kMaxFrames).description(""))
         ->type_name("FRAMES");
     d.add_option("--out", options.out, "Folder for numbered PNG frames (with --headless)")->type_name("DIR");
-    d.add_option("--video", options.video, "Write an MP4 video (with --headless; needs ffmpeg)")
+    d.add_option("--video", options.video,
+                 "Write a video to this file, which ends in .mp4 (with --headless; needs ffmpeg)")
         ->type_name("FILE");
     d.add_flag("--statistics", options.statistics,
                "Draw each frame's figures over its picture (with --headless; in a window S does)");

@@ -44,9 +44,9 @@ class Explorer {
                  options_.seeds);
       return kExitInterrupted;
     }
+    report();  // before the file, which perhaps cannot be written
     if (json_ != nullptr) write_json(*json_, document());
     files_.commit();
-    report();
     return exit_status();
   }
 
@@ -149,6 +149,7 @@ int run_spu_explore(const SpuExploreOptions& options) {
   std::vector<NamedFile> files = written_files(options.task);  // by the run that is printed to see it again
   files.push_back({"--json", options.json});
   check_distinct(files);
+  check_kept(read_files(options.task), files);
   return Explorer(options).explore();
 }
 

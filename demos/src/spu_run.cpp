@@ -22,6 +22,7 @@ int run_spu_run(const SpuRunOptions& options) {
   outputs.push_back({"--trace", options.trace});
   outputs.push_back({"--json", options.json});
   check_distinct(outputs);
+  check_kept(read_files(task), outputs);
   const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked);
   dma::AddressSpace memory;
   const KernelBuffers buffers(memory, task);
@@ -33,6 +34,9 @@ int run_spu_run(const SpuRunOptions& options) {
                  {.schedule = options.schedule, .clock = options.clock, .trace = trace ? &*trace : nullptr});
 
   const int status = exit_status(image, run);
+  // Before files that perhaps cannot be written: what the kernel did is to be known all the same.
+  print_statistics(image, run);
+  print_problems(image, run);
   OutputFiles files;
   if (status == 0) buffers.write_files(files);
   if (trace) trace->write(files.open(*options.trace));
@@ -42,8 +46,6 @@ int run_spu_run(const SpuRunOptions& options) {
     write_json(files.open(*options.json), document);
   }
   files.commit();
-  print_statistics(image, run);
-  print_problems(image, run);
   return status;
 }
 

@@ -49,19 +49,26 @@ class Descriptor {
   int value_ = -1;
 };
 
+/// The last that gives a reason: "Error initializing output stream 0:0 -- " stands below one that does.
 std::string last_line(int descriptor) {
   std::array<char, 4096> tail{};
   const off_t size = ::lseek(descriptor, 0, SEEK_END);
   const off_t start = size > static_cast<off_t>(tail.size()) ? size - static_cast<off_t>(tail.size()) : 0;
   const ssize_t count = ::pread(descriptor, tail.data(), tail.size(), start);
   std::string text(tail.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
-  const std::size_t before = text.find_last_of("\r\n");
-  return before == std::string::npos ? text : text.substr(before + 1);
+  for (;;) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+    const std::size_t before = text.find_last_of("\r\n");
+    if (before == std::string::npos) return text;
+    if (!text.ends_with("-- ")) return text.substr(before + 1);
+    text.resize(before);
+  }
 }
 
 std::vector<std::string> arguments(const std::filesystem::path& output, int width, int height, int rate) {
   return {"ffmpeg", "-y", "-nostdin", "-hide_banner", "-loglevel", "error",
+          // A full disk is an error also when the file's end is written: without it the status is 0 then.
+          "-xerror",
           // In: the frames as they are in memory.
           "-f", "rawvideo", "-pix_fmt", "rgba", "-s", std::to_string(width) + "x" + std::to_string(height),
           "-r", std::to_string(rate), "-i", "pipe:0",
@@ -166,6 +173,10 @@ int VideoWriter::Encoder::wait() {
 
 void VideoWriter::Encoder::report(int status) {
   std::string why = last_line(messages.get());
+  // The user knows the file by its final name.
+  const std::string temporary = "file:" + partial.path().string();
+  if (const auto at = why.find(temporary); at != std::string::npos)
+    why.replace(at, temporary.size(), path.string());
   if (why.empty()) {
     why = WIFSIGNALED(status) ? "it was ended by signal " + std::to_string(WTERMSIG(status))
                               : "it ended with status " + std::to_string(WEXITSTATUS(status));

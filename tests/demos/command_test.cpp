@@ -367,11 +367,43 @@ TEST(Command, RefusesTwoOutputsInOneFile) {
             0u);
   EXPECT_NE(refusal(demo + "--record same --json " + (folder / "same")).find("--record and --json"),
             std::string::npos);
-  EXPECT_NE(refusal(demo + "--video same --json same").find("--video and --json"), std::string::npos);
-  EXPECT_NE(refusal(demo + "--json s --trace s.part").find("--trace and --json"), std::string::npos);
+  EXPECT_NE(refusal(demo + "--video same.mp4 --json same.mp4").find("--video and --json"), std::string::npos);
   EXPECT_NE(refusal("report t.json --out ./t.json").find("the trace and --out are one file"),
             std::string::npos);
   EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
+}
+
+TEST(Command, RefusesToReplaceWhatItReads) {
+  const ScratchFolder folder;
+  const std::string scene = "dimension = 2\n";
+  write_file(folder / "f.toml", scene);
+  write_file(folder / "m.obj", kCube);
+  write_file(folder / "r.rec", "a recording");
+  const auto before = files_in(folder.path());
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run =
+        run_shell("cd " + folder.path().string() + " && timeout 20 " SOFTCELL_COMMAND " " + arguments);
+    EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
+    EXPECT_EQ(files_in(folder.path()), before) << arguments;
+    return run.output;
+  };
+  const std::string demo = "demo 2d --headless --frames 1 --size 32x32 ";
+  for (const std::string output : {"--record", "--trace", "--json"}) {
+    EXPECT_NE(refusal(demo + "--scene f.toml " + output + " ./f.toml")
+                  .find("the scene and " + output + " are one file, ./f.toml; give each a file of its own"),
+              std::string::npos);
+    EXPECT_NE(refusal("demo 3d --headless --mesh m.obj " + output + " m.obj")
+                  .find("--mesh and " + output + " are one file, m.obj"),
+              std::string::npos);
+  }
+  for (const std::string output : {"--trace", "--json"}) {
+    EXPECT_NE(refusal(demo + "--replay r.rec " + output + " r.rec").find("--replay and " + output),
+              std::string::npos);
+  }
+  // A built-in scene is no file.
+  const CommandResult named = run_shell("cd " + folder.path().string() + " && " SOFTCELL_COMMAND " " + demo +
+                                        "--scene man --json man");
+  EXPECT_EQ(named.status, 0) << named.output;
 }
 
 // The folder above the one that a link stands for is not the folder that the link is in.
@@ -388,14 +420,24 @@ TEST(Command, KnowsOneFileThroughALinkedFolder) {
   EXPECT_TRUE(std::filesystem::exists(folder / "other/x.json"));
 }
 
+TEST(Command, KnowsOneFileThroughALinkToWhatIsStillToBeMade) {
+  const ScratchFolder folder;
+  std::filesystem::create_symlink("made.json", folder / "link.json");
+  const std::string demo =
+      "demo 2d --headless --quiet --frames 1 --size 32x32 --json " + (folder / "link.json");
+  EXPECT_EQ(run_softcell(demo + " --trace " + (folder / "made.json")).status, 2);
+  EXPECT_EQ(run_softcell(demo).status, 0);
+  EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"link.json", "made.json"}));
+}
+
 TEST(Command, LeavesNothingWhenInterruptedBeforeTheFirstFrame) {
   const ScratchFolder folder;
   const CommandResult run =
       run_shell("cd " + folder.path().string() +
                 " && " SOFTCELL_COMMAND
                 " demo 3d --headless --scene big --frames 1 --json j --trace t --record r & child=$!; "
-                "while [ ! -e " +
-                (folder / "j.part") + " ]; do sleep 0.01; done; kill -TERM $child; wait $child");
+                "while [ -z \"$(ls -A " +
+                folder.path().string() + ")\" ]; do sleep 0.01; done; kill -TERM $child; wait $child");
   EXPECT_EQ(run.status, 130) << run.output;
   EXPECT_EQ(run.output, "softcell: interrupted before the first frame\n");
   EXPECT_TRUE(files_in(folder.path()).empty());
@@ -444,6 +486,20 @@ TEST(Command, ABenchmarkThatIsInterruptedLeavesNoFile) {
                                       (folder / "b.json"));
   EXPECT_NE(run.output.find("interrupted"), std::string::npos) << run.output;
   EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+TEST(Command, SaysWhenTheDiskIsFullBeforeAVideosEnd) {
+  const ScratchFolder folder;
+  const auto on_small_disk = [&](const std::string& line) {
+    return run_shell("unshare --map-root-user --mount sh -c 'mount -t tmpfs -o size=32k tmpfs " +
+                     folder.path().string() + " && cd " + folder.path().string() + " && { " + line + "; }'");
+  };
+  if (on_small_disk("true").status != 0) GTEST_SKIP() << "here nobody may mount a disk";
+  const CommandResult run = on_small_disk(SOFTCELL_COMMAND
+                                          " demo 3d --headless --scene drop --size 640x360 --frames 60 "
+                                          "--quiet --video v.mp4; echo status $?; ls -A");
+  EXPECT_EQ(run.output.rfind("softcell: cannot write the video v.mp4: ffmpeg: ", 0), 0u) << run.output;
+  EXPECT_TRUE(run.output.ends_with(" v.mp4: No space left on device\nstatus 1\n")) << run.output;
 }
 
 TEST(Command, SaysWhenWhatItPrintsIsLost) {
@@ -517,6 +573,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
         Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
         Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
+        Refusal{SC_DEMO "--video %s/v.webm", 2, "v.webm: give a file name that ends in .mp4"},
+        Refusal{SC_DEMO "--video ''", 2, "--video : give a file name that ends in .mp4"},
         Refusal{"demo 2d --statistics", 2, "--headless"},
         Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
         Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},

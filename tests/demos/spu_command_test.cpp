@@ -79,6 +79,14 @@ class SpuCommand : public testing::Test {
       ASSERT_EQ(y[i], 2.f * static_cast<float>(i % 100) + static_cast<float>(i % 7)) << i;
   }
 
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
   ScratchFolder folder_;
   std::size_t count_ = 0;
 };
@@ -145,12 +153,13 @@ TEST_F(SpuCommand, WritesOutFilesOfTheSizeAskedFor) {
 
 TEST_F(SpuCommand, WritesAllItsFilesOrNone) {
   const auto before = read_floats(folder_ / "y.bin");
+  const std::vector<std::string> files = names();
   for (const std::string option : {"--json /proc/s.json", "--trace /proc/t.json", "--json /dev/full",
                                    "--trace /dev/full", "--json /", "--out z=/proc/z.bin:64"}) {
     const CommandResult run = run_softcell("spu run " + kSaxpy + saxpy_options() + option);
     EXPECT_EQ(run.status, 1) << option << ": " << run.output;
     EXPECT_EQ(read_floats(folder_ / "y.bin"), before) << option;
-    EXPECT_FALSE(exists(folder_ / "y.bin.part")) << option;
+    EXPECT_EQ(names(), files) << option;
   }
 }
 
@@ -164,6 +173,31 @@ TEST_F(SpuCommand, RefusesTwoOutputsInOneFile) {
     EXPECT_EQ(read_floats(file)[1], 1.f) << option;
   }
   EXPECT_EQ(run_softcell("spu explore " + kSaxpy + saxpy_options() + "--json " + file).status, 2);
+}
+
+TEST_F(SpuCommand, RefusesToReplaceWhatItReads) {
+  for (const char* flavour : {"k.spu.elf", "k.checked.spu.elf"})
+    std::filesystem::copy_file(kSaxpy, folder_ / flavour);
+  const std::string image = folder_ / "k.spu.elf", checked = folder_ / "k.checked.spu.elf",
+                    x = folder_ / "x.bin";
+  const auto size_before = std::filesystem::file_size(image);
+  const auto refusal = [&](const std::string& options) {
+    const std::string arguments = image + saxpy_options() + options;
+    const CommandResult run = run_softcell("spu run " + arguments);
+    EXPECT_EQ(run.status, 2) << options << ": " << run.output;
+    EXPECT_EQ(run_softcell("spu explore " + arguments).status, 2) << options;
+    EXPECT_EQ(std::filesystem::file_size(image), size_before) << options;
+    EXPECT_EQ(read_floats(x).size(), kCount) << options;
+    return run.output;
+  };
+  EXPECT_NE(refusal("--out z=" + image + ":64").find("the kernel image and --out z "), std::string::npos);
+  EXPECT_NE(refusal("--json " + image).find("the kernel image and --json "), std::string::npos);
+  EXPECT_NE(refusal("--checked --json " + image).find("the kernel image and --json "), std::string::npos);
+  EXPECT_NE(refusal("--checked --json " + checked).find("the kernel image and --json "), std::string::npos);
+  EXPECT_NE(refusal("--json " + x).find("--in x and --json "), std::string::npos);
+  EXPECT_NE(refusal("--out z=" + x + ":64").find("--in x and --out z "), std::string::npos);
+  EXPECT_NE(refusal("--inout z=" + x).find("--in x and --inout z "), std::string::npos);
+  EXPECT_EQ(run_softcell("spu run " + image + saxpy_options() + "--trace " + x).status, 2);
 }
 
 TEST_F(SpuCommand, TheImageMayStandBehindTheBuffers) {
@@ -221,6 +255,20 @@ TEST_F(SpuCommand, AFaultIsOneSentenceWithItsPlaceAndLeavesNoOutput) {
   const auto json = read_json(folder_ / "s.json");
   EXPECT_EQ(json["exit_status"], 1);
   EXPECT_EQ(json["spes"][0]["fault"]["rule"], "ea-alignment");
+}
+
+TEST_F(SpuCommand, SaysWhatTheKernelDidWhenAFileCannotBeWritten) {
+  for (const std::string verb : {"spu run ", "spu explore --seeds 3 "}) {
+    const CommandResult fault = run_softcell(verb + kTalk + " --in-mbox 2 --in x=" + (folder_ / "x.bin") +
+                                             " --arg @x --json /dev/full");
+    EXPECT_EQ(fault.status, 1) << fault.output;
+    EXPECT_NE(fault.output.find("ea-alignment"), std::string::npos) << fault.output;
+    EXPECT_NE(fault.output.find("softcell: cannot write /dev/full: No space left"), std::string::npos)
+        << fault.output;
+  }
+  const CommandResult good = run_softcell("spu run " + kSaxpy + saxpy_options() + "--json /dev/full");
+  EXPECT_EQ(good.status, 1) << good.output;
+  EXPECT_NE(good.output.find("local store: text"), std::string::npos) << good.output;
 }
 
 TEST_F(SpuCommand, AStatusThatIsNotZeroIsAFailure) {

@@ -163,6 +163,19 @@ TEST(Video, ReportsTheLastLineOfAnEncoderThatEndsEarly) {
   EXPECT_EQ(directory.entries(), std::vector<std::string>{"ffmpeg"});
 }
 
+TEST(Video, ReportsTheLineWithTheReasonAndTheNameThatTheUserGave) {
+  const TemporaryDirectory directory;
+  make_fake_ffmpeg(
+      directory,
+      "for name; do :; done\n"
+      "echo \"cannot write $name: it is full\" >&2; echo 'Error with stream 0:0 -- ' >&2; exit 1\n");
+  const PathOverride fake(directory.string());
+  VideoWriter video(directory / "demo.mp4", kWidth, kHeight, 30);
+  const std::string name = directory.string() + "/demo.mp4";
+  EXPECT_EQ(error_of([&] { video.finish(); }),
+            "cannot write the video " + name + ": ffmpeg: cannot write " + name + ": it is full");
+}
+
 TEST(Video, ReportsTheStatusOfAnEncoderThatFailsInSilence) {
   const TemporaryDirectory directory;
   make_fake_ffmpeg(directory, "while read -r line; do :; done; exit 5\n");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "../embedded_files.h"
 #include "field_reader.h"
@@ -59,6 +60,11 @@ const std::vector<SceneListing>& list_scenes() {
     return found;
   }();
   return scenes;
+}
+
+bool is_scene_file(std::string_view name_or_file) {
+  const std::filesystem::path ending = std::filesystem::path(name_or_file).extension();
+  return ending == ".toml" || ending == ".lua";
 }
 
 std::variant<Scene, Scene2d> load_scene(std::string_view name_or_file) {

@@ -29,6 +29,9 @@ struct OwnModel {
   float cell_size = 0;  ///< in the mesh's units
 };
 
+/// Whether load_scene() takes it for a file, and not for a built-in scene's name.
+bool is_scene_file(std::string_view name_or_file);
+
 /// @param name_or_file  a built-in scene's name, or a file that ends in .toml or .lua.
 /// @throws std::runtime_error  there is no such scene, or it is wrong (SceneError): one sentence.
 std::variant<Scene, Scene2d> load_scene(std::string_view name_or_file);

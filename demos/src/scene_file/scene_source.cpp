@@ -60,14 +60,14 @@ SceneSource SceneSource::find(std::string_view name_or_file) {
       return source;
     }
   }
-  const fs::path path{name_or_file};
-  if (path.extension() != ".toml" && path.extension() != ".lua") {
+  if (!is_scene_file(name_or_file)) {
     std::string known;
     for (const SceneListing& scene : list_scenes()) known += (known.empty() ? "" : ", ") + scene.name;
     throw std::runtime_error(
         fmt::format("unknown scene '{}'; there are: {}; or give a scene file, which ends in .toml or .lua",
                     name_or_file, known));
   }
+  const fs::path path{name_or_file};
   source.main_ = read_text(path);
   source.folder_ = fs::weakly_canonical(path).parent_path();
   return source;

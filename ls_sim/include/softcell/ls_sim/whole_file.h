@@ -7,9 +7,11 @@
 
 namespace softcell::ls_sim {
 
-/// Written under a temporary name beside its own and renamed at the end, so that no half-written file is left
-/// as if it were whole. A device or a pipe is written to directly, as it cannot be replaced by renaming, and
-/// opened at the first byte only, as a pipe's opening waits for its reader.
+/// Written under a temporary name of its own in the same folder and renamed at the end, so that no
+/// half-written file is left as if it were whole, and two writers of one file never mix their bytes. A file
+/// that is replaced keeps its permissions, and a link to it stays a link. A device or a pipe is written to
+/// directly, as it cannot be replaced by renaming, and opened at the first byte only, as a pipe's opening
+/// waits for its reader.
 ///
 ///   WholeFile file(path);
 ///   file.write(text);
@@ -32,16 +34,20 @@ class WholeFile {
   /// finish(), where that is not done yet, and the file takes its place.
   void commit();
 
-  /// Where a file of this name is written until it is whole.
-  static std::filesystem::path temporary_name(const std::filesystem::path& path);
+  /// The file that a symbolic link stands for, through further links, also one that is not there yet; any
+  /// other path itself. Links that go round in a circle are followed some way.
+  static std::filesystem::path behind_links(std::filesystem::path path);
 
  private:
-  void open();
+  /// @param replaced  the file whose permissions it keeps; there may be none.
+  void open_temporary(const std::filesystem::file_status& replaced);
+  void open_in_place();
   void discard();
   [[noreturn]] void fail(int error);
 
-  std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< the path itself when written in place
+  std::filesystem::path path_;       ///< as the caller has it
+  std::filesystem::path place_;      ///< that is written or replaced
+  std::filesystem::path temporary_;  ///< empty: there is none, as when written in place
   std::FILE* file_ = nullptr;        ///< null: finished, or a device's or pipe's before the first byte
   bool settled_ = false;             ///< in its place, or discarded
 };
