@@ -31,7 +31,7 @@ function showSummary(list, trace) {
   const span = trace.end - trace.begin, spes = trace.spes.length;
   const jobs = trace.count("jobs"), failed = trace.total((spe) => spe.jobs.failed.reduce((a, b) => a + b, 0));
   const bytes = trace.total((spe) => spe.commands.bytes.reduce((a, b) => a + b, 0));
-  const busy = trace.total((spe) => spe.jobRow.busy.at(Infinity)), waiting = trace.total((spe) => spe.waitRow.busy.at(Infinity));
+  const busy = trace.total((spe) => spe.jobRow.busy.at(Infinity)), waiting = trace.total((spe) => spe.jobWaits.busy.at(Infinity));
   const tile = (name, value, note, bad = false) =>
       element("div", bad ? {class: "bad"} : {}, element("dt", {}, name), element("dd", {}, value, element("small", {}, note)));
   list.replaceChildren(

@@ -265,6 +265,23 @@ class Page(WithBrowser):
             self.browser.set_window_size(1300, 900)
 
 
+class ResidentTrace(WithBrowser):
+    """A kernel that sleeps between its jobs, as all demos have it."""
+
+    def test_sleep_outside_of_jobs_is_no_waiting(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page, result = report(known_trace.resident_trace().document(), folder)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.browser.get("file://" + page)
+            summary = self.browser.find_element(By.ID, "summary").text
+            self.assertIn("10 %\nwith a job", summary)
+            self.assertIn("25 %\nof the busy time", summary)
+            rows = self.browser.find_elements(By.CSS_SELECTOR, "#shares tr")
+            cells = [[cell.text for cell in row.find_elements(By.CSS_SELECTOR, "th, td")] for row in rows]
+            self.assertEqual(cells[0], ["SPE", "", "working", "MFC_RdTagStat", "SPU_RdEventStat", "no job"])
+            self.assertEqual(cells[1:], [[f"SPE {spe}", "", "7.5 %", "2.0 %", "0.5 %", "90 %"] for spe in range(6)])
+
+
 class LongTrace(WithBrowser):
     """A hundred thousand events: a picture must not cost what they cost."""
 
