@@ -231,8 +231,11 @@ class Page(WithBrowser):
 
     def test_bandwidth_is_what_the_commands_moved(self):
         numbers = self.text("bandwidth-numbers")
-        self.assertIn("get 1.05 MB", numbers)  # 45 * (16384 + 8192) bytes
-        self.assertIn("put 180 KB", numbers)   # 45 * 4096 bytes
+        self.assertIn("get 1.11 MB", numbers)  # 45 * (16384 + 8192) bytes
+        self.assertIn("put 184 KB", numbers)   # 45 * 4096 bytes
+        self.assertIn("1.29 MB moved", self.text("summary"))
+        duration = self.run_script("const {trace} = softcellReport; return (trace.end - trace.begin) / 1e9")
+        self.assertIn(f"at {45 * (16384 + 8192) / duration / 1e6:.0f} MB/s", numbers)  # the same MB
         peak = self.run_script("return softcellReport.bandwidth.measure().peak")
         # At most six SPEs with 16384 bytes in 200 us and 8192 in 180 us.
         self.assertGreater(peak, 0.5 * 6 * 127e6)
@@ -244,7 +247,7 @@ class Page(WithBrowser):
         whole = stores[0].find_element(By.CLASS_NAME, "map")
         bss = next(part for part in whole.find_elements(By.TAG_NAME, "span") if part.get_attribute("title").startswith("bss"))
         self.assertAlmostEqual(bss.rect["width"] / whole.rect["width"], 40960 / (256 * 1024), delta=0.005)
-        for part in ("text", "6 100", "stack", "4 096", "1 360 of 4 096", "weights", "free"):
+        for part in ("text", "6 100", "stack", "4 096", "1 360 of 4 096", "weights", "free", "of 256 KB taken, budget 96 KB"):
             self.assertIn(part, stores[0].text)
         self.assertIn("not measured", stores[1].text)
 
