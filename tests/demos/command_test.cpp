@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "run_command.h"
@@ -399,6 +400,47 @@ TEST(Command, LeavesNothingWhenInterruptedBeforeTheFirstFrame) {
   EXPECT_EQ(run.status, 130) << run.output;
   EXPECT_EQ(run.output, "softcell: interrupted before the first frame\n");
   EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+TEST(Command, SaysHowFarItCameWhenInterrupted) {
+  const ScratchFolder folder;
+  const auto interrupted = [&](const std::string& arguments) {
+    return run_shell("cd " + folder.path().string() +
+                     " && SDL_VIDEODRIVER=dummy timeout --preserve-status --signal=INT " +
+                     std::to_string(SOFTCELL_SLOW_BUILD ? 20 : 3) + " " SOFTCELL_COMMAND " " + arguments);
+  };
+  const CommandResult headless =
+      interrupted("demo 2d --headless --frames 100000 --size 32x32 --out frames --json j");
+  EXPECT_EQ(headless.status, 130);
+  EXPECT_TRUE(std::regex_match(
+      headless.output,
+      std::regex(
+          "softcell: interrupted after [0-9]+ of 100000 frames; every frame that was written is whole; "
+          "only a run to its end leaves a trace or statistics\n")))
+      << headless.output;
+  const CommandResult window = interrupted("demo 2d --size 64x48 --trace t --json j");
+  EXPECT_EQ(window.status, 130);
+  EXPECT_TRUE(std::regex_match(window.output,
+                               std::regex("softcell: interrupted after [0-9]+ frames; only a run to its end "
+                                          "leaves a trace or statistics\n")))
+      << window.output;
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"frames"});
+}
+
+TEST(Command, PrintsItsSummaryInColumns) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_softcell("demo 2d --headless --frames 3 --size 32x32 --record " + (folder / "r.rec"));
+  EXPECT_NE(run.output.find("\nrecording: " + (folder / "r.rec") + "\n"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("\na picture: "), std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find("pictures 0"), std::string::npos) << run.output;
+  std::istringstream lines(run.output);
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line);) {
+    ASSERT_GT(line.size(), 11u) << run.output;
+    EXPECT_EQ(line[10], ' ') << line;
+    EXPECT_NE(line[11], ' ') << line;
+  }
 }
 
 // A pipe's opening waits for its reader, and this one reads the second behind the first's end.
