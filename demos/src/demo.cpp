@@ -14,6 +14,7 @@
 #include "interrupt.h"
 #include "json_file.h"
 #include "kernel_report.h"
+#include "one_line.h"
 #include "output_files.h"
 #include "progress_bar.h"
 #include "run_record.h"
@@ -176,7 +177,7 @@ void run_recorded(Demo& demo, const std::function<void()>& work) {
     try {
       demo.save_recording();
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "softcell: %s\n", error.what());
+      std::fprintf(stderr, "softcell: %s\n", one_line(error.what()).c_str());
     }
     throw;
   }

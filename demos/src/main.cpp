@@ -17,6 +17,7 @@
 #include "command_line/usage_sentence.h"
 #include "command_line/whole_number.h"
 #include "kernel_task_options.h"
+#include "one_line.h"
 #include "softcell/ppu/lattice.h"
 #include "usage_error.h"
 #include "verbs.h"
@@ -340,13 +341,6 @@ class CommandLine {
   std::string shell_;
   std::function<int()> chosen_;
 };
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n') c = ' ';
-  }
-  return text;
-}
 
 /// What was printed may still wait in the stream, and a full disk shows when it goes out.
 void finish_printing() {

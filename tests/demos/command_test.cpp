@@ -213,6 +213,34 @@ TEST(Command, RefusesABadSceneInOneLineWithItsPlace) {
                             ":2:1: world has no field 'gravitty'; did you mean 'gravity'?\n");
 }
 
+/// What the command says about a scene that it refuses.
+std::string refusal_of(const std::string& name, const std::string& text) {
+  const ScratchFolder folder;
+  write_file(folder / name, text);
+  const CommandResult run = run_shell("cd " + folder.path().string() +
+                                      " && " SOFTCELL_COMMAND " demo 3d --headless --scene ./" + name);
+  EXPECT_EQ(run.status, 1) << run.output;
+  return run.output;
+}
+
+TEST(Command, ControlCharactersOfAFileDoNotReachTheTerminal) {
+  EXPECT_EQ(refusal_of("a.lua", "error('\\27[31mred\\127\\r\\u{9b}31m\\x9b \u00e9\\tt')"),
+            "softcell: ./a.lua:1: \\x1b[31mred\\x7f\\x0d\\xc2\\x9b31m\\x9b \u00e9 t\n");
+  const std::string title = "\\u001b]0;owned\\u0007", shown = "\\x1b]0;owned\\x07";
+  EXPECT_NE(refusal_of("a.toml", "[[soft_body]]\nname = \"" + title + "\"\ncell_size = \"x\"\n").find(shown),
+            std::string::npos);
+  EXPECT_NE(refusal_of("b.toml", "\"" + title + "\" = 1\n").find(shown), std::string::npos);
+}
+
+TEST(Command, ALongSentenceLosesItsMiddle) {
+  const std::string said = refusal_of(
+      "a.toml", "[[soft_body]]\nname = \"" + std::string(600'000, 'n') + "\"\ncell_size = \"x\"\n");
+  EXPECT_LT(said.size(), 2050u);
+  EXPECT_EQ(said.rfind("softcell: ./a.toml:3:1: cell_size of soft body 1 ('nnn", 0), 0u) << said;
+  EXPECT_NE(said.find("n ... n"), std::string::npos) << said;
+  EXPECT_NE(said.find("n') is 'x'; it must be a number"), std::string::npos) << said;
+}
+
 TEST(Command, DrawsTheFiguresOverAPictureWhereItIsAsked) {
   const ScratchFolder folder;
   const std::string run = "demo 2d --headless --quiet --frames 1 --size 640x360 --out ";
