@@ -185,7 +185,10 @@ class CommandLine {
             "window as many as you like)"),
         1, kMaxFrames)
         ->type_name("FRAMES");
-    d.add_option("--out", options.out, "Folder for numbered PNG frames (with --headless)")->type_name("DIR");
+    d.add_option(
+         "--out", options.out,
+         "Folder for numbered PNG frames (with --headless); those of an earlier run in it are removed")
+        ->type_name("DIR");
     d.add_option("--video", options.video, "Write an MP4 video (with --headless; needs ffmpeg)")
         ->type_name("FILE");
     d.add_flag("--statistics", options.statistics,
