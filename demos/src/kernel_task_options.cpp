@@ -27,7 +27,7 @@ std::string quoted(const std::string& word) {
 void KernelTaskOptions::add_to(CLI::App& verb) {
   verb.add_option("IMAGE", image_, "A kernel: its .spu.elf file, or the name of one of softcell's own")
       ->required()
-      ->type_name("FILE");
+      ->type_name("KERNEL");
   verb.add_flag("--checked", checked_,
                 "Take the instrumented flavour, IMAGE's .checked.spu.elf: findings name file and line");
   take_whole_number(
