@@ -92,10 +92,10 @@ class Bandwidth {
 /** The parts of one SPE's time in a range: [name, colour, share], in the order in which they are stacked. */
 function timeShares(spe, trace, timeline) {
   const {begin, end} = timeline.view, span = end - begin;
-  const waits = trace.channels.map((name, i) => [name, timeline.channelColour(name), spe.waitsOn[i].busy.between(begin, end) / span]);
+  const waits = trace.jobChannels().map(([name, i]) => [name, timeline.channelColour(name), spe.waitsOn[i].busy.between(begin, end) / span]);
   const waiting = waits.reduce((sum, [, , share]) => sum + share, 0);
-  const running = Math.max(spe.jobRow.busy.between(begin, end) / span, waiting);
-  return [["working", colours.of("work"), running - waiting], ...waits, ["no job", colours.of("idle"), Math.max(0, 1 - running)]];
+  const running = spe.jobRow.busy.between(begin, end) / span;
+  return [["working", colours.of("work"), Math.max(0, running - waiting)], ...waits, ["no job", colours.of("idle"), Math.max(0, 1 - running)]];
 }
 
 function drawShares(table, legend, trace, timeline) {

@@ -47,6 +47,21 @@ class Row {
     return new Row(Float64Array.from(kept, (i) => this.begin[i]), Float64Array.from(kept, (i) => this.end[i]),
                    Uint32Array.from(kept, (i) => this.index[i]));
   }
+
+  /** A row of the parts of its events that lie within events of another row. */
+  within(other) {
+    const begin = [], end = [], index = [];
+    for (let i = 0, j = 0; i < this.length && j < other.length;) {
+      const from = Math.max(this.begin[i], other.begin[j]), to = Math.min(this.end[i], other.end[j]);
+      if (from < to) {
+        begin.push(from);
+        end.push(to);
+        index.push(this.index[i]);
+      }
+      if (this.end[i] < other.end[j]) ++i; else ++j;
+    }
+    return new Row(Float64Array.from(begin), Float64Array.from(end), Uint32Array.from(index));
+  }
 }
 
 /** What the events of a row amount to up to a time, each spread evenly over its duration. */

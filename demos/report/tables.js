@@ -31,7 +31,7 @@ function showSummary(list, trace) {
   const span = trace.end - trace.begin, spes = trace.spes.length;
   const jobs = trace.count("jobs"), failed = trace.total((spe) => spe.jobs.failed.reduce((a, b) => a + b, 0));
   const bytes = trace.total((spe) => spe.commands.bytes.reduce((a, b) => a + b, 0));
-  const busy = trace.total((spe) => spe.jobRow.busy.at(Infinity)), waiting = trace.total((spe) => spe.waitRow.busy.at(Infinity));
+  const busy = trace.total((spe) => spe.jobRow.busy.at(Infinity)), waiting = trace.total((spe) => spe.jobWaits.busy.at(Infinity));
   const tile = (name, value, note, bad = false) =>
       element("div", bad ? {class: "bad"} : {}, element("dt", {}, name), element("dd", {}, value, element("small", {}, note)));
   list.replaceChildren(
@@ -125,7 +125,7 @@ const kStoreBytes = 256 * 1024;
 function storeBar(ranges, end, colourOf, className) {
   const bar = element("div", {class: className, "aria-hidden": "true"});
   for (const {name, begin, bytes} of ranges) {
-    const text = `${name}: ${format.address(begin)}, ${format.bytes(bytes)}`;
+    const text = `${name}: ${format.address(begin)}, ${format.store(bytes)}`;
     const wide = bytes / end > 0.012 * (name.length + 1);
     bar.append(element("span", {class: name === "free" ? "free" : "", title: text,
       style: `left:${100 * begin / end}%;width:${100 * bytes / end}%;padding-left:${wide ? 4 : 0}px;background:${colourOf(name)}`}, wide ? name : ""));
@@ -137,8 +137,8 @@ function storeBar(ranges, end, colourOf, className) {
 function storeAxis(end) {
   const axis = element("div", {class: "axis", "aria-hidden": "true"});
   const step = 2 ** Math.ceil(Math.log2(end / 6));
-  for (let at = 0; at < end - step / 3; at += step) axis.append(element("span", {style: `left:${100 * at / end}%`}, at === 0 ? "0" : format.bytes(at)));
-  axis.append(element("span", {style: "left:100%"}, format.bytes(end)));
+  for (let at = 0; at < end - step / 3; at += step) axis.append(element("span", {style: `left:${100 * at / end}%`}, at === 0 ? "0" : format.store(at)));
+  axis.append(element("span", {style: "left:100%"}, format.store(end)));
   return axis;
 }
 
@@ -148,7 +148,7 @@ function showStore(image) {
   const whole = storeBar(image.sections, kStoreBytes, colourOf, "map");
   if (stack && image.stackUsed !== null) {
     const used = Math.min(image.stackUsed, stack.bytes);
-    whole.append(element("span", {class: "used", title: `stack used: ${format.bytes(used)}`,
+    whole.append(element("span", {class: "used", title: `stack used: ${format.store(used)}`,
       style: `left:${100 * (kStoreBytes - used) / kStoreBytes}%;width:${100 * used / kStoreBytes}%`}));
   }
   const taken = image.sections.filter((section) => section.name !== "free");
@@ -170,10 +170,10 @@ function showStore(image) {
 
   const parts = [
     element("h3", {}, image.name, image.checked ? " (checked) " : " ", element("span", {class: "total"},
-      `${format.bytes(total)} of 256 KB taken, budget ${format.bytes(image.budget)}`)),
+      `${format.store(total)} of 256 KB taken, budget ${format.store(image.budget)}`)),
     whole, storeAxis(kStoreBytes)];
   if (end < kStoreBytes / 2) {
-    parts.push(element("p", {class: "caption"}, `The image itself, its first ${format.bytes(end)}, enlarged` + (image.objects.length > 0 ? "; below it its variables and buffers:" : ":")),
+    parts.push(element("p", {class: "caption"}, `The image itself, its first ${format.store(end)}, enlarged` + (image.objects.length > 0 ? "; below it its variables and buffers:" : ":")),
                storeBar(resident, end, colourOf, "map"));
   }
   if (image.objects.length > 0) {

@@ -262,7 +262,7 @@ function describe({row, event, finding}, trace) {
   const facts = [["SPE", spe.number], ["from", format.exactTime(columns.begin[event] - trace.begin)],
                  ["duration", format.exactTime(duration)]];
   if (kind === "job") {
-    facts.push(["of it waiting", format.time(spe.waitRow.busy.between(columns.begin[event], columns.end[event]))]);
+    facts.push(["of it waiting", format.time(spe.jobWaits.busy.between(columns.begin[event], columns.end[event]))]);
     if (columns.failed[event]) facts.push(["result", "failed"]);
     return {title: `${name}, job ${columns.number[event]}`, facts};
   }

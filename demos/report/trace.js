@@ -43,6 +43,7 @@ class Spe {
     const empty = () => new Row(new Float64Array(0), new Float64Array(0), new Uint32Array(0));
     this.jobRow = rowsOf(this.jobs)[0] ?? empty();
     this.waitRow = rowsOf(this.waits)[0] ?? empty();
+    this.jobWaits = this.waitRow.within(this.jobRow);  // outside of jobs it waits for the next: it is idle
     this.commandRows = rowsOf(this.commands);
     const bytes = (row, wanted) =>
         new Sum(row, (i) => wanted(this.direction(row.index[i])) ? this.commands.bytes[row.index[i]] : 0);
@@ -81,7 +82,7 @@ class Trace {
     this.channels = this.namesIn("waits");
     this.findings = this.spes.flatMap((spe) => spe.findings).sort((a, b) => a.when - b.when);
     for (const spe of this.spes) {
-      spe.waitsOn = this.channels.map((channel) => spe.waitRow.filter((i) => spe.name(spe.waits, spe.waitRow.index[i]) === channel));
+      spe.waitsOn = this.channels.map((channel) => spe.jobWaits.filter((i) => spe.name(spe.waits, spe.jobWaits.index[i]) === channel));
     }
   }
 
@@ -90,6 +91,11 @@ class Trace {
     const used = new Set();
     for (const spe of this.spes) for (const name of spe[kind].name) used.add(spe.names[name]);
     return [...used].sort();
+  }
+
+  /** The channels on which jobs wait: [name, its number in `channels`]. */
+  jobChannels() {
+    return [...this.channels.entries()].filter(([i]) => this.spes.some((spe) => spe.waitsOn[i].length > 0)).map(([i, name]) => [name, i]);
   }
 
   count(kind) { return this.spes.reduce((sum, spe) => sum + spe[kind].count, 0); }

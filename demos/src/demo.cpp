@@ -13,6 +13,7 @@
 #include "interrupt.h"
 #include "json_file.h"
 #include "kernel_report.h"
+#include "one_line.h"
 #include "output_files.h"
 #include "progress_bar.h"
 #include "run_record.h"
@@ -86,35 +87,50 @@ void print_summary(const nlohmann::ordered_json& s, const DemoOptions& options) 
              s["scene"].get<std::string>(), s["frames"].get<int>(), s["bodies"].get<int>(),
              s["rigid_bodies"].get<int>(), s["particles"].get<int>(), s["vertices"].get<int>());
   fmt::print(
-      "a frame:  PPU {:.3f} ms, {:.1f} % of 1/60 s (gather {:.3f}, solve {:.3f}, apply {:.3f}, hand over "
-      "the skinning {:.3f}), physics {:.2f} ms, pictures {:.1f} ms\n",
+      "a frame:   PPU {:.3f} ms, {:.1f} % of 1/60 s (gather {:.3f}, solve {:.3f}, apply {:.3f}, hand over "
+      "the skinning {:.3f}), physics {:.2f} ms\n",
       s["ppu_ms"]["mean"].get<double>(), 100 * s["ppu_share"].get<double>(),
       s["gather_ms"]["mean"].get<double>(), s["solve_ms"]["mean"].get<double>(),
       s["apply_ms"]["mean"].get<double>(), s["skin_ms"]["mean"].get<double>(),
-      s["physics_ms"]["mean"].get<double>(), s["picture_ms"]["mean"].get<double>());
-  fmt::print("          {:.0f} frames a second without pictures\n", s["simulated_fps"].get<double>());
+      s["physics_ms"]["mean"].get<double>());
+  fmt::print("           {:.0f} frames a second without pictures\n", s["simulated_fps"].get<double>());
+  if (s["pictures"].get<std::size_t>() > 0)
+    fmt::print("a picture: {:.1f} ms\n", s["picture_ms"]["mean"].get<double>());
   if (!s["spe_busy"].empty()) {
     fmt::print(
-        "SPEs:     {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {} DMA commands, {:.1f} "
+        "SPEs:      {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {} DMA commands, {:.1f} "
         "MB\n",
         s["spes"].get<int>(), 100 * mean, 100 * busiest, s["dma_commands"].get<std::uint64_t>(),
         static_cast<double>(s["dma_bytes"].get<std::uint64_t>()) / 1e6);
   }
   if (!options.headless) {
-    fmt::print("shown:    {:.1f} pictures a second\n", static_cast<double>(s["pictures"].get<std::size_t>()) /
-                                                           std::max(s["seconds"].get<double>(), 1e-9));
+    fmt::print(
+        "shown:     {:.1f} pictures a second\n",
+        static_cast<double>(s["pictures"].get<std::size_t>()) / std::max(s["seconds"].get<double>(), 1e-9));
   }
-  fmt::print("state:    {}", s["state_hash"].get<std::string>());
+  fmt::print("state:     {}", s["state_hash"].get<std::string>());
   if (options.headless) fmt::print("   picture: {}", s["image_hash"].get<std::string>());
   fmt::print("\n");
   const auto where = [](const char* what, const std::optional<std::filesystem::path>& path) {
-    if (path) fmt::print("{:<10}{}\n", what, path->string());
+    if (path) fmt::print("{:<11}{}\n", what, path->string());
   };
   where("frames:", options.out);
   where("video:", options.video);
   where("recording:", options.record);
   where("trace:", options.trace);
   where("figures:", options.json);
+}
+
+/// How far an interrupted run has come, and what there is of it.
+void print_interrupted(const DemoOptions& options, const RunRecord& record) {
+  if (record.frames == 0) {
+    fmt::print(stderr, "softcell: interrupted before the first frame\n");
+    return;
+  }
+  const std::string of = record.asked_frames ? fmt::format(" of {}", *record.asked_frames) : "";
+  fmt::print(stderr, "softcell: interrupted after {}{} frames{}{}\n", record.frames, of,
+             options.out ? "; every frame that was written is whole" : "",
+             options.trace || options.json ? "; only a run to its end leaves a trace or statistics" : "");
 }
 
 Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDemo& make,
@@ -124,11 +140,9 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   Demo& demo = *run.demo;
   RunRecord& record = run.record;
   record.interrupted = guard.interrupted();
-  if (record.interrupted) {
-    fmt::print(stderr, "softcell: interrupted before the first frame\n");
-    return run;
-  }
+  if (record.interrupted) return run;
   const int frames = options.frames.value_or(demo.frames());
+  record.asked_frames = frames;
 
   const auto begin = std::chrono::steady_clock::now();
   Pictures pictures(options, demo);
@@ -146,11 +160,7 @@ Run run_headless(const DemoOptions& options, std::string_view verb, const MakeDe
   });
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.interrupted = guard.interrupted();
-  if (record.interrupted) {
-    fmt::print(stderr, "softcell: interrupted after {} of {} frames; every frame that was written is whole\n",
-               record.frames, frames);
-    return run;
-  }
+  if (record.interrupted) return run;
   pictures.finish();
   record.picture_ms = pictures.milliseconds();
   record.upload_bytes = pictures.upload_bytes();
@@ -189,7 +199,7 @@ void run_recorded(Demo& demo, const std::function<void()>& work) {
     try {
       demo.save_recording();
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "softcell: %s\n", error.what());
+      std::fprintf(stderr, "softcell: %s\n", one_line(error.what()).c_str());
     }
     throw;
   }
@@ -225,7 +235,10 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
                               .trace = trace ? &*trace : nullptr};
   const Run run = options.headless ? run_headless(options, verb, scenes.front(), how, guard)
                                    : play(options, verb, scenes, how, guard);
-  if (run.record.interrupted) return kExitInterrupted;
+  if (run.record.interrupted) {
+    print_interrupted(options, run.record);
+    return kExitInterrupted;
+  }
 
   auto statistics = statistics_document(options, *run.demo, run.record);
   const std::vector<ls_sim::Finding> found = findings.list();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "command_line/whole_number.h"
+
 namespace softcell::demos {
 namespace {
 
@@ -25,12 +27,13 @@ std::string quoted(const std::string& word) {
 void KernelTaskOptions::add_to(CLI::App& verb) {
   verb.add_option("IMAGE", image_, "A kernel: its .spu.elf file, or the name of one of softcell's own")
       ->required()
-      ->type_name("FILE");
+      ->type_name("KERNEL");
   verb.add_flag("--checked", checked_,
                 "Take the instrumented flavour, IMAGE's .checked.spu.elf: findings name file and line");
-  verb.add_option("--spes", spes_,
-                  "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number")
-      ->check(CLI::Range(1, 6).description(""))
+  take_whole_number(
+      verb.add_option("--spes", spes_,
+                      "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number"),
+      1, 6)
       ->type_name("SPES");
   // One buffer behind each: the next word may be IMAGE.
   verb.add_option("--in", in_, "A buffer that the kernel reads, filled from the file")

@@ -15,7 +15,9 @@
 #include "command_line/manual_page.h"
 #include "command_line/shell_completion.h"
 #include "command_line/usage_sentence.h"
+#include "command_line/whole_number.h"
 #include "kernel_task_options.h"
+#include "one_line.h"
 #include "softcell/ppu/lattice.h"
 #include "usage_error.h"
 #include "verbs.h"
@@ -76,13 +78,13 @@ View parse_view_3d(const std::string& text) {
 }
 
 Solver parse_engine(const std::string& text) {
-  if (text.empty() || text == "native") return Solver::kSpe;
+  if (text == "native") return Solver::kSpe;
   if (text == "reference") return Solver::kReference;
   throw UsageError("--engine " + text + ": give native or reference");
 }
 
 Skin parse_skin(const std::string& text) {
-  if (text.empty() || text == "spe") return Skin::kSpe;
+  if (text == "spe") return Skin::kSpe;
   if (text == "gpu") return Skin::kGpu;
   throw UsageError("--skin " + text + ": give spe or gpu");
 }
@@ -105,9 +107,11 @@ class CommandLine {
     try {
       app_.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
-      throw UsageError(usage_sentence(app_, error));
+      if (error.get_exit_code() != 0) throw UsageError(usage_sentence(app_, error));
+      if (const auto sentence = more_behind_help(app_, argc, argv)) throw UsageError(*sentence);
+      return app_.exit(error);  // --help, --version
     }
+    if (const auto sentence = empty_value(app_)) throw UsageError(*sentence);
     if (!chosen_) throw UsageError(verbs_sentence(app_));
     return chosen_();
   }
@@ -143,9 +147,10 @@ class CommandLine {
     d->add_option("--mesh", demo_3d_.mesh, "Put this OBJ, PLY or STL model into the scene (default: drop)")
         ->type_name("FILE");
     CLI::Option* const cells =
-        d->add_option("--cells", demo_3d_.cells, "Lattice cells along the model's longest side (default: 8)")
+        take_whole_number(d->add_option("--cells", demo_3d_.cells,
+                                        "Lattice cells along the model's longest side (default: 8)"),
+                          2, ppu::kMaxLatticeCellsPerAxis)
             ->needs("--mesh")
-            ->check(CLI::Range(2, ppu::kMaxLatticeCellsPerAxis).description(""))
             ->type_name("CELLS");
     d->add_option("--cell", demo_3d_.cell, "Edge of a lattice cell in the model's units, in place of --cells")
         ->needs("--mesh")
@@ -173,12 +178,17 @@ class CommandLine {
          "--scene", options.scene,
          "Scene by name, or a scene file; `softcell scenes` lists them (default: " + default_scene + ")")
         ->type_name("SCENE");
-    d.add_option("--frames", options.frames,
-                 "Frames of 1/60 s to simulate (default: the replay's; else the scene's, mostly 300, or in a "
-                 "window as many as you like)")
-        ->check(CLI::Range(1, kMaxFrames).description(""))
+    take_whole_number(
+        d.add_option(
+            "--frames", options.frames,
+            "Frames of 1/60 s to simulate (default: the replay's; else the scene's, mostly 300, or in a "
+            "window as many as you like)"),
+        1, kMaxFrames)
         ->type_name("FRAMES");
-    d.add_option("--out", options.out, "Folder for numbered PNG frames (with --headless)")->type_name("DIR");
+    d.add_option(
+         "--out", options.out,
+         "Folder for numbered PNG frames (with --headless); those of an earlier run in it are removed")
+        ->type_name("DIR");
     d.add_option("--video", options.video,
                  "Write a video to this file, which ends in .mp4 (with --headless; needs ffmpeg)")
         ->type_name("FILE");
@@ -186,8 +196,7 @@ class CommandLine {
                "Draw each frame's figures over its picture (with --headless; in a window S does)");
     d.add_option("--size", size_, "Size of pictures in pixels, or of the window (default: 1280x720)")
         ->type_name("WIDTHxHEIGHT");
-    d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)")
-        ->check(CLI::Range(1, 6).description(""))
+    take_whole_number(d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)"), 1, 6)
         ->type_name("SPES");
     d.add_option("--dma", schedule_, kDmaHelp)->type_name(kDmaValues);
     d.add_option("--engine", engine_,
@@ -207,7 +216,7 @@ class CommandLine {
   }
 
   void parse_texts(DemoOptions& options) const {
-    if (!size_.empty()) options.size = parse_size(size_);
+    options.size = parse_size(size_);
     options.schedule = parse_dma(schedule_);
     options.solver = parse_engine(engine_);
   }
@@ -251,8 +260,9 @@ class CommandLine {
         "explore",
         "Run a kernel under many orders of its transfers and SPEs; all must have the same outcome");
     explore_task_.add_to(*e);
-    e->add_option("--seeds", explore_.seeds, "Orders to try: --dma random:1 to random:SEEDS (default: 100)")
-        ->check(CLI::Range(std::uint64_t{1}, kMaxSeeds).description(""))
+    take_whole_number(e->add_option("--seeds", explore_.seeds,
+                                    "Orders to try: --dma random:1 to random:SEEDS (default: 100)"),
+                      1, kMaxSeeds)
         ->type_name("SEEDS");
     e->add_flag("--quiet", explore_.quiet, "No progress bar");
     e->add_option("--json", explore_.json, "Write the result to this file as well")->type_name("FILE");
@@ -274,9 +284,10 @@ class CommandLine {
     b->add_option("--filter", bench_.filter,
                   "Only benchmarks in whose name this regular expression is found; others are not even built")
         ->type_name("REGEX");
-    b->add_option("--rounds", bench_.rounds,
-                  "How often each is run, in turn; minimum and median are reported (default: 31)")
-        ->check(CLI::Range(1, kMaxRounds).description(""))
+    take_whole_number(
+        b->add_option("--rounds", bench_.rounds,
+                      "How often each is run, in turn; minimum and median are reported (default: 31)"),
+        1, kMaxRounds)
         ->type_name("ROUNDS");
     b->add_flag("--list", bench_.list, "Print the names of the benchmarks and measure nothing");
     b->add_option("--json", bench_.json, "Write the figures to this file as well")->type_name("FILE");
@@ -324,23 +335,16 @@ class CommandLine {
   BudgetOptions budget_;
   BenchOptions bench_;
   ReportOptions report_;
-  std::string size_;
+  std::string size_ = "1280x720";
   std::string view_ = "filled";
   std::string view_3d_ = "mesh";
   std::string schedule_ = "eager";
-  std::string engine_;
-  std::string skin_;
+  std::string engine_ = "native";
+  std::string skin_ = "spe";
   std::string clock_ = "host";
   std::string shell_;
   std::function<int()> chosen_;
 };
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n') c = ' ';
-  }
-  return text;
-}
 
 /// What was printed may still wait in the stream, and a full disk shows when it goes out.
 void finish_printing() {

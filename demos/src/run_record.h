@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "demo.h"
@@ -17,7 +18,8 @@ struct RunRecord {
   std::uint64_t upload_bytes = 0;  ///< of vertices or particles, for all pictures
   double seconds = 0;              ///< of the frame loop, pictures included
   int frames = 0;
-  std::uint64_t image_hash = 0;  ///< of the last picture; a window's are not read back
+  std::optional<int> asked_frames;  ///< nothing when the user says when the run ends
+  std::uint64_t image_hash = 0;     ///< of the last picture; a window's are not read back
   bool interrupted = false;
 
   void add(const FrameTimes& times) {

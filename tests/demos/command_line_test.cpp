@@ -77,6 +77,13 @@ TEST(ManualPage, OfTheCommandNamesEveryOptionOfEveryVerb) {
   }
 }
 
+TEST(ManualPage, SaysWhichOptionsGoTogether) {
+  const std::string page = without_escapes(run_softcell("man").output);
+  EXPECT_NE(page.find("longest side (default: 8); needs --mesh; not with --cell.\n"), std::string::npos);
+  EXPECT_NE(page.find("in place of --cells; needs --mesh; not with --cells.\n"), std::string::npos);
+  EXPECT_NE(page.find("(with --headless); those of an earlier run in it are removed.\n"), std::string::npos);
+}
+
 /// What bash offers behind these words; the last one is begun and not yet whole.
 std::string completed(const std::string& words) {
   const ScratchFolder folder;
@@ -94,6 +101,7 @@ TEST(BashCompletion, OffersVerbsOptionsAndValues) {
   EXPECT_EQ(completed("softcell spu run --clock h"), "host ");
   EXPECT_EQ(completed("softcell spu run --clock ra"), "random: ");
   EXPECT_EQ(completed("softcell spu run --clock host --"), "--help --clock ");
+  EXPECT_EQ(completed("softcell spu run --clock = ra"), "random: ");
 }
 
 TEST(BashCompletion, OfTheCommandKnowsItsScenes) {
@@ -103,6 +111,39 @@ TEST(BashCompletion, OfTheCommandKnowsItsScenes) {
                                    << "COMP_WORDS=(softcell demo 3d --headless --scene ar)\nCOMP_CWORD=5\n"
                                    << "_softcell\nprintf '%s ' \"${COMPREPLY[@]}\"\n";
   EXPECT_EQ(run_shell("cd " + folder.path().string() + " && bash --norc try.sh").output, "arena ");
+}
+
+TEST(BashCompletion, KeepsNamesWithSpacesWhole) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "my kernel.elf") << "";
+  std::filesystem::create_directory(folder / "my folder");
+  const auto offered = [&](const std::string& words) {
+    std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
+                                     << "source <(softcell completion bash)\n"
+                                     << "COMP_WORDS=(softcell " << words << ")\n"
+                                     << "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n"
+                                     << "_softcell\nprintf '<%s>' \"${COMPREPLY[@]}\"\n";
+    return run_shell("cd " + folder.path().string() +
+                     " && bash --norc try.sh | sed 's/></>\\n</g' | sort | tr -d '\\n'")
+        .output;
+  };
+  EXPECT_EQ(offered("demo 3d --json my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(offered("demo 3d --out my"), "<my folder>");
+  EXPECT_EQ(offered("demo 3d --scene my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(offered("report my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(offered("spu run my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(offered("spu run --in x = m"), "<my folder><my kernel.elf>");
+}
+
+TEST(BashCompletion, OfTheCommandKnowsItsKernels) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "matches.txt") << "";
+  std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
+                                   << "source <(softcell completion bash)\n"
+                                   << "COMP_WORDS=(softcell spu run match)\nCOMP_CWORD=3\n"
+                                   << "_softcell\nprintf '%s ' \"${COMPREPLY[@]}\"\n";
+  EXPECT_EQ(run_shell("cd " + folder.path().string() + " && bash --norc try.sh").output,
+            "match match_2d match_tiles matches.txt ");
 }
 
 TEST(Completion, OfAnUnknownShellIsRefused) {

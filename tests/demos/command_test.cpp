@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "run_command.h"
@@ -210,6 +211,48 @@ TEST(Command, RefusesABadSceneInOneLineWithItsPlace) {
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.output, "softcell: " + (folder / "bad.toml") +
                             ":2:1: world has no field 'gravitty'; did you mean 'gravity'?\n");
+}
+
+/// What the command says about a scene that it refuses.
+std::string refusal_of(const std::string& name, const std::string& text) {
+  const ScratchFolder folder;
+  write_file(folder / name, text);
+  const CommandResult run = run_shell("cd " + folder.path().string() +
+                                      " && " SOFTCELL_COMMAND " demo 3d --headless --scene ./" + name);
+  EXPECT_EQ(run.status, 1) << run.output;
+  return run.output;
+}
+
+TEST(Command, ControlCharactersOfAFileDoNotReachTheTerminal) {
+  EXPECT_EQ(refusal_of("a.lua", "error('\\27[31mred\\127\\r\\u{9b}31m\\x9b \u00e9\\tt')"),
+            "softcell: ./a.lua:1: \\x1b[31mred\\x7f\\x0d\\xc2\\x9b31m\\x9b \u00e9 t\n");
+  const std::string title = "\\u001b]0;owned\\u0007", shown = "\\x1b]0;owned\\x07";
+  EXPECT_NE(refusal_of("a.toml", "[[soft_body]]\nname = \"" + title + "\"\ncell_size = \"x\"\n").find(shown),
+            std::string::npos);
+  EXPECT_NE(refusal_of("b.toml", "\"" + title + "\" = 1\n").find(shown), std::string::npos);
+}
+
+TEST(Command, ALongSentenceLosesItsMiddle) {
+  const std::string said = refusal_of(
+      "a.toml", "[[soft_body]]\nname = \"" + std::string(600'000, 'n') + "\"\ncell_size = \"x\"\n");
+  EXPECT_LT(said.size(), 2050u);
+  EXPECT_EQ(said.rfind("softcell: ./a.toml:3:1: cell_size of soft body 1 ('nnn", 0), 0u) << said;
+  EXPECT_NE(said.find("n ... n"), std::string::npos) << said;
+  EXPECT_NE(said.find("n') is 'x'; it must be a number"), std::string::npos) << said;
+}
+
+TEST(Command, SpesStepBodiesInTwoDimensionsUpToWhatALocalStoreHolds) {
+  const ScratchFolder folder;
+  const auto stepped = [&](int cells, const std::string& options) {
+    const std::string scene = folder / "body.toml", side = std::to_string(cells);
+    write_file(scene,
+               "dimension = 2\n[[soft_body]]\ncell_size = 0.05\nshape = { kind = \"rectangle\", width = " +
+                   side + ", height = " + side + " }\n");
+    return run_softcell("demo 2d --headless --quiet --frames 1 --size 32x32 --scene " + scene + options);
+  };
+  EXPECT_EQ(stepped(36, "").status, 0);  // 1,369 particles
+  EXPECT_EQ(stepped(38, "").status, 1);  // 1,521
+  EXPECT_EQ(stepped(38, " --engine reference").status, 0);
 }
 
 TEST(Command, DrawsTheFiguresOverAPictureWhereItIsAsked) {
@@ -443,6 +486,38 @@ TEST(Command, LeavesNothingWhenInterruptedBeforeTheFirstFrame) {
   EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
+TEST(Command, SaysHowFarItCameWhenInterrupted) {
+  const ScratchFolder folder;
+  const CommandResult run = run_shell(
+      "cd " + folder.path().string() + " && timeout --preserve-status --signal=INT " +
+      std::to_string(SOFTCELL_SLOW_BUILD ? 20 : 3) +
+      " " SOFTCELL_COMMAND " demo 2d --headless --frames 100000 --size 32x32 --out frames --json j");
+  EXPECT_EQ(run.status, 130);
+  EXPECT_TRUE(std::regex_match(
+      run.output,
+      std::regex(
+          "softcell: interrupted after [0-9]+ of 100000 frames; every frame that was written is whole; "
+          "only a run to its end leaves a trace or statistics\n")))
+      << run.output;
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"frames"});
+}
+
+TEST(Command, PrintsItsSummaryInColumns) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_softcell("demo 2d --headless --frames 3 --size 32x32 --record " + (folder / "r.rec"));
+  EXPECT_NE(run.output.find("\nrecording: " + (folder / "r.rec") + "\n"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("\na picture: "), std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find("pictures 0"), std::string::npos) << run.output;
+  std::istringstream lines(run.output);
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line);) {
+    ASSERT_GT(line.size(), 11u) << run.output;
+    EXPECT_EQ(line[10], ' ') << line;
+    EXPECT_NE(line[11], ' ') << line;
+  }
+}
+
 // A pipe's opening waits for its reader, and this one reads the second behind the first's end.
 TEST(Command, WritesIntoPipesOneAfterTheOther) {
   const ScratchFolder folder;
@@ -559,7 +634,15 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"demo 3d --fram 3", 2, "has no option --fram; did you mean --frames?"},
         Refusal{"report --outt a b", 2, "has no option --outt; did you mean --out?"},
         Refusal{"demo 3d --frames 3 --frames 4", 2, "--frames is given 2 times; give it once"},
+        Refusal{"demo 3d --frames 3 --frames 4 --headless", 2, "--frames is given 2 times; give it once"},
         Refusal{"demo 3d --frames", 2, "--frames needs a value behind it: FRAMES"},
+        Refusal{"demo 3d --headless --frames", 2, "--frames needs a value behind it: FRAMES"},
+        Refusal{"demo 3d --headless --quiet --frames 1 --scene", 2, "--scene needs a value behind it: SCENE"},
+        Refusal{"demo 3d -headless --json %s/x", 2,
+                "softcell demo 3d has no option -headless; did you mean --headless?"},
+        Refusal{"demo 3d -hx", 2, "softcell demo 3d has no option -hx ("},
+        Refusal{"-help", 2, "softcell has no option -help; did you mean --help?"},
+        Refusal{SC_DEMO "-frames", 2, "has no option -frames; did you mean --frames?"},
         Refusal{"spu budget --jsn", 2, "(softcell spu budget --help lists what is allowed)"},
         Refusal{"demo 2d --size 0x0", 2, "(softcell demo 2d --help lists what is allowed)"},
         Refusal{SC_DEMO "--spes 7", 2, "1"}, Refusal{SC_DEMO "--spes 0", 2, "6"},
@@ -570,6 +653,22 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
         Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
         Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
+        Refusal{"demo 3d --headless --size ''", 2, "--size needs a value behind it: WIDTHxHEIGHT"},
+        Refusal{SC_DEMO "--engine ''", 2, "--engine needs a value behind it: native|reference"},
+        Refusal{SC_DEMO "--skin ''", 2, "--skin needs a value behind it: spe|gpu"},
+        Refusal{SC_DEMO "--view ''", 2, "--view needs a value behind it: mesh|lattice"},
+        Refusal{SC_DEMO "--json ''", 2, "--json needs a value behind it: FILE"},
+        Refusal{"demo 2d --headless --frames 1e3", 2,
+                "--frames 1e3: give a whole number from 1 to 1000000 ("},
+        Refusal{"demo 2d --headless --frames 1.5", 2,
+                "--frames 1.5: give a whole number from 1 to 1000000 ("},
+        Refusal{"demo 2d --headless --frames nan", 2, "--frames nan: give a whole number"},
+        Refusal{"demo 2d --headless --frames 1000001", 2, "--frames 1000001: give a whole number"},
+        Refusal{"demo 2d --headless --frames 010", 2, "--frames 010: give a whole number"},
+        Refusal{"spu explore --seeds 1e3 saxpy", 2,
+                "--seeds 1e3: give a whole number from 1 to 1000000000 ("},
+        Refusal{"spu run --spes 1.5 saxpy", 2, "--spes 1.5: give a whole number from 1 to 6 ("},
+        Refusal{"bench --rounds 2k", 2, "--rounds 2k: give a whole number from 1 to 100000 ("},
         Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
         Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
         Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},

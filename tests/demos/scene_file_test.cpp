@@ -266,6 +266,13 @@ return { world = { gravity = 2 }, box = boxes })"));
   }
 }
 
+TEST_F(SceneFile, LuaInsertsWhereItIsTold) {
+  const std::string text =
+      "local t = { 1, 2 }\ntable.insert(t, 1, 9)\ntable.insert(t, 3, 8)\ntable.insert(t, 5, 7)\n"
+      "table.insert(t, 6)\nreturn { title = table.concat(t, ' ') }";
+  EXPECT_EQ(load_scene_3d(write("s.lua", text)).title, "9 1 8 2 7 6");
+}
+
 TEST_F(SceneFile, RandomNumbersOfLuaAreTheSameInEveryRun) {
   const std::string file = write("r.lua", "return { world = { gravity = math.random() } }");
   EXPECT_EQ(load_scene_3d(file).gravity, load_scene_3d(file).gravity);
@@ -471,6 +478,19 @@ INSTANTIATE_TEST_SUITE_P(
         BadLua{"return { box = { 1, x = 3 } }", "bad.lua:1: box has names as well as numbers for keys"},
         BadLua{"local x = 1", "bad.lua:1: what the script returns is nil"},
         BadLua{"return 3", "bad.lua:1: a scene must be a table, and is a number"},
+        BadLua{"local t = { 1, 2 }\ntable.insert(t, 4, 9)\n",
+               "bad.lua:2: bad argument #2 to 'insert' (position out of bounds)"},
+        BadLua{"table.insert({}, 0, 9)", "bad.lua:1: bad argument #2 to 'insert' (position out of bounds)"},
+        BadLua{"table.insert({}, math.mininteger, 9)",
+               "bad.lua:1: bad argument #2 to 'insert' (position out"},
+        BadLua{"table.insert({}, 1.5, 9)", "bad.lua:1: bad argument #2 to 'insert' (number has no integer"},
+        BadLua{"table.insert({})", "bad.lua:1: wrong number of arguments to 'insert'"},
+        BadLua{"table.insert({}, 1, 2, 3)", "bad.lua:1: wrong number of arguments to 'insert'"},
+        BadLua{"table.insert(nil, 1)", "bad.lua:1: bad argument #1 to 'insert' (table expected, got nil)"},
+        BadLua{"local t = {}\nfor i = 61, 0, -1 do t[1 << i] = 1 end\ntable.insert(t, 1, 9)",
+               "bad.lua:3: the script ran for more than 1 second"},
+        BadLua{"local t = {}\nwhile true do\ntable.insert(t, { 1 })\nend",
+               "bad.lua:3: the script needs more than 64 MB"},
         BadLua{"error('by hand')", "bad.lua:1: by hand"},
         BadLua{"error({})", "bad.lua:1: the script ended with an error that is no text"},
         BadLua{"return { world = { gravitty = 3 } }",

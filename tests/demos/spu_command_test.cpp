@@ -244,6 +244,26 @@ TEST_F(SpuCommand, PassesMailboxesBothWays) {
   EXPECT_EQ(json["spes"][1]["out_intr_mbox"], 3) << "envp is the number of arguments";
 }
 
+TEST_F(SpuCommand, WordsAtTheEndLeaveTheLastForTheImage) {
+  const CommandResult run =
+      run_softcell("spu run --in-mbox 0x40 --arg 1 2 3 " + kTalk + " --json " + (folder_ / "s.json"));
+  EXPECT_EQ(run.status, 2) << "an option follows, so that --arg has taken all";
+  EXPECT_NE(run.output.find("softcell spu run needs IMAGE"), std::string::npos) << run.output;
+  const CommandResult last =
+      run_softcell("spu run --json " + (folder_ / "s.json") + " --in-mbox 0x40 --arg 1 2 3 " + kTalk);
+  ASSERT_EQ(last.status, 0) << last.output;
+  EXPECT_EQ(read_json(folder_ / "s.json")["spes"][0]["out_intr_mbox"], 3);
+}
+
+TEST_F(SpuCommand, TheImagesNameReachesTheTerminalWithoutControlCharacters) {
+  const std::string image = folder_ / "\x1b[31m.spu.elf";
+  std::filesystem::copy_file(kTalk, image);
+  const CommandResult run = run_softcell("spu run '" + image + "' --in-mbox 1");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("softcell: SPE 0, kernel \\x1b[31m: ended with status 7"), std::string::npos)
+      << run.output;
+}
+
 TEST_F(SpuCommand, AFaultIsOneSentenceWithItsPlaceAndLeavesNoOutput) {
   const CommandResult run =
       run_softcell("spu run " + kTalk + " --in-mbox 2 --in x=" + (folder_ / "x.bin") +

@@ -1,9 +1,19 @@
 #include "command_tree.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <set>
 
 namespace softcell::demos {
 namespace {
+
+/// Sorted: the parser's order is that of addresses.
+std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options) names.push_back(option->get_name());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 CommandOption command_option(const CLI::Option& option) {
   CommandOption result;
@@ -17,6 +27,8 @@ CommandOption command_option(const CLI::Option& option) {
     for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
   }
   if (option.get_expected_max() > 0) result.value = option.get_type_name();
+  result.needs = names_of(option.get_needs());
+  result.excludes = names_of(option.get_excludes());
   return result;
 }
 

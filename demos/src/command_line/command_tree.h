@@ -18,6 +18,8 @@ struct CommandOption {
   std::string description;
   bool positional = false;
   bool required = false;
+  std::vector<std::string> needs{};     ///< without which it is refused
+  std::vector<std::string> excludes{};  ///< with which it is refused
 };
 
 /// A verb and those below it.

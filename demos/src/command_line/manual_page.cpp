@@ -36,10 +36,19 @@ std::string option_heading(const CommandOption& option) {
   return text;
 }
 
+/// Which other options it must have beside it, and must not.
+std::string conditions(const CommandOption& option) {
+  std::string text;
+  for (const std::string& name : option.needs) text += fmt::format("; needs {}", name);
+  for (const std::string& name : option.excludes) text += fmt::format("; not with {}", name);
+  return text;
+}
+
 std::string option_paragraphs(const std::vector<CommandOption>& options) {
   std::string text;
   for (const CommandOption& option : options)
-    text += fmt::format(".TP\n{}\n{}.\n", option_heading(option), plain(option.description));
+    text +=
+        fmt::format(".TP\n{}\n{}.\n", option_heading(option), plain(option.description + conditions(option)));
   return text;
 }
 

@@ -18,21 +18,22 @@ std::string offer_words(const std::string& words) {
 std::string value_action(const CommandOption& option) {
   const auto choices = choices_of(option);
   if (!choices.empty()) return offer_words(joined(choices));
-  if (option.value == "DIR") return "COMPREPLY=($(compgen -d -- \"$word\"))";
+  if (option.value == "DIR") return "_softcell_files -d \"$word\"";
   if (option.value == "SCENE") return "_softcell_scenes \"$word\" \"${path##* }\"";
-  if (option.value.find("FILE") != std::string::npos) return "COMPREPLY=($(compgen -f -- \"$word\"))";
+  if (option.value == "KERNEL") return "_softcell_kernels \"$word\"";
+  if (option.value.find("FILE") != std::string::npos) return "_softcell_files -f \"$word\"";
   return "COMPREPLY=()";
 }
 
 /// One arm of the case over the path: values of the option before, then what stands alone, then options.
 std::string leaf_arm(const CommandLeaf& leaf) {
-  std::string values;
+  std::string values, alone;
   std::vector<std::string> words;
-  bool takes_file = false;
   for (const CommandOption& option : leaf.verb->options) {
     if (option.positional) {
-      takes_file = option.value == "FILE";
-      for (const std::string& choice : choices_of(option)) words.push_back(choice);
+      const auto choices = choices_of(option);
+      if (choices.empty()) alone = value_action(option);
+      words.insert(words.end(), choices.begin(), choices.end());
       continue;
     }
     words.insert(words.end(), option.names.begin(), option.names.end());
@@ -41,8 +42,7 @@ std::string leaf_arm(const CommandLeaf& leaf) {
   }
   std::string text = fmt::format("    '{}')\n", leaf.path);
   if (!values.empty()) text += fmt::format("      case \"$before\" in\n{}      esac\n", values);
-  if (takes_file)
-    text += "      if [[ $word != -* ]]; then COMPREPLY=($(compgen -f -- \"$word\")); return; fi\n";
+  if (!alone.empty()) text += fmt::format("      if [[ $word != -* ]]; then {}; return; fi\n", alone);
   return text + fmt::format("      {} ;;\n", offer_words(joined(words)));
 }
 
@@ -69,9 +69,19 @@ void add_paths(const CommandVerb& verb, const std::string& path, std::vector<std
 
 constexpr const char* kBashScript =
     R"bash(# Completion of softcell for bash: source it, or put it where bash-completion looks.
+_softcell_files() {{
+  local IFS=$'\n'
+  COMPREPLY+=($(compgen "$1" -- "$2"))
+}}
 _softcell_scenes() {{
   local names="$(softcell scenes 2>/dev/null | awk -v dimension="$2" '$2 == dimension {{ print $1 }}')"
-  COMPREPLY=($(compgen -W "$names" -- "$1") $(compgen -f -- "$1"))
+  COMPREPLY=($(compgen -W "$names" -- "$1"))
+  _softcell_files -f "$1"
+}}
+_softcell_kernels() {{
+  local names="$(softcell spu budget 2>/dev/null | awk 'NR > 1 {{ print $1 }}')"
+  COMPREPLY=($(compgen -W "$names" -- "$1"))
+  _softcell_files -f "$1"
 }}
 _softcell() {{
   local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" path='' longer i
@@ -83,6 +93,10 @@ _softcell() {{
       *) break ;;
     esac
   done
+  if [[ $before == '=' ]]; then  # bash makes three words of --scene=arena, and of x=x.bin
+    before="${{COMP_WORDS[COMP_CWORD-2]}}"
+    if [[ $before != -* ]]; then _softcell_files -f "$word"; return; fi
+  fi
   case "$path" in
 {}  esac
 }}

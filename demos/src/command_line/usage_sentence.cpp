@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -25,10 +26,13 @@ std::string unknown_option(const std::string& verb, const CommandVerb& tree, con
   const std::string name = argument.substr(0, argument.find('='));
   std::vector<std::string_view> known;
   for (const CommandOption& option : tree.options) {
-    if (!option.positional) known.insert(known.end(), option.names.begin(), option.names.end());
+    if (option.positional) continue;
+    for (const std::string& known_name : option.names) {
+      if (known_name.starts_with("--")) known.push_back(known_name);
+    }
   }
   // Every letter is near every other.
-  const std::string_view nearest = name.starts_with("--") ? nearest_name(name, known) : std::string_view();
+  const std::string_view nearest = name.size() > 2 ? nearest_name(name, known) : std::string_view();
   return fmt::format("{} has no option {}{}", verb, name,
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
@@ -58,14 +62,17 @@ std::string unexpected(const std::string& verb, const CLI::App& app, const std::
   return one_argument_too_many(verb, tree, argument);
 }
 
-/// An option with more values or fewer than it takes; empty when there is none.
+std::string needs_value(const CLI::Option& option) {
+  return fmt::format("{} needs a value behind it: {}", option.get_name(), option.get_type_name());
+}
+
+/// The option that the parser names, with more values or fewer than it takes; empty when it names none.
 std::string wrong_count(const CLI::App& app, const std::string& what) {
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_name();
-    if (static_cast<int>(option->count()) > option->get_items_expected_max())
-      return fmt::format("{} is given {} times; give it once", name, option->count());
-    if (what.starts_with(name + ": ") && what.ends_with(" missing"))
-      return fmt::format("{} needs a value behind it: {}", name, option->get_type_name());
+    if (!what.starts_with(name + ": ")) continue;
+    if (what.ends_with(" missing")) return needs_value(*option);
+    return fmt::format("{} is given {} times; give it once", name, option->count());
   }
   return {};
 }
@@ -93,6 +100,29 @@ std::string usage_sentence(const CLI::App& top, const CLI::ParseError& error) {
     if (const std::string sentence = wrong_count(app, what); !sentence.empty()) return sentence;
   }
   return what;
+}
+
+std::optional<std::string> more_behind_help(const CLI::App& top, int argc, const char* const* argv) {
+  const CLI::App& app = *called(top).back();
+  for (const std::string& rest : top.remaining(true)) {
+    if (!rest.starts_with('-')) continue;
+    const std::string whole = "-h" + rest.substr(1);
+    if (std::find(argv, argv + argc, whole) != argv + argc)
+      return unknown_option(called_verb(top), command_tree(app), whole);
+  }
+  return {};
+}
+
+std::optional<std::string> empty_value(const CLI::App& top) {
+  for (const CLI::App* app : called(top)) {
+    for (const CLI::Option* option : app->get_options()) {
+      if (option->get_positional() || option->get_expected_max() == 0 || option->get_type_name() == "REGEX")
+        continue;
+      const auto& values = option->results();
+      if (std::find(values.begin(), values.end(), "") != values.end()) return needs_value(*option);
+    }
+  }
+  return {};
 }
 
 std::string verbs_sentence(const CLI::App& top) {

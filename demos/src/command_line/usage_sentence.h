@@ -1,6 +1,7 @@
 #pragma once
 // What is wrong with a command line, in words: the parser's own say neither where nor what is there instead.
 
+#include <optional>
 #include <string>
 
 namespace CLI {
@@ -15,6 +16,14 @@ std::string called_verb(const CLI::App& top);
 
 /// @param top  the parser that has thrown the error.
 std::string usage_sentence(const CLI::App& top, const CLI::ParseError& error);
+
+/// The parser takes "-headless" for -h with something behind it: such a word is an option that there is not.
+/// @param top  the parser that was asked for help by these arguments.
+std::optional<std::string> more_behind_help(const CLI::App& top, int argc, const char* const* argv);
+
+/// The option with a value of no characters, which the parser takes for none. A regular expression may be
+/// empty.
+std::optional<std::string> empty_value(const CLI::App& top);
 
 /// For a verb that has others below it and was called without: what there is to do.
 std::string verbs_sentence(const CLI::App& top);

@@ -40,9 +40,6 @@ constexpr Library kBaseLibrary{"_G", luaopen_base, kBase};
 constexpr Library kLibraries[] = {
     {"math", luaopen_math, kMath}, {"string", luaopen_string, kString}, {"table", luaopen_table, kTable}};
 
-// Lua's own table.insert moves items in a loop without end when the length is not what it seems.
-constexpr const char* kPrelude = "function table.insert(t, value) t[#t + 1] = value end";
-
 double seconds(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -60,7 +57,6 @@ class Sandbox {
     lua_atpanic(state_, [](lua_State* state) -> int { of(state).fail_with_error(LUA_ERRRUN); });
     *static_cast<Sandbox**>(lua_getextraspace(state_)) = this;
     open_libraries();
-    if (luaL_dostring(state_, kPrelude) != LUA_OK) fail_with_error(LUA_ERRRUN);
     lua_sethook(state_, on_hook, LUA_MASKCOUNT | LUA_MASKLINE, kInstructionsBetweenChecks);
     // "t": text only. Bytecode could do anything.
     int status = luaL_loadbufferx(state_, chunk.data(), chunk.size(), kChunkName, "t");
@@ -99,11 +95,33 @@ class Sandbox {
       sandbox.line_ = record->currentline;
       return;
     }
+    sandbox.check_time();
+  }
+
+  void check_time() {
     // Not an error of Lua's, which a chunk might catch: the process ends here.
     if (seconds(CLOCK_PROCESS_CPUTIME_ID) > kLuaSeconds ||
-        seconds(CLOCK_MONOTONIC) - sandbox.begin_ > kLuaWallSeconds) {
-      sandbox.fail(sandbox.line_, fmt::format("the script ran for more than {} second here", kLuaSeconds));
+        seconds(CLOCK_MONOTONIC) - begin_ > kLuaWallSeconds) {
+      fail(line_, fmt::format("the script ran for more than {} second here", kLuaSeconds));
     }
+  }
+
+  /// table.insert as Lua has it, but that its own moves items in a loop without end when the length is not
+  /// what it seems.
+  static int insert(lua_State* state) {
+    luaL_checktype(state, 1, LUA_TTABLE);
+    const int given = lua_gettop(state);
+    if (given != 2 && given != 3) return luaL_error(state, "wrong number of arguments to 'insert'");
+    const auto end = static_cast<lua_Integer>(lua_rawlen(state, 1) + 1);
+    const lua_Integer position = given == 2 ? end : luaL_checkinteger(state, 2);
+    luaL_argcheck(state, position == end || (position >= 1 && position < end), 2, "position out of bounds");
+    for (lua_Integer i = end; i > position; --i) {
+      if (i % kInstructionsBetweenChecks == 0) of(state).check_time();
+      lua_rawgeti(state, 1, i - 1);
+      lua_rawseti(state, 1, i);
+    }
+    lua_rawseti(state, 1, position);
+    return 0;
   }
 
   /// Opens the libraries and leaves only what is allowed, also to methods of texts.
@@ -119,6 +137,10 @@ class Sandbox {
     for (const Library& library : kLibraries) {
       push_allowed(library);
       if (library.open == luaopen_string) make_methods_of_texts();
+      if (library.open == luaopen_table) {
+        lua_pushcfunction(state_, insert);
+        lua_setfield(state_, -2, "insert");
+      }
       lua_setfield(state_, -2, library.name);
     }
     lua_rawseti(state_, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);

@@ -17,7 +17,12 @@ namespace {
 /// One scene in the window.
 class PlayedScene {
  public:
-  PlayedScene(render::Window& window, Demo& demo) : window_(window), demo_(demo), drawing_(window, demo) {}
+  /// @param frames  to be played; without, a replay's, or until the user ends it
+  PlayedScene(render::Window& window, Demo& demo, const std::optional<int>& frames)
+      : window_(window), demo_(demo), drawing_(window, demo) {
+    record_.asked_frames = frames;
+    if (!frames && demo.replays()) record_.asked_frames = demo.frames();
+  }
 
   void take(const SDL_Event& event) { demo_.input().take(event); }
 
@@ -29,8 +34,8 @@ class PlayedScene {
     drawing_.show();
   }
 
-  bool ends(const std::optional<int>& frames) const {
-    const int last = frames.value_or(demo_.replays() ? demo_.frames() : std::numeric_limits<int>::max());
+  bool ends() const {
+    const int last = record_.asked_frames.value_or(std::numeric_limits<int>::max());
     return drawing_.failed() || demo_.input().wants_to_quit() || record_.frames >= last;
   }
 
@@ -66,10 +71,10 @@ Run play(const DemoOptions& options, std::string_view verb, const std::vector<Ma
     run.record.interrupted = guard.interrupted();
     if (run.record.interrupted) return run;
     if (look) run.demo->input().set_look(*look);
-    PlayedScene scene(window, *run.demo);
+    PlayedScene scene(window, *run.demo, options.frames);
     bool next = false;
     run_recorded(*run.demo, [&] {
-      while (!next && !scene.ends(options.frames) && !guard.interrupted()) {
+      while (!next && !scene.ends() && !guard.interrupted()) {
         clock.wait();
         SDL_Event event;
         while (SDL_PollEvent(&event) != 0) {

@@ -86,6 +86,19 @@ def known_trace():
     return trace
 
 
+def resident_trace():
+    """Six SPEs, 10 ms: a resident kernel sleeps, but for a job of 1000 us with 250 us of waits. The last sleep ends within the job."""
+    trace = TraceBuilder(6)
+    for spe in range(6):
+        trace.wait(spe, 11, "SPU_RdEventStat", 0, 3_000_000)
+        trace.job(spe, spe, "skin", 3_000_000, 1_000_000)
+        trace.wait(spe, 24, "MFC_RdTagStat", 3_200_000, 200_000)
+        trace.wait(spe, 11, "SPU_RdEventStat", 3_950_000, 6_050_000)
+        trace.command(spe, 0, "get", 3_100_000, 200_000, 16384)
+    trace.image("skin", 6100, 40960, 4096, 1360)
+    return trace
+
+
 def long_trace(jobs_per_spe):
     """Six SPEs with so many jobs, each with a wait and two commands: what must still scroll smoothly."""
     trace = TraceBuilder(6)

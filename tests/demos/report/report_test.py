@@ -231,8 +231,11 @@ class Page(WithBrowser):
 
     def test_bandwidth_is_what_the_commands_moved(self):
         numbers = self.text("bandwidth-numbers")
-        self.assertIn("get 1.05 MB", numbers)  # 45 * (16384 + 8192) bytes
-        self.assertIn("put 180 KB", numbers)   # 45 * 4096 bytes
+        self.assertIn("get 1.11 MB", numbers)  # 45 * (16384 + 8192) bytes
+        self.assertIn("put 184 KB", numbers)   # 45 * 4096 bytes
+        self.assertIn("1.29 MB moved", self.text("summary"))
+        duration = self.run_script("const {trace} = softcellReport; return (trace.end - trace.begin) / 1e9")
+        self.assertIn(f"at {45 * (16384 + 8192) / duration / 1e6:.0f} MB/s", numbers)  # the same MB
         peak = self.run_script("return softcellReport.bandwidth.measure().peak")
         # At most six SPEs with 16384 bytes in 200 us and 8192 in 180 us.
         self.assertGreater(peak, 0.5 * 6 * 127e6)
@@ -244,7 +247,7 @@ class Page(WithBrowser):
         whole = stores[0].find_element(By.CLASS_NAME, "map")
         bss = next(part for part in whole.find_elements(By.TAG_NAME, "span") if part.get_attribute("title").startswith("bss"))
         self.assertAlmostEqual(bss.rect["width"] / whole.rect["width"], 40960 / (256 * 1024), delta=0.005)
-        for part in ("text", "6 100", "stack", "4 096", "1 360 of 4 096", "weights", "free"):
+        for part in ("text", "6 100", "stack", "4 096", "1 360 of 4 096", "weights", "free", "of 256 KB taken, budget 96 KB"):
             self.assertIn(part, stores[0].text)
         self.assertIn("not measured", stores[1].text)
 
@@ -263,6 +266,23 @@ class Page(WithBrowser):
                             "nothing sticks out of the page")
         finally:
             self.browser.set_window_size(1300, 900)
+
+
+class ResidentTrace(WithBrowser):
+    """A kernel that sleeps between its jobs, as all demos have it."""
+
+    def test_sleep_outside_of_jobs_is_no_waiting(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page, result = report(known_trace.resident_trace().document(), folder)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.browser.get("file://" + page)
+            summary = self.browser.find_element(By.ID, "summary").text
+            self.assertIn("10 %\nwith a job", summary)
+            self.assertIn("25 %\nof the busy time", summary)
+            rows = self.browser.find_elements(By.CSS_SELECTOR, "#shares tr")
+            cells = [[cell.text for cell in row.find_elements(By.CSS_SELECTOR, "th, td")] for row in rows]
+            self.assertEqual(cells[0], ["SPE", "", "working", "MFC_RdTagStat", "SPU_RdEventStat", "no job"])
+            self.assertEqual(cells[1:], [[f"SPE {spe}", "", "7.5 %", "2.0 %", "0.5 %", "90 %"] for spe in range(6)])
 
 
 class LongTrace(WithBrowser):
