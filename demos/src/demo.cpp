@@ -243,11 +243,11 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   auto statistics = statistics_document(options, *run.demo, run.record);
   const std::vector<ls_sim::Finding> found = findings.list();
   if (options.checked) statistics["findings"] = to_json(std::span(found));
+  print_findings(found);  // before a file that cannot be written ends the run
   if (trace) trace->write(*trace_file);
   if (json_file != nullptr) write_json(*json_file, statistics);
   files.commit();
   if (!options.quiet) print_summary(statistics, options);
-  print_findings(found);
   run.demo->check_replay();
   return found.empty() ? 0 : kExitFindings;
 }

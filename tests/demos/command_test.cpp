@@ -673,7 +673,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
         Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
         Refusal{SC_DEMO "--video %s/v.webm", 2, "v.webm: give a file name that ends in .mp4"},
-        Refusal{SC_DEMO "--video ''", 2, "--video : give a file name that ends in .mp4"},
+        Refusal{SC_DEMO "--video ''", 2, "--video needs a value"},
         Refusal{"demo 2d --statistics", 2, "--headless"},
         Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
         Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
