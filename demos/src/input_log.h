@@ -67,8 +67,7 @@ class InputLog {
   void note(std::int64_t frame, std::span<const Event> events) {
     record_.frames = frame + 1;
     if (!file_) return;
-    full_ = frame >= kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents;
-    if (full_) {
+    if (frame >= kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents) {
       file_.reset();
       return;
     }
@@ -77,7 +76,7 @@ class InputLog {
 
   /// @throws std::runtime_error  the recording was given up.
   void require_room() const {
-    if (!full_) return;
+    if (!path_ || file_) return;
     throw std::runtime_error(path_->string() + ": a recording has at most " +
                              std::to_string(kMaxRecordedFrames) + " frames and " +
                              std::to_string(kMaxRecordedEvents) + " events; nothing is recorded");
@@ -111,8 +110,7 @@ class InputLog {
   }
 
   std::optional<std::filesystem::path> path_;  // of what is recorded
-  std::shared_ptr<ls_sim::WholeFile> file_;    // of all copies; one of them saves
-  bool full_ = false;
+  std::shared_ptr<ls_sim::WholeFile> file_;    // of all copies; one of them saves; null: given up
   std::optional<Recording<Dimension>> replay_;
   std::string replay_name_;
   std::size_t next_ = 0;  // event of the replay

@@ -14,6 +14,7 @@
 
 #include "demo.h"
 #include "input_log.h"
+#include "one_line.h"
 #include "scene_file/scene_library.h"
 #include "window/latest.h"
 #include "window/user_input.h"
@@ -102,9 +103,9 @@ class SceneDemo : public Demo {
 
 /// @param log    has begun `first`.
 /// @param first  the scene to begin with; with `all` those of its dimension that come with softcell follow.
-/// @param load   of a built-in scene's name. One that cannot be loaded, as its model is not installed, is
-/// left out
-///               with a sentence.
+/// @param load   of a built-in scene's name. One that cannot be loaded is left out, with a sentence: its
+/// model
+///               may not be installed.
 /// @tparam OneDemo  a SceneDemo, made of a scene, a log, SimulationOptions and the options.
 template <class OneDemo, class Options>
 std::vector<MakeDemo> demos_of(const Options& options, const typename OneDemo::Log& log,
@@ -123,7 +124,7 @@ std::vector<MakeDemo> demos_of(const Options& options, const typename OneDemo::L
     try {
       add(load(listing.name));
     } catch (const std::runtime_error& error) {
-      fmt::print(stderr, "softcell: scene {} is left out: {}\n", listing.name, error.what());
+      fmt::print(stderr, "softcell: scene {} is left out: {}\n", listing.name, one_line(error.what()));
     }
   }
   return demos;

@@ -34,24 +34,33 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
   }
 }
 
+/// Nobody above this thread would catch what the host throws, and it ends this run only. A fault gets the
+/// name of whose it is.
+template <class Work>
+RunResult Spe::guarded(const Work& work) {
+  RunResult result;
+  try {
+    result = work();
+  } catch (const std::exception& error) {
+    result = {0, dma::Fault{.rule = dma::Rule::kHostFailure, .detail = error.what()}};
+  }
+  if (result.fault) {
+    result.fault->spe = number_;
+    result.fault->kernel = image_under_way().name;
+  }
+  return result;
+}
+
 RunResult Spe::run(const Run& run) {
   run_ = &run;
   RunResult result = guarded([&] { return execute(run); });
   channels_.end_run();
-  if (job_) result.job = job_->ea;
-  const auto name = [&](dma::Fault& fault) {
-    fault.spe = number_;
-    fault.kernel = image_under_way().name;
-  };
-  if (result.fault) name(*result.fault);
   RunResult accounting = guarded([&] {
     account(run, result);
     return RunResult{};
   });
-  if (accounting.fault && !result.fault) {
-    result = std::move(accounting);
-    name(*result.fault);
-  }
+  if (accounting.fault && !result.fault) result = std::move(accounting);
+  if (job_) result.job = job_->ea;
   // Whatever a kernel that failed did to its local store goes with it.
   if (result.fault || options_.reload_always) resident_ = nullptr;
   job_.reset();
@@ -60,16 +69,6 @@ RunResult Spe::run(const Run& run) {
 
 const KernelImage& Spe::image_under_way() const {
   return job_ && job_->image != nullptr ? *job_->image : *run_->image;
-}
-
-/// Nobody above this thread would catch what the host throws, and it ends this run only.
-template <class Work>
-RunResult Spe::guarded(const Work& work) {
-  try {
-    return work();
-  } catch (const std::exception& error) {
-    return {0, dma::Fault{.rule = dma::Rule::kHostFailure, .detail = error.what()}};
-  }
 }
 
 RunResult Spe::execute(const Run& run) {

@@ -84,14 +84,22 @@ TEST(ManualPage, SaysWhichOptionsGoTogether) {
   EXPECT_NE(page.find("(with --headless); those of an earlier run in it are removed.\n"), std::string::npos);
 }
 
-/// What bash offers behind these words; the last one is begun and not yet whole.
-std::string completed(const std::string& words) {
-  const ScratchFolder folder;
+/// What bash offers behind these words in the folder; the last one is begun and not yet whole.
+/// @param script  the completion's, or what loads it
+/// @param format  of an offer, for printf   @param then  what the offers go through
+std::string offered(const ScratchFolder& folder, const std::string& script, const std::string& words,
+                    const std::string& format = "%s ", const std::string& then = "") {
   std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
-                                   << bash_completion(small_tree()) << "COMP_WORDS=(" << words << ")\n"
+                                   << script << "\nCOMP_WORDS=(" << words << ")\n"
                                    << "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_softcell\n"
-                                   << "printf '%s ' \"${COMPREPLY[@]}\"\n";
-  return run_shell("bash --norc " + (folder / "try.sh")).output;
+                                   << "printf '" << format << "' \"${COMPREPLY[@]}\"\n";
+  return run_shell("cd " + folder.path().string() + " && bash --norc try.sh" + then).output;
+}
+
+constexpr const char* kCommandsScript = "source <(softcell completion bash)";
+
+std::string completed(const std::string& words) {
+  return offered(ScratchFolder(), bash_completion(small_tree()), words);
 }
 
 TEST(BashCompletion, OffersVerbsOptionsAndValues) {
@@ -105,44 +113,28 @@ TEST(BashCompletion, OffersVerbsOptionsAndValues) {
 }
 
 TEST(BashCompletion, OfTheCommandKnowsItsScenes) {
-  const ScratchFolder folder;
-  std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
-                                   << "source <(softcell completion bash)\n"
-                                   << "COMP_WORDS=(softcell demo 3d --headless --scene ar)\nCOMP_CWORD=5\n"
-                                   << "_softcell\nprintf '%s ' \"${COMPREPLY[@]}\"\n";
-  EXPECT_EQ(run_shell("cd " + folder.path().string() + " && bash --norc try.sh").output, "arena ");
+  EXPECT_EQ(offered(ScratchFolder(), kCommandsScript, "softcell demo 3d --headless --scene ar"), "arena ");
 }
 
 TEST(BashCompletion, KeepsNamesWithSpacesWhole) {
   const ScratchFolder folder;
   std::ofstream(folder / "my kernel.elf") << "";
   std::filesystem::create_directory(folder / "my folder");
-  const auto offered = [&](const std::string& words) {
-    std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
-                                     << "source <(softcell completion bash)\n"
-                                     << "COMP_WORDS=(softcell " << words << ")\n"
-                                     << "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n"
-                                     << "_softcell\nprintf '<%s>' \"${COMPREPLY[@]}\"\n";
-    return run_shell("cd " + folder.path().string() +
-                     " && bash --norc try.sh | sed 's/></>\\n</g' | sort | tr -d '\\n'")
-        .output;
+  const auto sorted = [&](const std::string& words) {
+    return offered(folder, kCommandsScript, "softcell " + words, "<%s>\\n", " | sort | tr -d '\\n'");
   };
-  EXPECT_EQ(offered("demo 3d --json my"), "<my folder><my kernel.elf>");
-  EXPECT_EQ(offered("demo 3d --out my"), "<my folder>");
-  EXPECT_EQ(offered("demo 3d --scene my"), "<my folder><my kernel.elf>");
-  EXPECT_EQ(offered("report my"), "<my folder><my kernel.elf>");
-  EXPECT_EQ(offered("spu run my"), "<my folder><my kernel.elf>");
-  EXPECT_EQ(offered("spu run --in x = m"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("demo 3d --json my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("demo 3d --out my"), "<my folder>");
+  EXPECT_EQ(sorted("demo 3d --scene my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("report my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("spu run my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("spu run --in x = m"), "<my folder><my kernel.elf>");
 }
 
 TEST(BashCompletion, OfTheCommandKnowsItsKernels) {
   const ScratchFolder folder;
   std::ofstream(folder / "matches.txt") << "";
-  std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
-                                   << "source <(softcell completion bash)\n"
-                                   << "COMP_WORDS=(softcell spu run match)\nCOMP_CWORD=3\n"
-                                   << "_softcell\nprintf '%s ' \"${COMPREPLY[@]}\"\n";
-  EXPECT_EQ(run_shell("cd " + folder.path().string() + " && bash --norc try.sh").output,
+  EXPECT_EQ(offered(folder, kCommandsScript, "softcell spu run match"),
             "match match_2d match_tiles matches.txt ");
 }
 

@@ -17,22 +17,18 @@
 #include "run_command.h"
 #include "scratch_folder.h"
 #include "softcell/render/png_io.h"
+#include "support/files_in.h"
 
 namespace softcell::tests {
 namespace {
+
+using test::files_in;
 
 constexpr const char* kDrop = "demo 3d --headless --scene drop --size 64x48 ";
 
 nlohmann::json read_json(const std::string& path) {
   std::ifstream file(path);
   return nlohmann::json::parse(file);
-}
-
-std::set<std::string> files_in(const std::filesystem::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    names.insert(entry.path().filename().string());
-  return names;
 }
 
 void write_file(const std::string& path, const std::string& text) {

@@ -11,6 +11,7 @@
 
 #include "run_command.h"
 #include "scratch_folder.h"
+#include "support/files_in.h"
 #include "support/text_file.h"
 
 namespace softcell::tests {
@@ -79,14 +80,6 @@ class SpuCommand : public testing::Test {
       ASSERT_EQ(y[i], 2.f * static_cast<float>(i % 100) + static_cast<float>(i % 7)) << i;
   }
 
-  std::vector<std::string> names() const {
-    std::vector<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
-      found.push_back(entry.path().filename().string());
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
   ScratchFolder folder_;
   std::size_t count_ = 0;
 };
@@ -153,13 +146,13 @@ TEST_F(SpuCommand, WritesOutFilesOfTheSizeAskedFor) {
 
 TEST_F(SpuCommand, WritesAllItsFilesOrNone) {
   const auto before = read_floats(folder_ / "y.bin");
-  const std::vector<std::string> files = names();
+  const std::set<std::string> files = test::files_in(folder_.path());
   for (const std::string option : {"--json /proc/s.json", "--trace /proc/t.json", "--json /dev/full",
                                    "--trace /dev/full", "--json /", "--out z=/proc/z.bin:64"}) {
     const CommandResult run = run_softcell("spu run " + kSaxpy + saxpy_options() + option);
     EXPECT_EQ(run.status, 1) << option << ": " << run.output;
     EXPECT_EQ(read_floats(folder_ / "y.bin"), before) << option;
-    EXPECT_EQ(names(), files) << option;
+    EXPECT_EQ(test::files_in(folder_.path()), files) << option;
   }
 }
 

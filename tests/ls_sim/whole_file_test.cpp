@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/files_in.h"
 #include "support/text_file.h"
 
 namespace softcell::ls_sim {
@@ -38,11 +39,7 @@ class WholeFileTest : public testing::Test {
     file.write(text);
     file.commit();
   }
-  std::set<std::string> names() const {
-    std::set<std::string> found;
-    for (const auto& entry : fs::directory_iterator(folder_)) found.insert(entry.path().filename().string());
-    return found;
-  }
+  std::set<std::string> names() const { return test::files_in(folder_); }
   mode_t mode(const std::string& name) const {
     struct stat found {};
     EXPECT_EQ(::stat((folder_ / name).c_str(), &found), 0) << name;

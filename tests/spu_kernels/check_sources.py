@@ -17,10 +17,8 @@ COMMENT = re.compile(r"//.*")
 DECIMAL = re.compile(r"(?<![\w.])(\d+\.?\d*(?:e[-+]?\d+)?)f\b")
 
 
-def is_rounded_up(decimal):
-    """Whether the nearest float is farther from zero than the number itself."""
-    nearest = struct.unpack("<f", struct.pack("<f", float(decimal)))[0]
-    return Fraction(nearest) > Fraction(decimal)
+def nearest_float(decimal):
+    return struct.unpack("<f", struct.pack("<f", float(decimal)))[0]
 
 
 def faults(path):
@@ -29,9 +27,9 @@ def faults(path):
         if ATTRIBUTE_BEFORE_TYPE.search(code):
             yield f"{path}:{number}: g++ 9 takes no lambda with an attribute and a return type; leave the type out"
         for decimal in DECIMAL.findall(code):
-            if is_rounded_up(decimal):
-                value = struct.unpack("<f", struct.pack("<f", float(decimal)))[0]
-                yield f"{path}:{number}: {decimal}f is another number for an SPU g++; write {value.hex()}f"
+            nearest = nearest_float(decimal)
+            if Fraction(nearest) > Fraction(decimal):  # rounded up, which truncation never does
+                yield f"{path}:{number}: {decimal}f is another number for an SPU g++; write {nearest.hex()}f"
 
 
 def main():

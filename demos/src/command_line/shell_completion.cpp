@@ -73,15 +73,16 @@ _softcell_files() {{
   local IFS=$'\n'
   COMPREPLY+=($(compgen "$1" -- "$2"))
 }}
+_softcell_names_and_files() {{
+  COMPREPLY=($(compgen -W "$1" -- "$2"))
+  _softcell_files -f "$2"
+}}
 _softcell_scenes() {{
-  local names="$(softcell scenes 2>/dev/null | awk -v dimension="$2" '$2 == dimension {{ print $1 }}')"
-  COMPREPLY=($(compgen -W "$names" -- "$1"))
-  _softcell_files -f "$1"
+  _softcell_names_and_files \
+    "$(softcell scenes 2>/dev/null | awk -v dimension="$2" '$2 == dimension {{ print $1 }}')" "$1"
 }}
 _softcell_kernels() {{
-  local names="$(softcell spu budget 2>/dev/null | awk 'NR > 1 {{ print $1 }}')"
-  COMPREPLY=($(compgen -W "$names" -- "$1"))
-  _softcell_files -f "$1"
+  _softcell_names_and_files "$(softcell spu budget 2>/dev/null | awk 'NR > 1 {{ print $1 }}')" "$1"
 }}
 _softcell() {{
   local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" path='' longer i

@@ -268,11 +268,9 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   const native::Environment& environment = this->environment();
   const KernelImage* const last = job_image_;
   job_under_way_ = true;
-  job_image_ = nullptr;
-  last_job_end_ =
-      stack_limit();  // of an image that is not known, it may be anywhere below its caller's stack
   job_image_ = jobs_->on_job_begin({environment.job_image_ea}, {environment.job_ea});
-  if (job_image_ != nullptr) last_job_end_ = job_image_->sizes.end;
+  // One that is not known may end anywhere below its caller's stack.
+  last_job_end_ = job_image_ != nullptr ? job_image_->sizes.end : stack_limit();
   tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
   const std::span<const std::byte> variables = variables_of_caller();
   caller_variables_.assign(variables.begin(), variables.end());
