@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
+#include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/sanitizers.h"
 
 namespace softcell::dma {
@@ -49,7 +49,7 @@ inline void copy_indivisibly(std::byte* to, const std::byte* from, std::uint32_t
   if (bytes == 8 && aligned) return copy_unit<std::uint64_t>(to, from);
   if (bytes == 2 && aligned) return copy_unit<std::uint16_t>(to, from);
   if (bytes == 1) return copy_unit<std::uint8_t>(to, from);
-  std::memmove(to, from, bytes);
+  copy_to_local_store(to, from, bytes);
 }
 
 }  // namespace softcell::dma

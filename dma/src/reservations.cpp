@@ -12,6 +12,7 @@
 
 #include "indivisible_copy.h"
 #include "local_stores.h"
+#include "softcell/dma/local_store_bytes.h"
 
 namespace softcell::dma {
 namespace {
@@ -47,6 +48,12 @@ class LineRange {
   std::uint64_t word_ = 0;  // empty
 };
 
+/// Main storage is data, unless it is the local store of an SPE.
+void copy_to_storage(EffectiveAddress ea, std::byte* host, const std::byte* from, std::uint32_t bytes) {
+  if (LocalStores::contains(ea)) return copy_to_local_store(host, from, bytes);
+  std::memmove(host, from, bytes);
+}
+
 /// Calls piece(offset, bytes) for each line that [ea, ea + bytes) touches.
 template <class Piece>
 void for_each_line(EffectiveAddress ea, std::uint32_t bytes, Piece&& piece) {
@@ -64,7 +71,7 @@ void for_each_line(EffectiveAddress ea, std::uint32_t bytes, Piece&& piece) {
 // reservation and then looks for long copies, all sequentially consistent, so that at least one sees the
 // other:
 //
-//   long copy   announce lines --> any reservation among them?  no: one memcpy; yes: line by line, locked
+//   long copy   announce lines --> any reservation among them?  no: one copy;  yes: line by line, locked
 //   getllar     announce line  --> any long copy over it?       wait for its end, then copy the line
 //
 // A long copy waits for nobody while it is announced. A write copies first and loses reservations after, and
@@ -245,7 +252,7 @@ void Reservations::store_line(ReservationHolder& holder, EffectiveAddress line, 
 void Reservations::read(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
                         std::uint32_t bytes) {
   if (!fits_one_line(ea, bytes) &&
-      state_->copy_at_once(holder.place_, {ea, bytes}, [&] { std::memmove(to, host, bytes); })) {
+      state_->copy_at_once(holder.place_, {ea, bytes}, [&] { copy_to_local_store(to, host, bytes); })) {
     return;
   }
   for_each_line(ea, bytes, [&](std::uint32_t offset, std::uint32_t size) {
@@ -258,7 +265,7 @@ void Reservations::write(ReservationHolder& holder, EffectiveAddress ea, std::by
                          const std::byte* from, std::uint32_t bytes) {
   if (state_->announce(ea, from, bytes)) return;
   if (!fits_one_line(ea, bytes) &&
-      state_->copy_at_once(holder.place_, {ea, bytes}, [&] { std::memmove(host, from, bytes); })) {
+      state_->copy_at_once(holder.place_, {ea, bytes}, [&] { copy_to_storage(ea, host, from, bytes); })) {
     return;
   }
   for_each_line(ea, bytes, [&](std::uint32_t offset, std::uint32_t size) {

@@ -45,11 +45,50 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   asked_at_ = 0;
   status_unread_.reset();
   reservation_.reset();
+  check_fetched_code();
+}
+
+// ---- instructions
+
+void Checker::check_code(Address instruction) {
+  const std::uint32_t lsa = instruction.value;
+  if (!unsynced_.contains(lsa)) return;
+  const std::uint32_t writer = unsynced_.writer_of(lsa);
+  const bool by_this_kernel = writer != UnsyncedBytes::kOutside;
+  report(Rule::kCodeWithoutSync, by_this_kernel ? Address{writer} : instruction,
+         std::string(by_this_kernel ? "this kernel" : "another SPE or the PPU") +
+             " has written the instruction at " + objects_->describe(lsa) + " (LSA " + hex(lsa) +
+             "), which is executed without a sync since");
+  unsynced_.clear();  // said once
+}
+
+/// Whoever writes to the image's own code has a finding for that.
+void Checker::mark_unsynced(const MovedRange& range, Address writer) {
+  if (!objects_->in_code(range.lsa)) unsynced_.mark(range.lsa, range.bytes, writer.value);
+}
+
+/// Of a job's image: whoever calls the job has fetched it.
+void Checker::check_fetched_code() {
+  const std::uint32_t lsa = unsynced_.first_in(image_->begin, image_->data_begin);
+  if (lsa == image_->data_begin) return;
+  report(Rule::kCodeWithoutSync, Address{image_->entry},
+         "the kernel that calls this one has fetched its instructions, from LSA " + hex(lsa) +
+             " on, and has not executed a sync since");
+  unsynced_.clear();
+}
+
+void Checker::on_unchecked_issue(const dma::MfcCommand& command) {
+  CommandInFlight fetch{.command = command, .cursor = command.lsa};
+  if (!command.is_get()) return;
+  add_ranges(fetch, to_.local_store);
+  for (const MovedRange& range : fetch.ranges)
+    unsynced_.mark(range.lsa, range.bytes, UnsyncedBytes::kOutside);
 }
 
 // ---- loads and stores
 
 void Checker::on_access(const Access& access) {
+  check_code(access.instruction);
   const std::string trespass = objects_->trespass(access.lsa.value, access.bytes, access.stack_pointer.value);
   if (!trespass.empty()) {
     report(Rule::kOutsideObjects, access.instruction, describe(access) + ": " + trespass);
@@ -58,7 +97,9 @@ void Checker::on_access(const Access& access) {
   } else {
     check_load(access);
   }
-  if (access.is_store) written_.mark(access.lsa.value, access.bytes);
+  if (!access.is_store) return;
+  written_.mark(access.lsa.value, access.bytes);
+  mark_unsynced({.lsa = access.lsa.value, .bytes = access.bytes}, access.instruction);
 }
 
 void Checker::check_store(const Access& access) {
@@ -93,6 +134,7 @@ void Checker::check_load(const Access& access) {
 // ---- commands
 
 ChannelReply Checker::issue(const dma::MfcCommand& command) {
+  check_code(to_.engine.position());
   CommandInFlight in_flight{
       .command = command,
       .issued_at = to_.engine.position(),
@@ -149,7 +191,9 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
       break;
     }
   }
-  if (is_get) written_.mark(range.lsa, range.bytes);
+  if (!is_get) return;
+  written_.mark(range.lsa, range.bytes);
+  mark_unsynced(range, here);
 }
 
 void Checker::check_line_command(const dma::MfcCommand& command) {
@@ -186,7 +230,13 @@ void Checker::end_reservation(const dma::MfcCommand& by) {
 
 // ---- channels
 
+ChannelReply Checker::count(std::uint32_t channel) {
+  check_code(to_.engine.position());
+  return to_.channels.count(channel);
+}
+
 ChannelReply Checker::write(std::uint32_t channel, std::uint32_t value) {
+  check_code(to_.engine.position());
   ChannelReply reply = to_.channels.write(channel, value);
   if (reply.fault) return reply;
   if (channel == static_cast<std::uint32_t>(Channel::kMfcWrTagMask)) tag_mask_ = value;
@@ -208,15 +258,25 @@ void Checker::on_tag_update(std::uint32_t condition) {
 }
 
 ChannelReply Checker::read(std::uint32_t channel) {
+  check_code(to_.engine.position());
   ChannelReply reply = to_.channels.read(channel);
   if (reply.fault) return reply;
   if (channel == static_cast<std::uint32_t>(Channel::kMfcRdTagStat)) {
-    in_flight_.complete(reply.value, asked_at_);
+    complete(reply.value);
     if (is_waiting_) tags_issued_ &= ~reply.value;
   }
   if (channel == kListStallStatus) on_list_stall(reply.value);
   if (channel == kAtomicStatus) status_unread_.reset();
   return reply;
+}
+
+/// Bytes arrive at any time up to the tag status: a sync before it does not cover them.
+void Checker::complete(std::uint32_t tags) {
+  for (const CommandInFlight& command : in_flight_.all()) {
+    if (!command.writes_local_store || (tags >> command.command.tag & 1u) == 0) continue;
+    for (const MovedRange& range : command.ranges) mark_unsynced(range, command.issued_at);
+  }
+  in_flight_.complete(tags, asked_at_);
 }
 
 void Checker::on_list_stall(std::uint32_t tags) {

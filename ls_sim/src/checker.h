@@ -20,6 +20,7 @@
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/findings.h"
 #include "softcell/ls_sim/source_lines.h"
+#include "unsynced_bytes.h"
 #include "written_bytes.h"
 
 namespace softcell::ls_sim {
@@ -27,6 +28,9 @@ namespace softcell::ls_sim {
 class SpeTrace;
 
 /// One for each SPE. Used by the thread that runs the SPE, except for on_external_write().
+///
+/// It sees no instruction fetches. That code was written and no sync followed, it finds at the first load,
+/// store or channel operation of that code, or where a resident kernel calls a job that it has fetched.
 class Checker final : public ChannelPort, public AccessObserver {
  public:
   /// What it stands between; all of it outlives the checker.
@@ -44,6 +48,12 @@ class Checker final : public ChannelPort, public AccessObserver {
   /// An image was made resident, and overwrote what was there.
   void on_load() { written_.clear(); }
 
+  /// The SPE starts: it executes what its local store holds.
+  void on_start() { unsynced_.clear(); }
+
+  /// The kernel that runs is not a checked one and fetches what may be a job's image.
+  void on_unchecked_issue(const dma::MfcCommand& command);
+
   /// @param stack  of the image alone; within another kernel's run what is left of that one's.
   void begin_run(const KernelImage& image, const StackRange& stack);
 
@@ -53,13 +63,15 @@ class Checker final : public ChannelPort, public AccessObserver {
   /// Any thread.
   void on_external_write(dma::LocalStoreAddress lsa, std::uint32_t bytes) {
     written_.mark_external(lsa.value, bytes);
+    unsynced_.mark(lsa.value, bytes, UnsyncedBytes::kOutside);
   }
 
   ChannelReply read(std::uint32_t channel) override;
   ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
-  ChannelReply count(std::uint32_t channel) override { return to_.channels.count(channel); }
+  ChannelReply count(std::uint32_t channel) override;
   ChannelReply issue(const dma::MfcCommand& command) override;
   void on_access(const Access& access) override;
+  void on_sync() override { unsynced_.clear(); }
 
  private:
   using Address = dma::LocalStoreAddress;
@@ -71,12 +83,16 @@ class Checker final : public ChannelPort, public AccessObserver {
     bool line_changed = false;
   };
 
+  void check_code(Address instruction);
+  void check_fetched_code();
+  void mark_unsynced(const MovedRange& range, Address writer);
   void check_store(const Access& access);
   void check_load(const Access& access);
   void check_ranges(CommandInFlight& command);
   void check_line_command(const dma::MfcCommand& command);
   void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);
   void end_reservation(const dma::MfcCommand& by);
+  void complete(std::uint32_t tags);
   void on_tag_update(std::uint32_t condition);
   void on_list_stall(std::uint32_t tags);
   void on_list_acknowledged(std::uint32_t tag);
@@ -94,6 +110,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   std::vector<PaddingRange> padding_;
 
   WrittenBytes written_;
+  UnsyncedBytes unsynced_;
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;
   std::uint32_t tags_issued_ = 0;  ///< since each was last waited for

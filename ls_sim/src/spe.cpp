@@ -90,6 +90,7 @@ RunResult Spe::execute(const Run& run) {
 RunResult Spe::run_engine(const Run& run) {
   JobObserver* const jobs = run.resident ? this : nullptr;
   if (checker_ == nullptr) return engine_->run(run.arguments, channels_, nullptr, jobs);
+  checker_->on_start();
   if (run.resident) {
     JobDoor door(*this);
     return engine_->run(run.arguments, door, checker_.get(), jobs);

@@ -82,7 +82,10 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
       return port().write(channel, value);
     }
     ChannelReply count(std::uint32_t channel) override { return port().count(channel); }
-    ChannelReply issue(const dma::MfcCommand& command) override { return port().issue(command); }
+    ChannelReply issue(const dma::MfcCommand& command) override {
+      if (!spe_.is_checked_job()) spe_.checker_->on_unchecked_issue(command);
+      return port().issue(command);
+    }
 
    private:
     ChannelPort& port() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/proxy_queue.h"
 #include "spe_threads.h"
 
@@ -113,6 +114,15 @@ class Door final : public ProblemState {
     return proxy_.free_slots();
   }
 
+  void write_local_store(dma::LocalStoreAddress lsa, std::span<const std::byte> bytes) override {
+    if (bytes.size() > dma::kLocalStoreBytes || lsa.value > dma::kLocalStoreBytes - bytes.size()) {
+      throw std::invalid_argument(std::to_string(bytes.size()) + " bytes written to local-store address " +
+                                  std::to_string(lsa.value) + " pass its end at 262144");
+    }
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    spe_.on_external_write(lsa, size);
+    dma::copy_to_local_store(&spe_.local_store()[lsa.value], bytes.data(), size);
+  }
   std::span<std::byte> local_store() override { return spe_.local_store(); }
   dma::EffectiveAddress local_store_ea() const override { return dma::local_store_ea(number_); }
 

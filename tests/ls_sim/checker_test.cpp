@@ -126,6 +126,72 @@ class CheckerTest : public testing::Test {
 
 using dma::MfcOpcode;
 
+/// Makes the instruction that runs next one of those in `buffer_`, at a channel.
+class CheckerOfCode : public CheckerTest {
+ protected:
+  void run_in_buffer(std::uint32_t offset) {
+    engine_.at = {buffer_ + offset};
+    checker_.count(28);
+    engine_.at = {image_.entry};
+  }
+  static inline const std::vector<std::string> kFound{"code-without-sync"};
+};
+
+TEST_F(CheckerOfCode, CodeThatWasFetchedNeedsASync) {
+  issue(MfcOpcode::get, buffer_, kEa, 128, 3);
+  wait_for(3);
+  run_in_buffer(128);
+  EXPECT_TRUE(rules().empty()) << "nothing was fetched there";
+  run_in_buffer(127);
+  EXPECT_EQ(rules(), kFound);
+}
+
+TEST_F(CheckerOfCode, CodeThatWasStoredNeedsASync) {
+  store(buffer_ + 8, 4);
+  run_in_buffer(7);
+  run_in_buffer(12);
+  EXPECT_TRUE(rules().empty());
+  run_in_buffer(8);
+  EXPECT_EQ(rules(), kFound);
+}
+
+TEST_F(CheckerOfCode, CodeFromOutsideNeedsASync) {
+  checker_.on_external_write({buffer_}, 16);
+  run_in_buffer(15);
+  EXPECT_EQ(rules(), kFound);
+}
+
+TEST_F(CheckerOfCode, AfterASyncItIsFree) {
+  issue(MfcOpcode::get, buffer_, kEa, 128, 3);
+  wait_for(3);
+  store(buffer_ + 64, 4);
+  checker_.on_sync();
+  run_in_buffer(0);
+  run_in_buffer(64);
+  EXPECT_TRUE(rules().empty());
+}
+
+TEST_F(CheckerOfCode, ASyncBeforeTheWaitDoesNotCoverAGet) {
+  issue(MfcOpcode::get, buffer_, kEa, 128, 3);
+  checker_.on_sync();
+  wait_for(3);
+  run_in_buffer(0);
+  EXPECT_EQ(rules(), kFound);
+}
+
+TEST_F(CheckerOfCode, AJobWhoseImageWasFetchedWithoutASyncIsFound) {
+  checker_.on_unchecked_issue({static_cast<std::uint32_t>(MfcOpcode::get), {image_.begin}, {kEa}, 1024, 3});
+  checker_.begin_run(image_, stack_of(image_));
+  EXPECT_EQ(rules(), kFound);
+}
+
+TEST_F(CheckerOfCode, AJobWhoseImageWasFetchedBeforeASyncIsFree) {
+  checker_.on_unchecked_issue({static_cast<std::uint32_t>(MfcOpcode::get), {image_.begin}, {kEa}, 1024, 3});
+  checker_.on_sync();
+  checker_.begin_run(image_, stack_of(image_));
+  EXPECT_TRUE(rules().empty());
+}
+
 TEST_F(CheckerTest, ALoadIsFreeAfterTheWaitAndNotAfterThatOfAnotherTag) {
   issue(MfcOpcode::get, buffer_, kEa, 128, 3);
   wait_for(3);

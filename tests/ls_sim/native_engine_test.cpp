@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
+#include <csignal>
 #include <cstring>
+#include <ctime>
 #include <thread>
 
 #include "softcell/ls_sim/engine.h"
@@ -91,7 +93,9 @@ class RecordingObserver final : public AccessObserver {
   void on_access(const Access& access) override {
     accesses.emplace_back(access, lines_.place_of(access.instruction));
   }
+  void on_sync() override { ++syncs; }
   std::vector<std::pair<Access, std::string>> accesses;
+  int syncs = 0;
 
  private:
   SourceLines lines_;
@@ -145,6 +149,58 @@ TEST_F(NativeEngineTest, RestoresTheHostsArithmeticAfterAFault) {
   const unsigned int host = _mm_getcsr() & ~_MM_EXCEPT_MASK;
   EXPECT_TRUE(run("illegal_instruction").fault);
   EXPECT_EQ(_mm_getcsr() & ~_MM_EXCEPT_MASK, host);
+}
+
+/// Raises SIGILL once in the thread that made it, as a processor does that runs what is no longer there.
+class SpuriousFault {
+ public:
+  explicit SpuriousFault(std::chrono::nanoseconds after) {
+    sigevent event{};
+    event.sigev_notify = SIGEV_THREAD_ID;
+    event.sigev_signo = SIGILL;
+    event._sigev_un._tid = gettid();
+    timer_create(CLOCK_THREAD_CPUTIME_ID, &event, &timer_);
+    const itimerspec when{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_nsec = after.count()}};
+    timer_settime(timer_, 0, &when, nullptr);
+  }
+  ~SpuriousFault() { timer_delete(timer_); }
+
+ private:
+  timer_t timer_{};
+};
+
+TEST_F(NativeEngineTest, AFaultThatDoesNotComeAgainIsTheProcessors) {
+  image_ = test_image("computes");
+  engine_->load(image_);
+  ASSERT_FALSE(engine_->run({.argp = 1000}, port_).fault);
+  const SpuriousFault fault(std::chrono::milliseconds(30));
+  const RunResult result = engine_->run({.argp = 20'000'000'000}, port_);
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->rule, dma::Rule::kStaleInstructions) << result.fault->message();
+  EXPECT_NE(result.fault->message().find("the processor ran stale instructions"), std::string::npos)
+      << result.fault->message();
+  EXPECT_FALSE(run("computes", {.argp = 1000}).fault);  // single steps have ended
+}
+
+TEST_F(NativeEngineTest, AFaultInOverwrittenCodeSaysSo) {
+  image_ = test_image("illegal_instruction");
+  engine_->load(image_);
+  local_store_.base()[image_.text_begin + image_.sizes.text - 1] ^= std::byte{1};
+  const RunResult result = engine_->run({}, port_);
+  ASSERT_TRUE(result.fault);
+  EXPECT_NE(result.fault->message().find("have been overwritten, from local-store address"),
+            std::string::npos)
+      << result.fault->message();
+}
+
+TEST_F(NativeEngineTest, TellsOfASync) {
+  image_ = test_image("computes");
+  engine_->load(image_);
+  RecordingObserver observer(image_);
+  ASSERT_FALSE(engine_->run({.argp = 1, .envp = 1}, port_, &observer).fault);
+  EXPECT_EQ(observer.syncs, 1);
+  ASSERT_FALSE(engine_->run({.argp = 1, .envp = 0}, port_, &observer).fault);
+  EXPECT_EQ(observer.syncs, 1);
 }
 
 struct FaultCase {

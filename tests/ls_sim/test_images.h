@@ -35,8 +35,14 @@
   X(sleeps)                 \
   X(marks_jobs)             \
   X(sees_mask)              \
+  X(computes)               \
+  X(stress_0)               \
+  X(stress_1)               \
+  X(stress_2)               \
+  X(stress_3)               \
   X(resides)                \
-  X(breaks_down)
+  X(breaks_down)            \
+  X(changes_images)
 
 extern "C" {
 #define SC_DECLARE(name)                                                         \

@@ -89,6 +89,8 @@ INSTANTIATE_TEST_SUITE_P(All, ZooLegal, ::testing::ValuesIn(read_cards("legal"))
 const std::map<dma::Rule, std::string> kNotForKernels = {
     {dma::Rule::kNotOnProxyQueue, "only the PPU queues proxy commands; see the tests of the proxy queue"},
     {dma::Rule::kImageNotLoadable, "the image is refused before there is a kernel; see the tests of images"},
+    {dma::Rule::kStaleInstructions,
+     "the host's processor does it, not the kernel; see the tests of the native engine"},
     {dma::Rule::kHostFailure, "the host fails, not the kernel; see the tests of host failures"},
 };
 

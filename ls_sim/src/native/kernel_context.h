@@ -7,8 +7,8 @@
 //   on a fault: the signal handler (on the signal stack) rewrites the interrupted context to land() on the
 //   landing stack, which jumps to run(); the kernel's frames are abandoned where they are.
 //
-// Only code without sanitizer instrumentation runs on the kernel's and the landing stack (kernel_side.cpp),
-// so that sanitizers see one stack per thread.
+// Only code without sanitizer instrumentation runs on the kernel's and the landing stack (kernel_side.cpp,
+// serialise.cpp), so that sanitizers see one stack per thread.
 
 #include <boost/context/detail/fcontext.hpp>
 #include <csignal>
@@ -38,6 +38,7 @@ enum class Operation : std::uint32_t {
   kTagStatus = 5,
   kAccess = 6,
   kJob = 7,
+  kSync = 8,
   kFault = 0xFF'FFFF
 };
 
@@ -51,6 +52,8 @@ struct Trap {
   bool general_protection = false;  ///< the processor gave no address: it was not a canonical one
   bool instruction_fetch = false;
   bool write = false;
+  bool stale =
+      false;  ///< executed once more, the instruction did not fail: it was not what the processor ran
   std::uintptr_t address = 0;
   std::uintptr_t instruction = 0;
   std::uintptr_t stack = 0;
@@ -89,6 +92,8 @@ struct KernelContext {
   std::uintptr_t landing_stack_top = 0;
   volatile std::sig_atomic_t in_kernel = 0;
   volatile std::sig_atomic_t interrupted = 0;
+  volatile std::sig_atomic_t stepping = 0;  ///< the instruction that failed is being executed once more
+  bool repeat_what_failed = true;           ///< false under a debugger, which steps through kernels itself
 };
 
 /// The context that this thread runs, or null. Set for the time of a run.

@@ -4,6 +4,7 @@
 #include <xmmintrin.h>
 
 #include "kernel_context.h"
+#include "serialise.h"
 
 namespace softcell::ls_sim::native {
 namespace {
@@ -59,6 +60,7 @@ void kernel_start(boost::context::detail::transfer_t transfer) {
   context.worker = transfer.fctx;
   context.worker_arithmetic = _mm_getcsr();
   _mm_setcsr(kSpuArithmetic);
+  serialise();
   using Main = int(std::uint64_t, std::uint64_t, std::uint64_t);
   const int status = reinterpret_cast<Main*>(context.entry)(context.arguments[0], context.arguments[1],
                                                             context.arguments[2]);
@@ -75,6 +77,7 @@ std::uint32_t gate(std::uint32_t request, std::uint32_t value) {
   _mm_setcsr(context.worker_arithmetic);
   if (!softcell_call_on_stack(context.serve, &context, context.worker)) leave(context);
   _mm_setcsr(kSpuArithmetic);
+  if (request == request_of(Operation::kSync)) serialise();
   return context.reply;
 }
 

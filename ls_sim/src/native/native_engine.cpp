@@ -15,6 +15,7 @@
 #include "debugger_symbols.h"
 #include "kernel_context.h"
 #include "signals.h"
+#include "softcell/dma/local_store_bytes.h"
 #include "softcell/ls_sim/engine.h"
 
 namespace softcell::ls_sim {
@@ -66,6 +67,7 @@ class NativeEngine final : public Engine {
     };
     const auto top = reinterpret_cast<std::uintptr_t>(landing_stack_.get()) + kLandingStackBytes;
     context_.landing_stack_top = top & ~std::uintptr_t{15};
+    context_.repeat_what_failed = !debugger_wanted_;
   }
 
   void load(const KernelImage& image) override {
@@ -74,10 +76,11 @@ class NativeEngine final : public Engine {
     std::byte* const base = local_store_.base();
     native::Environment environment;
     environment.gate = reinterpret_cast<std::uint64_t>(&native::gate);
-    std::memcpy(base, &environment, sizeof environment);
-    std::fill(base + kEnvironmentBytes, base + dma::kLocalStoreBytes, kFiller);
-    std::byte* const bss = std::copy(image.bytes.begin(), image.bytes.end(), base + image.begin);
-    std::fill(bss, base + image.sizes.end, std::byte{0});
+    dma::copy_to_local_store(base, reinterpret_cast<const std::byte*>(&environment), sizeof environment);
+    dma::fill_local_store(base + kEnvironmentBytes, kFiller, dma::kLocalStoreBytes - kEnvironmentBytes);
+    dma::copy_to_local_store(base + image.begin, image.bytes.data(), image.bytes.size());
+    const std::size_t bss = image.begin + image.bytes.size();
+    dma::fill_local_store(base + bss, std::byte{0}, image.sizes.end - bss);
     if (debugger_wanted_) debugger_symbols_ = std::make_unique<native::DebuggerSymbols>(image, base);
     data_as_linked_ = true;
     last_job_end_ = 0;
@@ -122,8 +125,11 @@ class NativeEngine final : public Engine {
   ChannelReply answer_channel();
   std::optional<dma::Fault> check_stack() const;
   std::span<std::byte> canary() const;
+  void fill_canary() { dma::fill_local_store(canary().data(), kFiller, canary().size()); }
   bool written_below_stack() const { return !std::ranges::all_of(canary(), is_filler); }
   dma::Fault classify_trap() const;
+  dma::Fault cause_of_trap() const;
+  std::string describe_damaged_code() const;
   dma::Fault stack_overflow(std::string detail) const;
 
   static dma::Fault fault(dma::Rule rule, std::string detail) {
@@ -162,8 +168,8 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   // after load() they are so already, and others may have written to them since.
   if (!std::exchange(data_as_linked_, false)) {
     const std::uint32_t data_offset = image_->data_begin - image_->begin;
-    std::copy_n(image_->bytes.begin() + data_offset, image_->data_end - image_->data_begin,
-                local_store_.base() + image_->data_begin);
+    dma::copy_to_local_store(local_store_.base() + image_->data_begin, image_->bytes.data() + data_offset,
+                             image_->data_end - image_->data_begin);
   }
   auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
   environment.mfc_tag_mask = tag_mask_ = 0;
@@ -174,6 +180,8 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   context_.arguments[1] = arguments.argp;
   context_.arguments[2] = arguments.envp;
   context_.interrupted = 0;
+  context_.stepping = 0;
+  context_.trap = {};
 }
 
 /// Comes back when the run has ended; what the kernel asks for meanwhile is served by serve_request().
@@ -254,6 +262,10 @@ std::optional<RunResult> NativeEngine::answer() {
     if (auto overflow = note_job()) return RunResult{0, std::move(overflow)};
     return std::nullopt;
   }
+  if (context_.operation() == Operation::kSync) {  // the gate serialises the processor on the way back
+    if (accesses_ != nullptr) accesses_->on_sync();
+    return std::nullopt;
+  }
   ChannelReply reply = answer_channel();
   if (reply.fault) return RunResult{0, std::move(*reply.fault)};
   context_.reply = reply.value;
@@ -281,7 +293,7 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   if (debugger_wanted_ && job_image_ != last) {
     debugger_job_symbols_ = std::make_unique<native::DebuggerSymbols>(*job_image_, local_store_.base());
   }
-  std::ranges::fill(canary(), kFiller);
+  fill_canary();
   return std::nullopt;
 }
 
@@ -297,7 +309,7 @@ std::optional<dma::Fault> NativeEngine::end_job() {
   job_image_ = nullptr;
   caller_variables_.clear();
   caller_frames_.clear();
-  std::ranges::fill(canary(), kFiller);  // where the job had its stack
+  fill_canary();  // where the job had its stack
   jobs_->on_job_end();
   return std::nullopt;
 }
@@ -409,8 +421,32 @@ std::span<std::byte> NativeEngine::canary() const {
 }
 
 dma::Fault NativeEngine::classify_trap() const {
+  dma::Fault cause = cause_of_trap();
+  cause.detail += describe_damaged_code();
+  return cause;
+}
+
+/// Code that something has written to makes a kernel fail in any way at all.
+std::string NativeEngine::describe_damaged_code() const {
+  const KernelImage* const image = job_under_way_ ? job_image_ : image_;
+  if (image == nullptr || debugger_wanted_) return {};  // breakpoints of a debugger are written into the code
+  const std::byte* const code = local_store_.base() + image->begin;
+  const std::byte* const end = local_store_.base() + image->data_begin;
+  const std::byte* const damaged = std::mismatch(code, end, image->bytes.begin()).first;
+  if (damaged == end) return {};
+  return "; the kernel's instructions or constants have been overwritten, from local-store address " +
+         hexadecimal(static_cast<std::uint64_t>(damaged - local_store_.base())) + " on";
+}
+
+dma::Fault NativeEngine::cause_of_trap() const {
   const native::Trap& trap = context_.trap;
   const std::uintptr_t at = trap.instruction - arena();
+  if (trap.stale) {
+    return fault(dma::Rule::kStaleInstructions,
+                 "the instruction at local-store address " + hexadecimal(at) +
+                     " failed, and did not fail when it was executed once more: the processor ran stale "
+                     "instructions, not those that the local store holds");
+  }
   if (job_image_ != nullptr) {
     if (auto damage = check_caller()) return *damage;  // whatever came of it
   }

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "kernel_context.h"
+#include "serialise.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::ls_sim::native {
@@ -17,6 +18,10 @@ std::array<struct sigaction, NSIG> previous_actions;
 
 // Bits of the page-fault error code. [AMD64 manual, volume 2, page fault] documented
 constexpr std::uint64_t kPageFaultWrite = 2, kPageFaultFetch = 16;
+
+bool in_arena(const KernelContext& context, std::uintptr_t address) {
+  return address - context.arena < dma::kLocalStoreBytes;
+}
 
 /// Does what would have happened without us.
 void pass_on(int signal, siginfo_t* info, void* machine) {
@@ -31,17 +36,48 @@ void pass_on(int signal, siginfo_t* info, void* machine) {
   }
 }
 
+constexpr greg_t kDirectionFlag = 0x400, kTrapFlag = 0x100;
+
 /// Leaves the kernel where it is: when the handler returns, the thread continues in land() on the landing
 /// stack.
 void redirect_to_landing(const KernelContext& context, mcontext_t& machine) {
   machine.gregs[REG_RIP] = reinterpret_cast<greg_t>(&land);
   machine.gregs[REG_RSP] =
-      static_cast<greg_t>(context.landing_stack_top - 8);  // as if called: 8 below a multiple of 16
-  machine.gregs[REG_EFL] &= ~static_cast<greg_t>(0x400);   // direction flag clear, as the ABI asks
+      static_cast<greg_t>(context.landing_stack_top - 8);   // as if called: 8 below a multiple of 16
+  machine.gregs[REG_EFL] &= ~(kDirectionFlag | kTrapFlag);  // direction flag clear, as the ABI asks
 }
 
-bool in_arena(const KernelContext& context, std::uintptr_t address) {
-  return address - context.arena < dma::kLocalStoreBytes;
+/// An instruction that fails by itself, not by a breakpoint.
+bool is_failure(int signal) { return signal != SIGTRAP && signal != kInterruptSignal; }
+
+/// A processor that ran stale code fails where the code in the local store does not: so the instruction is
+/// executed once more, alone, on a serialised processor. It fails again, or the trap flag raises SIGTRAP
+/// behind it.
+/// @return  whether the thread is to go on as the signal has found it.
+bool executes_once_more(KernelContext& context, int signal, mcontext_t& machine, std::uintptr_t instruction) {
+  if (context.stepping != 0) {
+    context.stepping = 0;
+    machine.gregs[REG_EFL] &= ~kTrapFlag;
+    context.trap.stale = signal == SIGTRAP;
+    return false;
+  }
+  if (!context.repeat_what_failed || !is_failure(signal) || !in_arena(context, instruction)) return false;
+  context.stepping = 1;
+  machine.gregs[REG_EFL] |= kTrapFlag;
+  serialise();
+  return true;
+}
+
+/// How the processor stopped the kernel.
+void note_trap(KernelContext& context, int signal, const siginfo_t& info, const mcontext_t& machine) {
+  const auto error = static_cast<std::uint64_t>(machine.gregs[REG_ERR]);
+  context.trap = {.signal = signal,
+                  .general_protection = signal == SIGSEGV && info.si_code == SI_KERNEL,
+                  .instruction_fetch = (error & kPageFaultFetch) != 0,
+                  .write = (error & kPageFaultWrite) != 0,
+                  .address = reinterpret_cast<std::uintptr_t>(info.si_addr),
+                  .instruction = static_cast<std::uintptr_t>(machine.gregs[REG_RIP]),
+                  .stack = static_cast<std::uintptr_t>(machine.gregs[REG_RSP])};
 }
 
 void handle(int signal, siginfo_t* info, void* machine_context) {
@@ -60,14 +96,11 @@ void handle(int signal, siginfo_t* info, void* machine_context) {
       (context->in_kernel == 0 || !in_arena(*context, instruction))) {
     return;
   }
-  const auto error = static_cast<std::uint64_t>(machine.gregs[REG_ERR]);
-  context->trap.signal = signal;
-  context->trap.general_protection = signal == SIGSEGV && info->si_code == SI_KERNEL;
-  context->trap.address = reinterpret_cast<std::uintptr_t>(info->si_addr);
-  context->trap.instruction = instruction;
-  context->trap.stack = static_cast<std::uintptr_t>(machine.gregs[REG_RSP]);
-  context->trap.write = (error & kPageFaultWrite) != 0;
-  context->trap.instruction_fetch = (error & kPageFaultFetch) != 0;
+  if (executes_once_more(*context, signal, machine, instruction)) {
+    note_trap(*context, signal, *info, machine);
+    return;
+  }
+  if (!context->trap.stale) note_trap(*context, signal, *info, machine);
   redirect_to_landing(*context, machine);
 }
 

@@ -57,6 +57,9 @@ SC_SDK_INLINE void stop() {
 /// in order anyway.
 SC_SDK_INLINE void barrier() { asm volatile("" ::: "memory"); }
 
+/// What the kernel has written or fetched so far is what it executes from here on.
+SC_SDK_INLINE void sync() { call_gate(kSync, 0, 0); }
+
 // What compiles on an SPU and has no meaning for a job on the host is refused where it is used, with the
 // reason.
 
@@ -93,8 +96,8 @@ SC_SDK_INLINE void no_interrupts() {
 /// started again.
 #define spu_stop(code) (softcell_sdk::stop<(code)>())
 
-#define spu_sync() (softcell_sdk::barrier())
-#define spu_sync_c() (softcell_sdk::barrier())
+#define spu_sync() (softcell_sdk::sync())
+#define spu_sync_c() (softcell_sdk::sync())
 #define spu_dsync() (softcell_sdk::barrier())
 
 /// No interrupt ever reaches a job on the host: off is what they are.

@@ -28,7 +28,8 @@ static_assert(sizeof(Environment) == 128, "what the link script leaves free");
 /// What is asked of the gate: operation = kind << 8 | channel. `value` is what is written, or the stop code.
 /// kTagStatus writes `value` to MFC_WrTagUpdate and then reads MFC_RdTagStat: one call for each wait.
 /// kAccess, with 1 as the channel for a store, reports a load or store of a checked kernel at local-store
-/// address `value`. kJob says that a job begins (1 as the channel) or has ended.
+/// address `value`. kJob says that a job begins (1 as the channel) or has ended. kSync
+/// makes the processor fetch anew what it executes.
 enum GateKind : uint32_t {
   kRead = 0,
   kWrite = 1,
@@ -37,7 +38,8 @@ enum GateKind : uint32_t {
   kHalt = 4,
   kTagStatus = 5,
   kAccess = 6,
-  kJob = 7
+  kJob = 7,
+  kSync = 8
 };
 
 constexpr uintptr_t kLocalStoreMask = 0x3FFFF;

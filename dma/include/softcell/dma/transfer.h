@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "softcell/dma/addresses.h"
+#include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/mfc_command.h"
 #include "softcell/dma/storage_port.h"
 
@@ -41,7 +42,7 @@ class Transfer {
   /// Fills the destination of a get, as the bytes that the hardware leaves in it are nobody's business until
   /// it has ended. @pre nothing has moved.
   void poison() {
-    if (to_ != nullptr) std::fill_n(to_, size_, kPoison);
+    if (to_ != nullptr) fill_local_store(to_, kPoison, size_);
   }
   /// As a float of the SPU about -1.2e17, as an integer about -6e8.
   static constexpr std::byte kPoison{0xDB};

@@ -65,7 +65,11 @@ class ProblemState {
   virtual std::uint32_t wait_proxy(std::uint32_t tag_mask) = 0;
   virtual int free_proxy_slots() = 0;
 
-  /// The local store's bytes. What runs there may change them at any time.
+  /// Writes to the local store. Code goes there this way only: local_store_bytes.h of dma says why.
+  /// @throws std::invalid_argument  the bytes pass the end of the local store.
+  virtual void write_local_store(dma::LocalStoreAddress lsa, std::span<const std::byte> bytes) = 0;
+
+  /// The local store's bytes, for data. What runs there may change them at any time.
   virtual std::span<std::byte> local_store() = 0;
   virtual dma::EffectiveAddress local_store_ea() const = 0;
 };
