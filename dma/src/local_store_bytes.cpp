@@ -102,4 +102,10 @@ void fill_local_store(std::byte* to, std::byte value, std::size_t bytes) {
   fill_by_quadwords(to + head + rounds, value, bytes - head - rounds);
 }
 
+void flush_local_store(const std::byte* begin, std::size_t bytes) {
+  constexpr std::size_t kHostLineBytes = 64;
+  for (std::size_t at = 0; at < bytes; at += kHostLineBytes) _mm_clflush(begin + at);
+  _mm_mfence();
+}
+
 }  // namespace softcell::dma

@@ -66,7 +66,7 @@ void touch(StoragePort& port, const MfcCommand& command) {
 Mfc::Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedule,
          std::uint64_t stream_number, ReservationListener* listener)
     : local_store_(local_store),
-      port_(space, listener),
+      port_(local_store.data(), space, listener),
       schedule_(schedule),
       random_(schedule.seed, stream_number) {
   if (local_store.size() != kLocalStoreBytes) {

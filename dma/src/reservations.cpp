@@ -250,9 +250,12 @@ void Reservations::store_line(ReservationHolder& holder, EffectiveAddress line, 
 }
 
 void Reservations::read(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
-                        std::uint32_t bytes) {
-  if (!fits_one_line(ea, bytes) &&
-      state_->copy_at_once(holder.place_, {ea, bytes}, [&] { copy_to_local_store(to, host, bytes); })) {
+                        std::uint32_t bytes, bool may_be_code) {
+  const auto whole = [&] {
+    if (may_be_code) return copy_to_local_store(to, host, bytes);
+    std::memmove(to, host, bytes);
+  };
+  if (!fits_one_line(ea, bytes) && state_->copy_at_once(holder.place_, {ea, bytes}, whole)) {
     return;
   }
   for_each_line(ea, bytes, [&](std::uint32_t offset, std::uint32_t size) {

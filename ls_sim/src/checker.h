@@ -70,8 +70,11 @@ class Checker final : public ChannelPort, public AccessObserver {
   ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
   ChannelReply count(std::uint32_t channel) override;
   ChannelReply issue(const dma::MfcCommand& command) override;
+  void sync() override {
+    unsynced_.clear();
+    to_.channels.sync();
+  }
   void on_access(const Access& access) override;
-  void on_sync() override { unsynced_.clear(); }
 
  private:
   using Address = dma::LocalStoreAddress;

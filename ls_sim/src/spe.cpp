@@ -24,6 +24,7 @@ Spe::Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMo
                  .statistics = statistics_,
                  .trace = trace_}) {
   mfc_.set_observer(trace_);
+  mfc_.confine_code({0});
   if (options_.findings != nullptr) {
     checker_ = std::make_unique<Checker>(Checker::Surroundings{.spe = number_,
                                                                .local_store = local_store_.bytes(),
@@ -78,7 +79,7 @@ RunResult Spe::execute(const Run& run) {
   }
   if (resident_ != run.image) load(*run.image);
   mfc_.begin_job(run.number);
-  channels_.begin_run();
+  channels_.begin_run(run.resident);
   RunResult result = run_engine(run);
   if (!result.fault) result.fault = mfc_.drain();
   if (result.fault) {
@@ -111,12 +112,18 @@ dma::LocalStoreAddress Spe::position_of(const dma::Fault& fault) const {
 void Spe::load(const KernelImage& image) {
   resident_ = nullptr;
   engine_->load(image);
+  if (image.begin == kEnvironmentBytes) mfc_.expect_code_below({image.data_begin});
   if (checker_ != nullptr) checker_->on_load();
   resident_ = &image;
   ++statistics_.image_loads;
 }
 
 // ---- jobs inside a run
+
+void Spe::announce_job_image(const KernelImage& image) {
+  mfc_.expect_code_below({image.data_begin});
+  channels_.announce_jobs();
+}
 
 const KernelImage* Spe::on_job_begin(dma::EffectiveAddress image, dma::EffectiveAddress job) {
   const auto now = std::chrono::steady_clock::now();
@@ -125,6 +132,7 @@ const KernelImage* Spe::on_job_begin(dma::EffectiveAddress image, dma::Effective
     const SpeMonitor::Lock lock = monitor_.lock();
     const auto known = job_images_->find(image.value);
     if (known != job_images_->end()) job_->image = known->second;
+    if (job_->image == nullptr) mfc_.expect_code_everywhere();
     monitor_.begin_job(number_, now);
   }
   if (is_checked_job()) checker_->begin_run(*job_->image, stack_of_job());

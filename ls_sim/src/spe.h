@@ -45,6 +45,9 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   /// Where to look for the images of jobs; outlives the SPE's runs.
   void set_job_images(const JobImages* images) { job_images_ = images; }
 
+  /// A resident kernel may fetch it from now on. Any thread.
+  void announce_job_image(const KernelImage& image);
+
   /// Makes the image resident anew. Any thread, while no run is in progress.
   void load(const KernelImage& image);
 
@@ -86,6 +89,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
       if (!spe_.is_checked_job()) spe_.checker_->on_unchecked_issue(command);
       return port().issue(command);
     }
+    void sync() override { spe_.checker_->sync(); }
 
    private:
     ChannelPort& port() {

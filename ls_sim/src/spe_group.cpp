@@ -309,6 +309,7 @@ void SpeGroup::start_resident(int spe, const KernelImage& image, const EntryArgu
 void SpeGroup::register_job_image(dma::EffectiveAddress ea, const KernelImage& image) {
   const SpeMonitor::Lock lock = state_->monitor().lock();
   state_->job_images[ea.value] = &image;
+  for (int spe = 0; spe < spes(); ++spe) state_->threads.spe(spe).announce_job_image(image);
 }
 
 void SpeGroup::on_end(std::function<void(int, const RunResult&)> listener) {

@@ -47,11 +47,17 @@ std::string describe_access(std::uint32_t channel) {
 
 }  // namespace
 
-void SpuChannels::begin_run() {
+void SpuChannels::begin_run(bool calls_jobs) {
+  calls_jobs_ = calls_jobs;
   decrementer_ = {};
   srr0_ = 0;
   parameters_ = {};
   lists_ = {};
+}
+
+/// A program that executes a sync has fetched code, or will: nobody knows where to.
+void SpuChannels::sync() {
+  if (!calls_jobs_ || !jobs_are_announced_.load(std::memory_order_relaxed)) to_.mfc.expect_code_everywhere();
 }
 
 // ---- the door

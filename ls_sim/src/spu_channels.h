@@ -2,6 +2,7 @@
 // All channels of one SPU, over its MFC and its registers.
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -43,7 +44,11 @@ class SpuChannels final : public ChannelPort {
   void set_proxy(dma::ProxyQueue* proxy) { proxy_ = proxy; }
 
   /// State at the start of a program, of all but the MFC and the registers.
-  void begin_run();
+  /// @param calls_jobs  the program is one that fetches others and calls them.
+  void begin_run(bool calls_jobs);
+
+  /// Where the images of jobs end is known to the MFC before they are fetched. Any thread.
+  void announce_jobs() { jobs_are_announced_.store(true, std::memory_order_relaxed); }
 
   /// What is in the PPU side's queue moves on without the SPU.
   void end_run() {
@@ -55,6 +60,7 @@ class SpuChannels final : public ChannelPort {
   ChannelReply write(std::uint32_t channel, std::uint32_t value) override;
   ChannelReply count(std::uint32_t channel) override;
   ChannelReply issue(const dma::MfcCommand& command) override;
+  void sync() override;
 
   /// Where the list command that broke a rule was issued: its elements are looked at later, when the kernel
   /// is somewhere else. @return  nothing for a fault of anything but a list's elements.
@@ -98,6 +104,8 @@ class SpuChannels final : public ChannelPort {
   dma::ProxyQueue* proxy_ = nullptr;
   SpuClock clock_;
   Decrementer decrementer_;
+  bool calls_jobs_ = false;
+  std::atomic<bool> jobs_are_announced_{false};
   std::uint32_t srr0_ = 0;
   dma::MfcCommand parameters_{};  ///< as written to channels 16 to 20 so far
 

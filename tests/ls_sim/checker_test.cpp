@@ -61,6 +61,7 @@ class CheckerTest : public testing::Test {
     ChannelReply write(std::uint32_t, std::uint32_t) override { return {}; }
     ChannelReply count(std::uint32_t) override { return {1, {}}; }
     ChannelReply issue(const dma::MfcCommand&) override { return {}; }
+    void sync() override {}
     std::uint32_t answer = 0;
   };
   class Still final : public Engine {
@@ -165,7 +166,7 @@ TEST_F(CheckerOfCode, AfterASyncItIsFree) {
   issue(MfcOpcode::get, buffer_, kEa, 128, 3);
   wait_for(3);
   store(buffer_ + 64, 4);
-  checker_.on_sync();
+  checker_.sync();
   run_in_buffer(0);
   run_in_buffer(64);
   EXPECT_TRUE(rules().empty());
@@ -173,7 +174,7 @@ TEST_F(CheckerOfCode, AfterASyncItIsFree) {
 
 TEST_F(CheckerOfCode, ASyncBeforeTheWaitDoesNotCoverAGet) {
   issue(MfcOpcode::get, buffer_, kEa, 128, 3);
-  checker_.on_sync();
+  checker_.sync();
   wait_for(3);
   run_in_buffer(0);
   EXPECT_EQ(rules(), kFound);
@@ -187,7 +188,7 @@ TEST_F(CheckerOfCode, AJobWhoseImageWasFetchedWithoutASyncIsFound) {
 
 TEST_F(CheckerOfCode, AJobWhoseImageWasFetchedBeforeASyncIsFree) {
   checker_.on_unchecked_issue({static_cast<std::uint32_t>(MfcOpcode::get), {image_.begin}, {kEa}, 1024, 3});
-  checker_.on_sync();
+  checker_.sync();
   checker_.begin_run(image_, stack_of(image_));
   EXPECT_TRUE(rules().empty());
 }

@@ -1,6 +1,6 @@
-// No byte comes into a local store by the host's memcpy, memmove or memset, which may use string
-// instructions: dma/local_store_bytes.h says why. This program has its own of the three, which look where
-// they write.
+// No byte comes to where a local store holds instructions by the host's memcpy, memmove or memset, which may
+// use string instructions: dma/local_store_bytes.h says why. This program has its own of the three, which
+// look where they write.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,9 @@
 
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/local_store_bytes.h"
+#include "softcell/dma/mfc.h"
 #include "softcell/dma/sanitizers.h"
+#include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/spe_group.h"
 #include "test_images.h"
 
@@ -105,6 +107,8 @@ TEST_P(LocalStoreWrites, AreSeenWhenTheyAreByTheHostsLibrary) {
 }
 
 TEST_P(LocalStoreWrites, OfAllPathsGoByVectorStores) {
+  // A kernel that executes a sync may fetch code to anywhere: from here on no other kind of copy is made.
+  run("computes", {.argp = 1, .envp = 1});
   // Loads, commands of 16384 bytes, lists, line commands, runs anew with data as linked.
   for (const char* const kernel :
        {"echo_arguments", "no_wait", "increments", "remembers", "padded", "leaves_a_stall"}) {
@@ -135,6 +139,35 @@ TEST_P(LocalStoreWrites, OfThePpuMustFit) {
   EXPECT_THROW(group_.problem_state(0).write_local_store({dma::kLocalStoreBytes - 15},
                                                          std::as_bytes(data_.span()).first(16)),
                std::invalid_argument);
+}
+
+TEST(LocalStoreCode, IsWhereTheMfcHasBeenToldAndNowhereElse) {
+  dma::AddressSpace memory;
+  dma::Buffer<std::byte> data(memory, "data", dma::kMaxTransferBytes);
+  LocalStore local_store;
+  watched[0].begin = reinterpret_cast<std::uintptr_t>(local_store.base());
+  watched[0].end = watched[0].begin + dma::kLocalStoreBytes;
+  dma::Mfc mfc(local_store.bytes(), memory, dma::parse_schedule("eager"), 0, nullptr);
+  const auto library_writes = [&](std::uint32_t lsa) {
+    writes_seen = 0;
+    EXPECT_FALSE(mfc.issue({.word = static_cast<std::uint32_t>(dma::MfcOpcode::get),
+                            .lsa = {lsa},
+                            .ea = data.ea(),
+                            .size = 4096,
+                            .tag = 0}));
+    return writes_seen.load();
+  };
+  EXPECT_EQ(library_writes(0x8000), 0) << "it may be anywhere";
+  mfc.confine_code({0x4000});
+  EXPECT_EQ(library_writes(0x3000), 0);
+  EXPECT_EQ(library_writes(0x4000), 1);
+  mfc.expect_code_below({0x5000});
+  mfc.expect_code_below({0x1000});
+  EXPECT_EQ(library_writes(0x4000), 0);
+  EXPECT_EQ(library_writes(0x5000), 1);
+  mfc.expect_code_everywhere();
+  EXPECT_EQ(library_writes(0x5000), 0);
+  watched[0].begin = watched[0].end = 0;
 }
 
 INSTANTIATE_TEST_SUITE_P(Schedules, LocalStoreWrites, testing::Values("eager", "lazy", "random:3"));

@@ -26,9 +26,11 @@ class RecordingPort final : public ChannelPort {
     commands.push_back(command);
     return note();
   }
+  void sync() override { ++syncs; }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> writes;
   std::vector<dma::MfcCommand> commands;
+  int syncs = 0;
   std::vector<unsigned int> modes;
 
  private:
@@ -93,9 +95,7 @@ class RecordingObserver final : public AccessObserver {
   void on_access(const Access& access) override {
     accesses.emplace_back(access, lines_.place_of(access.instruction));
   }
-  void on_sync() override { ++syncs; }
   std::vector<std::pair<Access, std::string>> accesses;
-  int syncs = 0;
 
  private:
   SourceLines lines_;
@@ -196,11 +196,10 @@ TEST_F(NativeEngineTest, AFaultInOverwrittenCodeSaysSo) {
 TEST_F(NativeEngineTest, TellsOfASync) {
   image_ = test_image("computes");
   engine_->load(image_);
-  RecordingObserver observer(image_);
-  ASSERT_FALSE(engine_->run({.argp = 1, .envp = 1}, port_, &observer).fault);
-  EXPECT_EQ(observer.syncs, 1);
-  ASSERT_FALSE(engine_->run({.argp = 1, .envp = 0}, port_, &observer).fault);
-  EXPECT_EQ(observer.syncs, 1);
+  ASSERT_FALSE(engine_->run({.argp = 1, .envp = 1}, port_).fault);
+  EXPECT_EQ(port_.syncs, 1);
+  ASSERT_FALSE(engine_->run({.argp = 1, .envp = 0}, port_).fault);
+  EXPECT_EQ(port_.syncs, 1);
 }
 
 struct FaultCase {

@@ -14,6 +14,7 @@ class RefusingPort final : public ChannelPort {
   ChannelReply read(std::uint32_t) override { return {}; }
   ChannelReply write(std::uint32_t, std::uint32_t) override { return {}; }
   ChannelReply count(std::uint32_t) override { return {}; }
+  void sync() override {}
   ChannelReply issue(const dma::MfcCommand&) override {
     return {0, std::make_unique<dma::Fault>(dma::Fault{dma::Rule::kSizeZero})};
   }

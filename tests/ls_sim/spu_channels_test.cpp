@@ -221,7 +221,7 @@ TEST_F(SpuChannelsTest, KeepsMasksAndTheInterruptReturnAddress) {
   write(Channel::kSpuWrSrr0, 0x100);
   EXPECT_EQ(read(Channel::kSpuRdSrr0), 0x100u);
   EXPECT_EQ(read(Channel::kSpuRdMachStat), 0u) << "interrupts are never on";
-  channels_.begin_run();
+  channels_.begin_run(false);
   EXPECT_EQ(read(Channel::kSpuRdSrr0), 0u);
 }
 

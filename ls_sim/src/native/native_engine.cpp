@@ -79,6 +79,8 @@ class NativeEngine final : public Engine {
     dma::copy_to_local_store(base, reinterpret_cast<const std::byte*>(&environment), sizeof environment);
     dma::fill_local_store(base + kEnvironmentBytes, kFiller, dma::kLocalStoreBytes - kEnvironmentBytes);
     dma::copy_to_local_store(base + image.begin, image.bytes.data(), image.bytes.size());
+    // Another program's data may have come here since these bytes were code last.
+    dma::flush_local_store(base + image.begin, image.data_begin - image.begin);
     const std::size_t bss = image.begin + image.bytes.size();
     dma::fill_local_store(base + bss, std::byte{0}, image.sizes.end - bss);
     if (debugger_wanted_) debugger_symbols_ = std::make_unique<native::DebuggerSymbols>(image, base);
@@ -263,7 +265,7 @@ std::optional<RunResult> NativeEngine::answer() {
     return std::nullopt;
   }
   if (context_.operation() == Operation::kSync) {  // the gate serialises the processor on the way back
-    if (accesses_ != nullptr) accesses_->on_sync();
+    channels_->sync();
     return std::nullopt;
   }
   ChannelReply reply = answer_channel();

@@ -47,6 +47,12 @@ class Mfc {
   /// Tells `observer` of every command from now on; null: nobody. It must outlive the MFC or be replaced.
   void set_observer(MfcObserver* observer) { observer_ = observer; }
 
+  /// Where gets bring instructions, as StoragePort has it; anywhere, if these are not called. The second may
+  /// be called by any thread.
+  void confine_code(LocalStoreAddress end) { port_.confine_code(end); }
+  void expect_code_below(LocalStoreAddress end) { port_.expect_code_below(end); }
+  void expect_code_everywhere() { port_.expect_code_everywhere(); }
+
   /// State as after reset: empty queue and tag mask, no status request, no reservation. What is still queued
   /// is dropped, as after a fault, and its observer hears no more of it; call drain() at the end of a job
   /// that ended well. Random decisions from here on depend on the schedule's seed and on `job_id`, not on the

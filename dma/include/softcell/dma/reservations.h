@@ -73,8 +73,9 @@ class Reservations {
   void store_line(ReservationHolder& holder, EffectiveAddress line, std::byte* host, const std::byte* from);
 
   /// A get's bytes: [ea, ea + bytes) from `host` to `to`. @param bytes  1..16384.
+  /// @param may_be_code  whether they may be executed at `to`: local_store_bytes.h.
   void read(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
-            std::uint32_t bytes);
+            std::uint32_t bytes, bool may_be_code = true);
 
   /// A put's bytes; loses reservations of the lines it touches. The holder's own is lost too, without an
   /// event (as emulators have it; what the hardware does with a plain put of the same SPE is unconfirmed).

@@ -1,11 +1,13 @@
 #pragma once
 // One MFC's door to main storage: where an effective address lies, and every copy through it.
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <variant>
 
 #include "softcell/dma/address_space.h"
+#include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/reservations.h"
 #include "softcell/dma/translation_cache.h"
 
@@ -19,12 +21,19 @@ struct StoragePlace {
   StoragePlace after(std::uint32_t bytes) const { return {ea + bytes, host + bytes}; }
 };
 
-/// Used by the thread of its MFC.
+/// Used by the thread of its MFC, except for expect_code_below().
+///
+/// It knows where the local store may hold instructions: those bytes it writes as local_store_bytes.h says,
+/// all others in the host's fastest way.
 class StoragePort {
  public:
+  /// @param local_store  the MFC's, kLocalStoreBytes.
   /// @param listener  told when this MFC's reservation is lost; may be null.
-  StoragePort(AddressSpace& space, ReservationListener* listener)
-      : translation_(space), reservations_(space.reservations()), holder_(reservations_, listener) {}
+  StoragePort(const std::byte* local_store, AddressSpace& space, ReservationListener* listener)
+      : local_store_(local_store),
+        translation_(space),
+        reservations_(space.reservations()),
+        holder_(reservations_, listener) {}
 
   /// As AddressSpace::resolve().
   std::variant<StoragePlace, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) {
@@ -43,9 +52,30 @@ class StoragePort {
     return resolve(first, last - first.value + kQuadwordBytes, wanted);
   }
 
+  /// Instructions lie at the bottom of the local store, below `end`, and will do so until somebody says
+  /// otherwise. Without this call they may lie anywhere.
+  void confine_code(LocalStoreAddress end) { code_end_.store(end.value, std::memory_order_relaxed); }
+
+  /// An image will arrive that has instructions up to `end`. Any thread.
+  void expect_code_below(LocalStoreAddress end) {
+    std::uint32_t known = code_end_.load(std::memory_order_relaxed);
+    while (known < end.value &&
+           !code_end_.compare_exchange_weak(known, end.value, std::memory_order_relaxed)) {
+    }
+  }
+
+  /// What has been read so far may be instructions, and what will be, too.
+  void expect_code_everywhere() {
+    const std::uint32_t known = code_end_.exchange(kLocalStoreBytes, std::memory_order_relaxed);
+    if (known == kLocalStoreBytes) return;
+    flush_local_store(local_store_ + known, kLocalStoreBytes - known);
+  }
+
   /// @param bytes  1..16384.
   void read(const StoragePlace& place, std::byte* to, std::uint32_t bytes) {
-    reservations_.read(holder_, place.ea, place.host, to, bytes);
+    const bool may_be_code =
+        static_cast<std::size_t>(to - local_store_) < code_end_.load(std::memory_order_relaxed);
+    reservations_.read(holder_, place.ea, place.host, to, bytes, may_be_code);
   }
   void write(const StoragePlace& place, const std::byte* from, std::uint32_t bytes) {
     reservations_.write(holder_, place.ea, place.host, from, bytes);
@@ -64,6 +94,8 @@ class StoragePort {
   void give_up_reservation() { reservations_.give_up(holder_); }
 
  private:
+  const std::byte* const local_store_;
+  std::atomic<std::uint32_t> code_end_{kLocalStoreBytes};
   TranslationCache translation_;
   Reservations& reservations_;
   ReservationHolder holder_;

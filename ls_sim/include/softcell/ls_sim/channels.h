@@ -36,6 +36,9 @@ class ChannelPort {
 
   /// A whole DMA command: writes to MFC_LSA, MFC_EAH, MFC_EAL, MFC_Size, MFC_TagID and MFC_Cmd in one call.
   virtual ChannelReply issue(const dma::MfcCommand& command) = 0;
+
+  /// The instruction `sync`: what has been written to the local store is what is executed from now on.
+  virtual void sync() = 0;
 };
 
 }  // namespace softcell::ls_sim

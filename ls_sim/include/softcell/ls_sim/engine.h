@@ -40,15 +40,12 @@ struct Access {
   dma::LocalStoreAddress stack_pointer;  ///< at that moment
 };
 
-/// Sees every load and store that the compiler of a checked kernel reports, before it happens, and every
-/// `sync` of any kernel. Called by the thread that runs the SPE.
+/// Sees every load and store that the compiler of a checked kernel reports, before it happens. Called by the
+/// thread that runs the SPE.
 class AccessObserver {
  public:
   virtual ~AccessObserver() = default;
   virtual void on_access(const Access& access) = 0;
-
-  /// What has been written to the local store is what is executed from now on.
-  virtual void on_sync() = 0;
 };
 
 /// Sees where jobs begin and end inside a kernel that runs many. Called by the thread that runs the SPE.
