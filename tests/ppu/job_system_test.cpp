@@ -6,11 +6,11 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <thread>
 
+#include "arithmetic_results.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
 #include "softcell/ls_sim/trace.h"
@@ -708,16 +708,13 @@ TEST_F(JobSystemTest, AReadWithoutAWaitShowsUnderTheLazySchedule) {
 TEST_F(JobSystemTest, ComputesWithTheArithmeticOfTheSpu) {
   const KernelImage image = test_image("arithmetic");
   JobSystem jobs(memory_, {.spes = 1}, loop_);
-  dma::Buffer<std::array<float, 32>> out(memory_, "out", 1);
+  dma::Buffer<ls_sim::ArithmeticResults> results(memory_, "results", 1);
   JobChain chain(jobs, "arithmetic", 1);
-  chain.add({jobs.place(image), out.ea()});
+  chain.add({jobs.place(image), results.ea()});
   chain.kick();
   chain.wait();
   expect_no_failures(chain);
-  EXPECT_EQ(out[0][0], 1.0f);
-  EXPECT_EQ(out[0][4], std::nextafterf(1.0f, 0.0f));
-  EXPECT_EQ(out[0][8], 0.0f);
-  EXPECT_EQ(out[0][12], std::nextafterf(1.0f, 0.0f)) << "the mode was lost in a call out of the kernel";
+  ls_sim::expect_arithmetic_of_an_spu(results[0]);
 }
 
 }  // namespace

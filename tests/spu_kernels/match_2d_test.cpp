@@ -474,7 +474,9 @@ TEST(Match2d, GivesTheSameBitsWithEveryCompiler) {
     for (const float component : {v.x, v.y})
       hash = (hash ^ std::bit_cast<std::uint32_t>(component)) * 0x100000001b3u;
   }
-  EXPECT_EQ(hash, 12873996594615942521u);
+  EXPECT_EQ(hash, 12873996594615942521u)
+      << "the kernel computes something else than it did, or in another mode: if "
+         "SpeGroupTest.AKernelRoundsAndFlushesAsAnSpuDoes fails, too, look there first";
 }
 
 TEST(Match2d, StiffnessOfABarPulledAtItsEndsIsTheFormula) {

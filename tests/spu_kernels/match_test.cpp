@@ -389,7 +389,9 @@ TEST(Match, GivesTheSameBitsWithEveryCompiler) {
     for (const float component : {v.x, v.y, v.z})
       hash = (hash ^ std::bit_cast<std::uint32_t>(component)) * 0x100000001b3u;
   }
-  EXPECT_EQ(hash, 3401988004868052312u);
+  EXPECT_EQ(hash, 3401988004868052312u)
+      << "the kernel computes something else than it did, or in another mode: if "
+         "SpeGroupTest.AKernelRoundsAndFlushesAsAnSpuDoes fails, too, look there first";
 }
 
 TEST(Match, StiffnessOfABarPulledAtItsEndsIsTheFormula) {
