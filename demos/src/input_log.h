@@ -95,8 +95,10 @@ class InputLog {
     if (!replay_ || record_.frames != replay_->frames || record_.state_hash == replay_->state_hash) return;
     throw std::runtime_error(
         replay_name_ +
-        ": the replay ends in another state than the recording; it depends on --engine, and the last bits of "
-        "Bullet and Box2D on the machine and its C library");
+        ": the replay ends in another state than the recording; it depends on --engine, on what the kernels "
+        "of this softcell compute and how they round, and on the last bits of Bullet and Box2D on the "
+        "machine "
+        "and its C library");
   }
 
  private:

@@ -53,6 +53,8 @@ enum class Encoding { kText, kLittleEndian, kBigEndian };
 struct Header {
   Encoding encoding = Encoding::kText;
   std::vector<Element> elements;
+  std::string declarations = {};  ///< all of it, without what `has_more` is about
+  bool has_more = false;          ///< comments or free text
 
   const Element* find(std::string_view name) const {
     const auto found = std::find_if(elements.begin(), elements.end(),
@@ -76,6 +78,20 @@ Encoding encoding_named(const LineReader& lines, std::string_view name) {
   lines.refuse(in_quotes(name) + " is not a format of PLY files");
 }
 
+/// Nothing but a comment. Some exporters forget the keyword in the lines behind the format, where no reader
+/// misses a declaration: Blender 2.47 wrote "Created by Blender3D".
+bool is_comment(const std::vector<std::string_view>& words, bool before_elements) {
+  constexpr std::array<std::string_view, 4> kDeclarations{"ply", "format", "element", "property"};
+  if (words[0] == "comment" || words[0] == "obj_info") return true;
+  return before_elements &&
+         std::find(kDeclarations.begin(), kDeclarations.end(), words[0]) == kDeclarations.end();
+}
+
+void append_line(std::string& text, const std::vector<std::string_view>& words) {
+  for (const std::string_view word : words) text.append(&word == &words[0] ? "" : " ").append(word);
+  text += '\n';
+}
+
 Header read_header(LineReader& lines) {
   const auto next = [&] {
     if (!lines.next()) refuse("its header has no end; 'end_header' was expected");
@@ -89,8 +105,14 @@ Header read_header(LineReader& lines) {
     lines.refuse("'format ascii 1.0' (or binary_little_endian, binary_big_endian) was expected");
   }
   header.encoding = encoding_named(lines, words[1]);
+  header.declarations = "ply\n";
+  append_line(header.declarations, words);
   for (words = next(); words[0] != "end_header"; words = next()) {
-    if (words[0] == "comment" || words[0] == "obj_info") continue;
+    if (is_comment(words, header.elements.empty())) {
+      header.has_more = true;
+      continue;
+    }
+    append_line(header.declarations, words);
     if (words[0] == "element" && words.size() == 3) {
       const std::int64_t count = lines.integer(words[2]);
       if (count < 0) lines.refuse("an element's count is negative");
@@ -112,6 +134,7 @@ Header read_header(LineReader& lines) {
     element.properties.push_back(
         {std::string(words.back()), type_named(lines, words[list ? 3 : 1]), count_type});
   }
+  header.declarations += "end_header\n";
   return header;
 }
 
@@ -277,7 +300,7 @@ void require_mesh(const Header& header) {
 
 MeshFileContents check_ply(std::string_view bytes) {
   LineReader lines(bytes);
-  const Header header = read_header(lines);
+  Header header = read_header(lines);
   require_mesh(header);
   MeshFileContents contents =
       header.encoding == Encoding::kText
@@ -286,6 +309,8 @@ MeshFileContents check_ply(std::string_view bytes) {
   const Element& vertex = *header.find("vertex");
   contents.has_normals =
       vertex.find({"nx"}) != nullptr && vertex.find({"ny"}) != nullptr && vertex.find({"nz"}) != nullptr;
+  // The library loses properties behind a comment, and takes one that begins with an element's name for that.
+  if (header.has_more) contents.geometry = header.declarations.append(lines.rest());
   return contents;
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "options.h"
@@ -249,6 +251,48 @@ TEST(UserInput, TheMouseMovesTheCameraIn3d) {
   EXPECT_EQ(input.look().turn, before.turn) << "no button is held";
 }
 
+TEST(UserInput, AControllerThatIsPulledOutTiltsNoMore) {
+  SDL_Event stick{};
+  stick.caxis.type = SDL_CONTROLLERAXISMOTION;
+  stick.caxis.axis = SDL_CONTROLLER_AXIS_LEFTX;
+  stick.caxis.value = 32767;
+  SDL_Event removed{};
+  removed.type = SDL_CONTROLLERDEVICEREMOVED;
+  for (const SDL_Event& last : {stick, accelerometer(-SDL_STANDARD_GRAVITY, SDL_STANDARD_GRAVITY, 0)}) {
+    const std::string what = last.type == stick.type ? "its stick" : "its motion sensor";
+    UserInput<3> input(2, {});
+    input.take(last);
+    const Vector3f tilted = tilt_after(input, 20);
+    ASSERT_EQ(tilted, Vector3f(0, 0, -GroundTilt::kMost)) << what;
+    input.take(removed);
+    EXPECT_EQ(tilt_after(input, 20, tilted), Vector3f(0, 0, 0)) << what << " counts for ever";
+  }
+}
+
+}  // namespace
+}  // namespace softcell::demos
+
+namespace {
+/// Whose accelerometer has been switched on, and not off again.
+std::set<SDL_JoystickID> g_accelerometers_on;
+}  // namespace
+
+/// SDL 2 has no virtual sensors. In place of SDL's function: every controller has an accelerometer, which is
+/// off when the controller is opened.
+extern "C" int SDL_GameControllerSetSensorEnabled(SDL_GameController* controller, SDL_SensorType sensor,
+                                                  SDL_bool on) {
+  if (sensor != SDL_SENSOR_ACCEL) return -1;
+  const SDL_JoystickID id = SDL_JoystickInstanceID(SDL_GameControllerGetJoystick(controller));
+  if (on == SDL_TRUE)
+    g_accelerometers_on.insert(id);
+  else
+    g_accelerometers_on.erase(id);
+  return 0;
+}
+
+namespace softcell::demos {
+namespace {
+
 /// A controller that SDL believes in: events go through SDL's own mapping of buttons and axes.
 class VirtualController : public testing::Test {
  protected:
@@ -270,6 +314,7 @@ class VirtualController : public testing::Test {
   void TearDown() override {
     if (joystick_ != nullptr) SDL_JoystickClose(joystick_);
     controllers_ = {};
+    g_accelerometers_on.clear();
     SDL_Quit();
   }
 
@@ -285,6 +330,16 @@ class VirtualController : public testing::Test {
     ASSERT_EQ(SDL_JoystickSetVirtualButton(joystick_, button, SDL_PRESSED), 0);
     pump();
     ASSERT_EQ(SDL_JoystickSetVirtualButton(joystick_, button, SDL_RELEASED), 0);
+    pump();
+  }
+
+  /// Holds the controller so that its accelerometer shows this: an event, if the sensor is switched on.
+  void hold(float x, float y, float z) {
+    const SDL_JoystickID id = SDL_JoystickInstanceID(joystick_);
+    if (!g_accelerometers_on.contains(id)) return;
+    SDL_Event event = accelerometer(x, y, z);
+    event.csensor.which = id;
+    ASSERT_EQ(SDL_PushEvent(&event), 1) << SDL_GetError();
     pump();
   }
 
@@ -319,12 +374,20 @@ TEST_F(VirtualController, ItsLeftStickTiltsTheGround) {
   EXPECT_EQ(tilt_after(input_, 20), Vector3f(-GroundTilt::kMost, 0, -GroundTilt::kMost)) << "right and away";
 }
 
-TEST_F(VirtualController, ItsMotionSensorArrivesThroughTheQueue) {
-  // SDL 2 has no virtual sensors; the event is the one that a real one makes.
-  SDL_Event event = accelerometer(SDL_STANDARD_GRAVITY, SDL_STANDARD_GRAVITY, 0);
-  ASSERT_EQ(SDL_PushEvent(&event), 1) << SDL_GetError();
-  pump();
+TEST_F(VirtualController, ItsMotionSensorIsSwitchedOnAndTiltsTheGround) {
+  EXPECT_TRUE(g_accelerometers_on.contains(SDL_JoystickInstanceID(joystick_)))
+      << "nobody has switched the accelerometer on: SDL would send none of its events";
+  hold(SDL_STANDARD_GRAVITY, SDL_STANDARD_GRAVITY, 0);
   EXPECT_FLOAT_EQ(tilt_after(input_, 20).z(), GroundTilt::kMost);
+}
+
+TEST_F(VirtualController, ThatIsPulledOutWhileItIsHeldAslantLetsTheGroundGoBack) {
+  hold(SDL_STANDARD_GRAVITY, SDL_STANDARD_GRAVITY, 0);
+  const Vector3f tilted = tilt_after(input_, 20);
+  EXPECT_FLOAT_EQ(tilted.z(), GroundTilt::kMost);
+  ASSERT_EQ(SDL_JoystickDetachVirtual(index_), 0);
+  pump();
+  EXPECT_EQ(tilt_after(input_, 20, tilted), Vector3f(0, 0, 0));
 }
 
 TEST_F(VirtualController, ThatIsPulledOutLetsTheGroundGoBack) {

@@ -81,7 +81,8 @@ const RuleCase kCases[] = {
     {"StartForm", get(0, kEa, 16), of(MfcOpcode::gets, 0, kEa, 16), Rule::kProxyFormOnly, "no start form"},
     {"StartFormOfAPut", of(MfcOpcode::putf, 0, kEa, 16), of(MfcOpcode::putfs, 0, kEa, 16),
      Rule::kProxyFormOnly, "no start form"},
-    {"ListTag", getl(0, 0x1000, 8, 31), getl(0, 0x1000, 8, 32), Rule::kTagOutOfRange, "tag 32"},
+    {"ListTag", getl(0, 0x1000, 8, 31), getl(0, 0x1000, 8, 32), Rule::kTagOutOfRange,
+     "tag 32 is not in 0..31"},
     {"ListAddress", getl(0, 0x1008, 8), getl(0, 0x1004, 8), Rule::kListAddress,
      "the list's address 0x01004 is 4 bytes past a multiple of 8"},
     {"ListAtTheEndOfLocalStore", getl(0, 0x3FFF0, 16), getl(0, 0x3FFF0, 24), Rule::kListAddress,
@@ -105,7 +106,7 @@ const RuleCase kCases[] = {
     {"LsaOfPutqlluc", of(MfcOpcode::putqlluc, 128, kEa, 128, 31), of(MfcOpcode::putqlluc, 132, kEa, 128, 31),
      Rule::kAtomicAlignment, "LSA is 4 bytes past a multiple of 128"},
     {"TagOfPutqlluc", of(MfcOpcode::putqlluc, 128, kEa, 128, 31), of(MfcOpcode::putqlluc, 128, kEa, 128, 32),
-     Rule::kTagOutOfRange, "tag 32"},
+     Rule::kTagOutOfRange, "tag 32 is not in 0..31"},
     {"LastLineOfLocalStore", of(MfcOpcode::getllar, 0x3FF80, kEa, 128),
      of(MfcOpcode::getllar, 0x40000, kEa, 128), Rule::kLsaOutOfRange, "0x40000..0x4007F"},
     {"SignalOfEightBytes", of(MfcOpcode::sndsig, 12, kSignal1, 4), of(MfcOpcode::sndsig, 12, kSignal1, 8),
@@ -122,15 +123,15 @@ const RuleCase kCases[] = {
     {"EndOfLocalStoreOfASignal", of(MfcOpcode::sndsig, 0x3FFFC, kSignal1, 4),
      of(MfcOpcode::sndsig, 0x4000C, kSignal1, 4), Rule::kLsaOutOfRange, "0x4000C..0x4000F"},
     {"TagOfABarrier", of(MfcOpcode::barrier, 0, {}, 0, 31), of(MfcOpcode::barrier, 0, {}, 0, 32),
-     Rule::kTagOutOfRange, "tag 32"},
+     Rule::kTagOutOfRange, "tag 32 is not in 0..31"},
     {"TagOfMfcsync", of(MfcOpcode::mfcsync, 0, {}, 0, 31), of(MfcOpcode::mfcsync, 0, {}, 0, 0xFFFFFFFF),
-     Rule::kTagOutOfRange, "tag 4294967295"},
+     Rule::kTagOutOfRange, "tag 4294967295 is not in 0..31"},
     {"SizeOfACacheHint", of(MfcOpcode::sdcrt, 0, kEa, 1), of(MfcOpcode::sdcrt, 0, kEa, 0), Rule::kSizeZero,
      "0 bytes"},
     {"LargestCacheHint", of(MfcOpcode::sdcrz, 0, kEa + 3, 16384), of(MfcOpcode::sdcrz, 0, kEa, 16385),
      Rule::kSizeNotLegal, "16385 bytes are more than the 16384"},
     {"TagOfACacheHint", of(MfcOpcode::sdcrf, 0, kEa, 3, 31), of(MfcOpcode::sdcrf, 0, kEa, 3, 32),
-     Rule::kTagOutOfRange, "tag 32"},
+     Rule::kTagOutOfRange, "tag 32 is not in 0..31"},
 };
 
 class MfcRule : public testing::TestWithParam<RuleCase> {};
@@ -141,10 +142,12 @@ TEST_P(MfcRule, RefusesTheBrokenCommandAndTakesItsLegalTwin) {
   EXPECT_FALSE(none) << none->message();
 
   const std::optional<Fault> fault = check_command(c.broken);
-  ASSERT_TRUE(fault);
-  EXPECT_EQ(name(fault->rule), name(c.rule));
-  EXPECT_EQ(fault->command, c.broken);
-  EXPECT_NE(fault->detail.find(c.detail), std::string::npos) << fault->detail;
+  const std::string expected =
+      "expected: " + Fault{.rule = c.rule, .command = c.broken, .detail = c.detail}.message();
+  if (!fault) FAIL() << "a broken command was taken for a legal one\n" << expected;
+  EXPECT_EQ(name(fault->rule), name(c.rule)) << expected;
+  EXPECT_EQ(fault->command, c.broken) << expected;
+  EXPECT_NE(fault->detail.find(c.detail), std::string::npos) << fault->detail << "\n" << expected;
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, MfcRule, testing::ValuesIn(kCases),

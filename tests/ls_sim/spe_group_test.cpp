@@ -12,6 +12,7 @@
 #include <iterator>
 #include <thread>
 
+#include "arithmetic_results.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/local_store_port.h"
 #include "softcell/dma/sanitizers.h"
@@ -108,6 +109,16 @@ TEST_F(SpeGroupTest, RunsAnImageWithItsArgumentsAndGivesItsStatus) {
   EXPECT_EQ(group.statistics(1).jobs, 2u);
   EXPECT_EQ(group.statistics(1).dma.bytes(), 512u);
   EXPECT_EQ(group.statistics(0).jobs, 0u);
+}
+
+TEST_F(SpeGroupTest, AKernelRoundsAndFlushesAsAnSpuDoes) {
+  const KernelImage image = test_image("arithmetic");
+  const dma::Buffer<ArithmeticResults> results(memory_, "results", 1);
+  SpeGroup group(memory_, {.spes = 1});
+  group.start(0, image, {.argp = results.ea().value});
+  const RunResult result = group.wait(0);
+  ASSERT_FALSE(result.fault) << result.fault->message();
+  expect_arithmetic_of_an_spu(results.span()[0]);
 }
 
 TEST_F(SpeGroupTest, ATalkThroughMailboxes) {

@@ -35,6 +35,7 @@
   X(sleeps)                 \
   X(marks_jobs)             \
   X(sees_mask)              \
+  X(takes_turns)            \
   X(computes)               \
   X(stress_0)               \
   X(stress_1)               \

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <ostream>
 
 #include "soft_body_2d_scenes.h"
 
@@ -93,6 +95,40 @@ TEST(Box2dCoupling, ComesBackToItsShapeAfterBeingThrown) {
   EXPECT_GT(worst, 0.1f) << "it was hardly deformed";
   EXPECT_LT(body.deformation(), 0.03f);
 }
+
+struct Friction {
+  float body, floor;
+};
+void PrintTo(const Friction& friction, std::ostream* out) {
+  *out << friction.body << " on " << friction.floor;
+}
+class SlidingFriction2d : public testing::TestWithParam<Friction> {};
+
+/// Box2D takes the geometric mean of the coefficients of what touches: a body that slides is slowed down by
+/// that times g.
+TEST_P(SlidingFriction2d, IsTheGeometricMeanOfBothCoefficients) {
+  constexpr float kSpeed = 3, kSeconds = 0.25f, kGravity = 9.81f;
+  const auto [of_body, of_floor] = GetParam();
+  World2d world(kGravity);
+  world.add_box({0, -1}, {10, 1})->GetFixtureList()->SetFriction(of_floor);
+  SoftBodySettings settings = rubber();
+  settings.damping = 0.3f;
+  settings.friction = of_body;
+  SoftBody2d& body = world.soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
+  world.run(4);
+  const float before = body.linear_momentum().x();
+  body.add_velocity({kSpeed, 0});
+  world.run(kSeconds);
+  const float mass = std::accumulate(body.model().masses().begin(), body.model().masses().end(), 0.0f);
+  const float slowed_by = kSpeed + (before - body.linear_momentum().x()) / mass;
+  const float coefficient = slowed_by / (kGravity * kSeconds);
+  EXPECT_NEAR(coefficient, std::sqrt(of_body * of_floor), 0.01f)
+      << "the soft body's friction is " << of_body << ", the floor's " << of_floor;
+}
+
+INSTANTIATE_TEST_SUITE_P(Coefficients, SlidingFriction2d,
+                         testing::Values(Friction{0, 1}, Friction{0.1f, 1}, Friction{0.3f, 1},
+                                         Friction{0.9f, 1}, Friction{0.6f, 0.5f}, Friction{1, 0.25f}));
 
 TEST(Box2dCoupling, TakesChangesBetweenSteps) {
   World2d world(0);

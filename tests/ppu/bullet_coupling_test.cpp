@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <ostream>
 
 #include "soft_body_scenes.h"
 #include "softcell/ppu/shapes.h"
@@ -92,6 +94,38 @@ TEST(BulletSoftBodies, SlideAboutAsFarAsACoulombBlock) {
   EXPECT_LT(way, coulomb * 1.5f);
   EXPECT_LT(fastest(body), 0.02f);
 }
+
+struct Friction {
+  float body, floor;
+};
+void PrintTo(const Friction& friction, std::ostream* out) {
+  *out << friction.body << " on " << friction.floor;
+}
+class SlidingFriction : public testing::TestWithParam<Friction> {};
+
+/// Bullet multiplies the coefficients of what touches: a body that slides is slowed down by that times g.
+TEST_P(SlidingFriction, IsTheProductOfBothCoefficients) {
+  constexpr float kSpeed = 3, kSeconds = 0.25f, kGravity = 9.81f;
+  const auto [of_body, of_floor] = GetParam();
+  World world;
+  world.add_floor(of_floor);
+  SoftBodySettings settings = stiff(0.2f);
+  settings.friction = of_body;
+  SoftBody& body = world.soft.add(block_model({6, 2, 4}, settings), {-3, 0.031f, 0});
+  world.run(2);
+  const float before = body.linear_momentum().x();
+  body.add_velocity({kSpeed, 0, 0});
+  world.run(kSeconds);
+  const float mass = std::accumulate(body.model().masses().begin(), body.model().masses().end(), 0.0f);
+  const float slowed_by = kSpeed + (before - body.linear_momentum().x()) / mass;
+  const float coefficient = slowed_by / (kGravity * kSeconds);
+  EXPECT_NEAR(coefficient, of_body * of_floor, 0.01f)
+      << "the soft body's friction is " << of_body << ", the floor's " << of_floor;
+}
+
+INSTANTIATE_TEST_SUITE_P(Coefficients, SlidingFriction,
+                         testing::Values(Friction{0, 1}, Friction{0.1f, 1}, Friction{0.3f, 1},
+                                         Friction{0.9f, 1}, Friction{0.6f, 0.5f}, Friction{1, 0.25f}));
 
 TEST(BulletSoftBodies, PushARigidBox) {
   World world;

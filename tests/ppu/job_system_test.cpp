@@ -6,11 +6,11 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <thread>
 
+#include "arithmetic_results.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
 #include "softcell/ls_sim/trace.h"
@@ -234,6 +234,59 @@ TEST_F(JobSystemTest, AJobThatReturnsAStatusFailsItsChainAfterItsStage) {
   expect_parts(chain.failures()[0].message, {"echo_arguments", "status 9"});
   EXPECT_EQ(lines[2][0], 3u) << "jobs of the same stage run all the same";
   EXPECT_EQ(lines[3][0], 3u) << "the next stage does not";
+}
+
+/// The numbers 0 to count - 1, up and down, from each of them on.
+std::vector<std::vector<std::size_t>> orders_of(std::size_t count) {
+  std::vector<std::vector<std::size_t>> orders;
+  for (std::size_t first = 0; first < count; ++first) {
+    std::vector<std::size_t>& order = orders.emplace_back();
+    for (std::size_t i = 0; i < count; ++i) order.push_back((first + i) % count);
+    orders.emplace_back(order.rbegin(), order.rend());
+  }
+  return orders;
+}
+
+/// The second stage has a job for each SPE; they end one after the other, in an order of the test's choice.
+/// Behind them are jobs that end as they come. Whatever the order, the failure is that of the first in the
+/// chain.
+TEST_F(JobSystemTest, OfSeveralJobsThatFailTheFirstInTheChainIsNamedInWhateverOrderTheyEnd) {
+  const KernelImage image = test_image("takes_turns");
+  const auto expect_first = [&](JobSystem& jobs, const std::vector<std::size_t>& turns, std::size_t first) {
+    auto lines = make_lines(4);
+    const JobImage takes_turns = jobs.place(image), adds = jobs.place(adds_);
+    JobChain chain(jobs, "fails", 3 + turns.size());
+    chain.add({adds, lines.ea(1)});
+    chain.sync();
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      const std::uint64_t status = i < first ? 0 : 10 + i;
+      chain.add({takes_turns, lines.ea(0), {turns[i] << 8 | status}});
+    }
+    chain.add({adds, lines.ea(2), {98}});
+    chain.add({adds, lines.ea(3), {99}});
+    chain.kick();
+    chain.wait();
+    ASSERT_EQ(chain.failures().size(), 1u);
+    EXPECT_EQ(chain.failures()[0].job, 1 + first) << "of all that fail, this is the first in the chain";
+    expect_parts(chain.failures()[0].message,
+                 {"takes_turns", "status " + std::to_string(10 + first) + ",",
+                  std::to_string(turns.size() - first - 1 + 2) + " more jobs failed"});
+  };
+  for (std::size_t spes = 1; spes <= 6; ++spes) {
+    for (const char* schedule : {"eager", "lazy", "random:1", "random:2"}) {
+      JobSystem jobs(memory_, {.spes = static_cast<int>(spes), .schedule = dma::parse_schedule(schedule)},
+                     loop_);
+      for (const std::vector<std::size_t>& turns : orders_of(spes)) {
+        for (std::size_t first = 0; first < spes; ++first) {
+          SCOPED_TRACE(std::to_string(spes) + " SPEs, " + schedule + ", jobs 1 to " + std::to_string(spes) +
+                       " end as number " + testing::PrintToString(turns) + ", those from job " +
+                       std::to_string(1 + first) + " on fail");
+          expect_first(jobs, turns, first);
+          if (HasFailure()) return;
+        }
+      }
+    }
+  }
 }
 
 TEST_F(JobSystemTest, AJobThatFaultsIsNamedAndTheSpesGoOn) {
@@ -655,16 +708,13 @@ TEST_F(JobSystemTest, AReadWithoutAWaitShowsUnderTheLazySchedule) {
 TEST_F(JobSystemTest, ComputesWithTheArithmeticOfTheSpu) {
   const KernelImage image = test_image("arithmetic");
   JobSystem jobs(memory_, {.spes = 1}, loop_);
-  dma::Buffer<std::array<float, 32>> out(memory_, "out", 1);
+  dma::Buffer<ls_sim::ArithmeticResults> results(memory_, "results", 1);
   JobChain chain(jobs, "arithmetic", 1);
-  chain.add({jobs.place(image), out.ea()});
+  chain.add({jobs.place(image), results.ea()});
   chain.kick();
   chain.wait();
   expect_no_failures(chain);
-  EXPECT_EQ(out[0][0], 1.0f);
-  EXPECT_EQ(out[0][4], std::nextafterf(1.0f, 0.0f));
-  EXPECT_EQ(out[0][8], 0.0f);
-  EXPECT_EQ(out[0][12], std::nextafterf(1.0f, 0.0f)) << "the mode was lost in a call out of the kernel";
+  ls_sim::expect_arithmetic_of_an_spu(results[0]);
 }
 
 }  // namespace

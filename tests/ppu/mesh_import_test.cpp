@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -198,6 +199,61 @@ TEST_F(MeshImport, ReadsPlyAsText) {
   EXPECT_EQ(mesh.triangles.size(), 2u);
   EXPECT_EQ(mesh.positions.size(), 4u);
   for (const Eigen::Vector3f& n : mesh.normals) EXPECT_EQ(n, Eigen::Vector3f(0, 0, 1));
+}
+
+/// The quadrilateral of ReadsPlyAsText, with a line more in its header.
+std::string ply_with(const std::string& line, std::size_t before = 2) {
+  std::string text = ply("4", "1", "0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n");
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < before; ++i) at = text.find('\n', at) + 1;
+  return text.insert(at, line);
+}
+
+// Blender 2.47 wrote a sentence without 'comment', which PLY readers skip. The importing library would take a
+// comment that begins with an element's name for that element.
+TEST_F(MeshImport, SkipsCommentsAndFreeTextInAPlyHeader) {
+  for (const std::string line :
+       {"Created by Blender3D 247 - www.blender.org, source file: \n", "Created by\ncomment\nsomebody\r\n",
+        "comment\n", "comment \n", "comment\r\n", "obj_info\n", "comment TextureFile cube.png\n",
+        "comment vertex 9\n", "comment face 9\n", "comment end_header\n", "\n", "vertex 9\n", "-1\n",
+        "\x80\xff\x01 \n"}) {
+    SCOPED_TRACE("with '" + line + "'");
+    TriangleMesh mesh;
+    ASSERT_NO_THROW(mesh = import("a.ply", ply_with(line)));
+    EXPECT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(mesh.positions.size(), 4u);
+  }
+  for (std::size_t before = 2; before < 9; ++before) {
+    SCOPED_TRACE("a comment is line " + std::to_string(before + 1));
+    for (const std::string line : {"comment\n", "comment face 9\n", "obj_info element face 9\n"}) {
+      TriangleMesh mesh;
+      ASSERT_NO_THROW(mesh = import("a.ply", ply_with(line, before))) << line;
+      EXPECT_EQ(mesh.triangles.size(), 2u) << line;
+      EXPECT_EQ(mesh.positions.size(), 4u) << line;
+    }
+  }
+  const TriangleMesh torus = make_torus(1, 0.25f, 16, 8);
+  std::string binary = as_binary_ply(torus);
+  binary.insert(binary.find("comment"), "Written by hand\n");
+  expect_same_triangles(import("torus.ply", binary), torus, 0);
+}
+
+TEST_F(MeshImport, ReadsPlyAsBlender247WroteIt) {
+  const TriangleMesh torus = make_torus(1, 0.25f, 16, 8);
+  std::ostringstream file;
+  file.precision(9);
+  file << "ply\nformat ascii 1.0\nCreated by Blender3D 247 - www.blender.org, source file: \n"
+       << "element vertex " << torus.positions.size();
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "s", "t"}) file << "\nproperty float " << name;
+  file << "\nelement face " << torus.triangles.size()
+       << "\nproperty list uchar uint vertex_indices\nend_header\n";
+  for (std::size_t i = 0; i < torus.positions.size(); ++i) {
+    file << torus.positions[i].transpose() << ' ' << torus.normals[i].transpose() << " 0.681180 0.275678 \n";
+  }
+  for (const auto& [a, b, c] : torus.triangles) file << "3 " << a << ' ' << b << ' ' << c << " \n";
+  const TriangleMesh mesh = import("torus.ply", file.str());
+  expect_same_triangles(mesh, torus, 1e-6f);
+  expect_same_normals(mesh, torus, 1e-5f);
 }
 
 TEST_F(MeshImport, ReadsPlyInBigEndianOrder) {
@@ -402,6 +458,22 @@ TEST_F(MeshImport, RefusesBrokenPlyHeaders) {
                  vertices + "element face 1\n" + list + "vertex_indices\nelement tristrips 1\n" + list +
                      "vertex_indices\nend_header\n" + points + "3 0 1 2\n3 0 1 2\n",
                  "triangle strips");
+}
+
+// Skipped, such lines would make a file mean something else.
+TEST_F(MeshImport, RefusesFreeTextInAPlyHeaderThatCouldBeADeclaration) {
+  const std::string expected = "'element NAME COUNT', 'property TYPE NAME' or";
+  for (std::size_t before = 3; before < 9; ++before) {
+    expect_refused("a.ply", ply_with("propety float red\n", before),
+                   "line " + std::to_string(before + 1) + ": " + expected);
+  }
+  expect_refused("a.ply", ply_with("format binary_little_endian 1.0\n"), "line 3: " + expected);
+  expect_refused("a.ply", ply_with("ply\n"), "line 3: " + expected);
+  expect_refused("a.ply", ply_with("element of surprise\n"), "line 3: 'surprise' is not a whole number");
+  expect_refused("a.ply", ply_with("property of somebody else\n"), "line 3: " + expected);
+  expect_refused("a.ply", "ply\nformat ascii 1.0\nelemnt vertex 3\nproperty float x\n",
+                 "line 4: " + expected);
+  expect_refused("a.ply", "ply\nformat ascii 1.0\n" + std::string(100'000, 'x'), "its header has no end");
 }
 
 TEST_F(MeshImport, RefusesBrokenBinaryPly) {

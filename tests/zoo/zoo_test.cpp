@@ -52,6 +52,8 @@ class ZooBroken : public ::testing::TestWithParam<KernelCard> {
 TEST_P(ZooBroken, IsCaught) {
   const KernelCard& card = GetParam();
   const bool only_a_finding = card.flavour == "checked";
+  const std::string expected =
+      "expected: " + card.rule + " of " + card.names + " at " + card.place() + "; the mistake: " + card.text;
   for_each_run(card, [&](Flavour, const Observation& observation) {
     for (const ls_sim::RunResult& result : observation.results) {
       if (only_a_finding) {
@@ -59,10 +61,10 @@ TEST_P(ZooBroken, IsCaught) {
       } else if (result.fault) {
         expect_the_fault(*result.fault);
       } else {
-        ADD_FAILURE() << "ended with stop code " << result.stop_code;
+        ADD_FAILURE() << "no fault: it ended with stop code " << result.stop_code << "\n" << expected;
       }
     }
-    EXPECT_EQ(observation.findings.size(), only_a_finding ? 1u : 0u);
+    EXPECT_EQ(observation.findings.size(), only_a_finding ? 1u : 0u) << expected;
     for (const ls_sim::Finding& finding : observation.findings) {
       EXPECT_EQ(finding.count, 1u);
       expect_the_fault(finding.fault);
