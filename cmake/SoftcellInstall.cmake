@@ -32,7 +32,7 @@ endfunction()
 # Called once all folders are known.
 function(softcell_install_package)
   # Soft bodies bring Eigen, Bullet, Box2D and assimp; who only runs kernels does not need them.
-  softcell_install_libraries(softcellKernelTargets dma ls_sim spu_kernels)
+  softcell_install_libraries(softcellKernelTargets base dma ls_sim spu_kernels)
   softcell_install_libraries(softcellBodyTargets ppu)
   if(TARGET softcell)
     install(TARGETS softcell RUNTIME)

@@ -11,7 +11,7 @@
 #include "benchmarks.h"
 #include "interrupt.h"
 #include "json_file.h"
-#include "output_files.h"
+#include "softcell/base/whole_file.h"
 #include "usage_error.h"
 #include "verbs.h"
 
@@ -96,8 +96,8 @@ int run_bench(const BenchOptions& options) {
     return 0;
   }
   const InterruptGuard guard;
-  OutputFiles files;
-  ls_sim::WholeFile* const json = files.open(options.json);
+  base::WholeFiles files;
+  base::WholeFile* const json = files.open(options.json);
   const std::vector<Measurement> all = measure(benchmarks, options.rounds, guard);
   if (guard.interrupted()) {
     fmt::print(stderr, "softcell: interrupted; nothing is reported of a part of the rounds\n");

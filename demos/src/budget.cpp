@@ -7,8 +7,8 @@
 
 #include "json_file.h"
 #include "kernel_samples.h"
+#include "softcell/base/whole_file.h"
 #include "softcell/dma/addresses.h"
-#include "softcell/ls_sim/whole_file.h"
 #include "verbs.h"
 
 namespace softcell::demos {
@@ -39,7 +39,7 @@ int run_budget(const BudgetOptions& options) {
     }
   }
   if (options.json) {
-    ls_sim::WholeFile file(*options.json);
+    base::WholeFile file(*options.json);
     write_json(file, document);
     file.commit();
   }

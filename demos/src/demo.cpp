@@ -13,11 +13,11 @@
 #include "interrupt.h"
 #include "json_file.h"
 #include "kernel_report.h"
-#include "one_line.h"
-#include "output_files.h"
 #include "progress_bar.h"
 #include "run_record.h"
 #include "scene_file/scene_library.h"
+#include "softcell/base/text.h"
+#include "softcell/base/whole_file.h"
 #include "softcell/render/offscreen_context.h"
 #include "statistics.h"
 #include "usage_error.h"
@@ -199,7 +199,7 @@ void run_recorded(Demo& demo, const std::function<void()>& work) {
     try {
       demo.save_recording();
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "softcell: %s\n", one_line(error.what()).c_str());
+      std::fprintf(stderr, "softcell: %s\n", base::one_line(error.what()).c_str());
     }
     throw;
   }
@@ -222,9 +222,9 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   const std::vector<MakeDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);
   // What cannot be written is no surprise at the end of a long run.
-  OutputFiles files;
-  ls_sim::WholeFile* const trace_file = files.open(options.trace);
-  ls_sim::WholeFile* const json_file = files.open(options.json);
+  base::WholeFiles files;
+  base::WholeFile* const trace_file = files.open(options.trace);
+  base::WholeFile* const json_file = files.open(options.json);
   ls_sim::Findings findings;
   std::optional<ls_sim::Trace> trace;
   if (options.trace) trace.emplace(options.spes);

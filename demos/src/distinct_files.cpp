@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "softcell/ls_sim/whole_file.h"
+#include "softcell/base/whole_file.h"
 #include "usage_error.h"
 
 namespace softcell::demos {
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 /// made; what is behind them then is normalised, as `..` of a link is not the folder that the link is in.
 fs::path one_spelling(const fs::path& path) {
   std::error_code error;
-  const fs::path absolute = fs::absolute(ls_sim::WholeFile::behind_links(path), error);
+  const fs::path absolute = fs::absolute(base::WholeFile::behind_links(path), error);
   const fs::path canonical = fs::weakly_canonical(absolute, error);
   return error ? absolute.lexically_normal() : canonical;
 }

@@ -10,7 +10,7 @@
 #include "options.h"
 #include "recording.h"
 #include "scene_hash.h"
-#include "softcell/ls_sim/whole_file.h"
+#include "softcell/base/whole_file.h"
 
 namespace softcell::demos {
 
@@ -45,7 +45,7 @@ class InputLog {
       if (replay_->scene_hash != record_.scene_hash) refuse_scene();
       scene.script = {};
     }
-    if (path_) file_ = std::make_shared<ls_sim::WholeFile>(*path_);
+    if (path_) file_ = std::make_shared<base::WholeFile>(*path_);
   }
 
   bool replays() const { return replay_.has_value(); }
@@ -110,7 +110,7 @@ class InputLog {
   }
 
   std::optional<std::filesystem::path> path_;  // of what is recorded
-  std::shared_ptr<ls_sim::WholeFile> file_;    // of all copies; one of them saves; null: given up
+  std::shared_ptr<base::WholeFile> file_;      // of all copies; one of them saves; null: given up
   std::optional<Recording<Dimension>> replay_;
   std::string replay_name_;
   std::size_t next_ = 0;  // event of the replay

@@ -4,7 +4,7 @@
 
 namespace softcell::demos {
 
-void write_json(ls_sim::WholeFile& file, const nlohmann::ordered_json& document) {
+void write_json(base::WholeFile& file, const nlohmann::ordered_json& document) {
   file.write(document.dump(2) + "\n");
   file.finish();
 }

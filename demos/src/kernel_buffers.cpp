@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "read_file.h"
+#include "softcell/base/read_file.h"
 
 namespace softcell::demos {
 namespace {
@@ -23,7 +23,7 @@ std::vector<std::byte> initial_bytes(const BufferSpec& spec, std::uint64_t free_
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(spec.file, error);
   if (!error) check_fits(spec, size, free_bytes);  // before it is read
-  auto bytes = read_file(spec.file, free_bytes);
+  auto bytes = base::read_file(spec.file, free_bytes);
   if (bytes.empty())
     throw std::runtime_error("buffer " + spec.name + ": " + spec.file.string() +
                              " is empty, and a buffer has at least one byte");
@@ -68,11 +68,11 @@ std::uint64_t KernelBuffers::word(const ArgumentSpec& argument) const {
   return std::get<std::uint64_t>(argument);
 }
 
-void KernelBuffers::write_files(OutputFiles& files) const {
+void KernelBuffers::write_files(base::WholeFiles& files) const {
   for (const Slot& slot : slots_) {
     if (slot.spec->direction == BufferSpec::kIn) continue;
     const auto bytes = slot.memory.span();
-    ls_sim::WholeFile& file = files.open(slot.spec->file);
+    base::WholeFile& file = files.open(slot.spec->file);
     file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
     file.finish();
   }

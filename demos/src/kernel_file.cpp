@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "kernel_samples.h"
-#include "read_file.h"
+#include "softcell/base/read_file.h"
 #include "softcell/spu_kernels/images.h"
 
 namespace softcell::demos {
@@ -68,7 +68,7 @@ std::optional<std::filesystem::path> find_kernel_file(const std::string& image, 
 
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
   if (const auto file = find_kernel_file(image, checked))
-    return ls_sim::load_image(kernel_name(*file), read_file(*file, kMostImageBytes));
+    return ls_sim::load_image(kernel_name(*file), base::read_file(*file, kMostImageBytes));
   if (is_built_in(image)) return load_kernel(image, checked);
   throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
                            built_in_names() + ")");

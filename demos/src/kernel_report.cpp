@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "one_line.h"
+#include "softcell/base/text.h"
 
 namespace softcell::demos {
 namespace {
@@ -162,7 +162,7 @@ void print_statistics(const ls_sim::KernelImage& image, const KernelRun& run) {
 
 void print_findings(std::span<const ls_sim::Finding> findings) {
   for (const ls_sim::Finding& finding : findings) {
-    fmt::print(stderr, "softcell: {}{}\n    {}\n", one_line(finding.fault.message()),
+    fmt::print(stderr, "softcell: {}{}\n    {}\n", base::one_line(finding.fault.message()),
                finding.count == 1 ? "" : fmt::format(" ({} times)", finding.count),
                dma::explanation(finding.fault.rule));
   }
@@ -171,7 +171,7 @@ void print_findings(std::span<const ls_sim::Finding> findings) {
 void print_problems(const ls_sim::KernelImage& image, const KernelRun& run) {
   print_findings(run.findings);
   for (const std::string& failure : run.failures(image))
-    fmt::print(stderr, "softcell: {}\n", one_line(failure));
+    fmt::print(stderr, "softcell: {}\n", base::one_line(failure));
 }
 
 ordered_json to_json(std::span<const ls_sim::Finding> findings) {

@@ -17,7 +17,7 @@
 #include "command_line/usage_sentence.h"
 #include "command_line/whole_number.h"
 #include "kernel_task_options.h"
-#include "one_line.h"
+#include "softcell/base/text.h"
 #include "softcell/ppu/lattice.h"
 #include "usage_error.h"
 #include "verbs.h"
@@ -362,15 +362,15 @@ int main(int argc, char** argv) {
       finish_printing();
       return status;
     } catch (const UsageError& error) {
-      std::fprintf(stderr, "softcell: %s (%s --help lists what is allowed)\n", one_line(error.what()).c_str(),
-                   command_line.verb().c_str());
+      std::fprintf(stderr, "softcell: %s (%s --help lists what is allowed)\n",
+                   base::one_line(error.what()).c_str(), command_line.verb().c_str());
       return 2;
     }
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "softcell: there is not enough memory\n");
     return 1;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "softcell: %s\n", one_line(error.what()).c_str());
+    std::fprintf(stderr, "softcell: %s\n", base::one_line(error.what()).c_str());
     return 1;
   }
 }

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "read_file.h"
-#include "softcell/ls_sim/whole_file.h"
+#include "softcell/base/read_file.h"
+#include "softcell/base/whole_file.h"
 
 namespace softcell::demos {
 namespace {
@@ -268,14 +268,14 @@ Recording<Dimension> parse_recording(std::string_view text) {
 
 template <int Dimension>
 void write_recording(const std::filesystem::path& path, const Recording<Dimension>& recording) {
-  ls_sim::WholeFile file(path);
+  base::WholeFile file(path);
   file.write(to_text(recording));
   file.commit();
 }
 
 template <int Dimension>
 Recording<Dimension> read_recording(const std::filesystem::path& path) {
-  const std::vector<std::byte> bytes = read_file(path, kMaxFile);
+  const std::vector<std::byte> bytes = base::read_file(path, kMaxFile);
   try {
     return parse_recording<Dimension>({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const std::runtime_error& refused) {

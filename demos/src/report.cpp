@@ -4,7 +4,7 @@
 
 #include "distinct_files.h"
 #include "report_page.h"
-#include "softcell/ls_sim/whole_file.h"
+#include "softcell/base/whole_file.h"
 #include "verbs.h"
 
 namespace softcell::demos {
@@ -13,7 +13,7 @@ int run_report(const ReportOptions& options) {
   check_distinct({{"the trace", options.trace}, {"--out", options.out}});
   const TraceFile trace = read_trace(options.trace);
   const std::string page = report_page(trace, options.trace.filename().string());
-  ls_sim::WholeFile file(options.out);
+  base::WholeFile file(options.out);
   file.write(page);
   file.commit();
 

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "embedded_files.h"
 #include "report_data.h"
 
 namespace softcell::demos {
@@ -26,7 +25,7 @@ std::string fill_in(std::string_view text,
 }
 
 std::string_view page_file(std::string_view name) {
-  const EmbeddedFile* const file = find_embedded(embedded_report(), name);
+  const base::EmbeddedFile* const file = base::find_embedded(embedded_report(), name);
   if (file == nullptr) throw std::logic_error("the build has left out report/" + std::string(name));
   return file->text;
 }
@@ -71,7 +70,7 @@ std::string embeddable(const nlohmann::ordered_json& data) {
 
 std::string report_page(const TraceFile& trace, std::string_view title) {
   std::string script;
-  for (const EmbeddedFile& file : embedded_report()) {
+  for (const base::EmbeddedFile& file : embedded_report()) {
     if (file.name.ends_with(".js")) script.append(file.text).append("\n");
   }
   const std::string safe_title = escape_html(title), data = embeddable(report_data(trace));

@@ -14,8 +14,8 @@
 
 #include "demo.h"
 #include "input_log.h"
-#include "one_line.h"
 #include "scene_file/scene_library.h"
+#include "softcell/base/text.h"
 #include "window/latest.h"
 #include "window/user_input.h"
 
@@ -124,7 +124,7 @@ std::vector<MakeDemo> demos_of(const Options& options, const typename OneDemo::L
     try {
       add(load(listing.name));
     } catch (const std::runtime_error& error) {
-      fmt::print(stderr, "softcell: scene {} is left out: {}\n", listing.name, one_line(error.what()));
+      fmt::print(stderr, "softcell: scene {} is left out: {}\n", listing.name, base::one_line(error.what()));
     }
   }
   return demos;

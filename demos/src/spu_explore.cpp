@@ -11,8 +11,8 @@
 #include "kernel_file.h"
 #include "kernel_outcome.h"
 #include "kernel_report.h"
-#include "output_files.h"
 #include "progress_bar.h"
+#include "softcell/base/whole_file.h"
 #include "verbs.h"
 
 namespace softcell::demos {
@@ -135,8 +135,8 @@ class Explorer {
   dma::AddressSpace memory_;
   KernelBuffers buffers_;
   const InterruptGuard guard_;
-  OutputFiles files_;
-  ls_sim::WholeFile* const json_;  // opened first: what cannot be written is no surprise after a long search
+  base::WholeFiles files_;
+  base::WholeFile* const json_;  // opened first: what cannot be written is no surprise after a long search
   std::uint64_t tried_ = 0;
   KernelRun first_run_;
   KernelOutcome first_;

@@ -10,7 +10,7 @@
 #include "kernel_file.h"
 #include "kernel_report.h"
 #include "kernel_run.h"
-#include "output_files.h"
+#include "softcell/base/whole_file.h"
 #include "softcell/ls_sim/trace.h"
 #include "verbs.h"
 
@@ -37,7 +37,7 @@ int run_spu_run(const SpuRunOptions& options) {
   // Before files that perhaps cannot be written: what the kernel did is to be known all the same.
   print_statistics(image, run);
   print_problems(image, run);
-  OutputFiles files;
+  base::WholeFiles files;
   if (status == 0) buffers.write_files(files);
   if (trace) trace->write(files.open(*options.trace));
   if (options.json) {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "json_fields.h"
-#include "read_file.h"
+#include "softcell/base/read_file.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/list_element.h"
 #include "softcell/dma/mfc_command.h"
@@ -197,7 +197,7 @@ TraceFile parse_trace(std::string_view text) {
 }
 
 TraceFile read_trace(const std::filesystem::path& path) {
-  const std::vector<std::byte> bytes = read_file(path, kMostFileBytes);
+  const std::vector<std::byte> bytes = base::read_file(path, kMostFileBytes);
   try {
     return parse_trace({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const std::runtime_error& error) {

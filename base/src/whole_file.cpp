@@ -1,4 +1,4 @@
-#include "softcell/ls_sim/whole_file.h"
+#include "softcell/base/whole_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,15 +11,21 @@
 #include <string>
 #include <utility>
 
-namespace softcell::ls_sim {
+#include "softcell/base/assert.h"
+
+namespace softcell::base {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Not made of the file's own name, which may be as long as names can be.
-std::string next_temporary_name() {
+/// Of the file's own name, which may be as long as names can be, it has the ending only: a program that is
+/// given the name may tell the format by it.
+std::string next_temporary_name(const fs::path& file) {
   static std::atomic<unsigned> counter{0};
-  return ".softcell-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".partial";
+  constexpr std::size_t kLongestEnding = 32;
+  const std::string ending = file.extension().string();
+  return ".softcell-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".partial" +
+         (ending.size() <= kLongestEnding ? ending : "");
 }
 
 }  // namespace
@@ -53,11 +59,13 @@ fs::path WholeFile::behind_links(fs::path path) {
 }
 
 void WholeFile::open_temporary(const fs::file_status& replaced) {
-  const mode_t mode = exists(replaced) ? static_cast<mode_t>(replaced.permissions()) : 0666;
+  if (exists(replaced)) kept_mode_ = static_cast<mode_t>(replaced.permissions());
+  // One that is read-only becomes so when it is written.
+  const mode_t mode = kept_mode_ ? *kept_mode_ | S_IWUSR : 0666;
   fs::path name;
   int descriptor = -1;
   do {  // a name that is taken is another writer's, or was left by one that was killed
-    name = place_.parent_path() / next_temporary_name();
+    name = place_.parent_path() / next_temporary_name(place_);
     descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) fail(errno);
@@ -68,8 +76,6 @@ void WholeFile::open_temporary(const fs::file_status& replaced) {
     ::close(descriptor);
     fail(error);
   }
-  // What the umask took away.
-  if (exists(replaced) && ::fchmod(descriptor, mode) != 0) fail(errno);
 }
 
 void WholeFile::open_in_place() {
@@ -78,12 +84,20 @@ void WholeFile::open_in_place() {
 }
 
 void WholeFile::write(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stream()) != bytes.size()) fail(errno);
+}
+
+std::FILE* WholeFile::stream() {
+  SC_ASSERT(!finished_, "{} is written after its end", path_);
   if (file_ == nullptr) open_in_place();
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(errno);
+  return file_;
 }
 
 void WholeFile::finish() {
-  if (file_ != nullptr && std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
+  if (std::exchange(finished_, true) || file_ == nullptr) return;
+  // The umask may have taken some of it away.
+  if (kept_mode_ && ::fchmod(::fileno(file_), *kept_mode_) != 0) fail(errno);
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(errno);
 }
 
 void WholeFile::commit() {
@@ -103,4 +117,4 @@ void WholeFile::fail(int error) {
   throw std::runtime_error("cannot write " + path_.string() + ": " + std::strerror(error));
 }
 
-}  // namespace softcell::ls_sim
+}  // namespace softcell::base

@@ -1,6 +1,4 @@
-#include "read_file.h"
-
-#include <fmt/format.h>
+#include "softcell/base/read_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -9,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace softcell::demos {
+namespace softcell::base {
 namespace {
 
 constexpr std::uint64_t kBytesAtOnce = 1 << 20;
@@ -35,7 +33,8 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::uint64_
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size > most_bytes)
-    refuse(path, fmt::format("it has {} bytes, and may have {} at most", size, most_bytes));
+    refuse(path, "it has " + std::to_string(size) + " bytes, and may have " + std::to_string(most_bytes) +
+                     " at most");
   std::vector<std::byte> bytes;
   if (!error) bytes.reserve(size + kBytesAtOnce);
   // By what is read, not by the size that was seen: a file may grow, and those of /proc say 0.
@@ -46,10 +45,10 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::uint64_
               static_cast<std::streamsize>(bytes.size() - begin));
     bytes.resize(begin + static_cast<std::size_t>(file.gcount()));
     if (bytes.size() > most_bytes)
-      refuse(path, fmt::format("it has more than the {} bytes that it may have", most_bytes));
+      refuse(path, "it has more than the " + std::to_string(most_bytes) + " bytes that it may have");
   }
   if (file.bad()) refuse(path, "the host reports an error");
   return bytes;
 }
 
-}  // namespace softcell::demos
+}  // namespace softcell::base

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace softcell::ls_sim {
+namespace softcell::base {
 
 /// Builds JSON text piece by piece. Whole numbers only: what is written does not depend on a locale or on how
 /// a host prints floats.
@@ -40,4 +40,4 @@ class JsonText {
   std::string text_;
 };
 
-}  // namespace softcell::ls_sim
+}  // namespace softcell::base

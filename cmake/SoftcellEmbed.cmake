@@ -1,7 +1,8 @@
-# softcell_embed(<target> <name> <folder> <file>...)
-# The files of `folder` go into the program as they are; embedded_<name>() of embedded_files.h gives them out, in the order given here.
+# softcell_embed(<target> <namespace> <name> <folder> <file>...)
+# The files of `folder` go into the program as they are; softcell::<namespace>::embedded_<name>(), which the target declares itself,
+# gives them out as base::EmbeddedFile, in the order given here.
 
-function(softcell_embed target name folder)
+function(softcell_embed target namespace name folder)
   set(stub_text ".section .rodata\n")
   set(declarations "")
   set(entries "")
@@ -17,20 +18,24 @@ function(softcell_embed target name folder)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_${name}.cpp)
   file(CONFIGURE OUTPUT ${stub} CONTENT "${stub_text}" @ONLY)
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
-#include "embedded_files.h"
+#include <span>
+
+#include "softcell/base/embedded_file.h"
 
 extern "C" {
 @declarations@}
 
-namespace softcell::demos {
+namespace softcell::@namespace@ {
 
-std::span<const EmbeddedFile> embedded_@name@() {
-  static const EmbeddedFile files[] = {
+std::span<const base::EmbeddedFile> embedded_@name@();
+
+std::span<const base::EmbeddedFile> embedded_@name@() {
+  static const base::EmbeddedFile files[] = {
 @entries@  };
   return files;
 }
 
-}  // namespace softcell::demos
+}  // namespace softcell::@namespace@
 ]])
   target_sources(${target} PRIVATE ${stub} ${source})
   set_source_files_properties(${stub} PROPERTIES OBJECT_DEPENDS "${paths}")

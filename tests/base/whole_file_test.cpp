@@ -1,6 +1,6 @@
 // A file that appears whole or not at all, whatever lies where it is to be.
 
-#include "softcell/ls_sim/whole_file.h"
+#include "softcell/base/whole_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -14,7 +14,7 @@
 #include "support/files_in.h"
 #include "support/text_file.h"
 
-namespace softcell::ls_sim {
+namespace softcell::base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,6 +155,47 @@ TEST_F(WholeFileTest, TakesTheLongestNames) {
   EXPECT_NE(refusal(folder_ / (longest + "f")).find("File name too long"), std::string::npos);
 }
 
+// As an encoder does that is given a name and looks at its ending.
+TEST_F(WholeFileTest, MayBeWrittenByAnotherProgramUnderItsTemporaryName) {
+  put("f.mp4", "old");
+  ASSERT_EQ(::chmod((folder_ / "f.mp4").c_str(), 0444), 0);
+  WholeFile file(folder_ / "f.mp4");
+  EXPECT_EQ(file.written_path().extension(), ".mp4");
+  EXPECT_EQ(file.written_path().parent_path(), folder_);
+  std::ofstream(file.written_path()) << "new";
+  EXPECT_EQ(text("f.mp4"), "old");
+  file.commit();
+  EXPECT_EQ(text("f.mp4"), "new");
+  EXPECT_EQ(mode("f.mp4"), 0444u);
+  EXPECT_EQ(names(), std::set<std::string>{"f.mp4"});
+  EXPECT_EQ(WholeFile("/dev/null").written_path(), "/dev/null");
+}
+
+TEST_F(WholeFileTest, MayBeWrittenAsAStream) {
+  {
+    WholeFile file(folder_ / "f");
+    std::fputs("one ", file.stream());
+    file.write("two");
+    file.commit();
+  }
+  EXPECT_EQ(text("f"), "one two");
+}
+
+TEST_F(WholeFileTest, TakesItsPlaceTogetherWithOthers) {
+  {
+    WholeFiles files;
+    files.open(folder_ / "f").write("f");
+    EXPECT_EQ(files.open(std::optional<fs::path>()), nullptr);
+  }
+  EXPECT_EQ(names(), std::set<std::string>{});
+  WholeFiles files;
+  files.open(folder_ / "f").write("f");
+  files.open(std::optional(folder_ / "g"))->write("g");
+  EXPECT_FALSE(fs::exists(folder_ / "f"));
+  files.commit();
+  EXPECT_EQ(names(), (std::set<std::string>{"f", "g"}));
+}
+
 TEST_F(WholeFileTest, RefusesWhatIsNoFile) {
   EXPECT_EQ(refusal(""), "cannot write '': it is no file name");
   EXPECT_EQ(refusal(folder_), "cannot write " + folder_.string() + ": Is a directory");
@@ -165,4 +206,4 @@ TEST_F(WholeFileTest, RefusesWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace softcell::ls_sim
+}  // namespace softcell::base

@@ -1,10 +1,10 @@
-#include "json_text.h"
+#include "softcell/base/json_text.h"
 
 #include <algorithm>
 
-#include "softcell/ls_sim/utf8.h"
+#include "softcell/base/text.h"
 
-namespace softcell::ls_sim {
+namespace softcell::base {
 
 JsonText& JsonText::microseconds(std::int64_t nanoseconds) {
   nanoseconds = std::max<std::int64_t>(nanoseconds, 0);
@@ -46,4 +46,4 @@ JsonText& JsonText::string(std::string_view text) {
   return raw("\"");
 }
 
-}  // namespace softcell::ls_sim
+}  // namespace softcell::base
