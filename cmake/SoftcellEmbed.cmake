@@ -38,5 +38,5 @@ std::span<const base::EmbeddedFile> embedded_@name@() {
 }  // namespace softcell::@namespace@
 ]])
   target_sources(${target} PRIVATE ${stub} ${source})
-  set_source_files_properties(${stub} PROPERTIES OBJECT_DEPENDS "${paths}")
+  set_source_files_properties(${stub} TARGET_DIRECTORY ${target} PROPERTIES OBJECT_DEPENDS "${paths}")
 endfunction()

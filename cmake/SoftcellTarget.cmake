@@ -22,8 +22,8 @@ if(SOFTCELL_ASSERTIONS)
   target_compile_definitions(softcell_options INTERFACE SOFTCELL_ASSERTIONS)
 endif()
 
-# softcell_add_library(<folder> SOURCES ...)
-# The one library of a folder: target softcell_<folder>, alias softcell::<folder>, public headers in <folder>/include.
+# softcell_add_library(<folder> [SOURCES ...])
+# The one library of a folder, to which rooms add their sources: target softcell_<folder>, alias softcell::<folder>, public headers in <folder>/include.
 function(softcell_add_library folder)
   cmake_parse_arguments(arg "" "" "SOURCES" ${ARGN})
   add_library(softcell_${folder} STATIC ${arg_SOURCES})
