@@ -32,14 +32,14 @@ endfunction()
 # Called once all folders are known.
 function(softcell_install_package)
   # Soft bodies bring Eigen, Bullet, Box2D and assimp; who only runs kernels does not need them.
-  softcell_install_libraries(softcellKernelTargets dma ls_sim spu_kernels)
+  softcell_install_libraries(softcellKernelTargets base dma ls_sim spu_kernels)
   softcell_install_libraries(softcellBodyTargets ppu)
   if(TARGET softcell)
     install(TARGETS softcell RUNTIME)
-    get_target_property(demos softcell BINARY_DIR)
-    install(FILES ${demos}/manuals/softcell.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
-    install(FILES ${demos}/manuals/softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
-    install(FILES ${demos}/manuals/_softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
+    get_target_property(tool softcell BINARY_DIR)
+    install(FILES ${tool}/manuals/softcell.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+    install(FILES ${tool}/manuals/softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+    install(FILES ${tool}/manuals/_softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
   endif()
 
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/spu_kernels/sdk ${PROJECT_SOURCE_DIR}/spu_kernels/common

@@ -12,8 +12,18 @@ if(SOFTCELL_SANITIZE)
   target_link_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE})
 endif()
 
-# softcell_add_library(<folder> SOURCES ...)
-# The one library of a folder: target softcell_<folder>, alias softcell::<folder>, public headers in <folder>/include.
+# Assertions (softcell/base/assert.h) are alive where speed matters less than mistakes.
+set(assertions OFF)
+if(SOFTCELL_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
+  set(assertions ON)
+endif()
+option(SOFTCELL_ASSERTIONS "Check SC_ASSERT at run time" ${assertions})
+if(SOFTCELL_ASSERTIONS)
+  target_compile_definitions(softcell_options INTERFACE SOFTCELL_ASSERTIONS)
+endif()
+
+# softcell_add_library(<folder> [SOURCES ...])
+# The one library of a folder, to which rooms add their sources: target softcell_<folder>, alias softcell::<folder>, public headers in <folder>/include.
 function(softcell_add_library folder)
   cmake_parse_arguments(arg "" "" "SOURCES" ${ARGN})
   add_library(softcell_${folder} STATIC ${arg_SOURCES})

@@ -1,8 +1,5 @@
 #include "softcell/dma/fault.h"
 
-#include <cinttypes>
-#include <cstdio>
-
 #include "text.h"
 
 namespace softcell::dma {
@@ -48,12 +45,6 @@ std::string to_text(const MfcCommand& command) {
 }
 
 }  // namespace
-
-std::string hex(std::uint64_t value, int digits) {
-  char text[19];
-  std::snprintf(text, sizeof text, "0x%0*" PRIX64, digits, value);
-  return text;
-}
 
 std::string_view name(Rule rule) { return row(rule).name; }
 std::string_view explanation(Rule rule) { return row(rule).explanation; }

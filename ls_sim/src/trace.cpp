@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "softcell/ls_sim/whole_file.h"
+#include "softcell/base/whole_file.h"
 #include "trace_events.h"
 #include "trace_writer.h"
 
@@ -126,12 +126,12 @@ SpeTrace& Trace::spe(int number) { return *spes_.at(static_cast<std::size_t>(num
 int Trace::spes() const { return static_cast<int>(spes_.size()); }
 
 void Trace::write(const std::filesystem::path& path) const {
-  WholeFile file(path);
+  base::WholeFile file(path);
   write(file);
   file.commit();
 }
 
-void Trace::write(WholeFile& file) const {
+void Trace::write(base::WholeFile& file) const {
   TraceWriter writer(file, begin_);
   std::vector<const SpeEvents*> spes;
   for (const auto& spe : spes_) spes.push_back(spe->events_.get());

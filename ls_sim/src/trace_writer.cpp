@@ -15,7 +15,7 @@ constexpr int kJobRow = 1, kWaitRow = 2, kFirstCommandRow = 3;
 int process(int spe) { return spe + 1; }
 int thread(int spe, int row) { return process(spe) * 1000 + row; }
 
-std::string json_string(std::string_view text) { return JsonText().string(text).text(); }
+std::string json_string(std::string_view text) { return base::JsonText().string(text).text(); }
 
 /// For each command the row that is free when it is issued: the first of them, so that commands that follow
 /// one another share a row and only those in flight at the same time lie side by side.
@@ -223,15 +223,15 @@ void TraceWriter::write_image(const TracedImage& image) {
   out_.raw("]}");
 }
 
-JsonText& TraceWriter::event(std::string_view phase, int spe, int row) {
+base::JsonText& TraceWriter::event(std::string_view phase, int spe, int row) {
   flush(kFlushBytes);
   out_.raw(first_ ? "\n{\"ph\":\"" : ",\n{\"ph\":\"").raw(phase);
   first_ = false;
   return out_.raw("\",\"pid\":").number(process(spe)).raw(",\"tid\":").number(thread(spe, row));
 }
 
-JsonText& TraceWriter::slice(int spe, int row, TraceTime begin, TraceTime end, std::string_view category,
-                             std::string_view quoted_name) {
+base::JsonText& TraceWriter::slice(int spe, int row, TraceTime begin, TraceTime end,
+                                   std::string_view category, std::string_view quoted_name) {
   // What began before the trace is shown from its beginning.
   const TraceTime from = std::max<TraceTime>(begin - begin_, 0), to = std::max(end - begin_, from);
   return event("X", spe, row)

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "json_text.h"
+#include "softcell/base/json_text.h"
+#include "softcell/base/whole_file.h"
 #include "softcell/ls_sim/trace.h"
-#include "softcell/ls_sim/whole_file.h"
 #include "trace_events.h"
 
 namespace softcell::ls_sim {
@@ -16,7 +16,7 @@ namespace softcell::ls_sim {
 class TraceWriter {
  public:
   /// @param begin  time 0 of the file.
-  TraceWriter(WholeFile& file, TraceTime begin) : file_(file), begin_(begin) {}
+  TraceWriter(base::WholeFile& file, TraceTime begin) : file_(file), begin_(begin) {}
 
   /// The whole file; SPE n is the n-th of these.
   void write(const std::vector<const SpeEvents*>& spes);
@@ -32,16 +32,16 @@ class TraceWriter {
   void write_image(const TracedImage& image);
 
   /// Begins an event on its own line; the caller ends it with raw("}").
-  JsonText& event(std::string_view phase, int spe, int row);
+  base::JsonText& event(std::string_view phase, int spe, int row);
   /// And of one that lasts, up to where its arguments begin.
-  JsonText& slice(int spe, int row, TraceTime begin, TraceTime end, std::string_view category,
-                  std::string_view quoted_name);
+  base::JsonText& slice(int spe, int row, TraceTime begin, TraceTime end, std::string_view category,
+                        std::string_view quoted_name);
   void name_row(int spe, int row, std::string_view name);
   void flush(std::size_t when_longer_than);
 
-  WholeFile& file_;
+  base::WholeFile& file_;
   TraceTime begin_;
-  JsonText out_;
+  base::JsonText out_;
   bool first_ = true;
 };
 

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "partial_file.h"
+#include "softcell/base/whole_file.h"
 
 namespace softcell::render {
 namespace {
@@ -64,17 +64,14 @@ void write_png(const std::filesystem::path& path, const Image& image, PngEffort 
   png.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
   const std::vector<std::uint8_t> rgb = opaque ? without_alpha(image) : std::vector<std::uint8_t>();
 
-  PartialFile partial(path);
-  File file(std::fopen(partial.path().c_str(), "wbe"));
-  if (!file) fail("write", path, reason(errno));
+  base::WholeFile file(path);
+  std::FILE* const stream = file.stream();
   errno = 0;
   const bool encoded =
-      png_image_write_to_stdio(&png, file.get(), 0, opaque ? rgb.data() : image.rgba.data(), 0, nullptr) != 0;
+      png_image_write_to_stdio(&png, stream, 0, opaque ? rgb.data() : image.rgba.data(), 0, nullptr) != 0;
   // The system's reason, if there is one, says more than libpng's "Write Error".
   if (!encoded) fail("write", path, errno != 0 ? reason(errno) : png.message);
-  // Bytes may wait in the buffer until the file is closed: closing can be what fails.
-  if (std::fclose(file.release()) != 0) fail("write", path, reason(errno));
-  partial.commit();
+  file.commit();
 }
 
 Image read_png(const std::filesystem::path& path) {

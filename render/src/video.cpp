@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "partial_file.h"
+#include "softcell/base/whole_file.h"
 
 extern char** environ;
 
@@ -89,7 +89,7 @@ std::vector<std::string> arguments(const std::filesystem::path& output, int widt
 
 struct VideoWriter::Encoder {
   Encoder(const std::filesystem::path& video_path, int frame_width, int frame_height, int rate)
-      : path(video_path), width(frame_width), height(frame_height), partial(video_path) {
+      : path(video_path), width(frame_width), height(frame_height), file(video_path) {
     if (width <= 0 || height <= 0) fail(path, "width and height must be above 0");
     if (rate <= 0) fail(path, "the frame rate must be above 0");
     start(rate);
@@ -109,7 +109,7 @@ struct VideoWriter::Encoder {
   std::filesystem::path path;
   int width;
   int height;
-  PartialFile partial;
+  base::WholeFile file;
   Descriptor frames;    ///< our end of the stream to the child's standard input
   Descriptor messages;  ///< what the child prints
   pid_t child = 0;      ///< 0 when none is to be waited for
@@ -148,7 +148,7 @@ void VideoWriter::Encoder::start(int rate) {
   posix_spawnattr_setflags(&attributes,
                            POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 
-  std::vector<std::string> words = arguments(partial.path(), width, height, rate);
+  std::vector<std::string> words = arguments(file.written_path(), width, height, rate);
   std::vector<char*> argv;
   argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
@@ -174,7 +174,7 @@ int VideoWriter::Encoder::wait() {
 void VideoWriter::Encoder::report(int status) {
   std::string why = last_line(messages.get());
   // The user knows the file by its final name.
-  const std::string temporary = "file:" + partial.path().string();
+  const std::string temporary = "file:" + file.written_path().string();
   if (const auto at = why.find(temporary); at != std::string::npos)
     why.replace(at, temporary.size(), path.string());
   if (why.empty()) {
@@ -217,7 +217,7 @@ void VideoWriter::finish() {
   encoder.frames.close();
   const int status = encoder.wait();
   if (status != 0) encoder.report(status);
-  encoder.partial.commit();
+  encoder.file.commit();
 }
 
 }  // namespace softcell::render

@@ -1,6 +1,8 @@
 #include "softcell/spu_kernels/images.h"
 
 #include <array>
+#include <stdexcept>
+#include <string>
 
 #define SC_DECLARE(kernel)                                                           \
   extern const std::byte softcell_image_##kernel[], softcell_image_##kernel##_end[]; \
@@ -36,6 +38,18 @@ std::span<const ImageFile> image_files() {
                                 SC_FILE(transfers)};
 #undef SC_FILE
   return files;
+}
+
+std::span<const std::byte> image_file(std::string_view name, bool checked) {
+  for (const ImageFile& file : image_files()) {
+    if (file.name != name) continue;
+    if (checked && file.checked_elf.empty()) {
+      throw std::runtime_error("kernel " + std::string(name) +
+                               " has no checked flavour: it would not fit in a local store");
+    }
+    return checked ? file.checked_elf : file.elf;
+  }
+  throw std::runtime_error("there is no kernel " + std::string(name));
 }
 
 }  // namespace softcell::spu_kernels

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene_file/scene_library.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "support/allocation_counter.h"
 
 namespace softcell::demos {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "scene_file/scene_library.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/ppu/half.h"
 
 namespace softcell::demos {

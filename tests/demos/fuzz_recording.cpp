@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "recording.h"
+#include "input/recording.h"
 
 namespace {
 

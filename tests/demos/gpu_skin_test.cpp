@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "scene_file/scene_library.h"
-#include "scene_view.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/render/image_compare.h"
 #include "softcell/render/offscreen_context.h"
+#include "view/scene_view.h"
 
 namespace softcell::demos {
 namespace {

@@ -1,6 +1,6 @@
 // Handing the newest value from thread to thread. ThreadSanitizer looks on.
 
-#include "window/latest.h"
+#include "demo/latest.h"
 
 #include <gtest/gtest.h>
 

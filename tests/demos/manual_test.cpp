@@ -8,9 +8,9 @@
 #include <regex>
 
 #include "scene_file/scene_library.h"
-#include "scratch_folder.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/ppu/stiffness.h"
+#include "support/scratch_folder.h"
 #include "support/text_file.h"
 
 namespace softcell::demos {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "input_event.h"
+#include "input/input_event.h"
 
 namespace softcell::demos::test {
 

@@ -18,11 +18,11 @@
 #include <string_view>
 #include <vector>
 
-#include "progress_bar.h"
+#include "input/recording.h"
 #include "random_play.h"
-#include "recording.h"
+#include "scene/scene_hash.h"
 #include "scene_file/scene_library.h"
-#include "scene_hash.h"
+#include "verb/progress_bar.h"
 
 namespace softcell::demos::test {
 namespace {
@@ -130,7 +130,7 @@ std::vector<Recording<2>> play_all(const Scene2d& scene, const Options& options)
   std::vector<Recording<2>> recordings;
   float farthest = -std::numeric_limits<float>::infinity();
   std::uint32_t failed = 0;
-  ProgressBar bar("playing", options.count, false);
+  tool::ProgressBar bar("playing", options.count, false);
   for (std::uint32_t seed = 1; seed <= options.count; ++seed) {
     const Outcome outcome = play(scene, seed, options.gravity);
     farthest = std::max(farthest, outcome.farthest);
@@ -159,7 +159,7 @@ bool replay_all(const Scene2d& scene, const Options& options, const std::vector<
                 const Way& way) {
   std::uint32_t failed = 0;
   const std::string name = fmt::format("--spes {} --dma {}", way.spes, way.schedule);
-  ProgressBar bar(name, recordings.size(), false);
+  tool::ProgressBar bar(name, recordings.size(), false);
   for (std::uint32_t i = 0; i < recordings.size(); ++i) {
     const std::uint64_t state = replay(scene, recordings[i], way);
     if (state != recordings[i].state_hash) {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "input_event.h"
-#include "scene_2d.h"
-#include "simulation_2d.h"
+#include "input/input_event.h"
+#include "scene/scene_2d.h"
+#include "simulation/simulation_2d.h"
 
 namespace softcell::demos::test {
 

@@ -1,6 +1,6 @@
 // Recordings: what is written is read back, what is broken is refused, and a replay is the run again.
 
-#include "recording.h"
+#include "input/recording.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,13 +8,13 @@
 #include <cmath>
 #include <limits>
 
-#include "input_log.h"
+#include "input/input_log.h"
 #include "random_events.h"
-#include "run_command.h"
 #include "scene_file/scene_library.h"
-#include "scratch_folder.h"
-#include "simulation_2d.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_2d.h"
+#include "simulation/simulation_3d.h"
+#include "support/run_command.h"
+#include "support/scratch_folder.h"
 
 namespace softcell::demos {
 namespace {
@@ -163,7 +163,7 @@ constexpr const char* kScene2d =
 
 TEST(Replay, OfRandomInputEndsInTheSameState2d) {
   const tests::ScratchFolder scratch;
-  DemoOptions recorded, repeated;
+  RecordingFiles recorded, repeated;
   recorded.record = repeated.replay = scratch.path() / "run.rec";
   repeated.record = scratch.path() / "again.rec";
   Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
@@ -190,7 +190,7 @@ TEST(Replay, OfRandomInputEndsInTheSameState2d) {
 
 TEST(Replay, EndsInTheSameStateForAnyNumberOfSpesAndSchedule3d) {
   const tests::ScratchFolder scratch;
-  DemoOptions recorded, repeated;
+  RecordingFiles recorded, repeated;
   recorded.record = repeated.replay = scratch.path() / "run.rec";
   const Scene scene = std::get<Scene>(
       parse_scene("[framework]\n[[box]]\nsize = [0.3, 0.3, 0.3]\nmass = 5\nposition = [0.4, 0.6, 0]\n"
@@ -213,7 +213,7 @@ TEST(Replay, EndsInTheSameStateForAnyNumberOfSpesAndSchedule3d) {
 
 TEST(Replay, OfAnotherSceneIsRefused) {
   const tests::ScratchFolder scratch;
-  DemoOptions recorded, repeated;
+  RecordingFiles recorded, repeated;
   recorded.record = repeated.replay = scratch.path() / "run.rec";
   Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
   InputLog<2> log(recorded);
@@ -240,7 +240,7 @@ TEST(Replay, OfAnotherSceneIsRefused) {
 
 TEST(Replay, ThatEndsInAnotherStateIsSaidSo) {
   const tests::ScratchFolder scratch;
-  DemoOptions options;
+  RecordingFiles options;
   options.replay = scratch.path() / "run.rec";
   Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
   write_recording<2>(
@@ -301,7 +301,7 @@ TEST(Replay, OfARunThatFailedAndCannotBeRecordedHasTheFirstErrorsStatus) {
 // What is known of its state is of a frame that it has no room for.
 TEST(Recording, ThatIsFullIsGivenUp) {
   const tests::ScratchFolder scratch;
-  DemoOptions options;
+  RecordingFiles options;
   options.record = scratch.path() / "full.rec";
   Scene2d scene = std::get<Scene2d>(parse_scene(kScene2d, "s.toml"));
   {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <string>
 
-#include "input_log.h"
+#include "input/input_log.h"
 #include "scene_file/scene_library.h"
-#include "simulation_2d.h"
+#include "simulation/simulation_2d.h"
 
 namespace softcell::demos {
 
@@ -20,7 +20,7 @@ class Replayed {
   explicit Replayed(
       const std::string& name,
       const std::function<void(const Replayed&)>& each_frame = [](const Replayed&) {})
-      : log_(options_of(name)), scene_(scene_of(log_)), simulation_(scene_) {
+      : log_(files_of(name)), scene_(scene_of(log_)), simulation_(scene_) {
     for (std::int64_t frame = 0; frame < log_.frames(); ++frame) {
       simulation_.step(log_.events_at(frame));
       log_.note(frame, simulation_.last_events());
@@ -35,10 +35,8 @@ class Replayed {
   Simulation2d& simulation() { return simulation_; }
 
  private:
-  static DemoOptions options_of(const std::string& name) {
-    DemoOptions options;
-    options.replay = std::filesystem::path(SOFTCELL_RECORDINGS_DIR) / (name + ".rec");
-    return options;
+  static RecordingFiles files_of(const std::string& name) {
+    return {.record = {}, .replay = std::filesystem::path(SOFTCELL_RECORDINGS_DIR) / (name + ".rec")};
   }
   static Scene2d scene_of(InputLog<2>& log) {
     Scene2d scene = load_scene_2d(log.scene_name().value());

@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "scene_file/scene_library.h"
-#include "scratch_folder.h"
+#include "support/scratch_folder.h"
 #include "support/text_file.h"
 
 namespace softcell::demos {

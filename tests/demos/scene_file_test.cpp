@@ -10,9 +10,9 @@
 #include <fstream>
 
 #include "scene_file/lua_document.h"
-#include "scene_file/nearest_name.h"
 #include "scene_file/value.h"
-#include "scratch_folder.h"
+#include "softcell/base/nearest_name.h"
+#include "support/scratch_folder.h"
 
 namespace softcell::demos {
 namespace {
@@ -554,12 +554,12 @@ TEST_F(SceneFile, ALatticeOfManyBodiesRunsOnce) {
 
 TEST(NearestName, FindsSlipsAndNothingElse) {
   constexpr std::array<std::string_view, 3> known{"gravity", "friction", "up"};
-  EXPECT_EQ(nearest_name("gravitty", known), "gravity");
-  EXPECT_EQ(nearest_name("frction", known), "friction");
-  EXPECT_EQ(nearest_name("ub", known), "up");
-  EXPECT_EQ(nearest_name("grvty", known), "gravity");
-  EXPECT_EQ(nearest_name("colour", known), "");
-  EXPECT_EQ(nearest_name(std::string(100'000, 'x'), known), "");
+  EXPECT_EQ(base::nearest_name("gravitty", known), "gravity");
+  EXPECT_EQ(base::nearest_name("frction", known), "friction");
+  EXPECT_EQ(base::nearest_name("ub", known), "up");
+  EXPECT_EQ(base::nearest_name("grvty", known), "gravity");
+  EXPECT_EQ(base::nearest_name("colour", known), "");
+  EXPECT_EQ(base::nearest_name(std::string(100'000, 'x'), known), "");
 }
 
 }  // namespace

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "demo/page.h"
 #include "replayed.h"
 #include "scene_file/scene_library.h"
-#include "scene_view.h"
-#include "scene_view_2d.h"
-#include "simulation_2d.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_2d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/render/offscreen_context.h"
 #include "support/golden.h"
-#include "window/page.h"
+#include "view/scene_view.h"
+#include "view/scene_view_2d.h"
 
 namespace softcell::demos {
 namespace {

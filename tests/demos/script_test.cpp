@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "input/script_player.h"
 #include "scene_file/scene_library.h"
-#include "script_player.h"
-#include "simulation_2d.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_2d.h"
+#include "simulation/simulation_3d.h"
 
 namespace softcell::demos {
 namespace {

@@ -1,12 +1,12 @@
 // Equal bodies have one model, whatever stands between them.
 
-#include "shared_models.h"
+#include "scene/shared_models.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/ppu/shapes.h"
 
 namespace softcell::demos {

@@ -1,6 +1,6 @@
 // The 2D demo's promises: the man comes back from whatever one does to him, and nothing leaves its framework.
 
-#include "simulation_2d.h"
+#include "simulation/simulation_2d.h"
 
 #include <gtest/gtest.h>
 

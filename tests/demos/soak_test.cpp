@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "scene_file/scene_library.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/dma/sanitizers.h"
 
 namespace softcell::demos {

@@ -6,9 +6,8 @@
 #include <chrono>
 #include <vector>
 
-#include "kernel_samples.h"
 #include "scene_file/scene_library.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/dma/sanitizers.h"
 #include "softcell/ppu/shapes.h"
 #include "softcell/ppu/skin_scalar.h"

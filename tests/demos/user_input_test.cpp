@@ -1,6 +1,6 @@
 // What keys, mouse and controllers mean, told to the input as SDL tells it; no window.
 
-#include "window/user_input.h"
+#include "input/user_input.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "options.h"
+#include "scene/look.h"
 #include "window/controllers.h"
 
 namespace softcell::demos {

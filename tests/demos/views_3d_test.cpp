@@ -5,12 +5,12 @@
 #include <Eigen/Geometry>
 #include <set>
 
-#include "particle_under.h"
-#include "rotation_axes.h"
-#include "scene_camera.h"
+#include "scene/scene_camera.h"
 #include "scene_file/scene_library.h"
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 #include "softcell/ppu/shapes.h"
+#include "view/rotation_axes.h"
+#include "view/scene_view.h"
 
 namespace softcell::demos {
 namespace {

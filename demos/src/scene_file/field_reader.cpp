@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "nearest_name.h"
+#include "softcell/base/nearest_name.h"
 
 namespace softcell::demos {
 namespace {
@@ -199,7 +199,7 @@ std::span<const Value> FieldReader::items(std::string_view key, std::size_t at_m
 void FieldReader::finish() const {
   for (const auto& [name, value] : std::get<Table>(table_.data)) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    const std::string_view meant = nearest_name(name, known_);
+    const std::string_view meant = base::nearest_name(name, known_);
     throw SceneError(value.place, meant.empty() ? fmt::format("{} has no field '{}'; it has {}", what_,
                                                               name.substr(0, 64), list(known_))
                                                 : fmt::format("{} has no field '{}'; did you mean '{}'?",

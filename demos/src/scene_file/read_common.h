@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "../scripted_input.h"
 #include "field_reader.h"
+#include "scene/scripted_input.h"
 
 namespace softcell::demos {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "nearest_name.h"
 #include "read_common.h"
+#include "softcell/base/nearest_name.h"
 #include "softcell/ppu/regions.h"
 #include "softcell/ppu/stiffness.h"
 
@@ -80,7 +80,7 @@ Material Materials::read(FieldReader& body, Need cell_size) const {
     if (found == by_name_.end()) {
       std::vector<std::string_view> known;
       for (const auto& [known_name, ignored] : by_name_) known.push_back(known_name);
-      const std::string_view meant = nearest_name(name, known);
+      const std::string_view meant = base::nearest_name(name, known);
       throw SceneError(body.place("material"),
                        fmt::format("there is no material '{}'{}", name,
                                    meant.empty() ? "" : fmt::format("; did you mean '{}'?", meant)));

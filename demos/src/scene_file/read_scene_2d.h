@@ -1,7 +1,7 @@
 #pragma once
 
-#include "../scene_2d.h"
 #include "field_reader.h"
+#include "scene/scene_2d.h"
 #include "scene_source.h"
 
 namespace softcell::demos {

@@ -1,6 +1,5 @@
 #include "read_scene_3d.h"
 
-#include "../usage_error.h"
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"
@@ -150,8 +149,8 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
     }
   }
   if (model && !place_taken) {
-    throw UsageError("--mesh does not go with scene " + scene.name +
-                     ", which has no body with own_model_side");
+    throw NoPlaceForModel("--mesh does not go with scene " + scene.name +
+                          ", which has no body with own_model_side");
   }
 }
 

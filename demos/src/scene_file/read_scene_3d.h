@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "../scene.h"
 #include "field_reader.h"
+#include "scene/scene.h"
 #include "scene_library.h"
 #include "scene_source.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "../embedded_files.h"
 #include "field_reader.h"
 #include "lua_document.h"
 #include "read_scene_2d.h"
@@ -47,7 +46,7 @@ bool is_lattice(const Value& document) {
 const std::vector<SceneListing>& list_scenes() {
   static const std::vector<SceneListing> scenes = [] {
     std::vector<SceneListing> found;
-    for (const EmbeddedFile& file : embedded_scenes()) {
+    for (const base::EmbeddedFile& file : embedded_scenes()) {
       const Value document =
           read_document({std::string(file.text), std::make_shared<const std::string>(file.name)});
       if (is_lattice(document)) continue;

@@ -4,13 +4,14 @@
 // A scene or lattice in Lua runs in a child process, made by fork(): load scenes before threads are started.
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "../scene.h"
-#include "../scene_2d.h"
+#include "scene/scene.h"
+#include "scene/scene_2d.h"
 
 namespace softcell::demos {
 
@@ -29,6 +30,12 @@ struct OwnModel {
   float cell_size = 0;  ///< in the mesh's units
 };
 
+/// A model is given and the scene has no place for it.
+class NoPlaceForModel : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Whether load_scene() takes it for a file, and not for a built-in scene's name.
 bool is_scene_file(std::string_view name_or_file);
 
@@ -40,7 +47,7 @@ std::variant<Scene, Scene2d> load_scene(std::string_view name_or_file);
 std::variant<Scene, Scene2d> parse_scene(const std::string& text, const std::string& name);
 
 /// As load_scene(), for one dimension; a scene of the other is refused.
-/// @throws std::runtime_error  also when a model is given and the scene has no place for it.
+/// @throws NoPlaceForModel  also.
 Scene load_scene_3d(std::string_view name_or_file, const std::optional<OwnModel>& model = std::nullopt);
 Scene2d load_scene_2d(std::string_view name_or_file);
 

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "../embedded_files.h"
-#include "../read_file.h"
 #include "scene_library.h"
+#include "softcell/base/read_file.h"
 
 namespace softcell::demos {
 namespace {
@@ -16,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSystemData = "/usr/share";
 
-SourceText embedded_text(const EmbeddedFile& file) {
+SourceText embedded_text(const base::EmbeddedFile& file) {
   return {std::string(file.text), std::make_shared<const std::string>(file.name)};
 }
 
@@ -32,7 +31,7 @@ SourceText read_text(const fs::path& path) {
     throw std::runtime_error(fmt::format("{} has {} bytes; a scene file has at most {}", path.string(), size,
                                          SceneSource::kMaxTextBytes));
   }
-  const auto bytes = read_file(path, SceneSource::kMaxTextBytes);
+  const auto bytes = base::read_file(path, SceneSource::kMaxTextBytes);
   return {std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
           std::make_shared<const std::string>(path.string())};
 }
@@ -55,7 +54,7 @@ SceneSource SceneSource::find(std::string_view name_or_file) {
   // By its file, not by list_scenes(): that reads every scene, and runs those in Lua.
   for (const std::string_view ending : {".toml", ".lua"}) {
     const std::string file = fmt::format("{}{}", name_or_file, ending);
-    if (const EmbeddedFile* embedded = find_embedded(embedded_scenes(), file)) {
+    if (const base::EmbeddedFile* embedded = base::find_embedded(embedded_scenes(), file)) {
       source.main_ = embedded_text(*embedded);
       return source;
     }
@@ -101,7 +100,7 @@ fs::path SceneSource::locate(const std::string& file, const Place& place) const 
 
 SourceText SceneSource::text(const std::string& file, const Place& place) const {
   if (!folder_) {
-    if (const EmbeddedFile* embedded = find_embedded(embedded_scenes(), file))
+    if (const base::EmbeddedFile* embedded = base::find_embedded(embedded_scenes(), file))
       return embedded_text(*embedded);
   }
   const fs::path path = locate(file, place);

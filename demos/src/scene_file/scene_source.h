@@ -4,12 +4,17 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "softcell/base/embedded_file.h"
 #include "value.h"
 
 namespace softcell::demos {
+
+/// The files of demos/scenes, sorted by name.
+std::span<const base::EmbeddedFile> embedded_scenes();
 
 /// The text of a scene or of a lattice, and what errors call it.
 struct SourceText {

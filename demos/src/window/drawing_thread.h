@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "../demo.h"
-#include "latest.h"
-#include "page.h"
+#include "demo/demo.h"
+#include "demo/latest.h"
+#include "demo/page.h"
 #include "softcell/render/window.h"
 
 namespace softcell::demos {

@@ -6,10 +6,9 @@
 #include <optional>
 
 #include "controllers.h"
-#include "demo_pages.h"
+#include "demo/frame_clock.h"
 #include "drawing_thread.h"
-#include "frame_clock.h"
-#include "user_input.h"
+#include "input/user_input.h"
 
 namespace softcell::demos {
 namespace {
@@ -59,22 +58,21 @@ class PlayedScene {
 
 }  // namespace
 
-Run play(const DemoOptions& options, std::string_view verb, const std::vector<MakeDemo>& scenes,
-         const SimulationOptions& how, const InterruptGuard& guard) {
-  render::Window window(
-      {.title = "softcell " + std::string(verb), .width = options.size.width, .height = options.size.height});
+Run play(const WindowOptions& options, const std::vector<MakeDemo>& scenes, const SimulationOptions& how,
+         const std::function<bool()>& interrupted) {
+  render::Window window({.title = options.title, .width = options.width, .height = options.height});
   Controllers controllers;
   FrameClock clock;
   std::optional<Look> look;
   for (std::size_t number = 0;; number = (number + 1) % scenes.size()) {
     Run run{.demo = scenes[number](how), .record = {}};
-    run.record.interrupted = guard.interrupted();
+    run.record.interrupted = interrupted();
     if (run.record.interrupted) return run;
     if (look) run.demo->input().set_look(*look);
     PlayedScene scene(window, *run.demo, options.frames);
     bool next = false;
     run_recorded(*run.demo, [&] {
-      while (!next && !scene.ends() && !guard.interrupted()) {
+      while (!next && !scene.ends() && !interrupted()) {
         clock.wait();
         SDL_Event event;
         while (SDL_PollEvent(&event) != 0) {
@@ -86,7 +84,7 @@ Run play(const DemoOptions& options, std::string_view verb, const std::vector<Ma
       }
       run.record = scene.finish();
     });
-    run.record.interrupted = guard.interrupted();
+    run.record.interrupted = interrupted();
     if (!next) return run;
     look = run.demo->input().look();
   }

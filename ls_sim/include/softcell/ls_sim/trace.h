@@ -12,13 +12,16 @@
 #include "softcell/dma/mfc_observer.h"
 #include "softcell/ls_sim/image.h"
 
+namespace softcell::base {
+class WholeFile;
+}
+
 namespace softcell::ls_sim {
 
 /// Nanoseconds of the host's steady clock.
 using TraceTime = std::int64_t;
 TraceTime trace_now();
 
-class WholeFile;
 struct SpeEvents;
 struct TracedCommand;
 
@@ -80,7 +83,7 @@ class Trace {
   /// @throws std::runtime_error  the file cannot be written; the sentence says why.
   void write(const std::filesystem::path& file) const;
   /// The same, all that is in a file that the caller commits.
-  void write(WholeFile& file) const;
+  void write(base::WholeFile& file) const;
 
  private:
   std::vector<std::unique_ptr<SpeTrace>> spes_;

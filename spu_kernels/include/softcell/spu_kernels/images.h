@@ -16,4 +16,7 @@ struct ImageFile {
 /// All of them, by name.
 std::span<const ImageFile> image_files();
 
+/// The file of the kernel of that name, or of its checked flavour. @throws std::runtime_error  there is none.
+std::span<const std::byte> image_file(std::string_view name, bool checked);
+
 }  // namespace softcell::spu_kernels

@@ -1,0 +1,42 @@
+#include "softcell/base/nearest_name.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace softcell::base {
+namespace {
+
+/// Levenshtein's distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known) {
+  constexpr std::size_t kLongestName =
+      64;  // nobody mistypes a longer one; the work is the product of lengths
+  if (name.size() > kLongestName) return {};
+  std::string_view nearest;
+  std::size_t least = kLongestName;
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    const std::size_t most = std::max<std::size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    if (distance <= most && distance < least) least = distance, nearest = candidate;
+  }
+  return nearest;
+}
+
+}  // namespace softcell::base

@@ -1,0 +1,48 @@
+#pragma once
+// What stands over the picture: the figures of the frame, and in a window help.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "demo.h"
+#include "scene/look.h"
+
+namespace softcell::demos {
+
+struct Page {
+  Look look;
+  int width = 0, height = 0;  ///< of the window, pixels
+
+  std::string scene;
+  int dimension = 2;
+  DemoCounts counts;
+  FrameTimes times;
+  bool paused = false, replays = false;
+  std::size_t spes = 0;         ///< at work
+  double spe_ms = 0;            ///< of the busiest SPE, in the frame before
+  std::uint64_t dma_bytes = 0;  ///< in the frame before
+};
+
+inline constexpr float kTextScale = 1.3f;  ///< of a page's text on displays of usual density
+
+/// In a window: the figures, and help or how to get it. Calls Dear ImGui between begin() and end() of an
+/// overlay.
+/// @param scale  of the text  @param shown_per_second  pictures that the window showed of late
+void draw_page(const Page& page, float scale, double shown_per_second);
+
+/// Draws the figures over the renderer's last frame, which is no window's.
+/// @param scale  of the text, as the overlay's
+void draw_statistics(const Page& page, float scale, render::Overlay& overlay, render::Renderer& renderer);
+
+/// Follows one demo: asked once for each frame, so that it knows what the SPEs did in it. Used by one thread.
+class DemoPages {
+ public:
+  /// @param times  of the frame that was stepped last  @param width,height  of the picture, pixels
+  Page next(const Demo& demo, const FrameTimes& times, const Look& look, int width, int height);
+
+ private:
+  std::vector<ls_sim::SpeStatistics> before_;  // up to the frame before
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,86 @@
+#pragma once
+// Where a demo's pictures go: nowhere, files, a video.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "demo.h"
+#include "page.h"
+#include "softcell/render/gl_context.h"
+#include "softcell/render/renderer.h"
+#include "softcell/render/video.h"
+
+namespace softcell::demos {
+
+struct PictureSize {
+  int width = 1280;
+  int height = 720;
+};
+
+/// What pictures of a run there are to be.
+struct PictureOptions {
+  std::optional<std::filesystem::path> out;  ///< folder for numbered frames
+  std::optional<std::filesystem::path> video;
+  PictureSize size;
+  bool statistics = false;  ///< of each frame, over its picture
+};
+
+/// Makes the folders that pictures and videos go to. @throws std::runtime_error  --out is no folder and
+/// cannot be made one.
+void make_picture_folders(const PictureOptions& options);
+
+/// The folder of numbered frames. Frames of an earlier run are removed, so that what is there is of one run.
+class FrameFolder {
+ public:
+  /// @pre the folder is there
+  explicit FrameFolder(std::filesystem::path folder);
+
+  void write(int frame, const render::Image& image) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Draws a demo offscreen. Used by one thread, the one that made it.
+class Pictures {
+ public:
+  /// @throws std::runtime_error  a folder, the video or the GL context cannot be made.
+  Pictures(const PictureOptions& options, Demo& demo);
+
+  bool every_frame() const { return folder_ || video_; }
+
+  /// After each frame: what the statistics over a picture of it say.
+  void follow(const FrameTimes& times);
+
+  void take(int frame);
+  /// Completes the video.
+  void finish();
+
+  std::uint64_t last_hash() const { return hash_; }
+  std::uint64_t upload_bytes() const { return renderer_->uploaded_bytes(); }
+  const std::vector<double>& milliseconds() const { return milliseconds_; }  ///< of each picture
+
+ private:
+  /// Figures over the pictures.
+  struct Statistics {
+    render::Overlay overlay{kTextScale};
+    DemoPages pages;
+    Page page;
+  };
+
+  const render::Image& draw();
+
+  Demo& demo_;
+  std::optional<FrameFolder> folder_;
+  std::unique_ptr<render::VideoWriter> video_;
+  std::unique_ptr<render::GlContext> context_;
+  std::unique_ptr<render::Renderer> renderer_;
+  std::unique_ptr<Statistics> statistics_;  // where they are asked for
+  std::uint64_t hash_ = 0;
+  std::vector<double> milliseconds_;
+};
+
+}  // namespace softcell::demos

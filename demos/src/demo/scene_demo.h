@@ -1,0 +1,99 @@
+#pragma once
+// What the demos of both dimensions do alike: step a scene from its user or its replay, note what happened,
+// publish and draw it.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "demo.h"
+#include "input/input_log.h"
+#include "input/user_input.h"
+#include "latest.h"
+
+namespace softcell::demos {
+
+/// A scene, its simulation, its log and its view.
+/// @tparam Types  names those of one dimension: kDimension, Scene, Simulation, Shown (what a picture needs),
+///                SceneView (what draws it) and View (an enumeration, of which there are kViews).
+template <class Types>
+class SceneDemo : public Demo {
+ public:
+  static constexpr int kDimension = Types::kDimension;
+  using Scene = typename Types::Scene;
+  using Log = InputLog<kDimension>;
+
+  SceneDemo(Scene scene, Log log, const SimulationOptions& how, typename Types::View view,
+            const Pointing<kDimension>& pointing)
+      : scene_(std::move(scene)),
+        log_(std::move(log)),
+        simulation_(scene_, how),
+        kind_(view),
+        input_(Types::kViews, pointing) {
+    input_.set_look({.view = static_cast<int>(kind_)});
+    input_.follow(simulation_.gravity(), simulation_.paused());
+  }
+
+  const std::string& scene_name() const override { return scene_.name; }
+  int frames() const override { return log_.replays() ? static_cast<int>(log_.frames()) : scene_.frames; }
+  FrameTimes step() override {
+    const auto from_user = input_.next_frame();
+    const FrameTimes times = step_simulation(log_.replays() ? log_.events_at(frame_) : from_user);
+    input_.follow(simulation_.gravity(), simulation_.paused());
+    return times;
+  }
+  void stop() override { simulation_.stop(); }
+  std::uint64_t state_hash() const override { return simulation_.state_hash(); }
+  std::vector<ls_sim::SpeStatistics> spe_statistics() const override { return simulation_.spe_statistics(); }
+  void save_recording() override { log_.save(state_hash()); }
+  void check_replay() const override { log_.check(); }
+  void make_view(render::Renderer& renderer) override { view_.emplace(scene_, simulation_, renderer, kind_); }
+  const render::Image& draw() override { return view_->draw(); }
+
+  WindowInput& input() override { return input_; }
+  int dimension() const override { return kDimension; }
+  bool paused() const override { return simulation_.paused(); }
+  bool replays() const override { return log_.replays(); }
+  void publish() override {
+    simulation_.show(shown_.next());
+    shown_.publish();
+  }
+  void draw_published(const Look& look) override {
+    shown_.update();
+    view_->draw(shown_.current(), look);
+  }
+
+ protected:
+  const Scene& scene() const { return scene_; }
+  const typename Types::Simulation& simulation() const { return simulation_; }
+  typename Types::Simulation& simulation() { return simulation_; }
+
+ private:
+  /// Notes the frame also when it fails, so that a replay fails as well.
+  FrameTimes step_simulation(std::span<const InputEvent<kDimension>> events) {
+    FrameTimes times;
+    try {
+      times = simulation_.step(events);
+    } catch (...) {
+      log_.note(frame_++, simulation_.last_events());
+      throw;
+    }
+    log_.note(frame_++, simulation_.last_events());
+    log_.require_room();
+    return times;
+  }
+
+  Scene scene_;
+  Log log_;
+  std::int64_t frame_ = 0;
+  typename Types::Simulation simulation_;
+  typename Types::View kind_;
+  UserInput<kDimension> input_;
+  Latest<typename Types::Shown> shown_;
+  std::optional<typename Types::SceneView> view_;
+};
+
+}  // namespace softcell::demos

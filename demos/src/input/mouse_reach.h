@@ -1,0 +1,45 @@
+#pragma once
+// The mouse as the user's hand in three dimensions: it moves what it has taken in the plane that faces the
+// eye.
+
+#include <SDL.h>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "input_event.h"
+#include "scene/look.h"
+#include "scene/scene_camera.h"
+
+namespace softcell::demos {
+
+/// The left button takes the particle under the mouse, which then follows it; letting go throws it. Where
+/// there is no particle, the mouse is left to others.
+class MouseReach {
+ public:
+  /// From where the scene is seen now.
+  using Eye = std::function<render::Camera(const Look&)>;
+  /// The particle that one sees along a ray.
+  using Pick = std::function<std::optional<Eigen::Vector3f>(const Ray&)>;
+
+  /// Reaches nothing.
+  MouseReach() = default;
+  /// @param width, height  of the window, in the units in which SDL gives the mouse
+  MouseReach(Eye eye, Pick pick, int width, int height);
+
+  /// Appends what the event means. Of moves that follow one another, the last counts.
+  /// @return true: the event was the hand's
+  bool take(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events);
+
+ private:
+  bool grab(const SDL_MouseButtonEvent& button, const Look& look, std::vector<InputEvent<3>>& events);
+  void move(const SDL_MouseMotionEvent& motion, const Look& look, std::vector<InputEvent<3>>& events) const;
+
+  Eye eye_;
+  Pick pick_;
+  int width_ = 1, height_ = 1;
+  std::optional<Eigen::Vector3f> taken_;  // where, in the world
+};
+
+}  // namespace softcell::demos

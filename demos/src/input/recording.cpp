@@ -1,0 +1,295 @@
+#include "recording.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "softcell/base/read_file.h"
+#include "softcell/base/whole_file.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr int kVersion = 1;
+constexpr std::string_view kTitle = "softcell recording";
+constexpr std::size_t kMaxSceneName = 255;
+// A line is a frame, a name, two numbers of 32 bits and three floats.
+constexpr std::size_t kMaxLine = 120;
+constexpr std::size_t kMaxFile = kMaxRecordedEvents * kMaxLine + 4096;
+
+/// How an action is written: its name, then what it uses.
+struct ActionSyntax {
+  std::string_view name;
+  bool hand = false, body = false, value = false;
+  int lowest_dimension = 2;
+};
+
+/// In the order of Action.
+constexpr std::array<ActionSyntax, kActions> kSyntax{{
+    {.name = "grab", .hand = true, .body = true, .value = true},
+    {.name = "move", .hand = true, .value = true},
+    {.name = "release", .hand = true},
+    {.name = "push", .body = true, .value = true},
+    {.name = "gravity", .value = true},
+    {.name = "reset"},
+    {.name = "pause"},
+    {.name = "resume"},
+    {.name = "single_step"},
+    {.name = "home", .body = true},
+    {.name = "tilt", .value = true, .lowest_dimension = 3},
+}};
+
+/// A number of 32 bits that has a name when it is the largest: kUsersHand, kEveryBody.
+constexpr std::uint32_t kNamed = std::numeric_limits<std::uint32_t>::max();
+static_assert(kUsersHand == kNamed && kEveryBody == kNamed);
+constexpr std::string_view kUserName = "user", kEveryBodyName = "all";
+
+void append_number(std::string& text, std::uint32_t number, std::string_view name) {
+  if (number == kNamed) {
+    fmt::format_to(std::back_inserter(text), " {}", name);
+  } else {
+    fmt::format_to(std::back_inserter(text), " {}", number);
+  }
+}
+
+template <int Dimension>
+void append_line(std::string& text, const RecordedEvent<Dimension>& recorded) {
+  const InputEvent<Dimension>& event = recorded.event;
+  const ActionSyntax& syntax = kSyntax.at(static_cast<std::size_t>(event.action));
+  fmt::format_to(std::back_inserter(text), "{} {}", recorded.frame, syntax.name);
+  if (syntax.hand) append_number(text, event.hand, kUserName);
+  if (syntax.body) append_number(text, event.body, kEveryBodyName);
+  // The shortest text that reads back as the same number.
+  for (int i = 0; syntax.value && i < Dimension; ++i)
+    fmt::format_to(std::back_inserter(text), " {}", event.value[i]);
+  text += '\n';
+}
+
+/// Takes the text apart: lines, and in a line words with one space between them.
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : text_(text) {}
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw std::runtime_error(fmt::format("line {}: {}", line_number_, what));
+  }
+
+  /// Where the line begins that next_line() took last.
+  std::size_t line_begin() const { return line_begin_; }
+  bool at_end() const { return next_ == text_.size(); }
+
+  void next_line() {
+    ++line_number_;
+    line_begin_ = next_;
+    const std::size_t end = text_.find('\n', next_);
+    if (end == std::string_view::npos) refuse("the file ends here, before its line 'end': it is not whole");
+    line_ = text_.substr(next_, end - next_);
+    next_ = end + 1;
+    if (line_.size() > kMaxLine + kMaxSceneName) refuse("is longer than any line of a recording");
+  }
+
+  std::string_view rest() { return std::exchange(line_, {}); }
+
+  std::string_view word(std::string_view expected) {
+    const std::size_t end = std::min(line_.find(' '), line_.size());
+    const std::string_view found = line_.substr(0, end);
+    if (found.empty()) refuse(fmt::format("{} is missing", expected));
+    line_.remove_prefix(std::min(end + 1, line_.size()));
+    return found;
+  }
+
+  void key(std::string_view name) {
+    if (const std::string_view found = word(name); found != name)
+      refuse(fmt::format("'{}' where '{}' belongs", quotable(found), name));
+  }
+
+  template <class Integer>
+  Integer integer(std::string_view what, Integer low, Integer high) {
+    const std::string_view found = word(what);
+    Integer value{};
+    const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
+    if (error != std::errc{} || end != found.data() + found.size() || value < low || value > high)
+      refuse(fmt::format("{} '{}' is no number from {} to {}", what, quotable(found), low, high));
+    return value;
+  }
+
+  std::uint64_t hash(std::string_view what) {
+    const std::string_view found = word(what);
+    std::uint64_t value = 0;
+    std::from_chars(found.data(), found.data() + found.size(), value, 16);
+    if (fmt::format("{:016x}", value) != found)
+      refuse(fmt::format("{} '{}' is no number of 16 hexadecimal digits", what, quotable(found)));
+    return value;
+  }
+
+  std::uint32_t named_number(std::string_view what, std::string_view name) {
+    if (line_ == name || line_.starts_with(std::string(name) + ' ')) {
+      word(what);
+      return kNamed;
+    }
+    return integer<std::uint32_t>(what, 0, kNamed - 1);
+  }
+
+  float coordinate() {
+    const std::string_view found = word("a number");
+    float value = 0;
+    const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
+    if (error != std::errc{} || end != found.data() + found.size() || !std::isfinite(value))
+      refuse(fmt::format("'{}' is no finite number", quotable(found)));
+    return value;
+  }
+
+  void line_ends() const {
+    if (!line_.empty()) refuse(fmt::format("'{}' is more than belongs here", quotable(line_)));
+  }
+
+  /// What stands in the file, fit for a sentence.
+  static std::string quotable(std::string_view found) {
+    std::string text(found.substr(0, 40));
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text;
+  }
+
+ private:
+  std::string_view text_, line_;
+  std::size_t next_ = 0, line_begin_ = 0;
+  int line_number_ = 0;
+};
+
+template <int Dimension>
+void read_header(Reader& reader, Recording<Dimension>& recording) {
+  reader.next_line();
+  const std::string_view title = reader.rest();
+  if (!title.starts_with(kTitle))
+    reader.refuse("this is no recording: it does not begin with 'softcell recording'");
+  if (title != fmt::format("{} {}", kTitle, kVersion)) {
+    reader.refuse(fmt::format("a recording of another version, '{}'; this softcell reads '{} {}'",
+                              Reader::quotable(title), kTitle, kVersion));
+  }
+  reader.next_line();
+  reader.key("dimension");
+  if (const int dimension = reader.integer<int>("the dimension", 2, 3); dimension != Dimension)
+    reader.refuse(
+        fmt::format("this is a recording of demo {}d, and here runs demo {}d", dimension, Dimension));
+  reader.line_ends();
+  reader.next_line();
+  reader.key("scene");
+  const std::string_view scene = reader.rest();
+  if (scene.empty() || scene.size() > kMaxSceneName || recordable_name(scene) != scene)
+    reader.refuse("the scene has no name, or one with control characters");
+  recording.scene = scene;
+  reader.next_line();
+  reader.key("scene_hash");
+  recording.scene_hash = reader.hash("the scene's hash");
+  reader.line_ends();
+}
+
+template <int Dimension>
+InputEvent<Dimension> read_event(Reader& reader) {
+  const std::string_view name = reader.word("an action");
+  const auto* const found = std::find_if(kSyntax.begin(), kSyntax.end(),
+                                         [&](const ActionSyntax& syntax) { return syntax.name == name; });
+  if (found == kSyntax.end() || found->lowest_dimension > Dimension)
+    reader.refuse(fmt::format("there is no action '{}'", Reader::quotable(name)));
+  InputEvent<Dimension> event;
+  event.action = static_cast<Action>(found - kSyntax.begin());
+  if (found->hand) event.hand = reader.named_number("a hand", kUserName);
+  if (found->body) event.body = reader.named_number("a body", kEveryBodyName);
+  for (int i = 0; found->value && i < Dimension; ++i) event.value[i] = reader.coordinate();
+  reader.line_ends();
+  return event;
+}
+
+}  // namespace
+
+std::string recordable_name(std::string_view name) {
+  std::string text(name.substr(0, kMaxSceneName));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; }, '?');
+  return text;
+}
+
+std::uint64_t recording_checksum(std::string_view lines) { return XXH3_64bits(lines.data(), lines.size()); }
+
+template <int Dimension>
+std::string to_text(const Recording<Dimension>& recording) {
+  std::string text = fmt::format("{} {}\ndimension {}\nscene {}\nscene_hash {:016x}\n", kTitle, kVersion,
+                                 Dimension, recording.scene, recording.scene_hash);
+  for (const auto& event : recording.events) append_line(text, event);
+  fmt::format_to(std::back_inserter(text), "frames {}\nstate_hash {:016x}\n", recording.frames,
+                 recording.state_hash);
+  fmt::format_to(std::back_inserter(text), "end {:016x}\n", recording_checksum(text));
+  return text;
+}
+
+template <int Dimension>
+Recording<Dimension> parse_recording(std::string_view text) {
+  if (text.size() > kMaxFile) {
+    throw std::runtime_error(
+        fmt::format("line 1: a file of {} bytes; a recording has at most {}", text.size(), kMaxFile));
+  }
+  Reader reader(text);
+  Recording<Dimension> recording;
+  read_header(reader, recording);
+  std::int64_t frame = 0;
+  constexpr std::string_view kFrames = "frames ";
+  for (reader.next_line(); !text.substr(reader.line_begin()).starts_with(kFrames); reader.next_line()) {
+    frame = reader.integer<std::int64_t>("the frame", frame, kMaxRecordedFrames - 1);
+    if (recording.events.size() == kMaxRecordedEvents)
+      reader.refuse(fmt::format("more than {} events", kMaxRecordedEvents));
+    recording.events.push_back({frame, read_event<Dimension>(reader)});
+  }
+  reader.key("frames");
+  recording.frames = reader.integer<std::int64_t>(
+      "the number of frames", recording.events.empty() ? 0 : frame + 1, kMaxRecordedFrames);
+  reader.line_ends();
+  reader.next_line();
+  reader.key("state_hash");
+  recording.state_hash = reader.hash("the state's hash");
+  reader.line_ends();
+  reader.next_line();
+  reader.key("end");
+  if (reader.hash("the checksum") != recording_checksum(text.substr(0, reader.line_begin())))
+    reader.refuse("the checksum does not fit: the lines above are not those that were recorded");
+  reader.line_ends();
+  if (!reader.at_end()) reader.refuse("something follows the last line");
+  return recording;
+}
+
+template <int Dimension>
+void write_recording(const std::filesystem::path& path, const Recording<Dimension>& recording) {
+  base::WholeFile file(path);
+  file.write(to_text(recording));
+  file.commit();
+}
+
+template <int Dimension>
+Recording<Dimension> read_recording(const std::filesystem::path& path) {
+  const std::vector<std::byte> bytes = base::read_file(path, kMaxFile);
+  try {
+    return parse_recording<Dimension>({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const std::runtime_error& refused) {
+    throw std::runtime_error(path.string() + ": " + refused.what());
+  }
+}
+
+#define SOFTCELL_INSTANTIATE(D)                                                        \
+  template std::string to_text<D>(const Recording<D>&);                                \
+  template Recording<D> parse_recording<D>(std::string_view);                          \
+  template void write_recording<D>(const std::filesystem::path&, const Recording<D>&); \
+  template Recording<D> read_recording<D>(const std::filesystem::path&)
+SOFTCELL_INSTANTIATE(2);
+SOFTCELL_INSTANTIATE(3);
+#undef SOFTCELL_INSTANTIATE
+
+}  // namespace softcell::demos

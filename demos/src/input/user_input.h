@@ -1,0 +1,95 @@
+#pragma once
+// What the user does at a window becomes the events of the next frame, a look, and wishes for whoever runs
+// the window. Needs no window itself.
+
+#include <SDL.h>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ground_tilt.h"
+#include "input_event.h"
+#include "key_bindings.h"
+#include "mouse_hand.h"
+#include "mouse_reach.h"
+#include "scene/look.h"
+#include "scene/scene_2d.h"
+
+namespace softcell::demos {
+
+/// What does not depend on the number of dimensions. Used by one thread.
+class WindowInput {
+ public:
+  explicit WindowInput(int views) : views_(views) {}
+  virtual ~WindowInput() = default;
+
+  virtual void take(const SDL_Event& event) = 0;
+
+  const Look& look() const { return look_; }
+  void set_look(const Look& look) { look_ = look; }
+  bool wants_to_quit() const { return quit_; }
+  bool wants_next_scene() const { return next_scene_; }
+
+ protected:
+  /// Does what is about the window; true: it was.
+  bool take_command(Command command);
+
+  Look look_;
+
+ private:
+  int views_;
+  bool quit_ = false, next_scene_ = false;
+};
+
+/// What is pointed with: the mouse, a hand in two dimensions and in three, and there what tilts the ground. A
+/// mouse that takes nothing moves the camera in three.
+template <int Dimension>
+struct Pointing;
+template <>
+struct Pointing<2> {
+  MouseHand hand;
+};
+template <>
+struct Pointing<3> {
+  GroundTilt tilt;
+  MouseReach hand;
+};
+
+template <int Dimension>
+class UserInput final : public WindowInput {
+ public:
+  using Event = InputEvent<Dimension>;
+  using Vector = typename Event::Vector;
+
+  static constexpr float kJumpSpeed = 5;         ///< m/s
+  static constexpr float kGravityStep = 1;       ///< m/s^2, of one key press
+  static constexpr float kMostGravity = 1000;    ///< m/s^2
+  static constexpr float kUsualGravity = 9.81f;  ///< m/s^2, where there was none
+
+  UserInput(int views, const Pointing<Dimension>& pointing) : WindowInput(views), pointing_(pointing) {}
+
+  /// What the simulation has become: keys that change gravity or pause go on from there.
+  void follow(const Vector& gravity, bool paused);
+
+  void take(const SDL_Event& event) override;
+
+  /// What has been done since the frame before. Good until the next call.
+  std::span<const Event> next_frame();
+
+ private:
+  void do_command(Command command);
+  void set_gravity(const Vector& gravity);
+  void add_gravity(float more);
+
+  Pointing<Dimension> pointing_;
+  Vector gravity_ = Vector::Unit(1) * -kUsualGravity;
+  Vector gravity_when_on_ = gravity_;  // not 0: what "on" goes back to
+  bool paused_ = false;
+  std::vector<Event> coming_, frame_;
+};
+
+extern template class UserInput<2>;
+extern template class UserInput<3>;
+
+}  // namespace softcell::demos

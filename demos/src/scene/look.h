@@ -1,0 +1,36 @@
+#pragma once
+// What a picture shows of a scene, and from where; none of it reaches the simulation.
+
+#include <cstdint>
+
+namespace softcell::demos {
+
+/// What is drawn in three dimensions.
+enum class View : std::uint8_t {
+  kMesh,       ///< the skinned meshes
+  kLattice,    ///< particles and the edges of cells
+  kRotations,  ///< how shape matching has turned the region of each particle: axes, x red, y green, z blue
+  kContacts,   ///< where bodies press on each other, and which way
+};
+
+inline constexpr int kViews = 4;
+
+/// What is drawn of soft bodies in two dimensions.
+enum class View2d : std::uint8_t {
+  kDots,     ///< particles, the outer ones as large as they are to others
+  kLattice,  ///< particles and the edges of cells
+  kFilled,   ///< the cells as one shape
+};
+
+inline constexpr int kViews2d = 3;
+
+/// How a window shows a scene.
+struct Look {
+  int view = 0;                          ///< View2d or View, as a number
+  bool statistics = true, help = false;  ///< pages over the picture
+  // Of the camera in three dimensions, about what it looks at:
+  float turn = 0, rise = 0;  ///< radians, counter-clockwise from above and upwards
+  float distance = 1;        ///< as a factor
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,72 @@
+#include "own_model.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "read_common.h"
+#include "softcell/ppu/lattice.h"
+
+namespace softcell::demos {
+namespace {
+
+/// @param longest  side of the model's box
+double cell_size(const OwnModelOptions& options, double longest) {
+  if (!options.cell) return longest / options.cells;
+  const double cell = *options.cell;
+  constexpr double kNearlyAll = 0.999;  // of the model: what is left would be a rounding of a cell
+  if (cell > kNearlyAll * longest) {
+    throw std::runtime_error(fmt::format(
+        "--cell {}: one cell would hold the whole model, which is {:.4g} long; give less than that", cell,
+        longest));
+  }
+  if (cell * ppu::kMaxLatticeCellsPerAxis < longest) {
+    throw std::runtime_error(fmt::format(
+        "--cell {}: the model is {:.4g} long and may be at most {} cells long; give {:.4g} or more", cell,
+        longest, ppu::kMaxLatticeCellsPerAxis, longest / ppu::kMaxLatticeCellsPerAxis * 1.001));
+  }
+  return cell;
+}
+
+bool fits(const ppu::TriangleMesh& mesh, double cell) {
+  try {
+    return ppu::voxelize(mesh, static_cast<float>(cell)).particles.size() <= kMaxParticlesOfScene;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+/// Says what is wrong with cells of this size, or with the model, when something is. It is refused here,
+/// before the scene scales both.
+void check_lattice(const OwnModelOptions& options, const ppu::TriangleMesh& mesh, double longest,
+                   double cell) {
+  if (fits(mesh, cell)) return;
+  constexpr double kCoarser = 1.2;  // few tries, and near enough
+  double enough = cell * kCoarser;
+  while (enough < longest && !fits(mesh, enough)) enough *= kCoarser;
+  if (enough >= longest) ppu::voxelize(mesh, static_cast<float>(cell));  // whose sentence is about the mesh
+  const std::string too_many =
+      fmt::format("the lattice would have more than {} particles", kMaxParticlesOfScene);
+  if (options.cell) {
+    throw std::runtime_error(
+        fmt::format("--cell {}: {}; {:.4g} is large enough", *options.cell, too_many, enough));
+  }
+  throw std::runtime_error(fmt::format("--cells {}: {}; {} are few enough", options.cells, too_many,
+                                       static_cast<int>(longest / enough)));
+}
+
+}  // namespace
+
+std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
+  if (!options.mesh) return std::nullopt;
+  OwnModel model{.mesh = ppu::import_mesh(*options.mesh)};
+  const ppu::Bounds box = ppu::bounds(model.mesh);
+  const double longest = (box.high - box.low).maxCoeff();
+  const double cell = cell_size(options, longest);
+  ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
+  check_lattice(options, model.mesh, longest, cell);
+  model.cell_size = static_cast<float>(cell);
+  return model;
+}
+
+}  // namespace softcell::demos

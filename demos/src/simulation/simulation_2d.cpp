@@ -1,0 +1,249 @@
+#include "simulation_2d.h"
+
+#include <box2d/b2_body.h>
+#include <box2d/b2_circle_shape.h>
+#include <box2d/b2_fixture.h>
+#include <box2d/b2_polygon_shape.h>
+#include <box2d/b2_world.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+
+#include "input/controls.h"
+#include "input/script_player.h"
+#include "scene/shared_models.h"
+#include "softcell/ppu/box2d_coupling.h"
+#include "softcell/ppu/job_system.h"
+#include "softcell/ppu/spe_solver_2d.h"
+#include "softcell/ppu/state_hash.h"
+
+namespace softcell::demos {
+namespace {
+
+using Eigen::Vector2f;
+using Models = std::vector<std::shared_ptr<const ppu::SoftBodyModel2d>>;
+
+constexpr float kFrameSeconds = 1.0f / 60;
+
+b2Vec2 to_box2d(const Vector2f& v) { return {v.x(), v.y()}; }
+
+struct MakeShape {
+  b2Body& body;
+  b2FixtureDef fixture;
+
+  void operator()(const Box2dShape& box) {
+    add_polygon([&](auto& p) { p.SetAsBox(box.size.x() / 2, box.size.y() / 2); });
+  }
+  void operator()(const PolygonShape& polygon) {
+    std::array<b2Vec2, b2_maxPolygonVertices> corners;
+    std::transform(polygon.corners.begin(), polygon.corners.end(), corners.begin(), to_box2d);
+    add_polygon([&](auto& p) { p.Set(corners.data(), static_cast<int>(polygon.corners.size())); });
+  }
+  void operator()(const CircleShape& circle) {
+    b2CircleShape shape;
+    shape.m_radius = circle.radius;
+    add(shape);
+  }
+
+ private:
+  template <class Set>
+  void add_polygon(const Set& set) {
+    b2PolygonShape shape;
+    set(shape);
+    add(shape);
+  }
+  void add(const b2Shape& shape) {
+    fixture.shape = &shape;
+    body.CreateFixture(&fixture);
+  }
+};
+
+b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction) {
+  b2BodyDef definition;
+  definition.type = rigid.mass > 0 ? b2_dynamicBody : b2_staticBody;
+  definition.position = to_box2d(rigid.position);
+  definition.angle = rigid.angle;
+  b2Body* const body = world.CreateBody(&definition);
+  b2FixtureDef fixture;
+  fixture.density = 1;
+  fixture.friction = friction;
+  std::visit(MakeShape{*body, fixture}, rigid.shape);
+  if (rigid.mass > 0) {
+    b2MassData mass{};
+    body->GetMassData(&mass);
+    mass.I *= rigid.mass / mass.mass;
+    mass.mass = rigid.mass;
+    body->SetMassData(&mass);
+  }
+  return body;
+}
+
+/// Everything that moves. A reset makes it anew, so that nothing is left of what was: no contact, no impulse.
+struct World {
+  World(const Scene2d& scene, const Models& models, ppu::Solver2d* solver) : soft_bodies(world, solver) {
+    // A body that sleeps would not notice that gravity changes.
+    world.SetAllowSleeping(false);
+    for (const RigidBody2d& body : scene.rigid_bodies)
+      rigid_bodies.push_back(add_rigid_body(world, body, scene.friction));
+    for (std::size_t i = 0; i < models.size(); ++i) soft_bodies.add(models[i], scene.soft_bodies[i].position);
+  }
+
+  b2World world{{0, 0}};
+  std::vector<b2Body*> rigid_bodies;
+  ppu::Box2dSoftBodies soft_bodies;
+};
+
+/// The SPEs, and the solver that works on them.
+struct Spes {
+  explicit Spes(const SimulationOptions& options)
+      : match_2d(load_kernel("match_2d", options.findings != nullptr)),
+        job_loop(load_kernel("job_loop")),
+        jobs(memory, options.spe_options(), job_loop),
+        solver(memory, jobs, match_2d) {}
+
+  dma::AddressSpace memory;
+  ls_sim::KernelImage match_2d, job_loop;
+  ppu::JobSystem jobs;
+  ppu::SpeSolver2d solver;
+};
+
+Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
+  return shared_models(
+      bodies.size(),
+      [&](std::size_t i, std::size_t j) {
+        return bodies[i].settings == bodies[j].settings && bodies[i].cells == bodies[j].cells &&
+               bodies[i].contact_radius == bodies[j].contact_radius;
+      },
+      [&](std::size_t i) {
+        return ppu::make_soft_body_model(bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius);
+      });
+}
+
+}  // namespace
+
+struct Simulation2d::State {
+  State(const Scene2d& scene_description, const SimulationOptions& options)
+      : scene(scene_description), script(scene.script), controls({0, -scene.gravity}) {
+    if (options.solver == Solver::kSpe) spes.emplace(options);
+    models = models_of(scene.soft_bodies);
+    reset();
+  }
+
+  void reset() { world.emplace(scene, models, spes ? &spes->solver : nullptr); }
+  void home(std::size_t body) { world->soft_bodies[body].reset(scene.soft_bodies[body].position); }
+
+  std::chrono::nanoseconds waited() const {
+    return spes ? spes->solver.time_waited() : std::chrono::nanoseconds{0};
+  }
+
+  /// The soft bodies of the world that there is at the moment of asking: a reset replaces it.
+  struct Bodies {
+    std::optional<World>& world;
+    std::size_t size() const { return world->soft_bodies.size(); }
+    ppu::SoftBody2d& operator[](std::size_t i) const { return world->soft_bodies[i]; }
+  };
+
+  const Scene2d& scene;
+  Models models;
+  ScriptPlayer<2> script;
+  Controls<2> controls;
+  std::optional<Spes> spes;
+  std::optional<World> world;
+  Bodies bodies{world};
+  std::vector<InputEvent<2>> events;  // of the last step
+  std::int64_t frame = 0;             // of the script: counts without a break
+};
+
+Simulation2d::Simulation2d(const Scene2d& scene, const SimulationOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
+Simulation2d::~Simulation2d() = default;
+
+FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
+  State& s = *state_;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto scripted = s.script.events_at(s.frame++);
+  s.events.assign(scripted.begin(), scripted.end());
+  s.events.insert(s.events.end(), events.begin(), events.end());
+  s.controls.take(s.events, s.bodies, s);
+  if (!s.controls.advance()) return {};
+
+  World& world = *s.world;
+  const auto matched_before = world.soft_bodies.time_spent(), waited_before = s.waited();
+  world.world.SetGravity(to_box2d(s.controls.gravity()));
+  for (int i = 0; i < s.scene.substeps; ++i) {
+    s.controls.hands().pull(s.bodies);
+    world.soft_bodies.step(kFrameSeconds / static_cast<float>(s.scene.substeps));
+  }
+
+  using Milliseconds = std::chrono::duration<double, std::milli>;
+  const double all = Milliseconds(std::chrono::steady_clock::now() - begin).count();
+  const double coupling = Milliseconds(world.soft_bodies.time_spent() - matched_before).count();
+  const double waiting = Milliseconds(s.waited() - waited_before).count();
+  FrameTimes times;
+  times.physics_ms = all - coupling;
+  times.ppu_ms = coupling - waiting;
+  times.solve_ms = times.ppu_ms;
+  times.solver_wait_ms = waiting;
+  return times;
+}
+
+void Simulation2d::stop() {
+  if (state_->spes) state_->spes->jobs.stop();
+}
+
+std::vector<ls_sim::SpeStatistics> Simulation2d::spe_statistics() const {
+  return state_->spes ? state_->spes->jobs.statistics() : std::vector<ls_sim::SpeStatistics>{};
+}
+
+std::span<const InputEvent<2>> Simulation2d::last_events() const { return state_->events; }
+
+std::size_t Simulation2d::soft_bodies() const { return state_->models.size(); }
+
+std::size_t Simulation2d::particles() const {
+  std::size_t sum = 0;
+  for (const auto& model : state_->models) sum += model->particles();
+  return sum;
+}
+
+std::size_t Simulation2d::rigid_bodies() const {
+  const auto& bodies = state_->scene.rigid_bodies;
+  return static_cast<std::size_t>(
+      std::count_if(bodies.begin(), bodies.end(), [](const RigidBody2d& body) { return body.mass > 0; }));
+}
+
+const ppu::SoftBody2d& Simulation2d::soft_body(std::size_t body) const {
+  return state_->world->soft_bodies[body];
+}
+
+Pose2d Simulation2d::rigid_pose(std::size_t body) const {
+  const b2Transform& pose = state_->world->rigid_bodies.at(body)->GetTransform();
+  return {.position = {pose.p.x, pose.p.y}, .cosine = pose.q.c, .sine = pose.q.s};
+}
+
+bool Simulation2d::paused() const { return state_->controls.paused(); }
+std::span<const Hands<2>::Held> Simulation2d::held() const { return state_->controls.hands().held(); }
+const Vector2f& Simulation2d::gravity() const { return state_->controls.gravity(); }
+
+void Simulation2d::show(Shown2d& shown) const {
+  shown.particles.resize(soft_bodies());
+  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+    const auto positions = soft_body(b).positions();
+    shown.particles[b].assign(positions.begin(), positions.end());
+  }
+  shown.rigid_poses.clear();
+  for (std::size_t i = 0; i < state_->scene.rigid_bodies.size(); ++i)
+    shown.rigid_poses.push_back(rigid_pose(i));
+  shown.hands.clear();
+  for (const Hands<2>::Held& held : held())
+    shown.hands.push_back({shown.particles[held.body][held.particle], held.target});
+}
+
+std::uint64_t Simulation2d::state_hash() const {
+  std::uint64_t hash = 0;
+  for (std::size_t b = 0; b < soft_bodies(); ++b) hash = ppu::state_hash(soft_body(b), hash);
+  return hash;
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,65 @@
+#pragma once
+// A scene in two dimensions at work: the Box2D world, the soft bodies in it, and the SPEs that step them. No
+// pictures here.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "input/hands.h"
+#include "input/input_event.h"
+#include "scene/scene_2d.h"
+#include "shown.h"
+#include "simulation_options.h"
+#include "softcell/ls_sim/statistics.h"
+
+namespace softcell::demos {
+
+/// Used by one thread. The state after a number of steps depends on the scene, the events and the engine, on
+/// nothing else.
+class Simulation2d {
+ public:
+  /// The scene must outlive it.
+  /// @throws std::runtime_error  a body cannot be made, main memory is full, the host cannot run kernels.
+  explicit Simulation2d(const Scene2d& scene, const SimulationOptions& options = {});
+  ~Simulation2d();
+  Simulation2d(const Simulation2d&) = delete;
+  Simulation2d& operator=(const Simulation2d&) = delete;
+
+  /// Does what the scene's script says and then what `events` say, and simulates 1/60 s. During a pause
+  /// nothing moves.
+  /// @throws std::runtime_error  a body has become NaN, is too large for an SPE, or an SPE failed.
+  FrameTimes step(std::span<const InputEvent<2>> events = {});
+
+  /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().
+  void stop();
+
+  /// What the last step() did at its beginning: the script's events, then those it was given.
+  std::span<const InputEvent<2>> last_events() const;
+
+  std::size_t soft_bodies() const;
+  std::size_t particles() const;
+  std::size_t rigid_bodies() const;  ///< that can move
+  /// Good until the next step(), which may be a reset.
+  const ppu::SoftBody2d& soft_body(std::size_t body) const;
+  Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
+  bool paused() const;
+  std::span<const Hands<2>::Held> held() const;
+  const Eigen::Vector2f& gravity() const;  ///< m/s^2
+
+  /// Copies what a picture needs, as it is now.
+  void show(Shown2d& shown) const;
+
+  /// 64-bit hash over positions and velocities of all particles.
+  std::uint64_t state_hash() const;
+
+  std::vector<ls_sim::SpeStatistics> spe_statistics() const;  ///< none of the reference engine
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,344 @@
+#include "simulation_3d.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+
+#include "input/controls.h"
+#include "input/script_player.h"
+#include "scene/shared_models.h"
+#include "softcell/ppu/bullet_coupling.h"
+#include "softcell/ppu/bullet_world.h"
+#include "softcell/ppu/deterministic_math.h"
+#include "softcell/ppu/processor_time.h"
+#include "softcell/ppu/spe_solver.h"
+#include "softcell/ppu/state_hash.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr float kFrameSeconds = 1.0f / 60;
+constexpr double kTiltGrowsFor = 3;  // seconds
+
+double milliseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+double milliseconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+/// From the ground's frame to the observer's: first about x, then about z. Radians.
+Eigen::Matrix3f tilted_by(double ax, double az) {
+  const auto sx = static_cast<float>(ppu::sine(ax)), cx = static_cast<float>(ppu::cosine(ax));
+  const auto sz = static_cast<float>(ppu::sine(az)), cz = static_cast<float>(ppu::cosine(az));
+  Eigen::Matrix3f about_x, about_z;
+  about_x << 1, 0, 0, 0, cx, -sx, 0, sx, cx;
+  about_z << cz, -sz, 0, sz, cz, 0, 0, 0, 1;
+  return about_z * about_x;
+}
+
+Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
+  const double grown = std::clamp((time - double{script.begin}) / kTiltGrowsFor, 0.0, 1.0);
+  const auto angle = [&](float amplitude, float period) {
+    const double phase = 2 * std::numbers::pi * (time - double{script.begin}) / double{period};
+    return grown * double{amplitude} * ppu::sine(phase);
+  };
+  return tilted_by(angle(script.amplitude_x, script.period_x), angle(script.amplitude_z, script.period_z));
+}
+
+/// Has the body's two ends along x turn about x against each other, the middle at rest.
+/// @param rate  rad/s, of one end against the other
+void twist(ppu::SoftBody& body, float rate) {
+  if (rate == 0) return;
+  const ppu::Bounds box = body.bounds();
+  const Eigen::Vector3f middle = 0.5f * (box.low + box.high);
+  for (std::size_t i = 0; i < body.model().particles(); ++i) {
+    const Eigen::Vector3f r = body.position(i) - middle;
+    const float turn = rate * r.x() / (box.high.x() - box.low.x());
+    body.add_particle_velocity(i, turn * Eigen::Vector3f::UnitX().cross(r));
+  }
+}
+
+/// Whether bodies are elsewhere after the events though no time has passed.
+bool puts_elsewhere(std::span<const InputEvent<3>> events) {
+  return std::any_of(events.begin(), events.end(), [](const InputEvent<3>& event) {
+    return event.action == Action::kHome || event.action == Action::kReset;
+  });
+}
+
+std::vector<std::shared_ptr<const ppu::SoftBodyModel>> models_of(
+    const std::vector<SoftBodyPlacement>& bodies) {
+  return shared_models(
+      bodies.size(),
+      [&](std::size_t i, std::size_t j) {
+        return bodies[i].settings == bodies[j].settings && bodies[i].mesh == bodies[j].mesh;
+      },
+      [&](std::size_t i) { return ppu::make_soft_body_model(bodies[i].mesh, bodies[i].settings); });
+}
+
+}  // namespace
+
+struct Simulation3d::State {
+  /// What a picture needs beside the vertices, of the moment at which these were handed to the SPEs.
+  struct Snapshot {
+    std::vector<Eigen::Matrix4f> box_poses;
+    std::vector<std::vector<spu::SkinCorner>> particles;
+    std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
+    std::vector<ppu::Contact> contacts;
+    Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
+  };
+
+  State(const Scene& scene_description, const SimulationOptions& options)
+      : scene(scene_description),
+        script(scene.script),
+        controls({0, -scene.gravity, 0}),
+        job_loop(load_kernel("job_loop")),
+        match(load_kernel("match", options.findings != nullptr)),
+        match_tiles(load_kernel("match_tiles", options.findings != nullptr)),
+        jobs(memory, options.spe_options(), job_loop),
+        solver(make_solver(options.solver)),
+        soft_bodies(world.world(), *solver) {
+    if (options.skin == Skin::kSpe) {
+      skin = load_kernel("skin", options.findings != nullptr);
+      orchestrator.emplace(memory, jobs, *skin);
+    }
+    for (const RigidBox& box : scene.boxes) {
+      boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
+    }
+    for (const Obstacle& obstacle : scene.obstacles)
+      world.add_convex(obstacle.mesh, obstacle.position, scene.friction);
+    const auto models = models_of(scene.soft_bodies);
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const SoftBodyPlacement& placement = scene.soft_bodies[i];
+      const auto& model = models[i];
+      ppu::SoftBody& body = soft_bodies.add(model, placement.position);
+      twist(body, placement.twist);
+      if (orchestrator)
+        orchestrator->add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()),
+                          model->particles());
+      positions.push_back(body.positions());
+      vertices += model->embedding().slot_of_vertex.size();
+    }
+    for (Snapshot& snapshot : snapshots) {
+      snapshot.box_poses.resize(boxes.size());
+      for (const auto& body : positions) snapshot.particles.emplace_back(body.size());
+      snapshot.origins.resize(positions.size());
+    }
+    hand_over();
+    take_over();
+  }
+
+  std::unique_ptr<ppu::SoftBodySolver> make_solver(Solver wanted) {
+    if (wanted == Solver::kSpe) return std::make_unique<ppu::SpeSolver>(memory, jobs, match, match_tiles);
+    return std::make_unique<ppu::PpuSolver>();
+  }
+
+  /// Copies what a picture needs and starts the SPEs: with the next step's dynamics, which go first, and the
+  /// skinning. They work while the frame before is drawn.
+  void hand_over() {
+    Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
+    for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
+    snapshot.tilt = tilt;
+    copy_contacts(snapshot);
+    if (orchestrator) {
+      copy_particles(snapshot);
+      const auto before = ppu::processor_time();
+      orchestrator->kick(positions);
+      skin_time = ppu::processor_time() - before;
+    } else {
+      const auto before = ppu::processor_time();
+      copy_particles(snapshot);
+      for (std::size_t b = 0; b < positions.size(); ++b) snapshot.origins[b] = ppu::skin_origin(positions[b]);
+      skin_time = ppu::processor_time() - before;
+    }
+    handed_over = true;
+    soft_bodies.begin_ahead(kFrameSeconds / static_cast<float>(scene.substeps));
+  }
+
+  void copy_particles(Snapshot& snapshot) const {
+    for (std::size_t b = 0; b < positions.size(); ++b)
+      std::copy(positions[b].begin(), positions[b].end(), snapshot.particles[b].begin());
+  }
+
+  void copy_contacts(Snapshot& snapshot) const {
+    snapshot.contacts.clear();
+    if (notes_contacts && contacts_stand) world.contacts(snapshot.contacts);
+  }
+
+  /// Waits for the SPEs; what was handed over is shown from now on.
+  void take_over() {
+    if (!handed_over) return;
+    handed_over = false;
+    if (orchestrator) orchestrator->drain();
+    newest = 1 - newest;
+  }
+
+  void reset() {
+    world.reset();
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
+    tilt.setIdentity();
+    frame = 0;
+  }
+  void home(std::size_t body) {
+    soft_bodies[body].reset(scene.soft_bodies[body].position);
+    twist(soft_bodies[body], scene.soft_bodies[body].twist);
+  }
+
+  const Snapshot& shown() const { return snapshots[static_cast<std::size_t>(newest)]; }
+
+  const Scene& scene;
+  ScriptPlayer<3> script;
+  Controls<3> controls;
+  ppu::BulletWorld world;
+  std::vector<std::size_t> boxes;  // numbers in the world
+
+  dma::AddressSpace memory;
+  ls_sim::KernelImage job_loop, match, match_tiles;
+  std::optional<ls_sim::KernelImage> skin;  // none: the GPU does it
+  ppu::JobSystem jobs;
+  std::unique_ptr<ppu::SoftBodySolver> solver;
+  ppu::BulletSoftBodies soft_bodies;
+  std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
+  std::vector<std::span<const spu::SkinCorner>> positions;
+  std::size_t vertices = 0;
+  bool notes_contacts = false;
+  bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
+
+  std::array<Snapshot, 2> snapshots;
+  int newest = 1;            // the snapshot that is shown: of the vertices that the orchestrator shows
+  bool handed_over = false;  // the other snapshot is the next one
+  Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
+  std::vector<InputEvent<3>> events;      // of the last step
+  std::int64_t script_frame = 0;          // counts frames without a break
+  std::int64_t frame = 0;                 // simulated since the last reset
+  std::chrono::nanoseconds skin_time{0};  // of the PPU, to hand over the last frame
+};
+
+Simulation3d::Simulation3d(const Scene& scene, const SimulationOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
+
+Simulation3d::~Simulation3d() = default;
+
+FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
+  State& s = *state_;
+  FrameTimes times;
+  const auto scripted = s.script.events_at(s.script_frame++);
+  s.events.assign(scripted.begin(), scripted.end());
+  s.events.insert(s.events.end(), events.begin(), events.end());
+  s.controls.take(s.events, s.soft_bodies, s);
+  if (!s.controls.advance()) {
+    finish();
+    if (puts_elsewhere(s.events)) {
+      s.contacts_stand = false;
+      s.hand_over();
+      finish();
+    }
+    s.copy_contacts(s.snapshots[static_cast<std::size_t>(s.newest)]);  // the world stands as it is shown
+    return times;
+  }
+  const auto& tilt = s.controls.tilt();
+  s.tilt = tilt ? tilted_by(double{tilt->x()}, double{tilt->z()})
+                : tilt_at(s.scene.tilt, static_cast<double>(s.frame) / 60);
+  ++s.frame;
+  s.world.set_gravity(s.tilt.transpose() * s.controls.gravity());
+  s.controls.hands().pull(s.soft_bodies);
+  const ppu::SoftBodyTimes begin = s.soft_bodies.times();
+  const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
+  s.contacts_stand = true;
+
+  const auto waiting = std::chrono::steady_clock::now();
+  finish();
+  times.skin_wait_ms = milliseconds_since(waiting);
+
+  s.hand_over();
+  const ppu::SoftBodyTimes end = s.soft_bodies.times();
+  times.physics_ms = step.physics_ms;
+  times.gather_ms = milliseconds(end.gather - begin.gather);
+  times.solve_ms = milliseconds(end.solve - begin.solve);
+  times.apply_ms = milliseconds(end.apply - begin.apply);
+  times.skin_ms = milliseconds(s.skin_time);
+  times.ppu_ms = times.gather_ms + times.solve_ms + times.apply_ms + times.skin_ms;
+  times.solver_wait_ms = milliseconds(end.wait - begin.wait);
+  return times;
+}
+
+void Simulation3d::finish() { state_->take_over(); }
+
+void Simulation3d::stop() {
+  finish();
+  state_->jobs.stop();
+}
+
+std::span<const InputEvent<3>> Simulation3d::last_events() const { return state_->events; }
+
+std::size_t Simulation3d::soft_bodies() const { return state_->soft_bodies.size(); }
+
+std::size_t Simulation3d::particles() const {
+  std::size_t sum = 0;
+  for (const auto& body : state_->positions) sum += body.size();
+  return sum;
+}
+
+std::size_t Simulation3d::vertices() const { return state_->vertices; }
+
+Skin Simulation3d::skin() const { return state_->orchestrator ? Skin::kSpe : Skin::kGpu; }
+
+std::size_t Simulation3d::rigid_bodies() const {
+  return static_cast<std::size_t>(std::count_if(state_->scene.boxes.begin(), state_->scene.boxes.end(),
+                                                [](const RigidBox& box) { return box.mass > 0; }));
+}
+
+const ppu::SoftBodyModel& Simulation3d::model(std::size_t body) const {
+  return state_->soft_bodies[body].model();
+}
+const ppu::SoftBody& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
+
+std::uint64_t Simulation3d::state_hash() const {
+  std::uint64_t hash = 0;
+  for (std::size_t b = 0; b < soft_bodies(); ++b) hash = ppu::state_hash(soft_body(b), hash);
+  return hash;
+}
+
+ppu::SkinnedBody Simulation3d::shown(std::size_t body) const {
+  if (state_->orchestrator) return state_->orchestrator->shown(body);
+  return {.vertices = {}, .origin = state_->shown().origins[body]};
+}
+
+std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body) const {
+  return state_->shown().particles[body];
+}
+
+std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return state_->shown().box_poses; }
+
+std::span<const ppu::Contact> Simulation3d::shown_contacts() const { return state_->shown().contacts; }
+
+void Simulation3d::note_contacts(bool on) { state_->notes_contacts = on; }
+
+const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
+
+void Simulation3d::show(Shown3d& to) const {
+  to.bodies.resize(soft_bodies());
+  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+    const ppu::SkinnedBody skinned = shown(b);
+    const auto particles = shown_particles(b);
+    to.bodies[b].vertices.assign(skinned.vertices.begin(), skinned.vertices.end());
+    to.bodies[b].origin = skinned.origin;
+    to.bodies[b].particles.assign(particles.begin(), particles.end());
+  }
+  to.box_poses.assign(shown_box_poses().begin(), shown_box_poses().end());
+  to.contacts.assign(shown_contacts().begin(), shown_contacts().end());
+  to.tilt = shown_tilt();
+}
+
+bool Simulation3d::paused() const { return state_->controls.paused(); }
+const Eigen::Vector3f& Simulation3d::gravity() const { return state_->controls.gravity(); }
+
+std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->jobs.statistics(); }
+
+std::uint64_t Simulation3d::late_frames() const {
+  return state_->orchestrator ? state_->orchestrator->late_frames() : 0;
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,35 @@
+#pragma once
+// What of a scene in two dimensions has moved from picture to picture: only there a picture is drawn anew.
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "scene/scene_2d.h"
+#include "simulation/shown.h"
+
+namespace softcell::demos {
+
+/// Used by one thread.
+class Moved2d {
+ public:
+  using Box = Eigen::AlignedBox2f;
+
+  /// @param scene  whose moments since_last() is given  @param margins  of soft bodies: how far what is drawn
+  /// of each reaches beyond its particles' centres, metres
+  Moved2d(const Scene2d& scene, std::vector<float> margins);
+
+  /// A box around all that is elsewhere than at the moment that was asked about before, as it was and as it
+  /// is; empty when nothing is. Soft bodies and hands count as moving. Before the first, everything is at the
+  /// world's origin.
+  Box since_last(const Shown2d& now);
+
+ private:
+  Box restless(const Shown2d& now) const;
+
+  std::vector<float> margins_;
+  std::vector<float> radii_;  // of rigid bodies, about their positions
+  std::vector<Pose2d> poses_;
+  Box restless_;
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,43 @@
+#pragma once
+// The rotations that shape matching finds, as lines to be drawn.
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "simulation/shown.h"
+#include "softcell/ppu/shape_matching.h"
+
+namespace softcell::demos {
+
+/// Lines, as a lattice of links without particles.
+struct Lines {
+  std::vector<Eigen::Vector3f> ends;
+  std::vector<std::array<std::uint32_t, 2>> links;
+
+  void clear();
+  void add(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
+};
+
+/// For each particle the axes of its region, turned as the region is. Matched anew from the positions that
+/// are shown, so that it does not matter who solved the step, and where that keeps its rotations.
+class RotationAxes {
+ public:
+  void add_body(std::shared_ptr<const ppu::MatchingPlan<float>> plan) { plans_.push_back(std::move(plan)); }
+
+  /// @param bodies  of which as many as there are in here, in order
+  void update(const std::vector<Shown3d::Body>& bodies);
+
+  /// The x, y and z axes.
+  const std::array<Lines, 3>& axes() const { return axes_; }
+
+ private:
+  std::vector<std::shared_ptr<const ppu::MatchingPlan<float>>> plans_;
+  std::vector<ppu::ShapeMatcher<float>> matchers_;  // made when they are first asked for: most runs never do
+  std::vector<Eigen::Vector3f> positions_, goals_;
+  std::array<Lines, 3> axes_;
+};
+
+}  // namespace softcell::demos

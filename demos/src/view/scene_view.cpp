@@ -1,0 +1,188 @@
+#include "scene_view.h"
+
+#include <limits>
+
+#include "softcell/ppu/shapes.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr float kVeil = 0.3f;     // opacity of what marks must be seen through
+constexpr float kBoxFaces = 100;  // metres: larger than any box, so that each face is one square
+
+std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice& lattice) {
+  std::vector<std::array<std::uint32_t, 2>> links;
+  for (std::uint32_t a = 0; a < lattice.particles.size(); ++a) {
+    for (const std::uint32_t b : lattice.neighbours[a]) {
+      // Only the edges of cells: all 26 neighbours would hide the picture.
+      if (a < b && (lattice.particles[a] - lattice.particles[b]).lpNorm<1>() == 1) links.push_back({a, b});
+    }
+  }
+  return links;
+}
+
+/// How the vertices that the kernel `skin` would write hang in the lattice: for the GPU to make them.
+std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
+  std::vector<render::CellVertex> vertices;
+  vertices.reserve(4 * embedding.groups.size());
+  for (const ppu::SkinPart& part : embedding.parts) {
+    for (std::uint32_t g = 0; g < part.group_count; ++g) {
+      const spu::SkinGroup& group = embedding.groups[part.first_group + g];
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        render::CellVertex& vertex = vertices.emplace_back();
+        for (std::size_t k = 0; k < 8; ++k) vertex.corner[k] = part.particle(group.corner[k]);
+        vertex.place = {group.xi[lane], group.eta[lane], group.zeta[lane]};
+        vertex.normal = {group.normal_x[lane], group.normal_y[lane], group.normal_z[lane]};
+      }
+    }
+  }
+  return vertices;
+}
+
+}  // namespace
+
+SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer,
+                     View view)
+    : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view) {
+  const auto add_static = [&](const ppu::TriangleMesh& mesh) {
+    return renderer_.add_static_mesh(mesh.positions, mesh.normals, mesh.triangles);
+  };
+  for (const RigidBox& box : scene_.boxes) {
+    statics_.push_back({.mesh = add_static(ppu::make_box(box.size, kBoxFaces)),
+                        .colour = box.colour,
+                        .opacity = box.opacity,
+                        .pattern = box.pattern});
+  }
+  for (const Obstacle& obstacle : scene_.obstacles) {
+    render::StaticDraw draw{.mesh = add_static(obstacle.mesh), .colour = obstacle.colour};
+    draw.pose.topRightCorner<3, 1>() = obstacle.position;
+    statics_.push_back(draw);
+  }
+
+  lattice_buffers_.resize(simulation_.soft_bodies());
+  for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
+    const ppu::SoftBodyModel& model = simulation_.model(b);
+    const auto& colour = scene_.soft_bodies[b].colour;
+    skinned_.push_back({.mesh = add_skinned_mesh(model), .colour = colour});
+    rotations_.add_body(model.plan());
+    LatticeBuffers& buffers = lattice_buffers_[b];
+    buffers.particles.resize(model.lattice().particles.size());
+    buffers.links = links_of(model.lattice());
+    lattices_.push_back({buffers.particles, buffers.links, model.lattice().spacing * 0.12f, colour});
+  }
+}
+
+render::MeshId SceneView::add_skinned_mesh(const ppu::SoftBodyModel& model) {
+  const ppu::Embedding& embedding = model.embedding();
+  if (simulation_.skin() == Skin::kSpe) return renderer_.add_mesh(embedding.indices);
+  return renderer_.add_cell_mesh(embedding.indices, cell_vertices(embedding), model.particles());
+}
+
+void SceneView::update_meshes(const Shown3d& shown) {
+  for (std::size_t b = 0; b < skinned_.size(); ++b) {
+    const Shown3d::Body& body = shown.bodies[b];
+    if (simulation_.skin() == Skin::kSpe) {
+      renderer_.update_mesh(skinned_[b].mesh, std::as_bytes(std::span(body.vertices)));
+    } else {
+      renderer_.update_corners(skinned_[b].mesh, std::as_bytes(std::span(body.particles)), body.origin);
+    }
+    skinned_[b].origin = body.origin;
+  }
+}
+
+void SceneView::update_lattices(const Shown3d& shown) {
+  for (std::size_t b = 0; b < lattice_buffers_.size(); ++b) {
+    const auto& corners = shown.bodies[b].particles;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      lattice_buffers_[b].particles[i] = {corners[i].x, corners[i].y, corners[i].z};
+    }
+  }
+}
+
+void SceneView::draw_mesh(const Shown3d& shown, float opacity) {
+  update_meshes(shown);
+  for (render::SkinnedDraw& item : skinned_) item.opacity = opacity;
+  frame_.skinned = skinned_;
+}
+
+void SceneView::draw_lattice(const Shown3d& shown) {
+  update_lattices(shown);
+  frame_.lattices = lattices_;
+}
+
+void SceneView::draw_rotations(const Shown3d& shown) {
+  constexpr std::array<std::uint32_t, 3> kRedGreenBlue{0xD03020, 0x208030, 0x2050D0};
+  rotations_.update(shown.bodies);
+  marks_.clear();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Lines& lines = rotations_.axes()[axis];
+    marks_.push_back({lines.ends, lines.links, 0, render::srgb(kRedGreenBlue[axis])});
+  }
+  frame_.lattices = marks_;
+}
+
+void SceneView::draw_contacts(const Shown3d& shown) {
+  constexpr float kRadius = 0.025f, kLength = 0.3f;  // metres
+  draw_mesh(shown, kVeil);
+  points_.clear();
+  normals_.clear();
+  for (const ppu::Contact& contact : shown.contacts) {
+    points_.push_back(contact.position);
+    normals_.add(contact.position, contact.position + kLength * contact.normal);
+  }
+  marks_ = {{points_, {}, kRadius, render::srgb(0xC02018)},
+            {normals_.ends, normals_.links, 0, render::srgb(0xC02018)}};
+  frame_.lattices = marks_;
+}
+
+const render::Image& SceneView::draw() {
+  simulation_.show(now_);
+  draw(now_, {.view = static_cast<int>(view_)});
+  return renderer_.pixels();
+}
+
+void SceneView::draw(const Shown3d& shown, const Look& look) {
+  for (std::size_t i = 0; i < shown.box_poses.size(); ++i) statics_[i].pose = shown.box_poses[i];
+
+  frame_ = {};
+  frame_.camera = seen_from(scene_, look, shown.tilt);
+  frame_.light = scene_.light;
+  frame_.light.toward = shown.tilt.transpose() * scene_.light.toward;
+  frame_.statics = statics_;
+  switch (static_cast<View>(look.view)) {
+    case View::kMesh:
+      draw_mesh(shown, 1);
+      break;
+    case View::kLattice:
+      draw_lattice(shown);
+      break;
+    case View::kRotations:
+      draw_rotations(shown);
+      break;
+    case View::kContacts:
+      draw_contacts(shown);
+      break;
+  }
+  renderer_.render(frame_);
+}
+
+std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d& simulation) {
+  constexpr float kReachInCells = 0.6f;
+  std::optional<Eigen::Vector3f> found;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
+    const float reach = kReachInCells * simulation.model(b).lattice().spacing;
+    for (const spu::SkinCorner& corner : simulation.soft_body(b).positions()) {
+      const Eigen::Vector3f particle(corner.x, corner.y, corner.z);
+      const float along = (particle - ray.from).dot(ray.along);
+      const float squared = (particle - ray.from - along * ray.along).squaredNorm();
+      if (along > 0 && along < nearest && squared < reach * reach) {
+        nearest = along;
+        found = particle;
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace softcell::demos

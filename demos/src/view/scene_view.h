@@ -1,0 +1,66 @@
+#pragma once
+// Draws a scene: what the world and the orchestrator hand over becomes a frame of the renderer.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "rotation_axes.h"
+#include "scene/look.h"
+#include "scene/scene.h"
+#include "scene/scene_camera.h"
+#include "simulation/shown.h"
+#include "simulation/simulation_3d.h"
+#include "softcell/render/renderer.h"
+
+namespace softcell::demos {
+
+/// Holds the meshes of one simulation in one renderer. Both must outlive it.
+class SceneView {
+ public:
+  SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer, View view);
+
+  /// Draws the newest frame that the SPEs have finished.
+  const render::Image& draw();
+
+  /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer.
+  void draw(const Shown3d& shown, const Look& look);
+
+ private:
+  render::MeshId add_skinned_mesh(const ppu::SoftBodyModel& model);
+  void update_meshes(const Shown3d& shown);
+  void update_lattices(const Shown3d& shown);
+  void draw_mesh(const Shown3d& shown, float opacity);
+  void draw_lattice(const Shown3d& shown);
+  void draw_rotations(const Shown3d& shown);
+  void draw_contacts(const Shown3d& shown);
+
+  const Scene& scene_;
+  const Simulation3d& simulation_;
+  render::Renderer& renderer_;
+  View view_;
+  Shown3d now_;
+
+  std::vector<render::SkinnedDraw> skinned_;
+  std::vector<render::StaticDraw> statics_;  // boxes, then obstacles
+  struct LatticeBuffers {
+    std::vector<Eigen::Vector3f> particles;
+    std::vector<std::array<std::uint32_t, 2>> links;
+  };
+  std::vector<LatticeBuffers> lattice_buffers_;
+  std::vector<render::LatticeDraw> lattices_;
+  RotationAxes rotations_;
+  std::vector<Eigen::Vector3f> points_;  // contacts
+  Lines normals_;                        // at contacts
+  std::vector<render::LatticeDraw> marks_;
+  render::FrameDescription frame_;  // the one in making
+};
+
+/// The particle that one sees along a ray: of those that it passes within 0.6 cells, so that it cannot slip
+/// through a body, the nearest to its beginning. None: the ray meets no soft body.
+std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d& simulation);
+
+}  // namespace softcell::demos

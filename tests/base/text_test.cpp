@@ -1,0 +1,42 @@
+#include "softcell/base/text.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace softcell::base {
+namespace {
+
+TEST(Utf8Length, KnowsSequencesAndRefusesTheRest) {
+  EXPECT_EQ(utf8_length("a", 0), 1u);
+  EXPECT_EQ(utf8_length("\xC3\xA9", 0), 2u);
+  EXPECT_EQ(utf8_length("x\xE2\x82\xAC", 1), 3u);
+  EXPECT_EQ(utf8_length("\xF0\x9F\x8E\xAE", 0), 4u);
+  for (const char* wrong : {"\x80", "\xC3", "\xC0\x80", "\xE0\x9F\xBF", "\xED\xA0\x80", "\xF4\x90\x80\x80"})
+    EXPECT_EQ(utf8_length(wrong, 0), 0u) << one_line(wrong);
+}
+
+TEST(OneLine, KeepsTextAndNamesBytesThatAreNone) {
+  EXPECT_EQ(one_line("caf\xC3\xA9\tand\nmore"), "caf\xC3\xA9 and more");
+  EXPECT_EQ(one_line("\x1b[31m \x7f \xC2\x85 \xff"), "\\x1b[31m \\x7f \\xc2\\x85 \\xff");
+}
+
+TEST(OneLine, LeavesTheMiddleOutOfALongSentence) {
+  std::string text;
+  for (int i = 0; i < 1001; ++i) text += "\xC3\xA9";  // of two bytes: nowhere is one cut in half
+  const std::string line = one_line(text);
+  EXPECT_LT(line.size(), 2010u);
+  EXPECT_NE(line.find(" ... "), std::string::npos);
+  for (std::size_t at = 0; at < line.size(); at += utf8_length(line, at))
+    ASSERT_NE(utf8_length(line, at), 0u);
+}
+
+TEST(Hex, HasAtLeastTheDigitsAskedFor) {
+  EXPECT_EQ(hex(0xBEEF), "0xBEEF");
+  EXPECT_EQ(hex(0xBEEF, 5), "0x0BEEF");
+  EXPECT_EQ(hex(0xFEDCBA9876543210, 16), "0xFEDCBA9876543210");
+  EXPECT_EQ(byte_count(1) + ", " + byte_count(16), "1 byte, 16 bytes");
+}
+
+}  // namespace
+}  // namespace softcell::base

@@ -1,0 +1,209 @@
+// A file that appears whole or not at all, whatever lies where it is to be.
+
+#include "softcell/base/whole_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "support/files_in.h"
+#include "support/text_file.h"
+
+namespace softcell::base {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WholeFileTest : public testing::Test {
+ protected:
+  WholeFileTest() {
+    std::string name = fs::temp_directory_path() / "softcell_whole_file_XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~WholeFileTest() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  std::string text(const std::string& name) const { return test::text_of(folder_ / name); }
+  void put(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  void write_whole(const std::string& name, const std::string& text) const {
+    WholeFile file(folder_ / name);
+    file.write(text);
+    file.commit();
+  }
+  std::set<std::string> names() const { return test::files_in(folder_); }
+  mode_t mode(const std::string& name) const {
+    struct stat found {};
+    EXPECT_EQ(::stat((folder_ / name).c_str(), &found), 0) << name;
+    return found.st_mode & 07777;
+  }
+
+  fs::path folder_;
+};
+
+std::string refusal(const fs::path& path) {
+  try {
+    const WholeFile file(path);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "it was opened";
+}
+
+TEST_F(WholeFileTest, TakesItsPlaceOnlyWhenItIsCommitted) {
+  put("f", "old");
+  {
+    WholeFile file(folder_ / "f");
+    file.write("new");
+    file.finish();
+    EXPECT_EQ(text("f"), "old");
+  }
+  EXPECT_EQ(text("f"), "old");
+  EXPECT_EQ(names(), std::set<std::string>{"f"});
+  write_whole("f", "new");
+  EXPECT_EQ(text("f"), "new");
+  EXPECT_EQ(names(), std::set<std::string>{"f"});
+}
+
+TEST_F(WholeFileTest, TwoWritersOfOneFileDoNotMixTheirBytes) {
+  WholeFile one(folder_ / "f"), other(folder_ / "f");
+  one.write("one");
+  other.write("the other");
+  one.finish();
+  other.finish();
+  one.commit();
+  EXPECT_EQ(text("f"), "one");
+  other.commit();
+  EXPECT_EQ(text("f"), "the other");
+  EXPECT_EQ(names(), std::set<std::string>{"f"});
+}
+
+TEST_F(WholeFileTest, LeavesOtherFilesAlone) {
+  put("f.part", "the user's");
+  put("elsewhere", "the user's, too");
+  fs::create_symlink(folder_ / "elsewhere", folder_ / "g.part");
+  write_whole("f", "new");
+  write_whole("g", "new");
+  EXPECT_EQ(text("f.part"), "the user's");
+  EXPECT_EQ(text("elsewhere"), "the user's, too");
+  EXPECT_EQ(names(), (std::set<std::string>{"elsewhere", "f", "f.part", "g", "g.part"}));
+}
+
+// As one that was killed leaves it, when a later process has its number.
+TEST_F(WholeFileTest, TakesAnotherTemporaryNameWhenOneIsTaken) {
+  std::string taken;
+  {
+    const WholeFile file(folder_ / "f");
+    taken = *names().begin();
+  }
+  const std::size_t number = taken.rfind('-') + 1;
+  const unsigned long counter = std::stoul(taken.substr(number));
+  const std::string next = taken.substr(0, number) + std::to_string(counter + 1) + ".partial";
+  put("elsewhere", "the user's");
+  fs::create_symlink(folder_ / "elsewhere", folder_ / next);
+  write_whole("f", "new");
+  EXPECT_EQ(text("f"), "new");
+  EXPECT_EQ(text("elsewhere"), "the user's");
+  EXPECT_EQ(names(), (std::set<std::string>{"elsewhere", "f", next}));
+}
+
+TEST_F(WholeFileTest, KeepsThePermissionsOfWhatItReplaces) {
+  const mode_t umask_before = ::umask(027);
+  write_whole("f", "first");
+  EXPECT_EQ(mode("f"), 0640u) << "a new file's are those that the umask leaves";
+  for (const mode_t kept : {0600u, 0666u, 0444u, 0755u}) {
+    ASSERT_EQ(::chmod((folder_ / "f").c_str(), kept), 0);
+    write_whole("f", "again");
+    EXPECT_EQ(mode("f"), kept);
+  }
+  ::umask(umask_before);
+}
+
+TEST_F(WholeFileTest, ReplacesTheFileThatALinkStandsFor) {
+  fs::create_directory(folder_ / "sub");
+  put("sub/f", "old");
+  fs::create_symlink("sub/f", folder_ / "near");
+  fs::create_symlink(folder_ / "near", folder_ / "far");
+  fs::create_symlink("sub/none", folder_ / "to_nothing");
+  write_whole("far", "new");
+  write_whole("to_nothing", "made");
+  EXPECT_EQ(text("sub/f"), "new");
+  EXPECT_EQ(text("sub/none"), "made");
+  for (const char* link : {"near", "far", "to_nothing"}) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
+  EXPECT_EQ(names(), (std::set<std::string>{"far", "near", "sub", "to_nothing"}));
+}
+
+TEST_F(WholeFileTest, WritesToADeviceBehindALink) {
+  fs::create_symlink("/dev/null", folder_ / "null");
+  write_whole("null", "nothing");
+  EXPECT_TRUE(fs::is_character_file(folder_ / "null"));
+  EXPECT_EQ(names(), std::set<std::string>{"null"});
+}
+
+TEST_F(WholeFileTest, TakesTheLongestNames) {
+  const std::string longest(255, 'f');
+  write_whole(longest, "new");
+  EXPECT_EQ(text(longest), "new");
+  EXPECT_NE(refusal(folder_ / (longest + "f")).find("File name too long"), std::string::npos);
+}
+
+// As an encoder does that is given a name and looks at its ending.
+TEST_F(WholeFileTest, MayBeWrittenByAnotherProgramUnderItsTemporaryName) {
+  put("f.mp4", "old");
+  ASSERT_EQ(::chmod((folder_ / "f.mp4").c_str(), 0444), 0);
+  WholeFile file(folder_ / "f.mp4");
+  EXPECT_EQ(file.written_path().extension(), ".mp4");
+  EXPECT_EQ(file.written_path().parent_path(), folder_);
+  std::ofstream(file.written_path()) << "new";
+  EXPECT_EQ(text("f.mp4"), "old");
+  file.commit();
+  EXPECT_EQ(text("f.mp4"), "new");
+  EXPECT_EQ(mode("f.mp4"), 0444u);
+  EXPECT_EQ(names(), std::set<std::string>{"f.mp4"});
+  EXPECT_EQ(WholeFile("/dev/null").written_path(), "/dev/null");
+}
+
+TEST_F(WholeFileTest, MayBeWrittenAsAStream) {
+  {
+    WholeFile file(folder_ / "f");
+    std::fputs("one ", file.stream());
+    file.write("two");
+    file.commit();
+  }
+  EXPECT_EQ(text("f"), "one two");
+}
+
+TEST_F(WholeFileTest, TakesItsPlaceTogetherWithOthers) {
+  {
+    WholeFiles files;
+    files.open(folder_ / "f").write("f");
+    EXPECT_EQ(files.open(std::optional<fs::path>()), nullptr);
+  }
+  EXPECT_EQ(names(), std::set<std::string>{});
+  WholeFiles files;
+  files.open(folder_ / "f").write("f");
+  files.open(std::optional(folder_ / "g"))->write("g");
+  EXPECT_FALSE(fs::exists(folder_ / "f"));
+  files.commit();
+  EXPECT_EQ(names(), (std::set<std::string>{"f", "g"}));
+}
+
+TEST_F(WholeFileTest, RefusesWhatIsNoFile) {
+  EXPECT_EQ(refusal(""), "cannot write '': it is no file name");
+  EXPECT_EQ(refusal(folder_), "cannot write " + folder_.string() + ": Is a directory");
+  EXPECT_NE(refusal(folder_ / "none/f").find("none/f: No such file or directory"), std::string::npos);
+  fs::create_symlink("round", folder_ / "round");
+  EXPECT_NE(refusal(folder_ / "round").find("Too many levels of symbolic links"), std::string::npos);
+  EXPECT_EQ(names(), std::set<std::string>{"round"});
+}
+
+}  // namespace
+}  // namespace softcell::base

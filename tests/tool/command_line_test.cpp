@@ -1,0 +1,154 @@
+// The manual page and the shell completions: made of the parser's own description, so that no option is
+// missing.
+
+#include "command_line/command_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+
+#include "command_line/manual_page.h"
+#include "command_line/shell_completion.h"
+#include "support/run_command.h"
+#include "support/scratch_folder.h"
+
+namespace softcell::tests {
+namespace {
+
+using namespace tool;
+
+CommandVerb small_tree() {
+  CommandOption help{{"-h", "--help"}, "", "Print help"};
+  CommandOption clock{{"--clock"}, "host|random:SEED", "What time is"};
+  CommandOption image{{"IMAGE"}, "FILE", "A kernel", true, true};
+  return {"softcell",
+          "Runs kernels",
+          {help},
+          {{"spu", "Kernels", {help}, {{"run", "Run one", {help, clock, image}, {}}}},
+           {"scenes", ".hidden \\ text", {help}, {}}}};
+}
+
+TEST(CommandTree, LeavesAreTheVerbsThatDoSomething) {
+  const CommandVerb top = small_tree();
+  const auto leaves = leaves_of(top);
+  ASSERT_EQ(leaves.size(), 2u);
+  EXPECT_EQ(leaves[0].path, "spu run");
+  EXPECT_EQ(leaves[1].path, "scenes");
+  EXPECT_EQ(leaves[0].verb->description, "Run one");
+}
+
+TEST(CommandTree, ChoicesAreTheWordsOfAValue) {
+  const CommandVerb top = small_tree();
+  const auto& options = top.verbs[0].verbs[0].options;
+  EXPECT_EQ(choices_of(options[1]), (std::vector<std::string>{"host", "random:"}));
+  EXPECT_TRUE(choices_of(options[0]).empty());
+  EXPECT_TRUE(choices_of(options[2]).empty());
+}
+
+TEST(ManualPage, TextIsNeverTakenForMacros) {
+  const std::string page = manual_page(small_tree(), "1.2");
+  EXPECT_NE(page.find("\\&.hidden \\e text."), std::string::npos) << page;
+  EXPECT_NE(page.find("\\fB\\-\\-clock\\fR \\fIhost|random:SEED\\fR"), std::string::npos) << page;
+  EXPECT_NE(page.find("softcell 1.2"), std::string::npos);
+}
+
+/// Every `--option` that the help of a verb prints.
+std::vector<std::string> options_in_help(const std::string& verb) {
+  const std::string help = run_softcell(verb + " --help").output;
+  static const std::regex option("--[a-z-]+");
+  std::vector<std::string> names;
+  for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at)
+    names.push_back(at->str());
+  return names;
+}
+
+std::string without_escapes(std::string text) {
+  static const std::regex escape(R"(\\f[BIR]|\\(?=-))");
+  return std::regex_replace(text, escape, "");
+}
+
+TEST(ManualPage, OfTheCommandNamesEveryOptionOfEveryVerb) {
+  const std::string page = without_escapes(run_softcell("man").output);
+  for (const char* verb : {"demo 3d", "spu run", "spu explore", "spu budget", "bench", "report"}) {
+    EXPECT_NE(page.find(std::string("softcell ") + verb), std::string::npos) << verb;
+    for (const std::string& option : options_in_help(verb))
+      EXPECT_NE(page.find(option), std::string::npos) << verb << " " << option;
+  }
+}
+
+TEST(ManualPage, SaysWhichOptionsGoTogether) {
+  const std::string page = without_escapes(run_softcell("man").output);
+  EXPECT_NE(page.find("longest side (default: 8); needs --mesh; not with --cell.\n"), std::string::npos);
+  EXPECT_NE(page.find("in place of --cells; needs --mesh; not with --cells.\n"), std::string::npos);
+  EXPECT_NE(page.find("(with --headless); those of an earlier run in it are removed.\n"), std::string::npos);
+}
+
+/// What bash offers behind these words in the folder; the last one is begun and not yet whole.
+/// @param script  the completion's, or what loads it
+/// @param format  of an offer, for printf   @param then  what the offers go through
+std::string offered(const ScratchFolder& folder, const std::string& script, const std::string& words,
+                    const std::string& format = "%s ", const std::string& then = "") {
+  std::ofstream(folder / "try.sh") << "PATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
+                                   << script << "\nCOMP_WORDS=(" << words << ")\n"
+                                   << "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_softcell\n"
+                                   << "printf '" << format << "' \"${COMPREPLY[@]}\"\n";
+  return run_shell("cd " + folder.path().string() + " && bash --norc try.sh" + then).output;
+}
+
+constexpr const char* kCommandsScript = "source <(softcell completion bash)";
+
+std::string completed(const std::string& words) {
+  return offered(ScratchFolder(), bash_completion(small_tree()), words);
+}
+
+TEST(BashCompletion, OffersVerbsOptionsAndValues) {
+  EXPECT_EQ(completed("softcell s"), "spu scenes ");
+  EXPECT_EQ(completed("softcell spu ''"), "run -h --help ");
+  EXPECT_EQ(completed("softcell spu run --c"), "--clock ");
+  EXPECT_EQ(completed("softcell spu run --clock h"), "host ");
+  EXPECT_EQ(completed("softcell spu run --clock ra"), "random: ");
+  EXPECT_EQ(completed("softcell spu run --clock host --"), "--help --clock ");
+  EXPECT_EQ(completed("softcell spu run --clock = ra"), "random: ");
+}
+
+TEST(BashCompletion, OfTheCommandKnowsItsScenes) {
+  EXPECT_EQ(offered(ScratchFolder(), kCommandsScript, "softcell demo 3d --headless --scene ar"), "arena ");
+}
+
+TEST(BashCompletion, KeepsNamesWithSpacesWhole) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "my kernel.elf") << "";
+  std::filesystem::create_directory(folder / "my folder");
+  const auto sorted = [&](const std::string& words) {
+    return offered(folder, kCommandsScript, "softcell " + words, "<%s>\\n", " | sort | tr -d '\\n'");
+  };
+  EXPECT_EQ(sorted("demo 3d --json my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("demo 3d --out my"), "<my folder>");
+  EXPECT_EQ(sorted("demo 3d --scene my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("report my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("spu run my"), "<my folder><my kernel.elf>");
+  EXPECT_EQ(sorted("spu run --in x = m"), "<my folder><my kernel.elf>");
+}
+
+TEST(BashCompletion, OfTheCommandKnowsItsKernels) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "matches.txt") << "";
+  EXPECT_EQ(offered(folder, kCommandsScript, "softcell spu run match"),
+            "match match_2d match_tiles matches.txt ");
+}
+
+TEST(Completion, OfAnUnknownShellIsRefused) {
+  const CommandResult run = run_softcell("completion tcsh");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.output.find("bash"), std::string::npos) << run.output;
+}
+
+TEST(Quiet, PrintsNothing) {
+  const CommandResult run = run_softcell("demo 3d --headless --scene drop --size 64x48 --frames 2 --quiet");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.output, "");
+}
+
+}  // namespace
+}  // namespace softcell::tests

@@ -1,0 +1,714 @@
+// The command as a user meets it: what it prints, what it leaves, and how it refuses.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "softcell/render/png_io.h"
+#include "support/files_in.h"
+#include "support/run_command.h"
+#include "support/scratch_folder.h"
+
+namespace softcell::tests {
+namespace {
+
+using test::files_in;
+
+constexpr const char* kDrop = "demo 3d --headless --scene drop --size 64x48 ";
+
+nlohmann::json read_json(const std::string& path) {
+  std::ifstream file(path);
+  return nlohmann::json::parse(file);
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+const std::string kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST(Command, LeavesNumberedFramesAndStatistics) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell(kDrop + std::string("--frames 3 --out ") + (folder / "out") +
+                                         " --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(files_in(folder / "out"),
+            (std::set<std::string>{"frame_00000.png", "frame_00001.png", "frame_00002.png"}));
+  const render::Image image = render::read_png(folder / "out/frame_00002.png");
+  EXPECT_EQ(image.width, 64);
+  EXPECT_EQ(image.height, 48);
+
+  const auto stats = read_json(folder / "s.json");
+  for (const char* key : {"frames", "bodies", "particles", "vertices", "spes", "ppu_ms", "physics_ms",
+                          "spe_busy", "dma_bytes", "dma_commands", "state_hash", "image_hash"}) {
+    EXPECT_TRUE(stats.contains(key)) << key;
+  }
+  EXPECT_EQ(stats["frames"], 3);
+  EXPECT_EQ(stats["spe_busy"].size(), 6u);
+  for (const char* key : {"mean", "p50", "p99", "max"}) EXPECT_TRUE(stats["ppu_ms"].contains(key)) << key;
+  EXPECT_EQ(stats["state_hash"].get<std::string>().size(), 16u);
+  EXPECT_GT(stats["dma_bytes"].get<std::uint64_t>(), 0u);
+}
+
+TEST(Command, SkinsOnTheGpuFromTheParticlesAlone) {
+  const ScratchFolder folder;
+  const auto statistics_of = [&](const std::string& skin) {
+    const std::string file = folder / (skin + ".json");
+    const CommandResult run = run_softcell(kDrop + ("--frames 3 --skin " + skin) + " --json " + file);
+    EXPECT_EQ(run.status, 0) << run.output;
+    return read_json(file);
+  };
+  const auto spe = statistics_of("spe"), gpu = statistics_of("gpu");
+  EXPECT_EQ(gpu["state_hash"], spe["state_hash"]);
+  EXPECT_EQ(gpu["vertices"], spe["vertices"]);
+  EXPECT_EQ(gpu["upload_bytes"], 16 * gpu["particles"].get<int>());
+  EXPECT_GE(spe["upload_bytes"], 16 * spe["vertices"].get<int>());
+  EXPECT_LT(gpu["spe_jobs"], spe["spe_jobs"]);
+  EXPECT_LT(gpu["dma_bytes"], spe["dma_bytes"]);
+
+  const CommandResult wrong = run_softcell(kDrop + std::string("--frames 1 --skin cpu"));
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.output.find("--skin cpu: give spe or gpu"), std::string::npos) << wrong.output;
+}
+
+TEST(Command, TheLastPictureIsTheSameWithAndWithoutFiles) {
+  const ScratchFolder folder;
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out") + " --json " +
+                         (folder / "a.json"))
+                .status,
+            0);
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --json ") + (folder / "b.json")).status, 0);
+  EXPECT_EQ(read_json(folder / "a.json")["image_hash"], read_json(folder / "b.json")["image_hash"]);
+  EXPECT_EQ(read_json(folder / "a.json")["state_hash"], read_json(folder / "b.json")["state_hash"]);
+}
+
+TEST(Command, OtherOutputsMayLieInTheFoldersOfPictures) {
+  const ScratchFolder folder;
+  const std::string out = folder / "new/frames";
+  const CommandResult run = run_softcell(kDrop + ("--frames 2 --out " + out) + " --json " + out +
+                                         "/s.json --record " + out + "/r.rec --trace " + out + "/t.json");
+  ASSERT_EQ(run.status, 0) << run.output;
+  for (const char* file : {"/s.json", "/r.rec", "/t.json", "/frame_00001.png"})
+    EXPECT_TRUE(std::filesystem::exists(out + file)) << file;
+}
+
+TEST(Command, ASecondRunReplacesTheFramesOfTheFirst) {
+  const ScratchFolder folder;
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out")).status, 0);
+  write_file(folder / "out/mine.txt", "keep");
+  ASSERT_EQ(run_softcell(kDrop + std::string("--frames 2 --out ") + (folder / "out")).status, 0);
+  EXPECT_EQ(files_in(folder / "out"),
+            (std::set<std::string>{"frame_00000.png", "frame_00001.png", "mine.txt"}));
+}
+
+TEST(Command, DropsTheUsersOwnModel) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  const CommandResult run =
+      run_softcell("demo 3d --headless --frames 2 --size 64x48 --mesh " + (folder / "cube.obj") +
+                   " --cell 0.25 --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(read_json(folder / "s.json")["scene"], "drop");
+  EXPECT_EQ(read_json(folder / "s.json")["bodies"], 1);
+}
+
+TEST(Command, CountsCellsAlongTheUsersModelWhateverItsUnits) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  const auto particles = [&](const std::string& cells) {
+    const CommandResult run = run_softcell("demo 3d --headless --frames 1 --size 64x48 --mesh " +
+                                           (folder / "cube.obj") + cells + " --json " + (folder / "s.json"));
+    EXPECT_EQ(run.status, 0) << run.output;
+    return read_json(folder / "s.json")["particles"].get<int>();
+  };
+  EXPECT_EQ(particles(""), 9 * 9 * 9);
+  EXPECT_EQ(particles(" --cells 4"), 5 * 5 * 5);
+  EXPECT_EQ(particles(" --cell 0.2"), 6 * 6 * 6);
+  write_file(folder / "own.toml",
+             "[[soft_body]]\nname = \"without cell_size\"\nown_model_side = 2\nshape = { kind = \"box\" }\n");
+  EXPECT_EQ(particles(" --cells 4 --scene " + (folder / "own.toml")), 5 * 5 * 5);
+}
+
+TEST(Command, TracesADemoAndMakesAPageOfIt) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell(kDrop + std::string("--frames 3 --spes 2 --trace ") +
+                                         (folder / "t.json") + " --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  const auto trace = read_json(folder / "t.json"), stats = read_json(folder / "s.json");
+  std::size_t jobs = 0, commands = 0;
+  std::uint64_t bytes = 0;
+  for (const auto& event : trace["traceEvents"]) {
+    const std::string category = event.value("cat", "");
+    jobs += category == "job";
+    commands += category == "dma";
+    if (category == "dma") bytes += event["args"]["bytes"].get<std::uint64_t>();
+  }
+  EXPECT_GT(jobs, 0u);
+  EXPECT_EQ(jobs, stats["spe_jobs"]);
+  EXPECT_EQ(commands, stats["dma_commands"]);
+  EXPECT_EQ(bytes, stats["dma_bytes"]);
+  std::vector<std::string> images;
+  for (const auto& image : trace["softcell"]["images"]) images.push_back(image["name"]);
+  std::sort(images.begin(), images.end());
+  EXPECT_EQ(images, (std::vector<std::string>{"match", "skin"}));
+
+  const CommandResult report =
+      run_softcell("report " + (folder / "t.json") + " --out " + (folder / "t.html"));
+  EXPECT_EQ(report.status, 0) << report.output;
+  EXPECT_NE(report.output.find(std::to_string(jobs) + " jobs"), std::string::npos) << report.output;
+  EXPECT_GT(std::filesystem::file_size(folder / "t.html"), 20'000u);
+}
+
+TEST(Command, ListsItsScenes) {
+  const CommandResult run = run_softcell("scenes");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.output.find("arena "), std::string::npos);
+  EXPECT_NE(run.output.find("drop "), std::string::npos);
+  EXPECT_TRUE(std::regex_search(run.output, std::regex("\nman +2d ")));
+}
+
+TEST(Command, RunsTheUsersOwnScene) {
+  const ScratchFolder folder;
+  write_file(folder / "mine.lua",
+             "return { soft_body = { { cell_size = 0.2, shape = { kind = 'sphere' } } } }");
+  const CommandResult run = run_softcell("demo 3d --headless --frames 2 --size 64x48 --scene " +
+                                         (folder / "mine.lua") + " --json " + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(read_json(folder / "s.json")["scene"], "mine");
+}
+
+TEST(Command, RunsAnEmptyScene) {
+  const ScratchFolder folder;
+  for (const std::string dimension : {"2", "3"}) {
+    write_file(folder / "empty.toml", "dimension = " + dimension + "\n");
+    const CommandResult run = run_softcell(
+        "demo " + dimension + "d --headless --frames 2 --size 64x48 --scene " + (folder / "empty.toml"));
+    EXPECT_EQ(run.status, 0) << run.output;
+    EXPECT_NE(run.output.find("0 soft bodies"), std::string::npos) << run.output;
+  }
+}
+
+TEST(Command, RefusesABadSceneInOneLineWithItsPlace) {
+  const ScratchFolder folder;
+  write_file(folder / "bad.toml", "[world]\ngravitty = 3\n");
+  const CommandResult run = run_softcell("demo 3d --headless --scene " + (folder / "bad.toml"));
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.output, "softcell: " + (folder / "bad.toml") +
+                            ":2:1: world has no field 'gravitty'; did you mean 'gravity'?\n");
+}
+
+/// What the command says about a scene that it refuses.
+std::string refusal_of(const std::string& name, const std::string& text) {
+  const ScratchFolder folder;
+  write_file(folder / name, text);
+  const CommandResult run = run_shell("cd " + folder.path().string() +
+                                      " && " SOFTCELL_COMMAND " demo 3d --headless --scene ./" + name);
+  EXPECT_EQ(run.status, 1) << run.output;
+  return run.output;
+}
+
+TEST(Command, ControlCharactersOfAFileDoNotReachTheTerminal) {
+  EXPECT_EQ(refusal_of("a.lua", "error('\\27[31mred\\127\\r\\u{9b}31m\\x9b \u00e9\\tt')"),
+            "softcell: ./a.lua:1: \\x1b[31mred\\x7f\\x0d\\xc2\\x9b31m\\x9b \u00e9 t\n");
+  const std::string title = "\\u001b]0;owned\\u0007", shown = "\\x1b]0;owned\\x07";
+  EXPECT_NE(refusal_of("a.toml", "[[soft_body]]\nname = \"" + title + "\"\ncell_size = \"x\"\n").find(shown),
+            std::string::npos);
+  EXPECT_NE(refusal_of("b.toml", "\"" + title + "\" = 1\n").find(shown), std::string::npos);
+}
+
+TEST(Command, ALongSentenceLosesItsMiddle) {
+  const std::string said = refusal_of(
+      "a.toml", "[[soft_body]]\nname = \"" + std::string(600'000, 'n') + "\"\ncell_size = \"x\"\n");
+  EXPECT_LT(said.size(), 2050u);
+  EXPECT_EQ(said.rfind("softcell: ./a.toml:3:1: cell_size of soft body 1 ('nnn", 0), 0u) << said;
+  EXPECT_NE(said.find("n ... n"), std::string::npos) << said;
+  EXPECT_NE(said.find("n') is 'x'; it must be a number"), std::string::npos) << said;
+}
+
+TEST(Command, SpesStepBodiesInTwoDimensionsUpToWhatALocalStoreHolds) {
+  const ScratchFolder folder;
+  const auto stepped = [&](int cells, const std::string& options) {
+    const std::string scene = folder / "body.toml", side = std::to_string(cells);
+    write_file(scene,
+               "dimension = 2\n[[soft_body]]\ncell_size = 0.05\nshape = { kind = \"rectangle\", width = " +
+                   side + ", height = " + side + " }\n");
+    return run_softcell("demo 2d --headless --quiet --frames 1 --size 32x32 --scene " + scene + options);
+  };
+  EXPECT_EQ(stepped(36, "").status, 0);  // 1,369 particles
+  EXPECT_EQ(stepped(38, "").status, 1);  // 1,521
+  EXPECT_EQ(stepped(38, " --engine reference").status, 0);
+}
+
+TEST(Command, DrawsTheFiguresOverAPictureWhereItIsAsked) {
+  const ScratchFolder folder;
+  const std::string run = "demo 2d --headless --quiet --frames 1 --size 640x360 --out ";
+  ASSERT_EQ(run_softcell(run + (folder / "plain")).status, 0);
+  ASSERT_EQ(run_softcell(run + (folder / "figures") + " --statistics").status, 0);
+  const render::Image plain = render::read_png(folder / "plain/frame_00000.png");
+  const render::Image figures = render::read_png(folder / "figures/frame_00000.png");
+  ASSERT_EQ(plain.rgba.size(), figures.rgba.size());
+  // They stand in the upper left corner, and are as wide as their text: some hundred pixels.
+  const auto same_rows = [&](int top, int bottom) {
+    return std::equal(plain.pixel(0, top), plain.pixel(0, bottom), figures.pixel(0, top));
+  };
+  EXPECT_FALSE(same_rows(20, 160));
+  EXPECT_TRUE(same_rows(200, 359));
+  EXPECT_NE(0, std::memcmp(plain.pixel(150, 100), figures.pixel(150, 100), 4)) << "the box is whole";
+}
+
+TEST(Command, RefusesAReplayOfAnotherVersionOrSceneInOneSentence) {
+  const ScratchFolder folder;
+  const auto scene = [&](const char* gravity) {
+    write_file(folder / "mine.toml", "dimension = 2\n[world]\ngravity = " + std::string(gravity) +
+                                         "\n[framework]\n[[soft_body]]\ncell_size = 0.4\nrows = [\"##\"]\n");
+    return "--scene " + (folder / "mine.toml");
+  };
+  const std::string demo = "demo 2d --headless --quiet --size 32x32 ", recording = folder / "run.rec";
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run = run_softcell(arguments);
+    EXPECT_EQ(run.status, 1) << arguments;
+    EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+    return run.output;
+  };
+  ASSERT_EQ(run_softcell(demo + scene("3") + " --frames 2 --record " + recording).status, 0);
+  ASSERT_EQ(run_softcell(demo + scene("3") + " --replay " + recording).status, 0);
+  const std::string begin = "softcell: " + recording + ": ";
+  EXPECT_EQ(refusal(demo + scene("4") + " --replay " + recording),
+            begin +
+                "a recording of another version of the scene mine; give the one that was recorded with "
+                "--scene\n");
+  EXPECT_EQ(refusal(demo + "--scene man --replay " + recording),
+            begin +
+                "a recording of the scene mine, and this is man; give the one that was recorded with "
+                "--scene\n");
+  EXPECT_EQ(refusal("demo 3d --headless --replay " + recording),
+            begin + "line 2: this is a recording of demo 2d, and here runs demo 3d\n");
+  write_file(recording, "softcell recording 2\ndimension 2\n");
+  EXPECT_EQ(refusal(demo + "--replay " + recording),
+            begin +
+                "line 1: a recording of another version, 'softcell recording 2'; this softcell reads "
+                "'softcell recording 1'\n");
+}
+
+TEST(Command, DoesNotPutAModelIntoASceneWithoutAPlaceForIt) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  const CommandResult run =
+      run_softcell("demo 3d --headless --scene arena --mesh " + (folder / "cube.obj") + " --cell 0.25");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.output.find("--mesh does not go with scene arena"), std::string::npos) << run.output;
+}
+
+TEST(Command, ListsBenchmarksWithoutRunningThem) {
+  const CommandResult run = run_softcell("bench --list --filter penguin150/w2");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(run.output,
+            "solver3d/penguin150/w2/bullet-links\nsolver3d/penguin150/w2/bullet-pose\n"
+            "solver3d/penguin150/w2/eigen\nsolver3d/penguin150/w2/naive\nsolver3d/penguin150/w2/ppu\n"
+            "solver3d/penguin150/w2/spe\n");
+}
+
+TEST(Command, MeasuresWhatItIsAskedTo) {
+  const ScratchFolder folder;
+  const std::string json = folder / "bench.json";
+  const CommandResult run =
+      run_softcell("bench --rounds 3 --filter 'penguin150/w1/(spe|eigen|bullet)' --json " + json);
+  EXPECT_EQ(run.status, 0) << run.output;
+  const auto document = read_json(json);
+  ASSERT_EQ(document.size(), 4u);
+  for (const auto& entry : document) {
+    EXPECT_EQ(entry["name"].get<std::string>().rfind("solver3d/penguin150/w1/", 0), 0u) << entry;
+    EXPECT_GT(entry["ns_min"].get<double>(), 0) << entry;
+    EXPECT_GE(entry["ns_median"].get<double>(), entry["ns_min"].get<double>()) << entry;
+    EXPECT_GE(entry["items"].get<int>(), 100) << entry;
+  }
+}
+
+TEST(Command, PrintsTheBudgetOfEveryKernel) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell("spu budget --json " + (folder / "b.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  const auto table = read_json(folder / "b.json");
+  ASSERT_FALSE(table.empty());
+  bool has_skin = false;
+  for (const auto& row : table) {
+    for (const char* key :
+         {"kernel", "text", "rodata", "data", "bss", "stack", "stack_used", "total", "budget"}) {
+      EXPECT_TRUE(row.contains(key)) << key;
+    }
+    EXPECT_LE(row["total"], row["budget"]) << row["kernel"];
+    EXPECT_LE(row["stack_used"], row["stack"]) << row["kernel"];
+    EXPECT_GT(row["stack_used"], 0) << row["kernel"];
+    if (row["kernel"] != "skin") continue;
+    has_skin = true;
+    EXPECT_LE(row["total"], 96 * 1024);
+  }
+  EXPECT_TRUE(has_skin);
+}
+
+TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
+  const ScratchFolder folder;
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::freopen("/dev/null", "w", stdout);
+    std::freopen("/dev/null", "w", stderr);
+    const std::string out = folder / "out", video = folder / "v.mp4";
+    execl(SOFTCELL_COMMAND, "softcell", "demo", "3d", "--headless", "--scene", "drop", "--frames", "100000",
+          "--size", "320x240", "--out", out.c_str(), "--video", video.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  const auto frames = [&] {
+    return std::filesystem::exists(folder / "out") ? files_in(folder / "out").size() : std::size_t{0};
+  };
+  for (int i = 0; i < 3000 && frames() < 3; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto begin = std::chrono::steady_clock::now();
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  const auto took = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(took, std::chrono::seconds(SOFTCELL_SLOW_BUILD ? 10 : 1));
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_GE(frames(), 3u);
+  for (const std::string& name : files_in(folder / "out")) {
+    EXPECT_TRUE(name.ends_with(".png")) << name;
+    EXPECT_NO_THROW(render::read_png(folder / "out/" + name)) << name;
+  }
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"out"}) << "no part of a video is left";
+}
+
+TEST(Command, RefusesTwoOutputsInOneFile) {
+  const ScratchFolder folder;
+  write_file(folder / "t.json", "a trace");
+  const std::string demo = "demo 2d --headless --frames 1 --size 32x32 ",
+                    here = "cd " + folder.path().string();
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run = run_shell(here + " && " SOFTCELL_COMMAND " " + arguments);
+    EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
+    EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"t.json"}) << arguments;
+    return run.output;
+  };
+  EXPECT_EQ(refusal(demo + "--json same --trace ./same")
+                .rfind("softcell: --trace and --json are one file, same", 0),
+            0u);
+  EXPECT_NE(refusal(demo + "--record same --json " + (folder / "same")).find("--record and --json"),
+            std::string::npos);
+  EXPECT_NE(refusal(demo + "--video same.mp4 --json same.mp4").find("--video and --json"), std::string::npos);
+  EXPECT_NE(refusal("report t.json --out ./t.json").find("the trace and --out are one file"),
+            std::string::npos);
+  EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
+}
+
+TEST(Command, RefusesToReplaceWhatItReads) {
+  const ScratchFolder folder;
+  const std::string scene = "dimension = 2\n";
+  write_file(folder / "f.toml", scene);
+  write_file(folder / "m.obj", kCube);
+  write_file(folder / "r.rec", "a recording");
+  const auto before = files_in(folder.path());
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run =
+        run_shell("cd " + folder.path().string() + " && timeout 20 " SOFTCELL_COMMAND " " + arguments);
+    EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
+    EXPECT_EQ(files_in(folder.path()), before) << arguments;
+    return run.output;
+  };
+  const std::string demo = "demo 2d --headless --frames 1 --size 32x32 ";
+  for (const std::string output : {"--record", "--trace", "--json"}) {
+    EXPECT_NE(refusal(demo + "--scene f.toml " + output + " ./f.toml")
+                  .find("the scene and " + output + " are one file, ./f.toml; give each a file of its own"),
+              std::string::npos);
+    EXPECT_NE(refusal("demo 3d --headless --mesh m.obj " + output + " m.obj")
+                  .find("--mesh and " + output + " are one file, m.obj"),
+              std::string::npos);
+  }
+  for (const std::string output : {"--trace", "--json"}) {
+    EXPECT_NE(refusal(demo + "--replay r.rec " + output + " r.rec").find("--replay and " + output),
+              std::string::npos);
+  }
+  // A built-in scene is no file.
+  const CommandResult named = run_shell("cd " + folder.path().string() + " && " SOFTCELL_COMMAND " " + demo +
+                                        "--scene man --json man");
+  EXPECT_EQ(named.status, 0) << named.output;
+}
+
+// The folder above the one that a link stands for is not the folder that the link is in.
+TEST(Command, KnowsOneFileThroughALinkedFolder) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder / "other/sub");
+  std::filesystem::create_directory_symlink(folder / "other/sub", folder / "link");
+  const std::string demo = "cd " + folder.path().string() +
+                           " && " SOFTCELL_COMMAND
+                           " demo 2d --headless --quiet --frames 1 --size 32x32 --trace link/../x.json ";
+  EXPECT_EQ(run_shell(demo + "--json other/x.json").status, 2);
+  EXPECT_EQ(run_shell(demo + "--json x.json").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "x.json"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "other/x.json"));
+}
+
+TEST(Command, KnowsOneFileThroughALinkToWhatIsStillToBeMade) {
+  const ScratchFolder folder;
+  std::filesystem::create_symlink("made.json", folder / "link.json");
+  const std::string demo =
+      "demo 2d --headless --quiet --frames 1 --size 32x32 --json " + (folder / "link.json");
+  EXPECT_EQ(run_softcell(demo + " --trace " + (folder / "made.json")).status, 2);
+  EXPECT_EQ(run_softcell(demo).status, 0);
+  EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"link.json", "made.json"}));
+}
+
+TEST(Command, LeavesNothingWhenInterruptedBeforeTheFirstFrame) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_shell("cd " + folder.path().string() +
+                " && " SOFTCELL_COMMAND
+                " demo 3d --headless --scene big --frames 1 --json j --trace t --record r & child=$!; "
+                "while [ -z \"$(ls -A " +
+                folder.path().string() + ")\" ]; do sleep 0.01; done; kill -TERM $child; wait $child");
+  EXPECT_EQ(run.status, 130) << run.output;
+  EXPECT_EQ(run.output, "softcell: interrupted before the first frame\n");
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+TEST(Command, SaysHowFarItCameWhenInterrupted) {
+  const ScratchFolder folder;
+  const CommandResult run = run_shell(
+      "cd " + folder.path().string() + " && timeout --preserve-status --signal=INT " +
+      std::to_string(SOFTCELL_SLOW_BUILD ? 20 : 3) +
+      " " SOFTCELL_COMMAND " demo 2d --headless --frames 100000 --size 32x32 --out frames --json j");
+  EXPECT_EQ(run.status, 130);
+  EXPECT_TRUE(std::regex_match(
+      run.output,
+      std::regex(
+          "softcell: interrupted after [0-9]+ of 100000 frames; every frame that was written is whole; "
+          "only a run to its end leaves a trace or statistics\n")))
+      << run.output;
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"frames"});
+}
+
+TEST(Command, PrintsItsSummaryInColumns) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_softcell("demo 2d --headless --frames 3 --size 32x32 --record " + (folder / "r.rec"));
+  EXPECT_NE(run.output.find("\nrecording: " + (folder / "r.rec") + "\n"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("\na picture: "), std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find("pictures 0"), std::string::npos) << run.output;
+  std::istringstream lines(run.output);
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line);) {
+    ASSERT_GT(line.size(), 11u) << run.output;
+    EXPECT_EQ(line[10], ' ') << line;
+    EXPECT_NE(line[11], ' ') << line;
+  }
+}
+
+// A pipe's opening waits for its reader, and this one reads the second behind the first's end.
+TEST(Command, WritesIntoPipesOneAfterTheOther) {
+  const ScratchFolder folder;
+  const CommandResult run =
+      run_shell("cd " + folder.path().string() +
+                " && mkfifo p q && (cat p >trace; cat q >json) & "
+                "cd " +
+                folder.path().string() +
+                "; while [ ! -p q ]; do sleep 0.01; done; timeout 60 " SOFTCELL_COMMAND
+                " demo 2d --headless --quiet --frames 1 --size 32x32 --trace p --json q && wait");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_GT(std::filesystem::file_size(folder / "trace"), 100u);
+  EXPECT_GT(std::filesystem::file_size(folder / "json"), 100u);
+}
+
+TEST(Command, RefusesWhatItCannotWriteBeforeALongRun) {
+  for (const std::string run :
+       {"demo 2d --headless --frames 1000000 --record /proc/a.rec", "bench --json /proc/bench.json",
+        "demo 3d --headless --frames 1000000 --trace /proc/t.json",
+        "demo 2d --headless --frames 1000000 --json /proc/s.json"}) {
+    const CommandResult refused = run_shell("timeout 20 " SOFTCELL_COMMAND " " + run);
+    EXPECT_EQ(refused.status, 1) << run << ": " << refused.output;
+    EXPECT_EQ(refused.output.rfind("softcell: cannot write /proc/", 0), 0u) << refused.output;
+  }
+}
+
+TEST(Command, ReplacesTheRecordingThatItReplays) {
+  const ScratchFolder folder;
+  const std::string recording = folder / "run.rec";
+  const std::string demo = "demo 2d --headless --quiet --frames 2 --size 32x32 --record " + recording;
+  ASSERT_EQ(run_softcell(demo).status, 0);
+  const CommandResult again = run_softcell(demo + " --replay " + recording);
+  EXPECT_EQ(again.status, 0) << again.output;
+  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"run.rec"});
+}
+
+TEST(Command, ABenchmarkThatIsInterruptedLeavesNoFile) {
+  const ScratchFolder folder;
+  const CommandResult run = run_shell("timeout --signal=INT 2 " SOFTCELL_COMMAND
+                                      " bench --filter dma/get16k --rounds 100000 --json " +
+                                      (folder / "b.json"));
+  EXPECT_NE(run.output.find("interrupted"), std::string::npos) << run.output;
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+TEST(Command, SaysWhenTheDiskIsFullBeforeAVideosEnd) {
+  const ScratchFolder folder;
+  const auto on_small_disk = [&](const std::string& line) {
+    return run_shell("unshare --map-root-user --mount sh -c 'mount -t tmpfs -o size=32k tmpfs " +
+                     folder.path().string() + " && cd " + folder.path().string() + " && { " + line + "; }'");
+  };
+  if (on_small_disk("true").status != 0) GTEST_SKIP() << "here nobody may mount a disk";
+  const CommandResult run = on_small_disk(SOFTCELL_COMMAND
+                                          " demo 3d --headless --scene drop --size 640x360 --frames 60 "
+                                          "--quiet --video v.mp4; echo status $?; ls -A");
+  EXPECT_EQ(run.output.rfind("softcell: cannot write the video v.mp4: ffmpeg: ", 0), 0u) << run.output;
+  EXPECT_TRUE(run.output.ends_with(" v.mp4: No space left on device\nstatus 1\n")) << run.output;
+}
+
+TEST(Command, SaysWhenWhatItPrintsIsLost) {
+  for (const char* verb : {"scenes", "man", "spu budget", "bench --list", "completion bash", "--help"}) {
+    const CommandResult run = run_shell(std::string(SOFTCELL_COMMAND) + " " + verb + " 2>&1 >/dev/full");
+    EXPECT_EQ(run.status, 1) << verb;
+    EXPECT_NE(run.output.find("No space left"), std::string::npos) << verb << ": " << run.output;
+  }
+}
+
+struct Refusal {
+  const char* arguments;  ///< %s is a scratch folder with cube.obj and some broken files
+  int status;
+  const char* part;  ///< of the one line that is printed
+};
+
+void PrintTo(const Refusal& r, std::ostream* out) { *out << r.arguments; }
+
+class CommandRefuses : public testing::TestWithParam<Refusal> {};
+
+TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
+  const ScratchFolder folder;
+  write_file(folder / "cube.obj", kCube);
+  write_file(folder / "empty.obj", "");
+  write_file(folder / "truncated.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n");
+  write_file(folder / "nan.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n");
+  write_file(folder / "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  write_file(folder / "file", "not a folder");
+  std::string arguments = GetParam().arguments;
+  for (std::size_t at; (at = arguments.find("%s")) != std::string::npos;)
+    arguments.replace(at, 2, folder.path().string());
+  const auto before = files_in(folder.path());
+
+  const CommandResult run = run_softcell(arguments);
+  EXPECT_EQ(run.status, GetParam().status) << run.output;
+  EXPECT_NE(run.output.find(GetParam().part), std::string::npos) << run.output;
+  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+  EXPECT_EQ(run.output.rfind("softcell: ", 0), 0u) << run.output;
+  EXPECT_EQ(files_in(folder.path()), before) << "nothing half written is left";
+}
+
+#define SC_DEMO "demo 3d --headless --frames 1 --size 32x32 "
+
+INSTANTIATE_TEST_SUITE_P(
+    WrongUsage, CommandRefuses,
+    testing::Values(
+        Refusal{"", 2, "say what to do: demo 2d, demo 3d, spu run"},
+        Refusal{"demo", 2, "say what to do: demo 2d, demo 3d ("},
+        Refusal{"spu", 2, "say what to do: spu run, spu explore, spu budget ("},
+        Refusal{"dance", 2, "softcell has no command 'dance'; there are: demo, spu, scenes,"},
+        Refusal{"demo 4d", 2, "softcell demo has no command '4d'; there are: 2d, 3d ("},
+        Refusal{"demo 3d 2d", 2, "the argument '2d' is one too many"},
+        Refusal{"scenes x", 2, "'x' is one too many: softcell scenes takes nothing but options"},
+        Refusal{"spu run a b", 2, "'b' is one too many: softcell spu run takes IMAGE and options"},
+        Refusal{SC_DEMO "--bogus", 2, "softcell demo 3d has no option --bogus ("},
+        Refusal{SC_DEMO "-x", 2, "softcell demo 3d has no option -x ("},
+        Refusal{"demo 3d --fram 3", 2, "has no option --fram; did you mean --frames?"},
+        Refusal{"report --outt a b", 2, "has no option --outt; did you mean --out?"},
+        Refusal{"demo 3d --frames 3 --frames 4", 2, "--frames is given 2 times; give it once"},
+        Refusal{"demo 3d --frames 3 --frames 4 --headless", 2, "--frames is given 2 times; give it once"},
+        Refusal{"demo 3d --frames", 2, "--frames needs a value behind it: FRAMES"},
+        Refusal{"demo 3d --headless --frames", 2, "--frames needs a value behind it: FRAMES"},
+        Refusal{"demo 3d --headless --quiet --frames 1 --scene", 2, "--scene needs a value behind it: SCENE"},
+        Refusal{"demo 3d -headless --json %s/x", 2,
+                "softcell demo 3d has no option -headless; did you mean --headless?"},
+        Refusal{"demo 3d -hx", 2, "softcell demo 3d has no option -hx ("},
+        Refusal{"-help", 2, "softcell has no option -help; did you mean --help?"},
+        Refusal{SC_DEMO "-frames", 2, "has no option -frames; did you mean --frames?"},
+        Refusal{"spu budget --jsn", 2, "(softcell spu budget --help lists what is allowed)"},
+        Refusal{"demo 2d --size 0x0", 2, "(softcell demo 2d --help lists what is allowed)"},
+        Refusal{SC_DEMO "--spes 7", 2, "1"}, Refusal{SC_DEMO "--spes 0", 2, "6"},
+        Refusal{SC_DEMO "--spes two", 2, "--spes"},
+        Refusal{"demo 3d --headless --size 0x0", 2, "WIDTHxHEIGHT"},
+        Refusal{"demo 3d --headless --size 99999x20", 2, "8192"},
+        Refusal{"demo 3d --headless --size big", 2, "WIDTHxHEIGHT"},
+        Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
+        Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
+        Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
+        Refusal{"demo 3d --headless --size ''", 2, "--size needs a value behind it: WIDTHxHEIGHT"},
+        Refusal{SC_DEMO "--engine ''", 2, "--engine needs a value behind it: native|reference"},
+        Refusal{SC_DEMO "--skin ''", 2, "--skin needs a value behind it: spe|gpu"},
+        Refusal{SC_DEMO "--view ''", 2, "--view needs a value behind it: mesh|lattice"},
+        Refusal{SC_DEMO "--json ''", 2, "--json needs a value behind it: FILE"},
+        Refusal{"demo 2d --headless --frames 1e3", 2,
+                "--frames 1e3: give a whole number from 1 to 1000000 ("},
+        Refusal{"demo 2d --headless --frames 1.5", 2,
+                "--frames 1.5: give a whole number from 1 to 1000000 ("},
+        Refusal{"demo 2d --headless --frames nan", 2, "--frames nan: give a whole number"},
+        Refusal{"demo 2d --headless --frames 1000001", 2, "--frames 1000001: give a whole number"},
+        Refusal{"demo 2d --headless --frames 010", 2, "--frames 010: give a whole number"},
+        Refusal{"spu explore --seeds 1e3 saxpy", 2,
+                "--seeds 1e3: give a whole number from 1 to 1000000000 ("},
+        Refusal{"spu run --spes 1.5 saxpy", 2, "--spes 1.5: give a whole number from 1 to 6 ("},
+        Refusal{"bench --rounds 2k", 2, "--rounds 2k: give a whole number from 1 to 100000 ("},
+        Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
+        Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
+        Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
+        Refusal{SC_DEMO "--video %s/v.webm", 2, "v.webm: give a file name that ends in .mp4"},
+        Refusal{SC_DEMO "--video ''", 2, "--video needs a value"},
+        Refusal{"demo 2d --statistics", 2, "--headless"},
+        Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
+        Refusal{SC_DEMO "--scene arena --mesh %s/cube.obj", 2, "--mesh"},
+        Refusal{SC_DEMO "--cell 0.1", 2, "--mesh"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell wide", 2, "--cell"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.2 --cells 4", 2, "--cells"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0", 2, "--cell 0: give a length above 0"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell -1", 2, "--cell -1: give a length"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell nan", 2, "--cell nan: give a length"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell inf", 2, "--cell inf: give a length"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"},
+        Refusal{"report", 2, "softcell report needs TRACE"}, Refusal{"report %s/file", 2, "--out"},
+        Refusal{"bench --filter [", 2, "regular expression"}, Refusal{"bench --rounds 0", 2, "--rounds"},
+        Refusal{"bench --list --json %s/l.json", 2, "--list measures nothing"},
+        Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    BadInput, CommandRefuses,
+    testing::Values(
+        Refusal{SC_DEMO "--scene nowhere", 1, "there are: arena, "},
+        Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is no file"},
+        Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"}, Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
+        Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},
+        Refusal{SC_DEMO "--mesh %s/truncated.ply", 1, "truncated.ply"},
+        Refusal{SC_DEMO "--mesh %s/nan.obj", 1, "nan.obj"},
+        Refusal{SC_DEMO "--mesh %s/range.obj", 1, "range.obj"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 3", 1, "--cell 3: one cell would hold"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 1e-9", 1, "give 0.00391 or more"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.001", 1, "--cell 0.001: the model is 1 long"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.005", 1, "--cell 0.005: the lattice would have"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cells 200", 1, "--cells 200: the lattice would have"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.01", 1, "--cell 0.01: the lattice would have"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --cell 0.9999", 1, "--cell 0.9999: one cell would hold"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --out %s/file", 1, "file"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --out /proc/frames", 1, "/proc/frames"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --trace /proc/t.json", 1, "/proc/t.json"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --json /dev/full", 1, "No space left"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --json /proc/stats.json", 1, "/proc/stats.json"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --video /proc/v.mp4", 1, "/proc/v.mp4"}));
+
+}  // namespace
+}  // namespace softcell::tests

@@ -1,0 +1,17 @@
+#pragma once
+// What verbs this build of the command has: all_verbs.cpp or, where there are no demos, kernel_verbs.cpp.
+
+#include <span>
+#include <string_view>
+
+#include "command_line/verb.h"
+
+namespace softcell::tool {
+
+/// In the order in which --help lists them.
+Verbs all_verbs();
+
+/// The verbs that only builds with demos have, in one without.
+std::span<const std::string_view> left_out_verbs();
+
+}  // namespace softcell::tool

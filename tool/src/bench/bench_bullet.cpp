@@ -1,0 +1,107 @@
+// Bullet's own soft bodies on the lattices of the other solvers, without collisions.
+
+#include <BulletSoftBody/btSoftBody.h>
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "bench_bodies.h"
+#include "benchmarks.h"
+
+namespace softcell::tool {
+namespace {
+
+constexpr float kStep = 1.0f / 60, kDamping = 0.1f, kMatching = 0.5f, kDensity = 1000;
+
+btVector3 to_bullet(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
+
+/// A btSoftBody that is stepped from the same bent pose each time.
+class BulletSoftBody {
+ public:
+  enum class Held {
+    kPose,  ///< the whole body as one region, matched (btSoftBody::setPose)
+    kLinks  ///< links along the edges and across the faces of cells
+  };
+
+  BulletSoftBody(const ppu::Lattice& lattice, Held held) {
+    const std::vector<float> masses = ppu::particle_masses(lattice, kDensity);
+    std::vector<btVector3> rest;
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+      rest.push_back(to_bullet(lattice.rest_position(i)));
+      bent_.push_back(to_bullet(bent_position(lattice, i)));
+    }
+    body_ = std::make_unique<btSoftBody>(&world_, static_cast<int>(rest.size()), rest.data(), masses.data());
+    world_.m_gravity.setZero();
+    body_->m_cfg.collisions = 0;
+    body_->m_cfg.kDP = kDamping;
+    if (held == Held::kPose) {
+      body_->m_cfg.kMT = kMatching;
+      body_->setPose(false, true);
+    } else {
+      add_links(lattice);
+    }
+  }
+
+  void step() {
+    for (int i = 0; i < body_->m_nodes.size(); ++i) {
+      btSoftBody::Node& node = body_->m_nodes[i];
+      node.m_x = node.m_q = bent_[static_cast<std::size_t>(i)];
+      node.m_v.setZero();
+    }
+    body_->predictMotion(kStep);
+    body_->solveConstraints();
+    body_->integrateMotion();
+  }
+
+ private:
+  void add_links(const ppu::Lattice& lattice) {
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+      for (const std::uint32_t other : lattice.neighbours[i]) {
+        const int apart = (lattice.particles[i] - lattice.particles[other]).squaredNorm();
+        if (other > i && apart <= 2) body_->appendLink(static_cast<int>(i), static_cast<int>(other));
+      }
+    }
+  }
+
+  btSoftBodyWorldInfo world_;
+  std::unique_ptr<btSoftBody> body_;
+  std::vector<btVector3> bent_;
+};
+
+/// Several of them, as of the other solvers.
+struct BulletBodies {
+  BulletBodies(const ppu::Lattice& lattice, BulletSoftBody::Held held) {
+    for (nodes = 0; nodes < kBenchParticles; nodes += lattice.particles.size())
+      bodies.push_back(std::make_unique<BulletSoftBody>(lattice, held));
+  }
+
+  std::size_t nodes;
+  std::vector<std::unique_ptr<BulletSoftBody>> bodies;
+};
+
+void add_bullet(std::vector<Benchmark>& all, const BenchBody& body, BulletSoftBody::Held held,
+                std::string_view name) {
+  const Shared<BulletBodies> shared(
+      [=, make = body.make] { return std::make_shared<BulletBodies>(make(), held); });
+  for (int w = 1; w <= 4; ++w) {
+    all.push_back({fmt::format("solver3d/{}/w{}/{}", body.name, w, name), [=] {
+                     const auto rig = shared.get();
+                     return Work{rig->nodes, [rig] {
+                                   for (const auto& each : rig->bodies) each->step();
+                                 }};
+                   }});
+  }
+}
+
+}  // namespace
+
+void add_bullet_benchmarks(std::vector<Benchmark>& all) {
+  for (const BenchBody& body : bench_bodies()) {
+    add_bullet(all, body, BulletSoftBody::Held::kPose, "bullet-pose");
+    add_bullet(all, body, BulletSoftBody::Held::kLinks, "bullet-links");
+  }
+}
+
+}  // namespace softcell::tool

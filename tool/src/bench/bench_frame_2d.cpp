@@ -1,0 +1,93 @@
+// Frames of the 2D demo without pictures, next to circles of Box2D alone.
+
+#include <box2d/b2_body.h>
+#include <box2d/b2_circle_shape.h>
+#include <box2d/b2_fixture.h>
+#include <box2d/b2_polygon_shape.h>
+#include <box2d/b2_world.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "benchmarks.h"
+#include "scene_file/scene_library.h"
+#include "scene_frames.h"
+#include "simulation/simulation_2d.h"
+
+namespace softcell::tool {
+namespace {
+
+constexpr int kFramesBefore = 300;  // so that all is on the floor when measuring begins
+constexpr int kFrames = 20;         // in one measurement
+constexpr float kFrameSeconds = 1.0f / 60;
+
+using SoftFrames2d = SceneFrames<demos::Scene2d, demos::Simulation2d>;
+
+/// A scene of walls and soft bodies, with a loose circle for each particle: what Box2D alone costs, all of
+/// them colliding.
+class CircleFrames {
+ public:
+  explicit CircleFrames(const std::string& name) {
+    const demos::Scene2d scene = demos::load_scene_2d(name);
+    substeps_ = scene.substeps;
+    world_.SetGravity({0, -scene.gravity});
+    world_.SetAllowSleeping(false);
+    for (const demos::RigidBody2d& wall : scene.rigid_bodies) add_wall(wall);
+    for (const demos::SoftBody2dPlacement& placement : scene.soft_bodies) {
+      const auto model =
+          ppu::make_soft_body_model(placement.lattice(), placement.settings, placement.contact_radius);
+      for (std::size_t i = 0; i < model->particles(); ++i)
+        add_circle(model->lattice().rest_position(i) + placement.position, model->contact_radius());
+    }
+    for (int i = 0; i < kFramesBefore; ++i) step();
+  }
+
+  void step() {
+    for (int i = 0; i < substeps_; ++i) world_.Step(kFrameSeconds / static_cast<float>(substeps_), 8, 3);
+  }
+
+ private:
+  void add_wall(const demos::RigidBody2d& wall) {
+    b2BodyDef definition;
+    definition.position = {wall.position.x(), wall.position.y()};
+    const Eigen::Vector2f half = std::get<demos::Box2dShape>(wall.shape).size / 2;
+    b2PolygonShape shape;
+    shape.SetAsBox(half.x(), half.y());
+    world_.CreateBody(&definition)->CreateFixture(&shape, 0);
+  }
+  void add_circle(const Eigen::Vector2f& position, float radius) {
+    b2BodyDef definition;
+    definition.type = b2_dynamicBody;
+    definition.position = {position.x(), position.y()};
+    b2CircleShape shape;
+    shape.m_radius = radius;
+    world_.CreateBody(&definition)->CreateFixture(&shape, 1);
+  }
+
+  int substeps_ = 1;
+  b2World world_{{0, 0}};
+};
+
+template <typename Frames>
+Work work_of(const std::shared_ptr<Frames>& frames) {
+  return {kFrames, [=] {
+            for (int i = 0; i < kFrames; ++i) frames->step();
+          }};
+}
+
+}  // namespace
+
+void add_frame_2d_benchmarks(std::vector<Benchmark>& all) {
+  const Shared<SoftFrames2d> man(
+      [] { return std::make_shared<SoftFrames2d>(demos::load_scene_2d("man"), kFramesBefore); });
+  all.push_back({"frame/man", [=] { return work_of(man.get()); }});
+  all.push_back({"frame/man/ppu", [=] {
+                   Work work = work_of(man.get());
+                   work.spent = [frames = man.get()] { return frames->ppu_time(); };
+                   return work;
+                 }});
+  all.push_back({"frame/man/circles", [] { return work_of(std::make_shared<CircleFrames>("man")); }});
+}
+
+}  // namespace softcell::tool

@@ -1,0 +1,94 @@
+// Skinning on an SPE beside its scalar twin.
+
+#include <memory>
+
+#include "benchmarks.h"
+#include "softcell/ppu/shapes.h"
+#include "softcell/ppu/skin_orchestrator.h"
+#include "softcell/ppu/skin_scalar.h"
+#include "spe_waker.h"
+#include "spu/kernel_file.h"
+
+namespace softcell::tool {
+namespace {
+
+constexpr std::size_t kSkinnedBodies = 8;  // in one frame, so that waking the SPE does not count
+
+/// A body in a bent pose, so that nothing is a special case.
+struct SkinCase {
+  SkinCase(const ppu::TriangleMesh& body_mesh, float cell_size)
+      : lattice(ppu::voxelize(body_mesh, cell_size)),
+        embedding(std::make_shared<ppu::Embedding>(ppu::embed(body_mesh, lattice))),
+        kernel(load_kernel("skin")),
+        job_loop(load_kernel("job_loop")),
+        jobs(memory, {.spes = 1}, job_loop),
+        waker(jobs),
+        orchestrator(memory, jobs, kernel),
+        scalar_out(kSkinnedBodies, std::vector<spu::SkinnedVertex>(4 * embedding->groups.size())) {
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+      Eigen::Vector3f x = lattice.rest_position(i);
+      x.x() += 0.1f * x.y() * x.y();
+      x.z() += 0.05f * x.x() * x.y();
+      positions.push_back(x);
+      corners.push_back({x.x(), x.y(), x.z(), 0});
+    }
+    for (std::size_t body = 0; body < kSkinnedBodies; ++body) {
+      orchestrator.add(embedding, corners.size());
+      all_corners.push_back(corners);
+    }
+  }
+
+  void run_spe() {
+    orchestrator.kick(all_corners);
+    orchestrator.drain();
+  }
+
+  void run_scalar() {
+    const Eigen::Vector3f origin(-2, -2, -2);
+    for (auto& out : scalar_out) {
+      for (const ppu::SkinPart& part : embedding->parts) {
+        ppu::skin_scalar(
+            *embedding, part, positions, origin,
+            std::span(out).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));
+      }
+    }
+  }
+
+  ppu::Lattice lattice;
+  std::shared_ptr<ppu::Embedding> embedding;
+  dma::AddressSpace memory;
+  ls_sim::KernelImage kernel, job_loop;
+  ppu::JobSystem jobs;
+  SpeWaker waker;
+  ppu::SkinOrchestrator orchestrator;
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<spu::SkinCorner> corners;
+  std::vector<std::span<const spu::SkinCorner>> all_corners;  // one for each body, all in the same pose
+  std::vector<std::vector<spu::SkinnedVertex>> scalar_out;    // of each body
+};
+
+void add_skin(std::vector<Benchmark>& all, const std::string& name,
+              std::function<std::shared_ptr<SkinCase>()> make) {
+  const Shared<SkinCase> shared(std::move(make));
+  const auto add = [&](const char* how, auto run, bool on_spes = false) {
+    all.push_back({"skin/" + name + "/" + how, [=] {
+                     const auto rig = shared.get();
+                     Work work{kSkinnedBodies * rig->embedding->slot_of_vertex.size(), [=] { run(*rig); }};
+                     if (on_spes) work.before = [=] { rig->waker.wake(); };
+                     return work;
+                   }});
+  };
+  add(
+      "spe", [](SkinCase& rig) { rig.run_spe(); }, true);
+  add("scalar", [](SkinCase& rig) { rig.run_scalar(); });
+}
+
+}  // namespace
+
+void add_skin_benchmarks(std::vector<Benchmark>& all) {
+  add_skin(all, "sphere", [] { return std::make_shared<SkinCase>(ppu::make_sphere(0.7f, 48), 0.28f); });
+  add_skin(all, "torus",
+           [] { return std::make_shared<SkinCase>(ppu::make_torus(0.72f, 0.28f, 192, 80), 0.2f); });
+}
+
+}  // namespace softcell::tool

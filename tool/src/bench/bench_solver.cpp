@@ -1,0 +1,134 @@
+// Shape matching and damping: the kernel match on one SPE beside the PPU's solver, on bodies of several
+// kinds.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "bench_bodies.h"
+#include "benchmarks.h"
+#include "eigen_solver.h"
+#include "softcell/ppu/job_system.h"
+#include "softcell/ppu/match_orchestrator.h"
+#include "softcell/ppu/shape_matching.h"
+#include "spe_waker.h"
+#include "spu/kernel_file.h"
+
+namespace softcell::tool {
+namespace {
+
+constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f, kDensity = 1000;
+
+/// What all solvers work on: several bodies of one model, so that none has one body's data in its caches.
+struct Model {
+  /// @param copies  0: as many as make kBenchParticles
+  Model(ppu::Lattice body, int half_width, std::size_t copies = 0)
+      : lattice(std::move(body)),
+        plan(std::make_shared<const ppu::MatchingPlan<float>>(lattice, half_width,
+                                                              ppu::particle_masses(lattice, kDensity))),
+        bodies(copies != 0 ? copies : std::max<std::size_t>(1, kBenchParticles / lattice.particles.size())) {
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) x.push_back(bent_position(lattice, i));
+  }
+
+  std::size_t particles() const { return bodies * x.size(); }
+
+  ppu::Lattice lattice;
+  std::shared_ptr<const ppu::MatchingPlan<float>> plan;
+  std::size_t bodies;
+  std::vector<Eigen::Vector3f> x;  // of each
+};
+
+/// The kernel match on one SPE.
+class SpeBodies {
+ public:
+  explicit SpeBodies(const Model& model)
+      : jobs_(memory_, {.spes = 1}, job_loop_),
+        spes_(memory_, jobs_, kernel_, ppu::MatchPlan(model.lattice, *model.plan), model.bodies),
+        bodies_(model.bodies) {
+    for (std::size_t b = 0; b < bodies_; ++b) {
+      for (std::size_t i = 0; i < model.x.size(); ++i)
+        spes_.positions(b)[i] = {model.x[i].x(), model.x[i].y(), model.x[i].z(), 0};
+    }
+  }
+
+  void step() {
+    for (std::size_t b = 0; b < bodies_; ++b) std::ranges::fill(spes_.velocities(b), spu::SkinCorner{});
+    spes_.step({.pull = kAlpha / kStep, .damping = kDamping, .least_iterations = 2, .most_iterations = 2});
+  }
+  void wake() { waker_.wake(); }
+
+ private:
+  dma::AddressSpace memory_;
+  ls_sim::KernelImage job_loop_ = load_kernel("job_loop"), kernel_ = load_kernel("match");
+  ppu::JobSystem jobs_;
+  SpeWaker waker_{jobs_};
+  ppu::MatchOrchestrator spes_;
+  std::size_t bodies_;
+};
+
+void step(EigenSolver<3>& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
+  solver.step(x, v, kAlpha, kStep, kDamping);
+}
+void step(ppu::ShapeMatcher<float>& solver, std::span<const Eigen::Vector3f> x,
+          std::span<Eigen::Vector3f> v) {
+  solver.step_velocities(x, v, kAlpha, kStep, kDamping);
+}
+
+/// A solver of the PPU's for each body.
+template <typename Solver>
+class PpuBodies {
+ public:
+  template <typename... Arguments>
+  explicit PpuBodies(const Model& model, Arguments... arguments) {
+    for (std::size_t b = 0; b < model.bodies; ++b)
+      bodies_.push_back({Solver(model.plan, arguments...), model.x, std::vector(model.x)});
+  }
+
+  void step() {
+    for (Body& body : bodies_) {
+      std::ranges::fill(body.v, Eigen::Vector3f::Zero());
+      tool::step(body.solver, body.x, body.v);
+    }
+  }
+
+ private:
+  struct Body {
+    Solver solver;
+    std::vector<Eigen::Vector3f> x, v;
+  };
+  std::vector<Body> bodies_;
+};
+
+void add_solver(std::vector<Benchmark>& all, const BenchBody& body, int half_width) {
+  const Shared<Model> shared(
+      [make = body.make, half_width] { return std::make_shared<Model>(make(), half_width); });
+  const auto add = [&](std::string_view solver, auto make) {
+    all.push_back({fmt::format("solver3d/{}/w{}/{}", body.name, half_width, solver), [=] {
+                     const auto bodies = make(*shared.get());
+                     Work work{shared.get()->particles(), [bodies] { bodies->step(); }};
+                     if constexpr (requires { bodies->wake(); }) work.before = [bodies] { bodies->wake(); };
+                     return work;
+                   }});
+  };
+  using Matchers = PpuBodies<ppu::ShapeMatcher<float>>;
+  add("spe", [](const Model& model) { return std::make_shared<SpeBodies>(model); });
+  add("eigen", [](const Model& model) { return std::make_shared<PpuBodies<EigenSolver<3>>>(model); });
+  add("ppu",
+      [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kBarPlateCube); });
+  add("naive", [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kNaive); });
+}
+
+}  // namespace
+
+void add_solver_benchmarks(std::vector<Benchmark>& all) {
+  for (const BenchBody& body : bench_bodies())
+    for (int w = 1; w <= 4; ++w) add_solver(all, body, w);
+  all.push_back({"solver3d/one1000/w2/spe", [] {
+                   const Model model(bench_block({10, 10, 10}), 2, 1);
+                   const auto body = std::make_shared<SpeBodies>(model);
+                   return Work{model.particles(), [body] { body->step(); }};
+                 }});
+}
+
+}  // namespace softcell::tool

@@ -1,0 +1,154 @@
+#include "bench_verb.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <vector>
+
+#include "benchmarks.h"
+#include "command_line/shared_options.h"
+#include "softcell/base/whole_file.h"
+#include "verb/exit_status.h"
+#include "verb/interrupt.h"
+#include "verb/verb_files.h"
+
+namespace softcell::tool {
+namespace {
+
+std::vector<Benchmark> all_benchmarks() {
+  std::vector<Benchmark> all;
+  add_solver_benchmarks(all);
+  add_bullet_benchmarks(all);
+  add_solver_2d_benchmarks(all);
+  add_rotation_benchmarks(all);
+  add_tiles_benchmarks(all);
+  add_skin_benchmarks(all);
+  add_dma_benchmarks(all);
+  add_dispatch_benchmarks(all);
+  add_frame_benchmarks(all);
+  add_frame_2d_benchmarks(all);
+  return all;
+}
+
+/// Those whose name the user asks for, sorted, so that what is compared stands together.
+std::vector<Benchmark> chosen_benchmarks(const std::string& filter_text) {
+  std::vector<Benchmark> all = all_benchmarks();
+  try {
+    const std::regex filter(filter_text);
+    std::erase_if(all, [&](const Benchmark& b) { return !std::regex_search(b.name, filter); });
+  } catch (const std::regex_error&) {
+    throw UsageError("--filter " + filter_text + " is not a regular expression");
+  }
+  if (all.empty())
+    throw UsageError("--filter " + filter_text + " leaves no benchmark; --list shows their names");
+  std::ranges::sort(all, {}, &Benchmark::name);
+  return all;
+}
+
+/// What is measured of one benchmark.
+struct Measurement {
+  Work work;
+  std::vector<double> nanoseconds = {};  // per item, one for each round; sorted in the end
+
+  double least() const { return nanoseconds.front(); }
+  double median() const { return nanoseconds[nanoseconds.size() / 2]; }
+};
+
+std::chrono::nanoseconds spent(const Work& work) {
+  return work.spent ? work.spent() : std::chrono::steady_clock::now().time_since_epoch();
+}
+
+/// Incomplete when interrupted.
+std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int rounds,
+                                 const InterruptGuard& guard) {
+  std::vector<Measurement> all;
+  for (const Benchmark& benchmark : benchmarks) {
+    if (guard.interrupted()) return all;
+    all.push_back({benchmark.prepare()});
+    all.back().work.run();  // caches, first allocations
+  }
+  // Round by round, so that a change of the machine's speed meets all alike.
+  for (int round = 0; round < rounds; ++round) {
+    for (Measurement& m : all) {
+      if (guard.interrupted()) return all;
+      if (m.work.before) m.work.before();
+      const std::chrono::nanoseconds begin = spent(m.work);
+      m.work.run();
+      const std::chrono::duration<double, std::nano> elapsed = spent(m.work) - begin;
+      m.nanoseconds.push_back(elapsed.count() / static_cast<double>(m.work.items));
+    }
+  }
+  for (Measurement& m : all) std::ranges::sort(m.nanoseconds);
+  return all;
+}
+
+}  // namespace
+
+int run_bench(const BenchOptions& options) {
+  if (options.list && options.json)
+    throw UsageError("--list measures nothing that --json could write: leave one of them out");
+  const std::vector<Benchmark> benchmarks = chosen_benchmarks(options.filter);
+  if (options.list) {
+    for (const Benchmark& b : benchmarks) fmt::print("{}\n", b.name);
+    return 0;
+  }
+  const InterruptGuard guard;
+  base::WholeFiles files;
+  base::WholeFile* const json = files.open(options.json);
+  const std::vector<Measurement> all = measure(benchmarks, options.rounds, guard);
+  if (guard.interrupted()) {
+    fmt::print(stderr, "softcell: interrupted; nothing is reported of a part of the rounds\n");
+    return kExitInterrupted;
+  }
+
+  auto document = nlohmann::ordered_json::array();
+  fmt::print("{:<38} {:>12} {:>12} {:>9}   nanoseconds per item, {} rounds\n", "name", "minimum", "median",
+             "items", options.rounds);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& name = benchmarks[i].name;
+    const Measurement& m = all[i];
+    fmt::print("{:<38} {:>12.2f} {:>12.2f} {:>9}\n", name, m.least(), m.median(), m.work.items);
+    document.push_back(
+        {{"name", name}, {"ns_min", m.least()}, {"ns_median", m.median()}, {"items", m.work.items}});
+  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].work.note) fmt::print("\n{}: {}", benchmarks[i].name, all[i].work.note());
+  if (json != nullptr) write_json(*json, document);
+  files.commit();
+  return 0;
+}
+
+namespace {
+
+constexpr int kMaxRounds = 100'000;
+
+class BenchVerb final : public Verb {
+ public:
+  void add_to(CLI::App& command, Call& chosen) override {
+    CLI::App* b = command.add_subcommand("bench", "Measure kernels, side by side in one run");
+    b->add_option("--filter", options_.filter,
+                  "Only benchmarks in whose name this regular expression is found; others are not even built")
+        ->type_name("REGEX");
+    take_whole_number(
+        b->add_option("--rounds", options_.rounds,
+                      "How often each is run, in turn; minimum and median are reported (default: 31)"),
+        1, kMaxRounds)
+        ->type_name("ROUNDS");
+    b->add_flag("--list", options_.list, "Print the names of the benchmarks and measure nothing");
+    b->add_option("--json", options_.json, "Write the figures to this file as well")->type_name("FILE");
+    b->callback([&] { chosen = [this] { return run_bench(options_); }; });
+  }
+
+ private:
+  BenchOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> bench_verb() { return std::make_unique<BenchVerb>(); }
+
+}  // namespace softcell::tool

@@ -1,0 +1,25 @@
+#pragma once
+// softcell bench: kernels and what they are compared with, measured in turn in one run.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "command_line/verb.h"
+
+namespace softcell::tool {
+
+struct BenchOptions {
+  std::string filter;  ///< regular expression; empty: all
+  int rounds = 31;     ///< in each of which every benchmark runs once
+  bool list = false;   ///< print names, measure nothing
+  std::optional<std::filesystem::path> json;
+};
+
+/// @return the exit status: 0, or 130 when interrupted.
+int run_bench(const BenchOptions& options);
+
+std::unique_ptr<Verb> bench_verb();
+
+}  // namespace softcell::tool

@@ -1,0 +1,47 @@
+#pragma once
+// The command line as plain data: the one source of what --help, the manual page and the shell completions
+// say.
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace softcell::tool {
+
+struct CommandOption {
+  std::vector<std::string> names;  ///< with their dashes, short ones first; a positional's one name has none
+  std::string
+      value;  ///< what stands behind the name: FILE, DIR, SCENE, "eager|lazy|random:SEED"; empty: a flag
+  std::string description;
+  bool positional = false;
+  bool required = false;
+  std::vector<std::string> needs{};     ///< without which it is refused
+  std::vector<std::string> excludes{};  ///< with which it is refused
+};
+
+/// A verb and those below it.
+struct CommandVerb {
+  std::string name;
+  std::string description;
+  std::vector<CommandOption> options;
+  std::vector<CommandVerb> verbs;
+};
+
+/// What the parser was told.
+CommandVerb command_tree(const CLI::App& app);
+
+/// The verbs that do something, each with its path from the top: "demo 3d".
+struct CommandLeaf {
+  std::string path;
+  const CommandVerb* verb;
+};
+std::vector<CommandLeaf> leaves_of(const CommandVerb& top);
+
+/// The words of a value that is a choice, "host|simulated"; of an open one, "random:SEED", up to the colon.
+/// Empty for all other values.
+std::vector<std::string> choices_of(const CommandOption& option);
+
+}  // namespace softcell::tool

@@ -1,0 +1,31 @@
+#pragma once
+// Options that several verbs have, and what is allowed behind them.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "softcell/dma/schedule.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace softcell::tool {
+
+/// Lets the option be nothing but a whole number in decimal digits, from `least`, which is above 0, to
+/// `most`.
+/// @return the option
+CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most);
+
+/// --dma; parse_dma() reads what it was given.
+void add_dma_option(CLI::App& verb, std::string& text);
+/// @throws UsageError
+dma::Schedule parse_dma(const std::string& text);
+
+/// --trace
+void add_trace_option(CLI::App& verb, std::optional<std::filesystem::path>& file);
+
+}  // namespace softcell::tool

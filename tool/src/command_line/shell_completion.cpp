@@ -1,0 +1,123 @@
+#include "shell_completion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace softcell::tool {
+namespace {
+
+std::string joined(const std::vector<std::string>& words, const char* between = " ") {
+  return fmt::format("{}", fmt::join(words, between));
+}
+
+std::string offer_words(const std::string& words) {
+  return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", words);
+}
+
+/// How bash finds the words for a value.
+std::string value_action(const CommandOption& option) {
+  const auto choices = choices_of(option);
+  if (!choices.empty()) return offer_words(joined(choices));
+  if (option.value == "DIR") return "_softcell_files -d \"$word\"";
+  if (option.value == "SCENE") return "_softcell_scenes \"$word\" \"${path##* }\"";
+  if (option.value == "KERNEL") return "_softcell_kernels \"$word\"";
+  if (option.value.find("FILE") != std::string::npos) return "_softcell_files -f \"$word\"";
+  return "COMPREPLY=()";
+}
+
+/// One arm of the case over the path: values of the option before, then what stands alone, then options.
+std::string leaf_arm(const CommandLeaf& leaf) {
+  std::string values, alone;
+  std::vector<std::string> words;
+  for (const CommandOption& option : leaf.verb->options) {
+    if (option.positional) {
+      const auto choices = choices_of(option);
+      if (choices.empty()) alone = value_action(option);
+      words.insert(words.end(), choices.begin(), choices.end());
+      continue;
+    }
+    words.insert(words.end(), option.names.begin(), option.names.end());
+    if (!option.value.empty())
+      values += fmt::format("        {}) {}; return ;;\n", joined(option.names, "|"), value_action(option));
+  }
+  std::string text = fmt::format("    '{}')\n", leaf.path);
+  if (!values.empty()) text += fmt::format("      case \"$before\" in\n{}      esac\n", values);
+  if (!alone.empty()) text += fmt::format("      if [[ $word != -* ]]; then {}; return; fi\n", alone);
+  return text + fmt::format("      {} ;;\n", offer_words(joined(words)));
+}
+
+/// Arms for what is not a whole verb yet: the words that come next.
+void add_branch_arms(const CommandVerb& verb, const std::string& path, std::string& text) {
+  if (verb.verbs.empty()) return;
+  std::vector<std::string> next;
+  for (const CommandVerb& below : verb.verbs) next.push_back(below.name);
+  for (const CommandOption& option : verb.options)
+    next.insert(next.end(), option.names.begin(), option.names.end());
+  text += fmt::format("    '{}') {} ;;\n", path, offer_words(joined(next)));
+  for (const CommandVerb& below : verb.verbs)
+    add_branch_arms(below, path.empty() ? below.name : fmt::format("{} {}", path, below.name), text);
+}
+
+/// Patterns of the words that make a path longer, for the loop that reads it.
+void add_paths(const CommandVerb& verb, const std::string& path, std::vector<std::string>& patterns) {
+  for (const CommandVerb& below : verb.verbs) {
+    const std::string longer = path.empty() ? below.name : fmt::format("{} {}", path, below.name);
+    patterns.push_back(fmt::format("'{}'", longer));
+    add_paths(below, longer, patterns);
+  }
+}
+
+constexpr const char* kBashScript =
+    R"bash(# Completion of softcell for bash: source it, or put it where bash-completion looks.
+_softcell_files() {{
+  local IFS=$'\n'
+  COMPREPLY+=($(compgen "$1" -- "$2"))
+}}
+_softcell_names_and_files() {{
+  COMPREPLY=($(compgen -W "$1" -- "$2"))
+  _softcell_files -f "$2"
+}}
+_softcell_scenes() {{
+  _softcell_names_and_files \
+    "$(softcell scenes 2>/dev/null | awk -v dimension="$2" '$2 == dimension {{ print $1 }}')" "$1"
+}}
+_softcell_kernels() {{
+  _softcell_names_and_files "$(softcell spu budget 2>/dev/null | awk 'NR > 1 {{ print $1 }}')" "$1"
+}}
+_softcell() {{
+  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" path='' longer i
+  COMPREPLY=()
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    longer="${{path:+$path }}${{COMP_WORDS[i]}}"
+    case "$longer" in
+      {}) path="$longer" ;;
+      *) break ;;
+    esac
+  done
+  if [[ $before == '=' ]]; then  # bash makes three words of --scene=arena, and of x=x.bin
+    before="${{COMP_WORDS[COMP_CWORD-2]}}"
+    if [[ $before != -* ]]; then _softcell_files -f "$word"; return; fi
+  fi
+  case "$path" in
+{}  esac
+}}
+complete -o filenames -F _softcell softcell
+)bash";
+
+}  // namespace
+
+std::string bash_completion(const CommandVerb& top) {
+  std::vector<std::string> paths;
+  add_paths(top, "", paths);
+  std::string arms;
+  add_branch_arms(top, "", arms);
+  for (const CommandLeaf& leaf : leaves_of(top)) arms += leaf_arm(leaf);
+  return fmt::format(kBashScript, joined(paths, "|"), arms);
+}
+
+std::string zsh_completion(const CommandVerb& top) {
+  return fmt::format("#compdef softcell\nautoload -Uz bashcompinit && bashcompinit\n{}",
+                     bash_completion(top));
+}
+
+}  // namespace softcell::tool

@@ -1,0 +1,51 @@
+#include "shell_verbs.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <utility>
+
+#include "command_tree.h"
+#include "manual_page.h"
+#include "shell_completion.h"
+
+namespace softcell::tool {
+namespace {
+
+class ShellVerbs final : public Verb {
+ public:
+  explicit ShellVerbs(std::string version) : version_(std::move(version)) {}
+
+  void add_to(CLI::App& command, Call& chosen) override {
+    CLI::App* c = command.add_subcommand("completion",
+                                         "Print a script for the shell that completes softcell's commands");
+    c->add_option("SHELL", shell_, "bash or zsh: source <(softcell completion bash)")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh"}).description(""))
+        ->type_name("bash|zsh");
+    c->callback([&] {
+      chosen = [&] {
+        const CommandVerb tree = command_tree(command);
+        std::fputs((shell_ == "zsh" ? zsh_completion(tree) : bash_completion(tree)).c_str(), stdout);
+        return 0;
+      };
+    });
+    command.add_subcommand("man", "Print the manual page: softcell man | man -l -")->callback([&] {
+      chosen = [&] {
+        std::fputs(manual_page(command_tree(command), version_).c_str(), stdout);
+        return 0;
+      };
+    });
+  }
+
+ private:
+  std::string version_;
+  std::string shell_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> shell_verbs(std::string version) {
+  return std::make_unique<ShellVerbs>(std::move(version));
+}
+
+}  // namespace softcell::tool

@@ -1,0 +1,14 @@
+#pragma once
+// softcell completion and softcell man: the command line itself, for a shell and for a reader.
+
+#include <memory>
+#include <string>
+
+#include "verb.h"
+
+namespace softcell::tool {
+
+/// @param version  of the command, as the manual page says it
+std::unique_ptr<Verb> shell_verbs(std::string version);
+
+}  // namespace softcell::tool

@@ -1,0 +1,33 @@
+#pragma once
+// A verb of the command, as whoever does it adds it to the command line.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace softcell::tool {
+
+/// Does what the command line asks for, and prints its result on standard output. Returns the exit status.
+/// @throws UsageError (exit status 2) or another std::exception (exit status 1), one sentence either way.
+using Call = std::function<int()>;
+
+/// One verb, or several with one above them. It keeps the values of its options: it must outlive the parser.
+class Verb {
+ public:
+  Verb() = default;
+  virtual ~Verb() = default;
+  Verb(const Verb&) = delete;
+  Verb& operator=(const Verb&) = delete;
+
+  /// Adds the verb to the parser.
+  /// @param chosen  becomes the verb's call when that is what the command line says; outlives this
+  virtual void add_to(CLI::App& command, Call& chosen) = 0;
+};
+
+using Verbs = std::vector<std::unique_ptr<Verb>>;
+
+}  // namespace softcell::tool

@@ -1,0 +1,43 @@
+#pragma once
+// What the command line asks of a demo.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "demo/pictures.h"
+#include "input/input_log.h"
+#include "scene/look.h"
+#include "scene_file/own_model.h"
+#include "simulation/simulation_options.h"
+#include "softcell/dma/schedule.h"
+
+namespace softcell::tool {
+
+/// What the demos have in common.
+struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
+  bool headless = false;
+  std::optional<std::string> scene;  ///< name or file
+  std::optional<int> frames;         ///< default: the scene's
+  std::optional<std::filesystem::path> json;
+  demos::Solver solver = demos::Solver::kSpe;
+  int spes = 6;
+  dma::Schedule schedule{};
+  bool checked = false;  ///< run instrumented kernels
+  std::optional<std::filesystem::path> trace;
+  bool quiet = false;  ///< nothing but what goes wrong, not even progress on a terminal
+};
+
+/// The scene's default: arena, or drop when a mesh is given.
+struct Demo3dOptions : DemoOptions {
+  demos::OwnModelOptions model;
+  demos::View view = demos::View::kMesh;
+  demos::Skin skin = demos::Skin::kSpe;
+};
+
+/// The scene's default: man.
+struct Demo2dOptions : DemoOptions {
+  demos::View2d view = demos::View2d::kFilled;
+};
+
+}  // namespace softcell::tool

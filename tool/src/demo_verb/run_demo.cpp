@@ -1,0 +1,149 @@
+#include "run_demo.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "demo/pictures.h"
+#include "demo/run_record.h"
+#include "demo_statistics.h"
+#include "scene_file/scene_library.h"
+#include "softcell/base/text.h"
+#include "softcell/base/whole_file.h"
+#include "softcell/render/offscreen_context.h"
+#include "spu/kernel_report.h"
+#include "verb/exit_status.h"
+#include "verb/interrupt.h"
+#include "verb/progress_bar.h"
+#include "verb/verb_files.h"
+#include "window/play.h"
+
+namespace softcell::tool {
+namespace {
+
+/// How far an interrupted run has come, and what there is of it.
+void print_interrupted(const DemoOptions& options, const demos::RunRecord& record) {
+  if (record.frames == 0) {
+    fmt::print(stderr, "softcell: interrupted before the first frame\n");
+    return;
+  }
+  const std::string of = record.asked_frames ? fmt::format(" of {}", *record.asked_frames) : "";
+  fmt::print(stderr, "softcell: interrupted after {}{} frames{}{}\n", record.frames, of,
+             options.out ? "; every frame that was written is whole" : "",
+             options.trace || options.json ? "; only a run to its end leaves a trace or statistics" : "");
+}
+
+demos::Run run_headless(const DemoOptions& options, std::string_view verb, const demos::MakeDemo& make,
+                        const demos::SimulationOptions& how, const InterruptGuard& guard) {
+  render::pin_software_rasterizer();
+  demos::Run run{.demo = make(how), .record = {}};
+  demos::Demo& demo = *run.demo;
+  demos::RunRecord& record = run.record;
+  record.interrupted = guard.interrupted();
+  if (record.interrupted) return run;
+  const int frames = options.frames.value_or(demo.frames());
+  record.asked_frames = frames;
+
+  const auto begin = std::chrono::steady_clock::now();
+  demos::Pictures pictures(options, demo);
+  demos::run_recorded(demo, [&] {
+    ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames), options.quiet);
+    for (int frame = 0; frame < frames && !guard.interrupted(); ++frame) {
+      const demos::FrameTimes times = demo.step();
+      record.add(times);
+      pictures.follow(times);
+      if (pictures.every_frame()) pictures.take(frame);
+      bar.show(static_cast<std::size_t>(frame) + 1);
+    }
+    if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
+    demo.stop();
+  });
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  record.interrupted = guard.interrupted();
+  if (record.interrupted) return run;
+  pictures.finish();
+  record.picture_ms = pictures.milliseconds();
+  record.upload_bytes = pictures.upload_bytes();
+  record.image_hash = pictures.last_hash();
+  return run;
+}
+
+bool is_mp4(const std::filesystem::path& file) {
+  const std::filesystem::path ending = file.extension();
+  return ending == ".mp4" || ending == ".MP4";
+}
+
+/// No output takes another's place or that of what the demo reads.
+void check_files(const DemoOptions& options) {
+  std::vector<NamedFile> written = written_files(options);
+  check_distinct(written);
+  if (options.scene && demos::is_scene_file(*options.scene))
+    check_kept({{"the scene", *options.scene}}, written);
+  // A recording may take the place of the one that is replayed.
+  std::erase_if(written, [](const NamedFile& file) { return file.name == "--record"; });
+  check_kept({{"--replay", options.replay}}, written);
+}
+
+}  // namespace
+
+std::vector<NamedFile> written_files(const DemoOptions& options) {
+  return {{"--video", options.video},
+          {"--record", options.record},
+          {"--trace", options.trace},
+          {"--json", options.json}};
+}
+
+int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {
+  if (!options.headless && (options.out || options.video)) {
+    throw UsageError("--out and --video write pictures without a window: give --headless too");
+  }
+  if (!options.headless && options.statistics)
+    throw UsageError(
+        "--statistics is for pictures without a window: give --headless too; in a window S shows them");
+  if (options.video && !is_mp4(*options.video))
+    throw UsageError("--video " + options.video->string() + ": give a file name that ends in .mp4");
+  check_files(options);
+  const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any
+  demos::make_picture_folders(options);  // where other outputs may be wanted, too
+  // A recording and a trace are of one scene.
+  const std::vector<demos::MakeDemo> scenes =
+      load(!options.headless && !options.record && !options.replay && !options.trace);
+  // What cannot be written is no surprise at the end of a long run.
+  base::WholeFiles files;
+  base::WholeFile* const trace_file = files.open(options.trace);
+  base::WholeFile* const json_file = files.open(options.json);
+  ls_sim::Findings findings;
+  std::optional<ls_sim::Trace> trace;
+  if (options.trace) trace.emplace(options.spes);
+  const demos::SimulationOptions how{.solver = options.solver,
+                                     .spes = options.spes,
+                                     .schedule = options.schedule,
+                                     .findings = options.checked ? &findings : nullptr,
+                                     .trace = trace ? &*trace : nullptr};
+  const demos::Run run = options.headless ? run_headless(options, verb, scenes.front(), how, guard)
+                                          : demos::play({.title = "softcell " + std::string(verb),
+                                                         .width = options.size.width,
+                                                         .height = options.size.height,
+                                                         .frames = options.frames},
+                                                        scenes, how, [&] { return guard.interrupted(); });
+  if (run.record.interrupted) {
+    print_interrupted(options, run.record);
+    return kExitInterrupted;
+  }
+
+  auto statistics = statistics_document(options, *run.demo, run.record);
+  const std::vector<ls_sim::Finding> found = findings.list();
+  if (options.checked) statistics["findings"] = to_json(std::span(found));
+  print_findings(found);  // before a file that cannot be written ends the run
+  if (trace) trace->write(*trace_file);
+  if (json_file != nullptr) write_json(*json_file, statistics);
+  files.commit();
+  if (!options.quiet) print_summary(statistics, options);
+  run.demo->check_replay();
+  return found.empty() ? 0 : kExitFindings;
+}
+
+}  // namespace softcell::tool

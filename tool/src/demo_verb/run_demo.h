@@ -1,0 +1,64 @@
+#pragma once
+// Runs a demo in a window or without, and loads the scenes to go through.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "demo/demo.h"
+#include "demo_options.h"
+#include "scene_file/scene_library.h"
+#include "softcell/base/text.h"
+#include "verb/verb_files.h"
+
+namespace softcell::tool {
+
+/// The files that the options ask for, pictures in folders aside.
+std::vector<NamedFile> written_files(const DemoOptions& options);
+
+/// Loads the scene that the options ask for; with `all` those of the same dimension that come with softcell,
+/// too. The first is the one to begin with.
+using LoadScenes = std::function<std::vector<demos::MakeDemo>(bool all)>;
+
+/// Runs a demo, in a window or without; steps it, writes its pictures, reports what it cost.
+/// @param verb  "demo 3d"   @param load  is called once, before threads are started: scenes in Lua fork
+/// @return the exit status: 0, 3 when checked kernels have findings, or 130 when interrupted.
+/// @throws UsageError  files are asked for that a window does not write, a video that is no MP4, or a file in
+///                     the place of another that is written or read.
+int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load);
+
+/// @param log    has begun `first`.
+/// @param first  the scene to begin with; with `all` those of its dimension that come with softcell follow.
+/// @param load   of a built-in scene's name. One that cannot be loaded is left out, with a sentence: its
+/// model
+///               may not be installed.
+/// @tparam OneDemo  a SceneDemo, made of a scene, a log, SimulationOptions and the options.
+template <class OneDemo, class Options>
+std::vector<demos::MakeDemo> demos_of(const Options& options, const typename OneDemo::Log& log,
+                                      const typename OneDemo::Scene& first, bool all,
+                                      typename OneDemo::Scene (*load)(std::string_view)) {
+  std::vector<demos::MakeDemo> made;
+  const auto add = [&](const typename OneDemo::Scene& scene) {
+    made.push_back([&options, scene, log](const demos::SimulationOptions& how) {
+      return std::make_unique<OneDemo>(scene, log, how, options);
+    });
+  };
+  add(first);
+  if (!all) return made;
+  for (const demos::SceneListing& listing : demos::list_scenes()) {
+    if (listing.dimension != OneDemo::kDimension || listing.name == first.name) continue;
+    try {
+      add(load(listing.name));
+    } catch (const std::runtime_error& error) {
+      fmt::print(stderr, "softcell: scene {} is left out: {}\n", listing.name, base::one_line(error.what()));
+    }
+  }
+  return made;
+}
+
+}  // namespace softcell::tool

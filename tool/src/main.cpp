@@ -1,0 +1,86 @@
+// The command `softcell`: parses the command line, calls a verb, turns what goes wrong into one line and an
+// exit status.
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "all_verbs.h"
+#include "command_line/shell_verbs.h"
+#include "command_line/usage_sentence.h"
+#include "softcell/base/text.h"
+#include "verb/exit_status.h"
+
+namespace {
+
+using namespace softcell;
+using namespace softcell::tool;
+
+/// Adds every verb to the parser; `chosen` becomes the call that the command line asks for.
+class CommandLine {
+ public:
+  CommandLine() : verbs_(all_verbs()) {
+    verbs_.push_back(shell_verbs(SOFTCELL_VERSION));
+    app_.require_subcommand(0, 1);
+    app_.set_version_flag("--version", "softcell " SOFTCELL_VERSION);
+    for (const auto& verb : verbs_) verb->add_to(app_, chosen_);
+  }
+
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() != 0) {
+        const auto sentence = left_out_sentence(app_, left_out_verbs());
+        throw UsageError(sentence ? *sentence : usage_sentence(app_, error));
+      }
+      if (const auto sentence = more_behind_help(app_, argc, argv)) throw UsageError(*sentence);
+      return app_.exit(error);  // --help, --version
+    }
+    if (const auto sentence = empty_value(app_)) throw UsageError(*sentence);
+    if (!chosen_) throw UsageError(verbs_sentence(app_));
+    return chosen_();
+  }
+
+  /// That was called; the command itself before run().
+  std::string verb() const { return called_verb(app_); }
+
+ private:
+  Verbs verbs_;
+  CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
+                "softcell"};
+  Call chosen_;
+};
+
+/// What was printed may still wait in the stream, and a full disk shows when it goes out.
+void finish_printing() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw std::runtime_error(std::string("cannot write to standard output: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    CommandLine command_line;
+    try {
+      const int status = command_line.run(argc, argv);
+      finish_printing();
+      return status;
+    } catch (const UsageError& error) {
+      std::fprintf(stderr, "softcell: %s (%s --help lists what is allowed)\n",
+                   base::one_line(error.what()).c_str(), command_line.verb().c_str());
+      return 2;
+    }
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "softcell: there is not enough memory\n");
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softcell: %s\n", base::one_line(error.what()).c_str());
+    return 1;
+  }
+}

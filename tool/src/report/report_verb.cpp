@@ -1,0 +1,55 @@
+#include "report_verb.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "report_page.h"
+#include "softcell/base/whole_file.h"
+#include "verb/verb_files.h"
+
+namespace softcell::tool {
+
+int run_report(const ReportOptions& options) {
+  check_distinct({{"the trace", options.trace}, {"--out", options.out}});
+  const TraceFile trace = read_trace(options.trace);
+  const std::string page = report_page(trace, options.trace.filename().string());
+  base::WholeFile file(options.out);
+  file.write(page);
+  file.commit();
+
+  std::size_t jobs = 0, commands = 0, findings = 0;
+  for (const TraceSpe& spe : trace.spes) {
+    jobs += spe.jobs.size();
+    commands += spe.commands.size();
+    findings += spe.findings.size();
+  }
+  fmt::print("trace:    {} SPEs, {} jobs, {} DMA commands, {} findings\n", trace.spes.size(), jobs, commands,
+             findings);
+  fmt::print("page:     {} ({:.1f} MB); it opens offline in any browser\n", options.out.string(),
+             static_cast<double>(page.size()) / 1e6);
+  return 0;
+}
+
+namespace {
+
+class ReportVerb final : public Verb {
+ public:
+  void add_to(CLI::App& command, Call& chosen) override {
+    CLI::App* r = command.add_subcommand("report", "Make a page to look at of what --trace recorded");
+    r->add_option("TRACE", options_.trace, "The file that --trace wrote")->required()->type_name("FILE");
+    r->add_option("--out", options_.out, "HTML page to write; it opens offline")
+        ->required()
+        ->type_name("FILE");
+    r->callback([&] { chosen = [this] { return run_report(options_); }; });
+  }
+
+ private:
+  ReportOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> report_verb() { return std::make_unique<ReportVerb>(); }
+
+}  // namespace softcell::tool

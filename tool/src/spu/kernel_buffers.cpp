@@ -1,0 +1,81 @@
+#include "kernel_buffers.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "softcell/base/read_file.h"
+
+namespace softcell::tool {
+namespace {
+
+void check_fits(const BufferSpec& spec, std::uint64_t bytes, std::uint64_t free_bytes) {
+  if (bytes <= free_bytes) return;
+  throw std::runtime_error("buffer " + spec.name + " of " + std::to_string(bytes) +
+                           " bytes does not fit: main memory has " + std::to_string(free_bytes) +
+                           " bytes left");
+}
+
+std::vector<std::byte> initial_bytes(const BufferSpec& spec, std::uint64_t free_bytes) {
+  if (spec.direction == BufferSpec::kOut) {
+    check_fits(spec, spec.bytes, free_bytes);
+    return std::vector<std::byte>(spec.bytes);
+  }
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(spec.file, error);
+  if (!error) check_fits(spec, size, free_bytes);  // before it is read
+  auto bytes = base::read_file(spec.file, free_bytes);
+  if (bytes.empty())
+    throw std::runtime_error("buffer " + spec.name + ": " + spec.file.string() +
+                             " is empty, and a buffer has at least one byte");
+  return bytes;
+}
+
+}  // namespace
+
+KernelBuffers::KernelBuffers(dma::AddressSpace& memory, const KernelTask& task)
+    : word_count_(task.arguments.size()) {
+  for (const BufferSpec& spec : task.buffers) {
+    Slot slot{&spec, {}, initial_bytes(spec, memory.largest_free_range(dma::Memory::kMain))};
+    const auto access =
+        spec.direction == BufferSpec::kIn ? dma::SpeAccess::kRead : dma::SpeAccess::kReadWrite;
+    slot.memory = dma::Buffer<std::byte>(memory, spec.name, slot.initial.size(), {.spe_access = access});
+    slots_.push_back(std::move(slot));
+  }
+  if (word_count_ != 0) {
+    words_ =
+        dma::Buffer<std::uint64_t>(memory, "arguments", word_count_, {.spe_access = dma::SpeAccess::kRead});
+    std::transform(task.arguments.begin(), task.arguments.end(), words_.data(),
+                   [this](const ArgumentSpec& argument) { return word(argument); });
+  }
+  reset();
+}
+
+void KernelBuffers::reset() {
+  for (Slot& slot : slots_) std::copy(slot.initial.begin(), slot.initial.end(), slot.memory.data());
+}
+
+ls_sim::EntryArguments KernelBuffers::arguments(int spe) const {
+  return {.spe_id = static_cast<std::uint64_t>(spe), .argp = words_.ea().value, .envp = word_count_};
+}
+
+const KernelBuffers::Slot& KernelBuffers::slot(std::string_view buffer) const {
+  return *std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.spec->name == buffer; });
+}
+
+std::uint64_t KernelBuffers::word(const ArgumentSpec& argument) const {
+  if (const auto* address = std::get_if<AddressOf>(&argument)) return slot(address->buffer).memory.ea().value;
+  if (const auto* size = std::get_if<SizeOf>(&argument)) return slot(size->buffer).memory.size_bytes();
+  return std::get<std::uint64_t>(argument);
+}
+
+void KernelBuffers::write_files(base::WholeFiles& files) const {
+  for (const Slot& slot : slots_) {
+    if (slot.spec->direction == BufferSpec::kIn) continue;
+    const auto bytes = slot.memory.span();
+    base::WholeFile& file = files.open(slot.spec->file);
+    file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size_bytes()});
+    file.finish();
+  }
+}
+
+}  // namespace softcell::tool

@@ -1,0 +1,50 @@
+#pragma once
+// A task's buffers in main storage, and the arguments that tell a kernel where they are.
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "kernel_task.h"
+#include "softcell/base/whole_file.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/ls_sim/engine.h"
+
+namespace softcell::tool {
+
+class KernelBuffers {
+ public:
+  /// Allocates each buffer at a line of 128 bytes and reads its file.
+  /// @param task  checked; outlives this.
+  /// @throws std::runtime_error  a file cannot be read or is empty, or main memory is full.
+  KernelBuffers(dma::AddressSpace& memory, const KernelTask& task);
+
+  /// Makes every buffer what it was at first, for another run.
+  void reset();
+
+  /// argp is the address of the task's arguments, an array of 64-bit words, and envp their number; without
+  /// any, both are 0.
+  ls_sim::EntryArguments arguments(int spe) const;
+
+  struct Slot {
+    const BufferSpec* spec = nullptr;
+    dma::Buffer<std::byte> memory;
+    std::vector<std::byte> initial;
+  };
+  std::span<const Slot> slots() const { return slots_; }
+
+  /// Adds the files of --out and --inout, written and not committed.
+  /// @throws std::runtime_error  naming the file.
+  void write_files(base::WholeFiles& files) const;
+
+ private:
+  const Slot& slot(std::string_view buffer) const;
+  std::uint64_t word(const ArgumentSpec& argument) const;
+
+  std::vector<Slot> slots_;
+  dma::Buffer<std::uint64_t> words_;  ///< the arguments; empty when there are none
+  std::size_t word_count_ = 0;
+};
+
+}  // namespace softcell::tool

@@ -1,0 +1,88 @@
+#include "kernel_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "softcell/base/read_file.h"
+#include "softcell/spu_kernels/images.h"
+
+namespace softcell::tool {
+namespace {
+
+constexpr std::string_view kSuffix = ".spu.elf";
+constexpr std::string_view kCheckedSuffix = ".checked.spu.elf";
+
+/// With all that a debugger wants to know, far more than an image of 256 KB needs.
+constexpr std::uint64_t kMostImageBytes = std::uint64_t{256} << 20;
+
+/// The file that holds the flavour asked for.
+std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked) {
+  const std::string text = file.string();
+  if (!checked || text.ends_with(kCheckedSuffix)) return file;
+  if (!text.ends_with(kSuffix)) {
+    throw std::runtime_error(
+        "--checked " + text +
+        ": takes NAME.checked.spu.elf beside NAME.spu.elf, and this file's name does not "
+        "end so");
+  }
+  std::filesystem::path neighbour =
+      text.substr(0, text.size() - kSuffix.size()) + std::string(kCheckedSuffix);
+  if (!std::filesystem::exists(neighbour)) {
+    throw std::runtime_error("there is no checked flavour of " + text + ": " + neighbour.string() +
+                             " does not exist; softcell_add_spu_kernel makes both");
+  }
+  return neighbour;
+}
+
+/// "saxpy" for build/saxpy.spu.elf and build/saxpy.checked.spu.elf.
+std::string kernel_name(const std::filesystem::path& file) {
+  std::string name = file.filename().string();
+  for (const std::string_view suffix : {kCheckedSuffix, kSuffix}) {
+    if (name.size() > suffix.size() && name.ends_with(suffix))
+      return name.substr(0, name.size() - suffix.size());
+  }
+  return name;
+}
+
+bool is_built_in(std::string_view name) {
+  const auto files = spu_kernels::image_files();
+  return std::any_of(files.begin(), files.end(), [&](const auto& file) { return file.name == name; });
+}
+
+std::string built_in_names() {
+  std::string names;
+  for (const spu_kernels::ImageFile& file : spu_kernels::image_files())
+    names += (names.empty() ? "" : ", ") + std::string(file.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<ls_sim::KernelImage> load_kernels() {
+  std::vector<ls_sim::KernelImage> kernels;
+  for (const spu_kernels::ImageFile& file : spu_kernels::image_files())
+    kernels.push_back(ls_sim::load_image(file.name, file.elf));
+  std::sort(kernels.begin(), kernels.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return kernels;
+}
+
+ls_sim::KernelImage load_kernel(std::string_view name, bool checked) {
+  return ls_sim::load_image(std::string(name), spu_kernels::image_file(name, checked));
+}
+
+std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(image, ignored)) return std::nullopt;
+  return flavour_of(image, checked);
+}
+
+ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
+  if (const auto file = find_kernel_file(image, checked))
+    return ls_sim::load_image(kernel_name(*file), base::read_file(*file, kMostImageBytes));
+  if (is_built_in(image)) return load_kernel(image, checked);
+  throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
+                           built_in_names() + ")");
+}
+
+}  // namespace softcell::tool

@@ -1,0 +1,29 @@
+#pragma once
+// What a run of a kernel was like: for the reader, and for other programs.
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+
+#include "kernel_run.h"
+
+namespace softcell::tool {
+
+/// Prints the DMA traffic by kind, what each SPE did, and the use of the local store.
+void print_statistics(const ls_sim::KernelImage& image, const KernelRun& run);
+
+/// Prints findings on standard error, a line each, with the rule's explanation below it.
+void print_findings(std::span<const ls_sim::Finding> findings);
+
+/// Prints findings, and a line for each failure.
+void print_problems(const ls_sim::KernelImage& image, const KernelRun& run);
+
+/// Findings as an array of objects with rule, kernel, place, message, explanation and count.
+nlohmann::ordered_json to_json(std::span<const ls_sim::Finding> findings);
+
+/// All of a run.
+nlohmann::ordered_json to_json(const ls_sim::KernelImage& image, const KernelRun& run);
+
+/// 1 when an SPE failed, else 3 when there are findings, else 0.
+int exit_status(const ls_sim::KernelImage& image, const KernelRun& run);
+
+}  // namespace softcell::tool

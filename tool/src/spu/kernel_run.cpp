@@ -1,0 +1,64 @@
+#include "kernel_run.h"
+
+#include <fmt/format.h>
+
+namespace softcell::tool {
+namespace {
+
+ls_sim::SpeOptions spe_options(const KernelTask& task, const RunSettings& settings) {
+  const bool simulated = settings.clock == ls_sim::Clock::kSimulated;
+  return {.spes = task.spes,
+          .schedule = settings.schedule,
+          .deadline = task.deadline,
+          .clock = settings.clock,
+          .interleaving = simulated ? ls_sim::Interleaving::kTurns : ls_sim::Interleaving::kFree,
+          .measure_stack = true,
+          .trace = settings.trace};
+}
+
+}  // namespace
+
+std::string describe_end(const ls_sim::RunResult& result) {
+  if (result.fault) return std::string(dma::name(result.fault->rule));
+  if (result.ended_normally()) return fmt::format("status {}", result.status());
+  return fmt::format("stop code 0x{:04X}", result.stop_code);
+}
+
+std::vector<std::string> KernelRun::failures(const ls_sim::KernelImage& image) const {
+  std::vector<std::string> sentences;
+  for (std::size_t spe = 0; spe < spes.size(); ++spe) {
+    const ls_sim::RunResult& result = spes[spe].result;
+    if (result.fault) {
+      sentences.push_back(result.fault->message());
+    } else if (!result.ended_normally() || result.status() != 0) {
+      sentences.push_back(
+          fmt::format("SPE {}, kernel {}: ended with {}", spe, image.name, describe_end(result)));
+    }
+  }
+  return sentences;
+}
+
+KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image,
+                     const KernelBuffers& buffers, const KernelTask& task, const RunSettings& settings) {
+  ls_sim::Findings findings;
+  ls_sim::SpeOptions options = spe_options(task, settings);
+  if (image.checked) options.findings = &findings;
+  ls_sim::SpeGroup group(memory, options);
+  for (int spe = 0; spe < task.spes; ++spe) {
+    for (const std::uint32_t value : task.in_mbox) group.problem_state(spe).write_in_mbox(value);
+    group.prepare(spe, image, buffers.arguments(spe));
+  }
+  for (int spe = 0; spe < task.spes; ++spe) group.start(spe);  // which may write to the others' local stores
+  KernelRun run;
+  for (int spe = 0; spe < task.spes; ++spe) {
+    SpeRun& one = run.spes.emplace_back();
+    one.result = group.wait(spe);
+    one.out_mbox = group.problem_state(spe).read_out_mbox();
+    one.out_intr_mbox = group.problem_state(spe).read_out_intr_mbox();
+    one.statistics = group.statistics(spe);
+  }
+  run.findings = findings.list();
+  return run;
+}
+
+}  // namespace softcell::tool

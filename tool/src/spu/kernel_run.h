@@ -1,0 +1,47 @@
+#pragma once
+// One run of a kernel on one or more SPEs.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernel_buffers.h"
+#include "kernel_task.h"
+#include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/spe_group.h"
+
+namespace softcell::tool {
+
+/// How one run differs from another of the same task.
+struct RunSettings {
+  dma::Schedule schedule{};
+  /// kSimulated: SPEs go in turns as well, so that the run is the same every time.
+  ls_sim::Clock clock = ls_sim::Clock::kHost;
+  ls_sim::Trace* trace = nullptr;
+};
+
+/// What one SPE did, and what it left in its outbound mailboxes.
+struct SpeRun {
+  ls_sim::RunResult result;
+  std::optional<std::uint32_t> out_mbox, out_intr_mbox;
+  ls_sim::SpeStatistics statistics;
+};
+
+/// "status 0", "stop code 0x3FFF", or the name of the rule that was broken.
+std::string describe_end(const ls_sim::RunResult& result);
+
+struct KernelRun {
+  std::vector<SpeRun> spes;
+  std::vector<ls_sim::Finding> findings;  ///< of a checked kernel
+
+  /// A sentence for each SPE that did not end with status 0.
+  std::vector<std::string> failures(const ls_sim::KernelImage& image) const;
+};
+
+/// Runs the image on SPEs 0 to task.spes - 1, all with the same arguments; each learns its number from main's
+/// first parameter. Always returns, at the latest by the task's deadline.
+KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image,
+                     const KernelBuffers& buffers, const KernelTask& task, const RunSettings& settings);
+
+}  // namespace softcell::tool

@@ -1,0 +1,66 @@
+#include "kernel_samples.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "job_chain.h"
+#include "rotations_job.h"
+#include "softcell/dma/buffer.h"
+#include "transfers_job.h"
+
+namespace softcell::tool {
+namespace {
+
+/// Rotations that are far off and one that has to be found anew: the deepest ways.
+void run_rotations(SampleRun& sample) {
+  dma::Buffer<spu::RotationMatrices> matrices(sample.memory(), "matrices", 1);
+  dma::Buffer<spu::MatchRotations> starts(sample.memory(), "starts", 1);
+  const dma::Buffer<spu::MatchRotations> found(sample.memory(), "found", 1);
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    for (std::size_t diagonal : {0, 4, 8}) matrices[0].element[diagonal][lane] = lane == 0 ? 1.0f : -1.0f;
+    starts[0].w[lane] = 1;
+  }
+  dma::Buffer<spu::RotationsJob> job(sample.memory(), "job", 1);
+  job[0] = {matrices.ea().value, starts.ea().value, found.ea().value, 1, 1, 0, 6, {}};
+  sample.run(job.ea());
+}
+
+void run_transfers(SampleRun& sample) {
+  const dma::Buffer<std::byte> data(sample.memory(), "data", 1024);
+  dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1);
+  job[0] = {data.ea().value, 128, 16, 8, spu::kTransferGet, {}};
+  sample.run(job.ea());
+}
+
+/// A board that tells the loop to end: the compiler makes one function with one frame of all it does.
+void run_job_loop(SampleRun& sample) {
+  dma::Buffer<spu::JobBoard> board(sample.memory(), "board", 1);
+  board[0].stop = 1;
+  sample.run(board.ea());
+}
+
+}  // namespace
+
+void SampleRun::run(dma::EffectiveAddress argp) {
+  spes_.start(0, kernel_, {.spe_id = 0, .argp = argp.value, .envp = 0});
+  const ls_sim::RunResult result = spes_.wait(0);
+  if (result.fault) throw std::runtime_error(result.fault->message());
+  if (result.status() != 0) throw std::runtime_error("kernel " + kernel_.name + " refused its sample");
+}
+
+std::span<const KernelSample> plain_samples() {
+  static constexpr KernelSample kSamples[] = {
+      {"job_loop", run_job_loop}, {"rotations", run_rotations}, {"transfers", run_transfers}};
+  return kSamples;
+}
+
+std::optional<std::uint32_t> measure_stack(const ls_sim::KernelImage& kernel,
+                                           std::span<const KernelSample> samples) {
+  const auto found = std::ranges::find(samples, kernel.name, &KernelSample::kernel);
+  if (found == samples.end()) return std::nullopt;
+  SampleRun sample(kernel);
+  found->run(sample);
+  return sample.stack_used();
+}
+
+}  // namespace softcell::tool

@@ -1,0 +1,79 @@
+#pragma once
+// A kernel to be run with the user's files as its buffers: what `spu run` and `spu explore` have in common.
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "verb/verb_files.h"
+
+namespace softcell::tool {
+
+/// A buffer in main storage that is filled from a file, written to one, or both.
+struct BufferSpec {
+  enum Direction : std::uint8_t {
+    kIn,     ///< read from the file; SPEs may only read it
+    kOut,    ///< `bytes` zeros at first; becomes the file when the run has succeeded
+    kInOut,  ///< read from the file, and replaces it when the run has succeeded
+  };
+  Direction direction = kIn;
+  std::string name;
+  std::filesystem::path file;
+  std::uint64_t bytes = 0;  ///< of kOut only
+};
+
+std::string_view name(BufferSpec::Direction direction);
+
+/// One 64-bit word of a kernel's arguments: a number, or something about a buffer.
+struct AddressOf {
+  std::string buffer;
+};
+struct SizeOf {
+  std::string buffer;
+};
+using ArgumentSpec = std::variant<std::uint64_t, AddressOf, SizeOf>;
+
+struct KernelTask {
+  std::string image = {};  ///< a file, or the name of a kernel of this project
+  bool checked = false;
+  std::vector<BufferSpec> buffers = {};
+  std::vector<ArgumentSpec> arguments = {};
+  std::vector<std::uint32_t> in_mbox = {};  ///< waiting in the inbound mailbox of each SPE, at most four
+  int spes = 1;
+  std::chrono::milliseconds deadline{10'000};
+};
+
+// What the command line says, as the structures above.
+// @throws UsageError  one sentence with the text and what is allowed.
+
+/// "NAME=FILE" of --in and --inout.
+BufferSpec parse_file_buffer(BufferSpec::Direction direction, const std::string& text);
+
+/// "NAME=FILE:SIZE" of --out. SIZE is in bytes, or in KB or MB with K or M behind it.
+BufferSpec parse_out_buffer(const std::string& text);
+
+/// "@NAME" (address of a buffer), "#NAME" (its size in bytes), "f32:VALUE" (the bits of a float), or an
+/// integer of 64 bits, decimal or with 0x; a negative one is taken modulo 2^64.
+ArgumentSpec parse_argument(const std::string& text);
+
+/// A 32-bit number of --in-mbox.
+std::uint32_t parse_mbox_value(const std::string& text);
+
+/// "2.5": seconds, positive.
+std::chrono::milliseconds parse_deadline(const std::string& text);
+
+/// The files of --out and --inout.
+std::vector<NamedFile> written_files(const KernelTask& task);
+
+/// The kernel image, if it is a file, in both its flavours when it is checked, and the files of --in.
+/// @throws std::runtime_error  one sentence: there is no such flavour.
+std::vector<NamedFile> read_files(const KernelTask& task);
+
+/// Refuses what no single option shows: two buffers of one name or to one file, arguments that name none.
+void check(const KernelTask& task);
+
+}  // namespace softcell::tool

@@ -1,0 +1,93 @@
+#include "kernel_task_options.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "command_line/shared_options.h"
+
+namespace softcell::tool {
+namespace {
+
+std::string quoted(const std::string& word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-+=:,./@%").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string text = "'";
+  for (const char c : word) {
+    if (c == '\'') text += "'\\'";
+    text += c;
+  }
+  return text + "'";
+}
+
+}  // namespace
+
+void KernelTaskOptions::add_to(CLI::App& verb) {
+  verb.add_option("IMAGE", image_, "A kernel: its .spu.elf file, or the name of one of softcell's own")
+      ->required()
+      ->type_name("KERNEL");
+  verb.add_flag("--checked", checked_,
+                "Take the instrumented flavour, IMAGE's .checked.spu.elf: findings name file and line");
+  take_whole_number(
+      verb.add_option("--spes", spes_,
+                      "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number"),
+      1, 6)
+      ->type_name("SPES");
+  // One buffer behind each: the next word may be IMAGE.
+  verb.add_option("--in", in_, "A buffer that the kernel reads, filled from the file")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("NAME=FILE");
+  verb.add_option("--out", out_, "A buffer of zeros that becomes the file when the run succeeds")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("NAME=FILE:SIZE");
+  verb.add_option("--inout", inout_, "A buffer filled from the file, which is replaced when the run succeeds")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("NAME=FILE");
+  verb.add_option("--arg", arguments_,
+                  "Words of 64 bits: integers, f32:VALUE, @NAME (a buffer's address), #NAME (its bytes); "
+                  "argp is their address, envp their number")
+      ->type_name("WORD");
+  verb.add_option("--in-mbox", in_mbox_, "Values waiting in each inbound mailbox, at most four")
+      ->type_name("VALUE");
+  verb.add_option("--deadline", deadline_, "Seconds after which a run is stopped with a fault (default: 10)")
+      ->type_name("SECONDS");
+}
+
+KernelTask KernelTaskOptions::task() const {
+  KernelTask task{.image = image_, .checked = checked_, .spes = spes_};
+  for (const std::string& text : in_) task.buffers.push_back(parse_file_buffer(BufferSpec::kIn, text));
+  for (const std::string& text : inout_) task.buffers.push_back(parse_file_buffer(BufferSpec::kInOut, text));
+  for (const std::string& text : out_) task.buffers.push_back(parse_out_buffer(text));
+  for (const std::string& text : arguments_) task.arguments.push_back(parse_argument(text));
+  for (const std::string& text : in_mbox_) task.in_mbox.push_back(parse_mbox_value(text));
+  if (!deadline_.empty()) task.deadline = parse_deadline(deadline_);
+  check(task);
+  return task;
+}
+
+std::string KernelTaskOptions::text() const {
+  std::string text = quoted(image_);
+  if (checked_) text += " --checked";
+  if (spes_ != 1) text += " --spes " + std::to_string(spes_);
+  const auto add = [&](const std::string& option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      // What looks like an option belongs to its own by '=' only.
+      const bool separate = !value.starts_with('-');
+      text += " " + option + (separate ? " " : "=") + quoted(value);
+    }
+  };
+  add("--in", in_);
+  add("--inout", inout_);
+  add("--out", out_);
+  add("--arg", arguments_);
+  add("--in-mbox", in_mbox_);
+  if (!deadline_.empty()) text += " --deadline " + deadline_;
+  return text;
+}
+
+}  // namespace softcell::tool

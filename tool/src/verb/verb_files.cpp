@@ -1,0 +1,59 @@
+#include "verb_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "exit_status.h"
+
+namespace softcell::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Links followed as far as there are files, and to the file that a link stands for when that is still to be
+/// made; what is behind them then is normalised, as `..` of a link is not the folder that the link is in.
+fs::path one_spelling(const fs::path& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(base::WholeFile::behind_links(path), error);
+  const fs::path canonical = fs::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : canonical;
+}
+
+bool is_device_or_pipe(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+}  // namespace
+
+bool is_one_file(const fs::path& a, const fs::path& b) {
+  if (is_device_or_pipe(a) || is_device_or_pipe(b)) return false;
+  return one_spelling(a) == one_spelling(b);
+}
+
+void check_distinct(const std::vector<NamedFile>& files) {
+  for (auto one = files.begin(); one != files.end(); ++one) {
+    const auto same = std::find_if(files.begin(), one, [&](const NamedFile& other) {
+      return one->file && other.file && is_one_file(*one->file, *other.file);
+    });
+    if (same == one) continue;
+    throw UsageError(fmt::format("{} and {} are one file, {}; give each a file of its own", same->name,
+                                 one->name, one->file->string()));
+  }
+}
+
+void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written) {
+  for (const NamedFile& input : read) {
+    for (const NamedFile& output : written) check_distinct({input, output});
+  }
+}
+
+void write_json(base::WholeFile& file, const nlohmann::ordered_json& document) {
+  file.write(document.dump(2) + "\n");
+  file.finish();
+}
+
+}  // namespace softcell::tool
