@@ -10,11 +10,11 @@
 
 #include "benchmarks.h"
 #include "kernel_samples.h"
+#include "ppu/bullet/bullet_world.h"
 #include "scene_file/scene_library.h"
 #include "scene_frames.h"
 #include "simulation_3d.h"
-#include "softcell/ppu/bullet_world.h"
-#include "softcell/ppu/spe_solver.h"
+#include "softcell/spe_bodies/spe_solver.h"
 
 namespace softcell::demos {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "benchmarks.h"
 #include "kernel_samples.h"
+#include "ppu/matching/rotation.h"
 #include "rotations_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/rotation.h"
+#include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 
 namespace softcell::demos {

@@ -4,9 +4,9 @@
 
 #include "benchmarks.h"
 #include "kernel_samples.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_orchestrator.h"
-#include "softcell/ppu/skin_scalar.h"
+#include "ppu/reference/skin_scalar.h"
+#include "ppu/spe_bodies/skin_orchestrator.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "spe_waker.h"
 
 namespace softcell::demos {

@@ -8,9 +8,9 @@
 #include "benchmarks.h"
 #include "eigen_solver.h"
 #include "kernel_samples.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/match_orchestrator_2d.h"
-#include "softcell/ppu/shape_matching_2d.h"
+#include "ppu/reference/shape_matching_2d.h"
+#include "ppu/spe_bodies/match_orchestrator_2d.h"
+#include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 
 namespace softcell::demos {

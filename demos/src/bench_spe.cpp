@@ -8,7 +8,7 @@
 #include "benchmarks.h"
 #include "kernel_samples.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ppu/job_system.h"
+#include "softcell/jobs/job_system.h"
 #include "transfers_job.h"
 
 namespace softcell::demos {

@@ -11,8 +11,8 @@
 #include "bench_bodies.h"
 #include "benchmarks.h"
 #include "kernel_samples.h"
-#include "softcell/ppu/shape_matching.h"
-#include "softcell/ppu/tiled_match.h"
+#include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/tiled_match.h"
 
 namespace softcell::demos {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "softcell/ppu/rotation.h"
+#include "ppu/matching/rotation.h"
 
 namespace softcell::demos {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "softcell/ppu/shape_matching.h"
-#include "softcell/ppu/shape_matching_2d.h"
-#include "softcell/ppu/summation.h"
+#include "ppu/matching/summation.h"
+#include "ppu/reference/shape_matching.h"
+#include "ppu/reference/shape_matching_2d.h"
 
 namespace softcell::demos {
 

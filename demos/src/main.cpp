@@ -18,7 +18,7 @@
 #include "command_line/whole_number.h"
 #include "kernel_task_options.h"
 #include "one_line.h"
-#include "softcell/ppu/lattice.h"
+#include "softcell/soft_bodies/lattice.h"
 #include "usage_error.h"
 #include "verbs.h"
 

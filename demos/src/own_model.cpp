@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #include "scene_file/read_common.h"
-#include "softcell/ppu/lattice.h"
+#include "softcell/mesh_import/mesh_import.h"
+#include "softcell/soft_bodies/lattice.h"
 #include "usage_error.h"
 
 namespace softcell::demos {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/reference/shape_matching.h"
 #include "shown.h"
-#include "softcell/ppu/shape_matching.h"
 
 namespace softcell::demos {
 

@@ -1,7 +1,7 @@
 #include "scene_view.h"
 
 #include "scene_camera.h"
-#include "softcell/ppu/shapes.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "ppu/bullet/bullet_world.h"
 #include "skin_job.h"
-#include "softcell/ppu/bullet_world.h"
 
 namespace softcell::demos {
 

@@ -7,14 +7,14 @@
 
 #include "controls.h"
 #include "kernel_samples.h"
+#include "ppu/bullet/bullet_world.h"
+#include "ppu/bullet/processor_time.h"
+#include "ppu/numbers/deterministic_math.h"
 #include "script_player.h"
 #include "shared_models.h"
-#include "softcell/ppu/bullet_coupling.h"
-#include "softcell/ppu/bullet_world.h"
-#include "softcell/ppu/deterministic_math.h"
-#include "softcell/ppu/processor_time.h"
-#include "softcell/ppu/spe_solver.h"
-#include "softcell/ppu/state_hash.h"
+#include "softcell/bullet/bullet_soft_bodies.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_solver.h"
 
 namespace softcell::demos {
 namespace {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "input_event.h"
+#include "ppu/bullet/bullet_world.h"
+#include "ppu/spe_bodies/skin_orchestrator.h"
 #include "scene.h"
 #include "shown.h"
 #include "simulation_options.h"
-#include "softcell/ppu/bullet_world.h"
-#include "softcell/ppu/skin_orchestrator.h"
 
 namespace softcell::demos {
 

@@ -2,7 +2,7 @@
 // SPEs awake, for benchmarks of what they then do.
 
 #include "kernel_samples.h"
-#include "softcell/ppu/job_system.h"
+#include "softcell/jobs/job_system.h"
 
 namespace softcell::demos {
 

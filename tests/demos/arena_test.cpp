@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "ppu/numbers/half.h"
 #include "scene_file/scene_library.h"
 #include "simulation_3d.h"
-#include "softcell/ppu/half.h"
 
 namespace softcell::demos {
 namespace {

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <regex>
 
+#include "ppu/matching/stiffness.h"
 #include "scene_file/scene_library.h"
 #include "scratch_folder.h"
 #include "simulation_3d.h"
-#include "softcell/ppu/stiffness.h"
 #include "support/text_file.h"
 
 namespace softcell::demos {

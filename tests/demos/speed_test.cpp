@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "kernel_samples.h"
+#include "ppu/reference/skin_scalar.h"
 #include "scene_file/scene_library.h"
 #include "simulation_3d.h"
 #include "softcell/dma/sanitizers.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_scalar.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {

@@ -10,7 +10,7 @@
 #include "scene_camera.h"
 #include "scene_file/scene_library.h"
 #include "simulation_3d.h"
-#include "softcell/ppu/shapes.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {

@@ -1,4 +1,4 @@
-#include "softcell/ppu/job_system.h"
+#include "softcell/jobs/job_system.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -10,12 +10,12 @@
 #include <memory>
 
 #include "ppu/lattices.h"
+#include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/match_orchestrator.h"
-#include "softcell/ppu/shape_matching.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/stiffness.h"
+#include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/match_orchestrator.h"
+#include "softcell/jobs/job_system.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/kernel_image.h"
 
 namespace softcell {

@@ -9,9 +9,9 @@
 #include <memory>
 
 #include "ppu/lattices.h"
-#include "softcell/ppu/match_orchestrator.h"
-#include "softcell/ppu/shape_matching.h"
-#include "softcell/ppu/tiled_match.h"
+#include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/match_orchestrator.h"
+#include "ppu/spe_bodies/tiled_match.h"
 #include "spu_kernels/kernel_image.h"
 
 namespace softcell {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <random>
 
+#include "ppu/numbers/half.h"
+#include "ppu/reference/skin_scalar.h"
+#include "ppu/spe_bodies/skin_orchestrator.h"
+#include "softcell/jobs/job_system.h"
 #include "softcell/ls_sim/findings.h"
-#include "softcell/ppu/half.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/lattice.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_orchestrator.h"
-#include "softcell/ppu/skin_scalar.h"
+#include "softcell/soft_bodies/lattice.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/kernel_image.h"
 
 namespace softcell {

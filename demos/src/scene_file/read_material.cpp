@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "nearest_name.h"
+#include "ppu/matching/regions.h"
+#include "ppu/matching/stiffness.h"
 #include "read_common.h"
-#include "softcell/ppu/regions.h"
-#include "softcell/ppu/stiffness.h"
 
 namespace softcell::demos {
 namespace {
