@@ -10,8 +10,7 @@ std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d
   float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
     const float reach = kReachInCells * simulation.model(b).lattice().spacing;
-    for (const spu::SkinCorner& corner : simulation.soft_body(b).positions()) {
-      const Eigen::Vector3f particle(corner.x, corner.y, corner.z);
+    for (const Eigen::Vector3f& particle : simulation.soft_body(b).positions()) {
       const float along = (particle - ray.from).dot(ray.along);
       const float squared = (particle - ray.from - along * ray.along).squaredNorm();
       if (along > 0 && along < nearest && squared < reach * reach) {

@@ -93,7 +93,7 @@ void SceneView::update_lattices(const Shown3d& shown) {
   for (std::size_t b = 0; b < lattice_buffers_.size(); ++b) {
     const auto& corners = shown.bodies[b].particles;
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      lattice_buffers_[b].particles[i] = {corners[i].x, corners[i].y, corners[i].z};
+      lattice_buffers_[b].particles[i] = corners[i].head<3>();
     }
   }
 }

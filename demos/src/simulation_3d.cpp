@@ -85,7 +85,7 @@ struct Simulation3d::State {
   /// What a picture needs beside the vertices, of the moment at which these were handed to the SPEs.
   struct Snapshot {
     std::vector<Eigen::Matrix4f> box_poses;
-    std::vector<std::vector<spu::SkinCorner>> particles;
+    std::vector<std::vector<Eigen::Vector4f>> particles;
     std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
     std::vector<ppu::Contact> contacts;
     Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
@@ -119,12 +119,13 @@ struct Simulation3d::State {
       if (orchestrator)
         orchestrator->add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()),
                           model->particles());
-      positions.push_back(body.positions());
+      positions.push_back(body.padded_positions());
       vertices += model->embedding().slot_of_vertex.size();
     }
     for (Snapshot& snapshot : snapshots) {
       snapshot.box_poses.resize(boxes.size());
-      for (const auto& body : positions) snapshot.particles.emplace_back(body.size());
+      for (const auto& body : positions)
+        snapshot.particles.emplace_back(body.size(), Eigen::Vector4f::Zero());
       snapshot.origins.resize(positions.size());
     }
     hand_over();
@@ -202,7 +203,7 @@ struct Simulation3d::State {
   std::unique_ptr<ppu::SoftBodySolver> solver;
   ppu::BulletSoftBodies soft_bodies;
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
-  std::vector<std::span<const spu::SkinCorner>> positions;
+  std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
   bool notes_contacts = false;
   bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
@@ -307,7 +308,7 @@ ppu::SkinnedBody Simulation3d::shown(std::size_t body) const {
   return {.vertices = {}, .origin = state_->shown().origins[body]};
 }
 
-std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body) const {
+std::span<const Eigen::Vector4f> Simulation3d::shown_particles(std::size_t body) const {
   return state_->shown().particles[body];
 }
 

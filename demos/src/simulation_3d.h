@@ -51,7 +51,7 @@ class Simulation3d {
 
   // The frame that is shown: all of one moment. Before the first step that is the beginning.
   ppu::SkinnedBody shown(std::size_t body) const;  ///< without vertices when the GPU makes them
-  std::span<const spu::SkinCorner> shown_particles(std::size_t body) const;
+  std::span<const Eigen::Vector4f> shown_particles(std::size_t body) const;
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "ppu/matching/rotation.h"
+#include "ppu/reference/shape_matching.h"
 
 namespace softcell::ppu {
 namespace {
@@ -50,10 +51,35 @@ SoftBody::SoftBody(std::shared_ptr<const SoftBodyModel> model, const Vector3f& p
     : model_(std::move(model)),
       x_(model_->particles()),
       v_(model_->particles(), Vector3f::Zero()),
-      corners_(model_->particles()),
-      matcher_(model_->plan()) {
+      padded_(model_->particles()),
+      matcher_(std::make_unique<ShapeMatcher<float>>(model_->plan())) {
   place_at_rest(position);
 }
+
+SoftBody::SoftBody(const SoftBody& other)
+    : model_(other.model_),
+      x_(other.x_),
+      v_(other.v_),
+      padded_(other.padded_),
+      matcher_(std::make_unique<ShapeMatcher<float>>(*other.matcher_)),
+      revision_(other.revision_),
+      resets_(other.resets_),
+      asleep_(other.asleep_) {}
+
+SoftBody& SoftBody::operator=(const SoftBody& other) {
+  model_ = other.model_;
+  x_ = other.x_;
+  v_ = other.v_;
+  padded_ = other.padded_;
+  *matcher_ = *other.matcher_;
+  asleep_ = other.asleep_;
+  // A change by the user: couplings must notice, whatever the other's counts are.
+  ++revision_;
+  ++resets_;
+  return *this;
+}
+
+SoftBody::~SoftBody() = default;
 
 void SoftBody::place_at_rest(const Vector3f& position) {
   for (std::size_t i = 0; i < x_.size(); ++i)
@@ -61,7 +87,7 @@ void SoftBody::place_at_rest(const Vector3f& position) {
 }
 
 void SoftBody::forget_rotations() {
-  matcher_.reset();
+  matcher_->reset();
   ++resets_;
 }
 
@@ -71,7 +97,7 @@ void SoftBody::set_position(std::size_t particle, const Vector3f& position) {
 
 void SoftBody::pull(float step) {
   const SoftBodySettings& settings = model_->settings();
-  matcher_.step_velocities(x_, v_, settings.alpha_of_step(step), step, settings.damping_of_step(step));
+  matcher_->step_velocities(x_, v_, settings.alpha_of_step(step), step, settings.damping_of_step(step));
 }
 
 void SoftBody::limit_speed(float limit) {

@@ -7,6 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "ppu/matching/matching_plan.h"
+#include "ppu/reference/shape_matching_2d.h"
+
 namespace softcell::ppu {
 
 using Eigen::Vector2d;
@@ -44,9 +47,30 @@ std::shared_ptr<const SoftBodyModel2d> make_soft_body_model(Lattice2d lattice,
 }
 
 SoftBody2d::SoftBody2d(std::shared_ptr<const SoftBodyModel2d> model, const Vector2f& position)
-    : model_(std::move(model)), x_(model_->particles()), v_(model_->particles()), matcher_(model_->plan()) {
+    : model_(std::move(model)),
+      x_(model_->particles()),
+      v_(model_->particles()),
+      matcher_(std::make_unique<ShapeMatcher2d<float>>(model_->plan())) {
   place_at_rest(position);
 }
+
+SoftBody2d::SoftBody2d(const SoftBody2d& other)
+    : model_(other.model_),
+      x_(other.x_),
+      v_(other.v_),
+      matcher_(std::make_unique<ShapeMatcher2d<float>>(*other.matcher_)),
+      revision_(other.revision_) {}
+
+SoftBody2d& SoftBody2d::operator=(const SoftBody2d& other) {
+  model_ = other.model_;
+  x_ = other.x_;
+  v_ = other.v_;
+  *matcher_ = *other.matcher_;
+  ++revision_;  // a change by the user: couplings must notice, whatever the other's count is
+  return *this;
+}
+
+SoftBody2d::~SoftBody2d() = default;
 
 void SoftBody2d::place_at_rest(const Vector2f& position) {
   for (std::size_t i = 0; i < x_.size(); ++i)
@@ -55,7 +79,7 @@ void SoftBody2d::place_at_rest(const Vector2f& position) {
 
 void SoftBody2d::pull(float step) {
   const SoftBodySettings& settings = model_->settings();
-  matcher_.step_velocities(x_, v_, settings.alpha_of_step(step), step, settings.damping_of_step(step));
+  matcher_->step_velocities(x_, v_, settings.alpha_of_step(step), step, settings.damping_of_step(step));
 }
 
 void SoftBody2d::limit_speed(float limit) {
@@ -92,7 +116,7 @@ void SoftBody2d::translate(const Vector2f& by) {
 
 void SoftBody2d::reset(const Vector2f& position) {
   place_at_rest(position);
-  matcher_.reset();
+  matcher_->reset();
   ++revision_;
 }
 

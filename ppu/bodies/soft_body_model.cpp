@@ -3,7 +3,9 @@
 #include <string>
 #include <utility>
 
-#include "softcell/soft_bodies/soft_body.h"
+#include "ppu/lattice/embedding.h"
+#include "ppu/matching/matching_plan.h"
+#include "softcell/soft_bodies/soft_body_model.h"
 
 namespace softcell::ppu {
 namespace {
@@ -23,7 +25,7 @@ std::vector<bool> corners_of_outer_cells(const Lattice& lattice) {
 SoftBodyModel::SoftBodyModel(Lattice lattice, Embedding embedding, const SoftBodySettings& settings)
     : settings_(settings),
       lattice_(std::move(lattice)),
-      embedding_(std::move(embedding)),
+      embedding_(std::make_shared<const Embedding>(std::move(embedding))),
       masses_(particle_masses(lattice_, settings.density)),
       plan_(std::make_shared<MatchingPlan<float>>(lattice_, settings.half_width, masses_)) {
   double mass = 0;

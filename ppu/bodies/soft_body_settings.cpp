@@ -4,7 +4,7 @@
 
 #include "ppu/matching/regions.h"
 #include "ppu/matching/stiffness.h"
-#include "softcell/soft_bodies/soft_body.h"
+#include "softcell/soft_bodies/soft_body_settings.h"
 
 namespace softcell::ppu {
 namespace {

@@ -5,19 +5,24 @@
 namespace softcell::ppu {
 namespace {
 
-// Vectors have no padding; corners keep a fourth float, always 0.
-template <class Body>
-std::uint64_t hash_of(const Body& body, std::uint64_t before) {
-  const auto x = std::as_bytes(body.positions());
-  const auto v = std::as_bytes(body.velocities());
+template <class Position, class Velocity>
+std::uint64_t hash_of(std::span<const Position> positions, std::span<const Velocity> velocities,
+                      std::uint64_t before) {
+  const auto x = std::as_bytes(positions);
+  const auto v = std::as_bytes(velocities);
   const std::uint64_t after_x = XXH3_64bits_withSeed(x.data(), x.size(), before);
   return XXH3_64bits_withSeed(v.data(), v.size(), after_x);
 }
 
 }  // namespace
 
-std::uint64_t state_hash(const SoftBody& body, std::uint64_t before) { return hash_of(body, before); }
-std::uint64_t state_hash(const SoftBody2d& body, std::uint64_t before) { return hash_of(body, before); }
+// Vectors have no padding, or a fourth float that is always 0.
+std::uint64_t state_hash(const SoftBody& body, std::uint64_t before) {
+  return hash_of(body.padded_positions(), body.velocities(), before);
+}
+std::uint64_t state_hash(const SoftBody2d& body, std::uint64_t before) {
+  return hash_of(body.positions(), body.velocities(), before);
+}
 
 std::uint64_t state_hash(std::span<const SoftBody* const> bodies) {
   std::uint64_t hash = 0;

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <condition_variable>
 #include <cstring>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
+
+#include "job_chain.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/dma/reservations.h"
 
 namespace softcell::ppu {
 namespace {
@@ -66,10 +72,8 @@ void require_job(const ls_sim::KernelImage& image, const ls_sim::KernelImage& lo
   }
 }
 
-}  // namespace
-
 /// Wakes whoever waits for a chain's last line when an SPE writes it.
-class JobChain::DoneListener final : public dma::ReservationListener {
+class DoneListener final : public dma::ReservationListener {
  public:
   void on_reservation_lost() override {
     {
@@ -93,12 +97,38 @@ class JobChain::DoneListener final : public dma::ReservationListener {
   bool written_ = false;
 };
 
+}  // namespace
+
+struct JobChain::State {
+  State(JobSystem::State& system, const std::string& name, std::size_t most);
+  ~State();
+
+  void link_stages();
+  bool finished();
+  void wait();
+  void collect();
+
+  JobSystem::State& shared;
+  std::size_t board_slot = 0;
+  dma::Buffer<JobDescriptor> descriptors;
+  dma::Buffer<ChainDone> done;
+  DoneListener listener;
+  dma::ReservationHolder holder;
+  std::vector<std::uint32_t> stage_ends;
+  std::vector<const ls_sim::KernelImage*> kernels;  // of each job
+  std::vector<JobFailure> failures;
+  std::vector<JobFailure> faults;  // of the kick under way; guarded by the system's mutex
+  std::size_t most_jobs;
+  std::uint32_t kicks = 0;
+  bool under_way = false;
+};
+
 struct JobSystem::State {
   State(dma::AddressSpace& space, const ls_sim::SpeOptions& options, const ls_sim::KernelImage& job_loop);
   ~State();
 
   void stop();
-  void kick(JobChain& chain, const ChainState& state);
+  void kick(JobChain::State& chain, const ChainState& state);
 
   // With the mutex.
   void on_run_ended(int spe, const ls_sim::RunResult& result);
@@ -109,14 +139,14 @@ struct JobSystem::State {
   void ring(int spe);
   void announce_work();
   void fail_unfinished();
-  void tell_end(JobChain& chain, std::uint32_t kick);
+  void tell_end(JobChain::State& chain, std::uint32_t kick);
   template <class Line, class Change>
   Line change(dma::Buffer<Line>& at, const Change& how, std::size_t index = 0) {
     return change_line(memory.reservations(), holder, at, how, index);
   }
   template <class Change>
-  ChainState change_state(const JobChain& chain, const Change& how) {
-    return change(chain_states, how, chain.board_slot_);
+  ChainState change_state(const JobChain::State& chain, const Change& how) {
+    return change(chain_states, how, chain.board_slot);
   }
 
   struct Placed {
@@ -136,7 +166,7 @@ struct JobSystem::State {
 
   std::mutex mutex;  // guards all below; taken by SPEs' threads when a loop has ended
   dma::ReservationHolder holder;
-  std::array<JobChain*, spu::kMaxChains> chains{};
+  std::array<JobChain::State*, spu::kMaxChains> chains{};
   bool stopping = false;
   int loops_left = 0;     // that have not ended
   std::string breakdown;  // why all loops end or have ended, where one has failed by itself
@@ -167,7 +197,7 @@ JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& opti
 JobSystem::State::~State() { stop(); }
 
 void JobSystem::State::stop() {
-  for (JobChain* const chain : chains)
+  for (JobChain::State* const chain : chains)
     if (chain != nullptr) chain->wait();
   {
     const std::scoped_lock lock(mutex);
@@ -216,10 +246,10 @@ void JobSystem::State::announce_work() {
   if (sleeper < group.spes()) ring(sleeper);
 }
 
-void JobSystem::State::kick(JobChain& chain, const ChainState& state) {
+void JobSystem::State::kick(JobChain::State& chain, const ChainState& state) {
   const std::scoped_lock lock(mutex);
-  memory.reservations().store_line(holder, chain_states.ea(chain.board_slot_),
-                                   host_of(chain_states, chain.board_slot_),
+  memory.reservations().store_line(holder, chain_states.ea(chain.board_slot),
+                                   host_of(chain_states, chain.board_slot),
                                    reinterpret_cast<const std::byte*>(&state));
   if (loops_left == 0 && !stopping) {
     breakdown.clear();
@@ -250,15 +280,15 @@ void JobSystem::State::on_run_ended(int spe, const ls_sim::RunResult& result) {
 /// Does what the loop would have done: counts the job, as failed. A stage that fails is the chain's last.
 /// @return  false when it is no chain's job.
 bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) {
-  for (JobChain* chain : chains) {
+  for (JobChain::State* chain : chains) {
     if (chain == nullptr) continue;
-    const std::uint64_t offset = result.job.value - chain->descriptors_.ea().value;
-    if (offset >= chain->descriptors_.size_bytes()) continue;
+    const std::uint64_t offset = result.job.value - chain->descriptors.ea().value;
+    if (offset >= chain->descriptors.size_bytes()) continue;
     const auto job = static_cast<std::uint32_t>(offset / sizeof(JobDescriptor));
-    chain->faults_.push_back({job, result.fault ? result.fault->message()
-                                                : "SPE " + std::to_string(spe) + ", kernel " +
-                                                      chain->kernels_[job]->name + ": stopped with code " +
-                                                      std::to_string(result.stop_code)});
+    chain->faults.push_back({job, result.fault ? result.fault->message()
+                                               : "SPE " + std::to_string(spe) + ", kernel " +
+                                                     chain->kernels[job]->name + ": stopped with code " +
+                                                     std::to_string(result.stop_code)});
     const ChainState state = change_state(*chain, [&](ChainState& line) {
       ++line.finished;
       if (line.failed == 0 || job < line.failed_job) {
@@ -275,15 +305,15 @@ bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
 
 /// No loop runs, and none will before the next kick: what has not ended now never would.
 void JobSystem::State::fail_unfinished() {
-  for (JobChain* chain : chains) {
+  for (JobChain::State* chain : chains) {
     if (chain == nullptr) continue;
     ChainDone done;
-    memory.reservations().load_and_reserve(holder, chain->done_.ea(), host_of(chain->done_),
+    memory.reservations().load_and_reserve(holder, chain->done.ea(), host_of(chain->done),
                                            reinterpret_cast<std::byte*>(&done));
     std::uint32_t jobs = 0;
     const ChainState state = change_state(*chain, [&](ChainState& line) {
       if (line.kick == done.kick) return;  // not under way: its owner may be filling it
-      jobs = static_cast<std::uint32_t>(chain->size());
+      jobs = static_cast<std::uint32_t>(chain->kernels.size());
       line.next = line.stage_end;  // for nobody to take
       if (line.failed++ == 0) {
         line.failed_job = jobs;
@@ -291,14 +321,14 @@ void JobSystem::State::fail_unfinished() {
       }
     });
     if (state.kick == done.kick) continue;
-    chain->faults_.push_back({jobs, breakdown});
+    chain->faults.push_back({jobs, breakdown});
     tell_end(*chain, state.kick);
   }
 }
 
-void JobSystem::State::tell_end(JobChain& chain, std::uint32_t kick) {
+void JobSystem::State::tell_end(JobChain::State& chain, std::uint32_t kick) {
   const ChainDone done{.kick = kick, .pad = {}};
-  memory.reservations().store_line(holder, chain.done_.ea(), host_of(chain.done_),
+  memory.reservations().store_line(holder, chain.done.ea(), host_of(chain.done),
                                    reinterpret_cast<const std::byte*>(&done));
 }
 
@@ -336,45 +366,92 @@ std::vector<ls_sim::SpeStatistics> JobSystem::statistics() const {
 
 int JobSystem::spes() const { return state_->group.spes(); }
 
-JobChain::JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs)
-    : system_(system),
-      descriptors_(system.state_->memory, name + ": jobs", std::max<std::size_t>(most_jobs, 1), kRead),
-      done_(system.state_->memory, name + ": done", 1),
-      listener_(std::make_unique<DoneListener>()),
-      holder_(
-          std::make_unique<dma::ReservationHolder>(system.state_->memory.reservations(), listener_.get())),
-      most_jobs_(most_jobs) {
-  JobSystem::State& shared = *system.state_;
+JobChain::State::State(JobSystem::State& system, const std::string& name, std::size_t most)
+    : shared(system),
+      descriptors(system.memory, name + ": jobs", std::max<std::size_t>(most, 1), kRead),
+      done(system.memory, name + ": done", 1),
+      holder(system.memory.reservations(), &listener),
+      most_jobs(most) {
   const std::scoped_lock lock(shared.mutex);
   const auto slot = std::find(shared.chains.begin(), shared.chains.end(), nullptr);
   if (slot == shared.chains.end()) {
     throw std::runtime_error("a job system has at most " + std::to_string(spu::kMaxChains) + " chains");
   }
   *slot = this;
-  board_slot_ = static_cast<std::size_t>(slot - shared.chains.begin());
+  board_slot = static_cast<std::size_t>(slot - shared.chains.begin());
   // Nothing that the last chain here has left.
   shared.change_state(*this, [](ChainState& line) { line = {}; });
-  shared.change(shared.board, [&](JobBoard& line) {
-    line.chains[board_slot_] = shared.chain_states.ea(board_slot_).value;
-  });
+  shared.change(shared.board,
+                [&](JobBoard& line) { line.chains[board_slot] = shared.chain_states.ea(board_slot).value; });
 }
 
-JobChain::~JobChain() {
+JobChain::State::~State() {
   wait();
-  JobSystem::State& shared = *system_.state_;
   const std::scoped_lock lock(shared.mutex);
-  shared.change(shared.board, [&](JobBoard& line) { line.chains[board_slot_] = 0; });
-  shared.chains[board_slot_] = nullptr;
+  shared.change(shared.board, [&](JobBoard& line) { line.chains[board_slot] = 0; });
+  shared.chains[board_slot] = nullptr;
 }
+
+/// Each job knows where the stage after its own ends.
+void JobChain::State::link_stages() {
+  std::uint32_t job = 0;
+  for (std::size_t stage = 0; stage < stage_ends.size(); ++stage) {
+    const std::uint32_t next_end = stage + 1 < stage_ends.size() ? stage_ends[stage + 1] : 0;
+    for (; job < stage_ends[stage]; ++job) descriptors[job].next_stage_end = next_end;
+  }
+}
+
+/// Looks at the last line, and reserves it, so that the listener hears of its next change.
+bool JobChain::State::finished() {
+  if (!under_way) return true;
+  ChainDone last;
+  listener.reset();
+  shared.memory.reservations().load_and_reserve(holder, done.ea(), host_of(done),
+                                                reinterpret_cast<std::byte*>(&last));
+  if (last.kick != kicks) return false;
+  under_way = false;
+  collect();
+  return true;
+}
+
+void JobChain::State::wait() {
+  while (!finished()) listener.wait();
+}
+
+void JobChain::State::collect() {
+  ChainState state;
+  shared.memory.reservations().load_and_reserve(holder, shared.chain_states.ea(board_slot),
+                                                host_of(shared.chain_states, board_slot),
+                                                reinterpret_cast<std::byte*>(&state));
+  {
+    const std::scoped_lock lock(shared.mutex);
+    failures = std::move(faults);
+    faults.clear();
+  }
+  if (state.failed != 0 && state.failed_status != kFaulted) {
+    std::string message = "kernel " + kernels[state.failed_job]->name + ": refused its job with status " +
+                          std::to_string(state.failed_status);
+    const std::size_t others = state.failed - failures.size() - 1;
+    if (others != 0) message += ", and " + std::to_string(others) + " more jobs failed";
+    failures.push_back({state.failed_job, std::move(message)});
+  }
+  std::sort(failures.begin(), failures.end(),
+            [](const JobFailure& a, const JobFailure& b) { return a.job < b.job; });
+}
+
+JobChain::JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs)
+    : state_(std::make_unique<State>(*system.state_, name, most_jobs)) {}
+
+JobChain::~JobChain() = default;
 
 void JobChain::clear() {
-  kernels_.clear();
-  stage_ends_.clear();
+  state_->kernels.clear();
+  state_->stage_ends.clear();
 }
 
 void JobChain::add(const Job& job) {
-  if (kernels_.size() == most_jobs_) {
-    throw std::length_error("a chain of " + std::to_string(most_jobs_) + " jobs is full");
+  if (state_->kernels.size() == state_->most_jobs) {
+    throw std::length_error("a chain of " + std::to_string(state_->most_jobs) + " jobs is full");
   }
   const ls_sim::KernelImage& kernel = *job.image.kernel_;
   JobDescriptor descriptor{};
@@ -385,76 +462,36 @@ void JobChain::add(const Job& job) {
   descriptor.entry = kernel.entry;
   descriptor.data_begin = kernel.data_begin;
   descriptor.data_bytes = (kernel.data_end - kernel.data_begin + 15) / 16 * 16;
-  descriptors_[kernels_.size()] = descriptor;
-  kernels_.push_back(&kernel);
+  state_->descriptors[state_->kernels.size()] = descriptor;
+  state_->kernels.push_back(&kernel);
 }
 
 void JobChain::sync() {
-  const auto end = static_cast<std::uint32_t>(kernels_.size());
-  if (end != (stage_ends_.empty() ? 0 : stage_ends_.back())) stage_ends_.push_back(end);
-}
-
-/// Each job knows where the stage after its own ends.
-void JobChain::link_stages() {
-  sync();
-  std::uint32_t job = 0;
-  for (std::size_t stage = 0; stage < stage_ends_.size(); ++stage) {
-    const std::uint32_t next_end = stage + 1 < stage_ends_.size() ? stage_ends_[stage + 1] : 0;
-    for (; job < stage_ends_[stage]; ++job) descriptors_[job].next_stage_end = next_end;
-  }
+  const auto end = static_cast<std::uint32_t>(state_->kernels.size());
+  if (end != (state_->stage_ends.empty() ? 0 : state_->stage_ends.back())) state_->stage_ends.push_back(end);
 }
 
 void JobChain::kick() {
-  failures_.clear();
-  faults_.clear();
-  if (kernels_.empty()) return;
-  link_stages();
+  state_->failures.clear();
+  state_->faults.clear();
+  if (state_->kernels.empty()) return;
+  sync();
+  state_->link_stages();
   ChainState state{};
-  state.descriptors_ea = descriptors_.ea().value;
-  state.done_ea = done_.ea().value;
-  state.kick = ++kicks_;
-  state.stage_end = stage_ends_.front();
-  under_way_ = true;
-  system_.state_->kick(*this, state);
+  state.descriptors_ea = state_->descriptors.ea().value;
+  state.done_ea = state_->done.ea().value;
+  state.kick = ++state_->kicks;
+  state.stage_end = state_->stage_ends.front();
+  state_->under_way = true;
+  state_->shared.kick(*state_, state);
 }
 
-/// Looks at the last line, and reserves it, so that the listener hears of its next change.
-bool JobChain::finished() {
-  if (!under_way_) return true;
-  ChainDone done;
-  listener_->reset();
-  system_.state_->memory.reservations().load_and_reserve(*holder_, done_.ea(), host_of(done_),
-                                                         reinterpret_cast<std::byte*>(&done));
-  if (done.kick != kicks_) return false;
-  under_way_ = false;
-  collect();
-  return true;
-}
+std::size_t JobChain::size() const { return state_->kernels.size(); }
 
-void JobChain::wait() {
-  while (!finished()) listener_->wait();
-}
+bool JobChain::finished() { return state_->finished(); }
 
-void JobChain::collect() {
-  JobSystem::State& shared = *system_.state_;
-  ChainState state;
-  shared.memory.reservations().load_and_reserve(*holder_, shared.chain_states.ea(board_slot_),
-                                                host_of(shared.chain_states, board_slot_),
-                                                reinterpret_cast<std::byte*>(&state));
-  {
-    const std::scoped_lock lock(shared.mutex);
-    failures_ = std::move(faults_);
-    faults_.clear();
-  }
-  if (state.failed != 0 && state.failed_status != kFaulted) {
-    std::string message = "kernel " + kernels_[state.failed_job]->name + ": refused its job with status " +
-                          std::to_string(state.failed_status);
-    const std::size_t others = state.failed - failures_.size() - 1;
-    if (others != 0) message += ", and " + std::to_string(others) + " more jobs failed";
-    failures_.push_back({state.failed_job, std::move(message)});
-  }
-  std::sort(failures_.begin(), failures_.end(),
-            [](const JobFailure& a, const JobFailure& b) { return a.job < b.job; });
-}
+void JobChain::wait() { state_->wait(); }
+
+const std::vector<JobFailure>& JobChain::failures() const { return state_->failures; }
 
 }  // namespace softcell::ppu

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "match_job.h"
-#include "ppu/reference/shape_matching.h"
+#include "ppu/matching/matching_plan.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {

@@ -2,8 +2,8 @@
 // The plan of the kernel `match`: a model's constants and sum lists as the SPE reads them.
 
 #include "match_job.h"
+#include "ppu/matching/matching_plan.h"
 #include "ppu/plans/kernel_plan.h"
-#include "ppu/reference/shape_matching.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {

@@ -2,8 +2,8 @@
 // The plan of the kernel `match_2d`: a model's constants and sum lists as the SPE reads them.
 
 #include "match_2d_job.h"
+#include "ppu/matching/matching_plan.h"
 #include "ppu/plans/kernel_plan.h"
-#include "ppu/reference/shape_matching_2d.h"
 #include "softcell/soft_bodies/lattice_2d.h"
 
 namespace softcell::ppu {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "match_tiles_job.h"
+#include "ppu/matching/matching_plan.h"
 #include "ppu/plans/kernel_plan.h"
-#include "ppu/reference/shape_matching.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {

@@ -44,11 +44,11 @@ struct SkinOrchestrator::Frame {
   std::array<JobChain, 2> chain;
 };
 
-Eigen::Vector3f skin_origin(std::span<const SkinCorner> positions) {
-  Eigen::Vector3f low(positions[0].x, positions[0].y, positions[0].z), high = low;
-  for (const SkinCorner& p : positions) {
-    low = low.cwiseMin(Eigen::Vector3f(p.x, p.y, p.z));
-    high = high.cwiseMax(Eigen::Vector3f(p.x, p.y, p.z));
+Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions) {
+  Eigen::Vector3f low = positions[0].head<3>(), high = low;
+  for (const Eigen::Vector4f& p : positions) {
+    low = low.cwiseMin(p.head<3>());
+    high = high.cwiseMax(p.head<3>());
   }
   return low - Eigen::Vector3f::Constant((high - low).maxCoeff() / 16);
 }
@@ -87,12 +87,13 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
   return bodies_.size() - 1;
 }
 
-void SkinOrchestrator::write_half(Body& body, std::span<const SkinCorner> positions) {
+void SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> positions) {
   Body::Half& half = body.half[static_cast<std::size_t>(working_)];
   if (positions.size() != half.corners.size()) {
     throw std::invalid_argument("a body of " + std::to_string(half.corners.size()) + " particles was given " +
                                 std::to_string(positions.size()) + " positions");
   }
+  static_assert(sizeof(SkinCorner) == sizeof(Eigen::Vector4f));
   std::memcpy(half.corners.data(), positions.data(), positions.size_bytes());
   half.origin = skin_origin(positions);
 
@@ -128,7 +129,7 @@ JobChain* SkinOrchestrator::chain_under_way() {
   return in_flight_ ? &frame_->chain[static_cast<std::size_t>(working_)] : nullptr;
 }
 
-bool SkinOrchestrator::kick(std::span<const std::span<const SkinCorner>> positions) {
+bool SkinOrchestrator::kick(std::span<const std::span<const Eigen::Vector4f>> positions) {
   if (positions.size() != bodies_.size())
     throw std::invalid_argument("kick() needs the positions of every body");
   if (JobChain* const chain = chain_under_way(); chain != nullptr && !chain->finished()) {

@@ -30,7 +30,7 @@ struct SkinnedBody {
 /// What skinned vertices are relative to: a point below all particles by a margin that is not tiny against
 /// the body, so that every relative coordinate is a normal half float with an error far below its unit in the
 /// last place. @pre at least one position
-Eigen::Vector3f skin_origin(std::span<const spu::SkinCorner> positions);
+Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions);
 
 /// Used by the PPU thread alone.
 class SkinOrchestrator {
@@ -51,7 +51,7 @@ class SkinOrchestrator {
   /// the newest, and
   ///         late_frames() counts.
   /// @throws std::runtime_error  when a job of the frame before failed: one sentence per fault.
-  bool kick(std::span<const std::span<const spu::SkinCorner>> positions);
+  bool kick(std::span<const std::span<const Eigen::Vector4f>> positions);
 
   /// Waits for the frame under way and makes it the one that is shown: for runs whose pictures must not
   /// depend on the speed of the host. @return false when there was none under way. @throws std::runtime_error
@@ -72,7 +72,7 @@ class SkinOrchestrator {
   void make_frame();
   JobChain* chain_under_way();
   bool collect();
-  void write_half(Body& body, std::span<const spu::SkinCorner> positions);
+  void write_half(Body& body, std::span<const Eigen::Vector4f> positions);
 
   dma::AddressSpace& memory_;
   JobSystem& system_;

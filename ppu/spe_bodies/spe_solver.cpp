@@ -1,6 +1,7 @@
 #include "softcell/spe_bodies/spe_solver.h"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -148,13 +149,15 @@ void SpeSolver::hand_over(Member& member) {
   if (member.tiled) {
     const std::span<const std::uint32_t> place_of = group.tiles->place_of();
     for (std::size_t i = 0; i < place_of.size(); ++i) {
-      member.tiled->positions()[place_of[i]] = body.positions()[i];
+      member.tiled->positions()[place_of[i]] = of(body.positions()[i]);
       member.tiled->velocities()[place_of[i]] = of(body.velocities()[i]);
     }
     member.tiled->begin_step(settings_of(*group.model, step_));
   } else {
     group.awake.push_back(member.number);
-    std::ranges::copy(body.positions(), group.bodies->positions(member.number).begin());
+    static_assert(sizeof(MatchBodies::Vector) == sizeof(Eigen::Vector4f));
+    std::memcpy(group.bodies->positions(member.number).data(), body.padded_positions().data(),
+                body.padded_positions().size_bytes());
     std::ranges::transform(body.velocities(), group.bodies->velocities(member.number).begin(), of);
   }
 }

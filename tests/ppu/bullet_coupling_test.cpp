@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "ppu/reference/skin_scalar.h"
 #include "soft_body_scenes.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/state_hash.h"

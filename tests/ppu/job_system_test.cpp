@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "job_chain.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
 #include "softcell/ls_sim/trace.h"

@@ -8,6 +8,7 @@
 
 #include "ppu/bullet/bullet_world.h"
 #include "ppu/matching/regions.h"
+#include "ppu/reference/shape_matching.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/lattice.h"
 #include "softcell/soft_bodies/soft_body.h"

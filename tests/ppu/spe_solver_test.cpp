@@ -2,7 +2,6 @@
 // whoever steps them.
 
 #include "softcell/spe_bodies/spe_solver.h"
-#include "softcell/ls_sim/findings.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +9,11 @@
 #include <limits>
 #include <thread>
 
+#include "ppu/plans/match_plan.h"
 #include "ppu/plans/tile_plan.h"
 #include "soft_body_scenes.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/ls_sim/findings.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "spu_kernels/kernel_image.h"
 

@@ -13,6 +13,7 @@
 #include "ppu/lattices_2d.h"
 #include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
+#include "ppu/reference/shape_matching_2d.h"
 #include "ppu/spe_bodies/match_orchestrator_2d.h"
 #include "softcell/ls_sim/findings.h"
 #include "spu_kernels/kernel_image.h"

@@ -34,9 +34,9 @@ class SkinRig {
   }
 
   ppu::SkinnedBody skin() {
-    std::vector<spu::SkinCorner> corners;
+    std::vector<Eigen::Vector4f> corners;
     for (const Vector3f& p : positions) corners.push_back({p.x(), p.y(), p.z(), 0});
-    const std::span<const spu::SkinCorner> all(corners);
+    const std::span<const Eigen::Vector4f> all(corners);
     EXPECT_TRUE(orchestrator_.kick({&all, 1}));
     orchestrator_.drain();
     return orchestrator_.shown(0);
@@ -212,9 +212,9 @@ TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
   const ppu::Lattice lattice = ppu::voxelize(mesh, 0.35f);
   const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
   ppu::SkinOrchestrator orchestrator(memory, system, broken);
-  const std::vector<spu::SkinCorner> corners(lattice.particles.size());
+  const std::vector<Eigen::Vector4f> corners(lattice.particles.size(), Eigen::Vector4f::Zero());
   orchestrator.add(embedding, corners.size());
-  const std::span<const spu::SkinCorner> all(corners);
+  const std::span<const Eigen::Vector4f> all(corners);
   orchestrator.kick({&all, 1});
   try {
     orchestrator.drain();

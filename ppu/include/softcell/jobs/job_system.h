@@ -12,17 +12,12 @@
 //
 // spu_kernels/job_chain.h has what lies in memory, spu_kernels/job_loop.cpp what the SPEs do with it.
 
-#include <condition_variable>
-#include <cstdint>
-#include <map>
+#include <cstddef>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
-#include "job_chain.h"
-#include "softcell/dma/buffer.h"
-#include "softcell/dma/reservations.h"
+#include "softcell/dma/address_space.h"
 #include "softcell/ls_sim/image.h"
 #include "softcell/ls_sim/spe_group.h"
 
@@ -100,7 +95,7 @@ class JobSystem {
 /// Used by one thread. Chains are looked at in the order of their making: jobs of an earlier one go first.
 class JobChain {
  public:
-  /// @throws std::runtime_error  there are kMaxChains chains already, or main memory is full.
+  /// @throws std::runtime_error  there are 15 chains already, or main memory is full.
   JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs);
 
   /// Waits for what is under way.
@@ -116,7 +111,7 @@ class JobChain {
   /// Ends a stage, if it has a job.
   void sync();
 
-  std::size_t size() const { return kernels_.size(); }
+  std::size_t size() const;  ///< jobs added
 
   /// Starts the jobs. Never waits, allocates nothing. @pre finished()
   void kick();
@@ -129,28 +124,12 @@ class JobChain {
 
   /// Of the last kick, in order; empty when all went well. Stages behind one that failed have not run.
   /// @pre finished()
-  const std::vector<JobFailure>& failures() const { return failures_; }
+  const std::vector<JobFailure>& failures() const;
 
  private:
   friend class JobSystem;
-  class DoneListener;
-
-  void link_stages();
-  void collect();
-
-  JobSystem& system_;
-  std::size_t board_slot_ = 0;
-  dma::Buffer<spu::JobDescriptor> descriptors_;
-  dma::Buffer<spu::ChainDone> done_;
-  std::unique_ptr<DoneListener> listener_;
-  std::unique_ptr<dma::ReservationHolder> holder_;
-  std::vector<std::uint32_t> stage_ends_;
-  std::vector<const ls_sim::KernelImage*> kernels_;  // of each job
-  std::vector<JobFailure> failures_;
-  std::vector<JobFailure> faults_;  // of the kick under way; guarded by the system's mutex
-  std::size_t most_jobs_;
-  std::uint32_t kicks_ = 0;
-  bool under_way_ = false;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace softcell::ppu

@@ -2,23 +2,27 @@
 // A soft body in two dimensions: a lattice with its material, and the moving particles. See soft_body.h.
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "ppu/bodies/change_count.h"
-#include "ppu/reference/shape_matching_2d.h"
 #include "softcell/soft_bodies/lattice_2d.h"
-#include "softcell/soft_bodies/soft_body.h"
+#include "softcell/soft_bodies/soft_body_settings.h"
 
 namespace softcell::ppu {
+
+template <typename Real, int kDimension>
+class BasicMatchingPlan;
+template <typename Real>
+class ShapeMatcher2d;
 
 /// All that bodies of one make share. Immutable; safe to read from any thread.
 class SoftBodyModel2d {
  public:
   const SoftBodySettings& settings() const { return settings_; }  ///< density is in kg/m^2
   const Lattice2d& lattice() const { return lattice_; }
-  const std::shared_ptr<const MatchingPlan2d<float>>& plan() const { return plan_; }
   std::size_t particles() const { return masses_.size(); }
   std::span<const float> masses() const { return masses_; }  ///< kg, of each particle
   float mass() const { return mass_; }                       ///< kg, of the body
@@ -34,6 +38,9 @@ class SoftBodyModel2d {
   /// it half a cell before they meet what is drawn. Smaller ones let small things in.
   static constexpr float kContactRadiusInCells = 0.5f;
 
+  /// For solvers: constants of its particles and regions.
+  const std::shared_ptr<const BasicMatchingPlan<float, 2>>& plan() const { return plan_; }
+
  private:
   friend std::shared_ptr<const SoftBodyModel2d> make_soft_body_model(Lattice2d, const SoftBodySettings&,
                                                                      float);
@@ -45,7 +52,7 @@ class SoftBodyModel2d {
   float mass_;
   float contact_radius_in_cells_;
   std::vector<std::uint32_t> outer_, inner_;
-  std::shared_ptr<const MatchingPlan2d<float>> plan_;
+  std::shared_ptr<const BasicMatchingPlan<float, 2>> plan_;
 };
 
 /// @param contact_radius_in_cells  above 0 and at most 1.
@@ -62,12 +69,14 @@ class SoftBody2d {
   /// At rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody2d(std::shared_ptr<const SoftBodyModel2d> model,
                       const Eigen::Vector2f& position = Eigen::Vector2f::Zero());
+  SoftBody2d(const SoftBody2d& other);
+  SoftBody2d& operator=(const SoftBody2d& other);
+  ~SoftBody2d();
 
   const SoftBodyModel2d& model() const { return *model_; }
   const std::shared_ptr<const SoftBodyModel2d>& shared_model() const { return model_; }
   std::span<const Eigen::Vector2f> positions() const { return x_; }   ///< metres, of each particle
   std::span<const Eigen::Vector2f> velocities() const { return v_; }  ///< m/s, of each particle
-  const ShapeMatcher2d<float>& matcher() const { return matcher_; }
 
   // What an engine's coupling does in a time step of `step` seconds, in this order: see SoftBody.
 
@@ -89,7 +98,7 @@ class SoftBody2d {
   void reset(const Eigen::Vector2f& position);
   void add_velocity(const Eigen::Vector2f& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Eigen::Vector2f& dv);  ///< m/s
-  std::uint32_t revision() const { return revision_.count(); }
+  std::uint32_t revision() const { return revision_; }
 
   Eigen::Vector2f centre_of_mass() const;   ///< metres
   Eigen::Vector2f linear_momentum() const;  ///< kg m/s
@@ -103,8 +112,8 @@ class SoftBody2d {
 
   std::shared_ptr<const SoftBodyModel2d> model_;
   std::vector<Eigen::Vector2f> x_, v_;
-  ShapeMatcher2d<float> matcher_;
-  ChangeCount revision_;
+  std::unique_ptr<ShapeMatcher2d<float>> matcher_;
+  std::uint32_t revision_ = 0;
 };
 
 }  // namespace softcell::ppu

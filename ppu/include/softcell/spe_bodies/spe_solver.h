@@ -10,13 +10,13 @@
 #include <memory>
 #include <vector>
 
-#include "ppu/spe_bodies/match_bodies.h"
+#include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 
 namespace softcell::ppu {
 
-/// The result is the same bits for any number of SPEs. Its rotations live in main memory, not in the bodies:
-/// SoftBody::matcher() says nothing, and a body restored from a copy starts without any.
+/// The result is the same bits for any number of SPEs. The rotations of regions live in main memory, not in
+/// the bodies: a body restored from a copy starts without any.
 ///
 /// A body that fits a local store is stepped whole by one SPE, with others of its model; a larger one in
 /// tiles by all of them. What does not even fit in tiles, a lattice some hundreds of particles high (z) with

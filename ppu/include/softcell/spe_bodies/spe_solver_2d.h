@@ -10,11 +10,10 @@
 // the velocities copied back.
 
 #include <chrono>
-#include <map>
 #include <memory>
-#include <vector>
+#include <span>
 
-#include "ppu/spe_bodies/match_orchestrator_2d.h"
+#include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/solver_2d.h"
 
 namespace softcell::ppu {
@@ -24,6 +23,7 @@ class SpeSolver2d final : public Solver2d {
  public:
   /// All three outlive the solver. `match_2d` is the image of that kernel.
   SpeSolver2d(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match_2d);
+  ~SpeSolver2d() override;
 
   /// @throws std::runtime_error  a body needs more local store than an SPE has (some 1300 particles fit), or
   ///         main memory is full.
@@ -31,25 +31,11 @@ class SpeSolver2d final : public Solver2d {
   void pull(float step) override;
 
   /// Time that pull() has spent waiting for the SPEs so far.
-  std::chrono::nanoseconds time_waited() const { return waited_; }
+  std::chrono::nanoseconds time_waited() const;
 
  private:
-  struct Model {
-    std::shared_ptr<const SoftBodyModel2d> model;
-    MatchPlan2d plan;
-    std::vector<SoftBody2d*> bodies;
-  };
-
-  void write_bodies();
-  void read_bodies();
-
-  dma::AddressSpace& memory_;
-  JobSystem& jobs_;
-  const ls_sim::KernelImage& match_2d_;
-  std::vector<Model> models_;
-  std::vector<MatchOrchestrator2d::Settings> settings_;  // of each model
-  std::unique_ptr<MatchOrchestrator2d> matching_;        // none without bodies
-  std::chrono::nanoseconds waited_{0};
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace softcell::ppu
