@@ -12,7 +12,7 @@
 #include "benchmarks.h"
 #include "kernel_samples.h"
 #include "ppu/reference/shape_matching.h"
-#include "ppu/spe_bodies/tiled_match.h"
+#include "ppu/spe_bodies/tiled_memory.h"
 
 namespace softcell::demos {
 namespace {

@@ -47,7 +47,6 @@ class Demo3d final : public SceneDemo<Types3d> {
             .particles = simulation().particles(),
             .vertices = simulation().vertices()};
   }
-  std::uint64_t late_frames() const override { return simulation().late_frames(); }
 
  private:
   render::Camera eye(const Look& look) const { return seen_from(scene(), look, simulation().shown_tilt()); }

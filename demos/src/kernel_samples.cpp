@@ -10,7 +10,7 @@
 #include "ppu/plans/match_plan.h"
 #include "ppu/plans/match_plan_2d.h"
 #include "ppu/reference/shape_matching.h"
-#include "ppu/spe_bodies/tiled_match.h"
+#include "ppu/spe_bodies/tiled_memory.h"
 #include "rotations_job.h"
 #include "skin_job.h"
 #include "softcell/dma/buffer.h"
@@ -72,7 +72,7 @@ void run_skin(Sample& sample) {
   }
 }
 
-/// One SPE's share of a step of one body, as MatchOrchestrator makes it.
+/// One SPE's share of a step of one body, as MatchBodies makes it.
 void run_match(Sample& sample) {
   const ppu::Lattice lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
   const std::size_t particles = lattice.particles.size();

@@ -339,8 +339,4 @@ const Eigen::Vector3f& Simulation3d::gravity() const { return state_->controls.g
 
 std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->jobs.statistics(); }
 
-std::uint64_t Simulation3d::late_frames() const {
-  return state_->orchestrator ? state_->orchestrator->late_frames() : 0;
-}
-
 }  // namespace softcell::demos

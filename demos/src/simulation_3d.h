@@ -72,7 +72,6 @@ class Simulation3d {
   /// afterwards. @throws as step().
   void stop();
   std::vector<ls_sim::SpeStatistics> spe_statistics() const;
-  std::uint64_t late_frames() const;  ///< 0, as step() waits for the frame before: see Demo
 
  private:
   struct State;

@@ -8,8 +8,6 @@
 #include <string>
 #include <tuple>
 
-#include "ppu/lattice/trilinear.h"
-
 namespace softcell::ppu {
 namespace {
 
@@ -221,18 +219,6 @@ Embedding embed(const TriangleMesh& mesh, const Lattice& lattice) {
     for (const std::uint32_t vertex : triangle) embedding.indices.push_back(embedding.slot_of_vertex[vertex]);
   }
   return embedding;
-}
-
-ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& part, std::uint32_t group,
-                                   int lane, std::span<const Eigen::Vector3f> particle_positions) {
-  const spu::SkinGroup& g = embedding.groups[group];
-  std::array<Vector3d, 8> corners;
-  for (std::size_t k = 0; k < 8; ++k)
-    corners[k] = particle_positions[part.particle(g.corner[k])].cast<double>();
-  const auto point =
-      evaluate_trilinear<double>({g.xi[lane], g.eta[lane], g.zeta[lane]},
-                                 {g.normal_x[lane], g.normal_y[lane], g.normal_z[lane]}, corners);
-  return {point.position, point.normal};
 }
 
 }  // namespace softcell::ppu

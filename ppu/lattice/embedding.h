@@ -46,13 +46,4 @@ struct Embedding {
 /// jobs.
 Embedding embed(const TriangleMesh& mesh, const Lattice& lattice);
 
-/// One vertex evaluated in double precision straight from the equations: the oracle for the kernel.
-/// x = sum N_k x_k; n = normalize(cof(F) N) with F the deformation gradient, N the rest normal where that
-/// vanishes.
-struct ReferenceVertex {
-  Eigen::Vector3d position, normal;
-};
-ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& part, std::uint32_t group,
-                                   int lane, std::span<const Eigen::Vector3f> particle_positions);
-
 }  // namespace softcell::ppu

@@ -1,9 +1,21 @@
 #include "ppu/reference/skin_scalar.h"
 
-#include "ppu/lattice/trilinear.h"
 #include "ppu/numbers/half.h"
+#include "ppu/reference/trilinear.h"
 
 namespace softcell::ppu {
+
+ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& part, std::uint32_t group,
+                                   int lane, std::span<const Eigen::Vector3f> particle_positions) {
+  const spu::SkinGroup& g = embedding.groups[group];
+  std::array<Eigen::Vector3d, 8> corners;
+  for (std::size_t k = 0; k < 8; ++k)
+    corners[k] = particle_positions[part.particle(g.corner[k])].cast<double>();
+  const auto point =
+      evaluate_trilinear<double>({g.xi[lane], g.eta[lane], g.zeta[lane]},
+                                 {g.normal_x[lane], g.normal_y[lane], g.normal_z[lane]}, corners);
+  return {point.position, point.normal};
+}
 
 void skin_scalar(const Embedding& embedding, const SkinPart& part, std::span<const Eigen::Vector3f> positions,
                  const Eigen::Vector3f& origin, std::span<spu::SkinnedVertex> out) {

@@ -3,12 +3,42 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "ppu/spe_bodies/match_orchestration.h"
 
 namespace softcell::ppu {
 
 namespace {
+
+std::size_t jobs_for(std::size_t bodies, std::size_t bodies_per_job) {
+  return (bodies + bodies_per_job - 1) / bodies_per_job;
+}
+
+/// Waits for the chain. @param in_flight  whether a step was kicked that nobody has waited for; false then
+/// @return  its value before: there is something to take back. @throws as check_jobs()
+bool take_back(JobChain& chain, bool& in_flight) {
+  chain.wait();
+  if (!std::exchange(in_flight, false)) return false;
+  check_jobs(chain);
+  return true;
+}
+
+/// Bodies whose data are no numbers.
+class BadBodies {
+ public:
+  void add(std::size_t body) { names_ += (names_.empty() ? "" : ", ") + std::to_string(body); }
+
+  /// @throws std::runtime_error  there are any.
+  void check() const {
+    if (!names_.empty())
+      throw std::runtime_error("soft bodies with positions or velocities that are not finite numbers: " +
+                               names_);
+  }
+
+ private:
+  std::string names_;
+};
 
 std::size_t jobs_for_all(std::span<const MatchOrchestrator2d::Model> models, std::size_t bodies_per_job) {
   std::size_t jobs = 0;

@@ -132,10 +132,7 @@ JobChain* SkinOrchestrator::chain_under_way() {
 bool SkinOrchestrator::kick(std::span<const std::span<const Eigen::Vector4f>> positions) {
   if (positions.size() != bodies_.size())
     throw std::invalid_argument("kick() needs the positions of every body");
-  if (JobChain* const chain = chain_under_way(); chain != nullptr && !chain->finished()) {
-    ++late_frames_;
-    return false;
-  }
+  if (JobChain* const chain = chain_under_way(); chain != nullptr && !chain->finished()) return false;
   collect();
   working_ = shown_ == 0 ? 1 : 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) write_half(*bodies_[b], positions[b]);

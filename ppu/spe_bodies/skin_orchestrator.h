@@ -47,9 +47,7 @@ class SkinOrchestrator {
 
   /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues the
   /// jobs. Never waits.
-  /// @return false, with nothing done, when the SPEs have not finished the frame before: its vertices stay
-  /// the newest, and
-  ///         late_frames() counts.
+  /// @return false, with nothing done, when the SPEs have not finished the frame before.
   /// @throws std::runtime_error  when a job of the frame before failed: one sentence per fault.
   bool kick(std::span<const std::span<const Eigen::Vector4f>> positions);
 
@@ -60,9 +58,6 @@ class SkinOrchestrator {
 
   /// The newest complete frame; empty vertices before the first one.
   SkinnedBody shown(std::size_t body) const;
-
-  std::uint64_t late_frames() const { return late_frames_; }
-  std::size_t jobs_per_frame() const { return jobs_per_frame_; }
 
  private:
   struct Model;  // an embedding in main memory
@@ -84,7 +79,6 @@ class SkinOrchestrator {
   bool in_flight_ = false;
   int working_ = 0;  // the half that the SPEs write, or wrote last
   int shown_ = -1;   // the half that is complete
-  std::uint64_t late_frames_ = 0;
 };
 
 }  // namespace softcell::ppu

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "ppu/spe_bodies/match_orchestration.h"
-#include "ppu/spe_bodies/tiled_match.h"
+#include "ppu/spe_bodies/tiled_memory.h"
 
 namespace softcell::ppu {
 namespace {

@@ -13,10 +13,10 @@
 #include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
 #include "ppu/reference/shape_matching.h"
-#include "ppu/spe_bodies/match_orchestrator.h"
 #include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/kernel_image.h"
+#include "spu_kernels/stepped_bodies.h"
 
 namespace softcell {
 namespace {
@@ -115,7 +115,7 @@ class MatchRig {
   ppu::JobSystem jobs_;
 
  public:
-  ppu::MatchOrchestrator spes;
+  test::SteppedBodies spes;
 };
 
 /// Turned, bent, and shaken by up to `noise` metres; exactly as floats hold it.

@@ -10,9 +10,8 @@
 
 #include "ppu/lattices.h"
 #include "ppu/reference/shape_matching.h"
-#include "ppu/spe_bodies/match_orchestrator.h"
-#include "ppu/spe_bodies/tiled_match.h"
 #include "spu_kernels/kernel_image.h"
+#include "spu_kernels/stepped_bodies.h"
 
 namespace softcell {
 namespace {
@@ -83,7 +82,7 @@ class TiledBody {
   ppu::JobSystem jobs_;
 
  public:
-  ppu::TiledMatch spes;
+  test::SteppedTiles spes;
 };
 
 /// The same body whole.
@@ -107,7 +106,7 @@ class WholeBody {
   ppu::JobSystem jobs_;
 
  public:
-  ppu::MatchOrchestrator spes;
+  test::SteppedBodies spes;
 };
 
 /// Number of the first vector that differs in a bit; -1: none.

@@ -1,4 +1,4 @@
-#include "eigen_solver.h"
+#include "ppu/reference/eigen_solver.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "ppu/matching/rotation.h"
 
-namespace softcell::demos {
+namespace softcell::ppu {
 
 using Eigen::Matrix2f;
 using Eigen::Matrix3f;
@@ -35,7 +35,7 @@ Vector3f cross(const Vector3f& a, const Vector3f& b) { return a.cross(b); }
 Matrix3f second_moment(float mass, const Vector3f& x) { return mass * x * x.transpose(); }
 
 Matrix3f best_rotation(const Matrix3f& a, Quaternionf& attitude) {
-  return ppu::update_rotation<float>(a, attitude);
+  return update_rotation<float>(a, attitude);
 }
 
 /// @param second  moment about the centre.
@@ -117,7 +117,7 @@ void EigenSolver<Dimension>::match(std::span<const Vector> x, std::span<Vector> 
     const Vector p = particles[i].modified_mass * x[i];
     particle_moments_[i] = {p, p * particles[i].x0.transpose()};
   }
-  ppu::sum_up<Moments>(plan_->sums(), particle_moments_, moments_scratch_, region_moments_);
+  sum_up<Moments>(plan_->sums(), particle_moments_, moments_scratch_, region_moments_);
 
   const auto regions = plan_->region_constants();
   for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -127,7 +127,7 @@ void EigenSolver<Dimension>::match(std::span<const Vector> x, std::span<Vector> 
     const Matrix rotation = best_rotation(a, attitudes_[r]);
     motions_[r] = {centres_[r] - rotation * regions[r].c0, rotation};
   }
-  ppu::sum_down<Motion>(plan_->sums(), motions_, motion_scratch_, motion_totals_);
+  sum_down<Motion>(plan_->sums(), motions_, motion_scratch_, motion_totals_);
 
   const auto region_of = plan_->sums().region_of();
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -145,7 +145,7 @@ void EigenSolver<Dimension>::damp(std::span<const Vector> x, std::span<Vector> v
     const Vector p = mass * v[i];
     particle_momenta_[i] = {p, cross(x[i], p), second_moment(mass, x[i])};
   }
-  ppu::sum_up<Momenta>(plan_->sums(), particle_momenta_, momenta_scratch_, region_momenta_);
+  sum_up<Momenta>(plan_->sums(), particle_momenta_, momenta_scratch_, region_momenta_);
 
   const auto regions = plan_->region_constants();
   for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -155,7 +155,7 @@ void EigenSolver<Dimension>::damp(std::span<const Vector> x, std::span<Vector> v
     const typename Types::Spin omega = spin(about_centre, sum.l - cross(c, sum.p));
     twists_[r] = {regions[r].inverse_mass * sum.p - cross(omega, c), omega};
   }
-  ppu::sum_down<Twist>(plan_->sums(), twists_, twist_scratch_, twist_totals_);
+  sum_down<Twist>(plan_->sums(), twists_, twist_scratch_, twist_totals_);
 
   const auto region_of = plan_->sums().region_of();
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -168,4 +168,4 @@ void EigenSolver<Dimension>::damp(std::span<const Vector> x, std::span<Vector> v
 template class EigenSolver<2>;
 template class EigenSolver<3>;
 
-}  // namespace softcell::demos
+}  // namespace softcell::ppu

@@ -1,4 +1,4 @@
-#include "ppu/spe_bodies/tiled_match.h"
+#include "ppu/spe_bodies/tiled_memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -128,31 +128,6 @@ void TiledMemory::end_step() {
       throw std::runtime_error("a soft body has positions or velocities that are not finite numbers");
   std::swap(rotations_, next_rotations_);
   body_[0].cold = 0;
-}
-
-TiledMatch::TiledMatch(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match_tiles,
-                       const TilePlan& plan)
-    : image_(jobs.place(match_tiles)), memory_(memory, plan), chain_(jobs, "tiles", memory_.most_jobs()) {}
-
-void TiledMatch::step(const MatchSettings& settings) {
-  kick(settings);
-  wait();
-}
-
-void TiledMatch::kick(const MatchSettings& settings) {
-  memory_.begin_step(settings);
-  chain_.clear();
-  for (const spu::TilePass pass : kTilePasses) {
-    memory_.add_jobs(chain_, image_, pass);
-    chain_.sync();
-  }
-  chain_.kick();
-  in_flight_ = true;
-}
-
-void TiledMatch::wait() {
-  if (!take_back(chain_, in_flight_)) return;
-  memory_.end_step();
 }
 
 }  // namespace softcell::ppu

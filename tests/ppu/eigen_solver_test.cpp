@@ -1,17 +1,17 @@
 // What the kernels are measured against does the same work: its steps are those of the PPU's solvers.
 
-#include "eigen_solver.h"
+#include "ppu/reference/eigen_solver.h"
 
 #include <gtest/gtest.h>
 
-#include "ppu/lattices.h"
-#include "ppu/lattices_2d.h"
-#include "ppu/particle_vectors.h"
+#include "lattices.h"
+#include "lattices_2d.h"
+#include "particle_vectors.h"
 
-namespace softcell::demos {
+namespace softcell::ppu {
 namespace {
 
-using ppu::test::Random;
+using test::Random;
 
 constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.2f;
 
@@ -31,27 +31,25 @@ void expect_the_same_steps(const Body& lattice, const std::shared_ptr<const Plan
   for (int step = 0; step < 3; ++step) {
     solver.step(x, mine, kAlpha, kStep, kDamping);
     matcher.step_velocities(x, expected, kAlpha, kStep, kDamping);
-    EXPECT_GT(ppu::test::largest_difference(expected, std::vector<Vector>(x.size(), Vector::Zero())), 0.01);
-    EXPECT_LT(ppu::test::largest_difference(mine, expected), 2e-4) << "m/s, step " << step;
+    EXPECT_GT(test::largest_difference(expected, std::vector<Vector>(x.size(), Vector::Zero())), 0.01);
+    EXPECT_LT(test::largest_difference(mine, expected), 2e-4) << "m/s, step " << step;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += kStep * expected[i];
   }
 }
 
 TEST(EigenSolver, StepsAsTheReferenceInThreeDimensions) {
-  ppu::test::for_every_half_width(ppu::test::all_lattices(), 1, [](const ppu::Lattice& lattice, int w) {
-    expect_the_same_steps<3, ppu::ShapeMatcher<float>>(
-        lattice,
-        std::make_shared<const ppu::MatchingPlan<float>>(lattice, w, ppu::particle_masses(lattice, 1000)));
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
+    expect_the_same_steps<3, ShapeMatcher<float>>(
+        lattice, std::make_shared<const MatchingPlan<float>>(lattice, w, particle_masses(lattice, 1000)));
   });
 }
 
 TEST(EigenSolver, StepsAsTheReferenceInTwoDimensions) {
-  ppu::test::for_every_half_width(ppu::test::all_lattices_2d(), 1, [](const ppu::Lattice2d& lattice, int w) {
-    expect_the_same_steps<2, ppu::ShapeMatcher2d<float>>(
-        lattice,
-        std::make_shared<const ppu::MatchingPlan2d<float>>(lattice, w, ppu::particle_masses(lattice, 1000)));
+  test::for_every_half_width(test::all_lattices_2d(), 1, [](const Lattice2d& lattice, int w) {
+    expect_the_same_steps<2, ShapeMatcher2d<float>>(
+        lattice, std::make_shared<const MatchingPlan2d<float>>(lattice, w, particle_masses(lattice, 1000)));
   });
 }
 
 }  // namespace
-}  // namespace softcell::demos
+}  // namespace softcell::ppu

@@ -12,27 +12,27 @@
 #include "ppu/reference/shape_matching.h"
 #include "ppu/reference/shape_matching_2d.h"
 
-namespace softcell::demos {
+namespace softcell::ppu {
 
 /// What differs between two and three dimensions.
 template <int Dimension>
 struct EigenTypes;
 template <>
 struct EigenTypes<2> {
-  using Plan = ppu::MatchingPlan2d<float>;
+  using Plan = MatchingPlan2d<float>;
   using Spin = float;          ///< an angular velocity or momentum
   using SecondMoment = float;  ///< m~ |x|^2
   struct Attitude {};          ///< no start is needed to find a rotation
 };
 template <>
 struct EigenTypes<3> {
-  using Plan = ppu::MatchingPlan<float>;
+  using Plan = MatchingPlan<float>;
   using Spin = Eigen::Vector3f;
   using SecondMoment = Eigen::Matrix3f;  ///< m~ x x^T
   using Attitude = Eigen::Quaternionf;   ///< of the step before
 };
 
-/// One body. The same sums, plans and rotations as ppu::ShapeMatcher<float> and ppu::ShapeMatcher2d<float>.
+/// One body. The same sums, plans and rotations as ShapeMatcher<float> and ShapeMatcher2d<float>.
 template <int Dimension>
 class EigenSolver {
  public:
@@ -78,13 +78,13 @@ class EigenSolver {
   std::vector<Twist> twists_, twist_totals_;
   std::vector<Vector> centres_;
   std::vector<typename Types::Attitude> attitudes_;
-  ppu::SumScratch<Moments> moments_scratch_;
-  ppu::SumScratch<Momenta> momenta_scratch_;
-  ppu::SumScratch<Motion> motion_scratch_;
-  ppu::SumScratch<Twist> twist_scratch_;
+  SumScratch<Moments> moments_scratch_;
+  SumScratch<Momenta> momenta_scratch_;
+  SumScratch<Motion> motion_scratch_;
+  SumScratch<Twist> twist_scratch_;
 };
 
 extern template class EigenSolver<2>;
 extern template class EigenSolver<3>;
 
-}  // namespace softcell::demos
+}  // namespace softcell::ppu
