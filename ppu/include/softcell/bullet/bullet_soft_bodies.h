@@ -82,11 +82,11 @@ class BulletSoftBodies {
   /// between steps.
   void begin_ahead(float step);
 
-  /// From now on bodies at rest sleep, until something moving touches them, gravity changes, they are
-  /// changed, or a soft body of these is changed or removed on which they may have lain; or never again,
-  /// which is how it begins. Bodies that lean on each other may keep each other awake. Who removes a rigid
-  /// body, or a soft one of others that share the world, wakes what lay on it, as in Bullet: a soft body by
-  /// add_velocity() of nothing.
+  /// Lets bodies at rest sleep, or never (std::nullopt, the default). A sleeping body wakes when something
+  /// that moves touches it, when gravity changes, when its user changes it, or when another soft body of
+  /// these, on which it may have lain, is changed or removed. Bodies that lean on each other may keep each
+  /// other awake. Removing a rigid body, or a soft body that another BulletSoftBodies owns, wakes nothing:
+  /// wake what rested on it yourself, a soft body by add_velocity({0, 0, 0}).
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   SoftBodyTimes times() const;

@@ -30,8 +30,8 @@ struct Csr {
   }
 };
 
-inline constexpr std::uint32_t kMaxLatticeParticles =
-    1u << 20;  ///< far fewer fit 256 MB of main memory: see TiledMatch
+/// SPEs step far fewer: a body in tiles takes some 250 bytes of their main memory for each particle.
+inline constexpr std::uint32_t kMaxLatticeParticles = 1u << 20;
 inline constexpr int kMaxLatticeCellsPerAxis = 256;
 
 struct Lattice {
