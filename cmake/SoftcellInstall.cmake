@@ -1,8 +1,8 @@
 # What `cmake --install` puts where, and how find_package(softcell) finds it:
 #
 #   bin/softcell
-#   include/softcell/<folder>/         public headers
-#   lib/libsoftcell_<folder>.a         targets softcell::<folder>
+#   include/softcell/<library>/        public headers
+#   lib/libsoftcell_<library>.a        targets softcell::<library>
 #   lib/cmake/softcell/                the package
 #   share/softcell/cmake/              softcell_add_spu_kernel
 #   share/man/man1/, share/bash-completion/, share/zsh/   the manual page and completions, for who builds it all
@@ -14,26 +14,43 @@ set(SOFTCELL_INSTALL_MODULES ${CMAKE_INSTALL_DATADIR}/softcell/cmake)
 set(SOFTCELL_INSTALL_KERNELS ${CMAKE_INSTALL_DATADIR}/softcell/spu_kernels)
 set(SOFTCELL_INSTALL_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/softcell)
 
-# The libraries of these folders with their headers, as one file of targets.
-function(softcell_install_libraries export)
-  foreach(folder IN LISTS ARGN)
-    if(NOT TARGET softcell_${folder})
-      continue()
+# softcell_install_component(<component> <library>...)
+# One component of the package: its libraries, those of them that are built, as one file of targets, and their public headers.
+function(softcell_install_component component)
+  foreach(library IN LISTS ARGN)
+    if(TARGET softcell_${library})
+      install(TARGETS softcell_${library} EXPORT softcell_${component} ARCHIVE)
+      set(installed TRUE)
+      get_target_property(folder softcell_${library} SOURCE_DIR)
+      if(IS_DIRECTORY ${folder}/include/softcell)
+        list(APPEND SOFTCELL_PUBLIC_HEADERS ${folder}/include/softcell)
+      endif()
     endif()
-    install(TARGETS softcell_${folder} EXPORT ${export} ARCHIVE)
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/include/softcell TYPE INCLUDE)
-    set(installed TRUE)
   endforeach()
   if(installed)
-    install(EXPORT ${export} NAMESPACE softcell:: DESTINATION ${SOFTCELL_INSTALL_PACKAGE})
+    install(EXPORT softcell_${component} NAMESPACE softcell:: DESTINATION ${SOFTCELL_INSTALL_PACKAGE}
+      FILE softcell_${component}.cmake)
+    list(APPEND SOFTCELL_COMPONENTS ${component})
+    set(SOFTCELL_COMPONENTS ${SOFTCELL_COMPONENTS} PARENT_SCOPE)
+    set(SOFTCELL_PUBLIC_HEADERS ${SOFTCELL_PUBLIC_HEADERS} PARENT_SCOPE)
   endif()
 endfunction()
 
 # Called once all folders are known.
 function(softcell_install_package)
-  # Soft bodies bring Eigen, Bullet, Box2D and assimp; who only runs kernels does not need them.
-  softcell_install_libraries(softcellKernelTargets base dma ls_sim spu_kernels)
-  softcell_install_libraries(softcellBodyTargets ppu)
+  # What a component links besides is in softcellConfig.cmake.in.
+  set(SOFTCELL_COMPONENTS)
+  set(SOFTCELL_PUBLIC_HEADERS)
+  softcell_install_component(spu base dma ls_sim spu_kernels jobs spu)
+  softcell_install_component(soft_bodies soft_bodies)
+  softcell_install_component(mesh_import mesh_import)
+  softcell_install_component(bullet bullet)
+  softcell_install_component(box2d box2d)
+  softcell_install_component(spe_bodies spe_bodies)
+  list(REMOVE_DUPLICATES SOFTCELL_PUBLIC_HEADERS)
+  foreach(headers IN LISTS SOFTCELL_PUBLIC_HEADERS)
+    install(DIRECTORY ${headers} TYPE INCLUDE)
+  endforeach()
   if(TARGET softcell)
     install(TARGETS softcell RUNTIME)
     get_target_property(tool softcell BINARY_DIR)

@@ -23,7 +23,8 @@ if(SOFTCELL_ASSERTIONS)
 endif()
 
 # softcell_add_library(<folder> [SOURCES ...])
-# The one library of a folder, to which rooms add their sources: target softcell_<folder>, alias softcell::<folder>, public headers in <folder>/include.
+# The one library of a folder, to which rooms add their sources, or one of several that share the folder's public headers: target
+# softcell_<folder>, alias softcell::<folder>, public headers in include/ of the calling folder.
 function(softcell_add_library folder)
   cmake_parse_arguments(arg "" "" "SOURCES" ${ARGN})
   add_library(softcell_${folder} STATIC ${arg_SOURCES})
@@ -31,8 +32,10 @@ function(softcell_add_library folder)
   set_target_properties(softcell_${folder} PROPERTIES EXPORT_NAME ${folder})
   target_compile_features(softcell_${folder} PUBLIC cxx_std_20)
   target_include_directories(softcell_${folder}
-    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
-    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  if(IS_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    target_include_directories(softcell_${folder} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  endif()
   # How we compile is not how users of the installed libraries have to.
   target_link_libraries(softcell_${folder} PRIVATE $<BUILD_INTERFACE:softcell_options>)
 endfunction()

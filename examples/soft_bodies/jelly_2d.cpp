@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "softcell/ppu/box2d_coupling.h"
+#include "softcell/box2d/box2d_soft_bodies.h"
 
 using namespace softcell::ppu;
 

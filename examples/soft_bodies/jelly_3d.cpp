@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "softcell/ppu/bullet_coupling.h"
-#include "softcell/ppu/mesh.h"
+#include "softcell/bullet/bullet_soft_bodies.h"
+#include "softcell/mesh_import/mesh_import.h"
 
 using namespace softcell::ppu;
 

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "ppu/numbers/half.h"
+#include "ppu/reference/skin_scalar.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
-#include "softcell/ppu/half.h"
 
 namespace softcell::demos {
 namespace {
@@ -37,7 +38,7 @@ WorstVertex compare_with_oracle(const Simulation3d& simulation) {
     const ppu::Embedding& embedding = simulation.model(b).embedding();
     const ppu::SkinnedBody body = simulation.shown(b);
     std::vector<Eigen::Vector3f> particles;
-    for (const spu::SkinCorner& p : simulation.shown_particles(b)) particles.emplace_back(p.x, p.y, p.z);
+    for (const Eigen::Vector4f& p : simulation.shown_particles(b)) particles.emplace_back(p.head<3>());
     for (const ppu::SkinPart& part : embedding.parts) {
       for (std::uint32_t group = part.first_group; group < part.first_group + part.group_count; ++group) {
         for (int lane = 0; lane < 4; ++lane) {
@@ -86,10 +87,10 @@ TEST(Arena, NothingLeavesThroughFloorOrWallsAndEverythingStaysFinite) {
   for (int frame = 0; frame < 480; ++frame) {
     simulation.step();
     for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
-      for (const spu::SkinCorner& p : simulation.shown_particles(b)) {
-        ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
-        ASSERT_GT(p.y, 0.0f) << arena().soft_bodies[b].name << " is under the floor in frame " << frame;
-        ASSERT_LT(std::max(std::abs(p.x), std::abs(p.z)), 4.8f)
+      for (const Eigen::Vector4f& p : simulation.shown_particles(b)) {
+        ASSERT_TRUE(p.allFinite());
+        ASSERT_GT(p.y(), 0.0f) << arena().soft_bodies[b].name << " is under the floor in frame " << frame;
+        ASSERT_LT(std::max(std::abs(p.x()), std::abs(p.z())), 4.8f)
             << arena().soft_bodies[b].name << " left in frame " << frame;
       }
     }
@@ -111,8 +112,7 @@ TEST(Arena, TheAntennaOfTheCarBends) {
     if (lattice.particles[i].y() > lattice.particles[tip].y()) tip = i;
   }
   const auto at = [&](std::size_t i) {
-    const spu::SkinCorner& p = simulation.shown_particles(car)[i];
-    return Eigen::Vector3f(p.x, p.y, p.z);
+    return Eigen::Vector3f(simulation.shown_particles(car)[i].head<3>());
   };
   const auto below = [&](int cells) {
     const Eigen::Vector3i wanted = lattice.particles[tip] - Eigen::Vector3i(0, cells, 0);

@@ -77,16 +77,16 @@ TEST(GpuSkinJobs, NoneAreLeftForTheSpes) {
 TEST(GpuSkinShown, IsOneFrameLate) {
   const Scene scene = load_scene_3d("drop");
   Simulation3d simulation(scene, {.skin = Skin::kGpu});
-  const float before = simulation.soft_body(0).positions()[0].y;
-  EXPECT_EQ(simulation.shown_particles(0)[0].y, before);
+  const float before = simulation.soft_body(0).positions()[0].y();
+  EXPECT_EQ(simulation.shown_particles(0)[0].y(), before);
   simulation.step();
-  const float after = simulation.soft_body(0).positions()[0].y;
+  const float after = simulation.soft_body(0).positions()[0].y();
   ASSERT_NE(after, before);
-  EXPECT_EQ(simulation.shown_particles(0)[0].y, before);
+  EXPECT_EQ(simulation.shown_particles(0)[0].y(), before);
   simulation.finish();
-  EXPECT_EQ(simulation.shown_particles(0)[0].y, after);
+  EXPECT_EQ(simulation.shown_particles(0)[0].y(), after);
   simulation.finish();  // nothing is under way
-  EXPECT_EQ(simulation.shown_particles(0)[0].y, after);
+  EXPECT_EQ(simulation.shown_particles(0)[0].y(), after);
   EXPECT_TRUE(simulation.shown(0).vertices.empty());
 }
 

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <regex>
 
+#include "ppu/matching/stiffness.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
-#include "softcell/ppu/stiffness.h"
 #include "support/scratch_folder.h"
 #include "support/text_file.h"
 

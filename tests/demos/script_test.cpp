@@ -133,10 +133,8 @@ TEST(Script, AResetIn3dBeginsAnew) {
 }
 
 /// Positions of a body's particles: those that are shown, or those that there are.
-std::vector<Eigen::Vector3f> points(std::span<const spu::SkinCorner> corners) {
-  std::vector<Eigen::Vector3f> points;
-  for (const spu::SkinCorner& corner : corners) points.emplace_back(corner.x, corner.y, corner.z);
-  return points;
+std::vector<Eigen::Vector4f> points(std::span<const Eigen::Vector4f> positions) {
+  return {positions.begin(), positions.end()};
 }
 
 class ShownDuringAPause : public testing::TestWithParam<Skin> {};
@@ -153,7 +151,7 @@ TEST_P(ShownDuringAPause, IsWhatHomeAndResetPutElsewhere) {
   const Eigen::Matrix4f box = simulation.shown_box_poses().back();
   const auto expect_the_beginning = [&](const char* after) {
     EXPECT_EQ(points(simulation.shown_particles(0)), at_the_beginning) << after;
-    EXPECT_EQ(points(simulation.soft_body(0).positions()), at_the_beginning) << after;
+    EXPECT_EQ(points(simulation.soft_body(0).padded_positions()), at_the_beginning) << after;
     EXPECT_EQ(simulation.shown(0).origin, origin) << after;
   };
   using Events = std::vector<InputEvent<3>>;

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "simulation/simulation_3d.h"
-#include "softcell/ppu/shapes.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {

@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "scene_file/scene_library.h"
-#include "softcell/ppu/processor_time.h"
+#include "ppu/bullet/processor_time.h"
 
 namespace softcell::demos {
 namespace {

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <vector>
 
+#include "ppu/reference/skin_scalar.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/dma/sanitizers.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_scalar.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {

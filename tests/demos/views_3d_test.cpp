@@ -8,9 +8,9 @@
 #include "scene/scene_camera.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
-#include "softcell/ppu/shapes.h"
 #include "view/rotation_axes.h"
 #include "view/scene_view.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {
@@ -44,15 +44,15 @@ TEST(ParticleUnder, IsTheNearestOneThatTheRayMeets) {
   const Scene scene = load_scene_3d("drop");
   const Simulation3d simulation(scene, {});
   const auto positions = simulation.soft_body(0).positions();
-  const Vector3f aimed_at(positions[0].x, positions[0].y, positions[0].z);
+  const Vector3f aimed_at = positions[0];
   const float reach = 0.6f * simulation.model(0).lattice().spacing;
   const Ray ray{.from = aimed_at + Vector3f(0, 0, 50), .along = -Vector3f::UnitZ()};
   const auto found = particle_under(ray, simulation);
   ASSERT_TRUE(found);
   EXPECT_LT((*found - aimed_at).head<2>().norm(), reach);
-  for (const spu::SkinCorner& p : positions) {
-    if ((Vector3f(p.x, p.y, p.z) - aimed_at).head<2>().norm() < reach) {
-      EXPECT_LE(p.z, found->z());
+  for (const Vector3f& p : positions) {
+    if ((p - aimed_at).head<2>().norm() < reach) {
+      EXPECT_LE(p.z(), found->z());
     }
   }
   EXPECT_FALSE(particle_under({.from = ray.from, .along = Vector3f::UnitZ()}, simulation))
@@ -100,8 +100,8 @@ TEST(ShownContacts, AreNotedWhenAskedFor) {
     EXPECT_NEAR(contact.normal.norm(), 1, 1e-4f);
     float nearest = 1e9f;  // somebody's particle is there
     for (const auto& body : shown.bodies) {
-      for (const spu::SkinCorner& p : body.particles)
-        nearest = std::min(nearest, (Vector3f(p.x, p.y, p.z) - contact.position).norm());
+      for (const Eigen::Vector4f& p : body.particles)
+        nearest = std::min(nearest, (p.head<3>() - contact.position).norm());
     }
     EXPECT_LT(nearest, spacing);
   }

@@ -39,6 +39,23 @@ says(0 "4\\.0 s: the box is at height 1\\.[01]" ${SCRATCH}/soft_bodies/build/jel
 says(1 "no_such.obj: there is no such file" ${SCRATCH}/soft_bodies/build/jelly_3d no_such.obj)
 says(0 "4\\.0 s: the box is at height 1\\.[0-3]" ${SCRATCH}/soft_bodies/build/jelly_2d)
 
+# Each program links what it has a use for and nothing else.
+function(links_none_of libraries program)
+  execute_process(COMMAND ldd ${program} RESULT_VARIABLE status OUTPUT_VARIABLE linked)
+  if(NOT status EQUAL 0 OR NOT linked MATCHES "libc\\.so" OR linked MATCHES "${libraries}")
+    message(FATAL_ERROR "${program} links what it has no use for, one of ${libraries}:\n${linked}")
+  endif()
+endfunction()
+links_none_of("Bullet|LinearMath|assimp|boost|libdw" ${SCRATCH}/soft_bodies/build/jelly_2d)
+links_none_of("box2d|boost|libdw" ${SCRATCH}/soft_bodies/build/jelly_3d)
+
+# A component that there is not is refused in one sentence with those that there are.
+file(WRITE ${SCRATCH}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n"
+  "find_package(softcell REQUIRED COMPONENTS box2d bodies)\n")
+says(1 "softcell has no component 'bodies'; the components of this installation are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies\\."
+  ${CMAKE_COMMAND} -S ${SCRATCH}/wrong -B ${SCRATCH}/wrong/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
+  -DCMAKE_CXX_COMPILER=${COMPILER})
+
 # The installed command on the example's kernels: the right one, and the broken one.
 string(REPEAT "0123456789abcdef" 256 bytes)  # 1024 floats
 file(WRITE ${SCRATCH}/x.bin "${bytes}")

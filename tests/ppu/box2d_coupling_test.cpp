@@ -1,4 +1,4 @@
-#include "softcell/ppu/box2d_coupling.h"
+#include "softcell/box2d/box2d_soft_bodies.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "softcell/ppu/bullet_coupling.h"
+#include "softcell/bullet/bullet_soft_bodies.h"
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,10 @@
 #include <optional>
 #include <ostream>
 
+#include "ppu/reference/skin_scalar.h"
 #include "soft_body_scenes.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/state_hash.h"
+#include "softcell/soft_bodies/shapes.h"
+#include "softcell/soft_bodies/state_hash.h"
 
 namespace softcell::ppu {
 namespace {

@@ -1,4 +1,4 @@
-#include "softcell/ppu/deterministic_math.h"
+#include "ppu/numbers/deterministic_math.h"
 
 #include <gtest/gtest.h>
 

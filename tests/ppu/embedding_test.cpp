@@ -1,4 +1,4 @@
-#include "softcell/ppu/embedding.h"
+#include "ppu/lattice/embedding.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "softcell/ppu/half.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_scalar.h"
+#include "ppu/numbers/half.h"
+#include "ppu/reference/skin_scalar.h"
+#include "softcell/mesh_import/mesh_import.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::ppu {
 namespace {

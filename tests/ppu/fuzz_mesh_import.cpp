@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "mesh_import.h"
+#include "ppu/mesh_import/parse_mesh.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "softcell/ppu/half.h"
+#include "ppu/numbers/half.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "softcell/ppu/job_system.h"
+#include "softcell/jobs/job_system.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "arithmetic_results.h"
+#include "job_chain.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
 #include "softcell/ls_sim/trace.h"

@@ -1,4 +1,4 @@
-#include "softcell/ppu/lattice.h"
+#include "softcell/soft_bodies/lattice.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "lattices.h"
-#include "softcell/ppu/embedding.h"
-#include "softcell/ppu/shapes.h"
+#include "ppu/lattice/embedding.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::ppu {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "softcell/ppu/lattice.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu::test {
 

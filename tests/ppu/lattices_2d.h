@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "softcell/ppu/lattice_2d.h"
+#include "softcell/soft_bodies/lattice_2d.h"
 
 namespace softcell::ppu::test {
 

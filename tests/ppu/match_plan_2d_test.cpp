@@ -1,6 +1,6 @@
 // Plans of the kernel match_2d: read back by a plain interpreter, the sums are those of the regions.
 
-#include "softcell/ppu/match_plan_2d.h"
+#include "ppu/plans/match_plan_2d.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Sum lists and plans: read back by a plain interpreter, the sums are those of the regions.
 
-#include "softcell/ppu/match_plan.h"
+#include "ppu/plans/match_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "../../ppu/src/sum_list.h"
 #include "lattices.h"
+#include "ppu/plans/sum_list.h"
 #include "sum_list_interpreter.h"
 
 namespace softcell::ppu {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "softcell/ppu/mesh.h"
+#include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {
 

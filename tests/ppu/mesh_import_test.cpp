@@ -10,8 +10,8 @@
 #include <string>
 
 #include "ppu/mesh_checks.h"
-#include "softcell/ppu/mesh.h"
-#include "softcell/ppu/shapes.h"
+#include "softcell/mesh_import/mesh_import.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::ppu {
 namespace {

@@ -1,4 +1,4 @@
-#include "softcell/ppu/rotation.h"
+#include "ppu/matching/rotation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // Shape matching in two dimensions keeps what the equations promise, on lattices of every kind, in float and
 // double.
 
-#include "softcell/ppu/shape_matching_2d.h"
+#include "ppu/reference/shape_matching_2d.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "softcell/ppu/regions.h"
+#include "ppu/matching/regions.h"
 
 namespace softcell::ppu {
 namespace {

@@ -1,6 +1,6 @@
 // Lattice shape matching keeps what the equations promise, on lattices of every kind, in float and double.
 
-#include "softcell/ppu/shape_matching.h"
+#include "ppu/reference/shape_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "lattices.h"
 #include "particle_vectors.h"
-#include "softcell/ppu/regions.h"
+#include "ppu/matching/regions.h"
 #include "support/allocation_counter.h"
 
 namespace softcell::ppu {

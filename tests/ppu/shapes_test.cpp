@@ -1,4 +1,4 @@
-#include "softcell/ppu/shapes.h"
+#include "softcell/soft_bodies/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "ppu/mesh_checks.h"
-#include "softcell/ppu/deterministic_math.h"
-#include "softcell/ppu/lattice.h"
+#include "ppu/numbers/deterministic_math.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
 namespace {

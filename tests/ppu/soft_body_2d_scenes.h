@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "softcell/ppu/box2d_coupling.h"
+#include "softcell/box2d/box2d_soft_bodies.h"
 
 namespace softcell::ppu {
 

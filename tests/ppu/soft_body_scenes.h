@@ -6,11 +6,12 @@
 #include <memory>
 #include <vector>
 
-#include "softcell/ppu/bullet_coupling.h"
-#include "softcell/ppu/bullet_world.h"
-#include "softcell/ppu/lattice.h"
-#include "softcell/ppu/regions.h"
-#include "softcell/ppu/soft_body.h"
+#include "ppu/bullet/bullet_world.h"
+#include "ppu/matching/regions.h"
+#include "ppu/reference/shape_matching.h"
+#include "softcell/bullet/bullet_soft_bodies.h"
+#include "softcell/soft_bodies/lattice.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {
 

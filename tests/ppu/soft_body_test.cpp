@@ -1,4 +1,4 @@
-#include "softcell/ppu/soft_body.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 #include <functional>
 #include <limits>
 
+#include "ppu/lattice/embedding.h"
 #include "soft_body_scenes.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/state_hash.h"
+#include "softcell/soft_bodies/shapes.h"
+#include "softcell/soft_bodies/state_hash.h"
 
 namespace softcell::ppu {
 namespace {
@@ -103,13 +104,13 @@ TEST(SoftBody, BeginsAtRestInItsPlace) {
   EXPECT_EQ(fastest(body), 0);
 }
 
-TEST(SoftBody, PositionsForTheKernelsAreAlwaysThePositions) {
+TEST(SoftBody, PaddedPositionsAreAlwaysThePositions) {
   SoftBody body = moving_body();
   const auto check = [&](const char* after) {
     for (std::size_t i = 0; i < body.positions().size(); ++i) {
-      const spu::SkinCorner c = body.positions()[i];
-      ASSERT_EQ(Vector3f(c.x, c.y, c.z), body.position(i)) << after;
-      ASSERT_EQ(c.pad, 0) << after;
+      const Eigen::Vector4f& padded = body.padded_positions()[i];
+      ASSERT_EQ(Vector3f(padded.head<3>()), body.position(i)) << after;
+      ASSERT_EQ(padded.w(), 0) << after;
     }
   };
   check("set_particle");

@@ -1,6 +1,6 @@
 // A Box2D world whose soft bodies are matched on SPEs, beside one that does it itself.
 
-#include "softcell/ppu/spe_solver_2d.h"
+#include "softcell/spe_bodies/spe_solver_2d.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Soft bodies in a Bullet world, stepped by SPEs: against the PPU's solver, and against what must be true
 // whoever steps them.
 
-#include "softcell/ppu/spe_solver.h"
+#include "softcell/spe_bodies/spe_solver.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,13 @@
 #include <limits>
 #include <thread>
 
+#include "ppu/plans/match_plan.h"
+#include "ppu/plans/tile_plan.h"
 #include "soft_body_scenes.h"
-#include "softcell/ppu/state_hash.h"
-#include "softcell/ppu/tile_plan.h"
 #include "spu_kernels/checked_runs.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/ls_sim/findings.h"
+#include "softcell/soft_bodies/state_hash.h"
 #include "spu_kernels/kernel_image.h"
 
 namespace softcell::ppu {

@@ -1,6 +1,6 @@
 // What a soft body does over many steps, against closed forms: stiffness, waves, periods, energy, rest.
 
-#include "softcell/ppu/stiffness.h"
+#include "ppu/matching/stiffness.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "lattices.h"
-#include "softcell/ppu/deterministic_math.h"
-#include "softcell/ppu/shape_matching.h"
+#include "ppu/numbers/deterministic_math.h"
+#include "ppu/reference/shape_matching.h"
 
 namespace softcell::ppu {
 namespace {

@@ -1,4 +1,4 @@
-#include "softcell/ppu/summation.h"
+#include "ppu/matching/summation.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <set>
 
 #include "lattices.h"
-#include "softcell/ppu/lanes.h"
-#include "softcell/ppu/regions.h"
+#include "ppu/matching/lanes.h"
+#include "ppu/matching/regions.h"
 
 namespace softcell::ppu {
 namespace {

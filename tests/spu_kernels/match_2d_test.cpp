@@ -11,10 +11,11 @@
 
 #include "ppu/lattices.h"
 #include "ppu/lattices_2d.h"
+#include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
+#include "ppu/reference/shape_matching_2d.h"
+#include "ppu/spe_bodies/match_orchestrator_2d.h"
 #include "softcell/ls_sim/findings.h"
-#include "softcell/ppu/match_orchestrator_2d.h"
-#include "softcell/ppu/stiffness.h"
 #include "spu_kernels/checked_runs.h"
 #include "spu_kernels/kernel_image.h"
 #include "spu_kernels/match_2d_twin.h"

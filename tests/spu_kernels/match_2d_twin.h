@@ -9,7 +9,7 @@
 #include <cstring>
 #include <vector>
 
-#include "softcell/ppu/match_plan_2d.h"
+#include "ppu/plans/match_plan_2d.h"
 #include "spu_kernels/intrinsics_support.h"
 
 namespace softcell::test {

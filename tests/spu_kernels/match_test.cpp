@@ -10,14 +10,14 @@
 #include <memory>
 
 #include "ppu/lattices.h"
+#include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/match_orchestrator.h"
-#include "softcell/ppu/shape_matching.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/stiffness.h"
 #include "spu_kernels/checked_runs.h"
+#include "ppu/reference/shape_matching.h"
+#include "softcell/jobs/job_system.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/kernel_image.h"
+#include "spu_kernels/stepped_bodies.h"
 
 namespace softcell {
 namespace {
@@ -116,7 +116,7 @@ class MatchRig {
   ppu::JobSystem jobs_;
 
  public:
-  ppu::MatchOrchestrator spes;
+  test::SteppedBodies spes;
 };
 
 /// Turned, bent, and shaken by up to `noise` metres; exactly as floats hold it.

@@ -9,11 +9,10 @@
 #include <memory>
 
 #include "ppu/lattices.h"
-#include "softcell/ppu/match_orchestrator.h"
-#include "softcell/ppu/shape_matching.h"
-#include "softcell/ppu/tiled_match.h"
 #include "spu_kernels/checked_runs.h"
+#include "ppu/reference/shape_matching.h"
 #include "spu_kernels/kernel_image.h"
+#include "spu_kernels/stepped_bodies.h"
 
 namespace softcell {
 namespace {
@@ -84,7 +83,7 @@ class TiledBody {
   ppu::JobSystem jobs_;
 
  public:
-  ppu::TiledMatch spes;
+  test::SteppedTiles spes;
 };
 
 /// The same body whole.
@@ -108,7 +107,7 @@ class WholeBody {
   ppu::JobSystem jobs_;
 
  public:
-  ppu::MatchOrchestrator spes;
+  test::SteppedBodies spes;
 };
 
 /// Number of the first vector that differs in a bit; -1: none.

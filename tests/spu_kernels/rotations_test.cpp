@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "ppu/matching/rotation.h"
 #include "rotations_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/rotation.h"
+#include "softcell/jobs/job_system.h"
 #include "spu_kernels/kernel_image.h"
 
 namespace softcell {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <random>
 
+#include "ppu/numbers/half.h"
+#include "ppu/reference/skin_scalar.h"
+#include "ppu/spe_bodies/skin_orchestrator.h"
+#include "softcell/jobs/job_system.h"
 #include "softcell/ls_sim/findings.h"
-#include "softcell/ppu/half.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/lattice.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_orchestrator.h"
-#include "softcell/ppu/skin_scalar.h"
+#include "softcell/soft_bodies/lattice.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/kernel_image.h"
 
 namespace softcell {
@@ -34,9 +34,9 @@ class SkinRig {
   }
 
   ppu::SkinnedBody skin() {
-    std::vector<spu::SkinCorner> corners;
+    std::vector<Eigen::Vector4f> corners;
     for (const Vector3f& p : positions) corners.push_back({p.x(), p.y(), p.z(), 0});
-    const std::span<const spu::SkinCorner> all(corners);
+    const std::span<const Eigen::Vector4f> all(corners);
     EXPECT_TRUE(orchestrator_.kick({&all, 1}));
     orchestrator_.drain();
     return orchestrator_.shown(0);
@@ -212,9 +212,9 @@ TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
   const ppu::Lattice lattice = ppu::voxelize(mesh, 0.35f);
   const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
   ppu::SkinOrchestrator orchestrator(memory, system, broken);
-  const std::vector<spu::SkinCorner> corners(lattice.particles.size());
+  const std::vector<Eigen::Vector4f> corners(lattice.particles.size(), Eigen::Vector4f::Zero());
   orchestrator.add(embedding, corners.size());
-  const std::span<const spu::SkinCorner> all(corners);
+  const std::span<const Eigen::Vector4f> all(corners);
   orchestrator.kick({&all, 1});
   try {
     orchestrator.drain();

@@ -38,9 +38,6 @@ class Demo {
   virtual void stop() = 0;
   virtual std::uint64_t state_hash() const = 0;
   virtual std::vector<ls_sim::SpeStatistics> spe_statistics() const = 0;
-  /// Frames whose skinning was left out because the SPEs were not done with the one before. The demos wait
-  /// for them instead (FrameTimes::skin_wait_ms), so that this stays 0.
-  virtual std::uint64_t late_frames() const = 0;
 
   /// Writes the recording of the frames so far, if one is asked for.
   /// @throws std::runtime_error  it cannot be written.

@@ -26,7 +26,7 @@ class Hands {
       if (event.body != kEveryBody && event.body != b) continue;
       const auto positions = bodies[b].positions();
       for (std::size_t i = 0; i < positions.size(); ++i) {
-        const float distance = (position(positions[i]) - event.value).squaredNorm();
+        const float distance = (positions[i] - event.value).squaredNorm();
         if (distance < least) least = distance, held.body = b, held.particle = i;
       }
     }
@@ -58,23 +58,13 @@ class Hands {
   void pull(Bodies& bodies) const {
     for (const Held& held : held_) {
       auto& body = bodies[held.body];
-      const Vector wanted = (held.target - position(body.positions()[held.particle])) / kReachSeconds;
-      body.add_particle_velocity(held.particle, wanted - Vector(body.velocities()[held.particle]));
+      const Vector wanted = (held.target - body.positions()[held.particle]) / kReachSeconds;
+      body.add_particle_velocity(held.particle, wanted - body.velocities()[held.particle]);
     }
   }
 
  private:
   static constexpr float kReachSeconds = 0.05f;
-
-  /// Of a particle: in 3D it is a corner of the skinning job, in 2D a vector.
-  template <class Particle>
-  static Vector position(const Particle& p) {
-    if constexpr (Dimension == 3) {
-      return {p.x, p.y, p.z};
-    } else {
-      return p;
-    }
-  }
 
   std::vector<Held> held_;
 };

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "scripted_input.h"
-#include "softcell/ppu/mesh.h"
-#include "softcell/ppu/soft_body.h"
 #include "softcell/render/camera.h"
 #include "softcell/render/frame.h"
+#include "softcell/soft_bodies/mesh.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "scripted_input.h"
-#include "softcell/ppu/soft_body_2d.h"
 #include "softcell/render/frame.h"
+#include "softcell/soft_bodies/soft_body_2d.h"
 
 namespace softcell::demos {
 

@@ -5,7 +5,8 @@
 #include <stdexcept>
 
 #include "read_common.h"
-#include "softcell/ppu/lattice.h"
+#include "softcell/mesh_import/mesh_import.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::demos {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "lua_document.h"
 #include "lua_sandbox.h"
-#include "softcell/ppu/lattice_2d.h"
+#include "softcell/soft_bodies/lattice_2d.h"
 
 namespace softcell::demos {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "ppu/matching/regions.h"
+#include "ppu/matching/stiffness.h"
 #include "read_common.h"
 #include "softcell/base/nearest_name.h"
-#include "softcell/ppu/regions.h"
-#include "softcell/ppu/stiffness.h"
 
 namespace softcell::demos {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "field_reader.h"
-#include "softcell/ppu/soft_body.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
 

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "softcell/ppu/shapes.h"
+#include "softcell/mesh_import/mesh_import.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {

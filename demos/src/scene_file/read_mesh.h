@@ -2,7 +2,7 @@
 
 #include "field_reader.h"
 #include "scene_source.h"
-#include "softcell/ppu/mesh.h"
+#include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::demos {
 

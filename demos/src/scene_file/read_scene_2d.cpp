@@ -1,9 +1,9 @@
 #include "read_scene_2d.h"
 
+#include "ppu/numbers/deterministic_math.h"
 #include "read_common.h"
 #include "read_lattice_2d.h"
 #include "read_material.h"
-#include "softcell/ppu/deterministic_math.h"
 
 namespace softcell::demos {
 namespace {

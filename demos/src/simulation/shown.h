@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "ppu/bullet/bullet_world.h"
 #include "skin_job.h"
-#include "softcell/ppu/bullet_world.h"
 
 namespace softcell::demos {
 
@@ -30,7 +30,7 @@ struct Shown3d {
   struct Body {
     std::vector<spu::SkinnedVertex> vertices;  ///< relative to `origin`; none when the GPU makes them
     Eigen::Vector3f origin{0, 0, 0};
-    std::vector<spu::SkinCorner> particles;
+    std::vector<Eigen::Vector4f> particles;  ///< x y z 0
   };
   std::vector<Body> bodies;
   std::vector<Eigen::Matrix4f> box_poses;              ///< of Scene::boxes, in order

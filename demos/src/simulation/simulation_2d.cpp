@@ -14,10 +14,10 @@
 #include "input/controls.h"
 #include "input/script_player.h"
 #include "scene/shared_models.h"
-#include "softcell/ppu/box2d_coupling.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/spe_solver_2d.h"
-#include "softcell/ppu/state_hash.h"
+#include "softcell/box2d/box2d_soft_bodies.h"
+#include "softcell/jobs/job_system.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_solver_2d.h"
 
 namespace softcell::demos {
 namespace {

@@ -8,12 +8,12 @@
 #include "input/controls.h"
 #include "input/script_player.h"
 #include "scene/shared_models.h"
-#include "softcell/ppu/bullet_coupling.h"
-#include "softcell/ppu/bullet_world.h"
-#include "softcell/ppu/deterministic_math.h"
-#include "softcell/ppu/processor_time.h"
-#include "softcell/ppu/spe_solver.h"
-#include "softcell/ppu/state_hash.h"
+#include "ppu/bullet/bullet_world.h"
+#include "ppu/bullet/processor_time.h"
+#include "ppu/numbers/deterministic_math.h"
+#include "softcell/bullet/bullet_soft_bodies.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_solver.h"
 
 namespace softcell::demos {
 namespace {
@@ -84,7 +84,7 @@ struct Simulation3d::State {
   /// What a picture needs beside the vertices, of the moment at which these were handed to the SPEs.
   struct Snapshot {
     std::vector<Eigen::Matrix4f> box_poses;
-    std::vector<std::vector<spu::SkinCorner>> particles;
+    std::vector<std::vector<Eigen::Vector4f>> particles;
     std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
     std::vector<ppu::Contact> contacts;
     Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
@@ -118,12 +118,13 @@ struct Simulation3d::State {
       if (orchestrator)
         orchestrator->add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()),
                           model->particles());
-      positions.push_back(body.positions());
+      positions.push_back(body.padded_positions());
       vertices += model->embedding().slot_of_vertex.size();
     }
     for (Snapshot& snapshot : snapshots) {
       snapshot.box_poses.resize(boxes.size());
-      for (const auto& body : positions) snapshot.particles.emplace_back(body.size());
+      for (const auto& body : positions)
+        snapshot.particles.emplace_back(body.size(), Eigen::Vector4f::Zero());
       snapshot.origins.resize(positions.size());
     }
     hand_over();
@@ -201,7 +202,7 @@ struct Simulation3d::State {
   std::unique_ptr<ppu::SoftBodySolver> solver;
   ppu::BulletSoftBodies soft_bodies;
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
-  std::vector<std::span<const spu::SkinCorner>> positions;
+  std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
   bool notes_contacts = false;
   bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
@@ -306,7 +307,7 @@ ppu::SkinnedBody Simulation3d::shown(std::size_t body) const {
   return {.vertices = {}, .origin = state_->shown().origins[body]};
 }
 
-std::span<const spu::SkinCorner> Simulation3d::shown_particles(std::size_t body) const {
+std::span<const Eigen::Vector4f> Simulation3d::shown_particles(std::size_t body) const {
   return state_->shown().particles[body];
 }
 
@@ -336,9 +337,5 @@ bool Simulation3d::paused() const { return state_->controls.paused(); }
 const Eigen::Vector3f& Simulation3d::gravity() const { return state_->controls.gravity(); }
 
 std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->jobs.statistics(); }
-
-std::uint64_t Simulation3d::late_frames() const {
-  return state_->orchestrator ? state_->orchestrator->late_frames() : 0;
-}
 
 }  // namespace softcell::demos

@@ -10,10 +10,10 @@
 
 #include "input/input_event.h"
 #include "scene/scene.h"
+#include "ppu/bullet/bullet_world.h"
+#include "ppu/spe_bodies/skin_orchestrator.h"
 #include "shown.h"
 #include "simulation_options.h"
-#include "softcell/ppu/bullet_world.h"
-#include "softcell/ppu/skin_orchestrator.h"
 
 namespace softcell::demos {
 
@@ -51,7 +51,7 @@ class Simulation3d {
 
   // The frame that is shown: all of one moment. Before the first step that is the beginning.
   ppu::SkinnedBody shown(std::size_t body) const;  ///< without vertices when the GPU makes them
-  std::span<const spu::SkinCorner> shown_particles(std::size_t body) const;
+  std::span<const Eigen::Vector4f> shown_particles(std::size_t body) const;
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
 
@@ -72,7 +72,6 @@ class Simulation3d {
   /// afterwards. @throws as step().
   void stop();
   std::vector<ls_sim::SpeStatistics> spe_statistics() const;
-  std::uint64_t late_frames() const;  ///< 0, as step() waits for the frame before: see Demo
 
  private:
   struct State;

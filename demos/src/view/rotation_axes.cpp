@@ -21,7 +21,7 @@ void RotationAxes::update(const std::vector<Shown3d::Body>& bodies) {
   for (std::size_t b = 0; b < matchers_.size(); ++b) {
     ppu::ShapeMatcher<float>& matcher = matchers_[b];
     positions_.clear();
-    for (const spu::SkinCorner& p : bodies[b].particles) positions_.emplace_back(p.x, p.y, p.z);
+    for (const Eigen::Vector4f& p : bodies[b].particles) positions_.emplace_back(p.head<3>());
     goals_.resize(positions_.size());
     matcher.goals(positions_, goals_);
     const float length = kLengthInCells * matcher.plan().spacing();

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "simulation/shown.h"
-#include "softcell/ppu/shape_matching.h"
+#include "ppu/reference/shape_matching.h"
 
 namespace softcell::demos {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "softcell/ppu/shapes.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {
@@ -94,7 +94,7 @@ void SceneView::update_lattices(const Shown3d& shown) {
   for (std::size_t b = 0; b < lattice_buffers_.size(); ++b) {
     const auto& corners = shown.bodies[b].particles;
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      lattice_buffers_[b].particles[i] = {corners[i].x, corners[i].y, corners[i].z};
+      lattice_buffers_[b].particles[i] = corners[i].head<3>();
     }
   }
 }
@@ -172,8 +172,7 @@ std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d
   float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
     const float reach = kReachInCells * simulation.model(b).lattice().spacing;
-    for (const spu::SkinCorner& corner : simulation.soft_body(b).positions()) {
-      const Eigen::Vector3f particle(corner.x, corner.y, corner.z);
+    for (const Eigen::Vector3f& particle : simulation.soft_body(b).positions()) {
       const float along = (particle - ray.from).dot(ray.along);
       const float squared = (particle - ray.from - along * ray.along).squaredNorm();
       if (along > 0 && along < nearest && squared < reach * reach) {

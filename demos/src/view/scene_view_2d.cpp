@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "softcell/ppu/half.h"
+#include "ppu/numbers/half.h"
 
 namespace softcell::demos {
 namespace {

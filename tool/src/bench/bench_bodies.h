@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "softcell/ppu/lattice.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::tool {
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "ppu/bullet/bullet_world.h"
 #include "scene_file/scene_library.h"
 #include "scene_frames.h"
 #include "simulation/simulation_3d.h"
-#include "softcell/ppu/bullet_world.h"
-#include "softcell/ppu/spe_solver.h"
 #include "spu/kernel_file.h"
+#include "softcell/spe_bodies/spe_solver.h"
 
 namespace softcell::tool {
 namespace {

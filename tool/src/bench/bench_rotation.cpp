@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "ppu/matching/rotation.h"
 #include "rotations_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/rotation.h"
+#include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
 

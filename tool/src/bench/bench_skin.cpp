@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "benchmarks.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/skin_orchestrator.h"
-#include "softcell/ppu/skin_scalar.h"
+#include "ppu/reference/skin_scalar.h"
+#include "ppu/spe_bodies/skin_orchestrator.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
 
@@ -62,8 +62,8 @@ struct SkinCase {
   SpeWaker waker;
   ppu::SkinOrchestrator orchestrator;
   std::vector<Eigen::Vector3f> positions;
-  std::vector<spu::SkinCorner> corners;
-  std::vector<std::span<const spu::SkinCorner>> all_corners;  // one for each body, all in the same pose
+  std::vector<Eigen::Vector4f> corners;
+  std::vector<std::span<const Eigen::Vector4f>> all_corners;  // one for each body, all in the same pose
   std::vector<std::vector<spu::SkinnedVertex>> scalar_out;    // of each body
 };
 

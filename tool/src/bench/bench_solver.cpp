@@ -5,13 +5,15 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
+#include <stdexcept>
 
 #include "bench_bodies.h"
 #include "benchmarks.h"
-#include "eigen_solver.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/match_orchestrator.h"
-#include "softcell/ppu/shape_matching.h"
+#include "ppu/reference/eigen_solver.h"
+#include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/match_bodies.h"
+#include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
 
@@ -19,6 +21,7 @@ namespace softcell::tool {
 namespace {
 
 constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f, kDensity = 1000;
+constexpr std::size_t kBodiesPerJob = 16;
 
 /// What all solvers work on: several bodies of one model, so that none has one body's data in its caches.
 struct Model {
@@ -44,17 +47,26 @@ class SpeBodies {
  public:
   explicit SpeBodies(const Model& model)
       : jobs_(memory_, {.spes = 1}, job_loop_),
-        spes_(memory_, jobs_, kernel_, ppu::MatchPlan(model.lattice, *model.plan), model.bodies),
-        bodies_(model.bodies) {
-    for (std::size_t b = 0; b < bodies_; ++b) {
+        image_(jobs_.place(kernel_)),
+        spes_(memory_, ppu::MatchPlan(model.lattice, *model.plan), model.bodies),
+        all_(model.bodies),
+        chain_(jobs_, "match", model.bodies) {
+    std::iota(all_.begin(), all_.end(), std::size_t{0});
+    for (const std::size_t b : all_) {
       for (std::size_t i = 0; i < model.x.size(); ++i)
         spes_.positions(b)[i] = {model.x[i].x(), model.x[i].y(), model.x[i].z(), 0};
     }
   }
 
   void step() {
-    for (std::size_t b = 0; b < bodies_; ++b) std::ranges::fill(spes_.velocities(b), spu::SkinCorner{});
-    spes_.step({.pull = kAlpha / kStep, .damping = kDamping, .least_iterations = 2, .most_iterations = 2});
+    for (const std::size_t b : all_) std::ranges::fill(spes_.velocities(b), spu::SkinCorner{});
+    chain_.clear();
+    spes_.add_jobs(chain_, image_,
+                   {.pull = kAlpha / kStep, .damping = kDamping, .least_iterations = 2, .most_iterations = 2},
+                   all_, kBodiesPerJob);
+    chain_.kick();
+    chain_.wait();
+    if (!chain_.failures().empty()) throw std::runtime_error(chain_.failures().front().message);
   }
   void wake() { waker_.wake(); }
 
@@ -63,11 +75,13 @@ class SpeBodies {
   ls_sim::KernelImage job_loop_ = load_kernel("job_loop"), kernel_ = load_kernel("match");
   ppu::JobSystem jobs_;
   SpeWaker waker_{jobs_};
-  ppu::MatchOrchestrator spes_;
-  std::size_t bodies_;
+  ppu::JobImage image_;
+  ppu::MatchBodies spes_;
+  std::vector<std::size_t> all_;  // 0, 1, 2, ...
+  ppu::JobChain chain_;           // last, so that it has ended before what its jobs work on goes
 };
 
-void step(EigenSolver<3>& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
+void step(ppu::EigenSolver<3>& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
   solver.step(x, v, kAlpha, kStep, kDamping);
 }
 void step(ppu::ShapeMatcher<float>& solver, std::span<const Eigen::Vector3f> x,
@@ -113,7 +127,7 @@ void add_solver(std::vector<Benchmark>& all, const BenchBody& body, int half_wid
   };
   using Matchers = PpuBodies<ppu::ShapeMatcher<float>>;
   add("spe", [](const Model& model) { return std::make_shared<SpeBodies>(model); });
-  add("eigen", [](const Model& model) { return std::make_shared<PpuBodies<EigenSolver<3>>>(model); });
+  add("eigen", [](const Model& model) { return std::make_shared<PpuBodies<ppu::EigenSolver<3>>>(model); });
   add("ppu",
       [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kBarPlateCube); });
   add("naive", [](const Model& model) { return std::make_shared<Matchers>(model, ppu::SumMethod::kNaive); });

@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "benchmarks.h"
-#include "eigen_solver.h"
-#include "softcell/ppu/job_system.h"
-#include "softcell/ppu/match_orchestrator_2d.h"
-#include "softcell/ppu/shape_matching_2d.h"
+#include "ppu/reference/eigen_solver.h"
+#include "ppu/reference/shape_matching_2d.h"
+#include "ppu/spe_bodies/match_orchestrator_2d.h"
+#include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
 
@@ -86,7 +86,7 @@ struct SolverCase2d {
   std::size_t bodies;
   ppu::MatchPlan2d kernel_plan;
   ppu::MatchOrchestrator2d spes;
-  EigenSolver<2> eigen;
+  ppu::EigenSolver<2> eigen;
   ppu::ShapeMatcher2d<float> shared_sums, naive_sums;
   std::vector<Eigen::Vector2f> x, v;
 };

@@ -6,15 +6,15 @@
 
 #include "match_2d_job.h"
 #include "match_job.h"
+#include "ppu/lattice/embedding.h"
+#include "ppu/plans/match_plan.h"
+#include "ppu/plans/match_plan_2d.h"
+#include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/tiled_memory.h"
 #include "skin_job.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/ppu/embedding.h"
-#include "softcell/ppu/lattice.h"
-#include "softcell/ppu/match_plan.h"
-#include "softcell/ppu/match_plan_2d.h"
-#include "softcell/ppu/shape_matching.h"
-#include "softcell/ppu/shapes.h"
-#include "softcell/ppu/tiled_match.h"
+#include "softcell/soft_bodies/lattice.h"
+#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::tool {
 namespace {
@@ -47,7 +47,7 @@ void run_skin(SampleRun& sample) {
   }
 }
 
-/// One SPE's share of a step of one body, as MatchOrchestrator makes it.
+/// One SPE's share of a step of one body, as MatchBodies makes it.
 void run_match(SampleRun& sample) {
   const ppu::Lattice lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
   const std::size_t particles = lattice.particles.size();

@@ -32,7 +32,6 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
             .particles = simulation().particles(),
             .vertices = simulation().particles()};
   }
-  std::uint64_t late_frames() const override { return 0; }  // nothing is skinned
 };
 
 }  // namespace

@@ -54,7 +54,6 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
             .particles = simulation().particles(),
             .vertices = simulation().vertices()};
   }
-  std::uint64_t late_frames() const override { return simulation().late_frames(); }
 
  private:
   render::Camera eye(const demos::Look& look) const {

@@ -70,7 +70,6 @@ nlohmann::ordered_json statistics_document(const DemoOptions& options, const dem
       {"upload_bytes", record.upload_bytes_of_a_picture()},
       {"simulated_fps", record.simulated_fps()},
       {"seconds", record.seconds},
-      {"late_frames", demo.late_frames()},
       {"spe_busy", busy},
       {"spe_jobs", jobs},
       {"dma_bytes", bytes},

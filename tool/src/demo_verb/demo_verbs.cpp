@@ -8,7 +8,7 @@
 
 #include "command_line/shared_options.h"
 #include "scene_file/scene_library.h"
-#include "softcell/ppu/lattice.h"
+#include "softcell/soft_bodies/lattice.h"
 #include "verb/exit_status.h"
 
 namespace softcell::tool {

@@ -1,0 +1,44 @@
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "ppu/matching/regions.h"
+#include "ppu/matching/stiffness.h"
+#include "softcell/soft_bodies/soft_body_settings.h"
+
+namespace softcell::ppu {
+namespace {
+
+void require(bool in_range, const char* name, float value, const char* range) {
+  if (in_range && std::isfinite(value)) return;
+  std::ostringstream sentence;
+  sentence << "a soft body's " << name << " is " << value << "; it must be " << range;
+  throw std::runtime_error(sentence.str());
+}
+
+}  // namespace
+
+void validate(const SoftBodySettings& s) {
+  require(s.cell_size > 0, "cell_size", s.cell_size, "a length in metres above 0");
+  if (s.half_width < 0 || s.half_width > kMaxHalfWidth) {
+    throw std::runtime_error("a soft body's half_width is " + std::to_string(s.half_width) +
+                             "; it must be a number of links from 0 to " + std::to_string(kMaxHalfWidth));
+  }
+  require(s.density > 0, "density", s.density, "in kg/m^3 and above 0");
+  require(s.alpha >= 0 && s.alpha <= 1, "alpha", s.alpha, "from 0 to 1");
+  require(s.damping >= 0 && s.damping <= 1, "damping", s.damping, "from 0 to 1");
+  require(s.friction >= 0, "friction", s.friction, "0 or above");
+  if (s.frequency) require(*s.frequency >= 0, "frequency", *s.frequency, "in hertz and 0 or above");
+  if (s.damping_time)
+    require(*s.damping_time >= 0, "damping_time", *s.damping_time, "in seconds and 0 or above");
+}
+
+float SoftBodySettings::alpha_of_step(float step) const {
+  return frequency ? static_cast<float>(alpha_from_frequency(*frequency, step)) : alpha;
+}
+
+float SoftBodySettings::damping_of_step(float step) const {
+  return damping_time ? static_cast<float>(damping_from_time_constant(*damping_time, step)) : damping;
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,33 @@
+#include "softcell/soft_bodies/state_hash.h"
+
+#include <xxhash.h>
+
+namespace softcell::ppu {
+namespace {
+
+template <class Position, class Velocity>
+std::uint64_t hash_of(std::span<const Position> positions, std::span<const Velocity> velocities,
+                      std::uint64_t before) {
+  const auto x = std::as_bytes(positions);
+  const auto v = std::as_bytes(velocities);
+  const std::uint64_t after_x = XXH3_64bits_withSeed(x.data(), x.size(), before);
+  return XXH3_64bits_withSeed(v.data(), v.size(), after_x);
+}
+
+}  // namespace
+
+// Vectors have no padding, or a fourth float that is always 0.
+std::uint64_t state_hash(const SoftBody& body, std::uint64_t before) {
+  return hash_of(body.padded_positions(), body.velocities(), before);
+}
+std::uint64_t state_hash(const SoftBody2d& body, std::uint64_t before) {
+  return hash_of(body.positions(), body.velocities(), before);
+}
+
+std::uint64_t state_hash(std::span<const SoftBody* const> bodies) {
+  std::uint64_t hash = 0;
+  for (const SoftBody* body : bodies) hash = state_hash(*body, hash);
+  return hash;
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,76 @@
+#pragma once
+// A Bullet world with settings that give the same result in every run, and the rigid things in it.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "softcell/soft_bodies/mesh.h"
+
+class btDiscreteDynamicsWorld;
+
+namespace softcell::ppu {
+
+/// Milliseconds of one call of BulletWorld::step().
+struct StepTimes {
+  double physics_ms = 0;    ///< in Bullet
+  double soft_body_ms = 0;  ///< in BulletSoftBodies, called by Bullet
+};
+
+/// A point at which two bodies press on each other.
+struct Contact {
+  Eigen::Vector3f position{0, 0, 0};  ///< metres, in the world
+  Eigen::Vector3f normal{0, 1, 0};    ///< unit length, from the second body to the first
+};
+
+/// Owns the world and its rigid bodies. Metres, kilograms, seconds; y is up; gravity is 9.81 m/s^2 downwards
+/// until set. Rigid bodies are numbered from 0 in the order they are added. Used by one thread.
+///
+/// Substeps have a fixed length, nothing is taken in random order, and nothing sleeps: the result depends on
+/// the calls made, not on the clock. Bullet turns rigid bodies with the C library's sine and cosine, so
+/// another C library may give other last bits as soon as a rigid body rotates.
+class BulletWorld {
+ public:
+  BulletWorld();
+  ~BulletWorld();
+  BulletWorld(const BulletWorld&) = delete;
+  BulletWorld& operator=(const BulletWorld&) = delete;
+
+  /// @param size  edge lengths, positive    @param mass  kg; 0 for one that never moves
+  /// @param position  of its centre         @param friction  coefficient, multiplied with the other body's
+  /// @throws std::invalid_argument  not as stated.
+  std::size_t add_box(const Eigen::Vector3f& size, float mass, const Eigen::Vector3f& position,
+                      float friction);
+
+  /// The convex hull of a mesh, which never moves. Its mesh's origin lies at `position`.
+  /// @throws std::invalid_argument  the mesh has no positions.
+  std::size_t add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction);
+
+  /// Puts all rigid bodies back to where they were added, at rest, and forgets contacts.
+  void reset();
+
+  Eigen::Matrix4f pose(std::size_t body) const;  ///< from the body's frame to the world's
+  std::size_t rigid_bodies() const;
+
+  void set_gravity(const Eigen::Vector3f& gravity);  ///< m/s^2
+
+  /// Simulates `seconds` in `substeps` equal steps.
+  /// @throws std::invalid_argument  seconds not positive, or no substeps.
+  /// @throws std::runtime_error     a soft body has become NaN.
+  StepTimes step(float seconds, int substeps);
+
+  /// Replaces what is in `contacts` by those of the last substep, soft bodies' particles included. Touching
+  /// without pressing does not count.
+  void contacts(std::vector<Contact>& contacts) const;
+
+  /// For BulletSoftBodies, and for whatever is not offered here.
+  btDiscreteDynamicsWorld& world();
+  const btDiscreteDynamicsWorld& world() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,82 @@
+#pragma once
+// Soft bodies in somebody's Box2D world.
+//
+//     Box2dSoftBodies soft_bodies(world);                      // your b2World
+//     SoftBody2d& man = soft_bodies.add(model, {0, 2});
+//     soft_bodies.step(1.0f / 120);                            // in place of world.Step()
+//     draw(man.positions());
+//
+// Each outer particle is a b2Body: a circle that cannot turn (one that rolls has no friction), which meets
+// everything in the world but its own body. Before each step of Box2D shape matching changes the particles'
+// velocities, with that step's length; positions are Box2D's own business. Inner particles, which nothing can
+// touch, are integrated here.
+//
+//     step:  [pull: v] [Box2D: collide, solve, x += h v] [gather x v, inner x += h v]
+
+#include <box2d/b2_world.h>
+
+#include <Eigen/Core>
+#include <chrono>
+#include <memory>
+
+#include "softcell/soft_bodies/soft_body_2d.h"
+#include "softcell/soft_bodies/solver_2d.h"
+
+namespace softcell::ppu {
+
+/// All soft bodies of one world, which has only one of these; used by the thread that steps it. Box2D has no
+/// callback before a step, so the step goes through here. Negative collision groups are its own, one for each
+/// body, from -1 downwards: a fixture of the caller in such a group never meets that body. A NaN in a
+/// particle throws std::runtime_error out of begin_step(), and so does a body that the solver cannot take.
+class Box2dSoftBodies {
+ public:
+  /// A particle moves at most this many cells in one step; faster ones are slowed down, which takes momentum
+  /// from their body. It keeps particles from passing through each other's bodies; walls that do not move are
+  /// Box2D's continuous collision's concern.
+  static constexpr float kMaxTravelInCells = 1.0f;
+
+  /// @param world   outlives this.
+  /// @param solver  computes shape matching, of this world alone: SpeSolver2d does it on the SPEs. Outlives
+  ///                this; null: the thread that steps the world does it.
+  explicit Box2dSoftBodies(b2World& world, Solver2d* solver = nullptr);
+  /// Removes all bodies.
+  ~Box2dSoftBodies();
+  Box2dSoftBodies(const Box2dSoftBodies&) = delete;
+  Box2dSoftBodies& operator=(const Box2dSoftBodies&) = delete;
+
+  /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
+  /// Between steps the body may be changed through its own functions; Box2D is told at the next step.
+  SoftBody2d& add(std::shared_ptr<const SoftBodyModel2d> model, const Eigen::Vector2f& position);
+
+  /// @throws std::invalid_argument  the body is not one of these.
+  void remove(const SoftBody2d& body);
+
+  /// One step of the world and its soft bodies. @param step  seconds, above 0.
+  void step(float step, int velocity_iterations = 8, int position_iterations = 3);
+
+  /// The two halves of step(), for a caller who calls b2World::Step() himself between them, with the same
+  /// length.
+  void begin_step(float step);
+  void end_step(float step);
+
+  std::size_t size() const;
+  SoftBody2d& operator[](std::size_t index);  ///< in the order of add()
+  const SoftBody2d& operator[](std::size_t index) const;
+
+  /// The soft body and the particle number that a b2Body stands for, for contact listeners; a null pointer
+  /// for everything else.
+  struct Particle {
+    const SoftBody2d* body = nullptr;
+    std::size_t number = 0;
+  };
+  Particle particle_of(const b2Body& body) const;
+
+  /// Time spent in this class's part of the steps so far.
+  std::chrono::nanoseconds time_spent() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,115 @@
+#pragma once
+// Soft bodies in somebody's Bullet world.
+//
+//     BulletSoftBodies soft_bodies(world);                     // your btDiscreteDynamicsWorld
+//     SoftBody& ball = soft_bodies.add(model, {0, 2, 0});
+//     world.stepSimulation(dt, max_substeps, fixed_step);      // as before
+//     draw(ball.positions());
+//
+// Each outer particle is a btRigidBody: a small sphere that cannot turn (one that rolls has no friction).
+// Bullet moves them and solves their contacts, with everything else in the world and with other soft bodies.
+// In every internal substep, before Bullet integrates, shape matching changes their velocities, with that
+// substep's length; positions are Bullet's own business, because moving a body spoils its contacts. Inner
+// particles, which nothing can touch, are integrated here.
+//
+//     substep:  [solver: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
+//
+// Shape matching is done by a SoftBodySolver: on the calling thread, unless another is given.
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <Eigen/Core>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "softcell/soft_bodies/soft_body_solver.h"
+
+namespace softcell::ppu {
+
+/// When bodies may sleep. A body at rest costs its coupling next to nothing then, and its solver nothing.
+struct SleepSettings {
+  float speed = 0.05f;  ///< m/s: slower than this are all particles of a body that rests
+  float seconds = 1;    ///< for so long
+};
+
+/// Where the time goes that soft bodies take inside stepSimulation(), since the beginning.
+struct SoftBodyTimes {
+  std::chrono::nanoseconds gather{0};  ///< processor time: particles from Bullet, inner ones integrated
+  std::chrono::nanoseconds solve{0};   ///< processor time of the solver on this thread
+  std::chrono::nanoseconds apply{0};   ///< processor time: velocities to Bullet
+  std::chrono::nanoseconds wait{0};  ///< by the clock, until the solver had finished; no work for this thread
+
+  std::chrono::nanoseconds processor() const { return gather + solve + apply; }
+};
+
+/// The soft bodies of one world. Several of these may share a world.
+///
+/// What it installs in the world: an internal pre-tick callback and an overlap filter, each calling the one
+/// found there, and an action. The world's user info stays the caller's own. A callback or filter that the
+/// caller installs later must call the one it replaces, or soft bodies lose their shape, and must be taken
+/// out before the last of these goes: what it calls is no more then.
+///
+/// Used by the thread that steps the world. Allocates nothing in stepSimulation(); Bullet may.
+/// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
+class BulletSoftBodies {
+ public:
+  /// A particle moves at most this many cells in one substep; faster ones are slowed down. Bullet finds
+  /// contacts before they happen within such a distance (see contact_sphere.h), so that nothing goes through
+  /// a floor. With cells of 0.2 m and substeps of 1/120 s that is 24 m/s, a fall from 29 m. A
+  /// particle that is slowed down takes momentum from its body.
+  static constexpr float kMaxTravelInCells = 1.0f;
+
+  /// @param world  outlives this.
+  explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);
+  /// @param solver  outlives this, and serves nobody else.
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver);
+  /// Removes all bodies and leaves the world as it was found.
+  ~BulletSoftBodies();
+  BulletSoftBodies(const BulletSoftBodies&) = delete;
+  BulletSoftBodies& operator=(const BulletSoftBodies&) = delete;
+
+  /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
+  /// Between steps the body may be changed through its own functions; Bullet is told at the next substep.
+  SoftBody& add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position);
+
+  /// @throws std::invalid_argument  the body is not one of these.
+  void remove(const SoftBody& body);
+
+  /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
+  /// else. When bodies are changed after all, or the substep has another length, that work is dropped and
+  /// done again: the result is the same but for what SoftBodySolver::drop() says of rotations. Call it
+  /// between steps.
+  void begin_ahead(float step);
+
+  /// Lets bodies at rest sleep, or never (std::nullopt, the default). A sleeping body wakes when something
+  /// that moves touches it, when gravity changes, when its user changes it, or when another soft body of
+  /// these, on which it may have lain, is changed or removed. Bodies that lean on each other may keep each
+  /// other awake. Removing a rigid body, or a soft body that another BulletSoftBodies owns, wakes nothing:
+  /// wake what rested on it yourself, a soft body by add_velocity({0, 0, 0}).
+  void let_sleep(const std::optional<SleepSettings>& settings);
+
+  SoftBodyTimes times() const;
+
+  std::size_t size() const;
+  SoftBody& operator[](std::size_t index);  ///< in the order of add()
+  const SoftBody& operator[](std::size_t index) const;
+
+  /// The soft body and the particle number that a collision object stands for, for contact callbacks; a null
+  /// pointer for everything else.
+  struct Particle {
+    const SoftBody* body = nullptr;
+    std::size_t number = 0;
+  };
+  static Particle particle_of(const btCollisionObject& object);
+
+  /// Time spent in this class inside stepSimulation(), for all soft bodies of `world`, since the first was
+  /// attached.
+  static std::chrono::nanoseconds time_spent(const btDynamicsWorld& world);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace softcell::ppu

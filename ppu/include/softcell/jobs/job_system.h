@@ -1,0 +1,135 @@
+#pragma once
+// Jobs for SPEs without help of the PPU: chains of jobs in main memory, which resident job loops work off.
+//
+//   JobSystem jobs(memory, {.spes = 6}, job_loop);
+//   const JobImage skin = jobs.place(image);
+//   JobChain chain(jobs, "skinning", 100);
+//   chain.add({skin, first.ea()});  chain.add({skin, second.ea()});  // in any order, at the same time
+//   chain.sync();                                                    // not before all of the above:
+//   chain.add({skin, third.ea()});
+//   chain.kick();                                                    // the PPU is free
+//   chain.wait();                                                    // ... until it wants the result
+//
+// spu_kernels/job_chain.h has what lies in memory, spu_kernels/job_loop.cpp what the SPEs do with it.
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "softcell/dma/address_space.h"
+#include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/spe_group.h"
+
+namespace softcell::ppu {
+
+class JobChain;
+
+/// An image in main memory, where job loops fetch it. Valid as long as its JobSystem.
+class JobImage {
+ public:
+  const ls_sim::KernelImage& kernel() const { return *kernel_; }
+
+ private:
+  friend class JobSystem;
+  friend class JobChain;
+  const ls_sim::KernelImage* kernel_ = nullptr;
+  dma::EffectiveAddress ea_;
+};
+
+/// One run of an image.
+struct Job {
+  JobImage image;
+  dma::EffectiveAddress argp;
+  dma::EffectiveAddress envp = {};
+};
+
+/// Why a job failed: the fault's message, or the status that the kernel returned.
+struct JobFailure {
+  std::size_t job = 0;  ///< its number in the chain; the number of jobs where nobody knows which it was
+  std::string message;
+};
+
+/// Up to six SPEs with a job loop each. They sleep while there is nothing to do; no more are woken than there
+/// are jobs.
+///
+/// A job that fails is its chain's affair. Where a loop itself fails, its job is not known: all loops end
+/// with what they are at, the chains that have not ended by then fail, and the next kick starts the loops
+/// anew.
+class JobSystem {
+ public:
+  /// @param options   the deadline is that of a job; findings: jobs must then be checked images.
+  /// @param job_loop  the image of the kernel job_loop; outlives the system.
+  /// @throws std::invalid_argument  a loop that lies where jobs do; as SpeGroup.
+  /// @throws std::runtime_error     as SpeGroup.
+  JobSystem(dma::AddressSpace& memory, const ls_sim::SpeOptions& options,
+            const ls_sim::KernelImage& job_loop);
+
+  /// Waits for the jobs under way. @pre no chain is left.
+  ~JobSystem();
+  JobSystem(const JobSystem&) = delete;
+  JobSystem& operator=(const JobSystem&) = delete;
+
+  /// Copies an image to main memory, once for each image, which must outlive the system.
+  /// @throws std::invalid_argument  it leaves no room for the job loop, or is not checked where findings are
+  /// wanted.
+  JobImage place(const ls_sim::KernelImage& image);
+
+  /// Waits for all chains and ends the job loops. Then statistics and traces are whole: what the loops do
+  /// between jobs is in both. No chain may be kicked afterwards.
+  void stop();
+
+  /// Of each SPE, up to the last job that it has ended. Any thread.
+  std::vector<ls_sim::SpeStatistics> statistics() const;
+
+  int spes() const;
+
+ private:
+  friend class JobChain;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Jobs in stages: those of one stage run in any order and at the same time, so they must not depend on each
+/// other; the next stage begins when all have ended. Then the result is the same bits for any number of SPEs.
+/// Used by one thread. Chains are looked at in the order of their making: jobs of an earlier one go first.
+class JobChain {
+ public:
+  /// @throws std::runtime_error  there are 15 chains already, or main memory is full.
+  JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs);
+
+  /// Waits for what is under way.
+  ~JobChain();
+  JobChain(const JobChain&) = delete;
+  JobChain& operator=(const JobChain&) = delete;
+
+  // What the next kick() runs. Stays until cleared, so that a chain may be kicked again. @pre finished()
+
+  void clear();
+  /// @throws std::length_error  more than most_jobs.
+  void add(const Job& job);
+  /// Ends a stage, if it has a job.
+  void sync();
+
+  std::size_t size() const;  ///< jobs added
+
+  /// Starts the jobs. Never waits, allocates nothing. @pre finished()
+  void kick();
+
+  /// Whether all jobs of the last kick have ended.
+  bool finished();
+
+  /// Blocks until they have. Always returns: a job that never ends is stopped by the deadline of the options.
+  void wait();
+
+  /// Of the last kick, in order; empty when all went well. Stages behind one that failed have not run.
+  /// @pre finished()
+  const std::vector<JobFailure>& failures() const;
+
+ private:
+  friend class JobSystem;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softcell::ppu

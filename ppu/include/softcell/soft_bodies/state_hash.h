@@ -1,0 +1,21 @@
+#pragma once
+// One number for the state of soft bodies: equal numbers, equal bytes.
+
+#include <cstdint>
+#include <span>
+
+#include "softcell/soft_bodies/soft_body.h"
+#include "softcell/soft_bodies/soft_body_2d.h"
+
+namespace softcell::ppu {
+
+/// Hash over the positions and velocities of a body's particles. For several bodies, pass on the hash of
+/// those before: state_hash(b, state_hash(a)). The order counts.
+/// @source  XXH3, the 64-bit variant; `before` is its seed
+std::uint64_t state_hash(const SoftBody& body, std::uint64_t before = 0);
+std::uint64_t state_hash(const SoftBody2d& body, std::uint64_t before = 0);
+
+/// Of several bodies, in order.
+std::uint64_t state_hash(std::span<const SoftBody* const> bodies);
+
+}  // namespace softcell::ppu

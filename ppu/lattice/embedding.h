@@ -1,0 +1,49 @@
+#pragma once
+// Embeds a mesh in a lattice: which cell each vertex lies in and where, packed as the skin kernel reads it.
+
+#include <vector>
+
+#include "skin_job.h"
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// The part of a body that one skin job works on: groups [first_group, first_group + group_count) and the
+/// particles it reads as at most two contiguous runs. `SkinGroup::corner` of those groups counts through
+/// window 0, then window 1.
+struct SkinPart {
+  std::uint32_t first_group = 0;
+  std::uint32_t group_count = 0;
+  struct Run {
+    std::uint32_t first_particle = 0;
+    std::uint32_t count = 0;
+  } window[2];
+
+  /// The number of the particle that corner index `corner` of this part stands for.
+  std::uint32_t particle(std::uint32_t corner) const {
+    return corner < window[0].count ? window[0].first_particle + corner
+                                    : window[1].first_particle + (corner - window[0].count);
+  }
+};
+
+/// Most groups in one part: 2880 vertices, 90 KB in and 45 KB out. Small, so that six SPEs share one body (a
+/// mesh of 35,000 vertices makes some 13 parts, two for each); large against the up to 32 KB of corners that
+/// every part fetches for itself, and against the start of a job: with 512, skinning took some 5 % longer.
+inline constexpr std::uint32_t kMaxPartGroups = 720;
+
+/// Shared by all bodies of one model, immutable.
+struct Embedding {
+  std::vector<spu::SkinGroup> groups;  ///< sorted by part, then by cell
+  std::vector<SkinPart> parts;         ///< cover all groups, in order
+  std::vector<std::uint32_t>
+      slot_of_vertex;  ///< mesh vertex -> output slot 4 * group + lane (a vertex's own, not a repeat)
+  std::vector<std::uint32_t> vertex_of_slot;  ///< output slot -> mesh vertex; repeats included
+  std::vector<std::uint32_t> indices;  ///< three output slots per mesh triangle: the index buffer for drawing
+};
+
+/// @pre  `lattice` covers `mesh`, as voxelize() makes it.
+/// @throws std::runtime_error  when a vertex lies in no cell, or one layer of the lattice cannot be cut into
+/// jobs.
+Embedding embed(const TriangleMesh& mesh, const Lattice& lattice);
+
+}  // namespace softcell::ppu

@@ -1,0 +1,77 @@
+#pragma once
+// The constants of shape matching, in two and three dimensions: what a body's particles and regions are at
+// rest. Letters as in shape_matching.h.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "ppu/matching/summation.h"
+#include "softcell/soft_bodies/lattice.h"
+#include "softcell/soft_bodies/lattice_2d.h"
+
+namespace softcell::ppu {
+
+/// What all bodies of one model share: constants of particles and regions at rest. Immutable.
+/// @tparam kDimension  2 or 3
+template <typename Real, int kDimension>
+class BasicMatchingPlan {
+ public:
+  using Vector = Eigen::Matrix<Real, kDimension, 1>;
+  using LatticeType = std::conditional_t<kDimension == 2, Lattice2d, Lattice>;
+
+  /// @param half_width  w, 0..kMaxHalfWidth; 1 to 4 are useful.
+  /// @param masses      kg, one per particle, positive and finite. Scaling all of them changes no result.
+  /// @throws std::invalid_argument  masses not as stated.
+  /// @throws std::runtime_error     as find_regions().
+  BasicMatchingPlan(const LatticeType& lattice, int half_width, std::span<const float> masses);
+
+  std::size_t particles() const { return particles_.size(); }
+  std::size_t regions() const { return regions_.size(); }  ///< distinct ones; see SumPlan
+  int half_width() const { return half_width_; }
+  Real spacing() const { return spacing_; }  ///< metres
+  const SumPlan& sums() const { return sums_; }
+  /// Centre of mass at rest, in the lattice's frame.
+  const Vector& rest_centre() const { return rest_centre_; }
+
+  struct Particle {
+    Vector x0;                  ///< rest position relative to rest_centre()
+    Real modified_mass;         ///< m~, kg
+    Real inverse_region_count;  ///< 1 / |R_i|
+    Real mass;                  ///< kg
+  };
+  struct Region {
+    Vector c0;          ///< rest centre relative to rest_centre()
+    Real mass;          ///< M_r = sum of m~, kg
+    Real inverse_mass;  ///< 1 / M_r
+  };
+  std::span<const Particle> particle_constants() const { return particles_; }
+  std::span<const Region> region_constants() const { return regions_; }
+
+  /// Below this times M_r, what a region's rotation is found from is rounding noise: all its particles sit on
+  /// one point. Square metres.
+  Real noise_floor() const { return noise_floor_; }
+
+ private:
+  SumPlan sums_;
+  int half_width_;
+  Real spacing_;
+  Vector rest_centre_;
+  Real noise_floor_;
+  std::vector<Particle> particles_;
+  std::vector<Region> regions_;
+};
+
+template <typename Real>
+using MatchingPlan = BasicMatchingPlan<Real, 3>;
+template <typename Real>
+using MatchingPlan2d = BasicMatchingPlan<Real, 2>;
+
+extern template class BasicMatchingPlan<float, 2>;
+extern template class BasicMatchingPlan<double, 2>;
+extern template class BasicMatchingPlan<float, 3>;
+extern template class BasicMatchingPlan<double, 3>;
+
+}  // namespace softcell::ppu

@@ -1,0 +1,114 @@
+#include "ppu/matching/summation.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace softcell::ppu {
+
+namespace {
+
+/// Lists of numbers, each kept once: equal lists get the same number, in the order of their first appearance.
+class UniqueLists {
+ public:
+  std::uint32_t number_of(std::span<const std::uint32_t> list) {
+    const std::uint64_t hash = hash_of(list);
+    const auto [first, last] = by_hash_.equal_range(hash);
+    for (auto known = first; known != last; ++known)
+      if (std::ranges::equal(lists_[known->second], list)) return known->second;
+    const auto number = static_cast<std::uint32_t>(lists_.size());
+    by_hash_.emplace(hash, number);
+    lists_.push(list);
+    return number;
+  }
+
+  Csr take() { return std::move(lists_); }
+
+ private:
+  /// FNV-1a over the numbers.
+  static std::uint64_t hash_of(std::span<const std::uint32_t> list) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const std::uint32_t item : list) hash = (hash ^ item) * 0x100000001b3u;
+    return hash;
+  }
+
+  Csr lists_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;
+};
+
+/// One pass, because lists are ascending: centre r = 0, 1, ... must come up next in the list of each member
+/// of r.
+void check_symmetry(const Csr& regions) {
+  std::vector<std::uint32_t> next(regions.offsets.begin(), regions.offsets.end() - 1);
+  for (std::uint32_t r = 0; r < regions.size(); ++r)
+    for (const std::uint32_t i : regions[r])
+      if (i >= regions.size() || next[i] >= regions.offsets[i + 1] || regions.items[next[i]++] != r)
+        throw std::invalid_argument("SumPlan: membership of regions is not symmetric");
+}
+
+/// Cuts a region into plates and bars, and numbers each.
+class Cutter {
+ public:
+  explicit Cutter(std::span<const Eigen::Vector3i> particles) : particles_(particles) {}
+
+  std::uint32_t add(std::span<const std::uint32_t> region) {
+    plate_list_.clear();
+    for (std::size_t first = 0, last = 0; first < region.size(); first = last) {
+      const int x = particles_[region[first]].x();
+      while (last < region.size() && particles_[region[last]].x() == x) ++last;
+      plate_list_.push_back(add_plate(region.subspan(first, last - first)));
+    }
+    return regions.number_of(plate_list_);
+  }
+
+  UniqueLists bars, plates, regions;
+
+ private:
+  std::uint32_t add_plate(std::span<const std::uint32_t> plate) {
+    bar_list_.clear();
+    for (std::size_t first = 0, last = 0; first < plate.size(); first = last) {
+      const int y = particles_[plate[first]].y();
+      while (last < plate.size() && particles_[plate[last]].y() == y) ++last;
+      bar_list_.push_back(bars.number_of(plate.subspan(first, last - first)));
+    }
+    return plates.number_of(bar_list_);
+  }
+
+  std::span<const Eigen::Vector3i> particles_;
+  std::vector<std::uint32_t> plate_list_, bar_list_;
+};
+
+std::size_t additions(const Csr& lists) { return lists.items.size() - lists.size(); }
+
+}  // namespace
+
+SumPlan::SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions) {
+  if (regions.size() != particles.size())
+    throw std::invalid_argument("SumPlan: expected one region per particle");
+  check_symmetry(regions);
+
+  Cutter cutter(particles);
+  region_of_.reserve(regions.size());
+  for (std::size_t r = 0; r < regions.size(); ++r) region_of_.push_back(cutter.add(regions[r]));
+  naive_additions_ = additions(regions);
+
+  particles_of_bar_ = cutter.bars.take();
+  bars_of_plate_ = cutter.plates.take();
+  plates_of_region_ = cutter.regions.take();
+  regions_of_bar_ = particles_of_bar_;
+  for (std::uint32_t& item : regions_of_bar_.items) item = region_of_[item];
+}
+
+std::vector<std::uint32_t> SumPlan::members(std::size_t region) const {
+  std::vector<std::uint32_t> members;
+  for (const std::uint32_t plate : plates_of_region_[region])
+    for (const std::uint32_t bar : bars_of_plate_[plate])
+      for (const std::uint32_t particle : particles_of_bar_[bar]) members.push_back(particle);
+  return members;
+}
+
+std::size_t SumPlan::shared_additions() const {
+  return additions(particles_of_bar_) + additions(bars_of_plate_) + additions(plates_of_region_);
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,37 @@
+#include "ppu/plans/match_constants.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softcell::ppu {
+
+spu::MatchHold hold_of(const Lattice& lattice, const MatchingPlan<float>& matching) {
+  double mass = 0, largest = 0;
+  for (const auto& particle : matching.particle_constants()) {
+    mass += static_cast<double>(particle.mass);
+    largest = std::max(largest, static_cast<double>(particle.mass));
+  }
+  Eigen::Array3i low = lattice.particles[0], high = low;
+  for (const Eigen::Vector3i& p : lattice.particles) {
+    low = low.min(p.array());
+    high = high.max(p.array());
+  }
+  const double size = static_cast<double>(lattice.spacing) * std::max(1, (high - low).maxCoeff());
+  const double most = static_cast<double>(spu::kMatchPullLimit) / (largest * size / 16);
+  const double scale = std::exp2(std::floor(std::log2(most)));
+  return {static_cast<float>(scale), static_cast<float>(1 / (scale * mass))};
+}
+
+std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float>& matching) {
+  std::array<std::uint32_t, spu::kMatchSamples> samples{};
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    samples[k] = static_cast<std::uint32_t>((2 * k + 1) * matching.particles() / (2 * samples.size()));
+  return samples;
+}
+
+std::array<float, 4> rest_moment(const MatchingPlan<float>::Particle& particle) {
+  const float m = particle.modified_mass;
+  return {m * particle.x0.x(), m * particle.x0.y(), m * particle.x0.z(), m};
+}
+
+}  // namespace softcell::ppu

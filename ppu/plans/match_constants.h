@@ -1,0 +1,21 @@
+#pragma once
+// What the plans of both kernels, match and match_tiles, say of a body as a whole.
+
+#include <array>
+#include <cstdint>
+
+#include "match_job.h"
+#include "ppu/matching/matching_plan.h"
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+spu::MatchHold hold_of(const Lattice& lattice, const MatchingPlan<float>& matching);
+
+/// Particles all over the body.
+std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float>& matching);
+
+/// m~ (x0 y0 z0 1) of a particle.
+std::array<float, 4> rest_moment(const MatchingPlan<float>::Particle& particle);
+
+}  // namespace softcell::ppu

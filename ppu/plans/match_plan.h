@@ -1,0 +1,24 @@
+#pragma once
+// The plan of the kernel `match`: a model's constants and sum lists as the SPE reads them.
+
+#include "match_job.h"
+#include "ppu/matching/matching_plan.h"
+#include "ppu/plans/kernel_plan.h"
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// Bars, plates and regions are SumPlan's; equal ones exist once. What is new is their order: along a row of
+/// the lattice each bar follows the one that differs from it by one particle at either end, so that a sum is
+/// made from its predecessor by one addition and one subtraction, whatever the half-width; plates and regions
+/// likewise.
+class MatchPlan : public KernelPlan<spu::MatchPlanHeader> {
+ public:
+  /// @param arena_bytes  what the kernel has for plan and state: kMatchArenaBytes, or of its instrumented
+  ///                     flavour kMatchCheckedArenaBytes.
+  /// @throws BodyTooLarge
+  MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching,
+            std::uint32_t arena_bytes = spu::kMatchArenaBytes);
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,19 @@
+#pragma once
+// The plan of the kernel `match_2d`: a model's constants and sum lists as the SPE reads them.
+
+#include "match_2d_job.h"
+#include "ppu/matching/matching_plan.h"
+#include "ppu/plans/kernel_plan.h"
+#include "softcell/soft_bodies/lattice_2d.h"
+
+namespace softcell::ppu {
+
+/// As MatchPlan, with two levels of sums: from particles to bars along y, from bars to regions along x.
+class MatchPlan2d : public KernelPlan<spu::MatchPlanHeader2d> {
+ public:
+  /// @throws std::runtime_error  plan and state of the bodies under way need more local store than the kernel
+  ///         has; the sentence states both.
+  MatchPlan2d(const Lattice2d& lattice, const MatchingPlan2d<float>& matching);
+};
+
+}  // namespace softcell::ppu

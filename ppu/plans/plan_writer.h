@@ -1,0 +1,67 @@
+#pragma once
+// Lays out a plan for the kernels match and match_2d.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "ppu/plans/kernel_plan.h"
+
+namespace softcell::ppu {
+
+/// Room for a header, then parts one behind the other, each on a multiple of 16 bytes.
+class PlanWriter {
+ public:
+  explicit PlanWriter(std::size_t header_bytes) : bytes_(header_bytes) {}
+
+  /// @return the part's offset
+  template <typename T>
+  std::uint32_t append(const std::vector<T>& items) {
+    bytes_.resize((bytes_.size() + 15) / 16 * 16);
+    const std::size_t offset = bytes_.size();
+    bytes_.resize(offset + items.size() * sizeof(T));
+    std::memcpy(bytes_.data() + offset, items.data(), items.size() * sizeof(T));
+    return static_cast<std::uint32_t>(offset);
+  }
+
+  /// In whole lines of 128 bytes.
+  std::uint32_t size() const { return static_cast<std::uint32_t>((bytes_.size() + 127) / 128 * 128); }
+
+  template <typename Header>
+  const std::vector<std::byte>& finish(const Header& header) {
+    std::memcpy(bytes_.data(), &header, sizeof header);
+    return bytes_;
+  }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// The power of two at or below the spacing: what a body's origin is a multiple of.
+inline float origin_grid(float spacing) {
+  int exponent = 0;
+  std::frexp(spacing, &exponent);
+  return std::ldexp(1.0f, exponent - 1);
+}
+
+/// 1 / kg of the whole body.
+template <typename Particles>
+float inverse_body_mass(const Particles& particles) {
+  double mass = 0;
+  for (const auto& particle : particles) mass += static_cast<double>(particle.mass);
+  return static_cast<float>(1 / mass);
+}
+
+/// @throws BodyTooLarge  the body needs more local store than `kernel` has for it.
+inline void check_fits(const char* kernel, std::size_t particles, std::uint64_t needed,
+                       std::uint32_t there_are) {
+  if (needed <= there_are) return;
+  throw BodyTooLarge("a soft body of " + std::to_string(particles) + " particles needs " +
+                     std::to_string(needed) + " bytes of local store; the kernel " + kernel + " has " +
+                     std::to_string(there_are));
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,100 @@
+#include "ppu/plans/sum_list.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace softcell::ppu {
+
+namespace {
+
+/// Rounds down, below zero too.
+int block_of(int place, int restart) { return (place - (place % restart + restart) % restart) / restart; }
+
+SumLevel::Rule rule_of(const Sum& before, const Sum& after, int restart) {
+  if (before.row != after.row || block_of(before.place, restart) != block_of(after.place, restart)) return {};
+  std::vector<std::uint32_t> joins, leaves;
+  std::ranges::set_difference(after.terms, before.terms, std::back_inserter(joins));
+  std::ranges::set_difference(before.terms, after.terms, std::back_inserter(leaves));
+  if (joins.size() > 1 || leaves.size() > 1) return {};
+  return {true, joins.empty() ? 0 : joins[0], leaves.empty() ? 0 : leaves[0]};
+}
+
+}  // namespace
+
+SumLevel sum_level(const std::vector<Sum>& sums, int restart) {
+  SumLevel level;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    level.terms.push(sums[i].terms);
+    level.rules.push_back(i == 0 ? SumLevel::Rule{} : rule_of(sums[i - 1], sums[i], restart));
+  }
+  return level;
+}
+
+void SumListWriter::begin(std::span<const std::uint16_t> terms) {
+  end_chain();
+  in_run_ = false;
+  terms_.assign(terms.begin(), terms.end());
+  if (terms_.empty()) terms_.push_back(0);
+}
+
+void SumListWriter::go_on(std::uint16_t before, std::uint16_t joins, std::uint16_t leaves) {
+  end_chain();
+  if (!in_run_) {
+    run_at_ = list_.halfwords.size();
+    push(spu::kSumRun);
+  }
+  in_run_ = true;
+  ++list_.halfwords[run_at_];
+  for (const std::uint16_t offset : {before, joins, leaves}) push(offset);
+  list_.additions += 2;
+}
+
+/// The longest beginning in which nothing leaves, the longest end in which nothing joins; what lies between
+/// has both, or a slot that adds nothing.
+void SumListWriter::end_chain() {
+  if (terms_.empty()) return;
+  const auto grown = std::ranges::find_if(steps_, [](const Step& step) { return step.leaves != 0; });
+  const auto slid = std::find_if(steps_.rbegin(), std::make_reverse_iterator(grown), [](const Step& step) {
+                      return step.joins != 0;
+                    }).base();
+  push(terms_.size());
+  push(static_cast<std::size_t>(grown - steps_.begin()));
+  push(static_cast<std::size_t>(slid - grown));
+  push(static_cast<std::size_t>(steps_.end() - slid));
+  for (const std::uint16_t offset : terms_) push(offset);
+  std::for_each(steps_.begin(), grown, [&](const Step& step) { push(step.joins); });
+  std::for_each(grown, slid, [&](const Step& step) {
+    push(step.joins);
+    push(step.leaves);
+  });
+  std::for_each(slid, steps_.end(), [&](const Step& step) { push(step.leaves); });
+  list_.additions += terms_.size() - 1 + steps_.size() + static_cast<std::size_t>(slid - grown);
+  terms_.clear();
+  steps_.clear();
+}
+
+SumList SumListWriter::finish() {
+  end_chain();
+  push(0);
+  return std::move(list_);
+}
+
+SumList write_sum_list(const SumLevel& level, std::uint32_t slot_bytes) {
+  const auto offset = [&](std::uint32_t slot) { return sum_list_offset(slot, slot_bytes); };
+  SumListWriter writer;
+  std::vector<std::uint16_t> terms;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    const SumLevel::Rule& rule = level.rules[i];
+    if (rule.follows) {
+      writer.follow(offset(rule.joins), offset(rule.leaves));
+      continue;
+    }
+    terms.clear();
+    for (const std::uint32_t slot : level.terms[i]) terms.push_back(offset(slot));
+    writer.begin(terms);
+  }
+  return writer.finish();
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,60 @@
+#pragma once
+// The order in which a plan makes its sums: neighbours along a row of the lattice one after the other, so
+// that a sum list can make each from the one before it.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ppu/matching/summation.h"
+#include "ppu/plans/sum_list.h"
+
+namespace softcell::ppu {
+
+/// Where a bar, plate or region stands in that order.
+struct Station {
+  std::array<int, 3> row{};
+  int place = 0;
+  bool known = false;
+
+  auto key() const { return std::pair(row, place); }
+};
+
+/// The stations of all bars, plates and regions, by the region in which they first appear: bars follow one
+/// another along z, plates along y, regions along x.
+struct Stations {
+  std::vector<Station> bars, plates, regions;
+
+  /// @param particles  grid indices, as `sums` was made from them.
+  Stations(std::span<const Eigen::Vector3i> particles, const SumPlan& sums);
+};
+
+/// An order of things, and the slot that each gets by it: 1, 2, 3, ...
+struct Order {
+  std::vector<std::uint32_t> item;  ///< by rank
+  std::vector<std::uint32_t> slot;  ///< by item
+
+  explicit Order(const std::vector<Station>& stations);
+};
+
+/// All items in their order, and after them `padding` sums of nothing.
+/// @param terms    of an item: what is added up
+/// @param slot_of  where a term is found
+std::vector<Sum> ordered_sums(const std::vector<Station>& stations, const Order& order,
+                              const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
+                              const std::function<std::uint32_t(std::uint32_t)>& slot_of,
+                              std::size_t padding = 0);
+
+/// The sum list that makes them.
+inline SumList ordered_sum_list(const std::vector<Station>& stations, const Order& order,
+                                const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
+                                const std::function<std::uint32_t(std::uint32_t)>& slot_of,
+                                const SumListFormat& format, std::size_t padding = 0) {
+  return write_sum_list(ordered_sums(stations, order, terms, slot_of, padding), format);
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,108 @@
+#pragma once
+// Turns a tile into slices: what each fetches, sums up, keeps and puts out.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "match_tiles_job.h"
+#include "ppu/matching/summation.h"
+#include "ppu/plans/lattice_sums.h"
+#include "ppu/plans/tile_places.h"
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// Lists of slices, each once.
+class TileLists {
+ public:
+  /// @return the list's offset in bytes, a multiple of 16
+  std::uint32_t add(std::vector<std::uint32_t> words);
+  std::vector<std::uint32_t> take() { return std::move(words_); }
+
+ private:
+  std::vector<std::uint32_t> words_;
+  std::map<std::vector<std::uint32_t>, std::uint32_t> known_;
+};
+
+/// Both directions of all tiles. Time is the plane that comes in: particles of plane x, or motions of regions
+/// whose lowest particle is there, come in at time x, and with them bars and plates can be made. A region is
+/// complete, or a region's total, w planes later than its lowest particle, and a particle's total w planes
+/// later than the particle.
+class TileScheduler {
+ public:
+  enum class Direction { kUp, kDown };
+
+  TileScheduler(const Lattice& lattice, const SumPlan& sums, int half_width, const LatticeSums& order,
+                const TileGrid& grid, const TilePlaces& particles, const TilePlaces& regions);
+
+  std::vector<spu::TileSlice> slices(std::pair<int, int> tile, Direction direction);
+  /// The last slices() once more, with slots of two rows.
+  std::vector<spu::TileSlice> slices_for_twists() { return write_slices(spu::kTwistSlotBytes); }
+
+  TileLists& lists() { return lists_; }
+  const spu::TileLimits& limits(Direction direction) const {
+    return limits_[direction == Direction::kDown ? 1 : 0];
+  }
+
+ private:
+  enum Kind { kInput, kBar, kPlate, kRegion, kKinds };
+  using Slots = std::vector<std::uint32_t>;
+
+  /// One kind of value in one slice.
+  struct Block {
+    Slots slots;                        // global numbers, in the order of their local ones; 0 is padding
+    std::uint32_t begin = 0, size = 0;  // local
+    int last_use = std::numeric_limits<int>::min();
+  };
+  struct Slice {
+    std::array<Block, kKinds> blocks;
+    std::uint32_t first_place = 0, last_place = 0;  // of inputs
+    TilePlaces::Stretch output;
+  };
+
+  void start(Direction direction);
+  const SumLevel& level(int kind) const;
+  const TilePlaces& input_places() const { return direction_ == Direction::kUp ? particles_ : regions_; }
+  int time_of(int kind, std::uint32_t slot) const { return (*times_[kind])[slot]; }
+  void require(int kind, std::uint32_t slot);
+  void require_terms(int kind, std::uint32_t slot);
+  template <typename Visit>
+  void visit_terms(int kind, std::uint32_t slot, const Visit& visit) const;
+  Slice& slice_at(int time);
+  void collect(std::pair<int, int> tile);
+  void place_outputs(std::pair<int, int> tile);
+  void find_lifetimes();
+  void give_out_slots();
+  std::uint32_t local(int kind, std::uint32_t slot) const { return slot == 0 ? 0 : local_[kind][slot]; }
+  void append_list(int kind, const Block& block, std::vector<std::uint16_t>& out) const;
+  spu::TileSlice written(const Slice& slice);
+  std::vector<spu::TileSlice> write_slices(std::uint32_t slot_bytes);
+
+  const Lattice& lattice_;
+  const SumPlan& sums_;
+  const int half_width_;
+  const LatticeSums& order_;
+  const TileGrid& grid_;
+  const TilePlaces &particles_, &regions_;
+  std::map<std::pair<int, int>, Slots> particles_of_tile_, regions_of_tile_;                      // by number
+  std::vector<int> plane_of_particle_, plane_of_region_, plane_of_bar_, plane_of_plate_, ready_;  // by slot
+
+  // Of the tile and direction under way.
+  Direction direction_ = Direction::kUp;
+  std::uint32_t slot_bytes_ = spu::kMatchSlotBytes;
+  std::array<const std::vector<int>*, kKinds> times_{};
+  std::array<Slots, kKinds> needed_;
+  std::array<std::vector<std::uint32_t>, kKinds> mark_, local_;  // by slot
+  std::uint32_t epoch_ = 0;
+  int first_time_ = 0;
+  std::vector<Slice> slices_;
+
+  TileLists lists_;
+  std::array<spu::TileLimits, 2> limits_{};
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,43 @@
+#include "ppu/reference/skin_scalar.h"
+
+#include "ppu/numbers/half.h"
+#include "ppu/reference/trilinear.h"
+
+namespace softcell::ppu {
+
+ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& part, std::uint32_t group,
+                                   int lane, std::span<const Eigen::Vector3f> particle_positions) {
+  const spu::SkinGroup& g = embedding.groups[group];
+  std::array<Eigen::Vector3d, 8> corners;
+  for (std::size_t k = 0; k < 8; ++k)
+    corners[k] = particle_positions[part.particle(g.corner[k])].cast<double>();
+  const auto point =
+      evaluate_trilinear<double>({g.xi[lane], g.eta[lane], g.zeta[lane]},
+                                 {g.normal_x[lane], g.normal_y[lane], g.normal_z[lane]}, corners);
+  return {point.position, point.normal};
+}
+
+void skin_scalar(const Embedding& embedding, const SkinPart& part, std::span<const Eigen::Vector3f> positions,
+                 const Eigen::Vector3f& origin, std::span<spu::SkinnedVertex> out) {
+  std::array<Eigen::Vector3f, 8> corners;
+  for (std::uint32_t i = 0; i < part.group_count; ++i) {
+    const spu::SkinGroup& group = embedding.groups[part.first_group + i];
+    if (group.continues[0] == 0) {
+      for (std::size_t k = 0; k < 8; ++k) corners[k] = positions[part.particle(group.corner[k])] - origin;
+    }
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const SurfacePoint<float> point = evaluate_trilinear<float>(
+          {group.xi[lane], group.eta[lane], group.zeta[lane]},
+          {group.normal_x[lane], group.normal_y[lane], group.normal_z[lane]}, corners);
+      spu::SkinnedVertex& vertex = out[4 * i + lane];
+      for (int d = 0; d < 3; ++d) {
+        vertex.position[d] = half_from_float(point.position[d]);
+        vertex.normal[d] = half_from_float(point.normal[d]);
+      }
+      vertex.position[3] = half_from_float(1.0f);
+      vertex.normal[3] = half_from_float(0.0f);
+    }
+  }
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,170 @@
+#include "ppu/spe_bodies/skin_orchestrator.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace softcell::ppu {
+
+using spu::SkinCorner;
+using spu::SkinGroup;
+using spu::SkinJob;
+using spu::SkinnedVertex;
+
+struct SkinOrchestrator::Model {
+  std::shared_ptr<const Embedding> embedding;
+  dma::Buffer<SkinGroup> groups;
+};
+
+struct SkinOrchestrator::Body {
+  struct Half {
+    dma::Buffer<SkinCorner> corners;
+    dma::Buffer<SkinJob> jobs;
+    dma::Buffer<SkinnedVertex> vertices;
+    Eigen::Vector3f origin{0, 0, 0};
+  };
+  const Model* model;
+  std::array<Half, 2> half;
+};
+
+namespace {
+
+constexpr dma::BufferOptions kInput{.spe_access = dma::SpeAccess::kRead};
+constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .element_bytes = 2};
+
+}  // namespace
+
+/// The jobs of a frame, as the halves lie in memory: from frame to frame they only change what they point to.
+struct SkinOrchestrator::Frame {
+  Frame(JobSystem& system, std::size_t jobs)
+      : chain{JobChain(system, "skinning, first half", jobs),
+              JobChain(system, "skinning, second half", jobs)} {}
+  std::array<JobChain, 2> chain;
+};
+
+Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions) {
+  Eigen::Vector3f low = positions[0].head<3>(), high = low;
+  for (const Eigen::Vector4f& p : positions) {
+    low = low.cwiseMin(p.head<3>());
+    high = high.cwiseMax(p.head<3>());
+  }
+  return low - Eigen::Vector3f::Constant((high - low).maxCoeff() / 16);
+}
+
+SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
+                                   const ls_sim::KernelImage& skin)
+    : memory_(memory), system_(jobs), skin_(jobs.place(skin)) {}
+
+SkinOrchestrator::~SkinOrchestrator() {
+  frame_.reset();  // which waits, while the bodies' memory is still there
+}
+
+std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
+  auto known =
+      std::find_if(models_.begin(), models_.end(), [&](const auto& m) { return m->embedding == embedding; });
+  if (known == models_.end()) {
+    auto model = std::make_unique<Model>();
+    model->groups = dma::Buffer<SkinGroup>(memory_, "skin groups", embedding->groups.size(), kInput);
+    std::copy(embedding->groups.begin(), embedding->groups.end(), model->groups.span().begin());
+    model->embedding = std::move(embedding);
+    known = models_.insert(models_.end(), std::move(model));
+  }
+  const Embedding& shared = *(*known)->embedding;
+  drain();
+  frame_.reset();
+  auto body = std::make_unique<Body>();
+  body->model = known->get();
+  for (Body::Half& half : body->half) {
+    half.corners = dma::Buffer<SkinCorner>(memory_, "particle positions", particles, kInput);
+    half.jobs = dma::Buffer<SkinJob>(memory_, "skin jobs", shared.parts.size(), kInput);
+    half.vertices =
+        dma::Buffer<SkinnedVertex>(memory_, "skinned vertices", 4 * shared.groups.size(), kOutput);
+  }
+  bodies_.push_back(std::move(body));
+  jobs_per_frame_ += shared.parts.size();
+  return bodies_.size() - 1;
+}
+
+void SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> positions) {
+  Body::Half& half = body.half[static_cast<std::size_t>(working_)];
+  if (positions.size() != half.corners.size()) {
+    throw std::invalid_argument("a body of " + std::to_string(half.corners.size()) + " particles was given " +
+                                std::to_string(positions.size()) + " positions");
+  }
+  static_assert(sizeof(SkinCorner) == sizeof(Eigen::Vector4f));
+  std::memcpy(half.corners.data(), positions.data(), positions.size_bytes());
+  half.origin = skin_origin(positions);
+
+  const Embedding& embedding = *body.model->embedding;
+  for (std::size_t i = 0; i < embedding.parts.size(); ++i) {
+    const SkinPart& part = embedding.parts[i];
+    SkinJob job{};
+    job.groups_ea = body.model->groups.ea(part.first_group).value;
+    job.vertices_ea = half.vertices.ea(std::size_t{part.first_group} * 4).value;
+    for (std::size_t w = 0; w < 2; ++w) {
+      job.window[w].ea = half.corners.ea(part.window[w].first_particle).value;
+      job.window[w].count = part.window[w].count;
+    }
+    for (int axis = 0; axis < 3; ++axis) job.origin[axis] = half.origin[axis];
+    job.group_count = part.group_count;
+    half.jobs[i] = job;
+  }
+}
+
+void SkinOrchestrator::make_frame() {
+  frame_ = std::make_unique<Frame>(system_, jobs_per_frame_);
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (const auto& body : bodies_) {
+      const auto& descriptors = body->half[half].jobs;
+      for (std::size_t i = 0; i < descriptors.size(); ++i) {
+        frame_->chain[half].add({.image = skin_, .argp = descriptors.ea(i)});
+      }
+    }
+  }
+}
+
+JobChain* SkinOrchestrator::chain_under_way() {
+  return in_flight_ ? &frame_->chain[static_cast<std::size_t>(working_)] : nullptr;
+}
+
+bool SkinOrchestrator::kick(std::span<const std::span<const Eigen::Vector4f>> positions) {
+  if (positions.size() != bodies_.size())
+    throw std::invalid_argument("kick() needs the positions of every body");
+  if (JobChain* const chain = chain_under_way(); chain != nullptr && !chain->finished()) return false;
+  collect();
+  working_ = shown_ == 0 ? 1 : 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) write_half(*bodies_[b], positions[b]);
+  if (frame_ == nullptr) make_frame();
+  in_flight_ = true;
+  chain_under_way()->kick();
+  return true;
+}
+
+/// Takes over the frame that the SPEs have finished, if there is one.
+bool SkinOrchestrator::collect() {
+  if (!in_flight_) return false;
+  const std::vector<JobFailure>& failures = chain_under_way()->failures();
+  in_flight_ = false;
+  if (failures.empty()) {
+    shown_ = working_;
+    return true;
+  }
+  std::string message = "skinning a frame failed";
+  for (const JobFailure& failure : failures) message += "; " + failure.message;
+  throw std::runtime_error(message);
+}
+
+bool SkinOrchestrator::drain() {
+  if (JobChain* const chain = chain_under_way()) chain->wait();
+  return collect();
+}
+
+SkinnedBody SkinOrchestrator::shown(std::size_t body) const {
+  if (shown_ < 0) return {};
+  const Body::Half& half = bodies_[body]->half[static_cast<std::size_t>(shown_)];
+  return {half.vertices.span(), half.origin};
+}
+
+}  // namespace softcell::ppu

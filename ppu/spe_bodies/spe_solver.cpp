@@ -1,0 +1,238 @@
+#include "softcell/spe_bodies/spe_solver.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "ppu/spe_bodies/match_orchestration.h"
+#include "ppu/spe_bodies/tiled_memory.h"
+
+namespace softcell::ppu {
+namespace {
+
+constexpr std::size_t kMostBodiesPerJob = 16;
+
+/// Enough jobs for all SPEs to have some, and few enough to fetch the plan seldom. Says nothing about the
+/// result.
+std::size_t bodies_per_job(std::size_t bodies, int spes) {
+  const std::size_t jobs = 2 * static_cast<std::size_t>(spes);
+  return std::clamp<std::size_t>((bodies + jobs - 1) / jobs, 1, kMostBodiesPerJob);
+}
+
+MatchSettings settings_of(const SoftBodyModel& model, float step) {
+  const SoftBodySettings& settings = model.settings();
+  return {.pull = settings.alpha_of_step(step) / step, .damping = settings.damping_of_step(step)};
+}
+
+MatchBodies::Vector of(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z(), 0}; }
+
+}  // namespace
+
+/// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither.
+struct SpeSolver::Group {
+  std::shared_ptr<const SoftBodyModel> model;
+  std::optional<MatchBodies> bodies;
+  std::shared_ptr<const TilePlan> tiles;
+  std::size_t count = 0;
+  std::vector<std::size_t> awake;
+};
+
+struct SpeSolver::Member {
+  SoftBody* body = nullptr;
+  Group* group = nullptr;
+  std::size_t number = 0;              ///< in the group
+  std::unique_ptr<TiledMemory> tiled;  ///< of a group in tiles
+  bool stepped = false;                ///< by the jobs under way
+};
+
+SpeSolver::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match,
+                     const ls_sim::KernelImage& match_tiles)
+    : memory_(memory),
+      jobs_(jobs),
+      match_(jobs.place(match)),
+      match_tiles_(jobs.place(match_tiles)),
+      checked_(match.checked) {
+  regroup({});  // a world without soft bodies steps, too
+}
+
+SpeSolver::~SpeSolver() = default;
+
+bool SpeSolver::knows(std::span<SoftBody* const> bodies) const {
+  return std::equal(members_.begin(), members_.end(), bodies.begin(), bodies.end(),
+                    [](const Member& member, const SoftBody* body) {
+                      return member.body == body && member.group->model == body->shared_model();
+                    });
+}
+
+/// Whole where they fit, else in tiles. Plans of tiles take a while: a model's is made once.
+void SpeSolver::find_place(Group& group) {
+  const SoftBodyModel& model = *group.model;
+  const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const auto& old) {
+    return old->model == group.model && old->tiles != nullptr;
+  });
+  if (known != groups_.end()) {
+    group.tiles = (*known)->tiles;
+    return;
+  }
+  try {
+    const std::uint32_t arena_bytes = checked_ ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes;
+    group.bodies.emplace(memory_, MatchPlan(model.lattice(), *model.plan(), arena_bytes), group.count);
+    return;
+  } catch (const BodyTooLarge&) {
+    // Then in tiles.
+  }
+  try {
+    const std::uint32_t arena_bytes = checked_ ? spu::kTileCheckedArenaBytes : spu::kTileArenaBytes;
+    group.tiles = std::make_shared<const TilePlan>(model.lattice(), *model.plan(), TileShape{}, arena_bytes);
+  } catch (const BodyTooLarge&) {
+    // Then by the PPU.
+  }
+}
+
+/// Rotations from one layout of memory to the next.
+void SpeSolver::take_over(Member& member, Member& old) {
+  if (member.group->bodies)
+    member.group->bodies->take_rotations(member.number, *old.group->bodies, old.number);
+  else
+    member.tiled = std::move(old.tiled);
+}
+
+/// Bodies have come or gone: memory is laid out anew, and those that stay take their rotations along.
+void SpeSolver::regroup(std::span<SoftBody* const> bodies) {
+  std::vector<std::unique_ptr<Group>> groups;
+  std::vector<Member> members;
+  for (SoftBody* const body : bodies) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const auto& g) { return g->model == body->shared_model(); });
+    if (group == groups.end()) {
+      group = groups.insert(group, std::make_unique<Group>());
+      (*group)->model = body->shared_model();
+    }
+    Member& member = members.emplace_back();
+    member.body = body;
+    member.group = group->get();
+    member.number = (*group)->count++;
+  }
+  for (const auto& group : groups) find_place(*group);
+
+  // All that may fail comes before anything is taken from what there is.
+  std::size_t jobs = 0;
+  for (Member& member : members) {
+    const Member* const old = known_as(member);
+    const Group& group = *member.group;
+    if (group.tiles && old == nullptr) member.tiled = std::make_unique<TiledMemory>(memory_, *group.tiles);
+    const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
+    jobs += tiled != nullptr ? tiled->most_jobs() : 1;
+  }
+  auto chain = std::make_unique<JobChain>(jobs_, "soft bodies", jobs);
+  for (Member& member : members)
+    if (Member* const old = known_as(member)) take_over(member, *old);
+  chain_ = std::move(chain);
+  groups_ = std::move(groups);
+  members_ = std::move(members);
+}
+
+/// The same body in the layout of before, or null.
+SpeSolver::Member* SpeSolver::known_as(const Member& member) {
+  const auto old = std::find_if(members_.begin(), members_.end(), [&](const Member& known) {
+    return known.body == member.body && known.group->model == member.group->model;
+  });
+  return old == members_.end() ? nullptr : &*old;
+}
+
+/// Positions and velocities to main memory.
+void SpeSolver::hand_over(Member& member) {
+  const SoftBody& body = *member.body;
+  Group& group = *member.group;
+  if (member.tiled) {
+    const std::span<const std::uint32_t> place_of = group.tiles->place_of();
+    for (std::size_t i = 0; i < place_of.size(); ++i) {
+      member.tiled->positions()[place_of[i]] = of(body.positions()[i]);
+      member.tiled->velocities()[place_of[i]] = of(body.velocities()[i]);
+    }
+    member.tiled->begin_step(settings_of(*group.model, step_));
+  } else {
+    group.awake.push_back(member.number);
+    static_assert(sizeof(MatchBodies::Vector) == sizeof(Eigen::Vector4f));
+    std::memcpy(group.bodies->positions(member.number).data(), body.padded_positions().data(),
+                body.padded_positions().size_bytes());
+    std::ranges::transform(body.velocities(), group.bodies->velocities(member.number).begin(), of);
+  }
+}
+
+void SpeSolver::kick(std::span<SoftBody* const> bodies, float step) {
+  if (!knows(bodies)) regroup(bodies);
+  step_ = step;
+  left_to_ppu_.clear();
+  for (const auto& group : groups_) group->awake.clear();
+  for (Member& member : members_) {
+    member.stepped = false;
+    if (member.body->asleep()) continue;
+    member.stepped = member.group->bodies || member.tiled;
+    if (member.stepped)
+      hand_over(member);
+    else
+      left_to_ppu_.push_back(member.body);
+  }
+  chain_->clear();
+  for (const auto& group : groups_) {
+    if (group->awake.empty()) continue;
+    group->bodies->add_jobs(*chain_, match_, settings_of(*group->model, step), group->awake,
+                            bodies_per_job(group->awake.size(), jobs_.spes()));
+  }
+  for (const spu::TilePass pass : kTilePasses) {
+    for (const Member& member : members_)
+      if (member.stepped && member.tiled) member.tiled->add_jobs(*chain_, match_tiles_, pass);
+    chain_->sync();
+  }
+  if (chain_->size() != 0) chain_->kick();
+}
+
+/// Velocities from main memory.
+void SpeSolver::take_back(const Member& member) {
+  SoftBody& body = *member.body;
+  const auto set = [&](std::size_t i, const MatchBodies::Vector& v) {
+    body.set_velocity(i, {v.x, v.y, v.z});
+  };
+  if (member.tiled) {
+    const std::span<const std::uint32_t> place_of = member.group->tiles->place_of();
+    for (std::size_t i = 0; i < place_of.size(); ++i) set(i, member.tiled->velocities()[place_of[i]]);
+  } else {
+    const std::span<const MatchBodies::Vector> velocities = member.group->bodies->velocities(member.number);
+    for (std::size_t i = 0; i < velocities.size(); ++i) set(i, velocities[i]);
+  }
+}
+
+void SpeSolver::finish() {
+  try {
+    for (SoftBody* const body : left_to_ppu_) body->pull(step_);
+  } catch (...) {
+    chain_->wait();  // its jobs work on what the next kick() changes
+    throw;
+  }
+  chain_->wait();
+  if (chain_->size() == 0) return;
+  check_jobs(*chain_);
+  for (const auto& group : groups_) {
+    if (!group->awake.empty() && !group->bodies->take_results().empty())
+      throw std::runtime_error("a soft body has positions or velocities that are not finite numbers");
+  }
+  for (const Member& member : members_)
+    if (member.stepped && member.tiled) member.tiled->end_step();
+  for (const Member& member : members_)
+    if (member.stepped) take_back(member);
+}
+
+void SpeSolver::drop() { chain_->wait(); }
+
+void SpeSolver::forget(const SoftBody& body) {
+  for (const Member& member : members_) {
+    if (member.body != &body) continue;
+    if (member.group->bodies) member.group->bodies->reset(member.number);
+    if (member.tiled) member.tiled->reset();
+  }
+}
+
+}  // namespace softcell::ppu

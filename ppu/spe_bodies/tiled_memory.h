@@ -1,0 +1,85 @@
+#pragma once
+// One body that no local store holds, in main memory, as the kernel `match_tiles` steps it: all SPEs
+// together.
+//
+//     const TilePlan plan(lattice, matching);
+//     TiledMemory body(memory, plan);
+//     body.positions()[plan.place_of()[i]] = ..., body.velocities()[plan.place_of()[i]] = ...
+//     body.begin_step({.pull = alpha / h, .damping = k});
+//     for (const spu::TilePass pass : kTilePasses) body.add_jobs(chain, image, pass), chain.sync();
+//     chain.kick(), chain.wait();
+//     body.end_step();
+//     ... = body.velocities()[plan.place_of()[i]]
+//
+// The same bits as those of MatchBodies on a body that fits.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "match_tiles_job.h"
+#include "ppu/plans/tile_plan.h"
+#include "ppu/spe_bodies/match_bodies.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/jobs/job_system.h"
+
+namespace softcell::ppu {
+
+/// In the order of a step.
+inline constexpr std::array kTilePasses{spu::kTileGather, spu::kTileScatter, spu::kTileTwist, spu::kTileDamp};
+
+/// A body in tiles as it lies in main memory, and the jobs of its step, for whoever runs them.
+class TiledMemory {
+ public:
+  using Vector = MatchBodies::Vector;
+
+  /// The plan is copied. Main memory: about 250 bytes a particle, 55 MB for 200,000.
+  /// @throws std::runtime_error  main memory is full.
+  TiledMemory(dma::AddressSpace& memory, const TilePlan& plan);
+
+  std::size_t tiles() const { return reports_.size(); }
+
+  /// By place, see TilePlan::place_of(). Leave the places between as they are.
+  std::span<Vector> positions() { return positions_.span(); }    ///< metres; a step does not change them
+  std::span<Vector> velocities() { return velocities_.span(); }  ///< m/s
+
+  /// Before the jobs run. @throws std::invalid_argument  settings out of their ranges.
+  void begin_step(const MatchSettings& settings);
+
+  /// The descriptor of one job of the step begun; none where a tile has nothing to do in that pass.
+  std::optional<dma::EffectiveAddress> job(spu::TilePass pass, std::size_t tile) const;
+
+  /// The jobs of one pass of the step begun. All of a pass, in the order of kTilePasses, must have ended
+  /// before one of the next begins; bodies may go through a pass together.
+  void add_jobs(JobChain& chain, const JobImage& match_tiles, spu::TilePass pass) const;
+  /// The most jobs that a step has.
+  std::size_t most_jobs() const { return jobs_.size(); }
+
+  /// When all have ended. @throws std::runtime_error  positions or velocities are no numbers; nothing has
+  /// changed.
+  void end_step();
+
+  /// The largest |axial(R^T A)| of the last step over the sum of |A|'s elements, roughly radians.
+  float residual() const;
+
+  /// Forgets the rotations: after a teleport. The next step starts cold; that is also how a body begins.
+  void reset();
+
+ private:
+  dma::Buffer<spu::TiledBody> body_;
+  dma::Buffer<std::byte> lists_;
+  dma::Buffer<spu::TileSlice> slices_;
+  dma::Buffer<spu::TileRest> rest_;
+  dma::Buffer<spu::TileWeights> weights_;
+  dma::Buffer<spu::MatchRegions> regions_;
+  dma::Buffer<Vector> positions_, velocities_;
+  dma::Buffer<spu::TilePulled> pulled_;
+  dma::Buffer<spu::MatchRotations> rotations_, next_rotations_;
+  dma::Buffer<std::byte> motions_;
+  dma::Buffer<spu::TileMomenta> momenta_;
+  dma::Buffer<spu::TileReport> reports_;
+  dma::Buffer<spu::TileJob> jobs_;  // by pass, then by tile
+};
+
+}  // namespace softcell::ppu

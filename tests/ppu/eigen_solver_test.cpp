@@ -1,0 +1,55 @@
+// What the kernels are measured against does the same work: its steps are those of the PPU's solvers.
+
+#include "ppu/reference/eigen_solver.h"
+
+#include <gtest/gtest.h>
+
+#include "lattices.h"
+#include "lattices_2d.h"
+#include "particle_vectors.h"
+
+namespace softcell::ppu {
+namespace {
+
+using test::Random;
+
+constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.2f;
+
+/// Steps from the same shaken state, in both.
+template <int Dimension, class Matcher, class Plan, class Body>
+void expect_the_same_steps(const Body& lattice, const std::shared_ptr<const Plan>& plan) {
+  using Vector = Eigen::Matrix<float, Dimension, 1>;
+  EigenSolver<Dimension> solver(plan);
+  Matcher matcher(plan);
+  Random random(1);
+  std::vector<Vector> x(plan->particles());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = lattice.rest_position(i);
+    for (int d = 0; d < Dimension; ++d) x[i][d] += 0.02f * static_cast<float>(random.next());
+  }
+  std::vector<Vector> mine(x.size(), Vector::Zero()), expected = mine;
+  for (int step = 0; step < 3; ++step) {
+    solver.step(x, mine, kAlpha, kStep, kDamping);
+    matcher.step_velocities(x, expected, kAlpha, kStep, kDamping);
+    EXPECT_GT(test::largest_difference(expected, std::vector<Vector>(x.size(), Vector::Zero())), 0.01);
+    EXPECT_LT(test::largest_difference(mine, expected), 2e-4) << "m/s, step " << step;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += kStep * expected[i];
+  }
+}
+
+TEST(EigenSolver, StepsAsTheReferenceInThreeDimensions) {
+  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
+    expect_the_same_steps<3, ShapeMatcher<float>>(
+        lattice, std::make_shared<const MatchingPlan<float>>(lattice, w, particle_masses(lattice, 1000)));
+  });
+}
+
+TEST(EigenSolver, StepsAsTheReferenceInTwoDimensions) {
+  test::for_every_half_width(test::all_lattices_2d(), 1, [](const Lattice2d& lattice, int w) {
+    expect_the_same_steps<2, ShapeMatcher2d<float>>(
+        lattice, std::make_shared<const MatchingPlan2d<float>>(lattice, w, particle_masses(lattice, 1000)));
+  });
+}
+
+}  // namespace
+}  // namespace softcell::ppu
