@@ -9,7 +9,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "scene_file/lua_document.h"
+#include "scene_file/documents.h"
 #include "scene_file/value.h"
 #include "softcell/base/nearest_name.h"
 #include "support/scratch_folder.h"

@@ -6,8 +6,8 @@
 
 #include <chrono>
 
-#include "scene_file/scene_library.h"
 #include "ppu/bullet/processor_time.h"
+#include "scene_file/scene_library.h"
 
 namespace softcell::demos {
 namespace {

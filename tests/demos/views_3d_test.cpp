@@ -8,9 +8,9 @@
 #include "scene/scene_camera.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "view/rotation_axes.h"
 #include "view/scene_view.h"
-#include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
 namespace {

@@ -1,4 +1,4 @@
-#include "checker.h"
+#include "checker/checker.h"
 
 #include <gtest/gtest.h>
 

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "decrementer.h"
-#include "event_facility.h"
-#include "mailbox.h"
-#include "signal_register.h"
-#include "spu_clock.h"
+#include "channels/decrementer.h"
+#include "channels/event_facility.h"
+#include "channels/mailbox.h"
+#include "channels/signal_register.h"
+#include "channels/spu_clock.h"
 
 namespace softcell::ls_sim {
 namespace {

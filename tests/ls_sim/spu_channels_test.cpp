@@ -1,4 +1,4 @@
-#include "spu_channels.h"
+#include "channels/spu_channels.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cstring>
 #include <thread>
 
+#include "channels/spe_monitor.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/channel_name.h"
-#include "spe_monitor.h"
 
 namespace softcell::ls_sim {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "local_store_map.h"
+#include "image/local_store_map.h"
 
 namespace softcell::ls_sim {
 namespace {

@@ -12,10 +12,10 @@
 #include "ppu/plans/match_plan.h"
 #include "ppu/plans/tile_plan.h"
 #include "soft_body_scenes.h"
-#include "spu_kernels/checked_runs.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
 #include "softcell/soft_bodies/state_hash.h"
+#include "spu_kernels/checked_runs.h"
 #include "spu_kernels/kernel_image.h"
 
 namespace softcell::ppu {

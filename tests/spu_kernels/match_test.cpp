@@ -12,10 +12,10 @@
 #include "ppu/lattices.h"
 #include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
-#include "spu_kernels/checked_runs.h"
 #include "ppu/reference/shape_matching.h"
 #include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/shapes.h"
+#include "spu_kernels/checked_runs.h"
 #include "spu_kernels/kernel_image.h"
 #include "spu_kernels/stepped_bodies.h"
 

@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "ppu/lattices.h"
-#include "spu_kernels/checked_runs.h"
 #include "ppu/reference/shape_matching.h"
+#include "spu_kernels/checked_runs.h"
 #include "spu_kernels/kernel_image.h"
 #include "spu_kernels/stepped_bodies.h"
 

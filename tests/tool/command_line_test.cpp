@@ -8,8 +8,7 @@
 #include <fstream>
 #include <regex>
 
-#include "command_line/manual_page.h"
-#include "command_line/shell_completion.h"
+#include "command_line/help_texts.h"
 #include "support/run_command.h"
 #include "support/scratch_folder.h"
 

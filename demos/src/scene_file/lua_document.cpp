@@ -1,4 +1,4 @@
-#include "lua_document.h"
+#include "documents.h"
 
 #include <fmt/format.h>
 #include <poll.h>

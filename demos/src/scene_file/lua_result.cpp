@@ -1,4 +1,4 @@
-#include "lua_result.h"
+#include "lua_sandbox.h"
 
 #include <fmt/format.h>
 

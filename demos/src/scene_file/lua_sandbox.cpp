@@ -12,7 +12,6 @@
 #include <lua.hpp>
 #include <span>
 
-#include "lua_result.h"
 #include "softcell/dma/sanitizers.h"
 #include "value_message.h"
 

@@ -6,8 +6,11 @@
 // can run for ever inside Lua's own C code, where no hook comes by (string patterns, string.rep, table.move,
 // finalizers by setmetatable), and what differs from run to run (pairs, which follows addresses).
 
-#include <string>
+#include <cstddef>
+#include <lua.hpp>
 #include <string_view>
+
+#include "value_message.h"
 
 namespace softcell::demos {
 
@@ -18,5 +21,10 @@ inline constexpr double kLuaWallSeconds = 1.6;  ///< by the clock, on a machine 
 /// Writes the message (value_message.h) to the file descriptor and ends the process. Sets limits on processor
 /// time, memory and files of the process first.
 [[noreturn]] void run_sandboxed(std::string_view chunk, int descriptor);
+
+/// Writes the value on top of the stack. Runs nothing of the chunk's: no metamethods.
+/// @throws std::runtime_error  it is not plain data: numbers that are finite, texts, booleans, arrays without
+/// holes, tables whose keys are names, not in each other without end; or it is more than a message holds.
+void write_result(lua_State* state, MessageWriter& writer);
 
 }  // namespace softcell::demos

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "lua_document.h"
+#include "documents.h"
 #include "lua_sandbox.h"
 #include "softcell/soft_bodies/lattice_2d.h"
 

@@ -1,4 +1,4 @@
-#include "read_scene_2d.h"
+#include "read_scene.h"
 
 #include "ppu/numbers/deterministic_math.h"
 #include "read_common.h"

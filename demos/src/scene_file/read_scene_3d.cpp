@@ -1,4 +1,4 @@
-#include "read_scene_3d.h"
+#include "read_scene.h"
 
 #include "read_common.h"
 #include "read_material.h"

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "documents.h"
 #include "field_reader.h"
-#include "lua_document.h"
-#include "read_scene_2d.h"
-#include "read_scene_3d.h"
+#include "read_scene.h"
 #include "scene_source.h"
-#include "toml_document.h"
 
 namespace softcell::demos {
 namespace {

@@ -1,4 +1,4 @@
-#include "toml_document.h"
+#include "documents.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

@@ -7,10 +7,10 @@
 
 #include "input/controls.h"
 #include "input/script_player.h"
-#include "scene/shared_models.h"
 #include "ppu/bullet/bullet_world.h"
 #include "ppu/bullet/processor_time.h"
 #include "ppu/numbers/deterministic_math.h"
+#include "scene/shared_models.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_solver.h"

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "input/input_event.h"
-#include "scene/scene.h"
 #include "ppu/bullet/bullet_world.h"
 #include "ppu/spe_bodies/skin_orchestrator.h"
+#include "scene/scene.h"
 #include "shown.h"
 #include "simulation_options.h"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/shown.h"
 #include "ppu/reference/shape_matching.h"
+#include "simulation/shown.h"
 
 namespace softcell::demos {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../elf_file.h"
+#include "image/elf_file.h"
 
 // Names, types and values are gdb's: it looks for these two symbols in the program.
 extern "C" {

@@ -13,8 +13,8 @@
 #include "scene_file/scene_library.h"
 #include "scene_frames.h"
 #include "simulation/simulation_3d.h"
-#include "spu/kernel_file.h"
 #include "softcell/spe_bodies/spe_solver.h"
+#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "benchmarks.h"
 #include "softcell/dma/buffer.h"
-#include "spu/kernel_file.h"
 #include "softcell/jobs/job_system.h"
+#include "spu/kernel_file.h"
 #include "transfers_job.h"
 
 namespace softcell::tool {

@@ -10,9 +10,9 @@
 
 #include "bench_bodies.h"
 #include "benchmarks.h"
-#include "spu/kernel_file.h"
 #include "ppu/reference/shape_matching.h"
 #include "ppu/spe_bodies/tiled_memory.h"
+#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 namespace {

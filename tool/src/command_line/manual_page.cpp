@@ -1,4 +1,4 @@
-#include "manual_page.h"
+#include "help_texts.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "shell_completion.h"
+#include "help_texts.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "command_tree.h"
-#include "manual_page.h"
-#include "shell_completion.h"
+#include "help_texts.h"
 
 namespace softcell::tool {
 namespace {

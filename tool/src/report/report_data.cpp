@@ -1,4 +1,4 @@
-#include "report_data.h"
+#include "report_page.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "report_data.h"
-
 namespace softcell::tool {
 namespace {
 

@@ -1,5 +1,7 @@
 #pragma once
+// The page of softcell report, and what of a trace is in it.
 
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +10,10 @@
 #include "trace_file.h"
 
 namespace softcell::tool {
+
+/// The trace as the page of `softcell report` reads it (tool/report_page/trace.js): events as columns of
+/// whole numbers, times as the distance from the event before, so that a long trace stays small.
+nlohmann::ordered_json report_data(const TraceFile& trace);
 
 /// Of tool/report_page: the page, its style, and its scripts in the order in which they build on each other.
 std::span<const base::EmbeddedFile> embedded_report();

@@ -38,13 +38,13 @@ struct SpuExploreOptions {
 };
 
 /// @param samples  of work, to measure stacks with; without one, a kernel's stack is not measured
-  int run_budget(const BudgetOptions& options, std::span<const KernelSample> samples);
-  /// @return  0; 1 when an SPE failed; 3 when a checked kernel has findings.
-  int run_spu_run(const SpuRunOptions& options);
-  /// @return  as run_spu_run() when all seeds agree, 1 when they do not, 130 when interrupted.
-  int run_spu_explore(const SpuExploreOptions& options);
+int run_budget(const BudgetOptions& options, std::span<const KernelSample> samples);
+/// @return  0; 1 when an SPE failed; 3 when a checked kernel has findings.
+int run_spu_run(const SpuRunOptions& options);
+/// @return  as run_spu_run() when all seeds agree, 1 when they do not, 130 when interrupted.
+int run_spu_explore(const SpuExploreOptions& options);
 
-  /// @param samples  as run_budget()
-  std::unique_ptr<Verb> spu_verbs(std::vector<KernelSample> samples);
+/// @param samples  as run_budget()
+std::unique_ptr<Verb> spu_verbs(std::vector<KernelSample> samples);
 
 }  // namespace softcell::tool

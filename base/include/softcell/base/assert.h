@@ -56,9 +56,9 @@ template <class... Values>
   fail(file, line, condition, message.text, {text_of(values)...});
 }
 
-/// What is only compiled.
+/// What is compiled and never called.
 template <class... Values>
-char unevaluated(bool condition, Message<std::type_identity_t<Values>...> message, const Values&... values);
+void ignored(bool, Message<std::type_identity_t<Values>...>, const Values&...) {}
 
 }  // namespace softcell::base::assertion
 
@@ -69,6 +69,6 @@ char unevaluated(bool condition, Message<std::type_identity_t<Values>...> messag
        : ::softcell::base::assertion::violated(__FILE__, __LINE__, #condition, __VA_ARGS__))
 #else
 #define SC_ASSERT(condition, ...) \
-  static_cast<void>(              \
-      sizeof(::softcell::base::assertion::unevaluated(static_cast<bool>(condition), __VA_ARGS__)))
+  (true ? static_cast<void>(0)    \
+        : ::softcell::base::assertion::ignored(static_cast<bool>(condition), __VA_ARGS__))
 #endif

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "commands_in_flight.h"
-#include "object_map.h"
-#include "object_padding.h"
+#include "image/object_map.h"
+#include "image/object_padding.h"
 #include "softcell/ls_sim/channels.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/findings.h"

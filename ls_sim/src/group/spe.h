@@ -6,7 +6,10 @@
 #include <memory>
 #include <optional>
 
-#include "checker.h"
+#include "channels/spe_monitor.h"
+#include "channels/spe_registers.h"
+#include "channels/spu_channels.h"
+#include "checker/checker.h"
 #include "softcell/dma/local_store_port.h"
 #include "softcell/dma/mfc.h"
 #include "softcell/dma/reservations.h"
@@ -14,9 +17,6 @@
 #include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/spe_options.h"
 #include "softcell/ls_sim/statistics.h"
-#include "spe_monitor.h"
-#include "spe_registers.h"
-#include "spu_channels.h"
 
 namespace softcell::ls_sim {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "event_log.h"
-#include "local_store_map.h"
+#include "image/local_store_map.h"
 #include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {

@@ -1,10 +1,14 @@
 #pragma once
+// What the command says of itself: the manual page and the completions of shells.
 
 #include <string>
 
 #include "command_tree.h"
 
 namespace softcell::tool {
+
+/// softcell(1) in the macros of man(7). @param version  of softcell, for the footer.
+std::string manual_page(const CommandVerb& top, const std::string& version);
 
 /// A script that bash sources: completes verbs, options, the words of choices, files, folders, and the names
 /// that `softcell scenes` lists.

@@ -1,5 +1,5 @@
 #pragma once
-// Runs a scene or a lattice that is written in Lua, and takes over what it returns.
+// A scene or a lattice from its text, as plain data: read as TOML, or what a script in Lua returns.
 
 #include <memory>
 #include <string>
@@ -8,6 +8,10 @@
 #include "value.h"
 
 namespace softcell::demos {
+
+/// Reads TOML. @param file  as errors name it.
+/// @throws SceneError  not TOML, or dates and times, which no scene has.
+Value parse_toml(std::string_view text, const std::shared_ptr<const std::string>& file);
 
 /// Runs the chunk in a child process with limits on time and memory (lua_sandbox.h), and reads the plain data
 /// that it returns. Every value's place is the line at which the chunk ended.
