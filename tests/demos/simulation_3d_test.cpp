@@ -1,6 +1,6 @@
 // What a frame in three dimensions is said to have cost.
 
-#include "simulation_3d.h"
+#include "simulation/simulation_3d.h"
 
 #include <gtest/gtest.h>
 

@@ -13,8 +13,8 @@ constexpr std::byte kUntouched{0xEE};
 // Local store and storage with different, position-dependent contents, and a get from one to the other.
 struct Memories {
   AddressSpace space;
-  StoragePort port{space, nullptr};
   std::vector<std::byte> store = std::vector<std::byte>(kLocalStoreBytes, kUntouched);
+  StoragePort port{store.data(), space, nullptr};
   std::vector<std::byte> storage;
 
   Memories() {
