@@ -12,6 +12,7 @@ using softcell_sdk::kCount;
 using softcell_sdk::kHalt;
 using softcell_sdk::kRead;
 using softcell_sdk::kStop;
+using softcell_sdk::kSync;
 using softcell_sdk::kTagStatus;
 using softcell_sdk::kWrite;
 
@@ -83,18 +84,21 @@ TEST_F(IntrinsicsChannels, StopsAndHalts) {
 
 TEST_F(IntrinsicsChannels, BarriersAndHintsAskNothing) {
   const auto calls = spe_.run([] {
-    spu_sync();
-    spu_sync_c();
     spu_dsync();
     spu_idisable();
-    si_sync();
-    si_syncc();
     si_dsync();
     si_nop();
     si_lnop();
     mfc_end_critical_section(mfc_begin_critical_section());
   });
   EXPECT_TRUE(calls.empty());
+}
+
+TEST_F(IntrinsicsChannels, ASyncIsSaidToTheEmulator) {
+  EXPECT_EQ(only([] { spu_sync(); }).kind, std::uint32_t{kSync});
+  EXPECT_EQ(only([] { spu_sync_c(); }).kind, std::uint32_t{kSync});
+  EXPECT_EQ(only([] { si_sync(); }).kind, std::uint32_t{kSync});
+  EXPECT_EQ(only([] { si_syncc(); }).kind, std::uint32_t{kSync});
 }
 
 TEST_F(IntrinsicsChannels, DmaParametersWaitForTheCommand) {

@@ -1,5 +1,6 @@
 // Computes for argp rounds and reaches no channel meanwhile; before, with envp 1, it executes a sync.
 #include <spu_intrinsics.h>
+#include <stdint.h>
 
 int main(uint64_t, uint64_t argp, uint64_t envp) {
   if (envp == 1) spu_sync();
