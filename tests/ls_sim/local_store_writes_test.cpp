@@ -20,6 +20,9 @@
 #include "softcell/ls_sim/spe_group.h"
 #include "test_images.h"
 
+// Sanitizers have their own versions of the three.
+#if !SC_ADDRESS_SANITIZER && !SC_THREAD_SANITIZER
+
 namespace {
 
 struct Watched {
@@ -42,8 +45,6 @@ void look(const void* to, std::size_t bytes) {
 }
 
 }  // namespace
-
-#if !SC_ADDRESS_SANITIZER && !SC_THREAD_SANITIZER
 
 // Volatile, or the compiler would make calls of themselves of them.
 extern "C" void* memmove(void* to, const void* from, std::size_t bytes) noexcept {
