@@ -1,8 +1,8 @@
 // skin: mesh vertices from the particles of their lattice cells.  [LSM07, embedding]
 //
 //   x = sum_k N_k(xi, eta, zeta) x_k        trilinear, over the cell's eight corners
-//   F = (dx/dxi, dx/deta, dx/dzeta)         deformation gradient, times the spacing (which the normalisation
-//   removes) n = normalize(cof(F) N)                 cof(F) = [f2 x f3, f3 x f1, f1 x f2], N the rest normal
+//   F = (dx/dxi, dx/deta, dx/dzeta)         deformation gradient times the spacing, which drops out of n
+//   n = normalize(cof(F) N)                 cof(F) = [f2 x f3, f3 x f1, f1 x f2], N the rest normal
 //
 //   array     direction  element                count         alignment
 //   job       in         SkinJob, 128 bytes     1             128
@@ -137,10 +137,10 @@ int main(uint64_t, uint64_t argp, uint64_t) {
     return kSkinTooManyCorners;
   }
 
-  //   get   [0 A][1 B]     [2 A]     [3 B]          A, B: the two buffers in each direction, each with its
-  //   own tag group work       [0 A]     [1 B]     [2 A]          an input buffer is free again when its work
-  //   is done, put             [0 A]     [1 B]     [2 A]     an output buffer when its put of two chunks ago
-  //   is
+  //   get   [0 A][1 B]     [2 A]     [3 B]        A, B: the two buffers of each direction, with a tag group each
+  //   work       [0 A]     [1 B]     [2 A]        an input buffer is free again when its work is done,
+  //   put             [0 A]     [1 B]     [2 A]   an output buffer when its put of two chunks ago is complete
+  //
   const uint32_t chunks = (ls.job.group_count + kChunkGroups - 1) / kChunkGroups;
   if (chunks != 0) fetch_chunk(0);
   const Positions positions = load_corners();

@@ -4,8 +4,8 @@
 // A region is cut into plates (its particles of equal x), a plate into bars (equal x and y). Neighbouring
 // regions have most of their bars and plates in common, and each of those is added up only once:
 //
-//     particles --> bars --> plates --> regions     at most 6 w additions per particle instead of (2w+1)^3 -
-//     1
+//     particles --> bars --> plates --> regions
+//     at most 6 w additions for each particle in place of (2w+1)^3 - 1
 //
 // Equal sets are one set, however irregular the lattice, and that includes regions: a sheet one cell thick
 // has half as many regions as particles. The naive sum adds bar by bar and plate by plate too, but shares

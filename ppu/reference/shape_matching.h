@@ -2,9 +2,9 @@
 // Lattice shape matching: every region finds its best rigid motion, every particle is pulled towards the mean
 // of where its regions would have it.
 //
-//     x, v -- m~x, m~x x0^T --> [sum up] --> c_r, A_r --> R_r, t_r --> [sum down] --> g_i --> v_i += alpha
-//     (g_i - x_i)/h
-//             m~v, x × m~v, m~x x^T --> [sum up] --> v_r, omega_r --> [sum down] --> dv_i --> v_i += k dv_i
+//   x, v -- m~x, m~x x0^T --> [sum up] --> c_r, A_r --> R_r, t_r --> [sum down] --> g_i --> v_i += alpha (g_i - x_i) / h
+//           m~v, x × m~v, m~x x^T --> [sum up] --> v_r, omega_r --> [sum down] --> dv_i --> v_i += k dv_i
+//
 //
 // Letters as in [LSM07]: m~_i = m_i / |R_i| modified mass, |R_i| number of regions that hold particle i, M_r
 // and c0_r mass and rest centre of region r. Velocities change, positions never: contacts of the engine stay
