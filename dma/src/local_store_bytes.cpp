@@ -51,7 +51,7 @@ void fill_by_quadwords(std::byte* to, std::byte value, std::size_t bytes) {
 }
 
 // On a processor with AVX a lane is two quadwords, and a round moves a line of main storage. The destination
-// is aligned to the lane first: lines then cross no boundary of the host's cache lines.
+// is aligned to the lane first, so that no store crosses a boundary of the host's cache lines.
 constexpr std::size_t kLane = sizeof(__m256i);
 constexpr std::size_t kRound = 4 * kLane;
 

@@ -225,6 +225,45 @@ TEST_F(SpuChannelsTest, KeepsMasksAndTheInterruptReturnAddress) {
   EXPECT_EQ(read(Channel::kSpuRdSrr0), 0u);
 }
 
+// ---- where code may arrive, which decides how gets are copied (dma/local_store_bytes.h)
+
+class SyncOfA : public SpuChannelsTest {
+ protected:
+  SyncOfA() { mfc_.confine_code({0x1000}); }
+
+  std::uint32_t code_end_after_a_sync() {
+    channels_.sync();
+    return mfc_.code_end().value;
+  }
+};
+
+TEST_F(SyncOfA, ProgramMeansCodeAnywhere) {
+  channels_.announce_jobs();
+  channels_.begin_run(false);
+  EXPECT_EQ(code_end_after_a_sync(), dma::kLocalStoreBytes);
+}
+
+TEST_F(SyncOfA, KernelThatCallsAnnouncedJobsMeansTheirImages) {
+  channels_.announce_jobs();
+  channels_.begin_run(true);
+  EXPECT_EQ(code_end_after_a_sync(), 0x1000u);
+}
+
+TEST_F(SyncOfA, KernelThatCallsUnannouncedJobsMeansCodeAnywhere) {
+  channels_.begin_run(true);
+  EXPECT_EQ(code_end_after_a_sync(), dma::kLocalStoreBytes);
+}
+
+TEST_F(SyncOfA, JobMeansCodeAnywhereAndOfItsCallerAfterwardsAnnouncedImages) {
+  channels_.announce_jobs();
+  channels_.begin_run(true);
+  channels_.begin_job();
+  channels_.end_job();
+  EXPECT_EQ(code_end_after_a_sync(), 0x1000u);
+  channels_.begin_job();
+  EXPECT_EQ(code_end_after_a_sync(), dma::kLocalStoreBytes);
+}
+
 // ---- the decrementer, in simulated time: a tick for each operation
 
 TEST_F(SpuChannelsTest, TheDecrementerCountsOperations) {

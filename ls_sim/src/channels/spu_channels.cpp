@@ -49,6 +49,7 @@ std::string describe_access(std::uint32_t channel) {
 
 void SpuChannels::begin_run(bool calls_jobs) {
   calls_jobs_ = calls_jobs;
+  in_job_ = false;
   decrementer_ = {};
   srr0_ = 0;
   parameters_ = {};
@@ -57,7 +58,8 @@ void SpuChannels::begin_run(bool calls_jobs) {
 
 /// A program that executes a sync has fetched code, or will: nobody knows where to.
 void SpuChannels::sync() {
-  if (!calls_jobs_ || !jobs_are_announced_.load(std::memory_order_relaxed)) to_.mfc.expect_code_everywhere();
+  const bool is_announced = calls_jobs_ && !in_job_ && jobs_are_announced_.load(std::memory_order_relaxed);
+  if (!is_announced) to_.mfc.expect_code_everywhere();
 }
 
 // ---- the door

@@ -47,6 +47,10 @@ class SpuChannels final : public ChannelPort {
   /// @param calls_jobs  the program is one that fetches others and calls them.
   void begin_run(bool calls_jobs);
 
+  /// A job has code of its own to fetch, if any: that its caller's fetches are announced says nothing of it.
+  void begin_job() { in_job_ = true; }
+  void end_job() { in_job_ = false; }
+
   /// Where the images of jobs end is known to the MFC before they are fetched. Any thread.
   void announce_jobs() { jobs_are_announced_.store(true, std::memory_order_relaxed); }
 
@@ -104,7 +108,7 @@ class SpuChannels final : public ChannelPort {
   dma::ProxyQueue* proxy_ = nullptr;
   SpuClock clock_;
   Decrementer decrementer_;
-  bool calls_jobs_ = false;
+  bool calls_jobs_ = false, in_job_ = false;
   std::atomic<bool> jobs_are_announced_{false};
   std::uint32_t srr0_ = 0;
   dma::MfcCommand parameters_{};  ///< as written to channels 16 to 20 so far

@@ -78,8 +78,8 @@ void Checker::check_fetched_code() {
 }
 
 void Checker::on_unchecked_issue(const dma::MfcCommand& command) {
-  CommandInFlight fetch{.command = command, .cursor = command.lsa};
   if (!command.is_get()) return;
+  CommandInFlight fetch{.command = command, .cursor = command.lsa};
   add_ranges(fetch, to_.local_store);
   for (const MovedRange& range : fetch.ranges)
     unsynced_.mark(range.lsa, range.bytes, UnsyncedBytes::kOutside);

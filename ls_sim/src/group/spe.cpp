@@ -135,6 +135,7 @@ const KernelImage* Spe::on_job_begin(dma::EffectiveAddress image, dma::Effective
     if (job_->image == nullptr) mfc_.expect_code_everywhere();
     monitor_.begin_job(number_, now);
   }
+  channels_.begin_job();
   if (is_checked_job()) checker_->begin_run(*job_->image, stack_of_job());
   return job_->image;
 }
@@ -146,6 +147,7 @@ std::optional<dma::Fault> Spe::on_job_returned() {
 
 void Spe::on_job_end() {
   count_job(image_under_way(), statistics_.jobs, job_->begin, false);
+  channels_.end_job();
   job_.reset();
   const SpeMonitor::Lock lock = monitor_.lock();
   monitor_.end_job(number_);

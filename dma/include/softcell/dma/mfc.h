@@ -52,6 +52,7 @@ class Mfc {
   void confine_code(LocalStoreAddress end) { port_.confine_code(end); }
   void expect_code_below(LocalStoreAddress end) { port_.expect_code_below(end); }
   void expect_code_everywhere() { port_.expect_code_everywhere(); }
+  LocalStoreAddress code_end() const { return port_.code_end(); }
 
   /// State as after reset: empty queue and tag mask, no status request, no reservation. What is still queued
   /// is dropped, as after a fault, and its observer hears no more of it; call drain() at the end of a job

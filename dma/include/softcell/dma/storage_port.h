@@ -71,10 +71,12 @@ class StoragePort {
     flush_local_store(local_store_ + known, kLocalStoreBytes - known);
   }
 
+  /// Behind which no instructions are expected.
+  LocalStoreAddress code_end() const { return {code_end_.load(std::memory_order_relaxed)}; }
+
   /// @param bytes  1..16384.
   void read(const StoragePlace& place, std::byte* to, std::uint32_t bytes) {
-    const bool may_be_code =
-        static_cast<std::size_t>(to - local_store_) < code_end_.load(std::memory_order_relaxed);
+    const bool may_be_code = static_cast<std::size_t>(to - local_store_) < code_end().value;
     reservations_.read(holder_, place.ea, place.host, to, bytes, may_be_code);
   }
   void write(const StoragePlace& place, const std::byte* from, std::uint32_t bytes) {
