@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+/// The squares of the components of shorter vectors lose bits to underflow, and with them the length.
+constexpr double kLeastLength = 1e-140;
+
 /// One side of a triangle. Corner 3 t + k is corner k of triangle t; the side runs from it to the next
 /// corner.
 struct HalfEdge {
@@ -115,7 +118,7 @@ TriangleMesh with_smooth_normals(std::span<const Eigen::Vector3f> positions,
   for (std::size_t vertex = 0; vertex < sums.size(); ++vertex) {
     const double length = sums[vertex].norm();
     // A closed fan can cancel to nothing (a spike of no width); any of its faces is then as good as another.
-    const bool usable = length > 0 && length <= std::numeric_limits<double>::max();
+    const bool usable = length > kLeastLength && length <= std::numeric_limits<double>::max();
     mesh.normals.push_back(
         (usable ? Eigen::Vector3d(sums[vertex] / length) : face_normals[some_triangle[vertex]])
             .cast<float>());

@@ -295,6 +295,12 @@ TEST_F(MeshImport, MakesNormalsWhereTheFileHasUselessOnes) {
   for (const Eigen::Vector3f& n : mesh.normals) EXPECT_EQ(n, Eigen::Vector3f(0, 0, 1));
 }
 
+TEST_F(MeshImport, MakesUnitNormalsOfTheLongestAndThinnestTriangle) {
+  const TriangleMesh mesh = import("needle.obj", "v 0 0 0\nv 3e38 0 0\nv 3e38 1.4e-45 0\nf 1 2 3\n");
+  ASSERT_EQ(mesh.normals.size(), 3u);
+  for (const Eigen::Vector3f& normal : mesh.normals) EXPECT_EQ(normal, Eigen::Vector3f::UnitZ());
+}
+
 TEST_F(MeshImport, DropsTrianglesWithoutArea) {
   EXPECT_EQ(import("a.obj", kTriangle + "v 2 0 0\nf 1 2 3\nf 1 2 2\nf 1 2 4\n").triangles.size(), 1u);
 }
