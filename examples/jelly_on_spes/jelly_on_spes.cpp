@@ -50,14 +50,13 @@ int main(int argc, char** argv) try {
   const ppu::DrawOrder order = ppu::draw_order(*model);
   render::SkinnedDraw skin{.mesh = renderer.add_mesh(order.indices), .colour = {1, 1, 1}};
   renderer.set_texture_coordinates(skin.mesh, order.reorder(mesh.texture_coordinates));
-  const auto picture_file = std::filesystem::path(argv[1]).parent_path() / mesh.parts.at(0).texture;
-  skin.texture = renderer.add_texture(render::read_png(picture_file));
+  const auto texture = std::filesystem::path(argv[1]).replace_filename(mesh.parts.at(0).texture);
+  skin.texture = renderer.add_texture(render::read_png(texture));
   const auto add = [&](const ppu::TriangleMesh& m) {
     return render::StaticDraw{.mesh = renderer.add_static_mesh(m.positions, m.normals, m.triangles)};
   };
-  render::StaticDraw rigid[] = {add(ppu::make_box({12, 0.02f, 12}, 12)),
-                                add(ppu::make_box({0.5f, 0.5f, 0.5f}, 0.5f))};
-  rigid[0].pose(1, 3) = -0.01f;  // its top at height 0
+  render::StaticDraw rigid[] = {add(ppu::make_box({12, 0.001f, 12}, 12)),
+                                add(ppu::make_box({0.5f, 0.5f, 0.5f}, 1))};
   rigid[0].pattern = render::Pattern::tiles;
 
   for (int frame = 0; frame < 75; ++frame) {
