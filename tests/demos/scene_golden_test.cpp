@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden,
                          testing::Values(Moment{"arena", 1}, Moment{"arena", 45}, Moment{"arena", 90},
                                          Moment{"drop", 1}, Moment{"drop", 35}, Moment{"drop", 90}));
 
-// Nothing tilts here, and no sine is taken: late moments are as safe as early ones. docs/figures.md shows
+// Nothing tilts here, and no sine is taken: late moments are as safe as early ones. docs/notes/figures.md shows
 // them.
 INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
                          testing::Values(Moment{"cell", 119}, Moment{"penguin", 1},

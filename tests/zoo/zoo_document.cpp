@@ -1,4 +1,4 @@
-// Writes docs/zoo.md: every broken kernel of the zoo with the message that it gets, in the order of the
+// Writes docs/reference/zoo.md: every broken kernel of the zoo with the message that it gets, in the order of the
 // rules.
 //
 //   zoo_document               to standard output
@@ -27,7 +27,7 @@ Broken kernels, one fault each, by the rule that they break, with the message th
 is legal, which runs without a finding. All are in `tests/zoo` and run under the schedules eager, lazy and two random ones. Where a
 message has a local-store address, dots stand for it here, because it depends on the compiler.
 
-What each rule asks for and how to mend a kernel: [writing-kernels.md](writing-kernels.md). What a real Cell does when a rule is broken:
+What each rule asks for and how to mend a kernel: [writing-kernels.md](../guide/writing-kernels.md). What a real Cell does when a rule is broken:
 **raised**, it raises an error; **silent**, it raises nothing, and data are lost or a wait never ends; **unconfirmed**, no source at hand
 says.
 )";
@@ -68,7 +68,9 @@ std::string for_the_table(const std::string& message) {
   return std::regex_replace(text, bar, "\\|");
 }
 
-std::string link(const std::string& kernel) { return "[`" + kernel + "`](../tests/zoo/" + kernel + ".cpp)"; }
+std::string link(const std::string& kernel) {
+  return "[`" + kernel + "`](../../tests/zoo/" + kernel + ".cpp)";
+}
 
 void write(std::ostream& out) {
   const auto cards = read_cards("broken");

@@ -232,7 +232,7 @@ constexpr bool kLimitProcess = SC_ADDRESS_SANITIZER == 0;
 void run_sandboxed(std::string_view chunk, int descriptor) {
   constexpr rlim_t kSpareBytes = rlim_t{192} << 20;  // Lua's, the message's, and the allocator's own
   if (kLimitProcess) set_limit(RLIMIT_AS, address_space() + kSpareBytes);
-  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(kLuaWallSeconds)));
+  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(kLuaSeconds)) + 1);
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, 0);
   if (kLimitProcess) set_limit(RLIMIT_NOFILE, 0);

@@ -8,7 +8,7 @@
 
 namespace softcell::tool {
 
-/// What --json writes; docs/user-manual.md lists it. @param demo  stopped
+/// What --json writes; docs/guide/soft-bodies.md lists it. @param demo  stopped
 nlohmann::ordered_json statistics_document(const DemoOptions& options, const demos::Demo& demo,
                                            const demos::RunRecord& record);
 

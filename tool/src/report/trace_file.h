@@ -1,5 +1,5 @@
 #pragma once
-// A trace that ls_sim::Trace wrote, read back. docs/trace-and-report.md describes the file.
+// A trace that ls_sim::Trace wrote, read back. docs/guide/traces.md describes the file.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #pragma once
 // What happened when: jobs, DMA commands, waits and findings of each SPE, for `--trace` and `softcell
-// report`. docs/trace-and-report.md describes the file.
+// report`. docs/guide/traces.md describes the file.
 
 #include <cstddef>
 #include <cstdint>
