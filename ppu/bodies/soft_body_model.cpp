@@ -37,9 +37,12 @@ SoftBodyModel::SoftBodyModel(Lattice lattice, Embedding embedding, const SoftBod
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
 }
 
+const TriangleMesh& SoftBodyModel::mesh() const { return embedding_->mesh; }
+
 std::shared_ptr<const SoftBodyModel> make_soft_body_model(const TriangleMesh& mesh,
                                                           const SoftBodySettings& settings) {
   validate(settings);
+  validate(mesh);
   Lattice lattice = voxelize(mesh, settings.cell_size);
   Embedding embedding = embed(mesh, lattice);
   return std::shared_ptr<const SoftBodyModel>(

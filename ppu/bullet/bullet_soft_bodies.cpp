@@ -231,7 +231,12 @@ void timed(std::chrono::nanoseconds& time, const Work& work) {
 }  // namespace
 
 struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
-  Impl(btDiscreteDynamicsWorld& w, SoftBodySolver* other) : world(w), solver(other ? *other : ppu) {
+  Impl(btDiscreteDynamicsWorld& w, std::unique_ptr<SoftBodySolver> own)
+      : world(w), owned(std::move(own)), solver(*owned) {
+    attach();
+  }
+  Impl(btDiscreteDynamicsWorld& w, SoftBodySolver& others) : world(w), solver(others) { attach(); }
+  void attach() {
     BulletHook::attach(world, *this);
     world.addAction(this);
   }
@@ -294,7 +299,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
 
   btDiscreteDynamicsWorld& world;
-  PpuSolver ppu;
+  std::unique_ptr<SoftBodySolver> owned;  // none: the caller has it
   SoftBodySolver& solver;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
   std::vector<SoftBody*> soft;  // of `bodies`
@@ -304,9 +309,11 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 };
 
 BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world)
-    : impl_(std::make_unique<Impl>(world, nullptr)) {}
+    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver>())) {}
+BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers)
+    : impl_(std::make_unique<Impl>(world, solvers.make_solver())) {}
 BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver)
-    : impl_(std::make_unique<Impl>(world, &solver)) {}
+    : impl_(std::make_unique<Impl>(world, solver)) {}
 BulletSoftBodies::~BulletSoftBodies() = default;
 
 SoftBody& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position) {

@@ -181,6 +181,7 @@ Embedding embed(const TriangleMesh& mesh, const Lattice& lattice) {
                    [&](std::uint32_t a, std::uint32_t b) { return places[a].cell < places[b].cell; });
 
   Embedding embedding;
+  embedding.mesh = mesh;
   embedding.slot_of_vertex.resize(places.size());
   std::vector<std::uint32_t> cell_of_group;
   PartCutter cutter(lattice, embedding.parts);

@@ -58,8 +58,8 @@ class Hash {
   }
 
   void take(const ppu::TriangleMesh& mesh) {
-    const auto& [positions, normals, triangles] = mesh;
-    add(positions, triangles);  // normals are looks
+    const auto& [positions, normals, triangles, texture_coordinates, colours, parts] = mesh;
+    add(positions, triangles);  // all else is looks
   }
   void take(const ppu::SoftBodySettings& settings) {
     const auto& [cell_size, half_width, density, alpha, damping, friction, contacts, frequency,

@@ -3,18 +3,17 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "softcell/ls_sim/image.h"
+#include "softcell/spu_kernels/load_kernel.h"
 
 namespace softcell::tool {
 
 /// Every kernel of the project, loaded, in order of name.
 std::vector<ls_sim::KernelImage> load_kernels();
 
-/// The kernel of that name, or its checked flavour. @throws std::runtime_error  there is none.
-ls_sim::KernelImage load_kernel(std::string_view name, bool checked = false);
+using spu_kernels::load_kernel;
 
 /// The file that load_kernel_file() reads; none when the kernel is one of this project's.
 /// @throws std::runtime_error  one sentence: there is no such flavour.

@@ -14,7 +14,12 @@
 //
 //     substep:  [solver: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
 //
-// Shape matching is done by a SoftBodySolver: on the calling thread, unless another is given.
+// The thread that steps the world does the shape matching, unless the constructor is given somebody else:
+//
+//     SpeRuntime spes;                                         // spe_bodies/spe_runtime.h
+//     BulletSoftBodies soft_bodies(world, spes);               // SPEs do it
+//
+// To draw a body's mesh: soft_bodies/skinned_mesh.h, or, by the SPEs, spe_bodies/spe_skinner.h.
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -24,6 +29,7 @@
 #include <optional>
 
 #include "softcell/soft_bodies/soft_body_solver.h"
+#include "softcell/soft_bodies/solver_factory.h"
 
 namespace softcell::ppu {
 
@@ -62,6 +68,9 @@ class BulletSoftBodies {
 
   /// @param world  outlives this.
   explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);
+  /// @param solvers  makes the solver for these bodies; outlives this. Usually an SpeRuntime.
+  /// @throws std::runtime_error  as SolverFactory::make_solver().
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers);
   /// @param solver  outlives this, and serves nobody else.
   BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver);
   /// Removes all bodies and leaves the world as it was found.

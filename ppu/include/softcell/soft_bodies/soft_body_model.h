@@ -48,6 +48,10 @@ class SoftBodyModel {
   static constexpr float kContactRadiusInCells = 0.15f;
   static constexpr float kSoftContactRadiusInCells = 0.45f;
 
+  /// The mesh that the model was made from, with its attributes, at rest; empty for a model made from a
+  /// lattice alone. skinned_mesh.h has it deformed.
+  const TriangleMesh& mesh() const;
+
   // For solvers and for skinning.
 
   /// The mesh in its lattice; empty for a model made from a lattice alone. For an owner that outlives the
@@ -72,7 +76,8 @@ class SoftBodyModel {
 };
 
 /// Covers the mesh with a lattice, finds its regions, embeds the mesh. Deterministic.
-/// @throws std::runtime_error  as validate(), voxelize(), find_regions() and embed().
+/// @throws std::runtime_error  as validate() of settings, voxelize(), find_regions() and embed().
+/// @throws std::invalid_argument  as validate() of meshes.
 std::shared_ptr<const SoftBodyModel> make_soft_body_model(const TriangleMesh& mesh,
                                                           const SoftBodySettings& settings);
 

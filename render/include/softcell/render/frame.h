@@ -32,6 +32,10 @@ struct MeshId {
 struct StaticMeshId {
   std::uint32_t value = 0;
 };
+/// Handle to a texture of one Renderer.
+struct TextureId {
+  std::uint32_t value = 0;
+};
 
 enum class Pattern : std::uint8_t {
   plain,
@@ -45,6 +49,7 @@ struct SkinnedDraw {
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;       ///< below 1: blended over what is behind it, and casts no shadow
   bool two_sided = false;  ///< draw the inner side too: for meshes with holes; takes about 1.6 times as long
+  std::optional<TextureId> texture = {};  ///< its colours are multiplied with `colour`; none: `colour` alone
 };
 
 /// A mesh that does not change, moved as a whole.
