@@ -67,7 +67,7 @@ links_none_of("box2d|boost|libdw" ${SCRATCH}/jelly_3d/build/jelly_3d)
 # A component that there is not is refused in one sentence with those that there are.
 file(WRITE ${SCRATCH}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n"
   "find_package(softcell REQUIRED COMPONENTS box2d bodies)\n")
-says(1 "softcell has no component 'bodies'; the components of this installation are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies\\."
+says(1 "softcell has no component 'bodies'; the components of this installation are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies,[ \n]+render\\."
   ${CMAKE_COMMAND} -S ${SCRATCH}/wrong -B ${SCRATCH}/wrong/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
   -DCMAKE_CXX_COMPILER=${COMPILER})
 
