@@ -24,9 +24,9 @@ int main(int argc, char** argv) try {
   btRigidBody floor(0, nullptr, &ground);
   btBoxShape cube({0.25f, 0.25f, 0.25f});
   btVector3 inertia;
-  cube.calculateLocalInertia(40, inertia);
-  btRigidBody box(40, nullptr, &cube, inertia);
-  box.setWorldTransform(btTransform(btQuaternion(0.5f, 0, 0), {0.12f, 2, 0}));
+  cube.calculateLocalInertia(16, inertia);
+  btRigidBody box(16, nullptr, &cube, inertia);
+  box.setWorldTransform(btTransform(btQuaternion(0.6f, 0, 0), {0, 1.5f, 0}));
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
@@ -37,7 +37,7 @@ int main(int argc, char** argv) try {
 
   // The soft body. Six SPEs step and skin it.
   const ppu::TriangleMesh mesh = ppu::import_mesh(argv[1]);
-  const auto model = ppu::make_soft_body_model(mesh, {.cell_size = 0.1f, .density = 300, .damping = 0.2f});
+  const auto model = ppu::make_soft_body_model(mesh, {.cell_size = 0.1f, .alpha = 0.06f, .damping = 0.2f});
   ppu::SpeRuntime spes;
   ppu::BulletSoftBodies bodies(world, spes);
   const ppu::SoftBody& jelly = bodies.add(model, {0, 0.2f, 0});
@@ -57,8 +57,8 @@ int main(int argc, char** argv) try {
   };
   render::StaticDraw rigid[] = {add(ppu::make_box({12, 0.001f, 12}, 12)),
                                 add(ppu::make_box({0.5f, 0.5f, 0.5f}, 1))};
+  rigid[1].colour = render::srgb(0x4A7FB5);
   rigid[0].pattern = render::Pattern::tiles;
-
   for (int frame = 0; frame < 75; ++frame) {
     world.stepSimulation(1 / 60.0f, 2, 1 / 120.0f);
     skinner.begin_frame();  // a game draws skinner.vertices(jelly) here: those of the frame before
@@ -69,11 +69,10 @@ int main(int argc, char** argv) try {
   skin.origin = drawn.origin;
   box.getWorldTransform().getOpenGLMatrix(rigid[1].pose.data());
   render::FrameDescription picture{.skinned = {&skin, 1}, .statics = rigid};
-  picture.camera = {.eye = {1.3f, 1.5f, 2.4f}, .target = {0, 0.4f, 0}, .tan_half_fov_y = 0.3f};
+  picture.camera = {.eye = {-1.4f, 1.2f, 2.6f}, .target = {0, 0.5f, 0}, .tan_half_fov_y = 0.3f};
   picture.light.shadow_radius = 3;
   renderer.render(picture);
   render::write_png(argv[2], renderer.pixels());
-  std::printf("%s: a jelly of %zu particles\n", argv[2], jelly.positions().size());
 } catch (const std::exception& error) {
   std::fprintf(stderr, "jelly_on_spes: %s\n", error.what());
   return 1;

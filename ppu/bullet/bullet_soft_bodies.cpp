@@ -13,6 +13,7 @@
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/bullet/contact_sphere.h"
 #include "ppu/bullet/processor_time.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -57,6 +58,7 @@ class CoupledBody {
 
   /// The box around its particles as Bullet knows them. @pre it has some
   Bounds box() const {
+    SC_ASSERT(!particles_.empty(), "a body without contacts has no box in Bullet");
     Bounds box{to_eigen(particles_[0].getWorldTransform().getOrigin()), {}};
     box.high = box.low;
     for (const btRigidBody& particle : particles_) {
@@ -249,6 +251,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
 
   void begin_substep(float step) override {
+    SC_ASSERT(step > 0, "a substep of {} s", step);
     const auto begin = std::chrono::steady_clock::now();
     timed(times.gather, [&] {
       if (ahead != step || std::any_of(bodies.begin(), bodies.end(), [](const auto& body) {
@@ -317,6 +320,8 @@ BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolve
 BulletSoftBodies::~BulletSoftBodies() = default;
 
 SoftBody& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position) {
+  SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {}, {})",
+            model ? "with" : "without", position.x(), position.y(), position.z());
   impl_->settle();
   SoftBody& soft =
       impl_->bodies.emplace_back(std::make_unique<CoupledBody>(impl_->world, std::move(model), position))
@@ -339,6 +344,7 @@ void BulletSoftBodies::remove(const SoftBody& body) {
 }
 
 void BulletSoftBodies::begin_ahead(float step) {
+  SC_ASSERT(step > 0, "a substep of {} s", step);
   impl_->settle();
   timed(impl_->times.solve, [&] { impl_->solver.kick(impl_->soft, step); });
   impl_->ahead = step;

@@ -8,6 +8,8 @@
 #include <string>
 #include <tuple>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 namespace {
 
@@ -174,6 +176,8 @@ void set_lane(spu::SkinGroup& group, std::size_t lane, const Vector3d& xi, const
 }  // namespace
 
 Embedding embed(const TriangleMesh& mesh, const Lattice& lattice) {
+  SC_ASSERT(mesh.normals.size() == mesh.positions.size(), "{} positions with {} normals",
+            mesh.positions.size(), mesh.normals.size());
   const std::vector<Place> places = locate_all(mesh, lattice);
   std::vector<std::uint32_t> order(places.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -79,6 +79,7 @@ class BulletSoftBodies {
   BulletSoftBodies& operator=(const BulletSoftBodies&) = delete;
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
+  /// @pre the model is not null; the position is finite
   /// Between steps the body may be changed through its own functions; Bullet is told at the next substep.
   SoftBody& add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position);
 
@@ -88,7 +89,7 @@ class BulletSoftBodies {
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
   /// else. When bodies are changed after all, or the substep has another length, that work is dropped and
   /// done again: the result is the same but for what SoftBodySolver::drop() says of rotations. Call it
-  /// between steps.
+  /// between steps. @pre step > 0
   void begin_ahead(float step);
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). A sleeping body wakes when something

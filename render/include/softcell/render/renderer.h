@@ -10,7 +10,7 @@
 #include "softcell/render/frame.h"
 #include "softcell/render/gl_context.h"
 #include "softcell/render/image.h"
-#include "softcell/render/overlay.h"
+#include "softcell/render/overlay_mesh.h"
 
 namespace softcell::render {
 
