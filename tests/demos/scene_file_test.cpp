@@ -502,6 +502,21 @@ INSTANTIATE_TEST_SUITE_P(
                "bad.lua:3: the script ran for more than 1 second"},
         BadLua{"local t = {}\nwhile true do\ntable.insert(t, { 1 })\nend",
                "bad.lua:3: the script needs more than 64 MB"},
+        BadLua{"local t = { 1 }\nfor k in pairs(t) do end",
+               "bad.lua:2: pairs is not available in a scene; there are: assert, error, ipairs, select, "
+               "tonumber, tostring, type, math, string, table"},
+        BadLua{"\nio.write('x')", "bad.lua:2: io is not available in a scene; there are: assert, "},
+        BadLua{"require('x')", "bad.lua:1: require is not available in a scene; there are: assert, "},
+        BadLua{"print(1)", "bad.lua:1: print is not available in a scene; there are: assert, "},
+        BadLua{"table.remove({ 1 })",
+               "bad.lua:1: table.remove is not available in a scene; there are: concat, pack, sort, unpack, "
+               "insert"},
+        BadLua{"math.randomseed(3)",
+               "bad.lua:1: math.randomseed is not available in a scene; there are: abs,"},
+        BadLua{"\nreturn { title = ('x'):rep(3) }",
+               "bad.lua:2: string.rep is not available in a scene; there are: byte, "},
+        BadLua{"paris(1)", "bad.lua:1: attempt to call a nil value (global 'paris')"},
+        BadLua{"table.inssert({}, 1)", "bad.lua:1: attempt to call a nil value (field 'inssert')"},
         BadLua{"error('by hand')", "bad.lua:1: by hand"},
         BadLua{"error({})", "bad.lua:1: the script ended with an error that is no text"},
         BadLua{"return { world = { gravitty = 3 } }",
@@ -511,9 +526,12 @@ INSTANTIATE_TEST_SUITE_P(
 /// Everything that a script must not have, by the name under which it would be found.
 class LeftOut : public SceneFile, public testing::WithParamInterface<const char*> {};
 
-TEST_P(LeftOut, IsNil) {
-  const std::string text = "return { title = tostring(" + std::string(GetParam()) + " == nil) }";
-  EXPECT_EQ(load_scene_3d(write("s.lua", text)).title, "true");
+TEST_P(LeftOut, IsRefusedByItsName) {
+  const std::string expression = GetParam();
+  const bool is_method = expression.starts_with("('').");
+  const std::string name = is_method ? "string." + expression.substr(5) : expression;
+  EXPECT_BEGINS(refusal("bad.lua", "return { title = tostring(" + expression + " == nil) }"),
+                "bad.lua:1: " + name + " is not available in a scene; there are: ");
 }
 
 INSTANTIATE_TEST_SUITE_P(Functions, LeftOut,

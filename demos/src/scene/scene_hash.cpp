@@ -103,7 +103,7 @@ class Hash {
 
 std::uint64_t scene_hash(const Scene& scene) {
   const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps, frames, camera,
-               light, script, pictures] = scene;
+               light, script, pictures, files] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   return hash.value();
@@ -111,7 +111,7 @@ std::uint64_t scene_hash(const Scene& scene) {
 
 std::uint64_t scene_hash(const Scene2d& scene) {
   const auto& [name, title, soft_bodies, rigid_bodies, gravity, friction, substeps, frames, camera, script,
-               pictures] = scene;
+               pictures, files] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   return hash.value();

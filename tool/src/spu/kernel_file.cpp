@@ -45,12 +45,12 @@ std::string built_in_names() {
 
 }  // namespace
 
-std::vector<ls_sim::KernelImage> load_kernels() {
-  std::vector<ls_sim::KernelImage> kernels;
+std::vector<std::string> built_in_kernels(bool checked) {
+  std::vector<std::string> names;
   for (const spu_kernels::ImageFile& file : spu_kernels::image_files())
-    kernels.push_back(ls_sim::load_image(file.name, file.elf));
-  std::sort(kernels.begin(), kernels.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
-  return kernels;
+    if (!checked || !file.checked_elf.empty()) names.emplace_back(file.name);
+  std::ranges::sort(names);
+  return names;
 }
 
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked) {

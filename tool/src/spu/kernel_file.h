@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,8 +11,18 @@
 
 namespace softcell::tool {
 
-/// Every kernel of the project, loaded, in order of name.
-std::vector<ls_sim::KernelImage> load_kernels();
+/// Bytes by which the stack of an instrumented flavour is larger than its kernel declares: the checks need
+/// them.
+inline constexpr std::uint32_t kCheckStackBytes = SOFTCELL_CHECKED_STACK_BYTES;
+
+/// That many for an instrumented flavour, 0 for any other image.
+inline std::uint32_t stack_for_checks(const ls_sim::KernelImage& image) {
+  return image.checked ? kCheckStackBytes : 0;
+}
+
+/// The names of all kernels of this project, sorted.
+/// @param checked  only of those that have an instrumented flavour
+std::vector<std::string> built_in_kernels(bool checked);
 
 using spu_kernels::load_kernel;
 
