@@ -1,0 +1,31 @@
+# The examples in one project with softcell, by add_subdirectory: no installed softcell is needed, and none of its programs is built.
+set(project ${SCRATCH}/project)
+set(build ${SCRATCH}/build)
+file(REMOVE_RECURSE ${SCRATCH})
+set(text "cmake_minimum_required(VERSION 3.25)\nproject(around LANGUAGES CXX ASM)\nenable_testing()\n"
+  "add_subdirectory(${SOURCE} softcell EXCLUDE_FROM_ALL)\n")
+foreach(example hello_kernel saxpy jelly_3d jelly_2d jelly_on_spes)
+  file(COPY ${SOURCE}/examples/${example} DESTINATION ${project})
+  list(APPEND text "add_subdirectory(${example})\n")
+endforeach()
+file(WRITE ${project}/CMakeLists.txt ${text})
+
+function(step purpose)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${purpose} failed (${status}):\n${output}")
+  endif()
+endfunction()
+# Packages that are installed on this machine are no help.
+step("configuring" ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DCMAKE_DISABLE_FIND_PACKAGE_softcell=ON
+  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_BUILD_TESTS=OFF)
+step("building" ${CMAKE_COMMAND} --build ${build} --parallel 2)
+step("testing" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
+file(GLOB_RECURSE pictures ${build}/jelly_on_spes/*.png)
+if(NOT pictures)
+  message(FATAL_ERROR "jelly_on_spes has left no picture in ${build}/jelly_on_spes")
+endif()
+file(GLOB_RECURSE command ${build}/softcell)
+if(command)
+  message(FATAL_ERROR "the project has built the command softcell: ${command}")
+endif()
