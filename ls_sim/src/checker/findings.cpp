@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ls_sim {
 namespace {
 
@@ -18,6 +20,7 @@ void Findings::add(const dma::Fault& fault) {
   if (at != findings_.end() && key(at->fault) == key(fault)) {
     ++at->count;
   } else {
+    SC_ASSERT(!fault.kernel.empty(), "a finding of rule {} without its kernel", dma::name(fault.rule));
     findings_.insert(at, Finding{fault, 1});
   }
 }
