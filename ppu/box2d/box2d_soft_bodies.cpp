@@ -18,11 +18,11 @@ using Eigen::Vector2f;
 b2Vec2 to_box2d(const Vector2f& v) { return {v.x(), v.y()}; }
 Vector2f to_eigen(const b2Vec2& v) { return {v.x, v.y}; }
 
-/// One soft body and the b2Bodies of its outer particles, in the order of SoftBodyModel2d::outer().
+/// One soft body and the b2Bodies of its outer particles, in the order of SoftBodyModel<2>::outer().
 class CoupledBody {
  public:
   /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
-  CoupledBody(b2World& world, std::shared_ptr<const SoftBodyModel2d> model, const Vector2f& position,
+  CoupledBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position,
               std::int16_t group)
       : world_(world), soft_(std::move(model), position), group_(group) {
     for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
@@ -33,10 +33,13 @@ class CoupledBody {
   CoupledBody(const CoupledBody&) = delete;
   CoupledBody& operator=(const CoupledBody&) = delete;
 
-  SoftBody2d& soft() { return soft_; }
-  const SoftBody2d& soft() const { return soft_; }
+  SoftBody<2>& soft() { return soft_; }
+  const SoftBody<2>& soft() const { return soft_; }
   std::int16_t group() const { return group_; }
   std::span<b2Body* const> particles() const { return particles_; }
+
+  /// Whether what is known of its rotations is of no use since the last step.
+  bool was_reset() const { return soft_.resets() != seen_resets_; }
 
   // Before Box2D's step: what its user and Box2D have done, then shape matching, then the new velocities.
 
@@ -97,6 +100,7 @@ class CoupledBody {
   /// The body was moved by its user: so are its particles.
   void place_particles() {
     seen_revision_ = soft_.revision();
+    seen_resets_ = soft_.resets();
     const auto outer = soft_.model().outer();
     for (std::size_t i = 0; i < outer.size(); ++i) {
       const b2Vec2 position = to_box2d(soft_.positions()[outer[i]]);
@@ -106,16 +110,19 @@ class CoupledBody {
   }
 
   b2World& world_;
-  SoftBody2d soft_;
+  SoftBody<2> soft_;
   std::int16_t group_;
   std::vector<b2Body*> particles_;
-  std::uint32_t seen_revision_ = 0;
+  std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
 };
 
 }  // namespace
 
 struct Box2dSoftBodies::Impl {
-  Impl(b2World& w, Solver2d* s) : world(w), solver(s) {}
+  Impl(b2World& w, SoftBodySolver<2>* other) : world(w), solver(other ? *other : ppu) {}
+  ~Impl() {
+    for (SoftBody<2>* const body : soft) solver.forget(*body);
+  }
 
   template <typename Work>
   void timed(const Work& work) {
@@ -125,23 +132,15 @@ struct Box2dSoftBodies::Impl {
   }
 
   void begin_step(float step) {
-    for (const auto& body : bodies) body->begin_step();
-    pull(step);
+    for (const auto& body : bodies) {
+      if (body->was_reset()) solver.forget(body->soft());
+      body->begin_step();
+    }
+    solver.kick(soft, step);
+    const auto waiting = std::chrono::steady_clock::now();
+    solver.finish();
+    waited += std::chrono::steady_clock::now() - waiting;
     for (const auto& body : bodies) body->hand_over(step);
-  }
-
-  void pull(float step) {
-    if (solver == nullptr) {
-      for (const auto& body : bodies) body->soft().pull(step);
-      return;
-    }
-    if (!solver_knows_bodies) {
-      std::vector<SoftBody2d*> all;
-      for (const auto& body : bodies) all.push_back(&body->soft());
-      solver->set_bodies(all);
-      solver_knows_bodies = true;
-    }
-    solver->pull(step);
   }
 
   /// The negative group nearest to 0 that no body has. @throws std::runtime_error  32,768 bodies are too
@@ -158,37 +157,40 @@ struct Box2dSoftBodies::Impl {
   }
 
   b2World& world;
-  Solver2d* const solver;
-  bool solver_knows_bodies = false;
+  PpuSolver<2> ppu;
+  SoftBodySolver<2>& solver;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
+  std::vector<SoftBody<2>*> soft;  // of `bodies`
   std::unordered_map<const b2Body*, Particle> particles;
-  std::chrono::nanoseconds spent{0};
+  std::chrono::nanoseconds spent{0}, waited{0};
 };
 
-Box2dSoftBodies::Box2dSoftBodies(b2World& world, Solver2d* solver)
-    : impl_(std::make_unique<Impl>(world, solver)) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world) : impl_(std::make_unique<Impl>(world, nullptr)) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver)
+    : impl_(std::make_unique<Impl>(world, &solver)) {}
 Box2dSoftBodies::~Box2dSoftBodies() = default;
 
-SoftBody2d& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel2d> model, const Vector2f& position) {
+SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position) {
   CoupledBody& added = *impl_->bodies.emplace_back(
       std::make_unique<CoupledBody>(impl_->world, std::move(model), position, impl_->free_group()));
   const auto outer = added.soft().model().outer();
   for (std::size_t i = 0; i < outer.size(); ++i) {
     impl_->particles[added.particles()[i]] = {&added.soft(), outer[i]};
   }
-  impl_->solver_knows_bodies = false;
+  impl_->soft.push_back(&added.soft());
   return added.soft();
 }
 
-void Box2dSoftBodies::remove(const SoftBody2d& body) {
+void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   const auto found = std::find_if(impl_->bodies.begin(), impl_->bodies.end(),
                                   [&](const auto& coupled) { return &coupled->soft() == &body; });
   if (found == impl_->bodies.end()) {
     throw std::invalid_argument("the soft body to be removed is not in this world");
   }
   for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
+  impl_->solver.forget(body);
+  impl_->soft.erase(impl_->soft.begin() + (found - impl_->bodies.begin()));
   impl_->bodies.erase(found);
-  impl_->solver_knows_bodies = false;
 }
 
 void Box2dSoftBodies::step(float step, int velocity_iterations, int position_iterations) {
@@ -208,8 +210,8 @@ void Box2dSoftBodies::end_step(float step) {
 }
 
 std::size_t Box2dSoftBodies::size() const { return impl_->bodies.size(); }
-SoftBody2d& Box2dSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
-const SoftBody2d& Box2dSoftBodies::operator[](std::size_t index) const {
+SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
+const SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) const {
   return impl_->bodies.at(index)->soft();
 }
 
@@ -219,5 +221,6 @@ Box2dSoftBodies::Particle Box2dSoftBodies::particle_of(const b2Body& body) const
 }
 
 std::chrono::nanoseconds Box2dSoftBodies::time_spent() const { return impl_->spent; }
+std::chrono::nanoseconds Box2dSoftBodies::time_waited() const { return impl_->waited; }
 
 }  // namespace softcell::ppu

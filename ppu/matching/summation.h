@@ -31,7 +31,7 @@ class SumPlan {
   /// @param regions    as find_regions() makes them for these particles.
   /// @throws std::invalid_argument  not one region per particle, or membership not symmetric.
   SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions);
-  SumPlan(const Lattice& lattice, const Csr& regions) : SumPlan(lattice.particles, regions) {}
+  SumPlan(const Lattice<3>& lattice, const Csr& regions) : SumPlan(lattice.particles, regions) {}
 
   std::size_t particles() const { return region_of_.size(); }
   /// Number of distinct regions. They are numbered in the order of the lowest particle that has them.

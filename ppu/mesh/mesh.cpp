@@ -2,8 +2,8 @@
 
 namespace softcell::ppu {
 
-Bounds bounds(const TriangleMesh& mesh) {
-  Bounds box{mesh.positions.front(), mesh.positions.front()};
+Bounds<3> bounds(const TriangleMesh& mesh) {
+  Bounds<3> box{mesh.positions.front(), mesh.positions.front()};
   for (const Eigen::Vector3f& position : mesh.positions) {
     box.low = box.low.cwiseMin(position);
     box.high = box.high.cwiseMax(position);
@@ -12,7 +12,7 @@ Bounds bounds(const TriangleMesh& mesh) {
 }
 
 void fit(TriangleMesh& mesh, float longest_side) {
-  const Bounds box = bounds(mesh);
+  const Bounds<3> box = bounds(mesh);
   // In double: the sides of a box of finite floats may pass the largest float.
   const Eigen::Vector3d low = box.low.cast<double>(), high = box.high.cast<double>();
   const Eigen::Vector3d centre = 0.5 * (low + high);

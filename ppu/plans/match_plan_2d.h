@@ -4,7 +4,7 @@
 #include "match_2d_job.h"
 #include "ppu/matching/matching_plan.h"
 #include "ppu/plans/kernel_plan.h"
-#include "softcell/soft_bodies/lattice_2d.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
 
@@ -13,7 +13,7 @@ class MatchPlan2d : public KernelPlan<spu::MatchPlanHeader2d> {
  public:
   /// @throws std::runtime_error  plan and state of the bodies under way need more local store than the kernel
   ///         has; the sentence states both.
-  MatchPlan2d(const Lattice2d& lattice, const MatchingPlan2d<float>& matching);
+  MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>& matching);
 };
 
 }  // namespace softcell::ppu

@@ -86,7 +86,7 @@ auto EigenSolver<Dimension>::Twist::operator+=(const Twist& other) -> Twist& {
 }
 
 template <int Dimension>
-EigenSolver<Dimension>::EigenSolver(std::shared_ptr<const typename Types::Plan> plan)
+EigenSolver<Dimension>::EigenSolver(std::shared_ptr<const MatchingPlan<float, Dimension>> plan)
     : plan_(std::move(plan)),
       particle_moments_(plan_->particles()),
       region_moments_(plan_->regions()),

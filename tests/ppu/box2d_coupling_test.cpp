@@ -18,7 +18,7 @@ SoftBodySettings rubber(float cell_size = 0.25f) {
   return {.cell_size = cell_size, .half_width = 2, .density = 5, .alpha = 0.5f, .damping = 0.1f};
 }
 
-float lowest(const SoftBody2d& body) {
+float lowest(const SoftBody<2>& body) {
   float y = std::numeric_limits<float>::infinity();
   for (const Vector2f& p : body.positions()) y = std::min(y, p.y());
   return y;
@@ -29,7 +29,7 @@ TEST(Box2dCoupling, RestsOnAFloorInShape) {
   world.add_box({0, -1}, {10, 1});
   SoftBodySettings settings = rubber();
   settings.damping = 0.3f;
-  SoftBody2d& body = world.soft.add(rectangle_model({6, 4}, settings), {0, 0.6f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({6, 4}, settings), {0, 0.6f});
   world.run(8);  // it is elastic, and bounces for a while
   float fastest = 0;
   for (const Vector2f& v : body.velocities()) fastest = std::max(fastest, v.norm());
@@ -40,7 +40,7 @@ TEST(Box2dCoupling, RestsOnAFloorInShape) {
 
 TEST(Box2dCoupling, FallsAsEverythingFalls) {
   World2d world;
-  SoftBody2d& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 10});
+  SoftBody<2>& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 10});
   const Vector2f begin = body.centre_of_mass();
   const int steps = 60;
   const float h = 1.0f / 120;
@@ -52,7 +52,7 @@ TEST(Box2dCoupling, FallsAsEverythingFalls) {
 
 TEST(Box2dCoupling, KeepsMomentumInCollisionsWithRigidBodies) {
   World2d world(0);
-  SoftBody2d& body = world.soft.add(rectangle_model({4, 4}, rubber()), {0, 0});
+  SoftBody<2>& body = world.soft.add(rectangle_model({4, 4}, rubber()), {0, 0});
   b2Body* const box = world.add_box({3, 0.5f}, {0.4f, 0.4f}, 4);
   box->SetLinearVelocity({-3, 0});
   const float before = box->GetMass() * -3;
@@ -73,8 +73,8 @@ TEST(Box2dCoupling, MakesNoContactsWithinABody) {
 TEST(Box2dCoupling, TwoBodiesStackOnEachOther) {
   World2d world;
   world.add_box({0, -1}, {10, 1});
-  SoftBody2d& under = world.soft.add(rectangle_model({6, 3}, rubber()), {0, 0.2f});
-  SoftBody2d& over = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 1.6f});
+  SoftBody<2>& under = world.soft.add(rectangle_model({6, 3}, rubber()), {0, 0.2f});
+  SoftBody<2>& over = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 1.6f});
   world.run(5);
   EXPECT_GT(lowest(over), under.centre_of_mass().y() + 0.25f);
   EXPECT_LT(over.deformation(), 0.1f);
@@ -85,7 +85,7 @@ TEST(Box2dCoupling, ComesBackToItsShapeAfterBeingThrown) {
   world.add_box({0, -1}, {10, 1});
   world.add_box({-5, 5}, {1, 10});
   world.add_box({5, 5}, {1, 10});  // or it would bounce off the floor's end and fall for ever
-  SoftBody2d& body = world.soft.add(rectangle_model({4, 6}, rubber()), {0, 0.5f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({4, 6}, rubber()), {0, 0.5f});
   body.add_velocity({-25, 5});
   float worst = 0;
   for (int i = 0; i < 2400; ++i) {
@@ -114,7 +114,7 @@ TEST_P(SlidingFriction2d, IsTheGeometricMeanOfBothCoefficients) {
   SoftBodySettings settings = rubber();
   settings.damping = 0.3f;
   settings.friction = of_body;
-  SoftBody2d& body = world.soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
   world.run(4);
   const float before = body.linear_momentum().x();
   body.add_velocity({kSpeed, 0});
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Coefficients, SlidingFriction2d,
 
 TEST(Box2dCoupling, TakesChangesBetweenSteps) {
   World2d world(0);
-  SoftBody2d& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 0});
+  SoftBody<2>& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 0});
   world.run(0.1f);
   body.translate({3, 4});
   body.add_particle_velocity(body.model().outer().front(), {1, 0});
@@ -148,7 +148,7 @@ TEST(Box2dCoupling, TakesChangesBetweenSteps) {
 TEST(Box2dCoupling, KnowsItsParticles) {
   World2d world;
   b2Body* const box = world.add_box({0, 0}, {1, 1});
-  SoftBody2d& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 5});
+  SoftBody<2>& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 5});
   int found = 0;
   for (const b2Body* b = world.box2d.GetBodyList(); b != nullptr; b = b->GetNext()) {
     const auto particle = world.soft.particle_of(*b);
@@ -168,7 +168,7 @@ TEST(Box2dCoupling, KnowsItsParticles) {
 
 TEST(Box2dCoupling, RefusesWhatItIsNotGiven) {
   World2d world, other;
-  SoftBody2d& body = other.soft.add(rectangle_model({1, 1}, rubber()), {0, 0});
+  SoftBody<2>& body = other.soft.add(rectangle_model({1, 1}, rubber()), {0, 0});
   EXPECT_THROW(world.soft.remove(body), std::invalid_argument);
   EXPECT_THROW(rectangle_model({1, 1}, rubber(), 0), std::runtime_error);
   EXPECT_THROW(rectangle_model({1, 1}, {.cell_size = 0}), std::runtime_error);
@@ -179,7 +179,7 @@ TEST(Box2dCoupling, GravityOf300Holds) {
   world.add_box({0, -1}, {10, 1});
   SoftBodySettings settings = rubber();
   settings.alpha = 1;
-  SoftBody2d& body = world.soft.add(rectangle_model({4, 4}, settings), {0, 0.2f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({4, 4}, settings), {0, 0.2f});
   world.run(10);
   EXPECT_TRUE(std::isfinite(body.centre_of_mass().y()));
   EXPECT_GT(lowest(body), 0) << "a particle's centre went below the floor";

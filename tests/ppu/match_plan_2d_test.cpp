@@ -12,7 +12,7 @@ namespace {
 
 using test::Slots;
 
-MatchingPlan2d<float> matching_of(const Lattice2d& lattice, int half_width) {
+MatchingPlan<float, 2> matching_of(const Lattice<2>& lattice, int half_width) {
   return {lattice, half_width, particle_masses(lattice, 1000)};
 }
 
@@ -25,7 +25,7 @@ TEST(MatchPlan2d, ListsAddUpEveryRegion) {
   for (const auto& [name, lattice] : test::all_lattices_2d()) {
     for (int w = 0; w <= 4; ++w) {
       SCOPED_TRACE(name + ", w = " + std::to_string(w));
-      const MatchingPlan2d<float> matching = matching_of(lattice, w);
+      const MatchingPlan<float, 2> matching = matching_of(lattice, w);
       const MatchPlan2d plan(lattice, matching);
       const spu::MatchPlanHeader2d& header = plan.header();
 
@@ -54,7 +54,7 @@ TEST(MatchPlan2d, ListsAddUpEveryRegion) {
 }
 
 TEST(MatchPlan2d, CostsTheSameForEveryHalfWidth) {
-  const Lattice2d lattice = test::rectangle(31, 31);
+  const Lattice<2> lattice = test::rectangle(31, 31);
   std::vector<double> additions;
   for (int w = 1; w <= 4; ++w)
     additions.push_back(static_cast<double>(MatchPlan2d(lattice, matching_of(lattice, w)).additions()) /
@@ -64,7 +64,7 @@ TEST(MatchPlan2d, CostsTheSameForEveryHalfWidth) {
 }
 
 TEST(MatchPlan2d, IsLaidOutForTransfers) {
-  const Lattice2d lattice = test::man132();
+  const Lattice<2> lattice = test::man132();
   const MatchPlan2d plan(lattice, matching_of(lattice, 2));
   const spu::MatchPlanHeader2d& header = plan.header();
   EXPECT_EQ(header.particles, 132u);
@@ -82,7 +82,7 @@ TEST(MatchPlan2d, IsLaidOutForTransfers) {
 }
 
 TEST(MatchPlan2d, ABodyThatDoesNotFitIsRefusedWithBothSizes) {
-  const Lattice2d lattice = test::rectangle(45, 45);
+  const Lattice<2> lattice = test::rectangle(45, 45);
   try {
     const MatchPlan2d plan(lattice, matching_of(lattice, 2));
     FAIL() << "fits";

@@ -85,8 +85,8 @@ TEST(SoftBodyModel, RefusesALatticeOfAnotherSpacing) {
 }
 
 /// A body that moves, turns and is out of shape.
-SoftBody moving_body() {
-  SoftBody body(block_model({4, 3, 2}, rubber()), {1, 2, 3});
+SoftBody<3> moving_body() {
+  SoftBody<3> body(block_model({4, 3, 2}, rubber()), {1, 2, 3});
   body.add_velocity({1, -2, 0.5f});
   body.add_angular_velocity({0.5f, 1, -2});
   for (std::size_t i = 0; i < body.model().particles(); ++i) {
@@ -97,7 +97,7 @@ SoftBody moving_body() {
 }
 
 TEST(SoftBody, BeginsAtRestInItsPlace) {
-  const SoftBody body(block_model({2, 2, 2}, rubber()), {1, 2, 3});
+  const SoftBody<3> body(block_model({2, 2, 2}, rubber()), {1, 2, 3});
   EXPECT_TRUE(body.bounds().low.isApprox(Vector3f(0.8f, 2, 2.8f)));
   EXPECT_TRUE(body.bounds().high.isApprox(Vector3f(1.2f, 2.4f, 3.2f)));
   EXPECT_TRUE(body.centre_of_mass().isApprox(Vector3f(1, 2.2f, 3)));
@@ -105,7 +105,7 @@ TEST(SoftBody, BeginsAtRestInItsPlace) {
 }
 
 TEST(SoftBody, PaddedPositionsAreAlwaysThePositions) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const auto check = [&](const char* after) {
     for (std::size_t i = 0; i < body.positions().size(); ++i) {
       const Eigen::Vector4f& padded = body.padded_positions()[i];
@@ -125,7 +125,7 @@ TEST(SoftBody, PaddedPositionsAreAlwaysThePositions) {
 }
 
 TEST(SoftBody, InnerParticlesAreIntegratedInBulletsOrder) {
-  SoftBody body(block_model({4, 4, 4}, rubber()));
+  SoftBody<3> body(block_model({4, 4, 4}, rubber()));
   const std::uint32_t inner = body.model().inner()[0];
   const Vector3f x = body.position(inner);
   body.advance_inner(0.1f, {0, -10, 0});
@@ -135,7 +135,7 @@ TEST(SoftBody, InnerParticlesAreIntegratedInBulletsOrder) {
 }
 
 TEST(SoftBody, PullsConserveMomentum) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const Vector3f p = body.linear_momentum(), l = body.angular_momentum();
   const auto before = body.velocities()[0];
   body.pull(1.0f / 60);
@@ -145,7 +145,7 @@ TEST(SoftBody, PullsConserveMomentum) {
 }
 
 TEST(SoftBody, ASpeedLimitSlowsOnlyWhatIsFaster) {
-  SoftBody body(block_model({1, 1, 1}, rubber()));
+  SoftBody<3> body(block_model({1, 1, 1}, rubber()));
   body.set_particle(0, body.position(0), {3, 0, 4});
   body.set_particle(1, body.position(1), {0, 0.5f, 0});
   body.limit_speed(1);
@@ -154,7 +154,7 @@ TEST(SoftBody, ASpeedLimitSlowsOnlyWhatIsFaster) {
 }
 
 TEST(SoftBody, ATeleportTurnsVelocitiesWithTheBody) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const auto revision = body.revision();
   const Vector3f centre = body.centre_of_mass(), p = body.linear_momentum(), l = body.angular_momentum();
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(2, Vector3f(1, 2, -1).normalized()));
@@ -164,7 +164,7 @@ TEST(SoftBody, ATeleportTurnsVelocitiesWithTheBody) {
   EXPECT_TRUE(body.linear_momentum().isApprox(turn * p, 1e-4f));
   EXPECT_TRUE(body.angular_momentum().isApprox(turn * l, 1e-3f));
   // The shape is the same: the next pull does the same in the turned frame.
-  SoftBody still = moving_body();
+  SoftBody<3> still = moving_body();
   still.pull(1.0f / 60);
   body.pull(1.0f / 60);
   for (std::size_t i = 0; i < body.velocities().size(); ++i) {
@@ -173,14 +173,14 @@ TEST(SoftBody, ATeleportTurnsVelocitiesWithTheBody) {
 }
 
 TEST(SoftBody, ResetTakesAwayTheDeformationOnly) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(2.5f, Vector3f(1, 2, -1).normalized()));
   body.move_without_force(turn, {0, 0, 0});
   const Vector3f centre = body.centre_of_mass(), p = body.linear_momentum(), l = body.angular_momentum();
   const Vector3f diagonal = turn * (moving_body().position(59) - moving_body().position(0));
-  ASSERT_GT(deformation(body), 0.02f);
+  ASSERT_GT(body.deformation(), 0.02f);
   body.reset_deformation();
-  EXPECT_LT(deformation(body), 1e-5f);
+  EXPECT_LT(body.deformation(), 1e-5f);
   EXPECT_TRUE(body.centre_of_mass().isApprox(centre, 1e-5f));
   EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
   EXPECT_TRUE(body.angular_momentum().isApprox(l, 1e-3f));
@@ -192,9 +192,9 @@ TEST(SoftBody, ResetTakesAwayTheDeformationOnly) {
 }
 
 TEST(SoftBody, ACopyIsASavedState) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   body.pull(1.0f / 60);
-  const SoftBody saved = body;
+  const SoftBody<3> saved = body;
   const auto run = [&] {
     for (int i = 0; i < 5; ++i) body.pull(1.0f / 60);
     return state_hash(body);
@@ -205,12 +205,12 @@ TEST(SoftBody, ACopyIsASavedState) {
 }
 
 TEST(StateHash, SeesEveryParticleVelocityAndTheOrderOfBodies) {
-  SoftBody a = moving_body(), b = moving_body();
+  SoftBody<3> a = moving_body(), b = moving_body();
   EXPECT_EQ(state_hash(a), state_hash(b));
   b.set_particle(7, b.position(7), b.velocities()[7] + Vector3f(0, 0, 1e-6f));
   EXPECT_NE(state_hash(a), state_hash(b));
-  const SoftBody* ab[] = {&a, &b};
-  const SoftBody* ba[] = {&b, &a};
+  const SoftBody<3>* ab[] = {&a, &b};
+  const SoftBody<3>* ba[] = {&b, &a};
   EXPECT_NE(state_hash(ab), state_hash(ba));
   EXPECT_EQ(state_hash(ab), state_hash(b, state_hash(a)));
 }

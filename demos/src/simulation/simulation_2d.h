@@ -43,7 +43,7 @@ class Simulation2d {
   std::size_t particles() const;
   std::size_t rigid_bodies() const;  ///< that can move
   /// Good until the next step(), which may be a reset.
-  const ppu::SoftBody2d& soft_body(std::size_t body) const;
+  const ppu::SoftBody<2>& soft_body(std::size_t body) const;
   Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
   bool paused() const;
   std::span<const Hands<2>::Held> held() const;

@@ -2,7 +2,7 @@
 // Soft bodies in somebody's Box2D world.
 //
 //     Box2dSoftBodies soft_bodies(world);                      // your b2World
-//     SoftBody2d& man = soft_bodies.add(model, {0, 2});
+//     SoftBody<2>& man = soft_bodies.add(model, {0, 2});
 //     soft_bodies.step(1.0f / 120);                            // in place of world.Step()
 //     draw(man.positions());
 //
@@ -19,8 +19,8 @@
 #include <chrono>
 #include <memory>
 
-#include "softcell/soft_bodies/soft_body_2d.h"
-#include "softcell/soft_bodies/solver_2d.h"
+#include "softcell/soft_bodies/soft_body.h"
+#include "softcell/soft_bodies/soft_body_solver.h"
 
 namespace softcell::ppu {
 
@@ -35,10 +35,10 @@ class Box2dSoftBodies {
   /// Box2D's continuous collision's concern.
   static constexpr float kMaxTravelInCells = 1.0f;
 
-  /// @param world   outlives this.
-  /// @param solver  computes shape matching, of this world alone: SpeSolver2d does it on the SPEs. Outlives
-  ///                this; null: the thread that steps the world does it.
-  explicit Box2dSoftBodies(b2World& world, Solver2d* solver = nullptr);
+  /// The thread that steps the world does the shape matching. @param world  outlives this.
+  explicit Box2dSoftBodies(b2World& world);
+  /// @param solver  does the shape matching: SpeSolver<2> on the SPEs. Outlives this, and serves nobody else.
+  Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver);
   /// Removes all bodies.
   ~Box2dSoftBodies();
   Box2dSoftBodies(const Box2dSoftBodies&) = delete;
@@ -46,10 +46,10 @@ class Box2dSoftBodies {
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
   /// Between steps the body may be changed through its own functions; Box2D is told at the next step.
-  SoftBody2d& add(std::shared_ptr<const SoftBodyModel2d> model, const Eigen::Vector2f& position);
+  SoftBody<2>& add(std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position);
 
   /// @throws std::invalid_argument  the body is not one of these.
-  void remove(const SoftBody2d& body);
+  void remove(const SoftBody<2>& body);
 
   /// One step of the world and its soft bodies. @param step  seconds, above 0.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);
@@ -60,19 +60,22 @@ class Box2dSoftBodies {
   void end_step(float step);
 
   std::size_t size() const;
-  SoftBody2d& operator[](std::size_t index);  ///< in the order of add()
-  const SoftBody2d& operator[](std::size_t index) const;
+  SoftBody<2>& operator[](std::size_t index);  ///< in the order of add()
+  const SoftBody<2>& operator[](std::size_t index) const;
 
   /// The soft body and the particle number that a b2Body stands for, for contact listeners; a null pointer
   /// for everything else.
   struct Particle {
-    const SoftBody2d* body = nullptr;
+    const SoftBody<2>* body = nullptr;
     std::size_t number = 0;
   };
   Particle particle_of(const b2Body& body) const;
 
-  /// Time spent in this class's part of the steps so far.
+  /// Time spent in this class's part of the steps so far, by the clock.
   std::chrono::nanoseconds time_spent() const;
+  /// Of that, the time until the solver had finished. The default solver works in that time, one on the SPEs
+  /// leaves this thread nothing to do.
+  std::chrono::nanoseconds time_waited() const;
 
  private:
   struct Impl;

@@ -63,7 +63,7 @@ class BulletSoftBodies {
   /// @param world  outlives this.
   explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);
   /// @param solver  outlives this, and serves nobody else.
-  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver);
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver);
   /// Removes all bodies and leaves the world as it was found.
   ~BulletSoftBodies();
   BulletSoftBodies(const BulletSoftBodies&) = delete;
@@ -71,10 +71,10 @@ class BulletSoftBodies {
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
   /// Between steps the body may be changed through its own functions; Bullet is told at the next substep.
-  SoftBody& add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position);
+  SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position);
 
   /// @throws std::invalid_argument  the body is not one of these.
-  void remove(const SoftBody& body);
+  void remove(const SoftBody<3>& body);
 
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
   /// else. When bodies are changed after all, or the substep has another length, that work is dropped and
@@ -92,13 +92,13 @@ class BulletSoftBodies {
   SoftBodyTimes times() const;
 
   std::size_t size() const;
-  SoftBody& operator[](std::size_t index);  ///< in the order of add()
-  const SoftBody& operator[](std::size_t index) const;
+  SoftBody<3>& operator[](std::size_t index);  ///< in the order of add()
+  const SoftBody<3>& operator[](std::size_t index) const;
 
   /// The soft body and the particle number that a collision object stands for, for contact callbacks; a null
   /// pointer for everything else.
   struct Particle {
-    const SoftBody* body = nullptr;
+    const SoftBody<3>* body = nullptr;
     std::size_t number = 0;
   };
   static Particle particle_of(const btCollisionObject& object);
