@@ -1,126 +1,27 @@
 #include "softcell/box2d/box2d_soft_bodies.h"
 
-#include <box2d/b2_body.h>
-#include <box2d/b2_circle_shape.h>
-#include <box2d/b2_fixture.h>
-
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "ppu/box2d/box2d_body.h"
+#include "ppu/box2d/rest.h"
+
 namespace softcell::ppu {
-namespace {
 
 using Eigen::Vector2f;
 
-b2Vec2 to_box2d(const Vector2f& v) { return {v.x(), v.y()}; }
-Vector2f to_eigen(const b2Vec2& v) { return {v.x, v.y}; }
-
-/// One soft body and the b2Bodies of its outer particles, in the order of SoftBodyModel<2>::outer().
-class CoupledBody {
- public:
-  /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
-  CoupledBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position,
-              std::int16_t group)
-      : world_(world), soft_(std::move(model), position), group_(group) {
-    for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
-  }
-  ~CoupledBody() {
-    for (b2Body* particle : particles_) world_.DestroyBody(particle);
-  }
-  CoupledBody(const CoupledBody&) = delete;
-  CoupledBody& operator=(const CoupledBody&) = delete;
-
-  SoftBody<2>& soft() { return soft_; }
-  const SoftBody<2>& soft() const { return soft_; }
-  std::int16_t group() const { return group_; }
-  std::span<b2Body* const> particles() const { return particles_; }
-
-  /// Whether what is known of its rotations is of no use since the last step.
-  bool was_reset() const { return soft_.resets() != seen_resets_; }
-
-  // Before Box2D's step: what its user and Box2D have done, then shape matching, then the new velocities.
-
-  void begin_step() {
-    if (soft_.revision() != seen_revision_) {
-      place_particles();
-    } else {
-      gather();  // of velocities, mostly: the caller may have pushed particles
-    }
-  }
-  void hand_over(float step) {
-    soft_.limit_speed(Box2dSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing / step);
-    const auto outer = soft_.model().outer();
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
-    }
-  }
-
-  /// After it: outer particles are taken over, inner ones follow.
-  void end_step(float step) {
-    gather();
-    soft_.advance_inner(step, to_eigen(world_.GetGravity()));
-    soft_.keep_inner_inside();
-  }
-
- private:
-  void add_particle(std::uint32_t number) {
-    b2BodyDef definition;
-    definition.type = b2_dynamicBody;
-    definition.position = to_box2d(soft_.positions()[number]);
-    definition.fixedRotation = true;
-    // A particle alone never sleeps: its neighbours would be pulled towards one that hangs still.
-    definition.allowSleep = false;
-    b2Body* const particle = world_.CreateBody(&definition);
-    b2CircleShape circle;
-    circle.m_radius = soft_.model().contact_radius();
-    b2FixtureDef fixture;
-    fixture.shape = &circle;
-    fixture.density = 1;
-    fixture.friction = soft_.model().settings().friction;
-    fixture.restitution = 0;
-    fixture.filter.groupIndex = group_;
-    particle->CreateFixture(&fixture);
-    b2MassData mass{};
-    mass.mass = soft_.model().masses()[number];
-    particle->SetMassData(&mass);
-    particles_.push_back(particle);
-  }
-
-  void gather() {
-    const auto outer = soft_.model().outer();
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      soft_.set_particle(outer[i], to_eigen(particles_[i]->GetPosition()),
-                         to_eigen(particles_[i]->GetLinearVelocity()));
-    }
-  }
-
-  /// The body was moved by its user: so are its particles.
-  void place_particles() {
-    seen_revision_ = soft_.revision();
-    seen_resets_ = soft_.resets();
-    const auto outer = soft_.model().outer();
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      const b2Vec2 position = to_box2d(soft_.positions()[outer[i]]);
-      if (position != particles_[i]->GetPosition()) particles_[i]->SetTransform(position, 0);
-      particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
-    }
-  }
-
-  b2World& world_;
-  SoftBody<2> soft_;
-  std::int16_t group_;
-  std::vector<b2Body*> particles_;
-  std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
-};
-
-}  // namespace
-
 struct Box2dSoftBodies::Impl {
-  Impl(b2World& w, SoftBodySolver<2>* other) : world(w), solver(other ? *other : ppu) {}
+  Impl(b2World& w, SoftBodySolver<2>* other)
+      : world(w), solver(other ? *other : ppu), rest(w, [this](const b2Body& body) -> Box2dBody* {
+          const auto found = particles.find(&body);
+          return found == particles.end() ? nullptr : found->second.body;
+        }) {}
   ~Impl() {
+    settle();
     for (SoftBody<2>* const body : soft) solver.forget(*body);
   }
 
@@ -132,15 +33,35 @@ struct Box2dSoftBodies::Impl {
   }
 
   void begin_step(float step) {
-    for (const auto& body : bodies) {
-      if (body->was_reset()) solver.forget(body->soft());
-      body->begin_step();
+    if (ahead != step || std::ranges::any_of(bodies, [](const auto& body) {
+          return body->was_changed() || body->was_pushed();
+        })) {
+      settle();
+      for (const auto& body : bodies) {
+        if (body->was_reset()) solver.forget(body->soft());
+        body->begin_step();
+      }
     }
-    solver.kick(soft, step);
+    if (ahead == 0) solver.kick(soft, step);
+    ahead = 0;
     const auto waiting = std::chrono::steady_clock::now();
     solver.finish();
     waited += std::chrono::steady_clock::now() - waiting;
     for (const auto& body : bodies) body->hand_over(step);
+  }
+
+  void end_step(float step) {
+    for (const auto& body : bodies) body->end_step(step);
+    if (!sleep) return;
+    for (const auto& body : bodies)
+      if (!body->soft().asleep()) body->count_stillness(step, sleep->speed);
+    for (const auto& body : bodies)
+      if (!body->soft().asleep() && body->still_for() >= sleep->seconds) rest.settle(*body, *sleep);
+  }
+
+  /// What was begun ahead is of no use.
+  void settle() {
+    if (std::exchange(ahead, 0.0f) != 0) solver.drop();
   }
 
   /// The negative group nearest to 0 that no body has. @throws std::runtime_error  32,768 bodies are too
@@ -156,12 +77,21 @@ struct Box2dSoftBodies::Impl {
         "a Box2D world has at most 32768 soft bodies: there are no more collision groups");
   }
 
+  /// What a b2Body stands for.
+  struct OneParticle {
+    Box2dBody* body;
+    std::size_t number;
+  };
+
   b2World& world;
   PpuSolver<2> ppu;
   SoftBodySolver<2>& solver;
-  std::vector<std::unique_ptr<CoupledBody>> bodies;
+  std::vector<std::unique_ptr<Box2dBody>> bodies;
   std::vector<SoftBody<2>*> soft;  // of `bodies`
-  std::unordered_map<const b2Body*, Particle> particles;
+  std::unordered_map<const b2Body*, OneParticle> particles;
+  Rest rest;
+  std::optional<SleepSettings> sleep;
+  float ahead = 0;  // length of the step that the solver has begun; 0: none
   std::chrono::nanoseconds spent{0}, waited{0};
 };
 
@@ -171,12 +101,11 @@ Box2dSoftBodies::Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver)
 Box2dSoftBodies::~Box2dSoftBodies() = default;
 
 SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position) {
-  CoupledBody& added = *impl_->bodies.emplace_back(
-      std::make_unique<CoupledBody>(impl_->world, std::move(model), position, impl_->free_group()));
+  impl_->settle();
+  Box2dBody& added = *impl_->bodies.emplace_back(
+      std::make_unique<Box2dBody>(impl_->world, std::move(model), position, impl_->free_group()));
   const auto outer = added.soft().model().outer();
-  for (std::size_t i = 0; i < outer.size(); ++i) {
-    impl_->particles[added.particles()[i]] = {&added.soft(), outer[i]};
-  }
+  for (std::size_t i = 0; i < outer.size(); ++i) impl_->particles[added.particles()[i]] = {&added, outer[i]};
   impl_->soft.push_back(&added.soft());
   return added.soft();
 }
@@ -187,8 +116,9 @@ void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   if (found == impl_->bodies.end()) {
     throw std::invalid_argument("the soft body to be removed is not in this world");
   }
-  for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
+  impl_->settle();
   impl_->solver.forget(body);
+  for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
   impl_->soft.erase(impl_->soft.begin() + (found - impl_->bodies.begin()));
   impl_->bodies.erase(found);
 }
@@ -204,9 +134,23 @@ void Box2dSoftBodies::begin_step(float step) {
 }
 
 void Box2dSoftBodies::end_step(float step) {
+  impl_->timed([&] { impl_->end_step(step); });
+}
+
+void Box2dSoftBodies::begin_ahead(float step) {
   impl_->timed([&] {
-    for (const auto& body : impl_->bodies) body->end_step(step);
+    impl_->settle();
+    impl_->solver.kick(impl_->soft, step);
+    impl_->ahead = step;
   });
+}
+
+void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
+  impl_->settle();
+  impl_->sleep = settings;
+  if (settings) return;
+  for (const auto& body : impl_->bodies)
+    if (body->soft().asleep()) body->wake();
 }
 
 std::size_t Box2dSoftBodies::size() const { return impl_->bodies.size(); }
@@ -217,7 +161,8 @@ const SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) const {
 
 Box2dSoftBodies::Particle Box2dSoftBodies::particle_of(const b2Body& body) const {
   const auto found = impl_->particles.find(&body);
-  return found == impl_->particles.end() ? Particle{} : found->second;
+  if (found == impl_->particles.end()) return {};
+  return {&found->second.body->soft(), found->second.number};
 }
 
 std::chrono::nanoseconds Box2dSoftBodies::time_spent() const { return impl_->spent; }

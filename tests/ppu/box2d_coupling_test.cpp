@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "soft_body_2d_scenes.h"
+#include "softcell/soft_bodies/state_hash.h"
 
 namespace softcell::ppu {
 namespace {
@@ -183,6 +184,144 @@ TEST(Box2dCoupling, GravityOf300Holds) {
   world.run(10);
   EXPECT_TRUE(std::isfinite(body.centre_of_mass().y()));
   EXPECT_GT(lowest(body), 0) << "a particle's centre went below the floor";
+}
+
+/// Asleep on a floor, as far as it will.
+struct Resting {
+  Resting() {
+    floor = world.add_box({0, -1}, {10, 1});
+    world.soft.let_sleep(SleepSettings{});
+    body = &world.soft.add(rectangle_model({6, 4}, calm()), {0, 0.2f});
+    world.run(12);
+  }
+  static SoftBodySettings calm() {
+    SoftBodySettings settings = rubber();
+    settings.damping = 0.3f;
+    return settings;
+  }
+
+  World2d world;
+  b2Body* floor;
+  SoftBody<2>* body;
+};
+
+TEST(Box2dSleep, ABodyAtRestStaysWhereItIs) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  EXPECT_NEAR(lowest(*resting.body), resting.body->model().contact_radius(), 0.02f);
+  const std::uint64_t state = state_hash(*resting.body);
+  resting.world.run(1);
+  EXPECT_TRUE(resting.body->asleep());
+  EXPECT_EQ(state_hash(*resting.body), state);
+}
+
+TEST(Box2dSleep, NobodySleepsUnlessAsked) {
+  World2d world;
+  world.add_box({0, -1}, {10, 1});
+  SoftBody<2>& body = world.soft.add(rectangle_model({6, 4}, Resting::calm()), {0, 0.2f});
+  world.run(12);
+  EXPECT_FALSE(body.asleep());
+}
+
+TEST(Box2dSleep, ARigidBodyThatFallsOnItWakesIt) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.add_box({0, 1.6f}, {0.2f, 0.2f}, 5);
+  resting.world.run(0.05f);
+  EXPECT_TRUE(resting.body->asleep()) << "it has not come down yet";
+  const std::uint64_t state = state_hash(*resting.body);
+  resting.world.run(0.5f);
+  EXPECT_FALSE(resting.body->asleep());
+  EXPECT_NE(state_hash(*resting.body), state);
+}
+
+TEST(Box2dSleep, ASoftBodyThatFallsOnItWakesIt) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.soft.add(rectangle_model({2, 2}, rubber()), {0, 2.5f});
+  resting.world.run(1);
+  EXPECT_FALSE(resting.body->asleep());
+}
+
+TEST(Box2dSleep, WakesWhenGravityTurns) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  const float before = resting.body->centre_of_mass().x();
+  resting.world.box2d.SetGravity({9.81f, -2});
+  resting.world.run(0.5f);
+  EXPECT_FALSE(resting.body->asleep());
+  EXPECT_GT(resting.body->centre_of_mass().x(), before + 0.1f);
+}
+
+TEST(Box2dSleep, WakesWhenItsUserChangesIt) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.body->add_velocity({0, 3});
+  resting.world.run(0.1f);
+  EXPECT_FALSE(resting.body->asleep());
+  EXPECT_GT(lowest(*resting.body), resting.body->model().contact_radius() + 0.1f);
+}
+
+TEST(Box2dSleep, WakesWhenAParticleIsPushed) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  for (b2Body* b = resting.world.box2d.GetBodyList(); b != nullptr; b = b->GetNext())
+    if (resting.world.soft.particle_of(*b).number == 0) b->ApplyLinearImpulseToCenter({0, 0.1f}, true);
+  resting.world.soft.step(1.0f / 120);
+  EXPECT_FALSE(resting.body->asleep());
+}
+
+TEST(Box2dSleep, FallsWhenTheFloorIsTakenAway) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.box2d.DestroyBody(resting.floor);
+  resting.world.run(1);
+  EXPECT_LT(resting.body->centre_of_mass().y(), -1);
+}
+
+TEST(Box2dSleep, WakesWhenBodiesMayNoLongerSleep) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.soft.let_sleep(std::nullopt);
+  EXPECT_FALSE(resting.body->asleep());
+  resting.world.run(3);
+  EXPECT_FALSE(resting.body->asleep());
+}
+
+/// A soft body on another, and a rigid box on top of both.
+struct Tower {
+  Tower() {
+    world.add_box({0, -1}, {10, 1});
+    world.soft.let_sleep(SleepSettings{});
+    under = &world.soft.add(rectangle_model({6, 3}, Resting::calm()), {0, 0.2f});
+    over = &world.soft.add(rectangle_model({4, 2}, Resting::calm()), {0, 1.3f});
+    box = world.add_box({0, 2.4f}, {0.3f, 0.2f}, 3);
+  }
+  World2d world;
+  SoftBody<2>*under, *over;
+  b2Body* box;
+};
+
+TEST(Box2dSleep, WhatTouchesSleepsTogether) {
+  Tower tower;
+  bool together = true;
+  for (int i = 0; i < 3600; ++i) {
+    tower.world.soft.step(1.0f / 120);
+    together &= tower.under->asleep() == tower.over->asleep() && tower.over->asleep() != tower.box->IsAwake();
+  }
+  EXPECT_TRUE(together);
+  EXPECT_TRUE(tower.under->asleep());
+  tower.world.soft.remove(*tower.over);  // what lay on it wakes, and it wakes itself
+  tower.world.run(0.1f);
+  EXPECT_FALSE(tower.under->asleep());
+  EXPECT_TRUE(tower.box->IsAwake());
+}
+
+TEST(Box2dSleep, ARigidBodyThatMayNotSleepKeepsWhatItTouchesAwake) {
+  Tower tower;
+  tower.box->SetSleepingAllowed(false);
+  tower.world.run(20);
+  EXPECT_FALSE(tower.over->asleep());
 }
 
 }  // namespace

@@ -215,5 +215,71 @@ TEST(StateHash, SeesEveryParticleVelocityAndTheOrderOfBodies) {
   EXPECT_EQ(state_hash(ab), state_hash(b, state_hash(a)));
 }
 
+// In two dimensions likewise.
+
+SoftBody<2> plane_body() {
+  std::vector<Eigen::Vector2i> cells;
+  for (int x = 0; x < 4; ++x)
+    for (int y = 0; y < 3; ++y) cells.push_back({x, y});
+  SoftBody<2> body(make_soft_body_model(lattice_from_cells(cells, 0.2f), {.cell_size = 0.2f, .density = 5}));
+  for (std::size_t i = 0; i < body.model().particles(); ++i) {
+    const Eigen::Vector2f x = body.position(i);
+    body.set_particle(i, x + Eigen::Vector2f(0.3f * x.y() * x.y(), 0.1f * x.x()),
+                      {1 - x.y(), 2 + 0.5f * x.x() * x.x()});
+  }
+  return body;
+}
+
+TEST(SoftBody2d, TeleportsAsARigidBody) {
+  SoftBody<2> body = plane_body();
+  const Eigen::Vector2f centre = body.centre_of_mass(), p = body.linear_momentum();
+  const float l = body.angular_momentum(), bent = body.deformation();
+  const Eigen::Rotation2Df turn(0.7f);
+  const std::uint32_t resets = body.resets(), revision = body.revision();
+  body.move_without_force(turn, {5, -1});
+  EXPECT_TRUE(body.centre_of_mass().isApprox(centre + Eigen::Vector2f(5, -1), 1e-5f));
+  EXPECT_TRUE(body.linear_momentum().isApprox(turn * p, 1e-4f));
+  EXPECT_NEAR(body.angular_momentum(), l, 1e-3f * std::abs(l));
+  EXPECT_NEAR(body.deformation(), bent, 1e-4f);
+  EXPECT_NE(body.resets(), resets);
+  EXPECT_NE(body.revision(), revision);
+}
+
+TEST(SoftBody2d, GetsItsShapeBackAndKeepsWhatMoves) {
+  SoftBody<2> body = plane_body();
+  ASSERT_GT(body.deformation(), 0.02f);
+  const Eigen::Vector2f centre = body.centre_of_mass(), p = body.linear_momentum();
+  const float l = body.angular_momentum();
+  ASSERT_GT(std::abs(l), 0.01f);
+  body.reset_deformation();
+  EXPECT_LT(body.deformation(), 1e-5f);
+  EXPECT_TRUE(body.centre_of_mass().isApprox(centre, 1e-5f));
+  EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
+  EXPECT_NEAR(body.angular_momentum(), l, 1e-3f * std::abs(l));
+}
+
+TEST(SoftBody2d, TurnsAboutItsCentre) {
+  SoftBody<2> body = plane_body();
+  const Eigen::Vector2f p = body.linear_momentum();
+  const float before = body.angular_momentum();
+  body.add_angular_velocity(2);
+  EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
+  float inertia = 0;
+  for (std::size_t i = 0; i < body.model().particles(); ++i)
+    inertia += body.model().masses()[i] * (body.position(i) - body.centre_of_mass()).squaredNorm();
+  EXPECT_NEAR(body.angular_momentum(), before + 2 * inertia, 1e-3f * inertia);
+}
+
+TEST(SoftBody2d, WithoutContactsAllParticlesAreInner) {
+  SoftBodySettings settings{.cell_size = 0.2f, .density = 5};
+  settings.contacts = false;
+  const std::vector<Eigen::Vector2i> cells{{0, 0}, {1, 0}};
+  SoftBody<2> body(make_soft_body_model(lattice_from_cells(cells, 0.2f), settings));
+  EXPECT_TRUE(body.model().outer().empty());
+  EXPECT_EQ(body.model().inner().size(), 6u);
+  body.keep_inner_inside();  // inside of nothing
+  EXPECT_TRUE(body.positions()[5].allFinite());
+}
+
 }  // namespace
 }  // namespace softcell::ppu

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "lattices_2d.h"
 #include "ppu/plans/match_plan_2d.h"
@@ -156,6 +159,120 @@ TEST(SpeSolver2d, ABodyTooLargeForAnSpeIsSteppedByThePpu) {
     EXPECT_NE(beside.velocities()[0], with_spes.velocities()[0]) << "both were stepped";
   }
   EXPECT_EQ(spes.jobs_done(), 3u) << "the small body's only";
+}
+
+TEST(SpeSolver2d, WorkBegunAheadChangesNothing) {
+  const auto state_of_a_run = [](bool ahead) {
+    Spes spes;
+    Pile pile(spes.solver);
+    for (int step = 0; step < 240; ++step) {
+      pile.soft.step(1.0f / 120);
+      if (step == 30) pile.soft[0].add_velocity({1, 2});
+      if (step == 60) pile.soft[1].reset({0.6f, 3});
+      if (ahead) pile.soft.begin_ahead(1.0f / 120);
+      if (step == 90) pile.soft[2].translate({0.5f, 0});  // what was begun is done again
+      if (step == 120) pile.box2d.SetGravity({1, -9});
+    }
+    return pile.state();
+  };
+  EXPECT_EQ(state_of_a_run(true), state_of_a_run(false));
+}
+
+TEST(SpeSolver2d, WorkBegunAheadIsDoneAgainWhenTheStepIsAnother) {
+  Spes spes;
+  b2World world({0, 0});
+  Box2dSoftBodies soft(world, spes.solver);
+  SoftBody<2>& body = soft.add(man(), {0, 0});
+  soft.begin_ahead(0.01f);
+  body.add_velocity({1, 0});
+  soft.step(0.01f);
+  EXPECT_NEAR(body.velocities()[0].x(), 1, 1e-5f);
+  soft.begin_ahead(0.01f);
+  soft.step(0.0025f);
+  EXPECT_NEAR(body.velocities()[0].x(), 1, 1e-5f);
+  EXPECT_NEAR(body.positions()[0].x() - body.model().lattice().rest_position(0).x(), 0.0125f, 1e-4f);
+}
+
+TEST(SpeSolver2d, WorkBegunAheadRunsWhileTheThreadIsElsewhere) {
+  Spes spes;
+  Pile pile(spes.solver);
+  pile.run(1);
+  const std::uint64_t before = spes.jobs_done();
+  pile.soft.begin_ahead(1.0f / 120);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (spes.jobs_done() == before && std::chrono::steady_clock::now() < until)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_GT(spes.jobs_done(), before);
+  pile.run(1);
+}
+
+/// Directions that regions keep when they have none of their own show in bits.
+TEST(SpeSolver2d, ABodyKeepsItsRotationsWhenOthersComeAndGo) {
+  const auto flattened_after = [](bool others, bool reset) {
+    Spes spes;
+    SoftBody<2> body(man()), other(man());
+    for (std::size_t i = 0; i < body.model().particles(); ++i)
+      body.set_particle(i, Eigen::Rotation2Df(1) * body.position(i), {0, 0});
+    const auto step = [&](std::span<SoftBody<2>* const> bodies) {
+      spes.solver.kick(bodies, 0.01f);
+      spes.solver.finish();
+    };
+    step(std::vector{&body});
+    if (others) step(std::vector{&other, &body});
+    for (std::size_t i = 0; i < body.model().particles(); ++i) body.set_particle(i, {0, 0}, {0, 0});
+    if (reset) spes.solver.forget(body);
+    step(std::vector{&body});
+    return state_hash(body);
+  };
+  EXPECT_EQ(flattened_after(true, false), flattened_after(false, false));
+  EXPECT_NE(flattened_after(false, true), flattened_after(false, false)) << "it was of no consequence";
+}
+
+TEST(SpeSolver2d, SleepingBodiesHaveNoJob) {
+  Spes spes;
+  b2World world({0, -9.81f});
+  b2PolygonShape floor;
+  floor.SetAsBox(20, 1, {0, -1}, 0);
+  const b2BodyDef fixed;
+  world.CreateBody(&fixed)->CreateFixture(&floor, 0);
+  Box2dSoftBodies soft(world, spes.solver);
+  soft.let_sleep(SleepSettings{});
+  SoftBodySettings calm = rubber();
+  calm.damping = 0.3f;
+  const auto model = rectangle_model({5, 4}, calm);
+  SoftBody<2>& low = soft.add(model, {0, 0.1f});
+  SoftBody<2>& high = soft.add(model, {3, 0.2f});
+  for (int i = 0; i < 1200; ++i) soft.step(1.0f / 120);
+  ASSERT_TRUE(low.asleep() && high.asleep());
+  const std::uint64_t before = spes.jobs_done();
+  const std::uint64_t state = state_hash(low);
+  for (int i = 0; i < 30; ++i) soft.step(1.0f / 120);
+  EXPECT_EQ(spes.jobs_done(), before);
+  EXPECT_EQ(state_hash(low), state);
+
+  high.translate({-3, 1.2f});  // what is changed wakes
+  for (int i = 0; i < 2; ++i) soft.step(1.0f / 120);
+  EXPECT_FALSE(high.asleep());
+  EXPECT_TRUE(low.asleep());
+  EXPECT_GT(spes.jobs_done(), before);
+  for (int i = 0; i < 90; ++i) soft.step(1.0f / 120);  // and so does what it falls upon
+  EXPECT_FALSE(low.asleep());
+  EXPECT_NE(state_hash(low), state);
+}
+
+TEST(SpeSolver2d, ANanThatThePpuFindsLeavesNoJobUnderWay) {
+  Spes spes;
+  b2World world({0, 0});
+  Box2dSoftBodies soft(world, spes.solver);
+  SoftBody<2>& large = soft.add(rectangle_model({45, 45}, rubber()), {0, 0});
+  SoftBody<2>& small = soft.add(man(), {20, 0});
+  large.add_particle_velocity(7, {std::nanf(""), 0});
+  EXPECT_THROW(soft.step(0.01f), std::runtime_error);
+  large.reset({0, 0});
+  bend(small);
+  const float bent = small.deformation();
+  for (int i = 0; i < 3; ++i) soft.step(0.01f);  // with the same bodies, whose chain is used again
+  EXPECT_LT(small.deformation(), bent);
 }
 
 }  // namespace

@@ -183,6 +183,9 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
     world.soft_bodies.step(kFrameSeconds / static_cast<float>(s.scene.substeps));
   }
 
+  // The SPEs work on the next frame's first step while this frame is drawn.
+  world.soft_bodies.begin_ahead(kFrameSeconds / static_cast<float>(s.scene.substeps));
+
   using Milliseconds = std::chrono::duration<double, std::milli>;
   const double all = Milliseconds(std::chrono::steady_clock::now() - begin).count();
   const double coupling = Milliseconds(world.soft_bodies.time_spent() - matched_before).count();

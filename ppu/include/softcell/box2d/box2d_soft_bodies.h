@@ -11,13 +11,14 @@
 // velocities, with that step's length; positions are Box2D's own business. Inner particles, which nothing can
 // touch, are integrated here.
 //
-//     step:  [pull: v] [Box2D: collide, solve, x += h v] [gather x v, inner x += h v]
+//     step:  [solver: v] [Box2D: collide, solve, x += h v] [gather x v, inner x += h v]
 
 #include <box2d/b2_world.h>
 
 #include <Eigen/Core>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
@@ -27,7 +28,7 @@ namespace softcell::ppu {
 /// All soft bodies of one world, which has only one of these; used by the thread that steps it. Box2D has no
 /// callback before a step, so the step goes through here. Negative collision groups are its own, one for each
 /// body, from -1 downwards: a fixture of the caller in such a group never meets that body. A NaN in a
-/// particle throws std::runtime_error out of begin_step(), and so does a body that the solver cannot take.
+/// particle throws std::runtime_error out of begin_step().
 class Box2dSoftBodies {
  public:
   /// A particle moves at most this many cells in one step; faster ones are slowed down, which takes momentum
@@ -58,6 +59,18 @@ class Box2dSoftBodies {
   /// length.
   void begin_step(float step);
   void end_step(float step);
+
+  /// Has the solver begin the next step's work now, of `step` seconds, while the caller does something else.
+  /// When bodies are changed after all, or the step has another length, that work is dropped and done again:
+  /// the result is the same. Call it between steps.
+  void begin_ahead(float step);
+
+  /// Lets bodies at rest sleep, or never (std::nullopt, the default). What touches each other, or hangs
+  /// together by joints, falls asleep together: soft bodies, and rigid ones that can move, of which each must
+  /// be slow and allowed to sleep. A sleeping body wakes when something that moves touches it, when what it
+  /// touched is removed, when gravity changes, when its user changes it, and when one of its particles is
+  /// woken in Box2D.
+  void let_sleep(const std::optional<SleepSettings>& settings);
 
   std::size_t size() const;
   SoftBody<2>& operator[](std::size_t index);  ///< in the order of add()

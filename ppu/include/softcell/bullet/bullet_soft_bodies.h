@@ -27,12 +27,6 @@
 
 namespace softcell::ppu {
 
-/// When bodies may sleep. A body at rest costs its coupling next to nothing then, and its solver nothing.
-struct SleepSettings {
-  float speed = 0.05f;  ///< m/s: slower than this are all particles of a body that rests
-  float seconds = 1;    ///< for so long
-};
-
 /// Where the time goes that soft bodies take inside stepSimulation(), since the beginning.
 struct SoftBodyTimes {
   std::chrono::nanoseconds gather{0};  ///< processor time: particles from Bullet, inner ones integrated
