@@ -83,8 +83,12 @@ std::string hex(std::uint64_t value, int digits) {
   return text;
 }
 
-std::string byte_count(std::uint64_t bytes) {
-  return std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes");
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+  std::string text = std::to_string(count) + " ";
+  if (count == 1) return text.append(one);
+  return many.empty() ? text.append(one).append("s") : text.append(many);
 }
+
+std::string byte_count(std::uint64_t bytes) { return counted(bytes, "byte"); }
 
 }  // namespace softcell::base

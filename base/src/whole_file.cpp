@@ -45,6 +45,10 @@ WholeFile::WholeFile(fs::path path) : path_(std::move(path)), place_(path_) {
   open_temporary(status);
 }
 
+WholeFile::WholeFile(std::FILE* stream, fs::path called) : path_(std::move(called)), file_(stream) {
+  SC_ASSERT(stream != nullptr, "{} is no open stream", path_);
+}
+
 WholeFile::~WholeFile() { discard(); }
 
 fs::path WholeFile::behind_links(fs::path path) {

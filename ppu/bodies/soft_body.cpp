@@ -6,6 +6,7 @@
 
 #include "ppu/matching/rotation.h"
 #include "ppu/reference/shape_matching.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -46,6 +47,7 @@ Matrix3d inertia_of(const Matrix3d& second_moment) {
 Matrix3d inverse(const Matrix3d& inertia) { return inertia.inverse(); }
 Eigen::Vector3f to_float(const Vector3d& axial) { return axial.cast<float>(); }
 Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
+  SC_ASSERT(rotation.norm() > 0, "a quaternion of length {} is no rotation", rotation.norm());
   return rotation.normalized().toRotationMatrix().cast<double>();
 }
 
@@ -112,7 +114,7 @@ typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& b
 
 template <int kDimension>
 SoftBody<kDimension>::SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model, const Vector& position)
-    : model_(std::move(model)),
+    : model_((SC_ASSERT(model != nullptr, "a soft body without a model"), std::move(model))),
       x_(model_->particles()),
       v_(model_->particles(), Vector::Zero()),
       padded_(kDimension == 3 ? model_->particles() : 0),
@@ -173,6 +175,7 @@ void SoftBody<kDimension>::pull(float step) {
 
 template <int kDimension>
 void SoftBody<kDimension>::limit_speed(float limit) {
+  SC_ASSERT(limit >= 0, "a speed limit of {} m/s", limit);
   for (Vector& v : v_) {
     const float squared = v.squaredNorm();
     if (squared > limit * limit) v *= limit / std::sqrt(squared);
@@ -181,6 +184,7 @@ void SoftBody<kDimension>::limit_speed(float limit) {
 
 template <int kDimension>
 void SoftBody<kDimension>::advance_inner(float step, const Vector& gravity) {
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   for (const std::uint32_t i : model_->inner()) {
     const Vector v = v_[i] + step * gravity;
     set_particle(i, x_[i] + step * v, v);
@@ -255,6 +259,7 @@ void SoftBody<kDimension>::add_velocity(const Vector& dv) {
 
 template <int kDimension>
 void SoftBody<kDimension>::add_particle_velocity(std::size_t particle, const Vector& dv) {
+  SC_ASSERT(particle < v_.size(), "particle {} of {}", particle, v_.size());
   v_[particle] += dv;
   ++revision_;
 }

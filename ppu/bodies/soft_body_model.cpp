@@ -52,6 +52,11 @@ SoftBodyModel<kDimension>::SoftBodyModel(Lattice<kDimension> lattice,
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
 }
 
+template <int kDimension>
+const TriangleMesh& SoftBodyModel<kDimension>::mesh() const requires(kDimension == 3) {
+  return embedding_->mesh;
+}
+
 template class SoftBodyModel<2>;
 template class SoftBodyModel<3>;
 
@@ -72,6 +77,7 @@ struct SoftBodyModelMaker {
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings) {
   validate(settings);
+  validate(mesh);
   Lattice<3> lattice = voxelize(mesh, settings.cell_size);
   Embedding embedding = embed(mesh, lattice);
   return SoftBodyModelMaker::make(std::move(lattice), std::move(embedding), settings);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
 
 namespace softcell::ppu {
@@ -72,6 +73,7 @@ void Box2dBody::begin_step() {
 }
 
 void Box2dBody::hand_over(float step) {
+  SC_ASSERT(step > 0, "a time step of {} s", step);
   if (soft_.asleep()) return;
   soft_.limit_speed(Box2dSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing / step);
   const auto outer = soft_.model().outer();
@@ -98,6 +100,7 @@ void Box2dBody::count_stillness(float step, float speed) {
 }
 
 void Box2dBody::fall_asleep() {
+  SC_ASSERT(!soft_.asleep(), "a body falls asleep that has been still for {} s and sleeps", still_for_);
   for (std::size_t i = 0; i < soft_.velocities().size(); ++i) soft_.set_velocity(i, Vector2f::Zero());
   for (b2Body* particle : particles_) particle->SetAwake(false);  // Box2D stops it, too
   gravity_asleep_ = world_.GetGravity();

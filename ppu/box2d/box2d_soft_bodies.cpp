@@ -1,6 +1,7 @@
 #include "softcell/box2d/box2d_soft_bodies.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
@@ -9,17 +10,16 @@
 
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/rest.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
 using Eigen::Vector2f;
 
 struct Box2dSoftBodies::Impl {
-  Impl(b2World& w, SoftBodySolver<2>* other)
-      : world(w), solver(other ? *other : ppu), rest(w, [this](const b2Body& body) -> Box2dBody* {
-          const auto found = particles.find(&body);
-          return found == particles.end() ? nullptr : found->second.body;
-        }) {}
+  Impl(b2World& w, std::unique_ptr<SoftBodySolver<2>> own) : Impl(w, *own) { owned = std::move(own); }
+  Impl(b2World& w, SoftBodySolver<2>& others)
+      : world(w), solver(others), rest(w, [this](const b2Body& body) { return soft_body_of(body); }) {}
   ~Impl() {
     settle();
     for (SoftBody<2>* const body : soft) solver.forget(*body);
@@ -33,6 +33,8 @@ struct Box2dSoftBodies::Impl {
   }
 
   void begin_step(float step) {
+    SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
+    SC_ASSERT(!world.IsLocked(), "a step of {} s within a step of Box2D", step);
     if (ahead != step || std::ranges::any_of(bodies, [](const auto& body) {
           return body->was_changed() || body->was_pushed();
         })) {
@@ -57,6 +59,12 @@ struct Box2dSoftBodies::Impl {
       if (!body->soft().asleep()) body->count_stillness(step, sleep->speed);
     for (const auto& body : bodies)
       if (!body->soft().asleep() && body->still_for() >= sleep->seconds) rest.settle(*body, *sleep);
+  }
+
+  /// Null for a b2Body that is no particle.
+  Box2dBody* soft_body_of(const b2Body& body) const {
+    const auto found = particles.find(&body);
+    return found == particles.end() ? nullptr : found->second.body;
   }
 
   /// What was begun ahead is of no use.
@@ -84,7 +92,7 @@ struct Box2dSoftBodies::Impl {
   };
 
   b2World& world;
-  PpuSolver<2> ppu;
+  std::unique_ptr<SoftBodySolver<2>> owned;  // none: the caller has it
   SoftBodySolver<2>& solver;
   std::vector<std::unique_ptr<Box2dBody>> bodies;
   std::vector<SoftBody<2>*> soft;  // of `bodies`
@@ -95,12 +103,18 @@ struct Box2dSoftBodies::Impl {
   std::chrono::nanoseconds spent{0}, waited{0};
 };
 
-Box2dSoftBodies::Box2dSoftBodies(b2World& world) : impl_(std::make_unique<Impl>(world, nullptr)) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world)
+    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver<2>>())) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, SolverFactory& solvers)
+    : impl_(std::make_unique<Impl>(world, solvers.make_solver_2d())) {}
 Box2dSoftBodies::Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver)
-    : impl_(std::make_unique<Impl>(world, &solver)) {}
+    : impl_(std::make_unique<Impl>(world, solver)) {}
 Box2dSoftBodies::~Box2dSoftBodies() = default;
 
 SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position) {
+  SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {})",
+            model ? "with" : "without", position.x(), position.y());
+  SC_ASSERT(!impl_->world.IsLocked(), "add() of body {} within a step of Box2D", impl_->bodies.size());
   impl_->settle();
   Box2dBody& added = *impl_->bodies.emplace_back(
       std::make_unique<Box2dBody>(impl_->world, std::move(model), position, impl_->free_group()));
@@ -138,6 +152,7 @@ void Box2dSoftBodies::end_step(float step) {
 }
 
 void Box2dSoftBodies::begin_ahead(float step) {
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   impl_->timed([&] {
     impl_->settle();
     impl_->solver.kick(impl_->soft, step);
@@ -146,6 +161,8 @@ void Box2dSoftBodies::begin_ahead(float step) {
 }
 
 void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
+  SC_ASSERT(!settings || (settings->speed >= 0 && settings->seconds >= 0),
+            "bodies sleep that were slower than {} m/s for {} s", settings->speed, settings->seconds);
   impl_->settle();
   impl_->sleep = settings;
   if (settings) return;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 namespace {
 
@@ -43,6 +45,7 @@ void Rest::add_neighbours(b2Body& body) {
 }
 
 void Rest::settle(Box2dBody& body, const SleepSettings& settings) {
+  SC_ASSERT(!body.soft().asleep(), "a body that has been still for {} s already sleeps", body.still_for());
   soft_.assign(1, &body);
   rigid_.clear();
   for (std::size_t soft = 0, rigid = 0; soft < soft_.size() || rigid < rigid_.size();) {

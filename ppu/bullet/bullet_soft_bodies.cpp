@@ -13,6 +13,7 @@
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/bullet/contact_sphere.h"
 #include "ppu/bullet/processor_time.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -57,6 +58,7 @@ class CoupledBody {
 
   /// The box around its particles as Bullet knows them. @pre it has some
   Bounds<3> box() const {
+    SC_ASSERT(!particles_.empty(), "a body without contacts has no box in Bullet");
     Bounds<3> box{to_eigen(particles_[0].getWorldTransform().getOrigin()), {}};
     box.high = box.low;
     for (const btRigidBody& particle : particles_) {
@@ -231,7 +233,12 @@ void timed(std::chrono::nanoseconds& time, const Work& work) {
 }  // namespace
 
 struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
-  Impl(btDiscreteDynamicsWorld& w, SoftBodySolver<3>* other) : world(w), solver(other ? *other : ppu) {
+  Impl(btDiscreteDynamicsWorld& w, std::unique_ptr<SoftBodySolver<3>> own)
+      : world(w), owned(std::move(own)), solver(*owned) {
+    attach();
+  }
+  Impl(btDiscreteDynamicsWorld& w, SoftBodySolver<3>& others) : world(w), solver(others) { attach(); }
+  void attach() {
     BulletHook::attach(world, *this);
     world.addAction(this);
   }
@@ -244,6 +251,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
 
   void begin_substep(float step) override {
+    SC_ASSERT(step > 0, "a substep of {} s", step);
     const auto begin = std::chrono::steady_clock::now();
     timed(times.gather, [&] {
       if (ahead != step || std::any_of(bodies.begin(), bodies.end(), [](const auto& body) {
@@ -294,7 +302,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
 
   btDiscreteDynamicsWorld& world;
-  PpuSolver<3> ppu;
+  std::unique_ptr<SoftBodySolver<3>> owned;  // none: the caller has it
   SoftBodySolver<3>& solver;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
   std::vector<SoftBody<3>*> soft;  // of `bodies`
@@ -304,13 +312,17 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 };
 
 BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world)
-    : impl_(std::make_unique<Impl>(world, nullptr)) {}
+    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver<3>>())) {}
+BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers)
+    : impl_(std::make_unique<Impl>(world, solvers.make_solver())) {}
 BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver)
-    : impl_(std::make_unique<Impl>(world, &solver)) {}
+    : impl_(std::make_unique<Impl>(world, solver)) {}
 BulletSoftBodies::~BulletSoftBodies() = default;
 
 SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model,
                                    const Eigen::Vector3f& position) {
+  SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {}, {})",
+            model ? "with" : "without", position.x(), position.y(), position.z());
   impl_->settle();
   SoftBody<3>& soft =
       impl_->bodies.emplace_back(std::make_unique<CoupledBody>(impl_->world, std::move(model), position))
@@ -333,6 +345,7 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
 }
 
 void BulletSoftBodies::begin_ahead(float step) {
+  SC_ASSERT(step > 0, "a substep of {} s", step);
   impl_->settle();
   timed(impl_->times.solve, [&] { impl_->solver.kick(impl_->soft, step); });
   impl_->ahead = step;

@@ -8,6 +8,8 @@
 #include <string>
 #include <tuple>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 namespace {
 
@@ -174,6 +176,8 @@ void set_lane(spu::SkinGroup& group, std::size_t lane, const Vector3d& xi, const
 }  // namespace
 
 Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
+  SC_ASSERT(mesh.normals.size() == mesh.positions.size(), "{} positions with {} normals",
+            mesh.positions.size(), mesh.normals.size());
   const std::vector<Place> places = locate_all(mesh, lattice);
   std::vector<std::uint32_t> order(places.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -181,6 +185,7 @@ Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
                    [&](std::uint32_t a, std::uint32_t b) { return places[a].cell < places[b].cell; });
 
   Embedding embedding;
+  embedding.mesh = mesh;
   embedding.slot_of_vertex.resize(places.size());
   std::vector<std::uint32_t> cell_of_group;
   PartCutter cutter(lattice, embedding.parts);

@@ -38,6 +38,7 @@ struct Embedding {
   std::vector<std::uint32_t>
       slot_of_vertex;  ///< mesh vertex -> output slot 4 * group + lane (a vertex's own, not a repeat)
   std::vector<std::uint32_t> vertex_of_slot;  ///< output slot -> mesh vertex; repeats included
+  TriangleMesh mesh;                          ///< as it was given
   std::vector<std::uint32_t> indices;  ///< three output slots per mesh triangle: the index buffer for drawing
 };
 

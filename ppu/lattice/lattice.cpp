@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 namespace {
@@ -115,6 +117,8 @@ Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, f
     for (unsigned k = 0; k < lattice.kCorners; ++k) {
       const auto place = std::lower_bound(lattice.particles.begin(), lattice.particles.end(),
                                           corner_of(lattice.cells[c], k), kPrecedes);
+      SC_ASSERT(place != lattice.particles.end() && *place == corner_of(lattice.cells[c], k),
+                "corner {} of cell {} is no particle", k, c);
       lattice.corners[c][k] = static_cast<std::uint32_t>(place - lattice.particles.begin());
     }
   }

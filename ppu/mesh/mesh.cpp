@@ -1,8 +1,23 @@
 #include "softcell/soft_bodies/mesh.h"
 
+#include <cmath>
+#include <stdexcept>
+
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
+namespace {
+
+void require_one_for_each(const char* what, std::size_t count, std::size_t positions) {
+  if (count == positions) return;
+  throw std::invalid_argument("a mesh of " + std::to_string(positions) + " positions has " +
+                              std::to_string(count) + " " + what + "; one for each position was expected");
+}
+
+}  // namespace
 
 Bounds<3> bounds(const TriangleMesh& mesh) {
+  SC_ASSERT(!mesh.positions.empty(), "a mesh without positions has no box");
   Bounds<3> box{mesh.positions.front(), mesh.positions.front()};
   for (const Eigen::Vector3f& position : mesh.positions) {
     box.low = box.low.cwiseMin(position);
@@ -12,6 +27,7 @@ Bounds<3> bounds(const TriangleMesh& mesh) {
 }
 
 void fit(TriangleMesh& mesh, float longest_side) {
+  SC_ASSERT(longest_side > 0 && std::isfinite(longest_side), "a longest side of {} m", longest_side);
   const Bounds<3> box = bounds(mesh);
   // In double: the sides of a box of finite floats may pass the largest float.
   const Eigen::Vector3d low = box.low.cast<double>(), high = box.high.cast<double>();
@@ -19,6 +35,34 @@ void fit(TriangleMesh& mesh, float longest_side) {
   const double scale = static_cast<double>(longest_side) / (high - low).maxCoeff();
   for (Eigen::Vector3f& position : mesh.positions) {
     position = (scale * (position.cast<double>() - centre)).cast<float>();
+  }
+}
+
+void validate(const TriangleMesh& mesh) {
+  const std::size_t positions = mesh.positions.size();
+  require_one_for_each("normals", mesh.normals.size(), positions);
+  if (!mesh.texture_coordinates.empty())
+    require_one_for_each("texture coordinates", mesh.texture_coordinates.size(), positions);
+  if (!mesh.colours.empty()) require_one_for_each("colours", mesh.colours.size(), positions);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t vertex : mesh.triangles[t]) {
+      if (vertex < positions) continue;
+      throw std::invalid_argument("triangle " + std::to_string(t) + " of a mesh names vertex " +
+                                  std::to_string(vertex) + "; the mesh has " + std::to_string(positions));
+    }
+  }
+  std::size_t next = 0;
+  for (const MeshPart& part : mesh.parts) {
+    if (part.first_triangle != next) {
+      throw std::invalid_argument("a part of a mesh begins at triangle " +
+                                  std::to_string(part.first_triangle) + "; the part before it ends at " +
+                                  std::to_string(next));
+    }
+    next += part.triangle_count;
+  }
+  if (!mesh.parts.empty() && next != mesh.triangles.size()) {
+    throw std::invalid_argument("the parts of a mesh have " + std::to_string(next) +
+                                " triangles, the mesh has " + std::to_string(mesh.triangles.size()));
   }
 }
 

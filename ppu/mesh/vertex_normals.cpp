@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 namespace {
 
@@ -87,7 +89,10 @@ TriangleMesh with_smooth_normals(std::span<const Eigen::Vector3f> positions,
   std::vector<Eigen::Vector3d> areas(triangles.size()), face_normals(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto& [a, b, c] = triangles[t];
+    SC_ASSERT(std::max({a, b, c}) < positions.size(), "triangle {} names position {} of {}", t,
+              std::max({a, b, c}), positions.size());
     areas[t] = area_vector(positions[a], positions[b], positions[c]);
+    SC_ASSERT(areas[t].norm() > 0, "triangle {} has no area", t);
     face_normals[t] = areas[t] / areas[t].norm();
   }
   CornerSets groups = smooth_groups(triangles, face_normals, crease_cosine);

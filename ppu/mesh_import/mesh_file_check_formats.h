@@ -15,4 +15,8 @@ MeshFileContents check_stl(std::string_view bytes);
 /// goes before it.
 void add_polygon(MeshFileContents& contents, std::size_t corners, const std::string& where);
 
+/// Says which object and material the triangles have that were counted since the last call; call it after
+/// each polygon. @throws std::runtime_error  too many parts.
+void extend_parts(MeshFileContents& contents, const std::string& object, const std::string& material);
+
 }  // namespace softcell::ppu

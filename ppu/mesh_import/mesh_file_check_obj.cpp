@@ -1,6 +1,7 @@
-// Wavefront OBJ: polygons only; materials, groups and smoothing groups are skipped, curves and surfaces
-// refused. The library gets none of what is skipped: it follows the names of material libraries, even into
-// places where there is nothing, and has been seen to write outside its memory on the way.
+// Wavefront OBJ: polygons only; smoothing groups and the like are skipped, curves and surfaces refused. The
+// names of objects, groups and materials are kept here. The library gets none of them: it follows the names
+// of material libraries, even into places where there is nothing, and has been seen to write outside its
+// memory on the way.
 
 #include <algorithm>
 #include <array>
@@ -12,9 +13,8 @@ namespace softcell::ppu {
 namespace {
 
 /// Statements without geometry.
-constexpr std::array<std::string_view, 16> kSkipped{
-    "g",     "o",   "s",  "mg", "usemtl", "mtllib",     "usemap",    "maplib",
-    "bevel", "lod", "vp", "l",  "p",      "shadow_obj", "trace_obj", "c_interp"};
+constexpr std::array<std::string_view, 12> kSkipped{
+    "s", "mg", "usemap", "maplib", "bevel", "lod", "vp", "l", "p", "shadow_obj", "trace_obj", "c_interp"};
 
 class ObjCheck {
  public:
@@ -27,6 +27,7 @@ class ObjCheck {
     check_end(highest_[1], counts_[1], "texture coordinate");
     check_end(highest_[2], counts_[2], "normal");
     contents_.has_normals = contents_.triangles > 0 && corners_ == corners_with_normal_;
+    contents_.has_texture_coordinates = corners_with_texture_ > 0;
     return contents_;
   }
 
@@ -40,6 +41,7 @@ class ObjCheck {
       numbers(words, {3, 4, 6, 7});
       if (words.size() == 5 && lines_.finite_number(words[4]) == 0) lines_.refuse("a vertex has weight 0");
       ++counts_[0];
+      contents_.has_colours = contents_.has_colours || words.size() == 7;
       keep("v", words);
     } else if (keyword == "vt") {
       numbers(words, {1, 2, 3});
@@ -51,10 +53,21 @@ class ObjCheck {
       keep("vn", words);
     } else if (keyword == "f" || keyword == "fo") {
       face(words);
+      extend_parts(contents_, object_, material_);
       keep("f", words);
+    } else if (keyword == "o" || keyword == "g") {
+      object_ = mesh_part_name(arguments(words));
+    } else if (keyword == "usemtl") {
+      material_ = mesh_part_name(arguments(words));
+    } else if (keyword == "mtllib") {
+      contents_.material_library = mesh_part_name(arguments(words));
     } else if (std::find(kSkipped.begin(), kSkipped.end(), keyword) == kSkipped.end()) {
       lines_.refuse(in_quotes(keyword) + " is not a statement of an OBJ file of polygons");
     }
+  }
+
+  static std::span<const std::string_view> arguments(const std::vector<std::string_view>& words) {
+    return std::span(words).subspan(1);
   }
 
   void keep(std::string_view keyword, const std::vector<std::string_view>& words) {
@@ -92,7 +105,10 @@ class ObjCheck {
       const std::size_t slash = rest.find('/');
       const std::string_view number = rest.substr(0, slash);
       const bool may_be_missing = part == 1 && slash != std::string_view::npos;
-      if (!(number.empty() && may_be_missing)) index(number, part);
+      if (!(number.empty() && may_be_missing)) {
+        index(number, part);
+        if (part == 1) ++corners_with_texture_;
+      }
       if (slash == std::string_view::npos) break;
       rest.remove_prefix(slash + 1);
     }
@@ -120,7 +136,8 @@ class ObjCheck {
   LineReader lines_;
   MeshFileContents contents_;
   std::array<std::int64_t, 3> counts_{}, highest_{};  ///< of v, vt, vn
-  std::size_t corners_ = 0, corners_with_normal_ = 0;
+  std::size_t corners_ = 0, corners_with_normal_ = 0, corners_with_texture_ = 0;
+  std::string object_, material_;  ///< of the faces to come
 };
 
 }  // namespace

@@ -309,6 +309,11 @@ MeshFileContents check_ply(std::string_view bytes) {
   const Element& vertex = *header.find("vertex");
   contents.has_normals =
       vertex.find({"nx"}) != nullptr && vertex.find({"ny"}) != nullptr && vertex.find({"nz"}) != nullptr;
+  const auto has = [&](std::initializer_list<std::string_view> names) {
+    return vertex.find(names) != nullptr;
+  };
+  contents.has_texture_coordinates = has({"u", "s", "tx", "texture_u"}) && has({"v", "t", "ty", "texture_v"});
+  contents.has_colours = has({"red", "r"}) && has({"green", "g"}) && has({"blue", "b"});
   // The library loses properties behind a comment, and takes one that begins with an element's name for that.
   if (header.has_more) contents.geometry = header.declarations.append(lines.rest());
   return contents;

@@ -15,17 +15,20 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "ppu/mesh/vertex_normals.h"
+#include "ppu/mesh_import/material_library.h"
 #include "ppu/mesh_import/mesh_file_text.h"
 #include "ppu/mesh_import/parse_mesh.h"
 
 namespace softcell::ppu {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1}
-                                         << 30;  // 4 million triangles take a quarter of it as text
+/// 4 million triangles take a quarter of it as text.
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 30;
+constexpr std::uintmax_t kMaxMaterialLibraryBytes = std::uintmax_t{16} << 20;
 
 const char* extension_of(MeshFormat format) {
   switch (format) {
@@ -81,12 +84,35 @@ std::string one_line(std::string text) {
 /// Corners and triangles as the library delivers them, checked; degenerate triangles left out.
 struct Soup {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<Eigen::Vector3f> normals;  ///< none, or one of any length per position
+  std::vector<Eigen::Vector3f> normals;              ///< none, or one of any length per position
+  std::vector<Eigen::Vector2f> texture_coordinates;  ///< none, or one per position
+  std::vector<Eigen::Vector4f> colours;              ///< none, or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> number_in_file;  ///< of each triangle, those of area zero counted
 };
 
 Eigen::Vector3f vector_of(const aiVector3D& v) {
   return {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};  // + 0 turns -0 into 0, which is equal and must look equal
+}
+
+/// The texture coordinates and colours of one of the library's meshes, behind those of the ones before.
+void gather_attributes(const aiMesh& mesh, const MeshFileContents& contents, Soup& soup) {
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    if (contents.has_texture_coordinates) {
+      const aiVector3D none(0, 0, 0);
+      const aiVector3D& at = mesh.HasTextureCoords(0) ? mesh.mTextureCoords[0][v] : none;
+      soup.texture_coordinates.emplace_back(at.x + 0.0f, at.y + 0.0f);
+      if (!soup.texture_coordinates.back().allFinite())
+        refuse("it has texture coordinates that are not finite");
+    }
+    if (contents.has_colours) {
+      const aiColor4D white(1, 1, 1, 1);
+      const aiColor4D& c = mesh.HasVertexColors(0) ? mesh.mColors[0][v] : white;
+      const Eigen::Vector4f colour(c.r + 0.0f, c.g + 0.0f, c.b + 0.0f, c.a + 0.0f);
+      if (!colour.allFinite()) refuse("it has colours that are not finite");
+      soup.colours.push_back(colour.cwiseMax(0.0f).cwiseMin(1.0f));
+    }
+  }
 }
 
 Soup gather(const aiScene& scene, const MeshFileContents& contents) {
@@ -102,6 +128,7 @@ Soup gather(const aiScene& scene, const MeshFileContents& contents) {
       if (!soup.positions.back().allFinite()) refuse("it has coordinates that are not finite");
       if (normals) soup.normals.push_back(vector_of(mesh.mNormals[v]));
     }
+    gather_attributes(mesh, contents, soup);
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices != 3) continue;  // points and lines
@@ -113,7 +140,9 @@ Soup gather(const aiScene& scene, const MeshFileContents& contents) {
       }
       const auto& [a, b, c] = triangle;
       const double area = area_vector(soup.positions[a], soup.positions[b], soup.positions[c]).norm();
-      if (area > 0) soup.triangles.push_back(triangle);
+      if (area <= 0) continue;
+      soup.triangles.push_back(triangle);
+      soup.number_in_file.push_back(static_cast<std::uint32_t>(delivered - 1));
     }
   }
   if (delivered != contents.triangles) {
@@ -195,7 +224,75 @@ TriangleMesh with_given_normals(const Soup& soup) {
   return mesh;
 }
 
-std::string read_file(const std::filesystem::path& path) {
+/// Gives the mesh's corners the texture coordinates and colours of the soup's: a vertex whose corners differ
+/// in them becomes several. A mesh whose vertices each have one keeps its order of vertices.
+/// @param corners  the soup's vertices, three for each of the mesh's triangles, before any were joined
+void carry_attributes(const Soup& soup, std::span<const std::array<std::uint32_t, 3>> corners,
+                      TriangleMesh& mesh) {
+  if (soup.texture_coordinates.empty() && soup.colours.empty()) return;
+  const auto texture = [&](std::uint32_t corner) {
+    return soup.texture_coordinates.empty() ? Eigen::Vector2f(0, 0) : soup.texture_coordinates[corner];
+  };
+  const auto colour = [&](std::uint32_t corner) {
+    return soup.colours.empty() ? Eigen::Vector4f(0, 0, 0, 0) : soup.colours[corner];
+  };
+  const auto key = [&](std::uint32_t i) {
+    const std::uint32_t corner = corners[i / 3][i % 3];
+    const Eigen::Vector2f t = texture(corner);
+    const Eigen::Vector4f c = colour(corner);
+    return std::make_tuple(mesh.triangles[i / 3][i % 3], t.x(), t.y(), c.x(), c.y(), c.z(), c.w());
+  };
+  const auto number = number_equal(3 * mesh.triangles.size(),
+                                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  TriangleMesh split;
+  split.triangles.resize(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < number.size(); ++i) {
+    if (number[i] == split.positions.size()) {
+      const std::uint32_t vertex = mesh.triangles[i / 3][i % 3], corner = corners[i / 3][i % 3];
+      split.positions.push_back(mesh.positions[vertex]);
+      split.normals.push_back(mesh.normals[vertex]);
+      if (!soup.texture_coordinates.empty()) split.texture_coordinates.push_back(texture(corner));
+      if (!soup.colours.empty()) split.colours.push_back(colour(corner));
+    }
+    split.triangles[i / 3][i % 3] = number[i];
+  }
+  mesh = std::move(split);
+}
+
+/// The file's parts, counted in the triangles that are left.
+/// @param number_in_file  of each triangle left, ascending
+std::vector<MeshPart> parts_of(std::vector<MeshPart> parts, std::span<const std::uint32_t> number_in_file) {
+  std::uint32_t next = 0;
+  for (MeshPart& part : parts) {
+    const std::uint32_t end = part.first_triangle + part.triangle_count;
+    part.first_triangle = next;
+    while (next < number_in_file.size() && number_in_file[next] < end) ++next;
+    part.triangle_count = next - part.first_triangle;
+  }
+  std::erase_if(parts, [](const MeshPart& part) { return part.triangle_count == 0; });
+  return parts;
+}
+
+void find_materials(const std::string& name, const ReadNeighbour& read_neighbour,
+                    std::vector<MeshPart>& parts) {
+  if (name.empty() || !read_neighbour) return;
+  const std::optional<std::string> text = read_neighbour(name);
+  if (!text) return;
+  MaterialLibrary library;
+  try {
+    library = parse_material_library(*text);
+  } catch (const std::runtime_error& problem) {
+    refuse("its material library " + in_quotes(name) + ": " + problem.what());
+  }
+  for (MeshPart& part : parts) {
+    const auto material = library.find(part.material);
+    if (part.material.empty() || material == library.end()) continue;
+    part.base_colour = material->second.base_colour;
+    part.texture = material->second.texture;
+  }
+}
+
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) refuse("there is no such file");
@@ -204,12 +301,25 @@ std::string read_file(const std::filesystem::path& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) refuse("its size cannot be found: " + error.message());
   if (size == 0) refuse("it is empty");
-  if (size > kMaxFileBytes) refuse("it is larger than 1 GiB");
+  if (size > most_bytes) refuse("it is larger than " + std::to_string(most_bytes >> 20) + " MiB");
   std::string bytes(static_cast<std::size_t>(size), '\0');
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse("it cannot be opened: " + std::string(std::strerror(errno)));
   if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) refuse("it cannot be read to its end");
   return bytes;
+}
+
+/// A material library that lies in the folder of the mesh's file. Names that lead elsewhere name no file here.
+std::optional<std::string> read_neighbour_of(const std::filesystem::path& mesh, const std::string& name) {
+  if (name.find_first_of("/\\") != std::string::npos || name == "." || name == "..") return std::nullopt;
+  const std::filesystem::path path = mesh.parent_path() / name;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return std::nullopt;
+  try {
+    return read_file(path, kMaxMaterialLibraryBytes);
+  } catch (const std::runtime_error& problem) {
+    refuse("its material library " + in_quotes(name) + ": " + problem.what());
+  }
 }
 
 MeshFormat format_of(const std::filesystem::path& path) {
@@ -224,7 +334,7 @@ MeshFormat format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format) {
+TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format, const ReadNeighbour& read_neighbour) {
   const MeshFileContents contents = check_mesh_file(bytes, format);
   const std::string extension = extension_of(format);
   Assimp::Importer importer;
@@ -235,15 +345,25 @@ TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format) {
   if (scene == nullptr) refuse(one_line(importer.GetErrorString()));
 
   Soup soup = gather(*scene, contents);
-  if (!soup.normals.empty() && normalize(soup.normals)) return with_given_normals(soup);
-  weld(soup);
-  return with_smooth_normals(soup.positions, soup.triangles);
+  const std::vector<std::array<std::uint32_t, 3>> corners = soup.triangles;
+  TriangleMesh mesh;
+  if (!soup.normals.empty() && normalize(soup.normals)) {
+    mesh = with_given_normals(soup);
+  } else {
+    weld(soup);
+    mesh = with_smooth_normals(soup.positions, soup.triangles);
+  }
+  carry_attributes(soup, corners, mesh);
+  mesh.parts = parts_of(contents.parts, soup.number_in_file);
+  find_materials(contents.material_library, read_neighbour, mesh.parts);
+  return mesh;
 }
 
 TriangleMesh import_mesh(const std::filesystem::path& path) {
   try {
     const MeshFormat format = format_of(path);
-    return parse_mesh(read_file(path), format);
+    return parse_mesh(read_file(path, kMaxFileBytes), format,
+                      [&](const std::string& name) { return read_neighbour_of(path, name); });
   } catch (const std::runtime_error& problem) {
     throw std::runtime_error("cannot import the mesh " + path.string() + ": " + problem.what());
   }

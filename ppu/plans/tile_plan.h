@@ -28,7 +28,7 @@ struct TileShape {
 /// keeps for later slices, and until when, is found here too: slots of the local store are given out and
 /// taken back as a compiler does with registers.
 ///
-/// @see match_tiles_job.h for passes and places, docs/performance.md for what was chosen and why
+/// @see match_tiles_job.h for passes and places, docs/notes/performance.md for what was chosen and why
 class TilePlan {
  public:
   struct Tile {

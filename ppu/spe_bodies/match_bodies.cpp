@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "ppu/spe_bodies/match_orchestration.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -43,17 +45,20 @@ MatchBodies<kDimension>::MatchBodies(dma::AddressSpace& memory, const typename K
 
 template <int kDimension>
 auto MatchBodies<kDimension>::positions(std::size_t body) -> std::span<Vector> {
+  SC_ASSERT(body < size(), "positions of body {} of {}", body, size());
   std::byte* const at = positions_.data() + body * Kernel::positions_stride(header_);
   return {reinterpret_cast<Vector*>(at), header_.particles};
 }
 
 template <int kDimension>
 auto MatchBodies<kDimension>::velocities(std::size_t body) -> std::span<Vector> {
+  SC_ASSERT(body < size(), "velocities of body {} of {}", body, size());
   return {reinterpret_cast<Vector*>(state(body) + sizeof(Result)), header_.particles};
 }
 
 template <int kDimension>
 auto MatchBodies<kDimension>::rotations(std::size_t body) -> std::span<Rotations> {
+  SC_ASSERT(body < size(), "rotations of body {} of {}", body, size());
   std::byte* const at = state(body) + Kernel::rotations_at(header_);
   return {reinterpret_cast<Rotations*>(at), spu::groups_of(header_.regions)};
 }
@@ -72,6 +77,9 @@ void MatchBodies<kDimension>::reset(std::size_t body) {
 template <int kDimension>
 void MatchBodies<kDimension>::take_rotations(std::size_t body, const MatchBodies& other,
                                              std::size_t other_body) {
+  SC_ASSERT(header_.particles == other.header_.particles && header_.regions == other.header_.regions,
+            "bodies of {} particles and {} regions, and of {} and {}, have not the same plan",
+            header_.particles, header_.regions, other.header_.particles, other.header_.regions);
   std::ranges::copy(other.rotations(other_body), rotations(body).begin());
   if constexpr (kDimension == 3) result(body).cold = other.result(other_body).cold;
 }
@@ -112,6 +120,10 @@ template <int kDimension>
 void MatchBodies<kDimension>::add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
                                        std::span<const std::size_t> bodies, std::size_t bodies_per_job) {
   validate(settings);
+  SC_ASSERT(bodies_per_job > 0, "jobs of {} bodies", bodies_per_job);
+  SC_ASSERT(std::ranges::adjacent_find(bodies, std::ranges::greater_equal()) == bodies.end(),
+            "the numbers of {} bodies do not ascend", bodies.size());
+  SC_ASSERT(bodies.empty() || bodies.back() < size(), "body {} of {}", bodies.back(), size());
   stepped_.assign(bodies.begin(), bodies.end());
   for (std::size_t first = 0, number = 0; first < bodies.size(); ++number) {
     const std::size_t count = bodies_of_job(bodies.subspan(first), bodies_per_job);

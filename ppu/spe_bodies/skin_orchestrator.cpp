@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <exception>
 #include <stdexcept>
 #include <string>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -24,6 +27,7 @@ struct SkinOrchestrator::Body {
     dma::Buffer<SkinJob> jobs;
     dma::Buffer<SkinnedVertex> vertices;
     Eigen::Vector3f origin{0, 0, 0};
+    bool skinned = false;  ///< with others, at least once
   };
   const Model* model;
   std::array<Half, 2> half;
@@ -45,6 +49,7 @@ struct SkinOrchestrator::Frame {
 };
 
 Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions) {
+  SC_ASSERT(!positions.empty(), "a body without particles has no origin");
   Eigen::Vector3f low = positions[0].head<3>(), high = low;
   for (const Eigen::Vector4f& p : positions) {
     low = low.cwiseMin(p.head<3>());
@@ -85,6 +90,25 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
   bodies_.push_back(std::move(body));
   jobs_per_frame_ += shared.parts.size();
   return bodies_.size() - 1;
+}
+
+void SkinOrchestrator::remove(std::size_t body) {
+  SC_ASSERT(body < bodies_.size(), "body {} of {}", body, bodies_.size());
+  if (JobChain* const chain = chain_under_way()) chain->wait();
+  const bool was_in_flight = in_flight_;
+  std::exception_ptr failure;
+  try {
+    if (was_in_flight) collect();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  frame_.reset();
+  jobs_per_frame_ -= bodies_[body]->model->embedding->parts.size();
+  const Model* const model = bodies_[body]->model;
+  bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(body));
+  if (std::none_of(bodies_.begin(), bodies_.end(), [&](const auto& other) { return other->model == model; }))
+    std::erase_if(models_, [&](const auto& known) { return known.get() == model; });
+  if (failure) std::rethrow_exception(failure);
 }
 
 void SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> positions) {
@@ -149,6 +173,7 @@ bool SkinOrchestrator::collect() {
   in_flight_ = false;
   if (failures.empty()) {
     shown_ = working_;
+    for (const auto& body : bodies_) body->half[static_cast<std::size_t>(shown_)].skinned = true;
     return true;
   }
   std::string message = "skinning a frame failed";
@@ -162,8 +187,10 @@ bool SkinOrchestrator::drain() {
 }
 
 SkinnedBody SkinOrchestrator::shown(std::size_t body) const {
+  SC_ASSERT(body < bodies_.size(), "body {} of {}", body, bodies_.size());
   if (shown_ < 0) return {};
   const Body::Half& half = bodies_[body]->half[static_cast<std::size_t>(shown_)];
+  if (!half.skinned) return {};  // it was added since
   return {half.vertices.span(), half.origin};
 }
 

@@ -45,6 +45,10 @@ class SkinOrchestrator {
   /// bodies that share the embedding. @throws std::runtime_error  when main memory is full.
   std::size_t add(std::shared_ptr<const Embedding> embedding, std::size_t particles);
 
+  /// Waits for the frame under way and takes a body out; those behind it count one less from now on.
+  /// @pre the body was added. @throws std::runtime_error  as kick(); the body is taken out all the same.
+  void remove(std::size_t body);
+
   /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues the
   /// jobs. Never waits.
   /// @return false, with nothing done, when the SPEs have not finished the frame before.
@@ -56,7 +60,7 @@ class SkinOrchestrator {
   /// as kick().
   bool drain();
 
-  /// The newest complete frame; empty vertices before the first one.
+  /// The newest complete frame; empty vertices before the body's first one. @pre the body was added
   SkinnedBody shown(std::size_t body) const;
 
  private:

@@ -1,6 +1,7 @@
 #include "softcell/spe_bodies/spe_solver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include "ppu/spe_bodies/match_bodies.h"
 #include "ppu/spe_bodies/match_orchestration.h"
 #include "ppu/spe_bodies/tiled_memory.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -187,6 +189,9 @@ void SpeSolver<kDimension>::hand_over(Member& member) {
   if (group.bodies) {
     group.awake.push_back(member.number);
     const auto positions = as_the_kernel_reads_them(body);
+    SC_ASSERT(positions.size() == group.bodies->positions(member.number).size(),
+              "a body of {} particles in a plan of {}", positions.size(),
+              group.bodies->positions(member.number).size());
     static_assert(sizeof positions[0] == sizeof(typename Kernel::Vector));
     std::memcpy(group.bodies->positions(member.number).data(), positions.data(), positions.size_bytes());
     std::ranges::transform(body.velocities(), group.bodies->velocities(member.number).begin(),
@@ -205,6 +210,10 @@ void SpeSolver<kDimension>::hand_over(Member& member) {
 
 template <int kDimension>
 void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
+  SC_ASSERT(chain_->finished(), "kick() of {} bodies, with {} jobs of the one before under way",
+            bodies.size(), chain_->size());
+  SC_ASSERT(std::ranges::find(bodies, nullptr) == bodies.end(), "one of {} bodies is null", bodies.size());
   if (!knows(bodies)) regroup(bodies);
   step_ = step;
   left_to_ppu_.clear();
@@ -277,6 +286,7 @@ void SpeSolver<kDimension>::drop() {
 
 template <int kDimension>
 void SpeSolver<kDimension>::forget(const Body& body) {
+  SC_ASSERT(chain_->finished(), "forget() with {} jobs under way", chain_->size());
   for (const Member& member : members_) {
     if (member.body != &body) continue;
     if (member.group->bodies) member.group->bodies->reset(member.number);

@@ -2,7 +2,7 @@
 // Draws an overlay's triangles into the framebuffer that is bound.
 
 #include "gl_objects.h"
-#include "softcell/render/overlay.h"
+#include "softcell/render/overlay_mesh.h"
 
 namespace softcell::render {
 

@@ -20,6 +20,9 @@ static_assert(sizeof(Eigen::Vector3f) == 12, "spans of vectors are uploaded as t
 
 constexpr GLuint kPositionAttribute = 0;
 constexpr GLuint kNormalAttribute = 1;
+constexpr GLuint kTextureAttribute = 2;
+constexpr GLenum kPictureUnit = GL_TEXTURE1;  // the shadow map has unit 0
+constexpr GLint kPictureUnitNumber = 1;
 constexpr GLuint kFrameBinding = 0;
 
 /// The uniform block `Frame` of shaders.h, std140. Eigen would align matrices to what the widest registers
@@ -83,7 +86,8 @@ struct MeshBuffers {
   GLsizei index_count = 0;
   std::size_t vertices_needed = 0;  ///< the largest index and one
   bool filled = false;              ///< the vertices have been given
-  std::optional<CellMesh> cells;    ///< what the vertices are made from, unless they are given
+  std::optional<GlObject> texture_coordinates;
+  std::optional<CellMesh> cells;  ///< what the vertices are made from, unless they are given
 };
 
 std::size_t bytes_of(std::size_t count, std::size_t size) { return count * size; }
@@ -131,6 +135,7 @@ struct Renderer::State {
   void filled(MeshId id, std::size_t bytes);
   const MeshBuffers& mesh(MeshId id) const;
   const MeshBuffers& mesh(StaticMeshId id) const;
+  const GlObject& texture(TextureId id) const;
 
   void check(const FrameDescription& frame) const;
   PixelRect part_to_draw(const std::optional<PixelRect>& changes) const;
@@ -163,6 +168,8 @@ struct Renderer::State {
     /// @param sun  one of the two ways in which shaders.h has sunlight
     Programs(const GladGLContext& gl, const char* sun)
         : surface(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, sun, kShaderLighting, kSurfaceFragment}),
+          textured(gl, {kShaderFrame, kSurfaceVertex},
+                   {kShaderFrame, sun, kShaderLighting, kTexturedFragment}),
           tiles(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, sun, kShaderLighting, kTilesFragment}),
           shadow(gl, {kShaderFrame, kShadowVertex}, {kShaderFrame, kShadowFragment}),
           particle(gl, {kShaderFrame, kParticleVertex},
@@ -171,7 +178,7 @@ struct Renderer::State {
           link(gl, {kShaderFrame, kLinkVertex}, {kShaderFrame, sun, kShaderLighting, kLinkFragment}),
           background(gl, {kShaderFrame, kBackgroundVertex},
                      {kShaderFrame, sun, kShaderLighting, kBackgroundFragment}) {}
-    Program surface, tiles, shadow, particle, particle_shadow, link, background;
+    Program surface, textured, tiles, shadow, particle, particle_shadow, link, background;
   };
 
   // The framebuffer with its samples, the one they are resolved into, and the shadow map.
@@ -186,6 +193,7 @@ struct Renderer::State {
   std::vector<MeshBuffers> skinned;
   std::uint64_t uploaded_bytes = 0;
   std::vector<MeshBuffers> statics;
+  std::vector<GlObject> textures;
   Image picture;
 };
 
@@ -213,6 +221,8 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
                 ", " + std::to_string(samples) + " samples";
 
   programs = std::make_unique<Programs>(gl, settings.soft_shadows ? kSoftSunlight : kQuickSunlight);
+  gl.UseProgram(programs->textured.object.name());
+  gl.Uniform1i(gl.GetUniformLocation(programs->textured.object.name(), "picture"), kPictureUnitNumber);
   make_picture_buffers(width, height);
   make_shadow_map();
   frame_buffer = make_buffer(gl);
@@ -353,8 +363,21 @@ const MeshBuffers& Renderer::State::mesh(StaticMeshId id) const {
   return statics[id.value];
 }
 
+const GlObject& Renderer::State::texture(TextureId id) const {
+  if (id.value >= textures.size()) throw std::invalid_argument("no texture " + std::to_string(id.value));
+  return textures[id.value];
+}
+
 void Renderer::State::check(const FrameDescription& frame) const {
-  for (const SkinnedDraw& item : frame.skinned) mesh(item.mesh);
+  for (const SkinnedDraw& item : frame.skinned) {
+    const MeshBuffers& buffers = mesh(item.mesh);
+    if (!item.texture) continue;
+    texture(*item.texture);
+    if (!buffers.texture_coordinates) {
+      throw std::invalid_argument("mesh " + std::to_string(item.mesh.value) +
+                                  " is to be drawn with a texture and has no texture coordinates");
+    }
+  }
   for (const StaticDraw& item : frame.statics) mesh(item.mesh);
   for (const LatticeDraw& lattice : frame.lattices) {
     for (const auto& link : lattice.links) {
@@ -456,7 +479,13 @@ void Renderer::State::draw_surface(const Program& program, const MeshBuffers& bu
 
 void Renderer::State::draw_surface(const SkinnedDraw& item) const {
   cull_back_faces(!item.two_sided);
-  draw_surface(programs->surface, mesh(item.mesh), translation(item.origin), item.colour, item.opacity);
+  if (item.texture) {
+    gl.ActiveTexture(kPictureUnit);
+    gl.BindTexture(GL_TEXTURE_2D, texture(*item.texture).name());
+    gl.ActiveTexture(GL_TEXTURE0);
+  }
+  draw_surface(item.texture ? programs->textured : programs->surface, mesh(item.mesh),
+               translation(item.origin), item.colour, item.opacity);
 }
 
 void Renderer::State::draw_surface(const StaticDraw& item) const {
@@ -574,6 +603,55 @@ void Renderer::update_corners(MeshId id, std::span<const std::byte> corners, con
   state.context.make_current();
   state.skinner->skin(*buffers.cells, corners, origin, buffers.vertices);
   state.filled(id, corners.size());
+}
+
+void Renderer::set_texture_coordinates(MeshId id, std::span<const Eigen::Vector2f> coordinates) {
+  State& state = *state_;
+  const std::size_t needed = state.mesh(id).vertices_needed;
+  if (coordinates.size() < needed) {
+    throw std::invalid_argument(std::to_string(coordinates.size()) + " texture coordinates for a mesh of " +
+                                std::to_string(needed) + " vertices");
+  }
+  MeshBuffers& buffers = state.skinned[id.value];
+  state.context.make_current();
+  const GladGLContext& gl = state.gl;
+  if (!buffers.texture_coordinates) buffers.texture_coordinates = make_buffer(gl);
+  gl.BindVertexArray(buffers.layout.name());
+  gl.BindBuffer(GL_ARRAY_BUFFER, buffers.texture_coordinates->name());
+  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(coordinates.size_bytes()), coordinates.data(),
+                GL_STATIC_DRAW);
+  gl.EnableVertexAttribArray(kTextureAttribute);
+  gl.VertexAttribPointer(kTextureAttribute, 2, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector2f), nullptr);
+}
+
+TextureId Renderer::add_texture(const Image& picture) {
+  State& state = *state_;
+  if (picture.width < 1 || picture.height < 1 || picture.width > state.largest_side ||
+      picture.height > state.largest_side) {
+    throw std::invalid_argument("a texture of " + std::to_string(picture.width) + " by " +
+                                std::to_string(picture.height) + " pixels; 1 to " +
+                                std::to_string(state.largest_side) + " a side are possible");
+  }
+  // OpenGL counts rows from the bottom.
+  Image flipped(picture.width, picture.height);
+  const std::ptrdiff_t row_bytes = std::ptrdiff_t{4} * picture.width;
+  for (int y = 0; y < picture.height; ++y) {
+    const std::uint8_t* const row = picture.pixel(0, y);
+    std::copy(row, row + row_bytes, flipped.pixel(0, picture.height - 1 - y));
+  }
+  state.context.make_current();
+  const GladGLContext& gl = state.gl;
+  GlObject texture = make_texture(gl);
+  gl.ActiveTexture(kPictureUnit);
+  gl.BindTexture(GL_TEXTURE_2D, texture.name());
+  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, picture.width, picture.height, 0, GL_RGBA,
+                GL_UNSIGNED_BYTE, flipped.rgba.data());
+  gl.GenerateMipmap(GL_TEXTURE_2D);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl.ActiveTexture(GL_TEXTURE0);
+  state.textures.push_back(std::move(texture));
+  return {static_cast<std::uint32_t>(state.textures.size() - 1)};
 }
 
 std::uint64_t Renderer::uploaded_bytes() const { return state_->uploaded_bytes; }

@@ -84,17 +84,20 @@ vec3 shade(vec3 position, vec3 normal, vec3 shadow_position, vec3 albedo) {
 inline constexpr char kSurfaceVertex[] = R"glsl(
 layout(location = 0) in vec3 vertex_position;
 layout(location = 1) in vec3 vertex_normal;
+layout(location = 2) in vec2 vertex_texture;
 uniform mat4 model;
 uniform mat3 normal_matrix;
 out vec3 position;
 out vec3 normal;
 out vec3 shadow_position;
 out vec2 pattern_position;
+out vec2 texture_position;
 void main() {
   vec4 world = model * vec4(vertex_position, 1.0);
   position = world.xyz;
   normal = normalize(normal_matrix * vertex_normal);
   pattern_position = vertex_position.xz;
+  texture_position = vertex_texture;
   // Compared a little off the surface, along the normal: a surface must not shadow itself (acne), and an offset along
   // the light would part shadows from the feet that cast them.
   vec3 lifted = position + normal * (2.0 * shadow_texel.y);
@@ -112,6 +115,21 @@ out vec4 result;
 void main() {
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
   result = vec4(shade(position, n, shadow_position, colour.rgb), colour.a);
+}
+)glsl";
+
+inline constexpr char kTexturedFragment[] = R"glsl(
+in vec3 position;
+in vec3 normal;
+in vec3 shadow_position;
+in vec2 texture_position;
+uniform vec4 colour;
+uniform sampler2D picture;
+out vec4 result;
+void main() {
+  vec3 n = normalize(gl_FrontFacing ? normal : -normal);
+  vec3 albedo = colour.rgb * texture(picture, texture_position).rgb;
+  result = vec4(shade(position, n, shadow_position, albedo), colour.a);
 }
 )glsl";
 

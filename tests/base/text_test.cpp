@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "softcell/base/nearest_name.h"
+
 #include <string>
 
 namespace softcell::base {
@@ -36,6 +38,25 @@ TEST(Hex, HasAtLeastTheDigitsAskedFor) {
   EXPECT_EQ(hex(0xBEEF, 5), "0x0BEEF");
   EXPECT_EQ(hex(0xFEDCBA9876543210, 16), "0xFEDCBA9876543210");
   EXPECT_EQ(byte_count(1) + ", " + byte_count(16), "1 byte, 16 bytes");
+}
+
+TEST(Counted, OneIsSingularAndAllElsePlural) {
+  EXPECT_EQ(counted(0, "frame"), "0 frames");
+  EXPECT_EQ(counted(1, "frame"), "1 frame");
+  EXPECT_EQ(counted(2, "frame"), "2 frames");
+  EXPECT_EQ(counted(1, "body", "bodies"), "1 body");
+  EXPECT_EQ(counted(5, "body", "bodies"), "5 bodies");
+}
+
+TEST(NearestName, IsTheOneThatIsASlipAway) {
+  constexpr std::string_view kVerbs[] = {"demo", "bench", "report", "scenes"};
+  EXPECT_EQ(nearest_name("bnech", kVerbs), "bench") << "neighbours swapped";
+  EXPECT_EQ(nearest_name("dmeo", kVerbs), "demo");
+  EXPECT_EQ(nearest_name("reprt", kVerbs), "report") << "left out";
+  EXPECT_EQ(nearest_name("sceness", kVerbs), "scenes") << "inserted";
+  EXPECT_EQ(nearest_name("remort", kVerbs), "report") << "replaced";
+  EXPECT_EQ(nearest_name("dance", kVerbs), "");
+  EXPECT_EQ(nearest_name("", kVerbs), "");
 }
 
 }  // namespace

@@ -181,6 +181,26 @@ TEST_F(WholeFileTest, MayBeWrittenAsAStream) {
   EXPECT_EQ(text("f"), "one two");
 }
 
+TEST_F(WholeFileTest, MayBeAStreamThatIsOpenAlready) {
+  put("f", "old\n");
+  const auto append = [&] { return std::fopen((folder_ / "f").c_str(), "ab"); };
+  {
+    WholeFile file(append(), "standard output");
+    file.write("new");
+    file.commit();
+  }
+  EXPECT_EQ(text("f"), "old\nnew") << "what is there already stays";
+  WholeFile full(std::fopen("/dev/full", "wb"), "standard output");
+  full.write("new");
+  try {
+    full.commit();
+    FAIL() << "a full disk was written to";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "cannot write standard output: No space left on device");
+  }
+  EXPECT_EQ(names(), std::set<std::string>{"f"});
+}
+
 TEST_F(WholeFileTest, TakesItsPlaceTogetherWithOthers) {
   {
     WholeFiles files;

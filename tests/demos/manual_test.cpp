@@ -1,4 +1,4 @@
-// docs/user-manual.md is true: its scene loads, and its table of stiffnesses is what one measures.
+// docs/guide/soft-bodies.md is true: its scene loads, and its table of stiffnesses is what one measures.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

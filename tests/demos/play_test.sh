@@ -100,7 +100,7 @@ sleep 0.5
 shot demo3d_next
 [ "$(identify -format %wx%h "$shots/demo3d_next.png")" = 500x400 ] || fail "the picture does not follow the window's size"
 finish
-grep -q '^scene arena' "$folder/log" && fail "the next scene is the first again"
+grep -q '^scene:  *arena:' "$folder/log" && fail "the next scene is the first again"
 
 # Ctrl-C: one sentence says how far it came, and nothing half written is left.
 start 2d --trace "$folder/t.json" --json "$folder/s.json"

@@ -1,4 +1,4 @@
-// docs/scenes.md is true: its examples load, and it has every field that the readers know.
+// docs/reference/scenes.md is true: its examples load, and it has every field that the readers know.
 
 #include <gtest/gtest.h>
 

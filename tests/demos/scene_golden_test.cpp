@@ -42,14 +42,14 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden,
                          testing::Values(Moment{"arena", 1}, Moment{"arena", 45}, Moment{"arena", 90},
                                          Moment{"drop", 1}, Moment{"drop", 35}, Moment{"drop", 90}));
 
-// Nothing tilts here, and no sine is taken: late moments are as safe as early ones. docs/figures.md shows
+// Nothing tilts here, and no sine is taken: late moments are as safe as early ones. docs/notes/test-report.md shows
 // them.
 INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
                          testing::Values(Moment{"cell", 119}, Moment{"penguin", 1},
                                          Moment{"torus_on_spike", 180}, Moment{"sphere_on_wall", 50},
                                          Moment{"bumper_car", 55}, Moment{"small_object", 150},
                                          Moment{"contact_before", 180}, Moment{"contact_after", 180},
-                                         Moment{"penguins", 1}, Moment{"big", 30}));
+                                         Moment{"penguins", 1}, Moment{"big", 30}, Moment{"press", 50}));
 
 class SceneGoldenLattice : public testing::TestWithParam<const char*> {};
 

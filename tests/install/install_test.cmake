@@ -29,15 +29,30 @@ endfunction()
 set(prefix ${SCRATCH}/prefix)
 file(REMOVE_RECURSE ${SCRATCH})
 step("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
-build_and_test(saxpy)
-build_and_test(soft_bodies)
+foreach(example hello_kernel saxpy jelly_3d jelly_2d jelly_on_spes)
+  build_and_test(${example})
+endforeach()
 set(copy ${SCRATCH}/saxpy)
 set(build ${copy}/build)
 
 # Soft bodies: the box comes to rest on the jelly.
-says(0 "4\\.0 s: the box is at height 1\\.[01]" ${SCRATCH}/soft_bodies/build/jelly_3d ${SCRATCH}/soft_bodies/jelly.obj)
-says(1 "no_such.obj: there is no such file" ${SCRATCH}/soft_bodies/build/jelly_3d no_such.obj)
-says(0 "4\\.0 s: the box is at height 1\\.[0-3]" ${SCRATCH}/soft_bodies/build/jelly_2d)
+says(0 "4\\.0 s: the box is at height 1\\.[01]" ${SCRATCH}/jelly_3d/build/jelly_3d ${SCRATCH}/jelly_3d/jelly.obj)
+says(1 "no_such.obj: there is no such file" ${SCRATCH}/jelly_3d/build/jelly_3d no_such.obj)
+says(0 "4\\.0 s: the box is at height 1\\.[0-3]" ${SCRATCH}/jelly_2d/build/jelly_2d)
+
+# SPEs make a picture of a textured jelly. Without its texture it would have the one colour that it is multiplied with.
+set(jelly ${SCRATCH}/jelly_on_spes)
+says(0 "" ${jelly}/build/jelly_on_spes ${jelly}/jelly.obj ${SCRATCH}/jelly.png)
+file(SIZE ${SCRATCH}/jelly.png picture_bytes)
+if(picture_bytes LESS 50000)
+  message(FATAL_ERROR "${SCRATCH}/jelly.png has ${picture_bytes} bytes only; a picture was expected")
+endif()
+says(1 "expected a mesh and a picture" ${jelly}/build/jelly_on_spes)
+file(STRINGS ${EXAMPLES}/jelly_on_spes/jelly_on_spes.cpp lines)
+list(LENGTH lines count)
+if(NOT count LESS 80)
+  message(FATAL_ERROR "jelly_on_spes.cpp has ${count} lines; fewer than 80 were promised")
+endif()
 
 # Each program links what it has a use for and nothing else.
 function(links_none_of libraries program)
@@ -46,13 +61,13 @@ function(links_none_of libraries program)
     message(FATAL_ERROR "${program} links what it has no use for, one of ${libraries}:\n${linked}")
   endif()
 endfunction()
-links_none_of("Bullet|LinearMath|assimp|boost|libdw" ${SCRATCH}/soft_bodies/build/jelly_2d)
-links_none_of("box2d|boost|libdw" ${SCRATCH}/soft_bodies/build/jelly_3d)
+links_none_of("Bullet|LinearMath|assimp|boost|libdw" ${SCRATCH}/jelly_2d/build/jelly_2d)
+links_none_of("box2d|boost|libdw" ${SCRATCH}/jelly_3d/build/jelly_3d)
 
 # A component that there is not is refused in one sentence with those that there are.
 file(WRITE ${SCRATCH}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n"
   "find_package(softcell REQUIRED COMPONENTS box2d bodies)\n")
-says(1 "softcell has no component 'bodies'; the components of this installation are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies\\."
+says(1 "softcell has no component 'bodies'; the components of this installation are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies,[ \n]+render\\."
   ${CMAKE_COMMAND} -S ${SCRATCH}/wrong -B ${SCRATCH}/wrong/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
   -DCMAKE_CXX_COMPILER=${COMPILER})
 

@@ -216,6 +216,28 @@ TEST(Trace, KeepsAFindingWithItsWholeMessage) {
   EXPECT_NE(finding["args"]["message"].get<std::string>().find("odd ? byte"), std::string::npos);
 }
 
+TEST(Trace, HasTheSameMistakeOnceWithItsFirstTimeAndItsCount) {
+  Trace trace(2);
+  const TraceTime now = trace_now();
+  dma::Fault fault{.rule = dma::kAllRules[0], .kernel = "skin", .place = "skin.cpp:4", .detail = "first"};
+  for (int i = 0; i < 500; ++i) {
+    trace.spe(0).on_finding(fault, now + i * 1000);
+    fault.detail = "again";
+  }
+  dma::Fault elsewhere = fault;
+  elsewhere.place = "skin.cpp:5";
+  trace.spe(0).on_finding(elsewhere, now + 2000);
+  trace.spe(1).on_finding(fault, now + 3000);
+  const std::vector<json> findings = events(written(trace), "finding");
+  ASSERT_EQ(findings.size(), 3u);
+  EXPECT_EQ(findings[0]["args"]["count"], 500);
+  EXPECT_NE(findings[0]["args"]["message"].get<std::string>().find("first"), std::string::npos);
+  EXPECT_EQ(findings[1]["args"]["place"], "skin.cpp:5");
+  EXPECT_EQ(findings[1]["args"]["count"], 1);
+  EXPECT_NEAR(findings[1]["ts"].get<double>() - findings[0]["ts"].get<double>(), 2, 1e-6);
+  EXPECT_EQ(findings[2]["args"]["count"], 1) << "each SPE counts for itself";
+}
+
 TEST(Trace, ListsEachImageOnceWithTheMostStackThatAnySpeUsed) {
   Trace trace(2);
   const TraceTime now = trace_now();
@@ -250,7 +272,7 @@ TEST(Trace, CountsWhatItDropsPastItsLimit) {
     trace.spe(0).on_complete(i);
     trace.spe(0).on_wait(24, now, now);
     trace.spe(0).on_job(saxpy(), i, now, now, false);
-    trace.spe(0).on_finding({.rule = dma::kAllRules[0]}, now);
+    trace.spe(0).on_finding({.rule = dma::kAllRules[0], .place = "a.cpp:" + std::to_string(i)}, now);
   }
   const json file = written(trace);
   EXPECT_EQ(file["softcell"]["dropped"][0],

@@ -1,8 +1,9 @@
 // libFuzzer target: any bytes, as each of the three formats (chosen by the first byte), give a valid mesh or
-// a std::runtime_error.
+// a std::runtime_error. Behind a line "#mtl" an OBJ file's bytes are its material library.
 
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "ppu/mesh_import/parse_mesh.h"
@@ -23,6 +24,10 @@ void check(const TriangleMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) require(vertex < mesh.positions.size());
   }
+  validate(mesh);
+  for (const Eigen::Vector2f& at : mesh.texture_coordinates) require(at.allFinite());
+  for (const Eigen::Vector4f& colour : mesh.colours)
+    require(colour.minCoeff() >= 0 && colour.maxCoeff() <= 1);
 }
 
 }  // namespace
@@ -30,8 +35,15 @@ void check(const TriangleMesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   if (size == 0) return 0;
   const MeshFormat formats[] = {MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kStl};
+  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  constexpr std::string_view kLibraryBegins = "\n#mtl\n";
+  const std::size_t library = bytes.find(kLibraryBegins);
   try {
-    check(parse_mesh({reinterpret_cast<const char*>(data) + 1, size - 1}, formats[data[0] % 3]));
+    check(parse_mesh(bytes.substr(0, library), formats[data[0] % 3],
+                     [&](const std::string&) -> std::optional<std::string> {
+                       if (library == std::string_view::npos) return std::nullopt;
+                       return std::string(bytes.substr(library + kLibraryBegins.size()));
+                     }));
   } catch (const std::runtime_error&) {
     // refused, as it may be
   }

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lattices_2d.h"
+#include "ppu/matching/regions.h"
 #include "sum_list_interpreter.h"
 
 namespace softcell::ppu {
@@ -79,6 +82,15 @@ TEST(MatchPlan2d, IsLaidOutForTransfers) {
   }
   EXPECT_EQ(header.grid, 0.0625f);  // the power of two below 0.1
   EXPECT_TRUE(spu::match_2d_fits(header));
+}
+
+TEST(MatchPlan2d, SquaresOfTheNumberThatIsDocumentedFitWithRegionsOfAnyWidth) {
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(kParticlesThatFit2d)));
+  ASSERT_EQ(side * side, kParticlesThatFit2d);
+  const Lattice<2> square = test::rectangle(side - 1, side - 1), larger = test::rectangle(side, side);
+  for (int w = 0; w <= kMaxHalfWidth; ++w)
+    EXPECT_NO_THROW(MatchPlan2d(square, matching_of(square, w))) << "w " << w;
+  EXPECT_THROW(MatchPlan2d(larger, matching_of(larger, kMaxHalfWidth)), BodyTooLarge);
 }
 
 TEST(MatchPlan2d, ABodyThatDoesNotFitIsRefusedWithBothSizes) {

@@ -344,6 +344,60 @@ TEST_F(RendererTest, DrawsParticlesAsDiscsOfTheirRadiusAndLinksBetweenThem) {
       << "the link";
 }
 
+/// Red at the lower left, green at the lower right, blue above.
+Image three_colours() {
+  Image picture(64, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      std::uint8_t* const pixel = picture.pixel(x, y);
+      pixel[y < 32 ? 2 : x < 32 ? 0 : 1] = 255;  // rows count from the top
+      pixel[3] = 255;
+    }
+  }
+  return picture;
+}
+
+TEST_F(RendererTest, ATextureLiesOnItsMeshTheRightWayUp) {
+  SkinnedDraw item = add(ground_triangle());
+  const std::vector<Eigen::Vector2f> coordinates{{0, 0}, {0, 1}, {1, 0}};
+  renderer_.set_texture_coordinates(item.mesh, coordinates);
+  item.texture = renderer_.add_texture(three_colours());
+  item.colour = {1, 1, 1};
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  const Image& image = draw(frame);
+  const auto strongest = [&](float x, float z) {
+    const std::uint8_t* const pixel = pixel_at(image, x, z);
+    return std::max_element(pixel, pixel + 3) - pixel;
+  };
+  EXPECT_EQ(strongest(0.1f, 0.1f), 0);
+  EXPECT_EQ(strongest(0.8f, 0.1f), 1);
+  EXPECT_EQ(strongest(0.1f, 0.8f), 2);
+  EXPECT_GT(pixel_at(image, 0.1f, 0.1f)[0], 180);
+  EXPECT_LT(pixel_at(image, 0.1f, 0.1f)[1], 100);
+
+  // Without it the mesh is drawn as before; its colour is multiplied with the texture's.
+  item.texture.reset();
+  EXPECT_GT(pixel_at(draw(frame), 0.8f, 0.1f)[0], 180);
+  item.texture = TextureId{0};
+  item.colour = {0, 1, 0};
+  EXPECT_LT(pixel_at(draw(frame), 0.1f, 0.1f)[0], 130);
+}
+
+TEST_F(RendererTest, RefusesTexturesThatDoNotFit) {
+  SkinnedDraw item = add(ground_triangle());
+  const std::vector<Eigen::Vector2f> two(2, Eigen::Vector2f(0, 0));
+  EXPECT_THROW(renderer_.set_texture_coordinates(item.mesh, two), std::invalid_argument);
+  EXPECT_THROW(renderer_.set_texture_coordinates(MeshId{99}, two), std::invalid_argument);
+  EXPECT_THROW(renderer_.add_texture(Image()), std::invalid_argument);
+  FrameDescription frame = view_from_above();
+  frame.skinned = std::span(&item, 1);
+  item.texture = TextureId{0};
+  EXPECT_THROW(renderer_.render(frame), std::invalid_argument);  // no such texture
+  item.texture = renderer_.add_texture(three_colours());
+  EXPECT_THROW(renderer_.render(frame), std::invalid_argument);  // no coordinates
+}
+
 TEST_F(RendererTest, DrawsTheSameFrameInTheSameBits) {
   const test::TestScene scene(renderer_, 1);
   const Image first = draw(scene.frame());

@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "softcell/render/png_io.h"
 #include "support/files_in.h"
@@ -171,6 +172,15 @@ TEST(Command, TracesADemoAndMakesAPageOfIt) {
   EXPECT_GT(std::filesystem::file_size(folder / "t.html"), 20'000u);
 }
 
+TEST(Command, HelpOfAVerbIsWhatItsHelpOptionPrints) {
+  for (const std::string verb : {"", "demo", "demo 3d", "spu run", "bench", "help"}) {
+    const CommandResult help = run_softcell("help " + verb), option = run_softcell(verb + " --help");
+    EXPECT_EQ(help.status, 0) << verb;
+    EXPECT_EQ(help.output, option.output) << verb;
+    EXPECT_NE(help.output.find("Usage: softcell"), std::string::npos) << help.output;
+  }
+}
+
 TEST(Command, ListsItsScenes) {
   const CommandResult run = run_softcell("scenes");
   EXPECT_EQ(run.status, 0);
@@ -196,7 +206,8 @@ TEST(Command, RunsAnEmptyScene) {
     const CommandResult run = run_softcell(
         "demo " + dimension + "d --headless --frames 2 --size 64x48 --scene " + (folder / "empty.toml"));
     EXPECT_EQ(run.status, 0) << run.output;
-    EXPECT_NE(run.output.find("0 soft bodies"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("0 soft bodies and 0 rigid ones"), std::string::npos) << run.output;
+    EXPECT_EQ(run.output.rfind("softcell: the scene empty has no bodies\n", 0), 0u) << run.output;
   }
 }
 
@@ -315,9 +326,9 @@ TEST(Command, ListsBenchmarksWithoutRunningThem) {
   const CommandResult run = run_softcell("bench --list --filter penguin150/w2");
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(run.output,
-            "solver3d/penguin150/w2/bullet-links\nsolver3d/penguin150/w2/bullet-pose\n"
-            "solver3d/penguin150/w2/eigen\nsolver3d/penguin150/w2/naive\nsolver3d/penguin150/w2/ppu\n"
-            "solver3d/penguin150/w2/spe\n");
+            "solver3d/penguin150/w2/spe\nsolver3d/penguin150/w2/bullet-links\n"
+            "solver3d/penguin150/w2/bullet-pose\nsolver3d/penguin150/w2/eigen\n"
+            "solver3d/penguin150/w2/naive\nsolver3d/penguin150/w2/ppu\n");
 }
 
 TEST(Command, MeasuresWhatItIsAskedTo) {
@@ -333,7 +344,38 @@ TEST(Command, MeasuresWhatItIsAskedTo) {
     EXPECT_GT(entry["ns_min"].get<double>(), 0) << entry;
     EXPECT_GE(entry["ns_median"].get<double>(), entry["ns_min"].get<double>()) << entry;
     EXPECT_GE(entry["items"].get<int>(), 100) << entry;
+    EXPECT_EQ(entry["item"], "a particle");
+    EXPECT_NE(entry["group"].get<std::string>().find("three dimensions"), std::string::npos) << entry;
+    EXPECT_EQ(entry.contains("times_peer"), entry["name"] != "solver3d/penguin150/w1/spe") << entry;
   }
+  EXPECT_NE(run.output.find("dimensions, one SPE: ns for a particle\n"), std::string::npos) << run.output;
+}
+
+TEST(Command, ComparesWithAnEarlierRunAndMarksWhatGotSlower) {
+  const ScratchFolder folder;
+  // As if dma/get16k had taken no time to speak of, and dma/put16k a second.
+  write_file(folder / "old.json",
+             R"([{"name":"dma/get16k","ns_min":0.001},{"name":"dma/put16k","ns_min":1e9}])");
+  const std::string bench = "bench --rounds 2 --filter dma/...?.?.?.?16k --compare ";
+  const CommandResult run = run_softcell(bench + (folder / "old.json") + " --json " + (folder / "new.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  const auto matches = [&](const char* pattern) {
+    return std::regex_search(run.output, std::regex(pattern));
+  };
+  EXPECT_TRUE(matches("dma/get16k +[0-9.]+ +[0-9.]+ +[0-9.]+ x +[0-9.]+ x  slower\n")) << run.output;
+  EXPECT_TRUE(matches("dma/put16k +[0-9.]+ +[0-9.]+ +[0-9.]+ x +0.00 x\n")) << run.output;
+  EXPECT_TRUE(matches("dma/memcpy16k +[0-9.]+ +[0-9.]+ +peer +new\n")) << run.output;
+  EXPECT_TRUE(run.output.ends_with("\n1 of 2 benchmarks took more than 5 % longer than in the old run\n"))
+      << run.output;
+  for (const auto& entry : read_json(folder / "new.json"))
+    EXPECT_EQ(entry.contains("times_old"), entry["name"] != "dma/memcpy16k") << entry;
+
+  EXPECT_EQ(run_softcell(bench + (folder / "new.json") + " --json " + (folder / "new.json")).status, 2);
+  write_file(folder / "old.json", "{\"name\": 3}");
+  const CommandResult refused = run_softcell(bench + (folder / "old.json"));
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.output.find("old.json holds no figures of `softcell bench --json`"), std::string::npos)
+      << refused.output;
 }
 
 TEST(Command, PrintsTheBudgetOfEveryKernel) {
@@ -358,16 +400,19 @@ TEST(Command, PrintsTheBudgetOfEveryKernel) {
   EXPECT_TRUE(has_skin);
 }
 
-TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
-  const ScratchFolder folder;
+/// Starts a demo that writes everything there is, and ends it by the signal after some frames.
+/// @return  its exit status, and how long it took to end
+std::pair<int, std::chrono::steady_clock::duration> interrupt_demo(const ScratchFolder& folder, int signal) {
   const pid_t child = fork();
-  ASSERT_GE(child, 0);
+  EXPECT_GE(child, 0);
   if (child == 0) {
     std::freopen("/dev/null", "w", stdout);
     std::freopen("/dev/null", "w", stderr);
-    const std::string out = folder / "out", video = folder / "v.mp4";
+    const std::string out = folder / "out", video = folder / "v.mp4", recording = folder / "r.rec",
+                      trace = folder / "t.json", json = folder / "s.json";
     execl(SOFTCELL_COMMAND, "softcell", "demo", "3d", "--headless", "--scene", "drop", "--frames", "100000",
-          "--size", "320x240", "--out", out.c_str(), "--video", video.c_str(), static_cast<char*>(nullptr));
+          "--size", "320x240", "--out", out.c_str(), "--video", video.c_str(), "--record", recording.c_str(),
+          "--trace", trace.c_str(), "--json", json.c_str(), static_cast<char*>(nullptr));
     _exit(127);
   }
   const auto frames = [&] {
@@ -375,19 +420,44 @@ TEST(Command, StopsWithinASecondOfCtrlCAndLeavesWholeFrames) {
   };
   for (int i = 0; i < 3000 && frames() < 3; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const auto begin = std::chrono::steady_clock::now();
-  kill(child, SIGINT);
+  kill(child, signal);
   int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  const auto took = std::chrono::steady_clock::now() - begin;
-  EXPECT_LT(took, std::chrono::seconds(SOFTCELL_SLOW_BUILD ? 10 : 1));
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_GE(frames(), 3u);
-  for (const std::string& name : files_in(folder / "out")) {
-    EXPECT_TRUE(name.ends_with(".png")) << name;
-    EXPECT_NO_THROW(render::read_png(folder / "out/" + name)) << name;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+          std::chrono::steady_clock::now() - begin};
+}
+
+TEST(Command, StopsWithinASecondOfASignalAndKeepsWholeWhatItHasSoFar) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    SCOPED_TRACE(strsignal(signal));
+    const ScratchFolder folder;
+    const auto [status, took] = interrupt_demo(folder, signal);
+    EXPECT_EQ(status, 130);
+    EXPECT_LT(took, std::chrono::seconds(SOFTCELL_SLOW_BUILD ? 10 : 1));
+    EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"out", "r.rec", "v.mp4"}))
+        << "no part of a file is left";
+    const std::set<std::string> frames = files_in(folder / "out");
+    EXPECT_GE(frames.size(), 3u);
+    for (const std::string& name : frames) {
+      EXPECT_TRUE(name.ends_with(".png")) << name;
+      EXPECT_NO_THROW(render::read_png(folder / "out/" + name)) << name;
+    }
+    const CommandResult film =
+        run_shell("ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 " +
+                  (folder / "v.mp4"));
+    EXPECT_EQ(film.output, std::to_string(frames.size()) + "\n");
+    const CommandResult replay =
+        run_softcell("demo 3d --headless --quiet --size 32x32 --replay " + (folder / "r.rec"));
+    EXPECT_EQ(replay.status, 0) << replay.output;
   }
-  EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"out"}) << "no part of a video is left";
+}
+
+TEST(Command, GoesOnWithoutItsTerminalUnderNohup) {
+  const CommandResult run = run_shell(
+      "trap '' HUP; " SOFTCELL_COMMAND
+      " demo 2d --headless --quiet --frames 60 --size 32x32 & child=$!; sleep 0.2; kill -HUP $child; "
+      "wait $child");
+  EXPECT_EQ(run.status, 0) << run.output;
 }
 
 TEST(Command, RefusesTwoOutputsInOneFile) {
@@ -410,6 +480,66 @@ TEST(Command, RefusesTwoOutputsInOneFile) {
   EXPECT_NE(refusal("report t.json --out ./t.json").find("the trace and --out are one file"),
             std::string::npos);
   EXPECT_EQ(run_softcell(demo + "--quiet --json /dev/null --trace /dev/null").status, 0) << "nothing is lost";
+}
+
+/// What the command writes to standard output alone, and its status.
+CommandResult standard_output_of(const std::string& arguments) {
+  return run_shell(SOFTCELL_COMMAND " " + arguments + " 2>/dev/null");
+}
+
+TEST(Command, WritesToStandardOutputWhereADashIsTheFile) {
+  const ScratchFolder folder;
+  const std::string demo = "demo 2d --headless --frames 2 --size 32x32 ";
+  const auto parsed = [&](const std::string& arguments) {
+    const CommandResult run = standard_output_of(arguments);
+    EXPECT_EQ(run.status, 0) << arguments;
+    nlohmann::json document;
+    EXPECT_NO_THROW(document = nlohmann::json::parse(run.output)) << arguments << ": " << run.output;
+    return document;
+  };
+  EXPECT_EQ(parsed(demo + "--json -")["frames"], 2);
+  EXPECT_TRUE(parsed(demo + "--trace - --json " + (folder / "s.json")).contains("traceEvents"));
+  EXPECT_EQ(parsed("spu budget match skin --json -").size(), 2u);
+  EXPECT_EQ(parsed("bench --rounds 1 --filter dma/memcpy16k --json -").size(), 1u);
+  ASSERT_EQ(run_softcell(demo + "--trace " + (folder / "t.json")).status, 0);
+  const CommandResult page = standard_output_of("report " + (folder / "t.json") + " --out -");
+  EXPECT_EQ(page.output.rfind("<!DOCTYPE html>", 0), 0u);
+  EXPECT_TRUE(page.output.ends_with("</html>\n")) << page.output.substr(page.output.size() - 100);
+  // What is there already stays, and a file of that name is not meant.
+  const CommandResult appended = run_shell("cd " + folder.path().string() +
+                                           " && echo before > a && " SOFTCELL_COMMAND
+                                           " spu budget skin --json - >> a 2>/dev/null && head -1 a && ls");
+  EXPECT_EQ(appended.output, "before\na\ns.json\nt.json\n");
+}
+
+TEST(Command, TheSummaryGoesToStandardErrorWhereStandardOutputIsAFile) {
+  const CommandResult run =
+      run_shell(SOFTCELL_COMMAND " demo 2d --headless --frames 2 --size 32x32 --json - 2>&1 >/dev/null");
+  EXPECT_NE(run.output.find("\nfigures:   standard output\n"), std::string::npos) << run.output;
+}
+
+TEST(Command, KeepsTheFilesThatASceneNames) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "part");
+  write_file(folder / "part/l.lua", "return { rows = { '##', '##' } }");
+  write_file(folder / "m.obj", kCube);
+  write_file(folder / "2.toml", "dimension = 2\n[[soft_body]]\ncell_size = 0.5\nlattice = \"part/l.lua\"\n");
+  write_file(folder / "3.toml", "[[soft_body]]\ncell_size = 0.25\nmesh = \"m.obj\"\n");
+  const auto before = files_in(folder.path());
+  const auto refusal = [&](const std::string& arguments) {
+    const CommandResult run = run_shell("cd " + folder.path().string() + " && " SOFTCELL_COMMAND " demo " +
+                                        arguments + " --headless --frames 1 --size 32x32");
+    EXPECT_EQ(run.status, 2) << run.output;
+    EXPECT_EQ(files_in(folder.path()), before);
+    return run.output;
+  };
+  for (const std::string output : {"--json", "--trace", "--record"}) {
+    EXPECT_NE(refusal("2d --scene 2.toml " + output + " part/../part/l.lua")
+                  .find("a file of the scene and " + output + " are one file, part/../part/l.lua"),
+              std::string::npos);
+    EXPECT_NE(refusal("3d --scene 3.toml " + output + " m.obj").find("a file of the scene and " + output),
+              std::string::npos);
+  }
 }
 
 TEST(Command, RefusesToReplaceWhatItReads) {
@@ -512,6 +642,44 @@ TEST(Command, PrintsItsSummaryInColumns) {
     EXPECT_EQ(line[10], ' ') << line;
     EXPECT_NE(line[11], ' ') << line;
   }
+}
+
+TEST(Command, TheSummaryBeginsWithWhatBinds) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell(kDrop + std::string("--frames 2 --json ") + (folder / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  std::smatch first;
+  ASSERT_TRUE(std::regex_search(
+      run.output, first,
+      std::regex("^[0-9.]+ frames a second; (contacts and rigid bodies|shape matching|skinning|handing "
+                 "particles to and fro) ([0-9]+) %\n")))
+      << run.output;
+  const auto shares = read_json(folder / "s.json")["time_shares"];
+  double most = 0, sum = 0;
+  for (const auto& share : shares) {
+    most = std::max(most, share.get<double>());
+    sum += share.get<double>();
+  }
+  EXPECT_NEAR(sum, 1, 1e-9);
+  EXPECT_NEAR(std::stod(first[2]), 100 * most, 0.51);
+  EXPECT_EQ(shares["pictures"], 0) << "only one at the end";
+  const CommandResult film = run_softcell(kDrop + std::string("--frames 3 --out ") + (folder / "out"));
+  EXPECT_NE(film.output.find("frames a second; pictures "), std::string::npos) << film.output;
+  EXPECT_NE(film.output.find(" frames a second without pictures\n"), std::string::npos) << film.output;
+}
+
+TEST(Command, CountsOneInTheSingular) {
+  const ScratchFolder folder;
+  write_file(
+      folder / "one.toml",
+      "dimension = 2\n[[soft_body]]\ncell_size = 0.5\nrows = [\"#\"]\n[[circle]]\nradius = 0.3\nmass = 1\n"
+      "position = [3, 0]\n");
+  const CommandResult one =
+      run_softcell("demo 2d --headless --frames 1 --size 32x32 --scene " + (folder / "one.toml"));
+  EXPECT_NE(
+      one.output.find("\nscene:     one: 1 frame, 1 soft body and 1 rigid one, 4 particles, 4 vertices\n"),
+      std::string::npos)
+      << one.output;
 }
 
 // A pipe's opening waits for its reader, and this one reads the second behind the first's end.
@@ -621,6 +789,16 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"demo", 2, "say what to do: demo 2d, demo 3d ("},
         Refusal{"spu", 2, "say what to do: spu run, spu explore, spu budget ("},
         Refusal{"dance", 2, "softcell has no command 'dance'; there are: demo, spu, scenes,"},
+        Refusal{"dmeo", 2, "softcell has no command 'dmeo'; did you mean demo? ("},
+        Refusal{"spu bugdet", 2, "softcell spu has no command 'bugdet'; did you mean budget? ("},
+        Refusal{"help spu rnu", 2, "softcell spu has no command 'rnu'; did you mean run? ("},
+        Refusal{"help bench x", 2, "softcell bench has no commands below it, and no 'x' ("},
+        Refusal{"help dance", 2, "softcell has no command 'dance'; there are: demo, "},
+        Refusal{SC_DEMO "--json - --trace -", 2, "--trace and --json are one file, -;"},
+        Refusal{SC_DEMO "--record -", 2, "--record -: it cannot write to standard output"},
+        Refusal{SC_DEMO "--out -", 2, "--out -: it cannot write to standard output"},
+        Refusal{"spu run saxpy --inout x=-", 2, "a buffer is filled from a file, not from standard input"},
+        Refusal{"bench --list --compare %s/file", 2, "--list measures nothing that --compare"},
         Refusal{"demo 4d", 2, "softcell demo has no command '4d'; there are: 2d, 3d ("},
         Refusal{"demo 3d 2d", 2, "the argument '2d' is one too many"},
         Refusal{"scenes x", 2, "'x' is one too many: softcell scenes takes nothing but options"},
@@ -690,6 +868,12 @@ INSTANTIATE_TEST_SUITE_P(
     BadInput, CommandRefuses,
     testing::Values(
         Refusal{SC_DEMO "--scene nowhere", 1, "there are: arena, "},
+        Refusal{"bench --compare %s/file", 1, "file holds no figures of `softcell bench --json`"},
+        Refusal{"bench --compare %s/none", 1, "none"},
+        Refusal{"spu budget nowhere.spu.elf", 1,
+                "there is no file nowhere.spu.elf, and no kernel of softcell"},
+        Refusal{"spu budget %s/cube.obj", 1, "cube.obj"},
+        Refusal{"spu budget --checked job_loop", 1, "has no checked flavour"},
         Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is no file"},
         Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"}, Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
         Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},

@@ -1,4 +1,4 @@
-# As docs/debugging.md says it: gdb stops in a kernel that runs from the local stores of two SPEs.
+# As docs/guide/running-kernels.md says it: gdb stops in a kernel that runs from the local stores of two SPEs.
 if(NOT EXISTS "${GDB}")
   message("skipped: gdb is not installed")
   return()

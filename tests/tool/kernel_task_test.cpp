@@ -129,7 +129,7 @@ TEST(KernelBuffers, AreWrittenToTheirFilesAndResetBetweenRuns) {
   const auto contents = [&](const std::string& name) { return test::text_of(folder / name); };
   write(0, "after!");
   write(1, "new");
-  base::WholeFiles files;
+  OutputFiles files(written_files(task));
   buffers.write_files(files);
   EXPECT_EQ(contents("x.bin"), "before") << "until all are committed";
   files.commit();

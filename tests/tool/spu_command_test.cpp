@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "support/files_in.h"
@@ -311,6 +312,85 @@ TEST_F(SpuCommand, CheckedHasNothingToSayAboutACorrectKernel) {
     ASSERT_EQ(run.status, 0) << run.output;
     expect_result();
   }
+}
+
+TEST_F(SpuCommand, BudgetTakesKernelsOfTheUsersOwn) {
+  const CommandResult run =
+      run_softcell("spu budget " + kSaxpy + " skin " + kTalk + " --json " + (folder_ / "b.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_NE(run.output.find("\nsaxpy "), std::string::npos) << run.output;
+  const auto rows = read_json(folder_ / "b.json");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["kernel"], "saxpy");
+  EXPECT_EQ(rows[0]["stack"], 1024);
+  EXPECT_EQ(rows[0]["budget"], 40960);
+  EXPECT_GT(rows[0]["text"], 0);
+  EXPECT_TRUE(rows[0]["stack_used"].is_null()) << "nobody knows its work";
+  EXPECT_EQ(rows[1]["kernel"], "skin");
+  EXPECT_GT(rows[1]["stack_used"], 0);
+  EXPECT_EQ(rows[2]["budget"], 8192);
+
+  // Of the same name as one of softcell's own.
+  std::filesystem::copy_file(kSaxpy, folder_ / "skin.spu.elf");
+  ASSERT_EQ(
+      run_softcell("spu budget " + (folder_ / "skin.spu.elf") + " --json " + (folder_ / "b.json")).status, 0);
+  EXPECT_TRUE(read_json(folder_ / "b.json")[0]["stack_used"].is_null());
+  EXPECT_EQ(run_softcell("spu budget " + (folder_ / "skin.spu.elf") + " --json " + (folder_ / "skin.spu.elf"))
+                .status,
+            2);
+}
+
+TEST_F(SpuCommand, SaysHowMuchOfACheckedStackIsForTheChecks) {
+  const CommandResult run =
+      run_softcell("spu run " + kSaxpy + saxpy_options() + "--checked --json " + (folder_ / "s.json"));
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_NE(run.output.find(" of 2048 declared (the kernel's 1024 and 1024 for the checks);"),
+            std::string::npos)
+      << run.output;
+  EXPECT_EQ(read_json(folder_ / "s.json")["local_store"]["stack_for_checks"], 1024);
+
+  const CommandResult budget =
+      run_softcell("spu budget --checked " + kSaxpy + " --json " + (folder_ / "b.json"));
+  ASSERT_EQ(budget.status, 0) << budget.output;
+  EXPECT_NE(budget.output.find(
+                "The stack of an instrumented flavour is 1024 bytes larger than the kernel declares"),
+            std::string::npos)
+      << budget.output;
+  const auto row = read_json(folder_ / "b.json")[0];
+  EXPECT_EQ(row["checked"], true);
+  EXPECT_EQ(row["stack"], 2048);
+  EXPECT_EQ(row["stack_for_checks"], 1024);
+}
+
+TEST_F(SpuCommand, WritesABufferToStandardOutput) {
+  const CommandResult run =
+      run_shell(SOFTCELL_COMMAND " spu run " + kSaxpy + " --in x=" + (folder_ / "x.bin") +
+                " --out y=-:" + std::to_string(4 * kCount) + " --arg f32:2 @x @y " + std::to_string(kCount) +
+                " 1 0 2>/dev/null");
+  ASSERT_EQ(run.status, 0);
+  ASSERT_EQ(run.output.size(), 4 * kCount) << "nothing but the buffer";
+  float third = 0;
+  std::memcpy(&third, run.output.data() + 12, sizeof third);
+  EXPECT_EQ(third, 6);
+}
+
+TEST_F(SpuCommand, ATraceOfACheckedRunHasAMistakeOnce) {
+  make_inputs(1024);
+  const CommandResult run =
+      run_softcell("spu run " + kNoWait + saxpy_options() + "--checked --trace " + (folder_ / "t.json"));
+  ASSERT_EQ(run.status, 3) << run.output;
+  const auto trace = read_json(folder_ / "t.json");
+  std::set<std::string> seen;
+  std::int64_t most = 0;
+  for (const auto& event : trace["traceEvents"]) {
+    if (event.value("cat", "") != "finding") continue;
+    const auto& args = event["args"];
+    EXPECT_TRUE(seen.insert(event["name"].get<std::string>() + args["place"].get<std::string>()).second)
+        << event;
+    most = std::max(most, args["count"].get<std::int64_t>());
+  }
+  EXPECT_FALSE(seen.empty());
+  EXPECT_GT(most, 1);
 }
 
 TEST_F(SpuCommand, CheckedNamesTheLineThatDoesNotWait) {

@@ -48,6 +48,7 @@ std::string written() {
   spe.on_job(image(), 7, now, now + 500'000'000, true);
   spe.on_stack_used(image(), 700);
   spe.on_finding({.rule = dma::kAllRules[0], .spe = 1, .kernel = "saxpy", .place = "saxpy.cpp:4"}, now + 5);
+  spe.on_finding({.rule = dma::kAllRules[0], .spe = 1, .kernel = "saxpy", .place = "saxpy.cpp:4"}, now + 6);
   trace.spe(0).on_job(image(), 8, now, now + 1, false);
   const ScratchFolder folder;
   trace.write(folder / "trace.json");
@@ -83,6 +84,7 @@ TEST(TraceFile, ReadsWhatTraceWrites) {
 
   ASSERT_EQ(spe.findings.size(), 1u);
   EXPECT_EQ(spe.findings[0].place, "saxpy.cpp:4");
+  EXPECT_EQ(spe.findings[0].count, 2u);
 
   ASSERT_EQ(file.images.size(), 1u);
   EXPECT_EQ(file.images[0].stack_used, 700u);

@@ -1,16 +1,18 @@
-// Writes docs/zoo.md: every broken kernel of the zoo with the message that it gets, in the order of the
-// rules.
+// Fills in docs/reference/rules.md: what stands there between `<!-- zoo RULE -->` and `<!-- end -->` is what the
+// hardware does when the rule is broken, and every broken kernel of the zoo with the message that it gets.
 //
-//   zoo_document               to standard output
-//   zoo_document --check FILE  succeeds when FILE is what would be written
+//   zoo_document FILE          writes the blocks of FILE anew
+//   zoo_document --check FILE  succeeds when nothing would change
 
 #include <exception>
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <map>
 #include <regex>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "kernel_card.h"
 #include "kernel_run.h"
@@ -19,18 +21,9 @@
 namespace softcell::zoo {
 namespace {
 
-constexpr char kIntroduction[] =
-    R"(<!-- Written by zoo_document (tests/zoo) from the kernels and what softcell says about them: do not edit. -->
-# The zoo
-
-Broken kernels, one fault each, by the rule that they break, with the message that softcell gives; and for each the nearest kernel that
-is legal, which runs without a finding. All are in `tests/zoo` and run under the schedules eager, lazy and two random ones. Where a
-message has a local-store address, dots stand for it here, because it depends on the compiler.
-
-What each rule asks for and how to mend a kernel: [writing-kernels.md](writing-kernels.md). What a real Cell does when a rule is broken:
-**raised**, it raises an error; **silent**, it raises nothing, and data are lost or a wait never ends; **unconfirmed**, no source at hand
-says.
-)";
+constexpr std::string_view kBegin = "<!-- zoo ";
+constexpr std::string_view kCounts = "<!-- zoo counts -->";
+constexpr std::string_view kEnd = "<!-- end -->";
 
 const char* word_for(dma::Evidence evidence) {
   switch (evidence) {
@@ -68,57 +61,81 @@ std::string for_the_table(const std::string& message) {
   return std::regex_replace(text, bar, "\\|");
 }
 
-std::string link(const std::string& kernel) { return "[`" + kernel + "`](../tests/zoo/" + kernel + ".cpp)"; }
-
-void write(std::ostream& out) {
-  const auto cards = read_cards("broken");
-  out << kIntroduction << "\n"
-      << cards.size() << " broken kernels, " << read_cards("legal").size() << " legal ones.\n";
-  for (const dma::Rule rule : dma::kAllRules) {
-    bool headed = false;
-    for (const KernelCard& card : cards) {
-      if (card.rule != dma::name(rule)) continue;
-      if (!headed) {
-        out << "\n## " << dma::name(rule) << "\n\n"
-            << "**" << word_for(dma::evidence(rule)) << ".** " << dma::explanation(rule) << "\n\n"
-            << "| broken kernel | what is wrong | message | legal twin |\n|---|---|---|---|\n";
-        headed = true;
-      }
-      out << "| " << link("broken/" + card.name) << " | " << card.text << " | "
-          << for_the_table(message_of(card)) << " | " << link(card.twin) << " |\n";
-    }
-  }
+std::string link(const std::string& kernel) {
+  return "[`" + kernel + "`](../../tests/zoo/" + kernel + ".cpp)";
 }
 
-bool is_fresh(const std::string& path) {
+/// The blocks of the document by the line that begins them.
+std::map<std::string, std::string> blocks() {
+  std::map<std::string, std::string> all;
+  const auto cards = read_cards("broken");
+  all[std::string(kCounts)] = std::to_string(cards.size()) + " broken kernels, " +
+                              std::to_string(read_cards("legal").size()) + " legal ones.\n";
+  for (const dma::Rule rule : dma::kAllRules) {
+    const std::string name(dma::name(rule));
+    std::ostringstream block;
+    block << "**" << word_for(dma::evidence(rule)) << ".** " << dma::explanation(rule) << "\n";
+    bool headed = false;
+    for (const KernelCard& card : cards) {
+      if (card.rule != name) continue;
+      if (!headed) block << "\n| broken kernel | what is wrong | message | legal twin |\n|---|---|---|---|\n";
+      headed = true;
+      block << "| " << link("broken/" + card.name) << " | " << card.text << " | "
+            << for_the_table(message_of(card)) << " | " << link(card.twin) << " |\n";
+    }
+    all[std::string(kBegin) + name + " -->"] = block.str();
+  }
+  return all;
+}
+
+/// The document with its blocks written anew.
+/// @throws std::runtime_error  a block of no rule, a rule without a block, a block without an end.
+std::string filled_in(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read " + path);
-  std::ostringstream expected;
-  write(expected);
-  std::istringstream lines(expected.str());
-  std::string ours, theirs;
-  for (int number = 1; std::getline(lines, ours); ++number) {
-    if (!std::getline(file, theirs)) theirs = "(the end)";
-    if (ours == theirs) continue;
-    std::cerr << path << ":" << number << ": not up to date; write it again with zoo_document\n  it has  "
-              << theirs << "\n  and not " << ours << "\n";
+  auto left = blocks();
+  std::string document;
+  for (std::string line; std::getline(file, line);) {
+    document += line + "\n";
+    if (!line.starts_with(kBegin)) continue;
+    const auto block = left.extract(line);
+    if (!block) throw std::runtime_error(path + ": '" + line + "' names no rule, or one that had its block");
+    while (std::getline(file, line) && line != kEnd) {
+    }
+    if (!file) throw std::runtime_error(path + ": " + block.key() + " has no " + std::string(kEnd));
+    document += block.mapped() + std::string(kEnd) + "\n";
+  }
+  if (!left.empty()) throw std::runtime_error(path + ": no block " + left.begin()->first);
+  return document;
+}
+
+bool is_up_to_date(const std::string& path) {
+  std::ifstream file(path);
+  std::istringstream lines(filled_in(path));
+  std::string expected, found;
+  for (int number = 1; std::getline(lines, expected); ++number) {
+    if (!std::getline(file, found)) found = "(the end)";
+    if (expected == found) continue;
+    std::cerr << path << ":" << number << ": not up to date; write it again with zoo_document " << path
+              << "\n  it has  " << found << "\n  and not " << expected << "\n";
     return false;
   }
-  return file.peek() == std::ifstream::traits_type::eof();
+  return true;
 }
 
 }  // namespace
 }  // namespace softcell::zoo
 
 int main(int count, char** arguments) {
+  using namespace softcell;
   try {
-    if (count == 1) {
-      softcell::zoo::write(std::cout);
-      return 0;
+    if (count == 3 && std::string(arguments[1]) == "--check") return zoo::is_up_to_date(arguments[2]) ? 0 : 1;
+    if (count == 2 && !std::string_view(arguments[1]).starts_with("--")) {
+      const std::string document = zoo::filled_in(arguments[1]);
+      if (std::ofstream(arguments[1]) << document << std::flush) return 0;
+      throw std::runtime_error(std::string("cannot write ") + arguments[1]);
     }
-    if (count == 3 && std::string(arguments[1]) == "--check")
-      return softcell::zoo::is_fresh(arguments[2]) ? 0 : 1;
-    std::cerr << "usage: zoo_document [--check FILE]\n";
+    std::cerr << "usage: zoo_document [--check] FILE\n";
     return 2;
   } catch (const std::exception& error) {
     std::cerr << "zoo_document: " << error.what() << "\n";

@@ -41,7 +41,7 @@ function showSummary(list, trace) {
       tile("Bandwidth", format.rate(bytes / span * 1e9), "mean, all SPEs"),
       tile("SPEs busy", format.percent(busy / span / spes), "with a job"),
       tile("Waiting", format.percent(busy > 0 ? waiting / busy : 0), "of the busy time"),
-      tile("Findings", format.count(trace.findings.length), trace.findings.length > 0 ? "mistakes of checked kernels" : "none recorded", trace.findings.length > 0));
+      tile("Findings", format.count(trace.findings.reduce((sum, finding) => sum + finding.count, 0)), trace.findings.length > 0 ? "mistakes of checked kernels" : "none recorded", trace.findings.length > 0));
 }
 
 /** What the trace lacks, above everything else. */
@@ -65,7 +65,7 @@ function showFindings(box, trace, show) {
   for (const finding of trace.findings) {
     const key = JSON.stringify([finding.rule, finding.kernel, finding.place]);
     const kind = kinds.get(key) ?? {first: finding, count: 0, spes: new Set()};
-    ++kind.count;
+    kind.count += finding.count;
     kind.spes.add(finding.spe);
     kinds.set(key, kind);
   }

@@ -255,6 +255,7 @@ function drawCursor(c, time, timeline) {
 function describe({row, event, finding}, trace) {
   if (finding) {
     return {title: finding.rule, facts: [["SPE", finding.spe], ["kernel", finding.kernel], ["place", finding.place],
+                                         ["times on this SPE", format.count(finding.count)],
                                          ["at", format.exactTime(finding.when - trace.begin)], ["", finding.message]]};
   }
   const {columns, spe, kind} = row, name = spe.name(columns, event);

@@ -7,6 +7,7 @@
 
 #include "demo.h"
 #include "scene/look.h"
+#include "softcell/render/overlay.h"
 
 namespace softcell::demos {
 

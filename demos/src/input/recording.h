@@ -1,6 +1,6 @@
 #pragma once
 // What happened to a scene, frame by frame: written by --record, done again by --replay.
-// docs/recording.md describes the file.
+// docs/guide/playing.md describes the file.
 
 #include <cstdint>
 #include <filesystem>

@@ -3,6 +3,7 @@
 // and benchmarks. Metres, kilograms, seconds; y is up.
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,8 @@ struct Scene {
   render::Camera camera;
   render::Light light;
   ScriptedInput<3> script;
-  std::vector<int> pictures;  ///< frames worth a picture, ascending
+  std::vector<int> pictures;                 ///< frames worth a picture, ascending
+  std::vector<std::filesystem::path> files;  ///< that it was read from: nothing may be written there
 };
 
 }  // namespace softcell::demos

@@ -2,6 +2,7 @@
 // A scene in two dimensions as plain data: see scene.h. Metres, kilograms, seconds; y is up.
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
@@ -62,7 +63,8 @@ struct Scene2d {
   int frames = 300;  ///< how long the scene is worth watching without a user
   Camera2d camera;
   ScriptedInput<2> script;
-  std::vector<int> pictures;  ///< frames worth a picture, ascending
+  std::vector<int> pictures;                 ///< frames worth a picture, ascending
+  std::vector<std::filesystem::path> files;  ///< that it was read from: nothing may be written there
 };
 
 }  // namespace softcell::demos

@@ -58,8 +58,8 @@ class Hash {
   }
 
   void take(const ppu::TriangleMesh& mesh) {
-    const auto& [positions, normals, triangles] = mesh;
-    add(positions, triangles);  // normals are looks
+    const auto& [positions, normals, triangles, texture_coordinates, colours, parts] = mesh;
+    add(positions, triangles);  // all else is looks
   }
   void take(const ppu::SoftBodySettings& settings) {
     const auto& [cell_size, half_width, density, alpha, damping, friction, contacts, frequency,
@@ -103,7 +103,7 @@ class Hash {
 
 std::uint64_t scene_hash(const Scene& scene) {
   const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps, frames, camera,
-               light, script, pictures] = scene;
+               light, script, pictures, files] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   return hash.value();
@@ -111,7 +111,7 @@ std::uint64_t scene_hash(const Scene& scene) {
 
 std::uint64_t scene_hash(const Scene2d& scene) {
   const auto& [name, title, soft_bodies, rigid_bodies, gravity, friction, substeps, frames, camera, script,
-               pictures] = scene;
+               pictures, files] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   return hash.value();

@@ -24,6 +24,6 @@ Value parse_toml(std::string_view text, const std::shared_ptr<const std::string>
 Value run_lua(std::string_view chunk, const std::shared_ptr<const std::string>& file);
 
 /// Seconds after which a child that has not answered is killed.
-inline constexpr double kLuaAnswerSeconds = 1.8;
+inline constexpr double kLuaAnswerSeconds = 12;
 
 }  // namespace softcell::demos

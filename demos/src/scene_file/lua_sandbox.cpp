@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <lua.hpp>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include "softcell/dma/sanitizers.h"
 #include "value_message.h"
@@ -44,6 +46,9 @@ double seconds(clockid_t clock) {
   clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
+
+/// What Lua 5.4 has besides, of which nothing is opened.
+constexpr const char* kOtherGlobals[] = {"coroutine", "debug", "io", "os", "package", "require", "utf8"};
 
 class Sandbox {
  public:
@@ -140,8 +145,10 @@ class Sandbox {
         lua_pushcfunction(state_, insert);
         lua_setfield(state_, -2, "insert");
       }
+      refuse_the_rest(library);
       lua_setfield(state_, -2, library.name);
     }
+    refuse_the_rest(kBaseLibrary);
     lua_rawseti(state_, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
   }
 
@@ -163,6 +170,68 @@ class Sandbox {
       lua_setfield(state_, -3, name);
     }
     lua_pop(state_, 1);
+  }
+
+  /// Has the table on top of the stack, with what is allowed of the library, say so when a script looks for
+  /// something else that Lua's library has. Any other name is nil, as always.
+  void refuse_the_rest(const Library& library) {
+    lua_newtable(state_);  // the metatable
+    lua_pushstring(state_, library.name);
+    lua_newtable(state_);  // a key for each name that is missing
+    lua_getglobal(state_, library.name);
+    for (lua_pushnil(state_); lua_next(state_, -2) != 0; lua_pop(state_, 1)) {
+      lua_pushvalue(state_, -2);
+      if (lua_rawget(state_, -7) != LUA_TNIL) {  // in the table of what is allowed
+        lua_pop(state_, 1);
+        continue;
+      }
+      lua_pop(state_, 1);
+      lua_pushvalue(state_, -2);
+      lua_pushboolean(state_, 1);
+      lua_rawset(state_, -6);
+    }
+    lua_pop(state_, 1);
+    for (const char* name : kOtherGlobals) {
+      if (library.open != luaopen_base) break;
+      lua_pushboolean(state_, 1);
+      lua_setfield(state_, -2, name);
+    }
+    lua_pushcclosure(state_, find_the_rest, 2);
+    lua_setfield(state_, -2, "__index");
+    lua_setmetatable(state_, -2);
+  }
+
+  /// __index: called for a name that is not there. Upvalues: the library's name, and a table of the names that
+  /// Lua has and a scene has not.
+  static int find_the_rest(lua_State* state) {
+    lua_settop(state, 2);
+    lua_pushvalue(state, 2);
+    if (lua_rawget(state, lua_upvalueindex(2)) == LUA_TNIL) return 1;
+    const std::string_view library = lua_tostring(state, lua_upvalueindex(1));
+    const bool is_global = library == kBaseLibrary.name;
+    // No object of C++ may be alive when luaL_error leaves this function: the list is made by Lua.
+    luaL_Buffer names;
+    luaL_buffinit(state, &names);
+    bool is_first = true;
+    const auto add = [&](const char* name) {
+      if (!std::exchange(is_first, false)) luaL_addstring(&names, ", ");
+      luaL_addstring(&names, name);
+    };
+    const auto add_all = [&](std::span<const char* const> all) {
+      for (const char* name : all) add(name);
+    };
+    if (is_global) {
+      add_all(kBase);
+      for (const Library& each : kLibraries) add(each.name);
+    } else {
+      for (const Library& each : kLibraries)
+        if (library == each.name) add_all(each.allowed);
+      if (library == "table") add("insert");
+    }
+    luaL_pushresult(&names);
+    return luaL_error(state, "%s%s%s is not available in a scene; there are: %s",
+                      is_global ? "" : lua_tostring(state, lua_upvalueindex(1)), is_global ? "" : ".",
+                      lua_tostring(state, 2), lua_tostring(state, -1));
   }
 
   /// What ("text"):name() finds: the table on top of the stack.
@@ -232,7 +301,7 @@ constexpr bool kLimitProcess = SC_ADDRESS_SANITIZER == 0;
 void run_sandboxed(std::string_view chunk, int descriptor) {
   constexpr rlim_t kSpareBytes = rlim_t{192} << 20;  // Lua's, the message's, and the allocator's own
   if (kLimitProcess) set_limit(RLIMIT_AS, address_space() + kSpareBytes);
-  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(kLuaWallSeconds)));
+  set_limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(kLuaSeconds)) + 1);
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, 0);
   if (kLimitProcess) set_limit(RLIMIT_NOFILE, 0);

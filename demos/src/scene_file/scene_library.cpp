@@ -27,8 +27,14 @@ std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
                                         const std::optional<OwnModel>& model = std::nullopt) {
   const Value document = read_document(source.main());
   FieldReader root(document, "a scene");
-  if (read_dimension(root) == 2) return read_scene_2d(root, source);
-  return read_scene_3d(root, source, model);
+  if (read_dimension(root) == 2) {
+    Scene2d scene = read_scene_2d(root, source);
+    scene.files = source.files();
+    return scene;
+  }
+  Scene scene = read_scene_3d(root, source, model);
+  scene.files = source.files();
+  return scene;
 }
 
 /// What a script returns for a scene to use: see read_lattice_2d.h.

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes by name or file. docs/scenes.md describes the files.
+// Scenes by name or file. docs/reference/scenes.md describes the files.
 //
 // A scene or lattice in Lua runs in a child process, made by fork(): load scenes before threads are started.
 

@@ -69,6 +69,7 @@ SceneSource SceneSource::find(std::string_view name_or_file) {
   const fs::path path{name_or_file};
   source.main_ = read_text(path);
   source.folder_ = fs::weakly_canonical(path).parent_path();
+  source.files_.push_back(path);
   return source;
 }
 
@@ -95,6 +96,7 @@ fs::path SceneSource::locate(const std::string& file, const Place& place) const 
         place, fmt::format("'{}' is outside; a scene may name files below its own folder, and below {}", file,
                            kSystemData));
   }
+  files_.push_back(found);
   return found;
 }
 

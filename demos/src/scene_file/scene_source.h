@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "softcell/base/embedded_file.h"
 #include "value.h"
@@ -41,6 +42,8 @@ class SceneSource {
 
   const SourceText& main() const { return main_; }
   std::string name() const;  ///< without folder and ending
+  /// The user's files that were looked for so far, the scene's own among them.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
 
   /// A file that the scene names at `place`. @throws SceneError  there is none, or it may not be named.
   SourceText text(const std::string& file, const Place& place) const;
@@ -50,7 +53,8 @@ class SceneSource {
   std::filesystem::path locate(const std::string& file, const Place& place) const;
 
   SourceText main_;
-  std::optional<std::filesystem::path> folder_;  // none: built in
+  std::optional<std::filesystem::path> folder_;       // none: built in
+  mutable std::vector<std::filesystem::path> files_;  // grows as the scene is read
 };
 
 }  // namespace softcell::demos

@@ -30,7 +30,7 @@ class Simulation2d {
 
   /// Does what the scene's script says and then what `events` say, and simulates 1/60 s. During a pause
   /// nothing moves.
-  /// @throws std::runtime_error  a body has become NaN, is too large for an SPE, or an SPE failed.
+  /// @throws std::runtime_error  a body has become NaN, or an SPE failed.
   FrameTimes step(std::span<const InputEvent<2>> events = {});
 
   /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 
 #include "softcell/dma/schedule.h"
-#include "softcell/ls_sim/image.h"
 #include "softcell/ls_sim/spe_options.h"
 #include "softcell/ls_sim/trace.h"
-#include "softcell/spu_kernels/images.h"
+#include "softcell/spu_kernels/load_kernel.h"
 
 namespace softcell::demos {
 
@@ -38,10 +35,7 @@ struct SimulationOptions {
   }
 };
 
-/// A kernel of softcell, or its checked flavour. @throws std::runtime_error  there is none.
-inline ls_sim::KernelImage load_kernel(std::string_view name, bool checked = false) {
-  return ls_sim::load_image(std::string(name), spu_kernels::image_file(name, checked));
-}
+using spu_kernels::load_kernel;
 
 /// Milliseconds of one frame, measured on the PPU thread.
 struct FrameTimes {

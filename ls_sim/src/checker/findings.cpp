@@ -10,12 +10,14 @@ auto key(const dma::Fault& fault) { return std::tie(fault.rule, fault.kernel, fa
 
 }  // namespace
 
+bool is_same_mistake(const dma::Fault& a, const dma::Fault& b) { return key(a) == key(b); }
+
 void Findings::add(const dma::Fault& fault) {
   const std::scoped_lock lock(mutex_);
   const auto at =
       std::lower_bound(findings_.begin(), findings_.end(), fault,
                        [](const Finding& f, const dma::Fault& wanted) { return key(f.fault) < key(wanted); });
-  if (at != findings_.end() && key(at->fault) == key(fault)) {
+  if (at != findings_.end() && is_same_mistake(at->fault, fault)) {
     ++at->count;
   } else {
     findings_.insert(at, Finding{fault, 1});

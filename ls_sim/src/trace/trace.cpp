@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "softcell/base/whole_file.h"
+#include "softcell/ls_sim/findings.h"
 #include "trace_events.h"
 #include "trace_writer.h"
 
@@ -70,12 +71,16 @@ void SpeTrace::on_wait(std::uint32_t channel, TraceTime begin, TraceTime end) {
 
 void SpeTrace::on_finding(const dma::Fault& fault, TraceTime when) {
   SpeEvents& e = *events_;
-  if (e.findings.size() == e.most_findings) {
+  // There are as many as a kernel has lines that are wrong: a few.
+  const auto known = std::ranges::find_if(
+      e.findings, [&](const TracedFinding& finding) { return is_same_mistake(finding.first, fault); });
+  if (known != e.findings.end()) {
+    ++known->count;
+  } else if (e.findings.size() < e.most_findings) {
+    e.findings.push_back({when, fault, 1});
+  } else {
     ++e.dropped_findings;
-    return;
   }
-  e.findings.push_back(
-      {when, std::string(dma::name(fault.rule)), fault.kernel, fault.place, fault.message()});
 }
 
 void SpeTrace::on_issue(std::uint64_t number, const dma::MfcCommand& command, std::uint64_t bytes) {

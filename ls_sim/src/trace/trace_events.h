@@ -48,9 +48,11 @@ struct TracedCommand {
 };
 static_assert(sizeof(TracedCommand) == 40);
 
+/// What Findings takes for the same mistake is one, however often it happens.
 struct TracedFinding {
-  TraceTime when;
-  std::string rule, kernel, place, message;
+  TraceTime when;  ///< of the first
+  dma::Fault first;
+  std::uint64_t count;
 };
 
 struct SpeEvents {
@@ -63,7 +65,7 @@ struct SpeEvents {
   EventLog<TracedCommand> commands;
 
   std::size_t most_findings, dropped_findings = 0;
-  std::vector<TracedFinding> findings;
+  std::vector<TracedFinding> findings;  // in order of the first
 
   std::vector<TracedImage> images;
   const KernelImage* last_image = nullptr;  // so that a run of the same image finds it at once

@@ -159,13 +159,15 @@ void TraceWriter::write_findings(int spe, const SpeEvents& events) {
         .raw(",\"s\":\"p\",\"ts\":")
         .microseconds(finding.when - begin_)
         .raw(",\"cat\":\"finding\",\"name\":")
-        .string(finding.rule)
+        .string(dma::name(finding.first.rule))
         .raw(",\"args\":{\"kernel\":")
-        .string(finding.kernel)
+        .string(finding.first.kernel)
         .raw(",\"place\":")
-        .string(finding.place)
+        .string(finding.first.place)
         .raw(",\"message\":")
-        .string(finding.message)
+        .string(finding.first.message())
+        .raw(",\"count\":")
+        .number(static_cast<std::int64_t>(finding.count))
         .raw("}}");
   }
 }

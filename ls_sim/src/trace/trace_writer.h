@@ -1,5 +1,5 @@
 #pragma once
-// The Chrome / Perfetto JSON format, as softcell writes it. docs/trace-and-report.md describes each field.
+// The Chrome / Perfetto JSON format, as softcell writes it. docs/guide/running-kernels.md describes each field.
 
 #include <cstdint>
 #include <string>

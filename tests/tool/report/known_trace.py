@@ -35,9 +35,9 @@ class TraceBuilder:
         self._slice(spe, 3 + row, "dma", name, begin, duration,
                     {"tag": tag, "lsa": lsa, "ea": ea, "size": size, "bytes": size, "completed": completed})
 
-    def finding(self, spe, when, rule, kernel, place, message):
+    def finding(self, spe, when, rule, kernel, place, message, count=1):
         self.events.append({"ph": "i", "s": "p", "pid": spe + 1, "tid": (spe + 1) * 1000 + 1, "ts": microseconds(when),
-                            "cat": "finding", "name": rule, "args": {"kernel": kernel, "place": place, "message": message}})
+                            "cat": "finding", "name": rule, "args": {"kernel": kernel, "place": place, "message": message, "count": count}})
 
     def image(self, name, text, bss, stack, stack_used, objects=(), checked=False):
         bss_begin = (0x80 + text + 127) // 128 * 128
@@ -79,7 +79,7 @@ def known_trace():
             number += 1
     message = "SPE 2, kernel skin, skin.cpp:41: load-in-flight: a get of tag 3 is in flight"
     trace.finding(2, 1_200_000, "load-in-flight", "skin", "skin.cpp:41", message)
-    trace.finding(3, 2_200_000, "load-in-flight", "skin", "skin.cpp:41", message)
+    trace.finding(3, 2_200_000, "load-in-flight", "skin", "skin.cpp:41", message, count=500_000)
     trace.finding(3, 3_300_000, "tag-unused", "sum_bars", HOSTILE, HOSTILE)
     trace.image("skin", 6100, 40960, 4096, 1360, [("input", 0, 16384), ("output", 16384, 16384), ("weights", 32768, 8192)])
     trace.image("sum_bars", 2800, 65536, 2048, None, [("(anonymous namespace)::buffers", 0, 65536)], checked=True)

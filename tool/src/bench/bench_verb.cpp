@@ -6,15 +6,17 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
 #include <vector>
 
+#include "bench_groups.h"
+#include "bench_report.h"
 #include "benchmarks.h"
 #include "command_line/shared_options.h"
-#include "softcell/base/whole_file.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
-#include "verb/verb_files.h"
+#include "verb/output_files.h"
 
 namespace softcell::tool {
 namespace {
@@ -34,7 +36,7 @@ std::vector<Benchmark> all_benchmarks() {
   return all;
 }
 
-/// Those whose name the user asks for, sorted, so that what is compared stands together.
+/// Those whose name the user asks for, in the order in which they are reported.
 std::vector<Benchmark> chosen_benchmarks(const std::string& filter_text) {
   std::vector<Benchmark> all = all_benchmarks();
   try {
@@ -45,7 +47,7 @@ std::vector<Benchmark> chosen_benchmarks(const std::string& filter_text) {
   }
   if (all.empty())
     throw UsageError("--filter " + filter_text + " leaves no benchmark; --list shows their names");
-  std::ranges::sort(all, {}, &Benchmark::name);
+  std::ranges::sort(all, is_reported_before, &Benchmark::name);
   return all;
 }
 
@@ -91,13 +93,18 @@ std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int r
 int run_bench(const BenchOptions& options) {
   if (options.list && options.json)
     throw UsageError("--list measures nothing that --json could write: leave one of them out");
+  if (options.list && options.compare)
+    throw UsageError("--list measures nothing that --compare could compare: leave one of them out");
   const std::vector<Benchmark> benchmarks = chosen_benchmarks(options.filter);
   if (options.list) {
     for (const Benchmark& b : benchmarks) fmt::print("{}\n", b.name);
     return 0;
   }
+  check_kept({{"--compare", options.compare}}, {{"--json", options.json}});
+  OutputFiles files({{"--json", options.json}});
+  std::optional<OldFigures> old;
+  if (options.compare) old = read_old_figures(*options.compare);
   const InterruptGuard guard;
-  base::WholeFiles files;
   base::WholeFile* const json = files.open(options.json);
   const std::vector<Measurement> all = measure(benchmarks, options.rounds, guard);
   if (guard.interrupted()) {
@@ -105,19 +112,14 @@ int run_bench(const BenchOptions& options) {
     return kExitInterrupted;
   }
 
-  auto document = nlohmann::ordered_json::array();
-  fmt::print("{:<38} {:>12} {:>12} {:>9}   nanoseconds per item, {} rounds\n", "name", "minimum", "median",
-             "items", options.rounds);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string& name = benchmarks[i].name;
-    const Measurement& m = all[i];
-    fmt::print("{:<38} {:>12.2f} {:>12.2f} {:>9}\n", name, m.least(), m.median(), m.work.items);
-    document.push_back(
-        {{"name", name}, {"ns_min", m.least()}, {"ns_median", m.median()}, {"items", m.work.items}});
-  }
+  std::vector<BenchResult> results;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    results.push_back({benchmarks[i].name, all[i].least(), all[i].median(), all[i].work.items});
+  const OldFigures* const compared = old ? &*old : nullptr;
+  fmt::print("{}", bench_table(results, options.rounds, compared));
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].work.note) fmt::print("\n{}: {}", benchmarks[i].name, all[i].work.note());
-  if (json != nullptr) write_json(*json, document);
+  if (json != nullptr) write_json(*json, bench_document(results, compared));
   files.commit();
   return 0;
 }
@@ -139,7 +141,12 @@ class BenchVerb final : public Verb {
         1, kMaxRounds)
         ->type_name("ROUNDS");
     b->add_flag("--list", options_.list, "Print the names of the benchmarks and measure nothing");
-    b->add_option("--json", options_.json, "Write the figures to this file as well")->type_name("FILE");
+    b->add_option(
+         "--compare", options_.compare,
+         "What --json wrote in an earlier run: beside each time stands how many times as long it takes "
+         "now")
+        ->type_name("FILE");
+    add_json_option(*b, options_.json, "the figures");
     b->callback([&] { chosen = [this] { return run_bench(options_); }; });
   }
 

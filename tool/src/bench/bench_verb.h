@@ -11,9 +11,10 @@
 namespace softcell::tool {
 
 struct BenchOptions {
-  std::string filter;  ///< regular expression; empty: all
-  int rounds = 31;     ///< in each of which every benchmark runs once
-  bool list = false;   ///< print names, measure nothing
+  std::string filter;                            ///< regular expression; empty: all
+  int rounds = 31;                               ///< in each of which every benchmark runs once
+  bool list = false;                             ///< print names, measure nothing
+  std::optional<std::filesystem::path> compare;  ///< figures of an earlier run
   std::optional<std::filesystem::path> json;
 };
 

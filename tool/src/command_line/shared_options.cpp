@@ -35,8 +35,14 @@ dma::Schedule parse_dma(const std::string& text) {
   }
 }
 
+void add_json_option(CLI::App& verb, std::optional<std::filesystem::path>& file, const std::string& what) {
+  verb.add_option("--json", file, "Write " + what + " as JSON to this file; - is standard output")
+      ->type_name("FILE");
+}
+
 void add_trace_option(CLI::App& verb, std::optional<std::filesystem::path>& file) {
-  verb.add_option("--trace", file, "Write a trace of what happened when; `softcell report` shows it")
+  verb.add_option("--trace", file,
+                  "Write a trace of what happened when, which `softcell report` shows; - is standard output")
       ->type_name("FILE");
 }
 

@@ -25,7 +25,10 @@ void add_dma_option(CLI::App& verb, std::string& text);
 /// @throws UsageError
 dma::Schedule parse_dma(const std::string& text);
 
-/// --trace
+/// --json, "-" for standard output. @param what  is written: "the table".
+void add_json_option(CLI::App& verb, std::optional<std::filesystem::path>& file, const std::string& what);
+
+/// --trace, likewise
 void add_trace_option(CLI::App& verb, std::optional<std::filesystem::path>& file);
 
 }  // namespace softcell::tool

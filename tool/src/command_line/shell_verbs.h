@@ -1,5 +1,5 @@
 #pragma once
-// softcell completion and softcell man: the command line itself, for a shell and for a reader.
+// softcell help, completion and man: the command line itself, for a reader and for a shell.
 
 #include <memory>
 #include <string>

@@ -37,10 +37,10 @@ std::string unknown_option(const std::string& verb, const CommandVerb& tree, con
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
 
-std::string unknown_verb(const std::string& verb, const CommandVerb& tree, const std::string& argument) {
-  std::vector<std::string> known;
-  for (const CommandVerb& below : tree.verbs) known.push_back(below.name);
-  return fmt::format("{} has no command '{}'; there are: {}", verb, argument, fmt::join(known, ", "));
+/// The one that is most likely meant; empty when none is near. In a name of one or two letters every letter is
+/// near every other.
+std::string_view likely_verb(const std::string& argument, const std::vector<std::string_view>& known) {
+  return argument.size() > 2 ? base::nearest_name(argument, known) : std::string_view();
 }
 
 std::string one_argument_too_many(const std::string& verb, const CommandVerb& tree,
@@ -58,7 +58,7 @@ std::string one_argument_too_many(const std::string& verb, const CommandVerb& tr
 std::string unexpected(const std::string& verb, const CLI::App& app, const std::string& argument) {
   const CommandVerb tree = command_tree(app);
   if (argument.starts_with('-')) return unknown_option(verb, tree, argument);
-  if (!tree.verbs.empty()) return unknown_verb(verb, tree, argument);
+  if (!tree.verbs.empty()) return unknown_verb(verb, app, argument);
   return one_argument_too_many(verb, tree, argument);
 }
 
@@ -78,6 +78,17 @@ std::string wrong_count(const CLI::App& app, const std::string& what) {
 }
 
 }  // namespace
+
+std::string unknown_verb(const std::string& verb, const CLI::App& app, const std::string& argument) {
+  const CommandVerb tree = command_tree(app);
+  std::vector<std::string_view> known;
+  for (const CommandVerb& below : tree.verbs) known.push_back(below.name);
+  if (known.empty()) return fmt::format("{} has no commands below it, and no '{}'", verb, argument);
+  const std::string_view likely = likely_verb(argument, known);
+  return fmt::format("{} has no command '{}'; {}", verb, argument,
+                     likely.empty() ? fmt::format("there are: {}", fmt::join(known, ", "))
+                                    : fmt::format("did you mean {}?", likely));
+}
 
 std::string called_verb(const CLI::App& top) {
   std::string path;
@@ -107,8 +118,7 @@ std::optional<std::string> left_out_sentence(const CLI::App& top,
   const auto left = top.remaining(true);
   if (!top.get_subcommands().empty() || left.empty() || !std::ranges::count(left_out, left.front()))
     return {};
-  return fmt::format("this softcell is built without demos: {}",
-                     unknown_verb("it", command_tree(top), left.front()));
+  return fmt::format("this softcell is built without demos: {}", unknown_verb("it", top, left.front()));
 }
 
 std::optional<std::string> more_behind_help(const CLI::App& top, int argc, const char* const* argv) {

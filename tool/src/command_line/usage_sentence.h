@@ -16,6 +16,10 @@ namespace softcell::tool {
 /// The verb that was called, from the top: "softcell spu run".
 std::string called_verb(const CLI::App& top);
 
+/// What to say of a word that stands where a verb is expected.
+/// @param verb  the one above, from the top: "softcell spu"  @param app  its parser
+std::string unknown_verb(const std::string& verb, const CLI::App& app, const std::string& argument);
+
 /// @param top  the parser that has thrown the error.
 std::string usage_sentence(const CLI::App& top, const CLI::ParseError& error);
 

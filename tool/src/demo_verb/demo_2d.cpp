@@ -40,6 +40,7 @@ int run_demo_2d(const Demo2dOptions& options) {
   return run_demo(options, "demo 2d", [&](bool all) {
     demos::InputLog<2> log(options);
     demos::Scene2d scene = demos::load_scene_2d(options.scene.value_or(log.scene_name().value_or("man")));
+    check_scene_kept(scene.files, options);
     log.begin(scene);
     return demos_of<Demo2d>(options, log, scene, all, demos::load_scene_2d);
   });

@@ -81,6 +81,7 @@ int run_demo_3d(const Demo3dOptions& options) {
     demos::InputLog<3> log(options);
     const std::string usual = model ? "drop" : "arena";
     demos::Scene scene = load_with_model(options.scene.value_or(log.scene_name().value_or(usual)), model);
+    check_scene_kept(scene.files, options);
     log.begin(scene);
     return demos_of<Demo3d>(options, log, scene, all,
                             [](std::string_view name) { return demos::load_scene_3d(name); });

@@ -8,119 +8,173 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <vector>
+
+#include "softcell/base/text.h"
+#include "verb/output_files.h"
 
 namespace softcell::tool {
 namespace {
 
-/// Mean and order statistics of a series of measurements, in the unit of the measurements.
-struct Summary {
-  double mean = 0, p50 = 0, p99 = 0, max = 0;
-};
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-/// All zero for an empty series.
 Summary summarize(std::vector<double> samples) {
   if (samples.empty()) return {};
   std::sort(samples.begin(), samples.end());
   const auto rank = [&](double share) {
     return samples[static_cast<std::size_t>(share * static_cast<double>(samples.size() - 1) + 0.5)];
   };
-  const double sum = std::accumulate(samples.begin(), samples.end(), 0.0);
-  return {sum / static_cast<double>(samples.size()), rank(0.5), rank(0.99), samples.back()};
+  return {sum(samples) / static_cast<double>(samples.size()), rank(0.5), rank(0.99), samples.back()};
 }
+
+/// Whether the run draws each frame before it simulates the next. A window is drawn by a thread of its own.
+bool waits_for_pictures(const DemoOptions& options) {
+  return options.headless && (options.out || options.video);
+}
+
+/// What the frame loop spent its time on, and the frames a second that this makes.
+void fill_in_time(const DemoOptions& options, const demos::RunRecord& record, DemoFigures& figures) {
+  figures.time_shares = {
+      {"physics", "contacts and rigid bodies", sum(record.physics_ms)},
+      {"matching", "shape matching", sum(record.solve_ms) + sum(record.solver_wait_ms)},
+      {"skinning", "skinning", sum(record.skin_ms) + sum(record.skin_wait_ms)},
+      {"coupling", "handing particles to and fro", sum(record.gather_ms) + sum(record.apply_ms)},
+      {"pictures", "pictures", waits_for_pictures(options) ? sum(record.picture_ms) : 0}};
+  double milliseconds = 0;
+  for (const TimeShare& part : figures.time_shares) milliseconds += part.share;
+  if (milliseconds <= 0) return;
+  for (TimeShare& part : figures.time_shares) part.share /= milliseconds;
+  std::ranges::stable_sort(figures.time_shares, std::ranges::greater{}, &TimeShare::share);
+  figures.fps = 1000 * record.frames / milliseconds;
+}
+
+/// "9.7 frames", "61 frames".
+std::string frame_rate(double fps) { return fmt::format("{:.{}f} frames", fps, fps < 9.95 ? 1 : 0); }
 
 nlohmann::ordered_json to_json(const Summary& s) {
   return {{"mean", s.mean}, {"p50", s.p50}, {"p99", s.p99}, {"max", s.max}};
 }
 
-}  // namespace
-
-nlohmann::ordered_json statistics_document(const DemoOptions& options, const demos::Demo& demo,
-                                           const demos::RunRecord& record) {
-  const demos::DemoCounts counts = demo.counts();
-  std::vector<double> busy;
-  std::uint64_t bytes = 0, commands = 0, jobs = 0;
-  for (const ls_sim::SpeStatistics& spe : demo.spe_statistics()) {
-    busy.push_back(record.seconds > 0 ? std::chrono::duration<double>(spe.busy).count() / record.seconds : 0);
-    bytes += spe.dma.bytes();
-    commands += spe.dma.commands();
-    jobs += spe.jobs;
-  }
-  return {
-      {"scene", demo.scene_name()},
-      {"frames", record.frames},
-      {"bodies", counts.soft_bodies},
-      {"rigid_bodies", counts.rigid_bodies},
-      {"particles", counts.particles},
-      {"vertices", counts.vertices},
-      {"spes", busy.size()},
-      {"dma", dma::to_string(options.schedule)},
-      {"engine", options.solver == demos::Solver::kSpe ? "native" : "reference"},
-      {"ppu_ms", to_json(summarize(record.ppu_ms))},
-      {"ppu_share", record.ppu_share()},
-      {"gather_ms", to_json(summarize(record.gather_ms))},
-      {"solve_ms", to_json(summarize(record.solve_ms))},
-      {"apply_ms", to_json(summarize(record.apply_ms))},
-      {"physics_ms", to_json(summarize(record.physics_ms))},
-      {"skin_ms", to_json(summarize(record.skin_ms))},
-      {"solver_wait_ms", to_json(summarize(record.solver_wait_ms))},
-      {"skin_wait_ms", to_json(summarize(record.skin_wait_ms))},
-      {"picture_ms", to_json(summarize(record.picture_ms))},
-      {"pictures", record.picture_ms.size()},
-      {"upload_bytes", record.upload_bytes_of_a_picture()},
-      {"simulated_fps", record.simulated_fps()},
-      {"seconds", record.seconds},
-      {"spe_busy", busy},
-      {"spe_jobs", jobs},
-      {"dma_bytes", bytes},
-      {"dma_commands", commands},
-      {"state_hash", fmt::format("{:016x}", demo.state_hash())},
-      {"image_hash", fmt::format("{:016x}", record.image_hash)},
-  };
-}
-
-void print_summary(const nlohmann::ordered_json& s, const DemoOptions& options) {
-  double busiest = 0, mean = 0;
-  for (const double share : s["spe_busy"]) {
-    busiest = std::max(busiest, share);
-    mean += share / static_cast<double>(s["spe_busy"].size());
-  }
-  fmt::print("scene {}: {} frames, {} soft bodies and {} rigid ones, {} particles, {} vertices\n",
-             s["scene"].get<std::string>(), s["frames"].get<int>(), s["bodies"].get<int>(),
-             s["rigid_bodies"].get<int>(), s["particles"].get<int>(), s["vertices"].get<int>());
-  fmt::print(
-      "a frame:   PPU {:.3f} ms, {:.1f} % of 1/60 s (gather {:.3f}, solve {:.3f}, apply {:.3f}, hand over "
-      "the skinning {:.3f}), physics {:.2f} ms\n",
-      s["ppu_ms"]["mean"].get<double>(), 100 * s["ppu_share"].get<double>(),
-      s["gather_ms"]["mean"].get<double>(), s["solve_ms"]["mean"].get<double>(),
-      s["apply_ms"]["mean"].get<double>(), s["skin_ms"]["mean"].get<double>(),
-      s["physics_ms"]["mean"].get<double>());
-  fmt::print("           {:.0f} frames a second without pictures\n", s["simulated_fps"].get<double>());
-  if (s["pictures"].get<std::size_t>() > 0)
-    fmt::print("a picture: {:.1f} ms\n", s["picture_ms"]["mean"].get<double>());
-  if (!s["spe_busy"].empty()) {
-    fmt::print(
-        "SPEs:      {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {} DMA commands, {:.1f} "
-        "MB\n",
-        s["spes"].get<int>(), 100 * mean, 100 * busiest, s["dma_commands"].get<std::uint64_t>(),
-        static_cast<double>(s["dma_bytes"].get<std::uint64_t>()) / 1e6);
-  }
-  if (!options.headless) {
-    fmt::print(
-        "shown:     {:.1f} pictures a second\n",
-        static_cast<double>(s["pictures"].get<std::size_t>()) / std::max(s["seconds"].get<double>(), 1e-9));
-  }
-  fmt::print("state:     {}", s["state_hash"].get<std::string>());
-  if (options.headless) fmt::print("   picture: {}", s["image_hash"].get<std::string>());
-  fmt::print("\n");
+void print_files(const DemoOptions& options) {
   const auto where = [](const char* what, const std::optional<std::filesystem::path>& path) {
-    if (path) fmt::print("{:<11}{}\n", what, path->string());
+    if (path) fmt::print("{:<11}{}\n", what, shown_name(*path));
   };
   where("frames:", options.out);
   where("video:", options.video);
   where("recording:", options.record);
   where("trace:", options.trace);
   where("figures:", options.json);
+}
+
+}  // namespace
+
+DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo,
+                         const demos::RunRecord& record) {
+  DemoFigures figures{.scene = demo.scene_name(),
+                      .dma = dma::to_string(options.schedule),
+                      .engine = options.solver == demos::Solver::kSpe ? "native" : "reference",
+                      .frames = record.frames,
+                      .counts = demo.counts(),
+                      .ppu_ms = summarize(record.ppu_ms),
+                      .gather_ms = summarize(record.gather_ms),
+                      .solve_ms = summarize(record.solve_ms),
+                      .apply_ms = summarize(record.apply_ms),
+                      .physics_ms = summarize(record.physics_ms),
+                      .skin_ms = summarize(record.skin_ms),
+                      .solver_wait_ms = summarize(record.solver_wait_ms),
+                      .skin_wait_ms = summarize(record.skin_wait_ms),
+                      .ppu_share = record.ppu_share(),
+                      .picture_ms = summarize(record.picture_ms),
+                      .pictures = record.picture_ms.size(),
+                      .upload_bytes = record.upload_bytes_of_a_picture(),
+                      .simulated_fps = record.simulated_fps(),
+                      .time_shares = {},
+                      .seconds = record.seconds,
+                      .spe_busy = {},
+                      .state_hash = demo.state_hash(),
+                      .image_hash = record.image_hash};
+  fill_in_time(options, record, figures);
+  for (const ls_sim::SpeStatistics& spe : demo.spe_statistics()) {
+    const double busy = std::chrono::duration<double>(spe.busy).count();
+    figures.spe_busy.push_back(record.seconds > 0 ? busy / record.seconds : 0);
+    figures.dma_bytes += spe.dma.bytes();
+    figures.dma_commands += spe.dma.commands();
+    figures.spe_jobs += spe.jobs;
+  }
+  return figures;
+}
+
+nlohmann::ordered_json to_json(const DemoFigures& f) {
+  nlohmann::ordered_json shares;
+  for (const TimeShare& part : f.time_shares) shares[std::string(part.key)] = part.share;
+  return {
+      {"scene", f.scene},
+      {"frames", f.frames},
+      {"bodies", f.counts.soft_bodies},
+      {"rigid_bodies", f.counts.rigid_bodies},
+      {"particles", f.counts.particles},
+      {"vertices", f.counts.vertices},
+      {"spes", f.spe_busy.size()},
+      {"dma", f.dma},
+      {"engine", f.engine},
+      {"ppu_ms", to_json(f.ppu_ms)},
+      {"ppu_share", f.ppu_share},
+      {"gather_ms", to_json(f.gather_ms)},
+      {"solve_ms", to_json(f.solve_ms)},
+      {"apply_ms", to_json(f.apply_ms)},
+      {"physics_ms", to_json(f.physics_ms)},
+      {"skin_ms", to_json(f.skin_ms)},
+      {"solver_wait_ms", to_json(f.solver_wait_ms)},
+      {"skin_wait_ms", to_json(f.skin_wait_ms)},
+      {"picture_ms", to_json(f.picture_ms)},
+      {"pictures", f.pictures},
+      {"upload_bytes", f.upload_bytes},
+      {"simulated_fps", f.simulated_fps},
+      {"fps", f.fps},
+      {"time_shares", std::move(shares)},
+      {"seconds", f.seconds},
+      {"spe_busy", f.spe_busy},
+      {"spe_jobs", f.spe_jobs},
+      {"dma_bytes", f.dma_bytes},
+      {"dma_commands", f.dma_commands},
+      {"state_hash", fmt::format("{:016x}", f.state_hash)},
+      {"image_hash", fmt::format("{:016x}", f.image_hash)},
+  };
+}
+
+void print_summary(const DemoFigures& f, const DemoOptions& options) {
+  using base::counted;
+  if (f.fps > 0) {
+    const TimeShare& binds = f.time_shares.front();
+    fmt::print("{} a second; {} {:.0f} %\n", frame_rate(f.fps), binds.words, 100 * binds.share);
+  } else {
+    fmt::print("no frame was simulated\n");
+  }
+  fmt::print("scene:     {}: {}, {} and {}, {}, {}\n", f.scene,
+             counted(static_cast<std::uint64_t>(f.frames), "frame"),
+             counted(f.counts.soft_bodies, "soft body", "soft bodies"),
+             counted(f.counts.rigid_bodies, "rigid one"), counted(f.counts.particles, "particle"),
+             counted(f.counts.vertices, "vertex", "vertices"));
+  fmt::print(
+      "a frame:   PPU {:.3f} ms, {:.1f} % of 1/60 s (gather {:.3f}, solve {:.3f}, apply {:.3f}, hand over "
+      "the skinning {:.3f}), physics {:.2f} ms\n",
+      f.ppu_ms.mean, 100 * f.ppu_share, f.gather_ms.mean, f.solve_ms.mean, f.apply_ms.mean, f.skin_ms.mean,
+      f.physics_ms.mean);
+  if (waits_for_pictures(options) && f.simulated_fps > 0)
+    fmt::print("           {} a second without pictures\n", frame_rate(f.simulated_fps));
+  if (f.pictures > 0) fmt::print("a picture: {:.1f} ms\n", f.picture_ms.mean);
+  if (!f.spe_busy.empty()) {
+    fmt::print("SPEs:      {} at work, busy {:.1f} % of the time (the busiest {:.1f} %), {}, {:.1f} MB\n",
+               f.spe_busy.size(), 100 * sum(f.spe_busy) / static_cast<double>(f.spe_busy.size()),
+               100 * *std::ranges::max_element(f.spe_busy), counted(f.dma_commands, "DMA command"),
+               static_cast<double>(f.dma_bytes) / 1e6);
+  }
+  if (!options.headless)
+    fmt::print("shown:     {:.1f} pictures a second\n",
+               static_cast<double>(f.pictures) / std::max(f.seconds, 1e-9));
+  fmt::print("state:     {:016x}", f.state_hash);
+  if (options.headless) fmt::print("   picture: {:016x}", f.image_hash);
+  fmt::print("\n");
+  print_files(options);
 }
 
 }  // namespace softcell::tool

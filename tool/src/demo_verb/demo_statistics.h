@@ -1,18 +1,59 @@
 #pragma once
-// What a demo says of its run, for other programs and for the reader.
+// What a demo says of its run, for other programs and for the reader: figures first, then either form of them.
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "demo/run_record.h"
 #include "demo_options.h"
 
 namespace softcell::tool {
 
-/// What --json writes; docs/user-manual.md lists it. @param demo  stopped
-nlohmann::ordered_json statistics_document(const DemoOptions& options, const demos::Demo& demo,
-                                           const demos::RunRecord& record);
+/// Mean and order statistics of a series of measurements, in the unit of the measurements; all 0 for an empty
+/// series.
+struct Summary {
+  double mean = 0, p50 = 0, p99 = 0, max = 0;
+};
 
-/// Prints the same in a few lines. @param statistics  of statistics_document()
-void print_summary(const nlohmann::ordered_json& statistics, const DemoOptions& options);
+/// A part of what a run did, and its share of the time.
+struct TimeShare {
+  std::string_view key;    ///< in JSON: "physics"
+  std::string_view words;  ///< "contacts and rigid bodies"
+  double share = 0;        ///< 0 to 1
+};
+
+/// Both forms are made of this and of nothing else.
+struct DemoFigures {
+  std::string scene, dma, engine;
+  int frames = 0;
+  demos::DemoCounts counts;
+
+  Summary ppu_ms, gather_ms, solve_ms, apply_ms, physics_ms, skin_ms, solver_wait_ms, skin_wait_ms;
+  double ppu_share = 0;  ///< of 1/60 s
+  Summary picture_ms;
+  std::size_t pictures = 0;
+  std::uint64_t upload_bytes = 0;  ///< of a picture
+
+  double simulated_fps = 0;            ///< frames a second without pictures
+  double fps = 0;                      ///< and with them, where each frame has one and waits for it
+  std::vector<TimeShare> time_shares;  ///< of what fps counts; the largest, which binds, first
+  double seconds = 0;                  ///< of the frame loop
+
+  std::vector<double> spe_busy;  ///< share of `seconds`, of each SPE
+  std::uint64_t spe_jobs = 0, dma_bytes = 0, dma_commands = 0;
+  std::uint64_t state_hash = 0, image_hash = 0;
+};
+
+/// @param demo  stopped
+DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo, const demos::RunRecord& record);
+
+/// What --json writes; docs/guide/playing.md lists it.
+nlohmann::ordered_json to_json(const DemoFigures& figures);
+
+/// Prints the figures in a few lines, the first of which says what binds.
+void print_summary(const DemoFigures& figures, const DemoOptions& options);
 
 }  // namespace softcell::tool

@@ -131,8 +131,10 @@ class DemoVerbs final : public Verb {
          "--out", options.out,
          "Folder for numbered PNG frames (with --headless); those of an earlier run in it are removed")
         ->type_name("DIR");
-    d.add_option("--video", options.video,
-                 "Write a video to this file, which ends in .mp4 (with --headless; needs ffmpeg)")
+    d.add_option(
+         "--video", options.video,
+         "Write a video to this file, which ends in .mp4 (with --headless; needs ffmpeg); of a run that "
+         "is interrupted it has the frames so far")
         ->type_name("FILE");
     d.add_flag("--statistics", options.statistics,
                "Draw each frame's figures over its picture (with --headless; in a window S does)");
@@ -153,7 +155,7 @@ class DemoVerbs final : public Verb {
          "Do again what --record wrote, in place of the scene's script (default scene: the recorded one)")
         ->type_name("FILE");
     add_trace_option(d, options.trace);
-    d.add_option("--json", options.json, "Write statistics to this file")->type_name("FILE");
+    add_json_option(d, options.json, "statistics");
     d.add_flag("--quiet", options.quiet, "Print nothing but what goes wrong");
   }
 

@@ -12,11 +12,11 @@
 #include "demo_statistics.h"
 #include "scene_file/scene_library.h"
 #include "softcell/base/text.h"
-#include "softcell/base/whole_file.h"
 #include "softcell/render/offscreen_context.h"
 #include "spu/kernel_report.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
+#include "verb/output_files.h"
 #include "verb/progress_bar.h"
 #include "verb/verb_files.h"
 #include "window/play.h"
@@ -30,9 +30,12 @@ void print_interrupted(const DemoOptions& options, const demos::RunRecord& recor
     fmt::print(stderr, "softcell: interrupted before the first frame\n");
     return;
   }
-  const std::string of = record.asked_frames ? fmt::format(" of {}", *record.asked_frames) : "";
-  fmt::print(stderr, "softcell: interrupted after {}{} frames{}{}\n", record.frames, of,
+  const int all = record.asked_frames.value_or(record.frames);
+  fmt::print(stderr, "softcell: interrupted after {}{}{}{}{}{}\n",
+             record.asked_frames ? fmt::format("{} of ", record.frames) : "",
+             base::counted(static_cast<std::uint64_t>(all), "frame"),
              options.out ? "; every frame that was written is whole" : "",
+             options.video ? "; the video has them" : "", options.record ? "; the recording has them" : "",
              options.trace || options.json ? "; only a run to its end leaves a trace or statistics" : "");
 }
 
@@ -63,8 +66,8 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
   });
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.interrupted = guard.interrupted();
+  if (record.frames > 0) pictures.finish();  // of an interrupted run the film has the frames so far
   if (record.interrupted) return run;
-  pictures.finish();
   record.picture_ms = pictures.milliseconds();
   record.upload_bytes = pictures.upload_bytes();
   record.image_hash = pictures.last_hash();
@@ -80,6 +83,8 @@ bool is_mp4(const std::filesystem::path& file) {
 void check_files(const DemoOptions& options) {
   std::vector<NamedFile> written = written_files(options);
   check_distinct(written);
+  for (const NamedFile& file : {NamedFile{"--record", options.record}, {"--out", options.out}})
+    refuse_standard_output(file);
   if (options.scene && demos::is_scene_file(*options.scene))
     check_kept({{"the scene", *options.scene}}, written);
   // A recording may take the place of the one that is replayed.
@@ -96,6 +101,11 @@ std::vector<NamedFile> written_files(const DemoOptions& options) {
           {"--json", options.json}};
 }
 
+void check_scene_kept(const std::vector<std::filesystem::path>& scene, const DemoOptions& options) {
+  for (const std::filesystem::path& file : scene)
+    check_kept({{"a file of the scene", file}}, written_files(options));
+}
+
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load) {
   if (!options.headless && (options.out || options.video)) {
     throw UsageError("--out and --video write pictures without a window: give --headless too");
@@ -106,13 +116,13 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (options.video && !is_mp4(*options.video))
     throw UsageError("--video " + options.video->string() + ": give a file name that ends in .mp4");
   check_files(options);
+  OutputFiles files(written_files(options));
   const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any
   demos::make_picture_folders(options);  // where other outputs may be wanted, too
   // A recording and a trace are of one scene.
   const std::vector<demos::MakeDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);
   // What cannot be written is no surprise at the end of a long run.
-  base::WholeFiles files;
   base::WholeFile* const trace_file = files.open(options.trace);
   base::WholeFile* const json_file = files.open(options.json);
   ls_sim::Findings findings;
@@ -134,14 +144,20 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
     return kExitInterrupted;
   }
 
-  auto statistics = statistics_document(options, *run.demo, run.record);
+  const demos::DemoCounts counts = run.demo->counts();
+  if (!options.quiet && counts.soft_bodies + counts.rigid_bodies == 0)
+    fmt::print(stderr, "softcell: the scene {} has no bodies\n", run.demo->scene_name());
+  const DemoFigures figures = demo_figures(options, *run.demo, run.record);
   const std::vector<ls_sim::Finding> found = findings.list();
-  if (options.checked) statistics["findings"] = to_json(std::span(found));
   print_findings(found);  // before a file that cannot be written ends the run
   if (trace) trace->write(*trace_file);
-  if (json_file != nullptr) write_json(*json_file, statistics);
+  if (json_file != nullptr) {
+    auto document = to_json(figures);
+    if (options.checked) document["findings"] = to_json(std::span(found));
+    write_json(*json_file, document);
+  }
   files.commit();
-  if (!options.quiet) print_summary(statistics, options);
+  if (!options.quiet) print_summary(figures, options);
   run.demo->check_replay();
   return found.empty() ? 0 : kExitFindings;
 }

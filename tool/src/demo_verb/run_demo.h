@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -20,6 +21,10 @@ namespace softcell::tool {
 
 /// The files that the options ask for, pictures in folders aside.
 std::vector<NamedFile> written_files(const DemoOptions& options);
+
+/// @param scene  the files that it was read from
+/// @throws UsageError  one of them would be replaced.
+void check_scene_kept(const std::vector<std::filesystem::path>& scene, const DemoOptions& options);
 
 /// Loads the scene that the options ask for; with `all` those of the same dimension that come with softcell,
 /// too. The first is the one to begin with.

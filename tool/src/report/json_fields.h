@@ -25,6 +25,7 @@ class JsonFields {
 
   const nlohmann::json& array(const char* key) const;
   JsonFields object(const char* key) const;
+  bool has(const char* key) const { return object_.contains(key); }
   bool is_null(const char* key) const { return field(key).is_null(); }
 
   [[noreturn]] void refuse(const std::string& what) const;

@@ -52,8 +52,8 @@ Json commands(const std::vector<TraceCommand>& events) {
 
 Json findings(const std::vector<TraceFinding>& events) {
   return column(events, [](const TraceFinding& e) {
-    return Json{
-        {"when", e.when}, {"rule", e.rule}, {"kernel", e.kernel}, {"place", e.place}, {"message", e.message}};
+    return Json{{"when", e.when},   {"rule", e.rule},       {"kernel", e.kernel},
+                {"place", e.place}, {"message", e.message}, {"count", e.count}};
   });
 }
 

@@ -5,28 +5,30 @@
 #include <CLI/CLI.hpp>
 
 #include "report_page.h"
-#include "softcell/base/whole_file.h"
-#include "verb/verb_files.h"
+#include "softcell/base/text.h"
+#include "verb/output_files.h"
 
 namespace softcell::tool {
 
 int run_report(const ReportOptions& options) {
-  check_distinct({{"the trace", options.trace}, {"--out", options.out}});
+  check_kept({{"the trace", options.trace}}, {{"--out", options.out}});
+  OutputFiles files({{"--out", options.out}});
   const TraceFile trace = read_trace(options.trace);
   const std::string page = report_page(trace, options.trace.filename().string());
-  base::WholeFile file(options.out);
-  file.write(page);
-  file.commit();
+  files.open(options.out).write(page);
+  files.commit();
 
-  std::size_t jobs = 0, commands = 0, findings = 0;
+  std::size_t jobs = 0, commands = 0;
+  std::uint64_t findings = 0;
   for (const TraceSpe& spe : trace.spes) {
     jobs += spe.jobs.size();
     commands += spe.commands.size();
-    findings += spe.findings.size();
+    for (const TraceFinding& finding : spe.findings) findings += finding.count;
   }
-  fmt::print("trace:    {} SPEs, {} jobs, {} DMA commands, {} findings\n", trace.spes.size(), jobs, commands,
-             findings);
-  fmt::print("page:     {} ({:.1f} MB); it opens offline in any browser\n", options.out.string(),
+  fmt::print("trace:    {}, {}, {}, {}\n", base::counted(trace.spes.size(), "SPE"),
+             base::counted(jobs, "job"), base::counted(commands, "DMA command"),
+             base::counted(findings, "finding"));
+  fmt::print("page:     {} ({:.1f} MB); it opens offline in any browser\n", shown_name(options.out),
              static_cast<double>(page.size()) / 1e6);
   return 0;
 }
@@ -38,7 +40,7 @@ class ReportVerb final : public Verb {
   void add_to(CLI::App& command, Call& chosen) override {
     CLI::App* r = command.add_subcommand("report", "Make a page to look at of what --trace recorded");
     r->add_option("TRACE", options_.trace, "The file that --trace wrote")->required()->type_name("FILE");
-    r->add_option("--out", options_.out, "HTML page to write; it opens offline")
+    r->add_option("--out", options_.out, "HTML page to write, which opens offline; - is standard output")
         ->required()
         ->type_name("FILE");
     r->callback([&] { chosen = [this] { return run_report(options_); }; });

@@ -92,8 +92,13 @@ class EventReader {
 
   static TraceFinding read_finding(const JsonFields& event) {
     const JsonFields arguments = event.object("args");
-    return {event.time("ts"), event.text("name"), arguments.text("kernel"), arguments.text("place"),
-            arguments.text("message")};
+    return {
+        event.time("ts"),
+        event.text("name"),
+        arguments.text("kernel"),
+        arguments.text("place"),
+        arguments.text("message"),
+        arguments.has("count") ? arguments.integer("count", 1, kMostCount) : 1};  // before 0.2: each is one
   }
 
   std::uint32_t intern(const std::string& name) {

@@ -1,5 +1,5 @@
 #pragma once
-// A trace that ls_sim::Trace wrote, read back. docs/trace-and-report.md describes the file.
+// A trace that ls_sim::Trace wrote, read back. docs/guide/running-kernels.md describes the file.
 
 #include <cstdint>
 #include <filesystem>
@@ -28,9 +28,11 @@ struct TraceCommand : TraceSlice {
   bool completed = true;
 };
 
+/// A mistake of an SPE, once, however often it happened.
 struct TraceFinding {
-  std::int64_t when = 0;
+  std::int64_t when = 0;  ///< of the first
   std::string rule, kernel, place, message;
+  std::uint64_t count = 1;
 };
 
 /// Events past the trace's limit.

@@ -68,7 +68,7 @@ std::uint64_t KernelBuffers::word(const ArgumentSpec& argument) const {
   return std::get<std::uint64_t>(argument);
 }
 
-void KernelBuffers::write_files(base::WholeFiles& files) const {
+void KernelBuffers::write_files(OutputFiles& files) const {
   for (const Slot& slot : slots_) {
     if (slot.spec->direction == BufferSpec::kIn) continue;
     const auto bytes = slot.memory.span();

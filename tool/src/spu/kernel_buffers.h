@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "kernel_task.h"
-#include "softcell/base/whole_file.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/engine.h"
+#include "verb/output_files.h"
 
 namespace softcell::tool {
 
@@ -36,7 +36,7 @@ class KernelBuffers {
 
   /// Adds the files of --out and --inout, written and not committed.
   /// @throws std::runtime_error  naming the file.
-  void write_files(base::WholeFiles& files) const;
+  void write_files(OutputFiles& files) const;
 
  private:
   const Slot& slot(std::string_view buffer) const;

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "softcell/base/read_file.h"
 #include "softcell/spu_kernels/images.h"
 
 namespace softcell::tool {
@@ -12,9 +11,6 @@ namespace {
 
 constexpr std::string_view kSuffix = ".spu.elf";
 constexpr std::string_view kCheckedSuffix = ".checked.spu.elf";
-
-/// With all that a debugger wants to know, far more than an image of 256 KB needs.
-constexpr std::uint64_t kMostImageBytes = std::uint64_t{256} << 20;
 
 /// The file that holds the flavour asked for.
 std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked) {
@@ -35,16 +31,6 @@ std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked
   return neighbour;
 }
 
-/// "saxpy" for build/saxpy.spu.elf and build/saxpy.checked.spu.elf.
-std::string kernel_name(const std::filesystem::path& file) {
-  std::string name = file.filename().string();
-  for (const std::string_view suffix : {kCheckedSuffix, kSuffix}) {
-    if (name.size() > suffix.size() && name.ends_with(suffix))
-      return name.substr(0, name.size() - suffix.size());
-  }
-  return name;
-}
-
 bool is_built_in(std::string_view name) {
   const auto files = spu_kernels::image_files();
   return std::any_of(files.begin(), files.end(), [&](const auto& file) { return file.name == name; });
@@ -59,16 +45,12 @@ std::string built_in_names() {
 
 }  // namespace
 
-std::vector<ls_sim::KernelImage> load_kernels() {
-  std::vector<ls_sim::KernelImage> kernels;
+std::vector<std::string> built_in_kernels(bool checked) {
+  std::vector<std::string> names;
   for (const spu_kernels::ImageFile& file : spu_kernels::image_files())
-    kernels.push_back(ls_sim::load_image(file.name, file.elf));
-  std::sort(kernels.begin(), kernels.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
-  return kernels;
-}
-
-ls_sim::KernelImage load_kernel(std::string_view name, bool checked) {
-  return ls_sim::load_image(std::string(name), spu_kernels::image_file(name, checked));
+    if (!checked || !file.checked_elf.empty()) names.emplace_back(file.name);
+  std::ranges::sort(names);
+  return names;
 }
 
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked) {
@@ -78,8 +60,7 @@ std::optional<std::filesystem::path> find_kernel_file(const std::string& image, 
 }
 
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
-  if (const auto file = find_kernel_file(image, checked))
-    return ls_sim::load_image(kernel_name(*file), base::read_file(*file, kMostImageBytes));
+  if (const auto file = find_kernel_file(image, checked)) return spu_kernels::load_kernel_file(*file);
   if (is_built_in(image)) return load_kernel(image, checked);
   throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
                            built_in_names() + ")");

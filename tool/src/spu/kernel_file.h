@@ -1,20 +1,30 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "softcell/ls_sim/image.h"
+#include "softcell/spu_kernels/load_kernel.h"
 
 namespace softcell::tool {
 
-/// Every kernel of the project, loaded, in order of name.
-std::vector<ls_sim::KernelImage> load_kernels();
+/// Bytes by which the stack of an instrumented flavour is larger than its kernel declares: the checks need
+/// them.
+inline constexpr std::uint32_t kCheckStackBytes = SOFTCELL_CHECKED_STACK_BYTES;
 
-/// The kernel of that name, or its checked flavour. @throws std::runtime_error  there is none.
-ls_sim::KernelImage load_kernel(std::string_view name, bool checked = false);
+/// That many for an instrumented flavour, 0 for any other image.
+inline std::uint32_t stack_for_checks(const ls_sim::KernelImage& image) {
+  return image.checked ? kCheckStackBytes : 0;
+}
+
+/// The names of all kernels of this project, sorted.
+/// @param checked  only of those that have an instrumented flavour
+std::vector<std::string> built_in_kernels(bool checked);
+
+using spu_kernels::load_kernel;
 
 /// The file that load_kernel_file() reads; none when the kernel is one of this project's.
 /// @throws std::runtime_error  one sentence: there is no such flavour.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "kernel_file.h"
 #include "softcell/base/text.h"
 
 namespace softcell::tool {
@@ -98,11 +99,14 @@ void print_mail(const KernelRun& run) {
 
 void print_local_store(const ls_sim::KernelImage& image, const KernelRun& run) {
   const ls_sim::ImageSizes& s = image.sizes;
+  const std::string checks = image.checked
+                                 ? fmt::format(" (the kernel's {} and {} for the checks)",
+                                               s.stack - stack_for_checks(image), stack_for_checks(image))
+                                 : "";
   fmt::print(
-      "\nlocal store: text {}, rodata {}, data {}, bss {} bytes; stack {} used of {} declared; {} of {} "
-      "bytes "
-      "free\n",
-      s.text, s.rodata, s.data, s.bss, stack_used(run), s.stack, dma::kLocalStoreBytes - s.total(),
+      "\nlocal store: text {}, rodata {}, data {}, bss {} bytes; stack {} used of {} declared{}; {} of {} "
+      "bytes free\n",
+      s.text, s.rodata, s.data, s.bss, stack_used(run), s.stack, checks, dma::kLocalStoreBytes - s.total(),
       dma::kLocalStoreBytes);
 }
 
@@ -198,6 +202,7 @@ ordered_json to_json(const ls_sim::KernelImage& image, const KernelRun& run) {
             {"data", s.data},
             {"bss", s.bss},
             {"stack", s.stack},
+            {"stack_for_checks", stack_for_checks(image)},
             {"stack_used", stack_used(run)},
             {"budget", s.budget},
             {"free", dma::kLocalStoreBytes - s.total()}}},

@@ -9,6 +9,7 @@
 
 #include "kernel_file.h"
 #include "verb/exit_status.h"
+#include "verb/output_files.h"
 
 namespace softcell::tool {
 namespace {
@@ -94,6 +95,9 @@ std::string_view name(BufferSpec::Direction direction) {
 BufferSpec parse_file_buffer(BufferSpec::Direction direction, const std::string& text) {
   auto [name, file] = split_name(
       text, option(direction) + text + ": give NAME=FILE, NAME of letters, digits and underscores");
+  if (file == kStandardOutput)
+    throw UsageError(option(direction) + text +
+                     ": a buffer is filled from a file, not from standard input; ./- is a file of that name");
   return {direction, std::move(name), std::move(file)};
 }
 

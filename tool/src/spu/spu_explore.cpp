@@ -9,12 +9,11 @@
 #include "kernel_file.h"
 #include "kernel_outcome.h"
 #include "kernel_report.h"
-#include "softcell/base/whole_file.h"
 #include "spu_verbs.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
+#include "verb/output_files.h"
 #include "verb/progress_bar.h"
-#include "verb/verb_files.h"
 
 namespace softcell::tool {
 namespace {
@@ -30,6 +29,7 @@ class Explorer {
       : options_(options),
         image_(load_kernel_file(options.task.image, options.task.checked)),
         buffers_(memory_, options.task),
+        files_({{"--json", options.json}}),
         json_(files_.open(options.json)) {}
 
   int explore() {
@@ -136,7 +136,7 @@ class Explorer {
   dma::AddressSpace memory_;
   KernelBuffers buffers_;
   const InterruptGuard guard_;
-  base::WholeFiles files_;
+  OutputFiles files_;
   base::WholeFile* const json_;  // opened first: what cannot be written is no surprise after a long search
   std::uint64_t tried_ = 0;
   KernelRun first_run_;

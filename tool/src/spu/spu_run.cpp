@@ -9,10 +9,9 @@
 #include "kernel_file.h"
 #include "kernel_report.h"
 #include "kernel_run.h"
-#include "softcell/base/whole_file.h"
 #include "softcell/ls_sim/trace.h"
 #include "spu_verbs.h"
-#include "verb/verb_files.h"
+#include "verb/output_files.h"
 
 namespace softcell::tool {
 
@@ -21,8 +20,8 @@ int run_spu_run(const SpuRunOptions& options) {
   std::vector<NamedFile> outputs = written_files(task);
   outputs.push_back({"--trace", options.trace});
   outputs.push_back({"--json", options.json});
-  check_distinct(outputs);
   check_kept(read_files(task), outputs);
+  OutputFiles files(outputs);
   const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked);
   dma::AddressSpace memory;
   const KernelBuffers buffers(memory, task);
@@ -37,7 +36,6 @@ int run_spu_run(const SpuRunOptions& options) {
   // Before files that perhaps cannot be written: what the kernel did is to be known all the same.
   print_statistics(image, run);
   print_problems(image, run);
-  base::WholeFiles files;
   if (status == 0) buffers.write_files(files);
   if (trace) trace->write(files.open(*options.trace));
   if (options.json) {

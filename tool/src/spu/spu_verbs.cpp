@@ -29,8 +29,14 @@ class SpuVerbs final : public Verb {
     add_run(*spu, chosen);
     add_explore(*spu, chosen);
     CLI::App* b = spu->add_subcommand(
-        "budget", "Local store of each kernel: sections, stack used, share of 256 KB, budget");
-    b->add_option("--json", budget_.json, "Write the table to this file as well")->type_name("FILE");
+        "budget", "Local store of kernels: sections, stack used, share of 256 KB, budget");
+    b->add_option("KERNELS", budget_.kernels,
+                  "Your kernels' .spu.elf files, or names of softcell's own (default: all of these)")
+        ->type_name("KERNEL");
+    b->add_flag(
+        "--checked", budget_.checked,
+        "Take the instrumented flavours, whose stack has room for the checks beside the kernel's own");
+    add_json_option(*b, budget_.json, "the table");
     b->callback([&] { chosen = [this] { return run_budget(budget_, samples_); }; });
   }
 
@@ -46,8 +52,7 @@ class SpuVerbs final : public Verb {
          "operation and SPEs take turns, so that a run is the same every time")
         ->type_name("host|simulated");
     add_trace_option(*r, run_.trace);
-    r->add_option("--json", run_.json, "Write statistics, findings and faults to this file as well")
-        ->type_name("FILE");
+    add_json_option(*r, run_.json, "statistics, findings and faults");
     r->callback([&] {
       chosen = [this] {
         run_.task = run_task_.task();
@@ -68,7 +73,7 @@ class SpuVerbs final : public Verb {
                       1, kMaxSeeds)
         ->type_name("SEEDS");
     e->add_flag("--quiet", explore_.quiet, "No progress bar");
-    e->add_option("--json", explore_.json, "Write the result to this file as well")->type_name("FILE");
+    add_json_option(*e, explore_.json, "the result");
     e->callback([&] {
       chosen = [this] {
         explore_.task = explore_task_.task();

@@ -18,6 +18,8 @@
 namespace softcell::tool {
 
 struct BudgetOptions {
+  std::vector<std::string> kernels;  ///< names or files; empty: all of softcell's own
+  bool checked = false;
   std::optional<std::filesystem::path> json;
 };
 
@@ -37,7 +39,7 @@ struct SpuExploreOptions {
   std::optional<std::filesystem::path> json;
 };
 
-/// @param samples  of work, to measure stacks with; without one, a kernel's stack is not measured
+/// @param samples  of work, to measure the stacks of softcell's own kernels with; others are not measured
 int run_budget(const BudgetOptions& options, std::span<const KernelSample> samples);
 /// @return  0; 1 when an SPE failed; 3 when a checked kernel has findings.
 int run_spu_run(const SpuRunOptions& options);

@@ -1,13 +1,16 @@
 #include "interrupt.h"
 
+#include <array>
 #include <csignal>
+#include <cstddef>
 
 namespace softcell::tool {
 namespace {
 
 volatile std::sig_atomic_t signalled = 0;
 
-struct sigaction previous_interrupt, previous_terminate;
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+std::array<struct sigaction, kSignals.size()> previous;
 
 void note(int) { signalled = 1; }
 
@@ -18,13 +21,15 @@ InterruptGuard::InterruptGuard() {
   struct sigaction action {};
   action.sa_handler = note;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, &previous_interrupt);
-  sigaction(SIGTERM, &action, &previous_terminate);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    sigaction(kSignals[i], &action, &previous[i]);
+    // Under nohup the terminal's end is to be ignored.
+    if (kSignals[i] == SIGHUP && previous[i].sa_handler == SIG_IGN) sigaction(SIGHUP, &previous[i], nullptr);
+  }
 }
 
 InterruptGuard::~InterruptGuard() {
-  sigaction(SIGINT, &previous_interrupt, nullptr);
-  sigaction(SIGTERM, &previous_terminate, nullptr);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &previous[i], nullptr);
 }
 
 bool InterruptGuard::interrupted() const { return signalled != 0; }

@@ -1,9 +1,11 @@
 #pragma once
-// Ctrl-C, asked for at the end of each frame so that no file is left half written.
+// Ctrl-C, a request to end and the end of the terminal, asked for between pieces of work so that no file is
+// left half written.
 
 namespace softcell::tool {
 
-/// While it lives, SIGINT and SIGTERM only set a flag. One at a time.
+/// While it lives, SIGINT, SIGTERM and SIGHUP only set a flag; SIGHUP stays ignored where it was, as under
+/// nohup. One at a time.
 class InterruptGuard {
  public:
   InterruptGuard();

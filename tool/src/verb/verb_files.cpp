@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exit_status.h"
+#include "output_files.h"
 
 namespace softcell::tool {
 namespace {
@@ -30,6 +31,7 @@ bool is_device_or_pipe(const fs::path& path) {
 }  // namespace
 
 bool is_one_file(const fs::path& a, const fs::path& b) {
+  if (a == kStandardOutput || b == kStandardOutput) return a == b;
   if (is_device_or_pipe(a) || is_device_or_pipe(b)) return false;
   return one_spelling(a) == one_spelling(b);
 }

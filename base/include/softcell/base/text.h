@@ -18,6 +18,10 @@ std::string one_line(std::string_view sentence);
 /// 0x-prefixed, upper case, at least `digits` digits.
 std::string hex(std::uint64_t value, int digits = 1);
 
+/// "1 frame", "0 frames", "2 bodies".
+/// @param many  the plural, where it is not `one` with an s.
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
+
 /// "1 byte", "16 bytes".
 std::string byte_count(std::uint64_t bytes);
 

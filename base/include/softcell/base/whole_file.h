@@ -25,6 +25,9 @@ namespace softcell::base {
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path path);
+  /// Takes over a stream that is open already, as standard output is: written directly, and closed at the end.
+  /// @param called  what errors call it.
+  WholeFile(std::FILE* stream, std::filesystem::path called);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
@@ -34,7 +37,7 @@ class WholeFile {
   /// In place of write(), for a library that writes to streams: the file's. Not to be closed.
   std::FILE* stream();
   /// In place of write(), for a program that writes files by name: the temporary name, which ends as the
-  /// file's own does, or that of a device or pipe.
+  /// file's own does, or that of a device or pipe. Empty for a stream that was taken over.
   const std::filesystem::path& written_path() const { return temporary_.empty() ? place_ : temporary_; }
 
   /// Ends the writing, the file still under its temporary name. Of several files that belong together, finish
@@ -68,6 +71,9 @@ class WholeFiles {
  public:
   /// @return  good as long as this. @throws std::runtime_error  naming the file and why it cannot be written.
   WholeFile& open(const std::filesystem::path& file) { return files_.emplace_back(file); }
+  WholeFile& open(std::FILE* stream, const std::filesystem::path& called) {
+    return files_.emplace_back(stream, called);
+  }
   /// Null when none is asked for.
   WholeFile* open(const std::optional<std::filesystem::path>& file) { return file ? &open(*file) : nullptr; }
 

@@ -5,7 +5,7 @@
 //
 // Code that `rep movsb` had just copied was seen to be executed as it was before, by the thread that had
 // copied it, in one of thirty runs on one kind of host; with vector stores it never was.
-// docs/performance.md has the figures, docs/architecture.md says what the processors' manuals promise.
+// docs/notes/performance.md has the figures, docs/reference/architecture.md says what the processors' manuals promise.
 
 #include <cstddef>
 

@@ -9,9 +9,13 @@
 
 namespace softcell::ls_sim {
 
+/// Whether both break the same rule in the same kernel at the same place; SPE, addresses and details may
+/// differ.
+bool is_same_mistake(const dma::Fault& a, const dma::Fault& b);
+
 struct Finding {
   dma::Fault fault;         ///< of its first occurrence
-  std::uint64_t count = 0;  ///< occurrences with the same rule, kernel and place, on any SPE
+  std::uint64_t count = 0;  ///< how often the same mistake happened, on any SPE
 };
 
 /// Thread safe.

@@ -1,6 +1,6 @@
 #pragma once
 // What happened when: jobs, DMA commands, waits and findings of each SPE, for `--trace` and `softcell
-// report`. docs/trace-and-report.md describes the file.
+// report`. docs/guide/running-kernels.md describes the file.
 
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +45,7 @@ class SpeTrace final : public dma::MfcObserver {
   /// A channel operation that had to wait: a tag status, a full queue, an empty mailbox, an event.
   void on_wait(std::uint32_t channel, TraceTime begin, TraceTime end);
 
+  /// A mistake that this SPE has made before is only counted.
   void on_finding(const dma::Fault& fault, TraceTime when);
 
   // dma::MfcObserver: DMA commands from issue to completion. A command that never completes, because a fault

@@ -22,6 +22,7 @@
 
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
+#include "softcell/soft_bodies/solver_factory.h"
 
 namespace softcell::ppu {
 
@@ -38,6 +39,8 @@ class Box2dSoftBodies {
 
   /// The thread that steps the world does the shape matching. @param world  outlives this.
   explicit Box2dSoftBodies(b2World& world);
+  /// @param solvers  makes the solver that does the shape matching: SpeRuntime has SPEs do it. Outlives this.
+  Box2dSoftBodies(b2World& world, SolverFactory& solvers);
   /// @param solver  does the shape matching: SpeSolver<2> on the SPEs. Outlives this, and serves nobody else.
   Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver);
   /// Removes all bodies.

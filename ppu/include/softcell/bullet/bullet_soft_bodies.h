@@ -14,7 +14,12 @@
 //
 //     substep:  [solver: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
 //
-// Shape matching is done by a SoftBodySolver: on the calling thread, unless another is given.
+// The thread that steps the world does the shape matching, unless the constructor is given somebody else:
+//
+//     SpeRuntime spes;                                         // spe_bodies/spe_runtime.h
+//     BulletSoftBodies soft_bodies(world, spes);               // SPEs do it
+//
+// To draw a body's mesh: soft_bodies/skinned_mesh.h, or, by the SPEs, spe_bodies/spe_skinner.h.
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -24,6 +29,7 @@
 #include <optional>
 
 #include "softcell/soft_bodies/soft_body_solver.h"
+#include "softcell/soft_bodies/solver_factory.h"
 
 namespace softcell::ppu {
 
@@ -56,6 +62,9 @@ class BulletSoftBodies {
 
   /// @param world  outlives this.
   explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);
+  /// @param solvers  makes the solver for these bodies; outlives this. Usually an SpeRuntime.
+  /// @throws std::runtime_error  as SolverFactory::make_solver().
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers);
   /// @param solver  outlives this, and serves nobody else.
   BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver);
   /// Removes all bodies and leaves the world as it was found.
@@ -64,6 +73,7 @@ class BulletSoftBodies {
   BulletSoftBodies& operator=(const BulletSoftBodies&) = delete;
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
+  /// @pre the model is not null; the position is finite
   /// Between steps the body may be changed through its own functions; Bullet is told at the next substep.
   SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position);
 
@@ -73,7 +83,7 @@ class BulletSoftBodies {
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
   /// else. When bodies are changed after all, or the substep has another length, that work is dropped and
   /// done again: the result is the same but for what SoftBodySolver::drop() says of rotations. Call it
-  /// between steps.
+  /// between steps. @pre step > 0
   void begin_ahead(float step);
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). A sleeping body wakes when something

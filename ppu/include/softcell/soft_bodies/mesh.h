@@ -1,18 +1,37 @@
 #pragma once
-// Triangle meshes: what a soft body is made from.
+// Triangle meshes: what a soft body is made from, and what it is drawn with.
 
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace softcell::ppu {
 
-/// An indexed triangle mesh in metres. `normals` has one unit vector per position.
+/// Consecutive triangles of a mesh that belong to one object and have one material.
+struct MeshPart {
+  std::string object;    ///< the object's or group's name; empty: it has none
+  std::string material;  ///< the material's name; empty: it has none
+  std::uint32_t first_triangle = 0;
+  std::uint32_t triangle_count = 0;
+  std::optional<Eigen::Vector3f> base_colour = {};  ///< red, green, blue, 0..1, as the file has them
+  std::string texture = {};  ///< the texture file's name, as the file has it; empty: none is known
+
+  bool operator==(const MeshPart&) const = default;
+};
+
+/// An indexed triangle mesh in metres. `normals` has one unit vector per position. Each of the attributes
+/// behind the triangles is either empty or complete; softcell carries them along and does not interpret them.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+
+  std::vector<Eigen::Vector2f> texture_coordinates = {};  ///< one per position; v grows upwards
+  std::vector<Eigen::Vector4f> colours = {};              ///< one per position: red, green, blue, alpha, 0..1
+  std::vector<MeshPart> parts = {};                       ///< ascending; together they are all triangles
 
   bool operator==(const TriangleMesh&) const = default;
 };
@@ -27,7 +46,12 @@ struct Bounds {
 Bounds<3> bounds(const TriangleMesh& mesh);
 
 /// Moves and scales the mesh so that its box is centred on 0 and its longest side has the given length in
-/// metres.
+/// metres. @pre at least one position; longest_side is positive and finite.
 void fit(TriangleMesh& mesh, float longest_side);
+
+/// @throws std::invalid_argument  the mesh's arrays do not fit each other: another number of normals or of an
+/// attribute than of positions, an index out of range, parts that leave triangles out; the sentence says
+/// which.
+void validate(const TriangleMesh& mesh);
 
 }  // namespace softcell::ppu

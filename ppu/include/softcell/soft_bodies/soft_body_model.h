@@ -58,6 +58,10 @@ class SoftBodyModel {
   }
   static constexpr float kSoftContactRadiusInCells = 0.45f;
 
+  /// The mesh that the model was made from, with its attributes, at rest; empty for a model made from a
+  /// lattice alone. skinned_mesh.h has it deformed.
+  const TriangleMesh& mesh() const requires(kDimension == 3);
+
   // For solvers and for skinning.
 
   /// The mesh in its lattice; empty for a model made from a lattice alone. For an owner that outlives the
@@ -85,7 +89,8 @@ extern template class SoftBodyModel<2>;
 extern template class SoftBodyModel<3>;
 
 /// Covers the mesh with a lattice, finds its regions, embeds the mesh. Deterministic.
-/// @throws std::runtime_error  as validate(), voxelize(), find_regions() and embed().
+/// @throws std::runtime_error  as validate() of settings, voxelize(), find_regions() and embed().
+/// @throws std::invalid_argument  as validate() of meshes.
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings);
 

@@ -32,6 +32,10 @@ struct MeshId {
 struct StaticMeshId {
   std::uint32_t value = 0;
 };
+/// Handle to a texture of one Renderer.
+struct TextureId {
+  std::uint32_t value = 0;
+};
 
 enum class Pattern : std::uint8_t {
   plain,
@@ -40,16 +44,17 @@ enum class Pattern : std::uint8_t {
 
 /// A skinned mesh at its current vertices.
 struct SkinnedDraw {
-  MeshId mesh;
+  MeshId mesh = {};
   Eigen::Vector3f origin{0, 0, 0};  ///< added to every vertex
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;       ///< below 1: blended over what is behind it, and casts no shadow
   bool two_sided = false;  ///< draw the inner side too: for meshes with holes; takes about 1.6 times as long
+  std::optional<TextureId> texture = {};  ///< its colours are multiplied with `colour`; none: `colour` alone
 };
 
 /// A mesh that does not change, moved as a whole.
 struct StaticDraw {
-  StaticMeshId mesh;
+  StaticMeshId mesh = {};
   Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();  ///< affine, determinant above 0
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;  ///< below 1: blended over what is behind it (only its front sides), and casts no shadow
@@ -82,11 +87,11 @@ struct PixelRect {
 };
 
 struct FrameDescription {
-  Camera camera;
-  Light light;
-  std::span<const SkinnedDraw> skinned;
-  std::span<const StaticDraw> statics;
-  std::span<const LatticeDraw> lattices;
+  Camera camera = {};
+  Light light = {};
+  std::span<const SkinnedDraw> skinned = {};
+  std::span<const StaticDraw> statics = {};
+  std::span<const LatticeDraw> lattices = {};
   Colour background_top = srgb(0x5B7FA6);
   Colour background_bottom = srgb(0xDCE6EE);
   /// Outside of this the picture is that of the renderer's last frame, shadows included, and need not be

@@ -2,41 +2,11 @@
 // Text, tables and plots over the picture, by Dear ImGui: its widgets, our drawing, so that it works in every
 // context and gives the same picture everywhere.
 
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
+#include "softcell/render/overlay_mesh.h"
 
 struct ImGuiContext;
 
 namespace softcell::render {
-
-/// What Dear ImGui hands over, in pixels from the upper left corner. [imgui.h, ImDrawVert] documented
-struct OverlayVertex {
-  float x, y;
-  float u, v;
-  std::uint32_t rgba;  ///< r in the lowest byte; encoded as on the screen
-};
-
-/// Triangles within a rectangle of the picture.
-struct OverlayCommand {
-  int left, top, right, bottom;  ///< pixels
-  std::uint32_t first_index;
-  std::uint32_t index_count;
-};
-
-/// One frame's overlay: triangles over the font's picture, in order.
-struct OverlayMesh {
-  std::vector<OverlayVertex> vertices;
-  std::vector<std::uint32_t> indices;
-  std::vector<OverlayCommand> commands;
-};
-
-/// The font's picture: one byte of coverage a texel.
-struct OverlayFont {
-  int width = 0, height = 0;
-  std::span<const std::uint8_t> coverage;
-};
 
 /// One context of Dear ImGui. Between begin() and end() its functions may be called; they draw into it. Used
 /// by one thread at a time; several may exist, one after the other being current.

@@ -10,7 +10,7 @@
 #include "softcell/render/frame.h"
 #include "softcell/render/gl_context.h"
 #include "softcell/render/image.h"
-#include "softcell/render/overlay.h"
+#include "softcell/render/overlay_mesh.h"
 
 namespace softcell::render {
 
@@ -77,6 +77,16 @@ class Renderer {
   /// @throws std::invalid_argument  another number of corners, or no such mesh of cells.
   void update_corners(MeshId mesh, std::span<const std::byte> corners, const Eigen::Vector3f& origin);
 
+  /// The texture coordinates of a mesh's vertices, in their order. They stay when the vertices are given anew.
+  /// @param coordinates  one for each vertex that the indices speak of, or more: (0, 0) is the picture's lower
+  /// left corner, (1, 1) the upper right one; beyond them the picture is repeated.
+  /// @throws std::invalid_argument  too few, or no such mesh.
+  void set_texture_coordinates(MeshId mesh, std::span<const Eigen::Vector2f> coordinates);
+
+  /// A picture to draw meshes with. Its alpha channel is not used. The pixels are copied before it returns.
+  /// @throws std::invalid_argument  a picture without pixels, or larger than the context takes.
+  TextureId add_texture(const Image& picture);
+
   /// Bytes that update_mesh() and update_corners() have been given since the beginning.
   std::uint64_t uploaded_bytes() const;
 
@@ -87,7 +97,8 @@ class Renderer {
 
   /// Draws one frame. Opaque things first, then those with an opacity below 1 in the given order, static ones
   /// last.
-  /// @throws std::invalid_argument  a handle of another renderer or a link out of range.
+  /// @throws std::invalid_argument  a handle of another renderer, a link out of range, or a texture on a mesh
+  /// without texture coordinates.
   void render(const FrameDescription& frame);
 
   /// Draws text and widgets over the last frame.

@@ -1,0 +1,28 @@
+#pragma once
+// What a soft body in two dimensions is drawn with: triangles that cover its cells, and its outline. Both are
+// particle numbers, so that they are made once for each model and drawn with the positions of the moment:
+//
+//     const auto triangles = cell_triangles(model->lattice());   // once
+//     ...
+//     draw_triangles(body.positions(), triangles);               // each frame
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// Two triangles for each cell, counter-clockwise, in the order of the lattice's cells.
+std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice<2>& lattice);
+
+/// The lattice's boundary as closed loops: those around the body counter-clockwise, those around its holes
+/// clockwise, the last particle of each joined to its first. Cells that touch in one corner only have loops
+/// that meet there and do not cross. Deterministic.
+///
+/// A body is drawn smaller than it collides: circles of SoftBodyModel<2>::contact_radius() around the
+/// outline's particles keep other things away.
+std::vector<std::vector<std::uint32_t>> outline(const Lattice<2>& lattice);
+
+}  // namespace softcell::ppu

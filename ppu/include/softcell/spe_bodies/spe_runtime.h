@@ -1,0 +1,71 @@
+#pragma once
+// All that SPEs need, in one object: main memory, the SPEs with their job loops, and softcell's kernels.
+//
+//     SpeRuntime spes;                                // six SPEs
+//     BulletSoftBodies bodies(world, spes);           // in place of BulletSoftBodies bodies(world);
+//     Box2dSoftBodies bodies_2d(world_2d, spes);
+//     SpeSkinner skinner(spes);                       // vertex buffers: spe_skinner.h
+//
+// Kernels of one's own run beside softcell's: jobs().place(image), then a JobChain (jobs/job_system.h).
+
+#include <chrono>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "softcell/dma/address_space.h"
+#include "softcell/dma/schedule.h"
+#include "softcell/jobs/job_system.h"
+#include "softcell/ls_sim/findings.h"
+#include "softcell/soft_bodies/solver_factory.h"
+
+namespace softcell::ppu {
+
+struct SpeRuntimeOptions {
+  int spes = dma::kSpeCount;  ///< 1..6; results do not depend on it
+  dma::Schedule schedule{};   ///< when transfers happen; dma::parse_schedule() reads "lazy" or "random:7"
+  /// Runs the kernels' checked flavours, which report each wrong access to SpeRuntime::findings() and take
+  /// some ten times as long.
+  bool checked = false;
+  std::chrono::milliseconds deadline{10'000};  ///< for one job; one that takes longer is stopped and fails
+};
+
+/// Outlives all that uses it: solvers, skinners, chains, worlds' soft bodies. Construct it first. The SPEs are
+/// host threads that sleep while there is nothing to do. Used by one thread at a time, except where stated.
+class SpeRuntime final : public SolverFactory {
+ public:
+  /// @throws std::invalid_argument  another number of SPEs than 1..6.
+  /// @throws std::runtime_error     the host has no address range or no threads left, or its processor lacks
+  ///                                AVX2 or FMA.
+  explicit SpeRuntime(const SpeRuntimeOptions& options = {});
+  /// Waits for the jobs under way. @pre no chain is left
+  ~SpeRuntime() override;
+  SpeRuntime(const SpeRuntime&) = delete;
+  SpeRuntime& operator=(const SpeRuntime&) = delete;
+
+  /// A solver for the soft bodies of one Bullet world: BulletSoftBodies calls it. A job system has room for
+  /// 15 chains; a solver takes one of them, a skinner two.
+  std::unique_ptr<SoftBodySolver<3>> make_solver() override;
+  /// A solver for the soft bodies of one Box2D world.
+  std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override;
+
+  dma::AddressSpace& memory();  ///< main memory, 256 MB, from which buffers are made
+  JobSystem& jobs();
+  int spes() const;
+
+  /// One of softcell's own kernels, in the flavour of the options; loaded at the first call.
+  /// @throws std::runtime_error  there is none of that name.
+  const ls_sim::KernelImage& kernel(std::string_view name);
+
+  /// What checked kernels have done wrong so far; empty for others. Any thread.
+  const ls_sim::Findings& findings() const;
+
+  /// What each SPE has done so far: jobs, transfers, time. Any thread.
+  std::vector<ls_sim::SpeStatistics> statistics() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,37 @@
+#pragma once
+// What lies over a picture (text, tables, plots) as triangles: overlay.h makes them, the renderer draws them.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace softcell::render {
+
+/// What Dear ImGui hands over, in pixels from the upper left corner. [imgui.h, ImDrawVert] documented
+struct OverlayVertex {
+  float x, y;
+  float u, v;
+  std::uint32_t rgba;  ///< r in the lowest byte; encoded as on the screen
+};
+
+/// Triangles within a rectangle of the picture.
+struct OverlayCommand {
+  int left, top, right, bottom;  ///< pixels
+  std::uint32_t first_index;
+  std::uint32_t index_count;
+};
+
+/// One frame's overlay: triangles over the font's picture, in order.
+struct OverlayMesh {
+  std::vector<OverlayVertex> vertices;
+  std::vector<std::uint32_t> indices;
+  std::vector<OverlayCommand> commands;
+};
+
+/// The font's picture: one byte of coverage a texel.
+struct OverlayFont {
+  int width = 0, height = 0;
+  std::span<const std::uint8_t> coverage;
+};
+
+}  // namespace softcell::render

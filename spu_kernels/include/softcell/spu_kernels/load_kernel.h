@@ -1,0 +1,23 @@
+#pragma once
+// Kernels ready to run: softcell's own by name, anybody's from a file. Images that a program carries in itself
+// (softcell_embed_spu_images) are read by ls_sim::load_image().
+
+#include <filesystem>
+#include <string_view>
+
+#include "softcell/ls_sim/image.h"
+
+namespace softcell::spu_kernels {
+
+/// One of softcell's own kernels, as image_files() names them. Any thread.
+/// @param checked  its checked flavour, which reports each load and store
+/// @throws std::runtime_error  there is no such kernel, or it has no checked flavour.
+ls_sim::KernelImage load_kernel(std::string_view name, bool checked = false);
+
+/// A kernel from a file that softcell_add_spu_kernel made: NAME.spu.elf, or NAME.checked.spu.elf for its
+/// checked flavour. The image's name is NAME. Any thread.
+/// @throws std::runtime_error  one sentence that names the file: it cannot be read, it is larger than 256 MB,
+///         or it is no such image.
+ls_sim::KernelImage load_kernel_file(const std::filesystem::path& file);
+
+}  // namespace softcell::spu_kernels

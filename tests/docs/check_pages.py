@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""The pages are true as far as a program can tell: links lead somewhere, the walks of architecture.md are as the code is.
+
+    check_pages.py ROOT
+"""
+import pathlib
+import re
+import sys
+
+MOST_FILES_OF_A_WALK = 5
+
+
+def pages(root):
+    return sorted([*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("examples/**/*.md")])
+
+
+def without_code(text):
+    return re.sub(r"^```.*?^```", "", text, flags=re.S | re.M)
+
+
+def anchors(page):
+    """As GitHub makes them of headings."""
+    headings = re.findall(r"^#+ (.*)$", without_code(page.read_text()), flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def broken_links(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", without_code(page.read_text())):
+        if "://" in target:
+            continue
+        path, _, anchor = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        if not file.exists():
+            yield f"{page}: the link {target} leads to no file"
+        elif anchor and anchor not in anchors(file):
+            yield f"{page}: the link {target} leads to no heading of {file.name}"
+
+
+def missing_pages(root):
+    """Of files that name a page: sources, scripts."""
+    folders = [root / name for name in ("base", "ci", "cmake", "demos", "dma", "examples", "ls_sim", "ppu", "render", "spu_kernels", "tests", "tool")]
+    for file in [*root.glob("*"), *(file for folder in folders for file in folder.rglob("*"))]:
+        if not file.is_file() or file.suffix in (".png", ".rec"):
+            continue
+        for name in re.findall(r"\bdocs/[a-z0-9/-]+\.md\b", file.read_text(errors="ignore")):
+            if not (root / name).exists():
+                yield f"{file.relative_to(root)}: {name} is no page"
+
+
+def wrong_walks(root):
+    text = (root / "docs/reference/architecture.md").read_text()
+    part = text[text.index("## Walks through the code\n"):]
+    part = part[:part.index("\n## ", 1)]
+    walks = re.split(r"^### ", part, flags=re.M)[1:]
+    if len(walks) < 4:
+        yield "architecture.md: fewer walks than the four that it had"
+    for walk in walks:
+        title, _, body = walk.partition("\n")
+        steps = re.findall(r"^\d+\. `([^`]+)`(.*?)(?=^\d+\. |\Z)", body, flags=re.M | re.S)
+        if not 1 <= len(steps) <= MOST_FILES_OF_A_WALK:
+            yield f"architecture.md, '{title}': {len(steps)} files; a walk has 1 to {MOST_FILES_OF_A_WALK}"
+        for file, sentence in steps:
+            if not (root / file).is_file():
+                yield f"architecture.md, '{title}': {file} is no file"
+                continue
+            source = (root / file).read_text()
+            for name in re.findall(r"`(?:\w+(?:::|\.))*(\w+)\(\)`", sentence):
+                if not re.search(rf"\b{name}\b", source):
+                    yield f"architecture.md, '{title}': {file} has no {name}()"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    wrong = [sentence for page in pages(root) for sentence in broken_links(page)]
+    wrong += missing_pages(root)
+    wrong += wrong_walks(root)
+    print("\n".join(wrong))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

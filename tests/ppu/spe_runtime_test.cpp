@@ -1,0 +1,186 @@
+// One object for all that SPEs need, and vertex buffers from it.
+
+#include "softcell/spe_bodies/spe_runtime.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "ppu/numbers/half.h"
+#include "soft_body_scenes.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/soft_bodies/shapes.h"
+#include "softcell/soft_bodies/skinned_mesh.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_skinner.h"
+#include "softcell/spe_bodies/spe_solver.h"
+#include "spu_kernels/kernel_image.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+std::shared_ptr<const SoftBodyModel<3>> ball() {
+  TriangleMesh mesh = make_sphere(0.5f, 8);
+  for (const Vector3f& p : mesh.positions) mesh.texture_coordinates.emplace_back(p.x(), p.z());
+  return make_soft_body_model(mesh, {.cell_size = 0.2f});
+}
+
+/// A ball falls on a floor. @return the hash of its state.
+std::uint64_t fall(SolverFactory& solvers, int frames) {
+  BulletWorld bullet;
+  BulletSoftBodies bodies(bullet.world(), solvers);
+  bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f);
+  const SoftBody<3>& body = bodies.add(ball(), {0, 0.8f, 0});
+  for (int i = 0; i < frames; ++i) bullet.step(kFrame, 2);
+  EXPECT_LT(body.centre_of_mass().y(), 0.79f);  // it may have bounced
+  EXPECT_GT(body.centre_of_mass().y(), 0.3f);
+  return state_hash(body);
+}
+
+TEST(SpeRuntime, StepsBodiesAsAnSpeSolverDoesThatWasPutTogetherByHand) {
+  struct ByHand final : SolverFactory {
+    std::unique_ptr<SoftBodySolver<3>> make_solver() override {
+      return std::make_unique<SpeSolver<3>>(memory, jobs, MatchKernels<3>{match, match_tiles});
+    }
+    std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override { return nullptr; }
+    dma::AddressSpace memory;
+    ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match = test::kernel_image("match"),
+                        match_tiles = test::kernel_image("match_tiles");
+    JobSystem jobs{memory, {.spes = 3}, job_loop};
+  } by_hand;
+  SpeRuntime runtime({.spes = 2});
+  EXPECT_EQ(runtime.spes(), 2);
+  EXPECT_EQ(fall(runtime, 40), fall(by_hand, 40));
+}
+
+TEST(SpeRuntime, ServesSeveralWorldsUnderEverySchedule) {
+  SpeRuntime eager, lazy({.spes = 1, .schedule = dma::parse_schedule("lazy")});
+  const std::uint64_t expected = fall(eager, 30);
+  EXPECT_EQ(fall(eager, 30), expected);
+  EXPECT_EQ(fall(lazy, 30), expected);
+  EXPECT_TRUE(eager.findings().empty());
+  std::uint64_t jobs = 0;
+  for (const ls_sim::SpeStatistics& spe : eager.statistics()) jobs += spe.jobs;
+  EXPECT_GT(jobs, 0u);
+}
+
+TEST(SpeRuntime, CheckedKernelsGiveTheSameBitsAndNoFindings) {
+  SpeRuntime plain({.spes = 2}), checked({.spes = 2, .checked = true});
+  EXPECT_TRUE(checked.kernel("match").checked);
+  EXPECT_FALSE(plain.kernel("match").checked);
+  EXPECT_EQ(fall(checked, 30), fall(plain, 30));
+  EXPECT_TRUE(checked.findings().empty());
+}
+
+TEST(SpeRuntime, RefusesOtherNumbersOfSpesAndUnknownKernels) {
+  for (const int spes : {0, 7, -1}) {
+    try {
+      const SpeRuntime runtime({.spes = spes});
+      FAIL() << spes;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(error.what(), "a runtime of " + std::to_string(spes) + " SPEs; 1 to 6 are possible");
+    }
+  }
+  SpeRuntime runtime({.spes = 1});
+  EXPECT_THROW(runtime.kernel("no_such"), std::runtime_error);
+}
+
+Vector3f position_of(const SkinnedVertices& skinned, std::size_t slot) {
+  const auto& p = skinned.vertices[slot].position;
+  return skinned.origin + Vector3f(float_from_half(p[0]), float_from_half(p[1]), float_from_half(p[2]));
+}
+
+TEST(SpeSkinner, VerticesAreTheMeshsInTheOrderThatItStates) {
+  SpeRuntime spes({.spes = 2});
+  SpeSkinner skinner(spes);
+  SoftBody<3> body(ball(), {3, 2, 1});
+  body.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(1, Vector3f::UnitY())), {0, 0, 0});
+  skinner.add(body);
+  EXPECT_TRUE(skinner.vertices(body).vertices.empty());
+  ASSERT_TRUE(skinner.begin_frame());
+  skinner.finish_frame();
+
+  const TriangleMesh& mesh = body.model().mesh();
+  SkinnedMesh exact(body.shared_model());
+  exact.update(body);
+  const DrawOrder order = draw_order(body.model());
+  const SkinnedVertices drawn = skinner.vertices(body);
+  ASSERT_EQ(drawn.vertices.size(), order.mesh_vertex.size());
+  for (std::size_t i = 0; i < drawn.vertices.size(); ++i) {
+    const auto& n = drawn.vertices[i].normal;
+    const Vector3f normal(float_from_half(n[0]), float_from_half(n[1]), float_from_half(n[2]));
+    ASSERT_LT((position_of(drawn, i) - exact.positions()[order.mesh_vertex[i]]).norm(), 1e-3f) << i;
+    ASSERT_LT((normal - exact.normals()[order.mesh_vertex[i]]).norm(), 2e-3f) << i;
+  }
+  ASSERT_EQ(order.indices.size(), 3 * mesh.triangles.size());
+  for (std::size_t i = 0; i < order.indices.size(); ++i)
+    ASSERT_EQ(order.mesh_vertex[order.indices[i]], mesh.triangles[i / 3][i % 3]) << i;
+  const auto texture = order.reorder(mesh.texture_coordinates);
+  for (std::size_t i = 0; i < texture.size(); ++i)
+    ASSERT_EQ(texture[i], mesh.texture_coordinates[order.mesh_vertex[i]]) << i;
+}
+
+TEST(SpeSkinner, ShowsTheFrameBefore) {
+  SpeRuntime spes({.spes = 1});
+  SpeSkinner skinner(spes);
+  SoftBody<3> body(ball());
+  skinner.add(body);
+  const auto begin = [&] {
+    while (!skinner.begin_frame()) {  // the SPEs are not yet done
+    }
+  };
+  begin();  // at 0
+  EXPECT_TRUE(skinner.vertices(body).vertices.empty());
+  body.translate({1, 0, 0});
+  begin();  // at 1; the first is finished
+  const float at_0 = position_of(skinner.vertices(body), 0).x();
+  body.translate({1, 0, 0});
+  begin();  // at 2
+  EXPECT_NEAR(position_of(skinner.vertices(body), 0).x(), at_0 + 1, 1e-3f);
+  skinner.finish_frame();
+  EXPECT_NEAR(position_of(skinner.vertices(body), 0).x(), at_0 + 2, 1e-3f);
+}
+
+TEST(SpeSkinner, BodiesComeAndGo) {
+  SpeRuntime spes({.spes = 2});
+  SpeSkinner skinner(spes);
+  const auto model = ball();
+  SoftBody<3> first(model), second(model, {5, 0, 0}), third(model, {9, 0, 0});
+  skinner.add(first);
+  skinner.add(second);
+  ASSERT_TRUE(skinner.begin_frame());
+  skinner.add(third);  // which waits for the frame
+  EXPECT_FALSE(skinner.vertices(first).vertices.empty());
+  EXPECT_TRUE(skinner.vertices(third).vertices.empty());
+  ASSERT_TRUE(skinner.begin_frame());
+  skinner.remove(first);
+  EXPECT_NEAR(position_of(skinner.vertices(second), 0).x() + 4, position_of(skinner.vertices(third), 0).x(),
+              2e-3f);
+  ASSERT_TRUE(skinner.begin_frame());
+  skinner.finish_frame();
+  EXPECT_NEAR(position_of(skinner.vertices(second), 0).x() + 4, position_of(skinner.vertices(third), 0).x(),
+              2e-3f);
+  EXPECT_THROW(skinner.vertices(first), std::invalid_argument);
+  EXPECT_THROW(skinner.remove(first), std::invalid_argument);
+  EXPECT_THROW(skinner.add(second), std::invalid_argument);
+  skinner.remove(second);
+  skinner.remove(third);
+  const std::uint64_t free = spes.memory().free_bytes(dma::Memory::kMain);
+  skinner.add(first);
+  skinner.remove(first);
+  EXPECT_EQ(spes.memory().free_bytes(dma::Memory::kMain), free);
+}
+
+TEST(SpeSkinner, RefusesAModelWithoutAMesh) {
+  SpeRuntime spes({.spes = 1});
+  SpeSkinner skinner(spes);
+  const SoftBody<3> block(block_model({2, 2, 2}, {.cell_size = 0.1f}));
+  EXPECT_THROW(skinner.add(block), std::invalid_argument);
+  EXPECT_TRUE(skinner.begin_frame());  // nothing to do is no mistake
+  skinner.finish_frame();
+}
+
+}  // namespace
+}  // namespace softcell::ppu

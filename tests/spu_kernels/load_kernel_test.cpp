@@ -1,0 +1,72 @@
+// Kernels by name and from files.
+
+#include "softcell/spu_kernels/load_kernel.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "softcell/spu_kernels/images.h"
+
+namespace softcell::spu_kernels {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LoadKernel : public testing::Test {
+ protected:
+  LoadKernel() : folder_(fs::temp_directory_path() / ("softcell_load_kernel_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~LoadKernel() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, std::span<const std::byte> bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return folder_ / name;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(LoadKernel, FindsEveryKernelByName) {
+  for (const ImageFile& file : image_files()) {
+    EXPECT_EQ(load_kernel(file.name).name, file.name);
+    EXPECT_FALSE(load_kernel(file.name).checked);
+    if (!file.checked_elf.empty()) EXPECT_TRUE(load_kernel(file.name, true).checked) << file.name;
+  }
+  EXPECT_THROW(load_kernel("no_such"), std::runtime_error);
+  EXPECT_THROW(load_kernel("job_loop", true), std::runtime_error);
+}
+
+TEST_F(LoadKernel, AFilesNameIsTheKernels) {
+  const ls_sim::KernelImage plain = load_kernel_file(write("mine.spu.elf", image_file("skin", false)));
+  EXPECT_EQ(plain.name, "mine");
+  EXPECT_EQ(plain.bytes, load_kernel("skin").bytes);
+  const ls_sim::KernelImage checked =
+      load_kernel_file(write("mine.checked.spu.elf", image_file("skin", true)));
+  EXPECT_EQ(checked.name, "mine");
+  EXPECT_TRUE(checked.checked);
+  EXPECT_EQ(load_kernel_file(write("other.elf", image_file("skin", false))).name, "other.elf");
+}
+
+TEST_F(LoadKernel, NamesAFileThatIsNoKernel) {
+  const auto problem = [](const fs::path& file) -> std::string {
+    try {
+      load_kernel_file(file);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(problem(folder_ / "none.spu.elf").find("none.spu.elf"), std::string::npos);
+  const std::byte few[4] = {};
+  EXPECT_NE(problem(write("few.spu.elf", few)).find("few"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softcell::spu_kernels
