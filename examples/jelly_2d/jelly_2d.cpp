@@ -34,10 +34,9 @@ int main() try {
   jelly.cell_size = 0.2f;  // metres
   jelly.density = 30;      // kg/m^2
   jelly.damping = 0.2f;
-  const auto model =
-      make_soft_body_model(lattice_2d_from_cells(cells_from_rows(rows), jelly.cell_size), jelly);
+  const auto model = make_soft_body_model(lattice_from_cells(cells_from_rows(rows), jelly.cell_size), jelly);
   Box2dSoftBodies soft_bodies(world);
-  SoftBody2d& body = soft_bodies.add(model, {0, 0.5f});
+  SoftBody<2>& body = soft_bodies.add(model, {0, 0.5f});
 
   for (int step = 0; step < 480; ++step) {
     soft_bodies.step(1 / 120.0f);  // in place of world.Step()

@@ -37,7 +37,7 @@ int main(int argc, char** argv) try {
   jelly.damping = 0.2f;
   const auto model = make_soft_body_model(import_mesh(argc > 1 ? argv[1] : "jelly.obj"), jelly);
   BulletSoftBodies soft_bodies(world);
-  SoftBody& body = soft_bodies.add(model, {0, 0.6f, 0});
+  SoftBody<3>& body = soft_bodies.add(model, {0, 0.6f, 0});
 
   for (int frame = 0; frame < 240; ++frame) {
     world.stepSimulation(1 / 60.0f, 2, 1 / 120.0f);

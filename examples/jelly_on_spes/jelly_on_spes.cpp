@@ -40,7 +40,7 @@ int main(int argc, char** argv) try {
   const auto model = ppu::make_soft_body_model(mesh, {.cell_size = 0.1f, .alpha = 0.06f, .damping = 0.2f});
   ppu::SpeRuntime spes;
   ppu::BulletSoftBodies bodies(world, spes);
-  const ppu::SoftBody& jelly = bodies.add(model, {0, 0.2f, 0});
+  const ppu::SoftBody<3>& jelly = bodies.add(model, {0, 0.2f, 0});
   ppu::SpeSkinner skinner(spes);
   skinner.add(jelly);
 

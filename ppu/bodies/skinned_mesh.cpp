@@ -9,7 +9,7 @@
 
 namespace softcell::ppu {
 
-void skin(const SoftBody& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals) {
+void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals) {
   const Embedding& embedding = body.model().embedding();
   const std::size_t vertices = embedding.slot_of_vertex.size();
   if (positions.size() != vertices || normals.size() != vertices) {
@@ -37,10 +37,10 @@ void skin(const SoftBody& body, std::span<Eigen::Vector3f> positions, std::span<
   }
 }
 
-SkinnedMesh::SkinnedMesh(std::shared_ptr<const SoftBodyModel> model)
+SkinnedMesh::SkinnedMesh(std::shared_ptr<const SoftBodyModel<3>> model)
     : model_(std::move(model)), positions_(model_->mesh().positions), normals_(model_->mesh().normals) {}
 
-void SkinnedMesh::update(const SoftBody& body) {
+void SkinnedMesh::update(const SoftBody<3>& body) {
   if (body.shared_model() != model_)
     throw std::invalid_argument("a skinned mesh was given a body of another model than its own");
   skin(body, positions_, normals_);

@@ -1,72 +1,140 @@
 #include "softcell/soft_bodies/soft_body.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "ppu/matching/rotation.h"
 #include "ppu/reference/shape_matching.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
 
+using Eigen::Matrix2d;
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Eigen::Vector3f;
+
+// What turns, in two dimensions.
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+Eigen::Vector2f cross(float omega, const Eigen::Vector2f& r) {
+  return omega * Eigen::Vector2f(-r.y(), r.x());
+}
+double inertia_of(const Matrix2d& second_moment) { return second_moment.trace(); }
+double inverse(double inertia) { return 1 / inertia; }
+float to_float(double axial) { return static_cast<float>(axial); }
+Matrix2d matrix_of(const Eigen::Rotation2Df& rotation) { return rotation.cast<double>().toRotationMatrix(); }
+
+/// @param correlation  sum of m p q^T, p where a particle is and q where it was at rest, about the centres
+Matrix2d best_rotation(const Matrix2d& correlation) {
+  const double cosine = correlation.trace(), sine = correlation(1, 0) - correlation(0, 1);
+  const double length = std::sqrt(cosine * cosine + sine * sine);
+  if (!(length > 0)) return Matrix2d::Identity();
+  Matrix2d rotation;
+  rotation << cosine, -sine, sine, cosine;
+  return rotation / length;
+}
+
+// And in three.
+
+Vector3d cross(const Vector3d& a, const Vector3d& b) { return a.cross(b); }
+Eigen::Vector3f cross(const Eigen::Vector3f& omega, const Eigen::Vector3f& r) { return omega.cross(r); }
+Matrix3d inertia_of(const Matrix3d& second_moment) {
+  return second_moment.trace() * Matrix3d::Identity() - second_moment;
+}
+Matrix3d inverse(const Matrix3d& inertia) { return inertia.inverse(); }
+Eigen::Vector3f to_float(const Vector3d& axial) { return axial.cast<float>(); }
+Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
+  SC_ASSERT(rotation.norm() > 0, "a quaternion of length {} is no rotation", rotation.norm());
+  return rotation.normalized().toRotationMatrix().cast<double>();
+}
+
+Matrix3d best_rotation(const Matrix3d& correlation) {
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  return find_rotation(correlation, orientation);
+}
 
 /// Sums over the body in double precision: positions far from the origin lose nothing.
+template <int kDimension>
 struct Motion {
-  Vector3d centre{0, 0, 0};    // metres
-  Vector3d velocity{0, 0, 0};  // m/s, of the centre
-  Vector3d spin{0, 0, 0};      // kg m^2/s, angular momentum about the centre
-  Matrix3d inertia;            // kg m^2, about the centre
+  using Vector = Eigen::Vector<double, kDimension>;
+  using Matrix = Eigen::Matrix<double, kDimension, kDimension>;
+
+  Vector centre = Vector::Zero();                        // metres
+  Vector velocity = Vector::Zero();                      // m/s, of the centre
+  decltype(cross(Vector(), Vector())) spin;              // kg m^2/s, angular momentum about the centre
+  decltype(inertia_of(std::declval<Matrix>())) inertia;  // kg m^2, about the centre
 };
 
-Motion motion_of(const SoftBody& body) {
+template <int kDimension>
+Motion<kDimension> motion_of(const SoftBody<kDimension>& body) {
+  using Vector = typename Motion<kDimension>::Vector;
   const std::span<const float> masses = body.model().masses();
-  Motion motion;
+  Motion<kDimension> motion;
   double mass = 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double m = masses[i];
     mass += m;
-    motion.centre += m * body.position(i).cast<double>();
-    motion.velocity += m * body.velocities()[i].cast<double>();
+    motion.centre += m * body.position(i).template cast<double>();
+    motion.velocity += m * body.velocities()[i].template cast<double>();
   }
   motion.centre /= mass;
   motion.velocity /= mass;
 
-  Matrix3d second_moment = Matrix3d::Zero();
+  typename Motion<kDimension>::Matrix second_moment = Motion<kDimension>::Matrix::Zero();
+  motion.spin = cross(Vector(Vector::Zero()), Vector(Vector::Zero()));
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double m = masses[i];
-    const Vector3d r = body.position(i).cast<double>() - motion.centre;
-    motion.spin += m * r.cross(body.velocities()[i].cast<double>());
+    const Vector r = body.position(i).template cast<double>() - motion.centre;
+    const Vector v = body.velocities()[i].template cast<double>();
+    motion.spin += m * cross(r, v);
     second_moment += m * r * r.transpose();
   }
-  motion.inertia = second_moment.trace() * Matrix3d::Identity() - second_moment;
+  motion.inertia = inertia_of(second_moment);
   return motion;
+}
+
+/// The rotation of the undeformed body, about `centre`, that comes nearest to what it is now.
+template <int kDimension>
+typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& body,
+                                                   const typename Motion<kDimension>::Vector& centre) {
+  const auto rest = body.model().plan()->particle_constants();
+  typename Motion<kDimension>::Matrix correlation = Motion<kDimension>::Matrix::Zero();
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const double m = body.model().masses()[i];
+    correlation += m * (body.position(i).template cast<double>() - centre) *
+                   rest[i].x0.template cast<double>().transpose();
+  }
+  return best_rotation(correlation);
 }
 
 }  // namespace
 
-SoftBody::SoftBody(std::shared_ptr<const SoftBodyModel> model, const Vector3f& position)
-    : model_(std::move(model)),
+template <int kDimension>
+SoftBody<kDimension>::SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model, const Vector& position)
+    : model_((SC_ASSERT(model != nullptr, "a soft body without a model"), std::move(model))),
       x_(model_->particles()),
-      v_(model_->particles(), Vector3f::Zero()),
-      padded_(model_->particles()),
-      matcher_(std::make_unique<ShapeMatcher<float>>(model_->plan())) {
+      v_(model_->particles(), Vector::Zero()),
+      padded_(kDimension == 3 ? model_->particles() : 0),
+      matcher_(std::make_unique<ShapeMatcher<float, kDimension>>(model_->plan())) {
   place_at_rest(position);
 }
 
-SoftBody::SoftBody(const SoftBody& other)
+template <int kDimension>
+SoftBody<kDimension>::SoftBody(const SoftBody& other)
     : model_(other.model_),
       x_(other.x_),
       v_(other.v_),
       padded_(other.padded_),
-      matcher_(std::make_unique<ShapeMatcher<float>>(*other.matcher_)),
+      matcher_(std::make_unique<ShapeMatcher<float, kDimension>>(*other.matcher_)),
       revision_(other.revision_),
       resets_(other.resets_),
       asleep_(other.asleep_) {}
 
-SoftBody& SoftBody::operator=(const SoftBody& other) {
+template <int kDimension>
+SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
   model_ = other.model_;
   x_ = other.x_;
   v_ = other.v_;
@@ -79,120 +147,172 @@ SoftBody& SoftBody::operator=(const SoftBody& other) {
   return *this;
 }
 
-SoftBody::~SoftBody() = default;
+template <int kDimension>
+SoftBody<kDimension>::~SoftBody() = default;
 
-void SoftBody::place_at_rest(const Vector3f& position) {
+template <int kDimension>
+void SoftBody<kDimension>::place_at_rest(const Vector& position) {
   for (std::size_t i = 0; i < x_.size(); ++i)
-    set_particle(i, model_->lattice().rest_position(i) + position, Vector3f::Zero());
+    set_particle(i, model_->lattice().rest_position(i) + position, Vector::Zero());
 }
 
-void SoftBody::forget_rotations() {
+template <int kDimension>
+void SoftBody<kDimension>::forget_rotations() {
   matcher_->reset();
   ++resets_;
 }
 
-void SoftBody::set_position(std::size_t particle, const Vector3f& position) {
+template <int kDimension>
+void SoftBody<kDimension>::set_position(std::size_t particle, const Vector& position) {
   set_particle(particle, position, v_[particle]);
 }
 
-void SoftBody::pull(float step) {
+template <int kDimension>
+void SoftBody<kDimension>::pull(float step) {
   const SoftBodySettings& settings = model_->settings();
   matcher_->step_velocities(x_, v_, settings.alpha_of_step(step), step, settings.damping_of_step(step));
 }
 
-void SoftBody::limit_speed(float limit) {
-  for (Vector3f& v : v_) {
+template <int kDimension>
+void SoftBody<kDimension>::limit_speed(float limit) {
+  SC_ASSERT(limit >= 0, "a speed limit of {} m/s", limit);
+  for (Vector& v : v_) {
     const float squared = v.squaredNorm();
     if (squared > limit * limit) v *= limit / std::sqrt(squared);
   }
 }
 
-void SoftBody::advance_inner(float step, const Vector3f& gravity) {
+template <int kDimension>
+void SoftBody<kDimension>::advance_inner(float step, const Vector& gravity) {
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   for (const std::uint32_t i : model_->inner()) {
-    const Vector3f v = v_[i] + step * gravity;
+    const Vector v = v_[i] + step * gravity;
     set_particle(i, x_[i] + step * v, v);
   }
 }
 
-void SoftBody::translate(const Vector3f& by) {
+template <int kDimension>
+void SoftBody<kDimension>::keep_inner_inside() {
+  if (model_->outer().empty()) return;
+  Eigen::AlignedBox<float, kDimension> box;
+  for (const std::uint32_t i : model_->outer()) box.extend(x_[i]);
+  for (const std::uint32_t i : model_->inner()) {
+    const Vector inside = x_[i].cwiseMax(box.min()).cwiseMin(box.max());
+    Vector v = v_[i];
+    for (int axis = 0; axis < kDimension; ++axis) {
+      const float back = inside[axis] - x_[i][axis];
+      if (back * v[axis] < 0) v[axis] = 0;
+    }
+    set_particle(i, inside, v);
+  }
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::translate(const Vector& by) {
   for (std::size_t i = 0; i < x_.size(); ++i) set_position(i, x_[i] + by);
   ++revision_;
 }
 
-void SoftBody::reset(const Vector3f& position) {
+template <int kDimension>
+void SoftBody<kDimension>::reset(const Vector& position) {
   place_at_rest(position);
   forget_rotations();
   ++revision_;
 }
 
-void SoftBody::move_without_force(const Eigen::Quaternionf& rotation, const Vector3f& translation) {
-  const Matrix3d turn = rotation.normalized().toRotationMatrix().cast<double>();
-  const Vector3d centre = motion_of(*this).centre;
-  const Vector3d moved_centre = centre + translation.cast<double>();
+template <int kDimension>
+void SoftBody<kDimension>::move_without_force(const Rotation& rotation, const Vector& translation) {
+  const typename Motion<kDimension>::Matrix turn = matrix_of(rotation);
+  const typename Motion<kDimension>::Vector centre = motion_of(*this).centre;
+  const typename Motion<kDimension>::Vector moved_centre = centre + translation.template cast<double>();
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const Vector3d x = moved_centre + turn * (x_[i].cast<double>() - centre);
-    const Vector3d v = turn * v_[i].cast<double>();
-    set_particle(i, x.cast<float>(), v.cast<float>());
+    const typename Motion<kDimension>::Vector x =
+        moved_centre + turn * (x_[i].template cast<double>() - centre);
+    const typename Motion<kDimension>::Vector v = turn * v_[i].template cast<double>();
+    set_particle(i, x.template cast<float>(), v.template cast<float>());
   }
   forget_rotations();
   ++revision_;
 }
 
-void SoftBody::reset_deformation() {
-  const Motion motion = motion_of(*this);
+template <int kDimension>
+void SoftBody<kDimension>::reset_deformation() {
+  const Motion<kDimension> motion = motion_of(*this);
+  const typename Motion<kDimension>::Matrix turn = orientation_of(*this, motion.centre);
   const auto rest = model_->plan()->particle_constants();
-  Matrix3d correlation = Matrix3d::Zero();
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const double m = model_->masses()[i];
-    correlation += m * (x_[i].cast<double>() - motion.centre) * rest[i].x0.cast<double>().transpose();
-  }
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  const Matrix3d turn = find_rotation(correlation, orientation);
-
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    const Vector3d x = motion.centre + turn * rest[i].x0.cast<double>();
-    set_particle(i, x.cast<float>(), motion.velocity.cast<float>());
+    const typename Motion<kDimension>::Vector x = motion.centre + turn * rest[i].x0.template cast<double>();
+    set_particle(i, x.template cast<float>(), motion.velocity.template cast<float>());
   }
   // The undeformed body has another inertia: the turn that gives it the same angular momentum. A lattice is
   // at least a cell in each direction, so its inertia can be inverted.
-  const Vector3d omega = motion_of(*this).inertia.inverse() * motion.spin;
+  const decltype(motion.spin) omega = inverse(motion_of(*this).inertia) * motion.spin;
   forget_rotations();
-  add_angular_velocity(omega.cast<float>());
+  add_angular_velocity(to_float(omega));
 }
 
-void SoftBody::add_velocity(const Vector3f& dv) {
-  for (Vector3f& v : v_) v += dv;
+template <int kDimension>
+void SoftBody<kDimension>::add_velocity(const Vector& dv) {
+  for (Vector& v : v_) v += dv;
   ++revision_;
 }
 
-void SoftBody::add_particle_velocity(std::size_t particle, const Vector3f& dv) {
+template <int kDimension>
+void SoftBody<kDimension>::add_particle_velocity(std::size_t particle, const Vector& dv) {
+  SC_ASSERT(particle < v_.size(), "particle {} of {}", particle, v_.size());
   v_[particle] += dv;
   ++revision_;
 }
 
-void SoftBody::add_angular_velocity(const Vector3f& dw) {
-  const Vector3f centre = centre_of_mass();
-  for (std::size_t i = 0; i < x_.size(); ++i) v_[i] += dw.cross(x_[i] - centre);
+template <int kDimension>
+void SoftBody<kDimension>::add_angular_velocity(const AxialVector& dw) {
+  const Vector centre = centre_of_mass();
+  for (std::size_t i = 0; i < x_.size(); ++i) v_[i] += cross(dw, Vector(x_[i] - centre));
   ++revision_;
 }
 
-Vector3f SoftBody::centre_of_mass() const { return motion_of(*this).centre.cast<float>(); }
-
-Vector3f SoftBody::linear_momentum() const {
-  Vector3d momentum = Vector3d::Zero();
-  for (std::size_t i = 0; i < v_.size(); ++i) momentum += double{model_->masses()[i]} * v_[i].cast<double>();
-  return momentum.cast<float>();
+template <int kDimension>
+auto SoftBody<kDimension>::centre_of_mass() const -> Vector {
+  return motion_of(*this).centre.template cast<float>();
 }
 
-Vector3f SoftBody::angular_momentum() const { return motion_of(*this).spin.cast<float>(); }
+template <int kDimension>
+auto SoftBody<kDimension>::linear_momentum() const -> Vector {
+  typename Motion<kDimension>::Vector momentum = Motion<kDimension>::Vector::Zero();
+  for (std::size_t i = 0; i < v_.size(); ++i)
+    momentum += double{model_->masses()[i]} * v_[i].template cast<double>();
+  return momentum.template cast<float>();
+}
 
-Bounds SoftBody::bounds() const {
-  Bounds box{x_[0], x_[0]};
-  for (const Vector3f& x : x_) {
+template <int kDimension>
+auto SoftBody<kDimension>::angular_momentum() const -> AxialVector {
+  return to_float(motion_of(*this).spin);
+}
+
+template <int kDimension>
+Bounds<kDimension> SoftBody<kDimension>::bounds() const {
+  Bounds<kDimension> box{x_[0], x_[0]};
+  for (const Vector& x : x_) {
     box.low = box.low.cwiseMin(x);
     box.high = box.high.cwiseMax(x);
   }
   return box;
 }
+
+template <int kDimension>
+float SoftBody<kDimension>::deformation() const {
+  const typename Motion<kDimension>::Vector centre = motion_of(*this).centre;
+  const typename Motion<kDimension>::Matrix turn = orientation_of(*this, centre);
+  const auto rest = model_->plan()->particle_constants();
+  double longest = 0;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const typename Motion<kDimension>::Vector rigid = centre + turn * rest[i].x0.template cast<double>();
+    longest = std::max(longest, (x_[i].template cast<double>() - rigid).norm());
+  }
+  return static_cast<float>(longest);
+}
+
+template class SoftBody<2>;
+template class SoftBody<3>;
 
 }  // namespace softcell::ppu

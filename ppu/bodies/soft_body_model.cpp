@@ -1,3 +1,5 @@
+#include "softcell/soft_bodies/soft_body_model.h"
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -5,12 +7,13 @@
 
 #include "ppu/lattice/embedding.h"
 #include "ppu/matching/matching_plan.h"
-#include "softcell/soft_bodies/soft_body_model.h"
 
 namespace softcell::ppu {
 namespace {
 
-std::vector<bool> corners_of_outer_cells(const Lattice& lattice) {
+std::vector<bool> colliding_particles(const Lattice<2>& lattice) { return outer_particles(lattice); }
+
+std::vector<bool> colliding_particles(const Lattice<3>& lattice) {
   const std::vector<bool> on_boundary = outer_particles(lattice);
   std::vector<bool> result = on_boundary;
   for (const auto& cell : lattice.corners) {
@@ -20,43 +23,83 @@ std::vector<bool> corners_of_outer_cells(const Lattice& lattice) {
   return result;
 }
 
+void check_cell_size(const SoftBodySettings& settings, float spacing) {
+  if (spacing != settings.cell_size) {
+    throw std::runtime_error("a soft body's cell_size is " + std::to_string(settings.cell_size) +
+                             "; it must be the spacing of the lattice it is made from, " +
+                             std::to_string(spacing));
+  }
+}
+
 }  // namespace
 
-SoftBodyModel::SoftBodyModel(Lattice lattice, Embedding embedding, const SoftBodySettings& settings)
+template <int kDimension>
+SoftBodyModel<kDimension>::SoftBodyModel(Lattice<kDimension> lattice,
+                                         std::shared_ptr<const Embedding> embedding,
+                                         const SoftBodySettings& settings, float contact_radius_in_cells)
     : settings_(settings),
       lattice_(std::move(lattice)),
-      embedding_(std::make_shared<const Embedding>(std::move(embedding))),
+      embedding_(std::move(embedding)),
       masses_(particle_masses(lattice_, settings.density)),
-      plan_(std::make_shared<MatchingPlan<float>>(lattice_, settings.half_width, masses_)) {
+      contact_radius_in_cells_(contact_radius_in_cells),
+      plan_(std::make_shared<MatchingPlan<float, kDimension>>(lattice_, settings.half_width, masses_)) {
   double mass = 0;
   for (const float m : masses_) mass += m;
   mass_ = static_cast<float>(mass);
 
   const std::vector<bool> is_outer =
-      settings.contacts ? corners_of_outer_cells(lattice_) : std::vector<bool>(lattice_.particles.size());
+      settings.contacts ? colliding_particles(lattice_) : std::vector<bool>(lattice_.particles.size());
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
 }
 
-const TriangleMesh& SoftBodyModel::mesh() const { return embedding_->mesh; }
-
-std::shared_ptr<const SoftBodyModel> make_soft_body_model(const TriangleMesh& mesh,
-                                                          const SoftBodySettings& settings) {
-  validate(settings);
-  validate(mesh);
-  Lattice lattice = voxelize(mesh, settings.cell_size);
-  Embedding embedding = embed(mesh, lattice);
-  return std::shared_ptr<const SoftBodyModel>(
-      new SoftBodyModel(std::move(lattice), std::move(embedding), settings));
+template <int kDimension>
+const TriangleMesh& SoftBodyModel<kDimension>::mesh() const requires(kDimension == 3) {
+  return embedding_->mesh;
 }
 
-std::shared_ptr<const SoftBodyModel> make_soft_body_model(Lattice lattice, const SoftBodySettings& settings) {
-  validate(settings);
-  if (lattice.spacing != settings.cell_size) {
-    throw std::runtime_error("a soft body's cell_size is " + std::to_string(settings.cell_size) +
-                             "; it must be the spacing of the lattice it is made from, " +
-                             std::to_string(lattice.spacing));
+template class SoftBodyModel<2>;
+template class SoftBodyModel<3>;
+
+struct SoftBodyModelMaker {
+  static std::shared_ptr<const SoftBodyModel<3>> make(Lattice<3> lattice, Embedding embedding,
+                                                      const SoftBodySettings& settings) {
+    return std::shared_ptr<const SoftBodyModel<3>>(
+        new SoftBodyModel<3>(std::move(lattice), std::make_shared<const Embedding>(std::move(embedding)),
+                             settings, SoftBodyModel<3>::kContactRadiusInCells));
   }
-  return std::shared_ptr<const SoftBodyModel>(new SoftBodyModel(std::move(lattice), {}, settings));
+  static std::shared_ptr<const SoftBodyModel<2>> make(Lattice<2> lattice, const SoftBodySettings& settings,
+                                                      float contact_radius_in_cells) {
+    return std::shared_ptr<const SoftBodyModel<2>>(
+        new SoftBodyModel<2>(std::move(lattice), nullptr, settings, contact_radius_in_cells));
+  }
+};
+
+std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
+                                                             const SoftBodySettings& settings) {
+  validate(settings);
+  validate(mesh);
+  Lattice<3> lattice = voxelize(mesh, settings.cell_size);
+  Embedding embedding = embed(mesh, lattice);
+  return SoftBodyModelMaker::make(std::move(lattice), std::move(embedding), settings);
+}
+
+std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
+                                                             const SoftBodySettings& settings) {
+  validate(settings);
+  check_cell_size(settings, lattice.spacing);
+  return SoftBodyModelMaker::make(std::move(lattice), {}, settings);
+}
+
+std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(Lattice<2> lattice,
+                                                             const SoftBodySettings& settings,
+                                                             float contact_radius_in_cells) {
+  validate(settings);
+  check_cell_size(settings, lattice.spacing);
+  if (!(contact_radius_in_cells > 0 && contact_radius_in_cells <= 1)) {
+    throw std::runtime_error("a soft body's contact radius is " + std::to_string(contact_radius_in_cells) +
+                             " cells; it must be above 0 and at most 1");
+  }
+  return SoftBodyModelMaker::make(std::move(lattice), settings, contact_radius_in_cells);
 }
 
 }  // namespace softcell::ppu

@@ -17,16 +17,16 @@ std::uint64_t hash_of(std::span<const Position> positions, std::span<const Veloc
 }  // namespace
 
 // Vectors have no padding, or a fourth float that is always 0.
-std::uint64_t state_hash(const SoftBody& body, std::uint64_t before) {
+std::uint64_t state_hash(const SoftBody<3>& body, std::uint64_t before) {
   return hash_of(body.padded_positions(), body.velocities(), before);
 }
-std::uint64_t state_hash(const SoftBody2d& body, std::uint64_t before) {
+std::uint64_t state_hash(const SoftBody<2>& body, std::uint64_t before) {
   return hash_of(body.positions(), body.velocities(), before);
 }
 
-std::uint64_t state_hash(std::span<const SoftBody* const> bodies) {
+std::uint64_t state_hash(std::span<const SoftBody<3>* const> bodies) {
   std::uint64_t hash = 0;
-  for (const SoftBody* body : bodies) hash = state_hash(*body, hash);
+  for (const SoftBody<3>* body : bodies) hash = state_hash(*body, hash);
   return hash;
 }
 

@@ -1,121 +1,29 @@
 #include "softcell/box2d/box2d_soft_bodies.h"
 
-#include <box2d/b2_body.h>
-#include <box2d/b2_circle_shape.h>
-#include <box2d/b2_fixture.h>
-
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "ppu/box2d/box2d_body.h"
+#include "ppu/box2d/rest.h"
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
-namespace {
 
 using Eigen::Vector2f;
 
-b2Vec2 to_box2d(const Vector2f& v) { return {v.x(), v.y()}; }
-Vector2f to_eigen(const b2Vec2& v) { return {v.x, v.y}; }
-
-/// One soft body and the b2Bodies of its outer particles, in the order of SoftBodyModel2d::outer().
-class CoupledBody {
- public:
-  /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
-  CoupledBody(b2World& world, std::shared_ptr<const SoftBodyModel2d> model, const Vector2f& position,
-              std::int16_t group)
-      : world_(world), soft_(std::move(model), position), group_(group) {
-    for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
-  }
-  ~CoupledBody() {
-    for (b2Body* particle : particles_) world_.DestroyBody(particle);
-  }
-  CoupledBody(const CoupledBody&) = delete;
-  CoupledBody& operator=(const CoupledBody&) = delete;
-
-  SoftBody2d& soft() { return soft_; }
-  const SoftBody2d& soft() const { return soft_; }
-  std::int16_t group() const { return group_; }
-  std::span<b2Body* const> particles() const { return particles_; }
-
-  // Before Box2D's step: what its user and Box2D have done, then shape matching, then the new velocities.
-
-  void begin_step() {
-    if (soft_.revision() != seen_revision_) {
-      place_particles();
-    } else {
-      gather();  // of velocities, mostly: the caller may have pushed particles
-    }
-  }
-  void hand_over(float step) {
-    soft_.limit_speed(Box2dSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing / step);
-    const auto outer = soft_.model().outer();
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
-    }
-  }
-
-  /// After it: outer particles are taken over, inner ones follow.
-  void end_step(float step) {
-    gather();
-    soft_.advance_inner(step, to_eigen(world_.GetGravity()));
-    soft_.keep_inner_inside();
-  }
-
- private:
-  void add_particle(std::uint32_t number) {
-    b2BodyDef definition;
-    definition.type = b2_dynamicBody;
-    definition.position = to_box2d(soft_.positions()[number]);
-    definition.fixedRotation = true;
-    // A particle alone never sleeps: its neighbours would be pulled towards one that hangs still.
-    definition.allowSleep = false;
-    b2Body* const particle = world_.CreateBody(&definition);
-    b2CircleShape circle;
-    circle.m_radius = soft_.model().contact_radius();
-    b2FixtureDef fixture;
-    fixture.shape = &circle;
-    fixture.density = 1;
-    fixture.friction = soft_.model().settings().friction;
-    fixture.restitution = 0;
-    fixture.filter.groupIndex = group_;
-    particle->CreateFixture(&fixture);
-    b2MassData mass{};
-    mass.mass = soft_.model().masses()[number];
-    particle->SetMassData(&mass);
-    particles_.push_back(particle);
-  }
-
-  void gather() {
-    const auto outer = soft_.model().outer();
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      soft_.set_particle(outer[i], to_eigen(particles_[i]->GetPosition()),
-                         to_eigen(particles_[i]->GetLinearVelocity()));
-    }
-  }
-
-  /// The body was moved by its user: so are its particles.
-  void place_particles() {
-    seen_revision_ = soft_.revision();
-    const auto outer = soft_.model().outer();
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      const b2Vec2 position = to_box2d(soft_.positions()[outer[i]]);
-      if (position != particles_[i]->GetPosition()) particles_[i]->SetTransform(position, 0);
-      particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
-    }
-  }
-
-  b2World& world_;
-  SoftBody2d soft_;
-  std::int16_t group_;
-  std::vector<b2Body*> particles_;
-  std::uint32_t seen_revision_ = 0;
-};
-
-}  // namespace
-
 struct Box2dSoftBodies::Impl {
-  Impl(b2World& w, Solver2d* s) : world(w), solver(s) {}
+  Impl(b2World& w, std::unique_ptr<SoftBodySolver<2>> own) : Impl(w, *own) { owned = std::move(own); }
+  Impl(b2World& w, SoftBodySolver<2>& others)
+      : world(w), solver(others), rest(w, [this](const b2Body& body) { return soft_body_of(body); }) {}
+  ~Impl() {
+    settle();
+    for (SoftBody<2>* const body : soft) solver.forget(*body);
+  }
 
   template <typename Work>
   void timed(const Work& work) {
@@ -125,23 +33,43 @@ struct Box2dSoftBodies::Impl {
   }
 
   void begin_step(float step) {
-    for (const auto& body : bodies) body->begin_step();
-    pull(step);
+    SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
+    SC_ASSERT(!world.IsLocked(), "a step of {} s within a step of Box2D", step);
+    if (ahead != step || std::ranges::any_of(bodies, [](const auto& body) {
+          return body->was_changed() || body->was_pushed();
+        })) {
+      settle();
+      for (const auto& body : bodies) {
+        if (body->was_reset()) solver.forget(body->soft());
+        body->begin_step();
+      }
+    }
+    if (ahead == 0) solver.kick(soft, step);
+    ahead = 0;
+    const auto waiting = std::chrono::steady_clock::now();
+    solver.finish();
+    waited += std::chrono::steady_clock::now() - waiting;
     for (const auto& body : bodies) body->hand_over(step);
   }
 
-  void pull(float step) {
-    if (solver == nullptr) {
-      for (const auto& body : bodies) body->soft().pull(step);
-      return;
-    }
-    if (!solver_knows_bodies) {
-      std::vector<SoftBody2d*> all;
-      for (const auto& body : bodies) all.push_back(&body->soft());
-      solver->set_bodies(all);
-      solver_knows_bodies = true;
-    }
-    solver->pull(step);
+  void end_step(float step) {
+    for (const auto& body : bodies) body->end_step(step);
+    if (!sleep) return;
+    for (const auto& body : bodies)
+      if (!body->soft().asleep()) body->count_stillness(step, sleep->speed);
+    for (const auto& body : bodies)
+      if (!body->soft().asleep() && body->still_for() >= sleep->seconds) rest.settle(*body, *sleep);
+  }
+
+  /// Null for a b2Body that is no particle.
+  Box2dBody* soft_body_of(const b2Body& body) const {
+    const auto found = particles.find(&body);
+    return found == particles.end() ? nullptr : found->second.body;
+  }
+
+  /// What was begun ahead is of no use.
+  void settle() {
+    if (std::exchange(ahead, 0.0f) != 0) solver.drop();
   }
 
   /// The negative group nearest to 0 that no body has. @throws std::runtime_error  32,768 bodies are too
@@ -157,38 +85,56 @@ struct Box2dSoftBodies::Impl {
         "a Box2D world has at most 32768 soft bodies: there are no more collision groups");
   }
 
+  /// What a b2Body stands for.
+  struct OneParticle {
+    Box2dBody* body;
+    std::size_t number;
+  };
+
   b2World& world;
-  Solver2d* const solver;
-  bool solver_knows_bodies = false;
-  std::vector<std::unique_ptr<CoupledBody>> bodies;
-  std::unordered_map<const b2Body*, Particle> particles;
-  std::chrono::nanoseconds spent{0};
+  std::unique_ptr<SoftBodySolver<2>> owned;  // none: the caller has it
+  SoftBodySolver<2>& solver;
+  std::vector<std::unique_ptr<Box2dBody>> bodies;
+  std::vector<SoftBody<2>*> soft;  // of `bodies`
+  std::unordered_map<const b2Body*, OneParticle> particles;
+  Rest rest;
+  std::optional<SleepSettings> sleep;
+  float ahead = 0;  // length of the step that the solver has begun; 0: none
+  std::chrono::nanoseconds spent{0}, waited{0};
 };
 
-Box2dSoftBodies::Box2dSoftBodies(b2World& world, Solver2d* solver)
+Box2dSoftBodies::Box2dSoftBodies(b2World& world)
+    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver<2>>())) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, SolverFactory& solvers)
+    : impl_(std::make_unique<Impl>(world, solvers.make_solver_2d())) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver)
     : impl_(std::make_unique<Impl>(world, solver)) {}
 Box2dSoftBodies::~Box2dSoftBodies() = default;
 
-SoftBody2d& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel2d> model, const Vector2f& position) {
-  CoupledBody& added = *impl_->bodies.emplace_back(
-      std::make_unique<CoupledBody>(impl_->world, std::move(model), position, impl_->free_group()));
+SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position) {
+  SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {})",
+            model ? "with" : "without", position.x(), position.y());
+  SC_ASSERT(!impl_->world.IsLocked(), "add() of body {} within a step of Box2D", impl_->bodies.size());
+  impl_->settle();
+  Box2dBody& added = *impl_->bodies.emplace_back(
+      std::make_unique<Box2dBody>(impl_->world, std::move(model), position, impl_->free_group()));
   const auto outer = added.soft().model().outer();
-  for (std::size_t i = 0; i < outer.size(); ++i) {
-    impl_->particles[added.particles()[i]] = {&added.soft(), outer[i]};
-  }
-  impl_->solver_knows_bodies = false;
+  for (std::size_t i = 0; i < outer.size(); ++i) impl_->particles[added.particles()[i]] = {&added, outer[i]};
+  impl_->soft.push_back(&added.soft());
   return added.soft();
 }
 
-void Box2dSoftBodies::remove(const SoftBody2d& body) {
+void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   const auto found = std::find_if(impl_->bodies.begin(), impl_->bodies.end(),
                                   [&](const auto& coupled) { return &coupled->soft() == &body; });
   if (found == impl_->bodies.end()) {
     throw std::invalid_argument("the soft body to be removed is not in this world");
   }
+  impl_->settle();
+  impl_->solver.forget(body);
   for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
+  impl_->soft.erase(impl_->soft.begin() + (found - impl_->bodies.begin()));
   impl_->bodies.erase(found);
-  impl_->solver_knows_bodies = false;
 }
 
 void Box2dSoftBodies::step(float step, int velocity_iterations, int position_iterations) {
@@ -202,22 +148,41 @@ void Box2dSoftBodies::begin_step(float step) {
 }
 
 void Box2dSoftBodies::end_step(float step) {
+  impl_->timed([&] { impl_->end_step(step); });
+}
+
+void Box2dSoftBodies::begin_ahead(float step) {
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   impl_->timed([&] {
-    for (const auto& body : impl_->bodies) body->end_step(step);
+    impl_->settle();
+    impl_->solver.kick(impl_->soft, step);
+    impl_->ahead = step;
   });
 }
 
+void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
+  SC_ASSERT(!settings || (settings->speed >= 0 && settings->seconds >= 0),
+            "bodies sleep that were slower than {} m/s for {} s", settings->speed, settings->seconds);
+  impl_->settle();
+  impl_->sleep = settings;
+  if (settings) return;
+  for (const auto& body : impl_->bodies)
+    if (body->soft().asleep()) body->wake();
+}
+
 std::size_t Box2dSoftBodies::size() const { return impl_->bodies.size(); }
-SoftBody2d& Box2dSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
-const SoftBody2d& Box2dSoftBodies::operator[](std::size_t index) const {
+SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
+const SoftBody<2>& Box2dSoftBodies::operator[](std::size_t index) const {
   return impl_->bodies.at(index)->soft();
 }
 
 Box2dSoftBodies::Particle Box2dSoftBodies::particle_of(const b2Body& body) const {
   const auto found = impl_->particles.find(&body);
-  return found == impl_->particles.end() ? Particle{} : found->second;
+  if (found == impl_->particles.end()) return {};
+  return {&found->second.body->soft(), found->second.number};
 }
 
 std::chrono::nanoseconds Box2dSoftBodies::time_spent() const { return impl_->spent; }
+std::chrono::nanoseconds Box2dSoftBodies::time_waited() const { return impl_->waited; }
 
 }  // namespace softcell::ppu

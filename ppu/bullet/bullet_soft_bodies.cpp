@@ -21,7 +21,7 @@ namespace {
 /// One soft body and the rigid bodies of its outer particles, in the order of SoftBodyModel::outer().
 class CoupledBody {
  public:
-  CoupledBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel> model,
+  CoupledBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
               const Eigen::Vector3f& position)
       : world_(world),
         soft_(std::move(model), position),
@@ -37,8 +37,8 @@ class CoupledBody {
   CoupledBody(const CoupledBody&) = delete;
   CoupledBody& operator=(const CoupledBody&) = delete;
 
-  SoftBody& soft() { return soft_; }
-  const SoftBody& soft() const { return soft_; }
+  SoftBody<3>& soft() { return soft_; }
+  const SoftBody<3>& soft() const { return soft_; }
 
   /// Whether the body's user has changed it since the last substep.
   bool was_changed() const { return soft_.revision() != seen_revision_; }
@@ -57,9 +57,9 @@ class CoupledBody {
   }
 
   /// The box around its particles as Bullet knows them. @pre it has some
-  Bounds box() const {
+  Bounds<3> box() const {
     SC_ASSERT(!particles_.empty(), "a body without contacts has no box in Bullet");
-    Bounds box{to_eigen(particles_[0].getWorldTransform().getOrigin()), {}};
+    Bounds<3> box{to_eigen(particles_[0].getWorldTransform().getOrigin()), {}};
     box.high = box.low;
     for (const btRigidBody& particle : particles_) {
       box.low = box.low.cwiseMin(to_eigen(particle.getWorldTransform().getOrigin()));
@@ -69,10 +69,10 @@ class CoupledBody {
   }
 
   /// Wakes the body if it sleeps and may have lain on another, which was in `gone` and is there no longer.
-  void lose(const CoupledBody& other, const Bounds& gone) {
+  void lose(const CoupledBody& other, const Bounds<3>& gone) {
     if (!soft_.asleep() || particles_.empty()) return;
     constexpr float kGive = 1.2f;  // bodies that rest on each other are not quite as far apart as they touch
-    const Bounds own = box();
+    const Bounds<3> own = box();
     const Eigen::Vector3f reach = Eigen::Vector3f::Constant(
         kGive * (soft_.model().soft_contact_radius() + other.soft_.model().soft_contact_radius()));
     if ((own.low - reach - gone.high).maxCoeff() < 0 && (gone.low - own.high - reach).maxCoeff() < 0) rouse();
@@ -214,7 +214,7 @@ class CoupledBody {
   }
 
   btDiscreteDynamicsWorld& world_;
-  SoftBody soft_;
+  SoftBody<3> soft_;
   ContactSphere shape_;
   std::vector<btRigidBody> particles_;  // never grows: Bullet keeps their addresses
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
@@ -233,18 +233,18 @@ void timed(std::chrono::nanoseconds& time, const Work& work) {
 }  // namespace
 
 struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
-  Impl(btDiscreteDynamicsWorld& w, std::unique_ptr<SoftBodySolver> own)
+  Impl(btDiscreteDynamicsWorld& w, std::unique_ptr<SoftBodySolver<3>> own)
       : world(w), owned(std::move(own)), solver(*owned) {
     attach();
   }
-  Impl(btDiscreteDynamicsWorld& w, SoftBodySolver& others) : world(w), solver(others) { attach(); }
+  Impl(btDiscreteDynamicsWorld& w, SoftBodySolver<3>& others) : world(w), solver(others) { attach(); }
   void attach() {
     BulletHook::attach(world, *this);
     world.addAction(this);
   }
   ~Impl() override {
     settle();
-    for (SoftBody* const body : soft) solver.forget(*body);
+    for (SoftBody<3>* const body : soft) solver.forget(*body);
     bodies.clear();
     world.removeAction(this);
     BulletHook::detach(world, *this);
@@ -291,7 +291,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   /// Nobody may sleep on a body that goes, or may go, from where Bullet knows it.
   void tell_others(const CoupledBody& leaving) {
     if (!leaving.can_be_touched()) return;
-    const Bounds box = leaving.box();
+    const Bounds<3> box = leaving.box();
     for (const auto& body : bodies)
       if (body.get() != &leaving) body->lose(leaving, box);
   }
@@ -302,35 +302,36 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
 
   btDiscreteDynamicsWorld& world;
-  std::unique_ptr<SoftBodySolver> owned;  // none: the caller has it
-  SoftBodySolver& solver;
+  std::unique_ptr<SoftBodySolver<3>> owned;  // none: the caller has it
+  SoftBodySolver<3>& solver;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
-  std::vector<SoftBody*> soft;  // of `bodies`
+  std::vector<SoftBody<3>*> soft;  // of `bodies`
   std::optional<SleepSettings> sleep;
   float ahead = 0;  // length of the substep that the solver has begun; 0: none
   SoftBodyTimes times;
 };
 
 BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world)
-    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver>())) {}
+    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver<3>>())) {}
 BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers)
     : impl_(std::make_unique<Impl>(world, solvers.make_solver())) {}
-BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver)
+BulletSoftBodies::BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver)
     : impl_(std::make_unique<Impl>(world, solver)) {}
 BulletSoftBodies::~BulletSoftBodies() = default;
 
-SoftBody& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position) {
+SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model,
+                                   const Eigen::Vector3f& position) {
   SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {}, {})",
             model ? "with" : "without", position.x(), position.y(), position.z());
   impl_->settle();
-  SoftBody& soft =
+  SoftBody<3>& soft =
       impl_->bodies.emplace_back(std::make_unique<CoupledBody>(impl_->world, std::move(model), position))
           ->soft();
   impl_->soft.push_back(&soft);
   return soft;
 }
 
-void BulletSoftBodies::remove(const SoftBody& body) {
+void BulletSoftBodies::remove(const SoftBody<3>& body) {
   const auto found = std::find_if(impl_->bodies.begin(), impl_->bodies.end(),
                                   [&](const auto& coupled) { return &coupled->soft() == &body; });
   if (found == impl_->bodies.end()) {
@@ -355,14 +356,14 @@ void BulletSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
 SoftBodyTimes BulletSoftBodies::times() const { return impl_->times; }
 
 std::size_t BulletSoftBodies::size() const { return impl_->bodies.size(); }
-SoftBody& BulletSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
-const SoftBody& BulletSoftBodies::operator[](std::size_t index) const {
+SoftBody<3>& BulletSoftBodies::operator[](std::size_t index) { return impl_->bodies.at(index)->soft(); }
+const SoftBody<3>& BulletSoftBodies::operator[](std::size_t index) const {
   return impl_->bodies.at(index)->soft();
 }
 
 BulletSoftBodies::Particle BulletSoftBodies::particle_of(const btCollisionObject& object) {
   if (!ContactSphere::is_shape_of(object)) return {};
-  return {static_cast<const SoftBody*>(object.getUserPointer()),
+  return {static_cast<const SoftBody<3>*>(object.getUserPointer()),
           static_cast<std::size_t>(object.getUserIndex())};
 }
 

@@ -27,7 +27,7 @@ struct Place {
   Vector3d xi{0, 0, 0};
 };
 
-std::optional<std::uint32_t> find_cell(const Lattice& lattice, const Vector3i& index) {
+std::optional<std::uint32_t> find_cell(const Lattice<3>& lattice, const Vector3i& index) {
   const auto before = [](const Vector3i& a, const Vector3i& b) {
     return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
   };
@@ -38,7 +38,7 @@ std::optional<std::uint32_t> find_cell(const Lattice& lattice, const Vector3i& i
 
 /// The vertex's cell: the one whose half-open box [low, low + 1) holds it, else, for a vertex on a face, the
 /// first occupied cell beyond that face (x before y before z).
-std::optional<Place> locate(const Lattice& lattice, const Eigen::Vector3f& position) {
+std::optional<Place> locate(const Lattice<3>& lattice, const Eigen::Vector3f& position) {
   const Vector3d grid =
       (position.cast<double>() - lattice.origin.cast<double>()) / static_cast<double>(lattice.spacing);
   // Outside any lattice, and NaN: nothing to look for, and no index to overflow.
@@ -60,7 +60,7 @@ std::optional<Place> locate(const Lattice& lattice, const Eigen::Vector3f& posit
   return std::nullopt;
 }
 
-std::vector<Place> locate_all(const TriangleMesh& mesh, const Lattice& lattice) {
+std::vector<Place> locate_all(const TriangleMesh& mesh, const Lattice<3>& lattice) {
   std::vector<Place> places;
   places.reserve(mesh.positions.size());
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -97,7 +97,7 @@ Span span_of(const std::array<std::uint32_t, 8>& corners, std::size_t bx) {
 /// grows too long, two runs within one layer.
 class PartCutter {
  public:
-  PartCutter(const Lattice& lattice, std::vector<SkinPart>& parts) : lattice_(lattice), parts_(parts) {}
+  PartCutter(const Lattice<3>& lattice, std::vector<SkinPart>& parts) : lattice_(lattice), parts_(parts) {}
 
   /// Adds the next group. @return true when it begins a new part.
   bool add(std::uint32_t group, std::uint32_t cell) {
@@ -150,7 +150,7 @@ class PartCutter {
     return true;
   }
 
-  const Lattice& lattice_;
+  const Lattice<3>& lattice_;
   std::vector<SkinPart>& parts_;
   Reach reach_{};
 };
@@ -175,7 +175,7 @@ void set_lane(spu::SkinGroup& group, std::size_t lane, const Vector3d& xi, const
 
 }  // namespace
 
-Embedding embed(const TriangleMesh& mesh, const Lattice& lattice) {
+Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
   SC_ASSERT(mesh.normals.size() == mesh.positions.size(), "{} positions with {} normals",
             mesh.positions.size(), mesh.normals.size());
   const std::vector<Place> places = locate_all(mesh, lattice);

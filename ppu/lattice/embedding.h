@@ -45,6 +45,6 @@ struct Embedding {
 /// @pre  `lattice` covers `mesh`, as voxelize() makes it.
 /// @throws std::runtime_error  when a vertex lies in no cell, or one layer of the lattice cannot be cut into
 /// jobs.
-Embedding embed(const TriangleMesh& mesh, const Lattice& lattice);
+Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice);
 
 }  // namespace softcell::ppu

@@ -79,7 +79,7 @@ bool add_inside(std::span<const Crossing> line, std::vector<double>& depth) {
 
 }  // namespace
 
-std::vector<float> fill_fractions(const TriangleMesh& mesh, const Lattice& lattice) {
+std::vector<float> fill_fractions(const TriangleMesh& mesh, const Lattice<3>& lattice) {
   const Vector3d origin = lattice.origin.cast<double>();
   const double spacing = static_cast<double>(lattice.spacing);
   std::vector<Crossing> crossings;

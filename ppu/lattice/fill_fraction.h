@@ -13,6 +13,6 @@ inline constexpr float kLeastFill = 0.25f;  ///< a cell that is hardly touched s
 /// inside where the surface winds around it. A line that does not end outside (the mesh leaks there, or its
 /// faces point every way) is left out; a cell with no line left counts as half full.
 /// @pre  Cell indices count from 0.
-std::vector<float> fill_fractions(const TriangleMesh& mesh, const Lattice& lattice);
+std::vector<float> fill_fractions(const TriangleMesh& mesh, const Lattice<3>& lattice);
 
 }  // namespace softcell::ppu

@@ -4,52 +4,67 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <tuple>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
 namespace {
 
-using Eigen::Vector3i;
+template <int kDimension>
+using GridIndex = typename Lattice<kDimension>::GridIndex;
 
-bool precedes(const Vector3i& a, const Vector3i& b) {
-  return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
+/// By x, then y, then z.
+constexpr auto kPrecedes = [](const auto& a, const auto& b) {
+  return std::lexicographical_compare(a.data(), a.data() + a.size(), b.data(), b.data() + b.size());
+};
+
+template <class Index>
+void sort_and_unite(std::vector<Index>& indices) {
+  std::sort(indices.begin(), indices.end(), kPrecedes);
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
-Vector3i corner_of(const Vector3i& cell, unsigned k) {
-  return cell + Vector3i(k & 1u, (k >> 1u) & 1u, (k >> 2u) & 1u);
+template <class Index>
+Index corner_of(const Index& cell, unsigned k) {
+  Index corner = cell;
+  for (int d = 0; d < corner.size(); ++d) corner[d] += static_cast<int>((k >> d) & 1u);
+  return corner;
 }
 
-void check_extent(const std::vector<Vector3i>& cells) {
-  constexpr const char* kAxes[] = {"x", "y", "z"};
-  for (int d = 0; d < 3; ++d) {
-    const auto [low, high] = std::minmax_element(
-        cells.begin(), cells.end(), [d](const Vector3i& a, const Vector3i& b) { return a[d] < b[d]; });
+template <class Index>
+void check_extent(const std::vector<Index>& cells) {
+  for (int d = 0; d < Index::SizeAtCompileTime; ++d) {
+    const auto [low, high] = std::minmax_element(cells.begin(), cells.end(),
+                                                 [d](const Index& a, const Index& b) { return a[d] < b[d]; });
     const std::int64_t extent = std::int64_t{(*high)[d]} - (*low)[d] + 1;
     if (extent > kMaxLatticeCellsPerAxis)
       throw std::runtime_error("a lattice may be at most " + std::to_string(kMaxLatticeCellsPerAxis) +
-                               " cells long; this one has " + std::to_string(extent) + " along " + kAxes[d]);
+                               " cells long; this one has " + std::to_string(extent) + " along " + "xyz"[d]);
   }
 }
 
+template <int kDimension>
 void check_particles(std::size_t at_least) {
-  if (at_least > kMaxLatticeParticles)
-    throw std::runtime_error("a lattice may have at most " + std::to_string(kMaxLatticeParticles) +
+  if (at_least > kMaxLatticeParticles<kDimension>)
+    throw std::runtime_error("a lattice may have at most " +
+                             std::to_string(kMaxLatticeParticles<kDimension>) +
                              " particles; this one has at least " + std::to_string(at_least));
 }
 
-std::vector<Vector3i> distinct_corners(const std::vector<Vector3i>& cells) {
-  std::vector<Vector3i> corners;
-  corners.reserve(8 * cells.size());
-  for (const Vector3i& cell : cells)
-    for (unsigned k = 0; k < 8; ++k) corners.push_back(corner_of(cell, k));
-  std::sort(corners.begin(), corners.end(), precedes);
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+template <int kDimension>
+std::vector<GridIndex<kDimension>> distinct_corners(const std::vector<GridIndex<kDimension>>& cells) {
+  std::vector<GridIndex<kDimension>> corners;
+  corners.reserve(Lattice<kDimension>::kCorners * cells.size());
+  for (const GridIndex<kDimension>& cell : cells)
+    for (unsigned k = 0; k < Lattice<kDimension>::kCorners; ++k) corners.push_back(corner_of(cell, k));
+  sort_and_unite(corners);
   return corners;
 }
 
 /// The cells around each particle.
-Csr cells_of_particles(const Lattice& lattice) {
+template <int kDimension>
+Csr cells_of_particles(const Lattice<kDimension>& lattice) {
   Csr around;
   around.offsets.assign(lattice.particles.size() + 1, 0);
   for (const auto& corners : lattice.corners)
@@ -62,7 +77,8 @@ Csr cells_of_particles(const Lattice& lattice) {
   return around;
 }
 
-Csr find_neighbours(const Lattice& lattice) {
+template <int kDimension>
+Csr find_neighbours(const Lattice<kDimension>& lattice) {
   const Csr around = cells_of_particles(lattice);
   Csr neighbours;
   std::vector<std::uint32_t> list;
@@ -78,30 +94,31 @@ Csr find_neighbours(const Lattice& lattice) {
   return neighbours;
 }
 
-}  // namespace
-
-Lattice lattice_from_cells(std::span<const Vector3i> cells, float spacing, const Eigen::Vector3f& origin) {
+template <int kDimension>
+Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, float spacing,
+                                 const typename Lattice<kDimension>::Position& origin) {
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw std::runtime_error("lattice spacing " + std::to_string(spacing) + " m: expected a positive number");
   if (cells.empty()) throw std::runtime_error("a lattice needs at least one cell");
 
-  Lattice lattice;
+  Lattice<kDimension> lattice;
   lattice.spacing = spacing;
   lattice.origin = origin;
   lattice.cells.assign(cells.begin(), cells.end());
   check_extent(lattice.cells);
-  std::sort(lattice.cells.begin(), lattice.cells.end(), precedes);
-  lattice.cells.erase(std::unique(lattice.cells.begin(), lattice.cells.end()), lattice.cells.end());
-  check_particles(lattice.cells.size());  // each cell has a low corner of its own
-  lattice.particles = distinct_corners(lattice.cells);
-  check_particles(lattice.particles.size());
+  sort_and_unite(lattice.cells);
+  check_particles<kDimension>(lattice.cells.size());  // each cell has a low corner of its own
+  lattice.particles = distinct_corners<kDimension>(lattice.cells);
+  check_particles<kDimension>(lattice.particles.size());
 
   lattice.fill.assign(lattice.cells.size(), 1.0f);
   lattice.corners.resize(lattice.cells.size());
   for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
-    for (unsigned k = 0; k < 8; ++k) {
+    for (unsigned k = 0; k < lattice.kCorners; ++k) {
       const auto place = std::lower_bound(lattice.particles.begin(), lattice.particles.end(),
-                                          corner_of(lattice.cells[c], k), precedes);
+                                          corner_of(lattice.cells[c], k), kPrecedes);
+      SC_ASSERT(place != lattice.particles.end() && *place == corner_of(lattice.cells[c], k),
+                "corner {} of cell {} is no particle", k, c);
       lattice.corners[c][k] = static_cast<std::uint32_t>(place - lattice.particles.begin());
     }
   }
@@ -109,11 +126,43 @@ Lattice lattice_from_cells(std::span<const Vector3i> cells, float spacing, const
   return lattice;
 }
 
-std::vector<float> particle_masses(const Lattice& lattice, float density) {
+}  // namespace
+
+Lattice<3> lattice_from_cells(std::span<const Eigen::Vector3i> cells, float spacing,
+                              const Eigen::Vector3f& origin) {
+  return make_lattice<3>(cells, spacing, origin);
+}
+
+Lattice<2> lattice_from_cells(std::span<const Eigen::Vector2i> cells, float spacing,
+                              const Eigen::Vector2f& origin) {
+  return make_lattice<2>(cells, spacing, origin);
+}
+
+std::vector<Eigen::Vector2i> cells_from_rows(std::span<const std::string> rows) {
+  std::vector<Eigen::Vector2i> cells;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t column = 0; column < rows[row].size(); ++column) {
+      const char c = rows[row][column];
+      if (c == '#') {
+        cells.push_back({static_cast<int>(column), static_cast<int>(rows.size() - 1 - row)});
+      } else if (c != '.' && c != ' ') {
+        throw std::runtime_error(std::string("a lattice's rows are made of '#', '.' and ' '; row ") +
+                                 std::to_string(row + 1) + " has '" + c + "' in column " +
+                                 std::to_string(column + 1));
+      }
+    }
+  }
+  return cells;
+}
+
+template <int kDimension>
+std::vector<float> particle_masses(const Lattice<kDimension>& lattice, float density) {
   if (!(density > 0) || !std::isfinite(density))
-    throw std::invalid_argument("density " + std::to_string(density) + " kg/m^3: expected a positive number");
-  const double s = static_cast<double>(lattice.spacing);
-  const double mass_of_corner = static_cast<double>(density) * s * s * s / 8;
+    throw std::invalid_argument("density " + std::to_string(density) +
+                                (kDimension == 2 ? " kg/m^2" : " kg/m^3") + ": expected a positive number");
+  double mass_of_cell = static_cast<double>(density);
+  for (int d = 0; d < kDimension; ++d) mass_of_cell *= static_cast<double>(lattice.spacing);
+  const double mass_of_corner = mass_of_cell / static_cast<double>(lattice.kCorners);
   std::vector<double> masses(lattice.particles.size(), 0.0);
   for (std::size_t c = 0; c < lattice.cells.size(); ++c)
     for (const std::uint32_t particle : lattice.corners[c])
@@ -121,11 +170,17 @@ std::vector<float> particle_masses(const Lattice& lattice, float density) {
   return {masses.begin(), masses.end()};
 }
 
-std::vector<bool> outer_particles(const Lattice& lattice) {
+template <int kDimension>
+std::vector<bool> outer_particles(const Lattice<kDimension>& lattice) {
   const Csr around = cells_of_particles(lattice);
   std::vector<bool> outer(lattice.particles.size());
-  for (std::size_t i = 0; i < outer.size(); ++i) outer[i] = around[i].size() < 8;
+  for (std::size_t i = 0; i < outer.size(); ++i) outer[i] = around[i].size() < lattice.kCorners;
   return outer;
 }
+
+template std::vector<float> particle_masses(const Lattice<2>&, float);
+template std::vector<float> particle_masses(const Lattice<3>&, float);
+template std::vector<bool> outer_particles(const Lattice<2>&);
+template std::vector<bool> outer_particles(const Lattice<3>&);
 
 }  // namespace softcell::ppu

@@ -15,7 +15,7 @@ struct Side {
 };
 
 /// The sides with a cell on their left only, in order.
-std::vector<Side> boundary(const Lattice2d& lattice) {
+std::vector<Side> boundary(const Lattice<2>& lattice) {
   std::vector<Side> sides;
   for (const auto& corner : lattice.corners) {
     for (const auto& [a, b] : {std::pair{0, 1}, {1, 3}, {3, 2}, {2, 0}})
@@ -31,7 +31,7 @@ std::vector<Side> boundary(const Lattice2d& lattice) {
 
 }  // namespace
 
-std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice2d& lattice) {
+std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice<2>& lattice) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   triangles.reserve(2 * lattice.corners.size());
   for (const auto& corner : lattice.corners) {
@@ -41,7 +41,7 @@ std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice2d& lattic
   return triangles;
 }
 
-std::vector<std::vector<std::uint32_t>> outline(const Lattice2d& lattice) {
+std::vector<std::vector<std::uint32_t>> outline(const Lattice<2>& lattice) {
   const std::vector<Side> sides = boundary(lattice);
   std::vector<bool> used(sides.size());
   /// The side that goes on where `side` ends. Of two the one that turns left, around the same cell.

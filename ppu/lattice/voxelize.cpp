@@ -165,16 +165,16 @@ void check_distance(double farthest, double spacing) {
 }
 
 void check_particles(std::size_t particles, double spacing) {
-  if (particles <= kMaxLatticeParticles) return;
-  const double fits = 1.05 * spacing * std::cbrt(static_cast<double>(particles) / kMaxLatticeParticles);
+  if (particles <= kMaxLatticeParticles<3>) return;
+  const double fits = 1.05 * spacing * std::cbrt(static_cast<double>(particles) / kMaxLatticeParticles<3>);
   throw std::runtime_error(
       "cell size " + metres(spacing) + " is too small: the lattice would have more than " +
-      std::to_string(kMaxLatticeParticles) + " particles; use about " + metres(fits) + " or more");
+      std::to_string(kMaxLatticeParticles<3>) + " particles; use about " + metres(fits) + " or more");
 }
 
 }  // namespace
 
-Lattice voxelize(const TriangleMesh& mesh, float cell_size) {
+Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size) {
   const double spacing = static_cast<double>(cell_size);
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw std::runtime_error("cell size " + metres(spacing) + ": expected a positive number of metres");
@@ -183,7 +183,7 @@ Lattice voxelize(const TriangleMesh& mesh, float cell_size) {
   for (const Eigen::Vector3f& position : mesh.positions)
     if (!position.allFinite()) throw std::runtime_error("the mesh has a coordinate that is NaN or infinite");
 
-  const Bounds box = bounds(mesh);
+  const Bounds<3> box = bounds(mesh);
   const Vector3d low = box.low.cast<double>(), high = box.high.cast<double>();
   const Vector3i size = grid_size(high - low, spacing);
   const Vector3d corner = (low + high) / 2 - size.cast<double>() * (spacing / 2);
@@ -200,7 +200,7 @@ Lattice voxelize(const TriangleMesh& mesh, float cell_size) {
   check_particles(grid.particles(), spacing);
 
   const std::vector<Vector3i> cells = grid.cells();
-  Lattice lattice = lattice_from_cells(cells, cell_size, origin);
+  Lattice<3> lattice = lattice_from_cells(cells, cell_size, origin);
   lattice.fill = fill_fractions(mesh, lattice);
   for (std::size_t c = 0; c < cells.size(); ++c)
     if (!grid.is_surface(cells[c])) lattice.fill[c] = 1;

@@ -12,11 +12,11 @@
 namespace softcell::ppu {
 namespace {
 
-SumPlan sums_of(const Lattice& lattice, int half_width) {
+SumPlan sums_of(const Lattice<3>& lattice, int half_width) {
   return {lattice, find_regions(lattice, half_width)};
 }
 
-SumPlan sums_of(const Lattice2d& lattice, int half_width) {
+SumPlan sums_of(const Lattice<2>& lattice, int half_width) {
   return {as_one_plate(lattice.particles), find_regions(lattice.neighbours, half_width)};
 }
 
@@ -34,8 +34,8 @@ void check_masses(std::span<const float> masses, std::size_t particles) {
 }  // namespace
 
 template <typename Real, int kDimension>
-BasicMatchingPlan<Real, kDimension>::BasicMatchingPlan(const LatticeType& lattice, int half_width,
-                                                       std::span<const float> masses)
+MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice, int half_width,
+                                             std::span<const float> masses)
     : sums_(sums_of(lattice, half_width)),
       half_width_(half_width),
       spacing_(static_cast<Real>(lattice.spacing)) {
@@ -84,9 +84,9 @@ BasicMatchingPlan<Real, kDimension>::BasicMatchingPlan(const LatticeType& lattic
   }
 }
 
-template class BasicMatchingPlan<float, 2>;
-template class BasicMatchingPlan<double, 2>;
-template class BasicMatchingPlan<float, 3>;
-template class BasicMatchingPlan<double, 3>;
+template class MatchingPlan<float, 2>;
+template class MatchingPlan<double, 2>;
+template class MatchingPlan<float, 3>;
+template class MatchingPlan<double, 3>;
 
 }  // namespace softcell::ppu

@@ -5,28 +5,25 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "ppu/matching/summation.h"
 #include "softcell/soft_bodies/lattice.h"
-#include "softcell/soft_bodies/lattice_2d.h"
 
 namespace softcell::ppu {
 
 /// What all bodies of one model share: constants of particles and regions at rest. Immutable.
 /// @tparam kDimension  2 or 3
 template <typename Real, int kDimension>
-class BasicMatchingPlan {
+class MatchingPlan {
  public:
   using Vector = Eigen::Matrix<Real, kDimension, 1>;
-  using LatticeType = std::conditional_t<kDimension == 2, Lattice2d, Lattice>;
 
   /// @param half_width  w, 0..kMaxHalfWidth; 1 to 4 are useful.
   /// @param masses      kg, one per particle, positive and finite. Scaling all of them changes no result.
   /// @throws std::invalid_argument  masses not as stated.
   /// @throws std::runtime_error     as find_regions().
-  BasicMatchingPlan(const LatticeType& lattice, int half_width, std::span<const float> masses);
+  MatchingPlan(const Lattice<kDimension>& lattice, int half_width, std::span<const float> masses);
 
   std::size_t particles() const { return particles_.size(); }
   std::size_t regions() const { return regions_.size(); }  ///< distinct ones; see SumPlan
@@ -64,14 +61,9 @@ class BasicMatchingPlan {
   std::vector<Region> regions_;
 };
 
-template <typename Real>
-using MatchingPlan = BasicMatchingPlan<Real, 3>;
-template <typename Real>
-using MatchingPlan2d = BasicMatchingPlan<Real, 2>;
-
-extern template class BasicMatchingPlan<float, 2>;
-extern template class BasicMatchingPlan<double, 2>;
-extern template class BasicMatchingPlan<float, 3>;
-extern template class BasicMatchingPlan<double, 3>;
+extern template class MatchingPlan<float, 2>;
+extern template class MatchingPlan<double, 2>;
+extern template class MatchingPlan<float, 3>;
+extern template class MatchingPlan<double, 3>;
 
 }  // namespace softcell::ppu

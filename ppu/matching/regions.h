@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kMaxRegionMembers = 64u << 20;  ///< of all regio
 /// @throws std::runtime_error  half width out of range, or more than kMaxRegionMembers entries.
 /// @source  [LSM07]
 Csr find_regions(const Csr& neighbours, int half_width);
-inline Csr find_regions(const Lattice& lattice, int half_width) {
+inline Csr find_regions(const Lattice<3>& lattice, int half_width) {
   return find_regions(lattice.neighbours, half_width);
 }
 

@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
@@ -31,7 +32,7 @@ class SumPlan {
   /// @param regions    as find_regions() makes them for these particles.
   /// @throws std::invalid_argument  not one region per particle, or membership not symmetric.
   SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions);
-  SumPlan(const Lattice& lattice, const Csr& regions) : SumPlan(lattice.particles, regions) {}
+  SumPlan(const Lattice<3>& lattice, const Csr& regions) : SumPlan(lattice.particles, regions) {}
 
   std::size_t particles() const { return region_of_.size(); }
   /// Number of distinct regions. They are numbered in the order of the lowest particle that has them.
@@ -100,6 +101,9 @@ Payload sum_region_naively(const SumPlan& plan, std::size_t region, const Value&
 template <typename Payload>
 void sum_up(const SumPlan& plan, std::span<const Payload> particles, SumScratch<Payload>& scratch,
             std::span<Payload> regions) {
+  SC_ASSERT(particles.size() == plan.particles() && regions.size() == plan.regions(),
+            "{} values for {} particles, {} sums for {} regions", particles.size(), plan.particles(),
+            regions.size(), plan.regions());
   detail::sum_lists(plan.particles_of_bar(), particles.data(), scratch.bars.data());
   detail::sum_lists(plan.bars_of_plate(), scratch.bars.data(), scratch.plates.data());
   detail::sum_lists(plan.plates_of_region(), scratch.plates.data(), regions.data());
@@ -108,6 +112,9 @@ void sum_up(const SumPlan& plan, std::span<const Payload> particles, SumScratch<
 /// The same, without sharing.
 template <typename Payload>
 void sum_up_naively(const SumPlan& plan, std::span<const Payload> particles, std::span<Payload> regions) {
+  SC_ASSERT(particles.size() == plan.particles() && regions.size() == plan.regions(),
+            "{} values for {} particles, {} sums for {} regions", particles.size(), plan.particles(),
+            regions.size(), plan.regions());
   const auto value = [&](std::uint32_t particle) -> const Payload& { return particles[particle]; };
   for (std::size_t r = 0; r < plan.regions(); ++r)
     regions[r] = detail::sum_region_naively<Payload>(plan, r, value);
@@ -120,6 +127,9 @@ void sum_up_naively(const SumPlan& plan, std::span<const Payload> particles, std
 template <typename Payload>
 void sum_down(const SumPlan& plan, std::span<const Payload> values, SumScratch<Payload>& scratch,
               std::span<Payload> totals) {
+  SC_ASSERT(values.size() == plan.regions() && totals.size() == plan.regions(),
+            "{} values and {} totals for {} regions", values.size(), totals.size(), plan.regions());
+  SC_ASSERT(values.data() != totals.data(), "values and totals of {} regions overlap", plan.regions());
   detail::sum_lists(plan.regions_of_bar(), values.data(), scratch.bars.data());
   detail::sum_lists(plan.bars_of_plate(), scratch.bars.data(), scratch.plates.data());
   detail::sum_lists(plan.plates_of_region(), scratch.plates.data(), totals.data());
@@ -128,6 +138,8 @@ void sum_down(const SumPlan& plan, std::span<const Payload> values, SumScratch<P
 /// The same, without sharing.
 template <typename Payload>
 void sum_down_naively(const SumPlan& plan, std::span<const Payload> values, std::span<Payload> totals) {
+  SC_ASSERT(values.size() == plan.regions() && totals.size() == plan.regions(),
+            "{} values and {} totals for {} regions", values.size(), totals.size(), plan.regions());
   const auto value = [&](std::uint32_t particle) -> const Payload& {
     return values[plan.region_of()[particle]];
   };

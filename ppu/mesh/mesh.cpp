@@ -16,9 +16,9 @@ void require_one_for_each(const char* what, std::size_t count, std::size_t posit
 
 }  // namespace
 
-Bounds bounds(const TriangleMesh& mesh) {
+Bounds<3> bounds(const TriangleMesh& mesh) {
   SC_ASSERT(!mesh.positions.empty(), "a mesh without positions has no box");
-  Bounds box{mesh.positions.front(), mesh.positions.front()};
+  Bounds<3> box{mesh.positions.front(), mesh.positions.front()};
   for (const Eigen::Vector3f& position : mesh.positions) {
     box.low = box.low.cwiseMin(position);
     box.high = box.high.cwiseMax(position);
@@ -28,7 +28,7 @@ Bounds bounds(const TriangleMesh& mesh) {
 
 void fit(TriangleMesh& mesh, float longest_side) {
   SC_ASSERT(longest_side > 0 && std::isfinite(longest_side), "a longest side of {} m", longest_side);
-  const Bounds box = bounds(mesh);
+  const Bounds<3> box = bounds(mesh);
   // In double: the sides of a box of finite floats may pass the largest float.
   const Eigen::Vector3d low = box.low.cast<double>(), high = box.high.cast<double>();
   const Eigen::Vector3d centre = 0.5 * (low + high);

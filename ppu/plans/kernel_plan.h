@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 /// Plan and state of one body need more local store than the kernel has; the sentence states both.
@@ -25,7 +27,10 @@ class KernelPlan {
   /// row and a tile of a large lattice that begins at such a place has the same bits.
   static constexpr int kRestart = 16;
 
-  const Header& header() const { return *reinterpret_cast<const Header*>(lines_.data()); }
+  const Header& header() const {
+    SC_ASSERT(!lines_.empty(), "a plan without a header");
+    return *reinterpret_cast<const Header*>(lines_.data());
+  }
   std::span<const std::byte> bytes() const {  ///< header() first; a multiple of 128
     return std::as_bytes(std::span(lines_));
   }
@@ -38,6 +43,7 @@ class KernelPlan {
 
  protected:
   void assign(const std::vector<std::byte>& bytes) {
+    SC_ASSERT(bytes.size() >= sizeof(Header), "a plan of {} bytes has no room for its header", bytes.size());
     lines_.resize((bytes.size() + sizeof(Line) - 1) / sizeof(Line));
     std::memcpy(lines_.data(), bytes.data(), bytes.size());
   }

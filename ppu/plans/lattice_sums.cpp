@@ -8,7 +8,7 @@
 
 namespace softcell::ppu {
 
-LatticeSums::LatticeSums(const Lattice& lattice, const SumPlan& sums, int plate_restart)
+LatticeSums::LatticeSums(const Lattice<3>& lattice, const SumPlan& sums, int plate_restart)
     : home(sums.regions(), std::numeric_limits<std::uint32_t>::max()) {
   const Stations stations(lattice.particles, sums);
   const Order bar_order(stations.bars), plate_order(stations.plates), region_order(stations.regions);
@@ -34,7 +34,7 @@ LatticeSums::LatticeSums(const Lattice& lattice, const SumPlan& sums, int plate_
   for (auto i = static_cast<std::uint32_t>(sums.particles()); i-- > 0;) home[sums.region_of()[i]] = i;
 }
 
-int rows_that_fit(const Lattice& lattice, int half_width, std::uint32_t arena_bytes) {
+int rows_that_fit(const Lattice<3>& lattice, int half_width, std::uint32_t arena_bytes) {
   const auto [low, high] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.z(); });
   const std::uint64_t height = static_cast<std::uint64_t>(high.z() - low.z()) + 1;
   const auto w = static_cast<std::uint64_t>(half_width);
@@ -56,7 +56,7 @@ int rows_that_fit(const Lattice& lattice, int half_width, std::uint32_t arena_by
   return rows;
 }
 
-int sum_restart_of_rows(const Lattice& lattice, int half_width) {
+int sum_restart_of_rows(const Lattice<3>& lattice, int half_width) {
   return std::min(rows_that_fit(lattice, half_width, spu::kTileArenaBytes), kSumRestart);
 }
 

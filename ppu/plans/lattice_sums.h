@@ -17,7 +17,7 @@ namespace softcell::ppu {
 /// i + 1. Bars follow one another along z, plates along y, regions along x.
 struct LatticeSums {
   /// @param plate_restart  along y sums start anew at multiples of it: sum_restart_of_rows() of the lattice.
-  LatticeSums(const Lattice& lattice, const SumPlan& sums, int plate_restart);
+  LatticeSums(const Lattice<3>& lattice, const SumPlan& sums, int plate_restart);
 
   SumLevel bars_of_particles, bars_of_regions, plates, regions;
   std::vector<std::uint32_t> region_slot;     ///< of SumPlan's regions
@@ -31,9 +31,9 @@ inline constexpr int kSumRestart = KernelPlan<spu::MatchPlanHeader>::kRestart;
 /// Rows (y) of a lattice that a tile may have, judged by the lattice's height (z): as many as the local store
 /// of the kernel match_tiles holds, at least one.
 /// @param arena_bytes  as TilePlan's
-int rows_that_fit(const Lattice& lattice, int half_width, std::uint32_t arena_bytes);
+int rows_that_fit(const Lattice<3>& lattice, int half_width, std::uint32_t arena_bytes);
 
 /// The same of the kernel as it is, at most kSumRestart: what sums are does not hang on flavours.
-int sum_restart_of_rows(const Lattice& lattice, int half_width);
+int sum_restart_of_rows(const Lattice<3>& lattice, int half_width);
 
 }  // namespace softcell::ppu

@@ -5,7 +5,7 @@
 
 namespace softcell::ppu {
 
-spu::MatchHold hold_of(const Lattice& lattice, const MatchingPlan<float>& matching) {
+spu::MatchHold hold_of(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching) {
   double mass = 0, largest = 0;
   for (const auto& particle : matching.particle_constants()) {
     mass += static_cast<double>(particle.mass);
@@ -22,14 +22,14 @@ spu::MatchHold hold_of(const Lattice& lattice, const MatchingPlan<float>& matchi
   return {static_cast<float>(scale), static_cast<float>(1 / (scale * mass))};
 }
 
-std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float>& matching) {
+std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float, 3>& matching) {
   std::array<std::uint32_t, spu::kMatchSamples> samples{};
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k] = static_cast<std::uint32_t>((2 * k + 1) * matching.particles() / (2 * samples.size()));
   return samples;
 }
 
-std::array<float, 4> rest_moment(const MatchingPlan<float>::Particle& particle) {
+std::array<float, 4> rest_moment(const MatchingPlan<float, 3>::Particle& particle) {
   const float m = particle.modified_mass;
   return {m * particle.x0.x(), m * particle.x0.y(), m * particle.x0.z(), m};
 }

@@ -10,12 +10,12 @@
 
 namespace softcell::ppu {
 
-spu::MatchHold hold_of(const Lattice& lattice, const MatchingPlan<float>& matching);
+spu::MatchHold hold_of(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching);
 
 /// Particles all over the body.
-std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float>& matching);
+std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float, 3>& matching);
 
 /// m~ (x0 y0 z0 1) of a particle.
-std::array<float, 4> rest_moment(const MatchingPlan<float>::Particle& particle);
+std::array<float, 4> rest_moment(const MatchingPlan<float, 3>::Particle& particle);
 
 }  // namespace softcell::ppu

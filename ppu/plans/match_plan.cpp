@@ -10,7 +10,7 @@ namespace softcell::ppu {
 
 namespace {
 
-spu::MatchParticles particles_at(const MatchingPlan<float>& matching, std::size_t first,
+spu::MatchParticles particles_at(const MatchingPlan<float, 3>& matching, std::size_t first,
                                  std::span<const std::uint32_t> region_of) {
   spu::MatchParticles group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < matching.particles(); ++lane) {
@@ -24,7 +24,7 @@ spu::MatchParticles particles_at(const MatchingPlan<float>& matching, std::size_
 }
 
 /// @param first  rank of the first of four regions
-spu::MatchRegions regions_at(const MatchingPlan<float>& matching, std::size_t first,
+spu::MatchRegions regions_at(const MatchingPlan<float, 3>& matching, std::size_t first,
                              const LatticeSums& order) {
   spu::MatchRegions group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < order.regions.size(); ++lane) {
@@ -41,7 +41,8 @@ constexpr SumListFormat kFormat{spu::kMatchSlotBytes, kSumRestart};
 
 }  // namespace
 
-MatchPlan::MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching, std::uint32_t arena_bytes) {
+MatchPlan::MatchPlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching,
+                     std::uint32_t arena_bytes) {
   const SumPlan& sums = matching.sums();
   LatticeSums order(lattice, sums, sum_restart_of_rows(lattice, matching.half_width()));
   for (const std::uint32_t r : sums.region_of()) region_of_.push_back(order.region_slot[r] - 1);

@@ -17,7 +17,7 @@ class MatchPlan : public KernelPlan<spu::MatchPlanHeader> {
   /// @param arena_bytes  what the kernel has for plan and state: kMatchArenaBytes, or of its instrumented
   ///                     flavour kMatchCheckedArenaBytes.
   /// @throws BodyTooLarge
-  MatchPlan(const Lattice& lattice, const MatchingPlan<float>& matching,
+  MatchPlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching,
             std::uint32_t arena_bytes = spu::kMatchArenaBytes);
 };
 

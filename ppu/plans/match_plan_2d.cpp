@@ -12,7 +12,7 @@ namespace {
 
 constexpr SumListFormat kFormat{spu::kMatch2dSlotBytes, MatchPlan2d::kRestart};
 
-spu::MatchParticles2d particles_at(const MatchingPlan2d<float>& matching, std::size_t first,
+spu::MatchParticles2d particles_at(const MatchingPlan<float, 2>& matching, std::size_t first,
                                    std::span<const std::uint32_t> region_of) {
   spu::MatchParticles2d group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < matching.particles(); ++lane) {
@@ -27,7 +27,8 @@ spu::MatchParticles2d particles_at(const MatchingPlan2d<float>& matching, std::s
   return group;
 }
 
-spu::MatchRegions2d regions_at(const MatchingPlan2d<float>& matching, std::size_t first, const Order& order) {
+spu::MatchRegions2d regions_at(const MatchingPlan<float, 2>& matching, std::size_t first,
+                               const Order& order) {
   spu::MatchRegions2d group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < order.item.size(); ++lane) {
     const auto& region = matching.region_constants()[order.item[first + lane]];
@@ -40,7 +41,7 @@ spu::MatchRegions2d regions_at(const MatchingPlan2d<float>& matching, std::size_
 
 }  // namespace
 
-MatchPlan2d::MatchPlan2d(const Lattice2d& lattice, const MatchingPlan2d<float>& matching) {
+MatchPlan2d::MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>& matching) {
   const SumPlan& sums = matching.sums();
   const Stations stations(as_one_plate(lattice.particles), sums);
   // A region is its one plate.

@@ -4,16 +4,20 @@
 #include "match_2d_job.h"
 #include "ppu/matching/matching_plan.h"
 #include "ppu/plans/kernel_plan.h"
-#include "softcell/soft_bodies/lattice_2d.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
+
+/// A square body of so many particles (36 x 36) fits the kernel's local store with regions of any width; with
+/// narrow ones, and in other shapes, somewhat more do.
+inline constexpr std::size_t kParticlesThatFit2d = 36 * 36;
 
 /// As MatchPlan, with two levels of sums: from particles to bars along y, from bars to regions along x.
 class MatchPlan2d : public KernelPlan<spu::MatchPlanHeader2d> {
  public:
-  /// @throws std::runtime_error  plan and state of the bodies under way need more local store than the kernel
-  ///         has; the sentence states both.
-  MatchPlan2d(const Lattice2d& lattice, const MatchingPlan2d<float>& matching);
+  /// @throws BodyTooLarge  plan and state of the bodies under way need more local store than the kernel has;
+  ///         the sentence states both.
+  MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>& matching);
 };
 
 }  // namespace softcell::ppu

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ppu/plans/kernel_plan.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -32,6 +33,8 @@ class PlanWriter {
 
   template <typename Header>
   const std::vector<std::byte>& finish(const Header& header) {
+    SC_ASSERT(sizeof header <= bytes_.size(), "a header of {} bytes in a plan of {}", sizeof header,
+              bytes_.size());
     std::memcpy(bytes_.data(), &header, sizeof header);
     return bytes_;
   }
@@ -42,6 +45,7 @@ class PlanWriter {
 
 /// The power of two at or below the spacing: what a body's origin is a multiple of.
 inline float origin_grid(float spacing) {
+  SC_ASSERT(spacing > 0 && std::isfinite(spacing), "a grid of cells of {} m", spacing);
   int exponent = 0;
   std::frexp(spacing, &exponent);
   return std::ldexp(1.0f, exponent - 1);

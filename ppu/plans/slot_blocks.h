@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 /// First fit. Time goes on from call to call.
@@ -12,6 +14,7 @@ class SlotBlocks {
  public:
   /// Slot 0 is nobody's: it is always zero.
   std::uint32_t take(std::uint32_t count, int last_use) {
+    SC_ASSERT(count > 0, "a block of {} slots, in use until {}", count, last_use);
     std::uint32_t begin = 1;
     auto before = blocks_.begin();
     for (; before != blocks_.end() && before->begin < begin + count; ++before) begin = before->end;

@@ -23,6 +23,7 @@ SumLevel::Rule rule_of(const Sum& before, const Sum& after, int restart) {
 }  // namespace
 
 SumLevel sum_level(const std::vector<Sum>& sums, int restart) {
+  SC_ASSERT(restart > 0, "sums start anew at multiples of {}", restart);
   SumLevel level;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     level.terms.push(sums[i].terms);
@@ -75,13 +76,19 @@ void SumListWriter::end_chain() {
 }
 
 SumList SumListWriter::finish() {
+  SC_ASSERT(steps_.empty() || follows_chain(), "{} steps of no chain", steps_.size());
   end_chain();
   push(0);
   return std::move(list_);
 }
 
 SumList write_sum_list(const SumLevel& level, std::uint32_t slot_bytes) {
-  const auto offset = [&](std::uint32_t slot) { return sum_list_offset(slot, slot_bytes); };
+  SC_ASSERT(slot_bytes > 0 && slot_bytes % spu::kSumOffsetUnit == 0, "slots of {} bytes", slot_bytes);
+  const auto offset = [&](std::uint32_t slot) {
+    SC_ASSERT(slot <= SumListFormat({slot_bytes, 1}).max_slot(), "slot {} of {} bytes has no offset", slot,
+              slot_bytes);
+    return sum_list_offset(slot, slot_bytes);
+  };
   SumListWriter writer;
   std::vector<std::uint16_t> terms;
   for (std::size_t i = 0; i < level.size(); ++i) {

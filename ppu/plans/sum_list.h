@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/lattice.h"
 #include "sum_list_job.h"
 
@@ -52,7 +53,10 @@ class SumListWriter {
   void begin(std::span<const std::uint16_t> terms);
   /// The sum after the last one, in its chain.
   /// @pre  follows_chain()
-  void follow(std::uint16_t joins, std::uint16_t leaves) { steps_.push_back({joins, leaves}); }
+  void follow(std::uint16_t joins, std::uint16_t leaves) {
+    SC_ASSERT(follows_chain(), "a sum that joins {} and leaves {} follows none", joins, leaves);
+    steps_.push_back({joins, leaves});
+  }
   /// The sum after one that a chain of another list has made.
   void go_on(std::uint16_t before, std::uint16_t joins, std::uint16_t leaves);
 

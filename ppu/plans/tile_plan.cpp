@@ -24,7 +24,7 @@ constexpr int kMostPlanes = 64;   // slices of a tile are kept in the local stor
 int round_up(int count, int step) { return (count + step - 1) / step * step; }
 
 /// Tiles begin where sums start anew, so that they make no sums twice for a chain's sake.
-TileGrid grid_for(const Lattice& lattice, int half_width, TileShape shape, std::uint32_t arena_bytes) {
+TileGrid grid_for(const Lattice<3>& lattice, int half_width, TileShape shape, std::uint32_t arena_bytes) {
   const auto [low, high] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.x(); });
   const int planes = high.x() - low.x() + 1;
   const auto [front, back] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.y(); });
@@ -42,7 +42,7 @@ TileGrid grid_for(const Lattice& lattice, int half_width, TileShape shape, std::
   return {tile_planes, tile_rows};
 }
 
-std::vector<Eigen::Vector3i> homes(const Lattice& lattice, const LatticeSums& order) {
+std::vector<Eigen::Vector3i> homes(const Lattice<3>& lattice, const LatticeSums& order) {
   std::vector<Eigen::Vector3i> sites;
   for (const std::uint32_t particle : order.home) sites.push_back(lattice.particles[particle]);
   return sites;
@@ -50,7 +50,7 @@ std::vector<Eigen::Vector3i> homes(const Lattice& lattice, const LatticeSums& or
 
 }  // namespace
 
-TilePlan::TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, TileShape shape,
+TilePlan::TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, TileShape shape,
                    std::uint32_t arena_bytes) {
   if (shape.planes < 0 || shape.rows < 0)
     throw std::invalid_argument("TilePlan: a tile of " + std::to_string(shape.planes) + " planes and " +

@@ -40,7 +40,7 @@ class TilePlan {
   ///                     kTileCheckedArenaBytes. Says nothing about the result.
   /// @throws BodyTooLarge           a slice does not fit a local store: the lattice is too high (z).
   /// @throws std::invalid_argument  a shape below zero.
-  TilePlan(const Lattice& lattice, const MatchingPlan<float>& matching, TileShape shape = {},
+  TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, TileShape shape = {},
            std::uint32_t arena_bytes = spu::kTileArenaBytes);
 
   std::span<const Tile> tiles() const { return tiles_; }

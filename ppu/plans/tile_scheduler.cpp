@@ -17,7 +17,7 @@ std::uint32_t TileLists::add(std::vector<std::uint32_t> words) {
   return known->second;
 }
 
-TileScheduler::TileScheduler(const Lattice& lattice, const SumPlan& sums, int half_width,
+TileScheduler::TileScheduler(const Lattice<3>& lattice, const SumPlan& sums, int half_width,
                              const LatticeSums& order, const TileGrid& grid, const TilePlaces& particles,
                              const TilePlaces& regions)
     : lattice_(lattice),

@@ -36,7 +36,7 @@ class TileScheduler {
  public:
   enum class Direction { kUp, kDown };
 
-  TileScheduler(const Lattice& lattice, const SumPlan& sums, int half_width, const LatticeSums& order,
+  TileScheduler(const Lattice<3>& lattice, const SumPlan& sums, int half_width, const LatticeSums& order,
                 const TileGrid& grid, const TilePlaces& particles, const TilePlaces& regions);
 
   std::vector<spu::TileSlice> slices(std::pair<int, int> tile, Direction direction);
@@ -82,7 +82,7 @@ class TileScheduler {
   spu::TileSlice written(const Slice& slice);
   std::vector<spu::TileSlice> write_slices(std::uint32_t slot_bytes);
 
-  const Lattice& lattice_;
+  const Lattice<3>& lattice_;
   const SumPlan& sums_;
   const int half_width_;
   const LatticeSums& order_;

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "ppu/matching/rotation.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -86,7 +87,7 @@ auto EigenSolver<Dimension>::Twist::operator+=(const Twist& other) -> Twist& {
 }
 
 template <int Dimension>
-EigenSolver<Dimension>::EigenSolver(std::shared_ptr<const typename Types::Plan> plan)
+EigenSolver<Dimension>::EigenSolver(std::shared_ptr<const MatchingPlan<float, Dimension>> plan)
     : plan_(std::move(plan)),
       particle_moments_(plan_->particles()),
       region_moments_(plan_->regions()),
@@ -106,6 +107,9 @@ EigenSolver<Dimension>::EigenSolver(std::shared_ptr<const typename Types::Plan> 
 template <int Dimension>
 void EigenSolver<Dimension>::step(std::span<const Vector> x, std::span<Vector> v, float alpha, float h,
                                   float damping) {
+  SC_ASSERT(x.size() == plan_->particles() && v.size() == plan_->particles(),
+            "{} positions and {} velocities of {} particles", x.size(), v.size(), plan_->particles());
+  SC_ASSERT(h > 0, "a time step of {} s", h);
   match(x, v, alpha / h);
   damp(x, v, damping);
 }

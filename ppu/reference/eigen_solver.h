@@ -8,9 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "ppu/matching/matching_plan.h"
 #include "ppu/matching/summation.h"
-#include "ppu/reference/shape_matching.h"
-#include "ppu/reference/shape_matching_2d.h"
 
 namespace softcell::ppu {
 
@@ -19,20 +18,18 @@ template <int Dimension>
 struct EigenTypes;
 template <>
 struct EigenTypes<2> {
-  using Plan = MatchingPlan2d<float>;
   using Spin = float;          ///< an angular velocity or momentum
   using SecondMoment = float;  ///< m~ |x|^2
   struct Attitude {};          ///< no start is needed to find a rotation
 };
 template <>
 struct EigenTypes<3> {
-  using Plan = MatchingPlan<float>;
   using Spin = Eigen::Vector3f;
   using SecondMoment = Eigen::Matrix3f;  ///< m~ x x^T
   using Attitude = Eigen::Quaternionf;   ///< of the step before
 };
 
-/// One body. The same sums, plans and rotations as ShapeMatcher<float> and ShapeMatcher2d<float>.
+/// One body. The same sums, plans and rotations as ShapeMatcher<float, Dimension>.
 template <int Dimension>
 class EigenSolver {
  public:
@@ -40,7 +37,7 @@ class EigenSolver {
   using Vector = Eigen::Matrix<float, Dimension, 1>;
   using Matrix = Eigen::Matrix<float, Dimension, Dimension>;
 
-  explicit EigenSolver(std::shared_ptr<const typename Types::Plan> plan);
+  explicit EigenSolver(std::shared_ptr<const MatchingPlan<float, Dimension>> plan);
 
   /// v += alpha (g - x) / h, then damping. @pre  one element per particle.
   void step(std::span<const Vector> x, std::span<Vector> v, float alpha, float h, float damping);
@@ -71,7 +68,7 @@ class EigenSolver {
   void match(std::span<const Vector> x, std::span<Vector> v, float rate);
   void damp(std::span<const Vector> x, std::span<Vector> v, float damping);
 
-  std::shared_ptr<const typename Types::Plan> plan_;
+  std::shared_ptr<const MatchingPlan<float, Dimension>> plan_;
   std::vector<Moments> particle_moments_, region_moments_;
   std::vector<Momenta> particle_momenta_, region_momenta_;
   std::vector<Motion> motions_, motion_totals_;

@@ -1,5 +1,5 @@
 #pragma once
-// What both shape matchers, of two and three dimensions, ask of their arguments and do with them first.
+// What a shape matcher asks of its arguments and does with them first.
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -1,24 +1,24 @@
 #pragma once
 // Lattice shape matching: every region finds its best rigid motion, every particle is pulled towards the mean
-// of where its regions would have it.
+// of where its regions would have it. In two dimensions and in three; what differs is in rigid_motion.h.
 //
-//   x, v -- m~x, m~x x0^T --> [sum up] --> c_r, A_r --> R_r, t_r --> [sum down] --> g_i --> v_i += alpha (g_i - x_i) / h
-//           m~v, x × m~v, m~x x^T --> [sum up] --> v_r, omega_r --> [sum down] --> dv_i --> v_i += k dv_i
+//     x     -- m~x, m~x x0^T ---------> [sum up] --> c_r, A_r --> R_r, t_r --> [sum down] --> g_i
+//     x, v  -- m~v, x × m~v, m~x x^T -> [sum up] --> v_r, omega_r -----------> [sum down] --> dv_i
 //
+//     v_i += alpha (g_i - x_i) / h,  then v_i += k dv_i
 //
 // Letters as in [LSM07]: m~_i = m_i / |R_i| modified mass, |R_i| number of regions that hold particle i, M_r
 // and c0_r mass and rest centre of region r. Velocities change, positions never: contacts of the engine stay
 // intact.
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "ppu/matching/lanes.h"
 #include "ppu/matching/matching_plan.h"
 #include "ppu/matching/summation.h"
+#include "ppu/reference/rigid_motion.h"
 
 namespace softcell::ppu {
 
@@ -33,15 +33,18 @@ enum class SumMethod { kNaive, kBarPlateCube };
 /// changes.
 ///
 /// Goals in float differ from those in double by at most 2e-5 of a cell for a body 50 cells long and 6e-4 for
-/// one of 200 cells (measured, w = 2), as long as positions themselves are that fine so far from the world's
-/// origin.
-template <typename Real>
+/// one of 200 cells (measured in three dimensions, w = 2), as long as positions themselves are that fine so
+/// far from the world's origin.
+/// @tparam Real        float or double
+/// @tparam kDimension  2 or 3
+template <typename Real, int kDimension>
 class ShapeMatcher {
  public:
-  using Vector = Eigen::Matrix<Real, 3, 1>;
-  using Quaternion = Eigen::Quaternion<Real>;
+  using Vector = Eigen::Matrix<Real, kDimension, 1>;
+  /// A unit quaternion; in two dimensions cos and sin of an angle.
+  using Rotation = typename RigidMotion<Real, kDimension>::Rotation;
 
-  explicit ShapeMatcher(std::shared_ptr<const MatchingPlan<Real>> plan,
+  explicit ShapeMatcher(std::shared_ptr<const MatchingPlan<Real, kDimension>> plan,
                         SumMethod method = SumMethod::kBarPlateCube);
 
   /// The goal position of each particle.
@@ -58,26 +61,24 @@ class ShapeMatcher {
   /// @param h        time step, seconds, positive and finite
   /// @param damping  k, 0..1: the share of the deviation from rigid motion that one step takes away
   /// @throws  as goals(); std::invalid_argument also for alpha, h, damping outside their ranges. Nothing has
-  /// changed then.
+  ///          changed then.
   void step_velocities(std::span<const Vector> x, std::span<Vector> v, Real alpha, Real h, Real damping);
-
-  /// Of the last goals() or step_velocities(), metres; the rest positions before the first.
-  std::span<const Vector> goals_of_last_step() const { return goals_; }
 
   /// Forgets the rotations: after a teleport, or when the body is put back to rest. The next step starts
   /// cold.
   void reset();
 
-  /// One unit quaternion per distinct region: that of particle i is
-  /// rotations()[plan().sums().region_of()[i]].
-  std::span<const Quaternion> rotations() const { return rotations_; }
+  /// One for each distinct region: that of particle i is rotations()[plan().sums().region_of()[i]]. A region
+  /// that has none of its own, all its particles on one point, keeps that of the step before.
+  std::span<const Rotation> rotations() const { return rotations_; }
 
-  const MatchingPlan<Real>& plan() const { return *plan_; }
+  const MatchingPlan<Real, kDimension>& plan() const { return *plan_; }
 
  private:
-  using Moments = Lanes<Real, 12>;  // goes up: m~x and m~x x0^T; for damping m~v, x × m~v, m~x x^T
-  using Motion = Lanes<Real, 12>;   // comes down: t_r and R_r
-  using Twist = Lanes<Real, 8>;     // comes down for damping: b_r, omega_r, two spare lanes
+  using Rigid = RigidMotion<Real, kDimension>;
+  using Moments = typename Rigid::Moments;
+  using Motion = typename Rigid::Motion;
+  using Twist = typename Rigid::Twist;
 
   void match(std::span<const Vector> x);
   void damp(std::span<Vector> v, Real damping);
@@ -85,22 +86,23 @@ class ShapeMatcher {
   template <typename Payload>
   void down(const std::vector<Payload>& values, SumScratch<Payload>& scratch, std::vector<Payload>& totals);
 
-  std::shared_ptr<const MatchingPlan<Real>> plan_;
+  std::shared_ptr<const MatchingPlan<Real, kDimension>> plan_;
   SumMethod method_;
   bool cold_ = true;  // rotations_ say nothing about the body yet
-  std::vector<Quaternion> rotations_;
-  std::vector<Vector> x_;      // of each particle: position relative to a point in the body
-  std::vector<Vector> pulls_;  // g_i - x_i
-  std::vector<Vector> goals_;
+  std::vector<Rotation> rotations_;
+  std::vector<Vector> x_;        // of each particle: position relative to a point in the body
+  std::vector<Vector> pulls_;    // g_i - x_i
   std::vector<Vector> centres_;  // c_r of each region, relative to the same point
   std::vector<Moments> particle_moments_, region_moments_;
   std::vector<Motion> motions_, motion_totals_;
   std::vector<Twist> twists_, twist_totals_;
-  SumScratch<Lanes<Real, 12>> scratch12_;
-  SumScratch<Lanes<Real, 8>> scratch8_;
+  SumScratch<Motion> motion_scratch_;  // moments are as large
+  SumScratch<Twist> twist_scratch_;
 };
 
-extern template class ShapeMatcher<float>;
-extern template class ShapeMatcher<double>;
+extern template class ShapeMatcher<float, 2>;
+extern template class ShapeMatcher<double, 2>;
+extern template class ShapeMatcher<float, 3>;
+extern template class ShapeMatcher<double, 3>;
 
 }  // namespace softcell::ppu

@@ -2,13 +2,24 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "ppu/spe_bodies/match_orchestration.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
+namespace {
+
+/// Of a buffer of one kernel's.
+template <int kDimension>
+std::string name_of(const char* what) {
+  return std::string(MatchKernel<kDimension>::kName) + " " + what;
+}
+
+}  // namespace
 
 void validate(const MatchSettings& settings) {
   check_setting("pull", settings.pull, std::numeric_limits<float>::max());
@@ -18,74 +29,129 @@ void validate(const MatchSettings& settings) {
                                 " iterations, but at most " + std::to_string(settings.most_iterations));
 }
 
-MatchBodies::MatchBodies(dma::AddressSpace& memory, const MatchPlan& plan, std::size_t bodies)
+template <int kDimension>
+MatchBodies<kDimension>::MatchBodies(dma::AddressSpace& memory, const typename Kernel::Plan& plan,
+                                     std::size_t bodies)
     : header_(plan.header()),
-      plan_(memory, "match plan", header_.bytes, kSpesOnlyRead),
-      positions_(memory, "match positions", bodies * spu::match_positions_stride(header_),
+      plan_(memory, name_of<kDimension>("plan"), header_.bytes, kSpesOnlyRead),
+      positions_(memory, name_of<kDimension>("positions"), bodies * Kernel::positions_stride(header_),
                  of_floats(kSpesOnlyRead)),
-      states_(memory, "match states", bodies * spu::match_state_stride(header_), of_floats()),
-      places_(memory, "match bodies", bodies, kSpesOnlyRead),
-      descriptors_(memory, "match jobs", bodies, kSpesOnlyRead) {
+      states_(memory, name_of<kDimension>("states"), bodies * Kernel::state_stride(header_), of_floats()),
+      places_(memory, name_of<kDimension>("bodies"), kDimension == 3 ? bodies : 1, kSpesOnlyRead),
+      descriptors_(memory, name_of<kDimension>("jobs"), bodies, kSpesOnlyRead) {
   std::memcpy(plan_.data(), plan.bytes().data(), header_.bytes);
   for (std::size_t b = 0; b < bodies; ++b) reset(b);
 }
 
-std::span<MatchBodies::Vector> MatchBodies::positions(std::size_t body) {
-  std::byte* const at = positions_.data() + body * spu::match_positions_stride(header_);
+template <int kDimension>
+auto MatchBodies<kDimension>::positions(std::size_t body) -> std::span<Vector> {
+  SC_ASSERT(body < size(), "positions of body {} of {}", body, size());
+  std::byte* const at = positions_.data() + body * Kernel::positions_stride(header_);
   return {reinterpret_cast<Vector*>(at), header_.particles};
 }
 
-std::span<MatchBodies::Vector> MatchBodies::velocities(std::size_t body) {
-  return {reinterpret_cast<Vector*>(state(body) + sizeof(spu::MatchResult)), header_.particles};
+template <int kDimension>
+auto MatchBodies<kDimension>::velocities(std::size_t body) -> std::span<Vector> {
+  SC_ASSERT(body < size(), "velocities of body {} of {}", body, size());
+  return {reinterpret_cast<Vector*>(state(body) + sizeof(Result)), header_.particles};
 }
 
-std::span<spu::MatchRotations> MatchBodies::rotations(std::size_t body) {
-  std::byte* const at = state(body) + spu::match_rotations_at(header_);
-  return {reinterpret_cast<spu::MatchRotations*>(at), spu::groups_of(header_.regions)};
+template <int kDimension>
+auto MatchBodies<kDimension>::rotations(std::size_t body) -> std::span<Rotations> {
+  SC_ASSERT(body < size(), "rotations of body {} of {}", body, size());
+  std::byte* const at = state(body) + Kernel::rotations_at(header_);
+  return {reinterpret_cast<Rotations*>(at), spu::groups_of(header_.regions)};
 }
 
-std::span<const spu::MatchRotations> MatchBodies::rotations(std::size_t body) const {
+template <int kDimension>
+auto MatchBodies<kDimension>::rotations(std::size_t body) const -> std::span<const Rotations> {
   return const_cast<MatchBodies*>(this)->rotations(body);
 }
 
-void MatchBodies::reset(std::size_t body) {
-  std::ranges::fill(rotations(body),
-                    spu::MatchRotations{{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 1}});
-  result(body).cold = 1;
+template <int kDimension>
+void MatchBodies<kDimension>::reset(std::size_t body) {
+  std::ranges::fill(rotations(body), Kernel::kUnturned);
+  if constexpr (kDimension == 3) result(body).cold = 1;
 }
 
-void MatchBodies::take_rotations(std::size_t body, const MatchBodies& other, std::size_t other_body) {
+template <int kDimension>
+void MatchBodies<kDimension>::take_rotations(std::size_t body, const MatchBodies& other,
+                                             std::size_t other_body) {
+  SC_ASSERT(header_.particles == other.header_.particles && header_.regions == other.header_.regions,
+            "bodies of {} particles and {} regions, and of {} and {}, have not the same plan",
+            header_.particles, header_.regions, other.header_.particles, other.header_.regions);
   std::ranges::copy(other.rotations(other_body), rotations(body).begin());
-  result(body).cold = other.result(other_body).cold;
+  if constexpr (kDimension == 3) result(body).cold = other.result(other_body).cold;
 }
 
-void MatchBodies::add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
-                           std::span<const std::size_t> bodies, std::size_t bodies_per_job) {
-  validate(settings);
-  stepped_.assign(bodies.begin(), bodies.end());
+/// The kernel match_2d steps bodies that lie one behind the other.
+template <>
+std::size_t MatchBodies<2>::bodies_of_job(std::span<const std::size_t> bodies,
+                                          std::size_t bodies_per_job) const {
+  std::size_t count = 1;
+  while (count < bodies.size() && count < bodies_per_job && bodies[count] == bodies[0] + count) ++count;
+  return count;
+}
+
+template <>
+void MatchBodies<2>::write_bodies(spu::MatchJob2d& job, std::span<const std::size_t> bodies, std::size_t) {
+  job.positions_ea = positions_ea(bodies[0]).value;
+  job.states_ea = state_ea(bodies[0]).value;
+}
+
+/// The kernel match is told where each is.
+template <>
+std::size_t MatchBodies<3>::bodies_of_job(std::span<const std::size_t> bodies,
+                                          std::size_t bodies_per_job) const {
+  return std::min(bodies_per_job, bodies.size());
+}
+
+template <>
+void MatchBodies<3>::write_bodies(spu::MatchJob& job, std::span<const std::size_t> bodies,
+                                  std::size_t first) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    places_[i].positions_ea = positions_.ea(bodies[i] * spu::match_positions_stride(header_)).value;
-    places_[i].state_ea = states_.ea(bodies[i] * spu::match_state_stride(header_)).value;
+    places_[first + i].positions_ea = positions_ea(bodies[i]).value;
+    places_[first + i].state_ea = state_ea(bodies[i]).value;
   }
-  for (std::size_t first = 0, number = 0; first < bodies.size(); first += bodies_per_job, ++number) {
-    spu::MatchJob& job = descriptors_[number];
+  job.bodies_ea = places_.ea(first).value;
+}
+
+template <int kDimension>
+void MatchBodies<kDimension>::add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
+                                       std::span<const std::size_t> bodies, std::size_t bodies_per_job) {
+  validate(settings);
+  SC_ASSERT(bodies_per_job > 0, "jobs of {} bodies", bodies_per_job);
+  SC_ASSERT(std::ranges::adjacent_find(bodies, std::ranges::greater_equal()) == bodies.end(),
+            "the numbers of {} bodies do not ascend", bodies.size());
+  SC_ASSERT(bodies.empty() || bodies.back() < size(), "body {} of {}", bodies.back(), size());
+  stepped_.assign(bodies.begin(), bodies.end());
+  for (std::size_t first = 0, number = 0; first < bodies.size(); ++number) {
+    const std::size_t count = bodies_of_job(bodies.subspan(first), bodies_per_job);
+    typename Kernel::Job& job = descriptors_[number];
     job = {};
     job.plan_ea = plan_.ea().value;
-    job.bodies_ea = places_.ea(first).value;
-    job.body_count = static_cast<std::uint32_t>(std::min(bodies_per_job, bodies.size() - first));
+    write_bodies(job, bodies.subspan(first, count), first);
+    job.body_count = static_cast<std::uint32_t>(count);
     job.pull = settings.pull;
     job.damping = settings.damping;
-    job.least_iterations = settings.least_iterations;
-    job.most_iterations = settings.most_iterations;
+    if constexpr (kDimension == 3) {
+      job.least_iterations = settings.least_iterations;
+      job.most_iterations = settings.most_iterations;
+    }
     chain.add({.image = match, .argp = descriptors_.ea(number)});
+    first += count;
   }
 }
 
-std::vector<std::size_t> MatchBodies::take_results() {
+template <int kDimension>
+std::vector<std::size_t> MatchBodies<kDimension>::take_results() {
   std::vector<std::size_t> bad;
   for (const std::size_t body : stepped_)
     if (result(body).finite == 0) bad.push_back(body);
   return bad;
 }
+
+template class MatchBodies<2>;
+template class MatchBodies<3>;
 
 }  // namespace softcell::ppu

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "softcell/spe_bodies/spe_solver.h"
-#include "softcell/spe_bodies/spe_solver_2d.h"
 #include "softcell/spu_kernels/load_kernel.h"
 
 namespace softcell::ppu {
@@ -39,12 +38,13 @@ struct SpeRuntime::State {
 SpeRuntime::SpeRuntime(const SpeRuntimeOptions& options) : state_(std::make_unique<State>(options)) {}
 SpeRuntime::~SpeRuntime() = default;
 
-std::unique_ptr<SoftBodySolver> SpeRuntime::make_solver() {
-  return std::make_unique<SpeSolver>(memory(), jobs(), kernel("match"), kernel("match_tiles"));
+std::unique_ptr<SoftBodySolver<3>> SpeRuntime::make_solver() {
+  return std::make_unique<SpeSolver<3>>(memory(), jobs(),
+                                        MatchKernels<3>{kernel("match"), kernel("match_tiles")});
 }
 
-std::unique_ptr<Solver2d> SpeRuntime::make_solver_2d() {
-  return std::make_unique<SpeSolver2d>(memory(), jobs(), kernel("match_2d"));
+std::unique_ptr<SoftBodySolver<2>> SpeRuntime::make_solver_2d() {
+  return std::make_unique<SpeSolver<2>>(memory(), jobs(), MatchKernels<2>{kernel("match_2d")});
 }
 
 dma::AddressSpace& SpeRuntime::memory() { return state_->memory; }

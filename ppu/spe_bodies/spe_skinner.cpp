@@ -12,7 +12,7 @@ namespace softcell::ppu {
 static_assert(sizeof(HalfVertex) == sizeof(spu::SkinnedVertex) &&
               offsetof(HalfVertex, normal) == offsetof(spu::SkinnedVertex, normal));
 
-DrawOrder draw_order(const SoftBodyModel& model) {
+DrawOrder draw_order(const SoftBodyModel<3>& model) {
   const Embedding& embedding = model.embedding();
   return {embedding.indices, embedding.vertex_of_slot};
 }
@@ -22,13 +22,13 @@ struct SpeSkinner::State {
       : orchestrator(memory, jobs, skin) {}
 
   /// @throws std::invalid_argument  the body was not added.
-  std::size_t number_of(const SoftBody& body) const {
+  std::size_t number_of(const SoftBody<3>& body) const {
     const auto found = std::find(bodies.begin(), bodies.end(), &body);
     if (found == bodies.end()) throw std::invalid_argument("the soft body was not added to this skinner");
     return static_cast<std::size_t>(found - bodies.begin());
   }
 
-  std::vector<const SoftBody*> bodies;  // in the orchestrator's order
+  std::vector<const SoftBody<3>*> bodies;  // in the orchestrator's order
   std::vector<std::span<const Eigen::Vector4f>> positions;
   SkinOrchestrator orchestrator;
 };
@@ -38,8 +38,8 @@ SpeSkinner::SpeSkinner(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim:
     : state_(std::make_unique<State>(memory, jobs, skin)) {}
 SpeSkinner::~SpeSkinner() = default;
 
-void SpeSkinner::add(const SoftBody& body) {
-  const SoftBodyModel& model = body.model();
+void SpeSkinner::add(const SoftBody<3>& body) {
+  const SoftBodyModel<3>& model = body.model();
   if (model.embedding().groups.empty())
     throw std::invalid_argument("a soft body without a mesh cannot be skinned; make its model from a mesh");
   if (std::find(state_->bodies.begin(), state_->bodies.end(), &body) != state_->bodies.end())
@@ -50,7 +50,7 @@ void SpeSkinner::add(const SoftBody& body) {
   state_->positions.resize(state_->bodies.size());
 }
 
-void SpeSkinner::remove(const SoftBody& body) {
+void SpeSkinner::remove(const SoftBody<3>& body) {
   const std::size_t number = state_->number_of(body);
   state_->bodies.erase(state_->bodies.begin() + static_cast<std::ptrdiff_t>(number));
   state_->positions.resize(state_->bodies.size());
@@ -65,7 +65,7 @@ bool SpeSkinner::begin_frame() {
 
 void SpeSkinner::finish_frame() { state_->orchestrator.drain(); }
 
-SkinnedVertices SpeSkinner::vertices(const SoftBody& body) const {
+SkinnedVertices SpeSkinner::vertices(const SoftBody<3>& body) const {
   const SkinnedBody shown = state_->orchestrator.shown(state_->number_of(body));
   // Eight numbers of 16 bits under either name. Nobody writes them here: an SPE does, by DMA.
   return {{reinterpret_cast<const HalfVertex*>(shown.vertices.data()), shown.vertices.size()}, shown.origin};

@@ -1,13 +1,16 @@
 #include "softcell/spe_bodies/spe_solver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "ppu/spe_bodies/match_bodies.h"
 #include "ppu/spe_bodies/match_orchestration.h"
 #include "ppu/spe_bodies/tiled_memory.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -21,54 +24,80 @@ std::size_t bodies_per_job(std::size_t bodies, int spes) {
   return std::clamp<std::size_t>((bodies + jobs - 1) / jobs, 1, kMostBodiesPerJob);
 }
 
-MatchSettings settings_of(const SoftBodyModel& model, float step) {
+template <int kDimension>
+MatchSettings settings_of(const SoftBodyModel<kDimension>& model, float step) {
   const SoftBodySettings& settings = model.settings();
   return {.pull = settings.alpha_of_step(step) / step, .damping = settings.damping_of_step(step)};
 }
 
-MatchBodies::Vector of(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z(), 0}; }
+const ls_sim::KernelImage& whole(const MatchKernels<2>& kernels) { return kernels.match_2d; }
+const ls_sim::KernelImage& whole(const MatchKernels<3>& kernels) { return kernels.match; }
+JobImage place_tiles(JobSystem&, const MatchKernels<2>&) { return {}; }
+JobImage place_tiles(JobSystem& jobs, const MatchKernels<3>& kernels) {
+  return jobs.place(kernels.match_tiles);
+}
+
+std::span<const Eigen::Vector2f> as_the_kernel_reads_them(const SoftBody<2>& body) {
+  return body.positions();
+}
+std::span<const Eigen::Vector4f> as_the_kernel_reads_them(const SoftBody<3>& body) {
+  return body.padded_positions();
+}
+
+MatchPlan2d plan_of(const SoftBodyModel<2>& model, bool /*checked*/) {
+  return {model.lattice(), *model.plan()};
+}
+MatchPlan plan_of(const SoftBodyModel<3>& model, bool checked) {
+  return {model.lattice(), *model.plan(), checked ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes};
+}
 
 }  // namespace
 
 /// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither.
-struct SpeSolver::Group {
-  std::shared_ptr<const SoftBodyModel> model;
-  std::optional<MatchBodies> bodies;
-  std::shared_ptr<const TilePlan> tiles;
+template <int kDimension>
+struct SpeSolver<kDimension>::Group {
+  std::shared_ptr<const SoftBodyModel<kDimension>> model;
+  std::optional<MatchBodies<kDimension>> bodies;
+  std::shared_ptr<const TilePlan> tiles;  // in three dimensions only
   std::size_t count = 0;
   std::vector<std::size_t> awake;
 };
 
-struct SpeSolver::Member {
-  SoftBody* body = nullptr;
+template <int kDimension>
+struct SpeSolver<kDimension>::Member {
+  Body* body = nullptr;
   Group* group = nullptr;
   std::size_t number = 0;              ///< in the group
   std::unique_ptr<TiledMemory> tiled;  ///< of a group in tiles
   bool stepped = false;                ///< by the jobs under way
 };
 
-SpeSolver::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match,
-                     const ls_sim::KernelImage& match_tiles)
+template <int kDimension>
+SpeSolver<kDimension>::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs,
+                                 const MatchKernels<kDimension>& kernels)
     : memory_(memory),
       jobs_(jobs),
-      match_(jobs.place(match)),
-      match_tiles_(jobs.place(match_tiles)),
-      checked_(match.checked) {
+      match_(jobs.place(whole(kernels))),
+      match_tiles_(place_tiles(jobs, kernels)),
+      checked_(whole(kernels).checked) {
   regroup({});  // a world without soft bodies steps, too
 }
 
-SpeSolver::~SpeSolver() = default;
+template <int kDimension>
+SpeSolver<kDimension>::~SpeSolver() = default;
 
-bool SpeSolver::knows(std::span<SoftBody* const> bodies) const {
+template <int kDimension>
+bool SpeSolver<kDimension>::knows(std::span<Body* const> bodies) const {
   return std::equal(members_.begin(), members_.end(), bodies.begin(), bodies.end(),
-                    [](const Member& member, const SoftBody* body) {
+                    [](const Member& member, const Body* body) {
                       return member.body == body && member.group->model == body->shared_model();
                     });
 }
 
-/// Whole where they fit, else in tiles. Plans of tiles take a while: a model's is made once.
-void SpeSolver::find_place(Group& group) {
-  const SoftBodyModel& model = *group.model;
+/// Whole where they fit, else in tiles, else by the PPU.
+template <int kDimension>
+void SpeSolver<kDimension>::find_place(Group& group) {
+  // Plans of tiles take a while: a model's is made once.
   const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const auto& old) {
     return old->model == group.model && old->tiles != nullptr;
   });
@@ -77,22 +106,29 @@ void SpeSolver::find_place(Group& group) {
     return;
   }
   try {
-    const std::uint32_t arena_bytes = checked_ ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes;
-    group.bodies.emplace(memory_, MatchPlan(model.lattice(), *model.plan(), arena_bytes), group.count);
-    return;
+    group.bodies.emplace(memory_, plan_of(*group.model, checked_), group.count);
   } catch (const BodyTooLarge&) {
-    // Then in tiles.
+    find_tiles(group);
   }
+}
+
+/// There is no kernel for tiles in two dimensions.
+template <>
+void SpeSolver<2>::find_tiles(Group&) {}
+
+template <>
+void SpeSolver<3>::find_tiles(Group& group) {
+  const SoftBodyModel<3>& model = *group.model;
+  const std::uint32_t arena_bytes = checked_ ? spu::kTileCheckedArenaBytes : spu::kTileArenaBytes;
   try {
-    const std::uint32_t arena_bytes = checked_ ? spu::kTileCheckedArenaBytes : spu::kTileArenaBytes;
     group.tiles = std::make_shared<const TilePlan>(model.lattice(), *model.plan(), TileShape{}, arena_bytes);
-  } catch (const BodyTooLarge&) {
-    // Then by the PPU.
+  } catch (const BodyTooLarge&) {  // then by the PPU
   }
 }
 
 /// Rotations from one layout of memory to the next.
-void SpeSolver::take_over(Member& member, Member& old) {
+template <int kDimension>
+void SpeSolver<kDimension>::take_over(Member& member, Member& old) {
   if (member.group->bodies)
     member.group->bodies->take_rotations(member.number, *old.group->bodies, old.number);
   else
@@ -100,10 +136,11 @@ void SpeSolver::take_over(Member& member, Member& old) {
 }
 
 /// Bodies have come or gone: memory is laid out anew, and those that stay take their rotations along.
-void SpeSolver::regroup(std::span<SoftBody* const> bodies) {
+template <int kDimension>
+void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   std::vector<std::unique_ptr<Group>> groups;
   std::vector<Member> members;
-  for (SoftBody* const body : bodies) {
+  for (Body* const body : bodies) {
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const auto& g) { return g->model == body->shared_model(); });
     if (group == groups.end()) {
@@ -135,7 +172,8 @@ void SpeSolver::regroup(std::span<SoftBody* const> bodies) {
 }
 
 /// The same body in the layout of before, or null.
-SpeSolver::Member* SpeSolver::known_as(const Member& member) {
+template <int kDimension>
+auto SpeSolver<kDimension>::known_as(const Member& member) -> Member* {
   const auto old = std::find_if(members_.begin(), members_.end(), [&](const Member& known) {
     return known.body == member.body && known.group->model == member.group->model;
   });
@@ -143,26 +181,39 @@ SpeSolver::Member* SpeSolver::known_as(const Member& member) {
 }
 
 /// Positions and velocities to main memory.
-void SpeSolver::hand_over(Member& member) {
-  const SoftBody& body = *member.body;
+template <int kDimension>
+void SpeSolver<kDimension>::hand_over(Member& member) {
+  using Kernel = MatchKernel<kDimension>;
+  const Body& body = *member.body;
   Group& group = *member.group;
-  if (member.tiled) {
+  if (group.bodies) {
+    group.awake.push_back(member.number);
+    const auto positions = as_the_kernel_reads_them(body);
+    SC_ASSERT(positions.size() == group.bodies->positions(member.number).size(),
+              "a body of {} particles in a plan of {}", positions.size(),
+              group.bodies->positions(member.number).size());
+    static_assert(sizeof positions[0] == sizeof(typename Kernel::Vector));
+    std::memcpy(group.bodies->positions(member.number).data(), positions.data(), positions.size_bytes());
+    std::ranges::transform(body.velocities(), group.bodies->velocities(member.number).begin(),
+                           Kernel::written);
+    return;
+  }
+  if constexpr (kDimension == 3) {
     const std::span<const std::uint32_t> place_of = group.tiles->place_of();
     for (std::size_t i = 0; i < place_of.size(); ++i) {
-      member.tiled->positions()[place_of[i]] = of(body.positions()[i]);
-      member.tiled->velocities()[place_of[i]] = of(body.velocities()[i]);
+      member.tiled->positions()[place_of[i]] = Kernel::written(body.positions()[i]);
+      member.tiled->velocities()[place_of[i]] = Kernel::written(body.velocities()[i]);
     }
     member.tiled->begin_step(settings_of(*group.model, step_));
-  } else {
-    group.awake.push_back(member.number);
-    static_assert(sizeof(MatchBodies::Vector) == sizeof(Eigen::Vector4f));
-    std::memcpy(group.bodies->positions(member.number).data(), body.padded_positions().data(),
-                body.padded_positions().size_bytes());
-    std::ranges::transform(body.velocities(), group.bodies->velocities(member.number).begin(), of);
   }
 }
 
-void SpeSolver::kick(std::span<SoftBody* const> bodies, float step) {
+template <int kDimension>
+void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
+  SC_ASSERT(chain_->finished(), "kick() of {} bodies, with {} jobs of the one before under way",
+            bodies.size(), chain_->size());
+  SC_ASSERT(std::ranges::find(bodies, nullptr) == bodies.end(), "one of {} bodies is null", bodies.size());
   if (!knows(bodies)) regroup(bodies);
   step_ = step;
   left_to_ppu_.clear();
@@ -191,23 +242,26 @@ void SpeSolver::kick(std::span<SoftBody* const> bodies, float step) {
 }
 
 /// Velocities from main memory.
-void SpeSolver::take_back(const Member& member) {
-  SoftBody& body = *member.body;
-  const auto set = [&](std::size_t i, const MatchBodies::Vector& v) {
-    body.set_velocity(i, {v.x, v.y, v.z});
-  };
-  if (member.tiled) {
+template <int kDimension>
+void SpeSolver<kDimension>::take_back(const Member& member) {
+  using Kernel = MatchKernel<kDimension>;
+  Body& body = *member.body;
+  if (member.group->bodies) {
+    const auto velocities = member.group->bodies->velocities(member.number);
+    for (std::size_t i = 0; i < velocities.size(); ++i) body.set_velocity(i, Kernel::read(velocities[i]));
+    return;
+  }
+  if constexpr (kDimension == 3) {
     const std::span<const std::uint32_t> place_of = member.group->tiles->place_of();
-    for (std::size_t i = 0; i < place_of.size(); ++i) set(i, member.tiled->velocities()[place_of[i]]);
-  } else {
-    const std::span<const MatchBodies::Vector> velocities = member.group->bodies->velocities(member.number);
-    for (std::size_t i = 0; i < velocities.size(); ++i) set(i, velocities[i]);
+    for (std::size_t i = 0; i < place_of.size(); ++i)
+      body.set_velocity(i, Kernel::read(member.tiled->velocities()[place_of[i]]));
   }
 }
 
-void SpeSolver::finish() {
+template <int kDimension>
+void SpeSolver<kDimension>::finish() {
   try {
-    for (SoftBody* const body : left_to_ppu_) body->pull(step_);
+    for (Body* const body : left_to_ppu_) body->pull(step_);
   } catch (...) {
     chain_->wait();  // its jobs work on what the next kick() changes
     throw;
@@ -225,14 +279,22 @@ void SpeSolver::finish() {
     if (member.stepped) take_back(member);
 }
 
-void SpeSolver::drop() { chain_->wait(); }
+template <int kDimension>
+void SpeSolver<kDimension>::drop() {
+  chain_->wait();
+}
 
-void SpeSolver::forget(const SoftBody& body) {
+template <int kDimension>
+void SpeSolver<kDimension>::forget(const Body& body) {
+  SC_ASSERT(chain_->finished(), "forget() with {} jobs under way", chain_->size());
   for (const Member& member : members_) {
     if (member.body != &body) continue;
     if (member.group->bodies) member.group->bodies->reset(member.number);
     if (member.tiled) member.tiled->reset();
   }
 }
+
+template class SpeSolver<2>;
+template class SpeSolver<3>;
 
 }  // namespace softcell::ppu

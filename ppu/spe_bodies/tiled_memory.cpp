@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ppu/spe_bodies/match_orchestration.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -88,6 +89,7 @@ TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
 }
 
 std::optional<dma::EffectiveAddress> TiledMemory::job(spu::TilePass pass, std::size_t tile) const {
+  SC_ASSERT(pass < kTilePasses.size() && tile < tiles(), "pass {} of tile {} of {}", pass, tile, tiles());
   const std::size_t number = pass * tiles() + tile;
   const bool damped = body_.data()[0].damping > 0;
   if (jobs_.data()[number].slice_count == 0 || (pass == spu::kTileTwist && !damped)) return std::nullopt;

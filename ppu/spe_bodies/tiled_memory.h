@@ -32,7 +32,7 @@ inline constexpr std::array kTilePasses{spu::kTileGather, spu::kTileScatter, spu
 /// A body in tiles as it lies in main memory, and the jobs of its step, for whoever runs them.
 class TiledMemory {
  public:
-  using Vector = MatchBodies::Vector;
+  using Vector = MatchBodies<3>::Vector;
 
   /// The plan is copied. Main memory: about 250 bytes a particle, 55 MB for 200,000.
   /// @throws std::runtime_error  main memory is full.

@@ -105,7 +105,7 @@ TEST(Arena, TheAntennaOfTheCarBends) {
                                             [](const auto& s) { return s.name == "car"; }) -
                                arena().soft_bodies.begin());
   ASSERT_LT(car, simulation.soft_bodies());
-  const ppu::Lattice& lattice = simulation.model(car).lattice();
+  const ppu::Lattice<3>& lattice = simulation.model(car).lattice();
   // The antenna is what is highest: its tip, its foot one half further down, and the body's middle.
   std::size_t tip = 0;
   for (std::size_t i = 0; i < lattice.particles.size(); ++i) {

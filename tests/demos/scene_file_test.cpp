@@ -221,7 +221,7 @@ height = 3
   ASSERT_EQ(scene.soft_bodies.size(), 2u);
   EXPECT_EQ(scene.soft_bodies[0].cells.size(), 3u);
   EXPECT_EQ(scene.soft_bodies[0].contact_radius, 0.25f);
-  const ppu::Lattice2d lattice = scene.soft_bodies[0].lattice();
+  const ppu::Lattice<2> lattice = scene.soft_bodies[0].lattice();
   EXPECT_EQ(lattice.particles.size(), 8u);
   EXPECT_EQ(lattice.origin, Eigen::Vector2f(-0.5f, -0.5f)) << "the middle of the box is at 0";
   EXPECT_EQ(scene.soft_bodies[1].cells.size(), 28u) << "a disc of 32 cells without the four in its middle";

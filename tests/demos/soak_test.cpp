@@ -48,7 +48,7 @@ bool between_walls(const Eigen::Vector3f& x) { return std::max(std::abs(x.x()), 
 
 void expect_nothing_lost(const Simulation3d& simulation) {
   for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
-    const ppu::SoftBody& body = simulation.soft_body(b);
+    const ppu::SoftBody<3>& body = simulation.soft_body(b);
     const std::string& name = arena().soft_bodies[b].name;
     for (std::size_t i = 0; i < body.model().particles(); ++i) {
       const Eigen::Vector3f x = body.position(i);
@@ -64,7 +64,7 @@ void expect_nothing_lost(const Simulation3d& simulation) {
 
 /// Root of the particles' mean squared distance from their middle.
 template <typename Position>
-double radius_of_gyration(const ppu::SoftBody& body, const Position& position) {
+double radius_of_gyration(const ppu::SoftBody<3>& body, const Position& position) {
   const std::size_t count = body.model().particles();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double squares = 0;
@@ -81,7 +81,7 @@ double radius_of_gyration(const ppu::SoftBody& body, const Position& position) {
 /// moment, and a particle of the shell half a cell, which Bullet pushes out again.
 void expect_shells_above_the_floor(const Simulation3d& simulation) {
   for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
-    const ppu::SoftBody& body = simulation.soft_body(b);
+    const ppu::SoftBody<3>& body = simulation.soft_body(b);
     for (const std::uint32_t i : body.model().outer()) {
       const Eigen::Vector3f x = body.position(i);
       ASSERT_TRUE(x.allFinite() && x.y() > -0.1f)
@@ -127,7 +127,7 @@ TEST(Soak, AGravityOf300Holds) {
   ASSERT_NO_FATAL_FAILURE(expect_nothing_lost(simulation));
   // ... and have their shapes again, but for what their own weight does to them.
   for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
-    const ppu::SoftBody& body = simulation.soft_body(b);
+    const ppu::SoftBody<3>& body = simulation.soft_body(b);
     const double size = radius_of_gyration(body, [&](std::size_t i) { return body.position(i); });
     const double at_rest =
         radius_of_gyration(body, [&](std::size_t i) { return body.model().lattice().rest_position(i); });

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "soft_body_2d_scenes.h"
+#include "softcell/soft_bodies/state_hash.h"
 
 namespace softcell::ppu {
 namespace {
@@ -18,7 +19,7 @@ SoftBodySettings rubber(float cell_size = 0.25f) {
   return {.cell_size = cell_size, .half_width = 2, .density = 5, .alpha = 0.5f, .damping = 0.1f};
 }
 
-float lowest(const SoftBody2d& body) {
+float lowest(const SoftBody<2>& body) {
   float y = std::numeric_limits<float>::infinity();
   for (const Vector2f& p : body.positions()) y = std::min(y, p.y());
   return y;
@@ -29,7 +30,7 @@ TEST(Box2dCoupling, RestsOnAFloorInShape) {
   world.add_box({0, -1}, {10, 1});
   SoftBodySettings settings = rubber();
   settings.damping = 0.3f;
-  SoftBody2d& body = world.soft.add(rectangle_model({6, 4}, settings), {0, 0.6f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({6, 4}, settings), {0, 0.6f});
   world.run(8);  // it is elastic, and bounces for a while
   float fastest = 0;
   for (const Vector2f& v : body.velocities()) fastest = std::max(fastest, v.norm());
@@ -40,7 +41,7 @@ TEST(Box2dCoupling, RestsOnAFloorInShape) {
 
 TEST(Box2dCoupling, FallsAsEverythingFalls) {
   World2d world;
-  SoftBody2d& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 10});
+  SoftBody<2>& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 10});
   const Vector2f begin = body.centre_of_mass();
   const int steps = 60;
   const float h = 1.0f / 120;
@@ -52,7 +53,7 @@ TEST(Box2dCoupling, FallsAsEverythingFalls) {
 
 TEST(Box2dCoupling, KeepsMomentumInCollisionsWithRigidBodies) {
   World2d world(0);
-  SoftBody2d& body = world.soft.add(rectangle_model({4, 4}, rubber()), {0, 0});
+  SoftBody<2>& body = world.soft.add(rectangle_model({4, 4}, rubber()), {0, 0});
   b2Body* const box = world.add_box({3, 0.5f}, {0.4f, 0.4f}, 4);
   box->SetLinearVelocity({-3, 0});
   const float before = box->GetMass() * -3;
@@ -73,8 +74,8 @@ TEST(Box2dCoupling, MakesNoContactsWithinABody) {
 TEST(Box2dCoupling, TwoBodiesStackOnEachOther) {
   World2d world;
   world.add_box({0, -1}, {10, 1});
-  SoftBody2d& under = world.soft.add(rectangle_model({6, 3}, rubber()), {0, 0.2f});
-  SoftBody2d& over = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 1.6f});
+  SoftBody<2>& under = world.soft.add(rectangle_model({6, 3}, rubber()), {0, 0.2f});
+  SoftBody<2>& over = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 1.6f});
   world.run(5);
   EXPECT_GT(lowest(over), under.centre_of_mass().y() + 0.25f);
   EXPECT_LT(over.deformation(), 0.1f);
@@ -85,7 +86,7 @@ TEST(Box2dCoupling, ComesBackToItsShapeAfterBeingThrown) {
   world.add_box({0, -1}, {10, 1});
   world.add_box({-5, 5}, {1, 10});
   world.add_box({5, 5}, {1, 10});  // or it would bounce off the floor's end and fall for ever
-  SoftBody2d& body = world.soft.add(rectangle_model({4, 6}, rubber()), {0, 0.5f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({4, 6}, rubber()), {0, 0.5f});
   body.add_velocity({-25, 5});
   float worst = 0;
   for (int i = 0; i < 2400; ++i) {
@@ -114,7 +115,7 @@ TEST_P(SlidingFriction2d, IsTheGeometricMeanOfBothCoefficients) {
   SoftBodySettings settings = rubber();
   settings.damping = 0.3f;
   settings.friction = of_body;
-  SoftBody2d& body = world.soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
   world.run(4);
   const float before = body.linear_momentum().x();
   body.add_velocity({kSpeed, 0});
@@ -132,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Coefficients, SlidingFriction2d,
 
 TEST(Box2dCoupling, TakesChangesBetweenSteps) {
   World2d world(0);
-  SoftBody2d& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 0});
+  SoftBody<2>& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 0});
   world.run(0.1f);
   body.translate({3, 4});
   body.add_particle_velocity(body.model().outer().front(), {1, 0});
@@ -148,7 +149,7 @@ TEST(Box2dCoupling, TakesChangesBetweenSteps) {
 TEST(Box2dCoupling, KnowsItsParticles) {
   World2d world;
   b2Body* const box = world.add_box({0, 0}, {1, 1});
-  SoftBody2d& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 5});
+  SoftBody<2>& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 5});
   int found = 0;
   for (const b2Body* b = world.box2d.GetBodyList(); b != nullptr; b = b->GetNext()) {
     const auto particle = world.soft.particle_of(*b);
@@ -168,7 +169,7 @@ TEST(Box2dCoupling, KnowsItsParticles) {
 
 TEST(Box2dCoupling, RefusesWhatItIsNotGiven) {
   World2d world, other;
-  SoftBody2d& body = other.soft.add(rectangle_model({1, 1}, rubber()), {0, 0});
+  SoftBody<2>& body = other.soft.add(rectangle_model({1, 1}, rubber()), {0, 0});
   EXPECT_THROW(world.soft.remove(body), std::invalid_argument);
   EXPECT_THROW(rectangle_model({1, 1}, rubber(), 0), std::runtime_error);
   EXPECT_THROW(rectangle_model({1, 1}, {.cell_size = 0}), std::runtime_error);
@@ -179,10 +180,148 @@ TEST(Box2dCoupling, GravityOf300Holds) {
   world.add_box({0, -1}, {10, 1});
   SoftBodySettings settings = rubber();
   settings.alpha = 1;
-  SoftBody2d& body = world.soft.add(rectangle_model({4, 4}, settings), {0, 0.2f});
+  SoftBody<2>& body = world.soft.add(rectangle_model({4, 4}, settings), {0, 0.2f});
   world.run(10);
   EXPECT_TRUE(std::isfinite(body.centre_of_mass().y()));
   EXPECT_GT(lowest(body), 0) << "a particle's centre went below the floor";
+}
+
+/// Asleep on a floor, as far as it will.
+struct Resting {
+  Resting() {
+    floor = world.add_box({0, -1}, {10, 1});
+    world.soft.let_sleep(SleepSettings{});
+    body = &world.soft.add(rectangle_model({6, 4}, calm()), {0, 0.2f});
+    world.run(12);
+  }
+  static SoftBodySettings calm() {
+    SoftBodySettings settings = rubber();
+    settings.damping = 0.3f;
+    return settings;
+  }
+
+  World2d world;
+  b2Body* floor;
+  SoftBody<2>* body;
+};
+
+TEST(Box2dSleep, ABodyAtRestStaysWhereItIs) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  EXPECT_NEAR(lowest(*resting.body), resting.body->model().contact_radius(), 0.02f);
+  const std::uint64_t state = state_hash(*resting.body);
+  resting.world.run(1);
+  EXPECT_TRUE(resting.body->asleep());
+  EXPECT_EQ(state_hash(*resting.body), state);
+}
+
+TEST(Box2dSleep, NobodySleepsUnlessAsked) {
+  World2d world;
+  world.add_box({0, -1}, {10, 1});
+  SoftBody<2>& body = world.soft.add(rectangle_model({6, 4}, Resting::calm()), {0, 0.2f});
+  world.run(12);
+  EXPECT_FALSE(body.asleep());
+}
+
+TEST(Box2dSleep, ARigidBodyThatFallsOnItWakesIt) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.add_box({0, 1.6f}, {0.2f, 0.2f}, 5);
+  resting.world.run(0.05f);
+  EXPECT_TRUE(resting.body->asleep()) << "it has not come down yet";
+  const std::uint64_t state = state_hash(*resting.body);
+  resting.world.run(0.5f);
+  EXPECT_FALSE(resting.body->asleep());
+  EXPECT_NE(state_hash(*resting.body), state);
+}
+
+TEST(Box2dSleep, ASoftBodyThatFallsOnItWakesIt) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.soft.add(rectangle_model({2, 2}, rubber()), {0, 2.5f});
+  resting.world.run(1);
+  EXPECT_FALSE(resting.body->asleep());
+}
+
+TEST(Box2dSleep, WakesWhenGravityTurns) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  const float before = resting.body->centre_of_mass().x();
+  resting.world.box2d.SetGravity({9.81f, -2});
+  resting.world.run(0.5f);
+  EXPECT_FALSE(resting.body->asleep());
+  EXPECT_GT(resting.body->centre_of_mass().x(), before + 0.1f);
+}
+
+TEST(Box2dSleep, WakesWhenItsUserChangesIt) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.body->add_velocity({0, 3});
+  resting.world.run(0.1f);
+  EXPECT_FALSE(resting.body->asleep());
+  EXPECT_GT(lowest(*resting.body), resting.body->model().contact_radius() + 0.1f);
+}
+
+TEST(Box2dSleep, WakesWhenAParticleIsPushed) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  for (b2Body* b = resting.world.box2d.GetBodyList(); b != nullptr; b = b->GetNext())
+    if (resting.world.soft.particle_of(*b).number == 0) b->ApplyLinearImpulseToCenter({0, 0.1f}, true);
+  resting.world.soft.step(1.0f / 120);
+  EXPECT_FALSE(resting.body->asleep());
+}
+
+TEST(Box2dSleep, FallsWhenTheFloorIsTakenAway) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.box2d.DestroyBody(resting.floor);
+  resting.world.run(1);
+  EXPECT_LT(resting.body->centre_of_mass().y(), -1);
+}
+
+TEST(Box2dSleep, WakesWhenBodiesMayNoLongerSleep) {
+  Resting resting;
+  ASSERT_TRUE(resting.body->asleep());
+  resting.world.soft.let_sleep(std::nullopt);
+  EXPECT_FALSE(resting.body->asleep());
+  resting.world.run(3);
+  EXPECT_FALSE(resting.body->asleep());
+}
+
+/// A soft body on another, and a rigid box on top of both.
+struct Tower {
+  Tower() {
+    world.add_box({0, -1}, {10, 1});
+    world.soft.let_sleep(SleepSettings{});
+    under = &world.soft.add(rectangle_model({6, 3}, Resting::calm()), {0, 0.2f});
+    over = &world.soft.add(rectangle_model({4, 2}, Resting::calm()), {0, 1.3f});
+    box = world.add_box({0, 2.4f}, {0.3f, 0.2f}, 3);
+  }
+  World2d world;
+  SoftBody<2>*under, *over;
+  b2Body* box;
+};
+
+TEST(Box2dSleep, WhatTouchesSleepsTogether) {
+  Tower tower;
+  bool together = true;
+  for (int i = 0; i < 3600; ++i) {
+    tower.world.soft.step(1.0f / 120);
+    together &= tower.under->asleep() == tower.over->asleep() && tower.over->asleep() != tower.box->IsAwake();
+  }
+  EXPECT_TRUE(together);
+  EXPECT_TRUE(tower.under->asleep());
+  tower.world.soft.remove(*tower.over);  // what lay on it wakes, and it wakes itself
+  tower.world.run(0.1f);
+  EXPECT_FALSE(tower.under->asleep());
+  EXPECT_TRUE(tower.box->IsAwake());
+}
+
+TEST(Box2dSleep, ARigidBodyThatMayNotSleepKeepsWhatItTouchesAwake) {
+  Tower tower;
+  tower.box->SetSleepingAllowed(false);
+  tower.world.run(20);
+  EXPECT_FALSE(tower.over->asleep());
 }
 
 }  // namespace

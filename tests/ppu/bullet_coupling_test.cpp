@@ -31,7 +31,7 @@ TEST_P(RestsOnFloor, InShapeAndAtItsHeight) {
   World world;
   world.add_floor();
   const float cell = 0.8f / static_cast<float>(cells);
-  SoftBody& body = world.soft.add(block_model(Vector3i::Constant(cells), stiff(cell)), {0, 0.5f, 0});
+  SoftBody<3>& body = world.soft.add(block_model(Vector3i::Constant(cells), stiff(cell)), {0, 0.5f, 0});
   float lowest = 1;
   for (int frame = 0; frame < 600; ++frame) {  // it is elastic, and bounces for a while
     world.bullet.step(kFrame, 2);
@@ -42,14 +42,14 @@ TEST_P(RestsOnFloor, InShapeAndAtItsHeight) {
   // E / rho = (s/h)^2 alpha w (w+1) / 3: how much a column gives under its weight, with room for its edges.
   const float modulus = 2 * (cell * 120) * (cell * 120);
   const float sag = 9.81f * 0.8f * 0.8f / (2 * modulus);
-  EXPECT_LT(deformation(body), 4 * sag + 0.004f);
+  EXPECT_LT(body.deformation(), 4 * sag + 0.004f);
   EXPECT_NEAR(body.bounds().low.y(), body.model().contact_radius(), 0.006f);
 }
 
 // 125 and 1000 particles.
 INSTANTIATE_TEST_SUITE_P(Blocks, RestsOnFloor, testing::Values(4, 9));
 
-double lowest_mesh_vertex(const SoftBodyModel& model, std::span<const Vector3f> x) {
+double lowest_mesh_vertex(const SoftBodyModel<3>& model, std::span<const Vector3f> x) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const SkinPart& part : model.embedding().parts) {
     for (std::uint32_t g = part.first_group; g < part.first_group + part.group_count; ++g) {
@@ -65,7 +65,7 @@ TEST(BulletSoftBodies, AMeshNeverDipsIntoTheFloor) {
   World world;
   world.add_floor();
   const auto model = make_soft_body_model(make_sphere(0.6f, 12), stiff(0.2f));
-  SoftBody& body = world.soft.add(model, {0, 2, 0});
+  SoftBody<3>& body = world.soft.add(model, {0, 2, 0});
   double lowest = 1, lowest_vertex = 1;
   std::vector<Vector3f> x(model->particles());
   for (int frame = 0; frame < 900; ++frame) {
@@ -84,7 +84,7 @@ TEST(BulletSoftBodies, SlideAboutAsFarAsACoulombBlock) {
   world.add_floor(1);
   SoftBodySettings settings = stiff(0.2f);
   settings.friction = kFriction;
-  SoftBody& body = world.soft.add(block_model({6, 2, 4}, settings), {0, 0.031f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({6, 2, 4}, settings), {0, 0.031f, 0});
   world.run(1);
   const float begin = body.centre_of_mass().x();
   body.add_velocity({kSpeed, 0, 0});
@@ -112,7 +112,7 @@ TEST_P(SlidingFriction, IsTheProductOfBothCoefficients) {
   world.add_floor(of_floor);
   SoftBodySettings settings = stiff(0.2f);
   settings.friction = of_body;
-  SoftBody& body = world.soft.add(block_model({6, 2, 4}, settings), {-3, 0.031f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({6, 2, 4}, settings), {-3, 0.031f, 0});
   world.run(2);
   const float before = body.linear_momentum().x();
   body.add_velocity({kSpeed, 0, 0});
@@ -132,7 +132,7 @@ TEST(BulletSoftBodies, PushARigidBox) {
   World world;
   world.add_floor(0.2f);
   const std::size_t box = world.bullet.add_box({0.5f, 0.5f, 0.5f}, 10, {1.2f, 0.25f, 0}, 0.5f);
-  SoftBody& body = world.soft.add(block_model({4, 3, 4}, stiff(0.2f)), {0, 0.031f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({4, 3, 4}, stiff(0.2f)), {0, 0.031f, 0});
   body.add_velocity({4, 0, 0});
   world.run(2);
   EXPECT_GT(world.bullet.pose(box)(0, 3), 1.5f);
@@ -143,7 +143,7 @@ TEST(BulletSoftBodies, PushARigidBox) {
 TEST(BulletSoftBodies, CarryARigidBox) {
   World world;
   world.add_floor();
-  SoftBody& body = world.soft.add(block_model({4, 3, 4}, stiff(0.2f)), {0, 0.031f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({4, 3, 4}, stiff(0.2f)), {0, 0.031f, 0});
   const std::size_t box = world.bullet.add_box({0.5f, 0.5f, 0.5f}, 25, {0, 1.0f, 0}, 0.6f);
   world.run(4);
   const float top = 3 * 0.2f + 2 * body.model().contact_radius();
@@ -154,9 +154,9 @@ TEST(BulletSoftBodies, CarryARigidBox) {
 TEST(BulletSoftBodies, SoftBodiesRestOnEachOther) {
   World world;
   world.add_floor();
-  SoftBody& lower = world.soft.add(block_model({6, 2, 6}, stiff(0.2f)), {0, 0.05f, 0});
+  SoftBody<3>& lower = world.soft.add(block_model({6, 2, 6}, stiff(0.2f)), {0, 0.05f, 0});
   // Half a cell aside: every particle comes down on the middle of a face, the widest gap.
-  SoftBody& upper = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.65f, 0});
+  SoftBody<3>& upper = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.65f, 0});
   for (int frame = 0; frame < 300; ++frame) {
     world.bullet.step(kFrame, 2);
     ASSERT_GT(upper.bounds().low.y(), 0.37f) << "frame " << frame << ": it sinks in";
@@ -169,8 +169,8 @@ TEST(BulletSoftBodies, DoNotPassThroughEachOther) {
   World world;
   world.bullet.set_gravity({0, 0, 0});
   const auto model = block_model({3, 3, 3}, stiff(0.2f));
-  SoftBody& a = world.soft.add(model, {-0.5f, 0, 0});
-  SoftBody& b = world.soft.add(model, {0.5f, 0.1f, 0.1f});
+  SoftBody<3>& a = world.soft.add(model, {-0.5f, 0, 0});
+  SoftBody<3>& b = world.soft.add(model, {0.5f, 0.1f, 0.1f});
   a.add_velocity({5, 0, 0});
   const Vector3f before = a.linear_momentum();
   world.run(1);
@@ -183,7 +183,7 @@ TEST(BulletSoftBodies, ACollisionKeepsTheTotalMomentum) {
   world.bullet.set_gravity({0, 0, 0});
   const std::size_t box = world.bullet.add_box({0.6f, 0.6f, 0.6f}, 30, {1.5f, 0.1f, 0.05f}, 0.5f);
   const auto model = make_soft_body_model(make_sphere(0.5f, 8), stiff(0.2f));
-  SoftBody& ball = world.soft.add(model, {0, 0, 0});
+  SoftBody<3>& ball = world.soft.add(model, {0, 0, 0});
   ball.add_velocity({5, 0, 0});
   const Vector3f before = ball.linear_momentum();
   world.run(1);
@@ -199,7 +199,7 @@ TEST(BulletSoftBodies, WithstandThirtyTimesTheEarthsGravity) {
   World world;
   world.bullet.set_gravity({0, -300, 0});
   world.add_floor();
-  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 0.5f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 0.5f, 0});
   for (int frame = 0; frame < 300; ++frame) {
     world.bullet.step(kFrame, 4);
     ASSERT_GT(body.bounds().low.y(), -0.01f) << "frame " << frame;
@@ -208,14 +208,14 @@ TEST(BulletSoftBodies, WithstandThirtyTimesTheEarthsGravity) {
   EXPECT_LT(fastest(body), 1.0f);
   world.bullet.set_gravity({0, -9.81f, 0});
   world.run(2, 4);
-  EXPECT_LT(deformation(body), 0.02f) << "it did not get its shape back";
+  EXPECT_LT(body.deformation(), 0.02f) << "it did not get its shape back";
 }
 
 TEST(BulletSoftBodies, AFallFromFarStopsAtTheFloor) {
   for (const int substeps : {1, 2, 4}) {
     World world;
     world.add_floor();
-    SoftBody& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 10, 0});
+    SoftBody<3>& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 10, 0});
     float lowest = 1;
     for (int frame = 0; frame < 1200; ++frame) {
       world.bullet.step(kFrame, substeps);
@@ -227,12 +227,12 @@ TEST(BulletSoftBodies, AFallFromFarStopsAtTheFloor) {
 }
 
 /// After what was done to it: normal gravity for some seconds, then none.
-float deformation_after_a_rest(World& world, const SoftBody& body) {
+float deformation_after_a_rest(World& world, const SoftBody<3>& body) {
   world.bullet.set_gravity({0, -9.81f, 0});
   world.run(6, 4);
   world.bullet.set_gravity({0, 0, 0});
   world.run(6, 4);
-  return deformation(body);
+  return body.deformation();
 }
 
 // The report's bodies were stuck after such a fall.
@@ -240,7 +240,7 @@ TEST(BulletSoftBodies, AFallOfTenMetresAtAGravityOf300DoesNotGetThemStuck) {
   World world;
   world.bullet.set_gravity({0, -300, 0});
   world.add_floor();
-  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 10, 0});
+  SoftBody<3>& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 10, 0});
   world.run(5, 4);
   EXPECT_LT(body.centre_of_mass().y(), 1);
   world.bullet.set_gravity({0, -9.81f, 0});
@@ -256,9 +256,9 @@ TEST(BulletSoftBodies, AVeryFlexibleTorusGetsItsShapeBack) {
   World world;
   world.bullet.set_gravity({0, -300, 0});
   world.add_floor();
-  SoftBody& body = world.soft.add(torus, {0, 1, 0});
+  SoftBody<3>& body = world.soft.add(torus, {0, 1, 0});
   world.run(3, 4);
-  EXPECT_GT(deformation(body), 0.3f) << "it was crushed";
+  EXPECT_GT(body.deformation(), 0.3f) << "it was crushed";
   EXPECT_LT(deformation_after_a_rest(world, body), 0.1f) << "half a cell";
 }
 
@@ -270,7 +270,7 @@ double measured_period(float frequency, float step) {
   settings.half_width = 4;  // one region: each particle swings about a fixed goal
   settings.frequency = frequency;
   settings.damping = 0;
-  SoftBody& body = world.soft.add(block_model({2, 2, 2}, settings), {0, 0, 0});
+  SoftBody<3>& body = world.soft.add(block_model({2, 2, 2}, settings), {0, 0, 0});
   // Stretched along x by a velocity that keeps centre and orientation.
   const std::uint32_t left = 0;
   const auto right = static_cast<std::uint32_t>(body.model().particles() - 1);
@@ -301,7 +301,7 @@ TEST(BulletSoftBodies, AThrowAtAThinFloorStopsThere) {
     world.bullet.add_box({20, 0.05f, 20}, 0, {0, -0.025f, 0}, 0.6f);
     SoftBodySettings settings;
     settings.cell_size = 0.2f;
-    SoftBody& body = world.soft.add(block_model({4, 4, 4}, settings), {0, 3, 0});
+    SoftBody<3>& body = world.soft.add(block_model({4, 4, 4}, settings), {0, 3, 0});
     body.add_velocity({0, -speed, 0});
     world.run(1);
     EXPECT_GT(body.bounds().low.y(), -0.02f) << speed << " m/s";
@@ -327,7 +327,7 @@ TEST(BulletSoftBodies, ActOncePerSubstepAndCallWhatWasThere) {
   SoftBodySettings settings = stiff(0.2f);
   settings.damping = 1;  // takes a tenth of nothing: rigid motion stays
   settings.alpha = 0;
-  SoftBody& body = soft->add(block_model({2, 2, 2}, settings), {0, 0, 0});
+  SoftBody<3>& body = soft->add(block_model({2, 2, 2}, settings), {0, 0, 0});
   body.add_velocity({1, 0, 0});
   bullet.step(kFrame, 3);
   EXPECT_EQ(g_ticks, 3);
@@ -352,7 +352,7 @@ TEST(BulletSoftBodies, TheLengthOfTheSubstepCounts) {
     settings.half_width = 4;
     settings.alpha = 0.5f;
     settings.damping = 0;
-    SoftBody& body = world.soft.add(block_model({4, 4, 4}, settings), {0, 0, 0});
+    SoftBody<3>& body = world.soft.add(block_model({4, 4, 4}, settings), {0, 0, 0});
     auto& particle = *btRigidBody::upcast(world.bullet.world().getCollisionObjectArray()[0]);
     const Vector3f rest = body.position(0);
     particle.getWorldTransform().getOrigin() += btVector3(0.01f, 0, 0);
@@ -373,7 +373,7 @@ TEST(BulletSoftBodies, AnOverlapFilterThatWasThereStillCounts) {
   {
     BulletSoftBodies soft(bullet.world());
     bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f);
-    SoftBody& body = soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.1f, 0});
+    SoftBody<3>& body = soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.1f, 0});
     for (int i = 0; i < 60; ++i) bullet.step(kFrame, 2);
     EXPECT_LT(body.centre_of_mass().y(), -1) << "the floor should not have held it";
   }
@@ -383,7 +383,7 @@ TEST(BulletSoftBodies, AnOverlapFilterThatWasThereStillCounts) {
 TEST(BulletSoftBodies, NoContactsWithinABody) {
   World world;
   world.bullet.set_gravity({0, 0, 0});
-  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.01f)), {0, 0, 0});
+  SoftBody<3>& body = world.soft.add(block_model({4, 4, 4}, stiff(0.01f)), {0, 0, 0});
   world.run(0.1f);
   EXPECT_EQ(world.bullet.world().getPairCache()->getNumOverlappingPairs(), 0);
   const auto& object = *world.bullet.world().getCollisionObjectArray()[3];
@@ -394,36 +394,36 @@ TEST(BulletSoftBodies, NoContactsWithinABody) {
 TEST(BulletSoftBodies, ATeleportIsToldToBullet) {
   World world;
   world.add_floor();
-  SoftBody& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.05f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.05f, 0});
   world.run(1);
   const Vector3f before = body.centre_of_mass();
   body.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(0.7f, Vector3f::UnitY())), {3, 0.5f, -2});
   world.bullet.step(kFrame, 2);
   EXPECT_LT((body.centre_of_mass() - before - Vector3f(3, 0.5f, -2)).norm(), 0.02f);
-  EXPECT_LT(deformation(body), 0.02f);
+  EXPECT_LT(body.deformation(), 0.02f);
   world.run(2);
   EXPECT_NEAR(body.bounds().low.y(), body.model().contact_radius(), 0.01f);
 }
 
 /// The PPU's solver, which keeps a record of what it is to forget.
-class RecordingSolver final : public SoftBodySolver {
+class RecordingSolver final : public SoftBodySolver<3> {
  public:
-  void kick(std::span<SoftBody* const> bodies, float step) override { ppu_.kick(bodies, step); }
+  void kick(std::span<SoftBody<3>* const> bodies, float step) override { ppu_.kick(bodies, step); }
   void finish() override { ppu_.finish(); }
   void drop() override { ppu_.drop(); }
-  void forget(const SoftBody& body) override { forgotten.push_back(&body); }
+  void forget(const SoftBody<3>& body) override { forgotten.push_back(&body); }
 
-  std::vector<const SoftBody*> forgotten;
+  std::vector<const SoftBody<3>*> forgotten;
 
  private:
-  PpuSolver ppu_;
+  PpuSolver<3> ppu_;
 };
 
 TEST(BulletSoftBodies, OnlyATeleportMakesTheSolverForget) {
   BulletWorld bullet;
   RecordingSolver solver;
   BulletSoftBodies soft(bullet.world(), solver);
-  SoftBody& body = soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0, 0});
+  SoftBody<3>& body = soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0, 0});
   bullet.step(kFrame, 2);
   body.add_velocity({1, 0, 0});
   body.add_particle_velocity(0, {0, 1, 0});
@@ -432,14 +432,14 @@ TEST(BulletSoftBodies, OnlyATeleportMakesTheSolverForget) {
   EXPECT_TRUE(solver.forgotten.empty());
   body.move_without_force(Eigen::Quaternionf(0, 1, 0, 0), {0, 0, 0});
   bullet.step(kFrame, 2);
-  EXPECT_EQ(solver.forgotten, std::vector<const SoftBody*>{&body});
+  EXPECT_EQ(solver.forgotten, std::vector<const SoftBody<3>*>{&body});
 }
 
 /// A contact that goes on is warm-started with the impulse of the substep before.
 TEST(BulletSoftBodies, APushLeavesContactsAlone) {
   World world;
   world.add_floor();
-  SoftBody& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.05f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({3, 3, 3}, stiff(0.2f)), {0, 0.05f, 0});
   world.run(1);
   const auto lasting = [&] {
     int sum = 0;
@@ -460,16 +460,16 @@ TEST(BulletSoftBodies, APushLeavesContactsAlone) {
 
 TEST(BulletSoftBodies, ASavedBodyIsRestoredAsAWhole) {
   World world;
-  SoftBody& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 9, 0});
+  SoftBody<3>& body = world.soft.add(block_model({4, 4, 4}, stiff(0.2f)), {0, 9, 0});
   world.run(0.5f);
-  const SoftBody saved = body;
+  const SoftBody<3> saved = body;
   world.run(0.5f);
   body = saved;
   EXPECT_NE(body.revision(), saved.revision());
   world.bullet.step(kFrame, 2);
   for (std::size_t i = 0; i < body.model().particles(); ++i)
     ASSERT_LT((body.position(i) - saved.position(i)).norm(), 6 * kFrame) << i;
-  EXPECT_LT(deformation(body), 1e-3f);
+  EXPECT_LT(body.deformation(), 1e-3f);
 }
 
 TEST(BulletSoftBodies, WhatSleptOnABodyFallsWhenThatGoesAway) {
@@ -479,10 +479,10 @@ TEST(BulletSoftBodies, WhatSleptOnABodyFallsWhenThatGoesAway) {
       World world;
       world.add_floor();
       world.soft.let_sleep(SleepSettings{.speed = 0.5f, .seconds = 0.2f});
-      SoftBody& low = world.soft.add(below, {0, 0.05f, 0});
+      SoftBody<3>& low = world.soft.add(below, {0, 0.05f, 0});
       // Above one of its particles, as far away as the two can be.
       const float height = low.bounds().high.y();
-      SoftBody& high = world.soft.add(
+      SoftBody<3>& high = world.soft.add(
           fine, {0, height + 1.05f * (fine->soft_contact_radius() + below->soft_contact_radius()), 0});
       world.run(4);
       ASSERT_TRUE(low.asleep() && high.asleep());
@@ -500,8 +500,8 @@ TEST(BulletSoftBodies, CanBeRemovedOneByOne) {
   World world;
   world.add_floor();
   const auto model = block_model({2, 2, 2}, stiff(0.2f));
-  SoftBody& a = world.soft.add(model, {0, 0.05f, 0});
-  SoftBody& b = world.soft.add(model, {0, 0.8f, 0});
+  SoftBody<3>& a = world.soft.add(model, {0, 0.05f, 0});
+  SoftBody<3>& b = world.soft.add(model, {0, 0.8f, 0});
   world.run(1);
   world.soft.remove(a);
   EXPECT_EQ(world.soft.size(), 1u);
@@ -512,7 +512,7 @@ TEST(BulletSoftBodies, CanBeRemovedOneByOne) {
 
 TEST(BulletSoftBodies, ANanIsReported) {
   World world;
-  SoftBody& body = world.soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.05f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.05f, 0});
   body.add_velocity({NAN, 0, 0});
   EXPECT_THROW(world.run(0.1f), std::runtime_error);
 }
@@ -522,7 +522,8 @@ std::uint64_t hash_of_a_run() {
   world.add_floor();
   world.bullet.add_box({0.4f, 0.4f, 0.4f}, 10, {0.1f, 1.6f, 0}, 0.6f);
   const auto ball = make_soft_body_model(make_sphere(0.5f, 8), stiff(0.2f));
-  const SoftBody* bodies[] = {&world.soft.add(ball, {0, 0.8f, 0}), &world.soft.add(ball, {0.3f, 2.2f, 0.1f})};
+  const SoftBody<3>* bodies[] = {&world.soft.add(ball, {0, 0.8f, 0}),
+                                 &world.soft.add(ball, {0.3f, 2.2f, 0.1f})};
   world.run(2);
   return state_hash(bodies);
 }

@@ -7,6 +7,7 @@
 #include "lattices.h"
 #include "lattices_2d.h"
 #include "particle_vectors.h"
+#include "ppu/reference/shape_matching.h"
 
 namespace softcell::ppu {
 namespace {
@@ -16,11 +17,13 @@ using test::Random;
 constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.2f;
 
 /// Steps from the same shaken state, in both.
-template <int Dimension, class Matcher, class Plan, class Body>
-void expect_the_same_steps(const Body& lattice, const std::shared_ptr<const Plan>& plan) {
+template <int Dimension>
+void expect_the_same_steps(const Lattice<Dimension>& lattice, int half_width) {
   using Vector = Eigen::Matrix<float, Dimension, 1>;
+  const auto plan = std::make_shared<const MatchingPlan<float, Dimension>>(lattice, half_width,
+                                                                           particle_masses(lattice, 1000));
   EigenSolver<Dimension> solver(plan);
-  Matcher matcher(plan);
+  ShapeMatcher<float, Dimension> matcher(plan);
   Random random(1);
   std::vector<Vector> x(plan->particles());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -38,17 +41,11 @@ void expect_the_same_steps(const Body& lattice, const std::shared_ptr<const Plan
 }
 
 TEST(EigenSolver, StepsAsTheReferenceInThreeDimensions) {
-  test::for_every_half_width(test::all_lattices(), 1, [](const Lattice& lattice, int w) {
-    expect_the_same_steps<3, ShapeMatcher<float>>(
-        lattice, std::make_shared<const MatchingPlan<float>>(lattice, w, particle_masses(lattice, 1000)));
-  });
+  test::for_every_half_width(test::all_lattices(), 1, expect_the_same_steps<3>);
 }
 
 TEST(EigenSolver, StepsAsTheReferenceInTwoDimensions) {
-  test::for_every_half_width(test::all_lattices_2d(), 1, [](const Lattice2d& lattice, int w) {
-    expect_the_same_steps<2, ShapeMatcher2d<float>>(
-        lattice, std::make_shared<const MatchingPlan2d<float>>(lattice, w, particle_masses(lattice, 1000)));
-  });
+  test::for_every_half_width(test::all_lattices_2d(), 1, expect_the_same_steps<2>);
 }
 
 }  // namespace

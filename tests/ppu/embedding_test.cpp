@@ -23,11 +23,11 @@ using Eigen::Vector3f;
 
 struct Body {
   TriangleMesh mesh;
-  Lattice lattice;
+  Lattice<3> lattice;
   Embedding embedding;
   std::vector<Vector3f> rest;  ///< of the particles
 
-  Body(TriangleMesh shape, Lattice cells)
+  Body(TriangleMesh shape, Lattice<3> cells)
       : mesh(std::move(shape)), lattice(std::move(cells)), embedding(embed(mesh, lattice)) {
     for (std::size_t p = 0; p < lattice.particles.size(); ++p) rest.push_back(lattice.rest_position(p));
   }
@@ -55,7 +55,7 @@ struct Body {
 
 Body car() {
   TriangleMesh mesh = make_car(2);
-  Lattice lattice = voxelize(mesh, 0.1f);
+  Lattice<3> lattice = voxelize(mesh, 0.1f);
   return {std::move(mesh), std::move(lattice)};
 }
 
@@ -250,7 +250,7 @@ TEST(Embedding, CutsALargeLatticeIntoPartsWithinTheKernelsLimits) {
 
 TEST(Embedding, PutsVerticesOnOuterFacesIntoTheCellBehind) {
   const Eigen::Vector3i cell(0, 0, 0);
-  const Lattice lattice = lattice_from_cells({&cell, 1}, 0.5f, Vector3f(1, 2, 3));
+  const Lattice<3> lattice = lattice_from_cells({&cell, 1}, 0.5f, Vector3f(1, 2, 3));
   TriangleMesh corners;
   for (int k = 0; k < 8; ++k) {
     corners.positions.push_back(Vector3f(1, 2, 3) + 0.5f * Vector3f(static_cast<float>(k & 1),
@@ -280,7 +280,7 @@ TEST(Embedding, PutsVerticesOnInnerFacesIntoTheCellAbove) {
 
 TEST(Embedding, RefusesAVertexOutsideTheLattice) {
   const Eigen::Vector3i cell(0, 0, 0);
-  const Lattice lattice = lattice_from_cells({&cell, 1}, 1.0f, Vector3f::Zero());
+  const Lattice<3> lattice = lattice_from_cells({&cell, 1}, 1.0f, Vector3f::Zero());
   for (const Vector3f& outside : {Vector3f(0.5f, 1.01f, 0.5f), Vector3f(-1e30f, 0, 0), Vector3f(NAN, 0, 0)}) {
     TriangleMesh mesh;
     mesh.positions = {outside};
@@ -300,7 +300,7 @@ TEST(Embedding, EmbedsAMeshThatNobodyHereModelled) {
   if (!std::filesystem::exists(bunny)) GTEST_SKIP() << "install glmark2-data for " << bunny;
   TriangleMesh mesh = import_mesh(bunny);
   fit(mesh, 1);
-  Lattice lattice = voxelize(mesh, 0.08f);
+  Lattice<3> lattice = voxelize(mesh, 0.08f);
   const Body body(std::move(mesh), std::move(lattice));
   expect_valid_parts(body);
   EXPECT_GE(body.embedding.parts.size(), 12u);  // six SPEs have at least two each

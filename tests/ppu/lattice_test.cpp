@@ -42,12 +42,12 @@ void append(TriangleMesh& mesh, const TriangleMesh& other) {
   for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
 }
 
-double total_mass(const Lattice& lattice, float density) {
+double total_mass(const Lattice<3>& lattice, float density) {
   const std::vector<float> masses = particle_masses(lattice, density);
   return std::accumulate(masses.begin(), masses.end(), 0.0);
 }
 
-void expect_covers(const Lattice& lattice, const TriangleMesh& mesh) {
+void expect_covers(const Lattice<3>& lattice, const TriangleMesh& mesh) {
   std::set<std::array<int, 3>> occupied;
   for (const Vector3i& cell : lattice.cells) occupied.insert({cell.x(), cell.y(), cell.z()});
   for (const Vector3f& position : mesh.positions) {
@@ -76,7 +76,7 @@ std::string message_of(const TriangleMesh& mesh, float cell_size) {
 
 TEST(LatticeFromCells, JoinsCornersAndSortsThem) {
   const std::vector<Vector3i> cells{{1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
-  const Lattice lattice = lattice_from_cells(cells, 0.5f, {1, 2, 3});
+  const Lattice<3> lattice = lattice_from_cells(cells, 0.5f, {1, 2, 3});
   EXPECT_EQ(lattice.cells, (std::vector<Vector3i>{{0, 0, 0}, {1, 0, 0}}));
   ASSERT_EQ(lattice.particles.size(), 12u);
   EXPECT_EQ(lattice.particles[0], Vector3i(0, 0, 0));
@@ -106,7 +106,7 @@ TEST(LatticeFromCells, LinksParticlesThatShareACell) {
 }
 
 TEST(LatticeFromCells, CellsTouchingAtAnEdgeShareItsTwoParticles) {
-  const Lattice lattice = lattice_from_cells(std::vector<Vector3i>{{0, 0, 0}, {1, 1, 0}}, 1, {0, 0, 0});
+  const Lattice<3> lattice = lattice_from_cells(std::vector<Vector3i>{{0, 0, 0}, {1, 1, 0}}, 1, {0, 0, 0});
   EXPECT_EQ(lattice.particles.size(), 14u);
   int shared = 0;
   for (std::size_t i = 0; i < 14; ++i) shared += lattice.neighbours[i].size() == 13 ? 1 : 0;
@@ -123,7 +123,7 @@ TEST(LatticeFromCells, TakesNegativeIndicesAndRefusesWhatPassesTheLimits) {
                std::runtime_error);
   EXPECT_NO_THROW(lattice_from_cells(test::block_cells(255, 63, 63), 1, {0, 0, 0}));  // 2^20 particles
   EXPECT_THROW(lattice_from_cells(test::block_cells(255, 64, 63), 1, {0, 0, 0}), std::runtime_error);
-  EXPECT_THROW(lattice_from_cells({}, 1, {0, 0, 0}), std::runtime_error);
+  EXPECT_THROW(lattice_from_cells(std::vector<Vector3i>{}, 1, {0, 0, 0}), std::runtime_error);
   for (const float spacing : {0.0f, -1.0f, NAN, INFINITY})
     EXPECT_THROW(lattice_from_cells(test::block_cells(1, 1, 1), spacing, {0, 0, 0}), std::runtime_error);
 }
@@ -132,7 +132,7 @@ TEST(ParticleMasses, AddUpToDensityTimesVolume) {
   for (const auto& [name, lattice] : all_lattices())
     EXPECT_NEAR(total_mass(lattice, 500), 500 * 1e-3 * static_cast<double>(lattice.cells.size()), 1e-4)
         << name;
-  Lattice lattice = block(2, 1, 1, 1.0f);
+  Lattice<3> lattice = block(2, 1, 1, 1.0f);
   lattice.fill = {0.5f, 1.0f};
   const std::vector<float> masses = particle_masses(lattice, 8);
   EXPECT_EQ(masses[0], 0.5f);
@@ -143,7 +143,7 @@ TEST(ParticleMasses, AddUpToDensityTimesVolume) {
 }
 
 TEST(OuterParticles, AreThoseWithoutEightCells) {
-  const Lattice lattice = block(4, 3, 3);
+  const Lattice<3> lattice = block(4, 3, 3);
   const std::vector<bool> outer = outer_particles(lattice);
   EXPECT_EQ(std::count(outer.begin(), outer.end(), false), 3 * 2 * 2);
   for (std::size_t i = 0; i < outer.size(); ++i) {
@@ -156,7 +156,7 @@ TEST(Voxelize, ABoxOfWholeCellsIsThatManyCells) {
   for (const Vector3f& low :
        {Vector3f(0, 0, 0), Vector3f(-0.5f, -0.25f, -0.35f), Vector3f(3.3f, -7.7f, 0.123f)}) {
     const TriangleMesh mesh = box(low, low + Vector3f(1.0f, 0.5f, 0.7f));
-    const Lattice lattice = voxelize(mesh, 0.1f);
+    const Lattice<3> lattice = voxelize(mesh, 0.1f);
     EXPECT_EQ(lattice.cells.size(), 10u * 5u * 7u);
     EXPECT_EQ(lattice.particles.size(), 11u * 6u * 8u);
     expect_covers(lattice, mesh);
@@ -174,7 +174,7 @@ TEST(Voxelize, ABoxThatStandsOutOfItsGridByRoundingIsSolid) {
         Vector3f low(0, 0, 0), high(1, 1, 1);
         low[d] = at, high[d] = at + 1 + static_cast<float>(k) * kUlp;
         const TriangleMesh mesh = box(low, high);
-        const Lattice lattice = voxelize(mesh, 0.1f);
+        const Lattice<3> lattice = voxelize(mesh, 0.1f);
         const std::size_t cells = lattice.cells.size();
         EXPECT_TRUE(cells == 1000 || cells == 1100) << cells << " of " << low[d] << " to " << high[d];
         expect_covers(lattice, mesh);
@@ -186,7 +186,7 @@ TEST(Voxelize, ABoxThatStandsOutOfItsGridByRoundingIsSolid) {
 
 TEST(Voxelize, OverhangsEquallyOnBothSides) {
   const TriangleMesh mesh = box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f});
-  const Lattice lattice = voxelize(mesh, 0.3f);
+  const Lattice<3> lattice = voxelize(mesh, 0.3f);
   EXPECT_EQ(lattice.cells.size(), 64u);
   EXPECT_TRUE(lattice.origin.isApprox(Vector3f(-0.6f, -0.6f, -0.6f)));
   expect_covers(lattice, mesh);
@@ -194,9 +194,9 @@ TEST(Voxelize, OverhangsEquallyOnBothSides) {
 
 TEST(Voxelize, MassFollowsTheMeshNotTheCells) {
   // 1 m^3 in cells that overhang: the fill fractions see lines at the quarters of a cell.
-  const Lattice cube = voxelize(box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}), 0.15f);
+  const Lattice<3> cube = voxelize(box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}), 0.15f);
   EXPECT_NEAR(total_mass(cube, 1), 1, 0.1);
-  const Lattice sphere = voxelize(make_sphere(1.0f, 24), 0.15f);
+  const Lattice<3> sphere = voxelize(make_sphere(1.0f, 24), 0.15f);
   EXPECT_NEAR(total_mass(sphere, 1), 4.18879, 0.35);  // cells hardly touched count as a quarter full
   for (const float fill : sphere.fill) {
     EXPECT_GE(fill, 0.25f);
@@ -205,10 +205,10 @@ TEST(Voxelize, MassFollowsTheMeshNotTheCells) {
 }
 
 TEST(Voxelize, FillsTheInsideAndLeavesTheHoles) {
-  const Lattice sphere = voxelize(make_sphere(1.0f, 16), 0.1f);
+  const Lattice<3> sphere = voxelize(make_sphere(1.0f, 16), 0.1f);
   EXPECT_NEAR(static_cast<double>(sphere.cells.size()) * 1e-3, 4.18879 + 0.5 * 0.1 * 12.566,
               0.5);  // and half a skin
-  const Lattice torus = voxelize(make_torus(1.0f, 0.3f, 48, 24), 0.1f);
+  const Lattice<3> torus = voxelize(make_torus(1.0f, 0.3f, 48, 24), 0.1f);
   EXPECT_EQ(std::ranges::count(torus.cells, Vector3i(13, 3, 13)), 0);  // the hole's middle
   EXPECT_EQ(std::ranges::count(torus.cells, Vector3i(3, 3, 13)), 1);   // inside the tube
 }
@@ -218,7 +218,7 @@ TEST(Voxelize, FillsTheCavityOfADoubleWalledMesh) {
   TriangleMesh inner = box({-0.27f, -0.27f, -0.27f}, {0.27f, 0.27f, 0.27f});
   for (auto& triangle : inner.triangles) std::swap(triangle[1], triangle[2]);
   append(mesh, inner);
-  const Lattice lattice = voxelize(mesh, 0.1f);
+  const Lattice<3> lattice = voxelize(mesh, 0.1f);
   // The flood does not reach the cavity, which therefore is filled, but weighs nothing where a surface tells
   // so.
   EXPECT_EQ(lattice.cells.size(), 1000u);
@@ -235,7 +235,7 @@ TEST(Voxelize, ForgivesHolesSmallerThanACell) {
   TriangleMesh mesh = make_box({1, 1, 1}, 0.05f);
   const std::size_t cells = voxelize(mesh, 0.1f).cells.size();
   mesh.triangles.erase(mesh.triangles.begin() + 400, mesh.triangles.begin() + 402);  // one square of 5 cm
-  const Lattice lattice = voxelize(mesh, 0.1f);
+  const Lattice<3> lattice = voxelize(mesh, 0.1f);
   EXPECT_EQ(lattice.cells.size(), cells);
   EXPECT_NEAR(total_mass(lattice, 1), 1, 0.02);
 }
@@ -245,7 +245,7 @@ TEST(Voxelize, AFlatMeshIsOneLayerOfCells) {
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   mesh.normals.assign(4, Vector3f::UnitZ());
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  const Lattice lattice = voxelize(mesh, 0.25f);
+  const Lattice<3> lattice = voxelize(mesh, 0.25f);
   EXPECT_EQ(lattice.cells.size(), 16u);
   for (const float fill : lattice.fill) EXPECT_EQ(fill, 0.5f);  // open: nothing can be said
 }
@@ -255,7 +255,7 @@ TEST(Voxelize, CoversEveryShapeAtEverySize) {
                                          make_car(2.0f), make_box({1, 0.31f, 0.07f}, 0.1f)};
   for (const TriangleMesh& mesh : meshes)
     for (const float cell_size : {0.07f, 0.1f, 0.23f, 0.5f, 0.9f}) {
-      const Lattice lattice = voxelize(mesh, cell_size);
+      const Lattice<3> lattice = voxelize(mesh, cell_size);
       expect_covers(lattice, mesh);
       EXPECT_EQ(lattice.cells, voxelize(mesh, cell_size).cells);
     }

@@ -37,7 +37,7 @@ class Random {
 
 struct NamedLattice {
   std::string name;
-  Lattice lattice;
+  Lattice<3> lattice;
 };
 
 inline std::vector<Eigen::Vector3i> cells_where(const Eigen::Vector3i& size,
@@ -54,7 +54,7 @@ inline std::vector<Eigen::Vector3i> block_cells(int x, int y, int z) {
   return cells_where({x, y, z}, [](int, int, int) { return true; });
 }
 
-inline Lattice block(int x, int y, int z, float spacing = 0.1f) {
+inline Lattice<3> block(int x, int y, int z, float spacing = 0.1f) {
   return lattice_from_cells(block_cells(x, y, z), spacing, {0, 0, 0});
 }
 

@@ -4,26 +4,26 @@
 #include <string>
 #include <vector>
 
-#include "softcell/soft_bodies/lattice_2d.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu::test {
 
 struct NamedLattice2d {
   std::string name;
-  Lattice2d lattice;
+  Lattice<2> lattice;
 };
 
 /// 0.1 m to a cell.
-inline Lattice2d lattice_of_rows(const std::vector<std::string>& rows) {
-  return lattice_2d_from_cells(cells_from_rows(rows), 0.1f, {-0.2f, 0.3f});
+inline Lattice<2> lattice_of_rows(const std::vector<std::string>& rows) {
+  return lattice_from_cells(cells_from_rows(rows), 0.1f, {-0.2f, 0.3f});
 }
 
-inline Lattice2d rectangle(std::size_t columns, std::size_t rows) {
+inline Lattice<2> rectangle(std::size_t columns, std::size_t rows) {
   return lattice_of_rows(std::vector<std::string>(rows, std::string(columns, '#')));
 }
 
 /// The man of the 2D demo.
-inline Lattice2d man132() {
+inline Lattice<2> man132() {
   std::vector<std::string> rows(4, "      ####");
   rows.push_back("       ##");
   rows.insert(rows.end(), 2, "################");

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lattices_2d.h"
+#include "ppu/matching/regions.h"
 #include "sum_list_interpreter.h"
 
 namespace softcell::ppu {
@@ -12,7 +15,7 @@ namespace {
 
 using test::Slots;
 
-MatchingPlan2d<float> matching_of(const Lattice2d& lattice, int half_width) {
+MatchingPlan<float, 2> matching_of(const Lattice<2>& lattice, int half_width) {
   return {lattice, half_width, particle_masses(lattice, 1000)};
 }
 
@@ -25,7 +28,7 @@ TEST(MatchPlan2d, ListsAddUpEveryRegion) {
   for (const auto& [name, lattice] : test::all_lattices_2d()) {
     for (int w = 0; w <= 4; ++w) {
       SCOPED_TRACE(name + ", w = " + std::to_string(w));
-      const MatchingPlan2d<float> matching = matching_of(lattice, w);
+      const MatchingPlan<float, 2> matching = matching_of(lattice, w);
       const MatchPlan2d plan(lattice, matching);
       const spu::MatchPlanHeader2d& header = plan.header();
 
@@ -54,7 +57,7 @@ TEST(MatchPlan2d, ListsAddUpEveryRegion) {
 }
 
 TEST(MatchPlan2d, CostsTheSameForEveryHalfWidth) {
-  const Lattice2d lattice = test::rectangle(31, 31);
+  const Lattice<2> lattice = test::rectangle(31, 31);
   std::vector<double> additions;
   for (int w = 1; w <= 4; ++w)
     additions.push_back(static_cast<double>(MatchPlan2d(lattice, matching_of(lattice, w)).additions()) /
@@ -64,7 +67,7 @@ TEST(MatchPlan2d, CostsTheSameForEveryHalfWidth) {
 }
 
 TEST(MatchPlan2d, IsLaidOutForTransfers) {
-  const Lattice2d lattice = test::man132();
+  const Lattice<2> lattice = test::man132();
   const MatchPlan2d plan(lattice, matching_of(lattice, 2));
   const spu::MatchPlanHeader2d& header = plan.header();
   EXPECT_EQ(header.particles, 132u);
@@ -81,8 +84,17 @@ TEST(MatchPlan2d, IsLaidOutForTransfers) {
   EXPECT_TRUE(spu::match_2d_fits(header));
 }
 
+TEST(MatchPlan2d, SquaresOfTheNumberThatIsDocumentedFitWithRegionsOfAnyWidth) {
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(kParticlesThatFit2d)));
+  ASSERT_EQ(side * side, kParticlesThatFit2d);
+  const Lattice<2> square = test::rectangle(side - 1, side - 1), larger = test::rectangle(side, side);
+  for (int w = 0; w <= kMaxHalfWidth; ++w)
+    EXPECT_NO_THROW(MatchPlan2d(square, matching_of(square, w))) << "w " << w;
+  EXPECT_THROW(MatchPlan2d(larger, matching_of(larger, kMaxHalfWidth)), BodyTooLarge);
+}
+
 TEST(MatchPlan2d, ABodyThatDoesNotFitIsRefusedWithBothSizes) {
-  const Lattice2d lattice = test::rectangle(45, 45);
+  const Lattice<2> lattice = test::rectangle(45, 45);
   try {
     const MatchPlan2d plan(lattice, matching_of(lattice, 2));
     FAIL() << "fits";

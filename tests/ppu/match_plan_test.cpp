@@ -88,7 +88,7 @@ TEST(MatchPlan, ListsAddUpEveryRegion) {
   for (const auto& [name, lattice] : test::all_lattices()) {
     for (int w = 1; w <= 4; ++w) {
       SCOPED_TRACE(name + ", w = " + std::to_string(w));
-      const MatchingPlan<float> matching(lattice, w, particle_masses(lattice, 1000));
+      const MatchingPlan<float, 3> matching(lattice, w, particle_masses(lattice, 1000));
       const MatchPlan plan(lattice, matching);
       const spu::MatchPlanHeader& header = plan.header();
       const auto list = [&](std::uint32_t offset) {
@@ -125,10 +125,10 @@ TEST(MatchPlan, ListsAddUpEveryRegion) {
 }
 
 TEST(MatchPlan, CostsTheSameForEveryHalfWidth) {
-  const Lattice lattice = test::block(9, 9, 9);
+  const Lattice<3> lattice = test::block(9, 9, 9);
   std::vector<double> additions;
   for (int w = 1; w <= 4; ++w) {
-    const MatchingPlan<float> matching(lattice, w, particle_masses(lattice, 1000));
+    const MatchingPlan<float, 3> matching(lattice, w, particle_masses(lattice, 1000));
     additions.push_back(static_cast<double>(MatchPlan(lattice, matching).additions()) / 1000);
   }
   EXPECT_LT(additions[0], 6);
@@ -136,8 +136,8 @@ TEST(MatchPlan, CostsTheSameForEveryHalfWidth) {
 }
 
 TEST(MatchPlan, IsLaidOutForTransfers) {
-  const Lattice lattice = test::block(3, 3, 2);
-  const MatchingPlan<float> matching(lattice, 2, particle_masses(lattice, 1000));
+  const Lattice<3> lattice = test::block(3, 3, 2);
+  const MatchingPlan<float, 3> matching(lattice, 2, particle_masses(lattice, 1000));
   const MatchPlan plan(lattice, matching);
   const spu::MatchPlanHeader& header = plan.header();
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(plan.bytes().data()) % 128, 0u);
@@ -153,8 +153,8 @@ TEST(MatchPlan, IsLaidOutForTransfers) {
 }
 
 TEST(MatchPlan, IdenticalRegionsAreThereOnce) {
-  const Lattice lattice = test::block(8, 7, 1);  // one cell thick: both layers have the same regions
-  const MatchingPlan<float> matching(lattice, 2, particle_masses(lattice, 1000));
+  const Lattice<3> lattice = test::block(8, 7, 1);  // one cell thick: both layers have the same regions
+  const MatchingPlan<float, 3> matching(lattice, 2, particle_masses(lattice, 1000));
   EXPECT_EQ(MatchPlan(lattice, matching).header().regions, lattice.particles.size() / 2);
 }
 

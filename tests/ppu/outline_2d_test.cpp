@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 
 /// Twice the area of a polygon, in cells; positive when it is counter-clockwise.
-int doubled_area(const Lattice2d& lattice, std::span<const std::uint32_t> loop) {
+int doubled_area(const Lattice<2>& lattice, std::span<const std::uint32_t> loop) {
   int area = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Eigen::Vector2i &a = lattice.particles[loop[i]],

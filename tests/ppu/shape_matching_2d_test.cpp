@@ -1,7 +1,7 @@
 // Shape matching in two dimensions keeps what the equations promise, on lattices of every kind, in float and
 // double.
 
-#include "ppu/reference/shape_matching_2d.h"
+#include "ppu/reference/shape_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -17,17 +17,17 @@ using Eigen::Vector2d;
 using Eigen::Vector2i;
 
 /// Lattices by name: a block, an L with a hole, a bar one cell thick, two blocks that do not touch.
-Lattice2d lattice_of(const std::string& name) {
+Lattice<2> lattice_of(const std::string& name) {
   const std::vector<std::string> rows = name == "block" ? std::vector<std::string>{"#####", "#####", "#####"}
                                         : name == "hole"
                                             ? std::vector<std::string>{"####..", "#..#..", "######"}
                                         : name == "bar"   ? std::vector<std::string>{"########"}
                                         : name == "apart" ? std::vector<std::string>{"##..###", "##..###"}
                                                           : std::vector<std::string>{"#"};
-  return lattice_2d_from_cells(cells_from_rows(rows), 0.25f, {1, -2});
+  return lattice_from_cells(cells_from_rows(rows), 0.25f, {1, -2});
 }
 
-std::vector<float> uneven_masses(const Lattice2d& lattice) {
+std::vector<float> uneven_masses(const Lattice<2>& lattice) {
   std::vector<float> masses = particle_masses(lattice, 3);
   for (std::size_t i = 0; i < masses.size(); ++i) masses[i] *= 1 + 0.5f * static_cast<float>(i % 3);
   return masses;
@@ -36,9 +36,9 @@ std::vector<float> uneven_masses(const Lattice2d& lattice) {
 template <typename Real>
 struct Body {
   using Vector = Eigen::Matrix<Real, 2, 1>;
-  Body(const Lattice2d& lattice, int half_width, SumMethod method = SumMethod::kBarPlateCube)
+  Body(const Lattice<2>& lattice, int half_width, SumMethod method = SumMethod::kBarPlateCube)
       : masses(uneven_masses(lattice)),
-        matcher(std::make_shared<const MatchingPlan2d<Real>>(lattice, half_width, masses), method) {
+        matcher(std::make_shared<const MatchingPlan<Real, 2>>(lattice, half_width, masses), method) {
     for (std::size_t i = 0; i < masses.size(); ++i)
       rest.push_back(lattice.rest_position(i).template cast<Real>());
   }
@@ -56,12 +56,12 @@ struct Body {
   }
   std::vector<float> masses;
   std::vector<Vector> rest;
-  ShapeMatcher2d<Real> matcher;
+  ShapeMatcher<Real, 2> matcher;
 };
 
 class Matching2d : public testing::TestWithParam<std::tuple<const char*, int>> {
  protected:
-  Lattice2d lattice_ = lattice_of(std::get<0>(GetParam()));
+  Lattice<2> lattice_ = lattice_of(std::get<0>(GetParam()));
   int w_ = std::get<1>(GetParam());
 };
 
@@ -201,10 +201,10 @@ TEST(Matching2dCases, AllOnOnePointKeepsTheDirection) {
   std::vector<Eigen::Vector2f> x;
   for (const auto& p : body.rest) x.push_back(Eigen::Rotation2Df(1) * p);
   body.goals(x);
-  const Eigen::Vector2f direction = body.matcher.directions()[0];
+  const Eigen::Vector2f direction = body.matcher.rotations()[0];
   EXPECT_NEAR(direction.x(), std::cos(1.0f), 1e-5f);
   body.goals(std::vector<Eigen::Vector2f>(x.size(), Eigen::Vector2f(4, 4)));
-  EXPECT_EQ(body.matcher.directions()[0], direction);
+  EXPECT_EQ(body.matcher.rotations()[0], direction);
 }
 
 /// E / rho = (s/h)^2 alpha w (w+1) / 3 for long waves: the transfer of a plane wave of displacement.
@@ -213,9 +213,10 @@ TEST(Matching2dCases, StiffnessIsThatOfTheFormula) {
   std::vector<Vector2i> cells;
   for (int x = 0; x < kLength; ++x)
     for (int y = 0; y < kHeight; ++y) cells.push_back({x, y});
-  const Lattice2d lattice = lattice_2d_from_cells(cells, 1);
+  const Lattice<2> lattice = lattice_from_cells(cells, 1);
   const std::vector<float> masses(lattice.particles.size(), 1.0f);
-  ShapeMatcher2d<double> matcher(std::make_shared<const MatchingPlan2d<double>>(lattice, kHalfWidth, masses));
+  ShapeMatcher<double, 2> matcher(
+      std::make_shared<const MatchingPlan<double, 2>>(lattice, kHalfWidth, masses));
   const double wave = 2 * 3.14159265358979 / 32, amplitude = 1e-4;
   std::vector<Vector2d> x(masses.size()), g(masses.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -233,7 +234,7 @@ TEST(Matching2dCases, StiffnessIsThatOfTheFormula) {
 }
 
 TEST(Matching2dCases, BadArgumentsAreNamed) {
-  const Lattice2d lattice = lattice_of("block");
+  const Lattice<2> lattice = lattice_of("block");
   Body<float> body(lattice, 1);
   auto x = body.rest;
   std::vector<Eigen::Vector2f> v(x.size(), {0, 0});
@@ -250,7 +251,7 @@ TEST(Matching2dCases, BadArgumentsAreNamed) {
 
 TEST(Lattice2d, FromRowsOfText) {
   const std::vector<std::string> rows{"#.", "##"};
-  const Lattice2d lattice = lattice_2d_from_cells(cells_from_rows(rows), 0.5f, {1, 1});
+  const Lattice<2> lattice = lattice_from_cells(cells_from_rows(rows), 0.5f, {1, 1});
   EXPECT_EQ(lattice.cells, (std::vector<Vector2i>{{0, 0}, {0, 1}, {1, 0}}));
   EXPECT_EQ(lattice.particles.size(), 8u);
   EXPECT_EQ(lattice.rest_position(7), Eigen::Vector2f(2, 1.5f));
@@ -275,11 +276,11 @@ TEST(Lattice2d, BadOnesAreNamed) {
   const std::vector<std::string> rows{"##", "#x"};
   EXPECT_EQ(message([&] { cells_from_rows(rows); }),
             "a lattice's rows are made of '#', '.' and ' '; row 2 has 'x' in column 2");
-  EXPECT_NE(message([] { lattice_2d_from_cells({}, 1); }).find("at least one cell"), std::string::npos);
-  const std::vector<Vector2i> far_apart{{0, 0}, {300, 0}};
-  EXPECT_NE(message([&] { lattice_2d_from_cells(far_apart, 1); }).find("301 along x"), std::string::npos);
-  EXPECT_NE(message([&] { lattice_2d_from_cells(far_apart, -1); }).find("positive number"),
+  EXPECT_NE(message([] { lattice_from_cells(std::vector<Vector2i>{}, 1); }).find("at least one cell"),
             std::string::npos);
+  const std::vector<Vector2i> far_apart{{0, 0}, {300, 0}};
+  EXPECT_NE(message([&] { lattice_from_cells(far_apart, 1); }).find("301 along x"), std::string::npos);
+  EXPECT_NE(message([&] { lattice_from_cells(far_apart, -1); }).find("positive number"), std::string::npos);
 }
 
 }  // namespace

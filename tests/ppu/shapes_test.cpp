@@ -63,7 +63,7 @@ TEST_P(Shapes, HasUnitNormalsThatPointOutwards) {
 }
 
 TEST_P(Shapes, IsCentredAndAsLargeAsAsked) {
-  const Bounds box = bounds(GetParam().make());
+  const Bounds<3> box = bounds(GetParam().make());
   EXPECT_LT((box.low + box.high).cwiseAbs().maxCoeff(), 1e-6f);
   EXPECT_LT((box.high - box.low - GetParam().size).cwiseAbs().maxCoeff(), 0.01f)
       << (box.high - box.low).transpose();
@@ -87,7 +87,7 @@ TEST(Torus, KeepsItsTubeRadius) {
 TEST(MarkedCells, FillTwoCellsOfALatticeAndNoMore) {
   const Eigen::Vector3f ball(0.2f, 0.7f, 0.5f);
   const TriangleMesh mesh = make_marked_cells(0.5f, ball);
-  const Lattice lattice = voxelize(mesh, 0.5f);
+  const Lattice<3> lattice = voxelize(mesh, 0.5f);
   EXPECT_EQ(lattice.cells.size(), 2u);
   EXPECT_EQ(lattice.particles.size(), 12u);
   // The ball's middle is where it was asked for: its vertices lie around it.
@@ -121,7 +121,7 @@ TEST(Car, HasAnAntennaAsHighAsTheCarIsLong) {
 
 TEST(Penguin, LooksTowardsZAndIsTheSameOnBothSides) {
   const TriangleMesh penguin = make_penguin(2);
-  const Bounds box = bounds(penguin);
+  const Bounds<3> box = bounds(penguin);
   const auto foremost = std::max_element(penguin.positions.begin(), penguin.positions.end(),
                                          [](const auto& a, const auto& b) { return a.z() < b.z(); });
   EXPECT_GT(foremost->y(), 0.5f * box.high.y());  // the beak

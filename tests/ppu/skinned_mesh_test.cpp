@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-std::shared_ptr<const SoftBodyModel> penguin() {
+std::shared_ptr<const SoftBodyModel<3>> penguin() {
   TriangleMesh mesh = make_penguin(1);
   for (const Vector3f& p : mesh.positions) mesh.texture_coordinates.emplace_back(p.x(), p.y());
   mesh.parts = {{.object = "penguin",
@@ -27,7 +27,7 @@ std::shared_ptr<const SoftBodyModel> penguin() {
 }
 
 /// Every particle a little elsewhere.
-void shake(SoftBody& body) {
+void shake(SoftBody<3>& body) {
   for (std::size_t i = 0; i < body.positions().size(); ++i) {
     const auto n = static_cast<float>(i % 7);
     body.set_particle(i, body.position(i) + Vector3f(0.003f * n, 0.002f * (3 - n), 0.001f * n), {0, 0, 0});
@@ -42,7 +42,7 @@ TEST(SkinnedMesh, AtRestItIsTheMeshAsGiven) {
   SkinnedMesh skin(model);
   EXPECT_EQ(skin.mesh(), mesh);
   const Vector3f at(1, 2, 3);
-  skin.update(SoftBody(model, at));
+  skin.update(SoftBody<3>(model, at));
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     ASSERT_LT((skin.positions()[v] - at - mesh.positions[v]).norm(), 1e-6f) << v;
     ASSERT_LT((skin.normals()[v] - mesh.normals[v]).norm(), 1e-5f) << v;
@@ -51,7 +51,7 @@ TEST(SkinnedMesh, AtRestItIsTheMeshAsGiven) {
 
 TEST(SkinnedMesh, TurnsWithTheBody) {
   const auto model = penguin();
-  SoftBody body(model);
+  SoftBody<3> body(model);
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(0.7f, Vector3f(1, 2, 3).normalized()));
   const Vector3f centre = body.centre_of_mass();
   body.move_without_force(turn, {0, 1, 0});
@@ -66,7 +66,7 @@ TEST(SkinnedMesh, TurnsWithTheBody) {
 
 TEST(SkinnedMesh, IsTheOraclesWhenDeformed) {
   const auto model = penguin();
-  SoftBody body(model);
+  SoftBody<3> body(model);
   shake(body);
   SkinnedMesh skin(model);
   skin.update(body);
@@ -85,7 +85,7 @@ TEST(SkinnedMesh, IsTheOraclesWhenDeformed) {
 
 TEST(SkinnedMesh, RefusesAnotherModelsBodyAndWrongSizes) {
   SkinnedMesh skin_of_one(penguin());
-  const SoftBody other(penguin());
+  const SoftBody<3> other(penguin());
   EXPECT_THROW(skin_of_one.update(other), std::invalid_argument);
   std::vector<Vector3f> few(3);
   EXPECT_THROW(skin(other, few, few), std::invalid_argument);
@@ -95,7 +95,7 @@ TEST(SkinnedMesh, AModelWithoutAMeshHasNoVertices) {
   const std::vector<Eigen::Vector3i> cells{{0, 0, 0}, {1, 0, 0}};
   const auto model = make_soft_body_model(lattice_from_cells(cells, 0.1f, {0, 0, 0}), {.cell_size = 0.1f});
   SkinnedMesh skin(model);
-  skin.update(SoftBody(model));
+  skin.update(SoftBody<3>(model));
   EXPECT_TRUE(skin.positions().empty());
 }
 

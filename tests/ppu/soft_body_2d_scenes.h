@@ -14,14 +14,14 @@
 namespace softcell::ppu {
 
 /// A rectangle of cells, centred on 0 in x, its lowest particles at y = 0.
-inline std::shared_ptr<const SoftBodyModel2d> rectangle_model(const Eigen::Vector2i& cells,
-                                                              const SoftBodySettings& settings,
-                                                              float contact_radius_in_cells = 0.5f) {
+inline std::shared_ptr<const SoftBodyModel<2>> rectangle_model(const Eigen::Vector2i& cells,
+                                                               const SoftBodySettings& settings,
+                                                               float contact_radius_in_cells = 0.5f) {
   std::vector<Eigen::Vector2i> all;
   for (int x = 0; x < cells.x(); ++x)
     for (int y = 0; y < cells.y(); ++y) all.push_back({x, y});
   const Eigen::Vector2f origin(-0.5f * settings.cell_size * static_cast<float>(cells.x()), 0);
-  return make_soft_body_model(lattice_2d_from_cells(all, settings.cell_size, origin), settings,
+  return make_soft_body_model(lattice_from_cells(all, settings.cell_size, origin), settings,
                               contact_radius_in_cells);
 }
 

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "ppu/bullet/bullet_world.h"
-#include "ppu/matching/regions.h"
-#include "ppu/reference/shape_matching.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/lattice.h"
 #include "softcell/soft_bodies/soft_body.h"
@@ -19,8 +17,8 @@ inline constexpr float kFrame = 1.0f / 60;
 
 /// A block of cells, its lowest particles at y = 0, centred on 0 in x and z. A block of n cells along each
 /// edge has (n + 1)^3 particles.
-inline std::shared_ptr<const SoftBodyModel> block_model(const Eigen::Vector3i& cells,
-                                                        const SoftBodySettings& settings) {
+inline std::shared_ptr<const SoftBodyModel<3>> block_model(const Eigen::Vector3i& cells,
+                                                           const SoftBodySettings& settings) {
   std::vector<Eigen::Vector3i> all;
   for (int x = 0; x < cells.x(); ++x)
     for (int y = 0; y < cells.y(); ++y)
@@ -42,20 +40,7 @@ struct World {
   }
 };
 
-/// The longest distance of a particle from where the rigid motion that fits best would have it, in metres.
-inline float deformation(const SoftBody& body) {
-  std::vector<Eigen::Vector3f> x(body.model().particles()), goals(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = body.position(i);
-  // One region that holds the whole body.
-  const auto rigid =
-      std::make_shared<MatchingPlan<float>>(body.model().lattice(), kMaxHalfWidth, body.model().masses());
-  ShapeMatcher<float>(rigid).goals(x, goals);
-  float longest = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) longest = std::max(longest, (x[i] - goals[i]).norm());
-  return longest;
-}
-
-inline float fastest(const SoftBody& body) {
+inline float fastest(const SoftBody<3>& body) {
   float speed = 0;
   for (const Eigen::Vector3f& v : body.velocities()) speed = std::max(speed, v.norm());
   return speed;

@@ -85,8 +85,8 @@ TEST(SoftBodyModel, RefusesALatticeOfAnotherSpacing) {
 }
 
 /// A body that moves, turns and is out of shape.
-SoftBody moving_body() {
-  SoftBody body(block_model({4, 3, 2}, rubber()), {1, 2, 3});
+SoftBody<3> moving_body() {
+  SoftBody<3> body(block_model({4, 3, 2}, rubber()), {1, 2, 3});
   body.add_velocity({1, -2, 0.5f});
   body.add_angular_velocity({0.5f, 1, -2});
   for (std::size_t i = 0; i < body.model().particles(); ++i) {
@@ -97,7 +97,7 @@ SoftBody moving_body() {
 }
 
 TEST(SoftBody, BeginsAtRestInItsPlace) {
-  const SoftBody body(block_model({2, 2, 2}, rubber()), {1, 2, 3});
+  const SoftBody<3> body(block_model({2, 2, 2}, rubber()), {1, 2, 3});
   EXPECT_TRUE(body.bounds().low.isApprox(Vector3f(0.8f, 2, 2.8f)));
   EXPECT_TRUE(body.bounds().high.isApprox(Vector3f(1.2f, 2.4f, 3.2f)));
   EXPECT_TRUE(body.centre_of_mass().isApprox(Vector3f(1, 2.2f, 3)));
@@ -105,7 +105,7 @@ TEST(SoftBody, BeginsAtRestInItsPlace) {
 }
 
 TEST(SoftBody, PaddedPositionsAreAlwaysThePositions) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const auto check = [&](const char* after) {
     for (std::size_t i = 0; i < body.positions().size(); ++i) {
       const Eigen::Vector4f& padded = body.padded_positions()[i];
@@ -125,7 +125,7 @@ TEST(SoftBody, PaddedPositionsAreAlwaysThePositions) {
 }
 
 TEST(SoftBody, InnerParticlesAreIntegratedInBulletsOrder) {
-  SoftBody body(block_model({4, 4, 4}, rubber()));
+  SoftBody<3> body(block_model({4, 4, 4}, rubber()));
   const std::uint32_t inner = body.model().inner()[0];
   const Vector3f x = body.position(inner);
   body.advance_inner(0.1f, {0, -10, 0});
@@ -135,7 +135,7 @@ TEST(SoftBody, InnerParticlesAreIntegratedInBulletsOrder) {
 }
 
 TEST(SoftBody, PullsConserveMomentum) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const Vector3f p = body.linear_momentum(), l = body.angular_momentum();
   const auto before = body.velocities()[0];
   body.pull(1.0f / 60);
@@ -145,7 +145,7 @@ TEST(SoftBody, PullsConserveMomentum) {
 }
 
 TEST(SoftBody, ASpeedLimitSlowsOnlyWhatIsFaster) {
-  SoftBody body(block_model({1, 1, 1}, rubber()));
+  SoftBody<3> body(block_model({1, 1, 1}, rubber()));
   body.set_particle(0, body.position(0), {3, 0, 4});
   body.set_particle(1, body.position(1), {0, 0.5f, 0});
   body.limit_speed(1);
@@ -154,7 +154,7 @@ TEST(SoftBody, ASpeedLimitSlowsOnlyWhatIsFaster) {
 }
 
 TEST(SoftBody, ATeleportTurnsVelocitiesWithTheBody) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const auto revision = body.revision();
   const Vector3f centre = body.centre_of_mass(), p = body.linear_momentum(), l = body.angular_momentum();
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(2, Vector3f(1, 2, -1).normalized()));
@@ -164,7 +164,7 @@ TEST(SoftBody, ATeleportTurnsVelocitiesWithTheBody) {
   EXPECT_TRUE(body.linear_momentum().isApprox(turn * p, 1e-4f));
   EXPECT_TRUE(body.angular_momentum().isApprox(turn * l, 1e-3f));
   // The shape is the same: the next pull does the same in the turned frame.
-  SoftBody still = moving_body();
+  SoftBody<3> still = moving_body();
   still.pull(1.0f / 60);
   body.pull(1.0f / 60);
   for (std::size_t i = 0; i < body.velocities().size(); ++i) {
@@ -173,14 +173,14 @@ TEST(SoftBody, ATeleportTurnsVelocitiesWithTheBody) {
 }
 
 TEST(SoftBody, ResetTakesAwayTheDeformationOnly) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(2.5f, Vector3f(1, 2, -1).normalized()));
   body.move_without_force(turn, {0, 0, 0});
   const Vector3f centre = body.centre_of_mass(), p = body.linear_momentum(), l = body.angular_momentum();
   const Vector3f diagonal = turn * (moving_body().position(59) - moving_body().position(0));
-  ASSERT_GT(deformation(body), 0.02f);
+  ASSERT_GT(body.deformation(), 0.02f);
   body.reset_deformation();
-  EXPECT_LT(deformation(body), 1e-5f);
+  EXPECT_LT(body.deformation(), 1e-5f);
   EXPECT_TRUE(body.centre_of_mass().isApprox(centre, 1e-5f));
   EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
   EXPECT_TRUE(body.angular_momentum().isApprox(l, 1e-3f));
@@ -192,9 +192,9 @@ TEST(SoftBody, ResetTakesAwayTheDeformationOnly) {
 }
 
 TEST(SoftBody, ACopyIsASavedState) {
-  SoftBody body = moving_body();
+  SoftBody<3> body = moving_body();
   body.pull(1.0f / 60);
-  const SoftBody saved = body;
+  const SoftBody<3> saved = body;
   const auto run = [&] {
     for (int i = 0; i < 5; ++i) body.pull(1.0f / 60);
     return state_hash(body);
@@ -205,14 +205,80 @@ TEST(SoftBody, ACopyIsASavedState) {
 }
 
 TEST(StateHash, SeesEveryParticleVelocityAndTheOrderOfBodies) {
-  SoftBody a = moving_body(), b = moving_body();
+  SoftBody<3> a = moving_body(), b = moving_body();
   EXPECT_EQ(state_hash(a), state_hash(b));
   b.set_particle(7, b.position(7), b.velocities()[7] + Vector3f(0, 0, 1e-6f));
   EXPECT_NE(state_hash(a), state_hash(b));
-  const SoftBody* ab[] = {&a, &b};
-  const SoftBody* ba[] = {&b, &a};
+  const SoftBody<3>* ab[] = {&a, &b};
+  const SoftBody<3>* ba[] = {&b, &a};
   EXPECT_NE(state_hash(ab), state_hash(ba));
   EXPECT_EQ(state_hash(ab), state_hash(b, state_hash(a)));
+}
+
+// In two dimensions likewise.
+
+SoftBody<2> plane_body() {
+  std::vector<Eigen::Vector2i> cells;
+  for (int x = 0; x < 4; ++x)
+    for (int y = 0; y < 3; ++y) cells.push_back({x, y});
+  SoftBody<2> body(make_soft_body_model(lattice_from_cells(cells, 0.2f), {.cell_size = 0.2f, .density = 5}));
+  for (std::size_t i = 0; i < body.model().particles(); ++i) {
+    const Eigen::Vector2f x = body.position(i);
+    body.set_particle(i, x + Eigen::Vector2f(0.3f * x.y() * x.y(), 0.1f * x.x()),
+                      {1 - x.y(), 2 + 0.5f * x.x() * x.x()});
+  }
+  return body;
+}
+
+TEST(SoftBody2d, TeleportsAsARigidBody) {
+  SoftBody<2> body = plane_body();
+  const Eigen::Vector2f centre = body.centre_of_mass(), p = body.linear_momentum();
+  const float l = body.angular_momentum(), bent = body.deformation();
+  const Eigen::Rotation2Df turn(0.7f);
+  const std::uint32_t resets = body.resets(), revision = body.revision();
+  body.move_without_force(turn, {5, -1});
+  EXPECT_TRUE(body.centre_of_mass().isApprox(centre + Eigen::Vector2f(5, -1), 1e-5f));
+  EXPECT_TRUE(body.linear_momentum().isApprox(turn * p, 1e-4f));
+  EXPECT_NEAR(body.angular_momentum(), l, 1e-3f * std::abs(l));
+  EXPECT_NEAR(body.deformation(), bent, 1e-4f);
+  EXPECT_NE(body.resets(), resets);
+  EXPECT_NE(body.revision(), revision);
+}
+
+TEST(SoftBody2d, GetsItsShapeBackAndKeepsWhatMoves) {
+  SoftBody<2> body = plane_body();
+  ASSERT_GT(body.deformation(), 0.02f);
+  const Eigen::Vector2f centre = body.centre_of_mass(), p = body.linear_momentum();
+  const float l = body.angular_momentum();
+  ASSERT_GT(std::abs(l), 0.01f);
+  body.reset_deformation();
+  EXPECT_LT(body.deformation(), 1e-5f);
+  EXPECT_TRUE(body.centre_of_mass().isApprox(centre, 1e-5f));
+  EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
+  EXPECT_NEAR(body.angular_momentum(), l, 1e-3f * std::abs(l));
+}
+
+TEST(SoftBody2d, TurnsAboutItsCentre) {
+  SoftBody<2> body = plane_body();
+  const Eigen::Vector2f p = body.linear_momentum();
+  const float before = body.angular_momentum();
+  body.add_angular_velocity(2);
+  EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
+  float inertia = 0;
+  for (std::size_t i = 0; i < body.model().particles(); ++i)
+    inertia += body.model().masses()[i] * (body.position(i) - body.centre_of_mass()).squaredNorm();
+  EXPECT_NEAR(body.angular_momentum(), before + 2 * inertia, 1e-3f * inertia);
+}
+
+TEST(SoftBody2d, WithoutContactsAllParticlesAreInner) {
+  SoftBodySettings settings{.cell_size = 0.2f, .density = 5};
+  settings.contacts = false;
+  const std::vector<Eigen::Vector2i> cells{{0, 0}, {1, 0}};
+  SoftBody<2> body(make_soft_body_model(lattice_from_cells(cells, 0.2f), settings));
+  EXPECT_TRUE(body.model().outer().empty());
+  EXPECT_EQ(body.model().inner().size(), 6u);
+  body.keep_inner_inside();  // inside of nothing
+  EXPECT_TRUE(body.positions()[5].allFinite());
 }
 
 }  // namespace

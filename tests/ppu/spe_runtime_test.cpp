@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-std::shared_ptr<const SoftBodyModel> ball() {
+std::shared_ptr<const SoftBodyModel<3>> ball() {
   TriangleMesh mesh = make_sphere(0.5f, 8);
   for (const Vector3f& p : mesh.positions) mesh.texture_coordinates.emplace_back(p.x(), p.z());
   return make_soft_body_model(mesh, {.cell_size = 0.2f});
@@ -32,7 +32,7 @@ std::uint64_t fall(SolverFactory& solvers, int frames) {
   BulletWorld bullet;
   BulletSoftBodies bodies(bullet.world(), solvers);
   bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f);
-  const SoftBody& body = bodies.add(ball(), {0, 0.8f, 0});
+  const SoftBody<3>& body = bodies.add(ball(), {0, 0.8f, 0});
   for (int i = 0; i < frames; ++i) bullet.step(kFrame, 2);
   EXPECT_LT(body.centre_of_mass().y(), 0.79f);  // it may have bounced
   EXPECT_GT(body.centre_of_mass().y(), 0.3f);
@@ -41,10 +41,10 @@ std::uint64_t fall(SolverFactory& solvers, int frames) {
 
 TEST(SpeRuntime, StepsBodiesAsAnSpeSolverDoesThatWasPutTogetherByHand) {
   struct ByHand final : SolverFactory {
-    std::unique_ptr<SoftBodySolver> make_solver() override {
-      return std::make_unique<SpeSolver>(memory, jobs, match, match_tiles);
+    std::unique_ptr<SoftBodySolver<3>> make_solver() override {
+      return std::make_unique<SpeSolver<3>>(memory, jobs, MatchKernels<3>{match, match_tiles});
     }
-    std::unique_ptr<Solver2d> make_solver_2d() override { return nullptr; }
+    std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override { return nullptr; }
     dma::AddressSpace memory;
     ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match = test::kernel_image("match"),
                         match_tiles = test::kernel_image("match_tiles");
@@ -95,7 +95,7 @@ Vector3f position_of(const SkinnedVertices& skinned, std::size_t slot) {
 TEST(SpeSkinner, VerticesAreTheMeshsInTheOrderThatItStates) {
   SpeRuntime spes({.spes = 2});
   SpeSkinner skinner(spes);
-  SoftBody body(ball(), {3, 2, 1});
+  SoftBody<3> body(ball(), {3, 2, 1});
   body.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(1, Vector3f::UnitY())), {0, 0, 0});
   skinner.add(body);
   EXPECT_TRUE(skinner.vertices(body).vertices.empty());
@@ -125,7 +125,7 @@ TEST(SpeSkinner, VerticesAreTheMeshsInTheOrderThatItStates) {
 TEST(SpeSkinner, ShowsTheFrameBefore) {
   SpeRuntime spes({.spes = 1});
   SpeSkinner skinner(spes);
-  SoftBody body(ball());
+  SoftBody<3> body(ball());
   skinner.add(body);
   const auto begin = [&] {
     while (!skinner.begin_frame()) {  // the SPEs are not yet done
@@ -147,7 +147,7 @@ TEST(SpeSkinner, BodiesComeAndGo) {
   SpeRuntime spes({.spes = 2});
   SpeSkinner skinner(spes);
   const auto model = ball();
-  SoftBody first(model), second(model, {5, 0, 0}), third(model, {9, 0, 0});
+  SoftBody<3> first(model), second(model, {5, 0, 0}), third(model, {9, 0, 0});
   skinner.add(first);
   skinner.add(second);
   ASSERT_TRUE(skinner.begin_frame());
@@ -176,7 +176,7 @@ TEST(SpeSkinner, BodiesComeAndGo) {
 TEST(SpeSkinner, RefusesAModelWithoutAMesh) {
   SpeRuntime spes({.spes = 1});
   SpeSkinner skinner(spes);
-  const SoftBody block(block_model({2, 2, 2}, {.cell_size = 0.1f}));
+  const SoftBody<3> block(block_model({2, 2, 2}, {.cell_size = 0.1f}));
   EXPECT_THROW(skinner.add(block), std::invalid_argument);
   EXPECT_TRUE(skinner.begin_frame());  // nothing to do is no mistake
   skinner.finish_frame();

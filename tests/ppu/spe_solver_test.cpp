@@ -34,7 +34,7 @@ struct SpeWorld {
       : match(test::kernel_image("match", options.findings != nullptr)),
         match_tiles(test::kernel_image("match_tiles", options.findings != nullptr)),
         jobs(memory, options, job_loop),
-        solver(memory, jobs, match, match_tiles),
+        solver(memory, jobs, {match, match_tiles}),
         soft(bullet.world(), solver) {}
 
   void add_floor() { bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f); }
@@ -50,13 +50,13 @@ struct SpeWorld {
   dma::AddressSpace memory;
   ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match, match_tiles;
   JobSystem jobs;
-  SpeSolver solver;
+  SpeSolver<3> solver;
   BulletWorld bullet;
   BulletSoftBodies soft;
 };
 
 /// Bent, and moving in a way that no rigid body does.
-void bend(SoftBody& body) {
+void bend(SoftBody<3>& body) {
   for (std::size_t i = 0; i < body.model().particles(); ++i) {
     const Vector3f x = body.position(i);
     body.set_particle(i, x + Vector3f(0.3f * x.y() * x.y(), 0, 0), {x.z(), 0.5f * x.x() * x.x(), -x.y()});
@@ -67,12 +67,12 @@ void bend(SoftBody& body) {
 TEST(SpeSolver, AgreesWithThePpuInOneStepFromTheSameState) {
   const auto model = block_model({5, 4, 3}, rubber());
   SpeWorld world;
-  SoftBody on_spe(model), on_ppu(model);
+  SoftBody<3> on_spe(model), on_ppu(model);
   bend(on_spe);
   bend(on_ppu);
-  SoftBody* const one[] = {&on_spe};
-  PpuSolver ppu;
-  SoftBody* const other[] = {&on_ppu};
+  SoftBody<3>* const one[] = {&on_spe};
+  PpuSolver<3> ppu;
+  SoftBody<3>* const other[] = {&on_ppu};
   const float size = 0.2f * 5;
   constexpr float kStep = 1.0f / 120;
   for (int step = 0; step < 3; ++step) {
@@ -96,8 +96,8 @@ std::uint64_t hash_of_a_run(const ls_sim::SpeOptions& options, bool ahead) {
   SpeWorld world(options);
   world.add_floor();
   const auto block = block_model({3, 3, 3}, rubber()), bar = block_model({6, 1, 2}, rubber());
-  const SoftBody* const bodies[] = {&world.soft.add(block, {0, 1, 0}), &world.soft.add(bar, {0.5f, 2, 0}),
-                                    &world.soft.add(block, {0.2f, 3, 0})};
+  const SoftBody<3>* const bodies[] = {&world.soft.add(block, {0, 1, 0}), &world.soft.add(bar, {0.5f, 2, 0}),
+                                       &world.soft.add(block, {0.2f, 3, 0})};
   for (int frame = 0; frame < 60; ++frame) {
     world.bullet.step(kFrame, 2);
     if (frame == 30) world.soft[0].add_velocity({1, 2, 0});
@@ -143,7 +143,7 @@ TEST(SpeSolver, WorkBegunAheadChangesNothing) {
 
 TEST(SpeSolver, WorkBegunAheadIsDoneAgainWhenABodyIsPushedOrTheStepIsAnother) {
   SpeWorld world;
-  SoftBody& body = world.soft.add(block_model({2, 2, 2}, rubber()), {0, 0, 0});
+  SoftBody<3>& body = world.soft.add(block_model({2, 2, 2}, rubber()), {0, 0, 0});
   world.bullet.set_gravity(Vector3f::Zero());
   world.soft.begin_ahead(kFrame);
   body.add_velocity({1, 0, 0});
@@ -166,10 +166,10 @@ TEST(SpeSolver, AWorldWithoutSoftBodiesStepsToo) {
 TEST(SpeSolver, RestsOnAFloorInShape) {
   SpeWorld world;
   world.add_floor();
-  SoftBody& body = world.soft.add(block_model({4, 4, 4}, rubber()), {0, 0.3f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({4, 4, 4}, rubber()), {0, 0.3f, 0});
   world.run(600);
   EXPECT_LT(fastest(body), 0.02f);
-  EXPECT_LT(deformation(body), 0.05f * 0.8f);
+  EXPECT_LT(body.deformation(), 0.05f * 0.8f);
   EXPECT_GT(body.bounds().low.y(), 0);
 }
 
@@ -177,10 +177,10 @@ TEST(SpeSolver, BodiesComeAndGoAndTheOthersKeepTheirShape) {
   SpeWorld world;
   world.bullet.set_gravity(Vector3f::Zero());
   const auto block = block_model({3, 2, 2}, rubber()), bar = block_model({5, 1, 1}, rubber());
-  SoftBody& first = world.soft.add(block, {0, 0, 0});
-  SoftBody& second = world.soft.add(bar, {0, 3, 0});
+  SoftBody<3>& first = world.soft.add(block, {0, 0, 0});
+  SoftBody<3>& second = world.soft.add(bar, {0, 3, 0});
   world.run(2);
-  SoftBody& third = world.soft.add(block, {0, 6, 0});
+  SoftBody<3>& third = world.soft.add(block, {0, 6, 0});
   first.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(2.5f, Vector3f(1, 2, 3).normalized())),
                            {4, 0, 0});
   world.run(2);
@@ -188,15 +188,15 @@ TEST(SpeSolver, BodiesComeAndGoAndTheOthersKeepTheirShape) {
   world.soft.remove(second);
   world.run(2);
   EXPECT_LT(fastest(first), 1e-3f);  // a teleported body has no reason to move
-  EXPECT_LT(deformation(first), 1e-4f);
+  EXPECT_LT(first.deformation(), 1e-4f);
   EXPECT_LT(fastest(third), 1e-3f);
 }
 
 /// More particles than a local store holds.
-std::shared_ptr<const SoftBodyModel> large_model() { return block_model({11, 10, 10}, rubber()); }
+std::shared_ptr<const SoftBodyModel<3>> large_model() { return block_model({11, 10, 10}, rubber()); }
 
 /// What no local store holds, not even in tiles: a row and those that it needs are too high.
-std::shared_ptr<const SoftBodyModel> huge_model() {
+std::shared_ptr<const SoftBodyModel<3>> huge_model() {
   SoftBodySettings wide = rubber();
   wide.half_width = 8;
   wide.contacts = false;
@@ -207,11 +207,11 @@ TEST(SpeSolver, ABodyTooLargeForALocalStoreIsSteppedInTiles) {
   const auto large = large_model(), small = block_model({2, 2, 2}, rubber());
   ASSERT_THROW(MatchPlan(large->lattice(), *large->plan()), BodyTooLarge);
   SpeWorld world;
-  SoftBody on_spe(large), other(small), on_ppu(large);
-  for (SoftBody* const body : {&on_spe, &other, &on_ppu}) bend(*body);
-  SoftBody* const both[] = {&on_spe, &other};
-  PpuSolver ppu;
-  SoftBody* const one[] = {&on_ppu};
+  SoftBody<3> on_spe(large), other(small), on_ppu(large);
+  for (SoftBody<3>* const body : {&on_spe, &other, &on_ppu}) bend(*body);
+  SoftBody<3>* const both[] = {&on_spe, &other};
+  PpuSolver<3> ppu;
+  SoftBody<3>* const one[] = {&on_ppu};
   constexpr float kStep = 1.0f / 120, kSize = 0.2f * 11;
   for (int step = 0; step < 3; ++step) {
     const std::uint64_t before = world.jobs_done();
@@ -234,14 +234,14 @@ TEST(SpeSolver, ABodyTooHighForTilesIsSteppedByThePpu) {
   ASSERT_THROW(TilePlan(huge->lattice(), *huge->plan()), BodyTooLarge);
   SpeWorld world;
   world.bullet.set_gravity(Vector3f::Zero());
-  SoftBody& body = world.soft.add(huge, {0, 0, 0});
-  SoftBody& small = world.soft.add(block_model({2, 2, 2}, rubber()), {9, 0, 0});
+  SoftBody<3>& body = world.soft.add(huge, {0, 0, 0});
+  SoftBody<3>& small = world.soft.add(block_model({2, 2, 2}, rubber()), {9, 0, 0});
   body.add_particle_velocity(0, {1, 0, 0});
   bend(small);
-  const float before_small = deformation(small);
+  const float before_small = small.deformation();
   world.run(1);
   EXPECT_LT(body.velocities()[0].x(), 0.9f);
-  EXPECT_LT(deformation(small), before_small);
+  EXPECT_LT(small.deformation(), before_small);
 }
 
 /// A large body and a small one, pushed, moved and left alone, in tiles where they do not fit.
@@ -250,10 +250,10 @@ std::uint64_t hash_of_a_large_run(const ls_sim::SpeOptions& options) {
   world.bullet.set_gravity({0, -2, 0});
   SoftBodySettings settings = rubber();
   settings.contacts = false;
-  SoftBody& large = world.soft.add(block_model({12, 11, 9}, settings), {0, 0, 0});
-  SoftBody& small = world.soft.add(block_model({2, 3, 2}, settings), {0, 5, 0});
+  SoftBody<3>& large = world.soft.add(block_model({12, 11, 9}, settings), {0, 0, 0});
+  SoftBody<3>& small = world.soft.add(block_model({2, 3, 2}, settings), {0, 5, 0});
   bend(large);
-  const SoftBody* const bodies[] = {&large, &small};
+  const SoftBody<3>* const bodies[] = {&large, &small};
   world.run(4);
   large.add_velocity({0, 1, 0});
   world.soft.begin_ahead(kFrame / 2);
@@ -289,10 +289,10 @@ TEST(SpeSolver, ABodyKeepsItsRotationsWhenOthersComeAndGo) {
     const auto hash_of_a_run = [&](bool others) {
       SpeWorld world;
       world.bullet.set_gravity(Vector3f::Zero());
-      SoftBody& body = world.soft.add(model, {0, 0, 0});
+      SoftBody<3>& body = world.soft.add(model, {0, 0, 0});
       bend(body);
       world.run(2);
-      SoftBody* const other = others ? &world.soft.add(model, {0, 9, 0}) : nullptr;
+      SoftBody<3>* const other = others ? &world.soft.add(model, {0, 9, 0}) : nullptr;
       world.run(2);
       if (other != nullptr) world.soft.remove(*other);
       world.run(2);
@@ -306,12 +306,12 @@ TEST(SpeSolver, ABodyForgetsItsRotationsWhenItIsTeleported) {
   for (const auto& model : {block_model({3, 3, 3}, rubber()), large_model()}) {
     SpeWorld world, anew;
     for (SpeWorld* const each : {&world, &anew}) each->bullet.set_gravity(Vector3f::Zero());
-    SoftBody& body = world.soft.add(model, {0, 0, 0});
+    SoftBody<3>& body = world.soft.add(model, {0, 0, 0});
     bend(body);
     world.run(2);
     body.move_without_force(Eigen::Quaternionf(Eigen::AngleAxisf(0.2f, Vector3f(1, 2, 3).normalized())),
                             {4, 0, 0});
-    SoftBody& fresh = anew.soft.add(model, {0, 0, 0});
+    SoftBody<3>& fresh = anew.soft.add(model, {0, 0, 0});
     fresh = body;
     world.run(1);
     anew.run(1);
@@ -332,7 +332,7 @@ TEST(SpeSolver, ALargeBodyStaysWithTheSpesWhenThereIsNoRoomForAnother) {
     } catch (const std::runtime_error&) {  // then less of it
     }
   }
-  SoftBody& second = world.soft.add(model, {0, 9, 0});
+  SoftBody<3>& second = world.soft.add(model, {0, 9, 0});
   EXPECT_THROW(world.run(1), std::runtime_error);
   world.soft.remove(second);
   rest.clear();
@@ -343,7 +343,7 @@ TEST(SpeSolver, ALargeBodyStaysWithTheSpesWhenThereIsNoRoomForAnother) {
 
 TEST(SpeSolver, ANanThatThePpuFindsLeavesNoJobUnderWay) {
   SpeWorld world;
-  SoftBody& huge = world.soft.add(huge_model(), {0, 0, 0});
+  SoftBody<3>& huge = world.soft.add(huge_model(), {0, 0, 0});
   world.soft.add(large_model(), {0, 30, 0});
   world.run(1);
   huge.set_particle(0, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 0, 0});
@@ -359,7 +359,7 @@ TEST(SpeSolver, ANanThatThePpuFindsLeavesNoJobUnderWay) {
 
 TEST(SpeSolver, ANanInALargeBodyIsReported) {
   SpeWorld world;
-  SoftBody& body = world.soft.add(large_model(), {0, 0, 0});
+  SoftBody<3>& body = world.soft.add(large_model(), {0, 0, 0});
   world.run(1);
   body.set_particle(700, {0, std::numeric_limits<float>::quiet_NaN(), 0}, {0, 0, 0});
   body.translate({0, 0, 0});
@@ -368,7 +368,7 @@ TEST(SpeSolver, ANanInALargeBodyIsReported) {
 
 TEST(SpeSolver, ANanIsReported) {
   SpeWorld world;
-  SoftBody& body = world.soft.add(block_model({2, 2, 2}, rubber()), {0, 0, 0});
+  SoftBody<3>& body = world.soft.add(block_model({2, 2, 2}, rubber()), {0, 0, 0});
   world.run(1);
   body.set_particle(0, {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 0, 0});
   body.translate({0, 0, 0});
@@ -380,8 +380,8 @@ TEST(SpeSolver, SleepingBodiesHaveNoJob) {
   world.add_floor();
   world.soft.let_sleep(SleepSettings{});
   const auto model = block_model({3, 3, 3}, rubber());
-  SoftBody& low = world.soft.add(model, {0, 0.1f, 0});
-  SoftBody& high = world.soft.add(model, {3, 0.2f, 0});
+  SoftBody<3>& low = world.soft.add(model, {0, 0.1f, 0});
+  SoftBody<3>& high = world.soft.add(model, {3, 0.2f, 0});
   world.run(400);
   ASSERT_TRUE(low.asleep() && high.asleep());
   const std::uint64_t before = world.jobs_done();
@@ -404,7 +404,7 @@ TEST(SpeSolver, ASleepingBodyWakesWhenGravityTurns) {
   SpeWorld world;
   world.add_floor();
   world.soft.let_sleep(SleepSettings{});
-  SoftBody& body = world.soft.add(block_model({3, 3, 3}, rubber()), {0, 0.1f, 0});
+  SoftBody<3>& body = world.soft.add(block_model({3, 3, 3}, rubber()), {0, 0.1f, 0});
   world.run(400);
   ASSERT_TRUE(body.asleep());
   world.bullet.set_gravity({9.81f, -2, 0});

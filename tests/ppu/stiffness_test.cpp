@@ -20,10 +20,10 @@ using test::Random;
 
 /// A body without an engine: semi-implicit Euler steps in double precision.
 struct Simulation {
-  Simulation(const Lattice& body, int half_width)
+  Simulation(const Lattice<3>& body, int half_width)
       : lattice(body),
         masses(particle_masses(lattice, 1000)),
-        matcher(std::make_shared<const MatchingPlan<double>>(lattice, half_width, masses)) {
+        matcher(std::make_shared<const MatchingPlan<double, 3>>(lattice, half_width, masses)) {
     const double s = static_cast<double>(lattice.spacing);
     for (const auto& particle : lattice.particles) x.push_back(s * particle.cast<double>());
     v.assign(x.size(), Vector3d::Zero());
@@ -39,9 +39,9 @@ struct Simulation {
     return energy;
   }
 
-  Lattice lattice;
+  Lattice<3> lattice;
   std::vector<float> masses;
-  ShapeMatcher<double> matcher;
+  ShapeMatcher<double, 3> matcher;
   std::vector<Vector3d> x, v;
 };
 

@@ -54,7 +54,7 @@ TEST(FindRegions, MembershipIsSymmetric) {
 }
 
 TEST(FindRegions, AreCubesInsideABlock) {
-  const Lattice lattice = block(6, 6, 6);
+  const Lattice<3> lattice = block(6, 6, 6);
   const Csr regions = find_regions(lattice, 2);
   for (std::uint32_t r = 0; r < regions.size(); ++r) {
     std::size_t expected = 1;
@@ -67,7 +67,7 @@ TEST(FindRegions, AreCubesInsideABlock) {
 }
 
 TEST(FindRegions, DoNotJumpTheGapOfAHorseshoe) {
-  const Lattice lattice = lattice_from_cells(test::horseshoe_cells(6), 0.1f, {0, 0, 0});
+  const Lattice<3> lattice = lattice_from_cells(test::horseshoe_cells(6), 0.1f, {0, 0, 0});
   const Csr regions = find_regions(lattice, 3);
   const auto number = [&](int x, int y, int z) {
     const auto found =
@@ -79,7 +79,7 @@ TEST(FindRegions, DoNotJumpTheGapOfAHorseshoe) {
 }
 
 TEST(FindRegions, RefusesHalfWidthsOutOfRange) {
-  const Lattice lattice = block(1, 1, 1);
+  const Lattice<3> lattice = block(1, 1, 1);
   EXPECT_THROW(find_regions(lattice, -1), std::runtime_error);
   EXPECT_THROW(find_regions(lattice, kMaxHalfWidth + 1), std::runtime_error);
   EXPECT_EQ(find_regions(lattice, kMaxHalfWidth)[0].size(), 8u);
@@ -101,9 +101,9 @@ TEST(SumPlan, HoldsExactlyTheRegions) {
 }
 
 TEST(SumPlan, KeepsEqualSetsOnce) {
-  const Lattice sheet = block(8, 8, 1);
+  const Lattice<3> sheet = block(8, 8, 1);
   EXPECT_EQ(SumPlan(sheet, find_regions(sheet, 1)).regions(), sheet.particles.size() / 2);
-  const Lattice cell = block(1, 1, 1);
+  const Lattice<3> cell = block(1, 1, 1);
   EXPECT_EQ(SumPlan(cell, find_regions(cell, 1)).regions(), 1u);
   for (const auto& [name, lattice] : all_lattices()) {
     const SumPlan plan(lattice, find_regions(lattice, 2));
@@ -116,7 +116,7 @@ TEST(SumPlan, KeepsEqualSetsOnce) {
 }
 
 TEST(SumPlan, RefusesRegionsThatAreNotSymmetricOrNotOnePerParticle) {
-  const Lattice lattice = block(2, 1, 1);
+  const Lattice<3> lattice = block(2, 1, 1);
   Csr regions = find_regions(lattice, 1);
   Csr lopsided;
   for (std::size_t r = 0; r < regions.size(); ++r)
@@ -127,7 +127,7 @@ TEST(SumPlan, RefusesRegionsThatAreNotSymmetricOrNotOnePerParticle) {
 }
 
 TEST(SumPlan, AddsAsOftenAsPublishedForABlockOfAThousand) {
-  const Lattice lattice = block(9, 9, 9);
+  const Lattice<3> lattice = block(9, 9, 9);
   const double shared[] = {5.4, 10.2, 14.4}, naive[] = {21, 84, 194};  // per particle, w = 1, 2, 3
   for (int w = 1; w <= 3; ++w) {
     const SumPlan plan(lattice, find_regions(lattice, w));

@@ -40,7 +40,7 @@ constexpr MatchSettings kOnlyGoals{.pull = 1, .damping = 0};  // with velocities
 /// One body on an SPE.
 class MatchRig {
  public:
-  MatchRig(Lattice body, int half_width, const ls_sim::SpeOptions& options = {.spes = 1},
+  MatchRig(Lattice<3> body, int half_width, const ls_sim::SpeOptions& options = {.spes = 1},
            std::size_t bodies = 1, std::size_t bodies_per_job = 1)
       : lattice(std::move(body)),
         masses(ppu::particle_masses(lattice, 1000)),
@@ -98,9 +98,9 @@ class MatchRig {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
   }
 
-  Lattice lattice;
+  Lattice<3> lattice;
   std::vector<float> masses;
-  ppu::MatchingPlan<float> plan;
+  ppu::MatchingPlan<float, 3> plan;
   ppu::MatchPlan match_plan;
   double size = 0;
 
@@ -116,7 +116,7 @@ class MatchRig {
   ppu::JobSystem jobs_;
 
  public:
-  test::SteppedBodies spes;
+  test::SteppedBodies<3> spes;
 };
 
 /// Turned, bent, and shaken by up to `noise` metres; exactly as floats hold it.
@@ -134,8 +134,8 @@ Vectors deformed(const MatchRig& rig, std::uint64_t seed, double noise) {
 }
 
 Vectors reference_goals(const MatchRig& rig, int half_width, const Vectors& x) {
-  const auto plan = std::make_shared<const ppu::MatchingPlan<double>>(rig.lattice, half_width, rig.masses);
-  ppu::ShapeMatcher<double> matcher(plan);
+  const auto plan = std::make_shared<const ppu::MatchingPlan<double, 3>>(rig.lattice, half_width, rig.masses);
+  ppu::ShapeMatcher<double, 3> matcher(plan);
   Vectors g(x.size());
   matcher.goals(x, g);
   return g;
@@ -157,7 +157,7 @@ TEST(Match, GoalsAgreeWithTheReferenceOnEveryLattice) {
 /// Runs a check on every lattice with every half-width.
 template <typename Check>
 void for_all_bodies(const Check& check) {
-  ppu::test::for_every_half_width(ppu::test::all_lattices(), 1, [&](const Lattice& lattice, int w) {
+  ppu::test::for_every_half_width(ppu::test::all_lattices(), 1, [&](const Lattice<3>& lattice, int w) {
     MatchRig rig(lattice, w);
     check(rig, w);
   });
@@ -207,8 +207,8 @@ TEST(Match, DampingAgreesWithTheReference) {
     for (std::size_t i = 0; i < x.size(); ++i) v.push_back(rounded(random.vector()));
     rig.set(x, v);
     rig.spes.step({.pull = 15, .damping = 0.3f});
-    const auto plan = std::make_shared<const ppu::MatchingPlan<double>>(rig.lattice, w, rig.masses);
-    ppu::ShapeMatcher<double> matcher(plan);
+    const auto plan = std::make_shared<const ppu::MatchingPlan<double, 3>>(rig.lattice, w, rig.masses);
+    ppu::ShapeMatcher<double, 3> matcher(plan);
     matcher.step_velocities(x, v, 0.25, 1.0 / 60, double{0.3f});
     EXPECT_LT(largest_difference(rig.velocities(), v), 1e-4);  // m/s; a pull of 1e-5 of the body is 1.5e-4
   });
@@ -294,8 +294,8 @@ TEST(Match, ABodyThatIsNoNumberIsNamedAndLeftAlone) {
 }
 
 TEST(Match, RefusesABodyThatDoesNotFit) {
-  const Lattice lattice = ppu::test::block(11, 10, 10);  // 1452 particles
-  const ppu::MatchingPlan<float> plan(lattice, 2, ppu::particle_masses(lattice, 1000));
+  const Lattice<3> lattice = ppu::test::block(11, 10, 10);  // 1452 particles
+  const ppu::MatchingPlan<float, 3> plan(lattice, 2, ppu::particle_masses(lattice, 1000));
   try {
     const ppu::MatchPlan match_plan(lattice, plan);
     FAIL() << "fits";

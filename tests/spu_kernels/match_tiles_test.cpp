@@ -31,7 +31,7 @@ Vector of(const Vector3d& v) {
 
 /// What both kernels' bodies have in common.
 struct Model {
-  Model(Lattice body, int half_width)
+  Model(Lattice<3> body, int half_width)
       : lattice(std::move(body)), w(half_width), matching(lattice, w, ppu::particle_masses(lattice, 1000)) {}
 
   /// Bent, turned and shaken by up to `noise` metres.
@@ -48,9 +48,9 @@ struct Model {
     return x;
   }
 
-  Lattice lattice;
+  Lattice<3> lattice;
   int w;
-  ppu::MatchingPlan<float> matching;
+  ppu::MatchingPlan<float, 3> matching;
 };
 
 /// A body in tiles.
@@ -108,7 +108,7 @@ class WholeBody {
   ppu::JobSystem jobs_;
 
  public:
-  test::SteppedBodies spes;
+  test::SteppedBodies<3> spes;
 };
 
 /// Number of the first vector that differs in a bit; -1: none.
@@ -196,9 +196,9 @@ TEST(MatchTiles, GoalsOfALargeBodyAgreeWithTheReference) {
   EXPECT_GT(tiled.spes.tiles(), 3u);
   tiled.set(x, zero);
   tiled.spes.step({.pull = 1, .damping = 0});
-  const auto plan = std::make_shared<const ppu::MatchingPlan<double>>(
+  const auto plan = std::make_shared<const ppu::MatchingPlan<double, 3>>(
       model.lattice, model.w, ppu::particle_masses(model.lattice, 1000));
-  ppu::ShapeMatcher<double> matcher(plan);
+  ppu::ShapeMatcher<double, 3> matcher(plan);
   Vectors g(x.size());
   matcher.goals(x, g);
   const std::vector<Vector> pulls = tiled.velocities();
@@ -225,9 +225,9 @@ TEST(MatchTiles, DampingOfALargeBodyAgreesWithTheReference) {
   TiledBody tiled(model, {}, {.spes = 2});
   tiled.set(x, v);
   tiled.spes.step({.pull = 15, .damping = 0.3f});
-  const auto plan = std::make_shared<const ppu::MatchingPlan<double>>(
+  const auto plan = std::make_shared<const ppu::MatchingPlan<double, 3>>(
       model.lattice, model.w, ppu::particle_masses(model.lattice, 1000));
-  ppu::ShapeMatcher<double> matcher(plan);
+  ppu::ShapeMatcher<double, 3> matcher(plan);
   matcher.step_velocities(x, v, 0.25, 1.0 / 60, double{0.3f});
   const std::vector<Vector> velocities = tiled.velocities();
   for (std::size_t i = 0; i < v.size(); ++i)

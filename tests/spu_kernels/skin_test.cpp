@@ -63,7 +63,7 @@ class SkinRig {
     }
   }
 
-  ppu::Lattice lattice;
+  ppu::Lattice<3> lattice;
   std::shared_ptr<ppu::Embedding> embedding;
   std::vector<Vector3f> positions;
 
@@ -209,7 +209,7 @@ TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
   broken.bytes[broken.entry - ls_sim::kEnvironmentBytes] = std::byte{0x0F};  // ud2
   broken.bytes[broken.entry - ls_sim::kEnvironmentBytes + 1] = std::byte{0x0B};
   const ppu::TriangleMesh mesh = ppu::make_sphere(0.7f, 8);
-  const ppu::Lattice lattice = ppu::voxelize(mesh, 0.35f);
+  const ppu::Lattice<3> lattice = ppu::voxelize(mesh, 0.35f);
   const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
   ppu::SkinOrchestrator orchestrator(memory, system, broken);
   const std::vector<Eigen::Vector4f> corners(lattice.particles.size(), Eigen::Vector4f::Zero());

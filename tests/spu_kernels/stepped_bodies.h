@@ -1,5 +1,5 @@
 #pragma once
-// Bodies that the kernels match and match_tiles step, one chain of jobs a step: for tests.
+// Bodies that the kernels match, match_2d and match_tiles step, one chain of jobs a step: for tests.
 
 #include <numeric>
 #include <stdexcept>
@@ -20,11 +20,13 @@ inline void run(ppu::JobChain& chain) {
 }
 
 /// Bodies of one model, whole.
-class SteppedBodies : public ppu::MatchBodies {
+template <int kDimension>
+class SteppedBodies : public ppu::MatchBodies<kDimension> {
  public:
   SteppedBodies(dma::AddressSpace& memory, ppu::JobSystem& jobs, const ls_sim::KernelImage& match,
-                const ppu::MatchPlan& plan, std::size_t bodies, std::size_t bodies_per_job = 16)
-      : MatchBodies(memory, plan, bodies),
+                const typename ppu::MatchKernel<kDimension>::Plan& plan, std::size_t bodies,
+                std::size_t bodies_per_job = 16)
+      : ppu::MatchBodies<kDimension>(memory, plan, bodies),
         match_(jobs.place(match)),
         all_(bodies),
         bodies_per_job_(bodies_per_job),
@@ -35,9 +37,9 @@ class SteppedBodies : public ppu::MatchBodies {
   /// @throws std::runtime_error  as run(), and for positions or velocities that are not finite.
   void step(const ppu::MatchSettings& settings) {
     chain_.clear();
-    add_jobs(chain_, match_, settings, all_, bodies_per_job_);
+    this->add_jobs(chain_, match_, settings, all_, bodies_per_job_);
     run(chain_);
-    const std::vector<std::size_t> bad = take_results();
+    const std::vector<std::size_t> bad = this->take_results();
     if (!bad.empty()) throw std::runtime_error("not finite: body " + std::to_string(bad.front()));
   }
 

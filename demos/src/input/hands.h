@@ -10,7 +10,7 @@
 
 namespace softcell::demos {
 
-/// Used by one thread. Bodies: has size() and operator[], a SoftBody or a SoftBody2d.
+/// Used by one thread. Bodies: has size() and operator[], a SoftBody or a SoftBody<2>.
 template <int Dimension>
 class Hands {
  public:

@@ -2,8 +2,8 @@
 
 namespace softcell::demos {
 
-ppu::Lattice2d SoftBody2dPlacement::lattice() const {
-  ppu::Lattice2d lattice = ppu::lattice_2d_from_cells(cells, settings.cell_size);
+ppu::Lattice<2> SoftBody2dPlacement::lattice() const {
+  ppu::Lattice<2> lattice = ppu::lattice_from_cells(cells, settings.cell_size);
   Eigen::Vector2i low = lattice.particles.front(), high = low;
   for (const Eigen::Vector2i& particle : lattice.particles) {
     low = low.cwiseMin(particle);

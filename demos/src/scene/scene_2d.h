@@ -9,7 +9,7 @@
 
 #include "scripted_input.h"
 #include "softcell/render/frame.h"
-#include "softcell/soft_bodies/soft_body_2d.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
 
@@ -18,11 +18,11 @@ struct SoftBody2dPlacement {
   std::vector<Eigen::Vector2i> cells;  ///< grid indices of the lattice's cells, of any origin
   ppu::SoftBodySettings settings;      ///< density is in kg/m^2
   Eigen::Vector2f position{0, 0};      ///< of the middle of the cells' box
-  float contact_radius = ppu::SoftBodyModel2d::kContactRadiusInCells;  ///< cells
+  float contact_radius = ppu::SoftBodyModel<2>::kContactRadiusInCells;  ///< cells
   render::Colour colour{0.8f, 0.8f, 0.8f};
 
-  /// The lattice, the middle of its box at 0. @throws std::runtime_error  as lattice_2d_from_cells().
-  ppu::Lattice2d lattice() const;
+  /// The lattice, the middle of its box at 0. @throws std::runtime_error  as lattice_from_cells().
+  ppu::Lattice<2> lattice() const;
 };
 
 struct Box2dShape {

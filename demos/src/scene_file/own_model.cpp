@@ -61,7 +61,7 @@ void check_lattice(const OwnModelOptions& options, const ppu::TriangleMesh& mesh
 std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
   if (!options.mesh) return std::nullopt;
   OwnModel model{.mesh = ppu::import_mesh(*options.mesh)};
-  const ppu::Bounds box = ppu::bounds(model.mesh);
+  const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   const double longest = (box.high - box.low).maxCoeff();
   const double cell = cell_size(options, longest);
   ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged

@@ -5,7 +5,7 @@
 
 #include "documents.h"
 #include "lua_sandbox.h"
-#include "softcell/soft_bodies/lattice_2d.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::demos {
 namespace {
@@ -105,7 +105,7 @@ Cells read_lattice_file(const SourceText& file, const Place& place) {
     throw SceneError(place, fmt::format("lattice '{}' must be a file that ends in .lua", *file.name));
   const Value value = run_lua(file.text, file.name);
   FieldReader fields(value, "a lattice");
-  const auto cells = fields.items("cells", ppu::kMaxLattice2dParticles);
+  const auto cells = fields.items("cells", ppu::kMaxLatticeParticles<2>);
   const auto rows = fields.items("rows", static_cast<std::size_t>(kMaxCells));
   fields.finish();
   if (cells.empty() == rows.empty()) throw SceneError(value.place, "a lattice needs either cells or rows");

@@ -85,7 +85,7 @@ Obstacle read_obstacle(const Value& value, std::size_t index, const SceneSource&
 
 /// Puts the user's model where the body's own mesh was.
 void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
-  const ppu::Bounds box = ppu::bounds(model.mesh);
+  const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   const float scale = longest_side / (box.high - box.low).maxCoeff();
   body.mesh = model.mesh;
   ppu::fit(body.mesh, longest_side);

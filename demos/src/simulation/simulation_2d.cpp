@@ -17,13 +17,13 @@
 #include "softcell/box2d/box2d_soft_bodies.h"
 #include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/state_hash.h"
-#include "softcell/spe_bodies/spe_solver_2d.h"
+#include "softcell/spe_bodies/spe_solver.h"
 
 namespace softcell::demos {
 namespace {
 
 using Eigen::Vector2f;
-using Models = std::vector<std::shared_ptr<const ppu::SoftBodyModel2d>>;
+using Models = std::vector<std::shared_ptr<const ppu::SoftBodyModel<2>>>;
 
 constexpr float kFrameSeconds = 1.0f / 60;
 
@@ -82,7 +82,8 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction)
 
 /// Everything that moves. A reset makes it anew, so that nothing is left of what was: no contact, no impulse.
 struct World {
-  World(const Scene2d& scene, const Models& models, ppu::Solver2d* solver) : soft_bodies(world, solver) {
+  World(const Scene2d& scene, const Models& models, ppu::SoftBodySolver<2>& solver)
+      : soft_bodies(world, solver) {
     // A body that sleeps would not notice that gravity changes.
     world.SetAllowSleeping(false);
     for (const RigidBody2d& body : scene.rigid_bodies)
@@ -101,12 +102,12 @@ struct Spes {
       : match_2d(load_kernel("match_2d", options.findings != nullptr)),
         job_loop(load_kernel("job_loop")),
         jobs(memory, options.spe_options(), job_loop),
-        solver(memory, jobs, match_2d) {}
+        solver(memory, jobs, {match_2d}) {}
 
   dma::AddressSpace memory;
   ls_sim::KernelImage match_2d, job_loop;
   ppu::JobSystem jobs;
-  ppu::SpeSolver2d solver;
+  ppu::SpeSolver<2> solver;
 };
 
 Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
@@ -126,30 +127,35 @@ Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
 struct Simulation2d::State {
   State(const Scene2d& scene_description, const SimulationOptions& options)
       : scene(scene_description), script(scene.script), controls({0, -scene.gravity}) {
-    if (options.solver == Solver::kSpe) spes.emplace(options);
+    if (options.solver == Solver::kSpe) {
+      spes.emplace(options);
+      solver = &spes->solver;
+    }
     models = models_of(scene.soft_bodies);
     reset();
   }
 
-  void reset() { world.emplace(scene, models, spes ? &spes->solver : nullptr); }
+  void reset() { world.emplace(scene, models, *solver); }
   void home(std::size_t body) { world->soft_bodies[body].reset(scene.soft_bodies[body].position); }
 
   std::chrono::nanoseconds waited() const {
-    return spes ? spes->solver.time_waited() : std::chrono::nanoseconds{0};
+    return spes ? world->soft_bodies.time_waited() : std::chrono::nanoseconds{0};
   }
 
   /// The soft bodies of the world that there is at the moment of asking: a reset replaces it.
   struct Bodies {
     std::optional<World>& world;
     std::size_t size() const { return world->soft_bodies.size(); }
-    ppu::SoftBody2d& operator[](std::size_t i) const { return world->soft_bodies[i]; }
+    ppu::SoftBody<2>& operator[](std::size_t i) const { return world->soft_bodies[i]; }
   };
 
   const Scene2d& scene;
   Models models;
   ScriptPlayer<2> script;
   Controls<2> controls;
+  ppu::PpuSolver<2> on_this_thread;
   std::optional<Spes> spes;
+  ppu::SoftBodySolver<2>* solver = &on_this_thread;
   std::optional<World> world;
   Bodies bodies{world};
   std::vector<InputEvent<2>> events;  // of the last step
@@ -176,6 +182,9 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
     s.controls.hands().pull(s.bodies);
     world.soft_bodies.step(kFrameSeconds / static_cast<float>(s.scene.substeps));
   }
+
+  // The SPEs work on the next frame's first step while this frame is drawn.
+  world.soft_bodies.begin_ahead(kFrameSeconds / static_cast<float>(s.scene.substeps));
 
   using Milliseconds = std::chrono::duration<double, std::milli>;
   const double all = Milliseconds(std::chrono::steady_clock::now() - begin).count();
@@ -213,7 +222,7 @@ std::size_t Simulation2d::rigid_bodies() const {
       std::count_if(bodies.begin(), bodies.end(), [](const RigidBody2d& body) { return body.mass > 0; }));
 }
 
-const ppu::SoftBody2d& Simulation2d::soft_body(std::size_t body) const {
+const ppu::SoftBody<2>& Simulation2d::soft_body(std::size_t body) const {
   return state_->world->soft_bodies[body];
 }
 

@@ -30,7 +30,7 @@ class Simulation2d {
 
   /// Does what the scene's script says and then what `events` say, and simulates 1/60 s. During a pause
   /// nothing moves.
-  /// @throws std::runtime_error  a body has become NaN, is too large for an SPE, or an SPE failed.
+  /// @throws std::runtime_error  a body has become NaN, or an SPE failed.
   FrameTimes step(std::span<const InputEvent<2>> events = {});
 
   /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().
@@ -43,7 +43,7 @@ class Simulation2d {
   std::size_t particles() const;
   std::size_t rigid_bodies() const;  ///< that can move
   /// Good until the next step(), which may be a reset.
-  const ppu::SoftBody2d& soft_body(std::size_t body) const;
+  const ppu::SoftBody<2>& soft_body(std::size_t body) const;
   Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
   bool paused() const;
   std::span<const Hands<2>::Held> held() const;

@@ -50,9 +50,9 @@ Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
 
 /// Has the body's two ends along x turn about x against each other, the middle at rest.
 /// @param rate  rad/s, of one end against the other
-void twist(ppu::SoftBody& body, float rate) {
+void twist(ppu::SoftBody<3>& body, float rate) {
   if (rate == 0) return;
-  const ppu::Bounds box = body.bounds();
+  const ppu::Bounds<3> box = body.bounds();
   const Eigen::Vector3f middle = 0.5f * (box.low + box.high);
   for (std::size_t i = 0; i < body.model().particles(); ++i) {
     const Eigen::Vector3f r = body.position(i) - middle;
@@ -68,7 +68,7 @@ bool puts_elsewhere(std::span<const InputEvent<3>> events) {
   });
 }
 
-std::vector<std::shared_ptr<const ppu::SoftBodyModel>> models_of(
+std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models_of(
     const std::vector<SoftBodyPlacement>& bodies) {
   return shared_models(
       bodies.size(),
@@ -113,7 +113,7 @@ struct Simulation3d::State {
     for (std::size_t i = 0; i < models.size(); ++i) {
       const SoftBodyPlacement& placement = scene.soft_bodies[i];
       const auto& model = models[i];
-      ppu::SoftBody& body = soft_bodies.add(model, placement.position);
+      ppu::SoftBody<3>& body = soft_bodies.add(model, placement.position);
       twist(body, placement.twist);
       if (orchestrator)
         orchestrator->add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()),
@@ -131,9 +131,10 @@ struct Simulation3d::State {
     take_over();
   }
 
-  std::unique_ptr<ppu::SoftBodySolver> make_solver(Solver wanted) {
-    if (wanted == Solver::kSpe) return std::make_unique<ppu::SpeSolver>(memory, jobs, match, match_tiles);
-    return std::make_unique<ppu::PpuSolver>();
+  std::unique_ptr<ppu::SoftBodySolver<3>> make_solver(Solver wanted) {
+    if (wanted == Solver::kSpe)
+      return std::make_unique<ppu::SpeSolver<3>>(memory, jobs, ppu::MatchKernels<3>{match, match_tiles});
+    return std::make_unique<ppu::PpuSolver<3>>();
   }
 
   /// Copies what a picture needs and starts the SPEs: with the next step's dynamics, which go first, and the
@@ -199,7 +200,7 @@ struct Simulation3d::State {
   ls_sim::KernelImage job_loop, match, match_tiles;
   std::optional<ls_sim::KernelImage> skin;  // none: the GPU does it
   ppu::JobSystem jobs;
-  std::unique_ptr<ppu::SoftBodySolver> solver;
+  std::unique_ptr<ppu::SoftBodySolver<3>> solver;
   ppu::BulletSoftBodies soft_bodies;
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::span<const Eigen::Vector4f>> positions;
@@ -291,10 +292,10 @@ std::size_t Simulation3d::rigid_bodies() const {
                                                 [](const RigidBox& box) { return box.mass > 0; }));
 }
 
-const ppu::SoftBodyModel& Simulation3d::model(std::size_t body) const {
+const ppu::SoftBodyModel<3>& Simulation3d::model(std::size_t body) const {
   return state_->soft_bodies[body].model();
 }
-const ppu::SoftBody& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
+const ppu::SoftBody<3>& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
 
 std::uint64_t Simulation3d::state_hash() const {
   std::uint64_t hash = 0;

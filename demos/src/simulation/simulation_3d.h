@@ -43,8 +43,8 @@ class Simulation3d {
   std::size_t vertices() const;  ///< of the meshes
   std::size_t rigid_bodies() const;
   Skin skin() const;  ///< who makes the vertices
-  const ppu::SoftBodyModel& model(std::size_t body) const;
-  const ppu::SoftBody& soft_body(std::size_t body) const;
+  const ppu::SoftBodyModel<3>& model(std::size_t body) const;
+  const ppu::SoftBody<3>& soft_body(std::size_t body) const;
 
   /// 64-bit hash over positions and velocities of all particles as they are now.
   std::uint64_t state_hash() const;

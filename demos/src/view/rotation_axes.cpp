@@ -19,7 +19,7 @@ void RotationAxes::update(const std::vector<Shown3d::Body>& bodies) {
   for (Lines& lines : axes_) lines.clear();
   while (matchers_.size() < plans_.size()) matchers_.emplace_back(plans_[matchers_.size()]);
   for (std::size_t b = 0; b < matchers_.size(); ++b) {
-    ppu::ShapeMatcher<float>& matcher = matchers_[b];
+    ppu::ShapeMatcher<float, 3>& matcher = matchers_[b];
     positions_.clear();
     for (const Eigen::Vector4f& p : bodies[b].particles) positions_.emplace_back(p.head<3>());
     goals_.resize(positions_.size());

@@ -25,7 +25,9 @@ struct Lines {
 /// are shown, so that it does not matter who solved the step, and where that keeps its rotations.
 class RotationAxes {
  public:
-  void add_body(std::shared_ptr<const ppu::MatchingPlan<float>> plan) { plans_.push_back(std::move(plan)); }
+  void add_body(std::shared_ptr<const ppu::MatchingPlan<float, 3>> plan) {
+    plans_.push_back(std::move(plan));
+  }
 
   /// @param bodies  of which as many as there are in here, in order
   void update(const std::vector<Shown3d::Body>& bodies);
@@ -34,8 +36,9 @@ class RotationAxes {
   const std::array<Lines, 3>& axes() const { return axes_; }
 
  private:
-  std::vector<std::shared_ptr<const ppu::MatchingPlan<float>>> plans_;
-  std::vector<ppu::ShapeMatcher<float>> matchers_;  // made when they are first asked for: most runs never do
+  std::vector<std::shared_ptr<const ppu::MatchingPlan<float, 3>>> plans_;
+  std::vector<ppu::ShapeMatcher<float, 3>>
+      matchers_;  // made when they are first asked for: most runs never do
   std::vector<Eigen::Vector3f> positions_, goals_;
   std::array<Lines, 3> axes_;
 };

@@ -10,7 +10,7 @@ namespace {
 constexpr float kVeil = 0.3f;     // opacity of what marks must be seen through
 constexpr float kBoxFaces = 100;  // metres: larger than any box, so that each face is one square
 
-std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice& lattice) {
+std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice<3>& lattice) {
   std::vector<std::array<std::uint32_t, 2>> links;
   for (std::uint32_t a = 0; a < lattice.particles.size(); ++a) {
     for (const std::uint32_t b : lattice.neighbours[a]) {
@@ -61,7 +61,7 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
 
   lattice_buffers_.resize(simulation_.soft_bodies());
   for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
-    const ppu::SoftBodyModel& model = simulation_.model(b);
+    const ppu::SoftBodyModel<3>& model = simulation_.model(b);
     const auto& colour = scene_.soft_bodies[b].colour;
     skinned_.push_back({.mesh = add_skinned_mesh(model), .colour = colour});
     rotations_.add_body(model.plan());
@@ -72,7 +72,7 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
   }
 }
 
-render::MeshId SceneView::add_skinned_mesh(const ppu::SoftBodyModel& model) {
+render::MeshId SceneView::add_skinned_mesh(const ppu::SoftBodyModel<3>& model) {
   const ppu::Embedding& embedding = model.embedding();
   if (simulation_.skin() == Skin::kSpe) return renderer_.add_mesh(embedding.indices);
   return renderer_.add_cell_mesh(embedding.indices, cell_vertices(embedding), model.particles());

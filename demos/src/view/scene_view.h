@@ -30,7 +30,7 @@ class SceneView {
   void draw(const Shown3d& shown, const Look& look);
 
  private:
-  render::MeshId add_skinned_mesh(const ppu::SoftBodyModel& model);
+  render::MeshId add_skinned_mesh(const ppu::SoftBodyModel<3>& model);
   void update_meshes(const Shown3d& shown);
   void update_lattices(const Shown3d& shown);
   void draw_mesh(const Shown3d& shown, float opacity);

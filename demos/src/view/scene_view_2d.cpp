@@ -78,7 +78,7 @@ SceneView2d::SceneView2d(const Scene2d& scene, const Simulation2d& simulation, r
   add_back_wall();
   std::vector<float> margins;
   for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
-    const ppu::SoftBodyModel2d& model = simulation_.soft_body(b).model();
+    const ppu::SoftBodyModel<2>& model = simulation_.soft_body(b).model();
     add_soft_body(model);
     margins.push_back(std::max(model.contact_radius(), 0.2f * model.lattice().spacing));
   }
@@ -113,7 +113,7 @@ void SceneView2d::add_back_wall() {
   statics_.push_back(wall);
 }
 
-void SceneView2d::add_soft_body(const ppu::SoftBodyModel2d& model) {
+void SceneView2d::add_soft_body(const ppu::SoftBodyModel<2>& model) {
   Body& body = bodies_.emplace_back();
   body.model = &model;
   body.particles.resize(model.particles());
@@ -158,14 +158,14 @@ void SceneView2d::place_particles(Body& body, const std::vector<Vector2f>& posit
     return Vector3f(positions[particle].x(), positions[particle].y(), 0);
   };
   for (std::uint32_t i = 0; i < positions.size(); ++i) body.particles[i] = place(i);
-  const ppu::SoftBodyModel2d& model = *body.model;
+  const ppu::SoftBodyModel<2>& model = *body.model;
   std::transform(model.outer().begin(), model.outer().end(), body.outer.begin(), place);
   std::transform(model.inner().begin(), model.inner().end(), body.inner.begin(), place);
 }
 
 void SceneView2d::draw_as_dots(std::size_t b) {
   const Body& body = bodies_[b];
-  const ppu::SoftBodyModel2d& model = *body.model;
+  const ppu::SoftBodyModel<2>& model = *body.model;
   const render::Colour& colour = scene_.soft_bodies[b].colour;
   // The outer particles as large as they are to others.
   lattices_.push_back({body.outer, {}, model.contact_radius(), colour});

@@ -34,7 +34,7 @@ class SceneView2d {
 
   /// What is drawn of a soft body, its buffers filled anew for each picture.
   struct Body {
-    const ppu::SoftBodyModel2d* model;
+    const ppu::SoftBodyModel<2>* model;
     render::MeshId mesh;
     std::vector<Eigen::Vector3f> particles;  // all, in order
     std::vector<Eigen::Vector3f> outer, inner;
@@ -45,7 +45,7 @@ class SceneView2d {
   void add_plate(const std::vector<Eigen::Vector2f>& corners, const render::Colour& colour);
   void add_rigid_body(const RigidBody2d& body);
   void add_back_wall();
-  void add_soft_body(const ppu::SoftBodyModel2d& model);
+  void add_soft_body(const ppu::SoftBodyModel<2>& model);
   void place_rigid_bodies(const std::vector<Pose2d>& poses);
   void place_particles(Body& body, const std::vector<Eigen::Vector2f>& positions) const;
   void draw_as_dots(std::size_t body);

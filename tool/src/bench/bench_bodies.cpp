@@ -11,7 +11,7 @@ constexpr float kSpacing = 0.1f;
 
 /// Cells (x, y, z) of a box of `size` cells for which `inside` is true of their centres, seen from the box's.
 template <typename Inside>
-ppu::Lattice lattice_where(const Eigen::Vector3i& size, const Inside& inside) {
+ppu::Lattice<3> lattice_where(const Eigen::Vector3i& size, const Inside& inside) {
   std::vector<Eigen::Vector3i> cells;
   for (int x = 0; x < size.x(); ++x)
     for (int y = 0; y < size.y(); ++y)
@@ -23,17 +23,17 @@ ppu::Lattice lattice_where(const Eigen::Vector3i& size, const Inside& inside) {
 
 double square(double v) { return v * v; }
 
-ppu::Lattice block1000() { return bench_block({10, 10, 10}); }
+ppu::Lattice<3> block1000() { return bench_block({10, 10, 10}); }
 
 /// A ring of 10 cells with a tube of 4.
-ppu::Lattice torus() {
+ppu::Lattice<3> torus() {
   return lattice_where({14, 14, 4}, [](double x, double y, double z) {
     return square(std::hypot(x, y) - 4.8) + square(z) < square(2);
   });
 }
 
 /// A hollow sphere, its wall one cell thick.
-ppu::Lattice shell() {
+ppu::Lattice<3> shell() {
   return lattice_where({9, 9, 9}, [](double x, double y, double z) {
     const double r = std::sqrt(square(x) + square(y) + square(z));
     return r < 4.4 && r > 3.4;
@@ -41,7 +41,7 @@ ppu::Lattice shell() {
 }
 
 /// A body, a head and two flippers: about 150 particles.
-ppu::Lattice penguin150() {
+ppu::Lattice<3> penguin150() {
   return lattice_where({7, 8, 4}, [](double x, double y, double z) {
     const bool body = square(x / 2) + square((y + 1) / 2.9) + square(z / 2) < 1.05;
     const bool head = square(x / 1.3) + square((y - 2.7) / 1.3) + square(z / 1.3) < 1;
@@ -51,7 +51,7 @@ ppu::Lattice penguin150() {
 }
 
 /// A body, a cabin on it, and an antenna one cell thick at the back.
-ppu::Lattice car() {
+ppu::Lattice<3> car() {
   return lattice_where({11, 10, 5}, [](double x, double y, double z) {
     const bool body = y < -3;
     const bool cabin = y < -1 && x > -3 && x < 3;
@@ -65,13 +65,13 @@ constexpr std::array<BenchBody, 5> kBodies{
 
 }  // namespace
 
-ppu::Lattice bench_block(const Eigen::Vector3i& particles) {
+ppu::Lattice<3> bench_block(const Eigen::Vector3i& particles) {
   return lattice_where(particles - Eigen::Vector3i::Ones(), [](double, double, double) { return true; });
 }
 
 std::span<const BenchBody> bench_bodies() { return kBodies; }
 
-Eigen::Vector3f bent_position(const ppu::Lattice& lattice, std::size_t particle) {
+Eigen::Vector3f bent_position(const ppu::Lattice<3>& lattice, std::size_t particle) {
   Eigen::Vector3f p = lattice.rest_position(particle);
   p.x() += 0.2f * p.y() * p.y();
   return p;

@@ -12,20 +12,20 @@ namespace softcell::tool {
 
 struct BenchBody {
   std::string_view name;
-  ppu::Lattice (*make)();
+  ppu::Lattice<3> (*make)();
 };
 
 /// block1000, torus, shell, penguin150 and car; about 150 to 1000 particles, 0.1 m apart.
 std::span<const BenchBody> bench_bodies();
 
 /// A block, likewise. @param particles  along each axis
-ppu::Lattice bench_block(const Eigen::Vector3i& particles);
+ppu::Lattice<3> bench_block(const Eigen::Vector3i& particles);
 
 /// Particles in one measurement, in as many bodies as that makes: waking an SPE does not count then, and the
 /// data of all bodies are more than the nearest caches hold, as in a scene.
 inline constexpr std::size_t kBenchParticles = 16'000;
 
 /// A bent pose of a body, the same for all solvers: where a particle is.
-Eigen::Vector3f bent_position(const ppu::Lattice& lattice, std::size_t particle);
+Eigen::Vector3f bent_position(const ppu::Lattice<3>& lattice, std::size_t particle);
 
 }  // namespace softcell::tool

@@ -25,7 +25,7 @@ class BulletSoftBody {
     kLinks  ///< links along the edges and across the faces of cells
   };
 
-  BulletSoftBody(const ppu::Lattice& lattice, Held held) {
+  BulletSoftBody(const ppu::Lattice<3>& lattice, Held held) {
     const std::vector<float> masses = ppu::particle_masses(lattice, kDensity);
     std::vector<btVector3> rest;
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
@@ -56,7 +56,7 @@ class BulletSoftBody {
   }
 
  private:
-  void add_links(const ppu::Lattice& lattice) {
+  void add_links(const ppu::Lattice<3>& lattice) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       for (const std::uint32_t other : lattice.neighbours[i]) {
         const int apart = (lattice.particles[i] - lattice.particles[other]).squaredNorm();
@@ -72,7 +72,7 @@ class BulletSoftBody {
 
 /// Several of them, as of the other solvers.
 struct BulletBodies {
-  BulletBodies(const ppu::Lattice& lattice, BulletSoftBody::Held held) {
+  BulletBodies(const ppu::Lattice<3>& lattice, BulletSoftBody::Held held) {
     for (nodes = 0; nodes < kBenchParticles; nodes += lattice.particles.size())
       bodies.push_back(std::make_unique<BulletSoftBody>(lattice, held));
   }

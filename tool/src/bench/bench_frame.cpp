@@ -31,7 +31,7 @@ class SolverSteps {
       : step_(kFrameSeconds / static_cast<float>(frames.scene().substeps)) {
     for (std::size_t b = 0; b < frames.simulation().soft_bodies(); ++b)
       bodies_.push_back(frames.simulation().soft_body(b));
-    for (ppu::SoftBody& body : bodies_) pointers_.push_back(&body);
+    for (ppu::SoftBody<3>& body : bodies_) pointers_.push_back(&body);
     solver_.kick(pointers_, step_);
     // Once, so that rotations are known: of a dropped step a body in tiles does not keep them.
     solver_.finish();
@@ -44,13 +44,13 @@ class SolverSteps {
 
  private:
   float step_;
-  std::vector<ppu::SoftBody> bodies_;  // copies
-  std::vector<ppu::SoftBody*> pointers_;
+  std::vector<ppu::SoftBody<3>> bodies_;  // copies
+  std::vector<ppu::SoftBody<3>*> pointers_;
   dma::AddressSpace memory_;
   ls_sim::KernelImage match_ = load_kernel("match"), tiles_ = load_kernel("match_tiles"),
                       job_loop_ = load_kernel("job_loop");
   ppu::JobSystem jobs_{memory_, {.spes = 1}, job_loop_};
-  ppu::SpeSolver solver_{memory_, jobs_, match_, tiles_};
+  ppu::SpeSolver<3> solver_{memory_, jobs_, {match_, tiles_}};
 };
 
 /// The scene's outer particles as rigid spheres of the size and mass that they have for Bullet.

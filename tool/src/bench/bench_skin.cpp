@@ -54,7 +54,7 @@ struct SkinCase {
     }
   }
 
-  ppu::Lattice lattice;
+  ppu::Lattice<3> lattice;
   std::shared_ptr<ppu::Embedding> embedding;
   dma::AddressSpace memory;
   ls_sim::KernelImage kernel, job_loop;

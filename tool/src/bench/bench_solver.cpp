@@ -26,18 +26,18 @@ constexpr std::size_t kBodiesPerJob = 16;
 /// What all solvers work on: several bodies of one model, so that none has one body's data in its caches.
 struct Model {
   /// @param copies  0: as many as make kBenchParticles
-  Model(ppu::Lattice body, int half_width, std::size_t copies = 0)
+  Model(ppu::Lattice<3> body, int half_width, std::size_t copies = 0)
       : lattice(std::move(body)),
-        plan(std::make_shared<const ppu::MatchingPlan<float>>(lattice, half_width,
-                                                              ppu::particle_masses(lattice, kDensity))),
+        plan(std::make_shared<const ppu::MatchingPlan<float, 3>>(lattice, half_width,
+                                                                 ppu::particle_masses(lattice, kDensity))),
         bodies(copies != 0 ? copies : std::max<std::size_t>(1, kBenchParticles / lattice.particles.size())) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) x.push_back(bent_position(lattice, i));
   }
 
   std::size_t particles() const { return bodies * x.size(); }
 
-  ppu::Lattice lattice;
-  std::shared_ptr<const ppu::MatchingPlan<float>> plan;
+  ppu::Lattice<3> lattice;
+  std::shared_ptr<const ppu::MatchingPlan<float, 3>> plan;
   std::size_t bodies;
   std::vector<Eigen::Vector3f> x;  // of each
 };
@@ -76,7 +76,7 @@ class SpeBodies {
   ppu::JobSystem jobs_;
   SpeWaker waker_{jobs_};
   ppu::JobImage image_;
-  ppu::MatchBodies spes_;
+  ppu::MatchBodies<3> spes_;
   std::vector<std::size_t> all_;  // 0, 1, 2, ...
   ppu::JobChain chain_;           // last, so that it has ended before what its jobs work on goes
 };
@@ -84,7 +84,7 @@ class SpeBodies {
 void step(ppu::EigenSolver<3>& solver, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> v) {
   solver.step(x, v, kAlpha, kStep, kDamping);
 }
-void step(ppu::ShapeMatcher<float>& solver, std::span<const Eigen::Vector3f> x,
+void step(ppu::ShapeMatcher<float, 3>& solver, std::span<const Eigen::Vector3f> x,
           std::span<Eigen::Vector3f> v) {
   solver.step_velocities(x, v, kAlpha, kStep, kDamping);
 }
@@ -125,7 +125,7 @@ void add_solver(std::vector<Benchmark>& all, const BenchBody& body, int half_wid
                      return work;
                    }});
   };
-  using Matchers = PpuBodies<ppu::ShapeMatcher<float>>;
+  using Matchers = PpuBodies<ppu::ShapeMatcher<float, 3>>;
   add("spe", [](const Model& model) { return std::make_shared<SpeBodies>(model); });
   add("eigen", [](const Model& model) { return std::make_shared<PpuBodies<ppu::EigenSolver<3>>>(model); });
   add("ppu",

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
+#include <stdexcept>
 
 #include "benchmarks.h"
 #include "ppu/reference/eigen_solver.h"
-#include "ppu/reference/shape_matching_2d.h"
-#include "ppu/spe_bodies/match_orchestrator_2d.h"
+#include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/match_bodies.h"
 #include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
@@ -17,10 +19,11 @@ namespace softcell::tool {
 namespace {
 
 constexpr float kSpacing = 0.1f, kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f;
+constexpr std::size_t kBodiesPerJob = 16;
 constexpr std::size_t kParticlesAtOnce = 16'000;  // so many in one measurement: waking the SPE does not count
 
 /// The man of the 2D demo.
-ppu::Lattice2d man132() {
+ppu::Lattice<2> man132() {
   std::vector<std::string> rows;
   const auto add = [&](int count, const char* row) {
     rows.insert(rows.end(), static_cast<std::size_t>(count), row);
@@ -30,25 +33,27 @@ ppu::Lattice2d man132() {
   add(2, "################");
   add(2, "     ######");
   add(7, "     ##  ##");
-  return ppu::lattice_2d_from_cells(ppu::cells_from_rows(rows), kSpacing);
+  return ppu::lattice_from_cells(ppu::cells_from_rows(rows), kSpacing);
 }
 
 /// 32 x 32 particles.
-ppu::Lattice2d block1024() {
+ppu::Lattice<2> block1024() {
   const std::vector<std::string> rows(31, std::string(31, '#'));
-  return ppu::lattice_2d_from_cells(ppu::cells_from_rows(rows), kSpacing);
+  return ppu::lattice_from_cells(ppu::cells_from_rows(rows), kSpacing);
 }
 
 struct SolverCase2d {
-  SolverCase2d(ppu::Lattice2d body, int half_width)
+  SolverCase2d(ppu::Lattice<2> body, int half_width)
       : lattice(std::move(body)),
-        plan(std::make_shared<const ppu::MatchingPlan2d<float>>(lattice, half_width,
-                                                                ppu::particle_masses(lattice, 1000))),
+        plan(std::make_shared<const ppu::MatchingPlan<float, 2>>(lattice, half_width,
+                                                                 ppu::particle_masses(lattice, 1000))),
         jobs(memory, {.spes = 1}, job_loop),
         waker(jobs),
         bodies(std::max<std::size_t>(1, kParticlesAtOnce / lattice.particles.size())),
-        kernel_plan(lattice, *plan),
-        spes(memory, jobs, kernel, std::vector{ppu::MatchOrchestrator2d::Model{&kernel_plan, bodies}}),
+        image(jobs.place(kernel)),
+        spes(memory, ppu::MatchPlan2d(lattice, *plan), bodies),
+        all(bodies),
+        chain(jobs, "match_2d", bodies),
         eigen(plan),
         shared_sums(plan, ppu::SumMethod::kBarPlateCube),
         naive_sums(plan, ppu::SumMethod::kNaive) {
@@ -57,14 +62,18 @@ struct SolverCase2d {
       x.push_back({p.x() + 0.2f * p.y() * p.y(), p.y()});  // bent
     }
     v.resize(x.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
     for (std::size_t b = 0; b < bodies; ++b)
-      for (std::size_t i = 0; i < x.size(); ++i) spes.positions(0, b)[i] = {x[i].x(), x[i].y()};
+      for (std::size_t i = 0; i < x.size(); ++i) spes.positions(b)[i] = {x[i].x(), x[i].y()};
   }
 
   void run_spes() {
-    for (std::size_t b = 0; b < bodies; ++b) std::ranges::fill(spes.velocities(0, b), spu::MatchVector2d{});
-    const ppu::MatchOrchestrator2d::Settings settings{.pull = kAlpha / kStep, .damping = kDamping};
-    spes.step({&settings, 1});
+    for (std::size_t b = 0; b < bodies; ++b) std::ranges::fill(spes.velocities(b), spu::MatchVector2d{});
+    chain.clear();
+    spes.add_jobs(chain, image, {.pull = kAlpha / kStep, .damping = kDamping}, all, kBodiesPerJob);
+    chain.kick();
+    chain.wait();
+    if (!chain.failures().empty()) throw std::runtime_error(chain.failures().front().message);
   }
 
   void run_eigen() {
@@ -72,26 +81,28 @@ struct SolverCase2d {
     eigen.step(x, v, kAlpha, kStep, kDamping);
   }
 
-  void run_ppu(ppu::ShapeMatcher2d<float>& matcher) {
+  void run_ppu(ppu::ShapeMatcher<float, 2>& matcher) {
     std::ranges::fill(v, Eigen::Vector2f::Zero());
     matcher.step_velocities(x, v, kAlpha, kStep, kDamping);
   }
 
-  ppu::Lattice2d lattice;
-  std::shared_ptr<const ppu::MatchingPlan2d<float>> plan;
+  ppu::Lattice<2> lattice;
+  std::shared_ptr<const ppu::MatchingPlan<float, 2>> plan;
   dma::AddressSpace memory;
   ls_sim::KernelImage kernel = load_kernel("match_2d"), job_loop = load_kernel("job_loop");
   ppu::JobSystem jobs;
   SpeWaker waker;
   std::size_t bodies;
-  ppu::MatchPlan2d kernel_plan;
-  ppu::MatchOrchestrator2d spes;
+  ppu::JobImage image;
+  ppu::MatchBodies<2> spes;
+  std::vector<std::size_t> all;  // 0, 1, 2, ...
+  ppu::JobChain chain;           // behind what its jobs work on, so that it has ended before that goes
   ppu::EigenSolver<2> eigen;
-  ppu::ShapeMatcher2d<float> shared_sums, naive_sums;
+  ppu::ShapeMatcher<float, 2> shared_sums, naive_sums;
   std::vector<Eigen::Vector2f> x, v;
 };
 
-void add_solver(std::vector<Benchmark>& all, const std::string& body, ppu::Lattice2d (*make)(),
+void add_solver(std::vector<Benchmark>& all, const std::string& body, ppu::Lattice<2> (*make)(),
                 int half_width) {
   const Shared<SolverCase2d> shared(
       [make, half_width] { return std::make_shared<SolverCase2d>(make(), half_width); });

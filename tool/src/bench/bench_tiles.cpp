@@ -22,8 +22,8 @@ constexpr ppu::MatchSettings kSettings{
 
 class LargeBody {
  public:
-  LargeBody(const ppu::Lattice& lattice, int half_width)
-      : plan_(lattice, ppu::MatchingPlan<float>(lattice, half_width, ppu::particle_masses(lattice, 1000))),
+  LargeBody(const ppu::Lattice<3>& lattice, int half_width)
+      : plan_(lattice, ppu::MatchingPlan<float, 3>(lattice, half_width, ppu::particle_masses(lattice, 1000))),
         jobs_(memory_, {.spes = 1}, job_loop_),
         image_(jobs_.place(kernel_)),
         body_(memory_, plan_),

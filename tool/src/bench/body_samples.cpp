@@ -23,7 +23,7 @@ void run_skin(SampleRun& sample) {
   // A sphere about the origin has normals and positions of every sign and size, zero and subnormal halves
   // among them.
   const ppu::TriangleMesh mesh = ppu::make_sphere(1, 20);
-  const ppu::Lattice lattice = ppu::voxelize(mesh, 0.25f);
+  const ppu::Lattice<3> lattice = ppu::voxelize(mesh, 0.25f);
   const ppu::Embedding embedding = ppu::embed(mesh, lattice);
   dma::Buffer<spu::SkinCorner> corners(sample.memory(), "corners", lattice.particles.size());
   for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
@@ -49,7 +49,7 @@ void run_skin(SampleRun& sample) {
 
 /// One SPE's share of a step of one body, as MatchBodies makes it.
 void run_match(SampleRun& sample) {
-  const ppu::Lattice lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
+  const ppu::Lattice<3> lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
   const std::size_t particles = lattice.particles.size();
   const ppu::MatchPlan plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)});
   dma::Buffer<std::byte> plan_bytes(sample.memory(), "plan", plan.bytes().size());
@@ -76,11 +76,11 @@ void run_match(SampleRun& sample) {
   }
 }
 
-/// A step of three bodies, as MatchOrchestrator2d makes it.
+/// A step of three bodies, as MatchBodies makes it.
 void run_match_2d(SampleRun& sample) {
   constexpr std::uint32_t kBodies = 3;
   const std::vector<std::string> rows(9, "#########");
-  const ppu::Lattice2d lattice = ppu::lattice_2d_from_cells(ppu::cells_from_rows(rows), 0.5f);
+  const ppu::Lattice<2> lattice = ppu::lattice_from_cells(ppu::cells_from_rows(rows), 0.5f);
   const ppu::MatchPlan2d plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)});
   dma::Buffer<std::byte> plan_bytes(sample.memory(), "plan", plan.bytes().size());
   std::copy(plan.bytes().begin(), plan.bytes().end(), plan_bytes.span().begin());
@@ -98,7 +98,7 @@ void run_match_2d(SampleRun& sample) {
 
 /// All passes over a body in tiles, rotations from nothing and then from the last step.
 void run_match_tiles(SampleRun& sample) {
-  const ppu::Lattice lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
+  const ppu::Lattice<3> lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
   const ppu::TilePlan plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)},
                            {.planes = 3, .rows = 3});
   ppu::TiledMemory body(sample.memory(), plan);

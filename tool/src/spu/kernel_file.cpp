@@ -60,8 +60,7 @@ std::optional<std::filesystem::path> find_kernel_file(const std::string& image, 
 }
 
 ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
-  if (const auto file = find_kernel_file(image, checked))
-    return spu_kernels::load_kernel_file(*file);
+  if (const auto file = find_kernel_file(image, checked)) return spu_kernels::load_kernel_file(*file);
   if (is_built_in(image)) return load_kernel(image, checked);
   throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
                            built_in_names() + ")");

@@ -2,7 +2,7 @@
 // Soft bodies in somebody's Box2D world.
 //
 //     Box2dSoftBodies soft_bodies(world);                      // your b2World
-//     SoftBody2d& man = soft_bodies.add(model, {0, 2});
+//     SoftBody<2>& man = soft_bodies.add(model, {0, 2});
 //     soft_bodies.step(1.0f / 120);                            // in place of world.Step()
 //     draw(man.positions());
 //
@@ -11,23 +11,25 @@
 // velocities, with that step's length; positions are Box2D's own business. Inner particles, which nothing can
 // touch, are integrated here.
 //
-//     step:  [pull: v] [Box2D: collide, solve, x += h v] [gather x v, inner x += h v]
+//     step:  [solver: v] [Box2D: collide, solve, x += h v] [gather x v, inner x += h v]
 
 #include <box2d/b2_world.h>
 
 #include <Eigen/Core>
 #include <chrono>
 #include <memory>
+#include <optional>
 
-#include "softcell/soft_bodies/soft_body_2d.h"
-#include "softcell/soft_bodies/solver_2d.h"
+#include "softcell/soft_bodies/soft_body.h"
+#include "softcell/soft_bodies/soft_body_solver.h"
+#include "softcell/soft_bodies/solver_factory.h"
 
 namespace softcell::ppu {
 
 /// All soft bodies of one world, which has only one of these; used by the thread that steps it. Box2D has no
 /// callback before a step, so the step goes through here. Negative collision groups are its own, one for each
 /// body, from -1 downwards: a fixture of the caller in such a group never meets that body. A NaN in a
-/// particle throws std::runtime_error out of begin_step(), and so does a body that the solver cannot take.
+/// particle throws std::runtime_error out of begin_step().
 class Box2dSoftBodies {
  public:
   /// A particle moves at most this many cells in one step; faster ones are slowed down, which takes momentum
@@ -35,10 +37,12 @@ class Box2dSoftBodies {
   /// Box2D's continuous collision's concern.
   static constexpr float kMaxTravelInCells = 1.0f;
 
-  /// @param world   outlives this.
-  /// @param solver  computes shape matching, of this world alone: SpeSolver2d does it on the SPEs. Outlives
-  ///                this; null: the thread that steps the world does it.
-  explicit Box2dSoftBodies(b2World& world, Solver2d* solver = nullptr);
+  /// The thread that steps the world does the shape matching. @param world  outlives this.
+  explicit Box2dSoftBodies(b2World& world);
+  /// @param solvers  makes the solver that does the shape matching: SpeRuntime has SPEs do it. Outlives this.
+  Box2dSoftBodies(b2World& world, SolverFactory& solvers);
+  /// @param solver  does the shape matching: SpeSolver<2> on the SPEs. Outlives this, and serves nobody else.
+  Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver);
   /// Removes all bodies.
   ~Box2dSoftBodies();
   Box2dSoftBodies(const Box2dSoftBodies&) = delete;
@@ -46,10 +50,10 @@ class Box2dSoftBodies {
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
   /// Between steps the body may be changed through its own functions; Box2D is told at the next step.
-  SoftBody2d& add(std::shared_ptr<const SoftBodyModel2d> model, const Eigen::Vector2f& position);
+  SoftBody<2>& add(std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position);
 
   /// @throws std::invalid_argument  the body is not one of these.
-  void remove(const SoftBody2d& body);
+  void remove(const SoftBody<2>& body);
 
   /// One step of the world and its soft bodies. @param step  seconds, above 0.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);
@@ -59,20 +63,35 @@ class Box2dSoftBodies {
   void begin_step(float step);
   void end_step(float step);
 
+  /// Has the solver begin the next step's work now, of `step` seconds, while the caller does something else.
+  /// When bodies are changed after all, or the step has another length, that work is dropped and done again:
+  /// the result is the same. Call it between steps.
+  void begin_ahead(float step);
+
+  /// Lets bodies at rest sleep, or never (std::nullopt, the default). What touches each other, or hangs
+  /// together by joints, falls asleep together: soft bodies, and rigid ones that can move, of which each must
+  /// be slow and allowed to sleep. A sleeping body wakes when something that moves touches it, when what it
+  /// touched is removed, when gravity changes, when its user changes it, and when one of its particles is
+  /// woken in Box2D.
+  void let_sleep(const std::optional<SleepSettings>& settings);
+
   std::size_t size() const;
-  SoftBody2d& operator[](std::size_t index);  ///< in the order of add()
-  const SoftBody2d& operator[](std::size_t index) const;
+  SoftBody<2>& operator[](std::size_t index);  ///< in the order of add()
+  const SoftBody<2>& operator[](std::size_t index) const;
 
   /// The soft body and the particle number that a b2Body stands for, for contact listeners; a null pointer
   /// for everything else.
   struct Particle {
-    const SoftBody2d* body = nullptr;
+    const SoftBody<2>* body = nullptr;
     std::size_t number = 0;
   };
   Particle particle_of(const b2Body& body) const;
 
-  /// Time spent in this class's part of the steps so far.
+  /// Time spent in this class's part of the steps so far, by the clock.
   std::chrono::nanoseconds time_spent() const;
+  /// Of that, the time until the solver had finished. The default solver works in that time, one on the SPEs
+  /// leaves this thread nothing to do.
+  std::chrono::nanoseconds time_waited() const;
 
  private:
   struct Impl;

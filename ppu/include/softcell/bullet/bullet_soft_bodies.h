@@ -33,12 +33,6 @@
 
 namespace softcell::ppu {
 
-/// When bodies may sleep. A body at rest costs its coupling next to nothing then, and its solver nothing.
-struct SleepSettings {
-  float speed = 0.05f;  ///< m/s: slower than this are all particles of a body that rests
-  float seconds = 1;    ///< for so long
-};
-
 /// Where the time goes that soft bodies take inside stepSimulation(), since the beginning.
 struct SoftBodyTimes {
   std::chrono::nanoseconds gather{0};  ///< processor time: particles from Bullet, inner ones integrated
@@ -72,7 +66,7 @@ class BulletSoftBodies {
   /// @throws std::runtime_error  as SolverFactory::make_solver().
   BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers);
   /// @param solver  outlives this, and serves nobody else.
-  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver& solver);
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver);
   /// Removes all bodies and leaves the world as it was found.
   ~BulletSoftBodies();
   BulletSoftBodies(const BulletSoftBodies&) = delete;
@@ -81,10 +75,10 @@ class BulletSoftBodies {
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
   /// @pre the model is not null; the position is finite
   /// Between steps the body may be changed through its own functions; Bullet is told at the next substep.
-  SoftBody& add(std::shared_ptr<const SoftBodyModel> model, const Eigen::Vector3f& position);
+  SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position);
 
   /// @throws std::invalid_argument  the body is not one of these.
-  void remove(const SoftBody& body);
+  void remove(const SoftBody<3>& body);
 
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
   /// else. When bodies are changed after all, or the substep has another length, that work is dropped and
@@ -102,13 +96,13 @@ class BulletSoftBodies {
   SoftBodyTimes times() const;
 
   std::size_t size() const;
-  SoftBody& operator[](std::size_t index);  ///< in the order of add()
-  const SoftBody& operator[](std::size_t index) const;
+  SoftBody<3>& operator[](std::size_t index);  ///< in the order of add()
+  const SoftBody<3>& operator[](std::size_t index) const;
 
   /// The soft body and the particle number that a collision object stands for, for contact callbacks; a null
   /// pointer for everything else.
   struct Particle {
-    const SoftBody* body = nullptr;
+    const SoftBody<3>* body = nullptr;
     std::size_t number = 0;
   };
   static Particle particle_of(const btCollisionObject& object);

@@ -1,14 +1,16 @@
 #pragma once
-// The lattice of a soft body: cubic cells that cover the mesh, and particles at the cells' corners.
+// The lattice of a soft body: cells that cover it, squares in two dimensions and cubes in three, and
+// particles at the cells' corners.
 //
-// Convention: cell-vertex. Particles are the corners of occupied cells, so every mesh vertex lies between
-// eight particles, skinning is exact for any affine deformation, and no vertex is ever outside the hull of
-// its particles.
+// Convention: cell-vertex. Particles are the corners of occupied cells, so everything in the body lies
+// between the corners of one cell, skinning is exact for any affine deformation, and no mesh vertex is ever
+// outside the hull of its particles.
 
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "softcell/soft_bodies/mesh.h"
@@ -31,45 +33,66 @@ struct Csr {
 };
 
 /// SPEs step far fewer: a body in tiles takes some 250 bytes of their main memory for each particle.
-inline constexpr std::uint32_t kMaxLatticeParticles = 1u << 20;
+template <int kDimension>
+inline constexpr std::uint32_t kMaxLatticeParticles = kDimension == 2 ? 1u << 16 : 1u << 20;
 inline constexpr int kMaxLatticeCellsPerAxis = 256;
 
+/// @tparam kDimension  2 or 3
+template <int kDimension>
 struct Lattice {
-  float spacing = 0;                ///< edge of a cell in metres
-  Eigen::Vector3f origin{0, 0, 0};  ///< position of grid index (0, 0, 0)
-  std::vector<Eigen::Vector3i>
-      particles;                       ///< grid indices, sorted by x, then y, then z; index = particle number
-  std::vector<Eigen::Vector3i> cells;  ///< grid index of each cell's low corner, sorted likewise
-  std::vector<std::array<std::uint32_t, 8>>
-      corners;              ///< of each cell: particle numbers, corner k = bx + 2 by + 4 bz
-  std::vector<float> fill;  ///< of each cell that a triangle touches: the share of its volume inside the
-                            ///< mesh, 0.25..1; of all others 1, also in closed cavities
-  Csr neighbours;  ///< of each particle: the particles with which it shares a cell, ascending, itself
-                   ///< excluded
+  static_assert(kDimension == 2 || kDimension == 3);
+  static constexpr std::size_t kCorners = std::size_t{1} << kDimension;  ///< of a cell
+  using Position = Eigen::Vector<float, kDimension>;
+  using GridIndex = Eigen::Vector<int, kDimension>;
 
-  Eigen::Vector3f rest_position(std::size_t particle) const {
-    return origin + spacing * particles[particle].cast<float>();
+  float spacing = 0;                   ///< edge of a cell in metres
+  Position origin = Position::Zero();  ///< position of grid index 0, metres
+  std::vector<GridIndex> particles;    ///< sorted by x, then y, then z; index = particle number
+  std::vector<GridIndex> cells;        ///< of each cell's low corner, sorted likewise
+  /// Of each cell: particle numbers, corner k = bx + 2 by + 4 bz.
+  std::vector<std::array<std::uint32_t, kCorners>> corners;
+  /// Of each cell that a triangle touches: the share of its volume inside the mesh, 0.25..1; of all others 1,
+  /// also in closed cavities, and of all cells in two dimensions.
+  std::vector<float> fill;
+  /// Of each particle: the particles with which it shares a cell, ascending, itself excluded.
+  Csr neighbours;
+
+  Position rest_position(std::size_t particle) const {
+    return origin + spacing * particles[particle].template cast<float>();
   }
 };
 
 /// Covers a mesh with cells of edge `cell_size` metres: every cell that a triangle touches, and every cell
 /// inside. Deterministic. The surface may have gaps smaller than a cell.
 /// @throws std::runtime_error  cell size not positive and finite; so large that one cell holds the whole
-/// mesh; so small
-///         that the lattice passes kMaxLatticeParticles or kMaxLatticeCellsPerAxis (found before anything is
-///         allocated for it); the sentence states the value and what would fit.
-Lattice voxelize(const TriangleMesh& mesh, float cell_size);
+///         mesh; so small that the lattice passes kMaxLatticeParticles or kMaxLatticeCellsPerAxis (found
+///         before anything is allocated for it); the sentence states the value and what would fit.
+Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size);
 
 /// A lattice from cells given by their grid indices (any order, repeats ignored), all with fill 1.
-/// @throws std::runtime_error  no cells, or past the limits above.
-Lattice lattice_from_cells(std::span<const Eigen::Vector3i> cells, float spacing,
-                           const Eigen::Vector3f& origin);
+/// @param spacing  edge of a cell, metres
+/// @param origin   position of grid index 0, metres
+/// @throws std::runtime_error  no cells; spacing not positive and finite; more than kMaxLatticeParticles
+///         particles or kMaxLatticeCellsPerAxis cells along an axis.
+Lattice<3> lattice_from_cells(std::span<const Eigen::Vector3i> cells, float spacing,
+                              const Eigen::Vector3f& origin = Eigen::Vector3f::Zero());
+Lattice<2> lattice_from_cells(std::span<const Eigen::Vector2i> cells, float spacing,
+                              const Eigen::Vector2f& origin = Eigen::Vector2f::Zero());
 
-/// Mass of each particle in kg: density (kg/m^3) times the filled volume, an eighth of each cell to each of
-/// its corners.
-std::vector<float> particle_masses(const Lattice& lattice, float density);
+/// The cells of a picture in text, one row a string, the top row first: '#' is a cell, '.' and ' ' are none.
+/// Row and column of the lower left character are grid index (0, 0).
+/// @throws std::runtime_error  any other character: the sentence has its row and column.
+std::vector<Eigen::Vector2i> cells_from_rows(std::span<const std::string> rows);
 
-/// Particles that are not surrounded by eight occupied cells: those that collide.
-std::vector<bool> outer_particles(const Lattice& lattice);
+/// Mass of each particle in kg: density (kg/m^3, in two dimensions kg/m^2) times the filled volume (area);
+/// each cell gives equal shares to its corners.
+/// @throws std::invalid_argument  density not positive and finite.
+template <int kDimension>
+std::vector<float> particle_masses(const Lattice<kDimension>& lattice, float density);
+
+/// Particles that are not surrounded by occupied cells, four in two dimensions and eight in three: those that
+/// collide.
+template <int kDimension>
+std::vector<bool> outer_particles(const Lattice<kDimension>& lattice);
 
 }  // namespace softcell::ppu

@@ -36,12 +36,14 @@ struct TriangleMesh {
   bool operator==(const TriangleMesh&) const = default;
 };
 
+/// An axis-aligned box, metres.
+template <int kDimension>
 struct Bounds {
-  Eigen::Vector3f low, high;
+  Eigen::Vector<float, kDimension> low, high;
 };
 
 /// The mesh's axis-aligned box. @pre at least one position.
-Bounds bounds(const TriangleMesh& mesh);
+Bounds<3> bounds(const TriangleMesh& mesh);
 
 /// Moves and scales the mesh so that its box is centred on 0 and its longest side has the given length in
 /// metres. @pre at least one position; longest_side is positive and finite.

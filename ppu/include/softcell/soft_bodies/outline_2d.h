@@ -10,19 +10,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "softcell/soft_bodies/lattice_2d.h"
+#include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
 
 /// Two triangles for each cell, counter-clockwise, in the order of the lattice's cells.
-std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice2d& lattice);
+std::vector<std::array<std::uint32_t, 3>> cell_triangles(const Lattice<2>& lattice);
 
 /// The lattice's boundary as closed loops: those around the body counter-clockwise, those around its holes
 /// clockwise, the last particle of each joined to its first. Cells that touch in one corner only have loops
 /// that meet there and do not cross. Deterministic.
 ///
-/// A body is drawn smaller than it collides: circles of SoftBodyModel2d::contact_radius() around the
+/// A body is drawn smaller than it collides: circles of SoftBodyModel<2>::contact_radius() around the
 /// outline's particles keep other things away.
-std::vector<std::vector<std::uint32_t>> outline(const Lattice2d& lattice);
+std::vector<std::vector<std::uint32_t>> outline(const Lattice<2>& lattice);
 
 }  // namespace softcell::ppu

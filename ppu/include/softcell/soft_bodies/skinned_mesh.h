@@ -31,17 +31,17 @@ namespace softcell::ppu {
 /// @param normals    unit length, world; one for each vertex of the mesh
 /// @throws std::invalid_argument  a span has another size.
 /// Any thread, while nobody changes the body.
-void skin(const SoftBody& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals);
+void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals);
 
 /// A deformed mesh with memory of its own. Used by one thread at a time.
 class SkinnedMesh {
  public:
   /// The mesh as it was given, around the model's own origin. A model without a mesh has no vertices.
-  explicit SkinnedMesh(std::shared_ptr<const SoftBodyModel> model);
+  explicit SkinnedMesh(std::shared_ptr<const SoftBodyModel<3>> model);
 
   /// Takes over where the body is now. Allocates nothing.
   /// @throws std::invalid_argument  the body is one of another model.
-  void update(const SoftBody& body);
+  void update(const SoftBody<3>& body);
 
   std::span<const Eigen::Vector3f> positions() const { return positions_; }  ///< metres, of each vertex
   std::span<const Eigen::Vector3f> normals() const { return normals_; }      ///< unit vectors, of each vertex
@@ -50,7 +50,7 @@ class SkinnedMesh {
   const TriangleMesh& mesh() const { return model_->mesh(); }
 
  private:
-  std::shared_ptr<const SoftBodyModel> model_;
+  std::shared_ptr<const SoftBodyModel<3>> model_;
   std::vector<Eigen::Vector3f> positions_, normals_;
 };
 

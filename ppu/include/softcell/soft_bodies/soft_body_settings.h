@@ -1,5 +1,5 @@
 #pragma once
-// What a soft body is made like, in two dimensions and three.
+// What a soft body is made like, in two dimensions and three, and when it may sleep.
 
 #include <optional>
 
@@ -25,6 +25,12 @@ struct SoftBodySettings {
   float damping_of_step(float step) const;
 
   bool operator==(const SoftBodySettings&) const = default;
+};
+
+/// When bodies may sleep. A body at rest costs its coupling next to nothing then, and its solver nothing.
+struct SleepSettings {
+  float speed = 0.05f;  ///< m/s: slower than this are all particles of a body that rests
+  float seconds = 1;    ///< for so long
 };
 
 /// @throws std::runtime_error  a value is out of its range; the sentence names it and the range.

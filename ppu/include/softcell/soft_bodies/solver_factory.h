@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "softcell/soft_bodies/soft_body_solver.h"
-#include "softcell/soft_bodies/solver_2d.h"
 
 namespace softcell::ppu {
 
@@ -15,9 +14,9 @@ class SolverFactory {
   virtual ~SolverFactory() = default;
 
   /// A solver for the soft bodies of one world. @throws std::runtime_error  as the factory says.
-  virtual std::unique_ptr<SoftBodySolver> make_solver() = 0;
+  virtual std::unique_ptr<SoftBodySolver<3>> make_solver() = 0;
   /// In two dimensions.
-  virtual std::unique_ptr<Solver2d> make_solver_2d() = 0;
+  virtual std::unique_ptr<SoftBodySolver<2>> make_solver_2d() = 0;
 };
 
 }  // namespace softcell::ppu

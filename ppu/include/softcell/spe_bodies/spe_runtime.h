@@ -45,9 +45,9 @@ class SpeRuntime final : public SolverFactory {
 
   /// A solver for the soft bodies of one Bullet world: BulletSoftBodies calls it. A job system has room for
   /// 15 chains; a solver takes one of them, a skinner two.
-  std::unique_ptr<SoftBodySolver> make_solver() override;
+  std::unique_ptr<SoftBodySolver<3>> make_solver() override;
   /// A solver for the soft bodies of one Box2D world.
-  std::unique_ptr<Solver2d> make_solver_2d() override;
+  std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override;
 
   dma::AddressSpace& memory();  ///< main memory, 256 MB, from which buffers are made
   JobSystem& jobs();

@@ -63,7 +63,7 @@ struct DrawOrder {
   }
 };
 
-DrawOrder draw_order(const SoftBodyModel& model);
+DrawOrder draw_order(const SoftBodyModel<3>& model);
 
 /// Skins bodies on SPEs. Used by one thread, between the steps of the bodies.
 class SpeSkinner {
@@ -80,10 +80,10 @@ class SpeSkinner {
   /// remove().
   /// @throws std::invalid_argument  its model has no mesh, or it was added before.
   /// @throws std::runtime_error     main memory is full; as finish_frame().
-  void add(const SoftBody& body);
+  void add(const SoftBody<3>& body);
   /// Waits for the frame under way and takes a body out: call it before the body goes.
   /// @throws std::invalid_argument  it was not added. @throws std::runtime_error  as finish_frame().
-  void remove(const SoftBody& body);
+  void remove(const SoftBody<3>& body);
 
   /// Copies where the particles of all bodies are now and has the SPEs begin to skin them. Never waits: when
   /// the SPEs have not finished the frame before, nothing is done, and the picture stays as it is.
@@ -99,7 +99,7 @@ class SpeSkinner {
   /// The body's vertices of the newest frame that is finished. Each begin_frame() makes the frame finished
   /// that began before it: vertices are one frame late.
   /// @throws std::invalid_argument  the body was not added.
-  SkinnedVertices vertices(const SoftBody& body) const;
+  SkinnedVertices vertices(const SoftBody<3>& body) const;
 
  private:
   struct State;

@@ -1,7 +1,8 @@
 #pragma once
-// Shape matching and damping of soft bodies on the SPEs, by the kernels `match` and `match_tiles`.
+// Shape matching and damping of soft bodies on the SPEs, in two dimensions by the kernel `match_2d`, in three
+// by `match` and `match_tiles`.
 //
-//     SpeSolver solver(memory, jobs, match, match_tiles);   // the kernels' images
+//     SpeSolver<3> solver(memory, jobs, {match, match_tiles});   // the kernels' images
 //     BulletSoftBodies soft_bodies(world, solver);
 //
 //     kick():    positions, velocities --> main memory    one chain of jobs: bodies of one model share a plan
@@ -15,31 +16,50 @@
 
 namespace softcell::ppu {
 
+/// The images of the kernels that step soft bodies. They must outlive the solver.
+template <int kDimension>
+struct MatchKernels;
+template <>
+struct MatchKernels<2> {
+  const ls_sim::KernelImage& match_2d;
+};
+template <>
+struct MatchKernels<3> {
+  const ls_sim::KernelImage& match;
+  const ls_sim::KernelImage& match_tiles;  ///< the same flavour, checked or not
+};
+
 /// The result is the same bits for any number of SPEs. The rotations of regions live in main memory, not in
 /// the bodies: a body restored from a copy starts without any.
 ///
-/// A body that fits a local store is stepped whole by one SPE, with others of its model; a larger one in
-/// tiles by all of them. What does not even fit in tiles, a lattice some hundreds of particles high (z) with
-/// wide regions, the PPU steps while the SPEs step the others.
-class SpeSolver final : public SoftBodySolver {
+/// A body that fits a local store is stepped whole by one SPE, with others of its model. A larger one is
+/// stepped in three dimensions in tiles, by all SPEs. What no SPE can step, the PPU steps while the SPEs step
+/// the others: in two dimensions bodies that do not fit a local store, in three those that do not even fit in
+/// tiles, a lattice some hundreds of particles high (z) with wide regions.
+/// @tparam kDimension  2 or 3
+template <int kDimension>
+class SpeSolver final : public SoftBodySolver<kDimension> {
  public:
-  /// All four must outlive the solver.
-  SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& match,
-            const ls_sim::KernelImage& match_tiles);
+  using Body = SoftBody<kDimension>;
+
+  /// `memory` and `jobs` must outlive the solver.
+  /// @throws std::runtime_error  main memory is full.
+  SpeSolver(dma::AddressSpace& memory, JobSystem& jobs, const MatchKernels<kDimension>& kernels);
   ~SpeSolver() override;
 
-  void kick(std::span<SoftBody* const> bodies, float step) override;
+  void kick(std::span<Body* const> bodies, float step) override;
   void finish() override;
   void drop() override;
-  void forget(const SoftBody& body) override;
+  void forget(const Body& body) override;
 
  private:
   struct Group;   // the bodies of one model
   struct Member;  // where a body is
 
-  bool knows(std::span<SoftBody* const> bodies) const;
-  void regroup(std::span<SoftBody* const> bodies);
+  bool knows(std::span<Body* const> bodies) const;
+  void regroup(std::span<Body* const> bodies);
   void find_place(Group& group);
+  void find_tiles(Group& group);
   Member* known_as(const Member& member);
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
@@ -47,11 +67,11 @@ class SpeSolver final : public SoftBodySolver {
 
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
-  JobImage match_, match_tiles_;
-  bool checked_;  // the kernels' flavour
+  JobImage match_, match_tiles_;  // the second in three dimensions only
+  bool checked_;                  // the kernels' flavour
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<Member> members_;  // in the order of kick()
-  std::vector<SoftBody*> left_to_ppu_;
+  std::vector<Body*> left_to_ppu_;
   float step_ = 0;
   std::unique_ptr<JobChain> chain_;  // last, so that it has ended before what its jobs work on goes
 };

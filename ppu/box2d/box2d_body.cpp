@@ -1,0 +1,136 @@
+#include "ppu/box2d/box2d_body.h"
+
+#include <box2d/b2_circle_shape.h>
+#include <box2d/b2_fixture.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "softcell/base/assert.h"
+#include "softcell/box2d/box2d_soft_bodies.h"
+
+namespace softcell::ppu {
+
+using Eigen::Vector2f;
+
+Box2dBody::Box2dBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position,
+                     std::int16_t group)
+    : world_(world), soft_(std::move(model), position), group_(group) {
+  for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
+}
+
+Box2dBody::~Box2dBody() {
+  for (b2Body* particle : particles_) world_.DestroyBody(particle);
+}
+
+void Box2dBody::add_particle(std::uint32_t number) {
+  b2BodyDef definition;
+  definition.type = b2_dynamicBody;
+  definition.position = to_box2d(soft_.position(number));
+  definition.fixedRotation = true;
+  // A particle alone never sleeps: its neighbours would be pulled towards one that hangs still.
+  definition.allowSleep = false;
+  b2Body* const particle = world_.CreateBody(&definition);
+  b2CircleShape circle;
+  circle.m_radius = soft_.model().contact_radius();
+  b2FixtureDef fixture;
+  fixture.shape = &circle;
+  fixture.density = 1;
+  fixture.friction = soft_.model().settings().friction;
+  fixture.restitution = 0;
+  fixture.filter.groupIndex = group_;
+  particle->CreateFixture(&fixture);
+  b2MassData mass{};
+  mass.mass = soft_.model().masses()[number];
+  particle->SetMassData(&mass);
+  particles_.push_back(particle);
+}
+
+/// Box2D has woken a particle because something that moves touches it, or what it touched is gone.
+bool Box2dBody::was_disturbed() const {
+  return world_.GetGravity() != gravity_asleep_ ||
+         std::ranges::any_of(particles_, [](const b2Body* particle) { return particle->IsAwake(); });
+}
+
+bool Box2dBody::was_pushed() const {
+  if (soft_.asleep()) return was_disturbed();
+  const auto outer = soft_.model().outer();
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    if (to_eigen(particles_[i]->GetPosition()) != soft_.position(outer[i]) ||
+        to_eigen(particles_[i]->GetLinearVelocity()) != soft_.velocities()[outer[i]])
+      return true;
+  }
+  return false;
+}
+
+void Box2dBody::begin_step() {
+  if (soft_.asleep() && (was_changed() || was_disturbed())) wake();
+  if (was_changed()) {
+    place_particles();
+  } else if (!soft_.asleep()) {
+    gather();
+  }
+}
+
+void Box2dBody::hand_over(float step) {
+  SC_ASSERT(step > 0, "a time step of {} s", step);
+  if (soft_.asleep()) return;
+  soft_.limit_speed(Box2dSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing / step);
+  const auto outer = soft_.model().outer();
+  for (std::size_t i = 0; i < outer.size(); ++i)
+    particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
+}
+
+void Box2dBody::end_step(float step) {
+  if (soft_.asleep()) {
+    if (!was_disturbed()) return;
+    wake();
+    gather();  // Box2D has moved only what was touched: inner particles stay where they are as well
+    return;
+  }
+  gather();
+  soft_.advance_inner(step, to_eigen(world_.GetGravity()));
+  soft_.keep_inner_inside();
+}
+
+void Box2dBody::count_stillness(float step, float speed) {
+  const bool still = std::ranges::all_of(soft_.velocities(),
+                                         [&](const Vector2f& v) { return v.squaredNorm() < speed * speed; });
+  still_for_ = still ? still_for_ + step : 0;
+}
+
+void Box2dBody::fall_asleep() {
+  SC_ASSERT(!soft_.asleep(), "a body falls asleep that has been still for {} s and sleeps", still_for_);
+  for (std::size_t i = 0; i < soft_.velocities().size(); ++i) soft_.set_velocity(i, Vector2f::Zero());
+  for (b2Body* particle : particles_) particle->SetAwake(false);  // Box2D stops it, too
+  gravity_asleep_ = world_.GetGravity();
+  soft_.set_asleep(true);
+}
+
+void Box2dBody::wake() {
+  still_for_ = 0;
+  soft_.set_asleep(false);
+  for (b2Body* particle : particles_) particle->SetAwake(true);
+}
+
+void Box2dBody::gather() {
+  const auto outer = soft_.model().outer();
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    soft_.set_particle(outer[i], to_eigen(particles_[i]->GetPosition()),
+                       to_eigen(particles_[i]->GetLinearVelocity()));
+  }
+}
+
+/// The body was changed by its user: so are its particles.
+void Box2dBody::place_particles() {
+  seen_revision_ = soft_.revision();
+  seen_resets_ = soft_.resets();
+  const auto outer = soft_.model().outer();
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    const b2Vec2 position = to_box2d(soft_.position(outer[i]));
+    if (position != particles_[i]->GetPosition()) particles_[i]->SetTransform(position, 0);
+    particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
+  }
+}
+
+}  // namespace softcell::ppu

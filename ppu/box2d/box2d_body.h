@@ -1,0 +1,70 @@
+#pragma once
+// One soft body in a Box2D world, and the b2Bodies of its outer particles.
+
+#include <box2d/b2_body.h>
+#include <box2d/b2_world.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::ppu {
+
+/// Its particles are in the order of SoftBodyModel::outer().
+class Box2dBody {
+ public:
+  /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
+  Box2dBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position,
+            std::int16_t group);
+  ~Box2dBody();
+  Box2dBody(const Box2dBody&) = delete;
+  Box2dBody& operator=(const Box2dBody&) = delete;
+
+  SoftBody<2>& soft() { return soft_; }
+  const SoftBody<2>& soft() const { return soft_; }
+  std::int16_t group() const { return group_; }
+  std::span<b2Body* const> particles() const { return particles_; }
+
+  /// Whether the body's user has changed it since the last step.
+  bool was_changed() const { return soft_.revision() != seen_revision_; }
+  /// Whether what is known of its rotations is of no use since then.
+  bool was_reset() const { return soft_.resets() != seen_resets_; }
+  /// Whether particles are no longer as they were gathered last, or a sleeping body has a reason to wake.
+  bool was_pushed() const;
+
+  /// Before the solver: what the body's user may have done to it, or to its particles in Box2D.
+  void begin_step();
+  /// Behind the solver: Box2D integrates with the new velocities.
+  void hand_over(float step);
+  /// After Box2D's step: outer particles are taken over, inner ones follow.
+  void end_step(float step);
+
+  /// Adds a step to the time for which no particle was faster than `speed` (m/s).
+  void count_stillness(float step, float speed);
+  float still_for() const { return still_for_; }  ///< seconds
+  void fall_asleep();
+  /// It sleeps again when it has been still for as long again.
+  void wake();
+
+ private:
+  void add_particle(std::uint32_t number);
+  void gather();
+  void place_particles();
+  bool was_disturbed() const;
+
+  b2World& world_;
+  SoftBody<2> soft_;
+  std::int16_t group_;
+  std::vector<b2Body*> particles_;
+  std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
+  float still_for_ = 0;
+  b2Vec2 gravity_asleep_{0, 0};
+};
+
+inline b2Vec2 to_box2d(const Eigen::Vector2f& v) { return {v.x(), v.y()}; }
+inline Eigen::Vector2f to_eigen(const b2Vec2& v) { return {v.x, v.y}; }
+
+}  // namespace softcell::ppu

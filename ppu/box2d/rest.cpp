@@ -1,0 +1,66 @@
+#include "ppu/box2d/rest.h"
+
+#include <box2d/b2_contact.h>
+#include <box2d/b2_joint.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+template <class Body>
+void add_once(std::vector<Body*>& bodies, Body& body) {
+  if (std::ranges::find(bodies, &body) == bodies.end()) bodies.push_back(&body);
+}
+
+}  // namespace
+
+bool Rest::rests(const Box2dBody& body, const SleepSettings& settings) const {
+  return body.still_for() >= settings.seconds;
+}
+
+bool Rest::rests(const b2Body& body, const SleepSettings& settings) const {
+  const bool is_slow = body.GetLinearVelocity().Length() < settings.speed &&
+                       std::abs(body.GetAngularVelocity()) < settings.speed;
+  return is_slow &&
+         (body.GetType() == b2_kinematicBody || (world_.GetAllowSleeping() && body.IsSleepingAllowed()));
+}
+
+/// What already sleeps, or never moves, keeps nobody awake.
+void Rest::add(b2Body& body) {
+  if (Box2dBody* const soft = soft_body_of_(body)) {
+    if (!soft->soft().asleep()) add_once(soft_, *soft);
+  } else if (body.GetType() != b2_staticBody && body.IsAwake()) {
+    add_once(rigid_, body);
+  }
+}
+
+void Rest::add_neighbours(b2Body& body) {
+  for (const b2ContactEdge* edge = body.GetContactList(); edge != nullptr; edge = edge->next)
+    if (edge->contact->IsTouching()) add(*edge->other);
+  for (const b2JointEdge* edge = body.GetJointList(); edge != nullptr; edge = edge->next) add(*edge->other);
+}
+
+void Rest::settle(Box2dBody& body, const SleepSettings& settings) {
+  SC_ASSERT(!body.soft().asleep(), "a body that has been still for {} s already sleeps", body.still_for());
+  soft_.assign(1, &body);
+  rigid_.clear();
+  for (std::size_t soft = 0, rigid = 0; soft < soft_.size() || rigid < rigid_.size();) {
+    if (soft < soft_.size()) {
+      Box2dBody& next = *soft_[soft++];
+      if (!rests(next, settings)) return;
+      for (b2Body* const particle : next.particles()) add_neighbours(*particle);
+    } else {
+      b2Body& next = *rigid_[rigid++];
+      if (!rests(next, settings)) return;
+      if (next.GetType() != b2_kinematicBody) add_neighbours(next);
+    }
+  }
+  for (Box2dBody* const resting : soft_) resting->fall_asleep();
+  for (b2Body* const resting : rigid_) resting->SetAwake(false);
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,54 @@
+#pragma once
+// The kernels that step a body as a whole, `match_2d` in two dimensions and `match` in three, behind one set
+// of names: what MatchBodies needs to know of them.
+
+#include <Eigen/Core>
+
+#include "match_2d_job.h"
+#include "match_job.h"
+#include "ppu/plans/match_plan.h"
+#include "ppu/plans/match_plan_2d.h"
+#include "skin_job.h"
+
+namespace softcell::ppu {
+
+template <int kDimension>
+struct MatchKernel;
+
+template <>
+struct MatchKernel<2> {
+  static constexpr const char* kName = "match_2d";
+  using Plan = MatchPlan2d;
+  using Header = spu::MatchPlanHeader2d;
+  using Vector = spu::MatchVector2d;
+  using Rotations = spu::MatchDirections;  // of four regions
+  using Result = spu::MatchResult2d;
+  using Job = spu::MatchJob2d;
+
+  static constexpr Rotations kUnturned{{1, 1, 1, 1}, {0, 0, 0, 0}};
+  static std::uint32_t positions_stride(const Header& plan) { return spu::match_2d_positions_stride(plan); }
+  static std::uint32_t state_stride(const Header& plan) { return spu::match_2d_state_stride(plan); }
+  static std::uint32_t rotations_at(const Header& plan) { return spu::match_2d_directions_at(plan); }
+  static Vector written(const Eigen::Vector2f& v) { return {v.x(), v.y()}; }
+  static Eigen::Vector2f read(const Vector& v) { return {v.x, v.y}; }
+};
+
+template <>
+struct MatchKernel<3> {
+  static constexpr const char* kName = "match";
+  using Plan = MatchPlan;
+  using Header = spu::MatchPlanHeader;
+  using Vector = spu::SkinCorner;  // x y z 0
+  using Rotations = spu::MatchRotations;
+  using Result = spu::MatchResult;
+  using Job = spu::MatchJob;
+
+  static constexpr Rotations kUnturned{{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 1}};
+  static std::uint32_t positions_stride(const Header& plan) { return spu::match_positions_stride(plan); }
+  static std::uint32_t state_stride(const Header& plan) { return spu::match_state_stride(plan); }
+  static std::uint32_t rotations_at(const Header& plan) { return spu::match_rotations_at(plan); }
+  static Vector written(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z(), 0}; }
+  static Eigen::Vector3f read(const Vector& v) { return {v.x, v.y, v.z}; }
+};
+
+}  // namespace softcell::ppu
