@@ -9,10 +9,11 @@
 # bottom as ever.
 # Each source is also checked against the declarations of a real SPU compiler, as the test spu_syntax.<name>.<file>.
 
-set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk)
+# Seen by every folder of a project that softcell is a part of, where the functions below are called: hence in the cache.
+set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk CACHE INTERNAL "")
 # GNU ld: the link script is written for it.
 find_program(SOFTCELL_KERNEL_LINKER ld.bfd REQUIRED)
-set(SOFTCELL_CHECK_BUDGET ${CMAKE_CURRENT_LIST_DIR}/CheckSpuBudget.cmake)
+set(SOFTCELL_CHECK_BUDGET ${CMAKE_CURRENT_LIST_DIR}/CheckSpuBudget.cmake CACHE INTERNAL "")
 
 set(SOFTCELL_KERNEL_FLAGS
   -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fPIE -fvisibility=hidden -fno-stack-protector
@@ -26,7 +27,8 @@ set(SOFTCELL_KERNEL_FLAGS
   -mno-red-zone -fomit-frame-pointer
   # No loops turned into calls of memcpy or memset: there is no C library in a local store.
   -fno-builtin
-  -Wall -Wextra -Wshadow -Werror -Wno-unknown-warning-option)
+  -Wall -Wextra -Wshadow -Werror -Wno-unknown-warning-option
+  CACHE INTERNAL "")
 
 # How a source is checked against the declarations of a real SPU compiler, sdk/check, with either of the host's compilers.
 set(SOFTCELL_SPU_CHECK_FLAGS
@@ -36,7 +38,8 @@ set(SOFTCELL_SPU_CHECK_FLAGS
   # As an SPU g++ has it, and clang++ has not: vectors change their type by casts only.
   -fno-lax-vector-conversions
   # stdint.h and stddef.h come from sdk/check; a local store has no other library.
-  -nostdinc -I ${SOFTCELL_SDK_DIR}/check -I ${SOFTCELL_SDK_DIR}/..)
+  -nostdinc -I ${SOFTCELL_SDK_DIR}/check -I ${SOFTCELL_SDK_DIR}/..
+  CACHE INTERNAL "")
 
 # What the checked flavour is compiled with: a call before each load and store, to spu_kernels/sdk/checked. Why which compiler gets
 # which is written there.
@@ -45,9 +48,10 @@ set(SOFTCELL_CHECKED_FLAGS
   "$<$<CXX_COMPILER_ID:GNU>:-fsanitize=thread;SHELL:--param tsan-instrument-func-entry-exit=0>"
   "$<$<CXX_COMPILER_ID:Clang>:-fsanitize=kernel-address>"
   "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-instrumentation-with-call-threshold=0 -mllvm -asan-opt=0>"
-  "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-stack=0 -mllvm -asan-globals=0>")
+  "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-stack=0 -mllvm -asan-globals=0>"
+  CACHE INTERNAL "")
 # What its reports and spilled registers take of the stack, in bytes, on top of what the kernel declares.
-set(SOFTCELL_CHECKED_STACK_BYTES 1024)
+set(SOFTCELL_CHECKED_STACK_BYTES 1024 CACHE INTERNAL "")
 
 # The objects of one flavour of a kernel.
 function(softcell_compile_spu_sources target)
