@@ -1,12 +1,15 @@
-# What `cmake --install` puts where, and how find_package(softcell) finds it:
+# What `cmake --install` puts where, and how find_package(softcell) and pkg-config find it. The parts in brackets are those of the
+# Debian packages, SoftcellPackages.cmake.
 #
-#   bin/softcell
-#   include/softcell/<library>/        public headers
-#   lib/libsoftcell_<library>.a        targets softcell::<library>
-#   lib/cmake/softcell/                the package
-#   share/softcell/cmake/              softcell_add_spu_kernel
-#   share/man/man1/, share/bash-completion/, share/zsh/   the manual page and completions, for who builds it all
-#   share/softcell/spu_kernels/        sdk/, common/ and the *_job.h contracts, beside cmake/ as in the source tree
+#   bin/softcell                           the command                                             [command]
+#   share/man/man1/, share/bash-completion/, share/zsh/, share/fish/   its manual page, completion [command]
+#   include/softcell/<library>/            public headers                                          [development]
+#   lib/libsoftcell_<library>.a            targets softcell::<library>                             [development]
+#   lib/cmake/softcell/                    the package                                             [development]
+#   lib/pkgconfig/                         softcell-<component>.pc                                 [development]
+#   share/softcell/cmake/                  softcell_add_spu_kernel                                 [development]
+#   share/softcell/spu_kernels/            sdk/, common/ and the contracts *_job.h, beside cmake/ as in the source tree [development]
+#   share/doc/softcell/                    licence, changes, pages, examples                       [documentation]
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -14,67 +17,109 @@ set(SOFTCELL_INSTALL_MODULES ${CMAKE_INSTALL_DATADIR}/softcell/cmake)
 set(SOFTCELL_INSTALL_KERNELS ${CMAKE_INSTALL_DATADIR}/softcell/spu_kernels)
 set(SOFTCELL_INSTALL_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/softcell)
 
-# softcell_install_component(<component> <library>...)
-# One component of the package: its libraries, those of them that are built, as one file of targets, and their public headers.
-function(softcell_install_component component)
+# softcell_install_libraries(<file> <library>...)
+# These libraries, as one file of targets, and their public headers.
+function(softcell_install_libraries file)
   foreach(library IN LISTS ARGN)
-    if(TARGET softcell_${library})
-      install(TARGETS softcell_${library} EXPORT softcell_${component} ARCHIVE)
-      set(installed TRUE)
-      get_target_property(folder softcell_${library} SOURCE_DIR)
-      if(IS_DIRECTORY ${folder}/include/softcell)
-        list(APPEND SOFTCELL_PUBLIC_HEADERS ${folder}/include/softcell)
-      endif()
+    install(TARGETS softcell_${library} EXPORT softcell_${file} ARCHIVE COMPONENT development)
+    get_target_property(folder softcell_${library} SOURCE_DIR)
+    if(IS_DIRECTORY ${folder}/include/softcell)
+      list(APPEND SOFTCELL_PUBLIC_HEADERS ${folder}/include/softcell)
     endif()
   endforeach()
-  if(installed)
-    install(EXPORT softcell_${component} NAMESPACE softcell:: DESTINATION ${SOFTCELL_INSTALL_PACKAGE}
-      FILE softcell_${component}.cmake)
-    list(APPEND SOFTCELL_COMPONENTS ${component})
-    set(SOFTCELL_COMPONENTS ${SOFTCELL_COMPONENTS} PARENT_SCOPE)
-    set(SOFTCELL_PUBLIC_HEADERS ${SOFTCELL_PUBLIC_HEADERS} PARENT_SCOPE)
-  endif()
+  install(EXPORT softcell_${file} NAMESPACE softcell:: DESTINATION ${SOFTCELL_INSTALL_PACKAGE}
+    FILE softcell_${file}.cmake COMPONENT development)
+  set(SOFTCELL_PUBLIC_HEADERS ${SOFTCELL_PUBLIC_HEADERS} PARENT_SCOPE)
 endfunction()
+
+# softcell_install_pkg_config(<component> <description> [REQUIRES <module>...] [CFLAGS <option>...] LIBS <option>...)
+# softcell-<component>.pc, with hyphens for underscores.
+function(softcell_install_pkg_config component description)
+  cmake_parse_arguments(arg "" "" "REQUIRES;CFLAGS;LIBS" ${ARGN})
+  list(JOIN arg_REQUIRES ", " requires)
+  list(JOIN arg_CFLAGS " " cflags)
+  list(JOIN arg_LIBS " " libs)
+  set(folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX}/${folder} OUTPUT_VARIABLE prefix_from_pc)
+  string(REPLACE "_" "-" name ${component})
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/softcell.pc.in ${PROJECT_BINARY_DIR}/softcell-${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/softcell-${name}.pc DESTINATION ${folder} COMPONENT development)
+endfunction()
+
+# The libraries and the pkg-config file of one component. What a component links besides is in SoftcellComponents.cmake.
+macro(softcell_install_component component)
+  if("${component}" STREQUAL "spu")
+    softcell_install_libraries(spu dma ls_sim spu_kernels jobs spu)
+    softcell_install_pkg_config(spu "emulator of SPEs, kernels and job chains"
+      CFLAGS -I\${prefix}/${SOFTCELL_INSTALL_KERNELS}
+      LIBS -lsoftcell_jobs -lsoftcell_ls_sim -lsoftcell_spu_kernels -lsoftcell_dma -lsoftcell_base -lboost_context -ldw -lelf -pthread)
+  elseif("${component}" STREQUAL "render")
+    softcell_install_libraries(render glad render)
+    softcell_install_pkg_config(render "pictures of meshes, without a window"
+      REQUIRES eigen3 libpng LIBS -lsoftcell_render -lsoftcell_glad -lsoftcell_base -ldl)
+  else()
+    softcell_install_libraries(${component} ${component})
+    if("${component}" STREQUAL "soft_bodies")
+      softcell_install_pkg_config(soft_bodies "meshes given as arrays, lattices, models and bodies"
+        REQUIRES eigen3 LIBS -lsoftcell_soft_bodies -lsoftcell_base -lxxhash)
+    elseif("${component}" STREQUAL "mesh_import")
+      softcell_install_pkg_config(mesh_import "meshes from files" REQUIRES softcell-soft-bodies assimp LIBS -lsoftcell_mesh_import)
+    elseif("${component}" STREQUAL "bullet")
+      softcell_install_pkg_config(bullet "soft bodies in a Bullet world" REQUIRES softcell-soft-bodies bullet LIBS -lsoftcell_bullet)
+    elseif("${component}" STREQUAL "box2d")
+      softcell_install_pkg_config(box2d "soft bodies in a Box2D world" REQUIRES softcell-soft-bodies box2d LIBS -lsoftcell_box2d)
+    elseif("${component}" STREQUAL "spe_bodies")
+      softcell_install_pkg_config(spe_bodies "shape matching of soft bodies on SPEs"
+        REQUIRES softcell-soft-bodies softcell-spu LIBS -lsoftcell_spe_bodies)
+    endif()
+  endif()
+endmacro()
 
 # Called once all folders are known.
 function(softcell_install_package)
-  # What a component links besides is in softcellConfig.cmake.in.
-  set(SOFTCELL_COMPONENTS)
   set(SOFTCELL_PUBLIC_HEADERS)
-  softcell_install_component(base base)
-  list(REMOVE_ITEM SOFTCELL_COMPONENTS base)  # all others have it
-  softcell_install_component(spu dma ls_sim spu_kernels jobs spu)
-  softcell_install_component(soft_bodies soft_bodies)
-  softcell_install_component(mesh_import mesh_import)
-  softcell_install_component(bullet bullet)
-  softcell_install_component(box2d box2d)
-  softcell_install_component(spe_bodies spe_bodies)
-  softcell_install_component(render glad render)
+  softcell_install_libraries(base base)
+  foreach(component IN LISTS SOFTCELL_COMPONENTS)
+    softcell_install_component(${component})
+  endforeach()
   list(REMOVE_DUPLICATES SOFTCELL_PUBLIC_HEADERS)
   foreach(headers IN LISTS SOFTCELL_PUBLIC_HEADERS)
-    install(DIRECTORY ${headers} TYPE INCLUDE PATTERN render/window.h EXCLUDE PATTERN render/overlay.h EXCLUDE)
+    # Windows are the demos'.
+    install(DIRECTORY ${headers} TYPE INCLUDE COMPONENT development PATTERN render/window.h EXCLUDE PATTERN render/overlay.h EXCLUDE)
   endforeach()
+
   if(TARGET softcell)
-    install(TARGETS softcell RUNTIME)
+    install(TARGETS softcell RUNTIME COMPONENT command)
     get_target_property(tool softcell BINARY_DIR)
-    install(FILES ${tool}/manuals/softcell.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
-    install(FILES ${tool}/manuals/softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
-    install(FILES ${tool}/manuals/_softcell DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
+    foreach(page man/man1/softcell.1 bash-completion/completions/softcell zsh/site-functions/_softcell
+        fish/vendor_completions.d/softcell.fish)
+      cmake_path(GET page PARENT_PATH folder)
+      install(FILES ${tool}/manuals/${page} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT command OPTIONAL)
+    endforeach()
   endif()
 
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/spu_kernels/sdk ${PROJECT_SOURCE_DIR}/spu_kernels/common
-    DESTINATION ${SOFTCELL_INSTALL_KERNELS})
-  file(GLOB contracts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/spu_kernels/*_job.h)
-  install(FILES ${contracts} DESTINATION ${SOFTCELL_INSTALL_KERNELS})
+  if("spu" IN_LIST SOFTCELL_COMPONENTS)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/spu_kernels/sdk ${PROJECT_SOURCE_DIR}/spu_kernels/common
+      DESTINATION ${SOFTCELL_INSTALL_KERNELS} COMPONENT development)
+    file(GLOB contracts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/spu_kernels/*_job.h)
+    install(FILES ${contracts} DESTINATION ${SOFTCELL_INSTALL_KERNELS} COMPONENT development)
+  endif()
   install(FILES
+    ${PROJECT_SOURCE_DIR}/cmake/SoftcellComponents.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/SoftcellKernelSettings.cmake
     ${PROJECT_SOURCE_DIR}/cmake/SoftcellSpuKernel.cmake
     ${PROJECT_SOURCE_DIR}/cmake/CheckSpuBudget.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindBulletFloat.cmake
-    DESTINATION ${SOFTCELL_INSTALL_MODULES})
+    DESTINATION ${SOFTCELL_INSTALL_MODULES} COMPONENT development)
 
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/softcellConfig.cmake.in ${PROJECT_BINARY_DIR}/softcellConfig.cmake
     INSTALL_DESTINATION ${SOFTCELL_INSTALL_PACKAGE} PATH_VARS SOFTCELL_INSTALL_MODULES)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/softcellConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/softcellConfig.cmake ${PROJECT_BINARY_DIR}/softcellConfigVersion.cmake
-    DESTINATION ${SOFTCELL_INSTALL_PACKAGE})
+    DESTINATION ${SOFTCELL_INSTALL_PACKAGE} COMPONENT development)
+
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+    DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples
+    DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
 endfunction()

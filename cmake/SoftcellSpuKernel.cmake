@@ -1,4 +1,5 @@
-# softcell_add_spu_kernel(<name> SOURCES <file>... STACK_BYTES <n> BUDGET_BYTES <n> [INCLUDES <folder>...] [RESIDENT_AT <address>] [UNCHECKED_ONLY])
+# softcell_add_spu_kernel(<name> SOURCES <file>... STACK_BYTES <n> BUDGET_BYTES <n> [INCLUDES <folder>...] [RESIDENT_AT <address>]
+#                         [UNCHECKED_ONLY] [WARNINGS_AS_ERRORS])
 #
 # Builds one SPU kernel for the host: freestanding objects, linked on their own at local-store address 0 into
 # <binary dir>/<name>.spu.elf. The build fails when the image leaves no room for its stack, holds a relocation, or passes its
@@ -7,55 +8,23 @@
 # the emulator. It is larger: all of the local store is its budget. UNCHECKED_ONLY leaves it out, for a kernel that then does not fit.
 # RESIDENT_AT links the image at that local-store address, with its stack below it, for a kernel that calls others: theirs lie at the
 # bottom as ever.
-# Each source is also checked against the declarations of a real SPU compiler, as the test spu_syntax.<name>.<file>.
+# The compiler's warnings are errors with WARNINGS_AS_ERRORS only.
+# Each source is also checked against the declarations of a real SPU compiler, as the test spu_syntax.<name>.<file>, unless the
+# variable SOFTCELL_KERNEL_TESTS is OFF.
 
-# Seen by every folder of a project that softcell is a part of, where the functions below are called: hence in the cache.
-set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk CACHE INTERNAL "")
 # GNU ld: the link script is written for it.
-find_program(SOFTCELL_KERNEL_LINKER ld.bfd REQUIRED)
-set(SOFTCELL_CHECK_BUDGET ${CMAKE_CURRENT_LIST_DIR}/CheckSpuBudget.cmake CACHE INTERNAL "")
-
-set(SOFTCELL_KERNEL_FLAGS
-  -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fPIE -fvisibility=hidden -fno-stack-protector
-  # Kernels are optimised in every configuration: their budgets and their bits do not depend on it.
-  -O2 -g -mavx2 -mfma
-  # SPU arithmetic truncates at run time, so nothing may be folded in another mode or fused unasked.
-  -frounding-math -fno-trapping-math -ffp-contract=off
-  # How to unwind goes to the debugger only: ls.ld leaves .eh_frame out of the image.
-  -fno-asynchronous-unwind-tables
-  # The stack is measured in bytes below the stack pointer; SPU code has no red zone to rely on.
-  -mno-red-zone -fomit-frame-pointer
-  # No loops turned into calls of memcpy or memset: there is no C library in a local store.
-  -fno-builtin
-  -Wall -Wextra -Wshadow -Werror -Wno-unknown-warning-option
-  CACHE INTERNAL "")
-
-# How a source is checked against the declarations of a real SPU compiler, sdk/check, with either of the host's compilers.
-set(SOFTCELL_SPU_CHECK_FLAGS
-  -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fsyntax-only -Wall -Wextra -Werror
-  # The SPU's data model: 32-bit pointers and long, 64-bit numbers aligned to eight, unsigned char. (x32 has it; no library is needed.)
-  -mx32 -funsigned-char -D__SPU__
-  # As an SPU g++ has it, and clang++ has not: vectors change their type by casts only.
-  -fno-lax-vector-conversions
-  # stdint.h and stddef.h come from sdk/check; a local store has no other library.
-  -nostdinc -I ${SOFTCELL_SDK_DIR}/check -I ${SOFTCELL_SDK_DIR}/..
-  CACHE INTERNAL "")
-
-# What the checked flavour is compiled with: a call before each load and store, to spu_kernels/sdk/checked. Why which compiler gets
-# which is written there.
-set(SOFTCELL_CHECKED_FLAGS
-  -DSOFTCELL_CHECKED  # a kernel that fills the local store has to make do with less of it then
-  "$<$<CXX_COMPILER_ID:GNU>:-fsanitize=thread;SHELL:--param tsan-instrument-func-entry-exit=0>"
-  "$<$<CXX_COMPILER_ID:Clang>:-fsanitize=kernel-address>"
-  "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-instrumentation-with-call-threshold=0 -mllvm -asan-opt=0>"
-  "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-stack=0 -mllvm -asan-globals=0>"
-  CACHE INTERNAL "")
-# What its reports and spilled registers take of the stack, in bytes, on top of what the kernel declares.
-set(SOFTCELL_CHECKED_STACK_BYTES 1024 CACHE INTERNAL "")
+find_program(SOFTCELL_KERNEL_LINKER ld.bfd)
+if(NOT SOFTCELL_KERNEL_LINKER)
+  message(FATAL_ERROR "softcell: GNU ld (ld.bfd), which links SPU kernels, was not found; on Debian it is in the package binutils.")
+endif()
 
 # The objects of one flavour of a kernel.
 function(softcell_compile_spu_sources target)
-  cmake_parse_arguments(arg "" "" "SOURCES;INCLUDES;OPTIONS" ${ARGN})
+  cmake_parse_arguments(arg "WARNINGS_AS_ERRORS" "HEADERS" "SOURCES;INCLUDES;OPTIONS" ${ARGN})
+  include(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/SoftcellKernelSettings.cmake)
+  if(arg_WARNINGS_AS_ERRORS)
+    list(APPEND SOFTCELL_KERNEL_FLAGS -Werror)
+  endif()
   add_library(${target} OBJECT ${arg_SOURCES})
   # The project's own flags come first on the command line; these win over them.
   target_compile_options(${target} PRIVATE
@@ -63,14 +32,33 @@ function(softcell_compile_spu_sources target)
     # No gcse: it spills more than it saves here, and a real SPU g++ 9 needs to go without it too (it miscompiles). No scev-cprop: a
     # pointer that a short loop has moved on is not to be calculated again behind it.
     "$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-distribute-patterns;-fno-gcse;-fno-tree-scev-cprop>"
-    "SHELL:-include ${SOFTCELL_SDK_DIR}/host/softcell_entry.h" ${arg_OPTIONS})
+    ${arg_OPTIONS})
   set_target_properties(${target} PROPERTIES CXX_STANDARD 17)  # CMake's own option goes last
   target_include_directories(${target} PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/.. ${arg_INCLUDES})
+  if(SOFTCELL_PRECOMPILED_HEADERS AND arg_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM ${arg_HEADERS})
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  else()
+    target_compile_options(${target} PRIVATE "SHELL:-include ${SOFTCELL_SDK_DIR}/host/softcell_entry.h")
+  endif()
+endfunction()
+
+# The SDK's headers, compiled once for all kernels of softcell itself: most kernels of the tests are short. (That each kernel includes
+# what it uses is checked by the tests spu_syntax.*, which work without.)
+function(softcell_precompile_sdk target)
+  if(SOFTCELL_PRECOMPILED_HEADERS AND NOT TARGET ${target})
+    set(empty ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp)
+    file(CONFIGURE OUTPUT ${empty} CONTENT "")
+    softcell_compile_spu_sources(${target} SOURCES ${empty} OPTIONS ${ARGN})
+    target_precompile_headers(${target} PRIVATE
+      ${SOFTCELL_SDK_DIR}/host/softcell_entry.h <spu_intrinsics.h> <spu_mfcio.h>)
+  endif()
 endfunction()
 
 # Links objects into an image and holds it against its budget.
 function(softcell_link_spu_image name)
   cmake_parse_arguments(arg "" "IMAGE;CHECKED;STACK_BYTES;BUDGET_BYTES;RESIDENT_AT" "OBJECTS" ${ARGN})
+  include(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/SoftcellKernelSettings.cmake)
   set(image_begin 0x80)
   set(begin 0)  # of what counts for the budget: the environment does
   if(arg_RESIDENT_AT)
@@ -92,14 +80,24 @@ function(softcell_link_spu_image name)
 endfunction()
 
 function(softcell_add_spu_kernel name)
-  cmake_parse_arguments(arg "UNCHECKED_ONLY" "STACK_BYTES;BUDGET_BYTES;RESIDENT_AT" "SOURCES;INCLUDES" ${ARGN})
+  cmake_parse_arguments(arg "UNCHECKED_ONLY;WARNINGS_AS_ERRORS" "STACK_BYTES;BUDGET_BYTES;RESIDENT_AT" "SOURCES;INCLUDES" ${ARGN})
+  include(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/SoftcellKernelSettings.cmake)
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "softcell_add_spu_kernel(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
+  endif()
   foreach(required STACK_BYTES BUDGET_BYTES SOURCES)
     if(NOT arg_${required})
       message(FATAL_ERROR "softcell_add_spu_kernel(${name}): ${required} is missing")
     endif()
   endforeach()
+  set(warnings)
+  if(arg_WARNINGS_AS_ERRORS OR SOFTCELL_WARNINGS_AS_ERRORS)
+    set(warnings WARNINGS_AS_ERRORS)
+  endif()
   set(image ${CMAKE_CURRENT_BINARY_DIR}/${name}.spu.elf)
-  softcell_compile_spu_sources(${name}_objects SOURCES ${arg_SOURCES} INCLUDES ${arg_INCLUDES})
+  softcell_precompile_sdk(softcell_kernel_headers)
+  softcell_compile_spu_sources(${name}_objects SOURCES ${arg_SOURCES} INCLUDES ${arg_INCLUDES} ${warnings}
+    HEADERS softcell_kernel_headers)
   softcell_link_spu_image(${name} IMAGE ${image} CHECKED 0 OBJECTS ${name}_objects
     STACK_BYTES ${arg_STACK_BYTES} BUDGET_BYTES ${arg_BUDGET_BYTES} RESIDENT_AT ${arg_RESIDENT_AT})
   add_custom_target(${name}_image ALL DEPENDS ${image})
@@ -110,8 +108,9 @@ function(softcell_add_spu_kernel name)
       softcell_compile_spu_sources(softcell_report_accesses SOURCES ${SOFTCELL_SDK_DIR}/checked/report_accesses.cpp)
     endif()
     set(checked_image ${CMAKE_CURRENT_BINARY_DIR}/${name}.checked.spu.elf)
+    softcell_precompile_sdk(softcell_checked_kernel_headers ${SOFTCELL_CHECKED_FLAGS})
     softcell_compile_spu_sources(${name}_checked_objects SOURCES ${arg_SOURCES} INCLUDES ${arg_INCLUDES}
-      OPTIONS ${SOFTCELL_CHECKED_FLAGS})
+      HEADERS softcell_checked_kernel_headers OPTIONS ${SOFTCELL_CHECKED_FLAGS} ${warnings})
     math(EXPR checked_stack "${arg_STACK_BYTES} + ${SOFTCELL_CHECKED_STACK_BYTES}")
     softcell_link_spu_image(${name}_checked IMAGE ${checked_image} CHECKED 1
       OBJECTS ${name}_checked_objects softcell_report_accesses STACK_BYTES ${checked_stack} BUDGET_BYTES 262144
@@ -120,6 +119,12 @@ function(softcell_add_spu_kernel name)
     set_target_properties(${name}_checked_image PROPERTIES SOFTCELL_IMAGE ${checked_image})
   endif()
 
+  if(DEFINED SOFTCELL_KERNEL_TESTS AND NOT SOFTCELL_KERNEL_TESTS)
+    return()
+  endif()
+  if(NOT warnings)
+    list(APPEND SOFTCELL_SPU_CHECK_FLAGS -Wno-error)
+  endif()
   foreach(source IN LISTS arg_SOURCES)
     cmake_path(ABSOLUTE_PATH source)
     cmake_path(GET source STEM stem)
@@ -134,6 +139,10 @@ endfunction()
 # Puts the images into a static library as read-only data: extern "C" const unsigned char softcell_image_<kernel>[] and
 # softcell_image_<kernel>_end[]; their checked flavours likewise, as softcell_image_<kernel>_checked.
 function(softcell_embed_spu_images library)
+  if(NOT DEFINED CMAKE_ASM_COMPILE_OBJECT)  # set in a folder where the language is enabled
+    message(FATAL_ERROR
+      "softcell_embed_spu_images(${library}): images are embedded by the assembler; enable it, as in project(... LANGUAGES CXX ASM).")
+  endif()
   foreach(kernel IN LISTS ARGN)
     softcell_embed_spu_image(${library} ${kernel})
     if(TARGET ${kernel}_checked_image)

@@ -1,8 +1,9 @@
-# What every target of the house shares: warnings are errors, and arithmetic that is the same everywhere.
+# What every target of the house shares: warnings, and arithmetic that is the same everywhere.
 
 add_library(softcell_options INTERFACE)
 target_compile_options(softcell_options INTERFACE
-  -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wpedantic -Werror
+  -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wpedantic
+  $<$<BOOL:${SOFTCELL_WARNINGS_AS_ERRORS}>:-Werror>
   # A contracted multiply-add rounds once where the source rounds twice: results would depend on the compiler.
   -ffp-contract=off)
 if(SOFTCELL_SANITIZE)
@@ -22,6 +23,35 @@ if(SOFTCELL_ASSERTIONS)
   target_compile_definitions(softcell_options INTERFACE SOFTCELL_ASSERTIONS)
 endif()
 
+# Headers of other projects that many of our sources include, compiled once for all libraries and once for all tests. A build without
+# them shows where a source forgets an #include.
+option(SOFTCELL_PRECOMPILED_HEADERS "Compile the headers of the standard library, Eigen and GoogleTest once" ${PROJECT_IS_TOP_LEVEL})
+if(SOFTCELL_PRECOMPILED_HEADERS)
+  target_compile_options(softcell_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endif()
+
+# softcell_add_precompiled_headers(<target> <header>...): for `target_precompile_headers(... REUSE_FROM <target>)`.
+function(softcell_add_precompiled_headers target)
+  set(empty ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp)
+  file(CONFIGURE OUTPUT ${empty} CONTENT "")
+  add_library(${target} OBJECT ${empty})
+  target_link_libraries(${target} PRIVATE softcell_options)
+  target_precompile_headers(${target} PRIVATE
+    <algorithm> <array> <atomic> <condition_variable> <cstdint> <filesystem> <functional> <map> <memory> <mutex> <optional> <set> <span>
+    <stdexcept> <string> <string_view> <thread> <unordered_map> <variant> <vector> ${ARGN})
+endfunction()
+set(SOFTCELL_EIGEN_HEADERS)
+if("soft_bodies" IN_LIST SOFTCELL_COMPONENTS)
+  find_package(Eigen3 3.4 QUIET NO_MODULE)
+  set(SOFTCELL_EIGEN_HEADERS <Eigen/Core>)
+endif()
+if(SOFTCELL_PRECOMPILED_HEADERS)
+  softcell_add_precompiled_headers(softcell_library_headers ${SOFTCELL_EIGEN_HEADERS})
+  if(TARGET Eigen3::Eigen)
+    target_link_libraries(softcell_library_headers PRIVATE Eigen3::Eigen)
+  endif()
+endif()
+
 # softcell_add_library(<folder> [SOURCES ...])
 # The one library of a folder, to which rooms add their sources, or one of several that share the folder's public headers: target
 # softcell_<folder>, alias softcell::<folder>, public headers in include/ of the calling folder.
@@ -38,4 +68,7 @@ function(softcell_add_library folder)
   endif()
   # How we compile is not how users of the installed libraries have to.
   target_link_libraries(softcell_${folder} PRIVATE $<BUILD_INTERFACE:softcell_options>)
+  if(SOFTCELL_PRECOMPILED_HEADERS AND NOT folder MATCHES "^(base|dma)$")  # these two include less than it takes to read the others
+    target_precompile_headers(softcell_${folder} REUSE_FROM softcell_library_headers)
+  endif()
 endfunction()

@@ -67,9 +67,35 @@ links_none_of("box2d|boost|libdw" ${SCRATCH}/jelly_3d/build/jelly_3d)
 # A component that there is not is refused in one sentence with those that there are.
 file(WRITE ${SCRATCH}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n"
   "find_package(softcell REQUIRED COMPONENTS box2d bodies)\n")
-says(1 "softcell has no component 'bodies'; the components of this installation are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies,[ \n]+render\\."
+says(1 "softcell has no component 'bodies'; its components are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies,[ \n]+render\\."
   ${CMAKE_COMMAND} -S ${SCRATCH}/wrong -B ${SCRATCH}/wrong/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
   -DCMAKE_CXX_COMPILER=${COMPILER})
+
+# The same by pkg-config, without CMake.
+set(ENV{PKG_CONFIG_PATH} ${prefix}/lib/pkgconfig)
+function(pkg_config_builds program source)
+  execute_process(COMMAND pkg-config --cflags --libs ${ARGN} COMMAND_ERROR_IS_FATAL ANY
+    OUTPUT_VARIABLE options OUTPUT_STRIP_TRAILING_WHITESPACE)
+  separate_arguments(options UNIX_COMMAND "${options}")
+  step("building ${program} with pkg-config" ${COMPILER} -std=c++20 ${source} -o ${SCRATCH}/${program} ${options})
+endfunction()
+pkg_config_builds(jelly_3d_by_hand ${SCRATCH}/soft_bodies/jelly_3d.cpp softcell-bullet softcell-mesh-import)
+says(0 "4\\.0 s: the box is at height 1\\.[01]" ${SCRATCH}/jelly_3d_by_hand ${SCRATCH}/soft_bodies/jelly.obj)
+pkg_config_builds(jelly_2d_by_hand ${SCRATCH}/soft_bodies/jelly_2d.cpp softcell-box2d)
+says(0 "4\\.0 s: the box is at height 1\\.[0-3]" ${SCRATCH}/jelly_2d_by_hand)
+file(WRITE ${SCRATCH}/spu.cpp "#include \"softcell/jobs/job_system.h\"\n#include \"skin_job.h\"\n"
+  "int main() { softcell::dma::AddressSpace memory; softcell::ls_sim::SpeGroup spes(memory, {.spes = 1}); }\n")
+pkg_config_builds(spu_by_hand ${SCRATCH}/spu.cpp softcell-spu softcell-spe-bodies)
+says(0 "" ${SCRATCH}/spu_by_hand)
+
+# What comes with it.
+foreach(file share/doc/softcell/LICENSE share/doc/softcell/README.md share/doc/softcell/examples/saxpy/CMakeLists.txt
+    share/man/man1/softcell.1 share/bash-completion/completions/softcell share/zsh/site-functions/_softcell
+    share/fish/vendor_completions.d/softcell.fish)
+  if(NOT EXISTS ${prefix}/${file})
+    message(FATAL_ERROR "${file} was not installed")
+  endif()
+endforeach()
 
 # The installed command on the example's kernels: the right one, and the broken one.
 string(REPEAT "0123456789abcdef" 256 bytes)  # 1024 floats

@@ -137,6 +137,70 @@ TEST(BashCompletion, OfTheCommandKnowsItsKernels) {
             "match match_2d match_tiles matches.txt ");
 }
 
+/// What fish offers for a line. Skips the test where there is no fish.
+std::string offered_by_fish(const ScratchFolder& folder, const std::string& script, const std::string& line) {
+  std::ofstream(folder / "try.fish") << "set -x PATH (dirname " << SOFTCELL_COMMAND << ") $PATH\n"
+                                     << script << "\ncomplete -C '" << line
+                                     << "' | string replace -r '\\t.*' ''\n";
+  return run_shell("cd " + folder.path().string() +
+                   " && HOME=$PWD fish --no-config try.fish | sort | tr '\\n' ' '")
+      .output;
+}
+
+bool has_shell(const char* shell) { return run_shell(std::string("command -v ") + shell).status == 0; }
+
+TEST(FishCompletion, OffersVerbsOptionsAndValues) {
+  if (!has_shell("fish")) GTEST_SKIP() << "fish is not installed";
+  const auto completed_by_fish = [](const std::string& line) {
+    return offered_by_fish(ScratchFolder(), fish_completion(small_tree()), line);
+  };
+  EXPECT_EQ(completed_by_fish("softcell s"), "scenes spu ");
+  EXPECT_EQ(completed_by_fish("softcell spu "), "run ");
+  EXPECT_EQ(completed_by_fish("softcell spu run --c"), "--clock ");
+  EXPECT_EQ(completed_by_fish("softcell spu run --clock h"), "host ");
+  EXPECT_EQ(completed_by_fish("softcell spu run --clock=ra"), "--clock=random: ");
+  EXPECT_EQ(completed_by_fish("softcell scenes --"), "--help ");
+}
+
+TEST(FishCompletion, OfTheCommandKnowsScenesKernelsAndFiles) {
+  if (!has_shell("fish")) GTEST_SKIP() << "fish is not installed";
+  const ScratchFolder folder;
+  std::ofstream(folder / "matches.txt") << "";
+  std::filesystem::create_directory(folder / "my folder");
+  const auto completed_by_fish = [&](const std::string& line) {
+    return offered_by_fish(folder, "softcell completion fish | source", line);
+  };
+  EXPECT_EQ(completed_by_fish("softcell demo 3d --headless --scene ar"), "arena ");
+  EXPECT_EQ(completed_by_fish("softcell spu run match"), "match match_2d match_tiles matches.txt ");
+  EXPECT_EQ(completed_by_fish("softcell report ma"), "matches.txt ");
+  EXPECT_EQ(completed_by_fish("softcell demo 3d --out m"), "my folder/ ");
+  EXPECT_EQ(completed_by_fish("softcell completion "), "bash fish zsh ");
+}
+
+TEST(ZshCompletion, OffersWhatBashDoes) {
+  if (!has_shell("zsh")) GTEST_SKIP() << "zsh is not installed";
+  const ScratchFolder folder;
+  // Completion works on a terminal only: zpty is one. What is between the marks is what the line became.
+  std::ofstream(folder / "try.zsh") << "zmodload zsh/zpty\nPATH=$(dirname " << SOFTCELL_COMMAND << "):$PATH\n"
+                                    << R"zsh(
+zpty shell zsh -f -i
+zpty -w shell "PS1= PS2= RPS1=; autoload -Uz compinit && compinit -u -d $PWD/dump; source <(softcell completion zsh)"
+zpty -w shell "show() { print -r -- \"<\$BUFFER>\"; zle .kill-whole-line; }; zle -N show; bindkey '^X' show; print rea''dy"
+zpty -r shell text '*ready*'
+for line in "$@"; do
+  zpty -w -n shell "$line"$'\t\x18'
+  zpty -r shell text '*<*>*' && print -rn -- "${${text##*<}%%>*}|"
+done
+zpty -d shell
+)zsh";
+  const auto run = run_shell(
+      "cd " + folder.path().string() +
+      " && timeout 30 zsh -f try.zsh 'softcell sce' 'softcell spu exp' 'softcell demo 3d --scene are'"
+      " 'softcell completion fi'");
+  EXPECT_EQ(run.output,
+            "softcell scenes|softcell spu explore|softcell demo 3d --scene arena|softcell completion fish|");
+}
+
 TEST(Completion, OfAnUnknownShellIsRefused) {
   const CommandResult run = run_softcell("completion tcsh");
   EXPECT_EQ(run.status, 2);

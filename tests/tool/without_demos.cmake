@@ -10,13 +10,13 @@ function(run expected_status expected)
 endfunction()
 
 file(REMOVE_RECURSE ${BUILD})
-set(cache "set(SOFTCELL_LAYERS \"base;dma;ls_sim;spu_kernels;tool\" CACHE STRING \"\")\n")
+set(cache "set(SOFTCELL_COMPONENTS spu CACHE STRING \"\")\nset(SOFTCELL_BUILD_DEMOS OFF CACHE BOOL \"\")\n")
 foreach(package Eigen3 assimp BulletFloat Bullet box2d SDL2 PNG PkgConfig)
   string(APPEND cache "set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON CACHE BOOL \"\")\n")
 endforeach()
 file(WRITE ${BUILD}/without_demos.cmake "${cache}")
 run(0 "" ${CMAKE_COMMAND} -C ${BUILD}/without_demos.cmake -S ${SOURCE} -B ${BUILD} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
-  -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DSOFTCELL_BUILD_TESTS=OFF)
+  -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DSOFTCELL_BUILD_TESTS=OFF -DSOFTCELL_PRECOMPILED_HEADERS=OFF)
 run(0 "" ${CMAKE_COMMAND} --build ${BUILD} --parallel 2 --target softcell)
 
 # A kernel of jobs is measured; one that takes a lattice to be run cannot be.

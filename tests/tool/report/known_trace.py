@@ -79,7 +79,7 @@ def known_trace():
             number += 1
     message = "SPE 2, kernel skin, skin.cpp:41: load-in-flight: a get of tag 3 is in flight"
     trace.finding(2, 1_200_000, "load-in-flight", "skin", "skin.cpp:41", message)
-    trace.finding(3, 2_200_000, "load-in-flight", "skin", "skin.cpp:41", message, count=500_000)
+    trace.finding(3, 2_200_000, "load-in-flight", "skin", "skin.cpp:41", message, count=500)
     trace.finding(3, 3_300_000, "tag-unused", "sum_bars", HOSTILE, HOSTILE)
     trace.image("skin", 6100, 40960, 4096, 1360, [("input", 0, 16384), ("output", 16384, 16384), ("weights", 32768, 8192)])
     trace.image("sum_bars", 2800, 65536, 2048, None, [("(anonymous namespace)::buffers", 0, 65536)], checked=True)

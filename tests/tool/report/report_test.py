@@ -208,7 +208,7 @@ class Page(WithBrowser):
         self.assertEqual(len(rows), 2)
         self.assertIn("load-in-flight", rows[0].text)
         self.assertIn("skin.cpp:41", rows[0].text)
-        self.assertEqual([cell.text for cell in rows[0].find_elements(By.TAG_NAME, "td")][2:4], ["500,001", "2, 3"])
+        self.assertEqual([cell.text for cell in rows[0].find_elements(By.TAG_NAME, "td")][2:4], ["501", "2, 3"])
         rows[0].find_element(By.TAG_NAME, "button").click()
         view = self.view()
         self.assertLess(view["begin"], 1_200_000)

@@ -17,4 +17,7 @@ std::string bash_completion(const CommandVerb& top);
 /// The same for zsh, by its emulation of bash's completion.
 std::string zsh_completion(const CommandVerb& top);
 
+/// The same for fish, with what the help says of each word.
+std::string fish_completion(const CommandVerb& top);
+
 }  // namespace softcell::tool

@@ -19,7 +19,7 @@ std::string value_action(const CommandOption& option) {
   const auto choices = choices_of(option);
   if (!choices.empty()) return offer_words(joined(choices));
   if (option.value == "DIR") return "_softcell_files -d \"$word\"";
-  if (option.value == "SCENE") return "_softcell_scenes \"$word\" \"${path##* }\"";
+  if (option.value == "SCENE") return "_softcell_scenes \"$word\" \"${verbs##* }\"";
   if (option.value == "KERNEL") return "_softcell_kernels \"$word\"";
   if (option.value.find("FILE") != std::string::npos) return "_softcell_files -f \"$word\"";
   return "COMPREPLY=()";
@@ -85,12 +85,13 @@ _softcell_kernels() {{
   _softcell_names_and_files "$(softcell spu budget 2>/dev/null | awk 'NR > 1 {{ print $1 }}')" "$1"
 }}
 _softcell() {{
-  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" path='' longer i
+  # $verbs is not called $path: that is the search path of zsh, which runs this script, too.
+  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" verbs='' longer i
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; ++i)); do
-    longer="${{path:+$path }}${{COMP_WORDS[i]}}"
+    longer="${{verbs:+$verbs }}${{COMP_WORDS[i]}}"
     case "$longer" in
-      {}) path="$longer" ;;
+      {}) verbs="$longer" ;;
       *) break ;;
     esac
   done
@@ -98,11 +99,73 @@ _softcell() {{
     before="${{COMP_WORDS[COMP_CWORD-2]}}"
     if [[ $before != -* ]]; then _softcell_files -f "$word"; return; fi
   fi
-  case "$path" in
+  case "$verbs" in
 {}  esac
 }}
 complete -o filenames -F _softcell softcell
 )bash";
+
+/// In single quotes, as fish reads it.
+std::string fish_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\\' || c == '\'') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "'";
+}
+
+/// The options of `complete` that say which words may stand for a value. Where the words of -a are made by a command, files may stand,
+/// too.
+std::string fish_values(const CommandOption& option) {
+  const auto choices = choices_of(option);
+  if (!choices.empty()) return fmt::format(" -f -a {}", fish_quoted(joined(choices)));
+  if (option.value == "DIR") return " -f -a '(__fish_complete_directories)'";
+  if (option.value == "SCENE") return " -F -a '(__softcell_scenes)'";
+  if (option.value == "KERNEL") return " -F -a '(__softcell_kernels)'";
+  if (option.value.find("FILE") != std::string::npos) return " -F";
+  return " -f";
+}
+
+/// One line for an option or a positional argument of the verb at a path.
+std::string fish_line(const std::string& path, const CommandOption& option) {
+  std::string line = fmt::format("complete -c softcell -n \"__softcell_at {}\"", fish_quoted(path));
+  if (option.positional) return line + fish_values(option) + "\n";
+  for (const std::string& name : option.names)
+    line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+  if (!option.value.empty()) line += " -r" + fish_values(option);
+  return fmt::format("{} -d {}\n", line, fish_quoted(option.description));
+}
+
+void add_fish_lines(const CommandVerb& verb, const std::string& path, std::string& text) {
+  for (const CommandVerb& below : verb.verbs)
+    text += fmt::format("complete -c softcell -n \"__softcell_at {}\" -a {} -d {}\n", fish_quoted(path),
+                        fish_quoted(below.name), fish_quoted(below.description));
+  for (const CommandOption& option : verb.options) text += fish_line(path, option);
+  for (const CommandVerb& below : verb.verbs)
+    add_fish_lines(below, path.empty() ? below.name : fmt::format("{} {}", path, below.name), text);
+}
+
+constexpr const char* kFishScript =
+    R"fish(# Completion of softcell for fish: source it, or put it into ~/.config/fish/completions/softcell.fish.
+function __softcell_at
+    set -l path ''
+    for word in (commandline -opc)[2..]
+        set -l longer (string trim -- "$path $word")
+        contains -- $longer {}; or break
+        set path $longer
+    end
+    test "$path" = "$argv[1]"
+end
+function __softcell_scenes
+    set -l words (commandline -opc)
+    softcell scenes 2>/dev/null | awk -v dimension="$words[3]" '$2 == dimension {{ print $1 }}'
+end
+function __softcell_kernels
+    softcell spu budget 2>/dev/null | awk 'NR > 1 {{ print $1 }}'
+end
+complete -c softcell -f
+{})fish";
 
 }  // namespace
 
@@ -118,6 +181,14 @@ std::string bash_completion(const CommandVerb& top) {
 std::string zsh_completion(const CommandVerb& top) {
   return fmt::format("#compdef softcell\nautoload -Uz bashcompinit && bashcompinit\n{}",
                      bash_completion(top));
+}
+
+std::string fish_completion(const CommandVerb& top) {
+  std::vector<std::string> paths;
+  add_paths(top, "", paths);
+  std::string lines;
+  add_fish_lines(top, "", lines);
+  return fmt::format(kFishScript, joined(paths), lines);
 }
 
 }  // namespace softcell::tool

@@ -44,14 +44,17 @@ class ShellVerbs final : public Verb {
     });
     CLI::App* c = command.add_subcommand("completion",
                                          "Print a script for the shell that completes softcell's commands");
-    c->add_option("SHELL", shell_, "bash or zsh: source <(softcell completion bash)")
+    c->add_option("SHELL", shell_, "bash, zsh or fish: source <(softcell completion bash)")
         ->required()
-        ->check(CLI::IsMember({"bash", "zsh"}).description(""))
-        ->type_name("bash|zsh");
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
+        ->type_name("bash|zsh|fish");
     c->callback([&] {
       chosen = [&] {
         const CommandVerb tree = command_tree(command);
-        std::fputs((shell_ == "zsh" ? zsh_completion(tree) : bash_completion(tree)).c_str(), stdout);
+        const auto script = shell_ == "fish"  ? fish_completion(tree)
+                            : shell_ == "zsh" ? zsh_completion(tree)
+                                              : bash_completion(tree);
+        std::fputs(script.c_str(), stdout);
         return 0;
       };
     });
