@@ -1,5 +1,5 @@
-// job_loop: resident on every SPE. Takes jobs from the chains of a board in main memory, fetches their images
-// when they are not resident, calls them, and sleeps when there is nothing to do. The PPU has no part in it.
+// job_loop: the resident kernel of every SPE. It takes jobs from the chains of a board in main memory,
+// fetches their images if needed, calls them, and sleeps when there is no work. The PPU takes no part.
 //
 //   array       direction   element                     count    alignment   DMA
 //   board       in, out     JobBoard                    1        128         getllar, putllc
@@ -88,7 +88,7 @@ void wake_one(const Post& post) {
   set_bell(post, sleeper, 1);
 }
 
-/// Takes a job of the chain that may begin now. @return false when there is none.
+/// Takes a job of the chain that may begin now. @return  false when there is none.
 bool take(uint64_t chain_ea, uint32_t& job) {
   do {
     load_and_reserve(&ls.chain, chain_ea);
@@ -112,7 +112,7 @@ void fetch_image() {
   spu_sync_c();  // the instructions just written are what is executed
 }
 
-/// Runs one job. @return the status of its main; all its transfers are complete.
+/// Runs one job. @return  the status of its main; all its transfers are complete.
 uint32_t run(uint64_t spe_id, uint64_t descriptor_ea) {
   mfc_get(&ls.job, descriptor_ea, sizeof ls.job, kTagImage, 0, 0);
   wait_for_tag(kTagImage);
@@ -153,7 +153,7 @@ void finish(const Post& post, uint64_t chain_ea, uint32_t job, uint32_t status) 
   }
 }
 
-/// Works off what the board offers, the most urgent chain first. @return false when there was nothing.
+/// Works off what the board offers, the most urgent chain first. @return  false when there was nothing.
 bool work(const Post& post) {
   for (uint32_t c = 0; c < kMaxChains; ++c) {
     const uint64_t chain_ea = ls.board.chains[c];
@@ -169,7 +169,7 @@ bool work(const Post& post) {
   return false;
 }
 
-/// Enters this SPE in the board as asleep. @return false when there may be work after all.
+/// Enters this SPE in the board as asleep. @return  false when there may be work after all.
 bool enter(const Post& post, uint32_t generation) {
   do {
     load_and_reserve(&ls.board, post.board_ea);

@@ -9,8 +9,8 @@
 //                          x y z 0 of velocities, then one for each particle
 //                          MatchRotations, 64 bytes    one for four regions
 //
-// A body is stepped whole: between its stages nothing goes through main memory. Particles are corners of the
-// lattice's cells, so their positions are all that skinning needs, and those do not change here.
+// One SPE steps a whole body: data stay in local store between the stages of a step. Skinning needs only the
+// positions of particles, which are the corners of lattice cells; this kernel does not change them.
 //
 // Budget: 243 KB. 216 KB for plan, state and sums (about 220 bytes a particle: a solid block of 1000 fits),
 // the rest for code and 4 KB of stack.
@@ -32,7 +32,7 @@ namespace {
 /// Of the job and the plan, and of the body that is stepped.
 enum Tag : uint32_t { kTagJob = 0, kTagBody = 1 };
 
-constexpr uint32_t kBodiesAtOnce = 64;  // of which the kernel knows where they are
+constexpr uint32_t kBodiesAtOnce = 64;  // MatchBody records fetched by one get
 
 #ifdef SOFTCELL_CHECKED
 constexpr uint32_t kArenaBytes = kMatchCheckedArenaBytes;
@@ -50,7 +50,7 @@ LocalStoreMap ls;
 
 const MatchPlanHeader& plan() { return *reinterpret_cast<const MatchPlanHeader*>(ls.arena); }
 
-/// @return false when plan and state do not fit the arena; only the header is there then.
+/// @return  false when plan and state do not fit the arena; only the header is there then.
 bool load_plan() {
   mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader), kTagJob, 0, 0);
   wait_for_tag(kTagJob);

@@ -8,8 +8,8 @@
 //                          x y of velocities, then      one for each particle
 //                          MatchDirections, 32 bytes    one for four regions
 //
-// A body is stepped whole: between its stages nothing goes through main memory. One body is fetched while
-// another is stepped:
+// One SPE steps a whole body: data stay in local store between the stages of a step. The kernel fetches one
+// body while it steps another:
 //
 //   get   [0 A][1 B]          [2 A]          [3 B]     A, B: two places in local store, a tag group each;
 //   work       [   0 A   ]    [   1 B   ]    [ 2 A     a body is fetched behind a fence, after the put of
@@ -44,7 +44,7 @@ LocalStoreMap ls;
 
 const MatchPlanHeader2d& plan() { return *reinterpret_cast<const MatchPlanHeader2d*>(ls.arena); }
 
-/// @return false when plan and state do not fit the arena; only the header is there then.
+/// @return  false when plan and state do not fit the arena; only the header is there then.
 bool load_plan() {
   mfc_get(ls.arena, ls.job.plan_ea, sizeof(MatchPlanHeader2d), kTagJob, 0, 0);
   wait_for_tag(kTagJob);

@@ -41,8 +41,8 @@ struct alignas(16) MatchRegions2d {
 };
 static_assert(sizeof(MatchRegions2d) == 48, "three quadwords");
 
-/// Where the x axes of four regions point, kept from step to step for those that have no direction of their
-/// own.
+/// The directions of the x axes of four regions. A region whose sum has no direction keeps that of the last
+/// step.
 struct alignas(16) MatchDirections {
   float cosine[4], sine[4];
 };
@@ -63,21 +63,21 @@ struct alignas(128) MatchPlanHeader2d {
   float noise_floor;            ///< m^2: a region whose |C| + |S| is at most this times M_r has no direction
   float grid;                   ///< metres: the body's origin is a multiple of this power of two
   float inverse_mass;           ///< 1 / kg, of the body
-  float inverse_particles;      ///< 1 / particles: an SPU's division may err, by which bit its compiler says
+  float inverse_particles;      ///< 1 / particles: the bits of an SPU's division depend on its compiler
   uint32_t pad[19];
 };
 static_assert(sizeof(MatchPlanHeader2d) == 128, "one line");
 
-/// What one body's step came to: the first quadword of its state.
+/// The result of one body's step: the first quadword of its state.
 struct alignas(16) MatchResult2d {
-  uint32_t finite;  ///< 0: a position or velocity is infinite or no number, and nothing else was written
+  uint32_t finite;  ///< 0: a position or velocity is not finite, and nothing else was written
   uint32_t pad[3];
 };
 
 /// The job's descriptor, one line in main memory: bodies of one model, stepped one after the other.
 struct alignas(128) MatchJob2d {
   uint64_t plan_ea;       ///< a MatchPlanHeader2d and what follows it, 128-byte aligned
-  uint64_t positions_ea;  ///< of the first body, 128-byte aligned; not changed
+  uint64_t positions_ea;  ///< of the first body, 128-byte aligned; read only
   uint64_t states_ea;     ///< of the first body, 128-byte aligned; changed in place
   uint32_t body_count;    ///< any number, 0 included
   float pull;             ///< alpha / h, 1/s
@@ -94,7 +94,7 @@ constexpr uint32_t match_2d_vectors_bytes(const MatchPlanHeader2d& plan) {
   return groups_of(plan.particles) * 4 * static_cast<uint32_t>(sizeof(MatchVector2d));
 }
 
-/// Where a body's directions begin in its state, and where that ends.
+/// Offset of the directions in a body's state, and size of the state, in bytes.
 constexpr uint32_t match_2d_directions_at(const MatchPlanHeader2d& plan) {
   return static_cast<uint32_t>(sizeof(MatchResult2d)) + match_2d_vectors_bytes(plan);
 }
@@ -103,7 +103,7 @@ constexpr uint32_t match_2d_state_bytes(const MatchPlanHeader2d& plan) {
          groups_of(plan.regions) * static_cast<uint32_t>(sizeof(MatchDirections));
 }
 
-/// From one body to the next.
+/// Distance in bytes from one body to the next.
 constexpr uint32_t match_2d_positions_stride(const MatchPlanHeader2d& plan) {
   return whole_lines(match_2d_vectors_bytes(plan));
 }
@@ -111,19 +111,19 @@ constexpr uint32_t match_2d_state_stride(const MatchPlanHeader2d& plan) {
   return whole_lines(match_2d_state_bytes(plan));
 }
 
-/// Bytes of local store: the plan, two bodies (one is fetched while the other is stepped), centres of
-/// regions, two buffers of slots.
+/// Bytes of local store for the plan, two bodies (the kernel fetches one while it steps the other), centres
+/// of regions and two buffers of slots.
 constexpr uint32_t match_2d_local_store_bytes(const MatchPlanHeader2d& plan) {
   return plan.bytes + 2 * (match_2d_positions_stride(plan) + match_2d_state_stride(plan)) +
          groups_of(plan.regions) * 32 + 2 * plan.slots * kMatch2dSlotBytes;
 }
 
-/// What the kernel has for all that.
+/// Bytes of local store that the kernel has for that.
 constexpr uint32_t kMatch2dArenaBytes = 192 * 1024;
 
-/// Whether a plan and its bodies fit. Any numbers may stand in the header.
+/// True if a plan and its bodies fit. Accepts any numbers in the header.
 constexpr bool match_2d_fits(const MatchPlanHeader2d& plan) {
-  const uint32_t most = kMatch2dArenaBytes / 16;  // of anything; below it, sizes do not overflow
+  const uint32_t most = kMatch2dArenaBytes / 16;  // of any count; up to this, sizes do not overflow
   return plan.bytes <= kMatch2dArenaBytes && plan.particles <= most && plan.regions <= most &&
          plan.slots <= most && match_2d_local_store_bytes(plan) <= kMatch2dArenaBytes;
 }

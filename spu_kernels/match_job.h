@@ -2,10 +2,10 @@
 // The contract of the kernel `match`: plain data in main memory, the same bytes for both sides.
 // Freestanding; included by the kernel and by the PPU side. All scalars are in the machine's own byte order.
 //
-// A plan is what all bodies of one model share: constants of particles and regions, and the lists by which
-// sums are made. The PPU side writes it once (ppu/match_plan.h). Four particles, and four regions, stand
-// together, one to a lane; a last group that is not full is padded with particles of no mass and regions of
-// nothing. Particle i is in slot i + 1; a slot is three quadwords.
+// A plan contains what all bodies of one model share: constants of particles and regions, and lists that say
+// which slots are added to which sums. The PPU side writes it once (ppu/match_plan.h). Four particles, and
+// four regions, stand together, one to a lane; a last group that is not full is padded with particles of no
+// mass and regions of nothing. Particle i is in slot i + 1; a slot is three quadwords.
 
 #include <stdint.h>
 
@@ -15,8 +15,8 @@ namespace softcell::spu {
 
 constexpr uint32_t kMatchSlotBytes = 48;
 constexpr uint32_t kMatchSamples = 16;      ///< particles whose mean position is the body's origin
-constexpr float kMatchPullLimit = 0x1p28f;  ///< of MatchHold's unit
-constexpr uint32_t kTwistSlotBytes = 32;    ///< where damping has slots of its own: match_tiles_job.h
+constexpr float kMatchPullLimit = 0x1p28f;  ///< limit of a pull times MatchHold::scale
+constexpr uint32_t kTwistSlotBytes = 32;    ///< a slot of damping in match_tiles_job.h
 
 /// Constants of four particles.
 struct alignas(16) MatchParticles {
@@ -36,16 +36,17 @@ struct alignas(16) MatchRegions {
 };
 static_assert(sizeof(MatchRegions) == 64, "four quadwords");
 
-/// Four unit quaternions: of four regions, kept from step to step.
+/// The rotations of four regions as unit quaternions, from which the next step starts.
 struct alignas(16) MatchRotations {
   float x[4], y[4], z[4], w[4];
 };
 static_assert(sizeof(MatchRotations) == 64, "four quadwords");
 
-/// How the pull is kept from moving the body as a whole: match/hold.h.
+/// Constants that keep the pull from moving the body as a whole: match/hold.h.
 struct MatchHold {
-  float scale;  ///< 1 / (kg m): m (g - x) times this is below kMatchPullLimit for pulls up to a sixteenth of
-                ///< the body; a power of two
+  /// 1 / (kg m), a power of two: m (g - x) times this is below kMatchPullLimit for pulls up to 1/16 of the
+  /// body.
+  float scale;
   float share;  ///< 1 / (scale times the body's mass)
 };
 
@@ -62,27 +63,27 @@ struct alignas(128) MatchPlanHeader {
   uint32_t bars_of_regions;     ///< offset of a sum list: from each particle's region
   uint32_t plates;              ///< offset of a sum list: from bars
   uint32_t regions_of_plates;   ///< offset of a sum list: from plates
-  float noise_floor;  ///< m^2: a region whose |A_r| is at most this times M_r has all its particles on one
-                      ///< point
-  float grid;         ///< metres: the body's origin is a multiple of this power of two
+  /// m^2. In a region whose |A_r| is at most this times M_r, all particles are at one point.
+  float noise_floor;
+  float grid;  ///< metres: the body's origin is a multiple of this power of two
   MatchHold hold;
-  uint32_t samples[kMatchSamples];  ///< numbers of particles all over the body, at any places
+  uint32_t samples[kMatchSamples];  ///< indices of particles spread over the body
   uint32_t pad[2];
 };
 static_assert(sizeof(MatchPlanHeader) == 128, "one line");
 
-/// What one body's step came to: the first quadword of its state.
+/// The result of one body's step: the first quadword of its state.
 struct alignas(16) MatchResult {
-  float residual_square;  ///< the square of the largest |axial(R^T A)| over the sum of |A|'s elements, which
-                          ///< is roughly radians
-  uint32_t finite;  ///< 0: a position or velocity is infinite or no number, and nothing else was written
-  uint32_t cold;    ///< in: not 0: the rotations say nothing yet, only what they leave open; out: 0
+  /// Square of the largest |axial(R^T A)| over the sum of |A|'s elements, which is about an angle in radians.
+  float residual_square;
+  uint32_t finite;  ///< 0: a position or velocity is not finite, and nothing else was written
+  uint32_t cold;    ///< in: not 0 if there are no rotations of an earlier step; out: 0
   uint32_t pad;
 };
 
-/// Where one body is. Both are multiples of 16 (128 is fastest).
+/// The addresses of one body. Both are multiples of 16 (128 is fastest).
 struct alignas(16) MatchBody {
-  uint64_t positions_ea;  ///< x y z and 0 of each particle, metres; not changed
+  uint64_t positions_ea;  ///< x y z and 0 of each particle, metres; read only
   uint64_t state_ea;      ///< changed in place: a MatchResult; then x y z and 0 of each particle, m/s, padded
                           ///< to groups of four; then MatchRotations of all groups of regions
 };
@@ -106,7 +107,7 @@ enum MatchStatus : uint32_t { kMatchDone = 0, kMatchTooLarge = 1 };
 /// Bytes of one body's positions, or velocities, padding included.
 constexpr uint32_t match_vectors_bytes(const MatchPlanHeader& plan) { return groups_of(plan.particles) * 64; }
 
-/// Where a body's rotations begin in its state, and where that ends.
+/// Offset of the rotations in a body's state, and size of the state, in bytes.
 constexpr uint32_t match_rotations_at(const MatchPlanHeader& plan) {
   return static_cast<uint32_t>(sizeof(MatchResult)) + match_vectors_bytes(plan);
 }
@@ -114,7 +115,7 @@ constexpr uint32_t match_state_bytes(const MatchPlanHeader& plan) {
   return match_rotations_at(plan) + groups_of(plan.regions) * static_cast<uint32_t>(sizeof(MatchRotations));
 }
 
-/// From one body to the next, in local store from one part to the next.
+/// Distance in bytes from one body to the next, and in local store from one part to the next.
 constexpr uint32_t match_positions_stride(const MatchPlanHeader& plan) {
   return whole_lines(match_vectors_bytes(plan));
 }
@@ -122,7 +123,7 @@ constexpr uint32_t match_state_stride(const MatchPlanHeader& plan) {
   return whole_lines(match_state_bytes(plan));
 }
 
-/// Bytes of local store: the plan, one body, momenta of regions, two buffers of slots.
+/// Bytes of local store for the plan, one body, momenta of regions and two buffers of slots.
 constexpr uint32_t match_momenta_bytes(const MatchPlanHeader& plan) { return groups_of(plan.regions) * 48; }
 constexpr uint32_t match_buffer_bytes(const MatchPlanHeader& plan) { return plan.slots * kMatchSlotBytes; }
 constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
@@ -130,12 +131,12 @@ constexpr uint32_t match_local_store_bytes(const MatchPlanHeader& plan) {
          2 * match_buffer_bytes(plan);
 }
 
-/// What the kernel has for all that; its instrumented flavour has twice the code and less room.
+/// Bytes of local store that the kernel has for that; its checked build has twice the code and less room.
 constexpr uint32_t kMatchArenaBytes = 216 * 1024, kMatchCheckedArenaBytes = 176 * 1024;
 
-/// Whether a plan and one body's state fit in so many bytes. Any numbers may stand in the header.
+/// True if a plan and one body's state fit in `arena_bytes`. Accepts any numbers in the header.
 constexpr bool match_fits(const MatchPlanHeader& plan, uint32_t arena_bytes) {
-  const uint32_t most = arena_bytes / 16;  // of anything; below it, sizes do not overflow
+  const uint32_t most = arena_bytes / 16;  // of any count; up to this, sizes do not overflow
   return plan.bytes <= arena_bytes && plan.particles <= most && plan.regions <= most && plan.slots <= most &&
          match_local_store_bytes(plan) <= arena_bytes;
 }

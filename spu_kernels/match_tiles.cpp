@@ -1,4 +1,4 @@
-// match_tiles: one tile of a body that no local store holds, through one pass of a step.  [LSM07]
+// match_tiles: one pass of a step for one tile of a body that is too large for a local store. [LSM07]
 //
 //   array       direction  element                   count                          alignment
 //   job         in         TileJob, 128 bytes        1                              128
@@ -15,7 +15,7 @@
 //               out        twists
 //   damp        in         lists, twists, pulled particles
 //               out        velocities
-//   Undamped, damp has of these in only pulled particles, and nobody runs twist.
+//   Without damping, damp reads only pulled particles, and twist does not run.
 //
 // Budget: 245 KB. 208 KB for two sides of a double buffer and slots, the rest for code and 4 KB of stack.
 //

@@ -1,25 +1,25 @@
 #pragma once
-// The contract of the kernel `match_tiles`: one body that no local store holds, cut into tiles that all SPEs
-// work on. Plain data in main memory, the same bytes for both sides.
+// The contract of the kernel `match_tiles`: a body that is too large for a local store is cut into tiles, and
+// all SPEs work on them. Plain data in main memory, the same bytes for both sides.
 //
-// A step is four passes over the body, each of which ends where particles need what neighbouring tiles know:
+// A step is four passes over the body. A pass ends where particles need results of neighbouring tiles:
 //
 //   gather   x                 -->  sums of regions -->  R, motions                        over the regions
 //   scatter  motions           -->  sums of motions -->  goals, v'                         over the particles
 //   twist    x, v'             -->  sums of regions -->  omega, b                          over the regions
 //   damp     omega, b          -->  their sums      -->  v                                 over the particles
 //
-// A tile is some rows (y) of some planes (x) of the lattice, over its whole height (z). A job takes one tile
-// through one pass, a plane at a time, a slice: what comes in is one stretch of main memory, of the tile's
-// rows and half-width more on either side; what goes out is one stretch, its own rows. Sums over planes go on
-// from slice to slice. While one slice is worked on the next is fetched.
+// A tile is some rows (y) of some planes (x) of the lattice, over its whole height (z). A job runs one pass
+// over one tile, plane by plane. Such a slice reads one contiguous range of main memory, the tile's rows and
+// half_width more on either side, and writes one, its own rows. Sums over planes continue from slice to
+// slice. The kernel fetches a slice while it works on the one before.
 //
-// The PPU side lays all that out (ppu/tile_plan.h): which slots hold what, and when one is free again. Sums
-// are made by the rules of match_job.h, with the same chains as if the body were whole, so the bits are the
+// The PPU side lays all that out (ppu/tile_plan.h): which slots hold what, and when one is free again.
+// Sums follow the rules of match_job.h, with the same chains as for a whole body, so that the bits are the
 // same.
 //
-// Particles and regions have places: numbers by plane, tile row and number, each plane of a tile padded to
-// groups of four with particles of no mass and regions of nothing.
+// Particles and regions are numbered by plane, tile row and index. Each plane of a tile is padded to groups
+// of four with particles without mass and regions without particles.
 
 #include <stdint.h>
 
@@ -39,8 +39,9 @@ struct alignas(64) TileSlice {
   uint32_t lists;                              ///< offset from TiledBody::lists_ea, a multiple of 16; bytes
   uint32_t lists_bytes;                        ///< a multiple of 16
   uint32_t plates_list, sums_list;             ///< offsets of lists from the first, that of bars; bytes, even
-  uint32_t bars_list;  ///< offset from `lists`; before it, down: the offsets of each output
-                       ///< particle's totals, four words to a group
+  /// Offset from `lists`. Of a slice down, the offsets of each output particle's totals precede it, four to a
+  /// group.
+  uint32_t bars_list;
   uint32_t pad[3];
 };
 static_assert(sizeof(TileSlice) == 64, "four quadwords");
@@ -54,7 +55,7 @@ struct alignas(16) TileWeights {
   float mass[4];
 };
 
-/// What `scatter` leaves of four particles to the passes behind it: all that these want, in one line.
+/// The output of `scatter` for four particles: all that the later passes need, in one line.
 struct alignas(128) TilePulled {
   float x[4], y[4], z[4];     ///< position about the body's origin, metres
   float vx[4], vy[4], vz[4];  ///< v', m/s
@@ -63,13 +64,13 @@ struct alignas(128) TilePulled {
 };
 static_assert(sizeof(TilePulled) == 128, "one line");
 
-/// What `gather` leaves to `twist` of four regions.
+/// The output of `gather` for `twist`, of four regions.
 struct alignas(16) TileMomenta {
   float x[4], y[4], z[4];  ///< sum m~ x
   float inverse_mass[4];
 };
 
-/// What one tile has found. Two lines: each pass has one of its own.
+/// The report of one tile. Two lines, because two passes write one each.
 struct alignas(128) TileReport {
   float residual_square;      ///< the largest; by `gather`
   uint32_t positions_finite;  ///< likewise
@@ -81,7 +82,7 @@ struct alignas(128) TileReport {
 static_assert(sizeof(TileReport) == 256, "two lines");
 constexpr uint32_t kTileReportLine = 128;
 
-/// The most of anything that a slice of either direction has.
+/// Upper limits of the slices of one direction.
 struct TileLimits {
   uint32_t slices;        ///< of a tile
   uint32_t input_groups;  ///< of a slice
@@ -107,7 +108,7 @@ struct alignas(128) TiledBody {
   uint32_t tiles;
   float pull;     ///< alpha / h, 1/s
   float damping;  ///< k, 0..1
-  uint32_t cold;  ///< not 0: the rotations say nothing yet, only what they leave open
+  uint32_t cold;  ///< not 0: there are no rotations of an earlier step
   uint32_t least_iterations, most_iterations;
   float noise_floor, grid;  ///< as in MatchPlanHeader
   MatchHold hold;
@@ -133,8 +134,8 @@ static_assert(sizeof(TileJob) == 128, "one line");
 /// What main returns.
 enum TileStatus : uint32_t { kTileDone = 0, kTileTooLarge = 1 };
 
-/// Bytes of local store for one direction: slices, two sides of a double buffer, what goes out, slots. Any
-/// numbers below 65536 may stand in the limits.
+/// Bytes of local store for one direction: slices, two sides of a double buffer, output, slots. Accepts any
+/// limits below 65536.
 constexpr uint32_t tile_up_side_bytes(const TileLimits& up) {
   return up.lists_bytes + up.input_groups * static_cast<uint32_t>(sizeof(TilePulled)) +
          up.output_groups * (64 + 64);
@@ -152,7 +153,7 @@ constexpr uint32_t tile_down_bytes(const TileLimits& down) {
          down.output_groups * static_cast<uint32_t>(sizeof(TilePulled)) + down.slots * kMatchSlotBytes;
 }
 
-/// What the kernel has for all that; its instrumented flavour has more code and less room.
+/// Bytes of local store that the kernel has for that; its checked build has more code and less room.
 constexpr uint32_t kTileArenaBytes = 208 * 1024, kTileCheckedArenaBytes = 144 * 1024;
 
 constexpr bool tile_limits_small(const TileLimits& limits) {

@@ -1,5 +1,5 @@
-// rotations: the rotations nearest to matrices, as `match` finds those of regions, and nothing else: for
-// measuring.
+// rotations: the rotations nearest to given matrices, by the code that `match` uses for regions. For
+// benchmarks.
 //
 //   array     direction  element                       count          alignment
 //   job       in         RotationsJob, 128 bytes       1              128

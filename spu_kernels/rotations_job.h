@@ -1,6 +1,6 @@
 #pragma once
-// The contract of the kernel `rotations`, which measures what is otherwise part of `match`: matrices in main
-// memory to the rotations nearest to them. Freestanding; included by the kernel and by the PPU side.
+// The contract of the kernel `rotations`, a part of `match` for benchmarks: it computes the rotations nearest
+// to matrices in main memory. Freestanding; included by the kernel and by the PPU side.
 
 #include <stdint.h>
 
@@ -19,12 +19,12 @@ constexpr uint32_t kRotationsMaxGroups = 256;
 
 /// The job's descriptor, one line in main memory.
 struct alignas(128) RotationsJob {
-  uint64_t matrices_ea;  ///< group_count RotationMatrices, a multiple of 16 (128 is fastest); any of finite
-                         ///< numbers
-  uint64_t starts_ea;    ///< group_count MatchRotations, likewise aligned; unit quaternions, last step's
-  uint64_t found_ea;     ///< room for as many, likewise aligned
-  uint32_t group_count;  ///< 0..kRotationsMaxGroups
-  uint32_t repeats;      ///< how often the same is done from the start
+  /// group_count RotationMatrices with finite elements, a multiple of 16 (128 is fastest).
+  uint64_t matrices_ea;
+  uint64_t starts_ea;         ///< group_count MatchRotations, likewise aligned; unit quaternions, last step's
+  uint64_t found_ea;          ///< room for as many, likewise aligned
+  uint32_t group_count;       ///< 0..kRotationsMaxGroups
+  uint32_t repeats;           ///< how often the same is done from the start
   uint32_t least_iterations;  ///< of each rotation; 2 and 2 for a fixed effort, 0 and 6 to go by the residual
   uint32_t most_iterations;
   uint32_t pad[22];

@@ -15,19 +15,19 @@ struct alignas(128) SkinGroup {
   float normal_x[4];  ///< rest normal, unit length
   float normal_y[4];
   float normal_z[4];
-  uint16_t
-      corner[8];  ///< the cell's corners as indices into the job's corner array; corner k = bx + 2 by + 4 bz
-  uint16_t
-      continues[8];  ///< [0] is 1 when the group has the same eight corners as the group before it, else 0
+  /// The cell's corners as indices into the job's corner array; corner k = bx + 2 by + 4 bz.
+  uint16_t corner[8];
+  /// [0] is 1 if the group has the same eight corners as the group before it, else 0.
+  uint16_t continues[8];
 };
 static_assert(sizeof(SkinGroup) == 128, "one line");
 
-/// A particle's position as the PPU side hands it over.
+/// A particle's position, written by the PPU side.
 struct alignas(16) SkinCorner {
   float x, y, z, pad;
 };
 
-/// What is drawn: binary16 numbers, relative to the job's origin. 16 bytes, four of them to a group.
+/// A vertex to draw: half floats relative to the job's origin. 16 bytes; a group makes four of them.
 struct alignas(16) SkinnedVertex {
   uint16_t position[4];  ///< x y z 1
   uint16_t normal[4];    ///< x y z 0, unit length
@@ -47,8 +47,8 @@ struct SkinWindow {
 struct alignas(128) SkinJob {
   uint64_t groups_ea;    ///< group_count SkinGroups, 128-byte aligned
   uint64_t vertices_ea;  ///< room for 4 * group_count SkinnedVertex, a multiple of 16 (128 is fastest)
-  SkinWindow window[2];  ///< the job's corner array is window[0] followed by window[1]; the sum is at most
-                         ///< kSkinMaxCorners
+  /// The job's corner array: window[0] followed by window[1], at most kSkinMaxCorners together.
+  SkinWindow window[2];
   float origin[4];       ///< subtracted from every corner; x y z and 0
   uint32_t group_count;  ///< any number, 0 included
   uint32_t pad[15];

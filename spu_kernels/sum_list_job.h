@@ -1,6 +1,6 @@
 #pragma once
-// What the plans of the kernels match, match_2d and match_tiles share: groups of four, whole lines, and lists
-// by which sums are made. Plain data, the same bytes for both sides.
+// Definitions shared by the plans of match, match_2d and match_tiles: groups of four, whole lines, and sum
+// lists. Plain data, the same bytes for both sides.
 //
 // A kernel works on two buffers of slots: a slot is the payload of a particle, a bar, a plate or a region,
 // some quadwords. Slot 0 is always zero. A sum list is a sequence of halfwords and makes slots 1, 2, 3, ...
@@ -17,8 +17,8 @@
 //             sums x (offset, offset, offset)  each is the first slot, plus the second, minus the third
 //     end:    0
 //
-// A chain is a window that moves along a row: it comes in at one end, and goes out at the other. Runs go on
-// where a chain has left off that began in another list: only the lists of match_tiles have them.
+// A chain is a window that slides along a row, from before its begin to past its end. A run continues a chain
+// that began in another list; only the lists of match_tiles have runs.
 
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
-// transfers: moves the same memory again and again and does nothing with it. `softcell bench` measures the
-// MFC with it, and the dispatch of a job with argp 0, at which it returns at once.
+// transfers: moves the same memory again and again. `softcell bench` uses it to measure the MFC, and, with
+// argp 0, at which it returns at once, to measure how long the dispatch of a job takes.
 //
 //   array   direction   element             count        alignment
 //   job     in          TransfersJob        1            128

@@ -5,7 +5,7 @@
 
 namespace softcell::base::assertion {
 
-void fail(const char* file, int line, const char* condition, std::string_view message,
+void fail(const Location& location, std::string_view message,
           std::initializer_list<std::string> values) noexcept {
   std::string text;
   const std::string* value = values.begin();
@@ -15,7 +15,8 @@ void fail(const char* file, int line, const char* condition, std::string_view me
     message.remove_prefix(at + 2);
   }
   text += message;
-  std::fprintf(stderr, "%s:%d: SC_ASSERT(%s) does not hold: %s\n", file, line, condition, text.c_str());
+  std::fprintf(stderr, "%s:%d: %s: SC_ASSERT(%s) does not hold: %s\n", location.file, location.line,
+               location.function, location.condition, text.c_str());
   std::abort();
 }
 

@@ -2,9 +2,15 @@
 
 #include <algorithm>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 
 namespace softcell::base {
+namespace {
+
+constexpr int kMostHexDigits = 16;
+
+}  // namespace
 
 JsonText& JsonText::microseconds(std::int64_t nanoseconds) {
   nanoseconds = std::max<std::int64_t>(nanoseconds, 0);
@@ -16,7 +22,9 @@ JsonText& JsonText::microseconds(std::int64_t nanoseconds) {
 }
 
 JsonText& JsonText::hex(std::uint64_t value, int digits) {
-  char text[16];
+  SC_ASSERT(digits >= 0 && digits <= kMostHexDigits, "{} hexadecimal digits; a 64-bit number has {} at most",
+            digits, kMostHexDigits);
+  char text[kMostHexDigits];
   const auto end = std::to_chars(text, text + sizeof text, value, 16).ptr;
   std::transform(text, end, text, [](char c) { return c >= 'a' ? static_cast<char>(c - 'a' + 'A') : c; });
   const auto length = static_cast<int>(end - text);

@@ -30,7 +30,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known) {
-  // Nobody mistypes a longer one, and the work grows with the product of lengths.
+  // Nobody mistypes a longer name, and the work grows with the product of both lengths.
   constexpr std::size_t kLongestName = 64;
   if (name.size() > kLongestName) return {};
   std::string_view nearest;

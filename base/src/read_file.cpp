@@ -4,8 +4,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 #include <string>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::base {
 namespace {
@@ -27,6 +30,7 @@ void check_kind(const std::filesystem::path& path) {
 }  // namespace
 
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::uint64_t most_bytes) {
+  SC_ASSERT(most_bytes < std::numeric_limits<std::uint64_t>::max(), "no limit for {}", path);
   check_kind(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(path, std::strerror(errno));

@@ -41,7 +41,7 @@ std::string shortened(const std::string& text) {
 }  // namespace
 
 std::size_t utf8_length(std::string_view text, std::size_t at) {
-  SC_ASSERT(at < text.size(), "there is no byte {} in a text of {}", at, text.size());
+  SC_ASSERT(at < text.size(), "byte {} of a text of {} bytes", at, text.size());
   const unsigned char first = byte_at(text, at), second = byte_at(text, at + 1);
   const std::size_t length = first < 0x80   ? 1
                              : first < 0xC2 ? 0
@@ -76,8 +76,8 @@ std::string one_line(std::string_view sentence) {
 }
 
 std::string hex(std::uint64_t value, int digits) {
-  SC_ASSERT(digits <= kMostHexDigits, "{} digits asked for, and a number has {} at most", digits,
-            kMostHexDigits);
+  SC_ASSERT(digits >= 0 && digits <= kMostHexDigits, "{} hexadecimal digits; a 64-bit number has {} at most",
+            digits, kMostHexDigits);
   char text[2 + kMostHexDigits + 1];
   std::snprintf(text, sizeof text, "0x%0*" PRIX64, digits, value);
   return text;

@@ -31,7 +31,7 @@ std::string next_temporary_name(const fs::path& file) {
 }  // namespace
 
 WholeFile::WholeFile(fs::path path) : path_(std::move(path)), place_(path_) {
-  if (path_.empty()) throw std::runtime_error("cannot write '': it is no file name");
+  if (path_.empty()) throw std::runtime_error("cannot write '': the file name is empty");
   std::error_code error;
   const fs::file_status status = fs::status(path_, error);
   if (status.type() == fs::file_type::none) fail(error.value());
@@ -63,6 +63,7 @@ fs::path WholeFile::behind_links(fs::path path) {
 }
 
 void WholeFile::open_temporary(const fs::file_status& replaced) {
+  SC_ASSERT(file_ == nullptr && temporary_.empty(), "{} is open already, as {}", path_, temporary_);
   if (exists(replaced)) kept_mode_ = static_cast<mode_t>(replaced.permissions());
   // One that is read-only becomes so when it is written.
   const mode_t mode = kept_mode_ ? *kept_mode_ | S_IWUSR : 0666;
@@ -83,6 +84,8 @@ void WholeFile::open_temporary(const fs::file_status& replaced) {
 }
 
 void WholeFile::open_in_place() {
+  SC_ASSERT(temporary_.empty(), "{} is to be written in place and has the temporary file {}", path_,
+            temporary_);
   file_ = std::fopen(place_.c_str(), "wbe");
   if (file_ == nullptr) fail(errno);
 }
@@ -92,7 +95,7 @@ void WholeFile::write(std::string_view bytes) {
 }
 
 std::FILE* WholeFile::stream() {
-  SC_ASSERT(!finished_, "{} is written after its end", path_);
+  SC_ASSERT(!finished_, "write to {} after finish()", path_);
   if (file_ == nullptr) open_in_place();
   return file_;
 }
@@ -105,6 +108,7 @@ void WholeFile::finish() {
 }
 
 void WholeFile::commit() {
+  SC_ASSERT(!settled_, "{} was committed or discarded before", path_);
   finish();
   if (!temporary_.empty() && std::rename(temporary_.c_str(), place_.c_str()) != 0) fail(errno);
   settled_ = true;

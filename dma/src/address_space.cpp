@@ -6,6 +6,7 @@
 #include "arena.h"
 #include "local_stores.h"
 #include "reserved_addresses.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/local_store_port.h"
 #include "text.h"
 
@@ -39,7 +40,7 @@ EffectiveAddress AddressSpace::allocate(std::string name, std::uint64_t bytes, c
   if (!is_element_width(options.element_bytes)) {
     throw std::invalid_argument("buffer '" + name + "' with elements of " +
                                 byte_count(options.element_bytes) +
-                                "; 1, 2, 4, 8, or 0 for mixed ones is possible");
+                                "; allowed are 1, 2, 4, 8, or 0 for mixed ones");
   }
   Mapping mapping{.bytes = round_up_to_quadword(bytes),
                   .spe_access = options.spe_access,
@@ -56,10 +57,13 @@ EffectiveAddress AddressSpace::allocate(std::string name, std::uint64_t bytes, c
                                std::to_string(memory.largest_free_range()) + " in the largest piece");
     }
     mapping.ea = *ea;
+    SC_ASSERT(ea->value % kLineBytes == 0, "buffer '{}' begins at {}, not at a line", name, *ea);
     mapping.host = memory.host(*ea);
   }
   const std::lock_guard lock(registry_mutex_);
-  registry_.emplace(mapping.ea.value, NamedBuffer{mapping, std::move(name), bytes});
+  const bool is_new =
+      registry_.emplace(mapping.ea.value, NamedBuffer{mapping, std::move(name), bytes}).second;
+  SC_ASSERT(is_new, "the allocator handed out {} twice", mapping.ea);
   return mapping.ea;
 }
 
@@ -80,11 +84,15 @@ void AddressSpace::free(EffectiveAddress ea) {
 
 void AddressSpace::map_local_store(int spe, LocalStorePort& port) {
   const std::string what = "local store of SPE " + std::to_string(spe);
-  if (spe < 0 || spe >= kSpeCount) throw std::invalid_argument(what + "; SPEs have numbers from 0 to 5");
+  if (spe < 0 || spe >= kSpeCount)
+    throw std::invalid_argument(what + "; SPEs have numbers from 0 to " + std::to_string(kSpeCount - 1));
   const std::span<std::byte> bytes = port.local_store();
   if (bytes.size() != kLocalStoreBytes) {
-    throw std::invalid_argument(what + " of " + byte_count(bytes.size()) + "; it has 262144");
+    throw std::invalid_argument(what + " of " + byte_count(bytes.size()) + "; it must have " +
+                                std::to_string(kLocalStoreBytes));
   }
+  SC_ASSERT(reinterpret_cast<std::uintptr_t>(bytes.data()) % kQuadwordBytes == 0,
+            "{} is at {} of the host, not at a quadword", what, bytes.data());
   const EffectiveAddress ea = local_store_ea(spe);
   const Mapping mapping{
       .ea = ea, .bytes = bytes.size(), .host = bytes.data(), .spe_access = SpeAccess::kReadWrite};
@@ -106,6 +114,7 @@ void AddressSpace::unmap_local_store(int spe) {
 
 std::variant<std::byte*, Fault> AddressSpace::resolve(EffectiveAddress ea, std::uint64_t bytes,
                                                       SpeAccess wanted) const {
+  SC_ASSERT(bytes != 0, "an access of 0 bytes at {}", ea);
   if (LocalStores::contains(ea) && LocalStores::is_register(ea)) {
     return local_stores_->resolve_register(ea, bytes, wanted == SpeAccess::kWrite);
   }
@@ -163,12 +172,12 @@ std::string AddressSpace::describe_unmapped(EffectiveAddress ea) const {
       return "the upper word of EA is 0, that of main storage is " + hex(kMainMemoryBase.value >> 32) +
              "; was MFC_EAH left out?";
     }
-    return "EA is no address of main storage, whose upper word is " + hex(kMainMemoryBase.value >> 32) +
+    return "EA is not an address of main storage, whose upper word is " + hex(kMainMemoryBase.value >> 32) +
            "; is it a host pointer?";
   }
   if (LocalStores::contains(ea)) {
-    return "that is the local store of SPE " + std::to_string(LocalStores::spe_of(ea)) +
-           ", which is not there";
+    return "EA is in the local store of SPE " + std::to_string(LocalStores::spe_of(ea)) +
+           ", which does not exist";
   }
   const auto below = last_at_or_below(ea);
   if (below == registry_.end()) return "no buffer lies there or below";

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::dma {
 namespace {
 
@@ -18,6 +20,8 @@ constexpr std::uint64_t round_up_to_line(std::uint64_t bytes) {
 }  // namespace
 
 Arena::Arena(EffectiveAddress base, std::uint64_t bytes) : base_(base), bytes_(bytes) {
+  SC_ASSERT(base.value % kLineBytes == 0 && bytes % kLineBytes == 0,
+            "{} bytes from {} on are not whole lines", bytes, base);
   void* pages =
       mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (pages == MAP_FAILED) {
@@ -33,6 +37,7 @@ Arena::Arena(EffectiveAddress base, std::uint64_t bytes) : base_(base), bytes_(b
 Arena::~Arena() { munmap(host_, bytes_); }
 
 std::optional<EffectiveAddress> Arena::allocate(std::uint64_t bytes) {
+  SC_ASSERT(bytes != 0, "an allocation of 0 bytes from the {} at {}", bytes_, base_);
   if (bytes > bytes_) return std::nullopt;  // also keeps the rounding below from overflowing
   const std::uint64_t needed = round_up_to_line(bytes);
   const auto fit =
@@ -52,9 +57,14 @@ std::optional<EffectiveAddress> Arena::allocate(std::uint64_t bytes) {
 void Arena::free(EffectiveAddress ea, std::uint64_t bytes) {
   std::uint64_t begin = ea.value - base_.value;
   std::uint64_t end = begin + round_up_to_line(bytes);
+  SC_ASSERT(ea >= base_ && begin % kLineBytes == 0 && end <= bytes_,
+            "{} bytes at {} were never allocated from the {} at {}", bytes, ea, bytes_, base_);
   const auto next = free_.lower_bound(begin);
+  SC_ASSERT(next == free_.end() || next->first >= end, "{} bytes at {} are freed a second time", bytes, ea);
   if (next != free_.begin()) {
     const auto previous = std::prev(next);
+    SC_ASSERT(previous->first + previous->second <= begin, "{} bytes at {} are freed a second time", bytes,
+              ea);
     if (previous->first + previous->second == begin) {
       begin = previous->first;
       free_.erase(previous);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::dma {
@@ -29,7 +30,10 @@ class Arena {
   /// Gives back what allocate() returned for `bytes`, and joins it with free neighbours.
   void free(EffectiveAddress ea, std::uint64_t bytes);
 
-  std::byte* host(EffectiveAddress ea) const { return host_ + (ea.value - base_.value); }
+  std::byte* host(EffectiveAddress ea) const {
+    SC_ASSERT(ea.value - base_.value < bytes_, "{} is not in the {} bytes from {} on", ea, bytes_, base_);
+    return host_ + (ea.value - base_.value);
+  }
 
   std::uint64_t bytes() const { return bytes_; }
   std::uint64_t free_bytes() const;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
 #include "text.h"
 
 namespace softcell::dma {
@@ -28,9 +29,10 @@ void Atomics::store(EffectiveAddress ea, const void* from, std::uint32_t bytes) 
 }
 
 std::byte* Atomics::host_of(EffectiveAddress ea, std::uint32_t bytes) {
+  SC_ASSERT(bytes == 4 || bytes == 8, "an atomic word of {} bytes at {}", bytes, ea);
   if (ea.value % bytes != 0) {
-    throw std::invalid_argument("atomic access at EA " + to_text(ea) + ", which is no multiple of its " +
-                                byte_count(bytes));
+    throw std::invalid_argument("atomic access at EA " + to_text(ea) +
+                                ", which is not a multiple of the word's " + byte_count(bytes));
   }
   const auto resolved = translation_.resolve(ea, bytes, SpeAccess::kNone);
   if (const Fault* fault = std::get_if<Fault>(&resolved)) {

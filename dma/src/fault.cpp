@@ -1,5 +1,6 @@
 #include "softcell/dma/fault.h"
 
+#include "softcell/base/assert.h"
 #include "text.h"
 
 namespace softcell::dma {
@@ -17,7 +18,10 @@ constexpr RuleRow kRules[] = {
 #undef SC_RULE
 };
 
-const RuleRow& row(Rule rule) { return kRules[static_cast<std::size_t>(rule)]; }
+const RuleRow& row(Rule rule) {
+  SC_ASSERT(static_cast<std::size_t>(rule) < std::size(kRules), "rule {} of {}", rule, std::size(kRules));
+  return kRules[static_cast<std::size_t>(rule)];
+}
 
 /// Only what the command looks at: a getllar has no tag, a barrier no address.
 std::string to_text(const MfcCommand& command) {

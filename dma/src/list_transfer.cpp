@@ -3,12 +3,17 @@
 #include <cstring>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/mfc_rules.h"
 
 namespace softcell::dma {
 
 ListElement read_element(std::span<const std::byte> local_store, const MfcCommand& command,
                          std::uint32_t index) {
+  SC_ASSERT(index < command.size / kListElementBytes, "element {} of a list of {} bytes", index,
+            command.size);
+  SC_ASSERT(command.list_address().value + (index + 1) * kListElementBytes <= local_store.size(),
+            "element {} of the list at {} lies outside the local store", index, command.list_address());
   ListElement element;
   std::memcpy(&element, &local_store[command.list_address().value + index * kListElementBytes],
               sizeof element);
@@ -17,6 +22,7 @@ ListElement read_element(std::span<const std::byte> local_store, const MfcComman
 
 std::variant<ListElement, Fault> ListTransfer::open_next(std::span<std::byte> local_store,
                                                          StoragePort& port) {
+  SC_ASSERT(can_open(), "element {} of {} with {} open", next_, count(), open_);
   const ListElement element = read_element(local_store, command_, next_);
   if (std::optional<Fault> fault = check_element(command_, next_, element, cursor_)) {
     return std::move(*fault);
@@ -45,6 +51,7 @@ void ListTransfer::move_open(StoragePort& port) {
 }
 
 void ListTransfer::move_piece(std::uint32_t which, std::uint32_t choice, StoragePort& port) {
+  SC_ASSERT(which < open_, "open element {} of {}", which, open_);
   transfers_[which].move_piece(choice, port);
   if (transfers_[which].pieces_left() == 0) transfers_[which] = transfers_[--open_];
 }

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::dma {
 namespace {
 
@@ -60,6 +62,7 @@ std::size_t bytes_to_lane(const std::byte* to) { return -reinterpret_cast<std::u
 [[gnu::target("avx")]] __m256i* lane(std::byte* at) { return reinterpret_cast<__m256i*>(at); }
 
 [[gnu::target("avx")]] void copy_rounds(std::byte* to, const std::byte* from, std::size_t bytes) {
+  SC_ASSERT(bytes_to_lane(to) == 0 && bytes % kRound == 0, "{} bytes to {}", bytes, to);
   const auto* source = reinterpret_cast<const __m256i*>(from);
   for (__m256i* place = lane(to); bytes != 0; bytes -= kRound, place += 4, source += 4) {
     const __m256i a = _mm256_loadu_si256(source), b = _mm256_loadu_si256(source + 1);
@@ -73,6 +76,7 @@ std::size_t bytes_to_lane(const std::byte* to) { return -reinterpret_cast<std::u
 }
 
 [[gnu::target("avx")]] void fill_rounds(std::byte* to, std::byte value, std::size_t bytes) {
+  SC_ASSERT(bytes_to_lane(to) == 0 && bytes % kRound == 0, "{} bytes at {}", bytes, to);
   const __m256i filling = _mm256_set1_epi8(static_cast<char>(value));
   for (__m256i* place = lane(to); bytes != 0; bytes -= kRound, place += 4) {
     for (int i = 0; i < 4; ++i) _mm256_store_si256(place + i, filling);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string>
 
+#include "softcell/base/assert.h"
 #include "text.h"
 
 namespace softcell::dma {
@@ -21,20 +22,22 @@ bool is_known(std::uint32_t offset) {
 
 std::variant<std::byte*, Fault> LocalStores::resolve_register(EffectiveAddress ea, std::uint64_t bytes,
                                                               bool writes) {
+  SC_ASSERT(is_register(ea), "{} is in the local store of SPE {}", ea, spe_of(ea));
   const std::string spe = "SPE " + std::to_string(spe_of(ea));
   const std::uint32_t offset = offset_of(ea);
   if (ports_[spe_of(ea)].load(std::memory_order_acquire) == nullptr) {
-    return Fault{.rule = Rule::kEaNotMapped, .detail = spe + ", whose register that would be, is not there"};
+    return Fault{.rule = Rule::kEaNotMapped,
+                 .detail = "EA is a register of " + spe + ", which does not exist"};
   }
   if (!is_known(offset)) {
     return Fault{.rule = Rule::kRegisterAccess,
-                 .detail = hex(offset, 5) + " from the base of " + spe +
-                           " is no register for others; SPU_In_Mbox (0x4400C), Sig_Notify_1 (0x5400C) and "
-                           "Sig_Notify_2 (0x5C00C) are"};
+                 .detail = "offset " + hex(offset, 5) + " of " + spe +
+                           " is not a register that others may write; those are SPU_In_Mbox (0x4400C), "
+                           "Sig_Notify_1 (0x5400C) and Sig_Notify_2 (0x5C00C)"};
   }
   if (!writes) {
     return Fault{.rule = Rule::kRegisterAccess,
-                 .detail = "a register of " + spe + " is read; others may only write it"};
+                 .detail = "EA is a register of " + spe + ", which others may only write"};
   }
   if (bytes != kRegisterBytes) {
     return Fault{.rule = Rule::kRegisterAccess,
@@ -50,6 +53,8 @@ bool LocalStores::on_write(EffectiveAddress ea, const std::byte* from, std::uint
     port->on_external_write({offset_of(ea)}, bytes);
     return false;
   }
+  SC_ASSERT(bytes == kRegisterBytes && is_known(offset_of(ea)),
+            "{} bytes written at {} of SPE {}'s registers", bytes, offset_of(ea), spe_of(ea));
   std::uint32_t value = 0;
   std::memcpy(&value, from, sizeof value);
   port->on_register_write(static_cast<SpeRegister>(offset_of(ea)), value);

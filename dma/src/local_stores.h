@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <variant>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/fault.h"
 #include "softcell/dma/local_store_port.h"
@@ -24,14 +25,19 @@ class LocalStores {
   }
   /// @pre contains(ea), here and below.
   static constexpr int spe_of(EffectiveAddress ea) {
+    SC_ASSERT(contains(ea), "{} does not belong to an SPE", ea);
     return static_cast<int>((ea.value - kLocalStoresBase.value) / kLocalStoreStrideBytes);
   }
   static constexpr std::uint32_t offset_of(EffectiveAddress ea) {
+    SC_ASSERT(contains(ea), "{} does not belong to an SPE", ea);
     return static_cast<std::uint32_t>((ea.value - kLocalStoresBase.value) % kLocalStoreStrideBytes);
   }
   static constexpr bool is_register(EffectiveAddress ea) { return offset_of(ea) >= kLocalStoreBytes; }
 
-  void set_port(int spe, LocalStorePort* port) { ports_[spe].store(port, std::memory_order_release); }
+  void set_port(int spe, LocalStorePort* port) {
+    SC_ASSERT(spe >= 0 && spe < kSpeCount, "SPE {} of {}", spe, kSpeCount);
+    ports_[spe].store(port, std::memory_order_release);
+  }
 
   /// @param writes  whether it is a write, the only access that a register takes.
   /// @pre is_register(ea)

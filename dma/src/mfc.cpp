@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/mfc_rules.h"
 #include "text.h"
 
@@ -70,8 +71,8 @@ Mfc::Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedul
       schedule_(schedule),
       random_(schedule.seed, stream_number) {
   if (local_store.size() != kLocalStoreBytes) {
-    throw std::invalid_argument("a local store of " + std::to_string(local_store.size()) + " bytes; it has " +
-                                std::to_string(kLocalStoreBytes));
+    throw std::invalid_argument("a local store of " + std::to_string(local_store.size()) +
+                                " bytes; it must have " + std::to_string(kLocalStoreBytes));
   }
 }
 
@@ -154,6 +155,7 @@ std::variant<Transfer, Fault> Mfc::transfer_of(const MfcCommand& command, Comman
 }
 
 std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
+  SC_ASSERT(command.kind() == CommandKind::kLine, "{} is no line command", name(command.opcode()));
   const MfcOpcode opcode = command.opcode();
   auto line = port_.resolve_lines(command.ea, kLineBytes,
                                   opcode == MfcOpcode::getllar ? SpeAccess::kRead : SpeAccess::kWrite);
@@ -163,7 +165,7 @@ std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
   }
   const auto& place = std::get<StoragePlace>(line);
   std::byte* local = local_store_.data() + command.lsa.value;
-  tell_issue(command);
+  notify_issue(command);
   std::uint32_t status = 0;
   if (opcode == MfcOpcode::getllar) {
     ++statistics_.getllar;
@@ -195,6 +197,8 @@ std::optional<Fault> Mfc::execute_line_command(const MfcCommand& command) {
 /// A get or put that meets an empty queue under the eager schedule, as nearly all do: moved before anything
 /// else is made of it.
 std::optional<Fault> Mfc::transfer_at_once(const MfcCommand& command) {
+  SC_ASSERT(queue_.empty(), "{} overtakes {} queued commands", name(command.opcode()),
+            queue_.occupied_slots());
   const bool is_put = command.is_put();
   auto resolved = port_.resolve(command.ea, command.size, is_put ? SpeAccess::kWrite : SpeAccess::kRead);
   if (auto* fault = std::get_if<Fault>(&resolved)) {
@@ -221,7 +225,7 @@ void Mfc::begin_at_once(const MfcCommand& command) {
   ++statistics_.queued_commands;
   ++statistics_.occupancy_sum;
   statistics_.highest_queue_occupancy = std::max(statistics_.highest_queue_occupancy, 1);
-  tell_issue(command);
+  notify_issue(command);
 }
 
 std::optional<Fault> Mfc::enqueue(const MfcCommand& command, CommandKind kind, const Transfer& transfer) {
@@ -232,8 +236,9 @@ std::optional<Fault> Mfc::enqueue(const MfcCommand& command, CommandKind kind, c
     }
   }
   count(command, kind);
-  tell_issue(command);
+  notify_issue(command);
   const int slot = queue_.push(command);
+  SC_ASSERT((lists_ & slot_bit(slot)) == 0, "slot {} of a new command still holds a list", slot);
   QueuedCommand& queued = commands_[slot];
   queued.number = commands_issued_;
   queued.due = visits_ + kMostVisits;
@@ -280,7 +285,7 @@ void Mfc::count(const MfcCommand& command, CommandKind kind) {
   }
 }
 
-void Mfc::tell_issue(const MfcCommand& command) {
+void Mfc::notify_issue(const MfcCommand& command) {
   ++commands_issued_;
   if (observer_ != nullptr) {
     observer_->on_issue(commands_issued_, command, bytes_moved(command, local_store_));
@@ -310,7 +315,7 @@ std::optional<Fault> Mfc::write_tag_update(std::uint32_t condition) {
   }
   request_ = StatusRequest{wanted, tag_mask_};
   request_told_ = false;
-  tell_if_met();
+  raise_if_met();
   return std::nullopt;
 }
 
@@ -362,7 +367,7 @@ bool Mfc::is_met(const StatusRequest& request) const {
   return false;
 }
 
-void Mfc::tell_if_met() {
+void Mfc::raise_if_met() {
   if (!request_ || request_told_ || !is_met(*request_)) return;
   events_ |= kTagStatusEvent;
   request_told_ = true;
@@ -379,8 +384,8 @@ std::variant<std::uint32_t, Fault> Mfc::read_list_stall_status() {
     return Fault{.rule = Rule::kListStallNotExpected,
                  .detail = stalled_ == 0
                                ? "MFC_RdListStallStat was read, and no list that stalls is queued"
-                               : "MFC_RdListStallStat was read again, and the list that has stalled "
-                                 "waits for its tag in MFC_WrListStallAck"};
+                               : "MFC_RdListStallStat was read again, but the stalled list waits until its "
+                                 "tag is written to MFC_WrListStallAck"};
   }
   if (suspended_by_) return suspension();
   return std::exchange(stall_status_, 0);
@@ -397,9 +402,9 @@ std::optional<Fault> Mfc::write_list_stall_ack(std::uint32_t tag) {
   if (suspended_by_) return suspension();
   const SlotSet resumed = tag < kTagCount ? queue_.slots_of(1u << tag) & stalled_ : SlotSet{0};
   if (resumed == 0) {
-    return Fault{
-        .rule = Rule::kListStallAckTag,
-        .detail = "MFC_WrListStallAck took tag " + std::to_string(tag) + ", of which no list has stalled"};
+    return Fault{.rule = Rule::kListStallAckTag,
+                 .detail = "MFC_WrListStallAck was written with tag " + std::to_string(tag) +
+                           ", of which no list has stalled"};
   }
   stalled_ &= static_cast<SlotSet>(~resumed);
   for (SlotSet rest = resumed; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
@@ -440,6 +445,8 @@ void Mfc::suspend(Fault fault) {
 }
 
 Fault Mfc::suspension() {
+  SC_ASSERT(suspended_by_.has_value(), "no fault of a list element, and {} commands queued",
+            queue_.occupied_slots());
   suspension_told_ = true;
   return *suspended_by_;
 }
@@ -452,7 +459,9 @@ std::optional<Fault> Mfc::take_fault() {
 // Why nothing that `wanted` needs can move: a list's fault, or a list that waits for its acknowledgement.
 Fault Mfc::stuck(SlotSet wanted) {
   if (suspended_by_) return suspension();
-  const ListTransfer& list = list_transfers_[queue_.oldest(queue_.with_predecessors(wanted) & stalled_)];
+  const auto holding_up = static_cast<SlotSet>(queue_.with_predecessors(wanted) & stalled_);
+  SC_ASSERT(holding_up != 0, "nothing holds up slots {}, with {} queued", wanted, queue_.slots());
+  const ListTransfer& list = list_transfers_[queue_.oldest(holding_up)];
   const std::string tag = std::to_string(list.command().tag);
   return Fault{.rule = Rule::kListStalledForEver,
                .command = list.command(),

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/local_store_port.h"
 #include "text.h"
 
@@ -34,7 +35,8 @@ std::string misaligned(std::string_view which, std::uint64_t address, std::uint3
 
 std::string size_detail(std::uint32_t size) {
   if (size > kMaxTransferBytes) {
-    return byte_count(size) + " are more than the 16384 of one command; split the transfer";
+    return byte_count(size) + " are more than the " + std::to_string(kMaxTransferBytes) +
+           " of one command; split the transfer";
   }
   return byte_count(size) + " is neither 1, 2, 4, 8 nor a multiple of 16";
 }
@@ -115,7 +117,7 @@ std::optional<Breach> check_signal(const MfcCommand& command) {
     return Breach{Rule::kSignalCommand, byte_count(size) + "; a signal has 4"};
   }
   if (!is_signal_register(ea)) {
-    return Breach{Rule::kSignalCommand, "EA is no Sig_Notify register of an SPE; they lie " +
+    return Breach{Rule::kSignalCommand, "EA is not a Sig_Notify register of an SPE; they lie " +
                                             hex(static_cast<std::uint32_t>(SpeRegister::kSignal1)) + " and " +
                                             hex(static_cast<std::uint32_t>(SpeRegister::kSignal2)) +
                                             " past the SPE's base address"};
@@ -139,7 +141,8 @@ std::optional<Breach> check_cache_hint(const MfcCommand& command) {
 std::optional<Breach> check(const MfcCommand& command) {
   const CommandKind kind = command.kind();
   if (kind == CommandKind::kUnknown) {
-    return Breach{Rule::kUnknownCommand, "opcode " + hex(command.word & 0xFFFF, 2) + " is no MFC command"};
+    return Breach{Rule::kUnknownCommand,
+                  "opcode " + hex(command.word & 0xFFFF, 2) + " is not an MFC command"};
   }
   if (kind == CommandKind::kStart) {
     return Breach{Rule::kProxyFormOnly, "an SPU's own commands have no start form; it runs already"};
@@ -198,6 +201,8 @@ std::optional<Fault> check_command(const MfcCommand& command) {
 
 std::optional<Fault> check_element(const MfcCommand& command, std::uint32_t index, ListElement element,
                                    LocalStoreAddress lsa) {
+  SC_ASSERT(index < command.size / kListElementBytes, "element {} of a list of {} bytes", index,
+            command.size);
   const std::optional<Breach> breach = check(command, element, lsa);
   if (!breach) return std::nullopt;
   return Fault{

@@ -5,6 +5,7 @@
 #include <bit>
 #include <variant>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/mfc.h"
 
 namespace softcell::dma {
@@ -90,11 +91,13 @@ bool Mfc::progress_any_tag(std::uint32_t mask) {
 
 void Mfc::finish(int slot) {
   if ((lists_ & slot_bit(slot)) != 0) return finish_list(slot);
+  SC_ASSERT((queue_.ready() & slot_bit(slot)) != 0, "the command in slot {} waits for others", slot);
   commands_[slot].transfer.move_rest(port_);
   complete(slot);
 }
 
 void Mfc::finish_list(int slot) {
+  SC_ASSERT((stalled_ & slot_bit(slot)) == 0, "the list in slot {} has stalled", slot);
   ListTransfer& list = list_transfers_[slot];
   list.move_open(port_);
   while (list.can_open()) {
@@ -123,6 +126,7 @@ void Mfc::random_step(SlotSet moving) {
 void Mfc::random_list_step(int slot) {
   ListTransfer& list = list_transfers_[slot];
   const std::uint32_t open = list.open_elements();
+  SC_ASSERT(open != 0 || list.can_open(), "element {} of {} cannot go on", list.next(), list.count());
   const std::uint32_t choice = random_.below(open + (list.can_open() ? 1 : 0));
   if (choice < open) {
     list.move_piece(choice, random_.below(list.pieces_left(choice)), port_);
@@ -160,11 +164,12 @@ void Mfc::stall_or_complete(int slot) {
 }
 
 void Mfc::complete(int slot) {
+  SC_ASSERT((stalled_ & slot_bit(slot)) == 0, "the list in slot {} has stalled", slot);
   if (queue_.full()) events_ |= kQueueSlotEvent;
   queue_.complete(slot);
   lists_ &= static_cast<SlotSet>(~slot_bit(slot));
   if (observer_ != nullptr) observer_->on_complete(commands_[slot].number);
-  tell_if_met();
+  raise_if_met();
 }
 
 }  // namespace softcell::dma

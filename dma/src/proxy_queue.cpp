@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/mfc_rules.h"
 
 namespace softcell::dma {
@@ -27,6 +28,7 @@ std::optional<Fault> check_proxy(const MfcCommand& command) {
 ProxyQueue::ProxyQueue(LocalStorePort& spe, AddressSpace& space, Schedule schedule,
                        std::uint64_t stream_number, std::function<void()> start_spu)
     : spe_(spe), start_spu_(std::move(start_spu)), mfc_(spe.local_store(), space, schedule, stream_number) {
+  SC_ASSERT(start_spu_ != nullptr, "nothing to start the SPU by, in proxy queue {}", stream_number);
   mfc_.set_observer(this);
 }
 
@@ -49,6 +51,7 @@ std::optional<Fault> ProxyQueue::issue(const MfcCommand& command) {
 
   std::optional<Fault> fault = with_mfc([&] {
     while (queued_.load(std::memory_order_relaxed) == kSlots) mfc_.advance();
+    SC_ASSERT(queued_ < kSlots, "{} commands are queued in {} slots", queued_.load(), kSlots);
     issuing_start_ = starts;
     return mfc_.issue(moved);
   });
@@ -100,7 +103,8 @@ void ProxyQueue::on_issue(std::uint64_t number, const MfcCommand& command, std::
 }
 
 void ProxyQueue::on_complete(std::uint64_t number) {
-  queued_.fetch_sub(1, std::memory_order_release);
+  const int before = queued_.fetch_sub(1, std::memory_order_release);
+  SC_ASSERT(before > 0, "command {} completes and none is queued", number);
   starts_due_ += static_cast<int>(std::erase(starting_, number));
 }
 

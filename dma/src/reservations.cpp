@@ -12,7 +12,9 @@
 
 #include "indivisible_copy.h"
 #include "local_stores.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/local_store_bytes.h"
+#include "softcell/dma/mfc_command.h"
 
 namespace softcell::dma {
 namespace {
@@ -27,13 +29,20 @@ constexpr bool fits_one_line(EffectiveAddress ea, std::uint32_t bytes) {
   return ea.value % kLineBytes + bytes <= kLineBytes;
 }
 
+/// What getllar and putllc, lwarx and ldarx, stwcx. and stdcx. may access.
+constexpr bool is_reserving_access(EffectiveAddress ea, std::uint32_t bytes) {
+  return (bytes == 4 || bytes == 8 || bytes == kLineBytes) && ea.value % bytes == 0;
+}
+
 /// Lines that a copy touches, in one word, so that a single atomic store publishes them.
 class LineRange {
  public:
   LineRange() = default;
   LineRange(EffectiveAddress ea, std::uint32_t bytes)
       : LineRange(ea.value / kLineBytes << kCountBits |
-                  (ea.value % kLineBytes + bytes + kLineBytes - 1) / kLineBytes) {}
+                  (ea.value % kLineBytes + bytes + kLineBytes - 1) / kLineBytes) {
+    SC_ASSERT(bytes <= kMaxTransferBytes + kLineBytes, "a copy of {} bytes at {}", bytes, ea);
+  }
   explicit LineRange(std::uint64_t word) : word_(word) {}
 
   std::uint64_t word() const { return word_; }
@@ -95,6 +104,9 @@ struct Reservations::State {
   static constexpr int kLockBits = 6;
 
   explicit State(LocalStores* stores) : local_stores(stores) {}
+  ~State() { SC_ASSERT(places_taken == 0, "holders {} outlive their Reservations", places_taken); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 
   /// @return  whether the write went to a register, so that there is nothing to copy.
   bool announce(EffectiveAddress ea, const std::byte* from, std::uint32_t bytes) {
@@ -144,8 +156,8 @@ int Reservations::State::take_place(ReservationListener* listener) {
   const std::lock_guard lock(places_mutex);
   const int place = std::countr_one(places_taken);
   if (place == kMaxHolders) {
-    throw std::runtime_error("all " + std::to_string(kMaxHolders) +
-                             " holders of reservations that one address space has room for are in use");
+    throw std::runtime_error("one address space supports " + std::to_string(kMaxHolders) +
+                             " holders of reservations (MFCs and Atomics), and all are in use");
   }
   places_taken |= 1u << place;
   reservations[place].listener = listener;
@@ -156,6 +168,7 @@ int Reservations::State::take_place(ReservationListener* listener) {
 void Reservations::State::leave_place(int place) {
   give_up(place);
   const std::lock_guard lock(places_mutex);
+  SC_ASSERT((places_taken >> place & 1u) != 0, "holder {} is gone already", place);
   places_taken &= ~(1u << place);
 }
 
@@ -215,6 +228,8 @@ Reservations::~Reservations() = default;
 
 void Reservations::load_and_reserve(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host,
                                     std::byte* to, std::uint32_t bytes) {
+  SC_ASSERT(&holder.reservations_ == this, "holder {} belongs to another AddressSpace", holder.place_);
+  SC_ASSERT(is_reserving_access(ea, bytes), "{} bytes at {}", bytes, ea);
   const std::uint64_t line = line_of(ea);
   State::Reservation& own = state_->reservations[holder.place_];
   if (own.last_line != line) state_->give_up(holder.place_);
@@ -227,6 +242,8 @@ void Reservations::load_and_reserve(ReservationHolder& holder, EffectiveAddress 
 
 bool Reservations::store_conditional(ReservationHolder& holder, EffectiveAddress ea, std::byte* host,
                                      const std::byte* from, std::uint32_t bytes) {
+  SC_ASSERT(&holder.reservations_ == this, "holder {} belongs to another AddressSpace", holder.place_);
+  SC_ASSERT(is_reserving_access(ea, bytes), "{} bytes at {}", bytes, ea);
   const std::uint64_t line = line_of(ea);
   State::Reservation& own = state_->reservations[holder.place_];
   if (own.last_line != line) {
@@ -246,11 +263,14 @@ bool Reservations::store_conditional(ReservationHolder& holder, EffectiveAddress
 
 void Reservations::store_line(ReservationHolder& holder, EffectiveAddress line, std::byte* host,
                               const std::byte* from) {
+  SC_ASSERT(line.value % kLineBytes == 0, "{} is not the begin of a line", line);
   write(holder, line, host, from, kLineBytes);
 }
 
 void Reservations::read(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
                         std::uint32_t bytes, bool may_be_code) {
+  SC_ASSERT(&holder.reservations_ == this, "holder {} belongs to another AddressSpace", holder.place_);
+  SC_ASSERT(bytes != 0 && bytes <= kMaxTransferBytes, "a get of {} bytes at {}", bytes, ea);
   const auto whole = [&] {
     if (may_be_code) return copy_to_local_store(to, host, bytes);
     std::memmove(to, host, bytes);
@@ -266,6 +286,8 @@ void Reservations::read(ReservationHolder& holder, EffectiveAddress ea, const st
 
 void Reservations::write(ReservationHolder& holder, EffectiveAddress ea, std::byte* host,
                          const std::byte* from, std::uint32_t bytes) {
+  SC_ASSERT(&holder.reservations_ == this, "holder {} belongs to another AddressSpace", holder.place_);
+  SC_ASSERT(bytes != 0 && bytes <= kMaxTransferBytes + kLineBytes, "a put of {} bytes at {}", bytes, ea);
   if (state_->announce(ea, from, bytes)) return;
   if (!fits_one_line(ea, bytes) &&
       state_->copy_at_once(holder.place_, {ea, bytes}, [&] { copy_to_storage(ea, host, from, bytes); })) {

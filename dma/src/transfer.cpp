@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::dma {
 
 void Transfer::move_rest(StoragePort& port) {
@@ -17,6 +19,7 @@ void Transfer::move_rest(StoragePort& port) {
 }
 
 void Transfer::move_piece(std::uint32_t choice, StoragePort& port) {
+  SC_ASSERT(choice < pieces_left_, "piece {} of {}", choice, pieces_left_);
   std::uint32_t word = 0;
   for (std::uint32_t unset = 0; choice >= (unset = static_cast<std::uint32_t>(std::popcount(~moved_[word])));
        ++word) {
@@ -37,6 +40,7 @@ void Transfer::move_piece_number(std::uint32_t piece, StoragePort& port) {
 }
 
 void Transfer::move(std::uint32_t begin, std::uint32_t end, StoragePort& port) {
+  SC_ASSERT(begin < end && end <= size_, "bytes {} to {} of {}", begin, end, size_);
   if (to_ != nullptr) {
     port.read(storage_.after(begin), to_ + begin, end - begin);
   } else {

@@ -1,5 +1,7 @@
 #include "softcell/dma/translation_cache.h"
 
+#include "softcell/base/assert.h"
+
 namespace softcell::dma {
 
 std::variant<std::byte*, Fault> TranslationCache::resolve_slowly(EffectiveAddress ea, std::uint64_t bytes,
@@ -15,6 +17,7 @@ std::variant<std::byte*, Fault> TranslationCache::resolve_slowly(EffectiveAddres
   if (!mapping || !mapping->contains(ea, bytes) || !mapping->permits(wanted)) {
     return space_->resolve(ea, bytes, wanted);  // the fault, in words
   }
+  SC_ASSERT(mapping->host != nullptr, "the mapping at {} has no bytes", mapping->ea);
   entries_[next_] = *mapping;
   next_ = (next_ + 1) % kEntries;
   return mapping->host_of(ea);

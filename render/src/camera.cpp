@@ -2,10 +2,15 @@
 
 #include <Eigen/Geometry>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::render {
 
 Eigen::Matrix4f look_at(const Eigen::Vector3f& eye, const Eigen::Vector3f& target,
                         const Eigen::Vector3f& up) {
+  SC_ASSERT(eye != target, "the eye is at its target, ({} {} {})", eye.x(), eye.y(), eye.z());
+  SC_ASSERT(up.cross(eye - target).squaredNorm() > 0, "up ({} {} {}) is along the line of sight", up.x(),
+            up.y(), up.z());
   const Eigen::Vector3f back = (eye - target).normalized();
   const Eigen::Vector3f right = up.cross(back).normalized();
   const Eigen::Vector3f above = back.cross(right);
@@ -18,6 +23,8 @@ Eigen::Matrix4f look_at(const Eigen::Vector3f& eye, const Eigen::Vector3f& targe
 }
 
 Eigen::Matrix4f perspective(float tan_half_fov_y, float aspect, float near_plane, float far_plane) {
+  SC_ASSERT(tan_half_fov_y > 0 && aspect > 0, "tan_half_fov_y {}, aspect {}", tan_half_fov_y, aspect);
+  SC_ASSERT(near_plane > 0 && far_plane > near_plane, "near plane {}, far plane {}", near_plane, far_plane);
   Eigen::Matrix4f projection = Eigen::Matrix4f::Zero();
   projection(0, 0) = 1 / (aspect * tan_half_fov_y);
   projection(1, 1) = 1 / tan_half_fov_y;
@@ -28,6 +35,8 @@ Eigen::Matrix4f perspective(float tan_half_fov_y, float aspect, float near_plane
 }
 
 Eigen::Matrix4f orthographic(float half_width, float near_plane, float far_plane) {
+  SC_ASSERT(half_width > 0 && far_plane > near_plane, "half_width {}, near plane {}, far plane {}",
+            half_width, near_plane, far_plane);
   Eigen::Matrix4f projection = Eigen::Matrix4f::Identity();
   projection(0, 0) = projection(1, 1) = 1 / half_width;
   projection(2, 2) = -2 / (far_plane - near_plane);

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::render {
 namespace {
 
@@ -68,8 +70,8 @@ void check_corners(std::span<const CellVertex> vertices, std::size_t corner_coun
   for (const CellVertex& vertex : vertices) {
     for (const std::uint32_t corner : vertex.corner) {
       if (corner >= corner_count)
-        throw std::invalid_argument("a vertex in a cell with corner " + std::to_string(corner) + " of " +
-                                    std::to_string(corner_count));
+        throw std::invalid_argument("a vertex uses corner " + std::to_string(corner) + " of a mesh with " +
+                                    std::to_string(corner_count) + " corners");
     }
   }
 }
@@ -117,6 +119,8 @@ CellSkinner::CellSkinner(const GladGLContext& gl)
 void CellSkinner::skin(const CellMesh& mesh, std::span<const std::byte> corners,
                        const Eigen::Vector3f& origin, const GlObject& out) const {
   const auto size = static_cast<GLsizeiptr>(corners.size());
+  SC_ASSERT(corners.size() == mesh.corner_count * kCellCornerBytes, "{} bytes for {} corners", corners.size(),
+            mesh.corner_count);
   gl_.BindBuffer(GL_TEXTURE_BUFFER, mesh.corners.name());
   // New storage in place of the old, which a frame in progress may still read.
   gl_.BufferData(GL_TEXTURE_BUFFER, size, nullptr, GL_STREAM_DRAW);

@@ -9,6 +9,7 @@
 
 #include "backends.h"
 #include "dynamic_library.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::render {
 namespace {
@@ -49,7 +50,10 @@ class EglContext final : public GlContext {
     if (make_current_(display_, nullptr, nullptr, handle_) == 0) refuse("to make its context current");
   }
 
-  Function function(const char* name) const override { return function_(name); }
+  Function function(const char* name) const override {
+    SC_ASSERT(name != nullptr && handle_ != nullptr, "a GL function of context {}", handle_);
+    return function_(name);
+  }
   std::string backend_name() const override { return "EGL"; }
 
  private:

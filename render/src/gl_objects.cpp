@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::render {
 namespace {
 
@@ -27,6 +29,7 @@ GlObject new_program(const GladGLContext& gl) {
 }
 
 void link(const GladGLContext& gl, const GlObject& program, std::initializer_list<GLuint> shaders) {
+  SC_ASSERT(program.name() != 0, "no program for {} shaders; is the context current?", shaders.size());
   for (const GLuint shader : shaders) gl.AttachShader(program.name(), shader);
   gl.LinkProgram(program.name());
   GLint linked = 0;

@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <utility>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::render {
 
 /// Owns one GL name. Destroyed with its context current.
@@ -14,8 +16,9 @@ class GlObject {
   using Destroy = void (*)(const GladGLContext&, GLuint);
 
   GlObject() = default;
-  GlObject(const GladGLContext& gl, GLuint name, Destroy destroy)
-      : gl_(&gl), name_(name), destroy_(destroy) {}
+  GlObject(const GladGLContext& gl, GLuint name, Destroy destroy) : gl_(&gl), name_(name), destroy_(destroy) {
+    SC_ASSERT(destroy != nullptr, "nothing deletes GL object {}", name);
+  }
   ~GlObject() {
     if (name_ != 0) destroy_(*gl_, name_);
   }

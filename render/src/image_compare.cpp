@@ -1,11 +1,12 @@
 #include "softcell/render/image_compare.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::render {
 
@@ -14,6 +15,8 @@ ImageDifference compare(const Image& actual, const Image& expected) {
   result.same_size = actual.width == expected.width && actual.height == expected.height;
   if (!result.same_size) return result;
 
+  SC_ASSERT(actual.is_whole() && expected.is_whole(), "{} and {} bytes for {} by {} pixels",
+            actual.rgba.size(), expected.rgba.size(), actual.width, actual.height);
   result.pixels = actual.rgba.size() / 4;
   std::uint64_t squares = 0;
   for (std::size_t pixel = 0; pixel < result.pixels; ++pixel) {
@@ -52,7 +55,11 @@ std::string describe(const ImageDifference& difference) {
 }
 
 Image difference_image(const Image& actual, const Image& expected, int gain) {
-  assert(actual.width == expected.width && actual.height == expected.height);
+  SC_ASSERT(actual.width == expected.width && actual.height == expected.height,
+            "{} by {} pixels and {} by {}", actual.width, actual.height, expected.width, expected.height);
+  SC_ASSERT(gain > 0, "a gain of {}", gain);
+  SC_ASSERT(actual.is_whole() && expected.is_whole(), "{} and {} bytes for {} by {} pixels",
+            actual.rgba.size(), expected.rgba.size(), actual.width, actual.height);
   Image result(actual.width, actual.height);
   for (std::size_t i = 0; i < result.rgba.size(); ++i) {
     const int distance = std::abs(actual.rgba[i] - expected.rgba[i]);

@@ -8,6 +8,7 @@
 
 #include "backends.h"
 #include "dynamic_library.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::render {
 namespace {
@@ -65,7 +66,10 @@ class OsmesaContext final : public GlContext {
     }
   }
 
-  Function function(const char* name) const override { return function_(name); }
+  Function function(const char* name) const override {
+    SC_ASSERT(name != nullptr && handle_ != nullptr, "a GL function of context {}", handle_);
+    return function_(name);
+  }
   std::string backend_name() const override { return "OSMesa"; }
 
  private:

@@ -4,9 +4,12 @@
 
 #include <cmath>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::render {
 
 Overlay::Overlay(float scale) : context_(ImGui::CreateContext()) {
+  SC_ASSERT(scale > 0, "a font scaled by {}", scale);
   make_current();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // windows stand where the program puts them
@@ -39,6 +42,8 @@ OverlayFont Overlay::font() const {
 void Overlay::begin(int width, int height, float seconds) {
   make_current();
   ImGuiIO& io = ImGui::GetIO();
+  SC_ASSERT(width >= 0 && height >= 0 && seconds > 0, "{} by {} pixels, {} seconds since the last frame",
+            width, height, seconds);
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = seconds;
   ImGui::NewFrame();

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::render {
 namespace {
 
@@ -53,6 +55,9 @@ OverlayPainter::OverlayPainter(const GladGLContext& gl)
 void OverlayPainter::upload_font(const OverlayFont& font) {
   gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
   if (uploaded_ == font.coverage.data()) return;
+  SC_ASSERT(
+      font.coverage.size() == static_cast<std::size_t>(font.width) * static_cast<std::size_t>(font.height),
+      "{} texels for a font of {} by {}", font.coverage.size(), font.width, font.height);
   gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, font.width, font.height, 0, GL_RED, GL_UNSIGNED_BYTE,
                  font.coverage.data());
@@ -79,6 +84,8 @@ void OverlayPainter::draw(const OverlayFont& font, const OverlayMesh& mesh, int 
   gl_.Enable(GL_SCISSOR_TEST);
   for (const OverlayCommand& command : mesh.commands) {
     if (command.right <= command.left || command.bottom <= command.top) continue;
+    SC_ASSERT(std::size_t{command.first_index} + command.index_count <= mesh.indices.size(),
+              "indices {} and {} more of {}", command.first_index, command.index_count, mesh.indices.size());
     gl_.Scissor(command.left, height - command.bottom, command.right - command.left,
                 command.bottom - command.top);
     gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.index_count), GL_UNSIGNED_INT,

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
 
 namespace softcell::render {
@@ -56,6 +57,8 @@ std::vector<std::uint8_t> without_alpha(const Image& image) {
 void write_png(const std::filesystem::path& path, const Image& image, PngEffort effort) {
   if (image.width <= 0 || image.height <= 0) fail("write", path, "the picture is empty");
 
+  SC_ASSERT(image.is_whole(), "{} bytes for {} by {} pixels, to {}", image.rgba.size(), image.width,
+            image.height, path);
   PngImage png;
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);

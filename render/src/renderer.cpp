@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,7 @@
 #include "gl_objects.h"
 #include "overlay_painter.h"
 #include "shaders.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::render {
 namespace {
@@ -317,6 +319,9 @@ void Renderer::State::make_shadow_map() {
 
 MeshBuffers Renderer::State::make_mesh(const void* indices, std::size_t index_count) const {
   MeshBuffers buffers(gl);
+  SC_ASSERT(
+      index_count % 3 == 0 && index_count <= static_cast<std::size_t>(std::numeric_limits<GLsizei>::max()),
+      "{} indices", index_count);
   buffers.index_count = static_cast<GLsizei>(index_count);
   gl.BindVertexArray(buffers.layout.name());
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices.name());
@@ -331,7 +336,7 @@ MeshBuffers Renderer::State::make_mesh(const void* indices, std::size_t index_co
 
 MeshBuffers Renderer::State::make_skinned_mesh(std::span<const std::uint32_t> indices) const {
   if (indices.size() % 3 != 0) {
-    throw std::invalid_argument(std::to_string(indices.size()) + " indices are no whole triangles");
+    throw std::invalid_argument(std::to_string(indices.size()) + " indices; triangles need a multiple of 3");
   }
   MeshBuffers buffers = make_mesh(indices.data(), indices.size());
   for (const std::uint32_t index : indices) {
@@ -349,6 +354,7 @@ MeshId Renderer::State::add(MeshBuffers buffers) {
 }
 
 void Renderer::State::filled(MeshId id, std::size_t bytes) {
+  SC_ASSERT(id.value < skinned.size(), "mesh {} of {}", id, skinned.size());
   skinned[id.value].filled = true;
   uploaded_bytes += bytes;
 }
@@ -382,8 +388,8 @@ void Renderer::State::check(const FrameDescription& frame) const {
   for (const LatticeDraw& lattice : frame.lattices) {
     for (const auto& link : lattice.links) {
       if (link[0] >= lattice.particles.size() || link[1] >= lattice.particles.size()) {
-        throw std::invalid_argument("a link from particle " + std::to_string(link[0]) + " to " +
-                                    std::to_string(link[1]) + " of " +
+        throw std::invalid_argument("a link joins particles " + std::to_string(link[0]) + " and " +
+                                    std::to_string(link[1]) + "; the lattice has " +
                                     std::to_string(lattice.particles.size()));
       }
     }
@@ -399,6 +405,9 @@ PixelRect Renderer::State::part_to_draw(const std::optional<PixelRect>& changes)
 void Renderer::State::upload_frame(const FrameDescription& frame) {
   const Camera& camera = frame.camera;
   const Light& light = frame.light;
+  SC_ASSERT(light.toward.squaredNorm() > 0, "light from nowhere: toward is ({} {} {})", light.toward.x(),
+            light.toward.y(), light.toward.z());
+  SC_ASSERT(light.shadow_radius > 0, "a shadow radius of {} m", light.shadow_radius);
   FrameBlock block;
   block.view_projection = view_projection(camera, static_cast<float>(width) / static_cast<float>(height));
   block.light_projection = light_projection(light);
@@ -419,6 +428,8 @@ void Renderer::State::upload_frame(const FrameDescription& frame) {
 }
 
 void Renderer::State::upload_lattice(const LatticeDraw& lattice) {
+  SC_ASSERT(lattice.radius > 0, "{} particles with a radius of {} m", lattice.particles.size(),
+            lattice.radius);
   gl.BindVertexArray(lattice_layout.name());
   gl.BindBuffer(GL_ARRAY_BUFFER, lattice_vertices.name());
   gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(lattice.particles.size_bytes()),
@@ -470,6 +481,10 @@ void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
 
 void Renderer::State::draw_surface(const Program& program, const MeshBuffers& buffers,
                                    const Eigen::Matrix4f& pose, const Colour& colour, float opacity) const {
+  SC_ASSERT(opacity >= 0 && opacity <= 1, "an opacity of {}", opacity);
+  const float determinant = pose.topLeftCorner(3, 3).determinant();
+  SC_ASSERT(determinant > 0, "a pose with determinant {} turns its mesh inside out or flattens it",
+            determinant);
   gl.UseProgram(program.object.name());
   gl.UniformMatrix4fv(program.model, 1, GL_FALSE, pose.data());
   gl.UniformMatrix3fv(program.normal_matrix, 1, GL_FALSE, normal_matrix(pose).eval().data());
@@ -559,7 +574,9 @@ MeshId Renderer::add_mesh(std::span<const std::uint32_t> indices) {
 void Renderer::update_mesh(MeshId id, std::span<const std::byte> vertices) {
   State& state = *state_;
   const MeshBuffers& buffers = state.mesh(id);
-  if (buffers.cells) throw std::invalid_argument("a mesh of cells is given corners, not vertices");
+  if (buffers.cells)
+    throw std::invalid_argument("mesh " + std::to_string(id.value) +
+                                " is a mesh of cells: call update_corners()");
   if (vertices.size() % kSkinnedVertexBytes != 0 ||
       vertices.size() / kSkinnedVertexBytes < buffers.vertices_needed) {
     throw std::invalid_argument(std::to_string(vertices.size()) + " bytes of vertices for a mesh of " +
@@ -580,8 +597,8 @@ MeshId Renderer::add_cell_mesh(std::span<const std::uint32_t> indices, std::span
   state.context.make_current();
   MeshBuffers buffers = state.make_skinned_mesh(indices);
   if (buffers.vertices_needed > vertices.size()) {
-    throw std::invalid_argument("vertex " + std::to_string(buffers.vertices_needed - 1) + " of " +
-                                std::to_string(vertices.size()));
+    throw std::invalid_argument("index " + std::to_string(buffers.vertices_needed - 1) + " of a mesh with " +
+                                std::to_string(vertices.size()) + " vertices");
   }
   if (state.skinner == nullptr) state.skinner = std::make_unique<CellSkinner>(state.gl);
   // Its own storage for as long as it lives: the GPU reads what it has written itself, in order.
@@ -666,8 +683,8 @@ StaticMeshId Renderer::add_static_mesh(std::span<const Eigen::Vector3f> position
   for (const Triangle& triangle : triangles) {
     for (const std::uint32_t index : triangle) {
       if (index >= positions.size()) {
-        throw std::invalid_argument("vertex " + std::to_string(index) + " of " +
-                                    std::to_string(positions.size()));
+        throw std::invalid_argument("index " + std::to_string(index) + " of a mesh with " +
+                                    std::to_string(positions.size()) + " vertices");
       }
     }
   }
@@ -738,6 +755,7 @@ void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh) {
 }
 
 void Renderer::present(int width, int height) {
+  SC_ASSERT(width >= 0 && height >= 0, "a window of {} by {} pixels", width, height);
   State& state = *state_;
   state.context.make_current();
   const GladGLContext& gl = state.gl;

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
 
 extern char** environ;
@@ -116,6 +117,7 @@ struct VideoWriter::Encoder {
 };
 
 void VideoWriter::Encoder::start(int rate) {
+  SC_ASSERT(child == 0, "ffmpeg {} writes {} already", child, path);
   // A socket in place of a pipe: a write to it can be told to raise no SIGPIPE, which would be the whole
   // process's affair.
   int ends[2];
@@ -164,6 +166,7 @@ void VideoWriter::Encoder::start(int rate) {
 }
 
 int VideoWriter::Encoder::wait() {
+  SC_ASSERT(child > 0, "no ffmpeg runs for {}", path);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -196,7 +199,9 @@ void VideoWriter::add_frame(const Image& frame) {
                            " in a video of " + std::to_string(encoder.width) + " by " +
                            std::to_string(encoder.height));
   }
-  if (encoder.child == 0) fail(encoder.path, "it has ended already");
+  if (encoder.child == 0) fail(encoder.path, "it is finished already");
+  SC_ASSERT(frame.is_whole(), "{} bytes for {} by {} pixels, to {}", frame.rgba.size(), frame.width,
+            frame.height, encoder.path);
   std::size_t sent = 0;
   while (sent < frame.rgba.size()) {
     const ssize_t count =
@@ -213,7 +218,7 @@ void VideoWriter::add_frame(const Image& frame) {
 
 void VideoWriter::finish() {
   Encoder& encoder = *encoder_;
-  if (encoder.child == 0) fail(encoder.path, "it has ended already");
+  if (encoder.child == 0) fail(encoder.path, "it is finished already");
   encoder.frames.close();
   const int status = encoder.wait();
   if (status != 0) encoder.report(status);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "softcell/base/assert.h"
 #include "softcell/render/offscreen_context.h"
 
 namespace softcell::render {
@@ -125,6 +126,7 @@ class Window::CopiedSurface final : public Surface {
   void pixel_size(int& width, int& height) const override { SDL_GetWindowSize(window_, &width, &height); }
   void show(Renderer& renderer) override {
     const Image& image = renderer.pixels();
+    SC_ASSERT(image.is_whole(), "{} bytes for {} by {} pixels", image.rgba.size(), image.width, image.height);
     const std::unique_ptr<SDL_Surface, decltype(&SDL_FreeSurface)> picture(
         SDL_CreateRGBSurfaceWithFormatFrom(const_cast<std::uint8_t*>(image.rgba.data()), image.width,
                                            image.height, 32, 4 * image.width, SDL_PIXELFORMAT_RGBA32),

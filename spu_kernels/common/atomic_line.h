@@ -11,20 +11,20 @@
 
 namespace softcell::spu {
 
-/// getllar: the line at `ea` (a multiple of 128, as is the address of `line`), reserved for this SPE until
-/// anybody writes to it.
+/// getllar: fetches the line at `ea` (a multiple of 128, as is the address of `line`) and reserves it for
+/// this SPE until anybody writes to it.
 inline void load_and_reserve(void* line, uint64_t ea) {
   mfc_getllar(line, ea, 0, 0);
   mfc_read_atomic_status();
 }
 
-/// putllc: stores the line if the reservation still stands, and says whether it did.
+/// putllc: stores the line if the reservation still stands. True if it stored.
 inline bool store_conditional(void* line, uint64_t ea) {
   mfc_putllc(line, ea, 0, 0);
   return (mfc_read_atomic_status() & MFC_PUTLLC_STATUS) == 0;
 }
 
-/// putlluc: stores the line whoever has reserved it.
+/// putlluc: stores the line, whoever has reserved it.
 inline void store_line(void* line, uint64_t ea) {
   mfc_putlluc(line, ea, 0, 0);
   mfc_read_atomic_status();

@@ -1,7 +1,7 @@
 #pragma once
-// Four floats to four binary16 numbers: the nearest, of two equally near the larger in magnitude; in integer
-// arithmetic, since the SPU's own floating point truncates. (Ties to even would be three operations more for
-// each, and no nearer.)
+// Rounds four floats to four half floats (binary16): to the nearest, ties away from zero. Uses integer
+// arithmetic, since the SPU's floating point truncates. (Ties to even would take three operations more for
+// each, and be no more accurate.)
 
 #include <spu_intrinsics.h>
 
@@ -22,8 +22,8 @@ inline vec_uint4 high_half_of_positive(vec_float4 value) {
 /// A float times this has the exponent of a binary16, and is flushed where that has no normal number.
 constexpr float kHalfRebias = 0x1p-112f;
 
-/// The same for either sign, of a value times kHalfRebias; what is too small for a normal binary16 becomes
-/// zero, and zero has no sign. For magnitudes below kHalfOverflow.
+/// The same for either sign, of a value times kHalfRebias. Values too small for a normal binary16 become +0.
+/// For magnitudes below kHalfOverflow.
 inline vec_uint4 high_half_of_rebiased(vec_float4 rebiased) {
   // What an SPU flushes is +0 already; on a host, which keeps the sign, the sum makes it so.
   const vec_uint4 bits = (vec_uint4)spu_add(rebiased, spu_splats(0.0f));

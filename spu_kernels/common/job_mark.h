@@ -1,6 +1,6 @@
 #pragma once
-// Tells an emulator where jobs begin and end inside a kernel that runs many, for its messages, statistics and
-// traces. On the hardware these are nothing.
+// Marks where jobs begin and end inside a resident kernel, for the messages, statistics and traces of the
+// emulator. On the hardware the marks do nothing.
 
 #include <stdint.h>
 

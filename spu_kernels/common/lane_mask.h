@@ -1,5 +1,5 @@
 #pragma once
-// Decisions about four lanes that rest on sign bits: cheap on both sides, where a float compare is not.
+// Decisions about four lanes by their sign bits. Cheap on both sides, unlike float compares.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 #pragma once
-// Between records of four words and structures of arrays.
+// Converts between records of four words and structures of arrays.
 
 #include <spu_intrinsics.h>
 

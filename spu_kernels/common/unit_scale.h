@@ -1,5 +1,5 @@
 #pragma once
-// What a sum over a region says of its rotation, brought to a size near one; or that it says nothing.
+// Scales a sum over a region, from which its rotation is found, to about one, or marks it as noise.
 
 #include <spu_intrinsics.h>
 
@@ -7,8 +7,8 @@
 
 namespace softcell::spu {
 
-/// Where the magnitudes of a sum's elements, added up and times `weight`, are at most `floor`, it is rounding
-/// noise.
+/// A sum is rounding noise if the magnitudes of its elements, added up and times `weight`, are at most
+/// `floor`.
 struct RotationNoise {
   vec_float4 weight;
   vec_float4 floor;

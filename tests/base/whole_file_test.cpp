@@ -217,7 +217,7 @@ TEST_F(WholeFileTest, TakesItsPlaceTogetherWithOthers) {
 }
 
 TEST_F(WholeFileTest, RefusesWhatIsNoFile) {
-  EXPECT_EQ(refusal(""), "cannot write '': it is no file name");
+  EXPECT_EQ(refusal(""), "cannot write '': the file name is empty");
   EXPECT_EQ(refusal(folder_), "cannot write " + folder_.string() + ": Is a directory");
   EXPECT_NE(refusal(folder_ / "none/f").find("none/f: No such file or directory"), std::string::npos);
   fs::create_symlink("round", folder_ / "round");

@@ -430,7 +430,7 @@ TEST(MfcListStall, ReadingItsStatusWithNothingThatStallsNeverEnds) {
   bench.issue_list(MfcOpcode::getl, 0x1000, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   EXPECT_EQ(bench.stall_status(), 1u << 3);
   expect_fault(
-      "MFC_RdListStallStat was read again, and the list that has stalled waits for its tag in "
+      "MFC_RdListStallStat was read again, but the stalled list waits until its tag is written to "
       "MFC_WrListStallAck");
 }
 
@@ -441,8 +441,8 @@ TEST(MfcListStall, AnAcknowledgementNeedsAStalledListOfItsTag) {
     const std::optional<Fault> fault = bench.mfc.write_list_stall_ack(tag);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->rule, Rule::kListStallAckTag);
-    EXPECT_EQ(fault->detail,
-              "MFC_WrListStallAck took tag " + std::to_string(tag) + ", of which no list has stalled");
+    EXPECT_EQ(fault->detail, "MFC_WrListStallAck was written with tag " + std::to_string(tag) +
+                                 ", of which no list has stalled");
   }
   EXPECT_FALSE(bench.mfc.write_list_stall_ack(3));
   EXPECT_TRUE(bench.mfc.write_list_stall_ack(3)) << "once";

@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"read_effective_address",
                   {.argp = 0xEA00'0000'0000'0000},
                   dma::Rule::kOutsideLocalStore,
-                  "no address"},
+                  "not a valid address"},
         FaultCase{"outside_local_store", {.envp = 256 * 1024}, dma::Rule::kOutsideLocalStore, "past the end"},
         FaultCase{"outside_local_store",
                   {.envp = static_cast<std::uint64_t>(-128 * 1024)},

@@ -486,7 +486,7 @@ TEST_F(SpeGroupTest, AnEndOfNoJobIsAFault) {
     const RunResult result = run({.argp = before, .envp = 1});
     ASSERT_TRUE(result.fault);
     EXPECT_EQ(result.fault->rule, dma::Rule::kIllegalChannel);
-    EXPECT_NE(result.fault->message().find("no job was under way"), std::string::npos)
+    EXPECT_NE(result.fault->message().find("no job was in progress"), std::string::npos)
         << result.fault->message();
   }
 }

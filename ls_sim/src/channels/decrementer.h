@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ls_sim {
 
 /// It does not count by itself: every question says what time it is, in ticks of SpuClock that never go back.
@@ -12,6 +14,7 @@ class Decrementer {
  public:
   /// SPU_WrDec: loads and starts it.
   void write(std::uint32_t value, std::uint64_t now) {
+    SC_ASSERT(now >= since_, "tick {} after tick {}", now, since_);
     running_ = true;
     value_ = value;
     since_ = now;
@@ -20,6 +23,7 @@ class Decrementer {
 
   /// SPU_RdDec.
   std::uint32_t read(std::uint64_t now) const {
+    SC_ASSERT(now >= since_, "tick {} after tick {}", now, since_);
     return running_ ? value_ - static_cast<std::uint32_t>(now - since_) : value_;
   }
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ls_sim {
 
 /// Bits of SPU_RdEventStat, SPU_WrEventMask and SPU_WrEventAck. [CBEA, SPU events] documented
@@ -21,6 +23,7 @@ inline constexpr std::uint32_t kSignal1 = 0x200;              ///< S1
 inline constexpr std::uint32_t kLostReservation = 0x400;      ///< LR
 inline constexpr std::uint32_t kPrivilegedAttention = 0x800;  ///< A: an operating system's, which is not here
 inline constexpr std::uint32_t kMultisourceSync = 0x1000;     ///< MS
+inline constexpr std::uint32_t kAll = 0x1FFB;
 }  // namespace event
 
 /// An event is pending from its edge until it is acknowledged, whether the mask has it or not. The count of
@@ -33,6 +36,7 @@ class EventFacility {
 
   /// Edges of these events.
   void raise(std::uint32_t events) {
+    SC_ASSERT((events & ~event::kAll) == 0, "events {}; all there are is {}", events, event::kAll);
     pending_ |= events;
     if ((events & mask_) != 0) news_ = true;
   }
@@ -56,6 +60,7 @@ class EventFacility {
 
   /// As at the start of a program, when these events are pending.
   void reset(std::uint32_t pending) {
+    SC_ASSERT((pending & ~event::kAll) == 0, "events {}; all there are is {}", pending, event::kAll);
     pending_ = pending;
     mask_ = 0;
     news_ = false;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ls_sim {
 
 /// At most Depth words, first in, first out. Not thread safe: guarded by the SPEs' monitor.
@@ -25,6 +27,7 @@ class Mailbox {
 
   std::optional<std::uint32_t> read() {
     if (empty()) return std::nullopt;
+    SC_ASSERT(first_ < Depth && count_ <= Depth, "word {} of {} in a mailbox of {}", first_, count_, Depth);
     const std::uint32_t value = words_[first_];
     first_ = static_cast<std::uint32_t>((first_ + 1) % Depth);
     --count_;

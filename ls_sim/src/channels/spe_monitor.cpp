@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/channel_name.h"
 #include "softcell/ls_sim/source_lines.h"
 
@@ -22,6 +23,7 @@ SpeMonitor::SpeMonitor(const SpeOptions& options)
 
 void SpeMonitor::start(int spe, const KernelImage& image, HostTime now, bool timed) {
   Member& m = member(spe);
+  SC_ASSERT(m.state == State::kIdle, "SPE {} is started while it runs {}", spe, m.image->name);
   m.state = State::kRunnable;
   m.stopped = false;
   m.image = &image;
@@ -30,6 +32,7 @@ void SpeMonitor::start(int spe, const KernelImage& image, HostTime now, bool tim
 }
 
 void SpeMonitor::end(int spe) {
+  SC_ASSERT(member(spe).state == State::kRunnable, "SPE {} ends in state {}", spe, member(spe).state);
   member(spe).state = State::kIdle;
   wake_ppu();
   give_up_turn(spe);
@@ -41,6 +44,7 @@ void SpeMonitor::stop(int spe) {
 }
 
 bool SpeMonitor::await_first_turn(Lock& lock, int spe) {
+  SC_ASSERT(lock.owns_lock() && runs(spe), "SPE {} waits for a turn without the lock or a run", spe);
   member(spe).wake_up.wait(lock, [&] { return may_go_on(spe); });
   return !member(spe).stopped;
 }
@@ -59,6 +63,9 @@ bool SpeMonitor::pass_turn_now(int spe) {
 
 Woken SpeMonitor::sleep(Lock& lock, int spe, const Sleep& sleep) {
   Member& m = member(spe);
+  SC_ASSERT(lock.owns_lock(), "SPE {} sleeps at channel {} without the lock", spe, sleep.channel);
+  SC_ASSERT(m.state == State::kRunnable, "SPE {} sleeps at channel {} in state {}", spe, sleep.channel,
+            m.state);
   m.state = State::kAsleep;
   m.woken = Woken::kToLook;
   m.sleep = sleep;
@@ -91,6 +98,7 @@ void SpeMonitor::wake_ppu() {
 }
 
 void SpeMonitor::ppu_wait(Lock& lock, const std::function<bool()>& ready) {
+  SC_ASSERT(lock.owns_lock(), "the PPU side waits without the lock, with {} waits before", ppu_waits_.size());
   ppu_waits_.push_back(&ready);
   if (turn_ == kNobody) settle();
   ppu_wake_up_.wait(lock, [&] { return turn_ == kNobody && ready(); });
@@ -105,6 +113,7 @@ void SpeMonitor::ppu_pause(Lock& lock) {
 }
 
 void SpeMonitor::change_outside(int difference) {
+  SC_ASSERT(outside_ + difference >= 0, "{} act outside, and {} are taken away", outside_, -difference);
   outside_ += difference;
   if (turn_ == kNobody) settle();
 }
@@ -144,14 +153,16 @@ void SpeMonitor::draw_turn() {
   for (int spe = 0; spe < dma::kSpeCount; ++spe) {
     if (member(spe).state == State::kRunnable) runnable[count++] = spe;
   }
+  SC_ASSERT(count != 0, "nobody can take turn {}", turns_drawn_);
   turn_ = runnable[random_.below(count)];
   operations_left_ = random_.below(1u << random_.below(kTurnMagnitudes));
   ++turns_drawn_;
   member(turn_).wake_up.notify_one();
 }
 
-/// Everybody sleeps. @return  whether time alone ends that: the host's will, simulated time is made to pass.
-/// It passes for all who sleep, so that one who sleeps often and briefly does not keep the others asleep.
+/// Everybody sleeps.
+/// @return  whether time alone ends that: the host's will, simulated time is made to pass. It passes for all
+///          who sleep, so that one who sleeps often and briefly does not keep the others asleep.
 bool SpeMonitor::let_time_pass() {
   std::optional<std::uint64_t> ticks;
   for (const Member& m : members_) {
@@ -171,6 +182,8 @@ bool SpeMonitor::let_time_pass() {
 void SpeMonitor::pass_ticks(Member& m, std::uint64_t ticks) {
   m.slept_ticks += ticks;
   if (!m.sleep.simulated_ticks) return;
+  SC_ASSERT(ticks <= *m.sleep.simulated_ticks, "{} ticks pass, and an SPE wakes after {}", ticks,
+            *m.sleep.simulated_ticks);
   *m.sleep.simulated_ticks -= ticks;
   if (*m.sleep.simulated_ticks != 0) return;
   m.state = State::kRunnable;
@@ -183,13 +196,14 @@ void SpeMonitor::declare_deadlock() {
     const Member& m = member(spe);
     if (m.state != State::kAsleep) continue;
     if (!deadlock_.empty()) deadlock_ += ", ";
+    SC_ASSERT(m.image != nullptr, "SPE {} sleeps at channel {} and runs no image", spe, m.sleep.channel);
     const std::string place = SourceLines(*m.image).place_of(m.sleep.position);
     deadlock_ += "SPE " + std::to_string(spe) + " (" + m.image->name + (place.empty() ? "" : ", " + place) +
                  ") waits to " +
                  (channel_access(m.sleep.channel) == ChannelAccess::kWrite ? "write " : "read ") +
                  std::string(channel_name(m.sleep.channel));
   }
-  deadlock_ += "; nothing is in flight, and nobody is left who could end that";
+  deadlock_ += "; nothing is in flight, and nobody else can wake them";
   for (int spe = 0; spe < dma::kSpeCount; ++spe) wake_with(spe, Woken::kDeadlock);
 }
 

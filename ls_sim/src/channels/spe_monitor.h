@@ -1,12 +1,13 @@
 #pragma once
-// Who runs, who waits for what, and who goes on: the one lock of a group of SPEs.
+// The monitor of a group of SPEs: it knows which SPE runs, which sleeps at which channel, and which runs
+// next.
 //
 //   SPE 0   runs ---- sleep(reads SPU_RdInMbox) ................ runs ---- end()
 //   SPE 1   runs ----------------- writes the mailbox, wake(0) -- runs - sleep() ... nobody left: deadlock
 //   PPU     start(0) start(1) -- ppu_wait() ............................................... runs
 //
-// Its mutex also guards what an SPE may wait for (mailboxes, signals, events), so that a sleep never misses
-// the change it waits for. It is never held while an MFC or a kernel runs.
+// Its mutex also guards what an SPE may wait for (mailboxes, signals, events), so that a sleeping SPE never
+// misses the change that it waits for. Nobody holds it while an MFC or a kernel runs.
 
 #include <array>
 #include <chrono>
@@ -18,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/random_stream.h"
 #include "softcell/ls_sim/image.h"
@@ -35,7 +37,7 @@ struct Sleep {
   std::optional<std::uint64_t> simulated_ticks = {};
 };
 
-/// Why an SPE no longer sleeps. It may have been woken for nothing: it looks again at what it waited for.
+/// Why an SPE woke up. It may have woken spuriously: it checks its condition again.
 enum class Woken : std::uint8_t {
   kToLook,
   kDeadlock,  ///< deadlock() says why
@@ -53,7 +55,7 @@ class SpeMonitor {
 
   // Runs of SPEs. All with the lock.
 
-  /// From now on the SPE runs, though its thread may still have to wake up.
+  /// From now on the SPE counts as running, even if its thread still has to wake up. @pre it does not run
   /// @param timed  whether its deadline counts from now; else only that of jobs inside the run does.
   void start(int spe, const KernelImage& image, HostTime now, bool timed = true);
 
@@ -61,10 +63,10 @@ class SpeMonitor {
   void begin_job(int spe, HostTime now) { member(spe).started = now; }
   void end_job(int spe) { member(spe).started.reset(); }
   void end(int spe);
-  bool runs(int spe) const { return members_[static_cast<std::size_t>(spe)].state != State::kIdle; }
+  bool runs(int spe) const { return members_[index(spe)].state != State::kIdle; }
   /// Whether what the SPE runs has taken longer than that.
   bool is_late(int spe, HostTime now, std::chrono::milliseconds deadline) const {
-    const auto& started = members_[static_cast<std::size_t>(spe)].started;
+    const auto& started = members_[index(spe)].started;
     return started && now - *started > deadline;
   }
 
@@ -84,25 +86,26 @@ class SpeMonitor {
   Woken sleep(Lock& lock, int spe, const Sleep& sleep);
 
   /// Ticks of simulated time that went by in the SPE's last sleep, whatever ended it. With the lock.
-  std::uint64_t slept_ticks(int spe) const { return members_[static_cast<std::size_t>(spe)].slept_ticks; }
+  std::uint64_t slept_ticks(int spe) const { return members_[index(spe)].slept_ticks; }
 
-  /// Who waits for what; of the last deadlock. With the lock.
+  /// A sentence that says which SPE waits for what, of the last deadlock. With the lock.
   const std::string& deadlock() const { return deadlock_; }
 
-  // What anybody calls who has changed something that may be waited for. With the lock.
+  // For threads that have changed something for which others may wait. With the lock.
 
   void wake(int spe);
   void wake_ppu();
 
-  // The PPU side, which may end the SPEs' waits at any time but in ppu_wait(). All with the lock.
+  // For the PPU side, which may wake SPEs at any time except in ppu_wait(). All with the lock.
 
-  /// Sleeps until `ready`, which is asked with the lock; meanwhile the PPU side does not act.
+  /// Sleeps until `ready`, which is called with the lock, returns true. Meanwhile the PPU side counts as
+  /// waiting.
   void ppu_wait(Lock& lock, const std::function<bool()>& ready);
 
-  /// The PPU side has looked and found nothing: where SPEs take turns, one of them runs for a while.
+  /// The PPU side has polled without success: if SPEs take turns, one of them runs for a while.
   void ppu_pause(Lock& lock);
 
-  /// How many more, or fewer, may act outside while all here wait.
+  /// Changes the number of other threads that may act as the PPU while all here wait.
   void change_outside(int difference);
 
  private:
@@ -121,7 +124,11 @@ class SpeMonitor {
 
   static constexpr int kNobody = -1;
 
-  Member& member(int spe) { return members_[static_cast<std::size_t>(spe)]; }
+  static std::size_t index(int spe) {
+    SC_ASSERT(spe >= 0 && spe < dma::kSpeCount, "SPE {} of {}", spe, dma::kSpeCount);
+    return static_cast<std::size_t>(spe);
+  }
+  Member& member(int spe) { return members_[index(spe)]; }
   bool has_turn(int spe) const { return !takes_turns_ || turn_ == spe; }
   bool may_go_on(int spe) {
     return member(spe).stopped || (member(spe).state == State::kRunnable && has_turn(spe));

@@ -7,6 +7,7 @@
 #include "event_facility.h"
 #include "mailbox.h"
 #include "signal_register.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ls_sim {
 
@@ -34,7 +35,11 @@ struct SpeRegisters {
   std::optional<std::uint32_t> read_out_mbox() { return read(out_mbox, event::kOutMboxFree); }
   std::optional<std::uint32_t> read_out_intr_mbox() { return read(out_intr_mbox, event::kOutIntrMboxFree); }
 
-  SignalRegister& signal(int which) { return which == 1 ? signal1 : signal2; }
+  /// @param which  1 or 2.
+  SignalRegister& signal(int which) {
+    SC_ASSERT(which == 1 || which == 2, "signal register {}", which);
+    return which == 1 ? signal1 : signal2;
+  }
 
   /// At the start of a program: pending are the events of what is there to read, and none is in the mask.
   void reset_events() {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/channel_name.h"
 
 namespace softcell::ls_sim {
@@ -174,7 +175,7 @@ ChannelReply SpuChannels::wait_for_mfc(Channel channel, Waits&& waits, Call&& ca
   const std::uint64_t before = waits();
   const auto begin = HostClock::now();
   ChannelReply reply = reply_of(call());
-  if (waits() != before) note_wait(channel, begin);
+  if (waits() != before) record_wait(channel, begin);
   return reply;
 }
 
@@ -200,7 +201,8 @@ ChannelReply SpuChannels::read_register(Channel channel) {
       return attempt_or_sleep(channel, [&] { return std::optional(decrementer_.read(clock_.ticks())); });
     case Channel::kSpuRdSrr0:
       return {srr0_, {}};
-    default:  // SPU_RdMachStat: interrupts are off, and the SPU is not isolated
+    default:  // interrupts are off, and the SPU is not isolated
+      SC_ASSERT(channel == Channel::kSpuRdMachStat, "channel {} is read by nobody", channel);
       return {0, {}};
   }
 }
@@ -248,6 +250,7 @@ ChannelReply SpuChannels::write_register(Channel channel, std::uint32_t value) {
       srr0_ = value;
       return {};
     default:  // bookmarks for tools that watch from outside
+      SC_ASSERT(channel >= Channel::kSpuSetBkmkTag, "channel {} is written by nobody", channel);
       return {};
   }
 }
@@ -285,7 +288,7 @@ ChannelReply SpuChannels::attempt_or_sleep(Channel channel, Attempt&& attempt) {
   }
   const auto begin = HostClock::now();
   ChannelReply reply = sleep_until(channel, attempt);
-  note_wait(channel, begin);
+  record_wait(channel, begin);
   return reply;
 }
 
@@ -330,6 +333,8 @@ Sleep SpuChannels::sleep_at(Channel channel) const {
   const auto wakes_at = timed ? decrementer_.next_event() : std::nullopt;
   if (!wakes_at) return sleep;
   if (clock_.kind() == Clock::kSimulated) {
+    SC_ASSERT(*wakes_at > clock_.ticks(), "SPE {} is to wake at tick {}, and it is tick {}", to_.spe,
+              *wakes_at, clock_.ticks());
     sleep.simulated_ticks = *wakes_at - clock_.ticks();
   } else {
     sleep.until = clock_.host_time_of(*wakes_at);
@@ -364,12 +369,14 @@ std::optional<dma::LocalStoreAddress> SpuChannels::issued_at(const dma::Fault& f
 
 ChannelReply SpuChannels::stopped(std::uint32_t channel) const {
   dma::Fault fault{dma::Rule::kDeadlineExceeded};
-  fault.detail = "the kernel did not end in time; it was to " + describe_access(channel);
+  fault.detail = "the kernel did not end in time; it was about to " + describe_access(channel);
   return reply_of(std::move(fault));
 }
 
-void SpuChannels::note_wait(Channel channel, HostClock::time_point begin) {
+void SpuChannels::record_wait(Channel channel, HostClock::time_point begin) {
   const auto end = HostClock::now();
+  SC_ASSERT(number(channel) < kWaitingChannels && begin <= end, "a wait of SPE {} at channel {}", to_.spe,
+            channel);
   ChannelWaits& waits = to_.statistics.waits[number(channel)];
   ++waits.count;
   waits.time += end - begin;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "decrementer.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/mfc.h"
 #include "softcell/dma/mfc_queue.h"
 #include "softcell/dma/proxy_queue.h"
@@ -21,11 +22,11 @@
 
 namespace softcell::ls_sim {
 
-/// Used by the thread that runs the SPE. Before it sleeps, all that the MFC can move has moved: the
+/// Used by the thread that runs the SPE. Before the SPE sleeps, the MFC moves all bytes that it can: the
 /// hardware's transfers do not need the SPU.
 class SpuChannels final : public ChannelPort {
  public:
-  /// What the channels lead to; all of it outlives them.
+  /// What the channels access; all of it outlives them.
   struct Surroundings {
     int spe;
     const SpeOptions& options;
@@ -40,21 +41,30 @@ class SpuChannels final : public ChannelPort {
   explicit SpuChannels(const Surroundings& surroundings)
       : to_(surroundings), clock_(surroundings.options.clock) {}
 
-  /// The PPU side's queue, which moves with the SPU's own. It outlives the channels.
+  /// Sets the proxy queue, whose commands move at channel operations like the SPU's own. It outlives the
+  /// channels.
   void set_proxy(dma::ProxyQueue* proxy) { proxy_ = proxy; }
 
   /// State at the start of a program, of all but the MFC and the registers.
   /// @param calls_jobs  the program is one that fetches others and calls them.
   void begin_run(bool calls_jobs);
 
-  /// A job has code of its own to fetch, if any: that its caller's fetches are announced says nothing of it.
-  void begin_job() { in_job_ = true; }
-  void end_job() { in_job_ = false; }
+  /// A job begins or ends. The images that its caller fetches are announced; code that the job itself fetches
+  /// is not.
+  void begin_job() {
+    SC_ASSERT(calls_jobs_ && !in_job_, "a job begins in SPE {}: calls jobs {}, in a job {}", to_.spe,
+              calls_jobs_, in_job_);
+    in_job_ = true;
+  }
+  void end_job() {
+    SC_ASSERT(in_job_, "a job ends in SPE {}, and none was under way", to_.spe);
+    in_job_ = false;
+  }
 
-  /// Where the images of jobs end is known to the MFC before they are fetched. Any thread.
+  /// The MFC has been told where the images of jobs end, before they are fetched. Any thread.
   void announce_jobs() { jobs_are_announced_.store(true, std::memory_order_relaxed); }
 
-  /// What is in the PPU side's queue moves on without the SPU.
+  /// Completes the proxy queue's commands: they do not need the SPU.
   void end_run() {
     while (proxy_ != nullptr && proxy_->advance()) {
     }
@@ -66,8 +76,9 @@ class SpuChannels final : public ChannelPort {
   ChannelReply issue(const dma::MfcCommand& command) override;
   void sync() override;
 
-  /// Where the list command that broke a rule was issued: its elements are looked at later, when the kernel
-  /// is somewhere else. @return  nothing for a fault of anything but a list's elements.
+  /// Where a list command was issued whose element broke a rule: elements execute later, when the kernel is
+  /// elsewhere.
+  /// @return  nothing for a fault of anything but a list's elements.
   std::optional<dma::LocalStoreAddress> issued_at(const dma::Fault& fault) const;
 
  private:
@@ -102,7 +113,7 @@ class SpuChannels final : public ChannelPort {
   void acknowledge_events(std::uint32_t events);
 
   ChannelReply stopped(std::uint32_t channel) const;
-  void note_wait(Channel channel, HostClock::time_point begin);
+  void record_wait(Channel channel, HostClock::time_point begin);
 
   Surroundings to_;
   dma::ProxyQueue* proxy_ = nullptr;

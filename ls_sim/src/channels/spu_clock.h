@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/spe_options.h"
 
 namespace softcell::ls_sim {
@@ -41,6 +42,7 @@ class SpuClock {
   }
 
   static std::uint64_t to_ticks(std::chrono::nanoseconds time) {
+    SC_ASSERT(time.count() >= 0, "{} ns since the SPE was made", time.count());
     const auto nanoseconds = static_cast<std::uint64_t>(time.count());
     // In two parts, so that no product passes 64 bits.
     return nanoseconds / kNanoseconds * kTicksPerSecond +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {
@@ -30,6 +31,9 @@ bool same_line(dma::EffectiveAddress a, dma::EffectiveAddress b) {
 }  // namespace
 
 void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
+  SC_ASSERT(image.checked, "image {} is not a checked one", image.name);
+  SC_ASSERT(stack.begin < stack.end && stack.end <= dma::kLocalStoreBytes, "the stack of {} is {} to {}",
+            image.name, stack.begin, stack.end);
   if (image_ != &image) {
     lines_ = std::make_unique<SourceLines>(image);
     image_ = &image;
@@ -57,8 +61,9 @@ void Checker::check_code(Address instruction) {
   const bool by_this_kernel = writer != UnsyncedBytes::kOutside;
   report(Rule::kCodeWithoutSync, by_this_kernel ? Address{writer} : instruction,
          std::string(by_this_kernel ? "this kernel" : "another SPE or the PPU") +
-             " has written the instruction at " + objects_->describe(lsa) + " (LSA " + hex(lsa) +
-             "), which is executed without a sync since");
+             " wrote the instruction at " + objects_->describe(lsa) + " (LSA " + hex(lsa) + ")" +
+             (by_this_kernel ? "" : ", and this kernel") +
+             (by_this_kernel ? " and executed it" : " executed it") + " without a sync in between");
   unsynced_.clear();  // said once
 }
 
@@ -69,11 +74,13 @@ void Checker::mark_unsynced(const MovedRange& range, Address writer) {
 
 /// Of a job's image: whoever calls the job has fetched it.
 void Checker::check_fetched_code() {
+  SC_ASSERT(image_->begin <= image_->data_begin && image_->data_begin <= dma::kLocalStoreBytes,
+            "code of {} from {} to {}", image_->name, image_->begin, image_->data_begin);
   const std::uint32_t lsa = unsynced_.first_in(image_->begin, image_->data_begin);
   if (lsa == image_->data_begin) return;
   report(Rule::kCodeWithoutSync, Address{image_->entry},
-         "the kernel that calls this one has fetched its instructions, from LSA " + hex(lsa) +
-             " on, and has not executed a sync since");
+         "the calling kernel fetched these instructions, from LSA " + hex(lsa) +
+             " on, and did not execute a sync before the call");
   unsynced_.clear();
 }
 
@@ -88,6 +95,8 @@ void Checker::on_unchecked_issue(const dma::MfcCommand& command) {
 // ---- loads and stores
 
 void Checker::on_access(const Access& access) {
+  SC_ASSERT(objects_.has_value(), "a {} of {} bytes at {} before a run", access.is_store ? "store" : "load",
+            access.bytes, access.lsa);
   check_code(access.instruction);
   const std::string trespass = objects_->trespass(access.lsa.value, access.bytes, access.stack_pointer.value);
   if (!trespass.empty()) {
@@ -128,7 +137,8 @@ void Checker::check_load(const Access& access) {
   // The compiler passes arguments on the stack without telling, and warns of variables that are not set. A
   // load of which some bytes were written takes padding along.
   if (objects_->in_stack(access.lsa.value) || written_.any(access.lsa.value, access.bytes)) return;
-  report(Rule::kLoadNeverWritten, access.instruction, describe(access) + ": this job has not written it");
+  report(Rule::kLoadNeverWritten, access.instruction,
+         describe(access) + ": this job has not written these bytes");
 }
 
 // ---- commands
@@ -187,7 +197,7 @@ void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange
     for (std::uint32_t done = 0; done < range.bytes; done += step) {
       if (written_.any(range.lsa + done, std::min(step, range.bytes - done))) continue;
       report(Rule::kPutNeverWritten, here,
-             objects_->describe(range.lsa + done) + ": this job has not written it", command);
+             objects_->describe(range.lsa + done) + ": this job has not written these bytes", command);
       break;
     }
   }
@@ -201,14 +211,14 @@ void Checker::check_line_command(const dma::MfcCommand& command) {
   const MovedRange line{command.lsa.value, command.ea.value, dma::kLineBytes};
   if (status_unread_) {
     report(Rule::kAtomicStatusNotRead, here,
-           "the " + name_of(status_unread_->command) + " before it, issued at " +
-               place_of(status_unread_->issued_at) + ", has a status that was not read",
+           "the status of the " + name_of(status_unread_->command) + " before it, issued at " +
+               place_of(status_unread_->issued_at) + ", was not read",
            command);
   }
   status_unread_ = LineCommand{command, here};
   if (command.opcode() == MfcOpcode::putllc &&
       !(reservation_ && same_line(reservation_->command.ea, command.ea)))
-    report(Rule::kPutllcWithoutReservation, here, "no getllar of this line is before it", command);
+    report(Rule::kPutllcWithoutReservation, here, "no getllar of this line came before it", command);
   check_local_range(command, line, command.opcode() == MfcOpcode::getllar);
   end_reservation(command);
 }
@@ -316,6 +326,7 @@ void Checker::end_run() {
 
 void Checker::report(Rule rule, Address place, std::string detail,
                      const std::optional<dma::MfcCommand>& command) {
+  SC_ASSERT(image_ != nullptr, "rule {} broken before a run: {}", dma::name(rule), detail);
   const dma::Fault finding{.rule = rule,
                            .spe = to_.spe,
                            .kernel = image_->name,

@@ -1,11 +1,11 @@
 #pragma once
-// Follows what a checked kernel does and reports what the hardware would keep silent about.
+// The checker: observes a checked kernel and reports mistakes about which the hardware is silent.
 //
 //   engine --loads, stores--> Checker --findings--> Findings
 //   engine --channels-------> Checker ------------> the SPU's channels
 //
-// It keeps the architectural state, which is what a program may rely on, and not the emulator's: under any
-// schedule it finds the same.
+// It models the state that a program may rely on, not that of the emulator, so that it finds the same under
+// every schedule.
 
 #include <memory>
 #include <optional>
@@ -16,6 +16,7 @@
 #include "commands_in_flight.h"
 #include "image/object_map.h"
 #include "image/object_padding.h"
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/channels.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/findings.h"
@@ -29,11 +30,12 @@ class SpeTrace;
 
 /// One for each SPE. Used by the thread that runs the SPE, except for on_external_write().
 ///
-/// It sees no instruction fetches. That code was written and no sync followed, it finds at the first load,
-/// store or channel operation of that code, or where a resident kernel calls a job that it has fetched.
+/// It does not see instruction fetches. It detects code that was written without a following sync at the
+/// first load, store or channel operation of that code, or when a resident kernel calls a job that it has
+/// fetched.
 class Checker final : public ChannelPort, public AccessObserver {
  public:
-  /// What it stands between; all of it outlives the checker.
+  /// What the checker observes and reports to; all of it outlives the checker.
   struct Surroundings {
     int spe;
     std::span<const std::byte> local_store;
@@ -43,21 +45,24 @@ class Checker final : public ChannelPort, public AccessObserver {
     SpeTrace* trace = nullptr;  ///< told of each occurrence; null: nobody
   };
 
-  explicit Checker(const Surroundings& surroundings) : to_(surroundings) {}
+  explicit Checker(const Surroundings& surroundings) : to_(surroundings) {
+    SC_ASSERT(to_.local_store.size() == dma::kLocalStoreBytes, "SPE {} has a local store of {} bytes",
+              to_.spe, to_.local_store.size());
+  }
 
-  /// An image was made resident, and overwrote what was there.
+  /// An image was loaded, and overwrote the local store.
   void on_load() { written_.clear(); }
 
-  /// The SPE starts: it executes what its local store holds.
+  /// The SPE starts: it executes what its local store contains.
   void on_start() { unsynced_.clear(); }
 
-  /// The kernel that runs is not a checked one and fetches what may be a job's image.
+  /// A kernel that is not checked issues a command, which may fetch a job's image.
   void on_unchecked_issue(const dma::MfcCommand& command);
 
-  /// @param stack  of the image alone; within another kernel's run what is left of that one's.
+  /// @param stack  the image's stack; for a job, the part of the resident kernel's stack that is free, too.
   void begin_run(const KernelImage& image, const StackRange& stack);
 
-  /// After a run that no fault has ended.
+  /// Call after a run that ended without a fault.
   void end_run();
 
   /// Any thread.

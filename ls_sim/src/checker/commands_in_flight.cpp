@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/list_element.h"
 
 namespace softcell::ls_sim {
@@ -50,6 +51,7 @@ void add_ranges(CommandInFlight& in_flight, std::span<const std::byte> local_sto
   }
   in_flight.first_element = in_flight.next_element;
   const std::uint32_t count = command.size / dma::kListElementBytes;
+  SC_ASSERT(in_flight.next_element <= count, "element {} of a list of {}", in_flight.next_element, count);
   while (in_flight.next_element < count) {
     dma::ListElement element;
     const std::uint32_t at = command.list_address().value + in_flight.next_element * dma::kListElementBytes;
@@ -71,6 +73,7 @@ void CommandsInFlight::clear() {
 }
 
 CommandInFlight& CommandsInFlight::add(CommandInFlight command) {
+  SC_ASSERT(command.number == 0, "command {} is added a second time", command.number);
   command.number = ++last_number_;
   for (const CommandInFlight& earlier : commands_) {
     if (!is_ordered(earlier.command, command.command)) continue;
@@ -83,6 +86,7 @@ CommandInFlight& CommandsInFlight::add(CommandInFlight command) {
 }
 
 void CommandsInFlight::complete(std::uint32_t tags, std::uint64_t up_to) {
+  SC_ASSERT(up_to <= last_number_, "commands up to {} of {} are complete", up_to, last_number_);
   std::vector<std::uint64_t> done;
   for (const CommandInFlight& command : commands_) {
     if (command.number > up_to || (tags >> (command.command.tag % dma::kTagCount) & 1u) == 0) continue;

@@ -1,7 +1,7 @@
 #pragma once
-// The commands of which a program cannot know yet that they are complete. That is not when the emulator moves
-// their bytes: a command is in flight from its issue until a tag status was read that includes it, or one
-// that includes a command which fences or barriers order behind it.
+// The commands in flight: those of which a program cannot know that they are complete. It does not matter
+// when the emulator moves their bytes. A command is in flight from its issue until the program reads a tag
+// status that includes it, or that includes a command which fences or barriers order behind it.
 
 #include <cstddef>
 #include <cstdint>
@@ -34,38 +34,41 @@ struct CommandInFlight {
   dma::LocalStoreAddress cursor = {};  ///< where the next one's bytes lie
   bool has_stalled = false;            ///< and waits for its acknowledgement
 
-  std::vector<std::uint64_t> behind =
-      {};  ///< numbers of the commands that are complete before this one starts
+  /// Numbers of the commands that complete before this one starts.
+  std::vector<std::uint64_t> behind = {};
 
   bool is_list() const { return command.kind() == dma::CommandKind::kList; }
   /// Elements are left behind one that stalls; the last one never does.
   bool can_stall() const { return is_list() && next_element < command.size / dma::kListElementBytes; }
 };
 
-/// What a command moves, for as many elements of a list as go before the next stall. Reads the list from the
-/// local store.
+/// Adds the ranges that a command moves; for a list, those of its elements up to the next stall. Reads the
+/// list from the local store.
 void add_ranges(CommandInFlight& command, std::span<const std::byte> local_store);
 
 class CommandsInFlight {
  public:
   void clear();
 
-  /// Fills in its number and what it is ordered behind.
+  /// Adds a command, and sets its number and the commands that it is ordered behind.
+  /// @return  a reference that is valid until the next call.
   CommandInFlight& add(CommandInFlight command);
 
-  /// A tag status said so: commands of these tags up to that number are complete.
+  /// Removes the commands of these tags up to number `up_to`: a tag status has reported them complete.
+  /// @pre  up_to <= last_number()
   void complete(std::uint32_t tags, std::uint64_t up_to);
 
   std::uint64_t last_number() const { return last_number_; }
   std::vector<CommandInFlight>& all() { return commands_; }
 
-  /// The first command that has such bytes of the local store for its destination or its source.
+  /// The first command whose destination (writing) or source (reading) includes such bytes of the local
+  /// store, or null.
   const CommandInFlight* writing(std::uint32_t lsa, std::uint32_t bytes) const;
   const CommandInFlight* reading(std::uint32_t lsa, std::uint32_t bytes) const;
-  /// The first list command whose elements, of those that may move, lie there.
+  /// The first list command whose list elements lie there and may still be read, or null.
   const CommandInFlight* listing(std::uint32_t lsa, std::uint32_t bytes) const;
-  /// The first command that shares bytes with this one, at least one of the two writing them, and is not
-  /// ordered.
+  /// The first command that shares bytes with this one, of which at least one writes, and that nothing
+  /// orders; or null.
   const CommandInFlight* conflicting(const CommandInFlight& command) const;
 
  private:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ls_sim {
 namespace {
 
@@ -20,6 +22,7 @@ void Findings::add(const dma::Fault& fault) {
   if (at != findings_.end() && is_same_mistake(at->fault, fault)) {
     ++at->count;
   } else {
+    SC_ASSERT(!fault.kernel.empty(), "a finding of rule {} without its kernel", dma::name(fault.rule));
     findings_.insert(at, Finding{fault, 1});
   }
 }

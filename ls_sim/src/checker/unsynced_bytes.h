@@ -1,12 +1,13 @@
 #pragma once
-// Which bytes of a local store were written after the last `sync`, and by which instruction: of these bytes
-// the SPU may still execute what was there before.
+// The bytes of a local store that were written after the last `sync`, and the instructions that wrote them.
+// The SPU may still execute the old values of these bytes.
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::ls_sim {
@@ -35,16 +36,19 @@ class UnsyncedBytes {
     return (quadword_at(lsa).bytes.load(kRelaxed) >> lsa % dma::kQuadwordBytes & 1) != 0;
   }
 
-  /// The first of them in [begin, end), or `end`.
+  /// The first unsynced byte in [begin, end), or `end`.
   std::uint32_t first_in(std::uint32_t begin, std::uint32_t end) const {
     while (begin < end && !contains(begin)) ++begin;
     return begin;
   }
 
-  /// Who wrote last to the quadword of `lsa`. @pre contains(lsa)
-  std::uint32_t writer_of(std::uint32_t lsa) const { return quadword_at(lsa).writer.load(kRelaxed); }
+  /// The instruction that wrote last to the quadword of `lsa`. @pre contains(lsa)
+  std::uint32_t writer_of(std::uint32_t lsa) const {
+    SC_ASSERT(contains(lsa), "byte {} is in no unsynced range", lsa);
+    return quadword_at(lsa).writer.load(kRelaxed);
+  }
 
-  /// A sync: all of them are now what is executed.
+  /// A sync: the SPU executes the new values of all bytes from now on.
   void clear() {
     for (Quadword& quadword : quadwords_) quadword.bytes.store(0, kRelaxed);
   }
@@ -56,7 +60,10 @@ class UnsyncedBytes {
     std::atomic<std::uint16_t> bytes{0};  ///< bit b: byte b
     std::atomic<std::uint32_t> writer{0};
   };
-  const Quadword& quadword_at(std::uint32_t lsa) const { return quadwords_[lsa / dma::kQuadwordBytes]; }
+  const Quadword& quadword_at(std::uint32_t lsa) const {
+    SC_ASSERT(lsa < dma::kLocalStoreBytes, "byte {} of a local store", lsa);
+    return quadwords_[lsa / dma::kQuadwordBytes];
+  }
 
   std::array<Quadword, dma::kLocalStoreBytes / dma::kQuadwordBytes> quadwords_{};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Which bytes of a local store have been written: a flag for each.
+// The bytes of a local store that have been written: a flag for each.
 
 #include <algorithm>
 #include <array>
@@ -15,10 +15,10 @@ namespace softcell::ls_sim {
 /// Used by the thread that runs the SPE, except for mark_external().
 class WrittenBytes {
  public:
-  /// Nothing is written, from outside neither.
+  /// Marks all bytes as not written, including those from outside.
   void clear() { set_all(0); }
 
-  /// A new program begins: what came from outside before its start stays.
+  /// A new program begins: only what others wrote before its start counts as written.
   void forget_the_last_program() {
     for (auto& flags : flags_) flags.store(flags.load(kRelaxed) & kFromOutside, kRelaxed);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/source_lines.h"
 #include "softcell/ls_sim/trace.h"
 
@@ -53,6 +54,8 @@ RunResult Spe::guarded(const Work& work) {
 }
 
 RunResult Spe::run(const Run& run) {
+  SC_ASSERT(run.image != nullptr, "run {} of SPE {} has no image", run.number, number_);
+  SC_ASSERT(!job_, "run {} of SPE {} begins within a job", run.number, number_);
   run_ = &run;
   RunResult result = guarded([&] { return execute(run); });
   channels_.end_run();
@@ -69,13 +72,14 @@ RunResult Spe::run(const Run& run) {
 }
 
 const KernelImage& Spe::image_under_way() const {
+  SC_ASSERT(run_ != nullptr, "SPE {} has not run", number_);
   return job_ && job_->image != nullptr ? *job_->image : *run_->image;
 }
 
 RunResult Spe::execute(const Run& run) {
   if (options_.findings != nullptr && !run.image->checked && !run.resident) {
     return {0, dma::Fault{.rule = dma::Rule::kImageNotLoadable,
-                          .detail = "the image is not a checked one, so that nothing would be found"}};
+                          .detail = "findings were asked for, and the image is not a checked one"}};
   }
   if (resident_ != run.image) load(*run.image);
   mfc_.begin_job(run.number);
@@ -110,6 +114,7 @@ dma::LocalStoreAddress Spe::position_of(const dma::Fault& fault) const {
 }
 
 void Spe::load(const KernelImage& image) {
+  SC_ASSERT(!image.bytes.empty(), "image {} of SPE {} is empty", image.name, number_);
   resident_ = nullptr;
   engine_->load(image);
   if (image.begin == kEnvironmentBytes) mfc_.expect_code_below({image.data_begin});
@@ -130,6 +135,7 @@ const KernelImage* Spe::on_job_begin(dma::EffectiveAddress image, dma::Effective
   job_ = {.image = nullptr, .ea = job, .begin = now};
   {
     const SpeMonitor::Lock lock = monitor_.lock();
+    SC_ASSERT(job_images_ != nullptr, "SPE {} is to run the job at {} and knows no images", number_, job);
     const auto known = job_images_->find(image.value);
     if (known != job_images_->end()) job_->image = known->second;
     if (job_->image == nullptr) mfc_.expect_code_everywhere();
@@ -146,6 +152,7 @@ std::optional<dma::Fault> Spe::on_job_returned() {
 }
 
 void Spe::on_job_end() {
+  SC_ASSERT(job_.has_value(), "a job ends in SPE {}, and none was under way", number_);
   count_job(image_under_way(), statistics_.jobs, job_->begin, false);
   channels_.end_job();
   job_.reset();
@@ -160,6 +167,7 @@ bool Spe::is_checked_job() const {
 
 /// It goes on where the caller's ends, which may be anywhere in what that one has declared.
 StackRange Spe::stack_of_job() const {
+  SC_ASSERT(is_checked_job(), "SPE {} runs no checked job", number_);
   const KernelImage& caller = *run_->image;
   return {caller.stack_top - caller.sizes.stack - job_->image->sizes.stack, caller.stack_top};
 }

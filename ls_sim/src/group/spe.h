@@ -10,6 +10,7 @@
 #include "channels/spe_registers.h"
 #include "channels/spu_channels.h"
 #include "checker/checker.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/local_store_port.h"
 #include "softcell/dma/mfc.h"
 #include "softcell/dma/reservations.h"
@@ -24,35 +25,34 @@ namespace softcell::ls_sim {
 struct Run {
   const KernelImage* image = nullptr;
   EntryArguments arguments;
-  std::uint64_t number = 0;  ///< tells apart the random schedules of runs
+  std::uint64_t number = 0;  ///< gives each run a random schedule of its own
   SpeMonitor::HostTime begin{};
-  bool resident =
-      false;  ///< runs for as long as it likes, calling others: what has a deadline are the jobs inside
+  /// The image is a resident kernel, which has no deadline; the jobs that it calls have.
+  bool resident = false;
 };
 
-/// Images in main storage, by their addresses: what the jobs inside a run are. Guarded by the monitor.
+/// The images of jobs, by their effective addresses. Guarded by the monitor.
 using JobImages = std::map<std::uint64_t, const KernelImage*>;
 
-/// Used by its own thread, except for what is said to be for others.
+/// Only its own thread may use it, unless a function says otherwise.
 class Spe final : public dma::LocalStorePort, private dma::ReservationListener, private JobObserver {
  public:
   /// @param monitor  of all SPEs that run together; outlives them.
   Spe(int number, dma::AddressSpace& memory, const SpeOptions& options, SpeMonitor& monitor);
 
-  /// Moves with the SPE from now on; outlives its runs.
+  /// Sets the proxy queue, whose commands move at the SPE's channel operations. It outlives the SPE's runs.
   void set_proxy(dma::ProxyQueue* proxy) { channels_.set_proxy(proxy); }
 
-  /// Where to look for the images of jobs; outlives the SPE's runs.
+  /// Sets the images of jobs. They outlive the SPE's runs.
   void set_job_images(const JobImages* images) { job_images_ = images; }
 
-  /// A resident kernel may fetch it from now on. Any thread.
+  /// Announces an image that a resident kernel may fetch from now on. Any thread.
   void announce_job_image(const KernelImage& image);
 
-  /// Makes the image resident anew. Any thread, while no run is in progress.
+  /// Loads the image. Any thread, while no run is in progress.
   void load(const KernelImage& image);
 
-  /// Runs an image to its end, which is made resident if it is not. @pre the monitor has been told of its
-  /// start.
+  /// Loads an image if it is not loaded, and runs it to its end. @pre SpeMonitor::start() was called
   RunResult run(const Run& run);
 
   /// Ends the run in progress with the fault deadline-exceeded. Any thread, with the monitor's lock.
@@ -76,10 +76,12 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   std::optional<dma::Fault> on_job_returned() override;
   void on_job_end() override;
 
-  /// The channels of a kernel that runs jobs: checked while one of these is.
+  /// The channels of a resident kernel: they are checked while a checked job runs.
   class JobDoor final : public ChannelPort {
    public:
-    explicit JobDoor(Spe& spe) : spe_(spe) {}
+    explicit JobDoor(Spe& spe) : spe_(spe) {
+      SC_ASSERT(spe.checker_ != nullptr, "SPE {} checks nothing", spe.number_);
+    }
     ChannelReply read(std::uint32_t channel) override { return port().read(channel); }
     ChannelReply write(std::uint32_t channel, std::uint32_t value) override {
       return port().write(channel, value);

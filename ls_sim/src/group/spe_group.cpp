@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/proxy_queue.h"
 #include "spe_threads.h"
@@ -117,7 +118,8 @@ class Door final : public ProblemState {
   void write_local_store(dma::LocalStoreAddress lsa, std::span<const std::byte> bytes) override {
     if (bytes.size() > dma::kLocalStoreBytes || lsa.value > dma::kLocalStoreBytes - bytes.size()) {
       throw std::invalid_argument(std::to_string(bytes.size()) + " bytes written to local-store address " +
-                                  std::to_string(lsa.value) + " pass its end at 262144");
+                                  std::to_string(lsa.value) + " pass its end at " +
+                                  std::to_string(dma::kLocalStoreBytes));
     }
     const auto size = static_cast<std::uint32_t>(bytes.size());
     spe_.on_external_write(lsa, size);
@@ -205,7 +207,10 @@ struct SpeGroup::State final : RunSource {
     threads.join();
   }
 
-  static std::size_t index(int spe) { return static_cast<std::size_t>(spe); }
+  static std::size_t index(int spe) {
+    SC_ASSERT(spe >= 0 && spe < dma::kSpeCount, "SPE {} of {}", spe, dma::kSpeCount);
+    return static_cast<std::size_t>(spe);
+  }
   SpeMonitor& monitor() { return threads.monitor(); }
 
   Door& door(int spe) {
@@ -242,6 +247,8 @@ struct SpeGroup::State final : RunSource {
   bool start_prepared(int spe) {
     Orders& mine = orders[index(spe)];
     if (!mine.prepared || monitor().runs(spe)) return false;
+    SC_ASSERT(!mine.given, "SPE {} starts a run before it has taken the last, of {}", spe,
+              mine.given->image->name);
     mine.given = std::exchange(mine.prepared, std::nullopt);
     mine.given->begin = std::chrono::steady_clock::now();
     mine.result.reset();
@@ -255,6 +262,7 @@ struct SpeGroup::State final : RunSource {
     Orders& mine = orders[index(spe)];
     for (;;) {
       if (std::exchange(mine.end_untold, false) && listener) {
+        SC_ASSERT(mine.result.has_value(), "a run of SPE {} has ended without a result", spe);
         const RunResult result = *mine.result;
         lock.unlock();
         listener(spe, result);
@@ -263,7 +271,7 @@ struct SpeGroup::State final : RunSource {
       if (stopping) return std::nullopt;
       if (std::exchange(threads.spe(spe).registers().proxy_issued, false)) {
         lock.unlock();
-        doors[index(spe)]->move_proxy();  // came when a run was just about to end
+        doors[index(spe)]->move_proxy();  // issued just before a run ended
         lock.lock();
       } else if (mine.given) {
         return std::exchange(mine.given, std::nullopt);
@@ -308,11 +316,14 @@ void SpeGroup::start_resident(int spe, const KernelImage& image, const EntryArgu
 
 void SpeGroup::register_job_image(dma::EffectiveAddress ea, const KernelImage& image) {
   const SpeMonitor::Lock lock = state_->monitor().lock();
+  SC_ASSERT(dma::is_effective_address(ea.value) && ea.value % dma::kQuadwordBytes == 0,
+            "the job image {} lies at {}, which no DMA can fetch", image.name, ea);
   state_->job_images[ea.value] = &image;
   for (int spe = 0; spe < spes(); ++spe) state_->threads.spe(spe).announce_job_image(image);
 }
 
 void SpeGroup::on_end(std::function<void(int, const RunResult&)> listener) {
+  SC_ASSERT(state_->runs_prepared == 0, "on_end() after {} runs were prepared", state_->runs_prepared);
   state_->listener = std::move(listener);
 }
 

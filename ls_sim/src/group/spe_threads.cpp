@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {
@@ -21,8 +22,8 @@ void leave_the_ppu_its_core() {
 
 const SpeOptions& checked(const SpeOptions& options) {
   if (options.spes < 1 || options.spes > dma::kSpeCount) {
-    throw std::invalid_argument("the number of SPEs is " + std::to_string(options.spes) +
-                                "; 1 to 6 are allowed");
+    throw std::invalid_argument("the number of SPEs is " + std::to_string(options.spes) + "; 1 to " +
+                                std::to_string(dma::kSpeCount) + " are allowed");
   }
   if (options.deadline <= std::chrono::milliseconds::zero()) {
     throw std::invalid_argument("the deadline of a run must be positive");
@@ -90,6 +91,8 @@ void SpeThreads::work(int number) {
 }
 
 RunResult SpeThreads::run(int number, const Run& run, SpeMonitor::Lock& lock) {
+  SC_ASSERT(lock.owns_lock() && run.image != nullptr, "run {} of SPE {} without the lock or an image",
+            run.number, number);
   if (!monitor_.await_first_turn(lock, number)) {
     return {0, dma::Fault{.rule = dma::Rule::kDeadlineExceeded,
                           .spe = number,

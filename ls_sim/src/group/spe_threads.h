@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "spe.h"
 
 namespace softcell::ls_sim {
@@ -44,15 +45,17 @@ class SpeThreads {
   void stop_runs();
 
   SpeMonitor& monitor() { return monitor_; }
-  Spe& spe(int number) { return *workers_[static_cast<std::size_t>(number)]; }
+  Spe& spe(int number) { return *workers_[index(number)]; }
   int spes() const { return options_.spes; }
 
   /// Exact when the SPE does not run, else as of its last run or job. With the lock.
-  const SpeStatistics& statistics(int spe) const {
-    return workers_[static_cast<std::size_t>(spe)]->statistics();
-  }
+  const SpeStatistics& statistics(int spe) const { return workers_[index(spe)]->statistics(); }
 
  private:
+  std::size_t index(int spe) const {
+    SC_ASSERT(spe >= 0 && spe < spes(), "SPE {} of a group of {}", spe, spes());
+    return static_cast<std::size_t>(spe);
+  }
   enum class Beginning : std::uint8_t { kNotYet, kNow, kNever };
 
   void begin_work(Beginning beginning);

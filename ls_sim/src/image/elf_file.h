@@ -13,8 +13,8 @@
 
 namespace softcell::ls_sim {
 
-/// A 64-bit little-endian x86 file. The bytes and the name must outlive it. Everything it refuses it refuses
-/// by std::runtime_error, in one sentence that begins with the image's name.
+/// A 64-bit little-endian x86 file. The bytes and the name must outlive it. Every error is a
+/// std::runtime_error whose message begins with the image's name.
 class ElfFile {
  public:
   struct Section {

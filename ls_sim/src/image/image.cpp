@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "elf_file.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::ls_sim {
@@ -197,6 +198,10 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.checked = declared.is_checked == 1;
   const auto bytes = elf.slice(segment.p_offset, segment.p_filesz, "its segment");
   image.bytes.assign(bytes.begin(), bytes.end());
+  SC_ASSERT(image.begin <= image.text_begin && image.data_begin <= image.data_end &&
+                image.data_end <= image.sizes.end,
+            "{} begins at {} and ends at {}, with text at {} and data at {} to {}", name, image.begin,
+            image.sizes.end, image.text_begin, image.data_begin, image.data_end);
   image.elf = std::make_shared<const std::vector<std::byte>>(file.begin(), file.end());
   return image;
 }

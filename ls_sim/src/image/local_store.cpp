@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ls_sim {
 namespace {
 
@@ -23,6 +25,9 @@ LocalStore::LocalStore() {
   const auto low = reinterpret_cast<std::uintptr_t>(mapping_) + kGuardBytes;
   const auto aligned = (low + dma::kLocalStoreMask) & ~std::uintptr_t{dma::kLocalStoreMask};
   base_ = reinterpret_cast<std::byte*>(aligned);
+  SC_ASSERT(aligned + dma::kLocalStoreBytes + kGuardBytes <=
+                reinterpret_cast<std::uintptr_t>(mapping_) + kMappingBytes,
+            "the local store at {} and its guard leave the mapping at {}", base_, mapping_);
   if (mprotect(base_, dma::kLocalStoreBytes, PROT_READ | PROT_WRITE | PROT_EXEC) != 0) {
     const int error = errno;
     munmap(mapping_, kMappingBytes);

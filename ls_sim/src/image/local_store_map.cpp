@@ -1,5 +1,6 @@
 #include "local_store_map.h"
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::ls_sim {
@@ -7,6 +8,10 @@ namespace softcell::ls_sim {
 std::vector<LocalStoreSection> local_store_map(const KernelImage& image) {
   const std::uint32_t end = image.sizes.end;
   const std::uint32_t stack_begin = image.stack_top - image.sizes.stack;
+  SC_ASSERT(image.sizes.stack <= image.stack_top && image.stack_top <= dma::kLocalStoreBytes,
+            "{} has a stack of {} bytes below {}", image.name, image.sizes.stack, image.stack_top);
+  SC_ASSERT(end <= dma::kLocalStoreBytes && image.sizes.bss <= end, "{} ends at {} with {} bytes of bss",
+            image.name, end, image.sizes.bss);
   const bool is_at_bottom = image.begin == kEnvironmentBytes;
   // ls.ld begins bss at a line and puts `end` at most one alignment behind it.
   const std::uint32_t bss_begin = (end - image.sizes.bss) / dma::kLineBytes * dma::kLineBytes;

@@ -17,8 +17,8 @@ struct LocalStoreSection {
   bool operator==(const LocalStoreSection&) const = default;
 };
 
-/// What a local store holds while the image is resident, in order of address, empty parts left out. Bytes
-/// between two sections are there for alignment.
+/// The sections of a local store while the image is loaded, in order of address, without empty ones. Bytes
+/// between two sections are alignment.
 std::vector<LocalStoreSection> local_store_map(const KernelImage& image);
 
 }  // namespace softcell::ls_sim

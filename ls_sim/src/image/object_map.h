@@ -1,9 +1,10 @@
 #pragma once
-// Whose bytes of a local store are: the image's code, its variables, its stack, nobody's.
+// The owners of the bytes of a local store: the image's code, its variables, its stack, or nobody.
 
 #include <cstdint>
 #include <string>
 
+#include "softcell/base/assert.h"
 #include "softcell/ls_sim/image.h"
 
 namespace softcell::ls_sim {
@@ -16,13 +17,15 @@ struct StackRange {
 /// Borrows the image.
 class ObjectMap {
  public:
-  ObjectMap(const KernelImage& image, const StackRange& stack) : image_(&image), stack_(stack) {}
+  ObjectMap(const KernelImage& image, const StackRange& stack) : image_(&image), stack_(stack) {
+    SC_ASSERT(stack.begin <= stack.end, "the stack of {} is {} to {}", image.name, stack.begin, stack.end);
+  }
 
   bool in_code(std::uint32_t lsa) const { return lsa >= image_->text_begin && lsa < image_->rodata_end; }
   bool in_stack(std::uint32_t lsa) const { return lsa >= stack_.begin && lsa < stack_.end; }
 
-  /// Empty when the range belongs to one variable, to code and constants, or to the stack in use; else what
-  /// is wrong with it.
+  /// Empty if the range lies in one variable, in code and constants, or in the used part of the stack; else a
+  /// sentence that says what is wrong.
   std::string trespass(std::uint32_t lsa, std::uint32_t bytes, std::uint32_t stack_pointer) const;
 
   /// "buffer + 16", "the stack", "the image's code".

@@ -1,5 +1,6 @@
 #pragma once
-// Bytes of variables that belong to no member of their type: nobody writes them, and copies take them along.
+// Padding: bytes of variables that belong to no member of their type. Nobody writes them, and copies copy
+// them.
 
 #include <cstdint>
 #include <vector>

@@ -50,7 +50,7 @@ std::mutex& list_mutex() {
   return mutex;
 }
 
-void tell_debugger(JitAction action, JitCodeEntry& entry) {
+void notify_debugger(JitAction action, JitCodeEntry& entry) {
   __jit_debug_descriptor.action = action;
   __jit_debug_descriptor.relevant = &entry;
   __jit_debug_register_code();
@@ -158,7 +158,7 @@ DebuggerSymbols::DebuggerSymbols(const KernelImage& image, const std::byte* base
   entry_->jit.next = __jit_debug_descriptor.first;
   if (entry_->jit.next != nullptr) entry_->jit.next->previous = &entry_->jit;
   __jit_debug_descriptor.first = &entry_->jit;
-  tell_debugger(kJitRegister, entry_->jit);
+  notify_debugger(kJitRegister, entry_->jit);
 }
 
 DebuggerSymbols::~DebuggerSymbols() {
@@ -167,7 +167,7 @@ DebuggerSymbols::~DebuggerSymbols() {
   JitCodeEntry& jit = entry_->jit;
   (jit.previous == nullptr ? __jit_debug_descriptor.first : jit.previous->next) = jit.next;
   if (jit.next != nullptr) jit.next->previous = jit.previous;
-  tell_debugger(kJitUnregister, jit);
+  notify_debugger(kJitUnregister, jit);
 }
 
 }  // namespace softcell::ls_sim::native

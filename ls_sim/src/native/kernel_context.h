@@ -52,8 +52,8 @@ struct Trap {
   bool general_protection = false;  ///< the processor gave no address: it was not a canonical one
   bool instruction_fetch = false;
   bool write = false;
-  bool stale =
-      false;  ///< executed once more, the instruction did not fail: it was not what the processor ran
+  /// Executed once more, the instruction did not fail: the processor had executed stale bytes.
+  bool stale = false;
   std::uintptr_t address = 0;
   std::uintptr_t instruction = 0;
   std::uintptr_t stack = 0;
@@ -65,15 +65,15 @@ struct KernelContext;
 using ServeRequest = bool(KernelContext* context) noexcept;
 
 struct KernelContext {
-  boost::context::detail::fcontext_t worker =
-      nullptr;                         ///< where run() waits; its value is the worker's stack pointer
+  /// Where run() waits; its value is the worker's stack pointer.
+  boost::context::detail::fcontext_t worker = nullptr;
   unsigned int worker_arithmetic = 0;  ///< MXCSR
   ServeRequest* serve = nullptr;
   void* engine = nullptr;  ///< for serve()
 
   // The request of the kernel and the worker's answer.
-  std::uint32_t request = request_of(Operation::kStop);  ///< an Operation, and in 8 bits below it a channel:
-                                                         ///< one word, which can be read as it was stored
+  /// An Operation, and below it in 8 bits a channel: one word, which can be read as it was stored.
+  std::uint32_t request = request_of(Operation::kStop);
   std::uint32_t value = 0;
   std::uint32_t reply = 0;
   std::uintptr_t caller = 0;         ///< in the kernel's call of the gate: its last byte

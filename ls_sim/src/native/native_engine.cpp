@@ -15,6 +15,7 @@
 #include "debugger_symbols.h"
 #include "kernel_context.h"
 #include "signals.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/ls_sim/engine.h"
 
@@ -38,8 +39,8 @@ using native::Operation;
 constexpr std::byte kFiller{0xA5};
 constexpr bool is_filler(std::byte b) { return b == kFiller; }
 constexpr std::uint32_t kCanaryBytes = 256;  // watched below the declared stack
-constexpr std::uint32_t kGateLinkBytes =
-    16;  // of the gate's frame: its caller's frame pointer and where it returns to
+// Of the gate's frame: its caller's frame pointer and return address.
+constexpr std::uint32_t kGateLinkBytes = 16;
 constexpr std::size_t kLandingStackBytes = 16 * 1024;
 
 std::string hexadecimal(std::uint64_t value) {
@@ -71,6 +72,13 @@ class NativeEngine final : public Engine {
   }
 
   void load(const KernelImage& image) override {
+    SC_ASSERT(!running_, "{} is loaded while {} runs", image.name, image_->name);
+    SC_ASSERT(image.begin >= kEnvironmentBytes && image.begin + image.bytes.size() <= image.sizes.end &&
+                  image.sizes.end <= dma::kLocalStoreBytes,
+              "{} has {} bytes from {} on and ends at {}", image.name, image.bytes.size(), image.begin,
+              image.sizes.end);
+    SC_ASSERT(image.data_begin >= image.begin && image.data_end <= image.sizes.end,
+              "{} has its data at {} to {}", image.name, image.data_begin, image.data_end);
     image_ = &image;
     debugger_symbols_.reset();
     std::byte* const base = local_store_.base();
@@ -118,7 +126,7 @@ class NativeEngine final : public Engine {
   void run_kernel();
   bool serve_request() noexcept;
   std::optional<RunResult> answer();
-  std::optional<dma::Fault> note_job();
+  std::optional<dma::Fault> mark_job();
   std::optional<dma::Fault> end_job();
   std::span<const std::byte> variables_of_caller() const;
   std::span<const std::byte> frames_of_caller() const;
@@ -166,6 +174,7 @@ class NativeEngine final : public Engine {
 };
 
 void NativeEngine::prepare(const EntryArguments& arguments) {
+  SC_ASSERT(image_ != nullptr, "run({}) before load()", arguments.spe_id);
   // The initialised data start every run as they were linked, so that no job sees what another left. Right
   // after load() they are so already, and others may have written to them since.
   if (!std::exchange(data_as_linked_, false)) {
@@ -201,6 +210,7 @@ void NativeEngine::run_kernel() {
 RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channels, AccessObserver* accesses,
                             JobObserver* jobs) {
   static thread_local const native::SignalStack signal_stack;  // as long as the thread: a run takes less time
+  SC_ASSERT(!running_ && native::current_context() == nullptr, "a run within the run of {}", image_->name);
   prepare(arguments);
   native::current_context() = &context_;
   {
@@ -261,7 +271,7 @@ std::optional<RunResult> NativeEngine::answer() {
     return std::nullopt;
   }
   if (context_.operation() == Operation::kJob) {
-    if (auto overflow = note_job()) return RunResult{0, std::move(overflow)};
+    if (auto overflow = mark_job()) return RunResult{0, std::move(overflow)};
     return std::nullopt;
   }
   if (context_.operation() == Operation::kSync) {  // the gate serialises the processor on the way back
@@ -276,7 +286,7 @@ std::optional<RunResult> NativeEngine::answer() {
 
 /// A job has its own image at the bottom and its stack below its caller's; what it leaves behind is as a
 /// kernel's own.
-std::optional<dma::Fault> NativeEngine::note_job() {
+std::optional<dma::Fault> NativeEngine::mark_job() {
   if (jobs_ == nullptr) return std::nullopt;
   if (context_.channel() == 0) return end_job();
   const native::Environment& environment = this->environment();
@@ -287,6 +297,8 @@ std::optional<dma::Fault> NativeEngine::note_job() {
   last_job_end_ = job_image_ != nullptr ? job_image_->sizes.end : stack_limit();
   tag_mask_ = ~environment.mfc_tag_mask;  // whoever follows the job is to see the mask that it begins with
   const std::span<const std::byte> variables = variables_of_caller();
+  SC_ASSERT(variables.size() <= dma::kLocalStoreBytes, "{} has {} bytes of variables", image_->name,
+            variables.size());
   caller_variables_.assign(variables.begin(), variables.end());
   caller_frames_begin_ = static_cast<std::uint32_t>(context_.stack_pointer - arena()) + kGateLinkBytes;
   const std::span<const std::byte> frames = frames_of_caller();
@@ -302,7 +314,7 @@ std::optional<dma::Fault> NativeEngine::note_job() {
 std::optional<dma::Fault> NativeEngine::end_job() {
   if (!std::exchange(job_under_way_, false)) {
     return fault(dma::Rule::kIllegalChannel,
-                 "the kernel told the environment of a job's end, and no job was under way");
+                 "the kernel marked the end of a job, and no job was in progress");
   }
   if (auto broken = jobs_->on_job_returned()) return broken;
   if (job_image_ != nullptr && written_below_stack())
@@ -342,6 +354,8 @@ std::optional<dma::Fault> NativeEngine::check_caller() const {
                         {"stack", frames_of_caller(), caller_frames_}};
   // Breakpoints of a debugger are written into the code.
   for (const Part& part : std::span(parts).subspan(debugger_wanted_ ? 1 : 0)) {
+    SC_ASSERT(part.now.size() == part.before.size(), "{} of {}: {} bytes now, {} before the job", part.name,
+              image_->name, part.now.size(), part.before.size());
     if (std::memcmp(part.now.data(), part.before.data(), part.before.size()) == 0) continue;
     const std::byte* const at = std::to_address(std::ranges::mismatch(part.now, part.before).in1);
     return fault(dma::Rule::kOutsideObjects,
@@ -418,6 +432,7 @@ std::optional<dma::Fault> NativeEngine::check_stack() const {
 /// Bytes below the stack of whoever runs, which nobody writes while it does.
 std::span<std::byte> NativeEngine::canary() const {
   const std::uint32_t end = stack_limit();
+  SC_ASSERT(end <= dma::kLocalStoreBytes, "the stack of {} is limited at {}", image_->name, end);
   const std::uint32_t begin = std::max(free_begin(), end - std::min(end, kCanaryBytes));
   return {local_store_.base() + begin, local_store_.base() + end};
 }
@@ -468,13 +483,13 @@ dma::Fault NativeEngine::cause_of_trap() const {
   if (written_below_stack())
     return stack_overflow("bytes below the stack were written before " + where + " failed");
   if (trap.signal == SIGILL || trap.signal == SIGTRAP) {
-    return fault(dma::Rule::kIllegalInstruction, where + " is not one");
+    return fault(dma::Rule::kIllegalInstruction, where + " is invalid");
   }
   if (trap.signal == SIGFPE) {
     return fault(dma::Rule::kIllegalInstruction, where + " divides an integer by zero");
   }
   if (trap.general_protection) {
-    return fault(dma::Rule::kOutsideLocalStore, where + " followed a pointer that is no address at all");
+    return fault(dma::Rule::kOutsideLocalStore, where + " used a pointer that is not a valid address");
   }
   const char* const access = trap.instruction_fetch ? " jumped to "
                              : trap.write           ? " wrote to "

@@ -69,7 +69,7 @@ bool executes_once_more(KernelContext& context, int signal, mcontext_t& machine,
 }
 
 /// How the processor stopped the kernel.
-void note_trap(KernelContext& context, int signal, const siginfo_t& info, const mcontext_t& machine) {
+void record_trap(KernelContext& context, int signal, const siginfo_t& info, const mcontext_t& machine) {
   const auto error = static_cast<std::uint64_t>(machine.gregs[REG_ERR]);
   context.trap = {.signal = signal,
                   .general_protection = signal == SIGSEGV && info.si_code == SI_KERNEL,
@@ -97,10 +97,10 @@ void handle(int signal, siginfo_t* info, void* machine_context) {
     return;
   }
   if (executes_once_more(*context, signal, machine, instruction)) {
-    note_trap(*context, signal, *info, machine);
+    record_trap(*context, signal, *info, machine);
     return;
   }
-  if (!context->trap.stale) note_trap(*context, signal, *info, machine);
+  if (!context->trap.stale) record_trap(*context, signal, *info, machine);
   redirect_to_landing(*context, machine);
 }
 

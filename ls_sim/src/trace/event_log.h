@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ls_sim {
 
 /// Events in order, appended at the cost of writing them: memory grows by whole chunks, and what is recorded
@@ -20,12 +22,13 @@ class EventLog {
       return kDropped;
     }
     if (size_ == chunks_.size() * kChunk) grow();
-    (*this)[size_] = event;
-    return size_++;
+    const std::size_t index = size_++;
+    (*this)[index] = event;
+    return index;
   }
 
-  Event& operator[](std::size_t index) { return chunks_[index / kChunk][index % kChunk]; }
-  const Event& operator[](std::size_t index) const { return chunks_[index / kChunk][index % kChunk]; }
+  Event& operator[](std::size_t index) { return at(*this, index); }
+  const Event& operator[](std::size_t index) const { return at(*this, index); }
   std::size_t size() const { return size_; }
   std::size_t dropped() const { return dropped_; }
 
@@ -33,6 +36,11 @@ class EventLog {
 
  private:
   static constexpr std::size_t kChunk = 8192;
+  template <typename Log>
+  static auto& at(Log& log, std::size_t index) {
+    SC_ASSERT(index < log.size_, "event {} of {}, {} dropped", index, log.size_, log.dropped_);
+    return log.chunks_[index / kChunk][index % kChunk];
+  }
 
   void grow() { chunks_.push_back(std::make_unique_for_overwrite<Event[]>(kChunk)); }
 

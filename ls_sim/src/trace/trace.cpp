@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
 #include "softcell/ls_sim/findings.h"
 #include "trace_events.h"
@@ -54,6 +55,7 @@ SpeTrace::~SpeTrace() = default;
 
 void SpeTrace::on_job(const KernelImage& image, std::uint64_t job_number, TraceTime begin, TraceTime end,
                       bool failed) {
+  SC_ASSERT(begin <= end, "job {} of {} begins at {} and ends at {}", job_number, image.name, begin, end);
   SpeEvents& e = *events_;
   e.jobs.append({begin, end, job_number, e.image_index(image), failed});
   for (const auto& left : e.in_flight) e.commands[left.index].complete = end;
@@ -66,6 +68,7 @@ void SpeTrace::on_stack_used(const KernelImage& image, std::uint32_t bytes) {
 }
 
 void SpeTrace::on_wait(std::uint32_t channel, TraceTime begin, TraceTime end) {
+  SC_ASSERT(begin <= end, "a wait at channel {} begins at {} and ends at {}", channel, begin, end);
   events_->waits.append({begin, end, channel});
 }
 
@@ -108,6 +111,7 @@ TracedCommand* SpeTrace::complete(std::uint64_t number) {
   // From the newest: what completes is often what was issued last.
   for (std::size_t i = in_flight.size(); i-- > 0;) {
     if (in_flight[i].number != number) continue;
+    SC_ASSERT(!events_->commands[in_flight[i].index].completed, "command {} completes a second time", number);
     TracedCommand& command = events_->commands[in_flight[i].index];
     command.complete = trace_now();
     command.completed = true;
@@ -119,7 +123,7 @@ TracedCommand* SpeTrace::complete(std::uint64_t number) {
 }
 
 Trace::Trace(int spes, std::size_t most_events) : begin_(trace_now()) {
-  if (spes < 1) throw std::invalid_argument("a trace is of 1 SPE or more, not of " + std::to_string(spes));
+  if (spes < 1) throw std::invalid_argument("a trace needs at least 1 SPE, not " + std::to_string(spes));
   for (int i = 0; i < spes; ++i) {
     spes_.push_back(std::unique_ptr<SpeTrace>(new SpeTrace(most_events)));
   }
@@ -127,7 +131,10 @@ Trace::Trace(int spes, std::size_t most_events) : begin_(trace_now()) {
 
 Trace::~Trace() = default;
 
-SpeTrace& Trace::spe(int number) { return *spes_.at(static_cast<std::size_t>(number)); }
+SpeTrace& Trace::spe(int number) {
+  SC_ASSERT(number >= 0 && number < spes(), "SPE {} in a trace of {}", number, spes());
+  return *spes_[static_cast<std::size_t>(number)];
+}
 int Trace::spes() const { return static_cast<int>(spes_.size()); }
 
 void Trace::write(const std::filesystem::path& path) const {

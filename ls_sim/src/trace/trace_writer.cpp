@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/mfc_command.h"
 #include "softcell/ls_sim/channel_name.h"
 
@@ -113,6 +114,7 @@ void TraceWriter::write_jobs(int spe, const SpeEvents& events) {
   for (const TracedImage& image : events.images) names.push_back(json_string(image.name));
   for (std::size_t i = 0; i < events.jobs.size(); ++i) {
     const TracedJob& job = events.jobs[i];
+    SC_ASSERT(job.image < names.size(), "job {} has image {} of {}", job.number, job.image, names.size());
     slice(spe, kJobRow, job.begin, job.end, "job", names[job.image])
         .raw("\"job\":")
         .number(static_cast<std::int64_t>(job.number))

@@ -11,8 +11,8 @@ namespace softcell_sdk {
 /// At local-store address 0. The emulator writes `gate` when it loads an image, the kernel the mfc_ fields:
 /// channels that only hold a value until another channel is used, so that it need not be called for them.
 struct Environment {
-  uint64_t
-      gate;  ///< address of uint32_t gate(uint32_t operation, uint32_t value), System V calling convention
+  /// Address of uint32_t gate(uint32_t operation, uint32_t value), System V calling convention.
+  uint64_t gate;
   uint32_t mfc_lsa, mfc_eah, mfc_eal, mfc_size, mfc_tag;  ///< channels 16 to 20
   uint32_t mfc_tag_mask;                                  ///< channel 22; 0 when a run begins
   // Of a checked kernel's load or store, besides its address (see sdk/checked/report_accesses.cpp).

@@ -1,16 +1,21 @@
 #pragma once
 // SC_ASSERT(condition, "message with {} for each value", values...)
 //
-// Says what must hold unless softcell itself has a mistake. Where it does not, the program ends: one line on
-// standard error has file, line, condition and message, and the process aborts. Faults of a kernel and what
-// the outside world gets wrong are no assertions.
+// States what always holds unless softcell itself, or a caller that breaks a @pre, has a mistake. When the
+// condition is false, the program prints one line to standard error and aborts:
 //
-// Alive where SOFTCELL_ASSERTIONS is defined: Debug builds and builds with sanitizers, unless the CMake
-// option of that name says otherwise. Elsewhere neither condition nor values are evaluated.
+//   arena.cpp:58: void softcell::dma::Arena::free(...): SC_ASSERT(begin < bytes_) does not hold: ...
+//
+// Never for what a user can get wrong by input, and never for a fault of a kernel: those are errors with a
+// sentence. The condition has no side effects.
+//
+// Assertions are alive where SOFTCELL_ASSERTIONS is defined: in Debug builds and builds with sanitizers,
+// unless the CMake option of that name says otherwise. Elsewhere neither condition nor values are evaluated.
 
 #include <charconv>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -18,19 +23,30 @@
 
 namespace softcell::base::assertion {
 
-/// The message, checked when it is compiled: as many {} as values.
+/// The message of an assertion with these values. The compiler checks that it has as many {} as values.
 template <class... Values>
 struct Message {
   consteval Message(const char* message) : text(message) {  // NOLINT: a literal is a message
-    std::size_t places = 0;
-    for (std::size_t at = text.find("{}"); at != text.npos; at = text.find("{}", at + 2)) ++places;
-    if (places != sizeof...(Values)) throw "the message needs as many {} as there are values";
+    std::size_t placeholders = 0;
+    for (std::size_t at = text.find("{}"); at != text.npos; at = text.find("{}", at + 2)) ++placeholders;
+    if (placeholders != sizeof...(Values)) throw "the message needs as many {} as there are values";
   }
   std::string_view text;
 };
 
+/// A type whose number is its member `value`: an address or a handle.
+template <class Type>
+concept WrapsNumber = requires(const Type& wrapper) {
+  { wrapper.value } -> std::convertible_to<std::uint64_t>;
+};
+
+/// Numbers in decimal, addresses, handles and pointers in hexadecimal, enumerators as their numbers.
 template <class Value>
 std::string text_of(const Value& value) {
+  char digits[64];
+  const auto hexadecimal = [&](std::uint64_t number) {
+    return "0x" + std::string(digits, std::to_chars(digits, digits + sizeof digits, number, 16).ptr);
+  };
   if constexpr (std::is_convertible_v<const Value&, std::string_view>) {
     return std::string(std::string_view(value));
   } else if constexpr (std::same_as<Value, bool>) {
@@ -38,35 +54,45 @@ std::string text_of(const Value& value) {
   } else if constexpr (std::is_enum_v<Value>) {
     return text_of(static_cast<std::underlying_type_t<Value>>(value));
   } else if constexpr (std::is_arithmetic_v<Value>) {
-    char digits[64];
     return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+  } else if constexpr (std::is_pointer_v<Value>) {
+    return hexadecimal(reinterpret_cast<std::uintptr_t>(value));
+  } else if constexpr (WrapsNumber<Value>) {
+    return hexadecimal(value.value);
   } else {
     return value.string();  // a path
   }
 }
 
-[[noreturn, gnu::cold, gnu::noinline]] void fail(const char* file, int line, const char* condition,
-                                                 std::string_view message,
+/// Where an assertion stands in the source.
+struct Location {
+  const char* file;
+  int line;
+  const char* function;
+  const char* condition;
+};
+
+[[noreturn, gnu::cold, gnu::noinline]] void fail(const Location& location, std::string_view message,
                                                  std::initializer_list<std::string> values) noexcept;
 
 template <class... Values>
-[[noreturn, gnu::cold, gnu::noinline]] void violated(const char* file, int line, const char* condition,
+[[noreturn, gnu::cold, gnu::noinline]] void violated(const Location& location,
                                                      Message<std::type_identity_t<Values>...> message,
                                                      const Values&... values) noexcept {
-  fail(file, line, condition, message.text, {text_of(values)...});
+  fail(location, message.text, {text_of(values)...});
 }
 
-/// What is compiled and never called.
+/// Compiled where assertions are off, so that their arguments stay correct; never called.
 template <class... Values>
 void ignored(bool, Message<std::type_identity_t<Values>...>, const Values&...) {}
 
 }  // namespace softcell::base::assertion
 
 #ifdef SOFTCELL_ASSERTIONS
-#define SC_ASSERT(condition, ...) \
-  (static_cast<bool>(condition)   \
-       ? static_cast<void>(0)     \
-       : ::softcell::base::assertion::violated(__FILE__, __LINE__, #condition, __VA_ARGS__))
+#define SC_ASSERT(condition, ...)                                        \
+  (static_cast<bool>(condition) ? static_cast<void>(0)                   \
+                                : ::softcell::base::assertion::violated( \
+                                      {__FILE__, __LINE__, __PRETTY_FUNCTION__, #condition}, __VA_ARGS__))
 #else
 #define SC_ASSERT(condition, ...) \
   (true ? static_cast<void>(0)    \

@@ -7,13 +7,13 @@
 
 namespace softcell::base {
 
-/// One of them, in the program's memory.
+/// An embedded file, in the program's memory.
 struct EmbeddedFile {
   std::string_view name;  ///< "arena.toml"
   std::string_view text;
 };
 
-/// @return  null when there is none of that name.
+/// @return  the file of that name, or null.
 inline const EmbeddedFile* find_embedded(std::span<const EmbeddedFile> files, std::string_view name) {
   const auto found = std::ranges::find(files, name, &EmbeddedFile::name);
   return found == files.end() ? nullptr : &*found;

@@ -7,10 +7,11 @@
 
 namespace softcell::base {
 
-/// Builds JSON text piece by piece. Whole numbers only: what is written does not depend on a locale or on how
-/// a host prints floats.
+/// Builds JSON text piece by piece. It writes whole numbers only, so that the text depends neither on a
+/// locale nor on how a host prints floats. One thread uses one object.
 class JsonText {
  public:
+  /// Appends text as it is: brackets, commas, names of keys.
   JsonText& raw(std::string_view text) {
     text_ += text;
     return *this;
@@ -22,13 +23,14 @@ class JsonText {
     return *this;
   }
 
-  /// Microseconds with three decimals from nanoseconds, as the trace format counts time. Never negative.
+  /// Writes nanoseconds as microseconds with three decimals, the unit of the trace format. Writes 0.000 for a
+  /// negative time.
   JsonText& microseconds(std::int64_t nanoseconds);
 
-  /// A quoted string; bytes that are no UTF-8 become question marks.
+  /// Writes a quoted string. Bytes that are not UTF-8 become question marks.
   JsonText& string(std::string_view text);
 
-  /// "0x0001F", with at least so many digits.
+  /// Writes "0x0001F" in quotes, with at least `digits` digits. @pre 0 <= digits <= 16
   JsonText& hex(std::uint64_t value, int digits);
 
   JsonText& boolean(bool value) { return raw(value ? "true" : "false"); }

@@ -6,8 +6,10 @@
 
 namespace softcell::base {
 
-/// The one of `known` that `name` is most likely a slip for; empty when none is near. Near is: at most a
-/// third of the longer one's letters, or one, inserted, left out, replaced or swapped with its neighbour.
+/// The name in `known` that a user who typed `name` most likely meant, for "did you mean ...?". A candidate
+/// counts if at most a third of the letters of the longer name (and at least one) must be inserted, removed,
+/// replaced or swapped with the next.
+/// @return  the nearest candidate, or an empty text when there is none. Any thread.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known);
 
 }  // namespace softcell::base

@@ -7,9 +7,9 @@
 
 namespace softcell::base {
 
-/// All bytes of a file. Devices and pipes are refused: reading one might never end.
-/// @param most_bytes  that it may have.
-/// @throws std::runtime_error  naming the file and why it cannot be read.
+/// Reads all bytes of a file. Refuses devices and pipes, because reading one might never end. Any thread.
+/// @param most_bytes  the most bytes that the file may have.
+/// @throws std::runtime_error  a sentence with the file and the reason why it cannot be read.
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::uint64_t most_bytes);
 
 }  // namespace softcell::base

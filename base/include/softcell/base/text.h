@@ -1,5 +1,6 @@
 #pragma once
-// Text for messages: what is UTF-8, sentences of any origin in one line, numbers as messages write them.
+// Text for messages: UTF-8, sentences from any source in one line, numbers as messages write them. Any
+// thread.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,14 +9,17 @@
 
 namespace softcell::base {
 
-/// Bytes of the UTF-8 sequence at `at`, or 0 when there is none. [RFC 3629] @pre at < text.size()
+/// Length in bytes of the UTF-8 character that begins at byte `at`, or 0 if these bytes are not UTF-8. [RFC
+/// 3629]
+/// @pre  at < text.size()
 std::size_t utf8_length(std::string_view text, std::size_t at);
 
-/// A sentence as it may be printed, whatever a file has put into it: in one line, control characters and what
-/// is no UTF-8 as "\x1b", and no longer than some 2000 bytes: of a longer one beginning and end.
+/// Makes a sentence safe to print, whatever a file has put into it: one line, with control characters and
+/// bytes that are not UTF-8 written as "\x1b". Of a sentence longer than about 2000 bytes it keeps beginning
+/// and end.
 std::string one_line(std::string_view sentence);
 
-/// 0x-prefixed, upper case, at least `digits` digits.
+/// "0x01F": hexadecimal in upper case with at least `digits` digits. @pre 0 <= digits <= 16
 std::string hex(std::uint64_t value, int digits = 1);
 
 /// "1 frame", "0 frames", "2 bodies".

@@ -1,5 +1,5 @@
 #pragma once
-// Files that appear whole or not at all.
+// Atomic files: a file that is written appears whole under its name, or not at all.
 
 #include <sys/types.h>
 
@@ -11,17 +11,18 @@
 
 namespace softcell::base {
 
-/// Written under a temporary name of its own in the same folder and renamed at the end, so that no
-/// half-written file is left as if it were whole, and two writers of one file never mix their bytes. A file
-/// that is replaced keeps its permissions, and a link to it stays a link. A device or a pipe is written to
-/// directly, as it cannot be replaced by renaming, and opened at the first byte only, as a pipe's opening
-/// waits for its reader.
+/// An atomic file. It writes to a temporary file in the same folder and renames that at the end. So nobody
+/// takes a half-written file for a whole one, and two writers of one file never mix their bytes. A file that
+/// is replaced keeps its permissions, and a symbolic link to it stays a link. Renaming cannot replace a
+/// device or a pipe: WholeFile writes to these directly, and opens them when the first byte is written,
+/// because opening a pipe waits for its reader.
 ///
 ///   WholeFile file(path);
 ///   file.write(text);
 ///   file.commit();  // without it nothing is left
 ///
-/// Every error is a std::runtime_error that names the file and says why it cannot be written.
+/// Every error is a std::runtime_error that names the file and says why it cannot be written. One thread uses
+/// one object.
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path path);
@@ -32,49 +33,54 @@ class WholeFile {
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
-  /// Before finish(). More than one call for a file of several parts.
+  /// Appends bytes. @pre finish() was not called
   void write(std::string_view bytes);
-  /// In place of write(), for a library that writes to streams: the file's. Not to be closed.
+  /// The open stream, for a library that writes to streams. Use it instead of write(); do not close it.
+  /// @pre  finish() was not called
   std::FILE* stream();
-  /// In place of write(), for a program that writes files by name: the temporary name, which ends as the
-  /// file's own does, or that of a device or pipe. Empty for a stream that was taken over.
+  /// The path of the temporary file, or of the device or pipe, for a program that writes files by name. Use
+  /// it instead of write(). It has the extension of the final name. Empty for a stream that was
+  /// taken over.
   const std::filesystem::path& written_path() const { return temporary_.empty() ? place_ : temporary_; }
 
-  /// Ends the writing, the file still under its temporary name. Of several files that belong together, finish
-  /// all before the first is committed: a full disk shows here.
+  /// Closes the temporary file and keeps its name. If several files belong together, finish all of them
+  /// before you commit the first: an error such as a full disk shows here.
   void finish();
-  /// finish(), where that is not done yet, and the file takes its place.
+  /// Calls finish() if nobody has, and renames the temporary file to the final name. Call it once.
   void commit();
 
-  /// The file that a symbolic link stands for, through further links, also one that is not there yet; any
-  /// other path itself. Links that go round in a circle are followed some way.
+  /// Follows symbolic links to the file that they lead to, whether or not it exists; returns any other path
+  /// as it is. Gives up after 40 links, as the kernel does.
   static std::filesystem::path behind_links(std::filesystem::path path);
 
  private:
-  /// @param replaced  the file whose permissions it keeps; there may be none.
+  /// @param replaced  the status of the file that is replaced, whose permissions the new one gets; it may not
+  ///                  exist.
   void open_temporary(const std::filesystem::file_status& replaced);
   void open_in_place();
   void discard();
   [[noreturn]] void fail(int error);
 
-  std::filesystem::path path_;       ///< as the caller has it
-  std::filesystem::path place_;      ///< that is written or replaced
-  std::filesystem::path temporary_;  ///< empty: there is none, as when written in place
+  std::filesystem::path path_;       ///< as the caller gave it
+  std::filesystem::path place_;      ///< the path behind links, which is written or replaced
+  std::filesystem::path temporary_;  ///< empty: none, because the file is written in place
   std::optional<mode_t> kept_mode_;  ///< the permissions of the file that is replaced
   std::FILE* file_ = nullptr;        ///< null: finished, or a device's or pipe's before the first byte
   bool finished_ = false;
-  bool settled_ = false;  ///< in its place, or discarded
+  bool settled_ = false;  ///< committed, or discarded
 };
 
-/// Files that take their places together: none before all are written. Without commit() nothing is left.
+/// Several atomic files that are committed together: none appears before all are written. Without commit(),
+/// none appears.
 class WholeFiles {
  public:
-  /// @return  good as long as this. @throws std::runtime_error  naming the file and why it cannot be written.
+  /// @return  a reference that is valid as long as this object.
+  /// @throws std::runtime_error  with the file and the reason why it cannot be written.
   WholeFile& open(const std::filesystem::path& file) { return files_.emplace_back(file); }
   WholeFile& open(std::FILE* stream, const std::filesystem::path& called) {
     return files_.emplace_back(stream, called);
   }
-  /// Null when none is asked for.
+  /// As above for an optional path: null for none.
   WholeFile* open(const std::optional<std::filesystem::path>& file) { return file ? &open(*file) : nullptr; }
 
   /// @throws std::runtime_error  naming the file that cannot be written.

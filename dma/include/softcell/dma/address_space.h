@@ -32,25 +32,26 @@ class LocalStores;
 /// Which memory a buffer lies in.
 enum class Memory : std::uint8_t { kMain, kVideo };
 
-/// What an SPE may do with a buffer, and what a command wants to do: a get reads, a put writes.
+/// What SPEs may do with a buffer, and what a command needs: a get reads, a put writes.
 enum class SpeAccess : std::uint8_t { kNone = 0, kRead = 1, kWrite = 2, kReadWrite = 3 };
 
 constexpr bool allows(SpeAccess granted, SpeAccess wanted) {
   return (static_cast<unsigned>(wanted) & ~static_cast<unsigned>(granted)) == 0;
 }
 
-/// How a buffer is made.
+/// Options of a new buffer.
 struct BufferOptions {
-  SpeAccess spe_access = SpeAccess::kReadWrite;  ///< writes to video memory are refused whatever stands here
+  SpeAccess spe_access = SpeAccess::kReadWrite;  ///< SPEs can never write to video memory
   Memory memory = Memory::kMain;
-  /// Bytes of one element: 1, 2, 4 or 8, by which a big-endian engine swaps; 0: mixed widths, or not known.
+  /// Size of one element in bytes, 1, 2, 4 or 8, for engines that swap the byte order; 0 for elements of
+  /// mixed or unknown width.
   std::uint32_t element_bytes = 0;
 };
 
 /// One buffer as the MFC sees it.
 struct Mapping {
   EffectiveAddress ea = {};
-  /// The buffer's size rounded up to a quadword, because no legal command could move its tail otherwise.
+  /// The buffer's size rounded up to a quadword: otherwise no legal command could move its last bytes.
   std::uint64_t bytes = 0;
   std::byte* host = nullptr;
   SpeAccess spe_access = SpeAccess::kNone;
@@ -61,69 +62,72 @@ struct Mapping {
   bool contains(EffectiveAddress address, std::uint64_t size) const {
     return contains(address) && size <= bytes - (address.value - ea.value);
   }
-  /// True when an SPE may do this here.
+  /// True if SPEs may access this buffer so.
   bool permits(SpeAccess wanted) const {
     return allows(spe_access, wanted) && (memory != Memory::kVideo || !allows(wanted, SpeAccess::kWrite));
   }
   std::byte* host_of(EffectiveAddress address) const { return host + (address.value - ea.value); }
 };
 
-/// Everything is thread safe: the PPU side allocates while SPEs look up. Several may exist in one process;
-/// each has the same addresses and its own bytes. Must outlive its buffers and every MFC that uses it.
+/// Main storage. All functions are thread safe: the PPU side may allocate while SPEs resolve addresses. A
+/// process may have several address spaces; they share their addresses and have separate bytes. An address
+/// space must outlive its buffers and every MFC that uses it.
 class AddressSpace {
  public:
-  /// Reserves 512 MB of host address space (no memory: pages become real when touched), and, once per
-  /// process, makes the host addresses equal to effective ones inaccessible.
+  /// Reserves 512 MB of host address space; the host provides memory for a page when it is first touched.
+  /// Once per process, it also makes the host addresses that are equal to effective addresses inaccessible.
   /// @throws std::runtime_error  the host has no address range left.
   AddressSpace();
   ~AddressSpace();
   AddressSpace(const AddressSpace&) = delete;
   AddressSpace& operator=(const AddressSpace&) = delete;
 
-  /// Makes a buffer of zero bytes at the lowest address that has room. Prefer Buffer<T>, which frees itself.
+  /// Allocates a buffer, filled with zeros, at the lowest address that has room. Prefer Buffer<T>, which
+  /// frees itself.
   /// @param name   for messages.
-  /// @param bytes  at least 1; occupies a multiple of 128.
+  /// @param bytes  at least 1; the buffer occupies whole lines of 128 bytes.
   /// @return  its address, a multiple of 128.
-  /// @throws std::runtime_error     no free range is large enough; the sentence gives the sizes.
+  /// @throws std::runtime_error  no free range is large enough; the message gives the sizes.
   /// @throws std::invalid_argument  zero bytes, or an element width other than 0, 1, 2, 4 and 8.
   EffectiveAddress allocate(std::string name, std::uint64_t bytes, const BufferOptions& options = {});
 
-  /// Gives a buffer back. No command may be in flight to or from it.
+  /// Frees a buffer. @pre no command is in flight to or from it
   /// @throws std::invalid_argument  no buffer begins at `ea`.
   void free(EffectiveAddress ea);
 
-  /// Makes an SPE reachable at local_store_ea(spe): its local store for any access, and its registers
-  /// Sig_Notify_1, Sig_Notify_2 and SPU_In_Mbox for writes of 4 bytes. The port is told of every write that
-  /// goes through reservations().
+  /// Maps an SPE at local_store_ea(spe): its local store for any access, and its registers Sig_Notify_1,
+  /// Sig_Notify_2 and SPU_In_Mbox for writes of 4 bytes. Every write that goes through reservations() calls
+  /// the port.
   /// @param spe   0..5.
-  /// @param port  must stay until unmap_local_store().
-  /// @throws std::invalid_argument  another number, one that is mapped already, or a local store of another
-  ///                                size.
+  /// @param port  must live until unmap_local_store().
+  /// @throws std::invalid_argument  `spe` is out of range or mapped already, or the local store has another
+  ///                                size than 256 KB.
   void map_local_store(int spe, LocalStorePort& port);
 
-  /// Takes it away. No command may be in flight to or from it.
-  /// @throws std::invalid_argument  it is not mapped.
+  /// Unmaps the SPE. @pre no command is in flight to or from it
+  /// @throws std::invalid_argument  the SPE is not mapped.
   void unmap_local_store(int spe);
 
-  /// The host bytes behind [ea, ea + bytes), which must lie within one buffer that permits `wanted`.
+  /// Translates [ea, ea + bytes) to the host's bytes. The range must lie within one buffer that permits
+  /// `wanted`.
   /// @param bytes   at least 1.
-  /// @param wanted  kNone asks for no permission: that is the PPU side.
+  /// @param wanted  the access; kNone, for the PPU side, needs no permission.
   /// @return  the host pointer, or a fault with rule and detail set: ea-not-mapped, ea-crosses-buffer,
-  ///          ea-not-readable, ea-not-writable, video-memory-write or register-access. The pointer that
-  ///          stands for a register is for Reservations::write() alone: nothing lies behind it.
+  ///          ea-not-readable, ea-not-writable, video-memory-write or register-access. The pointer for a
+  ///          register must be passed to Reservations::write() only: there are no bytes behind it.
   /// @note    Takes a shared lock. An MFC goes through its TranslationCache instead.
   std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) const;
 
-  /// The buffer or local store that holds `ea`, if any.
+  /// The buffer or local store that contains `ea`, if any.
   std::optional<Mapping> mapping_at(EffectiveAddress ea) const;
 
-  /// Changes whenever a mapping ends, after which copies of it must not be used.
+  /// A number that changes whenever a mapping ends. Who keeps copies of mappings must drop them then.
   std::uint64_t generation() const { return generation_.load(std::memory_order_acquire); }
 
-  /// Through which every copy to or from these bytes goes that must respect reserved lines.
+  /// The reservations of this storage. Every copy that must respect reserved lines goes through them.
   Reservations& reservations() const { return reservations_; }
 
-  /// Bytes not allocated, in all and in the largest piece.
+  /// Free bytes: the sum, and the size of the largest free range.
   std::uint64_t free_bytes(Memory memory) const;
   std::uint64_t largest_free_range(Memory memory) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The two kinds of address on the Cell, as types, so that one cannot be taken for the other.
+// The two kinds of address on the Cell, as types, so that the compiler tells them apart.
 
 #include <compare>
 #include <cstdint>
@@ -26,7 +26,7 @@ struct EffectiveAddress {
 
 constexpr EffectiveAddress operator+(EffectiveAddress ea, std::uint64_t bytes) { return {ea.value + bytes}; }
 
-/// The map of main storage. The low words are those of a PS3 game process (256 MB of XDR, 256 MB of video
+/// The layout of main storage. The low words are those of a PS3 game process (256 MB of XDR, 256 MB of video
 /// memory, SPU threads from 0xF0000000 in steps of 1 MB); the high word is not zero, so that a kernel that
 /// drops MFC_EAH is caught, and the addresses are ones that no host program has mapped, so that a kernel that
 /// follows one as a pointer faults.
@@ -37,12 +37,12 @@ inline constexpr std::uint64_t kVideoMemoryBytes = 256ull << 20;
 inline constexpr EffectiveAddress kLocalStoresBase{0x5EA0'F000'0000};
 inline constexpr std::uint64_t kLocalStoreStrideBytes = 1ull << 20;
 
-/// Where byte 0 of the local store of SPE 0..5 lies in main storage. Its registers follow from +0x40000.
+/// Effective address of byte 0 of the local store of SPE 0..5. Its registers follow from +0x40000.
 constexpr EffectiveAddress local_store_ea(int spe) {
   return kLocalStoresBase + static_cast<std::uint64_t>(spe) * kLocalStoreStrideBytes;
 }
 
-/// True when `ea` lies in one of the three ranges above, whether or not anything is allocated there.
+/// True if the upper word of `ea` is that of main storage, whether or not anything is allocated there.
 constexpr bool is_effective_address(std::uint64_t ea) { return (ea >> 32) == (kMainMemoryBase.value >> 32); }
 
 }  // namespace softcell::dma

@@ -1,5 +1,6 @@
 #pragma once
-// How a thread of the PPU side shares words with SPEs: lwarx and stwcx., and what is usually built of them.
+// Atomic words that threads of the PPU side share with SPEs: lwarx and stwcx., and the usual operations built
+// on them.
 //
 //   Atomics atomics(space);
 //   const std::uint32_t ticket = atomics.fetch_add<std::uint32_t>(tickets.ea(), 1);
@@ -18,22 +19,22 @@ namespace softcell::dma {
 template <class T>
 concept AtomicWord = std::integral<T> &&(sizeof(T) == 4 || sizeof(T) == 8);
 
-/// Atomic accesses to words of 4 and 8 bytes in main storage, indivisible to each other, to SPEs' line
-/// commands and to their small gets and puts. The reservation is that of a line of 128 bytes, as an SPE's, so
-/// that words which are fought for belong in lines of their own.
+/// Atomic accesses to words of 4 and 8 bytes in main storage. They are atomic with respect to each other, to
+/// the line commands of SPEs (getllar, putllc, ...) and to gets and puts of up to one line. A reservation
+/// covers a line of 128 bytes, as an SPE's does: give words that many threads change lines of their own.
 ///
-/// Plain accesses of the host, through a buffer's span, are seen by nobody: they lose no reservation. To read
-/// a word that others change, use load(), or a std::atomic_ref.
+/// A plain write through a buffer's span cancels no reservation. To read a word that others change, use
+/// load() or a std::atomic_ref.
 ///
-/// One thread uses one object. Every address must be a multiple of the word's size within a buffer.
-/// @throws std::invalid_argument  (all members) it is not.
+/// One thread uses one object. Every address must lie in a buffer and be a multiple of the word's size.
+/// @throws std::invalid_argument  (all members) the address does not.
 /// @source  [PowerPC, lwarx and stwcx.; CBEA, atomic commands] documented
 class Atomics {
  public:
-  /// @throws std::runtime_error  the address space has no room for another holder of a reservation.
+  /// @throws std::runtime_error  32 MFCs and Atomics use this address space already.
   explicit Atomics(AddressSpace& space);
 
-  /// lwarx, ldarx: the word, and a reservation of its line in place of an earlier one.
+  /// lwarx, ldarx: reads the word and reserves its line. An earlier reservation of this object ends.
   template <AtomicWord T>
   T load_and_reserve(EffectiveAddress ea) {
     T value;
@@ -41,13 +42,15 @@ class Atomics {
     return value;
   }
 
-  /// stwcx., stdcx.: stores if nobody has written to the line since it was reserved. The reservation is gone.
-  /// @return  whether it stored.
+  /// stwcx., stdcx.: stores if nobody has written to the line since this object reserved it. Ends the
+  /// reservation.
+  /// @return  true if it stored.
   template <AtomicWord T>
   bool store_conditional(EffectiveAddress ea, T value) {
     return store_conditional(ea, &value, sizeof value);
   }
 
+  /// Reads the word in one access.
   template <AtomicWord T>
   T load(EffectiveAddress ea) {
     T value;
@@ -55,12 +58,13 @@ class Atomics {
     return value;
   }
 
+  /// Writes the word in one access, and cancels the reservations of its line.
   template <AtomicWord T>
   void store(EffectiveAddress ea, T value) {
     store(ea, &value, sizeof value);
   }
 
-  /// Replaces the word by change(word), which may be called several times. @return  the word before.
+  /// Replaces the word by change(word). May call `change` several times. @return  the old word.
   template <AtomicWord T, std::invocable<T> Change>
   T update(EffectiveAddress ea, Change&& change) {
     for (;;) {
@@ -69,7 +73,7 @@ class Atomics {
     }
   }
 
-  /// @return  the word before. Wraps around.
+  /// Adds `addend`. @return  the old word. The sum wraps around.
   template <AtomicWord T>
   T fetch_add(EffectiveAddress ea, T addend) {
     using Unsigned = std::make_unsigned_t<T>;
@@ -78,14 +82,14 @@ class Atomics {
     });
   }
 
-  /// @return  the word before.
+  /// Stores `value`. @return  the old word.
   template <AtomicWord T>
   T exchange(EffectiveAddress ea, T value) {
     return update<T>(ea, [value](T) { return value; });
   }
 
   /// Stores `desired` if the word is `expected`.
-  /// @return  the word before: `expected` when it stored.
+  /// @return  the old word; equal to `expected` if it stored.
   template <AtomicWord T>
   T compare_and_swap(EffectiveAddress ea, T expected, T desired) {
     for (;;) {

@@ -1,5 +1,5 @@
 #pragma once
-// A typed buffer in emulated memory that frees itself: how the PPU side owns what SPEs read and write.
+// A typed buffer in emulated memory that frees itself: the PPU side owns in it what SPEs read and write.
 
 #include <cstddef>
 #include <limits>
@@ -8,12 +8,14 @@
 #include <type_traits>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/address_space.h"
 
 namespace softcell::dma {
 
-/// `size()` elements of T, zero at first, starting at a line of 128 bytes. Move-only. The PPU side uses
-/// span(), the SPEs ea(). Freed at the end of its life, which must come before that of its address space.
+/// size() elements of T, filled with zeros, starting at a line of 128 bytes. Move-only. The PPU side uses
+/// span(), SPEs use ea(). The destructor frees it; the address space must outlive it. Construction and
+/// destruction are thread safe.
 ///
 ///     Buffer<float> heights(space, "heights", 1000, {.spe_access = SpeAccess::kRead});
 template <class T>
@@ -22,11 +24,11 @@ class Buffer {
   static_assert(alignof(T) <= kLineBytes, "buffers start at a line of 128 bytes");
 
  public:
-  /// Owns nothing.
+  /// An empty buffer without memory.
   Buffer() = default;
 
-  /// @param options  element_bytes 0 stands for sizeof(T) when T is a number or an enumeration.
-  /// @throws std::runtime_error     out of memory of that kind; the sentence gives the sizes.
+  /// @param options  element_bytes 0 means sizeof(T) if T is a number or an enumeration.
+  /// @throws std::runtime_error  no free range of that memory is large enough; the message gives the sizes.
   /// @throws std::invalid_argument  count is 0.
   Buffer(AddressSpace& space, std::string name, std::size_t count, BufferOptions options = {})
       : space_(&space) {
@@ -58,11 +60,14 @@ class Buffer {
     if (space_ != nullptr) space_->free(ea_);
   }
 
-  /// Address of the first element, or of element `index`, as an SPE sees it.
+  /// Effective address of the first element, or of element `index`. @pre index <= size()
   EffectiveAddress ea() const { return ea_; }
-  EffectiveAddress ea(std::size_t index) const { return ea_ + index * sizeof(T); }
+  EffectiveAddress ea(std::size_t index) const {
+    SC_ASSERT(index <= size(), "element {} of a buffer of {}", index, size());
+    return ea_ + index * sizeof(T);
+  }
 
-  /// The elements, as the PPU side sees them. SPEs may change them as long as a job has their address.
+  /// The elements in the host's memory. A job that has their address may change them while it runs.
   std::span<T> span() { return elements_; }
   std::span<const T> span() const { return elements_; }
   T* data() { return elements_.data(); }

@@ -1,5 +1,5 @@
 #pragma once
-// A broken rule: which one, who broke it, and what was found instead of what is allowed.
+// A fault: the rule that a kernel broke, where, what was found and what is allowed.
 
 #include <optional>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softcell::dma {
 
-/// The rules, one row each in rules.def. The SPE (ls_sim) reports its own through the same type.
+/// The rules; rules.def has one row for each. ls_sim reports the rules of the SPE by the same type.
 enum class Rule {
 #define SC_RULE(enumerator, name, evidence, explanation) enumerator,
 #include "softcell/dma/rules.def"
@@ -25,31 +25,30 @@ inline constexpr Rule kAllRules[] = {
 /// What a real Cell does when a rule is broken.
 enum class Evidence {
   kRaised,       ///< it raises an error; documented
-  kSilent,       ///< it raises nothing: wrong data, or a wait without end
-  kUnconfirmed,  ///< no source at hand says; the explanation says so too
+  kSilent,       ///< it raises nothing: the data are wrong, or the SPU waits for ever
+  kUnconfirmed,  ///< we have no source; the explanation says so too
 };
 
-/// Stable, in kebab case, for messages, tests and documents: "ea-alignment".
+/// The rule's name for messages, tests and documents: "ea-alignment". Names do not change between versions.
 std::string_view name(Rule rule);
 
-/// One sentence: what is allowed, and what the hardware does otherwise.
+/// One sentence: what is allowed, and what the hardware does with anything else.
 std::string_view explanation(Rule rule);
 
 Evidence evidence(Rule rule);
 
-/// A rule broken by a kernel. The MFC knows neither the SPE's number nor the kernel nor the place: the SPE
-/// fills them in.
+/// A rule that a kernel broke. The MFC knows neither the SPE's number nor the kernel nor the source line: the
+/// SPE fills them in.
 struct Fault {
   Rule rule{};
-  int spe = -1;                            ///< -1: not known
-  std::string kernel = {};                 ///< empty: not known
-  std::string place = {};                  ///< source file and line, "saxpy.cpp:41"; empty: not known
+  int spe = -1;                            ///< -1: unknown
+  std::string kernel = {};                 ///< empty: unknown
+  std::string place = {};                  ///< source file and line, "saxpy.cpp:41"; empty: unknown
   std::optional<MfcCommand> command = {};  ///< set when a DMA command broke the rule
   std::string detail = {};                 ///< what was found and what is allowed; no full stop
 
-  /// One line with all of the above:
-  /// "SPE 2, kernel skin, skin.cpp:41: ea-alignment: getf tag 3, LSA 0x00400, EA 0x5EA010000008, 16 bytes: EA
-  /// is ..."
+  /// All of it in one line: "SPE 2, kernel skin, skin.cpp:41: ea-alignment: getf tag 3, LSA 0x00400, EA
+  /// 0x5EA010000008, 16 bytes: EA is ..."
   std::string message() const;
 };
 

@@ -10,7 +10,8 @@
 
 namespace softcell::dma {
 
-/// The words have the byte order of the engine that runs the kernel. [CBEA, MFC list commands] documented
+/// An element. Its words have the byte order of the engine that runs the kernel. [CBEA, MFC list commands]
+/// documented
 struct ListElement {
   std::uint32_t head = 0;
   std::uint32_t eal = 0;
@@ -23,18 +24,20 @@ struct ListElement {
   constexpr std::uint32_t reserved() const { return head & kReservedBits; }
   constexpr std::uint32_t size() const { return head & kSizeBits; }
 
-  /// Its whole effective address: MFC_EAH is common to all elements of a list.
+  /// The element's 64-bit effective address. All elements of a list share MFC_EAH.
   constexpr EffectiveAddress ea(const MfcCommand& list) const {
     return {(list.ea.value & 0xFFFF'FFFF'0000'0000) | eal};
   }
 
-  /// Where its bytes lie when the list has come to `cursor`: less than a quadword keeps its place in it.
+  /// Local-store address of the element's bytes when the list has reached `cursor`. Less than a quadword has
+  /// the same offset in a quadword as in main storage.
   constexpr LocalStoreAddress place(LocalStoreAddress cursor) const {
     return size() < kQuadwordBytes ? LocalStoreAddress{quadword_of(cursor.value) | offset_in_quadword(eal)}
                                    : cursor;
   }
 
-  /// Where the next element begins: behind this one, at a quadword. [CBEA, MFC list commands] documented
+  /// Local-store address where the next element begins: after this one, at the next quadword. [CBEA, MFC list
+  /// commands] documented
   constexpr LocalStoreAddress next(LocalStoreAddress cursor) const {
     return {quadword_of(cursor.value) + quadword_of(size() + kQuadwordBytes - 1)};
   }

@@ -1,11 +1,11 @@
 #pragma once
-// A list command under way: elements are fetched from local store in order, and a few are open at a time, so
-// that neighbours may overtake each other.
+// A list command in progress. It fetches elements from local store in order and keeps a few open at a time,
+// so that neighbours may overtake each other.
 //
-//   elements   0  1  2 [3  4  5  6] 7  8s 9 ...        [ ] open: fetched, not all moved
+//   elements   0  1  2 [3  4  5  6] 7  8s 9 ...        [ ] open: fetched, not moved completely
 //                                         s  stalls and notifies once it and all before it have moved
 //
-// The last element never stalls, whatever its bit. [CBEA, MFC list commands] documented
+// The stall bit of the last element has no effect. [CBEA, MFC list commands] documented
 
 #include <array>
 #include <cstddef>
@@ -13,47 +13,58 @@
 #include <span>
 #include <variant>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/list_element.h"
 #include "softcell/dma/transfer.h"
 
 namespace softcell::dma {
 
-/// A legal list command. Knows nothing of queues, tags or order.
+/// A legal list command; queue, tags and order are MfcQueue's. Used by the thread of its MFC.
 class ListTransfer {
  public:
-  /// One without elements.
+  /// A list without elements.
   ListTransfer() = default;
   explicit ListTransfer(const MfcCommand& command) : command_(command), cursor_(command.lsa) {}
 
-  /// Whether the next element may be fetched now.
+  /// True if the next element may be fetched now.
   bool can_open() const { return next_ < count() && open_ < kWindow && !stalls_; }
 
-  /// Fetches the next element. @pre can_open(). @return it, or the rule that it breaks.
+  /// Fetches the next element. @pre can_open(). @return  the element, or the rule that it breaks.
   std::variant<ListElement, Fault> open_next(std::span<std::byte> local_store, StoragePort& port);
 
-  /// Elements that have been fetched and have bytes to move.
+  /// Number of elements that were fetched and still have bytes to move.
   std::uint32_t open_elements() const { return open_; }
 
-  /// The one fetched last. @pre there is one.
-  Transfer& newest_open() { return transfers_[open_ - 1]; }
+  /// The open element that was fetched last. @pre open_elements() is not 0
+  Transfer& newest_open() {
+    SC_ASSERT(open_ != 0, "no element of {} is open, the next is {}", count(), next_);
+    return transfers_[open_ - 1];
+  }
 
   /// Moves all bytes of the open elements.
   void move_open(StoragePort& port);
 
-  /// Moves one piece of open element `which`, below open_elements(), as Transfer::move_piece().
+  /// Moves one piece of open element `which`, as Transfer::move_piece(). @pre which < open_elements()
   void move_piece(std::uint32_t which, std::uint32_t choice, StoragePort& port);
-  std::uint32_t pieces_left(std::uint32_t which) const { return transfers_[which].pieces_left(); }
+  std::uint32_t pieces_left(std::uint32_t which) const {
+    SC_ASSERT(which < open_, "open element {} of {}", which, open_);
+    return transfers_[which].pieces_left();
+  }
 
-  /// All up to an element with the stall bit has moved: nothing goes on until resume().
+  /// True after all elements up to one with the stall bit have moved. The list then waits for resume().
   bool is_stalled() const { return stalls_ && open_ == 0; }
-  void resume() { stalls_ = false; }
-  /// Whether it has stalled behind the element fetched last, or will.
+  /// Continues after the stall. @pre is_stalled()
+  void resume() {
+    SC_ASSERT(is_stalled(), "a list that has not stalled resumes at element {} of {}", next_, count());
+    stalls_ = false;
+  }
+  /// True if the list has stalled after the element fetched last, or will.
   bool stalls() const { return stalls_; }
 
   bool is_done() const { return next_ == count() && open_ == 0; }
 
   const MfcCommand& command() const { return command_; }
-  /// The index of the element to be fetched next.
+  /// Index of the element that is fetched next.
   std::uint32_t next() const { return next_; }
   std::uint32_t count() const { return command_.size / kListElementBytes; }
 
@@ -68,7 +79,7 @@ class ListTransfer {
   std::array<Transfer, kWindow> transfers_;
 };
 
-/// Element `index` of a list as it stands in local store now.
+/// Element `index` of a list, as it is in local store now. @pre it lies in the list and in the local store
 ListElement read_element(std::span<const std::byte> local_store, const MfcCommand& command,
                          std::uint32_t index);
 

@@ -1,5 +1,5 @@
 #pragma once
-// One SPE as an address in main storage: what other SPEs and the PPU reach by DMA.
+// One SPE as a range of main storage, which other SPEs and the PPU reach by DMA.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace softcell::dma {
 
-/// Registers that a transfer of 4 bytes writes, by their offset from the SPE's base address in main storage.
+/// The registers that a put of 4 bytes can write, as offsets from the SPE's base address in main storage.
 /// [SPU thread mapping: problem state from 0x40000] documented
 enum class SpeRegister : std::uint32_t {
   kInMbox = 0x4400C,
@@ -17,25 +17,25 @@ enum class SpeRegister : std::uint32_t {
   kSignal2 = 0x5C00C,
 };
 
-/// Implemented by the SPE, called by whoever writes: any thread, perhaps with reservation locks held. Calls
-/// must be short and must not come back to the address space.
+/// The SPE implements it, and the writer calls it: any thread, perhaps with reservation locks held. An
+/// implementation must be short and must not call the address space.
 ///
-/// What arrives whole: 1, 2, 4 or 8 bytes, each quadword of a transfer within one line, and each quadword of
-/// a longer one as far as the host's memcpy keeps them whole, which it does on x86. So a kernel may poll a
-/// quadword of its local store that another SPE puts to; of several quadwords, any may come first unless a
+/// Written in one access are: 1, 2, 4 or 8 bytes; each quadword of a transfer within one line; and each
+/// quadword of a longer transfer, if the host's memcpy does so, which it does on x86. So a kernel may poll a
+/// quadword of its local store to which another SPE puts. Several quadwords may arrive in any order unless a
 /// fence or barrier orders their commands.
 class LocalStorePort {
  public:
   virtual ~LocalStorePort() = default;
 
-  /// kLocalStoreBytes of host memory, for as long as the port is mapped.
+  /// The local store: kLocalStoreBytes of host memory, aligned to 16, valid as long as the port is mapped.
   virtual std::span<std::byte> local_store() = 0;
 
-  /// Bytes arrive that this SPE did not fetch itself. Called just before, so that no kernel that finds them
-  /// is ahead of this account.
+  /// Somebody else is about to write to this local store. Called just before the bytes change, so that the
+  /// SPE knows of them before its kernel can read them.
   virtual void on_external_write(LocalStoreAddress lsa, std::uint32_t bytes) = 0;
 
-  /// A register was written.
+  /// Somebody writes `value` to a register.
   virtual void on_register_write(SpeRegister which, std::uint32_t value) = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// The memory flow controller of one SPE: it takes the SPU's DMA commands, keeps their order, moves their
-// bytes when its schedule says so, and answers for tag groups.
+// The memory flow controller of one SPE: it queues the SPU's DMA commands, keeps their order, moves their
+// bytes when the schedule says so, and reports the status of tag groups.
 //
 //   issue() --> rules --> translation --> queue of 16 --> local store <-> main storage
 //                              |             |
@@ -8,8 +8,7 @@
 //                              |
 //                              +--> getllar, putllc, putlluc at once --> read_atomic_status()
 //
-// There is no clock: time passes where the SPU meets the MFC, at each call below, and as much of it as the
-// schedule decides.
+// There is no clock: time passes at each call below, and the schedule decides how many bytes move then.
 
 #include <array>
 #include <cstddef>
@@ -34,51 +33,54 @@
 
 namespace softcell::dma {
 
-/// Called by the thread that runs its SPE, and by no other. Allocates nothing but the text of faults.
+/// Only the thread that runs its SPE may call it, unless a function says otherwise. Allocates memory for the
+/// text of faults only.
 class Mfc {
  public:
   /// @param local_store    kLocalStoreBytes long; must outlive the MFC, as must `space`.
-  /// @param stream_number  the SPE's number: tells apart the random schedules of MFCs that never begin a job.
-  /// @param listener       told when this MFC's reservation is lost, by the thread that writes; may be null.
+  /// @param stream_number  the SPE's number, so that MFCs that never begin a job have different random
+  ///                       schedules.
+  /// @param listener       called when this MFC loses its reservation, by the thread that writes to the line;
+  ///                       may be null.
   /// @throws std::invalid_argument  a local store of another size.
   Mfc(std::span<std::byte> local_store, AddressSpace& space, Schedule schedule,
       std::uint64_t stream_number = 0, ReservationListener* listener = nullptr);
 
-  /// Tells `observer` of every command from now on; null: nobody. It must outlive the MFC or be replaced.
+  /// Calls `observer` for every command from now on; null: nobody. It must outlive the MFC or be replaced.
   void set_observer(MfcObserver* observer) { observer_ = observer; }
 
-  /// Where gets bring instructions, as StoragePort has it; anywhere, if these are not called. The second may
-  /// be called by any thread.
+  /// Which part of the local store may hold instructions: see StoragePort. Without these calls, any part. Any
+  /// thread may call expect_code_below().
   void confine_code(LocalStoreAddress end) { port_.confine_code(end); }
   void expect_code_below(LocalStoreAddress end) { port_.expect_code_below(end); }
   void expect_code_everywhere() { port_.expect_code_everywhere(); }
   LocalStoreAddress code_end() const { return port_.code_end(); }
 
-  /// State as after reset: empty queue and tag mask, no status request, no reservation. What is still queued
-  /// is dropped, as after a fault, and its observer hears no more of it; call drain() at the end of a job
-  /// that ended well. Random decisions from here on depend on the schedule's seed and on `job_id`, not on the
-  /// SPE. Statistics go on.
+  /// Resets the MFC: empty queue and tag mask, no status request, no reservation. Commands that are still
+  /// queued are dropped without a call of the observer; call drain() first if the last job ended without a
+  /// fault. From here on, random decisions depend on the schedule's seed and on `job_id`, not on the SPE.
+  /// Statistics are kept.
   void begin_job(std::uint64_t job_id);
 
   /// Queues one DMA command (a write to MFC_Cmd). Its bytes may move at any time until its tag is waited for.
-  /// @param command  lsa, ea and size in bytes, as its kind asks for: see check_command() in mfc_rules.h.
-  /// @return  nothing, or the rule that the command breaks; then nothing is queued.
-  /// @note    A full queue is no error: time passes until a slot is free, and the stall is counted. But the
-  ///          fault list-stalled-for-ever is one, when all that is queued waits for a list that has stalled.
-  /// @note    getllar, putllc and putlluc are done at once and wait for nothing that is queued.
+  /// @param command  lsa, ea and size in bytes, as check_command() in mfc_rules.h requires for its kind.
+  /// @return  nothing, or the rule that the command breaks; then it is not queued.
+  /// @note    A full queue is no error: time passes until a slot is free, and the stall is counted. If all
+  ///          queued commands wait for a list that has stalled, the fault is list-stalled-for-ever.
+  /// @note    getllar, putllc and putlluc execute at once and do not wait for queued commands.
   /// @note    The buffer must stay allocated until the command is complete.
   /// @source  [CBEA, MFC commands] documented
   std::optional<Fault> issue(const MfcCommand& command);
 
-  /// Free slots of the queue, 0..16 (the channel count of MFC_Cmd). Asking takes time, so a loop
-  /// that asks comes to an end.
+  /// Free slots of the queue, 0..16 (the channel count of MFC_Cmd). Time passes, so that a loop that polls it
+  /// ends.
   int free_slots();
 
   /// MFC_WrTagMask and MFC_RdTagMask: bit t is tag t.
   void write_tag_mask(std::uint32_t mask) { tag_mask_ = mask; }
   std::uint32_t tag_mask() const { return tag_mask_; }
 
-  /// MFC_WrTagUpdate: asks for the status of the tags that are in the mask now.
+  /// MFC_WrTagUpdate: requests the status of the tags that are in the mask now.
   /// @param condition  0 immediate, which also cancels an open request; 1 any tag complete; 2 all complete.
   /// @return  nothing, or a fault: tag-update-condition (another value), or tag-update-pending (1 or 2 while
   ///          a request is open).
@@ -86,42 +88,43 @@ class Mfc {
 
   /// MFC_RdTagStat: completes transfers until the requested condition holds, and ends the request.
   /// @return  the requested tags that are complete; or the fault tag-status-not-requested or tag-mask-empty,
-  ///          where the hardware would wait for ever.
+  ///          if the hardware would wait for ever.
   std::variant<std::uint32_t, Fault> read_tag_status();
 
-  /// 1 when read_tag_status() would not wait, else 0 (the channel count of MFC_RdTagStat). Asking takes time.
+  /// 1 if read_tag_status() would not wait, else 0 (the channel count of MFC_RdTagStat). Time passes.
   int tag_status_count();
 
-  /// MFC_RdListStallStat: completes transfers until a list has stalled, and clears the answer.
+  /// MFC_RdListStallStat: completes transfers until a list has stalled, and clears the status.
   /// @return  bit t for each tag t with a list that has stalled since the last read; or the fault
-  ///          list-stall-not-expected, where the hardware would wait for ever.
+  ///          list-stall-not-expected, if the hardware would wait for ever.
   std::variant<std::uint32_t, Fault> read_list_stall_status();
 
-  /// 1 when read_list_stall_status() would not wait, else 0. Asking takes time.
+  /// 1 if read_list_stall_status() would not wait, else 0. Time passes.
   int list_stall_count();
 
-  /// MFC_WrListStallAck: the stalled lists of this tag go on.
-  /// @return  nothing, or the fault list-stall-ack-tag when no list of this tag has stalled.
+  /// MFC_WrListStallAck: acknowledges the stalled lists of this tag, which then continue.
+  /// @return  nothing, or the fault list-stall-ack-tag if no list of this tag has stalled.
   std::optional<Fault> write_list_stall_ack(std::uint32_t tag);
 
-  /// MFC_RdAtomicStat: what the last getllar, putllc or putlluc has done: 4 a getllar, 2 a putlluc, 1 a
-  /// putllc that failed, 0 one that stored. That of a command before it, not read until then, is lost.
-  /// @return  the status; or the fault atomic-status-not-expected, where the hardware would wait for ever.
+  /// MFC_RdAtomicStat: the status of the last getllar, putllc or putlluc: 4 for getllar, 2 for putlluc, 1 for
+  /// a putllc that failed, 0 for one that stored. A status that is not read before the next of these commands
+  /// is lost.
+  /// @return  the status; or the fault atomic-status-not-expected, if the hardware would wait for ever.
   std::variant<std::uint32_t, Fault> read_atomic_status();
 
-  /// 1 when read_atomic_status() would not wait, else 0. Asking takes time.
+  /// 1 if read_atomic_status() would not wait, else 0. Time passes.
   int atomic_status_count();
 
-  /// The SPU has been at a channel that is not the MFC's: time passes here as well. Under the lazy and random
-  /// schedules no command stays queued for more than kMostVisits visits, calls of this class included, so
-  /// that a kernel that polls memory comes to see its own puts leave. (Stalled lists, and what waits for
-  /// them, stay.)
+  /// Lets time pass: the SPU has accessed a channel of another unit. Under the lazy and random schedules a
+  /// command stays queued for at most kMostVisits calls of this function and the others here, so that a
+  /// kernel that polls memory sees its own puts complete. (Stalled lists, and commands that wait for them,
+  /// stay queued.)
   void visit() { pass_a_moment(); }
   static constexpr std::uint64_t kMostVisits = 256;
 
-  /// Moves something that can move, of whatever command. To be called until it is false before the SPU sleeps
-  /// at a channel: the hardware's transfers do not need the SPU.
-  /// @return  false when nothing can move: the queue is empty, or all that is in it has stalled.
+  /// Moves some bytes of any command that can go on. Before the SPU sleeps at a channel, call this until it
+  /// returns false: the hardware's transfers do not need the SPU.
+  /// @return  false if nothing can move: the queue is empty, or all its commands have stalled.
   bool advance();
 
   /// Events since the last call, as bits of SPU_RdEventStat.
@@ -130,13 +133,13 @@ class Mfc {
   static constexpr std::uint32_t kListStallEvent = 0x2;  ///< SN: a list has stalled
   static constexpr std::uint32_t kQueueSlotEvent = 0x8;  ///< QV: a slot became free in a full queue
 
-  /// The fault of a list element, which is found while its command executes and suspends the queue until
-  /// begin_job(). Every call that may return a fault returns this one first; after one that cannot, ask here.
-  /// Gives it once, whoever asked first.
+  /// The fault of a list element, if there is one that no other call has returned. Such a fault occurs while
+  /// the command executes, and suspends the queue until begin_job(). Every call that can return a fault
+  /// returns this one first; call take_fault() after one that cannot.
   std::optional<Fault> take_fault();
 
   /// Completes every queued command, in an order that fences and barriers allow.
-  /// @return  nothing, or why that cannot be: an element's fault, or list-stalled-for-ever.
+  /// @return  nothing, or the fault that prevents it: an element's, or list-stalled-for-ever.
   std::optional<Fault> drain();
 
   const MfcStatistics& statistics() const { return statistics_; }
@@ -149,11 +152,11 @@ class Mfc {
     std::uint32_t mask;
   };
 
-  /// What a slot of the queue holds beside its place in the order.
+  /// The command in a slot of the queue; MfcQueue has its order.
   struct QueuedCommand {
     Transfer transfer;         // of all but lists
-    std::uint64_t number = 0;  // as the observer counts
-    std::uint64_t due = 0;     // the visit by which it is done
+    std::uint64_t number = 0;  // as passed to the observer
+    std::uint64_t due = 0;     // the visit by which it must be complete
     bool started = false;      // under the random schedule: whether its destination is poisoned by now
   };
 
@@ -164,23 +167,23 @@ class Mfc {
   std::optional<Fault> transfer_at_once(const MfcCommand& command);
   void begin_at_once(const MfcCommand& command);
   void count(const MfcCommand& command, CommandKind kind);
-  void tell_issue(const MfcCommand& command);
+  void notify_issue(const MfcCommand& command);
 
   bool is_met(const StatusRequest& request) const;
-  void tell_if_met();
+  void raise_if_met();
   std::uint32_t complete_tags(std::uint32_t mask) const { return mask & ~queue_.busy_tags(); }
 
-  // Time passing: as much as the SPU's visit takes; what is overdue; while the SPU polls.
+  // Let time pass: for one visit of the SPU; for overdue commands; while the SPU polls.
   void pass_a_moment();
   void complete_overdue();
   void answer_poll(SlotSet wanted);
 
-  // Moving on until one of `wanted`, or one tag, or the whole mask is done. False when nothing that these
-  // need can move.
+  // Moves bytes until one of `wanted`, or one tag of the mask, is complete. False if nothing that these need
+  // can move.
   bool progress(SlotSet wanted);
   bool progress_any_tag(std::uint32_t mask);
 
-  /// Those of `slots` that neither wait for another nor for an acknowledgement.
+  /// The slots in `slots` that wait neither for another command nor for an acknowledgement.
   SlotSet movable(SlotSet slots) const {
     return suspended_by_ ? SlotSet{0} : static_cast<SlotSet>(queue_.ready(slots) & ~stalled_);
   }

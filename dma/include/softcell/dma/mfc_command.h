@@ -9,14 +9,14 @@
 
 namespace softcell::dma {
 
-/// The opcodes, in the manual's spelling; all of them, so that an unsupported one is refused by name.
+/// All opcodes in the manual's spelling, so that an unsupported one is refused by name.
 enum class MfcOpcode : std::uint16_t {
 #define SC_MFC_OPCODE(name, code) name = (code),
 #include "softcell/dma/mfc_opcodes.def"
 #undef SC_MFC_OPCODE
 };
 
-/// The manual's spelling ("get", "putrlb"), or an empty string for a value that is no command.
+/// The opcode's name in the manual's spelling ("get", "putrlb"), or an empty string if it is no opcode.
 std::string_view name(MfcOpcode opcode);
 
 constexpr std::uint32_t kTagCount = 32;             // tag groups of one MFC [CBEA, MFC commands] documented
@@ -30,8 +30,8 @@ enum class CommandKind : std::uint8_t {
   kTransfer,  ///< get, put and putr: one range of up to 16 KB
   kList,      ///< their list forms: `ea` holds MFC_EAH and the list's local-store address, `size` its length
   kStart,     ///< their start forms, which belong to the proxy queue
-  kLine,      ///< getllar, putllc, putlluc: 128 bytes, at once, without a tag; the size is ignored
-  kQueuedLine,  ///< putqlluc: 128 bytes, in its turn; the size is ignored
+  kLine,      ///< getllar, putllc, putlluc: one line, at once, without a tag; the size is ignored
+  kQueuedLine,  ///< putqlluc: one line, through the queue; the size is ignored
   kSignal,      ///< sndsig: 4 bytes to a register
   kOrdering,    ///< barrier, mfceieio, mfcsync: no address, no size
   kCacheHint,   ///< sdcrt, sdcrtst, sdcrz, sdcrst, sdcrf: a range of main storage, no local store
@@ -48,7 +48,7 @@ struct MfcCommand {
 
   constexpr MfcOpcode opcode() const { return static_cast<MfcOpcode>(word & 0xFFFF); }
 
-  /// What it is, whatever its parameters. Plain gets and puts, which are nearly all, are known at once.
+  /// The kind of the opcode, whatever the parameters. Fast for plain gets and puts, which most commands are.
   CommandKind kind() const { return is_plain_transfer() ? CommandKind::kTransfer : kind_of_other(); }
 
   /// Main storage to local store, in any form (fence, barrier, list, start).
@@ -60,13 +60,13 @@ struct MfcCommand {
   constexpr bool has_fence() const {
     return (has_order_bits() && (word & 0x02) != 0) || opcode() == MfcOpcode::putqlluc;
   }
-  /// As a fence, and later commands of its tag wait for it; true for the b forms, mfceieio and mfcsync. (What
-  /// these two order beyond the tag, accesses of other units, is in order here anyway.)
+  /// A fence for which later commands of its tag wait, too: the b forms, mfceieio and mfcsync. (The last two
+  /// also order accesses of other units, which are always in order here.)
   constexpr bool has_barrier() const {
     return (has_order_bits() && (word & 0x01) != 0) || opcode() == MfcOpcode::mfceieio ||
            opcode() == MfcOpcode::mfcsync;
   }
-  /// Waits for every earlier command of the queue, of whatever tag, and every later one waits for it.
+  /// Waits for every earlier command of the queue, of any tag, and every later one waits for it.
   constexpr bool is_queue_barrier() const { return opcode() == MfcOpcode::barrier; }
 
   /// The list of a list command: its address in local store, from MFC_EAL.

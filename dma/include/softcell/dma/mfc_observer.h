@@ -1,5 +1,5 @@
 #pragma once
-// Who wants to know when commands come and go.
+// The interface of an observer of an MFC's commands.
 
 #include <cstdint>
 
@@ -12,15 +12,15 @@ class MfcObserver {
  public:
   virtual ~MfcObserver() = default;
 
-  /// A legal command has come, immediate ones too.
-  /// @param number  of this MFC's commands, from 1 up.
-  /// @param bytes   that it moves, of a list the sum of its elements.
+  /// The MFC has accepted a command.
+  /// @param number  counts the commands of this MFC, from 1.
+  /// @param bytes   bytes that the command moves; for a list, the sum over its elements.
   virtual void on_issue(std::uint64_t number, const MfcCommand& command, std::uint64_t bytes) = 0;
 
-  /// All its bytes have moved.
+  /// All bytes of the command have moved.
   virtual void on_complete(std::uint64_t number) = 0;
 
-  /// In place of `on_complete`: a putllc that found its reservation lost. Nothing has moved.
+  /// Called in place of `on_complete` for a putllc whose reservation was lost. Nothing has moved.
   virtual void on_reservation_lost(std::uint64_t number) = 0;
 };
 

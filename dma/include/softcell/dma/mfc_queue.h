@@ -1,11 +1,13 @@
 #pragma once
-// Which of the queued commands may go: tag groups, fences and barriers. No bytes here, and no choice among
-// them.
+// The order of queued commands: which of them tag groups, fences and barriers let start. It moves no bytes
+// and does not choose among those that may start.
 
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <limits>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/mfc_command.h"
 
 namespace softcell::dma {
@@ -13,10 +15,13 @@ namespace softcell::dma {
 /// A set of queue slots: bit i is slot i.
 using SlotSet = std::uint16_t;
 
-constexpr SlotSet slot_bit(int slot) { return static_cast<SlotSet>(1u << slot); }
+constexpr SlotSet slot_bit(int slot) {
+  SC_ASSERT(slot >= 0 && slot < std::numeric_limits<SlotSet>::digits, "queue slot {}", slot);
+  return static_cast<SlotSet>(1u << slot);
+}
 
-/// The SPU command queue of one MFC as a scoreboard: each slot holds the set of slots it waits for, which is
-/// settled when it is filled, because order reaches backwards only:
+/// The SPU command queue of one MFC as a scoreboard. Each slot holds the set of slots that it waits for.
+/// push() determines that set, because a command waits for earlier ones only:
 ///
 ///   plain               waits for earlier barriers of its tag, and for earlier `barrier` commands of any
 ///   fence               waits for every earlier command of its tag
@@ -38,8 +43,10 @@ class MfcQueue {
   /// The occupied slots.
   SlotSet slots() const { return occupied_; }
 
-  /// Fills a free slot. @pre not full, tag 0..31. @return its number.
+  /// Puts a command into a free slot. @pre not full, tag 0..31. @return  the slot.
   int push(const MfcCommand& command) {
+    SC_ASSERT(!full(), "all {} slots are occupied", kSlots);
+    SC_ASSERT(command.tag < kTagCount, "tag {}; the highest is {}", command.tag, kTagCount - 1);
     const int slot = std::countr_one(occupied_);
     SlotSet& group = groups_[command.tag];
     const SlotSet before = predecessors(command, group);
@@ -55,8 +62,10 @@ class MfcQueue {
     return slot;
   }
 
-  /// Empties a slot whose command is done. @pre occupied, and waiting for nothing.
+  /// Empties the slot of a command that is complete. @pre it is occupied and waits for no other
   void complete(int slot) {
+    SC_ASSERT((occupied_ & slot_bit(slot)) != 0, "slot {} is empty", slot);
+    SC_ASSERT(waits_for_[slot] == 0, "slot {} still waits for slots {}", slot, waits_for_[slot]);
     const auto others = static_cast<SlotSet>(~slot_bit(slot));
     occupied_ &= others;
     barriers_ &= others;
@@ -85,13 +94,13 @@ class MfcQueue {
     return slots;
   }
 
-  /// Those of `slots` that wait for nothing.
+  /// The slots in `slots` that wait for no other.
   SlotSet ready(SlotSet slots = kAllSlots) const {
     return static_cast<SlotSet>(slots & occupied_ & ~waiting_);
   }
 
-  /// `slots` and all that must be done before the last of them can go. Some of it is ready, unless it is
-  /// empty.
+  /// `slots` and all slots that must complete before them. If it is not empty, at least one slot in it is
+  /// ready.
   SlotSet with_predecessors(SlotSet slots) const {
     SlotSet all = slots;
     for (SlotSet added = slots; added != 0;) {
@@ -105,7 +114,7 @@ class MfcQueue {
     return all;
   }
 
-  /// The one of `slots` that was filled last, or first. @pre not empty, all occupied.
+  /// The slot in `slots` that was filled last, or first. @pre slots is not empty, all are occupied
   int newest(SlotSet slots) const {
     return best_of(slots, [this](int a, int b) { return issued_[a] > issued_[b]; });
   }
@@ -113,7 +122,10 @@ class MfcQueue {
     return best_of(slots, [this](int a, int b) { return issued_[a] < issued_[b]; });
   }
 
-  std::uint32_t tag_of(int slot) const { return tags_[slot]; }
+  std::uint32_t tag_of(int slot) const {
+    SC_ASSERT((occupied_ & slot_bit(slot)) != 0, "slot {} is empty", slot);
+    return tags_[slot];
+  }
 
   static constexpr SlotSet kAllSlots = 0xFFFF;
 
@@ -126,6 +138,7 @@ class MfcQueue {
 
   template <class Better>
   static int best_of(SlotSet slots, Better better) {
+    SC_ASSERT(slots != 0, "the first or last of no slots");
     int best = std::countr_zero(slots);
     for (SlotSet rest = slots; rest != 0; rest &= static_cast<SlotSet>(rest - 1)) {
       const int slot = std::countr_zero(rest);

@@ -1,5 +1,5 @@
 #pragma once
-// What makes a single DMA command, or one element of a list, legal, whatever else is going on.
+// The rules for a single DMA command or list element that do not depend on any other state.
 
 #include <optional>
 
@@ -10,7 +10,7 @@
 namespace softcell::dma {
 
 /// Checks a command of the SPU's queue against the rules for its opcode, tag, size, alignment and local-store
-/// range. Whether its effective address is mapped is the address space's to say (AddressSpace::resolve).
+/// range. AddressSpace::resolve() checks whether its effective address is mapped.
 ///
 ///   command               size                      LSA and EA
 ///   get, put, putr        1, 2, 4, 8                both multiples of the size, low four bits equal
@@ -25,14 +25,15 @@ namespace softcell::dma {
 /// @source  [CBEA, MFC commands] documented; what is not is marked in rules.def
 std::optional<Fault> check_command(const MfcCommand& command);
 
-/// Checks one element of a list command, whose fetch has come to local-store address `lsa`: reserved bits,
-/// size, alignment, the 4 GB rule and the local-store range.
-/// @param index  from 0, for the message.
+/// Checks one element of a list command: reserved bits, size, alignment, the 4 GB rule and the local-store
+/// range.
+/// @param index  from 0.
+/// @pre  below the number of elements. @param lsa  local-store address that the list has reached.
 /// @return  as check_command(); the detail names the element.
 std::optional<Fault> check_element(const MfcCommand& command, std::uint32_t index, ListElement element,
                                    LocalStoreAddress lsa);
 
-/// "element 3 of 12: " and what follows: where a list's fault comes from.
+/// "element 3 of 12 (from 0): " followed by `detail`, for the fault of a list.
 std::string describe_element(const MfcCommand& command, std::uint32_t index, std::string_view detail);
 
 }  // namespace softcell::dma

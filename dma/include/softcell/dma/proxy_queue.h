@@ -1,5 +1,5 @@
 #pragma once
-// DMA that the PPU side has an SPE's MFC do: the second, smaller command queue.
+// The proxy command queue: DMA that the PPU side issues to an SPE's MFC.
 //
 //   PPU   issue(gets, tag 3) --> queue of 8 --> local store <-> main storage --> start_spu()
 //         wait_all(1 << 3)  <-- complete
@@ -19,48 +19,48 @@
 
 namespace softcell::dma {
 
-/// Takes everything that an Mfc takes but lists and the line commands that answer at a channel (getllar,
-/// putllc, putlluc), and puts and gets with start, which lets the SPU run once their bytes have moved. Its
-/// tag groups are its own: no order reaches from here to the SPU's queue.
+/// Accepts the commands that an Mfc accepts, except lists and the line commands that answer at a channel
+/// (getllar, putllc, putlluc). It also accepts puts and gets with start, which start the SPU when their bytes
+/// have moved. Its tag groups are its own: its commands are not ordered with those of the SPU's queue.
 ///
-/// Any thread, the SPE's too. As in an Mfc there is no clock: commands move at the calls below, as the
-/// schedule decides, and none stays queued for more than Mfc::kMostVisits of them. Somebody must call visit()
-/// or advance() as long as the PPU waits for something else, which may need these commands.
+/// Any thread may call it, the SPE's included. As in an Mfc there is no clock: commands move at the calls
+/// below, as the schedule decides, and stay queued for at most Mfc::kMostVisits of them. While the PPU waits
+/// for something that may need these commands, somebody must call visit() or advance().
 ///
 /// [CBEA, MFC proxy command queue] documented
 class ProxyQueue : private MfcObserver {
  public:
   static constexpr int kSlots = 8;
 
-  /// @param spe            whose local store it is; must outlive the queue, as must `space`.
-  /// @param stream_number  tells apart the random schedules of several queues.
-  /// @param start_spu      called, with no lock held, by the thread that has moved the last byte of a command
-  ///                       with start; to have no effect on an SPU that runs.
+  /// @param spe            the SPE whose local store is used; must outlive the queue, as must `space`.
+  /// @param stream_number  a different number for each queue, so that their random schedules differ.
+  /// @param start_spu      called without a lock by the thread that has moved the last byte of a command with
+  ///                       start. Must have no effect on an SPU that runs. Not empty.
   /// @throws std::runtime_error, std::invalid_argument  as Mfc.
   ProxyQueue(LocalStorePort& spe, AddressSpace& space, Schedule schedule, std::uint64_t stream_number,
              std::function<void()> start_spu);
   ProxyQueue(const ProxyQueue&) = delete;
   ProxyQueue& operator=(const ProxyQueue&) = delete;
 
-  /// Queues a command. With all slots taken, completes one first.
-  /// @return  nothing, or the rule that it breaks, and then nothing is queued: those of Mfc::issue(), or
-  ///          not-on-proxy-queue.
+  /// Queues a command. If all slots are occupied, completes one first.
+  /// @return  nothing, or the rule that the command breaks, one of Mfc::issue() or not-on-proxy-queue; then
+  ///          it is not queued.
   std::optional<Fault> issue(const MfcCommand& command);
 
-  /// Those of these tags that have no command queued (Prxy_TagStatus). Asking takes time.
+  /// The tags of `tag_mask` without a queued command (Prxy_TagStatus). Time passes.
   std::uint32_t complete_tags(std::uint32_t tag_mask);
 
-  /// Completes the commands of all, or of at least one, of these tags. @return  as complete_tags().
+  /// Completes the commands of all, or of at least one, of the tags. @return  as complete_tags().
   std::uint32_t wait_all(std::uint32_t tag_mask);
   std::uint32_t wait_any(std::uint32_t tag_mask);
 
-  /// Room for this many commands, 0..8 (MFC_QStatus). Asking takes time.
+  /// Number of commands that can be queued without waiting, 0..8 (MFC_QStatus). Time passes.
   int free_slots();
 
-  /// Time passes. Costs one atomic load when nothing is queued.
+  /// Lets time pass. Costs one atomic load if nothing is queued.
   void visit();
 
-  /// Moves something. @return  false when nothing is queued.
+  /// Moves some bytes. @return  false if nothing is queued.
   bool advance();
 
  private:

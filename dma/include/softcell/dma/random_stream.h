@@ -1,22 +1,25 @@
 #pragma once
-// The random numbers of a schedule: the same on every host, for ever, because a seed is what a bug report
-// quotes.
+// The random numbers of a schedule. They are the same on every host and in every version, because bug reports
+// quote seeds.
 
 #include <cstdint>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::dma {
 
-/// splitmix64 (Steele, Lea, Flood 2014): one 64-bit state, a well mixed output for each step of it.
+/// splitmix64 (Steele, Lea, Flood 2014): a 64-bit counter whose values are mixed. Used by one thread.
 class RandomStream {
  public:
-  /// Streams of one seed with different `stream` are unrelated.
+  /// Streams with the same seed and different `stream` are independent.
   RandomStream(std::uint64_t seed, std::uint64_t stream)
       : state_(mix(seed + kGamma) ^ mix(stream * kGamma + 1)) {}
 
   std::uint64_t next() { return mix(state_ += kGamma); }
 
-  /// Uniform in 0..bound-1, up to a bias below 2^-32 x bound. @pre bound is not 0.
+  /// A uniform number in 0..bound-1, with a bias below 2^-32 x bound. @pre bound is not 0
   std::uint32_t below(std::uint32_t bound) {
+    SC_ASSERT(bound != 0, "a random number below {}", bound);
     return static_cast<std::uint32_t>(((next() >> 32) * bound) >> 32);
   }
 

@@ -1,11 +1,11 @@
 #pragma once
-// Who has reserved which line of main storage, and every copy that must keep whole lines whole.
+// Reservations of lines of main storage, and the copies that must respect them.
 //
 //   SPE 0   getllar  ------ reserve ------ change ------ putllc: stored, the reservation of SPE 1 is lost
 //   SPE 1        getllar -- reserve ------------------------------------ putllc: failed
 //
-// Each SPE and each thread of the PPU side holds at most one reservation, of one line of 128 bytes. Any write
-// to that line by anybody else loses it. [CBEA, atomic commands] documented
+// Each SPE and each thread of the PPU side holds at most one reservation, of one line of 128 bytes. A write
+// to that line by anybody else cancels the reservation. [CBEA, atomic commands] documented
 
 #include <cstddef>
 #include <cstdint>
@@ -18,19 +18,19 @@ namespace softcell::dma {
 class LocalStores;
 class Reservations;
 
-/// Told when a reservation is lost to somebody else's write: event LR. Called by the writer's thread, with
-/// locks held: it must be short, and not come back to the Reservations.
+/// Called when somebody else's write cancels a reservation: event LR. The writer's thread calls it with locks
+/// held: it must be short and must not call the Reservations.
 class ReservationListener {
  public:
   virtual ~ReservationListener() = default;
   virtual void on_reservation_lost() = 0;
 };
 
-/// One holder's place: an MFC's, or that of a thread of the PPU side (lwarx and stwcx., with the same
-/// granule). Used by one thread at a time; must not outlive its Reservations.
+/// A holder of a reservation: an MFC, or a thread of the PPU side (lwarx and stwcx., with the same granule).
+/// One thread at a time uses it. It must not outlive its Reservations.
 class ReservationHolder {
  public:
-  /// @throws std::runtime_error  all kMaxHolders places are taken.
+  /// @throws std::runtime_error  there are kMaxHolders holders already.
   explicit ReservationHolder(Reservations& reservations, ReservationListener* listener = nullptr);
   ~ReservationHolder();
   ReservationHolder(const ReservationHolder&) = delete;
@@ -42,50 +42,53 @@ class ReservationHolder {
   int place_ = -1;
 };
 
-/// One for each AddressSpace. Thread safe; different holders may call at the same time.
+/// The reservations of one AddressSpace. Thread safe: different holders may call at the same time.
 ///
-/// Copies of up to one line, and the line commands, are indivisible and ordered among each other, so that
-/// memory may be polled by small gets. A longer copy is indivisible line by line where somebody has reserved
-/// the line, and otherwise only as far as the host's memcpy is; two longer copies that overlap without any
-/// order are the kernel's own race.
+/// Copies within one line and the line commands are atomic with respect to each other and ordered, so that
+/// small gets may poll memory. A longer copy is atomic line by line if somebody has reserved the line, and
+/// otherwise only as far as the host's memcpy is. If two longer copies overlap and nothing orders them, that
+/// is a race of the kernel.
 class Reservations {
  public:
   static constexpr int kMaxHolders = 32;
 
-  /// @param local_stores  told of writes to local stores and registers of SPEs; null: there are none.
+  /// @param local_stores  called for writes to local stores and registers of SPEs; null: there are none.
   explicit Reservations(LocalStores* local_stores = nullptr);
   ~Reservations();
   Reservations(const Reservations&) = delete;
   Reservations& operator=(const Reservations&) = delete;
 
-  /// getllar: copies the line and reserves it, giving up what the holder had reserved before, of whose loss
-  /// nothing is heard any more. With `bytes` of 4 or 8 it is lwarx or ldarx, which reserve the line as well.
-  /// @param ea  multiple of `bytes`. @param host  its bytes. @param to  where they go.
+  /// getllar: copies the line and reserves it. The holder's earlier reservation ends, without an event. With
+  /// `bytes` 4 or 8 it is lwarx or ldarx, which reserve the whole line, too.
+  /// @param ea  multiple of `bytes`. @param host  the host's address of these bytes. @param to  destination.
   void load_and_reserve(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
                         std::uint32_t bytes = kLineBytes);
 
-  /// putllc: stores 128 bytes if the holder's reservation of this very line stands, and gives the reservation
-  /// up in either case. With `bytes` of 4 or 8 it is stwcx. or stdcx. @return whether it stored.
+  /// putllc: stores a line if the holder still has it reserved, and ends the reservation in either case. With
+  /// `bytes` 4 or 8 it is stwcx. or stdcx.
+  /// @return  true if it stored.
   bool store_conditional(ReservationHolder& holder, EffectiveAddress ea, std::byte* host,
                          const std::byte* from, std::uint32_t bytes = kLineBytes);
 
-  /// putlluc: stores 128 bytes; everybody's reservation of the line is lost, the holder's own given up.
+  /// putlluc: stores a line and cancels all reservations of it; the holder's own ends without an event.
   void store_line(ReservationHolder& holder, EffectiveAddress line, std::byte* host, const std::byte* from);
 
-  /// A get's bytes: [ea, ea + bytes) from `host` to `to`. @param bytes  1..16384.
-  /// @param may_be_code  whether they may be executed at `to`: local_store_bytes.h.
+  /// Copies the bytes of a get, [ea, ea + bytes), from `host` to `to`. @param bytes 1..16384.
+  /// @param may_be_code  true if the bytes may be instructions: see local_store_bytes.h.
   void read(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host, std::byte* to,
             std::uint32_t bytes, bool may_be_code = true);
 
-  /// A put's bytes; loses reservations of the lines it touches. The holder's own is lost too, without an
-  /// event (as emulators have it; what the hardware does with a plain put of the same SPE is unconfirmed).
+  /// Copies the bytes of a put and cancels the reservations of the lines that it touches. The holder's own
+  /// ends, too, without an event (as in other emulators; what the hardware does for a plain put of the same
+  /// SPE is unconfirmed).
+  /// @param bytes  1..16384, or more for whole lines of sdcrz.
   void write(ReservationHolder& holder, EffectiveAddress ea, std::byte* host, const std::byte* from,
              std::uint32_t bytes);
 
-  /// Gives up what the holder has reserved, if anything, without an event.
+  /// Ends the holder's reservation, if it has one, without an event.
   void give_up(ReservationHolder& holder);
 
-  /// Whether the holder's reservation stands.
+  /// True if the holder has a reservation.
   bool holds(const ReservationHolder& holder) const;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
-// When queued transfers happen. The hardware may finish one at any time between its issue and the wait for
-// its tag; a correct kernel gives the same bits under every schedule, one that reads or overwrites too early
-// does not.
+// When queued transfers happen. The hardware may complete a transfer at any time between its issue and the
+// wait for its tag. A correct kernel gives the same bits under every schedule; a kernel that reads or
+// overwrites too early does not.
 
 #include <cstdint>
 #include <string>
@@ -11,11 +11,14 @@ namespace softcell::dma {
 
 struct Schedule {
   enum Kind : std::uint8_t {
-    kEager,  ///< at issue, or as soon as what they wait for is done
-    kLazy,   ///< as late as waits, a full queue, ordering and Mfc::kMostVisits allow; of several that may go,
-             ///< the last issued first
-    kRandom,  ///< at random moments, line by line, in any order that fences, barriers and tags allow; what a
-              ///< get is about to overwrite is poisoned first; reproducible by the seed
+    /// At issue, or as soon as the commands that they wait for are complete.
+    kEager,
+    /// As late as waits, a full queue, ordering and Mfc::kMostVisits allow. If several may move, the one
+    /// issued last moves first.
+    kLazy,
+    /// At random moments, line by line, in any order that fences, barriers and tags allow. The destination of
+    /// a get is poisoned first. The seed reproduces it.
+    kRandom,
   };
   Kind kind = kEager;
   std::uint64_t seed = 0;  ///< of kRandom only

@@ -1,11 +1,12 @@
 #pragma once
-// One MFC's door to main storage: where an effective address lies, and every copy through it.
+// One MFC's access to main storage: it translates effective addresses and copies bytes.
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <variant>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/address_space.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/reservations.h"
@@ -13,7 +14,7 @@
 
 namespace softcell::dma {
 
-/// Where bytes of main storage lie, as resolved once for a command.
+/// A translated address of main storage.
 struct StoragePlace {
   EffectiveAddress ea = {};
   std::byte* host = nullptr;
@@ -21,19 +22,21 @@ struct StoragePlace {
   StoragePlace after(std::uint32_t bytes) const { return {ea + bytes, host + bytes}; }
 };
 
-/// Used by the thread of its MFC, except for expect_code_below().
+/// Only the thread of its MFC may use it, except for expect_code_below().
 ///
-/// It knows where the local store may hold instructions: those bytes it writes as local_store_bytes.h says,
-/// all others in the host's fastest way.
+/// It knows which part of the local store may hold instructions. It writes those bytes as local_store_bytes.h
+/// requires, and all others in the host's fastest way.
 class StoragePort {
  public:
-  /// @param local_store  the MFC's, kLocalStoreBytes.
-  /// @param listener  told when this MFC's reservation is lost; may be null.
+  /// @param local_store  the MFC's local store, kLocalStoreBytes long.
+  /// @param listener  called when this MFC loses its reservation; may be null.
   StoragePort(const std::byte* local_store, AddressSpace& space, ReservationListener* listener)
       : local_store_(local_store),
         translation_(space),
         reservations_(space.reservations()),
-        holder_(reservations_, listener) {}
+        holder_(reservations_, listener) {
+    SC_ASSERT(local_store != nullptr, "an MFC without a local store");
+  }
 
   /// As AddressSpace::resolve().
   std::variant<StoragePlace, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) {
@@ -42,8 +45,8 @@ class StoragePort {
     return StoragePlace{ea, std::get<std::byte*>(resolved)};
   }
 
-  /// The lines that [ea, ea + bytes) touches. Buffers start at lines and own theirs whole, so that a line
-  /// belongs to the buffer that has its first quadword.
+  /// As resolve() for all lines that [ea, ea + bytes) touches. Buffers consist of whole lines, so that a line
+  /// belongs to the buffer that contains its first quadword.
   std::variant<StoragePlace, Fault> resolve_lines(EffectiveAddress ea, std::uint32_t bytes,
                                                   SpeAccess wanted) {
     const EffectiveAddress first{ea.value / kLineBytes * kLineBytes};
@@ -52,33 +55,43 @@ class StoragePort {
     return resolve(first, last - first.value + kQuadwordBytes, wanted);
   }
 
-  /// Instructions lie at the bottom of the local store, below `end`, and will do so until somebody says
-  /// otherwise. Without this call they may lie anywhere.
-  void confine_code(LocalStoreAddress end) { code_end_.store(end.value, std::memory_order_relaxed); }
+  /// Declares that all instructions lie below `end`, until a later call says otherwise. Without this call
+  /// they may lie anywhere.
+  /// @pre  end <= kLocalStoreBytes
+  void confine_code(LocalStoreAddress end) {
+    SC_ASSERT(end.value <= kLocalStoreBytes, "instructions end at {}, outside the local store", end);
+    code_end_.store(end.value, std::memory_order_relaxed);
+  }
 
-  /// An image will arrive that has instructions up to `end`. Any thread.
+  /// Declares that an image will arrive with instructions up to `end`. Any thread.
+  /// @pre  end <= kLocalStoreBytes
   void expect_code_below(LocalStoreAddress end) {
+    SC_ASSERT(end.value <= kLocalStoreBytes, "instructions end at {}, outside the local store", end);
     std::uint32_t known = code_end_.load(std::memory_order_relaxed);
     while (known < end.value &&
            !code_end_.compare_exchange_weak(known, end.value, std::memory_order_relaxed)) {
     }
   }
 
-  /// What has been read so far may be instructions, and what will be, too.
+  /// Declares that all bytes may be instructions, both those that were read so far and later ones.
   void expect_code_everywhere() {
     const std::uint32_t known = code_end_.exchange(kLocalStoreBytes, std::memory_order_relaxed);
     if (known == kLocalStoreBytes) return;
     flush_local_store(local_store_ + known, kLocalStoreBytes - known);
   }
 
-  /// Behind which no instructions are expected.
+  /// The end of the part that may hold instructions.
   LocalStoreAddress code_end() const { return {code_end_.load(std::memory_order_relaxed)}; }
 
-  /// @param bytes  1..16384.
+  /// Copies to the local store: Reservations::read(). @param bytes  1..16384. @pre `to` is in the local store
   void read(const StoragePlace& place, std::byte* to, std::uint32_t bytes) {
+    SC_ASSERT(to >= local_store_ && to + bytes <= local_store_ + kLocalStoreBytes,
+              "{} bytes from {} leave the local store: {} bytes past its begin", bytes, place.ea,
+              to - local_store_);
     const bool may_be_code = static_cast<std::size_t>(to - local_store_) < code_end().value;
     reservations_.read(holder_, place.ea, place.host, to, bytes, may_be_code);
   }
+  /// Copies to main storage: Reservations::write().
   void write(const StoragePlace& place, const std::byte* from, std::uint32_t bytes) {
     reservations_.write(holder_, place.ea, place.host, from, bytes);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The bytes of one transfer on their way, cut at lines of main storage as the hardware cuts them.
+// A transfer in progress, cut into pieces at lines of main storage as the hardware cuts it.
 //
 //   EA        ..|........|........|........|..       lines of 128 bytes
 //   transfer        <--------------------->          a piece each: 4 pieces here, moved in any order
@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/mfc_command.h"
@@ -17,10 +18,10 @@
 
 namespace softcell::dma {
 
-/// A legal, resolved transfer. Knows nothing of queues, tags or order.
+/// A legal, translated transfer; queue, tags and order are MfcQueue's. Used by the thread of its MFC.
 class Transfer {
  public:
-  /// One that moves nothing.
+  /// A transfer of no bytes.
   Transfer() = default;
 
   /// @param from  `bytes` of main storage, 1..16384.
@@ -31,17 +32,19 @@ class Transfer {
     return Transfer(to, nullptr, from, bytes);
   }
 
-  /// Moves whatever has not moved yet.
+  /// Moves all bytes that have not moved yet.
   void move_rest(StoragePort& port);
 
-  /// Moves one piece: number `choice`, below pieces_left(), of those not moved yet, lowest address first.
+  /// Moves one piece: number `choice` of those that have not moved yet, lowest address first.
+  /// @pre  choice < pieces_left()
   void move_piece(std::uint32_t choice, StoragePort& port);
 
   std::uint32_t pieces_left() const { return pieces_left_; }
 
-  /// Fills the destination of a get, as the bytes that the hardware leaves in it are nobody's business until
-  /// it has ended. @pre nothing has moved.
+  /// Fills the destination of a get with kPoison: until the get is complete, its contents are undefined.
+  /// @pre  nothing has moved
   void poison() {
+    SC_ASSERT(pieces_left_ == pieces_, "{} of {} pieces have moved", pieces_ - pieces_left_, pieces_);
     if (to_ != nullptr) fill_local_store(to_, kPoison, size_);
   }
   /// As a float of the SPU about -1.2e17, as an integer about -6e8.
@@ -58,7 +61,9 @@ class Transfer {
         from_(from),
         size_(bytes),
         pieces_((offset_in_line() + bytes + kLineBytes - 1) / kLineBytes),
-        pieces_left_(pieces_) {}
+        pieces_left_(pieces_) {
+    SC_ASSERT(bytes != 0 && pieces_ <= kMaxPieces, "a transfer of {} bytes at {}", bytes, storage.ea);
+  }
 
   std::uint32_t offset_in_line() const { return static_cast<std::uint32_t>(storage_.ea.value % kLineBytes); }
   void move(std::uint32_t begin, std::uint32_t end, StoragePort& port);

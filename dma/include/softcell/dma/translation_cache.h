@@ -1,6 +1,6 @@
 #pragma once
-// An MFC's own copy of the mappings it used last, so that most commands take no lock: what a TLB is to the
-// hardware.
+// An MFC's own copies of the mappings that it used last, so that most commands take no lock. It is the
+// hardware's TLB.
 
 #include <array>
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace softcell::dma {
 
-/// Used by one thread. The address space may change at any time in others: its generation tells when copies
-/// are stale.
+/// Used by one thread. Other threads may change the address space at any time; its generation number says
+/// when copies are stale.
 class TranslationCache {
  public:
   explicit TranslationCache(const AddressSpace& space) : space_(&space) {}

@@ -6,16 +6,17 @@
 
 namespace softcell::ls_sim {
 
-/// Which way a channel goes, as the SPU sees it; kNone: there is no such channel.
+/// Direction of a channel as the SPU sees it; kNone: there is no such channel.
 enum class ChannelAccess : std::uint8_t { kNone, kRead, kWrite };
 
-/// The numbers of channels are below this.
+/// All channel numbers are below this.
 inline constexpr std::uint32_t kChannelCount = 72;
 
-/// The manual's spelling of a channel's number ("MFC_RdTagStat"); an empty string for a number that is no
-/// channel. [CBEA, channels] documented
+/// The channel's name in the manual's spelling ("MFC_RdTagStat"); an empty string if there is no such
+/// channel. Any thread. [CBEA, channels] documented
 std::string_view channel_name(std::uint32_t number);
 
+/// The channel's direction. Any thread.
 ChannelAccess channel_access(std::uint32_t number);
 
 }  // namespace softcell::ls_sim

@@ -1,5 +1,5 @@
 #pragma once
-// The SPU's channels: its only door to the MFC and to the world.
+// The SPU's channels: its only way to the MFC and to anything outside.
 
 #include <cstdint>
 #include <memory>
@@ -16,28 +16,29 @@ enum class Channel : std::uint8_t {
 #undef SC_CHANNEL
 };
 
-/// What a channel operation gave: a value, or the fault that stops the SPU. It fits two registers, as there
-/// is one for each command of a kernel.
+/// The result of a channel operation: a value, or the fault that stops the SPU. It fits into two registers,
+/// because every command of a kernel makes one.
 struct ChannelReply {
   std::uint32_t value = 0;
   std::unique_ptr<dma::Fault> fault;
 };
 
-/// What an engine sees of its surroundings. Called by the thread that runs the SPE. Reads of an empty and
-/// writes of a full channel wait.
+/// The channels as an engine calls them, from the thread that runs the SPE. Reading an empty channel and
+/// writing a full one wait.
 class ChannelPort {
  public:
   virtual ~ChannelPort() = default;
   virtual ChannelReply read(std::uint32_t channel) = 0;
   virtual ChannelReply write(std::uint32_t channel, std::uint32_t value) = 0;
 
-  /// How many reads or writes would not wait: rchcnt.
+  /// The number of reads or writes that would not wait: rchcnt.
   virtual ChannelReply count(std::uint32_t channel) = 0;
 
-  /// A whole DMA command: writes to MFC_LSA, MFC_EAH, MFC_EAL, MFC_Size, MFC_TagID and MFC_Cmd in one call.
+  /// Issues a DMA command: the writes to MFC_LSA, MFC_EAH, MFC_EAL, MFC_Size, MFC_TagID and MFC_Cmd in one
+  /// call.
   virtual ChannelReply issue(const dma::MfcCommand& command) = 0;
 
-  /// The instruction `sync`: what has been written to the local store is what is executed from now on.
+  /// The instruction `sync`: from now on the SPU executes what was written to the local store.
   virtual void sync() = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What checked kernels did wrong, each mistake once, with how often it happened.
+// Findings: the mistakes of checked kernels, each once, with its count.
 
 #include <cstdint>
 #include <mutex>
@@ -15,15 +15,17 @@ bool is_same_mistake(const dma::Fault& a, const dma::Fault& b);
 
 struct Finding {
   dma::Fault fault;         ///< of its first occurrence
-  std::uint64_t count = 0;  ///< how often the same mistake happened, on any SPE
+  std::uint64_t count = 0;  ///< occurrences with the same rule, kernel and source line, on any SPE
 };
 
-/// Thread safe.
+/// Collects findings. Thread safe.
 class Findings {
  public:
+  /// Counts an occurrence.
   void add(const dma::Fault& fault);
 
-  /// In order of rule, kernel and place, so that the list does not depend on the order of threads.
+  /// All findings, sorted by rule, kernel and source line, so that the list does not depend on the order of
+  /// threads.
   std::vector<Finding> list() const;
   bool empty() const;
 

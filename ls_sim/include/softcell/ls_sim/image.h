@@ -1,5 +1,5 @@
 #pragma once
-// A kernel image: the bytes that are copied into a local store, and what is declared about them.
+// A kernel image: the bytes that are copied into a local store, and their declared sizes.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,14 +17,14 @@ namespace softcell::ls_sim {
 /// kernel on the host engine reaches its channels. An SPU program linked at 0x80 leaves them free as well.
 inline constexpr std::uint32_t kEnvironmentBytes = 128;
 
-/// Sizes in bytes of what an image occupies, and of what it may.
+/// Sizes of an image in bytes, and its declared limits.
 struct ImageSizes {
   std::uint32_t text = 0, rodata = 0, data = 0, bss = 0;
   std::uint32_t stack = 0;   ///< declared, at the top of the local store
   std::uint32_t budget = 0;  ///< declared: the most that total() may be
 
-  std::uint32_t from = 0;  ///< local-store address where it begins, the environment included
-  std::uint32_t end = 0;   ///< local-store address behind bss: environment, alignment and all sections
+  std::uint32_t from = 0;  ///< local-store address where it begins, including the environment
+  std::uint32_t end = 0;   ///< local-store address of the first byte after bss and alignment
   std::uint32_t total() const { return end - from + stack; }
 };
 
@@ -37,10 +37,11 @@ struct ImageObject {
 
 struct KernelImage {
   std::string name;
-  std::uint32_t begin = kEnvironmentBytes;          ///< local-store address of the first byte
-  std::uint32_t stack_top = dma::kLocalStoreBytes;  ///< where its stack begins, to grow down; `begin` where
-                                                    ///< that is not the bottom
-  std::vector<std::byte> bytes;  ///< from `begin` up to the end of data; bss follows, zeroed
+  std::uint32_t begin = kEnvironmentBytes;  ///< local-store address of the first byte
+  /// Local-store address from which its stack grows down. An image that is linked above the bottom of the
+  /// local store has its stack below itself.
+  std::uint32_t stack_top = dma::kLocalStoreBytes;
+  std::vector<std::byte> bytes;  ///< from `begin` to the end of data; bss follows, zeroed
   std::uint32_t data_begin = 0;  ///< local-store address of the writable initialised data
   std::uint32_t data_end = 0;
   std::uint32_t entry = 0;                         ///< local-store address
@@ -53,10 +54,10 @@ struct KernelImage {
 };
 
 /// Reads a kernel that was linked with spu_kernels/sdk/ls.ld.
-/// @throws std::runtime_error  one sentence with the name and what is wrong: not ELF, another machine or
-/// class, truncated,
-///         linked by another script, a relocation left, past 256 KB, segments that overlap, an entry outside
-///         the text.
+/// Any thread.
+/// @throws std::runtime_error  with the image's name and the reason: not ELF, another machine or class,
+///                             truncated, linked by another script, a relocation left, larger than a local
+///                             store, segments that overlap, an entry outside the text.
 KernelImage load_image(std::string_view name, std::span<const std::byte> elf);
 
 }  // namespace softcell::ls_sim

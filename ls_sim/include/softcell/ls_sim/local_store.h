@@ -9,15 +9,15 @@
 
 namespace softcell::ls_sim {
 
-/// 256 KB of readable, writable, executable memory, aligned to 256 KB, so that the local-store address of any
-/// pointer into it is its low 18 bits; with 256 KB of inaccessible pages on both sides, so that a kernel that
-/// leaves it faults. Not copyable, not movable. Any thread may create one; its bytes belong to the SPE that
-/// runs.
+/// 256 KB of readable, writable and executable memory. It is aligned to 256 KB, so that the low 18 bits of a
+/// pointer into it are the local-store address. On both sides lie 256 KB of inaccessible pages, so that a
+/// kernel that leaves the local store faults. Not copyable, not movable. Any thread may create one; its bytes
+/// belong to the SPE that runs.
 class LocalStore {
  public:
   static constexpr std::uint32_t kGuardBytes = dma::kLocalStoreBytes;
 
-  /// @throws std::runtime_error  when the host gives no such memory.
+  /// @throws std::runtime_error  the host refuses such memory.
   LocalStore();
   ~LocalStore();
   LocalStore(const LocalStore&) = delete;

@@ -12,7 +12,8 @@ namespace softcell::ls_sim {
 /// Reads the DWARF line table of an image. One thread at a time.
 class SourceLines {
  public:
-  /// An image without debug information gives empty places.
+  /// Of an image without debug information, every place is empty. Keeps the image's file alive, not the
+  /// image.
   explicit SourceLines(const KernelImage& image);
   ~SourceLines();
   SourceLines(const SourceLines&) = delete;

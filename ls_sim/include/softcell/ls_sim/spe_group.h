@@ -1,18 +1,20 @@
 #pragma once
-// Up to six SPEs that the PPU side starts one by one, and what it sees of each: mailboxes, signals, proxy
-// DMA, local store. For jobs that any SPE may take, see ppu/job_system.h.
+// Up to six SPEs that the PPU side starts one by one, and the problem state of each: mailboxes, signals,
+// proxy DMA, local store. For jobs that any SPE may run, see softcell/jobs/job_system.h.
 //
 //   SpeGroup spes(memory, {.spes = 2});
 //   spes.start(0, image, {.spe_id = 0, .argp = data.ea().value});
 //   spes.problem_state(0).write_in_mbox(42);
 //   const RunResult result = spes.wait(0);
 //
-// SPEs that all wait at channels, while nothing is in flight, can only be waiting for the PPU side. When that
-// waits too, in one of the calls below that say so, it is a deadlock: each of them stops with a fault that
-// says who waits for what. Where more than one thread acts as the PPU, each says so by an Outside.
+// Deadlocks: if all SPEs wait at channels and nothing is in flight, only the PPU side can wake them. If the
+// PPU side then waits as well (in a function below whose name or comment says "wait"), each SPE stops with a
+// fault that says which SPE waits for what. If several threads act as the PPU, each keeps an Outside object
+// meanwhile.
 //
-// With Interleaving::kTurns, SPEs run while the PPU side waits in such a call, and for a while when it looks
-// at a mailbox or a status in vain; so a run is the same every time if one thread acts as the PPU.
+// With Interleaving::kTurns, SPEs run only while the PPU side waits in such a function, and for a while after
+// it has found a mailbox empty or polled a status. So a run is the same every time if one thread acts as the
+// PPU.
 
 #include <cstdint>
 #include <functional>
@@ -30,7 +32,7 @@
 
 namespace softcell::ls_sim {
 
-/// How a signal register takes a value. [CBEA, signal notification] documented
+/// How a signal register combines a written value with an unread one. [CBEA, signal notification] documented
 enum class SignalMode : std::uint8_t { kOverwrite, kOr };
 
 /// One SPE as the PPU sees it. Any thread. [CBEA, problem state area] documented
@@ -38,96 +40,104 @@ class ProblemState {
  public:
   virtual ~ProblemState() = default;
 
-  /// Outbound mailboxes, 1 deep each: the value, or nothing when empty.
+  /// Reads an outbound mailbox, which holds 1 value: the value, or nothing if it is empty.
   virtual std::optional<std::uint32_t> read_out_mbox() = 0;
   virtual std::optional<std::uint32_t> read_out_intr_mbox() = 0;
 
-  /// Waits for a value: nothing when the SPE has stopped without writing one.
+  /// Waits for a value. @return  nothing if the SPE has stopped without writing one.
   virtual std::optional<std::uint32_t> wait_out_mbox() = 0;
   virtual std::optional<std::uint32_t> wait_out_intr_mbox() = 0;
 
-  /// Inbound mailbox, 4 deep. Into a full one, the value replaces the newest.
+  /// Writes to the inbound mailbox, which holds 4 values. If it is full, the value replaces the newest.
   virtual void write_in_mbox(std::uint32_t value) = 0;
 
-  /// Outbound count | free inbound slots << 8 | outbound-interrupt count << 16.
+  /// Values in the outbound mailbox | free slots of the inbound one << 8 | values in the outbound-interrupt
+  /// one << 16.
   virtual std::uint32_t mbox_status() = 0;
 
-  /// @param which  1 or 2. @throws std::invalid_argument  another.
+  /// @param which  1 or 2. @throws std::invalid_argument  it is another number.
   virtual void write_signal(int which, std::uint32_t value) = 0;
   virtual void set_signal_mode(int which, SignalMode mode) = 0;
 
-  /// Proxy DMA: 8 commands, no lists, no line commands but putqlluc. Those with start begin the run of a
-  /// prepared SPE once their bytes have moved. @return a fault, and then nothing is queued; waits while full.
+  /// Issues a proxy DMA command. The queue has 8 slots and waits while it is full. It accepts no lists, and
+  /// of the line commands only putqlluc. A command with start begins the run of a prepared SPE when its bytes
+  /// have moved.
+  /// @return  nothing, or a fault; then the command is not queued.
   virtual std::optional<dma::Fault> issue_proxy(const dma::MfcCommand& command) = 0;
 
-  /// Which of these tags have no proxy command left. `wait_proxy` completes them first.
+  /// The tags of `tag_mask` without a queued proxy command. wait_proxy() completes the commands of all these
+  /// tags first.
   virtual std::uint32_t proxy_status(std::uint32_t tag_mask) = 0;
   virtual std::uint32_t wait_proxy(std::uint32_t tag_mask) = 0;
   virtual int free_proxy_slots() = 0;
 
-  /// Writes to the local store. Code goes there this way only: local_store_bytes.h of dma says why.
-  /// @throws std::invalid_argument  the bytes pass the end of the local store.
+  /// Writes to the local store. Write code with this function only: dma/local_store_bytes.h says why.
+  /// @throws std::invalid_argument  the range passes the end of the local store.
   virtual void write_local_store(dma::LocalStoreAddress lsa, std::span<const std::byte> bytes) = 0;
 
-  /// The local store's bytes, for data. What runs there may change them at any time.
+  /// The bytes of the local store, for data. A running kernel may change them at any time.
   virtual std::span<std::byte> local_store() = 0;
   virtual dma::EffectiveAddress local_store_ea() const = 0;
 };
 
+/// Any thread, unless a function says otherwise.
+/// @throws std::invalid_argument  (all functions with `spe`) the group has no such SPE.
 class SpeGroup {
  public:
-  /// Maps the local stores into `memory`. @throws std::invalid_argument, std::runtime_error options out of
-  /// range; a host without AVX2 and FMA.
+  /// Creates the SPEs and maps their local stores into `memory`, which must outlive the group.
+  /// @throws std::invalid_argument  options out of range.
+  /// @throws std::runtime_error  the host lacks AVX2 or FMA, or has no thread left.
   SpeGroup(dma::AddressSpace& memory, const SpeOptions& options);
 
-  /// Stops what still runs.
+  /// Stops runs in progress and waits for their ends.
   ~SpeGroup();
   SpeGroup(const SpeGroup&) = delete;
   SpeGroup& operator=(const SpeGroup&) = delete;
 
   int spes() const;
 
-  /// Loads the image, so that the PPU side and other SPEs may write to the local store before the run begins:
-  /// SPEs that talk to each other are all prepared before the first of them starts. Mailboxes and signal
-  /// registers stay as they are. The image must outlive the run.
+  /// Loads an image into an SPE. Between prepare() and start(), the PPU side and other SPEs may write to the
+  /// local store: if SPEs communicate, prepare all of them before you start the first. Mailboxes and signal
+  /// registers keep their contents. The image must outlive the run.
   /// @throws std::logic_error  the SPE runs.
   void prepare(int spe, const KernelImage& image, const EntryArguments& arguments);
 
   /// Begins the run that was prepared, on the SPE's own thread.
-  /// @throws std::logic_error  nothing was prepared, or the SPE runs.
+  /// @throws std::logic_error  nothing was prepared, or a run is in progress.
   void start(int spe);
 
-  /// Both.
+  /// prepare() and start().
   void start(int spe, const KernelImage& image, const EntryArguments& arguments) {
     prepare(spe, image, arguments);
     start(spe);
   }
 
-  /// prepare() and start() for a kernel that runs for as long as it likes and calls others, jobs, at whose
-  /// begin and end it makes the marks of spu_kernels/common/job_mark.h: what has a deadline, a share in the
-  /// statistics and a place in the trace are the jobs. It need not be a checked image for its jobs to be
-  /// checked.
+  /// prepare() and start() for a resident kernel: one that runs without a time limit and calls other kernels,
+  /// jobs. It marks where each job begins and ends (spu_kernels/common/job_mark.h). Deadline, statistics and
+  /// trace then concern the jobs. Checked jobs are checked even if the resident kernel is not.
   void start_resident(int spe, const KernelImage& image, const EntryArguments& arguments);
 
-  /// Names the image of jobs whose bytes lie at `ea`; it must outlive the group.
+  /// Registers the image of the jobs whose code lies at `ea` in main storage, a multiple of 16. The image
+  /// must outlive the group.
   void register_job_image(dma::EffectiveAddress ea, const KernelImage& image);
 
-  /// Calls `listener` at the end of each run, on a thread of the group's, with no lock held; it may start the
-  /// SPE anew. To be set before the first start.
+  /// Sets a function that is called at the end of each run, on a thread of the group, without a lock. It may
+  /// start the SPE again.
+  /// @pre  nothing was prepared yet
   void on_end(std::function<void(int spe, const RunResult&)> listener);
 
-  /// Waits until the run has ended; it always does, by its end, a fault, a deadlock or the deadline. Asked
-  /// again, gives the same answer.
+  /// Waits until the run has ended. Every run ends: normally, by a fault, by a deadlock or at the deadline. A
+  /// second call returns the same result.
   /// @throws std::logic_error  the SPE was never started.
   RunResult wait(int spe);
 
   ProblemState& problem_state(int spe);
 
-  /// Exact when the SPE does not run, else as of its last run or job.
+  /// Statistics up to the end of the SPE's last run or job.
   SpeStatistics statistics(int spe) const;
 
-  /// While one of these lives, somebody outside may still write to a mailbox, a signal or memory, and SPEs
-  /// that all wait are no deadlock.
+  /// While an object of this class exists, another thread may still write to a mailbox, a signal or memory;
+  /// so SPEs that all wait are not reported as a deadlock.
   class Outside {
    public:
     explicit Outside(SpeGroup& group);

@@ -1,5 +1,5 @@
 #pragma once
-// How SPEs run: shared by job systems and by SPEs started one by one (SpeGroup).
+// How SPEs run, in a SpeGroup and in a job system.
 
 #include <chrono>
 #include <cstdint>
@@ -12,17 +12,19 @@ namespace softcell::ls_sim {
 class Trace;
 class Findings;
 
-/// What time is to a kernel: the decrementer's, and what `random:SEED` may depend on.
+/// The clock of a kernel's decrementer.
 enum class Clock : std::uint8_t {
   kHost,       ///< the host's steady clock
   kSimulated,  ///< advances with each channel operation, so that a run is the same every time
 };
 
-/// Which SPE goes on when.
+/// How SPEs run beside each other.
 enum class Interleaving : std::uint8_t {
-  kFree,   ///< all at once, as the host's threads go
-  kTurns,  ///< one at a time; who is next at a channel operation is drawn from the schedule's seed, so that a
-           ///< run of several SPEs is reproducible
+  /// All at once, each on a thread of the host.
+  kFree,
+  /// One at a time. At a channel operation the turn may pass to another SPE, drawn from the schedule's seed,
+  /// so that runs of several SPEs are reproducible.
+  kTurns,
 };
 
 struct SpeOptions {
@@ -33,9 +35,10 @@ struct SpeOptions {
   Interleaving interleaving = Interleaving::kFree;
   bool measure_stack = false;  ///< scan the stack after each run
   bool reload_always = false;  ///< copy the image in before every run, so that bss starts as zero
-  Findings* findings =
-      nullptr;  ///< checked images report here; an image that is not checked is refused. Outlives all
-  Trace* trace = nullptr;  ///< null: nothing is recorded. Outlives all
+  /// Where checked images report their findings; then images that are not checked are refused. Null: nothing
+  /// is checked. It outlives the SPEs.
+  Findings* findings = nullptr;
+  Trace* trace = nullptr;  ///< null: nothing is recorded. It outlives the SPEs
 };
 
 }  // namespace softcell::ls_sim

@@ -1,5 +1,5 @@
 #pragma once
-// What an SPE has done.
+// Counters of one SPE.
 
 #include <array>
 #include <chrono>
@@ -15,7 +15,7 @@ struct ChannelWaits {
   std::chrono::nanoseconds time{0};
 };
 
-/// Channels below this may make an SPU wait.
+/// Only channels with numbers below this may make an SPU wait.
 inline constexpr std::size_t kWaitingChannels = 31;
 
 /// Sums since the SPE was made.
@@ -27,8 +27,8 @@ struct SpeStatistics {
   std::uint64_t channel_waits = 0;  ///< channel operations that blocked, tag waits included
   std::chrono::nanoseconds channel_waiting{0};
   std::array<ChannelWaits, kWaitingChannels> waits{};  ///< the same by the channel's number
-  /// Bytes of local store, the most of any run: environment, image and stack, the latter as declared, or as
-  /// used with SpeOptions::measure_stack.
+  /// The most local store that any run used, in bytes: environment, image and stack. The stack counts as
+  /// declared, or as used with SpeOptions::measure_stack.
   std::uint32_t local_store_high_water = 0;
   std::uint32_t stack_high_water = 0;  ///< bytes, the most of any run; only with SpeOptions::measure_stack
 };

@@ -1,6 +1,6 @@
 #pragma once
-// What happened when: jobs, DMA commands, waits and findings of each SPE, for `--trace` and `softcell
-// report`. docs/guide/running-kernels.md describes the file.
+// A trace: the jobs, DMA commands, waits and findings of each SPE with their times, for `--trace` and
+// `softcell report`. docs/guide/running-kernels.md describes the file.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,13 +20,14 @@ namespace softcell::ls_sim {
 
 /// Nanoseconds of the host's steady clock.
 using TraceTime = std::int64_t;
+/// The time now. Any thread.
 TraceTime trace_now();
 
 struct SpeEvents;
 struct TracedCommand;
 
-/// One SPE's part of a trace. Used by the thread that runs the SPE. Recording an event is a look at the clock
-/// and an append: it allocates only when the memory grows. Past the limit of a trace, further events are
+/// One SPE's part of a trace. Used by the thread that runs the SPE. Recording an event reads the clock and
+/// appends to a log, and allocates memory only when the log grows. Beyond the limit of the trace, events are
 /// counted and dropped.
 class SpeTrace final : public dma::MfcObserver {
  public:
@@ -34,22 +35,25 @@ class SpeTrace final : public dma::MfcObserver {
   SpeTrace(const SpeTrace&) = delete;
   SpeTrace& operator=(const SpeTrace&) = delete;
 
-  /// A run that has ended. What the image declares is copied when it is first seen.
-  /// @param failed  by a fault, or with another status than 0.
+  /// Records a run that has ended. Copies the declarations of an image when the image first occurs.
+  /// @pre  begin <= end
+  /// @param failed  true if it ended by a fault or with another status than 0.
   void on_job(const KernelImage& image, std::uint64_t job_number, TraceTime begin, TraceTime end,
               bool failed);
 
-  /// Stack that the image was seen to use, in bytes; the most of all calls is kept.
+  /// Records how much stack a run of the image used, in bytes. The trace keeps the maximum.
   void on_stack_used(const KernelImage& image, std::uint32_t bytes);
 
-  /// A channel operation that had to wait: a tag status, a full queue, an empty mailbox, an event.
+  /// Records a channel operation that had to wait: for a tag status, a full queue, an empty mailbox, an
+  /// event.
+  /// @pre  begin <= end
   void on_wait(std::uint32_t channel, TraceTime begin, TraceTime end);
 
   /// A mistake that this SPE has made before is only counted.
   void on_finding(const dma::Fault& fault, TraceTime when);
 
-  // dma::MfcObserver: DMA commands from issue to completion. A command that never completes, because a fault
-  // ended its job, is drawn to the end of that job.
+  // dma::MfcObserver: DMA commands from issue to completion. If a fault ends a job before a command
+  // completes, the trace shows the command up to the end of that job.
   void on_issue(std::uint64_t number, const dma::MfcCommand& command, std::uint64_t bytes) override;
   void on_complete(std::uint64_t number) override;
   void on_reservation_lost(std::uint64_t number) override;
@@ -58,16 +62,16 @@ class SpeTrace final : public dma::MfcObserver {
   friend class Trace;
   explicit SpeTrace(std::size_t most_events);
 
-  /// Ends a command that is under way. Null when the log had no room for it.
+  /// Completes a command in flight. Null if the log had no room for it.
   TracedCommand* complete(std::uint64_t number);
 
   std::unique_ptr<SpeEvents> events_;
 };
 
-/// A run's trace. Hand `spe(n)` to SPE n while it runs; write when all have stopped.
+/// The trace of a run. SPE n records to spe(n) while it runs; call write() when all SPEs have stopped.
 class Trace {
  public:
-  /// 4 million events an SPE are half an hour of a demo, and of commands at most 160 MB.
+  /// 4 million events of an SPE are half an hour of a demo; its commands then take 160 MB.
   static constexpr std::size_t kMostEvents = 4'000'000;
 
   /// @param spes         1 or more.
@@ -75,15 +79,16 @@ class Trace {
   explicit Trace(int spes, std::size_t most_events = kMostEvents);
   ~Trace();
 
+  /// @pre 0 <= number < spes()
   SpeTrace& spe(int number);
   int spes() const;
 
   /// Writes the Chrome / Perfetto JSON format: one process for each SPE with rows for its jobs, its waits and
-  /// its overlapping commands, findings as instants, and for each image its local-store map. Times count from
-  /// the construction of the trace. The file appears whole or not at all.
-  /// @throws std::runtime_error  the file cannot be written; the sentence says why.
+  /// its overlapping commands, findings as instants, and for each image its local-store map. Time 0 is the
+  /// construction of the trace. The file is written atomically.
+  /// @throws std::runtime_error  the file cannot be written; the message says why.
   void write(const std::filesystem::path& file) const;
-  /// The same, all that is in a file that the caller commits.
+  /// Writes the same to a file that the caller commits.
   void write(base::WholeFile& file) const;
 
  private:

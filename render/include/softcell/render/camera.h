@@ -1,5 +1,5 @@
 #pragma once
-// Where the picture is taken from. No trigonometry: the same bits everywhere.
+// The camera. Its matrices need no trigonometry, so that they have the same bits on every host. Any thread.
 
 #include <Eigen/Core>
 
@@ -16,12 +16,15 @@ struct Camera {
 };
 
 /// World to view: the eye at 0, looking along -z, y up.
+/// @pre  eye is not target, and up is not parallel to the line between them
 Eigen::Matrix4f look_at(const Eigen::Vector3f& eye, const Eigen::Vector3f& target, const Eigen::Vector3f& up);
 
 /// View to clip space of OpenGL (-w..w in all three axes). `aspect` is width over height.
+/// @pre  all are above 0, and near_plane < far_plane
 Eigen::Matrix4f perspective(float tan_half_fov_y, float aspect, float near_plane, float far_plane);
 
 /// View to clip space: the box -half_width..half_width in x and y, and near..far in front of the eye.
+/// @pre  half_width is above 0, and near_plane < far_plane
 Eigen::Matrix4f orthographic(float half_width, float near_plane, float far_plane);
 
 /// World to clip space for a picture of the given proportions.

@@ -12,7 +12,7 @@
 
 namespace softcell::render {
 
-/// Linear light, 0..1 a channel.
+/// A colour in linear light, each channel 0..1.
 using Colour = Eigen::Vector3f;
 
 /// The linear colour of 0xRRGGBB as painting programs write it. A cubic fit to the sRGB curve, within 0.003
@@ -47,8 +47,8 @@ struct SkinnedDraw {
   MeshId mesh = {};
   Eigen::Vector3f origin{0, 0, 0};  ///< added to every vertex
   Colour colour{0.8f, 0.8f, 0.8f};
-  float opacity = 1;       ///< below 1: blended over what is behind it, and casts no shadow
-  bool two_sided = false;  ///< draw the inner side too: for meshes with holes; takes about 1.6 times as long
+  float opacity = 1;       ///< 0..1; below 1 the mesh is blended over what is behind it and casts no shadow
+  bool two_sided = false;  ///< draw inner sides, too, for meshes with holes; takes about 1.6 times as long
   std::optional<TextureId> texture = {};  ///< its colours are multiplied with `colour`; none: `colour` alone
 };
 
@@ -57,7 +57,7 @@ struct StaticDraw {
   StaticMeshId mesh = {};
   Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();  ///< affine, determinant above 0
   Colour colour{0.8f, 0.8f, 0.8f};
-  float opacity = 1;  ///< below 1: blended over what is behind it (only its front sides), and casts no shadow
+  float opacity = 1;  ///< 0..1; below 1 front sides are blended over what is behind them, without shadow
   Pattern pattern = Pattern::plain;
 };
 
@@ -69,16 +69,16 @@ struct LatticeDraw {
   Colour colour{0.9f, 0.5f, 0.1f};
 };
 
-/// The sun and the sky. Together they are about 1 on a surface that faces the sun, which then shows its own
-/// colour. Shadows fall inside a sphere that the caller keeps around its scene: a fixed one keeps shadow
-/// edges still.
+/// The sun and the sky. Together they light a surface that faces the sun with about 1, so that it shows its
+/// own colour. Only what lies in the shadow sphere casts shadows and receives them: keep it around the scene,
+/// and fixed, or shadow edges flicker.
 struct Light {
   Eigen::Vector3f toward{-0.5f, 0.8f, 0.3f};  ///< direction from the scene to the light; any length but 0
   Colour colour{0.86f, 0.80f, 0.70f};
   Colour sky{0.36f, 0.41f, 0.48f};     ///< ambient light from above
   Colour ground{0.17f, 0.15f, 0.13f};  ///< ambient light from below
   Eigen::Vector3f shadow_centre{0, 0, 0};
-  float shadow_radius = 10;
+  float shadow_radius = 10;  ///< above 0
 };
 
 /// Pixels, counted from the upper left corner of the picture; `right` and `bottom` are the first outside.
@@ -94,9 +94,9 @@ struct FrameDescription {
   std::span<const LatticeDraw> lattices = {};
   Colour background_top = srgb(0x5B7FA6);
   Colour background_bottom = srgb(0xDCE6EE);
-  /// Outside of this the picture is that of the renderer's last frame, shadows included, and need not be
-  /// drawn again; the caller knows. What lies at its edge may be drawn or not. None: it may differ
-  /// everywhere.
+  /// The caller states that outside of this rectangle the picture, shadows included, is the same as in the
+  /// renderer's last frame, so that only the rectangle must be drawn. Pixels at its edge may be drawn or not.
+  /// None: everything may differ.
   std::optional<PixelRect> changes = {};
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the renderer needs of a place to draw in. Backends: offscreen_context.h.
+// The OpenGL context that a renderer draws with. Backends: offscreen_context.h, window.h.
 
 #include <string>
 
@@ -15,9 +15,9 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// Makes it the thread's current context. @throws std::runtime_error when the backend refuses.
+  /// Makes it the thread's current context. @throws std::runtime_error  the backend refuses.
   virtual void make_current() = 0;
-  /// Address of a GL function, or null. @pre current
+  /// Address of a GL function, or null. @pre the context is current
   virtual Function function(const char* name) const = 0;
   /// The backend's name for messages: "OSMesa", "EGL".
   virtual std::string backend_name() const = 0;

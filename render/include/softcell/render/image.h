@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::render {
 
 /// RGBA8, sRGB-encoded, rows from top to bottom without padding.
@@ -14,17 +16,25 @@ struct Image {
   std::vector<std::uint8_t> rgba;
 
   Image() = default;
-  /// A transparent black picture. @pre width and height are not negative.
+  /// A transparent black picture. @pre width and height are not negative
   Image(int image_width, int image_height);
 
   /// The four channels of the pixel in column x and row y, counted from the top left. @pre inside the picture
   const std::uint8_t* pixel(int x, int y) const { return rgba.data() + offset(x, y); }
   std::uint8_t* pixel(int x, int y) { return rgba.data() + offset(x, y); }
 
+  /// Whether `rgba` has the four bytes of each pixel and no more: every function that takes a picture needs
+  /// that.
+  bool is_whole() const {
+    return width >= 0 && height >= 0 &&
+           rgba.size() == 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+
   bool operator==(const Image&) const = default;
 
  private:
   std::size_t offset(int x, int y) const {
+    SC_ASSERT(x >= 0 && x < width && y >= 0 && y < height, "pixel ({}, {}) of {} by {}", x, y, width, height);
     return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
   }
 };

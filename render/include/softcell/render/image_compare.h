@@ -1,5 +1,5 @@
 #pragma once
-// How far two pictures are apart, and the rule by which a golden test passes.
+// The difference of two pictures, and the rule by which a golden test passes. Any thread.
 
 #include <cstddef>
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace softcell::render {
 
-/// Differences count per pixel as the largest over its four channels, 0..255.
+/// The difference of a pixel is the largest difference of its four channels, 0..255.
 struct ImageDifference {
-  bool same_size = true;   ///< when false, every other number is 0
+  bool same_size = true;   ///< if false, every other number is 0
   std::size_t pixels = 0;  ///< compared
   int max = 0;             ///< the largest difference of all
   std::size_t over_0 = 0;  ///< pixels that differ at all
@@ -19,6 +19,7 @@ struct ImageDifference {
   double rmse = 0;         ///< root mean square over all channels, 0..255
 };
 
+/// Compares two pictures. Pictures of different sizes are not compared: see same_size. @pre both are whole
 ImageDifference compare(const Image& actual, const Image& expected);
 
 // The golden rule. One software rasterizer draws the same picture on every processor up to the last bit of
@@ -31,13 +32,13 @@ ImageDifference compare(const Image& actual, const Image& expected);
 inline constexpr int kGoldenMaxDifference = 2;
 inline constexpr double kGoldenMaxDifferingShare = 0.002;
 
-/// Whether a difference is within the golden rule. Pictures of different size never are.
+/// True if the difference is within the golden rule. Never true for pictures of different sizes.
 bool within_golden_rule(const ImageDifference& difference);
 
 /// All numbers in one line, for a test's message.
 std::string describe(const ImageDifference& difference);
 
-/// |actual - expected| times `gain`, saturated, opaque. @pre same size.
+/// |actual - expected| times `gain`, saturated, opaque. @pre same size; gain is above 0
 Image difference_image(const Image& actual, const Image& expected, int gain = 32);
 
 }  // namespace softcell::render

@@ -15,15 +15,15 @@ enum class Backend {
 };
 
 /// Makes a context and makes it current on the calling thread.
-/// @throws std::runtime_error  one sentence naming the missing library and the package that has it, or what
-/// Mesa refused.
+/// @throws std::runtime_error  with the missing library and the package that contains it, or what Mesa
+/// refused.
 std::unique_ptr<GlContext> create_offscreen_context(Backend backend = Backend::automatic);
 
-/// Makes pictures the same on every processor with AVX and FMA, which softcell's native engine needs anyway:
-/// selects Mesa's software rasterizer llvmpipe, fixes the instruction set and vector width of its code
-/// generator, and switches its on-disk shader cache off. It costs no speed. On an older processor single
-/// pixels differ by 1. Sets environment variables of this process, so call it first thing in main(), before
-/// any thread and before the first context.
+/// Makes pictures the same on every processor with AVX and FMA, which softcell's native engine needs anyway.
+/// Selects Mesa's software rasterizer llvmpipe, fixes the instruction set and vector width of its code
+/// generator, and switches off its shader cache on disk. This costs no speed. On an older processor, single
+/// pixels differ by 1. The function sets environment variables of this process: call it at the beginning of
+/// main(), before the first thread and the first context.
 void pin_software_rasterizer();
 
 }  // namespace softcell::render

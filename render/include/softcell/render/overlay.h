@@ -1,6 +1,6 @@
 #pragma once
-// Text, tables and plots over the picture, by Dear ImGui: its widgets, our drawing, so that it works in every
-// context and gives the same picture everywhere.
+// Text, tables and plots over the picture, by Dear ImGui. We use its widgets and draw them ourselves, so that
+// they work in every context and look the same everywhere.
 
 #include "softcell/render/overlay_mesh.h"
 
@@ -8,29 +8,30 @@ struct ImGuiContext;
 
 namespace softcell::render {
 
-/// One context of Dear ImGui. Between begin() and end() its functions may be called; they draw into it. Used
-/// by one thread at a time; several may exist, one after the other being current.
+/// A context of Dear ImGui. Call ImGui's functions between begin() and end(): they draw into this overlay.
+/// One thread at a time uses it. Several may exist; one of them is current.
 ///
 ///     overlay.begin(renderer.width(), renderer.height(), 1.0f / 60);
 ///     ImGui::Text("...");
 ///     renderer.draw_overlay(overlay.font(), overlay.end());
 class Overlay {
  public:
-  /// @param scale  of the font: 1 is 13 pixels high; above 0.
+  /// @param scale  size of the font, above 0; 1 is 13 pixels high.
   explicit Overlay(float scale = 1);
   ~Overlay();
   Overlay(const Overlay&) = delete;
   Overlay& operator=(const Overlay&) = delete;
 
+  /// The font's picture, valid as long as the overlay. @pre this is the current context
   OverlayFont font() const;
 
-  /// @param seconds  since the frame before, above 0: what animations go by.
+  /// @param seconds  time since the last frame, above 0, for animations.
   void begin(int width, int height, float seconds);
 
   /// The mesh stays valid until the next begin().
   const OverlayMesh& end();
 
-  /// Makes it Dear ImGui's current context, for handing it input.
+  /// Makes this Dear ImGui's current context, so that ImGui's input functions concern it.
   void make_current();
 
  private:

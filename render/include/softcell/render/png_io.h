@@ -12,16 +12,16 @@ enum class PngEffort {
   small,  ///< for pictures that are kept, such as golden ones
 };
 
-/// Writes the picture; the alpha channel is stored only when some pixel is not opaque. The file appears under
-/// its name when it is whole: until then it is a temporary one in the same directory, removed when anything
-/// fails. A path that is no regular file (a device, a pipe) is written directly.
-/// @throws std::runtime_error  one sentence naming the file: empty picture, directory missing or not
+/// Writes a picture as an atomic file (see base/whole_file.h). Stores the alpha channel only if some pixel is
+/// not opaque. Any thread.
+/// @pre  the picture is whole
+/// @throws std::runtime_error  with the file and the reason: empty picture, directory missing or not
 /// writable, disk full.
 void write_png(const std::filesystem::path& path, const Image& image, PngEffort effort = PngEffort::fast);
 
-/// Reads any PNG as RGBA8.
-/// @throws std::runtime_error  one sentence naming the file: it cannot be opened, or is no PNG, or a damaged
-/// one.
+/// Reads any PNG as RGBA8. Any thread.
+/// @throws std::runtime_error  with the file and the reason: it cannot be opened, is not a PNG file, or is
+/// damaged.
 Image read_png(const std::filesystem::path& path);
 
 }  // namespace softcell::render

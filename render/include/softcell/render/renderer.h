@@ -1,5 +1,5 @@
 #pragma once
-// Draws frames of meshes into a picture. Knows vertex buffers and nothing of physics.
+// Draws meshes into a picture. It works on vertex buffers and does not know physics.
 
 #include <array>
 #include <cstddef>
@@ -16,34 +16,34 @@ namespace softcell::render {
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from outside
 
-/// Bytes of one skinned vertex: four binary16 of position (x y z, the fourth unused) and four of normal.
+/// Bytes of one skinned vertex: four half floats of position (x y z, the fourth unused) and four of normal.
 inline constexpr std::size_t kSkinnedVertexBytes = 16;
 
-/// A vertex that hangs in a cell of eight corners: where the corners go, it follows trilinearly, and its
-/// normal with it.
+/// A vertex inside a cell of eight corners. Its position is interpolated trilinearly from the corners, and
+/// its normal follows.
 struct CellVertex {
-  std::array<std::uint32_t, 8>
-      corner{};                     ///< which of the mesh's corners; the cell's corner k = bx + 2 by + 4 bz
-  Eigen::Vector3f place{0, 0, 0};   ///< in the cell, 0..1 from corner 0 towards corners 1, 2 and 4
-  Eigen::Vector3f normal{0, 0, 1};  ///< while the cell is a cube along the axes; unit length
+  /// Indices of the mesh's corners; corner k of the cell is at k = bx + 2 by + 4 bz.
+  std::array<std::uint32_t, 8> corner{};
+  Eigen::Vector3f place{0, 0, 0};   ///< 0..1 from corner 0 towards corners 1, 2 and 4
+  Eigen::Vector3f normal{0, 0, 1};  ///< unit normal while the cell is a cube along the axes
 };
 static_assert(sizeof(CellVertex) == 56, "uploaded as it is");
 
-/// Bytes of one corner of cells: four floats, x y z in metres and one that is not read.
+/// Bytes of one corner: four floats, x y z in metres and one that is ignored.
 inline constexpr std::size_t kCellCornerBytes = 16;
 
 struct RendererSettings {
   int width = 960;
   int height = 540;
-  int samples = 4;             ///< of multisampling; taken down to what the context can do; 1 is none
+  int samples = 4;             ///< of multisampling, limited to what the context can do; 1 is none
   int shadow_map_size = 1536;  ///< texels a side
-  bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice as long
+  bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice the time
 };
 
 /// One sun with soft-edged shadows, light from sky and ground, tone mapping and sRGB encoding, four samples a
-/// pixel. Draws into its own framebuffer; holds no global state. Use it on the context's thread; the context
-/// outlives it. After the first frames render() and pixels() allocate nothing themselves (the GL library does
-/// as it likes).
+/// pixel. Draws into its own framebuffer and has no global state. Use it on the context's thread; the context
+/// must outlive it. After the first frames, render() and pixels() allocate no memory themselves (the GL
+/// library may).
 class Renderer {
  public:
   /// @throws std::runtime_error  the context has no OpenGL 3.3, or refuses the sizes.
@@ -52,29 +52,29 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// A mesh whose vertices are given anew by update_mesh(); until then it draws nothing.
+  /// Adds a mesh with changing vertices. Nothing is drawn of it before the first update_mesh().
   /// @param indices  three vertices a triangle, counter-clockwise seen from outside.
-  /// @throws std::invalid_argument  a count that is no multiple of three.
+  /// @throws std::invalid_argument  the number of indices is not a multiple of three.
   MeshId add_mesh(std::span<const std::uint32_t> indices);
 
-  /// Replaces the vertices, kSkinnedVertexBytes each, in the host's byte order. The bytes are copied before
-  /// it returns.
-  /// @throws std::invalid_argument  fewer vertices than the indices speak of, or a broken last one, or no
-  /// such mesh, or one of cells.
+  /// Replaces the vertices of a mesh.
+  /// @param vertices  kSkinnedVertexBytes each, in the host's byte order; copied.
+  /// @throws std::invalid_argument  an index has no vertex, the last vertex is incomplete, there is no such
+  /// mesh, or it is a mesh of cells.
   void update_mesh(MeshId mesh, std::span<const std::byte> vertices);
 
-  /// A mesh whose vertices the GPU makes from the corners of cells, given anew by update_corners(); until
-  /// then it draws nothing. Drawn like one of add_mesh().
+  /// Adds a mesh whose vertices the GPU computes from the corners of cells. Nothing is drawn of it before the
+  /// first update_corners(). It is drawn like a mesh of add_mesh().
   /// @param indices  as for add_mesh(), into `vertices`
   /// @throws std::invalid_argument  a count of indices that is no multiple of three, an index or a corner out
   /// of range, or more corners than the GPU takes (OpenGL 3.3 promises 65,536).
   MeshId add_cell_mesh(std::span<const std::uint32_t> indices, std::span<const CellVertex> vertices,
                        std::size_t corner_count);
 
-  /// Replaces the corners, kCellCornerBytes each, in the host's byte order, and makes the vertices. The bytes
-  /// are copied before it returns. Vertices are rounded to binary16 relative to `origin`, which the mesh's
-  /// SkinnedDraw is to have as its origin.
-  /// @throws std::invalid_argument  another number of corners, or no such mesh of cells.
+  /// Replaces the corners of a mesh of cells and computes its vertices. Vertices are rounded to half floats
+  /// relative to `origin`: give the mesh's SkinnedDraw the same origin.
+  /// @param corners  kCellCornerBytes each, in the host's byte order; copied.
+  /// @throws std::invalid_argument  the number of corners is another one, or there is no such mesh of cells.
   void update_corners(MeshId mesh, std::span<const std::byte> corners, const Eigen::Vector3f& origin);
 
   /// The texture coordinates of a mesh's vertices, in their order. They stay when the vertices are given anew.
@@ -87,35 +87,38 @@ class Renderer {
   /// @throws std::invalid_argument  a picture without pixels, or larger than the context takes.
   TextureId add_texture(const Image& picture);
 
-  /// Bytes that update_mesh() and update_corners() have been given since the beginning.
+  /// Bytes uploaded by update_mesh() and update_corners() since construction.
   std::uint64_t uploaded_bytes() const;
 
-  /// A mesh that stays as it is, with one unit normal per position.
-  /// @throws std::invalid_argument  another number of normals than positions, or an index out of range.
+  /// Adds a mesh that does not change, with one unit normal per position.
+  /// @throws std::invalid_argument  the numbers of normals and positions differ, or an index is out of range.
   StaticMeshId add_static_mesh(std::span<const Eigen::Vector3f> positions,
                                std::span<const Eigen::Vector3f> normals, std::span<const Triangle> triangles);
 
-  /// Draws one frame. Opaque things first, then those with an opacity below 1 in the given order, static ones
-  /// last.
-  /// @throws std::invalid_argument  a handle of another renderer, a link out of range, or a texture on a mesh
-  /// without texture coordinates.
+  /// Draws one frame: first opaque meshes, then meshes with an opacity below 1 in the given order, static
+  /// ones last.
+  /// @pre  opacities are 0..1; poses have a determinant above 0; shadow and particle radii are above 0
+  /// @throws std::invalid_argument  a handle is not of this renderer, a link is out of range, or a mesh with a
+  /// texture has no texture coordinates.
   void render(const FrameDescription& frame);
 
   /// Draws text and widgets over the last frame.
   void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh);
 
-  /// Copies the last frame to the context's own framebuffer, which a window shows, stretched to its size.
+  /// Copies the last frame to the context's own framebuffer, which a window shows. Stretches it to width by
+  /// height pixels, which are not negative.
   void present(int width, int height);
 
-  /// Changes the size of the pictures from here on. @throws std::runtime_error  as the constructor.
+  /// Changes the size of the next pictures. @throws std::runtime_error  as the constructor.
   void resize(int width, int height);
   int width() const;
   int height() const;
 
-  /// The last frame, read back. The reference stays valid; the next call overwrites the picture.
+  /// Reads the last frame back. The reference stays valid as long as the renderer; the next call overwrites
+  /// the picture.
   const Image& pixels();
 
-  /// For the log: "OSMesa, llvmpipe (LLVM 15.0.6, 128 bits), 4 samples".
+  /// Backend, device and samples for a log: "OSMesa, llvmpipe (LLVM 15.0.6, 128 bits), 4 samples".
   const char* description() const;
 
  private:

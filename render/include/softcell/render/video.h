@@ -8,17 +8,16 @@
 
 namespace softcell::render {
 
-/// Encodes frames as they come (H.264 in yuv420p, which everything plays). The same frames give the same file
-/// with the same ffmpeg. The file appears under its name when finish() succeeds; until then it is a temporary
-/// one in the same directory, removed when anything fails or the writer goes away unfinished. Odd sizes get
-/// one more black row or column.
+/// Encodes frames as they are added (H.264 in yuv420p, which every player plays). With the same ffmpeg, the
+/// same frames give the same file. The file is an atomic one (see base/whole_file.h): it appears when
+/// finish() succeeds. Odd sizes get one more black row or column.
 ///
 ///     VideoWriter video("demo3d.mp4", 960, 540, 60);
 ///     while (...) video.add_frame(renderer.pixels());
 ///     video.finish();
 ///
-/// Use it from one thread. Ctrl-C on the terminal does not reach the child: the program itself decides what
-/// is kept.
+/// Use it from one thread. Ctrl-C on the terminal does not reach ffmpeg: the program itself decides what to
+/// keep.
 class VideoWriter {
  public:
   /// @throws std::runtime_error  ffmpeg is not installed, or the size or rate is not positive.
@@ -28,11 +27,12 @@ class VideoWriter {
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
-  /// @throws std::runtime_error  the frame's size is another one, or ffmpeg has ended (with the last line it
+  /// @throws std::runtime_error  the frame has another size, or ffmpeg has ended (with the last line it
   /// printed).
+  /// @pre  the frame is whole
   void add_frame(const Image& frame);
 
-  /// Waits for the encoder and puts the file in its place. Call once, after the last frame.
+  /// Waits for the encoder and commits the file. Call it once, after the last frame.
   /// @throws std::runtime_error  ffmpeg failed, with the last line it printed; or the file cannot be renamed.
   void finish();
 

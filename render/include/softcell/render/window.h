@@ -1,6 +1,6 @@
 #pragma once
-// A window on the user's screen, by SDL2: OpenGL where there is any, else pictures drawn in memory and
-// copied.
+// A window on the user's screen, by SDL2. It uses OpenGL if the display has it; else pictures are drawn in
+// memory and copied.
 //
 //   Window window({.title = "softcell demo 3d"});
 //   Renderer renderer(window.context(), {.width = window.width(), .height = window.height()});
@@ -18,34 +18,35 @@ namespace softcell::render {
 
 struct WindowSettings {
   std::string title = "softcell";
-  int width = 1280, height = 720;  ///< in the desktop's units, which on a dense screen are several pixels
-  bool vertical_sync = true;       ///< wait for the screen when showing, where it can
+  int width = 1280, height = 720;  ///< in the desktop's units; on a dense screen a unit is several pixels
+  bool vertical_sync = true;       ///< show() waits for the screen, if the driver can
 };
 
-/// Made, polled and destroyed on the program's main thread, as SDL asks; context() and show() may belong to
-/// one other thread, after release(). One window at a time.
+/// Create, poll and destroy it on the program's main thread, as SDL requires. After release(), one other
+/// thread may call context() and show(). One window at a time.
 class Window {
  public:
-  /// @throws std::runtime_error  there is no display, and how to do without; or what SDL refuses.
+  /// @throws std::runtime_error  there is no display (the message says how to do without one), or SDL
+  ///           refuses.
   explicit Window(const WindowSettings& settings);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Current on the thread that made the window.
+  /// The window's context, which is current on the thread that made the window.
   GlContext& context();
 
-  /// Gives the context up, so that another thread can make it current.
+  /// Makes no context current on this thread, so that another thread can make the window's current.
   void release();
 
-  /// Pixels, now: the user may change them.
+  /// Size in pixels, now: the user may change it.
   int width() const;
   int height() const;
 
-  /// Pixels for one of the units in which SDL gives the mouse.
+  /// Pixels in one of the units in which SDL reports the mouse.
   float density() const;
 
-  /// Shows the renderer's last frame, stretched when its size is not the window's. @pre context() is current
+  /// Shows the renderer's last frame, stretched if its size is not the window's. @pre context() is current
   void show(Renderer& renderer);
 
   SDL_Window* sdl();

@@ -1,0 +1,109 @@
+// What callers inside ls_sim, and of its public headers, must keep to: who does not is told by an assertion,
+// with the values.
+
+#include <chrono>
+#include <memory>
+
+#include "../support/contract.h"
+#include "channels/decrementer.h"
+#include "channels/spe_monitor.h"
+#include "channels/spe_registers.h"
+#include "checker/commands_in_flight.h"
+#include "checker/unsynced_bytes.h"
+#include "image/local_store_map.h"
+#include "image/object_map.h"
+#include "softcell/dma/address_space.h"
+#include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/local_store.h"
+#include "softcell/ls_sim/spe_group.h"
+#include "softcell/ls_sim/trace.h"
+
+namespace softcell::ls_sim {
+namespace {
+
+KernelImage image_named(const char* name) {
+  KernelImage image;
+  image.name = name;
+  return image;
+}
+
+TEST(LsSimContractsDeathTest, TimeDoesNotGoBack) {
+  Decrementer decrementer;
+  decrementer.write(100, 50);
+  SC_EXPECT_VIOLATES(
+      decrementer.read(49),
+      "decrementer\\.h:[0-9]+: .*read.*: SC_ASSERT\\(now >= since_\\).*: tick 49 after tick 50\n");
+}
+
+TEST(LsSimContractsDeathTest, AnSpeHasTwoSignalRegisters) {
+  SpeRegisters registers;
+  SC_EXPECT_VIOLATES(registers.write_signal(3, 1), "signal register 3\n");
+}
+
+TEST(LsSimContractsDeathTest, AnSpeRunsOneImageAtATime) {
+  SpeMonitor monitor{SpeOptions{}};
+  const KernelImage image = image_named("saxpy");
+  const SpeMonitor::Lock lock = monitor.lock();
+  monitor.start(2, image, std::chrono::steady_clock::now());
+  SC_EXPECT_VIOLATES(monitor.start(2, image, std::chrono::steady_clock::now()),
+                     "start.*: SPE 2 is started while it runs saxpy\n");
+}
+
+TEST(LsSimContractsDeathTest, ThereAreSixSpes) {
+  SpeMonitor monitor{SpeOptions{}};
+  const SpeMonitor::Lock lock = monitor.lock();
+  SC_EXPECT_VIOLATES(static_cast<void>(monitor.runs(6)), "SPE 6 of 6\n");
+}
+
+TEST(LsSimContractsDeathTest, OnlyUnsyncedBytesHaveAWriter) {
+  const auto unsynced = std::make_unique<UnsyncedBytes>();
+  unsynced->mark(0x100, 16, 0x80);
+  EXPECT_EQ(unsynced->writer_of(0x10F), 0x80u);
+  SC_EXPECT_VIOLATES(unsynced->writer_of(0x110), "writer_of.*: byte 272 is in no unsynced range\n");
+}
+
+TEST(LsSimContractsDeathTest, OnlyCommandsThatWereIssuedComplete) {
+  CommandsInFlight in_flight;
+  SC_EXPECT_VIOLATES(in_flight.complete(1, 7), "complete.*: commands up to 7 of 0 are complete\n");
+}
+
+TEST(LsSimContractsDeathTest, AStackDoesNotEndBeforeItBegins) {
+  const KernelImage image = image_named("saxpy");
+  SC_EXPECT_VIOLATES(ObjectMap(image, {.begin = 512, .end = 256}), "the stack of saxpy is 512 to 256\n");
+}
+
+TEST(LsSimContractsDeathTest, AnImageEndsInTheLocalStore) {
+  KernelImage image = image_named("saxpy");
+  image.sizes.end = dma::kLocalStoreBytes + 16;
+  SC_EXPECT_VIOLATES(local_store_map(image), "saxpy ends at 262160 with 0 bytes of bss\n");
+}
+
+TEST(LsSimContractsDeathTest, ATraceHasAsManySpesAsItWasMadeFor) {
+  Trace trace(2);
+  SC_EXPECT_VIOLATES(trace.spe(2), "Trace::spe.*: SPE 2 in a trace of 2\n");
+}
+
+TEST(LsSimContractsDeathTest, AnEngineRunsWhatWasLoaded) {
+  class NoChannels final : public ChannelPort {
+    ChannelReply read(std::uint32_t) override { return {}; }
+    ChannelReply write(std::uint32_t, std::uint32_t) override { return {}; }
+    ChannelReply count(std::uint32_t) override { return {}; }
+    ChannelReply issue(const dma::MfcCommand&) override { return {}; }
+    void sync() override {}
+  } channels;
+  LocalStore local_store;
+  const std::unique_ptr<Engine> engine = make_native_engine(local_store);
+  SC_EXPECT_VIOLATES(engine->run({.spe_id = 4}, channels), "run\\(4\\) before load\\(\\)\n");
+}
+
+TEST(LsSimContractsDeathTest, AJobImageLiesInMainStorage) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // a group has threads
+  dma::AddressSpace memory;
+  SpeGroup group(memory, {.spes = 1});
+  const KernelImage image = image_named("saxpy");
+  SC_EXPECT_VIOLATES(group.register_job_image({0x1234}, image),
+                     "register_job_image.*: the job image saxpy lies at 0x1234, which no DMA can fetch\n");
+}
+
+}  // namespace
+}  // namespace softcell::ls_sim
