@@ -52,7 +52,7 @@ macro(softcell_install_component component)
     softcell_install_libraries(spu dma ls_sim spu_kernels jobs spu)
     softcell_install_pkg_config(spu "emulator of SPEs, kernels and job chains"
       CFLAGS -I\${prefix}/${SOFTCELL_INSTALL_KERNELS}
-      LIBS -lsoftcell_jobs -lsoftcell_ls_sim -lsoftcell_spu_kernels -lsoftcell_dma -lsoftcell_base -lboost_context -ldw -lelf -pthread)
+      LIBS -lsoftcell_jobs -lsoftcell_spu_kernels -lsoftcell_ls_sim -lsoftcell_dma -lsoftcell_base -lboost_context -ldw -lelf -pthread)
   elseif("${component}" STREQUAL "render")
     softcell_install_libraries(render glad render)
     softcell_install_pkg_config(render "pictures of meshes, without a window"

@@ -20,7 +20,7 @@ set(configure ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DSOFTC
   -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 
 expect("a component that there is not" 1
-  "SOFTCELL_COMPONENTS: softcell has no component 'bodies'; its components are spu, soft_bodies, mesh_import, bullet, box2d, spe_bodies\\."
+  "SOFTCELL_COMPONENTS: softcell has no component 'bodies'; its components are spu, soft_bodies, mesh_import, bullet, box2d, spe_bodies, render\\."
   ${configure} "-DSOFTCELL_COMPONENTS=spu\;bodies")
 expect("a library that is not installed" 1
   "softcell's component box2d needs Box2D 2\\.4, which was not found; on Debian it is in the package libbox2d-dev\\."
