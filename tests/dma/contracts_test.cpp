@@ -80,7 +80,6 @@ TEST(DmaContractsDeathTest, AHolderDoesNotOutliveItsReservations) {
   auto reservations = std::make_unique<Reservations>();
   const ReservationHolder holder(*reservations);
   SC_EXPECT_VIOLATES(reservations.reset(), "places_taken == 0.*: holders 1 outlive their Reservations\n");
-  reservations.release();  // NOLINT: the holder, which outlives it here, still gives its place back
 }
 
 TEST(DmaContractsDeathTest, AGetArrivesInTheLocalStoreOfItsMfc) {
