@@ -12,9 +12,11 @@ namespace softcell::ppu {
 /// First fit. Time goes on from call to call.
 class SlotBlocks {
  public:
-  /// Slot 0 is nobody's: it is always zero.
+  /// Slot 0 is nobody's: it is always zero. A block may be empty.
+  /// @return  the number of the block's first slot
   std::uint32_t take(std::uint32_t count, int last_use) {
-    SC_ASSERT(count > 0, "a block of {} slots, in use until {}", count, last_use);
+    SC_ASSERT(blocks_.empty() || blocks_.back().end <= most_, "the last block ends at {}, past all {} slots",
+              blocks_.back().end, most_);
     std::uint32_t begin = 1;
     auto before = blocks_.begin();
     for (; before != blocks_.end() && before->begin < begin + count; ++before) begin = before->end;

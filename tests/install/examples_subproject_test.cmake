@@ -1,4 +1,5 @@
 # The examples in one project with softcell, by add_subdirectory: no installed softcell is needed, and none of its programs is built.
+# Compiled without optimisation, as that is quick, and with assertions.
 set(project ${SCRATCH}/project)
 set(build ${SCRATCH}/build)
 file(REMOVE_RECURSE ${SCRATCH})
@@ -18,7 +19,7 @@ function(step purpose)
 endfunction()
 # Packages that are installed on this machine are no help.
 step("configuring" ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DCMAKE_DISABLE_FIND_PACKAGE_softcell=ON
-  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_BUILD_TESTS=OFF)
+  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_BUILD_TESTS=OFF)
 step("building" ${CMAKE_COMMAND} --build ${build} --parallel 2)
 step("testing" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
 file(GLOB_RECURSE pictures ${build}/jelly_on_spes/*.png)

@@ -248,18 +248,21 @@ TEST(Command, ALongSentenceLosesItsMiddle) {
   EXPECT_NE(said.find("n') is 'x'; it must be a number"), std::string::npos) << said;
 }
 
-TEST(Command, SpesStepBodiesInTwoDimensionsUpToWhatALocalStoreHolds) {
+TEST(Command, ThePpuStepsBodiesInTwoDimensionsThatNoLocalStoreHolds) {
   const ScratchFolder folder;
-  const auto stepped = [&](int cells, const std::string& options) {
-    const std::string scene = folder / "body.toml", side = std::to_string(cells);
+  const auto state_hash = [&](int cells, const std::string& options) {
+    const std::string scene = folder / "body.toml", json = folder / "run.json", side = std::to_string(cells);
     write_file(scene,
                "dimension = 2\n[[soft_body]]\ncell_size = 0.05\nshape = { kind = \"rectangle\", width = " +
                    side + ", height = " + side + " }\n");
-    return run_softcell("demo 2d --headless --quiet --frames 1 --size 32x32 --scene " + scene + options);
+    const CommandResult run = run_softcell("demo 2d --headless --quiet --frames 30 --size 32x32 --scene " + scene +
+                                    " --json " + json + options);
+    EXPECT_EQ(run.status, 0) << run.output;
+    return read_json(json).at("state_hash").get<std::string>();
   };
-  EXPECT_EQ(stepped(36, "").status, 0);  // 1,369 particles
-  EXPECT_EQ(stepped(38, "").status, 1);  // 1,521
-  EXPECT_EQ(stepped(38, " --engine reference").status, 0);
+  // 1,369 and 1,521 particles. The solvers of SPEs and PPU differ in last bits.
+  EXPECT_NE(state_hash(36, ""), state_hash(36, " --engine reference"));
+  EXPECT_EQ(state_hash(38, ""), state_hash(38, " --engine reference"));
 }
 
 TEST(Command, DrawsTheFiguresOverAPictureWhereItIsAsked) {
