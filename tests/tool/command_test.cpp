@@ -255,8 +255,8 @@ TEST(Command, ThePpuStepsBodiesInTwoDimensionsThatNoLocalStoreHolds) {
     write_file(scene,
                "dimension = 2\n[[soft_body]]\ncell_size = 0.05\nshape = { kind = \"rectangle\", width = " +
                    side + ", height = " + side + " }\n");
-    const CommandResult run = run_softcell("demo 2d --headless --quiet --frames 30 --size 32x32 --scene " + scene +
-                                    " --json " + json + options);
+    const CommandResult run = run_softcell("demo 2d --headless --quiet --frames 30 --size 32x32 --scene " +
+                                           scene + " --json " + json + options);
     EXPECT_EQ(run.status, 0) << run.output;
     return read_json(json).at("state_hash").get<std::string>();
   };
