@@ -428,7 +428,7 @@ void Renderer::State::upload_frame(const FrameDescription& frame) {
 }
 
 void Renderer::State::upload_lattice(const LatticeDraw& lattice) {
-  SC_ASSERT(lattice.radius > 0, "{} particles with a radius of {} m", lattice.particles.size(),
+  SC_ASSERT(lattice.radius >= 0, "{} particles with a radius of {} m", lattice.particles.size(),
             lattice.radius);
   gl.BindVertexArray(lattice_layout.name());
   gl.BindBuffer(GL_ARRAY_BUFFER, lattice_vertices.name());

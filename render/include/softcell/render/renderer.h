@@ -97,7 +97,7 @@ class Renderer {
 
   /// Draws one frame: first opaque meshes, then meshes with an opacity below 1 in the given order, static
   /// ones last.
-  /// @pre  opacities are 0..1; poses have a determinant above 0; shadow and particle radii are above 0
+  /// @pre  opacities are 0..1; poses have a determinant above 0; shadow radii are above 0, those of particles not below
   /// @throws std::invalid_argument  a handle is not of this renderer, a link is out of range, or a mesh with a
   /// texture has no texture coordinates.
   void render(const FrameDescription& frame);
