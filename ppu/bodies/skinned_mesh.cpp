@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ppu/lattice/embedding.h"
-#include "ppu/reference/trilinear.h"
+#include "ppu/reference/skin_slots.h"
 
 namespace softcell::ppu {
 
@@ -18,22 +18,14 @@ void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::sp
                                 " positions and " + std::to_string(normals.size()) + " normals");
   }
   const std::span<const Eigen::Vector3f> particles = body.positions();
-  std::array<Eigen::Vector3f, 8> corners;
   for (const SkinPart& part : embedding.parts) {
-    for (std::uint32_t g = part.first_group; g < part.first_group + part.group_count; ++g) {
-      const spu::SkinGroup& group = embedding.groups[g];
-      if (group.continues[0] == 0) {
-        for (std::size_t k = 0; k < 8; ++k) corners[k] = particles[part.particle(group.corner[k])];
-      }
-      for (std::uint32_t lane = 0; lane < 4; ++lane) {
-        const std::uint32_t vertex = embedding.vertex_of_slot[4 * g + lane];
-        const SurfacePoint<float> point = evaluate_trilinear<float>(
-            {group.xi[lane], group.eta[lane], group.zeta[lane]},
-            {group.normal_x[lane], group.normal_y[lane], group.normal_z[lane]}, corners);
-        positions[vertex] = point.position;
-        normals[vertex] = point.normal;
-      }
-    }
+    for_each_slot(
+        embedding, part, [&](std::uint32_t particle) { return particles[particle]; },
+        [&](std::uint32_t slot, const SurfacePoint<float>& point) {
+          const std::uint32_t vertex = embedding.vertex_of_slot[slot];
+          positions[vertex] = point.position;
+          normals[vertex] = point.normal;
+        });
   }
 }
 

@@ -58,7 +58,7 @@ struct Box2dSoftBodies::Impl {
     for (const auto& body : bodies)
       if (!body->soft().asleep()) body->count_stillness(step, sleep->speed);
     for (const auto& body : bodies)
-      if (!body->soft().asleep() && body->still_for() >= sleep->seconds) rest.settle(*body, *sleep);
+      if (!body->soft().asleep()) rest.settle(*body, *sleep);
   }
 
   /// Null for a b2Body that is no particle.

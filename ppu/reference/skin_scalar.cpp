@@ -1,7 +1,7 @@
 #include "ppu/reference/skin_scalar.h"
 
 #include "ppu/numbers/half.h"
-#include "ppu/reference/trilinear.h"
+#include "ppu/reference/skin_slots.h"
 
 namespace softcell::ppu {
 
@@ -19,25 +19,18 @@ ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& p
 
 void skin_scalar(const Embedding& embedding, const SkinPart& part, std::span<const Eigen::Vector3f> positions,
                  const Eigen::Vector3f& origin, std::span<spu::SkinnedVertex> out) {
-  std::array<Eigen::Vector3f, 8> corners;
-  for (std::uint32_t i = 0; i < part.group_count; ++i) {
-    const spu::SkinGroup& group = embedding.groups[part.first_group + i];
-    if (group.continues[0] == 0) {
-      for (std::size_t k = 0; k < 8; ++k) corners[k] = positions[part.particle(group.corner[k])] - origin;
-    }
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-      const SurfacePoint<float> point = evaluate_trilinear<float>(
-          {group.xi[lane], group.eta[lane], group.zeta[lane]},
-          {group.normal_x[lane], group.normal_y[lane], group.normal_z[lane]}, corners);
-      spu::SkinnedVertex& vertex = out[4 * i + lane];
-      for (int d = 0; d < 3; ++d) {
-        vertex.position[d] = half_from_float(point.position[d]);
-        vertex.normal[d] = half_from_float(point.normal[d]);
-      }
-      vertex.position[3] = half_from_float(1.0f);
-      vertex.normal[3] = half_from_float(0.0f);
-    }
-  }
+  for_each_slot(
+      embedding, part,
+      [&](std::uint32_t particle) -> Eigen::Vector3f { return positions[particle] - origin; },
+      [&](std::uint32_t slot, const SurfacePoint<float>& point) {
+        spu::SkinnedVertex& vertex = out[slot - 4 * part.first_group];
+        for (int d = 0; d < 3; ++d) {
+          vertex.position[d] = half_from_float(point.position[d]);
+          vertex.normal[d] = half_from_float(point.normal[d]);
+        }
+        vertex.position[3] = half_from_float(1.0f);
+        vertex.normal[3] = half_from_float(0.0f);
+      });
 }
 
 }  // namespace softcell::ppu

@@ -1,5 +1,6 @@
 # The examples in one project with softcell, by add_subdirectory: no installed softcell is needed, and none of its programs is built.
 # Compiled without optimisation, as that is quick, and with assertions.
+include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
 set(project ${SCRATCH}/project)
 set(build ${SCRATCH}/build)
 file(REMOVE_RECURSE ${SCRATCH})
@@ -11,12 +12,6 @@ foreach(example hello_kernel saxpy jelly_3d jelly_2d jelly_on_spes)
 endforeach()
 file(WRITE ${project}/CMakeLists.txt ${text})
 
-function(step purpose)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${purpose} failed (${status}):\n${output}")
-  endif()
-endfunction()
 # Packages that are installed on this machine are no help.
 step("configuring" ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DCMAKE_DISABLE_FIND_PACKAGE_softcell=ON
   -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_BUILD_TESTS=OFF)

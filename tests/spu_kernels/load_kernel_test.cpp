@@ -3,7 +3,6 @@
 #include "softcell/spu_kernels/load_kernel.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <string>
 
 #include "softcell/spu_kernels/images.h"
+#include "support/scratch_folder.h"
 
 namespace softcell::spu_kernels {
 namespace {
@@ -19,18 +19,13 @@ namespace fs = std::filesystem;
 
 class LoadKernel : public testing::Test {
  protected:
-  LoadKernel() : folder_(fs::temp_directory_path() / ("softcell_load_kernel_" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~LoadKernel() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& name, std::span<const std::byte> bytes) const {
     std::ofstream(folder_ / name, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     return folder_ / name;
   }
 
-  fs::path folder_;
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(LoadKernel, FindsEveryKernelByName) {
