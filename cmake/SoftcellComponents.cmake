@@ -1,6 +1,7 @@
 # The components of softcell: for its own build, and for find_package(softcell). Each is a target softcell::<component>.
 #
 #   spu           the emulator, the kernels and job chains; softcell_add_spu_kernel, softcell_embed_spu_images
+#   libspe2       the SPE Runtime Management Library for programs that were written for the Cell's Linux
 #   soft_bodies   meshes given as arrays, lattices, models, bodies
 #   mesh_import   meshes from files
 #   bullet        soft bodies in a Bullet world
@@ -9,7 +10,7 @@
 #   render        pictures of meshes, without a window
 
 # In an order in which each comes behind those that it links.
-set(SOFTCELL_ALL_COMPONENTS spu soft_bodies mesh_import bullet box2d spe_bodies render)
+set(SOFTCELL_ALL_COMPONENTS spu libspe2 soft_bodies mesh_import bullet box2d spe_bodies render)
 
 # softcell_resolve_components(<variable> <wrong> <component>...)
 # Sets the variable to these components and those that they link, in the order above; or <wrong> to a sentence about the first that there
@@ -24,7 +25,7 @@ function(softcell_resolve_components variable wrong)
       return()
     endif()
   endforeach()
-  if("spe_bodies" IN_LIST wanted)
+  if(wanted MATCHES "spe_bodies|libspe2")
     list(APPEND wanted spu)
   endif()
   if(wanted MATCHES "mesh_import|bullet|box2d|spe_bodies")

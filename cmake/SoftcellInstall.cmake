@@ -4,12 +4,15 @@
 #   bin/softcell                           the command                                             [command]
 #   share/man/man1/, share/bash-completion/, share/zsh/, share/fish/   its manual page, completion [command]
 #   include/softcell/<library>/            public headers                                          [development]
+#   include/libspe2.h, lib/libspe2.so      target softcell::libspe2                                [development]
+#   include/softcell/psl1ght/, share/softcell/psl1ght/  target softcell::psl1ght; what its Makefiles include [development]
+#   bin/softcell-spu-*, softcell-embedspu, softcell-bin2s, lib/softcell/  the commands of a toolchain   [development]
 #   lib/libsoftcell_<library>.a            targets softcell::<library>                             [development]
 #   lib/cmake/softcell/                    the package                                             [development]
 #   lib/pkgconfig/                         softcell-<component>.pc                                 [development]
 #   share/softcell/cmake/                  softcell_add_spu_kernel                                 [development]
 #   share/softcell/spu_kernels/            sdk/, common/ and the contracts *_job.h, beside cmake/ as in the source tree [development]
-#   share/doc/softcell/                    licence, changes, pages, examples                       [documentation]
+#   share/doc/softcell/                    licence, changes, pages, examples, scenes               [documentation]
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -21,6 +24,7 @@ set(SOFTCELL_INSTALL_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/softcell)
 # These libraries, as one file of targets, and their public headers.
 function(softcell_install_libraries file)
   foreach(library IN LISTS ARGN)
+    set_property(GLOBAL APPEND PROPERTY SOFTCELL_INSTALLED softcell_${library})
     install(TARGETS softcell_${library} EXPORT softcell_${file} ARCHIVE COMPONENT development)
     get_target_property(folder softcell_${library} SOURCE_DIR)
     if(IS_DIRECTORY ${folder}/include/softcell)
@@ -53,6 +57,22 @@ macro(softcell_install_component component)
     softcell_install_pkg_config(spu "emulator of SPEs, kernels and job chains"
       CFLAGS -I\${prefix}/${SOFTCELL_INSTALL_KERNELS}
       LIBS -lsoftcell_jobs -lsoftcell_spu_kernels -lsoftcell_ls_sim -lsoftcell_dma -lsoftcell_base -lboost_context -ldw -lelf -pthread)
+  elseif("${component}" STREQUAL "libspe2")
+    # One library, as on the Cell; softcell's own are inside it.
+    install(TARGETS softcell_libspe2 softcell_psl1ght EXPORT softcell_libspe2 LIBRARY COMPONENT development)
+    install(EXPORT softcell_libspe2 NAMESPACE softcell:: DESTINATION ${SOFTCELL_INSTALL_PACKAGE}
+      FILE softcell_libspe2.cmake COMPONENT development)
+    install(TARGETS softcell_allocations LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/softcell COMPONENT development)
+    install(TARGETS softcell_low_memory EXPORT softcell_libspe2 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/softcell COMPONENT development)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/ppu/psl1ght/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softcell/psl1ght COMPONENT development)
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/ppu/psl1ght/installed/ DESTINATION ${CMAKE_INSTALL_DATADIR}/softcell/psl1ght COMPONENT development)
+    softcell_install_pkg_config(psl1ght "thread groups and raw SPUs as PSL1GHT has them"
+      CFLAGS -fno-pie -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}/softcell/psl1ght
+      LIBS -no-pie -Wl,--no-as-needed -L\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell -lsoftcell_low_memory -lspe2
+        -Wl,-rpath,\${prefix}/${CMAKE_INSTALL_LIBDIR}/softcell)
+    install(FILES ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2.h ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/libspe2-types.h
+      ${PROJECT_SOURCE_DIR}/ppu/libspe2/include/cbea_map.h TYPE INCLUDE COMPONENT development)
+    softcell_install_pkg_config(libspe2 "the SPE Runtime Management Library" LIBS -lspe2)
   elseif("${component}" STREQUAL "render")
     softcell_install_libraries(render glad render)
     softcell_install_pkg_config(render "pictures of meshes, without a window"
@@ -89,6 +109,7 @@ function(softcell_install_package)
   endforeach()
 
   if(TARGET softcell)
+    set_property(GLOBAL APPEND PROPERTY SOFTCELL_INSTALLED softcell softcell_manuals)
     install(TARGETS softcell RUNTIME COMPONENT command)
     get_target_property(tool softcell BINARY_DIR)
     foreach(page man/man1/softcell.1 bash-completion/completions/softcell zsh/site-functions/_softcell
@@ -97,6 +118,10 @@ function(softcell_install_package)
       install(FILES ${tool}/manuals/${page} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT command OPTIONAL)
     endforeach()
   endif()
+
+  # All that an installation needs, and no tests.
+  get_property(installed GLOBAL PROPERTY SOFTCELL_INSTALLED)
+  add_custom_target(softcell_installation DEPENDS ${installed})
 
   if("spu" IN_LIST SOFTCELL_COMPONENTS)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/spu_kernels/sdk ${PROJECT_SOURCE_DIR}/spu_kernels/common
@@ -108,6 +133,7 @@ function(softcell_install_package)
     ${PROJECT_SOURCE_DIR}/cmake/SoftcellComponents.cmake
     ${PROJECT_SOURCE_DIR}/cmake/SoftcellKernelSettings.cmake
     ${PROJECT_SOURCE_DIR}/cmake/SoftcellSpuKernel.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/SoftcellSpuElf.cmake
     ${PROJECT_SOURCE_DIR}/cmake/CheckSpuBudget.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindBulletFloat.cmake
     DESTINATION ${SOFTCELL_INSTALL_MODULES} COMPONENT development)
@@ -122,4 +148,5 @@ function(softcell_install_package)
     DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples
     DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/demos/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/demos COMPONENT documentation)
 endfunction()

@@ -8,6 +8,11 @@ set(SOFTCELL_KERNEL_FLAGS
   -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fPIE -fvisibility=hidden -fno-stack-protector
   # Kernels are optimised in every configuration: their budgets and their bits do not depend on it.
   -O2 -g -mavx2 -mfma
+  # The SPU's data model: long, size_t and pointers have 32 bits. It is 64-bit code with 32-bit pointers, which an ordinary 64-bit
+  # process calls. (_MM_MALLOC_H_INCLUDED: immintrin.h is not to include the host's C library, which has no headers for this data model.)
+  -mx32 -D_MM_MALLOC_H_INCLUDED
+  # Its char is unsigned, and its long double is a double.
+  -funsigned-char -mlong-double-64
   # SPU arithmetic truncates at run time, so nothing may be folded in another mode or fused unasked.
   -frounding-math -fno-trapping-math -ffp-contract=off
   # How to unwind goes to the debugger only: ls.ld leaves .eh_frame out of the image.
@@ -16,11 +21,54 @@ set(SOFTCELL_KERNEL_FLAGS
   -mno-red-zone -fomit-frame-pointer
   # No loops turned into calls of memcpy or memset: there is no C library in a local store.
   -fno-builtin
-  -Wall -Wextra -Wshadow -Wno-unknown-warning-option)
+  -Wall -Wextra -Wshadow -Wno-unused-parameter -Wno-unknown-warning-option)
+
+# And the C++ sources of kernels and programs besides.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(SOFTCELL_KERNEL_CXX_FLAGS
+    # Addresses in 64-bit registers take no prefix bytes.
+    -maddress-mode=long
+    # No gcse: it spills more than it saves here, and a real SPU g++ 9 needs to go without it too (it miscompiles). No scev-cprop: a
+    # pointer that a short loop has moved on is not to be calculated again behind it.
+    -fno-tree-loop-distribute-patterns -fno-gcse -fno-tree-scev-cprop)
+else()
+  # Clang has no address mode, and unrolls less to make up for the prefix bytes.
+  set(SOFTCELL_KERNEL_CXX_FLAGS "SHELL:-mllvm -unroll-threshold=100")
+endif()
+
+# How the same sources are compiled for the SPU, by GCC 7 to 9.
+set(SOFTCELL_SPU_C_FLAGS -std=gnu17 -O2 -g -ffreestanding
+  # The arithmetic of the host's build: nothing is fused unasked.
+  -ffp-contract=off
+  # GCC 9's SPU port has miscompiled conversions between bytes and words with gcse. Loops become no calls of memcpy or memset.
+  -fno-gcse -fno-tree-loop-distribute-patterns
+  # An address that is made of the one before waits for it in a processor that executes in order (match: 5 % of all cycles).
+  -fno-ivopts
+  -Wall -Wextra -Wno-unused-parameter)
+set(SOFTCELL_SPU_CXX_FLAGS ${SOFTCELL_SPU_C_FLAGS} -fno-exceptions -fno-rtti -fno-threadsafe-statics)
+list(REMOVE_ITEM SOFTCELL_SPU_CXX_FLAGS -std=gnu17)
+list(PREPEND SOFTCELL_SPU_CXX_FLAGS -std=c++17)
+
+# Programs: other people's sources, in C or C++, with the C library of the local store. What they do not use is left out of the image.
+execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=include OUTPUT_VARIABLE SOFTCELL_COMPILER_HEADERS
+  OUTPUT_STRIP_TRAILING_WHITESPACE)
+set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdinc
+  -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS})  # joined: CMake drops a second -isystem
+set(SOFTCELL_C_FLAGS ${SOFTCELL_KERNEL_FLAGS})
+list(REMOVE_ITEM SOFTCELL_C_FLAGS -std=c++17 -fno-exceptions -fno-rtti -fno-builtin -Wextra -Wshadow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(REMOVE_ITEM SOFTCELL_C_FLAGS -ffreestanding)  # GCC's main is then no special function, and returns nothing by itself
+  list(APPEND SOFTCELL_C_FLAGS -fno-builtin -maddress-mode=long -Wno-main)
+  set(SOFTCELL_C_CHECKED_FLAGS -DSOFTCELL_CHECKED -fsanitize=thread --param tsan-instrument-func-entry-exit=0)
+else()
+  list(APPEND SOFTCELL_C_FLAGS -fno-builtin -Werror=return-type)
+  set(SOFTCELL_C_CHECKED_FLAGS -DSOFTCELL_CHECKED -fsanitize=kernel-address -mllvm -asan-instrumentation-with-call-threshold=0
+    -mllvm -asan-opt=0 -mllvm -asan-stack=0 -mllvm -asan-globals=0)
+endif()
 
 # How a source is checked against the declarations of a real SPU compiler, sdk/check, with either of the host's compilers.
 set(SOFTCELL_SPU_CHECK_FLAGS
-  -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fsyntax-only -Wall -Wextra -Werror
+  -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fsyntax-only -Wall -Wextra -Werror -Wno-unused-parameter
   # The SPU's data model: 32-bit pointers and long, 64-bit numbers aligned to eight, unsigned char. (x32 has it; no library is needed.)
   -mx32 -funsigned-char -D__SPU__
   # As an SPU g++ has it, and clang++ has not: vectors change their type by casts only.
@@ -30,11 +78,12 @@ set(SOFTCELL_SPU_CHECK_FLAGS
 
 # What the checked flavour is compiled with: a call before each load and store, to spu_kernels/sdk/checked. Why which compiler gets
 # which is written there.
-set(SOFTCELL_CHECKED_FLAGS
-  -DSOFTCELL_CHECKED  # a kernel that fills the local store has to make do with less of it then
-  "$<$<CXX_COMPILER_ID:GNU>:-fsanitize=thread;SHELL:--param tsan-instrument-func-entry-exit=0>"
-  "$<$<CXX_COMPILER_ID:Clang>:-fsanitize=kernel-address>"
-  "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-instrumentation-with-call-threshold=0 -mllvm -asan-opt=0>"
-  "$<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -asan-stack=0 -mllvm -asan-globals=0>")
+set(SOFTCELL_CHECKED_FLAGS -DSOFTCELL_CHECKED)  # a kernel that fills the local store has to make do with less of it then
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND SOFTCELL_CHECKED_FLAGS -fsanitize=thread "SHELL:--param tsan-instrument-func-entry-exit=0")
+else()
+  list(APPEND SOFTCELL_CHECKED_FLAGS -fsanitize=kernel-address
+    "SHELL:-mllvm -asan-instrumentation-with-call-threshold=0 -mllvm -asan-opt=0" "SHELL:-mllvm -asan-stack=0 -mllvm -asan-globals=0")
+endif()
 # What its reports and spilled registers take of the stack, in bytes, on top of what the kernel declares.
 set(SOFTCELL_CHECKED_STACK_BYTES 1024)

@@ -30,6 +30,17 @@ if(SOFTCELL_PRECOMPILED_HEADERS)
   target_compile_options(softcell_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 
+# Several sources of a target compiled as one: what they share is read and compiled once, which halves the time of a whole build. A source
+# that changes takes its neighbours with it, and what one source includes the next one sees: a build without shows what was forgotten.
+option(SOFTCELL_UNITY_BUILD "Compile the sources of a target in groups of six" OFF)
+if(SOFTCELL_UNITY_BUILD)
+  # Types of unnamed namespaces in private structures, which GCC takes for a header's because a file includes their source.
+  target_compile_options(softcell_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
+function(softcell_group_sources target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTCELL_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
+endfunction()
+
 # softcell_add_precompiled_headers(<target> <header>...): for `target_precompile_headers(... REUSE_FROM <target>)`.
 function(softcell_add_precompiled_headers target)
   set(empty ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp)
@@ -59,6 +70,7 @@ function(softcell_add_library folder)
   cmake_parse_arguments(arg "" "" "SOURCES" ${ARGN})
   add_library(softcell_${folder} STATIC ${arg_SOURCES})
   add_library(softcell::${folder} ALIAS softcell_${folder})
+  softcell_group_sources(softcell_${folder})
   set_target_properties(softcell_${folder} PROPERTIES EXPORT_NAME ${folder})
   target_compile_features(softcell_${folder} PUBLIC cxx_std_20)
   target_include_directories(softcell_${folder}

@@ -14,7 +14,7 @@
 //         ^                                                                                     | none left
 //         +---- its bell was rung ---- enter the board as asleep, sleep with the bell reserved <+
 //
-// argp: effective address of the JobBoard; envp: of the JobBells, one for each SPE. Budget: 4608 bytes; it
+// argp: effective address of the JobBoard; envp: of the JobBells, one for each SPE. Budget: 4864 bytes; it
 // lies at the top of the local store with its stack below it, so that jobs have the rest, as if they were
 // alone.
 //

@@ -6,11 +6,6 @@
 #include "softcell/base/text.h"
 
 namespace softcell::base {
-namespace {
-
-constexpr int kMostHexDigits = 16;
-
-}  // namespace
 
 JsonText& JsonText::microseconds(std::int64_t nanoseconds) {
   nanoseconds = std::max<std::int64_t>(nanoseconds, 0);

@@ -20,11 +20,12 @@ constexpr std::uint64_t kBytesAtOnce = 1 << 20;
 }
 
 void check_kind(const std::filesystem::path& path) {
-  std::error_code ignored;  // what cannot be looked at, opening it will say
+  std::error_code ignored;  // a file whose kind the host does not tell fails to open, too
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (std::filesystem::is_directory(status)) refuse(path, "it is a folder");
+  if (status.type() == std::filesystem::file_type::not_found) refuse(path, "there is no such file");
+  if (std::filesystem::is_directory(status)) refuse(path, "it is a directory");
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    refuse(path, "it is no file");
+    refuse(path, "it is not a regular file");
 }
 
 }  // namespace

@@ -9,7 +9,6 @@ namespace softcell::base {
 namespace {
 
 constexpr std::size_t kLongestBeginning = 1500, kLongestEnd = 500;
-constexpr int kMostHexDigits = 16;
 
 unsigned char byte_at(std::string_view text, std::size_t at) {
   return at < text.size() ? static_cast<unsigned char>(text[at]) : 0;

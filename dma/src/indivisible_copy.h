@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/sanitizers.h"
@@ -15,6 +16,8 @@ namespace softcell::dma {
 __extension__ typedef unsigned __int128 TsanQuadword;
 extern "C" TsanQuadword __tsan_atomic128_load(const volatile void* from, int order);
 extern "C" void __tsan_atomic128_store(volatile void* to, TsanQuadword value, int order);
+extern "C" int __tsan_atomic128_compare_exchange_strong(volatile void* to, void* expected, TsanQuadword value,
+                                                        int success, int failure);
 #endif
 
 template <class Unit>
@@ -32,6 +35,30 @@ inline void copy_quadword(std::byte* to, const std::byte* from) {
 #else
   typedef long long Quadword __attribute__((vector_size(16), may_alias));
   *reinterpret_cast<volatile Quadword*>(to) = *reinterpret_cast<const volatile Quadword*>(from);
+#endif
+}
+
+/// Stores the quadword `value` at `to` if `expected` is there, in one access. All are multiples of 16.
+/// @return  whether it did.
+inline bool exchange_quadword(std::byte* to, const std::byte* expected, const std::byte* value) {
+#if SC_THREAD_SANITIZER
+  TsanQuadword old_value = 0, new_value = 0;
+  std::memcpy(&old_value, expected, sizeof old_value);
+  std::memcpy(&new_value, value, sizeof new_value);
+  return __tsan_atomic128_compare_exchange_strong(to, &old_value, new_value, __ATOMIC_ACQ_REL,
+                                                  __ATOMIC_ACQUIRE) != 0;
+#else
+  // The compilers' builtin needs an option for the whole file, or a library.
+  std::uint64_t old_value[2], new_value[2];
+  std::memcpy(old_value, expected, sizeof old_value);
+  std::memcpy(new_value, value, sizeof new_value);
+  bool done;
+  asm volatile("lock cmpxchg16b %[to]"
+               : [to] "+m"(*reinterpret_cast<volatile std::byte(*)[16]>(to)), "+a"(old_value[0]),
+                 "+d"(old_value[1]), "=@ccz"(done)
+               : "b"(new_value[0]), "c"(new_value[1])
+               : "memory");
+  return done;
 #endif
 }
 

@@ -9,7 +9,7 @@
 namespace softcell::dma {
 
 ListElement read_element(std::span<const std::byte> local_store, const MfcCommand& command,
-                         std::uint32_t index) {
+                         std::uint32_t index, bool is_big_endian) {
   SC_ASSERT(index < command.size / kListElementBytes, "element {} of a list of {} bytes", index,
             command.size);
   SC_ASSERT(command.list_address().value + (index + 1) * kListElementBytes <= local_store.size(),
@@ -17,13 +17,14 @@ ListElement read_element(std::span<const std::byte> local_store, const MfcComman
   ListElement element;
   std::memcpy(&element, &local_store[command.list_address().value + index * kListElementBytes],
               sizeof element);
+  if (is_big_endian) element = {__builtin_bswap32(element.head), __builtin_bswap32(element.eal)};
   return element;
 }
 
 std::variant<ListElement, Fault> ListTransfer::open_next(std::span<std::byte> local_store,
                                                          StoragePort& port) {
   SC_ASSERT(can_open(), "element {} of {} with {} open", next_, count(), open_);
-  const ListElement element = read_element(local_store, command_, next_);
+  const ListElement element = read_element(local_store, command_, next_, port.is_big_endian());
   if (std::optional<Fault> fault = check_element(command_, next_, element, cursor_)) {
     return std::move(*fault);
   }

@@ -25,7 +25,7 @@ std::variant<std::byte*, Fault> LocalStores::resolve_register(EffectiveAddress e
   SC_ASSERT(is_register(ea), "{} is in the local store of SPE {}", ea, spe_of(ea));
   const std::string spe = "SPE " + std::to_string(spe_of(ea));
   const std::uint32_t offset = offset_of(ea);
-  if (ports_[spe_of(ea)].load(std::memory_order_acquire) == nullptr) {
+  if (port_of(ea).load(std::memory_order_acquire) == nullptr) {
     return Fault{.rule = Rule::kEaNotMapped,
                  .detail = "EA is a register of " + spe + ", which does not exist"};
   }
@@ -47,7 +47,7 @@ std::variant<std::byte*, Fault> LocalStores::resolve_register(EffectiveAddress e
 }
 
 bool LocalStores::on_write(EffectiveAddress ea, const std::byte* from, std::uint32_t bytes) {
-  LocalStorePort* port = ports_[spe_of(ea)].load(std::memory_order_acquire);
+  LocalStorePort* port = port_of(ea).load(std::memory_order_acquire);
   if (port == nullptr) return false;
   if (!is_register(ea)) {
     port->on_external_write({offset_of(ea)}, bytes);

@@ -1,14 +1,14 @@
 #pragma once
 // The part of main storage that leads to SPEs: local stores and the registers beside them.
 //
-//   kLocalStoresBase + n MB   +0x00000  local store of SPE n, 256 KB
-//                             +0x40000  its registers, of which others may write three
+//   base + n MB   +0x00000  local store of SPE n, 256 KB
+//                 +0x40000  its registers, of which others may write three
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <variant>
+#include <vector>
 
 #include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
@@ -20,23 +20,34 @@ namespace softcell::dma {
 /// Any thread. Nobody may write to an SPE while its port is taken away.
 class LocalStores {
  public:
-  static constexpr bool contains(EffectiveAddress ea) {
-    return ea.value - kLocalStoresBase.value < kSpeCount * kLocalStoreStrideBytes;
+  /// @param base  of SPE 0; a multiple of kLocalStoreStrideBytes.
+  explicit LocalStores(EffectiveAddress base = kLocalStoresBase, int spes = kSpeCount)
+      : base_(base), ports_(static_cast<std::size_t>(spes)) {
+    SC_ASSERT(base.value % kLocalStoreStrideBytes == 0 && spes > 0, "{} local stores at {}", spes, base);
+  }
+
+  EffectiveAddress base() const { return base_; }
+  int spes() const { return static_cast<int>(ports_.size()); }
+  EffectiveAddress ea_of(int spe) const {
+    return base_ + static_cast<std::uint64_t>(spe) * kLocalStoreStrideBytes;
+  }
+  bool contains(EffectiveAddress ea) const {
+    return ea.value - base_.value < ports_.size() * kLocalStoreStrideBytes;
   }
   /// @pre contains(ea), here and below.
-  static constexpr int spe_of(EffectiveAddress ea) {
+  int spe_of(EffectiveAddress ea) const {
     SC_ASSERT(contains(ea), "{} does not belong to an SPE", ea);
-    return static_cast<int>((ea.value - kLocalStoresBase.value) / kLocalStoreStrideBytes);
+    return static_cast<int>((ea.value - base_.value) / kLocalStoreStrideBytes);
   }
-  static constexpr std::uint32_t offset_of(EffectiveAddress ea) {
+  std::uint32_t offset_of(EffectiveAddress ea) const {
     SC_ASSERT(contains(ea), "{} does not belong to an SPE", ea);
-    return static_cast<std::uint32_t>((ea.value - kLocalStoresBase.value) % kLocalStoreStrideBytes);
+    return static_cast<std::uint32_t>((ea.value - base_.value) % kLocalStoreStrideBytes);
   }
-  static constexpr bool is_register(EffectiveAddress ea) { return offset_of(ea) >= kLocalStoreBytes; }
+  bool is_register(EffectiveAddress ea) const { return offset_of(ea) >= kLocalStoreBytes; }
 
   void set_port(int spe, LocalStorePort* port) {
-    SC_ASSERT(spe >= 0 && spe < kSpeCount, "SPE {} of {}", spe, kSpeCount);
-    ports_[spe].store(port, std::memory_order_release);
+    SC_ASSERT(spe >= 0 && spe < spes(), "SPE {} of {}", spe, spes());
+    ports_[static_cast<std::size_t>(spe)].store(port, std::memory_order_release);
   }
 
   /// @param writes  whether it is a write, the only access that a register takes.
@@ -49,7 +60,12 @@ class LocalStores {
   bool on_write(EffectiveAddress ea, const std::byte* from, std::uint32_t bytes);
 
  private:
-  std::array<std::atomic<LocalStorePort*>, kSpeCount> ports_{};
+  std::atomic<LocalStorePort*>& port_of(EffectiveAddress ea) {
+    return ports_[static_cast<std::size_t>(spe_of(ea))];
+  }
+
+  const EffectiveAddress base_;
+  std::vector<std::atomic<LocalStorePort*>> ports_;
   std::byte register_stand_in_{};
 };
 

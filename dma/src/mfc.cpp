@@ -28,14 +28,15 @@ constexpr std::uint32_t bytes_of_lines(const MfcCommand& command) {
   return (begin + command.size + kLineMask) & ~kLineMask;
 }
 
-std::uint64_t bytes_moved(const MfcCommand& command, std::span<const std::byte> local_store) {
+std::uint64_t bytes_moved(const MfcCommand& command, std::span<const std::byte> local_store,
+                          bool is_big_endian) {
   switch (command.kind()) {
     case CommandKind::kTransfer:
       return command.size;
     case CommandKind::kList: {
       std::uint64_t bytes = 0;
       for (std::uint32_t i = 0; i < command.size / kListElementBytes; ++i) {
-        bytes += read_element(local_store, command, i).size();
+        bytes += read_element(local_store, command, i, is_big_endian).size();
       }
       return bytes;
     }
@@ -93,7 +94,13 @@ void Mfc::begin_job(std::uint64_t job_id) {
 
 std::optional<Fault> Mfc::issue(const MfcCommand& command) {
   if (suspended_by_) return suspension();
-  if (std::optional<Fault> fault = check_command(command)) return fault;
+  if (command.kind() == CommandKind::kSignal) {
+    MfcCommand translated = command;
+    translated.ea = port_.translate(command.ea);
+    if (std::optional<Fault> fault = check_command(translated, port_.local_stores())) return fault;
+  } else if (std::optional<Fault> fault = check_command(command, port_.local_stores())) {
+    return fault;
+  }
   const CommandKind kind = command.kind();
   if (kind == CommandKind::kLine) return execute_line_command(command);
 
@@ -288,7 +295,7 @@ void Mfc::count(const MfcCommand& command, CommandKind kind) {
 void Mfc::notify_issue(const MfcCommand& command) {
   ++commands_issued_;
   if (observer_ != nullptr) {
-    observer_->on_issue(commands_issued_, command, bytes_moved(command, local_store_));
+    observer_->on_issue(commands_issued_, command, bytes_moved(command, local_store_, port_.is_big_endian()));
   }
 }
 

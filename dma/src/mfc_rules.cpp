@@ -105,18 +105,18 @@ std::optional<Breach> check_line(const MfcCommand& command) {
   return check_range(command.lsa, kLineBytes);
 }
 
-bool is_signal_register(EffectiveAddress ea) {
-  const std::uint64_t offset = (ea.value - kLocalStoresBase.value) % kLocalStoreStrideBytes;
-  return ea >= kLocalStoresBase && (offset == static_cast<std::uint64_t>(SpeRegister::kSignal1) ||
-                                    offset == static_cast<std::uint64_t>(SpeRegister::kSignal2));
+bool is_signal_register(EffectiveAddress ea, EffectiveAddress local_stores) {
+  const std::uint64_t offset = (ea.value - local_stores.value) % kLocalStoreStrideBytes;
+  return ea >= local_stores && (offset == static_cast<std::uint64_t>(SpeRegister::kSignal1) ||
+                                offset == static_cast<std::uint64_t>(SpeRegister::kSignal2));
 }
 
-std::optional<Breach> check_signal(const MfcCommand& command) {
+std::optional<Breach> check_signal(const MfcCommand& command, EffectiveAddress local_stores) {
   const auto [word, lsa, ea, size, tag] = command;
   if (size != kSignalBytes) {
     return Breach{Rule::kSignalCommand, byte_count(size) + "; a signal has 4"};
   }
-  if (!is_signal_register(ea)) {
+  if (!is_signal_register(ea, local_stores)) {
     return Breach{Rule::kSignalCommand, "EA is not a Sig_Notify register of an SPE; they lie " +
                                             hex(static_cast<std::uint32_t>(SpeRegister::kSignal1)) + " and " +
                                             hex(static_cast<std::uint32_t>(SpeRegister::kSignal2)) +
@@ -138,7 +138,7 @@ std::optional<Breach> check_cache_hint(const MfcCommand& command) {
   return std::nullopt;
 }
 
-std::optional<Breach> check(const MfcCommand& command) {
+std::optional<Breach> check(const MfcCommand& command, EffectiveAddress local_stores) {
   const CommandKind kind = command.kind();
   if (kind == CommandKind::kUnknown) {
     return Breach{Rule::kUnknownCommand,
@@ -159,7 +159,7 @@ std::optional<Breach> check(const MfcCommand& command) {
     case CommandKind::kQueuedLine:
       return check_line(command);
     case CommandKind::kSignal:
-      return check_signal(command);
+      return check_signal(command, local_stores);
     case CommandKind::kCacheHint:
       return check_cache_hint(command);
     default:
@@ -192,9 +192,9 @@ std::optional<Breach> check(const MfcCommand& command, ListElement element, Loca
 
 }  // namespace
 
-std::optional<Fault> check_command(const MfcCommand& command) {
+std::optional<Fault> check_command(const MfcCommand& command, EffectiveAddress local_stores) {
   if (is_plainly_legal(command)) return std::nullopt;
-  std::optional<Breach> breach = check(command);
+  std::optional<Breach> breach = check(command, local_stores);
   if (!breach) return std::nullopt;
   return Fault{.rule = breach->rule, .command = command, .detail = std::move(breach->detail)};
 }

@@ -32,15 +32,37 @@ ProxyQueue::ProxyQueue(LocalStorePort& spe, AddressSpace& space, Schedule schedu
   mfc_.set_observer(this);
 }
 
+void ProxyQueue::set_big_endian(bool is_big_endian) {
+  const std::lock_guard lock(mutex_);
+  mfc_.set_big_endian(is_big_endian);
+}
+
 // Runs step() with the MFC to itself, then starts the SPU if that has completed a command with start.
 template <class Step>
-auto ProxyQueue::with_mfc(Step&& step) {
+auto ProxyQueue::with_mfc(Step&& step) -> decltype(step()) {
   std::unique_lock lock(mutex_);
-  auto result = step();
+  decltype(step()) result{};
+  try {
+    result = step();
+  } catch (StorageLost& lost) {
+    drop_all(std::move(lost.fault));
+  }
   const int starts = std::exchange(starts_due_, 0);
   lock.unlock();
   for (int i = 0; i < starts; ++i) start_spu_();
   return result;
+}
+
+void ProxyQueue::drop_all(Fault&& why) {
+  mfc_.begin_job(0);
+  queued_.store(0, std::memory_order_release);
+  starting_.clear();
+  failure_ = std::move(why);
+}
+
+std::optional<Fault> ProxyQueue::take_fault() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(failure_, std::nullopt);
 }
 
 std::optional<Fault> ProxyQueue::issue(const MfcCommand& command) {
@@ -55,6 +77,7 @@ std::optional<Fault> ProxyQueue::issue(const MfcCommand& command) {
     issuing_start_ = starts;
     return mfc_.issue(moved);
   });
+  if (!fault) fault = take_fault();
   if (fault) fault->command = command;
   return fault;
 }

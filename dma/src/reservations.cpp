@@ -3,18 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
+#include <bitset>
 #include <cstring>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "host_access.h"
 #include "indivisible_copy.h"
 #include "local_stores.h"
 #include "softcell/base/assert.h"
+#include "softcell/dma/fault.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/mfc_command.h"
+#include "text.h"
 
 namespace softcell::dma {
 namespace {
@@ -57,12 +61,6 @@ class LineRange {
   std::uint64_t word_ = 0;  // empty
 };
 
-/// Main storage is data, unless it is the local store of an SPE.
-void copy_to_storage(EffectiveAddress ea, std::byte* host, const std::byte* from, std::uint32_t bytes) {
-  if (LocalStores::contains(ea)) return copy_to_local_store(host, from, bytes);
-  std::memmove(host, from, bytes);
-}
-
 /// Calls piece(offset, bytes) for each line that [ea, ea + bytes) touches.
 template <class Piece>
 void for_each_line(EffectiveAddress ea, std::uint32_t bytes, Piece&& piece) {
@@ -103,15 +101,44 @@ struct Reservations::State {
 
   static constexpr int kLockBits = 6;
 
-  explicit State(LocalStores* stores) : local_stores(stores) {}
-  ~State() { SC_ASSERT(places_taken == 0, "holders {} outlive their Reservations", places_taken); }
+  State(LocalStores* stores, Storage storage)
+      : local_stores(stores), seen(storage == Storage::kHostProgram ? kMaxHolders : 0) {}
+  ~State() { SC_ASSERT(places_taken.none(), "{} holders outlive their Reservations", places_taken.count()); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
   /// @return  whether the write went to a register, so that there is nothing to copy.
   bool announce(EffectiveAddress ea, const std::byte* from, std::uint32_t bytes) {
-    return LocalStores::contains(ea) && local_stores != nullptr && local_stores->on_write(ea, from, bytes);
+    return is_local_store(ea) && local_stores->on_write(ea, from, bytes);
   }
+
+  bool is_local_store(EffectiveAddress ea) const {
+    return local_stores != nullptr && local_stores->contains(ea);
+  }
+
+  bool is_host_program() const { return !seen.empty(); }
+
+  /// Runs copy(), which accesses the storage and does nothing else.
+  template <class Copy>
+  void access(Copy&& copy) const {
+    if (!is_host_program()) return copy();
+    std::uint64_t lost = 0;
+    if (access_guarded(copy, lost)) return;
+    throw StorageLost(
+        Fault{.rule = Rule::kEaNotMapped,
+              .detail = "the program has unmapped " + hex(lost) + " while the bytes were moving"});
+  }
+
+  /// Main storage is data, unless it is the local store of an SPE.
+  void copy_to_storage(EffectiveAddress ea, std::byte* host, const std::byte* from,
+                       std::uint32_t bytes) const {
+    access([&] {
+      if (is_local_store(ea)) return copy_to_local_store(host, from, bytes);
+      std::memmove(host, from, bytes);
+    });
+  }
+
+  bool store_line_as_seen(int place, std::byte* host, const std::byte* from) const;
 
   std::mutex& lock_of(std::uint64_t line) {
     constexpr std::uint64_t kSpread = 0x9E37'79B9'7F4A'7C15;  // 2^64 over the golden ratio: neighbours differ
@@ -132,15 +159,25 @@ struct Reservations::State {
   /// @return  whether it ran.
   template <class Whole>
   bool copy_at_once(int place, LineRange lines, Whole&& whole) {
-    std::atomic<std::uint64_t>& announced = long_copies[place].lines;
-    announced.store(lines.word(), std::memory_order_seq_cst);
+    struct Announcement {
+      std::atomic<std::uint64_t>& lines;
+      ~Announcement() { lines.store(LineRange().word(), std::memory_order_release); }
+    };
+    const Announcement announced{long_copies[place].lines};
+    announced.lines.store(lines.word(), std::memory_order_seq_cst);
     const bool free = !any_reserved(lines);
     if (free) whole();
-    announced.store(LineRange().word(), std::memory_order_release);
     return free;
   }
 
   LocalStores* const local_stores;  // null: none
+
+  /// Of a host program's memory: the line as its holder's getllar has found it, and where.
+  struct alignas(kQuadwordBytes) Seen {
+    std::array<std::byte, kLineBytes> bytes;
+    const std::byte* host = nullptr;
+  };
+  std::vector<Seen> seen;  // of each place; empty: the storage has buffers
 
   std::array<Lock, 1 << kLockBits> locks;
   std::array<Reservation, kMaxHolders> reservations;
@@ -148,18 +185,18 @@ struct Reservations::State {
   std::atomic<int> places_used{0};  // below this; never falls
 
   std::mutex places_mutex;
-  std::uint32_t places_taken = 0;  // bit p: place p; places_mutex held
+  std::bitset<kMaxHolders> places_taken;  // places_mutex held
 };
 
 int Reservations::State::take_place(ReservationListener* listener) {
-  static_assert(kMaxHolders == 32, "one bit of places_taken each");
   const std::lock_guard lock(places_mutex);
-  const int place = std::countr_one(places_taken);
+  int place = 0;
+  while (place < kMaxHolders && places_taken[static_cast<std::size_t>(place)]) ++place;
   if (place == kMaxHolders) {
     throw std::runtime_error("one address space supports " + std::to_string(kMaxHolders) +
                              " holders of reservations (MFCs and Atomics), and all are in use");
   }
-  places_taken |= 1u << place;
+  places_taken.set(static_cast<std::size_t>(place));
   reservations[place].listener = listener;
   places_used.store(std::max(places_used.load(std::memory_order_relaxed), place + 1));
   return place;
@@ -168,8 +205,8 @@ int Reservations::State::take_place(ReservationListener* listener) {
 void Reservations::State::leave_place(int place) {
   give_up(place);
   const std::lock_guard lock(places_mutex);
-  SC_ASSERT((places_taken >> place & 1u) != 0, "holder {} is gone already", place);
-  places_taken &= ~(1u << place);
+  SC_ASSERT(places_taken[static_cast<std::size_t>(place)], "holder {} is gone already", place);
+  places_taken.reset(static_cast<std::size_t>(place));
 }
 
 // With the lock of the line that was reserved last: whoever loses it to a write tells so with that lock held,
@@ -223,7 +260,30 @@ ReservationHolder::ReservationHolder(Reservations& reservations, ReservationList
 
 ReservationHolder::~ReservationHolder() { reservations_.state_->leave_place(place_); }
 
-Reservations::Reservations(LocalStores* local_stores) : state_(std::make_unique<State>(local_stores)) {}
+/// putllc in the memory of a host program. With the line's lock, which keeps all but host threads away.
+bool Reservations::State::store_line_as_seen(int place, std::byte* host, const std::byte* from) const {
+  const Seen& then = seen[static_cast<std::size_t>(place)];
+  const auto differs = [](const std::byte* a, const std::byte* b) {
+    return std::memcmp(a, b, kQuadwordBytes) != 0;
+  };
+  std::array<std::byte, kLineBytes> now;
+  copy_indivisibly(now.data(), host, kLineBytes);
+  std::uint32_t changed = 0, last = 0;
+  for (std::uint32_t at = 0; at < kLineBytes; at += kQuadwordBytes) {
+    if (differs(&now[at], &then.bytes[at])) return false;
+    if (!differs(from + at, &now[at])) continue;
+    ++changed;
+    last = at;
+  }
+  if (changed == 1) return exchange_quadword(host + last, &then.bytes[last], from + last);
+  for (std::uint32_t at = 0; at < kLineBytes; at += kQuadwordBytes) {
+    if (differs(from + at, &now[at])) copy_quadword(host + at, from + at);
+  }
+  return true;
+}
+
+Reservations::Reservations(LocalStores* local_stores, Storage storage)
+    : state_(std::make_unique<State>(local_stores, storage)) {}
 Reservations::~Reservations() = default;
 
 void Reservations::load_and_reserve(ReservationHolder& holder, EffectiveAddress ea, const std::byte* host,
@@ -237,7 +297,12 @@ void Reservations::load_and_reserve(ReservationHolder& holder, EffectiveAddress 
   own.last_line = line;
   own.line.store(line, std::memory_order_seq_cst);
   state_->wait_for_long_copies(line);
-  copy_indivisibly(to, host, bytes);
+  state_->access([&] { copy_indivisibly(to, host, bytes); });
+  if (state_->is_host_program() && bytes == kLineBytes) {
+    State::Seen& seen = state_->seen[static_cast<std::size_t>(holder.place_)];
+    std::memcpy(seen.bytes.data(), to, kLineBytes);
+    seen.host = host;
+  }
 }
 
 bool Reservations::store_conditional(ReservationHolder& holder, EffectiveAddress ea, std::byte* host,
@@ -251,10 +316,17 @@ bool Reservations::store_conditional(ReservationHolder& holder, EffectiveAddress
     return false;
   }
   const std::lock_guard lock(state_->lock_of(line));
-  const bool stands = own.line.load(std::memory_order_relaxed) == line;
-  if (stands) {
+  bool stands = own.line.load(std::memory_order_relaxed) == line;
+  if (stands && state_->is_host_program() && bytes == kLineBytes && !state_->is_local_store(ea)) {
+    state_->access([&] { stands = state_->store_line_as_seen(holder.place_, host, from); });
+    if (stands) {
+      state_->lose_reservations(line, holder.place_);
+    } else {
+      own.line.store(kNoLine, std::memory_order_release);
+    }
+  } else if (stands) {
     state_->announce(ea, from, bytes);
-    copy_indivisibly(host, from, bytes);
+    state_->access([&] { copy_indivisibly(host, from, bytes); });
     state_->lose_reservations(line, holder.place_);
   }
   own.last_line = kNoLine;
@@ -272,15 +344,17 @@ void Reservations::read(ReservationHolder& holder, EffectiveAddress ea, const st
   SC_ASSERT(&holder.reservations_ == this, "holder {} belongs to another AddressSpace", holder.place_);
   SC_ASSERT(bytes != 0 && bytes <= kMaxTransferBytes, "a get of {} bytes at {}", bytes, ea);
   const auto whole = [&] {
-    if (may_be_code) return copy_to_local_store(to, host, bytes);
-    std::memmove(to, host, bytes);
+    state_->access([&] {
+      if (may_be_code) return copy_to_local_store(to, host, bytes);
+      std::memmove(to, host, bytes);
+    });
   };
   if (!fits_one_line(ea, bytes) && state_->copy_at_once(holder.place_, {ea, bytes}, whole)) {
     return;
   }
   for_each_line(ea, bytes, [&](std::uint32_t offset, std::uint32_t size) {
     const std::lock_guard lock(state_->lock_of(line_of(ea + offset)));
-    copy_indivisibly(to + offset, host + offset, size);
+    state_->access([&] { copy_indivisibly(to + offset, host + offset, size); });
   });
 }
 
@@ -289,19 +363,39 @@ void Reservations::write(ReservationHolder& holder, EffectiveAddress ea, std::by
   SC_ASSERT(&holder.reservations_ == this, "holder {} belongs to another AddressSpace", holder.place_);
   SC_ASSERT(bytes != 0 && bytes <= kMaxTransferBytes + kLineBytes, "a put of {} bytes at {}", bytes, ea);
   if (state_->announce(ea, from, bytes)) return;
-  if (!fits_one_line(ea, bytes) &&
-      state_->copy_at_once(holder.place_, {ea, bytes}, [&] { copy_to_storage(ea, host, from, bytes); })) {
+  if (!fits_one_line(ea, bytes) && state_->copy_at_once(holder.place_, {ea, bytes}, [&] {
+        state_->copy_to_storage(ea, host, from, bytes);
+      })) {
     return;
   }
   for_each_line(ea, bytes, [&](std::uint32_t offset, std::uint32_t size) {
     const std::uint64_t line = line_of(ea + offset);
     const std::lock_guard lock(state_->lock_of(line));
-    copy_indivisibly(host + offset, from + offset, size);
+    state_->access([&] { copy_indivisibly(host + offset, from + offset, size); });
     state_->lose_reservations(line, holder.place_);
   });
 }
 
 void Reservations::give_up(ReservationHolder& holder) { state_->give_up(holder.place_); }
+
+void Reservations::look_for_host_stores(ReservationHolder& holder) {
+  if (!state_->is_host_program()) return;
+  State::Reservation& own = state_->reservations[holder.place_];
+  const std::uint64_t line = own.last_line;
+  if (line == kNoLine) return;
+  const std::lock_guard lock(state_->lock_of(line));
+  if (own.line.load(std::memory_order_relaxed) != line) return;
+  const State::Seen& seen = state_->seen[static_cast<std::size_t>(holder.place_)];
+  std::array<std::byte, kLineBytes> now;
+  state_->access([&] { copy_indivisibly(now.data(), seen.host, kLineBytes); });
+  if (std::memcmp(now.data(), seen.bytes.data(), kLineBytes) == 0) return;
+  own.line.store(kNoLine, std::memory_order_release);
+  if (own.listener != nullptr) own.listener->on_reservation_lost();
+}
+
+bool Reservations::may_miss_host_stores(const ReservationHolder& holder) const {
+  return state_->is_host_program() && holds(holder);
+}
 
 bool Reservations::holds(const ReservationHolder& holder) const {
   return state_->reservations[holder.place_].line.load(std::memory_order_acquire) != kNoLine;

@@ -25,7 +25,7 @@ void reserve(EffectiveAddress begin, std::uint64_t bytes) {
 
 void reserve_effective_addresses() {
   [[maybe_unused]] static const bool once = [] {
-    reserve(kMainMemoryBase, kMainMemoryBytes);
+    reserve(kMainMemoryBase, kMaxMainMemoryBytes);
     reserve(kVideoMemoryBase, kVideoMemoryBytes);
     reserve(kLocalStoresBase, kSpeCount * kLocalStoreStrideBytes);
     return true;

@@ -13,7 +13,7 @@ std::variant<std::byte*, Fault> TranslationCache::resolve_slowly(EffectiveAddres
     entries_.fill({});
     generation_ = generation;
   }
-  const std::optional<Mapping> mapping = space_->mapping_at(ea);
+  const std::optional<Mapping> mapping = space_->mapping_at(ea, wanted);
   if (!mapping || !mapping->contains(ea, bytes) || !mapping->permits(wanted)) {
     return space_->resolve(ea, bytes, wanted);  // the fault, in words
   }

@@ -6,6 +6,7 @@
 
 #include "ppu/lattice/embedding.h"
 #include "ppu/reference/skin_slots.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -17,6 +18,8 @@ void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::sp
                                 " vertices cannot be skinned into " + std::to_string(positions.size()) +
                                 " positions and " + std::to_string(normals.size()) + " normals");
   }
+  SC_ASSERT(embedding.vertex_of_slot.size() == 4 * embedding.groups.size(), "{} slots in {} groups of four",
+            embedding.vertex_of_slot.size(), embedding.groups.size());
   const std::span<const Eigen::Vector3f> particles = body.positions();
   for (const SkinPart& part : embedding.parts) {
     for_each_slot(
@@ -30,7 +33,9 @@ void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::sp
 }
 
 SkinnedMesh::SkinnedMesh(std::shared_ptr<const SoftBodyModel<3>> model)
-    : model_(std::move(model)), positions_(model_->mesh().positions), normals_(model_->mesh().normals) {}
+    : model_((SC_ASSERT(model != nullptr, "a skinned mesh without a model"), std::move(model))),
+      positions_(model_->mesh().positions),
+      normals_(model_->mesh().normals) {}
 
 void SkinnedMesh::update(const SoftBody<3>& body) {
   if (body.shared_model() != model_)

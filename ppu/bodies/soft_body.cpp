@@ -80,6 +80,7 @@ Motion<kDimension> motion_of(const SoftBody<kDimension>& body) {
     motion.centre += m * body.position(i).template cast<double>();
     motion.velocity += m * body.velocities()[i].template cast<double>();
   }
+  SC_ASSERT(mass > 0, "{} particles have a mass of {} kg together", masses.size(), mass);
   motion.centre /= mass;
   motion.velocity /= mass;
 
@@ -101,6 +102,8 @@ template <int kDimension>
 typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& body,
                                                    const typename Motion<kDimension>::Vector& centre) {
   const auto rest = body.model().plan()->particle_constants();
+  SC_ASSERT(rest.size() == body.positions().size(), "{} particles at rest, {} in the body", rest.size(),
+            body.positions().size());
   typename Motion<kDimension>::Matrix correlation = Motion<kDimension>::Matrix::Zero();
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const double m = body.model().masses()[i];
@@ -164,6 +167,7 @@ void SoftBody<kDimension>::forget_rotations() {
 
 template <int kDimension>
 void SoftBody<kDimension>::set_position(std::size_t particle, const Vector& position) {
+  SC_ASSERT(particle < x_.size(), "particle {} of {}", particle, x_.size());
   set_particle(particle, position, v_[particle]);
 }
 
@@ -209,12 +213,14 @@ void SoftBody<kDimension>::keep_inner_inside() {
 
 template <int kDimension>
 void SoftBody<kDimension>::translate(const Vector& by) {
+  SC_ASSERT(by.allFinite(), "a body of {} particles is moved to infinity or NaN", x_.size());
   for (std::size_t i = 0; i < x_.size(); ++i) set_position(i, x_[i] + by);
   ++revision_;
 }
 
 template <int kDimension>
 void SoftBody<kDimension>::reset(const Vector& position) {
+  SC_ASSERT(position.allFinite(), "a body of {} particles is moved to infinity or NaN", x_.size());
   place_at_rest(position);
   forget_rotations();
   ++revision_;
@@ -222,6 +228,7 @@ void SoftBody<kDimension>::reset(const Vector& position) {
 
 template <int kDimension>
 void SoftBody<kDimension>::move_without_force(const Rotation& rotation, const Vector& translation) {
+  SC_ASSERT(translation.allFinite(), "a body of {} particles is moved to infinity or NaN", x_.size());
   const typename Motion<kDimension>::Matrix turn = matrix_of(rotation);
   const typename Motion<kDimension>::Vector centre = motion_of(*this).centre;
   const typename Motion<kDimension>::Vector moved_centre = centre + translation.template cast<double>();
@@ -291,6 +298,7 @@ auto SoftBody<kDimension>::angular_momentum() const -> AxialVector {
 
 template <int kDimension>
 Bounds<kDimension> SoftBody<kDimension>::bounds() const {
+  SC_ASSERT(!x_.empty(), "a body without particles has no box, nor {} velocities", v_.size());
   Bounds<kDimension> box{x_[0], x_[0]};
   for (const Vector& x : x_) {
     box.low = box.low.cwiseMin(x);

@@ -7,6 +7,7 @@
 
 #include "ppu/lattice/embedding.h"
 #include "ppu/matching/matching_plan.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -46,14 +47,19 @@ SoftBodyModel<kDimension>::SoftBodyModel(Lattice<kDimension> lattice,
   double mass = 0;
   for (const float m : masses_) mass += m;
   mass_ = static_cast<float>(mass);
+  SC_ASSERT(masses_.size() == lattice_.particles.size() && mass > 0,
+            "{} masses for {} particles, {} kg in all", masses_.size(), lattice_.particles.size(), mass);
 
   const std::vector<bool> is_outer =
       settings.contacts ? colliding_particles(lattice_) : std::vector<bool>(lattice_.particles.size());
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
+  SC_ASSERT(outer_.size() + inner_.size() == lattice_.particles.size(),
+            "{} outer and {} inner particles of {}", outer_.size(), inner_.size(), lattice_.particles.size());
 }
 
 template <int kDimension>
 const TriangleMesh& SoftBodyModel<kDimension>::mesh() const requires(kDimension == 3) {
+  SC_ASSERT(embedding_ != nullptr, "a model of {} particles has no embedding", particles());
   return embedding_->mesh;
 }
 

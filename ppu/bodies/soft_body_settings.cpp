@@ -4,6 +4,7 @@
 
 #include "ppu/matching/regions.h"
 #include "ppu/matching/stiffness.h"
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/soft_body_settings.h"
 
 namespace softcell::ppu {
@@ -34,10 +35,12 @@ void validate(const SoftBodySettings& s) {
 }
 
 float SoftBodySettings::alpha_of_step(float step) const {
+  SC_ASSERT(step > 0, "a time step of {} s", step);
   return frequency ? static_cast<float>(alpha_from_frequency(*frequency, step)) : alpha;
 }
 
 float SoftBodySettings::damping_of_step(float step) const {
+  SC_ASSERT(step > 0, "a time step of {} s", step);
   return damping_time ? static_cast<float>(damping_from_time_constant(*damping_time, step)) : damping;
 }
 

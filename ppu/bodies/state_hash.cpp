@@ -2,6 +2,8 @@
 
 #include <xxhash.h>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 namespace {
 
@@ -26,7 +28,10 @@ std::uint64_t state_hash(const SoftBody<2>& body, std::uint64_t before) {
 
 std::uint64_t state_hash(std::span<const SoftBody<3>* const> bodies) {
   std::uint64_t hash = 0;
-  for (const SoftBody<3>* body : bodies) hash = state_hash(*body, hash);
+  for (const SoftBody<3>* body : bodies) {
+    SC_ASSERT(body != nullptr, "one of {} bodies is null", bodies.size());
+    hash = state_hash(*body, hash);
+  }
   return hash;
 }
 

@@ -16,6 +16,7 @@ using Eigen::Vector2f;
 Box2dBody::Box2dBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position,
                      std::int16_t group)
     : world_(world), soft_(std::move(model), position), group_(group) {
+  SC_ASSERT(group < 0, "the particles of a body have group {}, and would touch each other", group);
   for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
 }
 
@@ -96,6 +97,7 @@ void Box2dBody::end_step(float step) {
 void Box2dBody::count_stillness(float step, float speed) {
   const bool still = std::ranges::all_of(soft_.velocities(),
                                          [&](const Vector2f& v) { return v.squaredNorm() < speed * speed; });
+  SC_ASSERT(step > 0 && speed >= 0, "a body slower than {} m/s is still for {} s", speed, step);
   still_for_ = still ? still_for_ + step : 0;
 }
 
@@ -115,6 +117,8 @@ void Box2dBody::wake() {
 
 void Box2dBody::gather() {
   const auto outer = soft_.model().outer();
+  SC_ASSERT(particles_.size() == outer.size(), "{} bodies of Box2D for {} particles", particles_.size(),
+            outer.size());
   for (std::size_t i = 0; i < outer.size(); ++i) {
     soft_.set_particle(outer[i], to_eigen(particles_[i]->GetPosition()),
                        to_eigen(particles_[i]->GetLinearVelocity()));

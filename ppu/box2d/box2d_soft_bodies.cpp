@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/bodies/step_ahead.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/rest.h"
 #include "softcell/base/assert.h"
@@ -17,13 +18,12 @@ namespace softcell::ppu {
 using Eigen::Vector2f;
 
 struct Box2dSoftBodies::Impl {
-  Impl(b2World& w, std::unique_ptr<SoftBodySolver<2>> own) : Impl(w, *own) { owned = std::move(own); }
-  Impl(b2World& w, SoftBodySolver<2>& others)
-      : world(w), solver(others), rest(w, [this](const b2Body& body) { return soft_body_of(body); }) {}
-  ~Impl() {
-    settle();
-    for (SoftBody<2>* const body : soft) solver.forget(*body);
-  }
+  /// @param solver  a SoftBodySolver<2>, or the pointer that owns one
+  template <typename Solver>
+  Impl(b2World& w, Solver&& solver)
+      : world(w),
+        rest(w, [this](const b2Body& body) { return soft_body_of(body); }),
+        solve(std::forward<Solver>(solver)) {}
 
   template <typename Work>
   void timed(const Work& work) {
@@ -35,24 +35,22 @@ struct Box2dSoftBodies::Impl {
   void begin_step(float step) {
     SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
     SC_ASSERT(!world.IsLocked(), "a step of {} s within a step of Box2D", step);
-    if (ahead != step || std::ranges::any_of(bodies, [](const auto& body) {
+    if (!solve.has_begun(step) || std::ranges::any_of(bodies, [](const auto& body) {
           return body->was_changed() || body->was_pushed();
         })) {
-      settle();
+      solve.drop();
       for (const auto& body : bodies) {
-        if (body->was_reset()) solver.forget(body->soft());
+        if (body->was_reset()) solve.forget(body->soft());
         body->begin_step();
       }
     }
-    if (ahead == 0) solver.kick(soft, step);
-    ahead = 0;
-    const auto waiting = std::chrono::steady_clock::now();
-    solver.finish();
-    waited += std::chrono::steady_clock::now() - waiting;
+    waited += solve.finish(step);
     for (const auto& body : bodies) body->hand_over(step);
   }
 
   void end_step(float step) {
+    SC_ASSERT(step > 0 && !world.IsLocked(), "the end of a step of {} s within a step of Box2D, or of none",
+              step);
     for (const auto& body : bodies) body->end_step(step);
     if (!sleep) return;
     for (const auto& body : bodies)
@@ -65,11 +63,6 @@ struct Box2dSoftBodies::Impl {
   Box2dBody* soft_body_of(const b2Body& body) const {
     const auto found = particles.find(&body);
     return found == particles.end() ? nullptr : found->second.body;
-  }
-
-  /// What was begun ahead is of no use.
-  void settle() {
-    if (std::exchange(ahead, 0.0f) != 0) solver.drop();
   }
 
   /// The negative group nearest to 0 that no body has. @throws std::runtime_error  32,768 bodies are too
@@ -92,15 +85,12 @@ struct Box2dSoftBodies::Impl {
   };
 
   b2World& world;
-  std::unique_ptr<SoftBodySolver<2>> owned;  // none: the caller has it
-  SoftBodySolver<2>& solver;
   std::vector<std::unique_ptr<Box2dBody>> bodies;
-  std::vector<SoftBody<2>*> soft;  // of `bodies`
   std::unordered_map<const b2Body*, OneParticle> particles;
   Rest rest;
   std::optional<SleepSettings> sleep;
-  float ahead = 0;  // length of the step that the solver has begun; 0: none
   std::chrono::nanoseconds spent{0}, waited{0};
+  StepAhead<2> solve;  // of `bodies`
 };
 
 Box2dSoftBodies::Box2dSoftBodies(b2World& world)
@@ -115,12 +105,12 @@ SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model,
   SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {})",
             model ? "with" : "without", position.x(), position.y());
   SC_ASSERT(!impl_->world.IsLocked(), "add() of body {} within a step of Box2D", impl_->bodies.size());
-  impl_->settle();
+  impl_->solve.drop();
   Box2dBody& added = *impl_->bodies.emplace_back(
       std::make_unique<Box2dBody>(impl_->world, std::move(model), position, impl_->free_group()));
   const auto outer = added.soft().model().outer();
   for (std::size_t i = 0; i < outer.size(); ++i) impl_->particles[added.particles()[i]] = {&added, outer[i]};
-  impl_->soft.push_back(&added.soft());
+  impl_->solve.add(added.soft());
   return added.soft();
 }
 
@@ -130,10 +120,10 @@ void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   if (found == impl_->bodies.end()) {
     throw std::invalid_argument("the soft body to be removed is not in this world");
   }
-  impl_->settle();
-  impl_->solver.forget(body);
+  SC_ASSERT(!impl_->world.IsLocked(), "remove() of one of {} bodies within a step of Box2D",
+            impl_->bodies.size());
+  impl_->solve.remove(body);
   for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
-  impl_->soft.erase(impl_->soft.begin() + (found - impl_->bodies.begin()));
   impl_->bodies.erase(found);
 }
 
@@ -153,17 +143,13 @@ void Box2dSoftBodies::end_step(float step) {
 
 void Box2dSoftBodies::begin_ahead(float step) {
   SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
-  impl_->timed([&] {
-    impl_->settle();
-    impl_->solver.kick(impl_->soft, step);
-    impl_->ahead = step;
-  });
+  impl_->timed([&] { impl_->solve.begin(step); });
 }
 
 void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
   SC_ASSERT(!settings || (settings->speed >= 0 && settings->seconds >= 0),
             "bodies sleep that were slower than {} m/s for {} s", settings->speed, settings->seconds);
-  impl_->settle();
+  impl_->solve.drop();
   impl_->sleep = settings;
   if (settings) return;
   for (const auto& body : impl_->bodies)

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "ppu/bullet/contact_sphere.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -77,12 +78,16 @@ void BulletHook::attach(btDiscreteDynamicsWorld& world, SubstepClient& client) {
     g_hooks.push_back({&world, std::make_unique<BulletHook>(world)});
     entry = g_hooks.end() - 1;
   }
+  SC_ASSERT(std::ranges::count(entry->hook->clients_, &client) == 0, "the client {} is attached twice",
+            &client);
   entry->hook->clients_.push_back(&client);
 }
 
 void BulletHook::detach(btDiscreteDynamicsWorld& world, SubstepClient& client) {
   const std::lock_guard lock(g_mutex);
   const auto entry = entry_of(world);
+  SC_ASSERT(entry != g_hooks.end() && std::ranges::count(entry->hook->clients_, &client) == 1,
+            "the client {} was not attached to this world", &client);
   std::erase(entry->hook->clients_, &client);
   if (!entry->hook->clients_.empty()) return;
   entry->hook->uninstall();

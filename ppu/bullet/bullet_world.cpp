@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ppu/bullet/bullet_vector.h"
+#include "softcell/base/assert.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 
 namespace softcell::ppu {
@@ -45,6 +46,8 @@ struct BulletWorld::Impl {
 
   std::size_t add(std::unique_ptr<btCollisionShape> shape, float mass, const Eigen::Vector3f& position,
                   float friction) {
+    SC_ASSERT(shape != nullptr && mass >= 0 && friction >= 0,
+              "rigid body {} has a mass of {} kg and friction {}", bodies.size(), mass, friction);
     btVector3 inertia(0, 0, 0);
     if (mass > 0) shape->calculateLocalInertia(mass, inertia);
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape.get(), inertia);

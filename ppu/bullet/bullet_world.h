@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/mesh.h"
 
 class btDiscreteDynamicsWorld;
@@ -16,12 +17,6 @@ namespace softcell::ppu {
 struct StepTimes {
   double physics_ms = 0;    ///< in Bullet
   double soft_body_ms = 0;  ///< in BulletSoftBodies, called by Bullet
-};
-
-/// A point at which two bodies press on each other.
-struct Contact {
-  Eigen::Vector3f position{0, 0, 0};  ///< metres, in the world
-  Eigen::Vector3f normal{0, 1, 0};    ///< unit length, from the second body to the first
 };
 
 /// Owns the world and its rigid bodies. Metres, kilograms, seconds; y is up; gravity is 9.81 m/s^2 downwards

@@ -4,6 +4,8 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 /// A sphere of two radii that meets contacts early.
@@ -29,6 +31,8 @@ class ContactSphere final : public btSphereShape {
   /// @param reach        the longest way of a particle in one substep
   ContactSphere(float radius, float soft_radius, float reach)
       : btSphereShape(soft_radius), radius_(radius), reach_(reach) {
+    SC_ASSERT(radius > 0 && soft_radius > 0 && reach > 0, "spheres of {} m and {} m that move {} m", radius,
+              soft_radius, reach);
     setUserPointer(tag());
   }
 

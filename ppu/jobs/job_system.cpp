@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "job_chain.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/reservations.h"
 
@@ -23,6 +24,13 @@ using spu::JobBoard;
 using spu::JobDescriptor;
 
 constexpr dma::BufferOptions kRead{.spe_access = dma::SpeAccess::kRead};
+
+// The widths of the numbers in job_chain.h, for SPEs that run programs built for the SPU.
+constexpr dma::ElementRun kDescriptorRecord[] = {{24, 8}, {104, 4}};
+constexpr dma::ElementRun kStateRecord[] = {{16, 8}, {112, 4}};
+constexpr dma::ElementRun kBoardRecord[] = {{4, 4}, {4, 2}, {120, 8}};
+constexpr dma::BufferOptions kWords{.element_bytes = 4};
+constexpr dma::BufferOptions kDescriptors{.spe_access = dma::SpeAccess::kRead, .record = kDescriptorRecord};
 
 /// What ChainState::failed_status says of a job that ended by a fault: no main returns it.
 constexpr std::uint32_t kFaulted = 0x100;
@@ -57,8 +65,23 @@ const ls_sim::KernelImage& require_loop(const ls_sim::KernelImage& image) {
 
 /// @throws std::invalid_argument  the job loop could not call this image.
 void require_job(const ls_sim::KernelImage& image, const ls_sim::KernelImage& loop, bool wants_checked) {
+  if (image.machine != loop.machine) {
+    const bool is_spu = image.machine == ls_sim::Machine::kSpu;
+    throw std::invalid_argument("kernel " + image.name + " is built for the " + (is_spu ? "SPU" : "host") +
+                                ", and the job loop for the " + (is_spu ? "host" : "SPU") +
+                                ": a job is built as its loop is");
+  }
+  if (image.main == 0) {
+    throw std::invalid_argument("kernel " + image.name +
+                                " is a program of another kind: build a job with softcell_add_spu_kernel");
+  }
   if (image.begin != spu::kJobAreaBegin) {
     throw std::invalid_argument("kernel " + image.name + " stays resident itself: it is no job");
+  }
+  if (image.program) {
+    throw std::invalid_argument(
+        "kernel " + image.name +
+        " is a program, which is loaded whole: build a job without PROGRAM and in C++");
   }
   const std::uint32_t room = loop.stack_top - loop.sizes.stack;
   if (image.sizes.total() > room) {
@@ -180,9 +203,9 @@ JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& opti
     : memory(space),
       loop(require_loop(job_loop)),
       wants_checked(options.findings != nullptr),
-      board(space, "job board", 1),
-      bells(space, "job bells", dma::kSpeCount),
-      chain_states(space, "job chains", spu::kMaxChains),
+      board(space, "job board", 1, {.record = kBoardRecord}),
+      bells(space, "job bells", dma::kSpeCount, kWords),
+      chain_states(space, "job chains", spu::kMaxChains, {.record = kStateRecord}),
       holder(space.reservations()),
       group(space, options),
       outside(group) {
@@ -194,7 +217,12 @@ JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& opti
   start_loops();
 }
 
-JobSystem::State::~State() { stop(); }
+JobSystem::State::~State() {
+  SC_ASSERT(std::ranges::count(chains, nullptr) == std::ssize(chains),
+            "a job system ends before {} of its chains",
+            std::ssize(chains) - std::ranges::count(chains, nullptr));
+  stop();
+}
 
 void JobSystem::State::stop() {
   for (JobChain::State* const chain : chains)
@@ -224,11 +252,13 @@ void JobSystem::State::start_loops() {
 void JobSystem::State::start_loop(int spe) {
   change(board,
          [spe](JobBoard& line) { line.asleep = static_cast<std::uint16_t>(line.asleep & ~(1u << spe)); });
+  SC_ASSERT(loops_left < group.spes(), "the loop of SPE {} starts, and {} run", spe, loops_left);
   group.start_resident(spe, loop, {static_cast<std::uint64_t>(spe), board.ea().value, bells.ea().value});
   ++loops_left;
 }
 
 void JobSystem::State::ring(int spe) {
+  SC_ASSERT(spe >= 0 && spe < group.spes(), "SPE {} of {}", spe, group.spes());
   const JobBell rung{.rung = 1, .pad = {}};
   const auto which = static_cast<std::size_t>(spe);
   memory.reservations().store_line(holder, bells.ea(which), host_of(bells, which),
@@ -248,6 +278,7 @@ void JobSystem::State::announce_work() {
 
 void JobSystem::State::kick(JobChain::State& chain, const ChainState& state) {
   const std::scoped_lock lock(mutex);
+  SC_ASSERT(chains[chain.board_slot] == &chain, "chain {} of the board is another's", chain.board_slot);
   memory.reservations().store_line(holder, chain_states.ea(chain.board_slot),
                                    host_of(chain_states, chain.board_slot),
                                    reinterpret_cast<const std::byte*>(&state));
@@ -262,6 +293,7 @@ void JobSystem::State::kick(JobChain::State& chain, const ChainState& state) {
 /// On the SPE's thread. A job loop ends when it is told to, or with the job that it has called, by a fault or
 /// a stop instruction: then another takes its place. When it ends for another reason, a job may be lost.
 void JobSystem::State::on_run_ended(int spe, const ls_sim::RunResult& result) {
+  SC_ASSERT(loops_left > 0, "the loop of SPE {} ends, and none was running", spe);
   --loops_left;
   const bool was_told = stopping || !breakdown.empty();
   const bool is_known = result.job.value != 0 && record_failure(spe, result);
@@ -285,6 +317,7 @@ bool JobSystem::State::record_failure(int spe, const ls_sim::RunResult& result) 
     const std::uint64_t offset = result.job.value - chain->descriptors.ea().value;
     if (offset >= chain->descriptors.size_bytes()) continue;
     const auto job = static_cast<std::uint32_t>(offset / sizeof(JobDescriptor));
+    SC_ASSERT(job < chain->kernels.size(), "SPE {} fails job {} of {}", spe, job, chain->kernels.size());
     chain->faults.push_back({job, result.fault ? result.fault->message()
                                                : "SPE " + std::to_string(spe) + ", kernel " +
                                                      chain->kernels[job]->name + ": stopped with code " +
@@ -341,6 +374,7 @@ JobSystem::~JobSystem() = default;
 void JobSystem::stop() { state_->stop(); }
 
 JobImage JobSystem::place(const ls_sim::KernelImage& image) {
+  SC_ASSERT(!image.bytes.empty(), "the image of kernel {} is empty", image.name);
   auto placed = std::find_if(state_->images.begin(), state_->images.end(),
                              [&](const State::Placed& known) { return known.kernel == &image; });
   if (placed == state_->images.end()) {
@@ -368,8 +402,8 @@ int JobSystem::spes() const { return state_->group.spes(); }
 
 JobChain::State::State(JobSystem::State& system, const std::string& name, std::size_t most)
     : shared(system),
-      descriptors(system.memory, name + ": jobs", std::max<std::size_t>(most, 1), kRead),
-      done(system.memory, name + ": done", 1),
+      descriptors(system.memory, name + ": jobs", std::max<std::size_t>(most, 1), kDescriptors),
+      done(system.memory, name + ": done", 1, kWords),
       holder(system.memory.reservations(), &listener),
       most_jobs(most) {
   const std::scoped_lock lock(shared.mutex);
@@ -399,6 +433,7 @@ void JobChain::State::link_stages() {
     const std::uint32_t next_end = stage + 1 < stage_ends.size() ? stage_ends[stage + 1] : 0;
     for (; job < stage_ends[stage]; ++job) descriptors[job].next_stage_end = next_end;
   }
+  SC_ASSERT(job == kernels.size(), "the last stage ends at job {} of {}", job, kernels.size());
 }
 
 /// Looks at the last line, and reserves it, so that the listener hears of its next change.
@@ -429,6 +464,9 @@ void JobChain::State::collect() {
     faults.clear();
   }
   if (state.failed != 0 && state.failed_status != kFaulted) {
+    SC_ASSERT(state.failed_job < kernels.size() && state.failed > failures.size(),
+              "job {} of {} has failed, with {} more and {} by faults", state.failed_job, kernels.size(),
+              state.failed, failures.size());
     std::string message = "kernel " + kernels[state.failed_job]->name + ": refused its job with status " +
                           std::to_string(state.failed_status);
     const std::size_t others = state.failed - failures.size() - 1;
@@ -445,11 +483,14 @@ JobChain::JobChain(JobSystem& system, const std::string& name, std::size_t most_
 JobChain::~JobChain() = default;
 
 void JobChain::clear() {
+  SC_ASSERT(!state_->under_way, "clear() while the chain's {} jobs are under way", size());
   state_->kernels.clear();
   state_->stage_ends.clear();
 }
 
 void JobChain::add(const Job& job) {
+  SC_ASSERT(!state_->under_way, "add() while the chain's {} jobs are under way", size());
+  SC_ASSERT(job.image.kernel_ != nullptr, "job {} has no image; JobSystem::place() returns one", size());
   if (state_->kernels.size() == state_->most_jobs) {
     throw std::length_error("a chain of " + std::to_string(state_->most_jobs) + " jobs is full");
   }
@@ -459,7 +500,7 @@ void JobChain::add(const Job& job) {
   descriptor.argp = job.argp.value;
   descriptor.envp = job.envp.value;
   descriptor.image_bytes = static_cast<std::uint32_t>((kernel.bytes.size() + 15) / 16 * 16);
-  descriptor.entry = kernel.entry;
+  descriptor.entry = kernel.main;
   descriptor.data_begin = kernel.data_begin;
   descriptor.data_bytes = (kernel.data_end - kernel.data_begin + 15) / 16 * 16;
   state_->descriptors[state_->kernels.size()] = descriptor;
@@ -472,6 +513,7 @@ void JobChain::sync() {
 }
 
 void JobChain::kick() {
+  SC_ASSERT(!state_->under_way, "kick() while the chain's {} jobs are under way", size());
   state_->failures.clear();
   state_->faults.clear();
   if (state_->kernels.empty()) return;
@@ -492,6 +534,9 @@ bool JobChain::finished() { return state_->finished(); }
 
 void JobChain::wait() { state_->wait(); }
 
-const std::vector<JobFailure>& JobChain::failures() const { return state_->failures; }
+const std::vector<JobFailure>& JobChain::failures() const {
+  SC_ASSERT(!state_->under_way, "failures() of {} jobs without finished() or wait() before", size());
+  return state_->failures;
+}
 
 }  // namespace softcell::ppu

@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 
+#include "ppu/lattice/locate.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -17,51 +18,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3i;
 using Run = SkinPart::Run;
 
-/// How far past a face a vertex may lie and still belong to the cell behind it, in cells. The lattice is made
-/// in float: over 256 cells its faces are off by 2e-5 of a cell.
-constexpr double kFaceTolerance = 1e-4;
-
-/// Where a vertex lies.
-struct Place {
-  std::uint32_t cell = 0;
-  Vector3d xi{0, 0, 0};
-};
-
-std::optional<std::uint32_t> find_cell(const Lattice<3>& lattice, const Vector3i& index) {
-  const auto before = [](const Vector3i& a, const Vector3i& b) {
-    return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
-  };
-  const auto found = std::lower_bound(lattice.cells.begin(), lattice.cells.end(), index, before);
-  if (found == lattice.cells.end() || *found != index) return std::nullopt;
-  return static_cast<std::uint32_t>(found - lattice.cells.begin());
-}
-
-/// The vertex's cell: the one whose half-open box [low, low + 1) holds it, else, for a vertex on a face, the
-/// first occupied cell beyond that face (x before y before z).
-std::optional<Place> locate(const Lattice<3>& lattice, const Eigen::Vector3f& position) {
-  const Vector3d grid =
-      (position.cast<double>() - lattice.origin.cast<double>()) / static_cast<double>(lattice.spacing);
-  // Outside any lattice, and NaN: nothing to look for, and no index to overflow.
-  if (!(grid.cwiseAbs().maxCoeff() <= 2.0 * kMaxLatticeCellsPerAxis)) return std::nullopt;
-  const Vector3d low = grid.array().floor();
-  Vector3i step;
-  for (int d = 0; d < 3; ++d) {
-    const double beyond = grid[d] - low[d];
-    step[d] = beyond <= kFaceTolerance ? -1 : beyond >= 1 - kFaceTolerance ? 1 : 0;
-  }
-  for (unsigned choice = 0; choice < 8; ++choice) {
-    const Vector3i taken((choice & 1u) ? step.x() : 0, (choice & 2u) ? step.y() : 0,
-                         (choice & 4u) ? step.z() : 0);
-    const Vector3i index = low.cast<int>() + taken;
-    if (const auto cell = find_cell(lattice, index)) {
-      return Place{*cell, (grid - index.cast<double>()).cwiseMax(0.0).cwiseMin(1.0)};
-    }
-  }
-  return std::nullopt;
-}
-
-std::vector<Place> locate_all(const TriangleMesh& mesh, const Lattice<3>& lattice) {
-  std::vector<Place> places;
+std::vector<PlaceInCell> locate_all(const TriangleMesh& mesh, const Lattice<3>& lattice) {
+  std::vector<PlaceInCell> places;
   places.reserve(mesh.positions.size());
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const auto place = locate(lattice, mesh.positions[v]);
@@ -101,6 +59,9 @@ class PartCutter {
 
   /// Adds the next group. @return true when it begins a new part.
   bool add(std::uint32_t group, std::uint32_t cell) {
+    SC_ASSERT(cell < lattice_.corners.size(), "cell {} of {}", cell, lattice_.corners.size());
+    SC_ASSERT(group == (parts_.empty() ? 0 : parts_.back().first_group + parts_.back().group_count),
+              "group {} is added to {} parts that end elsewhere", group, parts_.size());
     const Reach own{span_of(lattice_.corners[cell], 0), span_of(lattice_.corners[cell], 1),
                     lattice_.cells[cell].x(), lattice_.cells[cell].x()};
     if (!parts_.empty() && parts_.back().group_count < kMaxPartGroups) {
@@ -159,12 +120,17 @@ class PartCutter {
 std::uint16_t corner_index(const SkinPart& part, std::uint32_t particle) {
   const auto& [first, second] = part.window;
   const bool in_first = particle >= first.first_particle && particle - first.first_particle < first.count;
+  SC_ASSERT(in_first || particle - second.first_particle < second.count,
+            "particle {} is in no window of its part, {} from {} on and {} from {} on", particle, first.count,
+            first.first_particle, second.count, second.first_particle);
   return static_cast<std::uint16_t>(in_first ? particle - first.first_particle
                                              : first.count + particle - second.first_particle);
 }
 
 /// Writes one vertex into one lane of a group.
 void set_lane(spu::SkinGroup& group, std::size_t lane, const Vector3d& xi, const Eigen::Vector3f& normal) {
+  SC_ASSERT(xi.minCoeff() >= 0 && xi.maxCoeff() <= 1, "a vertex at ({}, {}, {}) of its cell", xi.x(), xi.y(),
+            xi.z());
   group.xi[lane] = static_cast<float>(xi.x());
   group.eta[lane] = static_cast<float>(xi.y());
   group.zeta[lane] = static_cast<float>(xi.z());
@@ -178,7 +144,7 @@ void set_lane(spu::SkinGroup& group, std::size_t lane, const Vector3d& xi, const
 Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
   SC_ASSERT(mesh.normals.size() == mesh.positions.size(), "{} positions with {} normals",
             mesh.positions.size(), mesh.normals.size());
-  const std::vector<Place> places = locate_all(mesh, lattice);
+  const std::vector<PlaceInCell> places = locate_all(mesh, lattice);
   std::vector<std::uint32_t> order(places.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
@@ -201,6 +167,7 @@ Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
         embedding.slot_of_vertex[order[next + used]] = 4 * number + lane;
         ++used;
       }
+      SC_ASSERT(used > 0, "group {} of cell {} has no vertex", number, cell);
       const std::uint32_t vertex =
           order[next + used - 1];  // a group that is not full repeats its last vertex
       embedding.vertex_of_slot.push_back(vertex);
@@ -211,6 +178,8 @@ Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
     cell_of_group.push_back(cell);
   }
 
+  SC_ASSERT(embedding.vertex_of_slot.size() == 4 * embedding.groups.size(), "{} slots in {} groups of four",
+            embedding.vertex_of_slot.size(), embedding.groups.size());
   // Windows are known once a part is complete.
   for (const SkinPart& part : embedding.parts) {
     for (std::uint32_t g = part.first_group; g < part.first_group + part.group_count; ++g) {

@@ -1,5 +1,5 @@
 #pragma once
-// Embeds a mesh in a lattice: which cell each vertex lies in and where, packed as the skin kernel reads it.
+// Embeds a mesh in a lattice: finds the cell of each vertex and the vertex's place in it, packed for the kernel skin.
 
 #include <vector>
 
@@ -35,8 +35,8 @@ inline constexpr std::uint32_t kMaxPartGroups = 720;
 struct Embedding {
   std::vector<spu::SkinGroup> groups;  ///< sorted by part, then by cell
   std::vector<SkinPart> parts;         ///< cover all groups, in order
-  std::vector<std::uint32_t>
-      slot_of_vertex;  ///< mesh vertex -> output slot 4 * group + lane (a vertex's own, not a repeat)
+  /// Mesh vertex -> output slot 4 * group + lane (a vertex's own, not a repeat).
+  std::vector<std::uint32_t> slot_of_vertex;
   std::vector<std::uint32_t> vertex_of_slot;  ///< output slot -> mesh vertex; repeats included
   TriangleMesh mesh;                          ///< as it was given
   std::vector<std::uint32_t> indices;  ///< three output slots per mesh triangle: the index buffer for drawing

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 namespace {
@@ -63,6 +65,7 @@ void find_crossings(const Vector3d (&p)[3], std::vector<Crossing>& crossings) {
 /// Adds the parts of one line that are inside to the cells it goes through; false when it does not end
 /// outside.
 bool add_inside(std::span<const Crossing> line, std::vector<double>& depth) {
+  SC_ASSERT(!depth.empty(), "{} crossings of a column without cells", line.size());
   int winding = 0;
   for (const Crossing& crossing : line) winding += crossing.turn;
   if (winding != 0) return false;
@@ -82,6 +85,13 @@ bool add_inside(std::span<const Crossing> line, std::vector<double>& depth) {
 std::vector<float> fill_fractions(const TriangleMesh& mesh, const Lattice<3>& lattice) {
   const Vector3d origin = lattice.origin.cast<double>();
   const double spacing = static_cast<double>(lattice.spacing);
+  SC_ASSERT(spacing > 0, "cells of {} m", spacing);
+  SC_ASSERT(std::ranges::is_sorted(lattice.cells,
+                                   [](const auto& a, const auto& b) {
+                                     return std::lexicographical_compare(a.begin(), a.end(), b.begin(),
+                                                                         b.end());
+                                   }),
+            "{} cells are not sorted by x, y and z", lattice.cells.size());
   std::vector<Crossing> crossings;
   for (const auto& triangle : mesh.triangles) {
     Vector3d p[3];
@@ -96,6 +106,8 @@ std::vector<float> fill_fractions(const TriangleMesh& mesh, const Lattice<3>& la
   auto crossing = crossings.cbegin();
   for (std::size_t first = 0, last = 0; first < fill.size(); first = last) {
     const int x = lattice.cells[first].x(), y = lattice.cells[first].y();
+    SC_ASSERT(x >= 0 && y >= 0 && lattice.cells[first].z() >= 0, "cell {} has index ({}, {}, {})", first, x,
+              y, lattice.cells[first].z());
     while (last < fill.size() && lattice.cells[last].x() == x && lattice.cells[last].y() == y) ++last;
     depth.assign(static_cast<std::size_t>(lattice.cells[last - 1].z()) + 1, 0.0);
 

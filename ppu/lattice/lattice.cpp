@@ -34,6 +34,7 @@ Index corner_of(const Index& cell, unsigned k) {
 
 template <class Index>
 void check_extent(const std::vector<Index>& cells) {
+  SC_ASSERT(!cells.empty(), "{} cells have no extent", cells.size());
   for (int d = 0; d < Index::SizeAtCompileTime; ++d) {
     const auto [low, high] = std::minmax_element(cells.begin(), cells.end(),
                                                  [d](const Index& a, const Index& b) { return a[d] < b[d]; });
@@ -66,6 +67,8 @@ std::vector<GridIndex<kDimension>> distinct_corners(const std::vector<GridIndex<
 template <int kDimension>
 Csr cells_of_particles(const Lattice<kDimension>& lattice) {
   Csr around;
+  SC_ASSERT(lattice.corners.size() == lattice.cells.size(), "the corners of {} cells of {}",
+            lattice.corners.size(), lattice.cells.size());
   around.offsets.assign(lattice.particles.size() + 1, 0);
   for (const auto& corners : lattice.corners)
     for (const std::uint32_t particle : corners) ++around.offsets[particle + 1];
@@ -123,6 +126,8 @@ Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, f
     }
   }
   lattice.neighbours = find_neighbours(lattice);
+  SC_ASSERT(lattice.neighbours.size() == lattice.particles.size(), "the neighbours of {} particles of {}",
+            lattice.neighbours.size(), lattice.particles.size());
   return lattice;
 }
 
@@ -160,6 +165,9 @@ std::vector<float> particle_masses(const Lattice<kDimension>& lattice, float den
   if (!(density > 0) || !std::isfinite(density))
     throw std::invalid_argument("density " + std::to_string(density) +
                                 (kDimension == 2 ? " kg/m^2" : " kg/m^3") + ": expected a positive number");
+  SC_ASSERT(lattice.fill.size() == lattice.cells.size() && lattice.corners.size() == lattice.cells.size(),
+            "{} cells with {} fills and the corners of {}", lattice.cells.size(), lattice.fill.size(),
+            lattice.corners.size());
   double mass_of_cell = static_cast<double>(density);
   for (int d = 0; d < kDimension; ++d) mass_of_cell *= static_cast<double>(lattice.spacing);
   const double mass_of_corner = mass_of_cell / static_cast<double>(lattice.kCorners);

@@ -65,6 +65,8 @@ std::vector<std::vector<std::uint32_t>> outline(const Lattice<2>& lattice) {
       loop.push_back(sides[at].from);
     }
   }
+  SC_ASSERT(std::ranges::all_of(loops, [](const auto& loop) { return loop.size() >= 4; }),
+            "one of {} outlines has fewer sides than a cell", loops.size());
   return loops;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 namespace {
@@ -27,6 +29,7 @@ bool separates(const Vector3d& axis, const std::array<Vector3d, 3>& triangle, do
 
 bool triangle_touches_cube(const std::array<Vector3d, 3>& triangle, const Vector3d& centre,
                            double half_edge) {
+  SC_ASSERT(half_edge > 0, "a cube with half an edge of {}", half_edge);
   const std::array<Vector3d, 3> t{triangle[0] - centre, triangle[1] - centre, triangle[2] - centre};
   const std::array<Vector3d, 3> edges{t[1] - t[0], t[2] - t[1], t[0] - t[2]};
   const std::array<Vector3d, 3> normals{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};

@@ -6,6 +6,7 @@
 
 #include "ppu/lattice/fill_fraction.h"
 #include "ppu/lattice/triangle_box.h"
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
@@ -38,7 +39,10 @@ class Grid {
       : origin_(origin.cast<double>()),
         spacing_(spacing),
         size_(size),
-        kinds_(static_cast<std::size_t>(size.x() + 2) * (size.y() + 2) * (size.z() + 2), Kind::kInside) {}
+        kinds_(static_cast<std::size_t>(size.x() + 2) * (size.y() + 2) * (size.z() + 2), Kind::kInside) {
+    SC_ASSERT(spacing > 0 && size.minCoeff() > 0, "{} x {} x {} cells of {} m", size.x(), size.y(), size.z(),
+              spacing);
+  }
 
   /// Marks the cells that the triangle touches.
   void add_surface(const std::array<Vector3d, 3>& corners) {
@@ -121,6 +125,8 @@ class Grid {
 
   /// Of a cell from -1 to size: the layer of padding included.
   std::size_t number(const Vector3i& cell) const {
+    SC_ASSERT(cell.minCoeff() >= -1 && (size_ - cell).minCoeff() >= 0, "cell ({}, {}, {}) of {} x {} x {}",
+              cell.x(), cell.y(), cell.z(), size_.x(), size_.y(), size_.z());
     return (static_cast<std::size_t>(cell.x() + 1) * (size_.y() + 2) + (cell.y() + 1)) * (size_.z() + 2) +
            (cell.z() + 1);
   }
@@ -201,6 +207,8 @@ Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size) {
 
   const std::vector<Vector3i> cells = grid.cells();
   Lattice<3> lattice = lattice_from_cells(cells, cell_size, origin);
+  SC_ASSERT(lattice.cells == cells, "a lattice of {} cells from {}, or in another order",
+            lattice.cells.size(), cells.size());
   lattice.fill = fill_fractions(mesh, lattice);
   for (std::size_t c = 0; c < cells.size(); ++c)
     if (!grid.is_surface(cells[c])) lattice.fill[c] = 1;

@@ -8,6 +8,7 @@
 
 #include "ppu/matching/one_plate.h"
 #include "ppu/matching/regions.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -46,6 +47,9 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
     return lattice.origin.template cast<double>() +
            static_cast<double>(lattice.spacing) * lattice.particles[i].template cast<double>();
   };
+  SC_ASSERT(lattice.spacing > 0, "cells of {} m", lattice.spacing);
+  SC_ASSERT(sums_.particles() == masses.size() && sums_.region_of().size() == masses.size(),
+            "sums of {} particles, and {} masses", sums_.particles(), masses.size());
   double body_mass = 0;
   Exact weighted = Exact::Zero();
   for (std::size_t i = 0; i < masses.size(); ++i) {
@@ -79,6 +83,7 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
       mass += modified;
       moment += modified * particles_[i].x0.template cast<double>();
     }
+    SC_ASSERT(mass > 0, "region {} has a mass of {} kg", r, mass);
     regions_.push_back(
         {(moment / mass).template cast<Real>(), static_cast<Real>(mass), static_cast<Real>(1 / mass)});
   }

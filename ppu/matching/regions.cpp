@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 Csr find_regions(const Csr& neighbours, int half_width) {
@@ -22,6 +24,7 @@ Csr find_regions(const Csr& neighbours, int half_width) {
       const std::size_t end = found.size();
       for (; ring < end; ++ring) {
         for (const std::uint32_t next : neighbours[found[ring]]) {
+          SC_ASSERT(next < particles, "particle {} has neighbour {} of {}", found[ring], next, particles);
           if (visited[next] == centre) continue;
           visited[next] = centre;
           found.push_back(next);

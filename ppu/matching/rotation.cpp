@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 namespace {
@@ -216,6 +218,8 @@ Matrix3<Real> find_from(const Matrix3<Real>& normalised, Eigen::Quaternion<Real>
 template <typename Real>
 Eigen::Matrix<Real, 3, 3> update_rotation(const Eigen::Matrix<Real, 3, 3>& matrix,
                                           Eigen::Quaternion<Real>& rotation, Real floor) {
+  SC_ASSERT(floor >= 0, "a noise floor of {}", floor);
+  SC_ASSERT(std::abs(rotation.squaredNorm() - 1) < Real(1e-2), "a rotation of length {}", rotation.norm());
   Matrix3<Real> a;
   if (!normalise(matrix, floor, a)) return matrix_of(rotation);
   Matrix3<Real> r;

@@ -1,5 +1,6 @@
 #pragma once
-// What alpha, half-width and time step mean in units a user knows. All with the same bits on every host.
+// Converts between alpha, half-width and time step and the units that users know. All results have the same bits on
+// every host.
 
 namespace softcell::ppu {
 

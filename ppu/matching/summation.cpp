@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 namespace {
@@ -52,6 +54,7 @@ class Cutter {
   explicit Cutter(std::span<const Eigen::Vector3i> particles) : particles_(particles) {}
 
   std::uint32_t add(std::span<const std::uint32_t> region) {
+    SC_ASSERT(!region.empty(), "a region without particles");
     plate_list_.clear();
     for (std::size_t first = 0, last = 0; first < region.size(); first = last) {
       const int x = particles_[region[first]].x();
@@ -78,7 +81,10 @@ class Cutter {
   std::vector<std::uint32_t> plate_list_, bar_list_;
 };
 
-std::size_t additions(const Csr& lists) { return lists.items.size() - lists.size(); }
+std::size_t additions(const Csr& lists) {
+  SC_ASSERT(lists.items.size() >= lists.size(), "{} terms in {} sums", lists.items.size(), lists.size());
+  return lists.items.size() - lists.size();
+}
 
 }  // namespace
 
@@ -86,6 +92,12 @@ SumPlan::SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions)
   if (regions.size() != particles.size())
     throw std::invalid_argument("SumPlan: expected one region per particle");
   check_symmetry(regions);
+  SC_ASSERT(std::ranges::is_sorted(particles,
+                                   [](const auto& a, const auto& b) {
+                                     return std::lexicographical_compare(a.begin(), a.end(), b.begin(),
+                                                                         b.end());
+                                   }),
+            "{} particles are not sorted by x, y and z", particles.size());
 
   Cutter cutter(particles);
   region_of_.reserve(regions.size());
@@ -100,6 +112,7 @@ SumPlan::SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions)
 }
 
 std::vector<std::uint32_t> SumPlan::members(std::size_t region) const {
+  SC_ASSERT(region < regions(), "region {} of {}", region, regions());
   std::vector<std::uint32_t> members;
   for (const std::uint32_t plate : plates_of_region_[region])
     for (const std::uint32_t bar : bars_of_plate_[plate])

@@ -71,6 +71,8 @@ namespace detail {
 /// out[i] = sum of in over list i, in the order of the list. No list is empty.
 template <typename Payload>
 void sum_lists(const Csr& lists, const Payload* in, Payload* out) {
+  SC_ASSERT(lists.items.size() == lists.offsets.back(), "{} lists end at {} of {} items", lists.size(),
+            lists.offsets.back(), lists.items.size());
   const std::uint32_t* item = lists.items.data();
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const std::uint32_t* const end = lists.items.data() + lists.offsets[i + 1];

@@ -10,6 +10,7 @@
 
 #include "ppu/mesh/vertex_normals.h"
 #include "ppu/numbers/deterministic_math.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -42,6 +43,8 @@ struct Surface {
   }
   /// Corners counter-clockwise seen from outside.
   void add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    SC_ASSERT(std::max({a, b, c, d}) < positions.size(), "a corner {} of {} positions",
+              std::max({a, b, c, d}), positions.size());
     triangles.push_back({a, b, c});
     triangles.push_back({a, c, d});
   }
@@ -54,6 +57,8 @@ struct Surface {
 
 /// Its box centred on 0, all of it `factor` times as large.
 void centre_and_scale(Surface& surface, double factor) {
+  SC_ASSERT(!surface.positions.empty() && factor > 0, "a surface of {} positions, {} times as large",
+            surface.positions.size(), factor);
   Vector3d low = surface.positions.front(), high = low;
   for (const Vector3d& p : surface.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
   for (Vector3d& p : surface.positions) p = factor * (p - 0.5 * (low + high));

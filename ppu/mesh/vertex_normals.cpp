@@ -61,6 +61,8 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const std::array<std::uint32_t
 /// Joins the corners on both ends of every smooth edge.
 CornerSets smooth_groups(std::span<const std::array<std::uint32_t, 3>> triangles,
                          std::span<const Eigen::Vector3d> face_normals, double crease_cosine) {
+  SC_ASSERT(face_normals.size() == triangles.size(), "{} normals of {} triangles", face_normals.size(),
+            triangles.size());
   CornerSets groups(3 * triangles.size());
   const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
   for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {

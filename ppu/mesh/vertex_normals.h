@@ -7,8 +7,8 @@
 
 namespace softcell::ppu {
 
-inline constexpr double kCreaseCosine =
-    0.5;  ///< an edge is sharp when its faces' normals differ by more than 60 degrees
+/// An edge is sharp when its faces' normals differ by more than 60 degrees.
+inline constexpr double kCreaseCosine = 0.5;
 
 /// Gives each position one normal for every group of its triangles that hang together across smooth edges; a
 /// position on a crease becomes several vertices. An edge is smooth when exactly two triangles share it, wind

@@ -4,6 +4,7 @@
 
 #include "ppu/mesh_import/mesh_file_check_formats.h"
 #include "ppu/mesh_import/mesh_file_text.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -30,6 +31,7 @@ std::string mesh_part_name(std::span<const std::string_view> words) {
 }
 
 void extend_parts(MeshFileContents& contents, const std::string& object, const std::string& material) {
+  SC_ASSERT(contents.triangles <= kMaxMeshTriangles, "a file of {} triangles", contents.triangles);
   std::vector<MeshPart>& parts = contents.parts;
   if (parts.empty() || parts.back().object != object || parts.back().material != material) {
     if (parts.size() == kMaxMeshParts) {

@@ -8,10 +8,7 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -22,13 +19,15 @@
 #include "ppu/mesh_import/material_library.h"
 #include "ppu/mesh_import/mesh_file_text.h"
 #include "ppu/mesh_import/parse_mesh.h"
+#include "softcell/base/assert.h"
+#include "softcell/base/read_file.h"
 
 namespace softcell::ppu {
 namespace {
 
 /// 4 million triangles take a quarter of it as text.
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 30;
-constexpr std::uintmax_t kMaxMaterialLibraryBytes = std::uintmax_t{16} << 20;
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxMaterialLibraryBytes = std::uint64_t{16} << 20;
 
 const char* extension_of(MeshFormat format) {
   switch (format) {
@@ -150,6 +149,12 @@ Soup gather(const aiScene& scene, const MeshFileContents& contents) {
            " triangles could be read; some of its polygons may cross themselves");
   }
   if (soup.triangles.empty()) refuse("all its triangles have area zero");
+  SC_ASSERT(soup.number_in_file.size() == soup.triangles.size(), "{} numbers of {} triangles",
+            soup.number_in_file.size(), soup.triangles.size());
+  SC_ASSERT(!contents.has_texture_coordinates || soup.texture_coordinates.size() == soup.positions.size(),
+            "{} texture coordinates of {} positions", soup.texture_coordinates.size(), soup.positions.size());
+  SC_ASSERT(!contents.has_colours || soup.colours.size() == soup.positions.size(),
+            "{} colours of {} positions", soup.colours.size(), soup.positions.size());
   if (!normals) soup.normals.clear();
   return soup;
 }
@@ -205,6 +210,8 @@ bool normalize(std::vector<Eigen::Vector3f>& normals) {
 /// A vertex for each different pair of position and normal that a triangle uses, in the order of their first
 /// use.
 TriangleMesh with_given_normals(const Soup& soup) {
+  SC_ASSERT(soup.normals.size() == soup.positions.size(), "{} normals for {} positions", soup.normals.size(),
+            soup.positions.size());
   std::vector<std::uint32_t> corners;
   for (const auto& triangle : soup.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
   const auto key = [&](std::uint32_t i) {
@@ -229,7 +236,8 @@ TriangleMesh with_given_normals(const Soup& soup) {
 /// @param corners  the soup's vertices, three for each of the mesh's triangles, before any were joined
 void carry_attributes(const Soup& soup, std::span<const std::array<std::uint32_t, 3>> corners,
                       TriangleMesh& mesh) {
-  if (soup.texture_coordinates.empty() && soup.colours.empty()) return;
+  SC_ASSERT(corners.size() == mesh.triangles.size(), "the corners of {} triangles for {}", corners.size(),
+            mesh.triangles.size());
   const auto texture = [&](std::uint32_t corner) {
     return soup.texture_coordinates.empty() ? Eigen::Vector2f(0, 0) : soup.texture_coordinates[corner];
   };
@@ -262,6 +270,8 @@ void carry_attributes(const Soup& soup, std::span<const std::array<std::uint32_t
 /// The file's parts, counted in the triangles that are left.
 /// @param number_in_file  of each triangle left, ascending
 std::vector<MeshPart> parts_of(std::vector<MeshPart> parts, std::span<const std::uint32_t> number_in_file) {
+  SC_ASSERT(std::ranges::is_sorted(number_in_file), "the numbers of {} triangles do not ascend",
+            number_in_file.size());
   std::uint32_t next = 0;
   for (MeshPart& part : parts) {
     const std::uint32_t end = part.first_triangle + part.triangle_count;
@@ -292,21 +302,8 @@ void find_materials(const std::string& name, const ReadNeighbour& read_neighbour
   }
 }
 
-std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) refuse("there is no such file");
-  if (std::filesystem::is_directory(status)) refuse("it is a directory; a mesh file was expected");
-  if (!std::filesystem::is_regular_file(status)) refuse("it is not a regular file");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) refuse("its size cannot be found: " + error.message());
-  if (size == 0) refuse("it is empty");
-  if (size > most_bytes) refuse("it is larger than " + std::to_string(most_bytes >> 20) + " MiB");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse("it cannot be opened: " + std::string(std::strerror(errno)));
-  if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) refuse("it cannot be read to its end");
-  return bytes;
+std::string_view text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// A material library that lies in the folder of the mesh's file. Names that lead elsewhere name no file here.
@@ -315,11 +312,11 @@ std::optional<std::string> read_neighbour_of(const std::filesystem::path& mesh, 
   const std::filesystem::path path = mesh.parent_path() / name;
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::nullopt;
-  try {
-    return read_file(path, kMaxMaterialLibraryBytes);
-  } catch (const std::runtime_error& problem) {
-    refuse("its material library " + in_quotes(name) + ": " + problem.what());
-  }
+  return std::string(text_of(base::read_file(path, kMaxMaterialLibraryBytes)));
+}
+
+[[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
+  throw std::runtime_error("cannot import the mesh " + path.string() + ": " + why);
 }
 
 MeshFormat format_of(const std::filesystem::path& path) {
@@ -329,12 +326,13 @@ MeshFormat format_of(const std::filesystem::path& path) {
   for (const MeshFormat format : {MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kStl}) {
     if (extension.starts_with('.') && extension.substr(1) == extension_of(format)) return format;
   }
-  refuse("its extension " + in_quotes(extension) + " is not one of .obj, .ply, .stl");
+  refuse_file(path, "its extension " + in_quotes(extension) + " is not one of .obj, .ply, .stl");
 }
 
 }  // namespace
 
 TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format, const ReadNeighbour& read_neighbour) {
+  if (bytes.empty()) refuse("it is empty");
   const MeshFileContents contents = check_mesh_file(bytes, format);
   const std::string extension = extension_of(format);
   Assimp::Importer importer;
@@ -345,7 +343,9 @@ TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format, const ReadNei
   if (scene == nullptr) refuse(one_line(importer.GetErrorString()));
 
   Soup soup = gather(*scene, contents);
-  const std::vector<std::array<std::uint32_t, 3>> corners = soup.triangles;
+  const bool has_attributes = !soup.texture_coordinates.empty() || !soup.colours.empty();
+  std::vector<std::array<std::uint32_t, 3>> corners;  // of the triangles, before any are joined
+  if (has_attributes) corners = soup.triangles;
   TriangleMesh mesh;
   if (!soup.normals.empty() && normalize(soup.normals)) {
     mesh = with_given_normals(soup);
@@ -353,19 +353,22 @@ TriangleMesh parse_mesh(std::string_view bytes, MeshFormat format, const ReadNei
     weld(soup);
     mesh = with_smooth_normals(soup.positions, soup.triangles);
   }
-  carry_attributes(soup, corners, mesh);
+  if (has_attributes) carry_attributes(soup, corners, mesh);
+  SC_ASSERT(mesh.normals.size() == mesh.positions.size(), "{} normals of {} positions", mesh.normals.size(),
+            mesh.positions.size());
   mesh.parts = parts_of(contents.parts, soup.number_in_file);
   find_materials(contents.material_library, read_neighbour, mesh.parts);
   return mesh;
 }
 
 TriangleMesh import_mesh(const std::filesystem::path& path) {
+  const MeshFormat format = format_of(path);
+  const std::vector<std::byte> bytes = base::read_file(path, kMaxFileBytes);
   try {
-    const MeshFormat format = format_of(path);
-    return parse_mesh(read_file(path, kMaxFileBytes), format,
+    return parse_mesh(text_of(bytes), format,
                       [&](const std::string& name) { return read_neighbour_of(path, name); });
   } catch (const std::runtime_error& problem) {
-    throw std::runtime_error("cannot import the mesh " + path.string() + ": " + problem.what());
+    refuse_file(path, problem.what());
   }
 }
 

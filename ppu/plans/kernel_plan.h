@@ -6,11 +6,16 @@
 #include <cstring>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "softcell/base/assert.h"
+#include "softcell/dma/element_layout.h"
 
 namespace softcell::ppu {
+
+/// A line of main storage: plans occupy whole ones, which a get moves fastest.  [CBEA, MFC commands] documented
+inline constexpr std::size_t kPlanLineBytes = 128;
 
 /// Plan and state of one body need more local store than the kernel has; the sentence states both.
 class BodyTooLarge : public std::runtime_error {
@@ -18,7 +23,7 @@ class BodyTooLarge : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A plan in lines of 128 bytes, ready to be copied to main memory: a `Header` and what it points to.
+/// A plan in whole lines, ready to be copied to main memory: a `Header` and what it points to.
 /// Immutable, the same bytes on every host.
 template <typename Header>
 class KernelPlan {
@@ -31,9 +36,12 @@ class KernelPlan {
     SC_ASSERT(!lines_.empty(), "a plan without a header");
     return *reinterpret_cast<const Header*>(lines_.data());
   }
-  std::span<const std::byte> bytes() const {  ///< header() first; a multiple of 128
+  std::span<const std::byte> bytes() const {  ///< header() first; whole lines
     return std::as_bytes(std::span(lines_));
   }
+
+  /// The widths of the numbers in bytes(), which it covers.
+  std::span<const dma::ElementRun> record() const { return record_; }
 
   /// Particle -> the place of its region among the plan's: group number / 4, lane number % 4.
   std::span<const std::uint32_t> region_of() const { return region_of_; }
@@ -42,20 +50,22 @@ class KernelPlan {
   std::size_t additions() const { return additions_; }
 
  protected:
-  void assign(const std::vector<std::byte>& bytes) {
+  void assign(const std::vector<std::byte>& bytes, std::vector<dma::ElementRun> record) {
     SC_ASSERT(bytes.size() >= sizeof(Header), "a plan of {} bytes has no room for its header", bytes.size());
     lines_.resize((bytes.size() + sizeof(Line) - 1) / sizeof(Line));
     std::memcpy(lines_.data(), bytes.data(), bytes.size());
+    record_ = std::move(record);
   }
 
   std::vector<std::uint32_t> region_of_;
   std::size_t additions_ = 0;
 
  private:
-  struct alignas(128) Line {
-    std::byte bytes[128];
+  struct alignas(kPlanLineBytes) Line {
+    std::byte bytes[kPlanLineBytes];
   };
   std::vector<Line> lines_;
+  std::vector<dma::ElementRun> record_;
 };
 
 }  // namespace softcell::ppu

@@ -5,11 +5,15 @@
 
 #include "match_tiles_job.h"
 #include "ppu/plans/sum_order.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
 LatticeSums::LatticeSums(const Lattice<3>& lattice, const SumPlan& sums, int plate_restart)
     : home(sums.regions(), std::numeric_limits<std::uint32_t>::max()) {
+  SC_ASSERT(lattice.particles.size() == sums.particles() && plate_restart > 0,
+            "a lattice of {} particles, sums of {}, a restart after {} rows", lattice.particles.size(),
+            sums.particles(), plate_restart);
   const Stations stations(lattice.particles, sums);
   const Order bar_order(stations.bars), plate_order(stations.plates), region_order(stations.regions);
   const auto level = [](const Csr& lists, const std::vector<Station>& at, const Order& order, int restart,
@@ -32,9 +36,14 @@ LatticeSums::LatticeSums(const Lattice<3>& lattice, const SumPlan& sums, int pla
   region_at_slot.assign(1, 0);
   region_at_slot.insert(region_at_slot.end(), region_order.item.begin(), region_order.item.end());
   for (auto i = static_cast<std::uint32_t>(sums.particles()); i-- > 0;) home[sums.region_of()[i]] = i;
+  SC_ASSERT(region_at_slot.size() == sums.regions() + 1 && std::ranges::max(home) < sums.particles(),
+            "{} slots of {} regions, of which some have no particle of {}", region_at_slot.size(),
+            sums.regions(), sums.particles());
 }
 
 int rows_that_fit(const Lattice<3>& lattice, int half_width, std::uint32_t arena_bytes) {
+  SC_ASSERT(!lattice.particles.empty() && half_width >= 0, "{} particles in regions of half-width {}",
+            lattice.particles.size(), half_width);
   const auto [low, high] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.z(); });
   const std::uint64_t height = static_cast<std::uint64_t>(high.z() - low.z()) + 1;
   const auto w = static_cast<std::uint64_t>(half_width);

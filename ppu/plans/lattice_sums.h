@@ -33,7 +33,7 @@ inline constexpr int kSumRestart = KernelPlan<spu::MatchPlanHeader>::kRestart;
 /// @param arena_bytes  as TilePlan's
 int rows_that_fit(const Lattice<3>& lattice, int half_width, std::uint32_t arena_bytes);
 
-/// The same of the kernel as it is, at most kSumRestart: what sums are does not hang on flavours.
+/// The same for the kernel that is not checked, at most kSumRestart, so that sums do not depend on the flavour.
 int sum_restart_of_rows(const Lattice<3>& lattice, int half_width);
 
 }  // namespace softcell::ppu

@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 spu::MatchHold hold_of(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching) {
+  SC_ASSERT(lattice.particles.size() == matching.particles() && matching.particles() > 0,
+            "a lattice of {} particles, matching of {}", lattice.particles.size(), matching.particles());
   double mass = 0, largest = 0;
   for (const auto& particle : matching.particle_constants()) {
     mass += static_cast<double>(particle.mass);
     largest = std::max(largest, static_cast<double>(particle.mass));
   }
+  SC_ASSERT(largest > 0 && lattice.spacing > 0, "the heaviest particle has {} kg, in cells of {} m", largest,
+            lattice.spacing);
   Eigen::Array3i low = lattice.particles[0], high = low;
   for (const Eigen::Vector3i& p : lattice.particles) {
     low = low.min(p.array());
@@ -23,6 +29,7 @@ spu::MatchHold hold_of(const Lattice<3>& lattice, const MatchingPlan<float, 3>& 
 }
 
 std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float, 3>& matching) {
+  SC_ASSERT(matching.particles() > 0, "{} samples of no particles", spu::kMatchSamples);
   std::array<std::uint32_t, spu::kMatchSamples> samples{};
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k] = static_cast<std::uint32_t>((2 * k + 1) * matching.particles() / (2 * samples.size()));

@@ -1,5 +1,5 @@
 #pragma once
-// What the plans of both kernels, match and match_tiles, say of a body as a whole.
+// Constants of a whole body in the plans of both kernels, match and match_tiles.
 
 #include <array>
 #include <cstdint>

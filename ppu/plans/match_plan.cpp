@@ -5,6 +5,7 @@
 #include "ppu/plans/lattice_sums.h"
 #include "ppu/plans/match_constants.h"
 #include "ppu/plans/plan_writer.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -12,6 +13,8 @@ namespace {
 
 spu::MatchParticles particles_at(const MatchingPlan<float, 3>& matching, std::size_t first,
                                  std::span<const std::uint32_t> region_of) {
+  SC_ASSERT(region_of.size() == matching.particles(), "the regions of {} particles of {}", region_of.size(),
+            matching.particles());
   spu::MatchParticles group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < matching.particles(); ++lane) {
     const auto& particle = matching.particle_constants()[first + lane];
@@ -26,6 +29,8 @@ spu::MatchParticles particles_at(const MatchingPlan<float, 3>& matching, std::si
 /// @param first  rank of the first of four regions
 spu::MatchRegions regions_at(const MatchingPlan<float, 3>& matching, std::size_t first,
                              const LatticeSums& order) {
+  SC_ASSERT(first % 4 == 0 && first < order.regions.size(), "four regions from {} of {}", first,
+            order.regions.size());
   spu::MatchRegions group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < order.regions.size(); ++lane) {
     const auto& region = matching.region_constants()[order.region_at_slot[first + lane + 1]];
@@ -43,6 +48,8 @@ constexpr SumListFormat kFormat{spu::kMatchSlotBytes, kSumRestart};
 
 MatchPlan::MatchPlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching,
                      std::uint32_t arena_bytes) {
+  SC_ASSERT(lattice.particles.size() == matching.particles(), "a lattice of {} particles, matching of {}",
+            lattice.particles.size(), matching.particles());
   const SumPlan& sums = matching.sums();
   LatticeSums order(lattice, sums, sum_restart_of_rows(lattice, matching.half_width()));
   for (const std::uint32_t r : sums.region_of()) region_of_.push_back(order.region_slot[r] - 1);
@@ -63,6 +70,10 @@ MatchPlan::MatchPlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& ma
     region_constants.push_back(regions_at(matching, r, order));
 
   for (std::size_t pad = sums.regions(); pad < 4 * region_groups; ++pad) order.regions.push_nothing();
+  SC_ASSERT(particle_constants.size() == particle_groups && region_constants.size() == region_groups &&
+                order.regions.size() == 4 * region_groups,
+            "{} groups of particles, {} of regions, {} sums", particle_constants.size(),
+            region_constants.size(), order.regions.size());
   const auto list = [](const SumLevel& level) { return write_sum_list(level, spu::kMatchSlotBytes); };
   const SumList from_particles = list(order.bars_of_particles), from_regions = list(order.bars_of_regions);
   const SumList of_plates = list(order.plates), of_regions = list(order.regions);
@@ -87,7 +98,7 @@ MatchPlan::MatchPlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& ma
   std::ranges::copy(samples_of(matching), header.samples);
   header.bytes = writer.size();
   check_fits("match", matching.particles(), spu::match_local_store_bytes(header), arena_bytes);
-  assign(writer.finish(header));
+  assign(writer.finish(header), writer.record());
 }
 
 }  // namespace softcell::ppu

@@ -5,15 +5,18 @@
 #include "ppu/matching/one_plate.h"
 #include "ppu/plans/plan_writer.h"
 #include "ppu/plans/sum_order.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
 namespace {
 
-constexpr SumListFormat kFormat{spu::kMatch2dSlotBytes, MatchPlan2d::kRestart};
+constexpr SumListFormat kFormat2d{spu::kMatch2dSlotBytes, MatchPlan2d::kRestart};
 
 spu::MatchParticles2d particles_at(const MatchingPlan<float, 2>& matching, std::size_t first,
                                    std::span<const std::uint32_t> region_of) {
+  SC_ASSERT(region_of.size() == matching.particles(), "the regions of {} particles of {}", region_of.size(),
+            matching.particles());
   spu::MatchParticles2d group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < matching.particles(); ++lane) {
     const auto& particle = matching.particle_constants()[first + lane];
@@ -29,6 +32,8 @@ spu::MatchParticles2d particles_at(const MatchingPlan<float, 2>& matching, std::
 
 spu::MatchRegions2d regions_at(const MatchingPlan<float, 2>& matching, std::size_t first,
                                const Order& order) {
+  SC_ASSERT(first % 4 == 0 && first < order.item.size(), "four regions from {} of {}", first,
+            order.item.size());
   spu::MatchRegions2d group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < order.item.size(); ++lane) {
     const auto& region = matching.region_constants()[order.item[first + lane]];
@@ -42,6 +47,8 @@ spu::MatchRegions2d regions_at(const MatchingPlan<float, 2>& matching, std::size
 }  // namespace
 
 MatchPlan2d::MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>& matching) {
+  SC_ASSERT(lattice.particles.size() == matching.particles(), "a lattice of {} particles, matching of {}",
+            lattice.particles.size(), matching.particles());
   const SumPlan& sums = matching.sums();
   const Stations stations(as_one_plate(lattice.particles), sums);
   // A region is its one plate.
@@ -55,7 +62,7 @@ MatchPlan2d::MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>
                     region_groups = (sums.regions() + 3) / 4;
   const std::size_t slots = 1 + std::max({4 * particle_groups, bars.item.size(), 4 * region_groups});
   // Before lists are written, whose offsets would not fit: what the buffers need at least.
-  static_assert(2 * spu::kMatch2dSlotBytes * kFormat.max_slot() > spu::kMatch2dArenaBytes);
+  static_assert(2 * spu::kMatch2dSlotBytes * kFormat2d.max_slot() > spu::kMatch2dArenaBytes);
   check_fits("match_2d", matching.particles(), std::uint64_t{slots} * 2 * spu::kMatch2dSlotBytes,
              spu::kMatch2dArenaBytes);
 
@@ -66,15 +73,18 @@ MatchPlan2d::MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>
   for (std::size_t r = 0; r < sums.regions(); r += 4)
     region_constants.push_back(regions_at(matching, r, regions));
 
+  SC_ASSERT(particle_constants.size() == particle_groups && region_constants.size() == region_groups,
+            "{} groups of particles and {} of regions, for {} and {}", particle_constants.size(),
+            region_constants.size(), particle_groups, region_groups);
   const SumList from_particles = ordered_sum_list(
       stations.bars, bars, [&](std::uint32_t b) { return sums.particles_of_bar()[b]; },
-      [](std::uint32_t i) { return i + 1; }, kFormat);
+      [](std::uint32_t i) { return i + 1; }, kFormat2d);
   const SumList from_regions = ordered_sum_list(
       stations.bars, bars, [&](std::uint32_t b) { return sums.regions_of_bar()[b]; },
-      [&](std::uint32_t r) { return regions.slot[r]; }, kFormat);
+      [&](std::uint32_t r) { return regions.slot[r]; }, kFormat2d);
   const SumList of_regions = ordered_sum_list(
       region_stations, regions, [&](std::uint32_t r) { return sums.bars_of_plate()[plate_of(r)]; },
-      [&](std::uint32_t b) { return bars.slot[b]; }, kFormat, 4 * region_groups - sums.regions());
+      [&](std::uint32_t b) { return bars.slot[b]; }, kFormat2d, 4 * region_groups - sums.regions());
   additions_ = from_particles.additions + of_regions.additions;
 
   PlanWriter writer(sizeof(spu::MatchPlanHeader2d));
@@ -94,7 +104,7 @@ MatchPlan2d::MatchPlan2d(const Lattice<2>& lattice, const MatchingPlan<float, 2>
   header.bytes = writer.size();
   check_fits("match_2d", matching.particles(), spu::match_2d_local_store_bytes(header),
              spu::kMatch2dArenaBytes);
-  assign(writer.finish(header));
+  assign(writer.finish(header), writer.record());
 }
 
 }  // namespace softcell::ppu

@@ -16,20 +16,27 @@ namespace softcell::ppu {
 /// Room for a header, then parts one behind the other, each on a multiple of 16 bytes.
 class PlanWriter {
  public:
-  explicit PlanWriter(std::size_t header_bytes) : bytes_(header_bytes) {}
+  /// The header's members are words.
+  explicit PlanWriter(std::size_t header_bytes) : bytes_(header_bytes) { extend_record(sizeof(float)); }
 
+  /// Items are halfwords, or structures of words.
   /// @return the part's offset
   template <typename T>
   std::uint32_t append(const std::vector<T>& items) {
-    bytes_.resize((bytes_.size() + 15) / 16 * 16);
+    static_assert(sizeof(T) == 2 || sizeof(T) % 4 == 0);
+    align();
     const std::size_t offset = bytes_.size();
     bytes_.resize(offset + items.size() * sizeof(T));
     std::memcpy(bytes_.data() + offset, items.data(), items.size() * sizeof(T));
+    align();
+    extend_record(sizeof(T) == 2 ? 2 : 4);
     return static_cast<std::uint32_t>(offset);
   }
 
-  /// In whole lines of 128 bytes.
-  std::uint32_t size() const { return static_cast<std::uint32_t>((bytes_.size() + 127) / 128 * 128); }
+  /// Bytes, in whole lines.
+  std::uint32_t size() const {
+    return static_cast<std::uint32_t>((bytes_.size() + kPlanLineBytes - 1) / kPlanLineBytes * kPlanLineBytes);
+  }
 
   template <typename Header>
   const std::vector<std::byte>& finish(const Header& header) {
@@ -39,8 +46,26 @@ class PlanWriter {
     return bytes_;
   }
 
+  /// The widths of the numbers in size() bytes.
+  std::vector<dma::ElementRun> record() const {
+    std::vector<dma::ElementRun> record = record_;
+    if (size() > bytes_.size())
+      record.push_back({size() - static_cast<std::uint32_t>(bytes_.size()), sizeof(float)});
+    return record;
+  }
+
  private:
+  void align() { bytes_.resize((bytes_.size() + 15) / 16 * 16); }
+  /// What is new since the last call.
+  void extend_record(std::uint32_t element_bytes) {
+    const auto bytes = static_cast<std::uint32_t>(bytes_.size() - known_);
+    if (bytes != 0) record_.push_back({bytes, element_bytes});
+    known_ = bytes_.size();
+  }
+
   std::vector<std::byte> bytes_;
+  std::vector<dma::ElementRun> record_;
+  std::size_t known_ = 0;  ///< bytes that record_ covers
 };
 
 /// The power of two at or below the spacing: what a body's origin is a multiple of.

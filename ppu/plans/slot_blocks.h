@@ -1,5 +1,5 @@
 #pragma once
-// Gives out slots of a local store in blocks, and takes them back when nobody will ask for them again.
+// Allocates slots of a local store in blocks, and frees them after their last use.
 
 #include <algorithm>
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace softcell::ppu {
 
-/// First fit. Time goes on from call to call.
+/// Allocates first fit. Calls come in the order of time.
 class SlotBlocks {
  public:
-  /// Slot 0 is nobody's: it is always zero. A block may be empty.
+  /// Slot 0 is never allocated: it is always zero. A block may be empty.
   /// @return  the number of the block's first slot
-  std::uint32_t take(std::uint32_t count, int last_use) {
+  std::uint32_t allocate(std::uint32_t count, int last_use) {
     SC_ASSERT(blocks_.empty() || blocks_.back().end <= most_, "the last block ends at {}, past all {} slots",
               blocks_.back().end, most_);
     std::uint32_t begin = 1;
@@ -25,7 +25,7 @@ class SlotBlocks {
     return begin;
   }
 
-  /// Frees what had its last use before `time`.
+  /// Frees the blocks whose last use was before `time`.
   void free_before(int time) {
     std::erase_if(blocks_, [&](const Block& block) { return block.last_use < time; });
   }

@@ -1,4 +1,5 @@
 #include "ppu/plans/sum_list.h"
+#include "softcell/base/assert.h"
 
 #include <algorithm>
 #include <iterator>
@@ -89,6 +90,7 @@ SumList write_sum_list(const SumLevel& level, std::uint32_t slot_bytes) {
               slot_bytes);
     return sum_list_offset(slot, slot_bytes);
   };
+  SC_ASSERT(level.rules.size() == level.size(), "{} rules for {} sums", level.rules.size(), level.size());
   SumListWriter writer;
   std::vector<std::uint16_t> terms;
   for (std::size_t i = 0; i < level.size(); ++i) {

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 Stations::Stations(std::span<const Eigen::Vector3i> particles, const SumPlan& sums)
     : bars(sums.particles_of_bar().size()), plates(sums.bars_of_plate().size()), regions(sums.regions()) {
+  SC_ASSERT(particles.size() == sums.particles(), "{} particles, sums of {}", particles.size(),
+            sums.particles());
   const auto first_of_bar = [&](std::uint32_t b) { return particles[sums.particles_of_bar()[b][0]]; };
   for (std::size_t i = 0; i < sums.particles(); ++i) {
     const std::uint32_t r = sums.region_of()[i];
@@ -35,8 +39,11 @@ std::vector<Sum> ordered_sums(const std::vector<Station>& stations, const Order&
                               const std::function<std::span<const std::uint32_t>(std::uint32_t)>& terms,
                               const std::function<std::uint32_t(std::uint32_t)>& slot_of,
                               std::size_t padding) {
+  SC_ASSERT(order.item.size() == stations.size(), "an order of {} in {} stations", order.item.size(),
+            stations.size());
   std::vector<Sum> sums;
   for (const std::uint32_t item : order.item) {
+    SC_ASSERT(stations[item].known, "item {} of {} is in no region", item, stations.size());
     Sum sum{stations[item].row, stations[item].place, {}};
     for (const std::uint32_t term : terms(item)) sum.terms.push_back(slot_of(term));
     std::ranges::sort(sum.terms);

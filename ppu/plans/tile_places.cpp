@@ -1,5 +1,7 @@
 #include "ppu/plans/tile_places.h"
 
+#include "softcell/base/assert.h"
+
 namespace softcell::ppu {
 
 namespace {
@@ -9,6 +11,7 @@ int divide_down(int a, int b) { return (a - (a % b + b) % b) / b; }
 }  // namespace
 
 std::pair<int, int> TileGrid::tile_of(const Eigen::Vector3i& index) const {
+  SC_ASSERT(planes > 0 && rows > 0, "tiles of {} planes and {} rows", planes, rows);
   return {divide_down(index.x(), planes), divide_down(index.y(), rows)};
 }
 
@@ -18,6 +21,8 @@ TilePlaces::TilePlaces(const TileGrid& grid, const std::vector<Eigen::Vector3i>&
     const std::pair<int, int> here{sites[thing].x(), grid.tile_of(sites[thing]).second};
     if (thing == 0 || here != current) {
       while (thing_at_.size() % 4 != 0) thing_at_.push_back(kPadding);
+      SC_ASSERT(!stretches_.contains(here), "plane {} has tile row {} in two pieces: sites do not ascend",
+                here.first, here.second);
       stretches_[here].begin = size();
       current = here;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Where particles and regions are in main memory when a body is cut into tiles.
+// The places of particles and regions in main memory, for a body in tiles.
 
 #include <cstdint>
 #include <limits>
@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
@@ -18,8 +19,8 @@ struct TileGrid {
   std::pair<int, int> tile_of(const Eigen::Vector3i& index) const;
 };
 
-/// Places of things that are at lattice sites, by plane, tile row and number. What one tile has in one plane
-/// is one stretch, padded to groups of four.
+/// Places of things (particles or regions) at lattice sites, ordered by plane, tile row and number. The things of one
+/// tile in one plane are one stretch, padded to groups of four.
 class TilePlaces {
  public:
   struct Stretch {
@@ -30,9 +31,16 @@ class TilePlaces {
   /// @param sites  of thing 0, 1, 2, ...; ascending by x, then y
   TilePlaces(const TileGrid& grid, const std::vector<Eigen::Vector3i>& sites);
 
-  std::uint32_t place_of(std::uint32_t thing) const { return place_of_[thing]; }
+  std::uint32_t place_of(std::uint32_t thing) const {
+    SC_ASSERT(thing < place_of_.size(), "the place of {} of {}", thing, place_of_.size());
+    return place_of_[thing];
+  }
   std::span<const std::uint32_t> all_places() const { return place_of_; }
-  std::uint32_t at(std::uint32_t place) const { return thing_at_[place]; }  ///< or kPadding
+  /// What is at a place, or kPadding.
+  std::uint32_t at(std::uint32_t place) const {
+    SC_ASSERT(place < thing_at_.size(), "place {} of {}", place, thing_at_.size());
+    return thing_at_[place];
+  }
   std::uint32_t size() const { return static_cast<std::uint32_t>(thing_at_.size()); }
   /// Of plane x and a tile row; empty where there is nothing.
   Stretch stretch(int x, int tile_row) const;

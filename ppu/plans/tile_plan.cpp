@@ -11,6 +11,7 @@
 #include "ppu/plans/plan_writer.h"
 #include "ppu/plans/tile_places.h"
 #include "ppu/plans/tile_scheduler.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -18,13 +19,14 @@ namespace {
 
 using Direction = TileScheduler::Direction;
 
-constexpr int kTilesWanted = 24;  // so that six SPEs end a pass nearly at the same time
+constexpr int kTilesWanted = 24;  // enough for six SPEs to end a pass at nearly the same time
 constexpr int kMostPlanes = 64;   // slices of a tile are kept in the local store
 
 int round_up(int count, int step) { return (count + step - 1) / step * step; }
 
 /// Tiles begin where sums start anew, so that they make no sums twice for a chain's sake.
 TileGrid grid_for(const Lattice<3>& lattice, int half_width, TileShape shape, std::uint32_t arena_bytes) {
+  SC_ASSERT(!lattice.particles.empty(), "{} cells without particles", lattice.cells.size());
   const auto [low, high] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.x(); });
   const int planes = high.x() - low.x() + 1;
   const auto [front, back] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.y(); });
@@ -39,6 +41,7 @@ TileGrid grid_for(const Lattice<3>& lattice, int half_width, TileShape shape, st
   const int tile_planes = shape.planes > 0
                               ? shape.planes
                               : std::min(round_up((planes + slabs - 1) / slabs, kSumRestart), kMostPlanes);
+  SC_ASSERT(tile_planes > 0 && tile_rows > 0, "tiles of {} planes and {} rows", tile_planes, tile_rows);
   return {tile_planes, tile_rows};
 }
 
@@ -69,7 +72,9 @@ TilePlan::TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matc
     tile.down = scheduler.slices(number, Direction::kDown);
     tile.damp = scheduler.slices_for_twists();
   }
-  lists_ = scheduler.lists().take();
+  lists_ = scheduler.lists().release();
+  const auto record = scheduler.lists().record();
+  record_of_lists_.assign(record.begin(), record.end());
 
   body_.tiles = static_cast<std::uint32_t>(tiles_.size());
   body_.up = scheduler.limits(Direction::kUp);
@@ -86,7 +91,11 @@ TilePlan::TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matc
   std::ranges::transform(samples_of(matching), body_.samples,
                          [&](std::uint32_t i) { return particles.place_of(i); });
 
+  SC_ASSERT(particles.all_places().size() == matching.particles(), "places for {} particles of {}",
+            particles.all_places().size(), matching.particles());
   place_of_.assign(particles.all_places().begin(), particles.all_places().end());
+  SC_ASSERT(particles.size() % 4 == 0 && regions.size() % 4 == 0,
+            "{} places of particles and {} of regions, no groups of four", particles.size(), regions.size());
   rest_.resize(particles.size() / 4);
   weights_.resize(rest_.size());
   for (std::uint32_t i = 0; i < matching.particles(); ++i) {

@@ -13,20 +13,18 @@
 
 namespace softcell::ppu {
 
-/// How large a tile is, in particles; 0: as the plan sees fit.
+/// Size of a tile in particles; 0: the plan chooses.
 struct TileShape {
   int planes = 0;  ///< along x
   int rows = 0;    ///< along y; along z a tile is as high as the body
 };
 
-/// Which tile does what, slice by slice, and the constants that it needs for it. Immutable, the same bytes on
-/// every host.
+/// The work of each tile, slice by slice, with its constants. Immutable, the same bytes on every host.
 ///
-/// Nothing is decided by geometry alone: a tile makes every sum that its regions and particles rest on, and
-/// those on which these sums rest, by the rules that MatchPlan has for the whole body. So any lattice with
-/// any half-width can be cut anywhere, and the shape of tiles changes nothing but the cost. What a slice
-/// keeps for later slices, and until when, is found here too: slots of the local store are given out and
-/// taken back as a compiler does with registers.
+/// A tile computes every sum that its regions and particles need, and the sums that these need, by MatchPlan's rules
+/// for the whole body; geometry alone decides nothing. So any lattice with any half-width can be cut anywhere,
+/// and the shape of tiles changes only the cost. The plan also decides which values a slice keeps for later
+/// slices, and until when: it allocates slots of the local store by lifetime, as a compiler allocates registers.
 ///
 /// @see match_tiles_job.h for passes and places, docs/notes/performance.md for what was chosen and why
 class TilePlan {
@@ -37,7 +35,7 @@ class TilePlan {
   };
 
   /// @param arena_bytes  what the kernel has for a tile: kTileArenaBytes, or of its instrumented flavour
-  ///                     kTileCheckedArenaBytes. Says nothing about the result.
+  ///                     kTileCheckedArenaBytes. The result does not depend on it.
   /// @throws BodyTooLarge           a slice does not fit a local store: the lattice is too high (z).
   /// @throws std::invalid_argument  a shape below zero.
   TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, TileShape shape = {},
@@ -45,16 +43,18 @@ class TilePlan {
 
   std::span<const Tile> tiles() const { return tiles_; }
 
-  /// What does not change from step to step, its addresses left 0.
+  /// What stays the same from step to step. Its addresses are 0.
   const spu::TiledBody& body() const { return body_; }
 
-  /// Particle -> where it is in positions and velocities. Ascending; the places between are padding.
+  /// The place of each particle in positions and velocities. Ascending; the places between are padding.
   std::span<const std::uint32_t> place_of() const { return place_of_; }
   std::size_t places() const { return 4 * rest_.size(); }            ///< of particles, padding included
   std::size_t region_places() const { return 4 * regions_.size(); }  ///< likewise
 
-  /// Sum lists and offsets, which TileSlice refers to; each once, however many slices are alike.
+  /// The sum lists and offsets to which TileSlice refers; equal ones are stored once.
   std::span<const std::byte> lists() const { return std::as_bytes(std::span(lists_)); }
+  /// The widths of their numbers.
+  std::span<const dma::ElementRun> record_of_lists() const { return record_of_lists_; }
   std::span<const spu::TileRest> rest() const { return rest_; }
   std::span<const spu::TileWeights> weights() const { return weights_; }
   std::span<const spu::MatchRegions> regions() const { return regions_; }
@@ -64,6 +64,7 @@ class TilePlan {
   std::vector<Tile> tiles_;
   std::vector<std::uint32_t> place_of_;
   std::vector<std::uint32_t> lists_;
+  std::vector<dma::ElementRun> record_of_lists_;
   std::vector<spu::TileRest> rest_;
   std::vector<spu::TileWeights> weights_;
   std::vector<spu::MatchRegions> regions_;

@@ -7,14 +7,29 @@
 #include <utility>
 
 #include "ppu/plans/slot_blocks.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
-std::uint32_t TileLists::add(std::vector<std::uint32_t> words) {
+std::uint32_t TileLists::add(std::vector<std::uint32_t> words, std::uint32_t offsets) {
   words.resize((words.size() + 3) / 4 * 4);
-  const auto [known, is_new] = known_.try_emplace(words, static_cast<std::uint32_t>(4 * words_.size()));
-  if (is_new) words_.insert(words_.end(), words.begin(), words.end());
+  SC_ASSERT(offsets % 4 == 0 && offsets <= words.size(), "{} words of {} are offsets", offsets, words.size());
+  const auto [known, is_new] =
+      known_.try_emplace({offsets, words}, static_cast<std::uint32_t>(4 * words_.size()));
+  if (is_new) {
+    words_.insert(words_.end(), words.begin(), words.end());
+    extend_record(offsets, 4);
+    extend_record(static_cast<std::uint32_t>(words.size()) - offsets, 2);
+  }
   return known->second;
+}
+
+void TileLists::extend_record(std::uint32_t words, std::uint32_t element_bytes) {
+  if (words == 0) return;
+  if (!record_.empty() && record_.back().element_bytes == element_bytes)
+    record_.back().bytes += 4 * words;
+  else
+    record_.push_back({4 * words, element_bytes});
 }
 
 TileScheduler::TileScheduler(const Lattice<3>& lattice, const SumPlan& sums, int half_width,
@@ -32,6 +47,9 @@ TileScheduler::TileScheduler(const Lattice<3>& lattice, const SumPlan& sums, int
       plane_of_bar_(1, 0),
       plane_of_plate_(1, 0),
       ready_(1, 0) {
+  SC_ASSERT(half_width >= 0 && order.home.size() == sums.regions(),
+            "regions of half-width {}, the lowest particles of {} of {}", half_width, order.home.size(),
+            sums.regions());
   for (std::uint32_t i = 0; i < lattice.particles.size(); ++i) {
     plane_of_particle_.push_back(lattice.particles[i].x());
     particles_of_tile_[grid.tile_of(lattice.particles[i])].push_back(i);
@@ -70,8 +88,9 @@ void TileScheduler::start(Direction direction) {
   ++epoch_;
 }
 
-/// A value, and those before it in its chain.
+/// Marks a value, and those before it in its chain, as needed.
 void TileScheduler::require(int kind, std::uint32_t slot) {
+  SC_ASSERT(slot < mark_[kind].size(), "slot {} of {} of kind {}", slot, mark_[kind].size(), kind);
   while (mark_[kind][slot] != epoch_) {
     mark_[kind][slot] = epoch_;
     needed_[kind].push_back(slot);
@@ -80,9 +99,11 @@ void TileScheduler::require(int kind, std::uint32_t slot) {
   }
 }
 
-/// What a sum is made from, the one before it apart.
+/// Visits the terms of a sum, without the sum before it in its chain.
 template <typename Visit>
 void TileScheduler::visit_terms(int kind, std::uint32_t slot, const Visit& visit) const {
+  SC_ASSERT(kind > kInput && slot > 0 && slot <= level(kind).rules.size(), "sum {} of {} of kind {}", slot,
+            level(kind).rules.size(), kind);
   const SumLevel::Rule& rule = level(kind).rules[slot - 1];
   if (!rule.follows) {
     for (const std::uint32_t term : level(kind).terms[slot - 1]) visit(term);
@@ -93,10 +114,13 @@ void TileScheduler::visit_terms(int kind, std::uint32_t slot, const Visit& visit
 }
 
 TileScheduler::Slice& TileScheduler::slice_at(int time) {
+  SC_ASSERT(time >= first_time_ && time - first_time_ < std::ssize(slices_),
+            "time {} in {} slices from {} on", time, slices_.size(), first_time_);
   return slices_[static_cast<std::size_t>(time - first_time_)];
 }
 
-/// Everything that the tile's regions, or its particles' totals, rest on; into the slices of its times.
+/// Finds every value from which the tile's regions, or its particles' totals, are computed, and sorts them into the
+/// slices of their times.
 void TileScheduler::collect(std::pair<int, int> tile) {
   int last_time = std::numeric_limits<int>::min();
   if (direction_ == Direction::kUp) {
@@ -128,7 +152,8 @@ void TileScheduler::collect(std::pair<int, int> tile) {
       slice_at(time_of(static_cast<int>(kind), slot)).blocks[kind].slots.push_back(slot);
 }
 
-/// What comes in and goes out in stretches of places: the blocks of inputs and, up, of regions follow them.
+/// Finds the stretches of places that each slice fetches and writes; the blocks of inputs and, upwards, of regions
+/// have their order.
 void TileScheduler::place_outputs(std::pair<int, int> tile) {
   for (std::size_t n = 0; n < slices_.size(); ++n) {
     Slice& slice = slices_[n];
@@ -191,16 +216,17 @@ void TileScheduler::find_lifetimes() {
   }
 }
 
-void TileScheduler::give_out_slots() {
+void TileScheduler::allocate_slots() {
   SlotBlocks free;
-  const auto take = [&](Block& block) { block.begin = free.take(block.size, block.last_use); };
+  const auto allocate = [&](Block& block) { block.begin = free.allocate(block.size, block.last_use); };
   for (std::size_t n = 0; n < slices_.size(); ++n) {
     free.free_before(first_time_ + static_cast<int>(n));
     // Motions are fetched to their slots while the slice before is worked on.
     const bool early = direction_ == Direction::kDown;
-    if (!early || n == 0) take(slices_[n].blocks[kInput]);
-    if (early && n + 1 < slices_.size()) take(slices_[n + 1].blocks[kInput]);
-    for (const int kind : {kBar, kPlate, kRegion}) take(slices_[n].blocks[static_cast<std::size_t>(kind)]);
+    if (!early || n == 0) allocate(slices_[n].blocks[kInput]);
+    if (early && n + 1 < slices_.size()) allocate(slices_[n + 1].blocks[kInput]);
+    for (const int kind : {kBar, kPlate, kRegion})
+      allocate(slices_[n].blocks[static_cast<std::size_t>(kind)]);
   }
   for (const Slice& slice : slices_) {
     const Block& inputs = slice.blocks[kInput];
@@ -247,6 +273,9 @@ void TileScheduler::append_list(int kind, const Block& block, std::vector<std::u
 }
 
 spu::TileSlice TileScheduler::written(const Slice& slice) {
+  SC_ASSERT(slice.blocks[kInput].size % 4 == 0 && (slice.output.end - slice.output.begin) % 4 == 0,
+            "a slice fetches {} places and writes {}, no groups of four", slice.blocks[kInput].size,
+            slice.output.end - slice.output.begin);
   spu::TileSlice result{};
   result.input = slice.first_place;
   result.input_groups = slice.blocks[kInput].size / 4;
@@ -267,7 +296,8 @@ spu::TileSlice TileScheduler::written(const Slice& slice) {
               : sum_list_offset(local(kRegion, order_.region_slot[sums_.region_of()[i]]), slot_bytes_));
     }
   }
-  result.bars_list = static_cast<std::uint32_t>(4 * words.size());
+  const auto offsets = static_cast<std::uint32_t>(words.size());
+  result.bars_list = 4 * offsets;
   std::vector<std::uint16_t> lists;
   append_list(kBar, slice.blocks[kBar], lists);
   result.plates_list = static_cast<std::uint32_t>(2 * lists.size());
@@ -281,7 +311,7 @@ spu::TileSlice TileScheduler::written(const Slice& slice) {
     words.push_back(std::bit_cast<std::uint32_t>(pair));
   }
   result.lists_bytes = static_cast<std::uint32_t>((words.size() + 3) / 4 * 16);
-  result.lists = lists_.add(std::move(words));
+  result.lists = lists_.add(std::move(words), offsets);
 
   spu::TileLimits& limits = limits_[direction_ == Direction::kDown ? 1 : 0];
   limits.input_groups = std::max(limits.input_groups, result.input_groups);
@@ -295,13 +325,14 @@ std::vector<spu::TileSlice> TileScheduler::slices(std::pair<int, int> tile, Dire
   collect(tile);
   place_outputs(tile);
   find_lifetimes();
-  give_out_slots();
+  allocate_slots();
   spu::TileLimits& limits = limits_[direction == Direction::kDown ? 1 : 0];
   limits.slices = std::max(limits.slices, static_cast<std::uint32_t>(slices_.size()));
   return write_slices(spu::kMatchSlotBytes);
 }
 
 std::vector<spu::TileSlice> TileScheduler::write_slices(std::uint32_t slot_bytes) {
+  SC_ASSERT(slot_bytes > 0 && slot_bytes % spu::kSumOffsetUnit == 0, "slots of {} bytes", slot_bytes);
   slot_bytes_ = slot_bytes;
   std::vector<spu::TileSlice> result;
   for (const Slice& slice : slices_) result.push_back(written(slice));

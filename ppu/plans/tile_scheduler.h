@@ -1,10 +1,11 @@
 #pragma once
-// Turns a tile into slices: what each fetches, sums up, keeps and puts out.
+// Cuts the work of a tile into slices: what each fetches, sums up, keeps and writes.
 
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -12,26 +13,34 @@
 #include "ppu/matching/summation.h"
 #include "ppu/plans/lattice_sums.h"
 #include "ppu/plans/tile_places.h"
+#include "softcell/dma/element_layout.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
 
-/// Lists of slices, each once.
+/// The lists of all slices; equal lists are stored once.
 class TileLists {
  public:
+  /// @param words     at first `offsets` of them, a multiple of 4, then pairs of halfwords as they lie in memory
   /// @return the list's offset in bytes, a multiple of 16
-  std::uint32_t add(std::vector<std::uint32_t> words);
-  std::vector<std::uint32_t> take() { return std::move(words_); }
+  std::uint32_t add(std::vector<std::uint32_t> words, std::uint32_t offsets);
+  /// Moves all lists out.
+  std::vector<std::uint32_t> release() { return std::move(words_); }
+  /// The widths of their numbers.
+  std::span<const dma::ElementRun> record() const { return record_; }
 
  private:
+  void extend_record(std::uint32_t words, std::uint32_t element_bytes);
+
   std::vector<std::uint32_t> words_;
-  std::map<std::vector<std::uint32_t>, std::uint32_t> known_;
+  std::vector<dma::ElementRun> record_;
+  std::map<std::pair<std::uint32_t, std::vector<std::uint32_t>>, std::uint32_t> known_;
 };
 
-/// Both directions of all tiles. Time is the plane that comes in: particles of plane x, or motions of regions
-/// whose lowest particle is there, come in at time x, and with them bars and plates can be made. A region is
-/// complete, or a region's total, w planes later than its lowest particle, and a particle's total w planes
-/// later than the particle.
+/// Schedules both directions of all tiles. Time counts planes: at time x a slice fetches the particles of plane x, or
+/// the motions of regions whose lowest particle is there, and from then on bars and plates with them can be summed.
+/// A region, or its total, is complete w planes after its lowest particle, and a particle's total w planes after
+/// the particle.
 class TileScheduler {
  public:
   enum class Direction { kUp, kDown };
@@ -40,7 +49,7 @@ class TileScheduler {
                 const TileGrid& grid, const TilePlaces& particles, const TilePlaces& regions);
 
   std::vector<spu::TileSlice> slices(std::pair<int, int> tile, Direction direction);
-  /// The last slices() once more, with slots of two rows.
+  /// The result of the last slices() again, for slots of two rows.
   std::vector<spu::TileSlice> slices_for_twists() { return write_slices(spu::kTwistSlotBytes); }
 
   TileLists& lists() { return lists_; }
@@ -66,17 +75,15 @@ class TileScheduler {
 
   void start(Direction direction);
   const SumLevel& level(int kind) const;
-  const TilePlaces& input_places() const { return direction_ == Direction::kUp ? particles_ : regions_; }
   int time_of(int kind, std::uint32_t slot) const { return (*times_[kind])[slot]; }
   void require(int kind, std::uint32_t slot);
-  void require_terms(int kind, std::uint32_t slot);
   template <typename Visit>
   void visit_terms(int kind, std::uint32_t slot, const Visit& visit) const;
   Slice& slice_at(int time);
   void collect(std::pair<int, int> tile);
   void place_outputs(std::pair<int, int> tile);
   void find_lifetimes();
-  void give_out_slots();
+  void allocate_slots();
   std::uint32_t local(int kind, std::uint32_t slot) const { return slot == 0 ? 0 : local_[kind][slot]; }
   void append_list(int kind, const Block& block, std::vector<std::uint16_t>& out) const;
   spu::TileSlice written(const Slice& slice);

@@ -88,7 +88,7 @@ auto EigenSolver<Dimension>::Twist::operator+=(const Twist& other) -> Twist& {
 
 template <int Dimension>
 EigenSolver<Dimension>::EigenSolver(std::shared_ptr<const MatchingPlan<float, Dimension>> plan)
-    : plan_(std::move(plan)),
+    : plan_((SC_ASSERT(plan != nullptr, "a solver without a plan"), std::move(plan))),
       particle_moments_(plan_->particles()),
       region_moments_(plan_->regions()),
       particle_momenta_(plan_->particles()),
@@ -110,6 +110,8 @@ void EigenSolver<Dimension>::step(std::span<const Vector> x, std::span<Vector> v
   SC_ASSERT(x.size() == plan_->particles() && v.size() == plan_->particles(),
             "{} positions and {} velocities of {} particles", x.size(), v.size(), plan_->particles());
   SC_ASSERT(h > 0, "a time step of {} s", h);
+  SC_ASSERT(alpha >= 0 && alpha <= 1 && damping >= 0 && damping <= 1, "an alpha of {} and a damping of {}",
+            alpha, damping);
   match(x, v, alpha / h);
   damp(x, v, damping);
 }

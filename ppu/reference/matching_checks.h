@@ -1,5 +1,5 @@
 #pragma once
-// What a shape matcher asks of its arguments and does with them first.
+// Checks of a shape matcher's arguments, and positions relative to a point in the body.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -58,6 +60,8 @@ Eigen::Matrix<double, Vector::RowsAtCompileTime, 1> finite_mean(std::span<const 
 template <typename Vector>
 void localise(std::span<const Vector> positions, typename Vector::Scalar spacing,
               std::vector<Vector>& local) {
+  SC_ASSERT(local.size() == positions.size() && spacing > 0, "room for {} of {} positions, cells of {} m",
+            local.size(), positions.size(), spacing);
   using Real = typename Vector::Scalar;
   const auto mean = finite_mean<Vector>(positions, "position");
   const double s = static_cast<double>(spacing);

@@ -4,13 +4,14 @@
 #include <utility>
 
 #include "ppu/reference/matching_checks.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
 template <typename Real, int kDimension>
 ShapeMatcher<Real, kDimension>::ShapeMatcher(std::shared_ptr<const MatchingPlan<Real, kDimension>> plan,
                                              SumMethod method)
-    : plan_(std::move(plan)),
+    : plan_((SC_ASSERT(plan != nullptr, "a shape matcher without a plan"), std::move(plan))),
       method_(method),
       rotations_(plan_->regions(), Rigid::unturned()),
       x_(plan_->particles()),
@@ -53,6 +54,7 @@ void ShapeMatcher<Real, kDimension>::step_velocities(std::span<const Vector> x, 
 
 template <typename Real, int kDimension>
 void ShapeMatcher<Real, kDimension>::match(std::span<const Vector> x) {
+  SC_ASSERT(x.size() == plan_->particles(), "{} positions of {} particles", x.size(), plan_->particles());
   localise<Vector>(x, plan_->spacing(), x_);
 
   // Per particle: m~x and its moments with x0.
@@ -85,6 +87,7 @@ void ShapeMatcher<Real, kDimension>::match(std::span<const Vector> x) {
 
 template <typename Real, int kDimension>
 void ShapeMatcher<Real, kDimension>::damp(std::span<Vector> v, Real damping) {
+  SC_ASSERT(damping > 0 && damping <= 1, "a damping of {}", damping);
   // Per particle: m~v, x × m~v, and the second moment m~x x^T or, in two dimensions, its trace.
   const auto particles = plan_->particle_constants();
   for (std::size_t i = 0; i < particles.size(); ++i)

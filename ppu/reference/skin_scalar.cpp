@@ -2,11 +2,14 @@
 
 #include "ppu/numbers/half.h"
 #include "ppu/reference/skin_slots.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
 ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& part, std::uint32_t group,
                                    int lane, std::span<const Eigen::Vector3f> particle_positions) {
+  SC_ASSERT(group < embedding.groups.size() && lane >= 0 && lane < 4, "vertex {} of group {} of {}", lane,
+            group, embedding.groups.size());
   const spu::SkinGroup& g = embedding.groups[group];
   std::array<Eigen::Vector3d, 8> corners;
   for (std::size_t k = 0; k < 8; ++k)
@@ -19,6 +22,8 @@ ReferenceVertex evaluate_reference(const Embedding& embedding, const SkinPart& p
 
 void skin_scalar(const Embedding& embedding, const SkinPart& part, std::span<const Eigen::Vector3f> positions,
                  const Eigen::Vector3f& origin, std::span<spu::SkinnedVertex> out) {
+  SC_ASSERT(out.size() == 4 * std::size_t{part.group_count}, "{} vertices for {} groups of four", out.size(),
+            part.group_count);
   for_each_slot(
       embedding, part,
       [&](std::uint32_t particle) -> Eigen::Vector3f { return positions[particle] - origin; },

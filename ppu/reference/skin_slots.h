@@ -9,6 +9,7 @@
 
 #include "ppu/lattice/embedding.h"
 #include "ppu/reference/trilinear.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
@@ -18,9 +19,13 @@ namespace softcell::ppu {
 template <class PositionOf, class Write>
 void for_each_slot(const Embedding& embedding, const SkinPart& part, const PositionOf& position_of,
                    const Write& write) {
+  SC_ASSERT(part.first_group + part.group_count <= embedding.groups.size(), "groups {} to {} of {}",
+            part.first_group, part.first_group + part.group_count, embedding.groups.size());
   std::array<Eigen::Vector3f, 8> corners;
   for (std::uint32_t g = part.first_group; g < part.first_group + part.group_count; ++g) {
     const spu::SkinGroup& group = embedding.groups[g];
+    SC_ASSERT(g != part.first_group || group.continues[0] == 0,
+              "the first group, {}, of a part continues one", g);
     if (group.continues[0] == 0) {
       for (std::size_t k = 0; k < 8; ++k) corners[k] = position_of(part.particle(group.corner[k]));
     }

@@ -33,12 +33,14 @@ template <int kDimension>
 MatchBodies<kDimension>::MatchBodies(dma::AddressSpace& memory, const typename Kernel::Plan& plan,
                                      std::size_t bodies)
     : header_(plan.header()),
-      plan_(memory, name_of<kDimension>("plan"), header_.bytes, kSpesOnlyRead),
+      plan_(memory, name_of<kDimension>("plan"), header_.bytes, of_record(plan.record(), kSpesOnlyRead)),
       positions_(memory, name_of<kDimension>("positions"), bodies * Kernel::positions_stride(header_),
                  of_floats(kSpesOnlyRead)),
       states_(memory, name_of<kDimension>("states"), bodies * Kernel::state_stride(header_), of_floats()),
-      places_(memory, name_of<kDimension>("bodies"), kDimension == 3 ? bodies : 1, kSpesOnlyRead),
-      descriptors_(memory, name_of<kDimension>("jobs"), bodies, kSpesOnlyRead) {
+      places_(memory, name_of<kDimension>("bodies"), kDimension == 3 ? bodies : 1,
+              of_record(kMatchBodyRecord, kSpesOnlyRead)),
+      descriptors_(memory, name_of<kDimension>("jobs"), bodies,
+                   of_record(Kernel::kJobRecord, kSpesOnlyRead)) {
   std::memcpy(plan_.data(), plan.bytes().data(), header_.bytes);
   for (std::size_t b = 0; b < bodies; ++b) reset(b);
 }

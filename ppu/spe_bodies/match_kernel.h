@@ -8,6 +8,7 @@
 #include "match_job.h"
 #include "ppu/plans/match_plan.h"
 #include "ppu/plans/match_plan_2d.h"
+#include "ppu/spe_bodies/job_records.h"
 #include "skin_job.h"
 
 namespace softcell::ppu {
@@ -18,6 +19,7 @@ struct MatchKernel;
 template <>
 struct MatchKernel<2> {
   static constexpr const char* kName = "match_2d";
+  static constexpr std::span<const dma::ElementRun> kJobRecord = kMatchJob2dRecord;
   using Plan = MatchPlan2d;
   using Header = spu::MatchPlanHeader2d;
   using Vector = spu::MatchVector2d;
@@ -36,6 +38,7 @@ struct MatchKernel<2> {
 template <>
 struct MatchKernel<3> {
   static constexpr const char* kName = "match";
+  static constexpr std::span<const dma::ElementRun> kJobRecord = kMatchJobRecord;
   using Plan = MatchPlan;
   using Header = spu::MatchPlanHeader;
   using Vector = spu::SkinCorner;  // x y z 0

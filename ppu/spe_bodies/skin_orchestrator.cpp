@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "ppu/spe_bodies/job_records.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -36,6 +37,7 @@ struct SkinOrchestrator::Body {
 namespace {
 
 constexpr dma::BufferOptions kInput{.spe_access = dma::SpeAccess::kRead};
+constexpr dma::BufferOptions kCorners{.spe_access = dma::SpeAccess::kRead, .element_bytes = sizeof(float)};
 constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .element_bytes = 2};
 
 }  // namespace
@@ -67,11 +69,15 @@ SkinOrchestrator::~SkinOrchestrator() {
 }
 
 std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
+  SC_ASSERT(embedding != nullptr && particles > 0, "a body of {} particles {} an embedding", particles,
+            embedding ? "with" : "without");
+  SC_ASSERT(!embedding->groups.empty(), "a body of {} particles without a mesh", particles);
   auto known =
       std::find_if(models_.begin(), models_.end(), [&](const auto& m) { return m->embedding == embedding; });
   if (known == models_.end()) {
     auto model = std::make_unique<Model>();
-    model->groups = dma::Buffer<SkinGroup>(memory_, "skin groups", embedding->groups.size(), kInput);
+    model->groups = dma::Buffer<SkinGroup>(memory_, "skin groups", embedding->groups.size(),
+                                           of_record(kSkinGroupRecord, kInput));
     std::copy(embedding->groups.begin(), embedding->groups.end(), model->groups.span().begin());
     model->embedding = std::move(embedding);
     known = models_.insert(models_.end(), std::move(model));
@@ -82,8 +88,9 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
   auto body = std::make_unique<Body>();
   body->model = known->get();
   for (Body::Half& half : body->half) {
-    half.corners = dma::Buffer<SkinCorner>(memory_, "particle positions", particles, kInput);
-    half.jobs = dma::Buffer<SkinJob>(memory_, "skin jobs", shared.parts.size(), kInput);
+    half.corners = dma::Buffer<SkinCorner>(memory_, "particle positions", particles, kCorners);
+    half.jobs =
+        dma::Buffer<SkinJob>(memory_, "skin jobs", shared.parts.size(), of_record(kSkinJobRecord, kInput));
     half.vertices =
         dma::Buffer<SkinnedVertex>(memory_, "skinned vertices", 4 * shared.groups.size(), kOutput);
   }
@@ -124,6 +131,8 @@ void SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> p
   const Embedding& embedding = *body.model->embedding;
   for (std::size_t i = 0; i < embedding.parts.size(); ++i) {
     const SkinPart& part = embedding.parts[i];
+    SC_ASSERT(part.first_group + part.group_count <= body.model->groups.size(), "groups {} to {} of {}",
+              part.first_group, part.first_group + part.group_count, body.model->groups.size());
     SkinJob job{};
     job.groups_ea = body.model->groups.ea(part.first_group).value;
     job.vertices_ea = half.vertices.ea(std::size_t{part.first_group} * 4).value;

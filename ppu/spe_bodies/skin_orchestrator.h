@@ -22,8 +22,8 @@ namespace softcell::ppu {
 
 /// One body's vertices of the last frame that is complete.
 struct SkinnedBody {
-  std::span<const spu::SkinnedVertex>
-      vertices;                     ///< relative to `origin`, one per output slot of the embedding
+  /// Relative to `origin`, one per output slot of the embedding.
+  std::span<const spu::SkinnedVertex> vertices;
   Eigen::Vector3f origin{0, 0, 0};  ///< world position, metres
 };
 

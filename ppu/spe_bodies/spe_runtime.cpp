@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "ppu/spe_bodies/spe_contacts.h"
 #include "softcell/spe_bodies/spe_solver.h"
 #include "softcell/spu_kernels/load_kernel.h"
 
@@ -25,12 +26,16 @@ ls_sim::SpeOptions options_of(const SpeRuntimeOptions& options, ls_sim::Findings
 
 struct SpeRuntime::State {
   explicit State(const SpeRuntimeOptions& options)
-      : checked(options.checked), jobs(memory, options_of(options, findings), job_loop) {}
+      : checked(options.checked),
+        machine(options.machine),
+        memory(options.main_memory_bytes),
+        jobs(memory, options_of(options, findings), job_loop) {}
 
   bool checked;
+  ls_sim::Machine machine;
   ls_sim::Findings findings;
   dma::AddressSpace memory;
-  const ls_sim::KernelImage job_loop = spu_kernels::load_kernel("job_loop");
+  const ls_sim::KernelImage job_loop = spu_kernels::load_kernel("job_loop", false, machine);
   std::map<std::string, ls_sim::KernelImage, std::less<>> kernels;  // whose addresses jobs keep
   JobSystem jobs;
 };
@@ -41,6 +46,10 @@ SpeRuntime::~SpeRuntime() = default;
 std::unique_ptr<SoftBodySolver<3>> SpeRuntime::make_solver() {
   return std::make_unique<SpeSolver<3>>(memory(), jobs(),
                                         MatchKernels<3>{kernel("match"), kernel("match_tiles")});
+}
+
+std::shared_ptr<ContactWorker> SpeRuntime::make_contact_worker() {
+  return std::make_shared<SpeContacts>(memory(), jobs(), kernel("contact_find"), kernel("contact_solve"));
 }
 
 std::unique_ptr<SoftBodySolver<2>> SpeRuntime::make_solver_2d() {
@@ -54,7 +63,8 @@ int SpeRuntime::spes() const { return state_->jobs.spes(); }
 const ls_sim::KernelImage& SpeRuntime::kernel(std::string_view name) {
   const auto known = state_->kernels.find(name);
   if (known != state_->kernels.end()) return known->second;
-  return state_->kernels.emplace(name, spu_kernels::load_kernel(name, state_->checked)).first->second;
+  return state_->kernels.emplace(name, spu_kernels::load_kernel(name, state_->checked, state_->machine))
+      .first->second;
 }
 
 const ls_sim::Findings& SpeRuntime::findings() const { return state_->findings; }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "ppu/spe_bodies/skin_orchestrator.h"
+#include "softcell/base/assert.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
 namespace softcell::ppu {
@@ -66,6 +67,8 @@ bool SpeSkinner::begin_frame() {
 void SpeSkinner::finish_frame() { state_->orchestrator.drain(); }
 
 SkinnedVertices SpeSkinner::vertices(const SoftBody<3>& body) const {
+  SC_ASSERT(state_->bodies.size() == state_->positions.size(), "{} bodies, positions of {}",
+            state_->bodies.size(), state_->positions.size());
   const SkinnedBody shown = state_->orchestrator.shown(state_->number_of(body));
   // Eight numbers of 16 bits under either name. Nobody writes them here: an SPE does, by DMA.
   return {{reinterpret_cast<const HalfVertex*>(shown.vertices.data()), shown.vertices.size()}, shown.origin};

@@ -70,6 +70,8 @@ struct SpeSolver<kDimension>::Member {
   std::size_t number = 0;              ///< in the group
   std::unique_ptr<TiledMemory> tiled;  ///< of a group in tiles
   bool stepped = false;                ///< by the jobs under way
+
+  bool fits_spes() const { return group->bodies || tiled; }
 };
 
 template <int kDimension>
@@ -97,6 +99,8 @@ bool SpeSolver<kDimension>::knows(std::span<Body* const> bodies) const {
 /// Whole where they fit, else in tiles, else by the PPU.
 template <int kDimension>
 void SpeSolver<kDimension>::find_place(Group& group) {
+  SC_ASSERT(group.model != nullptr && group.count > 0, "a group of {} bodies {} a model", group.count,
+            group.model ? "with" : "without");
   // Plans of tiles take a while: a model's is made once.
   const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const auto& old) {
     return old->model == group.model && old->tiles != nullptr;
@@ -129,6 +133,8 @@ void SpeSolver<3>::find_tiles(Group& group) {
 /// Rotations from one layout of memory to the next.
 template <int kDimension>
 void SpeSolver<kDimension>::take_over(Member& member, Member& old) {
+  SC_ASSERT(member.group->model == old.group->model, "a body of {} particles has changed its model",
+            member.group->model->particles());
   if (member.group->bodies)
     member.group->bodies->take_rotations(member.number, *old.group->bodies, old.number);
   else
@@ -141,6 +147,7 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   std::vector<std::unique_ptr<Group>> groups;
   std::vector<Member> members;
   for (Body* const body : bodies) {
+    SC_ASSERT(std::ranges::count(bodies, body) == 1, "one of {} bodies is there twice", bodies.size());
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const auto& g) { return g->model == body->shared_model(); });
     if (group == groups.end()) {
@@ -221,7 +228,7 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
   for (Member& member : members_) {
     member.stepped = false;
     if (member.body->asleep()) continue;
-    member.stepped = member.group->bodies || member.tiled;
+    member.stepped = member.fits_spes();
     if (member.stepped)
       hand_over(member);
     else
@@ -292,6 +299,12 @@ void SpeSolver<kDimension>::forget(const Body& body) {
     if (member.group->bodies) member.group->bodies->reset(member.number);
     if (member.tiled) member.tiled->reset();
   }
+}
+
+template <int kDimension>
+std::size_t SpeSolver<kDimension>::bodies_on_ppu() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(members_, [](const Member& member) { return !member.fits_spes(); }));
 }
 
 template class SpeSolver<2>;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/spe_bodies/job_records.h"
 #include "ppu/spe_bodies/match_orchestration.h"
 #include "softcell/base/assert.h"
 
@@ -16,8 +17,9 @@ namespace {
 
 /// A buffer with what is in `items`.
 template <typename T>
-dma::Buffer<T> copied(dma::AddressSpace& memory, const char* name, std::span<const T> items) {
-  dma::Buffer<T> buffer(memory, name, std::max<std::size_t>(1, items.size()), kSpesOnlyRead);
+dma::Buffer<T> copied(dma::AddressSpace& memory, const char* name, std::span<const T> items,
+                      const dma::BufferOptions& options = of_floats(kSpesOnlyRead)) {
+  dma::Buffer<T> buffer(memory, name, std::max<std::size_t>(1, items.size()), options);
   std::ranges::copy(items, buffer.span().begin());
   return buffer;
 }
@@ -35,21 +37,22 @@ std::vector<spu::TileSlice> all_slices(const TilePlan& plan) {
 }  // namespace
 
 TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
-    : body_(memory, "tiled body", 1, kSpesOnlyRead),
-      lists_(copied(memory, "tiled lists", plan.lists())),
+    : body_(memory, "tiled body", 1, of_record(kTiledBodyRecord, kSpesOnlyRead)),
+      lists_(copied(memory, "tiled lists", plan.lists(), of_record(plan.record_of_lists(), kSpesOnlyRead))),
       slices_(copied<spu::TileSlice>(memory, "tiled slices", all_slices(plan))),
       rest_(copied(memory, "tiled rest moments", plan.rest())),
       weights_(copied(memory, "tiled weights", plan.weights())),
       regions_(copied(memory, "tiled regions", plan.regions())),
-      positions_(memory, "tiled positions", plan.places(), kSpesOnlyRead),
-      velocities_(memory, "tiled velocities", plan.places()),
-      pulled_(memory, "tiled particles between passes", plan.places() / 4),
-      rotations_(memory, "tiled rotations", plan.region_places() / 4),
-      next_rotations_(memory, "tiled rotations to be", plan.region_places() / 4),
-      motions_(memory, "tiled motions", plan.region_places() * spu::kMatchSlotBytes),
-      momenta_(memory, "tiled momenta", plan.region_places() / 4),
-      reports_(memory, "tiled reports", plan.tiles().size()),
-      jobs_(memory, "tiled jobs", kTilePasses.size() * plan.tiles().size(), kSpesOnlyRead) {
+      positions_(memory, "tiled positions", plan.places(), of_floats(kSpesOnlyRead)),
+      velocities_(memory, "tiled velocities", plan.places(), of_floats()),
+      pulled_(memory, "tiled particles between passes", plan.places() / 4, of_floats()),
+      rotations_(memory, "tiled rotations", plan.region_places() / 4, of_floats()),
+      next_rotations_(memory, "tiled rotations to be", plan.region_places() / 4, of_floats()),
+      motions_(memory, "tiled motions", plan.region_places() * spu::kMatchSlotBytes, of_floats()),
+      momenta_(memory, "tiled momenta", plan.region_places() / 4, of_floats()),
+      reports_(memory, "tiled reports", plan.tiles().size(), of_floats()),
+      jobs_(memory, "tiled jobs", kTilePasses.size() * plan.tiles().size(),
+            of_record(kTileJobRecord, kSpesOnlyRead)) {
   spu::TiledBody& body = body_[0];
   body = plan.body();
   body.positions_ea = positions_.ea().value;
@@ -85,6 +88,7 @@ TiledMemory::TiledMemory(dma::AddressSpace& memory, const TilePlan& plan)
     add_job(spu::kTileDamp, slices.damp);
     first_slice += slices.damp.size();
   }
+  SC_ASSERT(first_slice <= slices_.size(), "jobs of {} slices of {}", first_slice, slices_.size());
   reset();
 }
 

@@ -10,14 +10,14 @@ namespace softcell::spu {
 /// The sum of x[i] - base over `count` quadwords.
 inline vec_float4 sum_of_differences(const vec_float4* x, uint32_t count, vec_float4 base) {
   vec_float4 sum0 = spu_splats(0.0f), sum1 = sum0, sum2 = sum0, sum3 = sum0;
-  uint32_t i = 0;
-  for (; i + 4 <= count; i += 4) {
+  const uint32_t fours = count / 4 * 4;
+  for (uint32_t i = 0; i < fours; i += 4) {
     sum0 = spu_add(sum0, spu_sub(x[i], base));
     sum1 = spu_add(sum1, spu_sub(x[i + 1], base));
     sum2 = spu_add(sum2, spu_sub(x[i + 2], base));
     sum3 = spu_add(sum3, spu_sub(x[i + 3], base));
   }
-  for (; i < count; ++i) sum0 = spu_add(sum0, spu_sub(x[i], base));
+  for (uint32_t i = fours; i < count; ++i) sum0 = spu_add(sum0, spu_sub(x[i], base));
   return spu_add(spu_add(sum0, sum1), spu_add(sum2, sum3));
 }
 

@@ -9,6 +9,7 @@
 #include <spu_intrinsics.h>
 #include <stdint.h>
 
+#include "common/slot_stream.h"
 #include "sum_list_job.h"
 
 namespace softcell::spu {
@@ -49,6 +50,10 @@ __attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, S
       }
       continue;
     }
+#ifdef __SPU__
+    // The same sums in the same order, their slots loaded ahead: an SPU executes in order, and a host's processor does that itself.
+    list = sum_chain_in_order<kRows>(list, in, out);
+#else
     const uint32_t growing = list[1], sliding = list[2], shrinking = list[3];
     list += 4;
 
@@ -81,6 +86,7 @@ __attribute__((noinline)) void sum_slots(const uint16_t* list, const Slot* in, S
       for_rows([&](int k) __attribute__((always_inline)) { sum[k] = spu_sub(sum[k], leaves.row[k]); });
       put();
     }
+#endif
   }
 }
 

@@ -30,6 +30,18 @@ inline PullSum no_pulls() {
   return {{zero, zero, zero}, {none, none, none}, none};
 }
 
+/// Copies a sum member by member: of a whole structure some compilers make a call of memcpy(), which a local store
+/// has not.
+inline void copy_sum(const PullSum& from, PullSum& to) {
+  to.high[0] = from.high[0];
+  to.high[1] = from.high[1];
+  to.high[2] = from.high[2];
+  to.low[0] = from.low[0];
+  to.low[1] = from.low[1];
+  to.low[2] = from.low[2];
+  to.far = from.far;
+}
+
 /// Truncation of the units would be the very error that the sum is to take away.
 inline vec_int4 to_nearest(vec_float4 units) {
   const vec_int4 halves = spu_convts(units, 1);
@@ -67,7 +79,9 @@ inline void add_sums(PullSum& sum, const PullSum& other) {
 
 /// The velocity that all pulls together give the body, to be taken off again.
 /// @param share  MatchHold::share times the pull, 1 / s
-inline Vector3x4 drift_of(PullSum sum, float share) {
+inline Vector3x4 drift_of(const PullSum& pulls, float share) {
+  PullSum sum;
+  copy_sum(pulls, sum);
   carry(sum);
   const bool far = any_negative(sum.far);
   const auto component = [&](int d) {

@@ -80,6 +80,11 @@ class Touches {
 
 /// What all passes know of the body.
 struct TilePassContext {
+  /// Member by member: for a list of initialisers some compilers make a call of memset(), which a local store has not.
+  TilePassContext(const TiledBody& of, vec_float4 about) : body(of), origin(about) {
+    drift.x = drift.y = drift.z = spu_splats(0.0f);
+  }
+
   const TiledBody& body;
   vec_float4 origin;
   Vector3x4 drift;  // what the pulls have given the body as a whole; not before `twist`
@@ -273,7 +278,7 @@ class ScatterPass {
   void report(TileReport& report) {
     carry(pulls_);
     report.velocities_finite = finite_;
-    *reinterpret_cast<PullSum*>(report.pulls) = pulls_;
+    copy_sum(pulls_, *reinterpret_cast<PullSum*>(report.pulls));
   }
 
  private:

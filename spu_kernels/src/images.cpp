@@ -4,12 +4,16 @@
 #include <stdexcept>
 #include <string>
 
-#define SC_DECLARE(kernel)                                                           \
-  extern const std::byte softcell_image_##kernel[], softcell_image_##kernel##_end[]; \
+#define SC_DECLARE(kernel)                                                                     \
+  extern const std::byte softcell_image_##kernel[], softcell_image_##kernel##_end[];           \
+  extern const std::byte softcell_image_##kernel##_spu[], softcell_image_##kernel##_spu_end[]; \
   extern const std::byte softcell_image_##kernel##_checked[], softcell_image_##kernel##_checked_end[];
 
 extern "C" {
 extern const std::byte softcell_image_job_loop[], softcell_image_job_loop_end[];
+extern const std::byte softcell_image_job_loop_spu[], softcell_image_job_loop_spu_end[];
+SC_DECLARE(contact_find)
+SC_DECLARE(contact_solve)
 SC_DECLARE(match)
 SC_DECLARE(match_2d)
 SC_DECLARE(match_tiles)
@@ -26,30 +30,44 @@ std::span<const ImageFile> image_files() {
   ImageFile {                                                                                  \
     .name = #kernel, .elf = {softcell_image_##kernel, softcell_image_##kernel##_end},          \
     .checked_elf = {softcell_image_##kernel##_checked, softcell_image_##kernel##_checked_end}, \
+    .spu_elf = {softcell_image_##kernel##_spu, softcell_image_##kernel##_spu_end},             \
   }
-  static const std::array files{ImageFile{.name = "job_loop",
-                                          .elf = {softcell_image_job_loop, softcell_image_job_loop_end},
-                                          .checked_elf = {}},
-                                SC_FILE(match),
-                                SC_FILE(match_2d),
-                                SC_FILE(match_tiles),
-                                SC_FILE(rotations),
-                                SC_FILE(skin),
-                                SC_FILE(transfers)};
+  static const std::array files{
+      ImageFile{.name = "job_loop",
+                .elf = {softcell_image_job_loop, softcell_image_job_loop_end},
+                .checked_elf = {},
+                .spu_elf = {softcell_image_job_loop_spu, softcell_image_job_loop_spu_end}},
+      SC_FILE(contact_find),
+      SC_FILE(contact_solve),
+      SC_FILE(match),
+      SC_FILE(match_2d),
+      SC_FILE(match_tiles),
+      SC_FILE(rotations),
+      SC_FILE(skin),
+      SC_FILE(transfers)};
 #undef SC_FILE
   return files;
 }
 
-std::span<const std::byte> image_file(std::string_view name, bool checked) {
-  for (const ImageFile& file : image_files()) {
-    if (file.name != name) continue;
-    if (checked && file.checked_elf.empty()) {
-      throw std::runtime_error("kernel " + std::string(name) +
-                               " has no checked flavour: it would not fit in a local store");
-    }
-    return checked ? file.checked_elf : file.elf;
-  }
+namespace {
+
+const ImageFile& files_of(std::string_view name) {
+  for (const ImageFile& file : image_files())
+    if (file.name == name) return file;
   throw std::runtime_error("there is no kernel " + std::string(name));
 }
+
+}  // namespace
+
+std::span<const std::byte> image_file(std::string_view name, bool checked) {
+  const ImageFile& file = files_of(name);
+  if (checked && file.checked_elf.empty()) {
+    throw std::runtime_error("kernel " + std::string(name) +
+                             " has no checked flavour: it would not fit in a local store");
+  }
+  return checked ? file.checked_elf : file.elf;
+}
+
+std::span<const std::byte> spu_image_file(std::string_view name) { return files_of(name).spu_elf; }
 
 }  // namespace softcell::spu_kernels

@@ -80,7 +80,7 @@ TEST(Recording, EveryTruncationIsRefused) {
   const std::string text = to_text(random_recording<2>(3, 20));
   for (std::size_t size = 0; size < text.size(); ++size)
     EXPECT_THROW(parse_recording<2>(text.substr(0, size)), std::runtime_error) << size;
-  EXPECT_TRUE(contains(refusal(text.substr(0, text.size() / 2)), "it is not whole"));
+  EXPECT_TRUE(contains(refusal(text.substr(0, text.size() / 2)), "it was cut off"));
   EXPECT_TRUE(contains(refusal(text + "x\n"), "something follows the last line"));
 }
 
@@ -101,29 +101,30 @@ TEST(Recording, WhatIsWrongIsSaidWithItsLine) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {with_lines("0 jump\n" + end), "line 5: there is no action 'jump'"},
       {with_lines("0 tilt 0 0\n" + end), "line 5: there is no action 'tilt'"},
-      {with_lines("3 reset\n2 pause\n" + end), "line 6: the frame '2' is no number from 3 to 9999999"},
-      {with_lines("-1 reset\n" + end), "line 5: the frame '-1' is no number from 0 to 9999999"},
-      {with_lines("10 reset\n" + end), "line 6: the number of frames '10' is no number from 11 to 10000000"},
+      {with_lines("3 reset\n2 pause\n" + end), "line 6: the frame '2' is not a number from 3 to 9999999"},
+      {with_lines("-1 reset\n" + end), "line 5: the frame '-1' is not a number from 0 to 9999999"},
+      {with_lines("10 reset\n" + end),
+       "line 6: the number of frames '10' is not a number from 11 to 10000000"},
       {with_lines("0 gravity 0 nan\n" + end), "line 5: 'nan' is no finite number"},
       {with_lines("0 gravity 0 1e99\n" + end), "line 5: '1e99' is no finite number"},
       {with_lines("0 gravity 0\n" + end), "line 5: a number is missing"},
-      {with_lines("0 gravity 0 1 2\n" + end), "line 5: '2' is more than belongs here"},
+      {with_lines("0 gravity 0 1 2\n" + end), "line 5: '2' was not expected here"},
       {with_lines("0 release 4294967295\n" + end),
-       "line 5: a hand '4294967295' is no number from 0 to 4294967294"},
-      {with_lines("0 home userland\n" + end), "line 5: a body 'userland' is no number from 0 to 4294967294"},
+       "line 5: a hand '4294967295' is not a number from 0 to 4294967294"},
+      {with_lines("0 home userland\n" + end),
+       "line 5: a body 'userland' is not a number from 0 to 4294967294"},
       {with_lines(std::string(1000, '0') + "\n" + end), "line 5: is longer than any line of a recording"},
-      {"P6 1 1\n", "line 1: this is no recording: it does not begin with 'softcell recording'"},
+      {"P6 1 1\n", "line 1: this is not a recording: it does not begin with 'softcell recording'"},
       {"softcell recording 2\n",
        "line 1: a recording of another version, 'softcell recording 2'; this softcell reads 'softcell "
        "recording 1'"},
-      {"softcell recording 1\ndimension 3\n",
-       "line 2: this is a recording of demo 3d, and here runs demo 2d"},
-      {"softcell recording 1\ndimension 4\n", "line 2: the dimension '4' is no number from 2 to 3"},
+      {"softcell recording 1\ndimension 3\n", "line 2: this is a recording of demo 3d, and this is demo 2d"},
+      {"softcell recording 1\ndimension 4\n", "line 2: the dimension '4' is not a number from 2 to 3"},
       {"softcell recording 1\ndimension 2\nscene \n",
        "line 3: the scene has no name, or one with control characters"},
       {"softcell recording 1\ndimension 2\nscene man\nscene_hash 12\n",
-       "line 4: the scene's hash '12' is no number of 16 hexadecimal digits"},
-      {"", "line 1: the file ends here, before its line 'end': it is not whole"},
+       "line 4: the scene's hash '12' is not a number of 16 hexadecimal digits"},
+      {"", "line 1: the file ends here, before its line 'end': it was cut off"},
   };
   for (const auto& [text, sentence] : cases) EXPECT_EQ(refusal(text), sentence);
 }
@@ -151,7 +152,7 @@ std::uint64_t run(Simulation& simulation, InputLog<Dimension>& log, std::int64_t
         events.push_back(random_event<Dimension>(random));
     }
     simulation.step(events);
-    log.note(frame, simulation.last_events());
+    log.record(frame, simulation.last_events());
   }
   log.save(simulation.state_hash());
   return simulation.state_hash();
@@ -248,10 +249,10 @@ TEST(Replay, ThatEndsInAnotherStateIsSaidSo) {
       {.scene = "s", .scene_hash = scene_hash(scene), .frames = 2, .state_hash = 7, .events = {}});
   InputLog<2> log(options);
   log.begin(scene);
-  log.note(0, {});
+  log.record(0, {});
   log.save(8);
   EXPECT_NO_THROW(log.check()) << "not all of it was done again";
-  log.note(1, {});
+  log.record(1, {});
   log.save(8);
   EXPECT_THROW(log.check(), std::runtime_error);
   log.save(7);
@@ -308,10 +309,10 @@ TEST(Recording, ThatIsFullIsGivenUp) {
     InputLog<2> log(options);
     log.begin(scene);
     const std::vector<InputEvent<2>> events(kMaxRecordedEvents - 1);
-    log.note(0, events);
-    log.note(1, std::span(events).first(1));
+    log.record(0, events);
+    log.record(1, std::span(events).first(1));
     EXPECT_NO_THROW(log.require_room());
-    log.note(2, std::span(events).first(1));
+    log.record(2, std::span(events).first(1));
     try {
       log.require_room();
       FAIL();

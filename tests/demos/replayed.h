@@ -23,7 +23,7 @@ class Replayed {
       : log_(files_of(name)), scene_(scene_of(log_)), simulation_(scene_) {
     for (std::int64_t frame = 0; frame < log_.frames(); ++frame) {
       simulation_.step(log_.events_at(frame));
-      log_.note(frame, simulation_.last_events());
+      log_.record(frame, simulation_.last_events());
       each_frame(*this);
     }
     log_.save(simulation_.state_hash());

@@ -293,6 +293,7 @@ struct BadToml {
   const char* text;
   const char* sentence;
 };
+void PrintTo(const BadToml& bad, std::ostream* out) { *out << bad.sentence; }
 class BadScene : public SceneFile, public testing::WithParamInterface<BadToml> {};
 
 TEST_P(BadScene, IsRefusedWithLineAndColumn) {
@@ -397,12 +398,12 @@ TEST_F(SceneFile, MoreVerticesThanAnyPictureShowsAreRefusedWithinTwoSeconds) {
       refusal("fat.lua",
               "local tori = {}\nfor i = 1, 256 do\ntori[i] = { cell_size = 0.3, shape = { kind = "
               "'torus', ring_segments = 512, tube_segments = 512 } }\nend\nreturn { soft_body = tori }"),
-      "fat.lua:5: the scene's meshes have 2097152 vertices and more; 2000000 are the most");
+      "fat.lua:5: the scene's meshes have 2097152 vertices or more; it may have at most 2000000");
   EXPECT_BEGINS(
       refusal("fat_obstacles.lua",
               "local tori = {}\nfor i = 1, 256 do\ntori[i] = { shape = { kind = 'torus', ring_segments "
               "= 512, tube_segments = 512 } }\nend\nreturn { obstacle = tori }"),
-      "fat_obstacles.lua:5: the scene's meshes have 2097152 vertices and more; 2000000 are the most");
+      "fat_obstacles.lua:5: the scene's meshes have 2097152 vertices or more; it may have at most 2000000");
 }
 
 class PathTrick : public SceneFile, public testing::WithParamInterface<const char*> {};
@@ -445,7 +446,7 @@ TEST_F(SceneFile, DeepNestingIsRefusedBeforeItOverflowsTheStack) {
         "a = " + repeated("[", kTimes), "a = " + repeated("{a=", kTimes),
         repeated("\"#\".", kTimes) + "a = 1", R"(a = ["""x"""", { b)" + repeated(".a", kTimes) + "= 1}]"}) {
     EXPECT_EQ(refusal("bad.toml", "\n" + line + "\n"),
-              "bad.toml:2: tables or arrays lie more than 32 deep in each other");
+              "bad.toml:2: tables or arrays are nested more than 32 deep");
   }
 }
 
@@ -460,6 +461,7 @@ struct BadLua {
   const char* text;
   const char* sentence;
 };
+void PrintTo(const BadLua& bad, std::ostream* out) { *out << bad.sentence; }
 class BadScript : public SceneFile, public testing::WithParamInterface<BadLua> {};
 
 TEST_P(BadScript, IsRefusedWithinTwoSeconds) {
@@ -478,7 +480,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLua{"local cells = {}\nfor i = 1, 1e7 do cells[i] = { i, i } end\nreturn { cells = cells }",
                "bad.lua:2: the script needs more than 64 MB"},
         BadLua{"local t = {}\nt[1] = t\nreturn t",
-               "bad.lua:3: tables lie more than 32 deep in each other, or one contains itself"},
+               "bad.lua:3: tables are nested more than 32 deep, or one contains itself"},
         BadLua{"local t = { 1 }\nfor i = 1, 30 do t = { t, t } end\nreturn t",
                "bad.lua:3: what the script returns is larger than 8 MB"},
         BadLua{"return { world = { gravity = 0 / 0 } }",
@@ -518,7 +520,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLua{"paris(1)", "bad.lua:1: attempt to call a nil value (global 'paris')"},
         BadLua{"table.inssert({}, 1)", "bad.lua:1: attempt to call a nil value (field 'inssert')"},
         BadLua{"error('by hand')", "bad.lua:1: by hand"},
-        BadLua{"error({})", "bad.lua:1: the script ended with an error that is no text"},
+        BadLua{"error({})", "bad.lua:1: the script ended with an error that is not a text"},
         BadLua{"return { world = { gravitty = 3 } }",
                "bad.lua:1: world has no field 'gravitty'; did you mean 'gravity'?"},
         BadLua{"\x1bLua", "bad.lua:1: "}));

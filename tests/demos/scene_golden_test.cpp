@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SceneGoldenLattice, testing::Values("drop", "pe
 TEST(SceneGoldenViews, LookAsTheyDid) {
   const Scene scene = load_scene_3d("torus_on_spike");
   Simulation3d simulation(scene, {});
-  simulation.note_contacts(true);
+  simulation.record_contacts(true);
   for (int frame = 0; frame < 180; ++frame) simulation.step();
   simulation.finish();
   const auto context = render::create_offscreen_context();

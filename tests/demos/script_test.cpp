@@ -8,6 +8,10 @@
 #include "simulation/simulation_3d.h"
 
 namespace softcell::demos {
+
+/// In the names of tests.
+void PrintTo(Skin skin, std::ostream* out) { *out << (skin == Skin::kSpe ? "spe" : "gpu"); }
+
 namespace {
 
 Scene floating_cube(const std::string& script) {

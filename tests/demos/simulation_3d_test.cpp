@@ -10,6 +10,10 @@
 #include "scene_file/scene_library.h"
 
 namespace softcell::demos {
+
+/// In the names of tests.
+void PrintTo(Skin skin, std::ostream* out) { *out << (skin == Skin::kSpe ? "spe" : "gpu"); }
+
 namespace {
 
 class FrameTimesOf : public testing::TestWithParam<Skin> {};
@@ -32,8 +36,7 @@ TEST_P(FrameTimesOf, ThePpuAreTheSumOfItsPartsAndNoMoreThanTheThreadHasUsed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Skins, FrameTimesOf, testing::Values(Skin::kSpe, Skin::kGpu),
-                         [](const auto& skin) { return skin.param == Skin::kSpe ? "Spe" : "Gpu"; });
+INSTANTIATE_TEST_SUITE_P(Skins, FrameTimesOf, testing::Values(Skin::kSpe, Skin::kGpu));
 
 }  // namespace
 }  // namespace softcell::demos

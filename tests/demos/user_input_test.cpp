@@ -66,7 +66,7 @@ UserInput<2> input_2d() {
 template <int Dimension>
 std::vector<InputEvent<Dimension>> frame_of(UserInput<Dimension>& input,
                                             const std::vector<SDL_Event>& events) {
-  for (const SDL_Event& event : events) input.take(event);
+  for (const SDL_Event& event : events) input.handle(event);
   const auto frame = input.next_frame();
   return {frame.begin(), frame.end()};
 }
@@ -107,6 +107,16 @@ TEST(UserInput, TheMouseFollowsTheWindowsSize) {
   EXPECT_LT((grab[0].value - Vector2f(1, 5)).norm(), 1e-5f);
 }
 
+TEST(UserInput, AWindowThatHasShrunkToNothingTakesTheMouse) {
+  UserInput<2> input = input_2d();
+  SDL_Event resized{};
+  resized.window.type = SDL_WINDOWEVENT;
+  resized.window.event = SDL_WINDOWEVENT_SIZE_CHANGED;
+  const auto grab = frame_of(input, {resized, mouse_button(SDL_MOUSEBUTTONDOWN, 0, 0)});
+  ASSERT_EQ(grab.size(), 1u);
+  EXPECT_TRUE(grab[0].value.allFinite());
+}
+
 TEST(UserInput, GravityHasFourDirectionsAnyStrengthAndOff) {
   UserInput<2> input = input_2d();
   const auto gravity_after = [&](SDL_Keycode code) -> Vector2f {
@@ -132,9 +142,9 @@ TEST(UserInput, GravityHasFourDirectionsAnyStrengthAndOff) {
 
 TEST(UserInput, GravityNeverPullsTheOtherWayNorGrowsWithoutBound) {
   UserInput<2> input = input_2d();
-  for (int i = 0; i < 30; ++i) input.take(press(SDLK_MINUS));
+  for (int i = 0; i < 30; ++i) input.handle(press(SDLK_MINUS));
   EXPECT_EQ(input.next_frame().back().value, Vector2f(0, 0));
-  for (int i = 0; i < 2000; ++i) input.take(key(SDL_KEYDOWN, SDLK_PLUS, true));
+  for (int i = 0; i < 2000; ++i) input.handle(key(SDL_KEYDOWN, SDLK_PLUS, true));
   EXPECT_EQ(input.next_frame().back().value, Vector2f(0, -UserInput<2>::kMostGravity));
 }
 
@@ -164,19 +174,19 @@ TEST(UserInput, WhatTheWindowDoesIsNoEvent) {
   EXPECT_EQ(input.look().view, 1);
   EXPECT_FALSE(input.look().statistics);
   EXPECT_TRUE(input.look().help);
-  input.take(press(SDLK_v));
-  input.take(press(SDLK_v));
+  input.handle(press(SDLK_v));
+  input.handle(press(SDLK_v));
   EXPECT_EQ(input.look().view, 0) << "after the last view comes the first";
   EXPECT_FALSE(input.wants_next_scene());
-  input.take(press(SDLK_n));
+  input.handle(press(SDLK_n));
   EXPECT_TRUE(input.wants_next_scene());
   EXPECT_FALSE(input.wants_to_quit());
-  input.take(press(SDLK_ESCAPE));
+  input.handle(press(SDLK_ESCAPE));
   EXPECT_TRUE(input.wants_to_quit());
   UserInput<2> closed = input_2d();
   SDL_Event quit{};
   quit.type = SDL_QUIT;
-  closed.take(quit);
+  closed.handle(quit);
   EXPECT_TRUE(closed.wants_to_quit());
 }
 
@@ -205,13 +215,13 @@ Vector3f tilt_after(UserInput<3>& input, int frames, Vector3f tilt = {0, 0, 0}) 
 TEST(UserInput, ArrowsTiltTheGroundWhileTheyAreHeld) {
   UserInput<3> input(2, {});
   EXPECT_TRUE(input.next_frame().empty()) << "until then the ground is as the scene has it";
-  input.take(press(SDLK_RIGHT));
+  input.handle(press(SDLK_RIGHT));
   EXPECT_EQ(tilt_after(input, 20), Vector3f(0, 0, -GroundTilt::kMost)) << "the right side is lower";
-  input.take(press(SDLK_UP));
+  input.handle(press(SDLK_UP));
   EXPECT_EQ(tilt_after(input, 20, {0, 0, -GroundTilt::kMost}),
             Vector3f(-GroundTilt::kMost, 0, -GroundTilt::kMost));
-  input.take(key(SDL_KEYUP, SDLK_RIGHT));
-  input.take(key(SDL_KEYUP, SDLK_UP));
+  input.handle(key(SDL_KEYUP, SDLK_RIGHT));
+  input.handle(key(SDL_KEYUP, SDLK_UP));
   EXPECT_EQ(tilt_after(input, 20, {-GroundTilt::kMost, 0, -GroundTilt::kMost}), Vector3f(0, 0, 0));
 }
 
@@ -219,17 +229,17 @@ TEST(UserInput, TheMotionSensorTiltsTheGroundAsItIsHeld) {
   UserInput<3> input(2, {});
   const float angle = 0.2f, g = SDL_STANDARD_GRAVITY;
   // Rolled to the right, its right side lower: what holds it up comes from the left.
-  input.take(accelerometer(-g * std::sin(angle), g * std::cos(angle), 0));
+  input.handle(accelerometer(-g * std::sin(angle), g * std::cos(angle), 0));
   const Vector3f rolled = tilt_after(input, 20);
   EXPECT_LT((rolled - Vector3f(0, 0, -angle)).norm(), 0.01f);
   // Its far side lower: it comes from the player's side.
-  input.take(accelerometer(0, g * std::cos(angle), g * std::sin(angle)));
+  input.handle(accelerometer(0, g * std::cos(angle), g * std::sin(angle)));
   const Vector3f pitched = tilt_after(input, 20, rolled);
   EXPECT_LT((pitched - Vector3f(-angle, 0, 0)).norm(), 0.01f);
-  input.take(accelerometer(0, -g, 0.1f));
+  input.handle(accelerometer(0, -g, 0.1f));
   const Vector3f over = tilt_after(input, 40, pitched);
   EXPECT_FLOAT_EQ(over.x(), -GroundTilt::kMost) << "upside down: no further";
-  input.take(accelerometer(0, std::numeric_limits<float>::quiet_NaN(), 0));
+  input.handle(accelerometer(0, std::numeric_limits<float>::quiet_NaN(), 0));
   EXPECT_EQ(tilt_after(input, 40, over), over) << "no sense: ignored";
 }
 
@@ -261,10 +271,10 @@ TEST(UserInput, AControllerThatIsPulledOutTiltsNoMore) {
   for (const SDL_Event& last : {stick, accelerometer(-SDL_STANDARD_GRAVITY, SDL_STANDARD_GRAVITY, 0)}) {
     const std::string what = last.type == stick.type ? "its stick" : "its motion sensor";
     UserInput<3> input(2, {});
-    input.take(last);
+    input.handle(last);
     const Vector3f tilted = tilt_after(input, 20);
     ASSERT_EQ(tilted, Vector3f(0, 0, -GroundTilt::kMost)) << what;
-    input.take(removed);
+    input.handle(removed);
     EXPECT_EQ(tilt_after(input, 20, tilted), Vector3f(0, 0, 0)) << what << " counts for ever";
   }
 }
@@ -322,8 +332,8 @@ class VirtualController : public testing::Test {
     SDL_Event event;
     SDL_PumpEvents();
     while (SDL_PollEvent(&event) != 0) {
-      controllers_.take(event);
-      input_.take(event);
+      controllers_.handle(event);
+      input_.handle(event);
     }
   }
   void press_button(SDL_GameControllerButton button) {
@@ -416,7 +426,7 @@ MouseReach reach_from_above() {
 
 TEST(UserInput3d, TheMouseTakesAParticleAndMovesItInThePlaneThatFacesTheEye) {
   UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
-  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390));
+  input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390));
   auto events = input.next_frame();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].action, Action::kGrab);
@@ -427,10 +437,10 @@ TEST(UserInput3d, TheMouseTakesAParticleAndMovesItInThePlaneThatFacesTheEye) {
   SDL_Event motion = mouse_to(100, 100);
   motion.motion.state = SDL_BUTTON_LMASK;
   motion.motion.xrel = -400;
-  input.take(motion);
+  input.handle(motion);
   motion.motion.x = 600;
   motion.motion.y = 300;
-  input.take(motion);
+  input.handle(motion);
   events = input.next_frame();
   ASSERT_EQ(events.size(), 1u) << "the last place counts";
   EXPECT_EQ(events[0].action, Action::kMoveHand);
@@ -438,7 +448,7 @@ TEST(UserInput3d, TheMouseTakesAParticleAndMovesItInThePlaneThatFacesTheEye) {
   EXPECT_LT((events[0].value - Vector3f(1.9f, 0.5f, 0)).norm(), 1e-4f);
   EXPECT_EQ(input.look().turn, 0) << "the camera stays";
 
-  input.take(mouse_button(SDL_MOUSEBUTTONUP, 600, 300));
+  input.handle(mouse_button(SDL_MOUSEBUTTONUP, 600, 300));
   events = input.next_frame();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].action, Action::kRelease);
@@ -446,14 +456,14 @@ TEST(UserInput3d, TheMouseTakesAParticleAndMovesItInThePlaneThatFacesTheEye) {
 
 TEST(UserInput3d, WhereThereIsNothingToTakeTheMouseTurnsTheCamera) {
   UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
-  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 100, 100));
+  input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 100, 100));
   SDL_Event motion = mouse_to(150, 100);
   motion.motion.state = SDL_BUTTON_LMASK;
   motion.motion.xrel = 50;
-  input.take(motion);
-  input.take(mouse_button(SDL_MOUSEBUTTONUP, 150, 100));
+  input.handle(motion);
+  input.handle(mouse_button(SDL_MOUSEBUTTONUP, 150, 100));
   // Nor does any other button take anything.
-  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390, SDL_BUTTON_RIGHT));
+  input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390, SDL_BUTTON_RIGHT));
   EXPECT_TRUE(input.next_frame().empty());
   EXPECT_LT(input.look().turn, 0);
 }
@@ -465,8 +475,8 @@ TEST(UserInput3d, TheMouseKnowsTheWindowsSize) {
   resized.window.event = SDL_WINDOWEVENT_SIZE_CHANGED;
   resized.window.data1 = 400;
   resized.window.data2 = 300;
-  input.take(resized);
-  input.take(mouse_button(SDL_MOUSEBUTTONDOWN, 255, 195));
+  input.handle(resized);
+  input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 255, 195));
   ASSERT_EQ(input.next_frame().size(), 1u);
 }
 

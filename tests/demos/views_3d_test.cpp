@@ -88,7 +88,7 @@ TEST(ShownContacts, AreNotedWhenAskedFor) {
   Simulation3d simulation(scene, {});
   for (int frame = 0; frame < 120; ++frame) simulation.step();
   EXPECT_TRUE(simulation.shown_contacts().empty());
-  simulation.note_contacts(true);
+  simulation.record_contacts(true);
   simulation.step();
   simulation.finish();
   ASSERT_FALSE(simulation.shown_contacts().empty());
@@ -106,12 +106,12 @@ TEST(ShownContacts, AreNotedWhenAskedFor) {
     EXPECT_LT(nearest, spacing);
   }
 
-  simulation.note_contacts(false);
+  simulation.record_contacts(false);
   simulation.step();
   simulation.finish();
   EXPECT_TRUE(simulation.shown_contacts().empty());
   // In a pause they are those of the world as it stands.
-  simulation.note_contacts(true);
+  simulation.record_contacts(true);
   simulation.step(std::vector<InputEvent<3>>{{.action = Action::kPause}});
   EXPECT_FALSE(simulation.shown_contacts().empty());
   // Of what a body touches where it is put then, nobody knows before time goes on.

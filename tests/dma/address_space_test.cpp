@@ -193,10 +193,40 @@ TEST(AddressSpace, SeveralHaveTheSameAddressesAndTheirOwnBytes) {
   EXPECT_EQ(*host(second.resolve(b, 1, SpeAccess::kRead)), std::byte{0});
 }
 
+TEST(AddressSpace, MainMemoryHasTheSizeThatWasAskedFor) {
+  AddressSpace small(1 << 20);
+  EXPECT_EQ(small.free_bytes(Memory::kMain), 1u << 20);
+  EXPECT_EQ(small.free_bytes(Memory::kVideo), kVideoMemoryBytes);
+  small.allocate("all", 1 << 20);
+  EXPECT_THROW(small.allocate("one line", 128), std::runtime_error);
+  EXPECT_FALSE(small.mapping_at(kMainMemoryBase + (1 << 20)));
+
+  AddressSpace largest(kMaxMainMemoryBytes);
+  const EffectiveAddress all = largest.allocate("all", kMaxMainMemoryBytes);
+  const EffectiveAddress last = all + (kMaxMainMemoryBytes - 16);
+  *host(largest.resolve(last, 16, SpeAccess::kWrite)) = std::byte{1};
+  EXPECT_EQ(largest.allocate("video", 16, {.memory = Memory::kVideo}), last + 16);
+}
+
+TEST(AddressSpace, RefusesOtherSizesOfMainMemory) {
+  const auto refusal = [](std::uint64_t bytes) -> std::string {
+    try {
+      const AddressSpace space(bytes);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  const std::string expected = "; it must have whole megabytes (of 1048576 bytes), from 1 to 2816";
+  EXPECT_EQ(refusal(0), "main memory of 0 bytes" + expected);
+  EXPECT_EQ(refusal(1'000'000), "main memory of 1000000 bytes" + expected);
+  EXPECT_EQ(refusal(kMaxMainMemoryBytes + (1 << 20)), "main memory of 2953838592 bytes" + expected);
+}
+
 TEST(AddressSpace, KeepsTheHostAddressesEqualToEffectiveOnesForItself) {
   const AddressSpace space;
   for (const EffectiveAddress ea :
-       {kMainMemoryBase, kMainMemoryBase + (kMainMemoryBytes - 4096), kVideoMemoryBase, kLocalStoresBase,
+       {kMainMemoryBase, kMainMemoryBase + (kMaxMainMemoryBytes - 4096), kVideoMemoryBase, kLocalStoresBase,
         kLocalStoresBase + 5 * kLocalStoreStrideBytes}) {
     errno = 0;
     const long result = syscall(SYS_mmap, ea.value, 4096, PROT_NONE,

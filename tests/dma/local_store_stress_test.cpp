@@ -56,7 +56,7 @@ constexpr std::uint32_t kData = 0x1000;
 constexpr std::uint32_t kDataBytes = 1024;
 constexpr std::uint32_t kFlag = 0x2000;  // a quadword
 constexpr std::uint32_t kSource = 0x3000;
-constexpr int kRounds = 2000;
+constexpr int kWriterRounds = 2000;
 
 // The usual hand-over between SPEs: data, then behind a fence the flag that the other one polls.
 class LocalStoreStress : public testing::TestWithParam<Schedule> {};
@@ -68,7 +68,7 @@ TEST_P(LocalStoreStress, AFlagBehindAFenceComesAfterItsData) {
   // Sends in even rounds, receives in odd ones; `phase` tells which SPE begins.
   const auto run = [](MappedSpe& own, const MappedSpe& other, std::uint32_t phase) {
     int wrong = 0;
-    for (std::uint32_t round = 1; round <= kRounds; ++round) {
+    for (std::uint32_t round = 1; round <= kWriterRounds; ++round) {
       if (round % 2 == phase) {
         std::fill_n(own.words(kSource), kDataBytes / 4 + 4, round);
         own.issue(MfcOpcode::put, kSource, local_store_ea(other.number) + kData, kDataBytes);
@@ -109,7 +109,7 @@ TEST(LocalStoreThreads, AQuadwordArrivesWhole) {
   for (int number = 0; number < 4; ++number) {
     threads.emplace_back([&, number] {
       MappedSpe& own = *spes[static_cast<std::size_t>(number)];
-      for (std::uint32_t round = 0; round < kRounds; ++round) {
+      for (std::uint32_t round = 0; round < kWriterRounds; ++round) {
         if (number < 2) {
           std::fill_n(own.words(kSource), 4, round + (number == 0 ? 0 : 1u << 31));
           own.issue(MfcOpcode::put, kSource, local_store_ea(3) + kFlag, 16);
@@ -125,7 +125,7 @@ TEST(LocalStoreThreads, AQuadwordArrivesWhole) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(torn, 0);
-  EXPECT_EQ(spes[3]->port.writes.size(), 2u * kRounds);
+  EXPECT_EQ(spes[3]->port.writes.size(), 2u * kWriterRounds);
 }
 
 TEST(LocalStoreThreads, NoSignalIsLost) {
@@ -136,24 +136,24 @@ TEST(LocalStoreThreads, NoSignalIsLost) {
     threads.emplace_back([&, number] {
       MappedSpe own(space, number);
       const EffectiveAddress signal = local_store_ea(5) + static_cast<std::uint64_t>(SpeRegister::kSignal1);
-      for (std::uint32_t round = 0; round < kRounds; ++round) {
+      for (std::uint32_t round = 0; round < kWriterRounds; ++round) {
         *own.words(0xC) = round;
         own.issue(MfcOpcode::sndsig, 0xC, signal, 4);
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
-  ASSERT_EQ(target.port.registers.size(), 5u * kRounds);
+  ASSERT_EQ(target.port.registers.size(), 5u * kWriterRounds);
   std::uint64_t sum = 0;
   for (const auto& [which, value] : target.port.registers) sum += value;
-  EXPECT_EQ(sum, 5ull * kRounds * (kRounds - 1) / 2);
+  EXPECT_EQ(sum, 5ull * kWriterRounds * (kWriterRounds - 1) / 2);
 }
 
 // Two threads of the PPU side and the SPE's own share one proxy queue.
 TEST(ProxyQueueThreads, EveryCommandMovesItsBytesAndStartsOnce) {
   AddressSpace space;
   FakeSpe spe;
-  Buffer<std::uint32_t> buffer(space, "buffer", 2 * kRounds * 4);
+  Buffer<std::uint32_t> buffer(space, "buffer", 2 * kWriterRounds * 4);
   for (std::uint32_t i = 0; i < buffer.size(); ++i) buffer[i] = i;
   std::atomic<int> starts{0};
   ProxyQueue queue(spe, space, {Schedule::kRandom, 7}, 0, [&] { ++starts; });
@@ -162,8 +162,8 @@ TEST(ProxyQueueThreads, EveryCommandMovesItsBytesAndStartsOnce) {
   std::vector<std::thread> threads;
   for (std::uint32_t number = 0; number < 2; ++number) {
     threads.emplace_back([&, number] {
-      for (std::uint32_t i = 0; i < kRounds; ++i) {
-        const std::uint32_t at = (number * kRounds + i) * 16;
+      for (std::uint32_t i = 0; i < kWriterRounds; ++i) {
+        const std::uint32_t at = (number * kWriterRounds + i) * 16;
         const MfcOpcode opcode = i % 4 == 0 ? MfcOpcode::gets : MfcOpcode::get;
         EXPECT_FALSE(queue.issue(command(opcode, at, buffer.ea() + at, 16, number)));
       }
@@ -176,7 +176,7 @@ TEST(ProxyQueueThreads, EveryCommandMovesItsBytesAndStartsOnce) {
     std::this_thread::yield();
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(starts, 2 * kRounds / 4);
+  EXPECT_EQ(starts, 2 * kWriterRounds / 4);
   EXPECT_TRUE(std::equal(buffer.data(), buffer.data() + buffer.size(),
                          reinterpret_cast<const std::uint32_t*>(spe.store.data())));
 }

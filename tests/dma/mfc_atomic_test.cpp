@@ -4,9 +4,6 @@
 namespace softcell::dma {
 namespace {
 
-constexpr Schedule kEager{Schedule::kEager, 0};
-constexpr Schedule kLazy{Schedule::kLazy, 0};
-
 class LossCounter final : public ReservationListener {
  public:
   void on_reservation_lost() override { ++losses; }

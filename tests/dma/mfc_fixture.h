@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <ostream>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,12 @@
 #include "softcell/dma/mfc.h"
 
 namespace softcell::dma {
+
+inline constexpr Schedule kEager{Schedule::kEager, 0};
+inline constexpr Schedule kLazy{Schedule::kLazy, 0};
+
+/// In the names of tests.
+inline void PrintTo(const Schedule& schedule, std::ostream* out) { *out << to_string(schedule); }
 
 inline MfcCommand command(MfcOpcode opcode, std::uint32_t lsa, EffectiveAddress ea, std::uint32_t size,
                           std::uint32_t tag) {

@@ -6,9 +6,6 @@
 namespace softcell::dma {
 namespace {
 
-constexpr Schedule kEager{Schedule::kEager, 0};
-constexpr Schedule kLazy{Schedule::kLazy, 0};
-
 /// Every byte of the buffer tells where it is from.
 class ListBench : public MfcBench {
  public:

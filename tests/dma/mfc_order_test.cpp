@@ -4,7 +4,6 @@
 namespace softcell::dma {
 namespace {
 
-constexpr Schedule kLazy{Schedule::kLazy, 0};
 constexpr std::uint32_t kBytes = 1024;
 
 /// A bench whose buffer holds value v in block v of 1 KB.

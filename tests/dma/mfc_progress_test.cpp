@@ -6,9 +6,6 @@
 namespace softcell::dma {
 namespace {
 
-constexpr Schedule kEager{Schedule::kEager, 0};
-constexpr Schedule kLazy{Schedule::kLazy, 0};
-
 class MfcProgress : public testing::TestWithParam<Schedule> {};
 INSTANTIATE_TEST_SUITE_P(Schedules, MfcProgress, testing::ValuesIn(all_schedules()), schedule_test_name);
 

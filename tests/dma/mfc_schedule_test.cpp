@@ -7,8 +7,6 @@
 namespace softcell::dma {
 namespace {
 
-constexpr Schedule kEager{Schedule::kEager, 0};
-constexpr Schedule kLazy{Schedule::kLazy, 0};
 constexpr Schedule random_schedule(std::uint64_t seed) { return {Schedule::kRandom, seed}; }
 
 constexpr std::uint32_t kWindow = 8192;  // programs work on the first bytes of local store and buffer

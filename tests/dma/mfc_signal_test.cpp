@@ -5,8 +5,6 @@
 namespace softcell::dma {
 namespace {
 
-constexpr Schedule kEager{Schedule::kEager, 0};
-
 using Writes = std::vector<std::pair<SpeRegister, std::uint32_t>>;
 
 /// A bench with SPE 1 beside it in the address space.

@@ -8,9 +8,6 @@
 namespace softcell::dma {
 namespace {
 
-constexpr Schedule kEager{Schedule::kEager, 0};
-constexpr Schedule kLazy{Schedule::kLazy, 0};
-
 void expect_rule(const std::variant<std::uint32_t, Fault>& status, Rule rule) {
   ASSERT_TRUE(std::holds_alternative<Fault>(status));
   EXPECT_EQ(name(std::get<Fault>(status).rule), name(rule));

@@ -33,6 +33,8 @@ struct Shape {
   std::uint32_t pieces;
 };
 
+void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.size << " bytes at " << shape.ea_offset; }
+
 class TransferShape : public testing::TestWithParam<Shape> {};
 
 TEST_P(TransferShape, IsCutAtLinesOfMainStorage) {

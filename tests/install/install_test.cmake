@@ -15,7 +15,7 @@ endfunction()
 set(prefix ${SCRATCH}/prefix)
 file(REMOVE_RECURSE ${SCRATCH})
 step("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
-foreach(example hello_kernel saxpy jelly_3d jelly_2d jelly_on_spes)
+foreach(example hello_kernel saxpy ping_pong jelly_3d jelly_2d jelly_on_spes)
   build_and_test(${example})
 endforeach()
 set(copy ${SCRATCH}/saxpy)
@@ -54,7 +54,7 @@ links_none_of("box2d|boost|libdw" ${SCRATCH}/jelly_3d/build/jelly_3d)
 # A component that there is not is refused in one sentence with those that there are.
 file(WRITE ${SCRATCH}/wrong/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n"
   "find_package(softcell REQUIRED COMPONENTS box2d bodies)\n")
-says(1 "softcell has no component 'bodies'; its components are[ \n]+spu,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies,[ \n]+render\\."
+says(1 "softcell has no component 'bodies'; its components are[ \n]+spu,[ \n]+libspe2,[ \n]+soft_bodies,[ \n]+mesh_import,[ \n]+bullet,[ \n]+box2d,[ \n]+spe_bodies,[ \n]+render\\."
   ${CMAKE_COMMAND} -S ${SCRATCH}/wrong -B ${SCRATCH}/wrong/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
   -DCMAKE_CXX_COMPILER=${COMPILER})
 

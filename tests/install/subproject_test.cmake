@@ -20,7 +20,7 @@ set(configure ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DSOFTC
   -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 
 expect("a component that there is not" 1
-  "SOFTCELL_COMPONENTS: softcell has no component 'bodies'; its components are spu, soft_bodies, mesh_import, bullet, box2d, spe_bodies, render\\."
+  "SOFTCELL_COMPONENTS: softcell has no component 'bodies'; its components are spu, libspe2, soft_bodies, mesh_import, bullet, box2d, spe_bodies, render\\."
   ${configure} "-DSOFTCELL_COMPONENTS=spu\;bodies")
 expect("a library that is not installed" 1
   "softcell's component box2d needs Box2D 2\\.4, which was not found; on Debian it is in the package libbox2d-dev\\."
@@ -31,7 +31,7 @@ expect("a project without the assembler" 1
 
 # All libraries, and nothing else: no tests but the project's own, no programs but the project's own, and warnings stop nobody.
 expect("configuring all components" 0 "" ${configure} -DWITH_ASSEMBLER=ON
-  "-DSOFTCELL_COMPONENTS=spu\;soft_bodies\;mesh_import\;bullet\;box2d\;spe_bodies")
+  "-DSOFTCELL_COMPONENTS=spu\;libspe2\;soft_bodies\;mesh_import\;bullet\;box2d\;spe_bodies")
 expect("its tests" 0 "Test #1: spu_syntax\\.sloppy\\.sloppy .*Test #2: somebody Total Tests: 2 " ${CMAKE_CTEST_COMMAND} --test-dir ${build} -N)
 file(READ ${build}/compile_commands.json commands)
 if(NOT commands MATCHES "ppu/spe_bodies/" OR commands MATCHES "-Werror|${SOURCE}/(demos|tool|render|tests)/")

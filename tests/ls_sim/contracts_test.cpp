@@ -83,6 +83,57 @@ TEST(LsSimContractsDeathTest, ATraceHasAsManySpesAsItWasMadeFor) {
   SC_EXPECT_VIOLATES(trace.spe(2), "Trace::spe.*: SPE 2 in a trace of 2\n");
 }
 
+TEST(LsSimContractsDeathTest, WhatATraceRecordsEndsAfterItsBegin) {
+  Trace trace(1);
+  const KernelImage image = image_named("saxpy");
+  SC_EXPECT_VIOLATES(trace.spe(0).on_job(image, 3, 20, 10, false),
+                     "on_job.*: job 3 of saxpy begins at 20 and ends at 10\n");
+  SC_EXPECT_VIOLATES(trace.spe(0).on_wait(28, 20, 10),
+                     "on_wait.*: a wait at channel 28 begins at 20 and ends at 10\n");
+  SC_EXPECT_VIOLATES(trace.spe(0).on_stack_used(image, dma::kLocalStoreBytes + 1),
+                     "on_stack_used.*: saxpy has used 262145 bytes of stack\n");
+}
+
+TEST(LsSimContractsDeathTest, JobsBeginAndEndInsideARun) {
+  SpeMonitor monitor{SpeOptions{}};
+  const SpeMonitor::Lock lock = monitor.lock();
+  SC_EXPECT_VIOLATES(monitor.begin_job(1, std::chrono::steady_clock::now()),
+                     "begin_job.*: a job begins in SPE 1, which does not run\n");
+  SC_EXPECT_VIOLATES(monitor.end_job(1), "end_job.*: a job ends in SPE 1, and none has begun\n");
+}
+
+TEST(LsSimContractsDeathTest, ThePpuWaitsForSomething) {
+  SpeMonitor monitor{SpeOptions{}};
+  SpeMonitor::Lock lock = monitor.lock();
+  SC_EXPECT_VIOLATES(monitor.ppu_wait(lock, nullptr), "ppu_wait.*: the PPU side waits for nothing, with 0");
+}
+
+TEST(LsSimContractsDeathTest, CommandsInFlightHaveTags) {
+  CommandsInFlight in_flight;
+  CommandInFlight command;
+  command.command.tag = 32;
+  SC_EXPECT_VIOLATES(in_flight.add(command), "add.*: a command of tag 32 is in flight\n");
+}
+
+TEST(LsSimContractsDeathTest, PartsOfAnImageEndAfterTheirBegin) {
+  KernelImage image = image_named("saxpy");
+  image.text_begin = 256;
+  image.text_end = 128;
+  SC_EXPECT_VIOLATES(local_store_map(image), "saxpy has text from 256 to 128, constants from 0 to 0");
+}
+
+TEST(LsSimContractsDeathTest, AListenerIsThereBeforeTheFirstRun) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // a group has threads
+  dma::AddressSpace memory;
+  SpeGroup group(memory, {.spes = 1});
+  KernelImage image = image_named("stop");
+  image.machine = Machine::kSpu;
+  image.bytes.resize(16);
+  image.sizes.end = image.begin + 16;
+  group.prepare(0, image, {});
+  SC_EXPECT_VIOLATES(group.on_end([](int, const RunResult&) {}), "on_end\\(\\) after 1 runs were prepared\n");
+}
+
 TEST(LsSimContractsDeathTest, AnEngineRunsWhatWasLoaded) {
   class NoChannels final : public ChannelPort {
     ChannelReply read(std::uint32_t) override { return {}; }
@@ -100,7 +151,8 @@ TEST(LsSimContractsDeathTest, AJobImageLiesInMainStorage) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");  // a group has threads
   dma::AddressSpace memory;
   SpeGroup group(memory, {.spes = 1});
-  const KernelImage image = image_named("saxpy");
+  KernelImage image = image_named("saxpy");
+  image.main = 4;
   SC_EXPECT_VIOLATES(group.register_job_image({0x1234}, image),
                      "register_job_image.*: the job image saxpy lies at 0x1234, which no DMA can fetch\n");
 }

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <thread>
 
+#include "image/low_memory.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/source_lines.h"
 #include "test_images.h"
@@ -235,16 +236,16 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"read_effective_address",
                   {.argp = dma::kMainMemoryBase.value + 0x80},
                   dma::Rule::kEffectiveAddressAsPointer,
-                  "0x5EA010000080"},
+                  "0x10000080"},
         FaultCase{"read_effective_address",
                   {.argp = dma::kVideoMemoryBase.value},
                   dma::Rule::kEffectiveAddressAsPointer,
-                  "0x5EA0C0000000"},
+                  "0xC0000000"},
         FaultCase{"read_effective_address", {.argp = 0}, dma::Rule::kOutsideLocalStore, "0x00000"},
         FaultCase{"read_effective_address",
-                  {.argp = 0xEA00'0000'0000'0000},
+                  {.argp = 0xEA00'0000'0000'0000},  // of which a pointer keeps 32 bits
                   dma::Rule::kOutsideLocalStore,
-                  "not a valid address"},
+                  "address 0x00000,"},
         FaultCase{"outside_local_store", {.envp = 256 * 1024}, dma::Rule::kOutsideLocalStore, "past the end"},
         FaultCase{"outside_local_store",
                   {.envp = static_cast<std::uint64_t>(-128 * 1024)},
@@ -288,6 +289,27 @@ TEST_P(EndlessKernels, AreInterrupted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutCalls, EndlessKernels, testing::Values(0, 1));
+
+TEST(LocalStoreArena, LiesBelow4Gigabytes) {
+  for (int i = 0; i < 64; ++i) {
+    LocalStore local_store;
+    const auto base = reinterpret_cast<std::uintptr_t>(local_store.base());
+    EXPECT_EQ(base % dma::kLocalStoreBytes, 0u);
+    EXPECT_LE(base + dma::kLocalStoreBytes, std::uintptr_t{1} << 32);
+  }
+}
+
+TEST(LocalStoreArena, IsRefusedInASentenceWhereThereIsNoRoomForIt) {
+  LocalStore in_the_way;
+  try {
+    reserve_below_4_gb(std::size_t{3583} << 20, "a local store");
+    FAIL() << "more was reserved than there is above the first 512 MB";
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    EXPECT_TRUE(message.starts_with("a local store cannot be reserved: this process has no ")) << message;
+    EXPECT_NE(message.find("below 4 GB"), std::string::npos) << message;
+  }
+}
 
 TEST(RequireVectorUnits, NamesWhatIsMissing) {
   EXPECT_NO_THROW(require_vector_units(true, true));

@@ -20,6 +20,12 @@
 #include "test_images.h"
 
 namespace softcell::ls_sim {
+
+/// In the names of tests.
+void PrintTo(Interleaving interleaving, std::ostream* out) {
+  *out << (interleaving == Interleaving::kFree ? "free" : "turns");
+}
+
 namespace {
 
 using namespace std::chrono_literals;

@@ -663,6 +663,9 @@ TEST_F(JobSystemTest, CheckedJobsAreChecked) {
 TEST_F(JobSystemTest, RefusesImagesThatAreNoJobs) {
   JobSystem jobs(memory_, {.spes = 1}, loop_);
   EXPECT_THROW(jobs.place(loop_), std::invalid_argument);
+  ls_sim::KernelImage program = adds_;
+  program.program = true;
+  EXPECT_THROW(jobs.place(program), std::invalid_argument) << "a program is loaded whole";
   KernelImage large = adds_;
   large.sizes.stack = loop_.begin - loop_.sizes.stack - large.sizes.end + 16;
   EXPECT_THROW(jobs.place(large), std::invalid_argument);

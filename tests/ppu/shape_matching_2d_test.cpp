@@ -59,7 +59,7 @@ struct Body {
   ShapeMatcher<Real, 2> matcher;
 };
 
-class Matching2d : public testing::TestWithParam<std::tuple<const char*, int>> {
+class Matching2d : public testing::TestWithParam<std::tuple<std::string, int>> {
  protected:
   Lattice<2> lattice_ = lattice_of(std::get<0>(GetParam()));
   int w_ = std::get<1>(GetParam());
@@ -152,10 +152,11 @@ TEST_P(Matching2d, FloatAgreesWithDouble) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lattices, Matching2d,
-                         testing::Combine(testing::Values("block", "hole", "bar", "apart", "cell"),
+                         testing::Combine(testing::Values<std::string>("block", "hole", "bar", "apart",
+                                                                       "cell"),
                                           testing::Values(0, 1, 2, 4)),
                          [](const auto& parameters) {
-                           return std::string(std::get<0>(parameters.param)) + "_w" +
+                           return std::get<0>(parameters.param) + "_w" +
                                   std::to_string(std::get<1>(parameters.param));
                          });
 

@@ -87,6 +87,22 @@ TEST(SpeRuntime, RefusesOtherNumbersOfSpesAndUnknownKernels) {
   EXPECT_THROW(runtime.kernel("no_such"), std::runtime_error);
 }
 
+TEST(SpeRuntime, MainMemoryHasTheSizeThatWasAskedFor) {
+  SpeRuntime small({.spes = 1, .main_memory_bytes = 1 << 20});
+  EXPECT_LT(small.memory().free_bytes(dma::Memory::kMain), 1u << 20);
+  BulletWorld bullet;
+  BulletSoftBodies bodies(bullet.world(), small);
+  const auto large = block_model({20, 20, 20}, {.cell_size = 0.1f});
+  bodies.add(large, {0, 0, 0});
+  try {
+    bullet.step(kFrame, 2);
+    FAIL() << "a body of " << large->masses().size() << " particles fits 1 MB";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("main memory"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(SpeRuntime({.main_memory_bytes = 1000}), std::invalid_argument);
+}
+
 Vector3f position_of(const SkinnedVertices& skinned, std::size_t slot) {
   const auto& p = skinned.vertices[slot].position;
   return skinned.origin + Vector3f(float_from_half(p[0]), float_from_half(p[1]), float_from_half(p[2]));

@@ -160,8 +160,14 @@ class CellMeshTest : public testing::Test {
 TEST_F(CellMeshTest, DrawsAtRestWhatItIsMadeOf) { expect_picture_of_the_equations(at_rest); }
 TEST_F(CellMeshTest, DrawsWhatAnAffineMapMakesOfIt) { expect_picture_of_the_equations(affine); }
 
+struct NamedMap {
+  const char* name;
+  Map map;
+};
+void PrintTo(const NamedMap& named, std::ostream* out) { *out << named.name; }
+
 /// The GPU's vertices themselves, read back.
-class CellSkinnerTest : public testing::TestWithParam<Map> {
+class CellSkinnerTest : public testing::TestWithParam<NamedMap> {
  protected:
   CellSkinnerTest() {
     const auto load = [](void* context, const char* name) {
@@ -192,8 +198,8 @@ class CellSkinnerTest : public testing::TestWithParam<Map> {
 
 TEST_P(CellSkinnerTest, IsTheEquationsToTheNearestHalf) {
   const HungTorus torus;
-  const Vectors corners = moved_corners(GetParam());
-  const Eigen::Vector3f origin = origin_below(GetParam());
+  const Vectors corners = moved_corners(GetParam().map);
+  const Eigen::Vector3f origin = origin_below(GetParam().map);
   const std::vector<std::uint16_t> actual = skin(torus, corners, origin);
   const std::vector<std::uint16_t> expected = evaluate(torus, corners, origin).vertices;
   ASSERT_EQ(actual.size(), expected.size());
@@ -209,7 +215,9 @@ TEST_P(CellSkinnerTest, IsTheEquationsToTheNearestHalf) {
   EXPECT_LE(others, actual.size() / 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Maps, CellSkinnerTest, testing::Values(at_rest, affine, bent_far_away));
+INSTANTIATE_TEST_SUITE_P(Maps, CellSkinnerTest,
+                         testing::Values(NamedMap{"at rest", at_rest}, NamedMap{"affine", affine},
+                                         NamedMap{"bent, far away", bent_far_away}));
 
 TEST_F(CellMeshTest, KeepsTheRestNormalWhereACellIsFlat) {
   // All corners on the ground: cof(F) is 0 but for its y column, and of normals along x nothing is left.

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     const test::TestScene scene(renderer, 1);
     std::printf("backend %s\n", renderer.description());
     const Uint32 begin = SDL_GetTicks();
-    for (bool open = true; open && SDL_GetTicks() - begin < 20'000; open = !once) {
+    for (bool open = true; open && SDL_GetTicks() - begin < 45'000; open = !once) {
       renderer.render(scene.frame());
       window.show(renderer);
       std::printf("shown %d x %d\n", window.width(), window.height());

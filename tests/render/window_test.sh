@@ -7,6 +7,7 @@ source "$(dirname "$0")/../../ci/virtual-display"
 probe=$1
 folder=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
+trap 'echo "window_test: line $LINENO ended with status $?" >&2' ERR
 fail() { echo "window_test: $*" >&2; sed 's/^/probe: /' "$folder"/log >&2 || true; exit 1; }
 
 # No display: one sentence, and the way out.
@@ -26,9 +27,14 @@ start_virtual_display "$folder" 800x600 || fail "Xvfb did not start"
 pid=$!
 expect() { for _ in $(seq 100); do grep -q "$1" "$folder/log" && return; sleep 0.1; done; fail "no '$1'"; }
 expect 'shown 320 x 180'
-window=$(xdotool search --name 'window probe' | head -1)
-import -window "$window" "$folder/shown.png"
-colours=$(identify -format %k "$folder/shown.png")
+# What the program has drawn may be with the X server before the window's name is.
+window=$(timeout 30 xdotool search --sync --onlyvisible --name 'window probe' | head -1) || fail "no window has the name"
+for _ in $(seq 100); do  # ... and so may be the picture
+  import -window "$window" "$folder/shown.png"
+  colours=$(identify -format %k "$folder/shown.png")
+  [ "$colours" -gt 1000 ] && break
+  sleep 0.1
+done
 [ "$colours" -gt 1000 ] || fail "the window shows $colours colours, not the scene"
 xdotool windowfocus "$window" mousemove --window "$window" 100 50 click 1 key a
 expect 'click 100 50'

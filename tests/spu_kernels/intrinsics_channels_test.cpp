@@ -308,11 +308,11 @@ TEST_F(IntrinsicsChannels, LoadsAndStoresWrapAndIgnoreTheLowBits) {
     si_stqd(qword(value), at(0x2000), 16);
     si_stqx(qword(value), at(0x2000), at(0x2F));
     si_stqa(qword(value), 0x2030);
-    void* const pointer = si_to_ptr(si_from_ptr(spe_.at(0x2010)));
+    const volatile void* const pointer = si_to_ptr(si_from_ptr(spe_.at(0x2010)));
     EXPECT_EQ(pointer, spe_.at(0x2010));
     EXPECT_EQ(si_to_ptr(si_from_ptr(nullptr)), nullptr);
     EXPECT_EQ(si_to_uint(si_from_ptr(spe_.at(0x2010))), 0x2010u);
-    d = *static_cast<vec_uint4*>(pointer);
+    d = *const_cast<const vec_uint4*>(static_cast<const volatile vec_uint4*>(pointer));
   });
   for (const vec_uint4& got : {a, b, c, d}) EXPECT_EQ(lanes(got), lanes(value));
   EXPECT_EQ(std::memcmp(spe_.at(0x2020), &value, 16), 0);

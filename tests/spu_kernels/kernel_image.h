@@ -1,18 +1,22 @@
 #pragma once
-// The project's kernels by name, for tests.
+// The project's kernels by name, for tests. With SOFTCELL_TEST_ENGINE=interpreter in the environment they are those built for the SPU.
 
-#include <stdexcept>
+#include <cstdlib>
 #include <string>
 
 #include "softcell/ls_sim/image.h"
-#include "softcell/spu_kernels/images.h"
+#include "softcell/spu_kernels/load_kernel.h"
 
 namespace softcell::test {
 
+inline ls_sim::Machine machine_of_tests() {
+  const char* const engine = std::getenv("SOFTCELL_TEST_ENGINE");
+  return engine != nullptr && std::string(engine) == "interpreter" ? ls_sim::Machine::kSpu
+                                                                   : ls_sim::Machine::kHost;
+}
+
 inline ls_sim::KernelImage kernel_image(const std::string& name, bool checked = false) {
-  for (const spu_kernels::ImageFile& file : spu_kernels::image_files())
-    if (file.name == name) return ls_sim::load_image(name, checked ? file.checked_elf : file.elf);
-  throw std::logic_error("no kernel " + name);
+  return spu_kernels::load_kernel(name, checked, machine_of_tests());
 }
 
 }  // namespace softcell::test

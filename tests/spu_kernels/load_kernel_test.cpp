@@ -47,7 +47,7 @@ TEST_F(LoadKernel, AFilesNameIsTheKernels) {
       load_kernel_file(write("mine.checked.spu.elf", image_file("skin", true)));
   EXPECT_EQ(checked.name, "mine");
   EXPECT_TRUE(checked.checked);
-  EXPECT_EQ(load_kernel_file(write("other.elf", image_file("skin", false))).name, "other.elf");
+  EXPECT_EQ(load_kernel_file(write("other.elf", image_file("skin", false))).name, "other");
 }
 
 TEST_F(LoadKernel, NamesAFileThatIsNoKernel) {

@@ -15,6 +15,7 @@
 #include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
 #include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/job_records.h"
 #include "softcell/ls_sim/findings.h"
 #include "spu_kernels/checked_runs.h"
 #include "spu_kernels/kernel_image.h"
@@ -360,7 +361,7 @@ TEST(Match2d, RefusesAJobWhosePlanDoesNotFit) {
   dma::AddressSpace memory;
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), image = test::kernel_image("match_2d");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
-  dma::Buffer<spu::MatchPlanHeader2d> plans(memory, "plans", 4);
+  dma::Buffer<spu::MatchPlanHeader2d> plans(memory, "plans", 4, {.element_bytes = 4});
   for (spu::MatchPlanHeader2d& plan : plans.span()) {
     plan.bytes = 128;
     plan.particles = plan.regions = 1;
@@ -371,7 +372,7 @@ TEST(Match2d, RefusesAJobWhosePlanDoesNotFit) {
   plans[2].regions = 0x10000000;
   plans[3].slots = 0x08000000;  // whose bytes, as 32 bits, are none
   for (std::size_t i = 0; i < 4; ++i) {
-    dma::Buffer<spu::MatchJob2d> job(memory, "job", 1);
+    dma::Buffer<spu::MatchJob2d> job(memory, "job", 1, {.record = ppu::kMatchJob2dRecord});
     job[0].plan_ea = plans.ea(i).value;
     job[0].body_count = 1;
     ppu::JobChain chain(system, "refused", 1);
@@ -387,7 +388,7 @@ TEST(Match2d, AnEmptyJobIsDone) {
   dma::AddressSpace memory;
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), image = test::kernel_image("match_2d");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
-  const dma::Buffer<spu::MatchJob2d> job(memory, "job", 1);
+  const dma::Buffer<spu::MatchJob2d> job(memory, "job", 1, {.record = ppu::kMatchJob2dRecord});
   ppu::JobChain chain(system, "empty", 1);
   chain.add({system.place(image), job.ea()});
   chain.kick();

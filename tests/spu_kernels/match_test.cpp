@@ -13,6 +13,7 @@
 #include "ppu/matching/stiffness.h"
 #include "ppu/particle_vectors.h"
 #include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/job_records.h"
 #include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/checked_runs.h"
@@ -308,7 +309,7 @@ TEST(Match, RefusesAJobWhosePlanDoesNotFit) {
   dma::AddressSpace memory;
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), image = test::kernel_image("match");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
-  dma::Buffer<spu::MatchPlanHeader> plans(memory, "plans", 4);
+  dma::Buffer<spu::MatchPlanHeader> plans(memory, "plans", 4, {.element_bytes = 4});
   for (spu::MatchPlanHeader& plan : plans.span()) {
     plan.bytes = 128;
     plan.particles = plan.regions = 1;
@@ -318,7 +319,7 @@ TEST(Match, RefusesAJobWhosePlanDoesNotFit) {
   plans[1].particles = 0xFFFFFFFF;
   plans[2].regions = 0x10000000;
   plans[3].slots = 0x05555556;  // whose bytes, as 32 bits, are few
-  dma::Buffer<spu::MatchJob> descriptors(memory, "jobs", 4);
+  dma::Buffer<spu::MatchJob> descriptors(memory, "jobs", 4, {.record = ppu::kMatchJobRecord});
   ppu::JobChain chain(system, "refused", 1);
   for (std::size_t i = 0; i < 4; ++i) {
     descriptors[i].plan_ea = plans.ea(i).value;
@@ -336,7 +337,7 @@ TEST(Match, AnEmptyJobIsDone) {
   dma::AddressSpace memory;
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), image = test::kernel_image("match");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
-  dma::Buffer<spu::MatchJob> jobs(memory, "jobs", 1);
+  dma::Buffer<spu::MatchJob> jobs(memory, "jobs", 1, {.record = ppu::kMatchJobRecord});
   ppu::JobChain chain(system, "empty", 1);
   chain.add({system.place(image), jobs.ea()});
   chain.kick();

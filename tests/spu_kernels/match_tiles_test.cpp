@@ -10,6 +10,7 @@
 
 #include "ppu/lattices.h"
 #include "ppu/reference/shape_matching.h"
+#include "ppu/spe_bodies/job_records.h"
 #include "spu_kernels/checked_runs.h"
 #include "spu_kernels/kernel_image.h"
 #include "spu_kernels/stepped_bodies.h"
@@ -334,9 +335,9 @@ TEST(MatchTiles, RefusesAJobThatDoesNotFit) {
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"),
                             image = test::kernel_image("match_tiles");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
-  dma::Buffer<Vector> positions(memory, "positions", 4);
-  dma::Buffer<spu::TiledBody> body(memory, "body", 1);
-  dma::Buffer<spu::TileJob> descriptor(memory, "job", 1);
+  dma::Buffer<Vector> positions(memory, "positions", 4, {.element_bytes = 4});
+  dma::Buffer<spu::TiledBody> body(memory, "body", 1, {.record = ppu::kTiledBodyRecord});
+  dma::Buffer<spu::TileJob> descriptor(memory, "job", 1, {.record = ppu::kTileJobRecord});
   descriptor[0].body_ea = body.ea().value;
   ppu::JobChain chain(system, "refused", 1);
   chain.add({system.place(image), descriptor.ea()});

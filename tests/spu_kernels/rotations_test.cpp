@@ -14,12 +14,16 @@
 namespace softcell {
 namespace {
 
+// The widths of the contract's numbers.
+constexpr dma::BufferOptions kFloats{.element_bytes = sizeof(float)};
+constexpr dma::ElementRun kJobRecord[] = {{24, 8}, {104, 4}};
+
 /// One SPE and one job.
 struct RotationsRig {
   explicit RotationsRig(std::size_t groups)
-      : matrices(memory, "matrices", groups),
-        starts(memory, "starts", groups),
-        found(memory, "found", groups) {
+      : matrices(memory, "matrices", groups, kFloats),
+        starts(memory, "starts", groups, kFloats),
+        found(memory, "found", groups, kFloats) {
     job[0] = {matrices.ea().value,
               starts.ea().value,
               found.ea().value,
@@ -43,7 +47,7 @@ struct RotationsRig {
   ppu::JobSystem jobs{memory, {.spes = 1}, job_loop};
   dma::Buffer<spu::RotationMatrices> matrices;
   dma::Buffer<spu::MatchRotations> starts, found;
-  dma::Buffer<spu::RotationsJob> job{memory, "job", 1};
+  dma::Buffer<spu::RotationsJob> job{memory, "job", 1, {.record = kJobRecord}};
 };
 
 TEST(Rotations, AreThoseThatThePpuFindsWhateverTheMatrix) {

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "ppu/numbers/half.h"
 #include "ppu/reference/skin_scalar.h"
+#include "ppu/spe_bodies/job_records.h"
 #include "ppu/spe_bodies/skin_orchestrator.h"
 #include "softcell/jobs/job_system.h"
 #include "softcell/ls_sim/findings.h"
@@ -173,7 +176,7 @@ TEST(Skin, RefusesAJobWithTooManyCorners) {
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   const ls_sim::KernelImage image = test::kernel_image("skin");
-  dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 3);
+  dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 3, {.record = ppu::kSkinJobRecord});
   jobs[0].window[0].count = spu::kSkinMaxCorners + 1;
   jobs[1].window[0].count = spu::kSkinMaxCorners;
   jobs[1].window[1].count = 1;
@@ -193,7 +196,7 @@ TEST(Skin, AnEmptyJobIsDone) {
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   const ls_sim::KernelImage image = test::kernel_image("skin");
-  dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 1);
+  dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 1, {.record = ppu::kSkinJobRecord});
   ppu::JobChain batch(system, "empty", 1);
   batch.add({system.place(image), jobs.ea()});
   batch.kick();
@@ -206,8 +209,10 @@ TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop");
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   ls_sim::KernelImage broken = test::kernel_image("skin");
-  broken.bytes[broken.entry - ls_sim::kEnvironmentBytes] = std::byte{0x0F};  // ud2
-  broken.bytes[broken.entry - ls_sim::kEnvironmentBytes + 1] = std::byte{0x0B};
+  const bool is_spu = broken.machine == ls_sim::Machine::kSpu;
+  const std::array<std::uint8_t, 4> invalid =
+      is_spu ? std::array<std::uint8_t, 4>{0x00, 0xE0, 0, 0} : std::array<std::uint8_t, 4>{0x0F, 0x0B, 0, 0};
+  std::memcpy(broken.bytes.data() + (broken.main - broken.begin), invalid.data(), invalid.size());
   const ppu::TriangleMesh mesh = ppu::make_sphere(0.7f, 8);
   const ppu::Lattice<3> lattice = ppu::voxelize(mesh, 0.35f);
   const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));

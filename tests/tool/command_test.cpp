@@ -84,6 +84,16 @@ TEST(Command, SkinsOnTheGpuFromTheParticlesAlone) {
   EXPECT_NE(wrong.output.find("--skin cpu: give spe or gpu"), std::string::npos) << wrong.output;
 }
 
+TEST(Command, ContactsOfWhatIsDrawnAreNotInterpreted) {
+  const CommandResult run =
+      run_softcell(kDrop + std::string("--frames 1 --engine interpreter --contacts surface"));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(
+      run.output.find("--engine interpreter: the kernels of surface contacts do not run interpreted yet"),
+      std::string::npos)
+      << run.output;
+}
+
 TEST(Command, TheLastPictureIsTheSameWithAndWithoutFiles) {
   const ScratchFolder folder;
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out") + " --json " +
@@ -263,6 +273,7 @@ TEST(Command, ThePpuStepsBodiesInTwoDimensionsThatNoLocalStoreHolds) {
   // 1,369 and 1,521 particles. The solvers of SPEs and PPU differ in last bits.
   EXPECT_NE(state_hash(36, ""), state_hash(36, " --engine reference"));
   EXPECT_EQ(state_hash(38, ""), state_hash(38, " --engine reference"));
+  EXPECT_EQ(state_hash(36, ""), state_hash(36, " --engine interpreter"));
 }
 
 TEST(Command, DrawsTheFiguresOverAPictureWhereItIsAsked) {
@@ -308,7 +319,7 @@ TEST(Command, RefusesAReplayOfAnotherVersionOrSceneInOneSentence) {
                 "a recording of the scene mine, and this is man; give the one that was recorded with "
                 "--scene\n");
   EXPECT_EQ(refusal("demo 3d --headless --replay " + recording),
-            begin + "line 2: this is a recording of demo 2d, and here runs demo 3d\n");
+            begin + "line 2: this is a recording of demo 2d, and this is demo 3d\n");
   write_file(recording, "softcell recording 2\ndimension 2\n");
   EXPECT_EQ(refusal(demo + "--replay " + recording),
             begin +
@@ -322,7 +333,7 @@ TEST(Command, DoesNotPutAModelIntoASceneWithoutAPlaceForIt) {
   const CommandResult run =
       run_softcell("demo 3d --headless --scene arena --mesh " + (folder / "cube.obj") + " --cell 0.25");
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.output.find("--mesh does not go with scene arena"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("--mesh cannot be used with scene arena"), std::string::npos) << run.output;
 }
 
 TEST(Command, ListsBenchmarksWithoutRunningThem) {
@@ -396,6 +407,12 @@ TEST(Command, PrintsTheBudgetOfEveryKernel) {
     EXPECT_LE(row["total"], row["budget"]) << row["kernel"];
     EXPECT_LE(row["stack_used"], row["stack"]) << row["kernel"];
     EXPECT_GT(row["stack_used"], 0) << row["kernel"];
+    const auto& spu = row["spu"];
+    EXPECT_EQ(spu["budget"], row["budget"]) << row["kernel"];
+    EXPECT_LE(spu["total"], spu["budget"]) << row["kernel"];
+    EXPECT_LE(spu["stack_used"], spu["stack"]) << row["kernel"];
+    EXPECT_GT(spu["stack_used"], 0) << row["kernel"];
+    EXPECT_GT(spu["text"], 0) << row["kernel"];
     if (row["kernel"] != "skin") continue;
     has_skin = true;
     EXPECT_LE(row["total"], 96 * 1024);
@@ -647,6 +664,34 @@ TEST(Command, PrintsItsSummaryInColumns) {
   }
 }
 
+// 41 x 41 particles fit no local store; 9 do.
+TEST(Command, TheSummarySaysWhoSteppedTheBodies) {
+  const ScratchFolder folder;
+  std::string rows;
+  for (int i = 0; i < 40; ++i) rows += "'" + std::string(40, '#') + "',";
+  write_file(folder / "large.lua", "return { rows = { " + rows + " } }");
+  write_file(folder / "small.lua", "return { rows = { '##', '##' } }");
+  write_file(folder / "both.toml",
+             "dimension = 2\n[[soft_body]]\ncell_size = 0.05\nlattice = \"large.lua\"\n"
+             "[[soft_body]]\ncell_size = 0.05\nlattice = \"small.lua\"\nposition = [3, 0]\n");
+  const auto who = [&](const std::string& options) {
+    const CommandResult run = run_softcell("demo 2d --headless --frames 1 --size 32x32 --json " +
+                                           (folder / "f.json") + " " + options);
+    EXPECT_EQ(run.status, 0) << run.output;
+    const std::size_t line = run.output.find("stepped:   ");
+    return run.output.substr(line, run.output.find('\n', line) - line);
+  };
+  const std::string both = "--scene " + (folder / "both.toml");
+  EXPECT_EQ(who(both), "stepped:   1 by the SPEs, 1 by the PPU because it does not fit a local store");
+  EXPECT_EQ(read_json(folder / "f.json")["bodies_on_ppu"], 1);
+  EXPECT_EQ(who(both + " --checked"),
+            "stepped:   1 by the SPEs, 1 by the PPU because it does not fit a local store, where checked "
+            "kernels have less room");
+  EXPECT_EQ(who(both + " --engine reference"), "stepped:   by the PPU, as --engine reference asks");
+  EXPECT_EQ(who(""), "stepped:   by the SPEs");
+  EXPECT_EQ(read_json(folder / "f.json")["bodies_on_ppu"], 0);
+}
+
 TEST(Command, TheSummaryBeginsWithWhatBinds) {
   const ScratchFolder folder;
   const CommandResult run = run_softcell(kDrop + std::string("--frames 2 --json ") + (folder / "s.json"));
@@ -654,8 +699,8 @@ TEST(Command, TheSummaryBeginsWithWhatBinds) {
   std::smatch first;
   ASSERT_TRUE(std::regex_search(
       run.output, first,
-      std::regex("^[0-9.]+ frames a second; (contacts and rigid bodies|shape matching|skinning|handing "
-                 "particles to and fro) ([0-9]+) %\n")))
+      std::regex("^[0-9.]+ frames a second; (contacts and rigid bodies|shape matching|skinning|copying "
+                 "particles) ([0-9]+) %\n")))
       << run.output;
   const auto shares = read_json(folder / "s.json")["time_shares"];
   double most = 0, sum = 0;
@@ -790,8 +835,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"", 2, "say what to do: demo 2d, demo 3d, spu run"},
         Refusal{"demo", 2, "say what to do: demo 2d, demo 3d ("},
-        Refusal{"spu", 2, "say what to do: spu run, spu explore, spu budget ("},
-        Refusal{"dance", 2, "softcell has no command 'dance'; there are: demo, spu, scenes,"},
+        Refusal{"spu", 2,
+                "say what to do: spu run, spu explore, spu timing, spu disasm, spu debug, spu budget ("},
+        Refusal{"dance", 2, "softcell has no command 'dance'; there are: demo, spu, run, scenes,"},
         Refusal{"dmeo", 2, "softcell has no command 'dmeo'; did you mean demo? ("},
         Refusal{"spu bugdet", 2, "softcell spu has no command 'bugdet'; did you mean budget? ("},
         Refusal{"help spu rnu", 2, "softcell spu has no command 'rnu'; did you mean run? ("},
@@ -812,9 +858,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"report --outt a b", 2, "has no option --outt; did you mean --out?"},
         Refusal{"demo 3d --frames 3 --frames 4", 2, "--frames is given 2 times; give it once"},
         Refusal{"demo 3d --frames 3 --frames 4 --headless", 2, "--frames is given 2 times; give it once"},
-        Refusal{"demo 3d --frames", 2, "--frames needs a value behind it: FRAMES"},
-        Refusal{"demo 3d --headless --frames", 2, "--frames needs a value behind it: FRAMES"},
-        Refusal{"demo 3d --headless --quiet --frames 1 --scene", 2, "--scene needs a value behind it: SCENE"},
+        Refusal{"demo 3d --frames", 2, "--frames needs a value: FRAMES"},
+        Refusal{"demo 3d --headless --frames", 2, "--frames needs a value: FRAMES"},
+        Refusal{"demo 3d --headless --quiet --frames 1 --scene", 2, "--scene needs a value: SCENE"},
         Refusal{"demo 3d -headless --json %s/x", 2,
                 "softcell demo 3d has no option -headless; did you mean --headless?"},
         Refusal{"demo 3d -hx", 2, "softcell demo 3d has no option -hx ("},
@@ -830,11 +876,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{SC_DEMO "--dma sometimes", 2, "random:SEED"},
         Refusal{SC_DEMO "--dma random:", 2, "random:SEED"},
         Refusal{SC_DEMO "--dma random:x", 2, "random:SEED"},
-        Refusal{"demo 3d --headless --size ''", 2, "--size needs a value behind it: WIDTHxHEIGHT"},
-        Refusal{SC_DEMO "--engine ''", 2, "--engine needs a value behind it: native|reference"},
-        Refusal{SC_DEMO "--skin ''", 2, "--skin needs a value behind it: spe|gpu"},
-        Refusal{SC_DEMO "--view ''", 2, "--view needs a value behind it: mesh|lattice"},
-        Refusal{SC_DEMO "--json ''", 2, "--json needs a value behind it: FILE"},
+        Refusal{"demo 3d --headless --size ''", 2, "--size needs a value: WIDTHxHEIGHT"},
+        Refusal{SC_DEMO "--engine ''", 2, "--engine needs a value: native|interpreter|reference"},
+        Refusal{SC_DEMO "--skin ''", 2, "--skin needs a value: spe|gpu"},
+        Refusal{SC_DEMO "--view ''", 2, "--view needs a value: mesh|lattice"},
+        Refusal{SC_DEMO "--json ''", 2, "--json needs a value: FILE"},
         Refusal{"demo 2d --headless --frames 1e3", 2,
                 "--frames 1e3: give a whole number from 1 to 1000000 ("},
         Refusal{"demo 2d --headless --frames 1.5", 2,
@@ -877,7 +923,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "there is no file nowhere.spu.elf, and no kernel of softcell"},
         Refusal{"spu budget %s/cube.obj", 1, "cube.obj"},
         Refusal{"spu budget --checked job_loop", 1, "has no checked flavour"},
-        Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is no file"},
+        Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is not a regular file"},
         Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"}, Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
         Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},
         Refusal{SC_DEMO "--mesh %s/truncated.ply", 1, "truncated.ply"},

@@ -215,7 +215,7 @@ TEST_F(SpuCommand, ReadsOnlyFilesThatFit) {
   std::filesystem::resize_file(folder_ / "huge.bin", std::uintmax_t{1} << 40);  // of holes
   EXPECT_NE(refusal(folder_ / "huge.bin").find("of 1099511627776 bytes does not fit"), std::string::npos);
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  EXPECT_NE(refusal(folder_ / "pipe").find("pipe: it is no file"), std::string::npos);
+  EXPECT_NE(refusal(folder_ / "pipe").find("pipe: it is not a regular file"), std::string::npos);
 }
 
 TEST_F(SpuCommand, WritesATrace) {
@@ -511,18 +511,18 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"spu run " + kTalk + " --deadline soon", 2, "seconds"},
                     Refusal{"spu explore " + kTalk + " --seeds 0", 2, "--seeds"}));
 
-INSTANTIATE_TEST_SUITE_P(BadInput, SpuCommandRefuses,
-                         testing::Values(Refusal{"spu run no_such_kernel", 1, "transfers"},
-                                         Refusal{"spu run " SOFTCELL_COMMAND, 1, "kernel image"},
-                                         Refusal{"spu run /", 1, "folder"},
-                                         Refusal{"spu run --checked " SOFTCELL_COMMAND, 1, ".spu.elf"},
-                                         Refusal{"spu run " + kTalk + " --in x=/no/such/file", 1,
-                                                 "/no/such/file"},
-                                         Refusal{"spu run " + kTalk + " --in x=/dev/zero", 1,
-                                                 "cannot read /dev/zero: it is no file"},
-                                         Refusal{"spu run " + kTalk + " --inout x=/dev/null", 1, "no file"},
-                                         Refusal{"spu run /dev/zero", 1, "/dev/zero: it is no file"},
-                                         Refusal{"spu run " + kTalk + " --out x=f:300M", 1, "does not fit"}));
+INSTANTIATE_TEST_SUITE_P(
+    BadInput, SpuCommandRefuses,
+    testing::Values(Refusal{"spu run no_such_kernel", 1, "transfers"},
+                    Refusal{"spu run " SOFTCELL_COMMAND, 1, "kernel image"},
+                    Refusal{"spu run /", 1, "it is a directory"},
+                    Refusal{"spu run --checked " SOFTCELL_COMMAND, 1, ".spu.elf"},
+                    Refusal{"spu run " + kTalk + " --in x=/no/such/file", 1, "/no/such/file"},
+                    Refusal{"spu run " + kTalk + " --in x=/dev/zero", 1,
+                            "cannot read /dev/zero: it is not a regular file"},
+                    Refusal{"spu run " + kTalk + " --inout x=/dev/null", 1, "it is not a regular file"},
+                    Refusal{"spu run /dev/zero", 1, "/dev/zero: it is not a regular file"},
+                    Refusal{"spu run " + kTalk + " --out x=f:300M", 1, "does not fit"}));
 
 }  // namespace
 }  // namespace softcell::tests

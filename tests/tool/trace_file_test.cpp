@@ -140,8 +140,8 @@ INSTANTIATE_TEST_SUITE_P(
                "\"ts\" is \"now\"; a time in microseconds"},
         Damage{"negative duration", [](json& f) { event(f, "job")["dur"] = -1; }, "\"dur\" is -1"},
         Damage{"absurd time", [](json& f) { event(f, "job")["ts"] = 1e300; }, "a time in microseconds"},
-        Damage{"seventh SPE", [](json& f) { event(f, "job")["pid"] = 7; },
-               "\"pid\" is 7; a whole number from 1 to 6"},
+        Damage{"SPE beyond all contexts", [](json& f) { event(f, "job")["pid"] = 257; },
+               "\"pid\" is 257; a whole number from 1 to 256"},
         Damage{"row of another SPE", [](json& f) { event(f, "job")["tid"] = 5001; }, "\"tid\" is 5001"},
         Damage{"more SPEs than it says", [](json& f) { f["softcell"]["spes"] = 1; }, "\"spes\" is 1"},
         Damage{"fractional job", [](json& f) { event(f, "job")["args"]["job"] = 1.5; }, "\"job\" is 1.5"},
@@ -184,7 +184,7 @@ TEST(TraceFile, RefusesWhatIsNoJson) {
       parse_trace(text);
       FAIL() << "accepted";
     } catch (const std::runtime_error& error) {
-      EXPECT_EQ(std::string(error.what()).rfind("it is no JSON: ", 0), 0u) << error.what();
+      EXPECT_EQ(std::string(error.what()).rfind("it is not JSON: ", 0), 0u) << error.what();
     }
   }
 }

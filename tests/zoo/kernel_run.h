@@ -7,6 +7,7 @@
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/image.h"
 
 namespace softcell::zoo {
 
@@ -19,6 +20,8 @@ struct Observation {
 };
 
 /// argp leads to 64 KB of words, each of which is its own index.
-Observation run(const KernelCard& card, Flavour flavour, const dma::Schedule& schedule);
+/// @param machine  kSpu: the kernel as built for the SPU, by the interpreter; only with a compiler for the SPU
+Observation run(const KernelCard& card, Flavour flavour, const dma::Schedule& schedule,
+                ls_sim::Machine machine = ls_sim::Machine::kHost);
 
 }  // namespace softcell::zoo

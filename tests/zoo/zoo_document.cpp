@@ -53,9 +53,11 @@ std::string message_of(const KernelCard& card) {
 std::string for_the_table(const std::string& message) {
   static const std::regex place_in_image("(LSA|list|address) 0x[0-9A-F]{5}\\b");
   static const std::regex distance("[0-9]+ bytes past the end of the local store");
+  static const std::regex place_in_variable("(the instruction at [a-z]+ \\+) [0-9]+");
   static const std::regex moment("did not end in time.*");
   static const std::regex bar("\\|");
   std::string text = std::regex_replace(message, place_in_image, "$1 0x.....");
+  text = std::regex_replace(text, place_in_variable, "$1 ...");
   text = std::regex_replace(text, distance, "... bytes past the end of the local store");
   text = std::regex_replace(text, moment, "did not end in time");
   return std::regex_replace(text, bar, "\\|");

@@ -90,9 +90,14 @@ INSTANTIATE_TEST_SUITE_P(All, ZooLegal, ::testing::ValuesIn(read_cards("legal"))
 /// What no kernel can do, and why.
 const std::map<dma::Rule, std::string> kNotForKernels = {
     {dma::Rule::kNotOnProxyQueue, "only the PPU queues proxy commands; see the tests of the proxy queue"},
+    {dma::Rule::kEaOutsideAllocation,
+     "only the memory of a host program has allocations; see the tests of host programs and of libspe2"},
     {dma::Rule::kImageNotLoadable, "the image is refused before there is a kernel; see the tests of images"},
     {dma::Rule::kStaleInstructions,
      "the host's processor does it, not the kernel; see the tests of the native engine"},
+    {dma::Rule::kStopZero, "kernels of the host have no such instruction; see the tests of the interpreter"},
+    {dma::Rule::kJumpOutsideCode, "the host's processor does not tell; see the tests of the interpreter"},
+    {dma::Rule::kUninitialisedAddress, "compilers warn of it for the host; see the tests of the interpreter"},
     {dma::Rule::kHostFailure, "the host fails, not the kernel; see the tests of host failures"},
 };
 

@@ -35,7 +35,7 @@
   function showAll() {
     colours.forget();
     byId("subtitle").textContent = `${plural(trace.count("jobs"), "job")} on ${plural(trace.spes.length, "SPE")}, recorded by softcell ${trace.version}`;
-    byId("written-by").textContent = `softcell report of a trace by softcell ${trace.version}. Times are of the host's steady clock, from the first event on.`;
+    byId("written-by").textContent = `softcell report of a trace by softcell ${trace.version}. Times are of the ${trace.simulated ? "simulated clocks of the SPEs" : "host's steady clock"}, from the first event on.`;
     const legend = [...trace.kernels.map((name) => [timeline.kernelColour(name), name]),
                     ...trace.channels.map((name) => [timeline.channelColour(name), `waits on ${name}`]),
                     [colours.of("get"), "get"], [colours.of("put"), "put"], [colours.of("other"), "other commands"], [colours.of("bad"), "finding, failure"]];

@@ -73,6 +73,7 @@ class Spe {
 class Trace {
   constructor(data) {
     this.version = data.version;
+    this.simulated = data.simulated;
     this.images = data.images;
     this.spes = data.spes.map((spe, number) => new Spe(number, spe, data.names));
     const first = Math.min(...this.spes.map((spe) => spe.first()));

@@ -2,6 +2,7 @@
 
 #include "all_verbs.h"
 #include "report/report_verb.h"
+#include "run/run_verb.h"
 #include "spu/spu_verbs.h"
 
 namespace softcell::tool {
@@ -9,6 +10,7 @@ namespace softcell::tool {
 Verbs all_verbs() {
   Verbs verbs;
   verbs.push_back(spu_verbs({plain_samples().begin(), plain_samples().end()}));
+  verbs.push_back(run_verb());
   verbs.push_back(report_verb());
   return verbs;
 }

@@ -12,6 +12,7 @@
 #include "all_verbs.h"
 #include "command_line/shell_verbs.h"
 #include "command_line/usage_sentence.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 #include "verb/exit_status.h"
 
@@ -25,6 +26,7 @@ class CommandLine {
  public:
   CommandLine() : verbs_(all_verbs()) {
     verbs_.push_back(shell_verbs(SOFTCELL_VERSION));
+    SC_ASSERT(!verbs_.empty() && verbs_.back() != nullptr, "{} verbs, one of them none", verbs_.size());
     app_.require_subcommand(0, 1);
     app_.set_version_flag("--version", "softcell " SOFTCELL_VERSION);
     for (const auto& verb : verbs_) verb->add_to(app_, chosen_);

@@ -1,5 +1,5 @@
 #pragma once
-// What the demos in two and three dimensions have in common for those who run them: pictures, a window.
+// The interface of the demos in two and three dimensions, for headless runs and for windows.
 
 #include <cstdint>
 #include <functional>
@@ -17,24 +17,25 @@ namespace softcell::demos {
 /// How much there is in a scene.
 struct DemoCounts {
   std::size_t soft_bodies = 0, rigid_bodies = 0, particles = 0, vertices = 0;
+  std::size_t bodies_on_ppu = 0;  ///< soft bodies that the PPU steps
 };
 
 class WindowInput;
 
-/// A scene at work, and how it looks. Used by one thread, where nothing else is said.
+/// A scene, its simulation and its view. One thread uses it, except where stated.
 class Demo {
  public:
   virtual ~Demo() = default;
 
   virtual const std::string& scene_name() const = 0;
-  virtual int frames()
-      const = 0;  ///< as many as the replay has, or as the scene is worth watching without a user
+  /// Frames of the replay, or the number that the scene suggests for a run without a user.
+  virtual int frames() const = 0;
   virtual DemoCounts counts() const = 0;
 
   /// Simulates a frame of 1/60 s.
   /// @throws std::runtime_error  an SPE failed, a body became NaN, or a recording is full.
   virtual FrameTimes step() = 0;
-  /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().
+  /// Ends the work of the SPEs, so that statistics and trace are complete. Do not step afterwards. @throws as step().
   virtual void stop() = 0;
   virtual std::uint64_t state_hash() const = 0;
   virtual std::vector<ls_sim::SpeStatistics> spe_statistics() const = 0;
@@ -52,15 +53,15 @@ class Demo {
 
   // In a window:
 
-  /// What the user does at it happens with the next step(), unless that is a replay's.
+  /// The user's input. It takes effect in the next step(), except in a replay.
   virtual WindowInput& input() = 0;
   virtual int dimension() const = 0;
   virtual bool paused() const = 0;
   virtual bool replays() const = 0;
-  /// Copies the frame that is shown for draw_published().
+  /// Copies the present frame, for draw_published().
   virtual void publish() = 0;
-  /// Draws the newest published frame. May be called by another thread than all others, which may go on;
-  /// make_view() by the same, while they wait.
+  /// Draws the newest published frame. A second thread may call it while the first one steps the demo. That
+  /// thread must also have called make_view(), while the first one waited.
   virtual void draw_published(const Look& look) = 0;
 };
 

@@ -1,10 +1,12 @@
 #pragma once
-// Hands the newest of a thread's values to another thread, neither of which waits for the other.
+// Passes the newest value of one thread to another. Neither waits for the other.
 
 #include <array>
 #include <condition_variable>
 #include <mutex>
 #include <utility>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
@@ -15,18 +17,19 @@ class Latest {
  public:
   // The writer's side.
 
-  /// To be filled; it has whatever an earlier one had.
+  /// The copy to be filled; it still holds an earlier value.
   Value& next() { return values_[writing_]; }
   /// Makes next() the newest.
   void publish() {
     {
       const std::lock_guard lock(mutex_);
+      SC_ASSERT(!closed_, "copy {} is published behind the last", writing_);
       std::swap(writing_, newest_);
       is_new_ = true;
     }
     changed_.notify_one();
   }
-  /// Ends the reader's wait(): there will be no more.
+  /// Ends the reader's wait(): the writer publishes nothing more.
   void close() {
     {
       const std::lock_guard lock(mutex_);
@@ -37,23 +40,25 @@ class Latest {
 
   // The reader's side.
 
-  /// The newest there was at the last update() or wait().
+  /// The value that was the newest at the last update() or wait().
   const Value& current() const { return values_[reading_]; }
   void update() {
     const std::lock_guard lock(mutex_);
-    take();
+    fetch();
   }
-  /// Until something is published that was not current yet. @return false: closed
+  /// Waits for a value that is newer than current(). @return false: the writer has called close()
   bool wait() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return is_new_ || closed_; });
     if (closed_) return false;
-    take();
+    fetch();
     return true;
   }
 
  private:
-  void take() {
+  void fetch() {
+    SC_ASSERT(writing_ + newest_ + reading_ == 3, "copies {}, {} and {} of three", writing_, newest_,
+              reading_);
     if (is_new_) std::swap(reading_, newest_);
     is_new_ = false;
   }

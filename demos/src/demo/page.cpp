@@ -10,6 +10,7 @@
 
 #include "frame_clock.h"
 #include "input/key_bindings.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 namespace {
@@ -89,6 +90,7 @@ void draw_statistics_box(const Page& page, float scale, const std::optional<doub
 }  // namespace
 
 void draw_statistics(const Page& page, float scale, render::Overlay& overlay, render::Renderer& renderer) {
+  SC_ASSERT(scale > 0, "the figures of scene '{}' are scaled by {}", page.scene, scale);
   // Dear ImGui makes a box as large as what was in it the time before, and hides it the first time.
   for (const bool for_size : {true, false}) {
     overlay.begin(renderer.width(), renderer.height(), 1.0f / 60);
@@ -99,6 +101,8 @@ void draw_statistics(const Page& page, float scale, render::Overlay& overlay, re
 }
 
 void draw_page(const Page& page, float scale, double shown_per_second) {
+  SC_ASSERT(scale > 0 && shown_per_second >= 0, "text scaled by {} over {} pictures a second", scale,
+            shown_per_second);
   const float margin = kMargin * scale;
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
   if (page.look.statistics && !page.look.help) draw_statistics_box(page, scale, shown_per_second);
@@ -111,6 +115,9 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
 
 Page DemoPages::next(const Demo& demo, const FrameTimes& times, const Look& look, int width, int height) {
   std::vector<ls_sim::SpeStatistics> now = demo.spe_statistics();
+  SC_ASSERT(before_.empty() || before_.size() == now.size(), "the pages of {} SPEs follow a demo with {}",
+            before_.size(), now.size());
+  SC_ASSERT(width >= 0 && height >= 0, "a page of {} by {} pixels", width, height);
   before_.resize(now.size());
   Page page{.look = look,
             .width = width,

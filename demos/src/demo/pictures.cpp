@@ -6,6 +6,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "softcell/base/assert.h"
 #include "softcell/render/offscreen_context.h"
 #include "softcell/render/png_io.h"
 
@@ -22,7 +23,7 @@ void make_picture_folders(const PictureOptions& options) {
     std::filesystem::create_directories(*options.out, error);
     if (!std::filesystem::is_directory(*options.out)) {
       throw std::runtime_error("--out " + options.out->string() +
-                               " is not a folder and cannot be made one: " + error.message());
+                               " is not a folder and cannot be created: " + error.message());
     }
   }
   if (options.video) {
@@ -33,6 +34,7 @@ void make_picture_folders(const PictureOptions& options) {
 }
 
 FrameFolder::FrameFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+  SC_ASSERT(std::filesystem::is_directory(folder_), "{} is no folder", folder_);
   static const std::regex numbered("frame_[0-9]{5,}\\.png");
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     if (std::regex_match(entry.path().filename().string(), numbered)) std::filesystem::remove(entry.path());
@@ -40,10 +42,13 @@ FrameFolder::FrameFolder(std::filesystem::path folder) : folder_(std::move(folde
 }
 
 void FrameFolder::write(int frame, const render::Image& image) const {
+  SC_ASSERT(frame >= 0, "the picture of frame {} has no name", frame);
   render::write_png(folder_ / fmt::format("frame_{:05}.png", frame), image, render::PngEffort::fast);
 }
 
 Pictures::Pictures(const PictureOptions& options, Demo& demo) : demo_(demo) {
+  SC_ASSERT(options.size.width > 0 && options.size.height > 0, "pictures of {} by {} pixels",
+            options.size.width, options.size.height);
   if (options.out) folder_.emplace(*options.out);
   if (options.video) {
     video_ = std::make_unique<render::VideoWriter>(*options.video, options.size.width, options.size.height,
@@ -68,7 +73,8 @@ const render::Image& Pictures::draw() {
   return renderer_->pixels();
 }
 
-void Pictures::take(int frame) {
+void Pictures::add(int frame) {
+  SC_ASSERT(frame >= 0, "a picture of frame {}", frame);
   const auto begin = std::chrono::steady_clock::now();
   const render::Image& image = draw();
   if (folder_) folder_->write(frame, image);

@@ -1,5 +1,5 @@
 #pragma once
-// Where a demo's pictures go: nowhere, files, a video.
+// The pictures of a headless run: numbered files, a video, or one for its hash alone.
 
 #include <cstdint>
 #include <filesystem>
@@ -20,7 +20,7 @@ struct PictureSize {
   int height = 720;
 };
 
-/// What pictures of a run there are to be.
+/// Which pictures a run makes.
 struct PictureOptions {
   std::optional<std::filesystem::path> out;  ///< folder for numbered frames
   std::optional<std::filesystem::path> video;
@@ -32,7 +32,7 @@ struct PictureOptions {
 /// cannot be made one.
 void make_picture_folders(const PictureOptions& options);
 
-/// The folder of numbered frames. Frames of an earlier run are removed, so that what is there is of one run.
+/// The folder of numbered frames. Removes those of an earlier run, so that all frames in it belong to one run.
 class FrameFolder {
  public:
   /// @pre the folder is there
@@ -52,10 +52,10 @@ class Pictures {
 
   bool every_frame() const { return folder_ || video_; }
 
-  /// After each frame: what the statistics over a picture of it say.
+  /// Call it after each frame: updates the statistics that stand over the pictures.
   void follow(const FrameTimes& times);
 
-  void take(int frame);
+  void add(int frame);
   /// Completes the video.
   void finish();
 

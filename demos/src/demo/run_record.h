@@ -10,28 +10,33 @@
 #include <vector>
 
 #include "demo.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 
 namespace softcell::demos {
 
 /// What a run measured.
 struct RunRecord {
-  std::vector<double> physics_ms, ppu_ms, gather_ms, solve_ms, apply_ms, skin_ms, solver_wait_ms,
-      skin_wait_ms;                ///< of each frame
+  /// Of each frame.
+  std::vector<double> physics_ms, ppu_ms, gather_ms, solve_ms, apply_ms, contacts_ms, skin_ms, solver_wait_ms,
+      skin_wait_ms;
   std::vector<double> picture_ms;  ///< of each picture
   std::uint64_t upload_bytes = 0;  ///< of vertices or particles, for all pictures
   double seconds = 0;              ///< of the frame loop, pictures included
   int frames = 0;
-  std::optional<int> asked_frames;  ///< nothing when the user says when the run ends
+  std::optional<int> asked_frames;  ///< none: the user decides when the run ends
   std::uint64_t image_hash = 0;     ///< of the last picture; a window's are not read back
   bool interrupted = false;
 
   void add(const FrameTimes& times) {
+    SC_ASSERT(physics_ms.size() == static_cast<std::size_t>(frames), "the times of {} frames of {}",
+              physics_ms.size(), frames);
     physics_ms.push_back(times.physics_ms);
     ppu_ms.push_back(times.ppu_ms);
     gather_ms.push_back(times.gather_ms);
     solve_ms.push_back(times.solve_ms);
     apply_ms.push_back(times.apply_ms);
+    contacts_ms.push_back(times.contacts_ms);
     skin_ms.push_back(times.skin_ms);
     solver_wait_ms.push_back(times.solver_wait_ms);
     skin_wait_ms.push_back(times.skin_wait_ms);
@@ -61,10 +66,11 @@ struct Run {
   RunRecord record;
 };
 
-/// Does the work and saves the recording of its frames, also when it fails, a frame that failed included:
-/// that is the run that one wants to see again. What goes wrong with saving is only printed then: the work's
-/// error is what ends the run.
+/// Does the work, then saves the recording of its frames. If the work throws, the recording is saved too, with
+/// the frame that failed, so that the failure can be replayed; an error of saving is then only printed, and the
+/// work's exception goes on.
 inline void run_recorded(Demo& demo, const std::function<void()>& work) {
+  SC_ASSERT(static_cast<bool>(work), "a run of scene '{}' without work", demo.scene_name());
   try {
     work();
   } catch (...) {

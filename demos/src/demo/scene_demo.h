@@ -1,6 +1,6 @@
 #pragma once
-// What the demos of both dimensions do alike: step a scene from its user or its replay, note what happened,
-// publish and draw it.
+// What the demos of both dimensions have in common: they step a scene with the events of its user or of its
+// replay, record the events, and publish and draw frames.
 
 #include <memory>
 #include <optional>
@@ -13,6 +13,7 @@
 #include "input/input_log.h"
 #include "input/user_input.h"
 #include "latest.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
@@ -33,6 +34,8 @@ class SceneDemo : public Demo {
         simulation_(scene_, how),
         kind_(view),
         input_(Types::kViews, pointing) {
+    SC_ASSERT(static_cast<int>(kind_) >= 0 && static_cast<int>(kind_) < Types::kViews, "view {} of {}", kind_,
+              Types::kViews);
     input_.set_look({.view = static_cast<int>(kind_)});
     input_.follow(simulation_.gravity(), simulation_.paused());
   }
@@ -51,7 +54,10 @@ class SceneDemo : public Demo {
   void save_recording() override { log_.save(state_hash()); }
   void check_replay() const override { log_.check(); }
   void make_view(render::Renderer& renderer) override { view_.emplace(scene_, simulation_, renderer, kind_); }
-  const render::Image& draw() override { return view_->draw(); }
+  const render::Image& draw() override {
+    SC_ASSERT(view_, "draw() before make_view() of scene '{}'", scene_.name);
+    return view_->draw();
+  }
 
   WindowInput& input() override { return input_; }
   int dimension() const override { return kDimension; }
@@ -62,6 +68,8 @@ class SceneDemo : public Demo {
     shown_.publish();
   }
   void draw_published(const Look& look) override {
+    SC_ASSERT(view_, "draw_published() before make_view() of scene '{}'", scene_.name);
+    SC_ASSERT(look.view >= 0 && look.view < Types::kViews, "view {} of {}", look.view, Types::kViews);
     shown_.update();
     view_->draw(shown_.current(), look);
   }
@@ -72,16 +80,16 @@ class SceneDemo : public Demo {
   typename Types::Simulation& simulation() { return simulation_; }
 
  private:
-  /// Notes the frame also when it fails, so that a replay fails as well.
+  /// Records a frame that fails, too, so that a replay fails in it.
   FrameTimes step_simulation(std::span<const InputEvent<kDimension>> events) {
     FrameTimes times;
     try {
       times = simulation_.step(events);
     } catch (...) {
-      log_.note(frame_++, simulation_.last_events());
+      log_.record(frame_++, simulation_.last_events());
       throw;
     }
-    log_.note(frame_++, simulation_.last_events());
+    log_.record(frame_++, simulation_.last_events());
     log_.require_room();
     return times;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What events have made of a run: its gravity, who holds what, whether time stands still.
+// The state of a run that events change: gravity, tilt, hands, pause.
 
 #include <optional>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace softcell::demos {
 
-/// Used by one thread. What only the simulation can do, it is asked to do: see take().
+/// One thread uses it. It leaves to the simulation what only that can do: see apply().
 template <int Dimension>
 class Controls {
  public:
@@ -18,11 +18,12 @@ class Controls {
 
   explicit Controls(const Vector& gravity) : initial_gravity_(gravity), gravity_(gravity) {}
 
-  /// Does what the events say, in their order.
+  /// Applies events in their order.
   /// @param bodies  the soft bodies: see Hands
-  /// @param world   reset() makes bodies and world what they were at the beginning, home(i) the soft body i
+  /// @param world   has reset(), which restores bodies and world as they were at the beginning, and home(i), which
+  ///                does so with soft body i
   template <class Bodies, class World>
-  void take(std::span<const Event> events, Bodies& bodies, World& world) {
+  void apply(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
       switch (event.action) {
         case Action::kGrab:
@@ -65,7 +66,7 @@ class Controls {
     }
   }
 
-  /// Whether time goes on for a frame. A single step is used up by asking.
+  /// Whether this frame is simulated. Ends a single step, so call it once per frame.
   bool advance() {
     const bool goes_on = !paused_ || single_step_;
     single_step_ = false;

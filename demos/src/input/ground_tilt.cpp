@@ -15,17 +15,17 @@ Vector2f clamped(const Vector2f& v, float most) { return v.cwiseMax(-most).cwise
 
 }  // namespace
 
-void GroundTilt::take(const SDL_Event& event) {
+void GroundTilt::handle(const SDL_Event& event) {
   switch (event.type) {
     case SDL_KEYDOWN:
     case SDL_KEYUP:
-      take_key(event.key);
+      handle_key(event.key);
       break;
     case SDL_CONTROLLERAXISMOTION:
-      take_axis(event.caxis);
+      handle_axis(event.caxis);
       break;
     case SDL_CONTROLLERSENSORUPDATE:
-      take_sensor(event.csensor);
+      handle_sensor(event.csensor);
       break;
     case SDL_CONTROLLERDEVICEREMOVED:
       stick_.setZero();
@@ -36,7 +36,7 @@ void GroundTilt::take(const SDL_Event& event) {
   }
 }
 
-void GroundTilt::take_key(const SDL_KeyboardEvent& key) {
+void GroundTilt::handle_key(const SDL_KeyboardEvent& key) {
   const float down = key.type == SDL_KEYDOWN ? 1 : 0;
   switch (key.keysym.sym) {
     case SDLK_LEFT:
@@ -56,7 +56,7 @@ void GroundTilt::take_key(const SDL_KeyboardEvent& key) {
   }
 }
 
-void GroundTilt::take_axis(const SDL_ControllerAxisEvent& axis) {
+void GroundTilt::handle_axis(const SDL_ControllerAxisEvent& axis) {
   const float value = std::clamp(static_cast<float>(axis.value) / 32767, -1.0f, 1.0f);
   const float used = std::abs(value) < kDeadZone ? 0 : value;
   if (axis.axis == SDL_CONTROLLER_AXIS_LEFTX) stick_.x() = used;
@@ -65,7 +65,7 @@ void GroundTilt::take_axis(const SDL_ControllerAxisEvent& axis) {
 
 /// An accelerometer at rest shows what holds it up: 9.8 m/s^2 along its own y when it lies flat; x is to the
 /// right and z towards the player. [SDL_sensor.h, "Accelerometer sensor"] documented
-void GroundTilt::take_sensor(const SDL_ControllerSensorEvent& sensor) {
+void GroundTilt::handle_sensor(const SDL_ControllerSensorEvent& sensor) {
   if (sensor.sensor != SDL_SENSOR_ACCEL) return;
   const auto [x, y, z] = std::array{sensor.data[0], sensor.data[1], sensor.data[2]};
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return;

@@ -16,7 +16,7 @@ class GroundTilt {
   static constexpr float kMost = 0.35f;          ///< about either axis: 20 degrees
   static constexpr float kMostInAFrame = 0.03f;  ///< however fast the user is
 
-  void take(const SDL_Event& event);
+  void handle(const SDL_Event& event);
 
   /// The ground is level again, until the user does something.
   void forget();
@@ -25,9 +25,9 @@ class GroundTilt {
   std::optional<Eigen::Vector3f> next_frame();
 
  private:
-  void take_key(const SDL_KeyboardEvent& key);
-  void take_axis(const SDL_ControllerAxisEvent& axis);
-  void take_sensor(const SDL_ControllerSensorEvent& sensor);
+  void handle_key(const SDL_KeyboardEvent& key);
+  void handle_axis(const SDL_ControllerAxisEvent& axis);
+  void handle_sensor(const SDL_ControllerSensorEvent& sensor);
 
   struct Arrows {
     float left = 0, right = 0, away = 0, near = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Hands that hold particles of soft bodies of either dimension, and draw them along.
+// Hands that hold particles of soft bodies, in either dimension, and pull them along.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "input_event.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
-/// Used by one thread. Bodies: has size() and operator[], a SoftBody or a SoftBody<2>.
+/// One thread uses it. `Bodies` has size() and operator[], which returns a SoftBody<Dimension>.
 template <int Dimension>
 class Hands {
  public:
@@ -44,7 +45,7 @@ class Hands {
   }
   void release_all() { held_.clear(); }
 
-  /// What is held: for pictures, and for who wants to know. `target` is where the hand is.
+  /// A particle that is held, and `target`, where the hand is.
   struct Held {
     std::uint32_t hand;
     std::size_t body, particle;
@@ -52,12 +53,16 @@ class Hands {
   };
   const std::vector<Held>& held() const { return held_; }
 
-  /// Gives each held particle the velocity that takes it to its hand in kReachSeconds. Call it before each
-  /// step: the rest of the body pulls it back in between.
+  /// Sets the velocity of each held particle so that it reaches its hand in kReachSeconds. Call it before each
+  /// step, because the rest of the body pulls the particle back in the meantime.
   template <class Bodies>
   void pull(Bodies& bodies) const {
     for (const Held& held : held_) {
+      SC_ASSERT(held.body < bodies.size(), "hand {} holds body {} of {}", held.hand, held.body,
+                bodies.size());
       auto& body = bodies[held.body];
+      SC_ASSERT(held.particle < body.positions().size(), "hand {} holds particle {} of {}", held.hand,
+                held.particle, body.positions().size());
       const Vector wanted = (held.target - body.positions()[held.particle]) / kReachSeconds;
       body.add_particle_velocity(held.particle, wanted - body.velocities()[held.particle]);
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Where the events of a run come from when it is a replay, and where they go when it is recorded.
+// The events of a run: reads them from a recording in a replay, and writes them to one.
 
 #include <filesystem>
 #include <memory>
@@ -9,6 +9,7 @@
 
 #include "recording.h"
 #include "scene/scene_hash.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
 
 namespace softcell::demos {
@@ -18,7 +19,7 @@ struct RecordingFiles {
   std::optional<std::filesystem::path> replay;  ///< a recording to do again, in place of the scene's script
 };
 
-/// Used by one thread. Call in this order: the constructor, begin(), events_at() and note() for each frame,
+/// One thread uses it. Call in this order: the constructor, begin(), events_at() and record() for each frame,
 /// save(), check().
 template <int Dimension>
 class InputLog {
@@ -33,16 +34,18 @@ class InputLog {
     }
   }
 
-  /// Of the scene that was recorded; none: this is no replay.
+  /// The name of the recorded scene; none: this is no replay.
   std::optional<std::string> scene_name() const {
     return replay_ ? std::optional(replay_->scene) : std::nullopt;
   }
 
-  /// Takes the scene's script away when this is a replay: its events are in the recording. Opens the file of
-  /// what is recorded, so that one that cannot be written is no surprise at the end of a long run.
+  /// In a replay, removes the scene's script, because its events are in the recording. Opens the file of a new
+  /// recording now, so that a file that cannot be written ends the run at its beginning.
   /// @throws std::runtime_error  the replay is of another scene, or the file cannot be written.
   template <class SceneOfDimension>
   void begin(SceneOfDimension& scene) {
+    SC_ASSERT(record_.frames == 0 && !file_, "a log begins scene '{}' after {} frames", scene.name,
+              record_.frames);
     record_.scene = recordable_name(scene.name);
     record_.scene_hash = scene_hash(scene);
     if (replay_) {
@@ -53,22 +56,30 @@ class InputLog {
   }
 
   bool replays() const { return replay_.has_value(); }
-  /// The recording's. @pre replays()
-  std::int64_t frames() const { return replay_->frames; }
+  /// Frames of the recording. @pre replays()
+  std::int64_t frames() const {
+    SC_ASSERT(replay_, "frames() of a run in scene '{}', which is no replay", record_.scene);
+    return replay_->frames;
+  }
 
-  /// What the recording has for the frame; frames are asked for in order. Good until the next call.
+  /// The recorded events of a frame; none if this is no replay. Ask for frames in order. Valid until the next
+  /// call.
   std::span<const Event> events_at(std::int64_t frame) {
     events_.clear();
     if (!replay_) return events_;
+    SC_ASSERT(next_ == replay_->events.size() || replay_->events[next_].frame >= frame,
+              "frame {} is asked for, and event {} of frame {} was not", frame, next_,
+              replay_->events[next_].frame);
     const auto& recorded = replay_->events;
     for (; next_ < recorded.size() && recorded[next_].frame == frame; ++next_)
       events_.push_back(recorded[next_].event);
     return events_;
   }
 
-  /// What happened at the beginning of the frame. A recording without room for it is given up, as nothing
-  /// is known of the state before it: require_room().
-  void note(std::int64_t frame, std::span<const Event> events) {
+  /// Records the events at the beginning of a frame. Drops the whole recording if it has no room for them:
+  /// see require_room().
+  void record(std::int64_t frame, std::span<const Event> events) {
+    SC_ASSERT(frame >= record_.frames, "frame {} behind {} frames", frame, record_.frames);
     record_.frames = frame + 1;
     if (!file_) return;
     if (frame >= kMaxRecordedFrames || record_.events.size() + events.size() > kMaxRecordedEvents) {
@@ -78,7 +89,7 @@ class InputLog {
     for (const Event& event : events) record_.events.push_back({frame, event});
   }
 
-  /// @throws std::runtime_error  the recording was given up.
+  /// @throws std::runtime_error  record() has dropped the recording.
   void require_room() const {
     if (!path_ || file_) return;
     throw std::runtime_error(path_->string() + ": a recording has at most " +
@@ -94,12 +105,13 @@ class InputLog {
     file_->commit();
   }
 
-  /// @throws std::runtime_error  all of the recording was done again and did not end in its state.
+  /// @throws std::runtime_error  the replay has reached the end of the recording in another state.
   void check() const {
     if (!replay_ || record_.frames != replay_->frames || record_.state_hash == replay_->state_hash) return;
     throw std::runtime_error(
         replay_name_ +
-        ": the replay ends in another state than the recording; it depends on --engine, on what the kernels "
+        ": the replay ends in another state than the recording; the state depends on --engine, on what the "
+        "kernels "
         "of this softcell compute and how they round, and on the last bits of Bullet and Box2D on the "
         "machine "
         "and its C library");
@@ -116,7 +128,8 @@ class InputLog {
   }
 
   std::optional<std::filesystem::path> path_;  // of what is recorded
-  std::shared_ptr<base::WholeFile> file_;      // of all copies; one of them saves; null: given up
+  // Shared by all copies, of which one saves. Null: dropped, or none is asked for.
+  std::shared_ptr<base::WholeFile> file_;
   std::optional<Recording<Dimension>> replay_;
   std::string replay_name_;
   std::size_t next_ = 0;  // event of the replay

@@ -1,4 +1,5 @@
 #include "key_bindings.h"
+#include "softcell/base/assert.h"
 
 #include <array>
 
@@ -53,6 +54,7 @@ SDL_Keycode same_as(SDL_Keycode key) {
 std::span<const KeyBinding> key_bindings() { return kBindings; }
 
 std::optional<Command> command_of(const SDL_Event& event, int dimension) {
+  SC_ASSERT(dimension == 2 || dimension == 3, "an event in {} dimensions", dimension);
   if (event.type == SDL_QUIT) return Command::kQuit;
   for (const KeyBinding& binding : kBindings) {
     if (binding.only_in_2d && dimension != 2) continue;

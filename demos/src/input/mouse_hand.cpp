@@ -1,13 +1,17 @@
 #include "mouse_hand.h"
 
+#include <algorithm>
+
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
 
-void MouseHand::take(const SDL_Event& event, std::vector<InputEvent<2>>& events) {
+void MouseHand::handle(const SDL_Event& event, std::vector<InputEvent<2>>& events) {
   switch (event.type) {
     case SDL_WINDOWEVENT:
       if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
-        width_ = event.window.data1;
-        height_ = event.window.data2;
+        width_ = std::max(event.window.data1, 1);  // a window may shrink to nothing
+        height_ = std::max(event.window.data2, 1);
       }
       break;
     case SDL_MOUSEBUTTONDOWN:
@@ -32,6 +36,7 @@ void MouseHand::take(const SDL_Event& event, std::vector<InputEvent<2>>& events)
 }
 
 void MouseHand::move(const SDL_MouseMotionEvent& motion, std::vector<InputEvent<2>>& events) const {
+  SC_ASSERT(holds_, "the mouse moves nothing to ({}, {})", motion.x, motion.y);
   if (events.empty() || events.back().action != Action::kMoveHand)
     events.push_back({.action = Action::kMoveHand, .hand = kUsersHand});
   events.back().value = camera_.point_at(motion.x, motion.y, width_, height_);

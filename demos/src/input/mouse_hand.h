@@ -18,7 +18,7 @@ class MouseHand {
       : camera_(camera), width_(width), height_(height) {}
 
   /// Appends what the event means. Of moves that follow one another, the last counts.
-  void take(const SDL_Event& event, std::vector<InputEvent<2>>& events);
+  void handle(const SDL_Event& event, std::vector<InputEvent<2>>& events);
 
  private:
   void move(const SDL_MouseMotionEvent& motion, std::vector<InputEvent<2>>& events) const;

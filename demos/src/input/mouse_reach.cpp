@@ -1,18 +1,24 @@
 #include "mouse_reach.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
 MouseReach::MouseReach(Eye eye, Pick pick, int width, int height)
-    : eye_(std::move(eye)), pick_(std::move(pick)), width_(width), height_(height) {}
+    : eye_(std::move(eye)), pick_(std::move(pick)), width_(width), height_(height) {
+  SC_ASSERT(eye_ && width > 0 && height > 0, "a picture of {} by {} pixels, {} an eye", width, height,
+            eye_ ? "with" : "without");
+}
 
-bool MouseReach::take(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events) {
+bool MouseReach::handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events) {
   switch (event.type) {
     case SDL_WINDOWEVENT:
       if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
-        width_ = event.window.data1;
-        height_ = event.window.data2;
+        width_ = std::max(event.window.data1, 1);  // a window may shrink to nothing
+        height_ = std::max(event.window.data2, 1);
       }
       return false;
     case SDL_MOUSEBUTTONDOWN:
@@ -42,6 +48,7 @@ bool MouseReach::grab(const SDL_MouseButtonEvent& button, const Look& look,
 
 void MouseReach::move(const SDL_MouseMotionEvent& motion, const Look& look,
                       std::vector<InputEvent<3>>& events) const {
+  SC_ASSERT(taken_, "the mouse moves nothing to ({}, {})", motion.x, motion.y);
   const render::Camera camera = eye_(look);
   const Ray ray = ray_through(camera, motion.x, motion.y, width_, height_);
   const Eigen::Vector3f forward = camera.target - camera.eye;

@@ -30,7 +30,7 @@ class MouseReach {
 
   /// Appends what the event means. Of moves that follow one another, the last counts.
   /// @return true: the event was the hand's
-  bool take(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events);
+  bool handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events);
 
  private:
   bool grab(const SDL_MouseButtonEvent& button, const Look& look, std::vector<InputEvent<3>>& events);

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"
 #include "softcell/base/whole_file.h"
 
@@ -65,6 +66,7 @@ template <int Dimension>
 void append_line(std::string& text, const RecordedEvent<Dimension>& recorded) {
   const InputEvent<Dimension>& event = recorded.event;
   const ActionSyntax& syntax = kSyntax.at(static_cast<std::size_t>(event.action));
+  SC_ASSERT(Dimension >= syntax.lowest_dimension, "{} in {} dimensions", syntax.name, Dimension);
   fmt::format_to(std::back_inserter(text), "{} {}", recorded.frame, syntax.name);
   if (syntax.hand) append_number(text, event.hand, kUserName);
   if (syntax.body) append_number(text, event.body, kEveryBodyName);
@@ -91,7 +93,7 @@ class Reader {
     ++line_number_;
     line_begin_ = next_;
     const std::size_t end = text_.find('\n', next_);
-    if (end == std::string_view::npos) refuse("the file ends here, before its line 'end': it is not whole");
+    if (end == std::string_view::npos) refuse("the file ends here, before its line 'end': it was cut off");
     line_ = text_.substr(next_, end - next_);
     next_ = end + 1;
     if (line_.size() > kMaxLine + kMaxSceneName) refuse("is longer than any line of a recording");
@@ -114,11 +116,12 @@ class Reader {
 
   template <class Integer>
   Integer integer(std::string_view what, Integer low, Integer high) {
+    SC_ASSERT(low <= high, "{} is from {} to {}", what, low, high);
     const std::string_view found = word(what);
     Integer value{};
     const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
     if (error != std::errc{} || end != found.data() + found.size() || value < low || value > high)
-      refuse(fmt::format("{} '{}' is no number from {} to {}", what, quotable(found), low, high));
+      refuse(fmt::format("{} '{}' is not a number from {} to {}", what, quotable(found), low, high));
     return value;
   }
 
@@ -127,7 +130,7 @@ class Reader {
     std::uint64_t value = 0;
     std::from_chars(found.data(), found.data() + found.size(), value, 16);
     if (fmt::format("{:016x}", value) != found)
-      refuse(fmt::format("{} '{}' is no number of 16 hexadecimal digits", what, quotable(found)));
+      refuse(fmt::format("{} '{}' is not a number of 16 hexadecimal digits", what, quotable(found)));
     return value;
   }
 
@@ -149,7 +152,7 @@ class Reader {
   }
 
   void line_ends() const {
-    if (!line_.empty()) refuse(fmt::format("'{}' is more than belongs here", quotable(line_)));
+    if (!line_.empty()) refuse(fmt::format("'{}' was not expected here", quotable(line_)));
   }
 
   /// What stands in the file, fit for a sentence.
@@ -171,7 +174,7 @@ void read_header(Reader& reader, Recording<Dimension>& recording) {
   reader.next_line();
   const std::string_view title = reader.rest();
   if (!title.starts_with(kTitle))
-    reader.refuse("this is no recording: it does not begin with 'softcell recording'");
+    reader.refuse("this is not a recording: it does not begin with 'softcell recording'");
   if (title != fmt::format("{} {}", kTitle, kVersion)) {
     reader.refuse(fmt::format("a recording of another version, '{}'; this softcell reads '{} {}'",
                               Reader::quotable(title), kTitle, kVersion));
@@ -179,8 +182,7 @@ void read_header(Reader& reader, Recording<Dimension>& recording) {
   reader.next_line();
   reader.key("dimension");
   if (const int dimension = reader.integer<int>("the dimension", 2, 3); dimension != Dimension)
-    reader.refuse(
-        fmt::format("this is a recording of demo {}d, and here runs demo {}d", dimension, Dimension));
+    reader.refuse(fmt::format("this is a recording of demo {}d, and this is demo {}d", dimension, Dimension));
   reader.line_ends();
   reader.next_line();
   reader.key("scene");
@@ -223,6 +225,12 @@ std::uint64_t recording_checksum(std::string_view lines) { return XXH3_64bits(li
 
 template <int Dimension>
 std::string to_text(const Recording<Dimension>& recording) {
+  SC_ASSERT(recordable_name(recording.scene) == recording.scene,
+            "a scene's name of {} characters cannot be recorded", recording.scene.size());
+  SC_ASSERT(std::ranges::is_sorted(recording.events, {}, &RecordedEvent<Dimension>::frame),
+            "the {} events of a recording are out of order", recording.events.size());
+  SC_ASSERT(recording.events.empty() || recording.events.back().frame < recording.frames,
+            "an event of frame {} in a recording of {}", recording.events.back().frame, recording.frames);
   std::string text = fmt::format("{} {}\ndimension {}\nscene {}\nscene_hash {:016x}\n", kTitle, kVersion,
                                  Dimension, recording.scene, recording.scene_hash);
   for (const auto& event : recording.events) append_line(text, event);
@@ -260,7 +268,7 @@ Recording<Dimension> parse_recording(std::string_view text) {
   reader.next_line();
   reader.key("end");
   if (reader.hash("the checksum") != recording_checksum(text.substr(0, reader.line_begin())))
-    reader.refuse("the checksum does not fit: the lines above are not those that were recorded");
+    reader.refuse("the checksum is wrong: the lines above were changed after they were recorded");
   reader.line_ends();
   if (!reader.at_end()) reader.refuse("something follows the last line");
   return recording;

@@ -31,8 +31,8 @@ struct Recording {
   std::uint64_t scene_hash = 0;  ///< see scene_hash.h
   std::int64_t frames = 0;       ///< that were simulated, pauses included
   std::uint64_t state_hash = 0;  ///< after the last of them
-  std::vector<RecordedEvent<Dimension>> events =
-      {};  ///< by frame, each below `frames`; within one in their order
+  /// By frame, each below `frames`; within a frame in their order.
+  std::vector<RecordedEvent<Dimension>> events = {};
 
   bool operator==(const Recording&) const = default;
 };

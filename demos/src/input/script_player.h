@@ -9,11 +9,12 @@
 
 #include "input_event.h"
 #include "scene/scripted_input.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
-/// Frames last 1/60 s and are counted from 0; what a script says happens at the frame that is nearest to its
-/// time. Used by one thread; the script outlives it.
+/// Frames last 1/60 s and are counted from 0; an event of the script happens at the frame nearest to its time.
+/// One thread uses it; the script outlives it.
 template <int Dimension>
 class ScriptPlayer {
  public:
@@ -22,8 +23,9 @@ class ScriptPlayer {
 
   explicit ScriptPlayer(const ScriptedInput<Dimension>& script) : script_(script) {}
 
-  /// What happens at the beginning of the frame. Good until the next call.
+  /// The events at the beginning of a frame. Valid until the next call.
   std::span<const Event> events_at(std::int64_t frame) {
+    SC_ASSERT(frame >= 0, "frame {}", frame);
     events_.clear();
     for (const float time : script_.resets) {
       if (frame_at(time) == frame) events_.push_back({.action = Action::kReset});
@@ -47,8 +49,8 @@ class ScriptPlayer {
  private:
   static std::int64_t frame_at(float time) { return std::llround(double{time} * 60); }
 
-  /// Pauses may touch and overlap: time goes on where the last of them ends. One that ends at the frame at
-  /// which it begins is none.
+  /// Pauses may touch and overlap: time continues where the last of them ends. A pause that ends at the frame at
+  /// which it begins has no effect.
   void add_pauses(std::int64_t frame) {
     bool begins = false, ends = false, covered = false;
     for (const ScriptedPause& pause : script_.pauses) {
@@ -63,6 +65,7 @@ class ScriptPlayer {
   }
 
   void add_drag(std::uint32_t hand, std::int64_t frame) {
+    SC_ASSERT(hand < script_.drags.size(), "drag {} of {}", hand, script_.drags.size());
     const auto& drag = script_.drags[hand];
     const std::int64_t begin = frame_at(drag.begin), end = frame_at(drag.end);
     if (frame < begin || frame > end) return;

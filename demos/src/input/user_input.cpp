@@ -1,4 +1,5 @@
 #include "user_input.h"
+#include "softcell/base/assert.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,9 +27,10 @@ void move_camera(const SDL_Event& event, Look& look) {
 
 }  // namespace
 
-bool WindowInput::take_command(Command command) {
+bool WindowInput::handle_command(Command command) {
   switch (command) {
     case Command::kNextView:
+      SC_ASSERT(look_.view >= 0 && look_.view < views_, "view {} of {}", look_.view, views_);
       look_.view = (look_.view + 1) % views_;
       return true;
     case Command::kNextScene:
@@ -56,14 +58,14 @@ void UserInput<Dimension>::follow(const Vector& gravity, bool paused) {
 }
 
 template <int Dimension>
-void UserInput<Dimension>::take(const SDL_Event& event) {
-  if (const auto command = command_of(event, Dimension); command && !take_command(*command))
+void UserInput<Dimension>::handle(const SDL_Event& event) {
+  if (const auto command = command_of(event, Dimension); command && !handle_command(*command))
     do_command(*command);
   if constexpr (Dimension == 2) {
-    pointing_.hand.take(event, coming_);
+    pointing_.hand.handle(event, coming_);
   } else {
-    if (!pointing_.hand.take(event, look_, coming_)) move_camera(event, look_);
-    pointing_.tilt.take(event);
+    if (!pointing_.hand.handle(event, look_, coming_)) move_camera(event, look_);
+    pointing_.tilt.handle(event);
   }
 }
 

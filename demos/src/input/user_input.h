@@ -1,6 +1,6 @@
 #pragma once
-// What the user does at a window becomes the events of the next frame, a look, and wishes for whoever runs
-// the window. Needs no window itself.
+// Turns the events of a window into events of the next frame, a view, and requests (quit, next scene). Works
+// without a window, for tests.
 
 #include <SDL.h>
 
@@ -15,16 +15,17 @@
 #include "mouse_reach.h"
 #include "scene/look.h"
 #include "scene/scene_2d.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
 /// What does not depend on the number of dimensions. Used by one thread.
 class WindowInput {
  public:
-  explicit WindowInput(int views) : views_(views) {}
+  explicit WindowInput(int views) : views_(views) { SC_ASSERT(views > 0, "{} views", views); }
   virtual ~WindowInput() = default;
 
-  virtual void take(const SDL_Event& event) = 0;
+  virtual void handle(const SDL_Event& event) = 0;
 
   const Look& look() const { return look_; }
   void set_look(const Look& look) { look_ = look; }
@@ -32,8 +33,8 @@ class WindowInput {
   bool wants_next_scene() const { return next_scene_; }
 
  protected:
-  /// Does what is about the window; true: it was.
-  bool take_command(Command command);
+  /// Handles a command that concerns the window. @return  whether it did.
+  bool handle_command(Command command);
 
   Look look_;
 
@@ -42,8 +43,8 @@ class WindowInput {
   bool quit_ = false, next_scene_ = false;
 };
 
-/// What is pointed with: the mouse, a hand in two dimensions and in three, and there what tilts the ground. A
-/// mouse that takes nothing moves the camera in three.
+/// The pointing devices: the mouse, which is a hand in both dimensions, and in three what tilts the ground. In
+/// three dimensions a mouse that grabs nothing moves the camera.
 template <int Dimension>
 struct Pointing;
 template <>
@@ -72,7 +73,7 @@ class UserInput final : public WindowInput {
   /// What the simulation has become: keys that change gravity or pause go on from there.
   void follow(const Vector& gravity, bool paused);
 
-  void take(const SDL_Event& event) override;
+  void handle(const SDL_Event& event) override;
 
   /// What has been done since the frame before. Good until the next call.
   std::span<const Event> next_frame();

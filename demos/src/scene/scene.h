@@ -20,8 +20,8 @@ struct SoftBodyPlacement {
   ppu::TriangleMesh mesh;
   ppu::SoftBodySettings settings;
   Eigen::Vector3f position{0, 0, 0};  ///< where the mesh's own origin goes
-  float twist =
-      0;  ///< rad/s: how fast its two ends along x turn about x at the beginning, against each other
+  /// rad/s: how fast its two ends along x turn about x at the beginning, against each other.
+  float twist = 0;
   render::Colour colour{0.8f, 0.8f, 0.8f};
 };
 

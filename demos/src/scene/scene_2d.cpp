@@ -1,9 +1,12 @@
 #include "scene_2d.h"
 
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
 
 ppu::Lattice<2> SoftBody2dPlacement::lattice() const {
   ppu::Lattice<2> lattice = ppu::lattice_from_cells(cells, settings.cell_size);
+  SC_ASSERT(!lattice.particles.empty(), "{} cells without particles", cells.size());
   Eigen::Vector2i low = lattice.particles.front(), high = low;
   for (const Eigen::Vector2i& particle : lattice.particles) {
     low = low.cwiseMin(particle);
@@ -14,6 +17,8 @@ ppu::Lattice<2> SoftBody2dPlacement::lattice() const {
 }
 
 Eigen::Vector2f Camera2d::point_at(int x, int y, int picture_width, int picture_height) const {
+  SC_ASSERT(picture_height > 0, "a picture of {} by {} pixels", picture_width, picture_height);
+  SC_ASSERT(height > 0, "a camera that shows {} m", height);
   const float metres = height / static_cast<float>(picture_height);
   const Eigen::Vector2f middle = 0.5f * Eigen::Vector2i(picture_width, picture_height).cast<float>();
   return centre +

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
 namespace {
 
@@ -12,6 +14,8 @@ render::Camera orbited(render::Camera camera, const Look& look) {
   constexpr float kLowest = 0.03f, kHighest = 1.5f;                           // above the horizon, radians
   const Eigen::Vector3f from_target = camera.eye - camera.target;
   const float distance = from_target.norm();
+  SC_ASSERT(distance > 0 && look.distance > 0, "a camera {} m from its target, {} times as far away",
+            distance, look.distance);
   const float turn = std::atan2(from_target.x(), from_target.z()) + look.turn;
   const float rise = std::clamp(std::asin(std::clamp(from_target.y() / distance, -1.0f, 1.0f)) + look.rise,
                                 kLowest, kHighest);
@@ -34,6 +38,10 @@ render::Camera seen_from(const Scene& scene, const Look& look, const Eigen::Matr
 }
 
 Ray ray_through(const render::Camera& camera, int x, int y, int picture_width, int picture_height) {
+  SC_ASSERT(picture_width > 0 && picture_height > 0, "a picture of {} by {} pixels", picture_width,
+            picture_height);
+  SC_ASSERT(camera.eye != camera.target, "the camera at ({}, {}, {}) looks at itself", camera.eye.x(),
+            camera.eye.y(), camera.eye.z());
   const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
   const Eigen::Vector3f right = forward.cross(camera.up).normalized();
   const Eigen::Vector3f up = right.cross(forward);

@@ -18,37 +18,37 @@ class Hash {
 
   template <class... Values>
   void add(const Values&... values) {
-    (take(values), ...);
+    (add(values), ...);
   }
 
  private:
-  void take_bytes(const void* data, std::size_t size) { value_ = XXH3_64bits_withSeed(data, size, value_); }
+  void add_bytes(const void* data, std::size_t size) { value_ = XXH3_64bits_withSeed(data, size, value_); }
 
   template <class Number>
   requires std::is_arithmetic_v<Number>
-  void take(Number number) { take_bytes(&number, sizeof number); }
+  void add(Number number) { add_bytes(&number, sizeof number); }
   template <class Scalar, int Rows>
-  void take(const Eigen::Matrix<Scalar, Rows, 1>& vector) {
-    take_bytes(vector.data(), sizeof(Scalar) * Rows);
+  void add(const Eigen::Matrix<Scalar, Rows, 1>& vector) {
+    add_bytes(vector.data(), sizeof(Scalar) * Rows);
   }
   template <class Value, std::size_t Size>
-  void take(const std::array<Value, Size>& values) {
-    for (const Value& value : values) take(value);
+  void add(const std::array<Value, Size>& values) {
+    for (const Value& value : values) add(value);
   }
   template <class Value>
-  void take(const std::optional<Value>& value) {
-    take(value.has_value());
-    if (value) take(*value);
+  void add(const std::optional<Value>& value) {
+    add(value.has_value());
+    if (value) add(*value);
   }
   template <class Value>
-  void take(const std::vector<Value>& values) {
-    take(values.size());
-    for (const Value& value : values) take(value);
+  void add(const std::vector<Value>& values) {
+    add(values.size());
+    for (const Value& value : values) add(value);
   }
   template <class... Alternatives>
-  void take(const std::variant<Alternatives...>& value) {
-    take(value.index());
-    std::visit([this](const auto& alternative) { this->take(alternative); }, value);
+  void add(const std::variant<Alternatives...>& value) {
+    add(value.index());
+    std::visit([this](const auto& alternative) { this->add(alternative); }, value);
   }
 
   /// What scenes did not always have says nothing where it is as it always was: older recordings still fit.
@@ -57,41 +57,41 @@ class Hash {
     if (value != usual) add(value);
   }
 
-  void take(const ppu::TriangleMesh& mesh) {
+  void add(const ppu::TriangleMesh& mesh) {
     const auto& [positions, normals, triangles, texture_coordinates, colours, parts] = mesh;
     add(positions, triangles);  // all else is looks
   }
-  void take(const ppu::SoftBodySettings& settings) {
+  void add(const ppu::SoftBodySettings& settings) {
     const auto& [cell_size, half_width, density, alpha, damping, friction, contacts, frequency,
                  damping_time] = settings;
     add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
     add_unless(contacts, true);
   }
-  void take(const SoftBodyPlacement& body) {
+  void add(const SoftBodyPlacement& body) {
     const auto& [name, mesh, settings, position, twist, colour] = body;
     add(mesh, settings, position);
     add_unless(twist, 0.0f);
   }
-  void take(const RigidBox& box) {
+  void add(const RigidBox& box) {
     const auto& [size, mass, position, colour, opacity, pattern] = box;
     add(size, mass, position);
   }
-  void take(const Obstacle& obstacle) {
+  void add(const Obstacle& obstacle) {
     const auto& [mesh, position, colour] = obstacle;
     add(mesh, position);
   }
-  void take(const TiltScript& tilt) {
+  void add(const TiltScript& tilt) {
     const auto& [amplitude_x, amplitude_z, period_x, period_z, begin] = tilt;
     add(amplitude_x, amplitude_z, period_x, period_z, begin);
   }
-  void take(const SoftBody2dPlacement& body) {
+  void add(const SoftBody2dPlacement& body) {
     const auto& [name, cells, settings, position, contact_radius, colour] = body;
     add(cells, settings, position, contact_radius);
   }
-  void take(const Box2dShape& box) { take(box.size); }
-  void take(const CircleShape& circle) { take(circle.radius); }
-  void take(const PolygonShape& polygon) { take(polygon.corners); }
-  void take(const RigidBody2d& body) {
+  void add(const Box2dShape& box) { add(box.size); }
+  void add(const CircleShape& circle) { add(circle.radius); }
+  void add(const PolygonShape& polygon) { add(polygon.corners); }
+  void add(const RigidBody2d& body) {
     const auto& [shape, mass, position, angle, colour] = body;
     add(shape, mass, position, angle);
   }

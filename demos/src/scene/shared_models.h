@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
 
 /// The models of `count` bodies, in order; those of equal ones are the same.
@@ -25,6 +27,8 @@ auto shared_models(std::size_t count, const Same& same, const Make& make) {
       models.push_back(models[*known]);
     }
   }
+  SC_ASSERT(models.size() == count && first.size() <= count, "{} models of {} kinds for {} bodies",
+            models.size(), first.size(), count);
   return models;
 }
 

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/nearest_name.h"
 
 namespace softcell::demos {
@@ -36,6 +37,7 @@ std::optional<double> number_in(const Value& value) {
 }
 
 std::optional<float> number_within(const Value& value, Range range) {
+  SC_ASSERT(range.low <= range.high, "a range from {} to {}", range.low, range.high);
   const auto number = number_in(value);
   if (!number || !std::isfinite(*number)) return std::nullopt;
   const auto single = static_cast<float>(*number);  // what is used must be in range, too
@@ -65,6 +67,7 @@ float read_number(const Value& value, const std::string& name, Range range) {
 }
 
 int read_integer(const Value& value, const std::string& name, int low, int high) {
+  SC_ASSERT(low <= high, "{} is from {} to {}", name, low, high);
   const auto number = number_in(value);
   // Lua knows one kind of number for a user: 3.0 is whole.
   if (!number || *number < low || *number > high || std::floor(*number) != *number) {
@@ -90,6 +93,7 @@ const Value* FieldReader::find(std::string_view key) const {
 }
 
 const Value* FieldReader::field(std::string_view key, Need need) {
+  SC_ASSERT(!key.empty(), "a field of {} without a name", what_);
   known_.push_back(key);
   const Value* value = find(key);
   // Said by finish(): when the field is there under a wrong name, that is the better sentence.
@@ -159,6 +163,7 @@ FieldReader& FieldReader::colour(std::string_view key, render::Colour& out) {
 }
 
 bool FieldReader::read_numbers(std::string_view key, std::span<float> out, Range range, Need need) {
+  SC_ASSERT(!out.empty(), "{} of {} is an array of no numbers", key, what_);
   const Value* value = field(key, need);
   if (value == nullptr) return false;
   const auto* array = std::get_if<Array>(&value->data);
@@ -175,6 +180,7 @@ FieldReader& FieldReader::choice(std::string_view key, std::size_t& out,
                                  std::span<const std::string_view> names, Need need) {
   const Value* value = field(key, need);
   if (value == nullptr) return *this;
+  SC_ASSERT(!names.empty(), "{} of {} has no names to choose from", key, what_);
   const auto* given = std::get_if<std::string>(&value->data);
   const auto found = given != nullptr ? std::find(names.begin(), names.end(), *given) : names.end();
   if (found == names.end()) refuse(key, *value, "one of " + list(names));

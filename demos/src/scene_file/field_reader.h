@@ -1,14 +1,13 @@
 #pragma once
-// Reads the fields of one table of a scene file. Here, and nowhere else, it is known what may be wrong with a
-// field, and how it is said.
+// Reads the fields of one table of a scene file. All checks of fields, and all their error sentences, are here.
 //
 //     FieldReader fields(table, "a box");
 //     fields.vector("size", box.size, kLength, Need::kRequired)
 //         .number("mass", box.mass, kMass)
 //         .finish();
 //
-// A field that is absent leaves its variable as it is: the variable's value before is the default. finish()
-// refuses fields that nobody has asked for, and names the one that was probably meant.
+// A missing field leaves its variable unchanged: the value before is the default. finish() refuses fields that were
+// not read, and suggests the one that was probably meant.
 
 #include <Eigen/Core>
 #include <array>
@@ -39,8 +38,8 @@ inline constexpr Range kShare{.low = 0, .high = 1};
 
 class FieldReader {
  public:
-  /// @param table  must outlive this.   @param what  of the table, for sentences: "a box".
-  /// @throws SceneError  it is no table.
+  /// @param table  must outlive this.   @param what  what error sentences call the table: "a box".
+  /// @throws SceneError  the value is not a table.
   FieldReader(const Value& table, std::string what);
 
   FieldReader& number(std::string_view key, float& out, Range range, Need need = Need::kOptional);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
 namespace {
 
@@ -66,8 +68,7 @@ class ResultWriter {
 
   void write_table(const Path& path, int depth) {
     if (depth >= kMaxValueDepth || lua_checkstack(state_, 4) == 0) {
-      refuse(
-          fmt::format("tables lie more than {} deep in each other, or one contains itself", kMaxValueDepth));
+      refuse(fmt::format("tables are nested more than {} deep, or one contains itself", kMaxValueDepth));
     }
     std::uint32_t entries = 0;
     bool all_names = true, all_numbers = true;
@@ -102,8 +103,9 @@ class ResultWriter {
     }
   }
 
-  /// @pre a text: a number would be changed into one.
+  /// @pre the value is a text: lua_tolstring() would convert a number in its table.
   std::string_view text_at(int index) {
+    SC_ASSERT(lua_type(state_, index) == LUA_TSTRING, "a {} is no text", luaL_typename(state_, index));
     std::size_t size = 0;
     const char* text = lua_tolstring(state_, index, &size);
     return {text, size};

@@ -247,7 +247,7 @@ class Sandbox {
   [[noreturn]] void fail_with_error(int status) {
     if (status == LUA_ERRMEM)
       fail(line_, fmt::format("the script needs more than {} MB", kLuaMaxBytes >> 20));
-    if (lua_type(state_, -1) != LUA_TSTRING) fail(line_, "the script ended with an error that is no text");
+    if (lua_type(state_, -1) != LUA_TSTRING) fail(line_, "the script ended with an error that is not a text");
     std::string_view sentence = lua_tostring(state_, -1);
     int line = line_, length = 0;
     if (std::sscanf(sentence.data(), "s:%d: %n", &line, &length) == 1 && length > 0) {

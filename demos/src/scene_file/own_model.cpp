@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "read_common.h"
+#include "softcell/base/assert.h"
 #include "softcell/mesh_import/mesh_import.h"
 #include "softcell/soft_bodies/lattice.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 /// @param longest  side of the model's box
 double cell_size(const OwnModelOptions& options, double longest) {
+  SC_ASSERT(longest > 0 && options.cells > 0, "{} cells along {}", options.cells, longest);
   if (!options.cell) return longest / options.cells;
   const double cell = *options.cell;
   constexpr double kNearlyAll = 0.999;  // of the model: what is left would be a rounding of a cell

@@ -7,6 +7,7 @@
 
 #include "field_reader.h"
 #include "scene/scripted_input.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
@@ -80,6 +81,7 @@ inline void read_mass(FieldReader& fields, float& mass) {
 /// Seconds of a substep.
 template <class SceneOf>
 double step_of(const SceneOf& scene) {
+  SC_ASSERT(scene.substeps > 0, "{} substeps in a frame", scene.substeps);
   return 1.0 / 60 / scene.substeps;
 }
 
@@ -87,6 +89,7 @@ double step_of(const SceneOf& scene) {
 /// @param fields  of the scene's last soft body. @throws SceneError  another has its name.
 template <class SceneOf>
 void check_name(const FieldReader& fields, const SceneOf& scene) {
+  SC_ASSERT(!scene.soft_bodies.empty(), "the last body of {} is none", fields.what());
   const auto& bodies = scene.soft_bodies;
   const auto first = std::find_if(bodies.begin(), bodies.end(),
                                   [&](const auto& body) { return body.name == bodies.back().name; });

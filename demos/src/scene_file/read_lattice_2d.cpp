@@ -5,6 +5,7 @@
 
 #include "documents.h"
 #include "lua_sandbox.h"
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::demos {
@@ -34,6 +35,8 @@ Cells rectangle(FieldReader& fields) {
 
 /// Cells whose middles lie in a ring; a disc is one without a hole.
 Cells ring_of(int diameter, int hole) {
+  SC_ASSERT(diameter > 0 && hole >= 0 && hole < diameter, "a ring of {} cells with a hole of {}", diameter,
+            hole);
   return cells_where({diameter, diameter}, [&](int x, int y) {
     // Twice the distances from the middle, so that all is whole.
     const int dx = 2 * x + 1 - diameter, dy = 2 * y + 1 - diameter, squared = dx * dx + dy * dy;
@@ -58,18 +61,19 @@ Cells ring(FieldReader& fields) {
   return ring_of(diameter, hole);
 }
 
-constexpr std::array<std::string_view, 3> kKinds{"disc", "rectangle", "ring"};
-constexpr std::array<Cells (*)(FieldReader&), 3> kMakers{disc, rectangle, ring};
+constexpr std::array<std::string_view, 3> kLatticeKinds{"disc", "rectangle", "ring"};
+constexpr std::array<Cells (*)(FieldReader&), 3> kLatticeMakers{disc, rectangle, ring};
 
 Cells read_shape(const Value& value, const std::string& owner) {
   FieldReader fields(value, "the shape of " + owner);
-  std::size_t kind = kKinds.size();
-  fields.choice("kind", kind, kKinds, Need::kRequired);
-  if (kind == kKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
-  return kMakers[kind](fields);
+  std::size_t kind = kLatticeKinds.size();
+  fields.choice("kind", kind, kLatticeKinds, Need::kRequired);
+  if (kind == kLatticeKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
+  return kLatticeMakers[kind](fields);
 }
 
 Cells read_rows(std::span<const Value> items, const std::string& owner) {
+  SC_ASSERT(!items.empty(), "the rows of {} are none", owner);
   std::vector<std::string> rows;
   for (const Value& item : items) {
     const auto* text = std::get_if<std::string>(&item.data);

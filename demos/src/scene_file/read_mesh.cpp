@@ -81,17 +81,17 @@ ppu::TriangleMesh marked_cells(FieldReader& fields) {
   return ppu::make_marked_cells(size, ball);
 }
 
-constexpr std::array<std::string_view, 9> kKinds{"box",     "car",    "cone",  "cylinder", "marked_cells",
-                                                 "penguin", "sphere", "torus", "wedge"};
-constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 9> kMakers{
+constexpr std::array<std::string_view, 9> kMeshKinds{"box",     "car",    "cone",  "cylinder", "marked_cells",
+                                                     "penguin", "sphere", "torus", "wedge"};
+constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 9> kMeshMakers{
     box, car, round<ppu::make_cone>, round<ppu::make_cylinder>, marked_cells, penguin, sphere, torus, wedge};
 
 ppu::TriangleMesh primitive(const Value& value, const std::string& owner) {
   FieldReader fields(value, "the shape of " + owner);
-  std::size_t kind = kKinds.size();
-  fields.choice("kind", kind, kKinds, Need::kRequired);
-  if (kind == kKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
-  return kMakers[kind](fields);
+  std::size_t kind = kMeshKinds.size();
+  fields.choice("kind", kind, kMeshKinds, Need::kRequired);
+  if (kind == kMeshKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
+  return kMeshMakers[kind](fields);
 }
 
 }  // namespace

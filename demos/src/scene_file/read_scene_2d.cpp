@@ -1,9 +1,12 @@
 #include "read_scene.h"
 
+#include <algorithm>
+
 #include "ppu/numbers/deterministic_math.h"
 #include "read_common.h"
 #include "read_lattice_2d.h"
 #include "read_material.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 namespace {
@@ -87,6 +90,7 @@ bool is_convex(const std::vector<Vector2f>& corners) {
 }
 
 Vector2d centroid(const std::vector<Vector2f>& corners) {
+  SC_ASSERT(corners.size() >= 3, "a polygon of {} corners", corners.size());
   const Vector2d first = corners.front().cast<double>();
   Vector2d moment{0, 0};
   double area = 0;
@@ -175,8 +179,9 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
       throw SceneError(items[i].place, error.what());
     }
     if (particles > kMaxParticlesOfScene) {
-      throw SceneError(items[i].place, fmt::format("the scene has {} particles and more; {} are the most",
-                                                   particles, kMaxParticlesOfScene));
+      throw SceneError(items[i].place,
+                       fmt::format("the scene has {} particles or more; it may have at most {}", particles,
+                                   kMaxParticlesOfScene));
     }
   }
 }

@@ -3,6 +3,7 @@
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 namespace {
@@ -66,8 +67,9 @@ class VertexCount {
   void add(const ppu::TriangleMesh& mesh, const Place& place) {
     vertices_ += mesh.positions.size();
     if (vertices_ > kMaxVerticesOfScene) {
-      throw SceneError(place, fmt::format("the scene's meshes have {} vertices and more; {} are the most",
-                                          vertices_, kMaxVerticesOfScene));
+      throw SceneError(
+          place, fmt::format("the scene's meshes have {} vertices or more; it may have at most {}", vertices_,
+                             kMaxVerticesOfScene));
     }
   }
 
@@ -86,6 +88,8 @@ Obstacle read_obstacle(const Value& value, std::size_t index, const SceneSource&
 /// Puts the user's model where the body's own mesh was.
 void take_place(SoftBodyPlacement& body, const OwnModel& model, float longest_side) {
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);
+  SC_ASSERT((box.high - box.low).maxCoeff() > 0 && longest_side > 0, "a model {} long is made {} m long",
+            (box.high - box.low).maxCoeff(), longest_side);
   const float scale = longest_side / (box.high - box.low).maxCoeff();
   body.mesh = model.mesh;
   ppu::fit(body.mesh, longest_side);
@@ -144,13 +148,14 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
   for (std::size_t i = 0; i < items.size(); ++i) {
     particles += count_particles(scene.soft_bodies[i], items[i].place);
     if (particles > kMaxParticlesOfScene) {
-      throw SceneError(items[i].place, fmt::format("the scene has {} particles and more; {} are the most",
-                                                   particles, kMaxParticlesOfScene));
+      throw SceneError(items[i].place,
+                       fmt::format("the scene has {} particles or more; it may have at most {}", particles,
+                                   kMaxParticlesOfScene));
     }
   }
   if (model && !place_taken) {
-    throw NoPlaceForModel("--mesh does not go with scene " + scene.name +
-                          ", which has no body with own_model_side");
+    throw NoPlaceForModel("--mesh cannot be used with scene " + scene.name +
+                          ": it has no body with own_model_side");
   }
 }
 

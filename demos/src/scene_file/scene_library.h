@@ -24,19 +24,19 @@ struct SceneListing {
 /// The scenes that are part of the command, sorted by name. Reads all of them, once.
 const std::vector<SceneListing>& list_scenes();
 
-/// The user's own model, which takes the place of a body that has a place to give: `own_model_side`.
+/// The user's own model. It replaces the body of the scene that has the field `own_model_side`.
 struct OwnModel {
   ppu::TriangleMesh mesh;
   float cell_size = 0;  ///< in the mesh's units
 };
 
-/// A model is given and the scene has no place for it.
+/// The user gives a model, and no body of the scene can be replaced by it.
 class NoPlaceForModel : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Whether load_scene() takes it for a file, and not for a built-in scene's name.
+/// Whether load_scene() reads this as a file and not as the name of a built-in scene.
 bool is_scene_file(std::string_view name_or_file);
 
 /// @param name_or_file  a built-in scene's name, or a file that ends in .toml or .lua.

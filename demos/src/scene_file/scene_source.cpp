@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "scene_library.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"
 
 namespace softcell::demos {
@@ -19,18 +20,7 @@ SourceText embedded_text(const base::EmbeddedFile& file) {
   return {std::string(file.text), std::make_shared<const std::string>(file.name)};
 }
 
-/// Devices and pipes are refused: reading one might never end.
 SourceText read_text(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status))
-    throw std::runtime_error("cannot read " + path.string() + ": there is no such file");
-  if (!fs::is_regular_file(status))
-    throw std::runtime_error("cannot read " + path.string() + ": it is no file");
-  if (const auto size = fs::file_size(path, error); !error && size > SceneSource::kMaxTextBytes) {
-    throw std::runtime_error(fmt::format("{} has {} bytes; a scene file has at most {}", path.string(), size,
-                                         SceneSource::kMaxTextBytes));
-  }
   const auto bytes = base::read_file(path, SceneSource::kMaxTextBytes);
   return {std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
           std::make_shared<const std::string>(path.string())};
@@ -82,6 +72,7 @@ SceneSource SceneSource::in_memory(std::string text, const std::string& name) {
 std::string SceneSource::name() const { return fs::path(*main_.name).stem().string(); }
 
 fs::path SceneSource::locate(const std::string& file, const Place& place) const {
+  SC_ASSERT(main_.name != nullptr, "a scene without a name names the file '{}'", file);
   const fs::path named(file);
   if (file.empty() || !is_printable(file))
     throw SceneError(place, "a file needs a name of printable characters");

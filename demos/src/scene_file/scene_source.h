@@ -1,5 +1,5 @@
 #pragma once
-// Where a scene and the files that it names come from: the command itself, or a folder.
+// Finds a scene and the files that it names: built into the command, or in a folder.
 
 #include <filesystem>
 #include <memory>
@@ -25,15 +25,15 @@ struct SourceText {
   bool is_lua() const { return name->ends_with(".lua"); }
 };
 
-/// One of the scenes that are part of the command, or a file of the user's. What such a file may name: files
-/// below its own folder, also when links are followed; and meshes that the system has installed for all,
-/// below /usr/share. A scene from somebody else can therefore not read the user's own files.
+/// A scene that is built into the command, or a scene file of the user's. A scene file may name files below its own
+/// folder (after links are followed) and meshes below /usr/share. So a scene from somebody else cannot read the
+/// user's other files.
 class SceneSource {
  public:
   static constexpr std::uintmax_t kMaxTextBytes = 4 << 20;
 
   /// @param name_or_file  the name of a built-in scene; or, with '/' or an ending, a file.
-  /// @throws std::runtime_error  no such scene or file; the sentence lists the scenes that there are.
+  /// @throws std::runtime_error  there is no such scene or file; the sentence lists the scenes.
   static SceneSource find(std::string_view name_or_file);
 
   /// A scene in memory. It may name built-in files and what the system has installed.
@@ -42,7 +42,7 @@ class SceneSource {
 
   const SourceText& main() const { return main_; }
   std::string name() const;  ///< without folder and ending
-  /// The user's files that were looked for so far, the scene's own among them.
+  /// The files of the user that the scene has named so far, itself included, whether or not they exist.
   const std::vector<std::filesystem::path>& files() const { return files_; }
 
   /// A file that the scene names at `place`. @throws SceneError  there is none, or it may not be named.

@@ -1,4 +1,5 @@
 #include "documents.h"
+#include "softcell/base/assert.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -10,6 +11,8 @@ namespace {
 
 /// Behind the string that begins at `begin`; the end of the text when it has none.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
+  SC_ASSERT(begin < text.size() && (text[begin] == '"' || text[begin] == '\''),
+            "no string begins at {} of {}", begin, text.size());
   const char quote = text[begin];
   const std::string three(3, quote);
   const bool many_lines = text.substr(begin).starts_with(three);
@@ -60,7 +63,7 @@ void refuse_deep_nesting(std::string_view text, const std::shared_ptr<const std:
     if (brackets <= kMaxValueDepth && dots <= kMaxValueDepth) continue;
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
     throw SceneError({file, static_cast<int>(line), 0},
-                     fmt::format("tables or arrays lie more than {} deep in each other", kMaxValueDepth));
+                     fmt::format("tables or arrays are nested more than {} deep", kMaxValueDepth));
   }
 }
 

@@ -1,4 +1,5 @@
 #include "value.h"
+#include "softcell/base/assert.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@ std::string to_string(const Place& place) {
 std::string_view kind_of(const Value& value) {
   constexpr std::array<std::string_view, 6> kinds{"true or false", "a number", "a number",
                                                   "a text",        "an array", "a table"};
+  SC_ASSERT(value.data.index() < kinds.size(), "a value of kind {} of {}", value.data.index(), kinds.size());
   return kinds[value.data.index()];
 }
 

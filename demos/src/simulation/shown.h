@@ -1,6 +1,6 @@
 #pragma once
-// All that a picture needs of a simulation, of one moment: copied, so that it can be drawn while the
-// simulation goes on.
+// A copy of everything that a picture shows of a simulation at one moment, so that one thread can draw it while
+// another simulates the next frames.
 
 #include <Eigen/Core>
 #include <array>

@@ -14,6 +14,7 @@
 #include "input/controls.h"
 #include "input/script_player.h"
 #include "scene/shared_models.h"
+#include "softcell/base/assert.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
 #include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/state_hash.h"
@@ -25,8 +26,6 @@ namespace {
 using Eigen::Vector2f;
 using Models = std::vector<std::shared_ptr<const ppu::SoftBodyModel<2>>>;
 
-constexpr float kFrameSeconds = 1.0f / 60;
-
 b2Vec2 to_box2d(const Vector2f& v) { return {v.x(), v.y()}; }
 
 struct MakeShape {
@@ -37,12 +36,16 @@ struct MakeShape {
     add_polygon([&](auto& p) { p.SetAsBox(box.size.x() / 2, box.size.y() / 2); });
   }
   void operator()(const PolygonShape& polygon) {
+    SC_ASSERT(polygon.corners.size() >= 3, "a polygon of {} corners", polygon.corners.size());
     std::array<b2Vec2, b2_maxPolygonVertices> corners;
+    SC_ASSERT(polygon.corners.size() <= corners.size(), "a polygon of {} corners, of at most {}",
+              polygon.corners.size(), corners.size());
     std::transform(polygon.corners.begin(), polygon.corners.end(), corners.begin(), to_box2d);
     add_polygon([&](auto& p) { p.Set(corners.data(), static_cast<int>(polygon.corners.size())); });
   }
   void operator()(const CircleShape& circle) {
     b2CircleShape shape;
+    SC_ASSERT(circle.radius > 0, "a circle with a radius of {} m", circle.radius);
     shape.m_radius = circle.radius;
     add(shape);
   }
@@ -73,6 +76,7 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction)
   if (rigid.mass > 0) {
     b2MassData mass{};
     body->GetMassData(&mass);
+    SC_ASSERT(mass.mass > 0, "a shape of density 1 has a mass of {} kg", mass.mass);
     mass.I *= rigid.mass / mass.mass;
     mass.mass = rigid.mass;
     body->SetMassData(&mass);
@@ -84,6 +88,8 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction)
 struct World {
   World(const Scene2d& scene, const Models& models, ppu::SoftBodySolver<2>& solver)
       : soft_bodies(world, solver) {
+    SC_ASSERT(models.size() == scene.soft_bodies.size(), "the models of {} bodies of {}", models.size(),
+              scene.soft_bodies.size());
     // A body that sleeps would not notice that gravity changes.
     world.SetAllowSleeping(false);
     for (const RigidBody2d& body : scene.rigid_bodies)
@@ -99,8 +105,8 @@ struct World {
 /// The SPEs, and the solver that works on them.
 struct Spes {
   explicit Spes(const SimulationOptions& options)
-      : match_2d(load_kernel("match_2d", options.findings != nullptr)),
-        job_loop(load_kernel("job_loop")),
+      : match_2d(options.kernel("match_2d")),
+        job_loop(options.job_loop()),
         jobs(memory, options.spe_options(), job_loop),
         solver(memory, jobs, {match_2d}) {}
 
@@ -127,6 +133,7 @@ Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
 struct Simulation2d::State {
   State(const Scene2d& scene_description, const SimulationOptions& options)
       : scene(scene_description), script(scene.script), controls({0, -scene.gravity}) {
+    SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     if (options.solver == Solver::kSpe) {
       spes.emplace(options);
       solver = &spes->solver;
@@ -135,8 +142,14 @@ struct Simulation2d::State {
     reset();
   }
 
-  void reset() { world.emplace(scene, models, *solver); }
-  void home(std::size_t body) { world->soft_bodies[body].reset(scene.soft_bodies[body].position); }
+  void reset() {
+    SC_ASSERT(solver != nullptr, "scene '{}' has no solver", scene.name);
+    world.emplace(scene, models, *solver);
+  }
+  void home(std::size_t body) {
+    SC_ASSERT(body < scene.soft_bodies.size(), "body {} of {}", body, scene.soft_bodies.size());
+    world->soft_bodies[body].reset(scene.soft_bodies[body].position);
+  }
 
   std::chrono::nanoseconds waited() const {
     return spes ? world->soft_bodies.time_waited() : std::chrono::nanoseconds{0};
@@ -172,7 +185,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   const auto scripted = s.script.events_at(s.frame++);
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
-  s.controls.take(s.events, s.bodies, s);
+  s.controls.apply(s.events, s.bodies, s);
   if (!s.controls.advance()) return {};
 
   World& world = *s.world;
@@ -209,6 +222,9 @@ std::vector<ls_sim::SpeStatistics> Simulation2d::spe_statistics() const {
 std::span<const InputEvent<2>> Simulation2d::last_events() const { return state_->events; }
 
 std::size_t Simulation2d::soft_bodies() const { return state_->models.size(); }
+std::size_t Simulation2d::bodies_on_ppu() const {
+  return state_->spes ? state_->spes->solver.bodies_on_ppu() : soft_bodies();
+}
 
 std::size_t Simulation2d::particles() const {
   std::size_t sum = 0;
@@ -223,6 +239,7 @@ std::size_t Simulation2d::rigid_bodies() const {
 }
 
 const ppu::SoftBody<2>& Simulation2d::soft_body(std::size_t body) const {
+  SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
   return state_->world->soft_bodies[body];
 }
 
@@ -245,8 +262,12 @@ void Simulation2d::show(Shown2d& shown) const {
   for (std::size_t i = 0; i < state_->scene.rigid_bodies.size(); ++i)
     shown.rigid_poses.push_back(rigid_pose(i));
   shown.hands.clear();
-  for (const Hands<2>::Held& held : held())
+  for (const Hands<2>::Held& held : held()) {
+    SC_ASSERT(held.body < soft_bodies(), "hand {} holds body {} of {}", held.hand, held.body, soft_bodies());
+    SC_ASSERT(held.particle < shown.particles[held.body].size(), "hand {} holds particle {} of {}", held.hand,
+              held.particle, shown.particles[held.body].size());
     shown.hands.push_back({shown.particles[held.body][held.particle], held.target});
+  }
 }
 
 std::uint64_t Simulation2d::state_hash() const {

@@ -1,6 +1,5 @@
 #pragma once
-// A scene in two dimensions at work: the Box2D world, the soft bodies in it, and the SPEs that step them. No
-// pictures here.
+// The simulation of a scene in two dimensions: the Box2D world, its soft bodies, and the SPEs that step them.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -17,8 +16,7 @@
 
 namespace softcell::demos {
 
-/// Used by one thread. The state after a number of steps depends on the scene, the events and the engine, on
-/// nothing else.
+/// One thread uses it. The state after a number of steps depends on the scene, the events and the solver only.
 class Simulation2d {
  public:
   /// The scene must outlive it.
@@ -28,34 +26,35 @@ class Simulation2d {
   Simulation2d(const Simulation2d&) = delete;
   Simulation2d& operator=(const Simulation2d&) = delete;
 
-  /// Does what the scene's script says and then what `events` say, and simulates 1/60 s. During a pause
-  /// nothing moves.
+  /// Applies the events of the scene's script, then `events`, and simulates 1/60 s. During a pause nothing moves.
   /// @throws std::runtime_error  a body has become NaN, or an SPE failed.
   FrameTimes step(std::span<const InputEvent<2>> events = {});
 
-  /// Ends what the SPEs do: statistics and trace are whole then. No step afterwards. @throws as step().
+  /// Ends the work of the SPEs, so that statistics and trace are complete. Do not step afterwards. @throws as step().
   void stop();
 
-  /// What the last step() did at its beginning: the script's events, then those it was given.
+  /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<2>> last_events() const;
 
   std::size_t soft_bodies() const;
+  /// How many of them the PPU steps: all with Solver::kReference, else those that fit no local store.
+  std::size_t bodies_on_ppu() const;
   std::size_t particles() const;
   std::size_t rigid_bodies() const;  ///< that can move
-  /// Good until the next step(), which may be a reset.
+  /// Valid until the next step(), which may reset the world.
   const ppu::SoftBody<2>& soft_body(std::size_t body) const;
   Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
   bool paused() const;
   std::span<const Hands<2>::Held> held() const;
   const Eigen::Vector2f& gravity() const;  ///< m/s^2
 
-  /// Copies what a picture needs, as it is now.
+  /// Copies what a picture shows, as it is now.
   void show(Shown2d& shown) const;
 
   /// 64-bit hash over positions and velocities of all particles.
   std::uint64_t state_hash() const;
 
-  std::vector<ls_sim::SpeStatistics> spe_statistics() const;  ///< none of the reference engine
+  std::vector<ls_sim::SpeStatistics> spe_statistics() const;  ///< empty with the reference solver
 
  private:
   struct State;

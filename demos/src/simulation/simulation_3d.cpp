@@ -10,7 +10,9 @@
 #include "ppu/bullet/bullet_world.h"
 #include "ppu/bullet/processor_time.h"
 #include "ppu/numbers/deterministic_math.h"
+#include "ppu/spe_bodies/spe_contacts.h"
 #include "scene/shared_models.h"
+#include "softcell/base/assert.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_solver.h"
@@ -18,7 +20,6 @@
 namespace softcell::demos {
 namespace {
 
-constexpr float kFrameSeconds = 1.0f / 60;
 constexpr double kTiltGrowsFor = 3;  // seconds
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
@@ -40,6 +41,8 @@ Eigen::Matrix3f tilted_by(double ax, double az) {
 }
 
 Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
+  SC_ASSERT(script.period_x > 0 && script.period_z > 0, "a tilt with periods of {} s and {} s",
+            script.period_x, script.period_z);
   const double grown = std::clamp((time - double{script.begin}) / kTiltGrowsFor, 0.0, 1.0);
   const auto angle = [&](float amplitude, float period) {
     const double phase = 2 * std::numbers::pi * (time - double{script.begin}) / double{period};
@@ -53,6 +56,8 @@ Eigen::Matrix3f tilt_at(const TiltScript& script, double time) {
 void twist(ppu::SoftBody<3>& body, float rate) {
   if (rate == 0) return;
   const ppu::Bounds<3> box = body.bounds();
+  SC_ASSERT(box.high.x() > box.low.x(), "a body from {} m to {} m along x is twisted", box.low.x(),
+            box.high.x());
   const Eigen::Vector3f middle = 0.5f * (box.low + box.high);
   for (std::size_t i = 0; i < body.model().particles(); ++i) {
     const Eigen::Vector3f r = body.position(i) - middle;
@@ -94,16 +99,17 @@ struct Simulation3d::State {
       : scene(scene_description),
         script(scene.script),
         controls({0, -scene.gravity, 0}),
-        job_loop(load_kernel("job_loop")),
-        match(load_kernel("match", options.findings != nullptr)),
-        match_tiles(load_kernel("match_tiles", options.findings != nullptr)),
+        job_loop(options.job_loop()),
+        match(options.kernel("match")),
+        match_tiles(options.kernel("match_tiles")),
         jobs(memory, options.spe_options(), job_loop),
         solver(make_solver(options.solver)),
-        soft_bodies(world.world(), *solver) {
+        soft_bodies(world.world(), *solver, options.contacts, make_contact_worker(options)) {
     if (options.skin == Skin::kSpe) {
-      skin = load_kernel("skin", options.findings != nullptr);
+      skin = options.kernel("skin");
       orchestrator.emplace(memory, jobs, *skin);
     }
+    SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     for (const RigidBox& box : scene.boxes) {
       boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
     }
@@ -131,17 +137,30 @@ struct Simulation3d::State {
     take_over();
   }
 
+  /// Whoever steps the bodies has their contacts, too.
+  std::shared_ptr<ppu::ContactWorker> make_contact_worker(const SimulationOptions& options) {
+    if (on_spes == nullptr || options.contacts != ppu::ContactMethod::kSurface) return nullptr;
+    contact_find = options.kernel("contact_find");
+    contact_solve = options.kernel("contact_solve");
+    return std::make_shared<ppu::SpeContacts>(memory, jobs, *contact_find, *contact_solve);
+  }
+
   std::unique_ptr<ppu::SoftBodySolver<3>> make_solver(Solver wanted) {
-    if (wanted == Solver::kSpe)
-      return std::make_unique<ppu::SpeSolver<3>>(memory, jobs, ppu::MatchKernels<3>{match, match_tiles});
-    return std::make_unique<ppu::PpuSolver<3>>();
+    if (wanted == Solver::kReference) return std::make_unique<ppu::PpuSolver<3>>();
+    auto made = std::make_unique<ppu::SpeSolver<3>>(memory, jobs, ppu::MatchKernels<3>{match, match_tiles});
+    on_spes = made.get();
+    return made;
   }
 
   /// Copies what a picture needs and starts the SPEs: with the next step's dynamics, which go first, and the
   /// skinning. They work while the frame before is drawn.
   void hand_over() {
+    SC_ASSERT(!handed_over, "frame {} is handed over before the one before is taken", frame);
     Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
     for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
+    SC_ASSERT(snapshot.box_poses.size() == boxes.size() && snapshot.particles.size() == positions.size(),
+              "a snapshot of {} boxes and {} bodies, of {} and {}", snapshot.box_poses.size(),
+              snapshot.particles.size(), boxes.size(), positions.size());
     snapshot.tilt = tilt;
     copy_contacts(snapshot);
     if (orchestrator) {
@@ -166,7 +185,10 @@ struct Simulation3d::State {
 
   void copy_contacts(Snapshot& snapshot) const {
     snapshot.contacts.clear();
-    if (notes_contacts && contacts_stand) world.contacts(snapshot.contacts);
+    if (records_contacts && contacts_stand) {
+      world.contacts(snapshot.contacts);
+      soft_bodies.append_contacts(snapshot.contacts);
+    }
   }
 
   /// Waits for the SPEs; what was handed over is shown from now on.
@@ -184,6 +206,7 @@ struct Simulation3d::State {
     frame = 0;
   }
   void home(std::size_t body) {
+    SC_ASSERT(body < scene.soft_bodies.size(), "body {} of {}", body, scene.soft_bodies.size());
     soft_bodies[body].reset(scene.soft_bodies[body].position);
     twist(soft_bodies[body], scene.soft_bodies[body].twist);
   }
@@ -198,14 +221,16 @@ struct Simulation3d::State {
 
   dma::AddressSpace memory;
   ls_sim::KernelImage job_loop, match, match_tiles;
-  std::optional<ls_sim::KernelImage> skin;  // none: the GPU does it
+  std::optional<ls_sim::KernelImage> skin;                         // none: the GPU does it
+  std::optional<ls_sim::KernelImage> contact_find, contact_solve;  // none: the PPU does it
   ppu::JobSystem jobs;
+  const ppu::SpeSolver<3>* on_spes = nullptr;  // null: the PPU steps all bodies
   std::unique_ptr<ppu::SoftBodySolver<3>> solver;
   ppu::BulletSoftBodies soft_bodies;
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
-  bool notes_contacts = false;
+  bool records_contacts = false;
   bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
 
   std::array<Snapshot, 2> snapshots;
@@ -229,7 +254,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   const auto scripted = s.script.events_at(s.script_frame++);
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
-  s.controls.take(s.events, s.soft_bodies, s);
+  s.controls.apply(s.events, s.soft_bodies, s);
   if (!s.controls.advance()) {
     finish();
     if (puts_elsewhere(s.events)) {
@@ -260,8 +285,9 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   times.gather_ms = milliseconds(end.gather - begin.gather);
   times.solve_ms = milliseconds(end.solve - begin.solve);
   times.apply_ms = milliseconds(end.apply - begin.apply);
+  times.contacts_ms = milliseconds(end.contacts - begin.contacts);
   times.skin_ms = milliseconds(s.skin_time);
-  times.ppu_ms = times.gather_ms + times.solve_ms + times.apply_ms + times.skin_ms;
+  times.ppu_ms = times.gather_ms + times.solve_ms + times.apply_ms + times.contacts_ms + times.skin_ms;
   times.solver_wait_ms = milliseconds(end.wait - begin.wait);
   return times;
 }
@@ -276,6 +302,9 @@ void Simulation3d::stop() {
 std::span<const InputEvent<3>> Simulation3d::last_events() const { return state_->events; }
 
 std::size_t Simulation3d::soft_bodies() const { return state_->soft_bodies.size(); }
+std::size_t Simulation3d::bodies_on_ppu() const {
+  return state_->on_spes != nullptr ? state_->on_spes->bodies_on_ppu() : soft_bodies();
+}
 
 std::size_t Simulation3d::particles() const {
   std::size_t sum = 0;
@@ -293,6 +322,7 @@ std::size_t Simulation3d::rigid_bodies() const {
 }
 
 const ppu::SoftBodyModel<3>& Simulation3d::model(std::size_t body) const {
+  SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
   return state_->soft_bodies[body].model();
 }
 const ppu::SoftBody<3>& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
@@ -304,11 +334,13 @@ std::uint64_t Simulation3d::state_hash() const {
 }
 
 ppu::SkinnedBody Simulation3d::shown(std::size_t body) const {
+  SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
   if (state_->orchestrator) return state_->orchestrator->shown(body);
   return {.vertices = {}, .origin = state_->shown().origins[body]};
 }
 
 std::span<const Eigen::Vector4f> Simulation3d::shown_particles(std::size_t body) const {
+  SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
   return state_->shown().particles[body];
 }
 
@@ -316,7 +348,7 @@ std::span<const Eigen::Matrix4f> Simulation3d::shown_box_poses() const { return 
 
 std::span<const ppu::Contact> Simulation3d::shown_contacts() const { return state_->shown().contacts; }
 
-void Simulation3d::note_contacts(bool on) { state_->notes_contacts = on; }
+void Simulation3d::record_contacts(bool on) { state_->records_contacts = on; }
 
 const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
 

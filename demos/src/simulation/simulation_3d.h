@@ -1,5 +1,6 @@
 #pragma once
-// A scene at work: the Bullet world, the soft bodies in it, and the SPEs that skin them. No pictures here.
+// The simulation of a scene in three dimensions: the Bullet world, its soft bodies, and the SPEs that step and
+// skin them.
 
 #include <Eigen/Core>
 #include <chrono>
@@ -17,7 +18,7 @@
 
 namespace softcell::demos {
 
-/// Used by one thread. step() allocates nothing outside Bullet once the first frames are past.
+/// One thread uses it. After the first frames, step() allocates nothing outside Bullet.
 class Simulation3d {
  public:
   /// @throws std::runtime_error  a body cannot be made, main memory is full, the host cannot run kernels.
@@ -26,19 +27,21 @@ class Simulation3d {
   Simulation3d(const Simulation3d&) = delete;
   Simulation3d& operator=(const Simulation3d&) = delete;
 
-  /// Does what the scene's script says and then what `events` say, simulates 1/60 s and hands its skinning to
-  /// the SPEs; the frame before becomes the one that is shown. During a pause nothing moves; what an
-  /// event puts elsewhere is shown at once.
-  /// @throws std::runtime_error  when skinning the frame before failed; the sentence is the fault's.
+  /// Applies the events of the scene's script, then `events`, simulates 1/60 s and has the SPEs start to skin the
+  /// new frame; the frame before becomes the shown one. During a pause nothing moves, except that bodies which
+  /// an event puts elsewhere are shown there at once.
+  /// @throws std::runtime_error  skinning the frame before has failed; the sentence is the fault's.
   FrameTimes step(std::span<const InputEvent<3>> events = {});
 
-  /// Waits for the SPEs, so that the newest frame is shown. @throws as step().
+  /// Waits for the SPEs, so that the newest frame becomes the shown one. @throws as step().
   void finish();
 
-  /// What the last step() did at its beginning: the script's events, then those it was given.
+  /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<3>> last_events() const;
 
   std::size_t soft_bodies() const;
+  /// How many of them the PPU steps: all with Solver::kReference, else those that fit no local store.
+  std::size_t bodies_on_ppu() const;
   std::size_t particles() const;
   std::size_t vertices() const;  ///< of the meshes
   std::size_t rigid_bodies() const;
@@ -49,26 +52,26 @@ class Simulation3d {
   /// 64-bit hash over positions and velocities of all particles as they are now.
   std::uint64_t state_hash() const;
 
-  // The frame that is shown: all of one moment. Before the first step that is the beginning.
+  // The shown frame, all of one moment. Before the first step it is the beginning.
   ppu::SkinnedBody shown(std::size_t body) const;  ///< without vertices when the GPU makes them
   std::span<const Eigen::Vector4f> shown_particles(std::size_t body) const;
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
 
-  /// Only of frames simulated while note_contacts() was on, and of those of a pause in which no body was put
-  /// elsewhere: what it touches there is found with the next simulated frame.
+  /// Contacts of the shown frame, if record_contacts() was on when it was simulated. Empty in a pause after a
+  /// body was put elsewhere, because Bullet finds contacts only when it steps.
   std::span<const ppu::Contact> shown_contacts() const;
-  /// From the next step() on contacts are copied, or not, which is how it begins.
-  void note_contacts(bool on);
+  /// Whether contacts are copied from the next step() on; off at first.
+  void record_contacts(bool on);
 
-  /// Copies all of it.
+  /// Copies the shown frame.
   void show(Shown3d& shown) const;
 
   // Of the events so far:
   bool paused() const;
   const Eigen::Vector3f& gravity() const;  ///< m/s^2
 
-  /// Waits for the SPEs and ends what runs on them, so that their statistics and the trace are whole. No step
+  /// Waits for the SPEs and ends their job loops, so that statistics and trace are complete. Do not step
   /// afterwards. @throws as step().
   void stop();
   std::vector<ls_sim::SpeStatistics> spe_statistics() const;

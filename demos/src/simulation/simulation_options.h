@@ -2,12 +2,16 @@
 
 #include <cstdint>
 
+#include "softcell/dma/addresses.h"
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/spe_options.h"
 #include "softcell/ls_sim/trace.h"
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/spu_kernels/load_kernel.h"
 
 namespace softcell::demos {
+
+inline constexpr float kFrameSeconds = 1.0f / 60;  // of simulated time
 
 /// Who does shape matching and damping.
 enum class Solver {
@@ -21,33 +25,44 @@ enum class Skin {
   kGpu   ///< whoever draws, from the particles
 };
 
-/// How a scene is simulated. Only the solver changes the result, and that by rounding.
+/// By how much more time an interpreted job may take.
+inline constexpr int kInterpretedDeadline = 30;
+
+/// How a scene is simulated. The result depends on the contacts and, by rounding, on the solver.
 struct SimulationOptions {
   Solver solver = Solver::kSpe;
+  /// What the SPEs execute: kernels built for the host, or, interpreted, those built for the SPU. The same bits.
+  ls_sim::Machine machine = ls_sim::Machine::kHost;
   Skin skin = Skin::kSpe;
-  int spes = 6;
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSpheres;  ///< in three dimensions
+  int spes = dma::kSpeCount;
   dma::Schedule schedule{};
   ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked
   ls_sim::Trace* trace = nullptr;        ///< of at least as many SPEs; null: nothing is recorded
 
   ls_sim::SpeOptions spe_options() const {
-    return {.spes = spes, .schedule = schedule, .findings = findings, .trace = trace};
+    ls_sim::SpeOptions options{.spes = spes, .schedule = schedule, .findings = findings, .trace = trace};
+    if (machine == ls_sim::Machine::kSpu) options.deadline *= kInterpretedDeadline;
+    return options;
   }
+  ls_sim::KernelImage kernel(std::string_view name) const {
+    return spu_kernels::load_kernel(name, findings != nullptr, machine);
+  }
+  ls_sim::KernelImage job_loop() const { return spu_kernels::load_kernel("job_loop", false, machine); }
 };
-
-using spu_kernels::load_kernel;
 
 /// Milliseconds of one frame, measured on the PPU thread.
 struct FrameTimes {
   double physics_ms = 0;      ///< in Bullet or Box2D
-  double ppu_ms = 0;          ///< in softcell, in processor time of the thread: the sum of the next four
+  double ppu_ms = 0;          ///< in softcell, in processor time of the thread: the sum of the next five
   double gather_ms = 0;       ///< taking particles over from the engine
   double solve_ms = 0;        ///< handing the solver's work over and taking it back, or doing it
   double apply_ms = 0;        ///< giving the engine the new velocities
+  double contacts_ms = 0;     ///< of surfaces; spheres touch in Bullet
   double skin_ms = 0;         ///< handing over the skinning
   double solver_wait_ms = 0;  ///< by the clock, until the solver had finished; in none of the above
-  double skin_wait_ms =
-      0;  ///< waiting for the SPEs, so that pictures are the same on every host; in none of the above
+  /// Waiting for the SPEs, so that pictures are the same on every host; in none of the above.
+  double skin_wait_ms = 0;
 };
 
 }  // namespace softcell::demos

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
 namespace {
 
@@ -16,6 +18,7 @@ struct RadiusOf {
 };
 
 void extend(Moved2d::Box& box, const Eigen::Vector2f& centre, float radius) {
+  SC_ASSERT(radius >= 0, "{} m around ({}, {})", radius, centre.x(), centre.y());
   box.extend(centre - Eigen::Vector2f::Constant(radius));
   box.extend(centre + Eigen::Vector2f::Constant(radius));
 }
@@ -24,6 +27,8 @@ void extend(Moved2d::Box& box, const Eigen::Vector2f& centre, float radius) {
 
 Moved2d::Moved2d(const Scene2d& scene, std::vector<float> margins)
     : margins_(std::move(margins)), poses_(scene.rigid_bodies.size()) {
+  SC_ASSERT(margins_.size() == scene.soft_bodies.size(), "margins for {} bodies of {}", margins_.size(),
+            scene.soft_bodies.size());
   for (const RigidBody2d& body : scene.rigid_bodies) radii_.push_back(std::visit(RadiusOf{}, body.shape));
 }
 
@@ -40,6 +45,9 @@ Moved2d::Box Moved2d::restless(const Shown2d& now) const {
 }
 
 Moved2d::Box Moved2d::since_last(const Shown2d& now) {
+  SC_ASSERT(now.rigid_poses.size() == poses_.size() && now.particles.size() == margins_.size(),
+            "{} rigid and {} soft bodies of another scene than {} and {}", now.rigid_poses.size(),
+            now.particles.size(), poses_.size(), margins_.size());
   const Box restless_now = restless(now);
   Box moved = restless_.merged(restless_now);
   restless_ = restless_now;

@@ -1,5 +1,5 @@
 #pragma once
-// What of a scene in two dimensions has moved from picture to picture: only there a picture is drawn anew.
+// Which part of a scene in two dimensions has moved since the last picture: only that part is drawn again.
 
 #include <Eigen/Geometry>
 #include <vector>
@@ -18,9 +18,9 @@ class Moved2d {
   /// of each reaches beyond its particles' centres, metres
   Moved2d(const Scene2d& scene, std::vector<float> margins);
 
-  /// A box around all that is elsewhere than at the moment that was asked about before, as it was and as it
-  /// is; empty when nothing is. Soft bodies and hands count as moving. Before the first, everything is at the
-  /// world's origin.
+  /// A box around everything that has moved since the last call, at its old and at its new place; empty if nothing
+  /// has. Soft bodies and hands always count as moving. Before the first call, everything is at the world's
+  /// origin.
   Box since_last(const Shown2d& now);
 
  private:

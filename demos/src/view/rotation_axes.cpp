@@ -1,5 +1,7 @@
 #include "rotation_axes.h"
 
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
 
 void Lines::clear() {
@@ -16,12 +18,15 @@ void Lines::add(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
 
 void RotationAxes::update(const std::vector<Shown3d::Body>& bodies) {
   constexpr float kLengthInCells = 0.45f;  // neighbours' axes do not meet
+  SC_ASSERT(bodies.size() >= plans_.size(), "{} bodies with the plans of {}", bodies.size(), plans_.size());
   for (Lines& lines : axes_) lines.clear();
   while (matchers_.size() < plans_.size()) matchers_.emplace_back(plans_[matchers_.size()]);
   for (std::size_t b = 0; b < matchers_.size(); ++b) {
     ppu::ShapeMatcher<float, 3>& matcher = matchers_[b];
     positions_.clear();
     for (const Eigen::Vector4f& p : bodies[b].particles) positions_.emplace_back(p.head<3>());
+    SC_ASSERT(positions_.size() == matcher.plan().particles(), "body {} has {} particles of {}", b,
+              positions_.size(), matcher.plan().particles());
     goals_.resize(positions_.size());
     matcher.goals(positions_, goals_);
     const float length = kLengthInCells * matcher.plan().spacing();

@@ -21,15 +21,15 @@ struct Lines {
   void add(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
 };
 
-/// For each particle the axes of its region, turned as the region is. Matched anew from the positions that
-/// are shown, so that it does not matter who solved the step, and where that keeps its rotations.
+/// The axes of each particle's region, turned as the region is. Computes the rotations from the positions that are
+/// shown, so that the lines do not depend on the solver and on where it keeps its rotations.
 class RotationAxes {
  public:
   void add_body(std::shared_ptr<const ppu::MatchingPlan<float, 3>> plan) {
     plans_.push_back(std::move(plan));
   }
 
-  /// @param bodies  of which as many as there are in here, in order
+  /// @param bodies  at least as many as were added, in the same order
   void update(const std::vector<Shown3d::Body>& bodies);
 
   /// The x, y and z axes.
@@ -37,8 +37,8 @@ class RotationAxes {
 
  private:
   std::vector<std::shared_ptr<const ppu::MatchingPlan<float, 3>>> plans_;
-  std::vector<ppu::ShapeMatcher<float, 3>>
-      matchers_;  // made when they are first asked for: most runs never do
+  // Made by the first update(): most runs never show them.
+  std::vector<ppu::ShapeMatcher<float, 3>> matchers_;
   std::vector<Eigen::Vector3f> positions_, goals_;
   std::array<Lines, 3> axes_;
 };

@@ -1,7 +1,9 @@
 #include "scene_view.h"
 
+#include <cmath>
 #include <limits>
 
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
@@ -36,6 +38,8 @@ std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
       }
     }
   }
+  SC_ASSERT(vertices.size() == 4 * embedding.groups.size(), "{} vertices in {} groups of four",
+            vertices.size(), embedding.groups.size());
   return vertices;
 }
 
@@ -59,6 +63,8 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
     statics_.push_back(draw);
   }
 
+  SC_ASSERT(simulation_.soft_bodies() == scene_.soft_bodies.size(), "a simulation of {} bodies of {}",
+            simulation_.soft_bodies(), scene_.soft_bodies.size());
   lattice_buffers_.resize(simulation_.soft_bodies());
   for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
     const ppu::SoftBodyModel<3>& model = simulation_.model(b);
@@ -79,6 +85,8 @@ render::MeshId SceneView::add_skinned_mesh(const ppu::SoftBodyModel<3>& model) {
 }
 
 void SceneView::update_meshes(const Shown3d& shown) {
+  SC_ASSERT(shown.bodies.size() == skinned_.size(), "{} bodies in the view of {}", shown.bodies.size(),
+            skinned_.size());
   for (std::size_t b = 0; b < skinned_.size(); ++b) {
     const Shown3d::Body& body = shown.bodies[b];
     if (simulation_.skin() == Skin::kSpe) {
@@ -93,6 +101,8 @@ void SceneView::update_meshes(const Shown3d& shown) {
 void SceneView::update_lattices(const Shown3d& shown) {
   for (std::size_t b = 0; b < lattice_buffers_.size(); ++b) {
     const auto& corners = shown.bodies[b].particles;
+    SC_ASSERT(corners.size() == lattice_buffers_[b].particles.size(), "body {} has {} particles of {}", b,
+              corners.size(), lattice_buffers_[b].particles.size());
     for (std::size_t i = 0; i < corners.size(); ++i) {
       lattice_buffers_[b].particles[i] = corners[i].head<3>();
     }
@@ -142,6 +152,8 @@ const render::Image& SceneView::draw() {
 }
 
 void SceneView::draw(const Shown3d& shown, const Look& look) {
+  SC_ASSERT(shown.box_poses.size() <= statics_.size(), "{} boxes among {} rigid bodies",
+            shown.box_poses.size(), statics_.size());
   for (std::size_t i = 0; i < shown.box_poses.size(); ++i) statics_[i].pose = shown.box_poses[i];
 
   frame_ = {};
@@ -168,6 +180,7 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
 
 std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d& simulation) {
   constexpr float kReachInCells = 0.6f;
+  SC_ASSERT(std::abs(ray.along.norm() - 1) < 1e-3f, "a ray along a direction {} long", ray.along.norm());
   std::optional<Eigen::Vector3f> found;
   float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {

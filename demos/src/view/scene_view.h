@@ -1,5 +1,5 @@
 #pragma once
-// Draws a scene: what the world and the orchestrator hand over becomes a frame of the renderer.
+// Draws a scene in three dimensions.
 
 #include <Eigen/Core>
 #include <array>
@@ -59,8 +59,8 @@ class SceneView {
   render::FrameDescription frame_;  // the one in making
 };
 
-/// The particle that one sees along a ray: of those that it passes within 0.6 cells, so that it cannot slip
-/// through a body, the nearest to its beginning. None: the ray meets no soft body.
+/// The particle under the mouse: of those that the ray passes within 0.6 cells (so that it cannot slip through a
+/// body) the one nearest to its origin. None: the ray meets no soft body.
 std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d& simulation);
 
 }  // namespace softcell::demos

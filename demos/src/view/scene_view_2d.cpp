@@ -5,6 +5,7 @@
 #include <map>
 
 #include "ppu/numbers/half.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 namespace {
@@ -28,6 +29,7 @@ constexpr std::array<std::array<std::uint32_t, 2>, 1> kHandLink{{{0, 1}}};
 /// A plate with this outline, counter-clockwise, from -depth to depth in z.
 void extrude(const std::vector<Vector2f>& outline, float depth, std::vector<Vector3f>& positions,
              std::vector<Vector3f>& normals, std::vector<render::Triangle>& triangles) {
+  SC_ASSERT(outline.size() >= 3, "a plate with {} corners", outline.size());
   const auto n = static_cast<std::uint32_t>(outline.size());
   for (const Vector2f& corner : outline) {
     positions.emplace_back(corner.x(), corner.y(), depth);
@@ -76,6 +78,8 @@ SceneView2d::SceneView2d(const Scene2d& scene, const Simulation2d& simulation, r
     : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view) {
   for (const RigidBody2d& body : scene_.rigid_bodies) add_rigid_body(body);
   add_back_wall();
+  SC_ASSERT(simulation_.soft_bodies() == scene_.soft_bodies.size(), "a simulation of {} bodies of {}",
+            simulation_.soft_bodies(), scene_.soft_bodies.size());
   std::vector<float> margins;
   for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
     const ppu::SoftBodyModel<2>& model = simulation_.soft_body(b).model();
@@ -136,6 +140,9 @@ void SceneView2d::add_soft_body(const ppu::SoftBodyModel<2>& model) {
 }
 
 void SceneView2d::place_rigid_bodies(const std::vector<Pose2d>& poses) {
+  SC_ASSERT(poses.size() == scene_.rigid_bodies.size() && circles_.size() == marks_.size(),
+            "{} poses of {} rigid bodies, {} marks on {} circles", poses.size(), scene_.rigid_bodies.size(),
+            marks_.size(), circles_.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose2d& pose = poses[i];
     Eigen::Matrix4f& matrix = statics_[i].pose;
@@ -154,6 +161,8 @@ void SceneView2d::place_rigid_bodies(const std::vector<Pose2d>& poses) {
 }
 
 void SceneView2d::place_particles(Body& body, const std::vector<Vector2f>& positions) const {
+  SC_ASSERT(positions.size() == body.particles.size(), "a body of {} particles has {}", body.particles.size(),
+            positions.size());
   const auto place = [&](std::uint32_t particle) {
     return Vector3f(positions[particle].x(), positions[particle].y(), 0);
   };
@@ -180,6 +189,7 @@ void SceneView2d::draw_as_lattice(std::size_t b) {
 
 void SceneView2d::draw_filled(std::size_t b, const std::vector<Vector2f>& positions) {
   Body& body = bodies_[b];
+  SC_ASSERT(!positions.empty(), "body {} of {} has no particles", b, bodies_.size());
   const Vector2f origin = positions.front();
   vertices_.resize(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -211,6 +221,7 @@ std::optional<render::PixelRect> SceneView2d::changes(const Shown2d& shown, View
   }
   if (moved.isEmpty()) return render::PixelRect{};
   const Camera2d& camera = scene_.camera;
+  SC_ASSERT(camera.height > 0, "a camera that shows {} m", camera.height);
   const float pixels = static_cast<float>(renderer_.height()) / camera.height;  // of a metre
   const auto from_middle = [&](float metres, int side) {
     return static_cast<float>(side) / 2 + pixels * metres;
@@ -235,6 +246,8 @@ const render::Image& SceneView2d::draw() {
 }
 
 void SceneView2d::draw(const Shown2d& shown, const Look& look) {
+  SC_ASSERT(shown.particles.size() == bodies_.size(), "{} bodies in the view of {}", shown.particles.size(),
+            bodies_.size());
   skinned_.clear();
   lattices_.clear();
   place_rigid_bodies(shown.rigid_poses);

@@ -11,7 +11,7 @@ namespace softcell::demos {
 /// the thread that polls events, while SDL is initialised.
 class Controllers {
  public:
-  void take(const SDL_Event& event) {
+  void handle(const SDL_Event& event) {
     if (event.type == SDL_CONTROLLERDEVICEADDED) {
       Handle controller(SDL_GameControllerOpen(event.cdevice.which));
       if (!controller) return;  // gone again

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "softcell/base/assert.h"
 #include "softcell/render/overlay.h"
 
 namespace softcell::demos {
@@ -45,6 +46,7 @@ bool draws_in_software(const render::Renderer& renderer) {
 
 DrawingThread::DrawingThread(render::Window& window, Demo& demo)
     : window_(window), demo_(demo), scale_(kTextScale * window.density()) {
+  SC_ASSERT(scale_ > 0, "text scaled by {}", scale_);
   pages_.next().width = window.width();
   pages_.next().height = window.height();
   window_.release();

@@ -1,6 +1,6 @@
 #pragma once
-// Draws a demo into a window on a thread of its own, so that the simulation and the user's input wait for no
-// picture.
+// Draws a demo into a window on a thread of its own, so that neither the simulation nor the user's input waits
+// for a picture.
 
 #include <atomic>
 #include <cstdint>
@@ -16,30 +16,31 @@
 
 namespace softcell::demos {
 
-/// What drawing has come to.
+/// What was drawn.
 struct Drawn {
   std::vector<double> picture_ms;  ///< of each picture
   std::uint64_t upload_bytes = 0;  ///< see render::Renderer::uploaded_bytes()
 };
 
-/// Made, used and destroyed by the thread that steps the demo and polls the window's events. While it lives,
-/// the window's context is this thread's.
+/// The thread that steps the demo and polls the window's events makes, uses and destroys it. Meanwhile the
+/// window's GL context belongs to the drawing thread.
 class DrawingThread {
  public:
-  /// Returns when the demo's view is made.
+  /// Waits until the demo's view is made.
   /// @throws std::runtime_error  the window cannot draw.
   DrawingThread(render::Window& window, Demo& demo);
-  /// Ends after the picture in work.
+  /// Finishes the picture that is being drawn.
   ~DrawingThread();
   DrawingThread(const DrawingThread&) = delete;
   DrawingThread& operator=(const DrawingThread&) = delete;
 
-  /// To be filled: what stands over the next picture.
+  /// The text over the next picture, to be filled.
   Page& next_page() { return pages_.next(); }
-  /// Has the newest published frame of the demo drawn, under next_page(), unless a newer one comes first.
+  /// Has the drawing thread draw the newest published frame of the demo with next_page() over it, unless a newer
+  /// one is published before.
   void show() { pages_.publish(); }
 
-  /// Waits for the picture in work. @throws what went wrong with one
+  /// Waits for the picture that is being drawn. @throws  the exception of a picture that failed
   const Drawn& finish();
   bool failed() const { return failed_; }
 

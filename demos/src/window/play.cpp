@@ -9,6 +9,7 @@
 #include "demo/frame_clock.h"
 #include "drawing_thread.h"
 #include "input/user_input.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 namespace {
@@ -19,11 +20,12 @@ class PlayedScene {
   /// @param frames  to be played; without, a replay's, or until the user ends it
   PlayedScene(render::Window& window, Demo& demo, const std::optional<int>& frames)
       : window_(window), demo_(demo), drawing_(window, demo) {
+    SC_ASSERT(!frames || *frames >= 0, "{} frames are to be played", frames.value_or(0));
     record_.asked_frames = frames;
     if (!frames && demo.replays()) record_.asked_frames = demo.frames();
   }
 
-  void take(const SDL_Event& event) { demo_.input().take(event); }
+  void handle(const SDL_Event& event) { demo_.input().handle(event); }
 
   void step() {
     const FrameTimes times = demo_.step();
@@ -60,6 +62,11 @@ class PlayedScene {
 
 Run play(const WindowOptions& options, const std::vector<MakeDemo>& scenes, const SimulationOptions& how,
          const std::function<bool()>& interrupted) {
+  SC_ASSERT(!scenes.empty(), "no scene for the window '{}'", options.title);
+  SC_ASSERT(static_cast<bool>(interrupted), "nobody can interrupt the {} scenes of '{}'", scenes.size(),
+            options.title);
+  SC_ASSERT(options.width > 0 && options.height > 0, "a window of {} by {} pixels", options.width,
+            options.height);
   render::Window window({.title = options.title, .width = options.width, .height = options.height});
   Controllers controllers;
   FrameClock clock;
@@ -76,8 +83,8 @@ Run play(const WindowOptions& options, const std::vector<MakeDemo>& scenes, cons
         clock.wait();
         SDL_Event event;
         while (SDL_PollEvent(&event) != 0) {
-          controllers.take(event);
-          scene.take(event);
+          controllers.handle(event);
+          scene.handle(event);
         }
         scene.step();
         next = run.demo->input().wants_next_scene() && scenes.size() > 1;

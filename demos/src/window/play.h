@@ -15,10 +15,10 @@ struct WindowOptions {
   std::optional<int> frames;       ///< to be played
 };
 
-/// Opens a window and plays in it, at 60 frames a second, until the user closes it, the options' number of
-/// frames is over, or a replay is.
-/// @param scenes       the first is shown; the user may go on to the next.
-/// @param interrupted  is asked in each frame whether to end
+/// Opens a window and plays in it, at 60 frames a second, until the user closes it, the options' number of frames
+/// is reached, or a replay ends.
+/// @param scenes       the first is shown; the user may switch to the next.
+/// @param interrupted  called in each frame; true ends the run
 /// @return the last scene's run
 /// @throws std::runtime_error  there is no display: the sentence says how to do without; or as Demo::step().
 Run play(const WindowOptions& options, const std::vector<MakeDemo>& scenes, const SimulationOptions& how,

@@ -35,6 +35,7 @@ class Decrementer {
 
   /// Whether it has gone from 0 to 0xFFFFFFFF since the last question: event TM. It counts on from there.
   bool take_event(std::uint64_t now) {
+    SC_ASSERT(now >= since_, "tick {} after tick {}", now, since_);
     if (!running_ || now < next_event_) return false;
     next_event_ += ((now - next_event_) / kPeriod + 1) * kPeriod;
     return true;

@@ -1,6 +1,7 @@
 #include "spe_monitor.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "softcell/base/assert.h"
 #include "softcell/ls_sim/channel_name.h"
@@ -15,17 +16,26 @@ constexpr std::uint64_t kTurnStream = 0x7475'726E;
 /// A turn lasts up to 2^0 .. 2^5 channel operations, each order of magnitude as often.
 constexpr std::uint32_t kTurnMagnitudes = 6;
 
+/// Operations after which the PPU side may act, if no other SPE is behind in time.
+constexpr std::uint32_t kOperationsInOrder = 64;
+
 }  // namespace
 
-SpeMonitor::SpeMonitor(const SpeOptions& options)
-    : takes_turns_(options.interleaving == Interleaving::kTurns),
+SpeMonitor::SpeMonitor(const SpeOptions& options, PpuSide ppu_side)
+    : takes_turns_(options.interleaving != Interleaving::kFree),
+      by_time_(options.interleaving == Interleaving::kByTime),
+      ppu_side_(ppu_side),
+      members_(static_cast<std::size_t>(std::max(options.spes, 1))),
+      outside_(ppu_side == PpuSide::kOutside ? 1 : 0),
       random_(options.schedule.seed, kTurnStream) {}
 
 void SpeMonitor::start(int spe, const KernelImage& image, HostTime now, bool timed) {
   Member& m = member(spe);
   SC_ASSERT(m.state == State::kIdle, "SPE {} is started while it runs {}", spe, m.image->name);
+  members_used_ = std::max(members_used_, index(spe) + 1);
   m.state = State::kRunnable;
   m.stopped = false;
+  m.time = std::max(m.time, ended_time_);
   m.image = &image;
   m.started = timed ? std::optional(now) : std::nullopt;
   if (takes_turns_ && turn_ == kNobody) settle();
@@ -34,6 +44,7 @@ void SpeMonitor::start(int spe, const KernelImage& image, HostTime now, bool tim
 void SpeMonitor::end(int spe) {
   SC_ASSERT(member(spe).state == State::kRunnable, "SPE {} ends in state {}", spe, member(spe).state);
   member(spe).state = State::kIdle;
+  ended_time_ = std::max(ended_time_, member(spe).time);
   wake_ppu();
   give_up_turn(spe);
 }
@@ -52,13 +63,38 @@ bool SpeMonitor::await_first_turn(Lock& lock, int spe) {
 bool SpeMonitor::pass_turn_now(int spe) {
   Lock lock(mutex_);
   Member& m = member(spe);
-  if (!m.stopped && operations_left_ != 0) {
+  SC_ASSERT(m.state == State::kRunnable, "SPE {} is at a channel in state {}", spe, m.state);
+  if (!m.stopped && operations_left_ != 0 && !(by_time_ && is_behind(spe))) {
     --operations_left_;
     return true;
   }
   give_up_turn(spe);
   m.wake_up.wait(lock, [&] { return may_go_on(spe); });
   return !m.stopped;
+}
+
+/// Whether somebody else's clock is behind that of the SPE.
+bool SpeMonitor::is_behind(int spe) const {
+  const Member& m = members_[index(spe)];
+  return std::ranges::any_of(used(), [&](const Member& other) {
+    return other.state == State::kRunnable && (other.time < m.time || (other.time == m.time && &other < &m));
+  });
+}
+
+void SpeMonitor::set_time(int spe, std::uint64_t now, std::uint64_t effect) {
+  const Lock lock(mutex_);
+  member(spe).time = now;
+  effect_time_ = effect;
+}
+
+std::uint64_t SpeMonitor::take_woken_at(int spe) {
+  const Lock lock(mutex_);
+  return std::exchange(member(spe).woken_at, 0);
+}
+
+std::uint64_t SpeMonitor::time_at_start(int spe) {
+  const Lock lock(mutex_);
+  return member(spe).time;
 }
 
 Woken SpeMonitor::sleep(Lock& lock, int spe, const Sleep& sleep) {
@@ -89,6 +125,7 @@ void SpeMonitor::wake_with(int spe, Woken why) {
   if (m.state != State::kAsleep) return;
   m.state = State::kRunnable;
   m.woken = why;
+  m.time = m.woken_at = std::max(m.time, effect_time_);
   if (takes_turns_ && turn_ == kNobody) settle();
   if (has_turn(spe)) m.wake_up.notify_one();
 }
@@ -97,17 +134,28 @@ void SpeMonitor::wake_ppu() {
   if (!ppu_waits_.empty()) ppu_wake_up_.notify_all();
 }
 
-void SpeMonitor::ppu_wait(Lock& lock, const std::function<bool()>& ready) {
+bool SpeMonitor::ppu_wait(Lock& lock, const std::function<bool()>& ready, std::optional<HostTime> until) {
   SC_ASSERT(lock.owns_lock(), "the PPU side waits without the lock, with {} waits before", ppu_waits_.size());
+  SC_ASSERT(static_cast<bool>(ready), "the PPU side waits for nothing, with {} waits before",
+            ppu_waits_.size());
   ppu_waits_.push_back(&ready);
   if (turn_ == kNobody) settle();
-  ppu_wake_up_.wait(lock, [&] { return turn_ == kNobody && ready(); });
+  const auto may_act = [&] { return (turn_ == kNobody || ppu_side_ == PpuSide::kOutside) && ready(); };
+  bool is_ready = true;
+  if (until) {
+    is_ready = ppu_wake_up_.wait_until(lock, *until, may_act);
+  } else {
+    ppu_wake_up_.wait(lock, may_act);
+  }
+  SC_ASSERT(std::ranges::count(ppu_waits_, &ready) == 1, "one of the PPU side's {} waits is lost",
+            ppu_waits_.size());
   ppu_waits_.erase(std::find(ppu_waits_.begin(), ppu_waits_.end(), &ready));
-  if (takes_turns_ && !ppu_waits_.empty()) settle();  // another thread's wait goes on
+  if (takes_turns_ && turn_ == kNobody && !ppu_waits_.empty()) settle();  // another thread's wait goes on
+  return is_ready;
 }
 
 void SpeMonitor::ppu_pause(Lock& lock) {
-  if (!takes_turns_) return;
+  if (!takes_turns_ || ppu_side_ == PpuSide::kOutside) return;
   const std::uint64_t before = turns_drawn_;
   ppu_wait(lock, [&] { return turns_drawn_ != before || !any(State::kRunnable); });
 }
@@ -119,7 +167,7 @@ void SpeMonitor::change_outside(int difference) {
 }
 
 bool SpeMonitor::any(State state) const {
-  return std::any_of(members_.begin(), members_.end(), [state](const Member& m) { return m.state == state; });
+  return std::ranges::any_of(used(), [state](const Member& m) { return m.state == state; });
 }
 
 bool SpeMonitor::ppu_acts() const {
@@ -135,7 +183,7 @@ void SpeMonitor::give_up_turn(int spe) {
 
 /// Whenever somebody has stopped running: says who goes on, or that nobody ever will.
 void SpeMonitor::settle() {
-  if (takes_turns_ && ppu_acts()) {
+  if (takes_turns_ && ppu_side_ == PpuSide::kInside && ppu_acts()) {
     wake_ppu();
     return;
   }
@@ -148,14 +196,19 @@ void SpeMonitor::settle() {
 }
 
 void SpeMonitor::draw_turn() {
-  std::array<int, dma::kSpeCount> runnable{};
-  std::uint32_t count = 0;
-  for (int spe = 0; spe < dma::kSpeCount; ++spe) {
-    if (member(spe).state == State::kRunnable) runnable[count++] = spe;
+  SC_ASSERT(turn_ == kNobody, "turn {} is drawn while SPE {} has one", turns_drawn_, turn_);
+  runnable_.clear();
+  for (int spe = 0; spe < static_cast<int>(members_used_); ++spe) {
+    if (member(spe).state == State::kRunnable) runnable_.push_back(spe);
   }
-  SC_ASSERT(count != 0, "nobody can take turn {}", turns_drawn_);
-  turn_ = runnable[random_.below(count)];
-  operations_left_ = random_.below(1u << random_.below(kTurnMagnitudes));
+  SC_ASSERT(!runnable_.empty(), "nobody can take turn {}", turns_drawn_);
+  if (by_time_) {
+    turn_ = *std::ranges::min_element(runnable_, {}, [this](int spe) { return member(spe).time; });
+    operations_left_ = kOperationsInOrder;
+  } else {
+    turn_ = runnable_[random_.below(static_cast<std::uint32_t>(runnable_.size()))];
+    operations_left_ = random_.below(1u << random_.below(kTurnMagnitudes));
+  }
   ++turns_drawn_;
   member(turn_).wake_up.notify_one();
 }
@@ -165,14 +218,14 @@ void SpeMonitor::draw_turn() {
 ///          who sleep, so that one who sleeps often and briefly does not keep the others asleep.
 bool SpeMonitor::let_time_pass() {
   std::optional<std::uint64_t> ticks;
-  for (const Member& m : members_) {
+  for (const Member& m : used()) {
     if (m.state != State::kAsleep) continue;
     if (m.sleep.until) return true;
     if (!m.sleep.simulated_ticks) continue;
     ticks = std::min(ticks.value_or(*m.sleep.simulated_ticks), *m.sleep.simulated_ticks);
   }
   if (!ticks) return false;
-  for (Member& m : members_) {
+  for (Member& m : used()) {
     if (m.state == State::kAsleep) pass_ticks(m, *ticks);
   }
   if (takes_turns_) draw_turn();
@@ -192,7 +245,7 @@ void SpeMonitor::pass_ticks(Member& m, std::uint64_t ticks) {
 
 void SpeMonitor::declare_deadlock() {
   deadlock_.clear();
-  for (int spe = 0; spe < dma::kSpeCount; ++spe) {
+  for (int spe = 0; spe < spes(); ++spe) {
     const Member& m = member(spe);
     if (m.state != State::kAsleep) continue;
     if (!deadlock_.empty()) deadlock_ += ", ";
@@ -203,8 +256,9 @@ void SpeMonitor::declare_deadlock() {
                  (channel_access(m.sleep.channel) == ChannelAccess::kWrite ? "write " : "read ") +
                  std::string(channel_name(m.sleep.channel));
   }
+  SC_ASSERT(!deadlock_.empty(), "a deadlock of {} SPEs, none of which sleeps", spes());
   deadlock_ += "; nothing is in flight, and nobody else can wake them";
-  for (int spe = 0; spe < dma::kSpeCount; ++spe) wake_with(spe, Woken::kDeadlock);
+  for (int spe = 0; spe < spes(); ++spe) wake_with(spe, Woken::kDeadlock);
 }
 
 }  // namespace softcell::ls_sim

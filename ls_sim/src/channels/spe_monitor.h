@@ -9,18 +9,17 @@
 // Its mutex also guards what an SPE may wait for (mailboxes, signals, events), so that a sleeping SPE never
 // misses the change that it waits for. Nobody holds it while an MFC or a kernel runs.
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "softcell/base/assert.h"
-#include "softcell/dma/addresses.h"
 #include "softcell/dma/random_stream.h"
 #include "softcell/ls_sim/image.h"
 #include "softcell/ls_sim/spe_options.h"
@@ -49,7 +48,11 @@ class SpeMonitor {
   using Lock = std::unique_lock<std::mutex>;
   using HostTime = std::chrono::steady_clock::time_point;
 
-  explicit SpeMonitor(const SpeOptions& options);
+  /// Whether the PPU side acts in calls of the monitor only, or is a program of its own that may act at any
+  /// time: then SPEs run whatever the PPU side does, and there is no deadlock.
+  enum class PpuSide : std::uint8_t { kInside, kOutside };
+
+  explicit SpeMonitor(const SpeOptions& options, PpuSide ppu_side = PpuSide::kInside);
 
   Lock lock() { return Lock(mutex_); }
 
@@ -60,10 +63,21 @@ class SpeMonitor {
   void start(int spe, const KernelImage& image, HostTime now, bool timed = true);
 
   /// A job begins or has ended inside the run.
-  void begin_job(int spe, HostTime now) { member(spe).started = now; }
-  void end_job(int spe) { member(spe).started.reset(); }
+  void begin_job(int spe, HostTime now) {
+    SC_ASSERT(runs(spe), "a job begins in SPE {}, which does not run", spe);
+    member(spe).started = now;
+  }
+  void end_job(int spe) {
+    SC_ASSERT(member(spe).started.has_value(), "a job ends in SPE {}, and none has begun", spe);
+    member(spe).started.reset();
+  }
   void end(int spe);
   bool runs(int spe) const { return members_[index(spe)].state != State::kIdle; }
+  /// The same, without the lock.
+  bool runs_now(int spe) {
+    const Lock now = lock();
+    return runs(spe);
+  }
   /// Whether what the SPE runs has taken longer than that.
   bool is_late(int spe, HostTime now, std::chrono::milliseconds deadline) const {
     const auto& started = members_[index(spe)].started;
@@ -91,6 +105,15 @@ class SpeMonitor {
   /// A sentence that says which SPE waits for what, of the last deadlock. With the lock.
   const std::string& deadlock() const { return deadlock_; }
 
+  // With Interleaving::kByTime, what the SPE's own thread says of its simulated clock, without the lock.
+
+  /// It is `now` when the SPE's next operation happens, and `effect` when others see what it does. In cycles.
+  void set_time(int spe, std::uint64_t now, std::uint64_t effect);
+  /// When that happened for which the SPE has slept since the last call; 0: it has not slept.
+  std::uint64_t take_woken_at(int spe);
+  /// Now for an SPE that is about to run: its own time, or that of the last run that has ended.
+  std::uint64_t time_at_start(int spe);
+
   // For threads that have changed something for which others may wait. With the lock.
 
   void wake(int spe);
@@ -98,9 +121,10 @@ class SpeMonitor {
 
   // For the PPU side, which may wake SPEs at any time except in ppu_wait(). All with the lock.
 
-  /// Sleeps until `ready`, which is called with the lock, returns true. Meanwhile the PPU side counts as
-  /// waiting.
-  void ppu_wait(Lock& lock, const std::function<bool()>& ready);
+  /// Sleeps until `ready`, which is called with the lock, returns true, or until the time has come. Meanwhile
+  /// the PPU side counts as waiting.
+  /// @return  the last answer of `ready`.
+  bool ppu_wait(Lock& lock, const std::function<bool()>& ready, std::optional<HostTime> until = {});
 
   /// The PPU side has polled without success: if SPEs take turns, one of them runs for a while.
   void ppu_pause(Lock& lock);
@@ -119,23 +143,29 @@ class SpeMonitor {
     std::optional<HostTime> started;  ///< what has a deadline
     Sleep sleep;
     std::uint64_t slept_ticks = 0;  ///< simulated, in this sleep so far
+    std::uint64_t time = 0;         ///< cycles, by its own clock
+    std::uint64_t woken_at = 0;     ///< cycles
     std::condition_variable wake_up;
   };
 
   static constexpr int kNobody = -1;
 
-  static std::size_t index(int spe) {
-    SC_ASSERT(spe >= 0 && spe < dma::kSpeCount, "SPE {} of {}", spe, dma::kSpeCount);
+  std::size_t index(int spe) const {
+    SC_ASSERT(spe >= 0 && spe < spes(), "SPE {} of {}", spe, spes());
     return static_cast<std::size_t>(spe);
   }
+  int spes() const { return static_cast<int>(members_.size()); }
   Member& member(int spe) { return members_[index(spe)]; }
   bool has_turn(int spe) const { return !takes_turns_ || turn_ == spe; }
   bool may_go_on(int spe) {
     return member(spe).stopped || (member(spe).state == State::kRunnable && has_turn(spe));
   }
   bool any(State state) const;
+  std::span<Member> used() { return std::span(members_).first(members_used_); }
+  std::span<const Member> used() const { return std::span(members_).first(members_used_); }
 
   bool pass_turn_now(int spe);
+  bool is_behind(int spe) const;
   void give_up_turn(int spe);
   void wake_with(int spe, Woken why);
 
@@ -147,13 +177,21 @@ class SpeMonitor {
   void declare_deadlock();
 
   const bool takes_turns_;
+  const bool by_time_;
+  const PpuSide ppu_side_;
 
   std::mutex mutex_;  // guards all below, and what SPEs wait for
-  std::array<Member, dma::kSpeCount> members_;
+  std::vector<Member> members_;
+  std::size_t members_used_ = 0;  ///< that have ever run: the first ones
+  std::vector<int> runnable_;     ///< scratch of draw_turn()
   std::condition_variable ppu_wake_up_;
   std::vector<const std::function<bool()>*> ppu_waits_;
-  int outside_ = 0;
+  int outside_;
   std::string deadlock_;
+
+  // Of time:
+  std::uint64_t effect_time_ = 0;  ///< of what the SPE whose turn it is does now
+  std::uint64_t ended_time_ = 0;   ///< of the last run that has ended
 
   // Of turns:
   int turn_ = kNobody;

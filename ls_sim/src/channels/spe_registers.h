@@ -18,6 +18,7 @@ struct SpeRegisters {
   Mailbox<1> out_mbox, out_intr_mbox;
   SignalRegister signal1, signal2;
   EventFacility events;
+  bool has_begun = false;     ///< the run has come to an operation of a channel
   bool proxy_issued = false;  ///< a proxy command came: an SPE that sleeps has to let it move
 
   void write_in_mbox(std::uint32_t value) {

@@ -11,6 +11,8 @@
 namespace softcell::ls_sim {
 namespace {
 
+constexpr std::chrono::milliseconds kHostStoresPeriod{1};
+
 constexpr std::uint32_t number(Channel channel) { return static_cast<std::uint32_t>(channel); }
 
 ChannelReply reply_of(dma::Fault&& fault) { return {0, std::make_unique<dma::Fault>(std::move(fault))}; }
@@ -55,12 +57,28 @@ void SpuChannels::begin_run(bool calls_jobs) {
   srr0_ = 0;
   parameters_ = {};
   lists_ = {};
+  has_begun_ = stop_listener_ == nullptr;  // nobody else asks
+}
+
+void SpuChannels::tell_begin() {
+  has_begun_ = true;
+  const SpeMonitor::Lock lock = to_.monitor.lock();
+  to_.registers.has_begun = true;
+  to_.monitor.wake_ppu();
 }
 
 /// A program that executes a sync has fetched code, or will: nobody knows where to.
 void SpuChannels::sync() {
   const bool is_announced = calls_jobs_ && !in_job_ && jobs_are_announced_.load(std::memory_order_relaxed);
   if (!is_announced) to_.mfc.expect_code_everywhere();
+}
+
+/// The hardware's transfers go on while the SPU stands still.
+bool SpuChannels::stop(std::uint32_t code, std::uint32_t assist) {
+  if (stop_listener_ == nullptr) return false;
+  while (move_something()) {
+  }
+  return stop_listener_->on_stop(code, assist, {(to_.engine.position().value + 1) & dma::kLocalStoreMask});
 }
 
 // ---- the door
@@ -185,7 +203,11 @@ ChannelReply SpuChannels::read_register(Channel channel) {
   SpeRegisters& registers = to_.registers;
   switch (channel) {
     case Channel::kSpuRdInMbox:
-      return attempt_or_sleep(channel, [&] { return registers.in_mbox.read(); });
+      return attempt_or_sleep(channel, [&] {
+        auto value = registers.in_mbox.read();
+        if (value) to_.monitor.wake_ppu();  // it may wait for room
+        return value;
+      });
     case Channel::kSpuRdSigNotify1:
       return attempt_or_sleep(channel, [&] { return registers.signal1.read(); });
     case Channel::kSpuRdSigNotify2:
@@ -310,10 +332,16 @@ ChannelReply SpuChannels::sleep_until(Channel channel, Attempt&& attempt) {
       lock.lock();
       continue;
     }
+    SC_ASSERT(lock.owns_lock(), "SPE {} is to sleep at channel {} without the lock", to_.spe, channel);
     const Woken woken = to_.monitor.sleep(lock, to_.spe, sleep_at(channel));
     clock_.skip(to_.monitor.slept_ticks(to_.spe));
     switch (woken) {
       case Woken::kToLook:
+        if (waits_for_host_stores(channel)) {
+          lock.unlock();
+          to_.mfc.look_for_host_stores();
+          lock.lock();
+        }
         break;
       case Woken::kDeadlock: {
         dma::Fault fault{dma::Rule::kDeadlock};
@@ -330,6 +358,7 @@ Sleep SpuChannels::sleep_at(Channel channel) const {
   Sleep sleep{.channel = number(channel), .position = to_.engine.position()};
   const bool timed =
       channel == Channel::kSpuRdEventStat && (to_.registers.events.mask() & event::kDecrementer) != 0;
+  if (waits_for_host_stores(channel)) sleep.until = HostClock::now() + kHostStoresPeriod;
   const auto wakes_at = timed ? decrementer_.next_event() : std::nullopt;
   if (!wakes_at) return sleep;
   if (clock_.kind() == Clock::kSimulated) {
@@ -337,9 +366,17 @@ Sleep SpuChannels::sleep_at(Channel channel) const {
               *wakes_at, clock_.ticks());
     sleep.simulated_ticks = *wakes_at - clock_.ticks();
   } else {
-    sleep.until = clock_.host_time_of(*wakes_at);
+    const auto wakes = clock_.host_time_of(*wakes_at);
+    sleep.until = std::min(sleep.until.value_or(wakes), wakes);
   }
   return sleep;
+}
+
+/// An SPU that waits for the loss of its reservation hears of other SPEs at once, and of the stores of host
+/// threads when it looks.
+bool SpuChannels::waits_for_host_stores(Channel channel) const {
+  return channel == Channel::kSpuRdEventStat &&
+         (to_.registers.events.mask() & event::kLostReservation) != 0 && to_.mfc.may_miss_host_stores();
 }
 
 // ---- events
@@ -382,7 +419,8 @@ void SpuChannels::record_wait(Channel channel, HostClock::time_point begin) {
   waits.time += end - begin;
   ++to_.statistics.channel_waits;
   to_.statistics.channel_waiting += end - begin;
-  if (to_.trace != nullptr) {
+  // What a timed SPE waits for, and how long, the model says.
+  if (to_.trace != nullptr && to_.cycles == nullptr) {
     to_.trace->on_wait(number(channel), begin.time_since_epoch().count(), end.time_since_epoch().count());
   }
 }

@@ -22,6 +22,17 @@
 
 namespace softcell::ls_sim {
 
+/// Is told when the SPU stops with a code that does not end its program; by the thread that runs it.
+class StopListener {
+ public:
+  virtual ~StopListener() = default;
+
+  /// Returns when the SPU is to go on.
+  /// @param assist  as ChannelPort::stop(). @param next  the local-store address behind the instruction, as far as the engine knows it.
+  /// @return  false: its run is to end.
+  virtual bool on_stop(std::uint32_t code, std::uint32_t assist, dma::LocalStoreAddress next) = 0;
+};
+
 /// Used by the thread that runs the SPE. Before the SPE sleeps, the MFC moves all bytes that it can: the
 /// hardware's transfers do not need the SPU.
 class SpuChannels final : public ChannelPort {
@@ -35,15 +46,19 @@ class SpuChannels final : public ChannelPort {
     dma::Mfc& mfc;
     const Engine& engine;  ///< knows where the kernel is
     SpeStatistics& statistics;
-    SpeTrace* trace;  ///< may be null
+    SpeTrace* trace;                   ///< may be null
+    SimulatedClock* cycles = nullptr;  ///< of a timed SPE; may be null
   };
 
   explicit SpuChannels(const Surroundings& surroundings)
-      : to_(surroundings), clock_(surroundings.options.clock) {}
+      : to_(surroundings), clock_(surroundings.options.clock, surroundings.cycles) {}
 
   /// Sets the proxy queue, whose commands move at channel operations like the SPU's own. It outlives the
   /// channels.
   void set_proxy(dma::ProxyQueue* proxy) { proxy_ = proxy; }
+
+  /// Null: every stop ends the run. It outlives the channels.
+  void set_stop_listener(StopListener* listener) { stop_listener_ = listener; }
 
   /// State at the start of a program, of all but the MFC and the registers.
   /// @param calls_jobs  the program is one that fetches others and calls them.
@@ -75,6 +90,7 @@ class SpuChannels final : public ChannelPort {
   ChannelReply count(std::uint32_t channel) override;
   ChannelReply issue(const dma::MfcCommand& command) override;
   void sync() override;
+  bool stop(std::uint32_t code, std::uint32_t assist) override;
 
   /// Where a list command was issued whose element broke a rule: elements execute later, when the kernel is
   /// elsewhere.
@@ -86,6 +102,7 @@ class SpuChannels final : public ChannelPort {
 
   /// Where every operation begins. @return  false when the SPE has been stopped.
   bool begin_operation() {
+    if (!has_begun_) tell_begin();
     clock_.on_operation();
     if (proxy_ != nullptr) proxy_->visit();
     return to_.monitor.pass_turn(to_.spe);
@@ -94,6 +111,7 @@ class SpuChannels final : public ChannelPort {
   // Channels of the MFC.
   template <class Waits, class Call>
   ChannelReply wait_for_mfc(Channel channel, Waits&& waits, Call&& call);
+  void tell_begin();
   ChannelReply issue_now(const dma::MfcCommand& command);
 
   // The other channels.
@@ -107,6 +125,7 @@ class SpuChannels final : public ChannelPort {
   template <class Attempt>
   ChannelReply sleep_until(Channel channel, Attempt&& attempt);
   Sleep sleep_at(Channel channel) const;
+  bool waits_for_host_stores(Channel channel) const;
 
   // Events; with the monitor's lock.
   void collect_events();
@@ -117,11 +136,13 @@ class SpuChannels final : public ChannelPort {
 
   Surroundings to_;
   dma::ProxyQueue* proxy_ = nullptr;
+  StopListener* stop_listener_ = nullptr;
   SpuClock clock_;
   Decrementer decrementer_;
   bool calls_jobs_ = false, in_job_ = false;
   std::atomic<bool> jobs_are_announced_{false};
   std::uint32_t srr0_ = 0;
+  bool has_begun_ = true;         ///< whether somebody waits to be told of the run's first operation
   dma::MfcCommand parameters_{};  ///< as written to channels 16 to 20 so far
 
   struct IssuedList {

@@ -6,6 +6,7 @@
 
 #include "softcell/base/assert.h"
 #include "softcell/ls_sim/spe_options.h"
+#include "timing/simulated_clock.h"
 
 namespace softcell::ls_sim {
 
@@ -19,7 +20,11 @@ class SpuClock {
   /// Assumed; only a model of the pipelines would settle it.
   static constexpr std::uint64_t kTicksPerOperation = 1;
 
-  explicit SpuClock(Clock kind) : kind_(kind), begin_(Host::now()) {}
+  /// @param cycles  the simulated clock of a timed SPE, which it then follows; null: there is none. It outlives this.
+  explicit SpuClock(Clock kind, SimulatedClock* cycles = nullptr)
+      : kind_(kind), begin_(Host::now()), cycles_(cycles) {
+    SC_ASSERT(cycles == nullptr || kind == Clock::kSimulated, "clock {} follows cycles", kind);
+  }
 
   Clock kind() const { return kind_; }
 
@@ -27,10 +32,15 @@ class SpuClock {
   void on_operation() { simulated_ += kTicksPerOperation; }
 
   /// Simulated time in which nobody had anything to do.
-  void skip(std::uint64_t ticks) { simulated_ += ticks; }
+  void skip(std::uint64_t ticks) {
+    simulated_ += ticks;
+    if (cycles_ != nullptr && ticks != 0)
+      cycles_->wait_until(cycles_of(this->ticks() + ticks), Stall::kOtherChannel);
+  }
 
   /// Since the SPE was made.
   std::uint64_t ticks() const {
+    if (cycles_ != nullptr) return cycles_->now() * kTicksPerPeriod / kCyclesPerPeriod;
     return kind_ == Clock::kSimulated ? simulated_ : to_ticks(Host::now() - begin_);
   }
 
@@ -51,10 +61,19 @@ class SpuClock {
 
  private:
   static constexpr std::uint64_t kNanoseconds = 1'000'000'000;
+  // The smallest numbers that are to each other as 79.8 MHz to 3.2 GHz.
+  static constexpr std::uint64_t kTicksPerPeriod = 399, kCyclesPerPeriod = 16000;
+  static_assert(kTicksPerPeriod * kCyclesPerSecond == kCyclesPerPeriod * kTicksPerSecond);
+
+  /// The first cycle of a tick.
+  static std::uint64_t cycles_of(std::uint64_t tick) {
+    return (tick * kCyclesPerPeriod + kTicksPerPeriod - 1) / kTicksPerPeriod;
+  }
 
   Clock kind_;
   Host::time_point begin_;
   std::uint64_t simulated_ = 0;
+  SimulatedClock* cycles_;
 };
 
 }  // namespace softcell::ls_sim

@@ -1,6 +1,7 @@
 #include "checker.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "softcell/base/assert.h"
@@ -17,6 +18,7 @@ constexpr std::uint32_t kListStallStatus = 25, kListStallAck = 26, kAtomicStatus
 
 std::string hex(std::uint32_t lsa) {
   static constexpr char kDigits[] = "0123456789ABCDEF";
+  SC_ASSERT(lsa <= dma::kLocalStoreBytes, "local-store address {}", lsa);
   std::string text = "0x00000";
   for (std::size_t i = text.size() - 1; lsa != 0; --i, lsa >>= 4) text[i] = kDigits[lsa & 15];
   return text;
@@ -32,7 +34,7 @@ bool same_line(dma::EffectiveAddress a, dma::EffectiveAddress b) {
 
 void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   SC_ASSERT(image.checked, "image {} is not a checked one", image.name);
-  SC_ASSERT(stack.begin < stack.end && stack.end <= dma::kLocalStoreBytes, "the stack of {} is {} to {}",
+  SC_ASSERT(stack.begin <= stack.end && stack.end <= dma::kLocalStoreBytes, "the stack of {} is {} to {}",
             image.name, stack.begin, stack.end);
   if (image_ != &image) {
     lines_ = std::make_unique<SourceLines>(image);
@@ -40,8 +42,14 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
     padding_ = padding_of(image);
   }
   objects_.emplace(image, stack);
+  last_store_.reset();
   written_.forget_the_last_program();
-  written_.mark(kEnvironmentBytes, static_cast<std::uint32_t>(image.bytes.size()));
+  if (runs_spu_program() || image.program) {
+    written_.mark(image.begin, image.sizes.end - image.begin);  // bss is zero in each run
+  } else {
+    written_.mark(kEnvironmentBytes, static_cast<std::uint32_t>(image.bytes.size()));
+  }
+  stack_overflow_known_ = false;
   for (const PaddingRange& gap : padding_) written_.mark(gap.lsa, gap.bytes);
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
@@ -67,9 +75,23 @@ void Checker::check_code(Address instruction) {
   unsynced_.clear();  // said once
 }
 
-/// Whoever writes to the image's own code has a finding for that.
+/// Whoever writes to the image's own code has a finding for that, but for programs for the SPU, which may.
 void Checker::mark_unsynced(const MovedRange& range, Address writer) {
-  if (!objects_->in_code(range.lsa)) unsynced_.mark(range.lsa, range.bytes, writer.value);
+  if (runs_spu_program() || !objects_->in_code(range.lsa))
+    unsynced_.mark(range.lsa, range.bytes, writer.value);
+}
+
+/// An instruction that was stored again as it was, beside one that the program changes, is as good as before.
+void Checker::mark_changed_words() {
+  if (!last_store_) return;
+  constexpr std::uint32_t kWordBytes = 4;
+  const auto now = to_.local_store.subspan(last_store_->lsa, dma::kQuadwordBytes);
+  const auto before = std::span(last_store_->before);
+  for (std::uint32_t at = 0; at < dma::kQuadwordBytes; at += kWordBytes) {
+    if (std::ranges::equal(now.subspan(at, kWordBytes), before.subspan(at, kWordBytes))) continue;
+    mark_unsynced({.lsa = last_store_->lsa + at, .bytes = kWordBytes}, last_store_->writer);
+  }
+  last_store_.reset();
 }
 
 /// Of a job's image: whoever calls the job has fetched it.
@@ -87,9 +109,32 @@ void Checker::check_fetched_code() {
 void Checker::on_unchecked_issue(const dma::MfcCommand& command) {
   if (!command.is_get()) return;
   CommandInFlight fetch{.command = command, .cursor = command.lsa};
-  add_ranges(fetch, to_.local_store);
+  add_ranges(fetch, to_.local_store, false);
   for (const MovedRange& range : fetch.ranges)
     unsynced_.mark(range.lsa, range.bytes, UnsyncedBytes::kOutside);
+}
+
+void Checker::on_instruction(const ExecutedInstruction& instruction) {
+  SC_ASSERT(image_ != nullptr, "an instruction at {} before a run", instruction.address);
+  const std::uint32_t lsa = instruction.address.value;
+  mark_changed_words();
+  const bool is_code = lsa >= image_->text_begin && lsa < image_->text_end;
+  if (!is_code && !written_.any(lsa, 4)) {
+    report(
+        Rule::kJumpOutsideCode, instruction.address,
+        "it executes LSA " + hex(lsa) + ", which is no code of the program, nor has the program written it");
+    written_.mark(lsa, 4);  // said once
+  }
+  check_code(instruction.address);
+  if (instruction.unset_address_register >= 0) {
+    report(Rule::kUninitialisedAddress, instruction.address,
+           "register $" + std::to_string(instruction.unset_address_register) + " at LSA " + hex(lsa));
+  }
+  if (instruction.stack_pointer.value >= image_->sizes.end || stack_overflow_known_) return;
+  stack_overflow_known_ = true;  // all that follows does the same
+  report(Rule::kStackOverflow, instruction.address,
+         "the stack pointer is " + hex(instruction.stack_pointer.value) +
+             ", and the program's variables end at " + hex(image_->sizes.end));
 }
 
 // ---- loads and stores
@@ -98,7 +143,10 @@ void Checker::on_access(const Access& access) {
   SC_ASSERT(objects_.has_value(), "a {} of {} bytes at {} before a run", access.is_store ? "store" : "load",
             access.bytes, access.lsa);
   check_code(access.instruction);
-  const std::string trespass = objects_->trespass(access.lsa.value, access.bytes, access.stack_pointer.value);
+  // An SPU loads and stores the whole quadword in which a variable lies, and its neighbours with it.
+  const std::string trespass =
+      runs_spu_program() ? ""
+                         : objects_->trespass(access.lsa.value, access.bytes, access.stack_pointer.value);
   if (!trespass.empty()) {
     report(Rule::kOutsideObjects, access.instruction, describe(access) + ": " + trespass);
   } else if (access.is_store) {
@@ -108,6 +156,13 @@ void Checker::on_access(const Access& access) {
   }
   if (!access.is_store) return;
   written_.mark(access.lsa.value, access.bytes);
+  if (runs_spu_program()) {
+    SC_ASSERT(access.bytes == dma::kQuadwordBytes && access.lsa.value % dma::kQuadwordBytes == 0,
+              "an SPU stores {} bytes at {}", access.bytes, access.lsa);
+    last_store_ = QuadwordStore{access.lsa.value, access.instruction, {}};
+    std::ranges::copy(to_.local_store.subspan(access.lsa.value, access.bytes), last_store_->before.begin());
+    return;
+  }
   mark_unsynced({.lsa = access.lsa.value, .bytes = access.bytes}, access.instruction);
 }
 
@@ -117,7 +172,7 @@ void Checker::check_store(const Access& access) {
       reservation_->command.lsa.value < lsa + access.bytes) {
     reservation_->line_changed = true;
   }
-  if (objects_->in_code(lsa)) {
+  if (objects_->in_code(lsa) && !runs_spu_program()) {
     report(Rule::kWriteToCode, access.instruction, describe(access));
     return;
   }
@@ -152,14 +207,15 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
       .writes_main_storage = command.is_put() || command.kind() == CommandKind::kQueuedLine,
       .cursor = command.lsa};
   // The list as it is now: the command may write over it.
-  add_ranges(in_flight, to_.local_store);
+  add_ranges(in_flight, to_.local_store, runs_spu_program());
   ChannelReply reply = to_.channels.issue(command);
   if (reply.fault) return reply;
   if (command.kind() == CommandKind::kLine) {
     check_line_command(command);
     return reply;
   }
-  tags_issued_ |= 1u << (command.tag % dma::kTagCount);
+  SC_ASSERT(command.tag < dma::kTagCount, "the MFC has accepted a command of tag {}", command.tag);
+  tags_issued_ |= 1u << command.tag;
   if (command.kind() == CommandKind::kCacheHint) return reply;
   if (command.kind() == CommandKind::kQueuedLine) end_reservation(command);
   check_ranges(in_flight_.add(std::move(in_flight)));
@@ -167,6 +223,7 @@ ChannelReply Checker::issue(const dma::MfcCommand& command) {
 }
 
 void Checker::check_ranges(CommandInFlight& command) {
+  SC_ASSERT(objects_.has_value(), "command {} is checked before a run", command.number);
   for (const MovedRange& range : command.ranges)
     check_local_range(command.command, range, command.writes_local_store);
   if (const CommandInFlight* const other = in_flight_.conflicting(command)) {
@@ -185,7 +242,9 @@ void Checker::check_ranges(CommandInFlight& command) {
 void Checker::check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get) {
   const Address here = to_.engine.position();
   const std::string where = objects_->describe(range.lsa);
-  const std::string trespass = objects_->trespass(range.lsa, range.bytes, to_.engine.stack_pointer().value);
+  // A program for the SPU may have a heap below its stack.
+  const std::uint32_t stack_pointer = runs_spu_program() ? 0 : to_.engine.stack_pointer().value;
+  const std::string trespass = objects_->trespass(range.lsa, range.bytes, stack_pointer);
   if (!trespass.empty()) {
     report(Rule::kOutsideObjects, here, std::to_string(range.bytes) + " bytes at " + where + ": " + trespass,
            command);
@@ -301,7 +360,7 @@ void Checker::on_list_acknowledged(std::uint32_t tag) {
   for (CommandInFlight& command : in_flight_.all()) {
     if (!command.has_stalled || command.command.tag != tag) continue;
     command.has_stalled = false;
-    add_ranges(command, to_.local_store);
+    add_ranges(command, to_.local_store, runs_spu_program());
     check_ranges(command);
   }
 }
@@ -334,7 +393,7 @@ void Checker::report(Rule rule, Address place, std::string detail,
                            .command = command,
                            .detail = std::move(detail)};
   to_.findings.add(finding);
-  if (to_.trace != nullptr) to_.trace->on_finding(finding, trace_now());
+  if (to_.trace != nullptr) to_.trace->on_finding(finding, to_.trace->now());
 }
 
 std::string Checker::describe(const Access& access) const {

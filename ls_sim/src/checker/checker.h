@@ -7,6 +7,8 @@
 // It models the state that a program may rely on, not that of the emulator, so that it finds the same under
 // every schedule.
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +16,7 @@
 #include <vector>
 
 #include "commands_in_flight.h"
+#include "image/function_names.h"
 #include "image/object_map.h"
 #include "image/object_padding.h"
 #include "softcell/base/assert.h"
@@ -79,7 +82,9 @@ class Checker final : public ChannelPort, public AccessObserver {
     unsynced_.clear();
     to_.channels.sync();
   }
+  bool stop(std::uint32_t code, std::uint32_t assist) override { return to_.channels.stop(code, assist); }
   void on_access(const Access& access) override;
+  void on_instruction(const ExecutedInstruction& instruction) override;
 
  private:
   using Address = dma::LocalStoreAddress;
@@ -91,7 +96,15 @@ class Checker final : public ChannelPort, public AccessObserver {
     bool line_changed = false;
   };
 
+  /// A store of an SPU program, which writes a whole quadword: the bytes that were there.
+  struct QuadwordStore {
+    std::uint32_t lsa;
+    Address writer;
+    std::array<std::byte, dma::kQuadwordBytes> before;
+  };
+
   void check_code(Address instruction);
+  void mark_changed_words();
   void check_fetched_code();
   void mark_unsynced(const MovedRange& range, Address writer);
   void check_store(const Access& access);
@@ -109,7 +122,12 @@ class Checker final : public ChannelPort, public AccessObserver {
               const std::optional<dma::MfcCommand>& command = std::nullopt);
   std::string describe(const Access& access) const;
   std::string describe(const CommandInFlight& command) const;
-  std::string place_of(Address instruction) const { return lines_->place_of(instruction); }
+  bool runs_spu_program() const { return image_ != nullptr && image_->machine == Machine::kSpu; }
+  /// Without debug information, the function.
+  std::string place_of(Address instruction) const {
+    const std::string place = lines_->place_of(instruction);
+    return place.empty() ? function_at(*image_, instruction) : place;
+  }
 
   Surroundings to_;
   const KernelImage* image_ = nullptr;
@@ -122,8 +140,10 @@ class Checker final : public ChannelPort, public AccessObserver {
   CommandsInFlight in_flight_;
   std::uint32_t tag_mask_ = 0;
   std::uint32_t tags_issued_ = 0;  ///< since each was last waited for
-  bool is_waiting_ = false;        ///< the open tag-status request is one that waits
-  std::uint64_t asked_at_ = 0;     ///< number of the last command when the request was made
+  bool stack_overflow_known_ = false;
+  bool is_waiting_ = false;                  ///< the open tag-status request is one that waits
+  std::uint64_t asked_at_ = 0;               ///< number of the last command when the request was made
+  std::optional<QuadwordStore> last_store_;  ///< not yet looked at
   std::optional<LineCommand> status_unread_;
   std::optional<LineCommand> reservation_;
 };

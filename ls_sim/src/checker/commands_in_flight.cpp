@@ -1,11 +1,10 @@
 #include "commands_in_flight.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "softcell/base/assert.h"
-#include "softcell/dma/list_element.h"
+#include "softcell/dma/list_transfer.h"
 
 namespace softcell::ls_sim {
 namespace {
@@ -32,7 +31,7 @@ bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t number) {
 
 }  // namespace
 
-void add_ranges(CommandInFlight& in_flight, std::span<const std::byte> local_store) {
+void add_ranges(CommandInFlight& in_flight, std::span<const std::byte> local_store, bool is_big_endian) {
   const dma::MfcCommand& command = in_flight.command;
   switch (command.kind()) {
     case dma::CommandKind::kTransfer:
@@ -53,10 +52,10 @@ void add_ranges(CommandInFlight& in_flight, std::span<const std::byte> local_sto
   const std::uint32_t count = command.size / dma::kListElementBytes;
   SC_ASSERT(in_flight.next_element <= count, "element {} of a list of {}", in_flight.next_element, count);
   while (in_flight.next_element < count) {
-    dma::ListElement element;
     const std::uint32_t at = command.list_address().value + in_flight.next_element * dma::kListElementBytes;
-    if (at + sizeof element > local_store.size()) return;
-    std::memcpy(&element, local_store.data() + at, sizeof element);
+    if (at + dma::kListElementBytes > local_store.size()) return;
+    const dma::ListElement element =
+        dma::read_element(local_store, command, in_flight.next_element, is_big_endian);
     if (element.size() != 0) {
       in_flight.ranges.push_back(
           {element.place(in_flight.cursor).value, element.ea(command).value, element.size()});
@@ -74,6 +73,7 @@ void CommandsInFlight::clear() {
 
 CommandInFlight& CommandsInFlight::add(CommandInFlight command) {
   SC_ASSERT(command.number == 0, "command {} is added a second time", command.number);
+  SC_ASSERT(command.command.tag < dma::kTagCount, "a command of tag {} is in flight", command.command.tag);
   command.number = ++last_number_;
   for (const CommandInFlight& earlier : commands_) {
     if (!is_ordered(earlier.command, command.command)) continue;
@@ -89,7 +89,7 @@ void CommandsInFlight::complete(std::uint32_t tags, std::uint64_t up_to) {
   SC_ASSERT(up_to <= last_number_, "commands up to {} of {} are complete", up_to, last_number_);
   std::vector<std::uint64_t> done;
   for (const CommandInFlight& command : commands_) {
-    if (command.number > up_to || (tags >> (command.command.tag % dma::kTagCount) & 1u) == 0) continue;
+    if (command.number > up_to || (tags >> command.command.tag & 1u) == 0) continue;
     done.push_back(command.number);
     done.insert(done.end(), command.behind.begin(), command.behind.end());
   }
@@ -122,6 +122,8 @@ const CommandInFlight* CommandsInFlight::listing(std::uint32_t lsa, std::uint32_
     if (!command.is_list() || command.has_stalled) continue;
     const std::uint32_t begin = command.command.list_address().value;
     const std::uint32_t done = command.first_element * dma::kListElementBytes;
+    SC_ASSERT(done <= command.command.size, "{} of the {} bytes of list {} are done", done,
+              command.command.size, command.number);
     if (overlap(begin + done, command.command.size - done, lsa, bytes)) return &command;
   }
   return nullptr;

@@ -44,7 +44,8 @@ struct CommandInFlight {
 
 /// Adds the ranges that a command moves; for a list, those of its elements up to the next stall. Reads the
 /// list from the local store.
-void add_ranges(CommandInFlight& command, std::span<const std::byte> local_store);
+/// @param is_big_endian  the byte order of the local store, in which a list lies.
+void add_ranges(CommandInFlight& command, std::span<const std::byte> local_store, bool is_big_endian);
 
 class CommandsInFlight {
  public:

@@ -38,6 +38,7 @@ class UnsyncedBytes {
 
   /// The first unsynced byte in [begin, end), or `end`.
   std::uint32_t first_in(std::uint32_t begin, std::uint32_t end) const {
+    SC_ASSERT(end <= dma::kLocalStoreBytes, "bytes {} to {} of a local store", begin, end);
     while (begin < end && !contains(begin)) ++begin;
     return begin;
   }

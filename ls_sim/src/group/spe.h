@@ -18,6 +18,8 @@
 #include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/spe_options.h"
 #include "softcell/ls_sim/statistics.h"
+#include "softcell/ls_sim/timing.h"
+#include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {
 
@@ -43,11 +45,20 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   /// Sets the proxy queue, whose commands move at the SPE's channel operations. It outlives the SPE's runs.
   void set_proxy(dma::ProxyQueue* proxy) { channels_.set_proxy(proxy); }
 
+  /// Who is told of stops that do not end a program; null: such a stop ends the run, too.
+  void set_stop_listener(StopListener* listener) { channels_.set_stop_listener(listener); }
+
+  /// Sets which effective addresses mean something else to this SPE, while no run is in progress.
+  void set_window(dma::AddressWindow window) { mfc_.set_window(std::move(window)); }
+
   /// Sets the images of jobs. They outlive the SPE's runs.
   void set_job_images(const JobImages* images) { job_images_ = images; }
 
   /// Announces an image that a resident kernel may fetch from now on. Any thread.
   void announce_job_image(const KernelImage& image);
+
+  /// Whoever loads programs clears their bss, as a loader of ELF files does: it counts as written.
+  void set_clears_bss() { clears_bss_ = true; }
 
   /// Loads the image. Any thread, while no run is in progress.
   void load(const KernelImage& image);
@@ -57,6 +68,9 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
 
   /// Ends the run in progress with the fault deadline-exceeded. Any thread, with the monitor's lock.
   void interrupt();
+
+  /// Of its engine. Any thread, while no run is in progress.
+  dma::LocalStoreAddress position() const { return engine_->position(); }
 
   /// Guarded by the monitor.
   SpeRegisters& registers() { return registers_; }
@@ -92,6 +106,7 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
       return port().issue(command);
     }
     void sync() override { spe_.checker_->sync(); }
+    bool stop(std::uint32_t code, std::uint32_t assist) override { return port().stop(code, assist); }
 
    private:
     ChannelPort& port() {
@@ -101,6 +116,8 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
     Spe& spe_;
   };
 
+  class TimeOfSpe;
+
   const KernelImage& image_under_way() const;
   bool is_checked_job() const;
   StackRange stack_of_job() const;
@@ -108,14 +125,18 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   RunResult guarded(const Work& work);
   RunResult execute(const Run& run);
   RunResult run_engine(const Run& run);
+  RunResult run_timed(const Run& run, ChannelPort& channels, AccessObserver* accesses, JobObserver* jobs);
   dma::LocalStoreAddress position_of(const dma::Fault& fault) const;
   void account(const Run& run, const RunResult& result);
-  void count_job(const KernelImage& image, std::uint64_t number, SpeMonitor::HostTime begin, bool failed);
+  void count_job(const KernelImage& image, std::uint64_t number, SpeMonitor::HostTime begin,
+                 TraceTime trace_begin, bool failed);
+  TraceTime trace_time() const;
 
   int number_;
   SpeOptions options_;
   SpeMonitor& monitor_;
   SpeTrace* trace_;  ///< may be null
+  SpeTimer* timer_;  ///< may be null
   LocalStore local_store_;
   SpeRegisters registers_;
   dma::Mfc mfc_;
@@ -124,16 +145,19 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
   SpuChannels channels_;
   std::unique_ptr<Checker> checker_;  ///< null: nothing is checked
   const KernelImage* resident_ = nullptr;
+  bool clears_bss_ = false;
 
   /// The job inside the run, while one is under way.
   struct InnerJob {
     const KernelImage* image = nullptr;  ///< null: not known
     dma::EffectiveAddress ea;
     SpeMonitor::HostTime begin;
+    TraceTime trace_begin = 0;
   };
   const JobImages* job_images_ = nullptr;
   const Run* run_ = nullptr;
   std::optional<InnerJob> job_;
+  TraceTime run_begin_ = 0;
 };
 
 }  // namespace softcell::ls_sim

@@ -6,32 +6,12 @@
 #include <string>
 #include <utility>
 
+#include "door.h"
 #include "softcell/base/assert.h"
-#include "softcell/dma/local_store_bytes.h"
-#include "softcell/dma/proxy_queue.h"
 #include "spe_threads.h"
 
 namespace softcell::ls_sim {
 namespace {
-
-/// Tells apart the random schedules of proxy queues from those of runs.
-constexpr std::uint64_t kProxyStreams = 0x7072'6F78'7900;
-
-/// A local store in main storage, while the object lives.
-class MappedLocalStore {
- public:
-  MappedLocalStore(dma::AddressSpace& memory, int spe, dma::LocalStorePort& port)
-      : memory_(memory), spe_(spe) {
-    memory_.map_local_store(spe_, port);
-  }
-  ~MappedLocalStore() { memory_.unmap_local_store(spe_); }
-  MappedLocalStore(const MappedLocalStore&) = delete;
-  MappedLocalStore& operator=(const MappedLocalStore&) = delete;
-
- private:
-  dma::AddressSpace& memory_;
-  int spe_;
-};
 
 /// What the PPU side has asked of an SPE, and what came of it. Guarded by the monitor's lock.
 struct Orders {
@@ -41,141 +21,12 @@ struct Orders {
   std::condition_variable changed;
 };
 
-/// One SPE's problem state. Where the SPE may wait for what is done here, it is woken.
-class Door final : public ProblemState {
- public:
-  Door(SpeThreads& threads, dma::AddressSpace& memory, const SpeOptions& options, int number,
-       std::function<void()> start)
-      : monitor_(threads.monitor()),
-        number_(number),
-        spe_(threads.spe(number)),
-        registers_(spe_.registers()),
-        proxy_(spe_, memory, options.schedule, kProxyStreams + static_cast<std::uint64_t>(number),
-               std::move(start)),
-        mapped_(memory, number, spe_) {
-    spe_.set_proxy(&proxy_);
-  }
-
-  std::optional<std::uint32_t> read_out_mbox() override { return look(&SpeRegisters::read_out_mbox); }
-  std::optional<std::uint32_t> read_out_intr_mbox() override {
-    return look(&SpeRegisters::read_out_intr_mbox);
-  }
-  std::optional<std::uint32_t> wait_out_mbox() override {
-    return wait_for(&SpeRegisters::out_mbox, &SpeRegisters::read_out_mbox);
-  }
-  std::optional<std::uint32_t> wait_out_intr_mbox() override {
-    return wait_for(&SpeRegisters::out_intr_mbox, &SpeRegisters::read_out_intr_mbox);
-  }
-
-  void write_in_mbox(std::uint32_t value) override {
-    spe_.on_register_write(dma::SpeRegister::kInMbox, value);
-  }
-
-  std::uint32_t mbox_status() override {
-    SpeMonitor::Lock lock = monitor_.lock();
-    monitor_.ppu_pause(lock);
-    return registers_.out_mbox.count() | registers_.in_mbox.free_slots() << 8 |
-           registers_.out_intr_mbox.count() << 16;
-  }
-
-  void write_signal(int which, std::uint32_t value) override {
-    check_signal(which);
-    spe_.on_register_write(which == 1 ? dma::SpeRegister::kSignal1 : dma::SpeRegister::kSignal2, value);
-  }
-
-  void set_signal_mode(int which, SignalMode mode) override {
-    check_signal(which);
-    const SpeMonitor::Lock lock = monitor_.lock();
-    registers_.signal(which).set_mode(mode);
-  }
-
-  std::optional<dma::Fault> issue_proxy(const dma::MfcCommand& command) override {
-    if (auto fault = proxy_.issue(command)) {
-      fault->spe = number_;
-      return fault;
-    }
-    SpeMonitor::Lock lock = monitor_.lock();
-    if (monitor_.runs(number_)) {
-      registers_.proxy_issued = true;
-      monitor_.wake(number_);
-    } else {
-      lock.unlock();
-      move_proxy();
-    }
-    return std::nullopt;
-  }
-
-  std::uint32_t proxy_status(std::uint32_t tag_mask) override {
-    pause();
-    return proxy_.complete_tags(tag_mask);
-  }
-  std::uint32_t wait_proxy(std::uint32_t tag_mask) override { return proxy_.wait_all(tag_mask); }
-  int free_proxy_slots() override {
-    pause();
-    return proxy_.free_slots();
-  }
-
-  void write_local_store(dma::LocalStoreAddress lsa, std::span<const std::byte> bytes) override {
-    if (bytes.size() > dma::kLocalStoreBytes || lsa.value > dma::kLocalStoreBytes - bytes.size()) {
-      throw std::invalid_argument(std::to_string(bytes.size()) + " bytes written to local-store address " +
-                                  std::to_string(lsa.value) + " pass its end at " +
-                                  std::to_string(dma::kLocalStoreBytes));
-    }
-    const auto size = static_cast<std::uint32_t>(bytes.size());
-    spe_.on_external_write(lsa, size);
-    dma::copy_to_local_store(&spe_.local_store()[lsa.value], bytes.data(), size);
-  }
-  std::span<std::byte> local_store() override { return spe_.local_store(); }
-  dma::EffectiveAddress local_store_ea() const override { return dma::local_store_ea(number_); }
-
-  /// The hardware's transfers need nobody's help: before the PPU side waits, or the SPE sleeps.
-  void move_proxy() {
-    while (proxy_.advance()) {
-    }
-  }
-
- private:
-  using Read = std::optional<std::uint32_t> (SpeRegisters::*)();
-
-  static void check_signal(int which) {
-    if (which != 1 && which != 2) {
-      throw std::invalid_argument("signal register " + std::to_string(which) + "; there are 1 and 2");
-    }
-  }
-
-  void pause() {
-    SpeMonitor::Lock lock = monitor_.lock();
-    monitor_.ppu_pause(lock);
-  }
-
-  /// With the lock.
-  std::optional<std::uint32_t> take(Read read) {
-    const auto value = (registers_.*read)();
-    if (value) monitor_.wake(number_);  // it may wait to write the next
-    return value;
-  }
-
-  std::optional<std::uint32_t> look(Read read) {
-    SpeMonitor::Lock lock = monitor_.lock();
-    auto value = take(read);
-    if (!value) monitor_.ppu_pause(lock);
-    return value;
-  }
-
-  std::optional<std::uint32_t> wait_for(Mailbox<1> SpeRegisters::*mailbox, Read read) {
-    move_proxy();
-    SpeMonitor::Lock lock = monitor_.lock();
-    monitor_.ppu_wait(lock, [&] { return !(registers_.*mailbox).empty() || !monitor_.runs(number_); });
-    return take(read);
-  }
-
-  SpeMonitor& monitor_;
-  int number_;
-  Spe& spe_;
-  SpeRegisters& registers_;  // guarded by the monitor's lock
-  dma::ProxyQueue proxy_;
-  MappedLocalStore mapped_;
-};
+/// Of other programs for the SPU nobody knows where main is, nor how much stack it takes.
+void require_kernel(const KernelImage& image, const char* what) {
+  if (image.main != 0) return;
+  throw std::invalid_argument(image.name + " was not built by softcell_add_spu_kernel, as " + what +
+                              " must be");
+}
 
 }  // namespace
 
@@ -184,10 +35,11 @@ struct SpeGroup::State final : RunSource {
     try {
       for (int spe = 0; spe < options.spes; ++spe) {
         threads.spe(spe).set_job_images(&job_images);
-        doors[index(spe)] = std::make_unique<Door>(threads, memory, options, spe, [this, spe] {
-          const SpeMonitor::Lock lock = monitor().lock();
-          start_prepared(spe);
-        });
+        doors[index(spe)] =
+            std::make_unique<Door>(threads.monitor(), threads.spe(spe), memory, options, spe, [this, spe] {
+              const SpeMonitor::Lock lock = monitor().lock();
+              start_prepared(spe);
+            });
       }
     } catch (...) {
       close();
@@ -232,6 +84,7 @@ struct SpeGroup::State final : RunSource {
     }
     // Nothing is prepared meanwhile: a proxy command with start must not begin a run of half an image.
     threads.spe(spe).load(image);
+    doors[index(spe)]->set_big_endian(image.machine == Machine::kSpu);
     const SpeMonitor::Lock lock = monitor().lock();
     orders[index(spe)].prepared =
         Run{.image = &image, .arguments = arguments, .number = runs_prepared++, .resident = resident};
@@ -271,6 +124,7 @@ struct SpeGroup::State final : RunSource {
       if (stopping) return std::nullopt;
       if (std::exchange(threads.spe(spe).registers().proxy_issued, false)) {
         lock.unlock();
+        SC_ASSERT(doors[index(spe)] != nullptr, "SPE {} has a proxy command and no door", spe);
         doors[index(spe)]->move_proxy();  // issued just before a run ended
         lock.lock();
       } else if (mine.given) {
@@ -282,6 +136,7 @@ struct SpeGroup::State final : RunSource {
   }
 
   void on_ended(int spe, const Run&, RunResult&& result) override {
+    SC_ASSERT(!orders[index(spe)].end_untold, "SPE {} ends a run, and the end of the last is untold", spe);
     orders[index(spe)].result = std::move(result);
     orders[index(spe)].end_untold = true;
   }
@@ -310,11 +165,13 @@ void SpeGroup::prepare(int spe, const KernelImage& image, const EntryArguments& 
 }
 
 void SpeGroup::start_resident(int spe, const KernelImage& image, const EntryArguments& arguments) {
+  require_kernel(image, "a resident kernel");
   state_->prepare(spe, image, arguments, true);
   start(spe);
 }
 
 void SpeGroup::register_job_image(dma::EffectiveAddress ea, const KernelImage& image) {
+  require_kernel(image, "a job");
   const SpeMonitor::Lock lock = state_->monitor().lock();
   SC_ASSERT(dma::is_effective_address(ea.value) && ea.value % dma::kQuadwordBytes == 0,
             "the job image {} lies at {}, which no DMA can fetch", image.name, ea);

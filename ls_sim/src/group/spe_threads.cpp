@@ -8,6 +8,7 @@
 #include <string>
 
 #include "softcell/base/assert.h"
+#include "softcell/ls_sim/timing.h"
 #include "softcell/ls_sim/trace.h"
 
 namespace softcell::ls_sim {
@@ -30,6 +31,17 @@ const SpeOptions& checked(const SpeOptions& options) {
   }
   if (options.trace != nullptr && options.trace->spes() < options.spes) {
     throw std::invalid_argument("the trace has room for " + std::to_string(options.trace->spes()) +
+                                " SPEs; there are " + std::to_string(options.spes));
+  }
+  const bool is_by_time = options.interleaving == Interleaving::kByTime;
+  if (is_by_time != (options.timing != nullptr) || (is_by_time && options.clock != Clock::kSimulated)) {
+    throw std::invalid_argument("timing, the simulated clock and turns by time need each other");
+  }
+  if (options.trace != nullptr && (options.trace->clock() == TraceClock::kSimulated) != is_by_time) {
+    throw std::invalid_argument("a trace has the simulated clock if and only if the SPEs are timed");
+  }
+  if (options.timing != nullptr && options.timing->spes() < options.spes) {
+    throw std::invalid_argument("the timing has room for " + std::to_string(options.timing->spes()) +
                                 " SPEs; there are " + std::to_string(options.spes));
   }
   return options;
@@ -57,6 +69,8 @@ SpeThreads::SpeThreads(dma::AddressSpace& memory, const SpeOptions& options, Run
 void SpeThreads::begin_work(Beginning beginning) {
   {
     const SpeMonitor::Lock lock = monitor_.lock();
+    SC_ASSERT(beginning_ == Beginning::kNotYet && beginning != Beginning::kNotYet,
+              "the threads' beginning {} becomes {}", beginning_, beginning);
     beginning_ = beginning;
   }
   began_.notify_all();
@@ -84,6 +98,7 @@ void SpeThreads::work(int number) {
   if (beginning_ == Beginning::kNever) return;
   while (const std::optional<Run> next = source_.next_run(number, lock)) {
     RunResult result = run(number, *next, lock);
+    SC_ASSERT(lock.owns_lock(), "SPE {} ends run {} without the lock", number, next->number);
     monitor_.end(number);
     spe(number).publish_statistics();
     source_.on_ended(number, *next, std::move(result));

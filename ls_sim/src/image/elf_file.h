@@ -13,8 +13,9 @@
 
 namespace softcell::ls_sim {
 
-/// A 64-bit little-endian x86 file. The bytes and the name must outlive it. Every error is a
-/// std::runtime_error whose message begins with the image's name.
+/// A little-endian x86 file of class 32: 64-bit code with 32-bit pointers (x32). Its records are shown as those
+/// of class 64, so that no sum of addresses, offsets and sizes wraps. The bytes and the name must outlive it.
+/// Every error is a std::runtime_error whose message begins with the image's name.
 class ElfFile {
  public:
   struct Section {
@@ -30,7 +31,6 @@ class ElfFile {
   const Elf64_Ehdr& header() const { return header_; }
   std::vector<Elf64_Phdr> loadable_segments() const;
 
-  /// Addresses and sizes are below 2^32, so that sums of them do not wrap.
   const std::vector<Section>& sections() const { return sections_; }
   /// The section of that name; an empty one when there is none.
   Section find(std::string_view name) const;
@@ -55,6 +55,9 @@ class ElfFile {
   };
   /// The symbol table; empty when the file has none.
   std::vector<Symbol> symbols() const;
+
+  /// The records of a section of type SHT_RELA.
+  std::vector<Elf64_Rela> relocations(const Section& section) const;
 
  private:
   void read_header();

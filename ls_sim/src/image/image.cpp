@@ -1,11 +1,11 @@
 #include "softcell/ls_sim/image.h"
 
-#include <cxxabi.h>
-
 #include <algorithm>
-#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
 #include <utility>
 
+#include "demangled.h"
 #include "elf_file.h"
 #include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
@@ -17,20 +17,9 @@ constexpr std::uint32_t kDeclarationMagic = 0x324B4353;  // "SCK2", written by l
 
 /// The section that ls.ld writes for the loader.
 struct Declaration {
-  std::uint32_t magic, stack_bytes, budget_bytes, end, is_checked;
+  std::uint32_t magic, stack_bytes, budget_bytes, end, flavour;
 };
-
-constexpr std::size_t kLongestName = 1024;  // of what is demangled: a longer one stays as it is
-
-std::string demangled(std::string_view symbol) {
-  std::string name(symbol);
-  if (name.size() > kLongestName) return name;
-  int status = 0;
-  char* const text = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status);
-  if (status == 0) name = text;
-  std::free(text);
-  return name;
-}
+constexpr std::uint32_t kChecked = 1, kProgram = 2;  // bits of the flavour
 
 /// The one loadable segment that ls.ld makes, checked against the local store.
 Elf64_Phdr read_segment(const ElfFile& elf) {
@@ -81,12 +70,12 @@ Declaration read_declaration(const ElfFile& elf, const Elf64_Phdr& segment) {
     elf.refuse("its declared stack of " + std::to_string(declared.stack_bytes) +
                " bytes is not a positive multiple of 16 that fits beside the image in 256 KB");
   }
-  if (declared.is_checked > 1) elf.refuse("its .softcell.kernel section neither says checked nor unchecked");
+  if (declared.flavour > (kChecked | kProgram))
+    elf.refuse("its .softcell.kernel section says neither checked nor unchecked, kernel nor program");
   return declared;
 }
 
-/// True for what would have to be applied to the image wherever it is copied. All else the link has done for
-/// good.
+/// True for what depends on where the image lies. All else the link has done for good.
 bool is_absolute(const Elf64_Rela& relocation) {
   switch (ELF64_R_TYPE(relocation.r_info)) {
     case R_X86_64_NONE:
@@ -101,20 +90,38 @@ bool is_absolute(const Elf64_Rela& relocation) {
   }
 }
 
+/// Words of a program that hold an address in it. The link has noted them in .rela.dyn, and writes their
+/// addends there only: they are stored in the image's bytes here.
+std::vector<dma::LocalStoreAddress> apply_addends(const ElfFile& elf, KernelImage& image) {
+  std::vector<dma::LocalStoreAddress> words;
+  for (const auto& relocation : elf.relocations(elf.find(".rela.dyn"))) {
+    const std::uint64_t offset = relocation.r_offset - image.begin;
+    const auto addend = static_cast<std::uint32_t>(relocation.r_addend);
+    if (ELF64_R_TYPE(relocation.r_info) != R_X86_64_RELATIVE || relocation.r_offset < image.begin ||
+        image.bytes.size() < sizeof addend || offset > image.bytes.size() - sizeof addend ||
+        addend > dma::kLocalStoreBytes) {
+      elf.refuse("it holds a relocation that is no address of 32 bits in the program");
+    }
+    std::memcpy(image.bytes.data() + offset, &addend, sizeof addend);
+    words.push_back({static_cast<std::uint32_t>(relocation.r_offset)});
+  }
+  return words;
+}
+
 /// The link keeps its relocations (--emit-relocs): a debugger needs those of the debug information. Those of
 /// the image itself must be ones that the link has done for good.
 void refuse_relocations(const ElfFile& elf) {
-  for (const auto& [name, header] : elf.sections()) {
+  for (const ElfFile::Section& section : elf.sections()) {
+    const auto& [name, header] = section;
     if ((header.sh_type != SHT_RELA && header.sh_type != SHT_REL) || header.sh_size == 0) continue;
     if (header.sh_type == SHT_REL) {
       elf.refuse("its section " + std::string(name) +
-                 " has relocations without addends (SHT_REL); a 64-bit x86 linker makes SHT_RELA ones");
+                 " has relocations without addends (SHT_REL); an x86-64 linker makes SHT_RELA ones");
     }
     const bool is_loaded = (header.sh_flags & SHF_ALLOC) != 0 || name == ".rela.dyn";
     const bool is_of_image = header.sh_info < elf.sections().size() &&
                              (elf.sections()[header.sh_info].header.sh_flags & SHF_ALLOC) != 0;
-    const auto relocations = elf.table<Elf64_Rela>(header.sh_offset, header.sh_size / sizeof(Elf64_Rela),
-                                                   "a table of relocations");
+    const auto relocations = elf.relocations(section);
     if (is_loaded || (is_of_image && std::any_of(relocations.begin(), relocations.end(), is_absolute)))
       elf.refuse("a relocation is left: an absolute pointer is stored in its static data");
   }
@@ -160,7 +167,10 @@ std::vector<ImageObject> read_objects(const ElfFile& elf, std::uint32_t begin, s
   return objects;
 }
 
-std::uint32_t narrow(std::uint64_t value) { return static_cast<std::uint32_t>(value); }
+std::uint32_t narrow(std::uint64_t value) {
+  SC_ASSERT(value <= dma::kLocalStoreBytes, "{} is checked against the local store, and passes it", value);
+  return static_cast<std::uint32_t>(value);
+}
 
 }  // namespace
 
@@ -169,7 +179,8 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   const Elf64_Phdr segment = read_segment(elf);
   const std::uint64_t file_end = segment.p_vaddr + segment.p_filesz;
   const Declaration declared = read_declaration(elf, segment);
-  refuse_relocations(elf);
+  const bool is_program = (declared.flavour & kProgram) != 0;
+  if (!is_program) refuse_relocations(elf);
   const Layout layout = read_layout(elf, segment);
   const std::uint64_t entry = elf.header().e_entry;
   if (entry < layout.text.header.sh_addr || entry >= layout.text.end())
@@ -188,6 +199,7 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.begin = narrow(segment.p_vaddr);
   if (image.begin != kEnvironmentBytes) image.stack_top = image.begin;
   image.entry = narrow(entry);
+  image.main = image.entry;
   image.text_begin = narrow(layout.text.header.sh_addr);
   image.text_end = narrow(layout.text.end());
   image.rodata_begin = narrow(image.sizes.rodata != 0 ? layout.rodata.header.sh_addr : image.text_end);
@@ -195,15 +207,29 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.data_begin = narrow(image.sizes.data != 0 ? layout.data.header.sh_addr : file_end);
   image.data_end = image.data_begin + image.sizes.data;
   image.objects = read_objects(elf, image.begin, declared.end);
-  image.checked = declared.is_checked == 1;
+  image.checked = (declared.flavour & kChecked) != 0;
+  image.program = is_program;
   const auto bytes = elf.slice(segment.p_offset, segment.p_filesz, "its segment");
   image.bytes.assign(bytes.begin(), bytes.end());
+  if (is_program) image.relocations = apply_addends(elf, image);
   SC_ASSERT(image.begin <= image.text_begin && image.data_begin <= image.data_end &&
                 image.data_end <= image.sizes.end,
             "{} begins at {} and ends at {}, with text at {} and data at {} to {}", name, image.begin,
             image.sizes.end, image.text_begin, image.data_begin, image.data_end);
+  SC_ASSERT(std::ranges::is_sorted(image.objects, {}, &ImageObject::begin),
+            "the {} variables of {} are out of order", image.objects.size(), name);
   image.elf = std::make_shared<const std::vector<std::byte>>(file.begin(), file.end());
   return image;
+}
+
+std::span<const std::byte> image_section(std::span<const std::byte> file, std::string_view section) {
+  try {
+    const ElfFile elf("image", file);
+    const Elf64_Shdr header = elf.find(section).header;
+    return elf.slice(header.sh_offset, header.sh_size, "a section");
+  } catch (const std::runtime_error&) {
+    return {};
+  }
 }
 
 }  // namespace softcell::ls_sim

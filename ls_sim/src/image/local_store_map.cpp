@@ -12,9 +12,18 @@ std::vector<LocalStoreSection> local_store_map(const KernelImage& image) {
             "{} has a stack of {} bytes below {}", image.name, image.sizes.stack, image.stack_top);
   SC_ASSERT(end <= dma::kLocalStoreBytes && image.sizes.bss <= end, "{} ends at {} with {} bytes of bss",
             image.name, end, image.sizes.bss);
-  const bool is_at_bottom = image.begin == kEnvironmentBytes;
-  // ls.ld begins bss at a line and puts `end` at most one alignment behind it.
-  const std::uint32_t bss_begin = (end - image.sizes.bss) / dma::kLineBytes * dma::kLineBytes;
+  SC_ASSERT(image.text_begin <= image.text_end && image.rodata_begin <= image.rodata_end &&
+                image.data_begin <= image.data_end,
+            "{} has text from {} to {}, constants from {} to {}, data from {} to {}", image.name,
+            image.text_begin, image.text_end, image.rodata_begin, image.rodata_end, image.data_begin,
+            image.data_end);
+  const bool has_environment = image.machine == Machine::kHost;
+  const bool is_at_bottom = !has_environment || image.begin == kEnvironmentBytes;
+  // Of a program for the SPU it follows the bytes of the file. ls.ld begins bss at a line and puts `end` at most one
+  // alignment behind it.
+  const std::uint32_t bss_begin = image.machine == Machine::kSpu
+                                      ? image.begin + static_cast<std::uint32_t>(image.bytes.size())
+                                      : (end - image.sizes.bss) / dma::kLineBytes * dma::kLineBytes;
 
   std::vector<LocalStoreSection> map;
   const auto add = [&](std::string_view kind, std::uint32_t begin, std::uint32_t bytes) {
@@ -24,7 +33,7 @@ std::vector<LocalStoreSection> local_store_map(const KernelImage& image) {
     add("free", free_from, stack_begin - free_from);
     add("stack", stack_begin, image.sizes.stack);
   };
-  add("environment", 0, kEnvironmentBytes);
+  add(has_environment ? "environment" : "free", 0, has_environment ? kEnvironmentBytes : image.begin);
   if (!is_at_bottom) add_stack(kEnvironmentBytes);
   add("text", image.text_begin, image.text_end - image.text_begin);
   add("rodata", image.rodata_begin, image.rodata_end - image.rodata_begin);

@@ -35,15 +35,18 @@ std::string ObjectMap::trespass(std::uint32_t lsa, std::uint32_t bytes, std::uin
     if (end <= end_of(*object)) return "";
     return "it passes the end of " + object->name + " by " + std::to_string(end - end_of(*object)) + " bytes";
   }
+  if (in_heap(lsa)) return end <= stack_.begin ? "" : "it passes the end of the heap";
   if (lsa < image_->text_begin) return "nothing of the image lies there";
   if (lsa >= stack_.end) return "it belongs to the kernel that has called this one";
   if (lsa >= image_->sizes.end) return "it is free space between the image and its stack";
-  // Without a symbol table all variables are one.
-  return image_->objects.empty() && end <= image_->sizes.end ? "" : "it belongs to no variable";
+  // Without a symbol table all variables are one. Labels of assembly sources do not say what they are.
+  const bool knows_all = !image_->objects.empty() && image_->machine == Machine::kHost;
+  return !knows_all && end <= image_->sizes.end ? "" : "it belongs to no variable";
 }
 
 std::string ObjectMap::describe(std::uint32_t lsa) const {
   if (in_stack(lsa)) return "the stack";
+  if (in_heap(lsa)) return "the heap";
   if (const ImageObject* const object = object_at(lsa)) {
     const std::uint32_t offset = lsa - object->begin.value;
     return object->name + (offset == 0 ? "" : " + " + std::to_string(offset));

@@ -22,6 +22,9 @@ class ObjectMap {
   }
 
   bool in_code(std::uint32_t lsa) const { return lsa >= image_->text_begin && lsa < image_->rodata_end; }
+  bool in_heap(std::uint32_t lsa) const {
+    return image_->program && lsa >= image_->sizes.end && lsa < stack_.begin;
+  }
   bool in_stack(std::uint32_t lsa) const { return lsa >= stack_.begin && lsa < stack_.end; }
 
   /// Empty if the range lies in one variable, in code and constants, or in the used part of the stack; else a

@@ -1,4 +1,5 @@
 #include "object_padding.h"
+#include "softcell/base/assert.h"
 
 #include <dwarf.h>
 #include <elfutils/libdw.h>
@@ -15,7 +16,10 @@ constexpr int kDeepestNesting = 16;
 /// Which bytes of one variable its members take.
 class Coverage {
  public:
-  Coverage(std::uint32_t lsa, std::uint32_t bytes) : lsa_(lsa), taken_(bytes, false) {}
+  Coverage(std::uint32_t lsa, std::uint32_t bytes) : lsa_(lsa), taken_(bytes, false) {
+    SC_ASSERT(bytes <= dma::kLocalStoreBytes && lsa <= dma::kLocalStoreBytes - bytes,
+              "a variable of {} bytes at {}", bytes, lsa);
+  }
 
   void add_type(Dwarf_Die type, std::uint64_t offset, int depth = 0) {
     Dwarf_Die die;

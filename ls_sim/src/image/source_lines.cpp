@@ -13,15 +13,11 @@
 namespace softcell::ls_sim {
 namespace {
 
-struct SourceLine {
-  std::string file;  // as the compiler was given it
-  int line = 0;
-};
-
 /// Headers that no user of the SDK has written: the SDK's own and the compiler's.
 bool is_foreign(std::string_view file) {
-  for (const std::string_view folder : {"/sdk/host/", "/sdk/shared/", "/sdk/check/", "/lib/gcc/",
-                                        "/lib/clang/", "/usr/include/", "/lib/llvm-"}) {
+  for (const std::string_view folder :
+       {"/sdk/host/", "/sdk/c/", "/sdk/shared/", "/sdk/library/", "/sdk/check/", "/lib/gcc/", "/lib/clang/",
+        "/usr/include/", "/lib/llvm-"}) {
     if (file.find(folder) != std::string_view::npos) return true;
   }
   return false;
@@ -54,7 +50,7 @@ std::vector<Dwarf_Die> inlining_scopes(Dwarf* dwarf, Dwarf_Die* unit, Dwarf_Addr
 }
 
 /// Where the code of this inlined function was called.
-SourceLine call_site(Dwarf_Die* unit, Dwarf_Die* inlined) {
+SourcePlace call_site(Dwarf_Die* unit, Dwarf_Die* inlined) {
   Dwarf_Attribute attribute;
   Dwarf_Word file = 0, line = 0;
   Dwarf_Files* files = nullptr;
@@ -64,19 +60,19 @@ SourceLine call_site(Dwarf_Die* unit, Dwarf_Die* inlined) {
     return {};
   }
   const char* const name = dwarf_filesrc(files, file, nullptr, nullptr);
-  return name == nullptr ? SourceLine{} : SourceLine{name, static_cast<int>(line)};
+  return name == nullptr ? SourcePlace{} : SourcePlace{name, static_cast<int>(line)};
 }
 
-SourceLine line_of(Dwarf_Die* unit, Dwarf_Addr address) {
+SourcePlace line_of(Dwarf_Die* unit, Dwarf_Addr address) {
   Dwarf_Line* const row = dwarf_getsrc_die(unit, address);
   const char* const name = row == nullptr ? nullptr : dwarf_linesrc(row, nullptr, nullptr);
-  SourceLine result;
+  SourcePlace result;
   if (name == nullptr || dwarf_lineno(row, &result.line) != 0) return {};
   result.file = name;
   return result;
 }
 
-std::string to_place(const SourceLine& source) {
+std::string to_place(const SourcePlace& source) {
   if (source.file.empty()) return {};
   return source.file.substr(source.file.rfind('/') + 1) + ":" + std::to_string(source.line);
 }
@@ -98,16 +94,16 @@ struct SourceLines::Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  std::string find(Dwarf_Addr address) const {
+  SourcePlace find(Dwarf_Addr address) const {
     Dwarf_Die unit;
     if (dwarf == nullptr || !find_unit(dwarf, address, unit)) return {};
-    const SourceLine innermost = line_of(&unit, address);
-    SourceLine source = innermost;
+    const SourcePlace innermost = line_of(&unit, address);
+    SourcePlace source = innermost;
     for (Dwarf_Die& scope : inlining_scopes(dwarf, &unit, address)) {
       if (!is_foreign(source.file)) break;
       if (dwarf_tag(&scope) == DW_TAG_inlined_subroutine) source = call_site(&unit, &scope);
     }
-    return to_place(source.file.empty() ? innermost : source);
+    return source.file.empty() ? innermost : source;
   }
 
   std::shared_ptr<const std::vector<std::byte>> file;
@@ -121,8 +117,12 @@ SourceLines::~SourceLines() = default;
 
 std::string SourceLines::place_of(dma::LocalStoreAddress instruction) const {
   const auto [entry, is_new] = reader_->known.try_emplace(instruction.value);
-  if (is_new) entry->second = reader_->find(instruction.value);
+  if (is_new) entry->second = to_place(reader_->find(instruction.value));
   return entry->second;
+}
+
+SourcePlace SourceLines::source_of(dma::LocalStoreAddress instruction) const {
+  return reader_->find(instruction.value);
 }
 
 }  // namespace softcell::ls_sim

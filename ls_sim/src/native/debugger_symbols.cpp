@@ -11,6 +11,7 @@
 #include <string>
 
 #include "image/elf_file.h"
+#include "softcell/base/assert.h"
 
 // Names, types and values are gdb's: it looks for these two symbols in the program.
 extern "C" {
@@ -69,45 +70,53 @@ void add(std::vector<std::byte>& file, std::uint64_t offset, Field amount) {
 bool is_loaded(const Elf64_Shdr& section) { return (section.sh_flags & SHF_ALLOC) != 0; }
 
 /// The segments; gdb holds sections against them.
-void move_segments(const ElfFile& elf, std::vector<std::byte>& file, std::uint64_t base) {
+void move_segments(const ElfFile& elf, std::vector<std::byte>& file, std::uint32_t base) {
   const Elf64_Ehdr& header = elf.header();
   for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
-    const std::uint64_t at = header.e_phoff + i * sizeof(Elf64_Phdr);
-    add(file, at + offsetof(Elf64_Phdr, p_vaddr), base);
-    add(file, at + offsetof(Elf64_Phdr, p_paddr), base);
+    const std::uint64_t at = header.e_phoff + i * sizeof(Elf32_Phdr);
+    add(file, at + offsetof(Elf32_Phdr, p_vaddr), base);
+    add(file, at + offsetof(Elf32_Phdr, p_paddr), base);
   }
 }
 
 /// The sections that are copied into the local store, and the symbols in them.
-void move_sections_and_symbols(const ElfFile& elf, std::vector<std::byte>& file, std::uint64_t base) {
+void move_sections_and_symbols(const ElfFile& elf, std::vector<std::byte>& file, std::uint32_t base) {
   const auto& sections = elf.sections();
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const Elf64_Shdr& section = sections[i].header;
     if (is_loaded(section) && section.sh_addr != 0) {
-      add(file, elf.header().e_shoff + i * sizeof(Elf64_Shdr) + offsetof(Elf64_Shdr, sh_addr), base);
+      add(file, elf.header().e_shoff + i * sizeof(Elf32_Shdr) + offsetof(Elf32_Shdr, sh_addr), base);
     }
     if (section.sh_type != SHT_SYMTAB) continue;
     const auto symbols =
-        elf.table<Elf64_Sym>(section.sh_offset, section.sh_size / sizeof(Elf64_Sym), "the symbol table");
+        elf.table<Elf32_Sym>(section.sh_offset, section.sh_size / sizeof(Elf32_Sym), "the symbol table");
     for (std::size_t j = 0; j < symbols.size(); ++j) {
       const std::size_t home = symbols[j].st_shndx;
       if (home < sections.size() && is_loaded(sections[home].header)) {
-        add(file, section.sh_offset + j * sizeof(Elf64_Sym) + offsetof(Elf64_Sym, st_value), base);
+        add(file, section.sh_offset + j * sizeof(Elf32_Sym) + offsetof(Elf32_Sym, st_value), base);
       }
     }
   }
 }
 
-/// The addresses in the debug information. All else that was relocated there is an offset between its
-/// sections.
-bool move_debug_information(const ElfFile& elf, std::vector<std::byte>& file, std::uint64_t base) {
+/// The addresses in the debug information. All else that was relocated there is an offset within a section
+/// that is not loaded. Both are relocated alike; the symbol tells them apart.
+bool move_debug_information(const ElfFile& elf, std::vector<std::byte>& file, std::uint32_t base) {
   bool found = false;
+  const auto symbols = elf.symbols();
+  const auto is_address = [&](std::uint64_t symbol) {
+    if (symbol >= symbols.size()) return false;
+    const std::size_t home = symbols[symbol].record.st_shndx;
+    return home < elf.sections().size() && is_loaded(elf.sections()[home].header);
+  };
   for (const ElfFile::Section& table : elf.sections()) {
     if (table.header.sh_type != SHT_RELA || !table.name.starts_with(".rela.debug_")) continue;
     const Elf64_Shdr target = elf.find(table.name.substr(std::strlen(".rela"))).header;
-    const std::uint64_t count = table.header.sh_size / sizeof(Elf64_Rela);
-    for (const auto& relocation : elf.table<Elf64_Rela>(table.header.sh_offset, count, "relocations")) {
-      if (ELF64_R_TYPE(relocation.r_info) != R_X86_64_64 || relocation.r_offset >= target.sh_size) continue;
+    for (const auto& relocation : elf.relocations(table)) {
+      if (ELF64_R_TYPE(relocation.r_info) != R_X86_64_32 || relocation.r_offset >= target.sh_size ||
+          !is_address(ELF64_R_SYM(relocation.r_info))) {
+        continue;
+      }
       add(file, target.sh_offset + relocation.r_offset, base);
       found = true;
     }
@@ -126,7 +135,7 @@ bool debugger_wanted() {
   return false;
 }
 
-std::vector<std::byte> relocate_debug_file(const KernelImage& image, std::uint64_t base) {
+std::vector<std::byte> relocate_debug_file(const KernelImage& image, std::uint32_t base) {
   if (!image.elf) return {};
   const ElfFile elf(image.name, *image.elf);
   std::vector<std::byte> file = *image.elf;
@@ -144,7 +153,8 @@ struct DebuggerSymbols::Entry {
 DebuggerSymbols::DebuggerSymbols(const KernelImage& image, const std::byte* base) {
   std::vector<std::byte> file;
   try {
-    file = relocate_debug_file(image, reinterpret_cast<std::uintptr_t>(base));
+    // A local store lies below 4 GB.
+    file = relocate_debug_file(image, static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(base)));
   } catch (const std::runtime_error&) {
     return;  // a file that cannot be read shows nothing; the kernel runs without
   }
@@ -165,6 +175,8 @@ DebuggerSymbols::~DebuggerSymbols() {
   if (!entry_) return;
   const std::scoped_lock lock(list_mutex());
   JitCodeEntry& jit = entry_->jit;
+  SC_ASSERT((jit.previous == nullptr ? __jit_debug_descriptor.first : jit.previous->next) == &jit,
+            "the file of {} bytes is not where the debugger's list has it", jit.symbol_file_bytes);
   (jit.previous == nullptr ? __jit_debug_descriptor.first : jit.previous->next) = jit.next;
   if (jit.next != nullptr) jit.next->previous = jit.previous;
   notify_debugger(kJitUnregister, jit);

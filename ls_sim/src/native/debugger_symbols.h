@@ -21,7 +21,7 @@ bool debugger_wanted();
 /// The image's file with all its addresses moved up by `base`; empty when it has no debug information, or
 /// lost the relocations that moving it takes.
 /// @throws std::runtime_error  one sentence, when the file is damaged.
-std::vector<std::byte> relocate_debug_file(const KernelImage& image, std::uint64_t base);
+std::vector<std::byte> relocate_debug_file(const KernelImage& image, std::uint32_t base);
 
 /// While it lives, gdb knows the image at `base`. Any thread.
 class DebuggerSymbols {

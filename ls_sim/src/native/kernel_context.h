@@ -39,6 +39,7 @@ enum class Operation : std::uint32_t {
   kAccess = 6,
   kJob = 7,
   kSync = 8,
+  kAssist = 9,
   kFault = 0xFF'FFFF
 };
 
@@ -82,7 +83,7 @@ struct KernelContext {
 
   // What main is called with.
   std::uintptr_t entry = 0;
-  std::uint64_t arguments[3] = {};
+  std::uint64_t arguments[4] = {};
 
   Operation operation() const { return static_cast<Operation>(request >> 8); }
   std::uint32_t channel() const { return request & 0xFFu; }
@@ -105,6 +106,11 @@ void kernel_start(boost::context::detail::transfer_t transfer);
 /// Called by kernels through the environment.
 /// @param request  as KernelContext's
 std::uint32_t gate(std::uint32_t request, std::uint32_t value);
+
+/// Where kernels call the gate: an address below 4 GB, which their pointers can hold. The same for all
+/// threads and as long as the process.
+/// @throws std::runtime_error  the host has no room for it below 4 GB, or forbids executable memory.
+std::uint32_t gate_below_4_gb();
 
 /// First function on the landing stack.
 void land();

@@ -61,9 +61,9 @@ void kernel_start(boost::context::detail::transfer_t transfer) {
   context.worker_arithmetic = _mm_getcsr();
   _mm_setcsr(kSpuArithmetic);
   serialise();
-  using Main = int(std::uint64_t, std::uint64_t, std::uint64_t);
+  using Main = int(std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t);
   const int status = reinterpret_cast<Main*>(context.entry)(context.arguments[0], context.arguments[1],
-                                                            context.arguments[2]);
+                                                            context.arguments[2], context.arguments[3]);
   gate(request_of(Operation::kStop), 0x2000u | (static_cast<std::uint32_t>(status) & 0xFFu));
   __builtin_trap();  // an ended run is never resumed
 }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "assisted/assisted_calls.h"
 #include "debugger_symbols.h"
 #include "kernel_context.h"
 #include "signals.h"
@@ -66,6 +67,8 @@ class NativeEngine final : public Engine {
     context_.serve = [](KernelContext* context) noexcept {
       return static_cast<NativeEngine*>(context->engine)->serve_request();
     };
+    SC_ASSERT(arena() + dma::kLocalStoreBytes <= std::uint64_t{1} << 32,
+              "a local store at {}, which kernels' pointers do not reach", local_store_.base());
     const auto top = reinterpret_cast<std::uintptr_t>(landing_stack_.get()) + kLandingStackBytes;
     context_.landing_stack_top = top & ~std::uintptr_t{15};
     context_.repeat_what_failed = !debugger_wanted_;
@@ -82,11 +85,14 @@ class NativeEngine final : public Engine {
     image_ = &image;
     debugger_symbols_.reset();
     std::byte* const base = local_store_.base();
+    linked_ = image.bytes;
+    for (const dma::LocalStoreAddress word : image.relocations)
+      add_to_word(linked_, word.value - image.begin);
     native::Environment environment;
-    environment.gate = reinterpret_cast<std::uint64_t>(&native::gate);
+    environment.gate = native::gate_below_4_gb();
     dma::copy_to_local_store(base, reinterpret_cast<const std::byte*>(&environment), sizeof environment);
     dma::fill_local_store(base + kEnvironmentBytes, kFiller, dma::kLocalStoreBytes - kEnvironmentBytes);
-    dma::copy_to_local_store(base + image.begin, image.bytes.data(), image.bytes.size());
+    dma::copy_to_local_store(base + image.begin, linked_.data(), linked_.size());
     // Another program's data may have come here since these bytes were code last.
     dma::flush_local_store(base + image.begin, image.data_begin - image.begin);
     const std::size_t bss = image.begin + image.bytes.size();
@@ -118,8 +124,19 @@ class NativeEngine final : public Engine {
     return image_->stack_top - image_->sizes.stack - (job_image_ == nullptr ? 0 : job_image_->sizes.stack);
   }
   std::uint32_t free_begin() const {
+    if (image_->program) return stack_limit() - std::min(stack_limit(), kCanaryBytes);  // below lies its heap
     const KernelImage& lowest = job_image_ == nullptr ? *image_ : *job_image_;
     return lowest.begin < stack_limit() ? lowest.sizes.end : std::max(kEnvironmentBytes, last_job_end_);
+  }
+
+  /// A word that holds an address in the image gets the host's.
+  void add_to_word(std::vector<std::byte>& bytes, std::uint32_t offset) const {
+    std::uint32_t word = 0;
+    SC_ASSERT(bytes.size() >= sizeof word && offset <= bytes.size() - sizeof word, "a relocation at {} of {}",
+              offset, bytes.size());
+    std::memcpy(&word, bytes.data() + offset, sizeof word);
+    word += static_cast<std::uint32_t>(arena());  // which lies below 4 GB
+    std::memcpy(bytes.data() + offset, &word, sizeof word);
   }
 
   void prepare(const EntryArguments& arguments);
@@ -151,6 +168,7 @@ class NativeEngine final : public Engine {
   LocalStore& local_store_;
   std::unique_ptr<std::byte[]> landing_stack_;
   const KernelImage* image_ = nullptr;
+  std::vector<std::byte> linked_;           ///< the bytes of image_ as they lie in this local store
   const KernelImage* job_image_ = nullptr;  ///< that image_ has called; null when it is not known
   bool job_under_way_ = false;
   std::uint32_t last_job_end_ = 0;  ///< where the image ends that was called last, which stays; 0: none was
@@ -179,8 +197,14 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   // after load() they are so already, and others may have written to them since.
   if (!std::exchange(data_as_linked_, false)) {
     const std::uint32_t data_offset = image_->data_begin - image_->begin;
-    dma::copy_to_local_store(local_store_.base() + image_->data_begin, image_->bytes.data() + data_offset,
+    dma::copy_to_local_store(local_store_.base() + image_->data_begin, linked_.data() + data_offset,
                              image_->data_end - image_->data_begin);
+    SC_ASSERT(linked_.size() <= image_->sizes.end - image_->begin, "{} has {} bytes and ends at {}",
+              image_->name, linked_.size(), image_->sizes.end);
+    if (image_->program) {  // its bss is zero at the beginning of each run
+      dma::fill_local_store(local_store_.base() + image_->begin + linked_.size(), std::byte{0},
+                            image_->sizes.end - image_->begin - linked_.size());
+    }
   }
   auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
   environment.mfc_tag_mask = tag_mask_ = 0;
@@ -190,6 +214,7 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   context_.arguments[0] = arguments.spe_id;
   context_.arguments[1] = arguments.argp;
   context_.arguments[2] = arguments.envp;
+  context_.arguments[3] = arguments.fourth;
   context_.interrupted = 0;
   context_.stepping = 0;
   context_.trap = {};
@@ -197,6 +222,8 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
 
 /// Comes back when the run has ended; what the kernel asks for meanwhile is served by serve_request().
 void NativeEngine::run_kernel() {
+  SC_ASSERT(image_->sizes.stack <= image_->stack_top && image_->stack_top <= dma::kLocalStoreBytes,
+            "{} has a stack of {} bytes below {}", image_->name, image_->sizes.stack, image_->stack_top);
   const auto kernel = boost::context::detail::make_fcontext(local_store_.base() + image_->stack_top,
                                                             image_->sizes.stack, native::kernel_start);
   context_.in_kernel = 1;
@@ -211,6 +238,7 @@ RunResult NativeEngine::run(const EntryArguments& arguments, ChannelPort& channe
                             JobObserver* jobs) {
   static thread_local const native::SignalStack signal_stack;  // as long as the thread: a run takes less time
   SC_ASSERT(!running_ && native::current_context() == nullptr, "a run within the run of {}", image_->name);
+  SC_ASSERT(!failure_, "SPE {} has an exception that the last run left", arguments.spe_id);
   prepare(arguments);
   native::current_context() = &context_;
   {
@@ -256,12 +284,26 @@ bool NativeEngine::serve_request() noexcept {
 
 /// @return  how the run ends, or nothing when the kernel goes on with context_.reply.
 std::optional<RunResult> NativeEngine::answer() {
+  SC_ASSERT(image_ != nullptr && channels_ != nullptr, "request {} outside a run", context_.request);
   if (context_.operation() == Operation::kAccess)
     context_.caller = arena() + requested_access().instruction.value;
   if (auto overflow = check_stack()) return RunResult{0, std::move(overflow)};
   if (context_.interrupted != 0)
     return RunResult{0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
-  if (context_.operation() == Operation::kStop) return RunResult{context_.value & 0x3FFFu, std::nullopt};
+  if (context_.operation() == Operation::kStop) {
+    RunResult end{context_.value & 0x3FFFu, std::nullopt};
+    if (!end.ended_normally() && channels_->stop(end.stop_code, 0)) return std::nullopt;
+    return end;
+  }
+  if (context_.operation() == Operation::kAssist) {
+    if (context_.channel() == 0) {  // the C library's
+      context_.reply = assisted::serve_c99_call(local_store_.bytes(), context_.value);
+      return std::nullopt;
+    }
+    const std::uint32_t code = kAssistedCalls | context_.channel();
+    if (channels_->stop(code, context_.value)) return std::nullopt;
+    return RunResult{code, std::nullopt, {}};
+  }
   if (context_.operation() == Operation::kHalt) {
     return RunResult{
         0, fault(dma::Rule::kKernelHalt, "a halt-on-condition instruction found its condition true")};
@@ -279,7 +321,12 @@ std::optional<RunResult> NativeEngine::answer() {
     return std::nullopt;
   }
   ChannelReply reply = answer_channel();
-  if (reply.fault) return RunResult{0, std::move(*reply.fault)};
+  if (reply.fault) {
+    // A caller whose code the job has damaged may do anything before it tells of the job's end.
+    if (job_under_way_)
+      if (auto damage = check_caller()) return RunResult{0, std::move(damage)};
+    return RunResult{0, std::move(*reply.fault)};
+  }
   context_.reply = reply.value;
   return std::nullopt;
 }
@@ -349,7 +396,7 @@ std::optional<dma::Fault> NativeEngine::check_caller() const {
   const std::size_t code_bytes = image_->data_begin - image_->begin;
   const Part parts[] = {{"instructions or constants",
                          {local_store_.base() + image_->begin, code_bytes},
-                         {image_->bytes.data(), code_bytes}},
+                         {linked_.data(), code_bytes}},
                         {"variables", variables_of_caller(), caller_variables_},
                         {"stack", frames_of_caller(), caller_frames_}};
   // Breakpoints of a debugger are written into the code.
@@ -449,7 +496,8 @@ std::string NativeEngine::describe_damaged_code() const {
   if (image == nullptr || debugger_wanted_) return {};  // breakpoints of a debugger are written into the code
   const std::byte* const code = local_store_.base() + image->begin;
   const std::byte* const end = local_store_.base() + image->data_begin;
-  const std::byte* const damaged = std::mismatch(code, end, image->bytes.begin()).first;
+  const std::vector<std::byte>& linked = image == image_ ? linked_ : image->bytes;
+  const std::byte* const damaged = std::mismatch(code, end, linked.begin()).first;
   if (damaged == end) return {};
   return "; the kernel's instructions or constants have been overwritten, from local-store address " +
          hexadecimal(static_cast<std::uint64_t>(damaged - local_store_.base())) + " on";
@@ -494,10 +542,10 @@ dma::Fault NativeEngine::cause_of_trap() const {
   const char* const access = trap.instruction_fetch ? " jumped to "
                              : trap.write           ? " wrote to "
                                                     : " read from ";
-  if (dma::is_effective_address(trap.address)) {
-    return fault(dma::Rule::kEffectiveAddressAsPointer, where + access + "effective address " +
-                                                            hexadecimal(trap.address) +
-                                                            "; main storage is reached by DMA only");
+  if (dma::is_low_word_of_effective_address(trap.address)) {
+    return fault(dma::Rule::kEffectiveAddressAsPointer,
+                 where + access + "address " + hexadecimal(trap.address) +
+                     ", the low 32 bits of an effective address; main storage is reached by DMA only");
   }
   const std::uintptr_t offset = trap.address - arena();
   if (offset < 2 * std::uintptr_t{dma::kLocalStoreBytes}) {
@@ -518,6 +566,8 @@ std::uint32_t NativeEngine::stack_high_water() const {
   if (image_ == nullptr) return 0;
   const std::byte* const base = local_store_.base();
   const std::byte* const top = base + image_->stack_top;
+  SC_ASSERT(free_begin() <= image_->stack_top, "the space of {}'s stack begins at {} and ends at {}",
+            image_->name, free_begin(), image_->stack_top);
   const std::byte* const used = std::find_if_not(base + free_begin(), top, is_filler);
   return static_cast<std::uint32_t>(top - used);
 }

@@ -42,7 +42,11 @@ class EventLog {
     return log.chunks_[index / kChunk][index % kChunk];
   }
 
-  void grow() { chunks_.push_back(std::make_unique_for_overwrite<Event[]>(kChunk)); }
+  void grow() {
+    SC_ASSERT(size_ == chunks_.size() * kChunk, "a log of {} events grows beyond {} chunks", size_,
+              chunks_.size());
+    chunks_.push_back(std::make_unique_for_overwrite<Event[]>(kChunk));
+  }
 
   std::size_t most_, size_ = 0, dropped_ = 0;
   std::vector<std::unique_ptr<Event[]>> chunks_;

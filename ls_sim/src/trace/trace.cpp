@@ -44,25 +44,38 @@ std::uint32_t SpeEvents::image_index(const KernelImage& image) {
   last_image = &image;
   last_index = static_cast<std::uint32_t>(known - images.begin());
   if (known == images.end()) images.push_back(std::move(described));
+  SC_ASSERT(last_index < images.size(), "image {} is number {} of {}", image.name, last_index, images.size());
   return last_index;
 }
 
-SpeTrace::SpeTrace(std::size_t most_events) : events_(std::make_unique<SpeEvents>(most_events)) {
+SpeTrace::SpeTrace(std::size_t most_events, TraceClock clock)
+    : events_(std::make_unique<SpeEvents>(most_events)), clock_(clock) {
   events_->in_flight.reserve(64);
 }
 
 SpeTrace::~SpeTrace() = default;
+
+std::size_t SpeTrace::last_command() const { return last_command_; }
+
+void SpeTrace::complete_at(std::size_t command, TraceTime when) {
+  if (command == EventLog<TracedCommand>::kDropped) return;
+  TracedCommand& traced = events_->commands[command];
+  SC_ASSERT(traced.issue <= when, "a command is issued at {} and complete at {}", traced.issue, when);
+  traced.complete = when;
+}
 
 void SpeTrace::on_job(const KernelImage& image, std::uint64_t job_number, TraceTime begin, TraceTime end,
                       bool failed) {
   SC_ASSERT(begin <= end, "job {} of {} begins at {} and ends at {}", job_number, image.name, begin, end);
   SpeEvents& e = *events_;
   e.jobs.append({begin, end, job_number, e.image_index(image), failed});
-  for (const auto& left : e.in_flight) e.commands[left.index].complete = end;
+  for (const auto& left : e.in_flight)
+    e.commands[left.index].complete = std::max(end, e.commands[left.index].issue);
   e.in_flight.clear();
 }
 
 void SpeTrace::on_stack_used(const KernelImage& image, std::uint32_t bytes) {
+  SC_ASSERT(bytes <= dma::kLocalStoreBytes, "{} has used {} bytes of stack", image.name, bytes);
   auto& used = events_->images[events_->image_index(image)].stack_used;
   used = std::max(used.value_or(0), bytes);
 }
@@ -87,7 +100,8 @@ void SpeTrace::on_finding(const dma::Fault& fault, TraceTime when) {
 }
 
 void SpeTrace::on_issue(std::uint64_t number, const dma::MfcCommand& command, std::uint64_t bytes) {
-  const TraceTime now = trace_now();
+  const TraceTime now = this->now();
+  SC_ASSERT(bytes <= 0xFFFF'FFFFu, "command {} moves {} bytes", number, bytes);
   const std::size_t index = events_->commands.append({.issue = now,
                                                       .complete = now,
                                                       .ea = command.ea.value,
@@ -97,6 +111,7 @@ void SpeTrace::on_issue(std::uint64_t number, const dma::MfcCommand& command, st
                                                       .opcode = static_cast<std::uint16_t>(command.opcode()),
                                                       .tag = static_cast<std::uint8_t>(command.tag),
                                                       .completed = false});
+  last_command_ = index;
   if (index != EventLog<TracedCommand>::kDropped) events_->in_flight.push_back({number, index});
 }
 
@@ -113,7 +128,7 @@ TracedCommand* SpeTrace::complete(std::uint64_t number) {
     if (in_flight[i].number != number) continue;
     SC_ASSERT(!events_->commands[in_flight[i].index].completed, "command {} completes a second time", number);
     TracedCommand& command = events_->commands[in_flight[i].index];
-    command.complete = trace_now();
+    if (clock_ == TraceClock::kHost) command.complete = trace_now();
     command.completed = true;
     in_flight[i] = in_flight.back();
     in_flight.pop_back();
@@ -122,10 +137,11 @@ TracedCommand* SpeTrace::complete(std::uint64_t number) {
   return nullptr;
 }
 
-Trace::Trace(int spes, std::size_t most_events) : begin_(trace_now()) {
+Trace::Trace(int spes, std::size_t most_events, TraceClock clock)
+    : begin_(clock == TraceClock::kHost ? trace_now() : 0), clock_(clock) {
   if (spes < 1) throw std::invalid_argument("a trace needs at least 1 SPE, not " + std::to_string(spes));
   for (int i = 0; i < spes; ++i) {
-    spes_.push_back(std::unique_ptr<SpeTrace>(new SpeTrace(most_events)));
+    spes_.push_back(std::unique_ptr<SpeTrace>(new SpeTrace(most_events, clock)));
   }
 }
 
@@ -144,9 +160,14 @@ void Trace::write(const std::filesystem::path& path) const {
 }
 
 void Trace::write(base::WholeFile& file) const {
-  TraceWriter writer(file, begin_);
+  TraceWriter writer(file, begin_, clock_);
   std::vector<const SpeEvents*> spes;
   for (const auto& spe : spes_) spes.push_back(spe->events_.get());
+  // The SPEs of a console are shown even if they were idle. Those beyond are contexts that a program did not need.
+  const auto idle = [](const SpeEvents& e) {
+    return e.jobs.size() + e.waits.size() + e.commands.size() == 0;
+  };
+  while (spes.size() > dma::kSpeCount && idle(*spes.back())) spes.pop_back();
   writer.write(spes);
   file.finish();
 }

@@ -10,11 +10,11 @@ namespace softcell::ls_sim {
 namespace {
 
 constexpr std::size_t kFlushBytes = 1 << 20;
-constexpr int kJobRow = 1, kWaitRow = 2, kFirstCommandRow = 3;
+constexpr int kJobRow = 1, kWaitRow = 2, kFirstCommandRow = 3, kRowsOfProcess = 1000;
 
 // Viewers take process 0 for the idle one, and some tell rows apart by their number alone.
 int process(int spe) { return spe + 1; }
-int thread(int spe, int row) { return process(spe) * 1000 + row; }
+int thread(int spe, int row) { return process(spe) * kRowsOfProcess + row; }
 
 std::string json_string(std::string_view text) { return base::JsonText().string(text).text(); }
 
@@ -81,6 +81,8 @@ void TraceWriter::write(const std::vector<const SpeEvents*>& spes) {
 void TraceWriter::write_spe(int spe, const SpeEvents& events) {
   const std::vector<std::uint32_t> rows = command_rows(events.commands);
   const auto highest = std::max_element(rows.begin(), rows.end());
+  SC_ASSERT(rows.size() == events.commands.size(), "{} commands of SPE {} have {} rows",
+            events.commands.size(), spe, rows.size());
   write_rows(spe, highest == rows.end() ? 0 : *highest + std::size_t{1});
   write_jobs(spe, events);
   write_waits(spe, events);
@@ -175,8 +177,10 @@ void TraceWriter::write_findings(int spe, const SpeEvents& events) {
 }
 
 void TraceWriter::write_about(const std::vector<const SpeEvents*>& spes) {
-  out_.raw("{\"format\":1,\"version\":\"" SOFTCELL_VERSION
-           "\",\"time\":\"microseconds of the host's steady clock since the trace began\",\"spes\":")
+  out_.raw("{\"format\":1,\"version\":\"" SOFTCELL_VERSION "\",\"time\":\"")
+      .raw(clock_ == TraceClock::kHost ? "microseconds of the host's steady clock since the trace began"
+                                       : "microseconds of the simulated clocks of the SPEs")
+      .raw("\",\"spes\":")
       .number(static_cast<std::int64_t>(spes.size()))
       .raw(",\n\"dropped\":[");
   for (std::size_t i = 0; i < spes.size(); ++i) {
@@ -228,6 +232,7 @@ void TraceWriter::write_image(const TracedImage& image) {
 }
 
 base::JsonText& TraceWriter::event(std::string_view phase, int spe, int row) {
+  SC_ASSERT(spe >= 0 && row >= kJobRow && row < kRowsOfProcess, "an event of SPE {} in row {}", spe, row);
   flush(kFlushBytes);
   out_.raw(first_ ? "\n{\"ph\":\"" : ",\n{\"ph\":\"").raw(phase);
   first_ = false;
@@ -236,6 +241,7 @@ base::JsonText& TraceWriter::event(std::string_view phase, int spe, int row) {
 
 base::JsonText& TraceWriter::slice(int spe, int row, TraceTime begin, TraceTime end,
                                    std::string_view category, std::string_view quoted_name) {
+  SC_ASSERT(begin <= end, "{} of SPE {} begins at {} and ends at {}", quoted_name, spe, begin, end);
   // What began before the trace is shown from its beginning.
   const TraceTime from = std::max<TraceTime>(begin - begin_, 0), to = std::max(end - begin_, from);
   return event("X", spe, row)

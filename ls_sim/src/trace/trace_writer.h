@@ -16,7 +16,8 @@ namespace softcell::ls_sim {
 class TraceWriter {
  public:
   /// @param begin  time 0 of the file.
-  TraceWriter(base::WholeFile& file, TraceTime begin) : file_(file), begin_(begin) {}
+  TraceWriter(base::WholeFile& file, TraceTime begin, TraceClock clock)
+      : file_(file), begin_(begin), clock_(clock) {}
 
   /// The whole file; SPE n is the n-th of these.
   void write(const std::vector<const SpeEvents*>& spes);
@@ -41,6 +42,7 @@ class TraceWriter {
 
   base::WholeFile& file_;
   TraceTime begin_;
+  TraceClock clock_;
   base::JsonText out_;
   bool first_ = true;
 };

@@ -44,7 +44,7 @@ long long to_llong(qword);
 unsigned long long to_ullong(qword);
 float to_float(qword);
 double to_double(qword);
-void* to_ptr(qword);
+const volatile void* to_ptr(qword);
 
 }  // namespace softcell_check
 

@@ -71,8 +71,10 @@ extern "C" void __asan_handle_no_return() {}
 extern "C" __attribute__((weak)) void* memcpy(void* to, const void* from, size_t bytes) {
   SC_REPORT(from, bytes, kLoad);
   SC_REPORT(to, bytes, kStore);
-  void* destination = to;
-  asm volatile("rep movsb" : "+D"(destination), "+S"(from), "+c"(bytes) : : "memory");
+  // The instruction takes all 64 bits of its registers.
+  uint64_t destination = reinterpret_cast<uintptr_t>(to), source = reinterpret_cast<uintptr_t>(from),
+           left = bytes;
+  asm volatile("rep movsb" : "+D"(destination), "+S"(source), "+c"(left) : : "memory");
   return to;
 }
 
@@ -91,7 +93,7 @@ extern "C" __attribute__((weak)) void* memmove(void* to, const void* from, size_
 
 extern "C" __attribute__((weak)) void* memset(void* to, int value, size_t bytes) {
   SC_REPORT(to, bytes, kStore);
-  void* destination = to;
-  asm volatile("rep stosb" : "+D"(destination), "+c"(bytes) : "a"(value) : "memory");
+  uint64_t destination = reinterpret_cast<uintptr_t>(to), left = bytes;
+  asm volatile("rep stosb" : "+D"(destination), "+c"(left) : "a"(value) : "memory");
   return to;
 }

@@ -12,9 +12,10 @@ namespace softcell_sdk {
 
 constexpr bool is_scale(long long scale) { return scale >= 0 && scale <= 127; }
 
-/// magnitude / 2^Scale, truncated to 24 bits. Below the smallest normal float it is zero.
-template <int Scale>
-SC_SDK_INLINE Raw<unsigned int> scaled_float(Raw<unsigned int> magnitude) {
+// The scale as a number, for C: what is constant where it is called is folded as well.
+
+/// magnitude / 2^scale, truncated to 24 bits. Below the smallest normal float it is zero.
+SC_SDK_INLINE Raw<unsigned int> scaled_float(Raw<unsigned int> magnitude, int scale) {
   // Everything below the 24 leading bits goes first, so that no conversion that follows has anything to
   // round.
   Raw<unsigned int> surplus = magnitude >> 24;
@@ -25,54 +26,61 @@ SC_SDK_INLINE Raw<unsigned int> scaled_float(Raw<unsigned int> magnitude) {
   const __m128 high = _mm_cvtepi32_ps(_mm_srli_epi32(exact, 16));
   const __m128 low = _mm_cvtepi32_ps(_mm_and_si128(exact, _mm_set1_epi32(0xFFFF)));
   const auto value = (Raw<unsigned int>)_mm_fmadd_ps(high, _mm_set1_ps(65536.0f), low);
-  const auto representable = (Raw<unsigned int>)(value >> 23 > static_cast<unsigned int>(Scale));
-  return (value - (static_cast<unsigned int>(Scale) << 23)) & representable;
+  const auto representable = (Raw<unsigned int>)(value >> 23 > static_cast<unsigned int>(scale));
+  return (value - (static_cast<unsigned int>(scale) << 23)) & representable;
 }
 
-template <int Scale>
-SC_SDK_INLINE vec_float4 to_float(vec_uint4 a) {
-  static_assert(is_scale(Scale), "spu_convtf takes a scale from 0 to 127");
-  return make<vec_float4>(scaled_float<Scale>(a.raw));
+SC_SDK_INLINE vec_float4 to_float_by(vec_uint4 a, int scale) {
+  return make<vec_float4>(scaled_float(a.raw, scale));
 }
-template <int Scale>
-SC_SDK_INLINE vec_float4 to_float(vec_int4 a) {
-  static_assert(is_scale(Scale), "spu_convtf takes a scale from 0 to 127");
+SC_SDK_INLINE vec_float4 to_float_by(vec_int4 a, int scale) {
   const auto sign = (Raw<unsigned int>)(a.raw >> 31), magnitude = ((Raw<unsigned int>)a.raw ^ sign) - sign;
-  const Raw<unsigned int> value = scaled_float<Scale>(magnitude);
+  const Raw<unsigned int> value = scaled_float(magnitude, scale);
   return make<vec_float4>(value | (sign & (Raw<unsigned int>)(value != 0) & 0x80000000u));
 }
 
-/// A float times 2^Scale: its exponent field after scaling, and the value where that fits a signed word.
+/// A float times 2^scale: its exponent field after scaling, and the value where that fits a signed word.
 struct Scaled {
   Raw<int> exponent;   ///< of the product; -1 for zero and denormals
   Raw<int> truncated;  ///< the product's integer part where exponent < 127 + 31; sign included
 };
-template <int Scale>
-SC_SDK_INLINE Scaled scale_up(vec_float4 a) {
+SC_SDK_INLINE Scaled scale_up(vec_float4 a, int scale) {
   const auto word = (Raw<unsigned int>)a.raw;
   const auto field = (Raw<int>)(word >> 23 & 0xFFu), zero = (Raw<int>)(field == 0);
-  const Raw<int> exponent = (field + Scale) | zero;
+  const Raw<int> exponent = (field + scale) | zero;
   const auto fits = (Raw<unsigned int>)(~zero & (exponent < 127 + 31));
-  const auto product = (__m128)((word + (static_cast<unsigned int>(Scale) << 23)) & fits);
+  const auto product = (__m128)((word + (static_cast<unsigned int>(scale) << 23)) & fits);
   return {exponent, (Raw<int>)_mm_cvttps_epi32(product)};
 }
 
-template <int Scale>
-SC_SDK_INLINE vec_int4 to_signed(vec_float4 a) {
-  static_assert(is_scale(Scale), "spu_convts takes a scale from 0 to 127");
-  const Scaled s = scale_up<Scale>(a);
+SC_SDK_INLINE vec_int4 to_signed_by(vec_float4 a, int scale) {
+  const Scaled s = scale_up(a, scale);
   const Raw<int> over = s.exponent >= 127 + 31, most = ((Raw<int>)a.raw >> 31) ^ INT32_MAX;
   return make<vec_int4>((s.truncated & ~over) | (most & over));
 }
-template <int Scale>
-SC_SDK_INLINE vec_uint4 to_unsigned(vec_float4 a) {
-  static_assert(is_scale(Scale), "spu_convtu takes a scale from 0 to 127");
-  const Scaled s = scale_up<Scale>(a);
+SC_SDK_INLINE vec_uint4 to_unsigned_by(vec_float4 a, int scale) {
+  const Scaled s = scale_up(a, scale);
   // From 2^31 to 2^32 the 24 bits of the fraction are the top of the word.
   const Raw<int> top = s.exponent == 127 + 31, over = s.exponent > 127 + 31;
   const auto shifted = (Raw<int>)((Raw<unsigned int>)a.raw << 8 | 0x80000000u);
   const Raw<int> positive = ~((Raw<int>)a.raw >> 31);
   return make<vec_uint4>((s.truncated | (shifted & top) | over) & positive);
+}
+
+template <int Scale, class V>
+SC_SDK_INLINE vec_float4 to_float(V a) {
+  static_assert(is_scale(Scale), "spu_convtf takes a scale from 0 to 127");
+  return to_float_by(a, Scale);
+}
+template <int Scale>
+SC_SDK_INLINE vec_int4 to_signed(vec_float4 a) {
+  static_assert(is_scale(Scale), "spu_convts takes a scale from 0 to 127");
+  return to_signed_by(a, Scale);
+}
+template <int Scale>
+SC_SDK_INLINE vec_uint4 to_unsigned(vec_float4 a) {
+  static_assert(is_scale(Scale), "spu_convtu takes a scale from 0 to 127");
+  return to_unsigned_by(a, Scale);
 }
 
 }  // namespace softcell_sdk

@@ -11,7 +11,8 @@ namespace softcell_sdk {
 /// At local-store address 0. The emulator writes `gate` when it loads an image, the kernel the mfc_ fields:
 /// channels that only hold a value until another channel is used, so that it need not be called for them.
 struct Environment {
-  /// Address of uint32_t gate(uint32_t operation, uint32_t value), System V calling convention.
+  /// Address of uint32_t gate(uint32_t operation, uint32_t value), System V calling convention. It lies below
+  /// 4 GB, as all that a kernel's 32-bit pointers may point to.
   uint64_t gate;
   uint32_t mfc_lsa, mfc_eah, mfc_eal, mfc_size, mfc_tag;  ///< channels 16 to 20
   uint32_t mfc_tag_mask;                                  ///< channel 22; 0 when a run begins
@@ -29,7 +30,9 @@ static_assert(sizeof(Environment) == 128, "what the link script leaves free");
 /// kTagStatus writes `value` to MFC_WrTagUpdate and then reads MFC_RdTagStat: one call for each wait.
 /// kAccess, with 1 as the channel for a store, reports a load or store of a checked kernel at local-store
 /// address `value`. kJob says that a job begins (1 as the channel) or has ended. kSync
-/// makes the processor fetch anew what it executes.
+/// makes the processor fetch anew what it executes. kAssist stops with code 0x2100 + channel, which calls a
+/// function of the PPU side; `value` is its number in the upper 8 bits, and the local-store address of its
+/// arguments, a quadword each.
 enum GateKind : uint32_t {
   kRead = 0,
   kWrite = 1,
@@ -39,16 +42,18 @@ enum GateKind : uint32_t {
   kTagStatus = 5,
   kAccess = 6,
   kJob = 7,
-  kSync = 8
+  kSync = 8,
+  kAssist = 9
 };
 
 constexpr uintptr_t kLocalStoreMask = 0x3FFFF;
 
 /// Where the local store lies in the host's memory.
 __attribute__((always_inline)) inline uintptr_t local_store_base() {
-  uintptr_t stack_pointer;
-  asm("mov %%rsp, %0" : "=r"(stack_pointer));
-  return stack_pointer & ~kLocalStoreMask;
+  // Local stores lie below 4 GB, and the tests that include this from ordinary host code have 64-bit pointers.
+  uint64_t stack_pointer;
+  asm("movq %%rsp, %q0" : "=r"(stack_pointer));
+  return static_cast<uintptr_t>(stack_pointer) & ~kLocalStoreMask;
 }
 
 __attribute__((always_inline)) inline Environment& environment() {
@@ -64,7 +69,8 @@ __attribute__((always_inline)) inline uint32_t local_store_address(const volatil
 __attribute__((always_inline)) inline uint32_t call_gate(GateKind kind, uint32_t channel, uint32_t value) {
   using Gate = uint32_t(uint32_t, uint32_t);
   asm volatile("" ::: "memory");
-  const uint32_t reply = reinterpret_cast<Gate*>(environment().gate)(kind << 8 | channel, value);
+  const uint32_t reply =
+      reinterpret_cast<Gate*>(static_cast<uintptr_t>(environment().gate))(kind << 8 | channel, value);
   asm volatile("" ::: "memory");
   return reply;
 }

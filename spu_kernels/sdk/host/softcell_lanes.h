@@ -6,8 +6,8 @@
 namespace softcell_sdk {
 
 /// The lane type that a scalar of type T splats to. Only the exact scalar types have one: on the SPU, too,
-/// spu_splats(true) is an error. 64-bit integers have two names; on the SPU `long` has 32 bits and is none of
-/// them.
+/// spu_splats(true) is an error, and so is that of a `long`, which has 32 bits. Where it has 64, in tests that
+/// include this from ordinary host code, it is a name of uint64_t.
 template <class T>
 struct LaneOf {};
 template <class T>
@@ -26,10 +26,12 @@ template <>
 struct LaneOf<unsigned int> : LaneIs<unsigned int> {};
 template <>
 struct LaneOf<signed int> : LaneIs<signed int> {};
+#ifdef __LP64__
 template <>
-struct LaneOf<unsigned long> : LaneIs<unsigned long long> {};  // the host's uint64_t
+struct LaneOf<unsigned long> : LaneIs<unsigned long long> {};
 template <>
 struct LaneOf<signed long> : LaneIs<signed long long> {};
+#endif
 template <>
 struct LaneOf<unsigned long long> : LaneIs<unsigned long long> {};
 template <>

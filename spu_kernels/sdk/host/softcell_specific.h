@@ -393,8 +393,8 @@ SC_SDK_INLINE long long si_to_llong(qword a) { return vec_llong2(a).raw[0]; }
 SC_SDK_INLINE unsigned long long si_to_ullong(qword a) { return vec_ullong2(a).raw[0]; }
 SC_SDK_INLINE float si_to_float(qword a) { return vec_float4(a).raw[0]; }
 SC_SDK_INLINE double si_to_double(qword a) { return vec_double2(a).raw[0]; }
-/// A pointer into this SPE's local store; null for address 0.
-SC_SDK_INLINE void* si_to_ptr(qword a) {
+/// A pointer into this SPE's local store; null for address 0. Its type is that of an SPU compiler: cast it.
+SC_SDK_INLINE const volatile void* si_to_ptr(qword a) {
   const uintptr_t address = softcell_sdk::word0(a) & softcell_sdk::kLocalStoreMask;
   return address == 0 ? nullptr : reinterpret_cast<void*>(softcell_sdk::local_store_base() | address);
 }

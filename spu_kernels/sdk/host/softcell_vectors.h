@@ -45,27 +45,43 @@ SC_SDK_INLINE Bytes flip_bytes(Bytes b) {
 
 /// The storage of N lanes and how to name them. `mutable` is for g++: it takes a const variable of a class
 /// for read-only memory, unless it has a mutable member, and then keeps it in memory and not in a register.
-/// As on the SPU the lanes left out are zero (here two at least are given: one alone would be an implicit
-/// conversion from a scalar).
+/// As on the SPU the lanes left out are zero.
 template <class T, int N>
 struct Lanes;
+
+/// The one lane of `{x}`; a scalar alone is not converted to a vector.
+template <class T>
+struct First {
+  constexpr First(T lane) : value(lane) {}
+  T value;
+};
+
+template <class A, class B>
+struct IfSame {};
+template <class A>
+struct IfSame<A, A> {
+  using Type = int;
+};
 
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 2> {
   mutable Raw<T> raw;
   Lanes() = default;
+  constexpr Lanes(First<T> l0) : raw{l0.value} {}
   constexpr Lanes(T l0, T l1) : raw{l0, l1} {}
 };
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 4> {
   mutable Raw<T> raw;
   Lanes() = default;
+  constexpr Lanes(First<T> l0) : raw{l0.value} {}
   constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T()) : raw{l0, l1, l2, l3} {}
 };
 template <class T>
 struct SC_SDK_REGISTER Lanes<T, 8> {
   mutable Raw<T> raw;
   Lanes() = default;
+  constexpr Lanes(First<T> l0) : raw{l0.value} {}
   constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T())
       : raw{l0, l1, l2, l3, l4, l5, l6, l7} {}
 };
@@ -73,13 +89,14 @@ template <class T>
 struct SC_SDK_REGISTER Lanes<T, 16> {
   mutable Raw<T> raw;
   Lanes() = default;
+  constexpr Lanes(First<T> l0) : raw{l0.value} {}
   constexpr Lanes(T l0, T l1, T l2 = T(), T l3 = T(), T l4 = T(), T l5 = T(), T l6 = T(), T l7 = T(),
                   T l8 = T(), T l9 = T(), T l10 = T(), T l11 = T(), T l12 = T(), T l13 = T(), T l14 = T(),
                   T l15 = T())
       : raw{l0, l1, l2, l3, l4, l5, l6, l7, l8, l9, l10, l11, l12, l13, l14, l15} {}
 };
 
-/// One vector type for each lane type. No operators: only what the language extensions document.
+/// One vector type for each lane type. Its operators are in softcell_operators.h.
 template <class T>
 struct SC_SDK_REGISTER Vector : Lanes<T, 16 / sizeof(T)> {
   using Lane = T;
@@ -93,6 +110,23 @@ struct SC_SDK_REGISTER Vector : Lanes<T, 16 / sizeof(T)> {
   template <class Other, int = Other::kWidth>
   SC_SDK_INLINE explicit Vector(const Other& other) {
     this->raw = (Raw<T>)flip_bytes<(Other::kWidth - 1) ^ (kWidth - 1)>((Bytes)other.raw);
+  }
+
+  // To and from volatile vectors. As templates they are no copies of the language's own, which stay trivial.
+  template <class U, typename IfSame<U, T>::Type = 0>
+  SC_SDK_INLINE Vector(const volatile Vector<U>& other) {
+    this->raw = other.raw;
+  }
+  template <class U, typename IfSame<U, T>::Type = 0>
+  SC_SDK_INLINE void operator=(Vector<U> other) volatile {
+    this->raw = other.raw;
+  }
+
+  /// A lane.
+  SC_SDK_INLINE T& operator[](int lane) { return reinterpret_cast<T*>(&this->raw)[lane]; }
+  SC_SDK_INLINE const T& operator[](int lane) const { return reinterpret_cast<const T*>(&this->raw)[lane]; }
+  SC_SDK_INLINE volatile T& operator[](int lane) volatile {
+    return reinterpret_cast<volatile T*>(&this->raw)[lane];
   }
 };
 

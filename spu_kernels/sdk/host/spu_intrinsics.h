@@ -5,6 +5,10 @@
 // each file holds is said at its top; where results differ from an SPU's is said at the top of
 // softcell_single.h and softcell_double.h.
 
+#ifndef __cplusplus
+#include "../c/softcell_c.h"
+#else
+
 #if !defined(__AVX2__) || !defined(__FMA__)
 #error "kernels are compiled with -mavx2 -mfma"
 #endif
@@ -18,6 +22,7 @@
 #include "softcell_integer.h"
 #include "softcell_lanes.h"
 #include "softcell_logic.h"
+#include "softcell_operators.h"
 #include "softcell_quadword.h"
 #include "softcell_shift.h"
 #include "softcell_shuffle.h"
@@ -53,3 +58,5 @@ SC_SDK_INLINE void spu_mfcdma32(volatile void* ls, unsigned int ea, unsigned int
 /// Waits as MFC_WrTagUpdate's value says (0 immediate, 1 any, 2 all) and returns the complete tag groups of
 /// the mask.
 SC_SDK_INLINE unsigned int spu_mfcstat(unsigned int condition) { return softcell_sdk::tag_status(condition); }
+
+#endif

@@ -5,6 +5,10 @@
 // Everything here writes and reads channels, nothing else: what the emulator does not have answers with its
 // own fault.
 
+#ifndef __cplusplus
+#include "../c/softcell_c_mfcio.h"
+#else
+
 #include "../shared/softcell_mfc_constants.h"
 #include "softcell_tags.h"
 #include "spu_intrinsics.h"
@@ -172,3 +176,5 @@ SC_SDK_INLINE unsigned int spu_read_srr0() { return spu_readch(SPU_RdSRR0); }
 /// Around code that an interrupt handler must not cut into. Jobs on the host have no interrupts.
 SC_SDK_INLINE unsigned int mfc_begin_critical_section() { return 0; }
 SC_SDK_INLINE void mfc_end_critical_section(unsigned int) {}
+
+#endif

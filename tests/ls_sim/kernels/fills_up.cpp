@@ -3,7 +3,7 @@
 #include <spu_intrinsics.h>
 #include <spu_mfcio.h>
 
-static volatile unsigned char bulk[0x3EDC0 - 0x80 - 0x80];
+static volatile unsigned char bulk[0x3ECC0 - 0x80 - 0x80];
 
 int main(uint64_t, uint64_t, uint64_t) {
   const int before = bulk[sizeof bulk - 1];

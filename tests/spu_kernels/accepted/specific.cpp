@@ -29,7 +29,7 @@ RETURNS(qword, si_rdch(SPU_RdInMbox));
 RETURNS(void, si_wrch(SPU_WrOutMbox, si_from_uint(1u)));
 RETURNS(float, si_to_float(si_from_float(1.0f)));
 RETURNS(unsigned long long, si_to_ullong(si_from_ullong(1ull)));
-RETURNS(void*, si_to_ptr(si_from_ptr(&u)));
+RETURNS(const volatile void*, si_to_ptr(si_from_ptr(&u)));
 RETURNS(vec_uint4, spu_mffpscr());
 RETURNS(vec_ullong2, spu_testsv(f64, SPU_SV_NAN | SPU_SV_POS_INFINITY));
 RETURNS(void, spu_stop(0x3FFF));

@@ -1,4 +1,5 @@
 #include "bench_bodies.h"
+#include "softcell/base/assert.h"
 
 #include <array>
 #include <cmath>
@@ -18,6 +19,7 @@ ppu::Lattice<3> lattice_where(const Eigen::Vector3i& size, const Inside& inside)
       for (int z = 0; z < size.z(); ++z)
         if (inside(x + 0.5 - size.x() / 2.0, y + 0.5 - size.y() / 2.0, z + 0.5 - size.z() / 2.0))
           cells.emplace_back(x, y, z);
+  SC_ASSERT(!cells.empty(), "a body of no cells in {} x {} x {}", size.x(), size.y(), size.z());
   return ppu::lattice_from_cells(cells, kSpacing, -0.5f * kSpacing * size.cast<float>());
 }
 
@@ -66,12 +68,15 @@ constexpr std::array<BenchBody, 5> kBodies{
 }  // namespace
 
 ppu::Lattice<3> bench_block(const Eigen::Vector3i& particles) {
+  SC_ASSERT(particles.minCoeff() >= 2, "a block of {} x {} x {} particles", particles.x(), particles.y(),
+            particles.z());
   return lattice_where(particles - Eigen::Vector3i::Ones(), [](double, double, double) { return true; });
 }
 
 std::span<const BenchBody> bench_bodies() { return kBodies; }
 
 Eigen::Vector3f bent_position(const ppu::Lattice<3>& lattice, std::size_t particle) {
+  SC_ASSERT(particle < lattice.particles.size(), "particle {} of {}", particle, lattice.particles.size());
   Eigen::Vector3f p = lattice.rest_position(particle);
   p.x() += 0.2f * p.y() * p.y();
   return p;

@@ -9,6 +9,7 @@
 
 #include "bench_bodies.h"
 #include "benchmarks.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::tool {
 namespace {
@@ -27,6 +28,8 @@ class BulletSoftBody {
 
   BulletSoftBody(const ppu::Lattice<3>& lattice, Held held) {
     const std::vector<float> masses = ppu::particle_masses(lattice, kDensity);
+    SC_ASSERT(masses.size() == lattice.particles.size(), "{} masses of {} particles", masses.size(),
+              lattice.particles.size());
     std::vector<btVector3> rest;
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       rest.push_back(to_bullet(lattice.rest_position(i)));
@@ -45,6 +48,8 @@ class BulletSoftBody {
   }
 
   void step() {
+    SC_ASSERT(static_cast<std::size_t>(body_->m_nodes.size()) == bent_.size(), "{} nodes of {}",
+              body_->m_nodes.size(), bent_.size());
     for (int i = 0; i < body_->m_nodes.size(); ++i) {
       btSoftBody::Node& node = body_->m_nodes[i];
       node.m_x = node.m_q = bent_[static_cast<std::size_t>(i)];
@@ -59,6 +64,8 @@ class BulletSoftBody {
   void add_links(const ppu::Lattice<3>& lattice) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       for (const std::uint32_t other : lattice.neighbours[i]) {
+        SC_ASSERT(other < lattice.particles.size(), "particle {} has neighbour {} of {}", i, other,
+                  lattice.particles.size());
         const int apart = (lattice.particles[i] - lattice.particles[other]).squaredNorm();
         if (other > i && apart <= 2) body_->appendLink(static_cast<int>(i), static_cast<int>(other));
       }
@@ -73,6 +80,7 @@ class BulletSoftBody {
 /// Several of them, as of the other solvers.
 struct BulletBodies {
   BulletBodies(const ppu::Lattice<3>& lattice, BulletSoftBody::Held held) {
+    SC_ASSERT(!lattice.particles.empty(), "{} cells without particles", lattice.cells.size());
     for (nodes = 0; nodes < kBenchParticles; nodes += lattice.particles.size())
       bodies.push_back(std::make_unique<BulletSoftBody>(lattice, held));
   }

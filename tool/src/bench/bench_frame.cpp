@@ -13,6 +13,7 @@
 #include "scene_file/scene_library.h"
 #include "scene_frames.h"
 #include "simulation/simulation_3d.h"
+#include "softcell/base/assert.h"
 #include "softcell/spe_bodies/spe_solver.h"
 #include "spu/kernel_file.h"
 
@@ -31,6 +32,7 @@ class SolverSteps {
       : step_(kFrameSeconds / static_cast<float>(frames.scene().substeps)) {
     for (std::size_t b = 0; b < frames.simulation().soft_bodies(); ++b)
       bodies_.push_back(frames.simulation().soft_body(b));
+    SC_ASSERT(step_ > 0 && !bodies_.empty(), "{} bodies with steps of {} s", bodies_.size(), step_);
     for (ppu::SoftBody<3>& body : bodies_) pointers_.push_back(&body);
     solver_.kick(pointers_, step_);
     // Once, so that rotations are known: of a dropped step a body in tiles does not keep them.
@@ -58,6 +60,7 @@ class SphereFrames {
  public:
   explicit SphereFrames(const std::string& name) {
     const demos::Scene scene = demos::load_scene_3d(name);
+    SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of {}", scene.substeps, name);
     substeps_ = scene.substeps;
     for (const demos::RigidBox& box : scene.boxes)
       world_.add_box(box.size, box.mass, box.position, scene.friction);
@@ -76,6 +79,7 @@ class SphereFrames {
  private:
   void add_spheres(const demos::SoftBodyPlacement& placement) {
     const auto model = ppu::make_soft_body_model(placement.mesh, placement.settings);
+    SC_ASSERT(model->soft_contact_radius() > 0, "spheres of {} m", model->soft_contact_radius());
     shapes_.push_back(std::make_unique<btSphereShape>(model->soft_contact_radius()));
     for (const std::uint32_t particle : model->outer()) {
       btRigidBody::btRigidBodyConstructionInfo info(model->masses()[particle], nullptr, shapes_.back().get());

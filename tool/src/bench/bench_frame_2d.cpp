@@ -14,6 +14,7 @@
 #include "scene_file/scene_library.h"
 #include "scene_frames.h"
 #include "simulation/simulation_2d.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::tool {
 namespace {
@@ -30,6 +31,7 @@ class CircleFrames {
  public:
   explicit CircleFrames(const std::string& name) {
     const demos::Scene2d scene = demos::load_scene_2d(name);
+    SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of {}", scene.substeps, name);
     substeps_ = scene.substeps;
     world_.SetGravity({0, -scene.gravity});
     world_.SetAllowSleeping(false);
@@ -51,6 +53,8 @@ class CircleFrames {
   void add_wall(const demos::RigidBody2d& wall) {
     b2BodyDef definition;
     definition.position = {wall.position.x(), wall.position.y()};
+    SC_ASSERT(std::holds_alternative<demos::Box2dShape>(wall.shape), "a wall of shape {} at ({}, {})",
+              wall.shape.index(), wall.position.x(), wall.position.y());
     const Eigen::Vector2f half = std::get<demos::Box2dShape>(wall.shape).size / 2;
     b2PolygonShape shape;
     shape.SetAsBox(half.x(), half.y());
@@ -61,6 +65,7 @@ class CircleFrames {
     definition.type = b2_dynamicBody;
     definition.position = {position.x(), position.y()};
     b2CircleShape shape;
+    SC_ASSERT(radius > 0, "a circle with a radius of {} m", radius);
     shape.m_radius = radius;
     world_.CreateBody(&definition)->CreateFixture(&shape, 1);
   }

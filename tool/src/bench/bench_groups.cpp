@@ -12,19 +12,24 @@ namespace {
 constexpr double kMicrosecond = 1e3, kMillisecond = 1e6;
 
 /// Of several prefixes that a name has, the longest counts.
-constexpr std::array<BenchGroup, 10> kGroups{
-    {{"frame/", "Whole frames of 1/60 s, without pictures, and parts of them", "a frame", "ms", kMillisecond},
-     {"solver3d/", "A step of shape matching and damping in three dimensions, one SPE", "a particle", "ns",
-      1},
-     {"solver3d/one1000/", "The same of one body of 1000 particles by itself, handed over and waited for",
-      "a particle", "ns", 1},
-     {"solver3d/big", "The same of one body in tiles", "a particle", "ns", 1},
-     {"solver2d/", "A step of shape matching and damping in two dimensions, one SPE", "a particle", "ns", 1},
-     {"rotation/", "The rotation nearest to a matrix, one SPE", "a matrix", "ns", 1},
-     {"skin/", "Skinning, one SPE", "a vertex", "ns", 1},
-     {"dma/", "Transfers of 16 KB", "16 KB", "ns", 1},
-     {"dma/command/", "Gets of 16 bytes, the waits for them included", "a command", "ns", 1},
-     {"dispatch/", "Dispatch of empty jobs", "a job", "us", kMicrosecond}}};
+constexpr std::array<BenchGroup, 11> kGroups{
+    {{"frame/", "Whole frames of 1/60 s, without pictures, and parts of them", "a frame", "ms", kMillisecond,
+      BenchPeer::kFrame},
+     {"solver3d/", "A step of shape matching and damping in three dimensions, one SPE", "a particle", "ns", 1,
+      BenchPeer::kSpe},
+     {"solver3d/one1000/", "The same of one body of 1000 particles by itself, from kick to result",
+      "a particle", "ns", 1, BenchPeer::kNone},
+     {"solver3d/big", "The same of one body in tiles", "a particle", "ns", 1, BenchPeer::kNone},
+     {"solver2d/", "A step of shape matching and damping in two dimensions, one SPE", "a particle", "ns", 1,
+      BenchPeer::kSpe},
+     {"rotation/", "The rotation nearest to a matrix, one SPE", "a matrix", "ns", 1, BenchPeer::kSpe},
+     {"skin/", "Skinning, one SPE", "a vertex", "ns", 1, BenchPeer::kSpe},
+     {"dma/", "Transfers of 16 KB", "16 KB", "ns", 1, BenchPeer::kMemcpy},
+     {"dma/command/", "Gets of 16 bytes, the waits for them included", "a command", "ns", 1,
+      BenchPeer::kNone},
+     {"dispatch/", "Dispatch of empty jobs", "a job", "us", kMicrosecond, BenchPeer::kNone},
+     {"interpreter/", "Instructions of a program built for the SPU, one SPE", "an instruction", "ns", 1,
+      BenchPeer::kNone}}};
 
 std::size_t group_index(std::string_view name) {
   std::size_t longest = kGroups.size();
@@ -43,12 +48,20 @@ std::span<const BenchGroup> bench_groups() { return kGroups; }
 const BenchGroup& bench_group(std::string_view name) { return kGroups[group_index(name)]; }
 
 std::string bench_peer(std::string_view name) {
-  const std::string_view prefix = bench_group(name).prefix;
-  if (prefix == "dma/") return "dma/memcpy16k";
-  if (prefix == "frame/") return std::string(name.substr(0, name.find('/', prefix.size())));
-  for (const std::string_view alone : {"solver3d/one1000/", "solver3d/big", "dma/command/", "dispatch/"})
-    if (prefix == alone) return {};
-  return std::string(name.substr(0, name.rfind('/'))) + "/spe";
+  const BenchGroup& group = bench_group(name);
+  switch (group.peer) {
+    case BenchPeer::kNone:
+      break;
+    case BenchPeer::kSpe:
+      SC_ASSERT(name.rfind('/') >= group.prefix.size(),
+                "the benchmark {} has no body between its group and its solver", name);
+      return std::string(name.substr(0, name.rfind('/'))) + "/spe";
+    case BenchPeer::kMemcpy:
+      return "dma/memcpy16k";
+    case BenchPeer::kFrame:
+      return std::string(name.substr(0, name.find('/', group.prefix.size())));
+  }
+  return {};
 }
 
 bool is_reported_before(std::string_view a, std::string_view b) {

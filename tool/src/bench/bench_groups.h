@@ -1,11 +1,19 @@
 #pragma once
-// How benchmarks belong together: found from their names.
+// The groups of benchmarks, which are found by their names.
 
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace softcell::tool {
+
+/// What the benchmarks of a group are compared to.
+enum class BenchPeer {
+  kNone,
+  kSpe,     ///< the SPE's kernel: the same name with `spe` as its last part
+  kMemcpy,  ///< the host's memcpy
+  kFrame,   ///< the whole frame, of which they are parts
+};
 
 /// Benchmarks of the same kind of work.
 struct BenchGroup {
@@ -14,19 +22,20 @@ struct BenchGroup {
   std::string_view item;     ///< what an item is, in words: "a particle"
   std::string_view unit;     ///< in which the reader gets the time of an item
   double unit_ns;            ///< nanoseconds
+  BenchPeer peer;
 };
 
-/// In the order in which they are reported.
+/// All groups, in the order of the report.
 std::span<const BenchGroup> bench_groups();
 
-/// The one that the benchmark belongs to. @pre `name` is a benchmark's.
+/// The group of a benchmark. @pre `name` is a benchmark's.
 const BenchGroup& bench_group(std::string_view name);
 
-/// The benchmark of the same work that the others are compared to: the SPE's kernel where there is one, memcpy
-/// for transfers, the whole frame for its parts. May be the benchmark itself; empty: it has no peers.
+/// The name of the benchmark to which this one is compared, as its group says. May be the benchmark itself;
+/// empty: it is compared to none. @pre `name` is a benchmark's.
 std::string bench_peer(std::string_view name);
 
-/// Whether `a` is reported before `b`: by group, then by name, but what the others are compared to comes first.
+/// Whether `a` is reported before `b`: by group, then by name, with each peer before those that are compared to it.
 bool is_reported_before(std::string_view a, std::string_view b);
 
 }  // namespace softcell::tool

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bench_groups.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"
 #include "softcell/base/text.h"
 
@@ -29,6 +30,8 @@ struct Row {
 std::vector<Row> rows_of(const std::vector<BenchResult>& results, const OldFigures* old) {
   std::vector<Row> rows;
   for (const BenchResult& result : results) {
+    SC_ASSERT(result.ns_min <= result.ns_median, "{} took {} ns at least, {} ns as a median", result.name,
+              result.ns_min, result.ns_median);
     Row row{result, bench_peer(result.name), {}, {}};
     const auto peer = std::ranges::find(results, row.peer, &BenchResult::name);
     if (peer != results.end() && peer->name != result.name) row.factor = result.ns_min / peer->ns_min;
@@ -52,6 +55,8 @@ std::string heading(const BenchGroup& group, std::size_t name_width, bool compar
 }
 
 std::string line(const Row& row, const BenchGroup& group, std::size_t name_width, bool compares) {
+  SC_ASSERT(group.unit_ns > 0 && row.result.name.size() <= name_width, "{} in units of {} ns",
+            row.result.name, group.unit_ns);
   const bool is_peer = row.peer == row.result.name;
   std::string text = fmt::format("{:<{}} {:>10.2f} {:>10.2f} {:>9}", row.result.name, name_width,
                                  row.result.ns_min / group.unit_ns, row.result.ns_median / group.unit_ns,
@@ -90,6 +95,7 @@ OldFigures read_old_figures(const std::filesystem::path& file) {
 }
 
 std::string bench_table(const std::vector<BenchResult>& results, int rounds, const OldFigures* old) {
+  SC_ASSERT(rounds > 0, "{} results of {} rounds", results.size(), rounds);
   const std::vector<Row> rows = rows_of(results, old);
   std::size_t width = 4;
   for (const BenchResult& result : results) width = std::max(width, result.name.size());
@@ -108,6 +114,8 @@ std::string bench_table(const std::vector<BenchResult>& results, int rounds, con
 }
 
 nlohmann::ordered_json bench_document(const std::vector<BenchResult>& results, const OldFigures* old) {
+  SC_ASSERT(std::ranges::all_of(results, [](const BenchResult& result) { return result.items > 0; }),
+            "one of {} results has no items", results.size());
   auto document = nlohmann::ordered_json::array();
   for (const Row& row : rows_of(results, old)) {
     const BenchGroup& group = bench_group(row.result.name);

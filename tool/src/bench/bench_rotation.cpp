@@ -10,6 +10,7 @@
 #include "benchmarks.h"
 #include "ppu/matching/rotation.h"
 #include "rotations_job.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
@@ -59,6 +60,8 @@ class RotationRig {
         starts_(memory_, "starts", kGroups),
         found_(memory_, "found", kGroups),
         job_(memory_, "rotations job", 1) {
+    SC_ASSERT(least_iterations <= most_iterations, "from {} to {} iterations", least_iterations,
+              most_iterations);
     Random random;
     for (std::size_t i = 0; i < kMatrices; ++i) {
       cases_.push_back(make(random));
@@ -82,6 +85,7 @@ class RotationRig {
   }
 
   void run_spe() {
+    SC_ASSERT(chain_.size() == 1, "a chain of {} jobs finds the rotations", chain_.size());
     chain_.kick();
     chain_.wait();
     if (!chain_.failures().empty()) throw std::runtime_error(chain_.failures().front().message);
@@ -90,6 +94,7 @@ class RotationRig {
   void wake() { waker_.wake(); }
 
   void run_ppu() {
+    SC_ASSERT(cases_.size() == kMatrices, "{} matrices of {}", cases_.size(), kMatrices);
     for (const RotationCase& c : cases_) {
       Eigen::Quaternionf rotation = c.start;
       const Eigen::Matrix3f found = ppu::update_rotation(c.matrix, rotation);

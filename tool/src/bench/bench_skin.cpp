@@ -5,6 +5,7 @@
 #include "benchmarks.h"
 #include "ppu/reference/skin_scalar.h"
 #include "ppu/spe_bodies/skin_orchestrator.h"
+#include "softcell/base/assert.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
@@ -32,6 +33,8 @@ struct SkinCase {
       positions.push_back(x);
       corners.push_back({x.x(), x.y(), x.z(), 0});
     }
+    SC_ASSERT(corners.size() == positions.size() && !corners.empty(), "{} corners at {} places",
+              corners.size(), positions.size());
     for (std::size_t body = 0; body < kSkinnedBodies; ++body) {
       orchestrator.add(embedding, corners.size());
       all_corners.push_back(corners);
@@ -39,7 +42,8 @@ struct SkinCase {
   }
 
   void run_spe() {
-    orchestrator.kick(all_corners);
+    const bool has_begun = orchestrator.kick(all_corners);
+    SC_ASSERT(has_begun, "{} bodies are skinned while the frame before is", all_corners.size());
     orchestrator.drain();
   }
 
@@ -47,6 +51,9 @@ struct SkinCase {
     const Eigen::Vector3f origin(-2, -2, -2);
     for (auto& out : scalar_out) {
       for (const ppu::SkinPart& part : embedding->parts) {
+        SC_ASSERT(4 * (std::size_t{part.first_group} + part.group_count) <= out.size(),
+                  "groups {} to {} in {} vertices", part.first_group, part.first_group + part.group_count,
+                  out.size());
         ppu::skin_scalar(
             *embedding, part, positions, origin,
             std::span(out).subspan(4 * std::size_t{part.first_group}, 4 * std::size_t{part.group_count}));

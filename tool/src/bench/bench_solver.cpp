@@ -13,6 +13,7 @@
 #include "ppu/reference/eigen_solver.h"
 #include "ppu/reference/shape_matching.h"
 #include "ppu/spe_bodies/match_bodies.h"
+#include "softcell/base/assert.h"
 #include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
@@ -31,6 +32,7 @@ struct Model {
         plan(std::make_shared<const ppu::MatchingPlan<float, 3>>(lattice, half_width,
                                                                  ppu::particle_masses(lattice, kDensity))),
         bodies(copies != 0 ? copies : std::max<std::size_t>(1, kBenchParticles / lattice.particles.size())) {
+    SC_ASSERT(bodies > 0 && half_width > 0, "{} bodies in regions of half-width {}", bodies, half_width);
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) x.push_back(bent_position(lattice, i));
   }
 
@@ -53,6 +55,8 @@ class SpeBodies {
         chain_(jobs_, "match", model.bodies) {
     std::iota(all_.begin(), all_.end(), std::size_t{0});
     for (const std::size_t b : all_) {
+      SC_ASSERT(model.x.size() <= spes_.positions(b).size(), "{} particles in a body of {}", model.x.size(),
+                spes_.positions(b).size());
       for (std::size_t i = 0; i < model.x.size(); ++i)
         spes_.positions(b)[i] = {model.x[i].x(), model.x[i].y(), model.x[i].z(), 0};
     }
@@ -101,6 +105,8 @@ class PpuBodies {
 
   void step() {
     for (Body& body : bodies_) {
+      SC_ASSERT(body.v.size() == body.x.size(), "{} velocities of {} particles", body.v.size(),
+                body.x.size());
       std::ranges::fill(body.v, Eigen::Vector3f::Zero());
       tool::step(body.solver, body.x, body.v);
     }

@@ -11,6 +11,7 @@
 #include "ppu/reference/eigen_solver.h"
 #include "ppu/reference/shape_matching.h"
 #include "ppu/spe_bodies/match_bodies.h"
+#include "softcell/base/assert.h"
 #include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
 #include "spu/kernel_file.h"
@@ -57,10 +58,12 @@ struct SolverCase2d {
         eigen(plan),
         shared_sums(plan, ppu::SumMethod::kBarPlateCube),
         naive_sums(plan, ppu::SumMethod::kNaive) {
+    SC_ASSERT(bodies > 0 && half_width > 0, "{} bodies in regions of half-width {}", bodies, half_width);
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       const Eigen::Vector2f p = lattice.rest_position(i);
       x.push_back({p.x() + 0.2f * p.y() * p.y(), p.y()});  // bent
     }
+    SC_ASSERT(x.size() == plan->particles(), "{} places of {} particles", x.size(), plan->particles());
     v.resize(x.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     for (std::size_t b = 0; b < bodies; ++b)
@@ -78,6 +81,7 @@ struct SolverCase2d {
 
   void run_eigen() {
     std::ranges::fill(v, Eigen::Vector2f::Zero());
+    SC_ASSERT(v.size() == x.size(), "{} velocities of {} particles", v.size(), x.size());
     eigen.step(x, v, kAlpha, kStep, kDamping);
   }
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "benchmarks.h"
+#include "softcell/base/assert.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 #include "spu/kernel_file.h"
@@ -33,6 +34,8 @@ class TransfersRig {
         data_(memory_, "transfers data", spu::kTransfersBufferBytes) {}
 
   void move(spu::TransferDirection direction, std::size_t bytes, std::size_t count, std::uint32_t in_flight) {
+    SC_ASSERT(count > 0 && bytes * in_flight <= spu::kTransfersBufferBytes,
+              "{} transfers of {} bytes, {} at a time", count, bytes, in_flight);
     descriptor_.span()[0] = {.ea = data_.ea().value,
                              .bytes = static_cast<std::uint32_t>(bytes),
                              .count = static_cast<std::uint32_t>(count),
@@ -48,6 +51,7 @@ class TransfersRig {
  private:
   void run_jobs(std::size_t count, dma::EffectiveAddress argp) {
     chain_.clear();
+    SC_ASSERT(count > 0 && count <= kQueuedJobs, "{} jobs in a chain of {}", count, kQueuedJobs);
     for (std::size_t i = 0; i < count; ++i) chain_.add({image_, argp});
     chain_.kick();
     chain_.wait();
@@ -117,7 +121,8 @@ void add_dma_benchmarks(std::vector<Benchmark>& all) {
 
 void add_dispatch_benchmarks(std::vector<Benchmark>& all) {
   const Shared<TransfersRig> one([] { return std::make_shared<TransfersRig>(); });
-  const Shared<TransfersRig> six([] { return std::make_shared<TransfersRig>(dma::Schedule{}, 6); });
+  const Shared<TransfersRig> six(
+      [] { return std::make_shared<TransfersRig>(dma::Schedule{}, dma::kSpeCount); });
   const auto many = [](TransfersRig& rig) { rig.run_empty_jobs(kQueuedJobs); };
   const auto single = [](TransfersRig& rig) { rig.run_empty_jobs(1); };
   all.push_back(on_awake(one, "dispatch/queued", kQueuedJobs, many));

@@ -12,6 +12,7 @@
 #include "benchmarks.h"
 #include "ppu/reference/shape_matching.h"
 #include "ppu/spe_bodies/tiled_memory.h"
+#include "softcell/base/assert.h"
 #include "spu/kernel_file.h"
 
 namespace softcell::tool {
@@ -28,6 +29,8 @@ class LargeBody {
         image_(jobs_.place(kernel_)),
         body_(memory_, plan_),
         chain_(jobs_, "tiles", body_.most_jobs()) {
+    SC_ASSERT(plan_.place_of().size() == lattice.particles.size(), "places for {} particles of {}",
+              plan_.place_of().size(), lattice.particles.size());
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       Eigen::Vector3f p = lattice.rest_position(i);
       p.x() += 0.02f * p.y() * p.y();
@@ -51,7 +54,7 @@ class LargeBody {
   /// the job loops take them. A pass begins when all SPEs have ended the one before.
   std::string shares() {
     using Milliseconds = std::chrono::duration<double, std::milli>;
-    constexpr std::size_t kSpes = 6;
+    constexpr std::size_t kSpes = dma::kSpeCount;
     std::array<Milliseconds, kSpes> work{};
     Milliseconds all{0}, length{0};
     body_.begin_step(kSettings);
@@ -63,6 +66,8 @@ class LargeBody {
       for (const Milliseconds& time : busy) all += time;
       length += *std::ranges::max_element(busy);
     }
+    SC_ASSERT(length.count() > 0 && length <= all, "six SPEs take {} ms for {} ms of work", length.count(),
+              all.count());
     std::string text = fmt::format(
         "a step is {:.2f} ms on one SPE, {:.2f} ms on six that have a core each: {:.2f} times as fast\n",
         all.count(), length.count(), all / length);
@@ -89,6 +94,7 @@ class LargeBody {
       work_off();
       least = std::min(least, jobs_.statistics()[0].busy - before);
     }
+    SC_ASSERT(least.count() >= 0, "a job took {} ns", least.count());
     return least;
   }
 

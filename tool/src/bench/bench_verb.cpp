@@ -14,6 +14,7 @@
 #include "bench_report.h"
 #include "benchmarks.h"
 #include "command_line/shared_options.h"
+#include "softcell/base/assert.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
 #include "verb/output_files.h"
@@ -31,6 +32,7 @@ std::vector<Benchmark> all_benchmarks() {
   add_skin_benchmarks(all);
   add_dma_benchmarks(all);
   add_dispatch_benchmarks(all);
+  add_interpreter_benchmarks(all);
   add_frame_benchmarks(all);
   add_frame_2d_benchmarks(all);
   return all;
@@ -39,6 +41,10 @@ std::vector<Benchmark> all_benchmarks() {
 /// Those whose name the user asks for, in the order in which they are reported.
 std::vector<Benchmark> chosen_benchmarks(const std::string& filter_text) {
   std::vector<Benchmark> all = all_benchmarks();
+  SC_ASSERT(
+      std::ranges::all_of(
+          all, [&](const Benchmark& b) { return std::ranges::count(all, b.name, &Benchmark::name) == 1; }),
+      "two of {} benchmarks have one name", all.size());
   try {
     const std::regex filter(filter_text);
     std::erase_if(all, [&](const Benchmark& b) { return !std::regex_search(b.name, filter); });
@@ -56,8 +62,15 @@ struct Measurement {
   Work work;
   std::vector<double> nanoseconds = {};  // per item, one for each round; sorted in the end
 
-  double least() const { return nanoseconds.front(); }
-  double median() const { return nanoseconds[nanoseconds.size() / 2]; }
+  double least() const {
+    SC_ASSERT(!nanoseconds.empty(), "a measurement of {} items has no rounds", work.items);
+    return nanoseconds.front();
+  }
+  double median() const {
+    SC_ASSERT(std::ranges::is_sorted(nanoseconds) && !nanoseconds.empty(), "the median of {} rounds",
+              nanoseconds.size());
+    return nanoseconds[nanoseconds.size() / 2];
+  }
 };
 
 std::chrono::nanoseconds spent(const Work& work) {
@@ -68,9 +81,12 @@ std::chrono::nanoseconds spent(const Work& work) {
 std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int rounds,
                                  const InterruptGuard& guard) {
   std::vector<Measurement> all;
+  SC_ASSERT(rounds > 0, "{} benchmarks in {} rounds", benchmarks.size(), rounds);
   for (const Benchmark& benchmark : benchmarks) {
     if (guard.interrupted()) return all;
     all.push_back({benchmark.prepare()});
+    SC_ASSERT(all.back().work.items > 0 && all.back().work.run, "{} has {} items of work", benchmark.name,
+              all.back().work.items);
     all.back().work.run();  // caches, first allocations
   }
   // Round by round, so that a change of the machine's speed meets all alike.
@@ -81,6 +97,7 @@ std::vector<Measurement> measure(const std::vector<Benchmark>& benchmarks, int r
       const std::chrono::nanoseconds begin = spent(m.work);
       m.work.run();
       const std::chrono::duration<double, std::nano> elapsed = spent(m.work) - begin;
+      SC_ASSERT(elapsed.count() >= 0, "round {} took {} ns", round, elapsed.count());
       m.nanoseconds.push_back(elapsed.count() / static_cast<double>(m.work.items));
     }
   }
@@ -112,6 +129,8 @@ int run_bench(const BenchOptions& options) {
     return kExitInterrupted;
   }
 
+  SC_ASSERT(all.size() == benchmarks.size(), "{} of {} benchmarks were measured", all.size(),
+            benchmarks.size());
   std::vector<BenchResult> results;
   for (std::size_t i = 0; i < all.size(); ++i)
     results.push_back({benchmarks[i].name, all[i].least(), all[i].median(), all[i].work.items});
@@ -135,7 +154,7 @@ class BenchVerb final : public Verb {
     b->add_option("--filter", options_.filter,
                   "Only benchmarks in whose name this regular expression is found; others are not even built")
         ->type_name("REGEX");
-    take_whole_number(
+    accept_whole_number(
         b->add_option("--rounds", options_.rounds,
                       "How often each is run, in turn; minimum and median are reported (default: 31)"),
         1, kMaxRounds)

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::tool {
 
 /// A piece of work to be timed: `run` does `items` items of it.
@@ -35,6 +37,7 @@ class Shared {
       : state_(std::make_shared<State>(State{std::move(make), nullptr})) {}
 
   const std::shared_ptr<Rig>& get() const {
+    SC_ASSERT(state_->rig || state_->make, "what {} benchmarks share cannot be made", state_.use_count());
     if (!state_->rig) state_->rig = state_->make();
     return state_->rig;
   }
@@ -78,6 +81,10 @@ void add_dma_benchmarks(std::vector<Benchmark>& all);
 /// dispatch/queued: an item is an empty job of many in one stage; dispatch/round_trip: one that is kicked and
 /// waited for while its SPE sleeps, or all six.
 void add_dispatch_benchmarks(std::vector<Benchmark>& all);
+
+/// interpreter/mix: an item is one instruction of a program built for the SPU, run by the interpreter: integers, single
+/// precision, shuffles, loads and stores, branches.
+void add_interpreter_benchmarks(std::vector<Benchmark>& all);
 
 /// frame/<scene>: a whole frame of 1/60 s without its picture, by the clock. Of the same frames, .../ppu: the
 /// processor time that the PPU spends on soft bodies, the engine apart. .../solver: one step of shape

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::tool {
 
 /// A scene as a demo simulates it, skinning included.
@@ -14,6 +16,7 @@ class SceneFrames {
  public:
   /// @param frames_before  frames that are simulated at once, so that bodies lie where they come to rest
   SceneFrames(Scene scene, int frames_before) : scene_(std::move(scene)), simulation_(scene_, {}) {
+    SC_ASSERT(frames_before >= 0, "{} frames before those of scene {}", frames_before, scene_.name);
     for (int i = 0; i < frames_before; ++i) step();
   }
 

@@ -1,4 +1,5 @@
 #include "command_tree.h"
+#include "softcell/base/assert.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -26,6 +27,8 @@ CommandOption command_option(const CLI::Option& option) {
     for (const std::string& name : option.get_snames()) result.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
   }
+  SC_ASSERT(!result.names.empty() && !result.description.empty(), "an option described as '{}' has {} names",
+            result.description, result.names.size());
   if (option.get_expected_max() > 0) result.value = option.get_type_name();
   result.needs = names_of(option.get_needs());
   result.excludes = names_of(option.get_excludes());
@@ -43,12 +46,15 @@ CommandVerb command_tree(const CLI::App& app) {
   CommandVerb verb{app.get_name(), app.get_description(), {}, {}};
   for (const CLI::Option* option : app.get_options()) verb.options.push_back(command_option(*option));
   for (const CLI::App* below : app.get_subcommands(nullptr)) verb.verbs.push_back(command_tree(*below));
+  SC_ASSERT(!verb.name.empty() && !verb.description.empty(), "a verb '{}' described as '{}'", verb.name,
+            verb.description);
   return verb;
 }
 
 std::vector<CommandLeaf> leaves_of(const CommandVerb& top) {
   std::vector<CommandLeaf> leaves;
   for (const CommandVerb& verb : top.verbs) add_leaves(verb, verb.name, leaves);
+  SC_ASSERT(!leaves.empty(), "the command {} has no verbs", top.name);
   return leaves;
 }
 

@@ -13,8 +13,8 @@ namespace softcell::tool {
 
 struct CommandOption {
   std::vector<std::string> names;  ///< with their dashes, short ones first; a positional's one name has none
-  std::string
-      value;  ///< what stands behind the name: FILE, DIR, SCENE, "eager|lazy|random:SEED"; empty: a flag
+  /// The placeholder of its value: FILE, DIR, SCENE, "eager|lazy|random:SEED"; empty: a flag.
+  std::string value;
   std::string description;
   bool positional = false;
   bool required = false;

@@ -1,4 +1,5 @@
 #include "help_texts.h"
+#include "softcell/base/assert.h"
 
 #include <fmt/format.h>
 
@@ -53,6 +54,7 @@ std::string option_paragraphs(const std::vector<CommandOption>& options) {
 }
 
 std::string synopsis_of(const CommandLeaf& leaf) {
+  SC_ASSERT(leaf.verb != nullptr, "no verb is at '{}'", leaf.path);
   std::string text = fmt::format("{} [options]", bold(fmt::format("softcell {}", leaf.path)));
   for (const CommandOption& option : leaf.verb->options) {
     if (option.positional) text += fmt::format(" {}", italic(option.names.front()));

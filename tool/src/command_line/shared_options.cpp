@@ -6,11 +6,13 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "softcell/base/assert.h"
 #include "verb/exit_status.h"
 
 namespace softcell::tool {
 
-CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most) {
+CLI::Option* accept_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most) {
+  SC_ASSERT(option != nullptr && least <= most, "an option takes numbers from {} to {}", least, most);
   return option->check([=](const std::string& text) -> std::string {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

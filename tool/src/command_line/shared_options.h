@@ -15,10 +15,9 @@ class Option;
 
 namespace softcell::tool {
 
-/// Lets the option be nothing but a whole number in decimal digits, from `least`, which is above 0, to
-/// `most`.
+/// Makes the option accept only a whole number in decimal digits from `least`, which is above 0, to `most`.
 /// @return the option
-CLI::Option* take_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most);
+CLI::Option* accept_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most);
 
 /// --dma; parse_dma() reads what it was given.
 void add_dma_option(CLI::App& verb, std::string& text);

@@ -1,5 +1,9 @@
 #include "help_texts.h"
 
+#include <algorithm>
+
+#include "softcell/base/assert.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,6 +31,7 @@ std::string value_action(const CommandOption& option) {
 
 /// One arm of the case over the path: values of the option before, then what stands alone, then options.
 std::string leaf_arm(const CommandLeaf& leaf) {
+  SC_ASSERT(leaf.verb != nullptr && !leaf.path.empty(), "no verb is at '{}'", leaf.path);
   std::string values, alone;
   std::vector<std::string> words;
   for (const CommandOption& option : leaf.verb->options) {
@@ -133,6 +138,8 @@ std::string fish_line(const std::string& path, const CommandOption& option) {
   if (option.positional) return line + fish_values(option) + "\n";
   for (const std::string& name : option.names)
     line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+  SC_ASSERT(std::ranges::all_of(option.names, [](const std::string& name) { return name.starts_with('-'); }),
+            "an option of '{}' has a name without a dash", path);
   if (!option.value.empty()) line += " -r" + fish_values(option);
   return fmt::format("{} -d {}\n", line, fish_quoted(option.description));
 }

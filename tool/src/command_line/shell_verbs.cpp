@@ -8,6 +8,7 @@
 
 #include "command_tree.h"
 #include "help_texts.h"
+#include "softcell/base/assert.h"
 #include "usage_sentence.h"
 #include "verb/exit_status.h"
 
@@ -34,7 +35,7 @@ class ShellVerbs final : public Verb {
   explicit ShellVerbs(std::string version) : version_(std::move(version)) {}
 
   void add_to(CLI::App& command, Call& chosen) override {
-    CLI::App* h = command.add_subcommand("help", "Print what --help says of a verb: softcell help spu run");
+    CLI::App* h = command.add_subcommand("help", "Print the help of a verb: softcell help spu run");
     h->add_option("VERB", words_, "The verb, from the top; none: the command itself")->type_name("VERB");
     h->callback([&] {
       chosen = [&] {
@@ -50,6 +51,8 @@ class ShellVerbs final : public Verb {
         ->type_name("bash|zsh|fish");
     c->callback([&] {
       chosen = [&] {
+        SC_ASSERT(shell_ == "bash" || shell_ == "zsh" || shell_ == "fish", "a script for the shell '{}'",
+                  shell_);
         const CommandVerb tree = command_tree(command);
         const auto script = shell_ == "fish"  ? fish_completion(tree)
                             : shell_ == "zsh" ? zsh_completion(tree)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command_tree.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/nearest_name.h"
 
 namespace softcell::tool {
@@ -63,7 +64,7 @@ std::string unexpected(const std::string& verb, const CLI::App& app, const std::
 }
 
 std::string needs_value(const CLI::Option& option) {
-  return fmt::format("{} needs a value behind it: {}", option.get_name(), option.get_type_name());
+  return fmt::format("{} needs a value: {}", option.get_name(), option.get_type_name());
 }
 
 /// The option that the parser names, with more values or fewer than it takes; empty when it names none.
@@ -80,6 +81,7 @@ std::string wrong_count(const CLI::App& app, const std::string& what) {
 }  // namespace
 
 std::string unknown_verb(const std::string& verb, const CLI::App& app, const std::string& argument) {
+  SC_ASSERT(!verb.empty(), "'{}' is a command of a verb without a name", argument);
   const CommandVerb tree = command_tree(app);
   std::vector<std::string_view> known;
   for (const CommandVerb& below : tree.verbs) known.push_back(below.name);
@@ -145,6 +147,8 @@ std::optional<std::string> empty_value(const CLI::App& top) {
 }
 
 std::string verbs_sentence(const CLI::App& top) {
+  SC_ASSERT(called_verb(top).starts_with(top.get_name()), "'{}' is no verb of {}", called_verb(top),
+            top.get_name());
   std::string path = called_verb(top).substr(top.get_name().size());
   if (!path.empty()) path = path.substr(1) + " ";
   std::vector<std::string> verbs;

@@ -30,7 +30,8 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
     return {.soft_bodies = simulation().soft_bodies(),
             .rigid_bodies = simulation().rigid_bodies(),
             .particles = simulation().particles(),
-            .vertices = simulation().particles()};
+            .vertices = simulation().particles(),
+            .bodies_on_ppu = simulation().bodies_on_ppu()};
   }
 };
 

@@ -45,14 +45,15 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
                        options.size.width, options.size.height)}) {}
 
   demos::FrameTimes step() override {
-    simulation().note_contacts(static_cast<demos::View>(input().look().view) == demos::View::kContacts);
+    simulation().record_contacts(static_cast<demos::View>(input().look().view) == demos::View::kContacts);
     return SceneDemo::step();
   }
   demos::DemoCounts counts() const override {
     return {.soft_bodies = simulation().soft_bodies(),
             .rigid_bodies = simulation().rigid_bodies(),
             .particles = simulation().particles(),
-            .vertices = simulation().vertices()};
+            .vertices = simulation().vertices(),
+            .bodies_on_ppu = simulation().bodies_on_ppu()};
   }
 
  private:

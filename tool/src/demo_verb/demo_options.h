@@ -10,6 +10,7 @@
 #include "scene/look.h"
 #include "scene_file/own_model.h"
 #include "simulation/simulation_options.h"
+#include "softcell/dma/addresses.h"
 #include "softcell/dma/schedule.h"
 
 namespace softcell::tool {
@@ -21,7 +22,9 @@ struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
   std::optional<int> frames;         ///< default: the scene's
   std::optional<std::filesystem::path> json;
   demos::Solver solver = demos::Solver::kSpe;
-  int spes = 6;
+  ls_sim::Machine machine = ls_sim::Machine::kHost;
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSpheres;  ///< in three dimensions
+  int spes = dma::kSpeCount;
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
   std::optional<std::filesystem::path> trace;

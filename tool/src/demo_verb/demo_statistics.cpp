@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 #include "verb/output_files.h"
 
@@ -21,6 +22,7 @@ Summary summarize(std::vector<double> samples) {
   if (samples.empty()) return {};
   std::sort(samples.begin(), samples.end());
   const auto rank = [&](double share) {
+    SC_ASSERT(share >= 0 && share <= 1, "the quantile {}", share);
     return samples[static_cast<std::size_t>(share * static_cast<double>(samples.size() - 1) + 0.5)];
   };
   return {sum(samples) / static_cast<double>(samples.size()), rank(0.5), rank(0.99), samples.back()};
@@ -33,11 +35,13 @@ bool waits_for_pictures(const DemoOptions& options) {
 
 /// What the frame loop spent its time on, and the frames a second that this makes.
 void fill_in_time(const DemoOptions& options, const demos::RunRecord& record, DemoFigures& figures) {
+  SC_ASSERT(record.physics_ms.size() == static_cast<std::size_t>(record.frames),
+            "the times of {} frames of {}", record.physics_ms.size(), record.frames);
   figures.time_shares = {
-      {"physics", "contacts and rigid bodies", sum(record.physics_ms)},
+      {"physics", "contacts and rigid bodies", sum(record.physics_ms) + sum(record.contacts_ms)},
       {"matching", "shape matching", sum(record.solve_ms) + sum(record.solver_wait_ms)},
       {"skinning", "skinning", sum(record.skin_ms) + sum(record.skin_wait_ms)},
-      {"coupling", "handing particles to and fro", sum(record.gather_ms) + sum(record.apply_ms)},
+      {"coupling", "copying particles", sum(record.gather_ms) + sum(record.apply_ms)},
       {"pictures", "pictures", waits_for_pictures(options) ? sum(record.picture_ms) : 0}};
   double milliseconds = 0;
   for (const TimeShare& part : figures.time_shares) milliseconds += part.share;
@@ -54,6 +58,21 @@ nlohmann::ordered_json to_json(const Summary& s) {
   return {{"mean", s.mean}, {"p50", s.p50}, {"p99", s.p99}, {"max", s.max}};
 }
 
+/// "by the SPEs", "3 by the SPEs, 1 by the PPU because it does not fit a local store".
+std::string who_steps(const demos::DemoCounts& counts, const DemoOptions& options) {
+  SC_ASSERT(counts.bodies_on_ppu <= counts.soft_bodies, "the PPU steps {} bodies of {}", counts.bodies_on_ppu,
+            counts.soft_bodies);
+  if (options.solver == demos::Solver::kReference) return "by the PPU, as --engine reference asks";
+  if (counts.bodies_on_ppu == 0) return "by the SPEs";
+  const std::string by_spes =
+      counts.bodies_on_ppu == counts.soft_bodies
+          ? ""
+          : fmt::format("{} by the SPEs, ", counts.soft_bodies - counts.bodies_on_ppu);
+  return fmt::format("{}{} by the PPU because {} not fit a local store{}", by_spes, counts.bodies_on_ppu,
+                     counts.bodies_on_ppu == 1 ? "it does" : "they do",
+                     options.checked ? ", where checked kernels have less room" : "");
+}
+
 void print_files(const DemoOptions& options) {
   const auto where = [](const char* what, const std::optional<std::filesystem::path>& path) {
     if (path) fmt::print("{:<11}{}\n", what, shown_name(*path));
@@ -65,19 +84,26 @@ void print_files(const DemoOptions& options) {
   where("figures:", options.json);
 }
 
+const char* engine_name(const DemoOptions& options) {
+  if (options.solver == demos::Solver::kReference) return "reference";
+  return options.machine == ls_sim::Machine::kSpu ? "interpreter" : "native";
+}
+
 }  // namespace
 
 DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo,
                          const demos::RunRecord& record) {
   DemoFigures figures{.scene = demo.scene_name(),
                       .dma = dma::to_string(options.schedule),
-                      .engine = options.solver == demos::Solver::kSpe ? "native" : "reference",
+                      .engine = engine_name(options),
+                      .contacts = options.contacts == ppu::ContactMethod::kSurface ? "surface" : "spheres",
                       .frames = record.frames,
                       .counts = demo.counts(),
                       .ppu_ms = summarize(record.ppu_ms),
                       .gather_ms = summarize(record.gather_ms),
                       .solve_ms = summarize(record.solve_ms),
                       .apply_ms = summarize(record.apply_ms),
+                      .contacts_ms = summarize(record.contacts_ms),
                       .physics_ms = summarize(record.physics_ms),
                       .skin_ms = summarize(record.skin_ms),
                       .solver_wait_ms = summarize(record.solver_wait_ms),
@@ -94,6 +120,7 @@ DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo,
                       .image_hash = record.image_hash};
   fill_in_time(options, record, figures);
   for (const ls_sim::SpeStatistics& spe : demo.spe_statistics()) {
+    SC_ASSERT(spe.busy.count() >= 0, "an SPE was busy for {} ns", spe.busy.count());
     const double busy = std::chrono::duration<double>(spe.busy).count();
     figures.spe_busy.push_back(record.seconds > 0 ? busy / record.seconds : 0);
     figures.dma_bytes += spe.dma.bytes();
@@ -113,14 +140,17 @@ nlohmann::ordered_json to_json(const DemoFigures& f) {
       {"rigid_bodies", f.counts.rigid_bodies},
       {"particles", f.counts.particles},
       {"vertices", f.counts.vertices},
+      {"bodies_on_ppu", f.counts.bodies_on_ppu},
       {"spes", f.spe_busy.size()},
       {"dma", f.dma},
       {"engine", f.engine},
+      {"contacts", f.contacts},
       {"ppu_ms", to_json(f.ppu_ms)},
       {"ppu_share", f.ppu_share},
       {"gather_ms", to_json(f.gather_ms)},
       {"solve_ms", to_json(f.solve_ms)},
       {"apply_ms", to_json(f.apply_ms)},
+      {"contacts_ms", to_json(f.contacts_ms)},
       {"physics_ms", to_json(f.physics_ms)},
       {"skin_ms", to_json(f.skin_ms)},
       {"solver_wait_ms", to_json(f.solver_wait_ms)},
@@ -144,6 +174,7 @@ nlohmann::ordered_json to_json(const DemoFigures& f) {
 void print_summary(const DemoFigures& f, const DemoOptions& options) {
   using base::counted;
   if (f.fps > 0) {
+    SC_ASSERT(!f.time_shares.empty(), "{} frames a second were spent on nothing", f.fps);
     const TimeShare& binds = f.time_shares.front();
     fmt::print("{} a second; {} {:.0f} %\n", frame_rate(f.fps), binds.words, 100 * binds.share);
   } else {
@@ -154,11 +185,13 @@ void print_summary(const DemoFigures& f, const DemoOptions& options) {
              counted(f.counts.soft_bodies, "soft body", "soft bodies"),
              counted(f.counts.rigid_bodies, "rigid one"), counted(f.counts.particles, "particle"),
              counted(f.counts.vertices, "vertex", "vertices"));
+  if (f.counts.soft_bodies > 0) fmt::print("stepped:   {}\n", who_steps(f.counts, options));
   fmt::print(
-      "a frame:   PPU {:.3f} ms, {:.1f} % of 1/60 s (gather {:.3f}, solve {:.3f}, apply {:.3f}, hand over "
+      "a frame:   PPU {:.3f} ms, {:.1f} % of 1/60 s (gather {:.3f}, solve {:.3f}, apply {:.3f}, contacts "
+      "{:.3f}, hand over "
       "the skinning {:.3f}), physics {:.2f} ms\n",
-      f.ppu_ms.mean, 100 * f.ppu_share, f.gather_ms.mean, f.solve_ms.mean, f.apply_ms.mean, f.skin_ms.mean,
-      f.physics_ms.mean);
+      f.ppu_ms.mean, 100 * f.ppu_share, f.gather_ms.mean, f.solve_ms.mean, f.apply_ms.mean,
+      f.contacts_ms.mean, f.skin_ms.mean, f.physics_ms.mean);
   if (waits_for_pictures(options) && f.simulated_fps > 0)
     fmt::print("           {} a second without pictures\n", frame_rate(f.simulated_fps));
   if (f.pictures > 0) fmt::print("a picture: {:.1f} ms\n", f.picture_ms.mean);

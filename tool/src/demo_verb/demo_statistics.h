@@ -1,5 +1,5 @@
 #pragma once
-// What a demo says of its run, for other programs and for the reader: figures first, then either form of them.
+// The figures of a demo's run, as JSON for other programs and as a summary for the reader.
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
@@ -25,13 +25,14 @@ struct TimeShare {
   double share = 0;        ///< 0 to 1
 };
 
-/// Both forms are made of this and of nothing else.
+/// Everything that either form needs.
 struct DemoFigures {
-  std::string scene, dma, engine;
+  std::string scene, dma, engine, contacts;
   int frames = 0;
   demos::DemoCounts counts;
 
-  Summary ppu_ms, gather_ms, solve_ms, apply_ms, physics_ms, skin_ms, solver_wait_ms, skin_wait_ms;
+  Summary ppu_ms, gather_ms, solve_ms, apply_ms, contacts_ms, physics_ms, skin_ms, solver_wait_ms,
+      skin_wait_ms;
   double ppu_share = 0;  ///< of 1/60 s
   Summary picture_ms;
   std::size_t pictures = 0;

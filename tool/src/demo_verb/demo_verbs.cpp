@@ -45,10 +45,17 @@ demos::View parse_view_3d(const std::string& text) {
   throw UsageError("--view " + text + ": give mesh, lattice, rotations or contacts");
 }
 
-demos::Solver parse_engine(const std::string& text) {
-  if (text == "native") return demos::Solver::kSpe;
-  if (text == "reference") return demos::Solver::kReference;
-  throw UsageError("--engine " + text + ": give native or reference");
+void parse_engine(const std::string& text, DemoOptions& options) {
+  options.solver = text == "reference" ? demos::Solver::kReference : demos::Solver::kSpe;
+  options.machine = text == "interpreter" ? ls_sim::Machine::kSpu : ls_sim::Machine::kHost;
+  if (text != "native" && text != "interpreter" && text != "reference")
+    throw UsageError("--engine " + text + ": give native, interpreter or reference");
+}
+
+ppu::ContactMethod parse_contacts(const std::string& text) {
+  if (text == "spheres") return ppu::ContactMethod::kSpheres;
+  if (text == "surface") return ppu::ContactMethod::kSurface;
+  throw UsageError("--contacts " + text + ": give spheres or surface");
 }
 
 demos::Skin parse_skin(const std::string& text) {
@@ -88,9 +95,9 @@ class DemoVerbs final : public Verb {
                   "Put this OBJ, PLY or STL model into the scene (default: drop)")
         ->type_name("FILE");
     CLI::Option* const cells =
-        take_whole_number(d->add_option("--cells", demo_3d_.model.cells,
-                                        "Lattice cells along the model's longest side (default: 8)"),
-                          2, ppu::kMaxLatticeCellsPerAxis)
+        accept_whole_number(d->add_option("--cells", demo_3d_.model.cells,
+                                          "Lattice cells along the model's longest side (default: 8)"),
+                            2, ppu::kMaxLatticeCellsPerAxis)
             ->needs("--mesh")
             ->type_name("CELLS");
     d->add_option("--cell", demo_3d_.model.cell,
@@ -103,10 +110,15 @@ class DemoVerbs final : public Verb {
     d->add_option("--skin", skin_,
                   "Who makes mesh vertices from particles: spe (default), or gpu, a vertex shader")
         ->type_name("spe|gpu");
+    d->add_option("--contacts", contacts_,
+                  "What soft bodies touch with: spheres (default), rigid ones at their outer particles, or "
+                  "surface, what is drawn")
+        ->type_name("spheres|surface");
     d->callback([&] {
       chosen = [this] {
         parse_texts(demo_3d_);
         demo_3d_.skin = parse_skin(skin_);
+        demo_3d_.contacts = parse_contacts(contacts_);
         demo_3d_.view = parse_view_3d(view_3d_);
         return run_demo_3d(demo_3d_);
       };
@@ -120,7 +132,7 @@ class DemoVerbs final : public Verb {
          "--scene", options.scene,
          "Scene by name, or a scene file; `softcell scenes` lists them (default: " + default_scene + ")")
         ->type_name("SCENE");
-    take_whole_number(
+    accept_whole_number(
         d.add_option(
             "--frames", options.frames,
             "Frames of 1/60 s to simulate (default: the replay's; else the scene's, mostly 300, or in a "
@@ -140,29 +152,32 @@ class DemoVerbs final : public Verb {
                "Draw each frame's figures over its picture (with --headless; in a window S does)");
     d.add_option("--size", size_, "Size of pictures in pixels, or of the window (default: 1280x720)")
         ->type_name("WIDTHxHEIGHT");
-    take_whole_number(d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)"), 1, 6)
+    accept_whole_number(d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)"), 1,
+                        dma::kSpeCount)
         ->type_name("SPES");
     add_dma_option(d, schedule_);
     d.add_option("--engine", engine_,
-                 "Who does shape matching: native, the SPEs (default), or reference, the PPU with Eigen")
-        ->type_name("native|reference");
+                 "Who does shape matching: native, the SPEs (default); interpreter, the SPEs with the "
+                 "kernels that a compiler for the "
+                 "SPU has made; or reference, the PPU with Eigen")
+        ->type_name("native|interpreter|reference");
     d.add_flag("--checked", options.checked,
                "Run the instrumented flavour of the kernels; findings end with status 3");
-    d.add_option("--record", options.record, "Write what happens in each frame, to be done again by --replay")
+    d.add_option("--record", options.record, "Record the events of each frame, for --replay")
         ->type_name("FILE");
     d.add_option(
          "--replay", options.replay,
-         "Do again what --record wrote, in place of the scene's script (default scene: the recorded one)")
+         "Replay what --record wrote, in place of the scene's script (default scene: the recorded one)")
         ->type_name("FILE");
     add_trace_option(d, options.trace);
     add_json_option(d, options.json, "statistics");
-    d.add_flag("--quiet", options.quiet, "Print nothing but what goes wrong");
+    d.add_flag("--quiet", options.quiet, "Print errors only");
   }
 
   void parse_texts(DemoOptions& options) const {
     options.size = parse_size(size_);
     options.schedule = parse_dma(schedule_);
-    options.solver = parse_engine(engine_);
+    parse_engine(engine_, options);
   }
 
   Demo2dOptions demo_2d_;
@@ -173,6 +188,7 @@ class DemoVerbs final : public Verb {
   std::string schedule_ = "eager";
   std::string engine_ = "native";
   std::string skin_ = "spe";
+  std::string contacts_ = "spheres";
 };
 
 int run_scenes() {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -11,7 +12,9 @@
 #include "demo/run_record.h"
 #include "demo_statistics.h"
 #include "scene_file/scene_library.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/text.h"
+#include "softcell/dma/addresses.h"
 #include "softcell/render/offscreen_context.h"
 #include "spu/kernel_report.h"
 #include "verb/exit_status.h"
@@ -48,6 +51,7 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
   record.interrupted = guard.interrupted();
   if (record.interrupted) return run;
   const int frames = options.frames.value_or(demo.frames());
+  SC_ASSERT(frames >= 0, "{} frames of scene '{}'", frames, demo.scene_name());
   record.asked_frames = frames;
 
   const auto begin = std::chrono::steady_clock::now();
@@ -58,10 +62,11 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
       const demos::FrameTimes times = demo.step();
       record.add(times);
       pictures.follow(times);
-      if (pictures.every_frame()) pictures.take(frame);
+      if (pictures.every_frame()) pictures.add(frame);
       bar.show(static_cast<std::size_t>(frame) + 1);
     }
-    if (!pictures.every_frame() && !guard.interrupted()) pictures.take(record.frames - 1);
+    if (!pictures.every_frame() && !guard.interrupted())
+      pictures.add(std::max(record.frames - 1, 0));  // a replay may have none
     demo.stop();
   });
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -115,6 +120,11 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
   if (options.video && !is_mp4(*options.video))
     throw UsageError("--video " + options.video->string() + ": give a file name that ends in .mp4");
+  if (options.machine == ls_sim::Machine::kSpu && options.contacts == ppu::ContactMethod::kSurface) {
+    throw UsageError(
+        "--engine interpreter: the kernels of surface contacts do not run interpreted yet; give --contacts "
+        "spheres, or --engine native");
+  }
   check_files(options);
   OutputFiles files(written_files(options));
   const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any
@@ -122,13 +132,18 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   // A recording and a trace are of one scene.
   const std::vector<demos::MakeDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);
+  SC_ASSERT(!scenes.empty(), "{} runs no scene", verb);
   // What cannot be written is no surprise at the end of a long run.
   base::WholeFile* const trace_file = files.open(options.trace);
   base::WholeFile* const json_file = files.open(options.json);
   ls_sim::Findings findings;
   std::optional<ls_sim::Trace> trace;
   if (options.trace) trace.emplace(options.spes);
+  SC_ASSERT(options.spes >= 1 && options.spes <= dma::kSpeCount, "{} SPEs of {}", options.spes,
+            dma::kSpeCount);
   const demos::SimulationOptions how{.solver = options.solver,
+                                     .machine = options.machine,
+                                     .contacts = options.contacts,
                                      .spes = options.spes,
                                      .schedule = options.schedule,
                                      .findings = options.checked ? &findings : nullptr,

@@ -14,6 +14,7 @@
 #include "demo/demo.h"
 #include "demo_options.h"
 #include "scene_file/scene_library.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 #include "verb/verb_files.h"
 
@@ -54,6 +55,7 @@ std::vector<demos::MakeDemo> demos_of(const Options& options, const typename One
     });
   };
   add(first);
+  SC_ASSERT(load != nullptr, "nobody loads the scenes beside {}", first.name);
   if (!all) return made;
   for (const demos::SceneListing& listing : demos::list_scenes()) {
     if (listing.dimension != OneDemo::kDimension || listing.name == first.name) continue;

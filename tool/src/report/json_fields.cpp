@@ -1,4 +1,5 @@
 #include "json_fields.h"
+#include "softcell/base/assert.h"
 
 #include <charconv>
 #include <cmath>
@@ -38,6 +39,7 @@ const nlohmann::json& JsonFields::field(const char* key) const {
 }
 
 std::uint64_t JsonFields::integer(const char* key, std::uint64_t least, std::uint64_t most) const {
+  SC_ASSERT(least <= most, "\"{}\" is from {} to {}", key, least, most);
   const nlohmann::json& value = field(key);
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least ||
       value.get<std::uint64_t>() > most) {

@@ -6,6 +6,9 @@
 #include <string_view>
 #include <utility>
 
+#include "softcell/base/assert.h"
+#include "softcell/dma/mfc_command.h"
+
 namespace softcell::tool {
 namespace {
 
@@ -77,6 +80,14 @@ Json image(const TraceImage& i) {
 nlohmann::ordered_json report_data(const TraceFile& trace) {
   Json spes = Json::array();
   for (const TraceSpe& spe : trace.spes) {
+    SC_ASSERT(
+        std::ranges::all_of(spe.jobs, [&](const TraceJob& job) { return job.name < trace.names.size(); }),
+        "a job's name is none of {}", trace.names.size());
+    SC_ASSERT(std::ranges::all_of(spe.commands,
+                                  [&](const TraceCommand& c) {
+                                    return c.name < trace.names.size() && c.tag < dma::kTagCount;
+                                  }),
+              "a command's name is none of {}, or its tag none", trace.names.size());
     spes.push_back(Json{{"jobs", jobs(spe.jobs)},
                         {"waits", slices(spe.waits)},
                         {"commands", commands(spe.commands)},
@@ -88,6 +99,7 @@ nlohmann::ordered_json report_data(const TraceFile& trace) {
                           {"findings", spe.dropped.findings}}}});
   }
   return {{"version", trace.version},
+          {"simulated", trace.is_simulated},
           {"names", trace.names},
           {"spes", std::move(spes)},
           {"images", column(trace.images, image)}};

@@ -38,7 +38,7 @@ namespace {
 class ReportVerb final : public Verb {
  public:
   void add_to(CLI::App& command, Call& chosen) override {
-    CLI::App* r = command.add_subcommand("report", "Make a page to look at of what --trace recorded");
+    CLI::App* r = command.add_subcommand("report", "Make an HTML page of what --trace recorded");
     r->add_option("TRACE", options_.trace, "The file that --trace wrote")->required()->type_name("FILE");
     r->add_option("--out", options_.out, "HTML page to write, which opens offline; - is standard output")
         ->required()

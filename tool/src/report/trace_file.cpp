@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "json_fields.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/list_element.h"
@@ -22,19 +23,21 @@ constexpr std::uint64_t kFirstCommandRow = 3;
 constexpr std::uint64_t kMostCommandBytes =
     std::uint64_t{dma::kMaxTransferBytes} / dma::kListElementBytes * dma::kMaxTransferBytes;
 constexpr std::uint64_t kMostCount = std::uint64_t{1} << 53;  // that the page can hold exactly
+constexpr std::size_t kMostSpes = 256;                        // contexts of a libspe2 program
 constexpr std::size_t kMostFileBytes = std::size_t{4} << 30;
 
 /// The events, taken one by one so that a long trace is never in memory as a tree of values.
 class EventReader {
  public:
-  explicit EventReader(TraceFile& file) : file_(file) { file_.spes.resize(dma::kSpeCount); }
+  explicit EventReader(TraceFile& file) : file_(file) { file_.spes.resize(kMostSpes); }
 
   void read(const json& value) {
     const JsonFields event(value, "traceEvents[" + std::to_string(count_++) + "]");
     const std::string phase = event.text("ph");
     if (phase == "M") return;  // names of processes and rows: the numbers say it all
-    const std::uint64_t process = event.integer("pid", 1, dma::kSpeCount);
+    const std::uint64_t process = event.integer("pid", 1, kMostSpes);
     highest_ = std::max(highest_, process);
+    SC_ASSERT(process >= 1 && process <= file_.spes.size(), "process {} of {}", process, file_.spes.size());
     TraceSpe& spe = file_.spes[process - 1];
     const std::uint64_t row = event.integer("tid", process * 1000 + 1, process * 1000 + kMostRows) % 1000;
     const std::string category = event.text("cat");
@@ -60,6 +63,7 @@ class EventReader {
   /// the end of the last: the page finds them by halving.
   TraceSlice read_slice(const JsonFields& event, std::uint64_t process, std::uint64_t row) {
     const TraceSlice slice{event.time("ts"), event.time("dur"), intern(event.text("name"))};
+    SC_ASSERT(process >= 1 && row < 1000, "row {} of process {}", row, process);
     std::int64_t& row_end = row_ends_[process * 1000 + row];
     if (slice.begin < row_end) event.refuse("it begins before the event before it in its row has ended");
     row_end = slice.begin + slice.duration;
@@ -151,8 +155,10 @@ void read_about(const JsonFields& about, std::uint64_t highest_spe, TraceFile& f
   if (about.integer("format", 0, kMostCount) != kFormat) {
     about.refuse("\"format\" is of another version of softcell; " + std::to_string(kFormat) + " is expected");
   }
+  SC_ASSERT(highest_spe <= kMostSpes, "an event of SPE {} of {}", highest_spe, kMostSpes);
   file.version = about.text("version");
-  const std::uint64_t spes = about.integer("spes", std::max<std::uint64_t>(highest_spe, 1), dma::kSpeCount);
+  file.is_simulated = about.has("time") && about.text("time").find("simulated") != std::string::npos;
+  const std::uint64_t spes = about.integer("spes", std::max<std::uint64_t>(highest_spe, 1), kMostSpes);
   file.spes.resize(spes);
 
   const json& dropped = about.array("dropped");
@@ -192,8 +198,9 @@ TraceFile parse_trace(std::string_view text) {
   try {
     root = json::parse(text.begin(), text.end(), take_events);
   } catch (const json::exception& error) {
-    throw std::runtime_error("it is no JSON: " + explanation(error));
+    throw std::runtime_error("it is not JSON: " + explanation(error));
   }
+  SC_ASSERT(file.spes.size() >= dma::kSpeCount, "events of {} SPEs", file.spes.size());
   const JsonFields fields(root, "the file");
   fields.array("traceEvents");
   if (!root.contains("softcell")) fields.refuse("\"softcell\" is missing; --trace of softcell writes it");

@@ -65,7 +65,8 @@ struct TraceImage {
 };
 
 struct TraceFile {
-  std::string version;  ///< of the softcell that wrote it
+  std::string version;        ///< of the softcell that wrote it
+  bool is_simulated = false;  ///< its times are those of the SPEs' simulated clocks
   std::vector<std::string> names;
   std::vector<TraceSpe> spes;
   std::vector<TraceImage> images;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -15,17 +16,24 @@
 namespace softcell::tool {
 namespace {
 
-struct BudgetRow {
+/// A kernel as one of the compilers has made it.
+struct Build {
   ls_sim::KernelImage kernel;
   std::optional<std::uint32_t> stack_used;  ///< bytes; none: it was not measured
+};
+
+struct BudgetRow {
+  Build build;
+  std::optional<Build> on_spu;  ///< the same kernel built for the SPU: softcell's own
 };
 
 /// Only work that softcell has for a kernel of its own can measure its stack; another kernel may have the
 /// same name.
 BudgetRow budget_row(const std::string& kernel, bool checked, std::span<const KernelSample> samples) {
-  BudgetRow row{load_kernel_file(kernel, checked), {}};
-  if (!find_kernel_file(kernel, checked) && !row.kernel.checked)
-    row.stack_used = measure_stack(row.kernel, samples);
+  BudgetRow row{{load_kernel_file(kernel, checked), {}}, {}};
+  if (find_kernel_file(kernel, checked) || row.build.kernel.checked) return row;
+  row.on_spu = Build{load_kernel_file(kernel, false, ls_sim::Machine::kSpu), {}};
+  for (Build* build : {&row.build, &*row.on_spu}) build->stack_used = measure_stack(build->kernel, samples);
   return row;
 }
 
@@ -39,15 +47,26 @@ std::vector<BudgetRow> budget_rows(const BudgetOptions& options, std::span<const
 
 void print_table(const std::vector<BudgetRow>& rows) {
   std::size_t width = 10;
-  for (const BudgetRow& row : rows) width = std::max(width, row.kernel.name.size());
-  fmt::print("{:<{}} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}\n", "kernel", width, "text",
-             "rodata", "data", "bss", "stack", "stack used", "total", "share", "budget");
+  for (const BudgetRow& row : rows) width = std::max(width, row.build.kernel.name.size());
+  const bool any_on_spu =
+      std::ranges::any_of(rows, [](const BudgetRow& row) { return row.on_spu.has_value(); });
+  fmt::print("{:<{}} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}{}\n", "kernel", width, "text",
+             "rodata", "data", "bss", "stack", "stack used", "total", "share", "budget",
+             any_on_spu ? " | SPU: text  stack used   total  share" : "");
   bool any_checked = false;
-  for (const auto& [kernel, used] : rows) {
+  const auto bytes = [](std::optional<std::uint32_t> count) { return count ? std::to_string(*count) : "-"; };
+  for (const auto& [build, on_spu] : rows) {
+    const auto& [kernel, used] = build;
     const ls_sim::ImageSizes& s = kernel.sizes;
-    fmt::print("{:<{}} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>5.1f}% {:>8}\n", kernel.name, width,
-               s.text, s.rodata, s.data, s.bss, s.stack, used ? std::to_string(*used) : "-", s.total(),
+    fmt::print("{:<{}} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>5.1f}% {:>8}", kernel.name, width,
+               s.text, s.rodata, s.data, s.bss, s.stack, bytes(used), s.total(),
                100.0 * s.total() / dma::kLocalStoreBytes, s.budget);
+    if (on_spu) {
+      const ls_sim::ImageSizes& there = on_spu->kernel.sizes;
+      fmt::print(" | {:>9} {:>11} {:>7} {:>5.1f}%", there.text, bytes(on_spu->stack_used), there.total(),
+                 100.0 * there.total() / dma::kLocalStoreBytes);
+    }
+    fmt::print("\n");
     any_checked = any_checked || kernel.checked;
   }
   if (any_checked)
@@ -57,29 +76,40 @@ void print_table(const std::vector<BudgetRow>& rows) {
         kCheckStackBytes);
 }
 
+nlohmann::ordered_json to_json(const Build& build) {
+  const ls_sim::ImageSizes& s = build.kernel.sizes;
+  return {
+      {"kernel", build.kernel.name},
+      {"checked", build.kernel.checked},
+      {"text", s.text},
+      {"rodata", s.rodata},
+      {"data", s.data},
+      {"bss", s.bss},
+      {"stack", s.stack},
+      {"stack_for_checks", stack_for_checks(build.kernel)},
+      {"stack_used", build.stack_used ? nlohmann::ordered_json(*build.stack_used) : nlohmann::ordered_json()},
+      {"total", s.total()},
+      {"budget", s.budget}};
+}
+
 nlohmann::ordered_json to_json(const BudgetRow& row) {
-  const ls_sim::ImageSizes& s = row.kernel.sizes;
-  return {{"kernel", row.kernel.name},
-          {"checked", row.kernel.checked},
-          {"text", s.text},
-          {"rodata", s.rodata},
-          {"data", s.data},
-          {"bss", s.bss},
-          {"stack", s.stack},
-          {"stack_for_checks", stack_for_checks(row.kernel)},
-          {"stack_used", row.stack_used ? nlohmann::ordered_json(*row.stack_used) : nlohmann::ordered_json()},
-          {"total", s.total()},
-          {"budget", s.budget}};
+  nlohmann::ordered_json fields = to_json(row.build);
+  fields["spu"] = row.on_spu ? to_json(*row.on_spu) : nlohmann::ordered_json();
+  return fields;
 }
 
 /// A sentence for each kernel that passes its budget; empty: none does.
 std::string over_budget(const std::vector<BudgetRow>& rows) {
   std::string sentences;
+  const auto look_at = [&](const Build& build, const char* where) {
+    const ls_sim::ImageSizes& s = build.kernel.sizes;
+    if (s.total() <= s.budget) return;
+    sentences += fmt::format("{}kernel {} is{} {} bytes over its budget", sentences.empty() ? "" : "; ",
+                             build.kernel.name, where, s.total() - s.budget);
+  };
   for (const BudgetRow& row : rows) {
-    const ls_sim::ImageSizes& s = row.kernel.sizes;
-    if (s.total() <= s.budget) continue;
-    sentences += fmt::format("{}kernel {} is {} bytes over its budget", sentences.empty() ? "" : "; ",
-                             row.kernel.name, s.total() - s.budget);
+    look_at(row.build, "");
+    if (row.on_spu) look_at(*row.on_spu, " on the SPU");
   }
   return sentences;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"
 
 namespace softcell::tool {
@@ -33,7 +34,7 @@ std::vector<std::byte> initial_bytes(const BufferSpec& spec, std::uint64_t free_
 }  // namespace
 
 KernelBuffers::KernelBuffers(dma::AddressSpace& memory, const KernelTask& task)
-    : word_count_(task.arguments.size()) {
+    : word_count_(task.arguments.size()), entry_state_(task.entry_state) {
   for (const BufferSpec& spec : task.buffers) {
     Slot slot{&spec, {}, initial_bytes(spec, memory.largest_free_range(dma::Memory::kMain))};
     const auto access =
@@ -51,15 +52,30 @@ KernelBuffers::KernelBuffers(dma::AddressSpace& memory, const KernelTask& task)
 }
 
 void KernelBuffers::reset() {
-  for (Slot& slot : slots_) std::copy(slot.initial.begin(), slot.initial.end(), slot.memory.data());
+  for (Slot& slot : slots_) {
+    SC_ASSERT(slot.initial.size() == slot.memory.size(), "{} bytes for buffer {} of {}", slot.initial.size(),
+              slot.spec->name, slot.memory.size());
+    std::copy(slot.initial.begin(), slot.initial.end(), slot.memory.data());
+  }
 }
 
 ls_sim::EntryArguments KernelBuffers::arguments(int spe) const {
+  if (entry_state_ == ls_sim::EntryState::kThreadGroup) {
+    const auto argument = [this](std::size_t i) { return i < word_count_ ? words_[i] : 0; };
+    return {.spe_id = argument(0),
+            .argp = argument(1),
+            .envp = argument(2),
+            .fourth = argument(3),
+            .entry_state = entry_state_};
+  }
   return {.spe_id = static_cast<std::uint64_t>(spe), .argp = words_.ea().value, .envp = word_count_};
 }
 
 const KernelBuffers::Slot& KernelBuffers::slot(std::string_view buffer) const {
-  return *std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.spec->name == buffer; });
+  const auto found =
+      std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.spec->name == buffer; });
+  SC_ASSERT(found != slots_.end(), "no buffer {} among {}", buffer, slots_.size());
+  return *found;
 }
 
 std::uint64_t KernelBuffers::word(const ArgumentSpec& argument) const {

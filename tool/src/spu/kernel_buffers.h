@@ -1,5 +1,5 @@
 #pragma once
-// A task's buffers in main storage, and the arguments that tell a kernel where they are.
+// A task's buffers in main storage, and the arguments that hold their addresses.
 
 #include <cstddef>
 #include <span>
@@ -20,11 +20,11 @@ class KernelBuffers {
   /// @throws std::runtime_error  a file cannot be read or is empty, or main memory is full.
   KernelBuffers(dma::AddressSpace& memory, const KernelTask& task);
 
-  /// Makes every buffer what it was at first, for another run.
+  /// Restores the initial contents of every buffer, for another run.
   void reset();
 
   /// argp is the address of the task's arguments, an array of 64-bit words, and envp their number; without
-  /// any, both are 0.
+  /// any, both are 0. In a thread group the words are the arguments themselves.
   ls_sim::EntryArguments arguments(int spe) const;
 
   struct Slot {
@@ -34,7 +34,7 @@ class KernelBuffers {
   };
   std::span<const Slot> slots() const { return slots_; }
 
-  /// Adds the files of --out and --inout, written and not committed.
+  /// Writes the files of --out and --inout; the caller commits them.
   /// @throws std::runtime_error  naming the file.
   void write_files(OutputFiles& files) const;
 
@@ -45,6 +45,7 @@ class KernelBuffers {
   std::vector<Slot> slots_;
   dma::Buffer<std::uint64_t> words_;  ///< the arguments; empty when there are none
   std::size_t word_count_ = 0;
+  ls_sim::EntryState entry_state_;
 };
 
 }  // namespace softcell::tool

@@ -1,7 +1,10 @@
 #include "kernel_file.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
+#include <span>
 #include <stdexcept>
 
 #include "softcell/spu_kernels/images.h"
@@ -43,6 +46,27 @@ std::string built_in_names() {
   return names;
 }
 
+/// A program for the SPU has no flavours: the interpreter sees each access by itself.
+bool is_spu_file(const std::filesystem::path& file) {
+  constexpr std::size_t kHeaderBytes = 52;  // of a 32-bit ELF file
+  std::array<char, kHeaderBytes> header{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(header.data(), header.size());
+  return ls_sim::is_spu_program(
+      std::as_bytes(std::span(header)).first(static_cast<std::size_t>(stream.gcount())));
+}
+
+ls_sim::KernelImage load_any(const std::string& image, bool checked, std::optional<ls_sim::Machine> machine) {
+  if (const auto file = find_kernel_file(image, checked)) {
+    ls_sim::KernelImage loaded = spu_kernels::load_kernel_file(*file);
+    if (loaded.machine == ls_sim::Machine::kSpu) loaded.checked = checked;
+    return loaded;
+  }
+  if (is_built_in(image)) return load_kernel(image, checked, machine.value_or(ls_sim::Machine::kHost));
+  throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
+                           built_in_names() + ")");
+}
+
 }  // namespace
 
 std::vector<std::string> built_in_kernels(bool checked) {
@@ -56,14 +80,19 @@ std::vector<std::string> built_in_kernels(bool checked) {
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked) {
   std::error_code ignored;
   if (!std::filesystem::exists(image, ignored)) return std::nullopt;
-  return flavour_of(image, checked);
+  return flavour_of(image, checked && !is_spu_file(image));
 }
 
-ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked) {
-  if (const auto file = find_kernel_file(image, checked)) return spu_kernels::load_kernel_file(*file);
-  if (is_built_in(image)) return load_kernel(image, checked);
-  throw std::runtime_error("there is no file " + image + ", and no kernel of softcell has that name (" +
-                           built_in_names() + ")");
+ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked,
+                                     std::optional<ls_sim::Machine> machine) {
+  ls_sim::KernelImage loaded = load_any(image, checked, machine);
+  if (!machine || *machine == loaded.machine) return loaded;
+  const bool is_spu = loaded.machine == ls_sim::Machine::kSpu;
+  throw std::runtime_error(
+      "--engine " + std::string(is_spu ? "native " : "interpreter ") + image +
+      (is_spu ? ": this is a program built for the SPU, which the engine interpreter runs"
+              : ": this image is built for the host; the engine interpreter runs programs that a "
+                "compiler for the SPU has made (32-bit big-endian ELF files for machine 23)"));
 }
 
 }  // namespace softcell::tool

@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kCheckStackBytes = SOFTCELL_CHECKED_STACK_BYTES;
 
 /// That many for an instrumented flavour, 0 for any other image.
 inline std::uint32_t stack_for_checks(const ls_sim::KernelImage& image) {
-  return image.checked ? kCheckStackBytes : 0;
+  return image.checked && image.machine == ls_sim::Machine::kHost ? kCheckStackBytes : 0;
 }
 
 /// The names of all kernels of this project, sorted.
@@ -30,9 +30,13 @@ using spu_kernels::load_kernel;
 /// @throws std::runtime_error  one sentence: there is no such flavour.
 std::optional<std::filesystem::path> find_kernel_file(const std::string& image, bool checked);
 
-/// Loads a kernel by the path of its .spu.elf file, or by name when it is one of this project's.
-/// @param checked  take its instrumented flavour: NAME.checked.spu.elf beside NAME.spu.elf.
-/// @throws std::runtime_error  one sentence: neither, no such flavour, or why it is not loadable.
-ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked);
+/// Loads a kernel by the path of its .spu.elf file, by that of a program built for the SPU, or by name when it is one of
+/// this project's.
+/// @param checked  take its instrumented flavour: NAME.checked.spu.elf beside NAME.spu.elf. A program built for the SPU
+///                 needs none.
+/// @param machine  refuse an image with other instructions.
+/// @throws std::runtime_error  one sentence: neither, no such flavour, another machine, or why it is not loadable.
+ls_sim::KernelImage load_kernel_file(const std::string& image, bool checked,
+                                     std::optional<ls_sim::Machine> machine = {});
 
 }  // namespace softcell::tool

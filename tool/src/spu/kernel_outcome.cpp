@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::tool {
 namespace {
 
@@ -19,6 +21,7 @@ std::string place_and_rule(const dma::Fault& fault) {
 
 /// The word that holds a byte, as number and as float; the byte alone where the buffer ends within the word.
 std::string value_at(std::span<const std::byte> bytes, std::size_t offset) {
+  SC_ASSERT(offset < bytes.size(), "byte {} of {}", offset, bytes.size());
   const std::size_t begin = offset / kWordBytes * kWordBytes;
   if (begin + kWordBytes > bytes.size())
     return fmt::format("0x{:02X}", std::to_integer<unsigned>(bytes[offset]));
@@ -35,6 +38,9 @@ std::string joined(const std::vector<std::string>& parts) {
 
 void compare_buffers(const KernelOutcome::Contents& first, const KernelOutcome::Contents& other,
                      std::vector<Difference>& found) {
+  SC_ASSERT(first.name == other.name && first.bytes.size() == other.bytes.size(),
+            "buffer {} of {} bytes and buffer {} of {}", first.name, first.bytes.size(), other.name,
+            other.bytes.size());
   std::uint64_t differing = 0;
   std::size_t offset = 0;
   for (std::size_t i = first.bytes.size(); i-- > 0;) {
@@ -72,6 +78,9 @@ std::string Difference::sentence(const std::string& first_run, const std::string
 }
 
 std::vector<Difference> differences(const KernelOutcome& first, const KernelOutcome& other) {
+  SC_ASSERT(first.ends.size() == other.ends.size() && first.buffers.size() == other.buffers.size(),
+            "{} SPEs and {} buffers, {} and {}: outcomes of two tasks", first.ends.size(),
+            first.buffers.size(), other.ends.size(), other.buffers.size());
   std::vector<Difference> found;
   for (std::size_t spe = 0; spe < first.ends.size(); ++spe) {
     if (first.ends[spe] != other.ends[spe])

@@ -1,6 +1,6 @@
 #pragma once
-// What a run came to, and how two runs of one task differ: a kernel whose outcome depends on when its
-// transfers happened is wrong.
+// The outcome of a run, and the differences between two runs of one task: a kernel whose outcome depends on when its
+// transfers happen is wrong.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace softcell::tool {
 
-/// All that must not depend on the schedule: how each SPE ended, which findings there are, the written
-/// buffers. How often a finding occurred, times and counts of waits may depend on it.
+/// What must not depend on the schedule: how each SPE ended, the findings, and the written buffers. The counts of
+/// findings, times, and counts of waits may depend on it.
 struct KernelOutcome {
   struct Contents {
     std::string name;
@@ -26,7 +26,7 @@ struct KernelOutcome {
 
 KernelOutcome outcome(const KernelRun& run, const KernelBuffers& buffers);
 
-/// One thing that two outcomes do not share.
+/// One difference between two outcomes.
 struct Difference {
   std::string what;          ///< "buffer y", "SPE 0", "findings"
   std::uint64_t offset = 0;  ///< of a buffer: its first byte that differs
@@ -36,7 +36,7 @@ struct Difference {
   std::string sentence(const std::string& first_run, const std::string& other_run) const;
 };
 
-/// In order: SPEs, findings, buffers. Empty when the two are the same. @pre outcomes of one task.
+/// All differences, of SPEs, then findings, then buffers; empty if there are none. @pre both are of one task.
 std::vector<Difference> differences(const KernelOutcome& first, const KernelOutcome& other);
 
 nlohmann::ordered_json to_json(const Difference& difference);

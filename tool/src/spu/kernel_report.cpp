@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernel_file.h"
+#include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 
 namespace softcell::tool {
@@ -42,6 +43,7 @@ std::vector<TrafficRow> traffic(const KernelRun& run) {
   std::vector<TrafficRow> sum = traffic(dma::MfcStatistics{});
   for (const SpeRun& spe : run.spes) {
     const std::vector<TrafficRow> rows = traffic(spe.statistics.dma);
+    SC_ASSERT(rows.size() == sum.size(), "{} kinds of commands of {}", rows.size(), sum.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       sum[i].commands += rows[i].commands;
       sum[i].bytes += rows[i].bytes;
@@ -87,6 +89,13 @@ void print_spes(const KernelRun& run) {
   }
 }
 
+void print_instructions(const KernelRun& run) {
+  for (std::size_t number = 0; number < run.spes.size(); ++number) {
+    const ls_sim::SpeStatistics& s = run.spes[number].statistics;
+    if (s.instructions != 0) fmt::print("SPE {} executed {} instructions\n", number, s.instructions);
+  }
+}
+
 void print_mail(const KernelRun& run) {
   for (std::size_t number = 0; number < run.spes.size(); ++number) {
     const auto print = [&](const char* mailbox, const std::optional<std::uint32_t>& value) {
@@ -99,7 +108,7 @@ void print_mail(const KernelRun& run) {
 
 void print_local_store(const ls_sim::KernelImage& image, const KernelRun& run) {
   const ls_sim::ImageSizes& s = image.sizes;
-  const std::string checks = image.checked
+  const std::string checks = stack_for_checks(image) != 0
                                  ? fmt::format(" (the kernel's {} and {} for the checks)",
                                                s.stack - stack_for_checks(image), stack_for_checks(image))
                                  : "";
@@ -142,6 +151,8 @@ ordered_json to_json(int number, const SpeRun& spe) {
           {"fault", spe.result.fault ? to_json(*spe.result.fault) : ordered_json(nullptr)},
           {"out_mbox", value_or_null(spe.out_mbox)},
           {"out_intr_mbox", value_or_null(spe.out_intr_mbox)},
+          {"last_instructions", spe.result.last_instructions},
+          {"instructions", s.instructions},
           {"busy_ms", milliseconds(s.busy)},
           {"dma", to_json(traffic(s.dma))},
           {"dma_commands", s.dma.commands()},
@@ -160,6 +171,7 @@ ordered_json to_json(int number, const SpeRun& spe) {
 void print_statistics(const ls_sim::KernelImage& image, const KernelRun& run) {
   print_traffic(run);
   print_spes(run);
+  print_instructions(run);
   print_mail(run);
   print_local_store(image, run);
 }
@@ -176,6 +188,11 @@ void print_problems(const ls_sim::KernelImage& image, const KernelRun& run) {
   print_findings(run.findings);
   for (const std::string& failure : run.failures(image))
     fmt::print(stderr, "softcell: {}\n", base::one_line(failure));
+  for (std::size_t number = 0; number < run.spes.size(); ++number) {
+    const std::vector<std::string>& last = run.spes[number].result.last_instructions;
+    if (!last.empty()) fmt::print(stderr, "    the last instructions of SPE {}:\n", number);
+    for (const std::string& instruction : last) fmt::print(stderr, "    {}\n", base::one_line(instruction));
+  }
 }
 
 ordered_json to_json(std::span<const ls_sim::Finding> findings) {

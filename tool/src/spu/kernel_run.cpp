@@ -2,17 +2,24 @@
 
 #include <fmt/format.h>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::tool {
 namespace {
 
 ls_sim::SpeOptions spe_options(const KernelTask& task, const RunSettings& settings) {
-  const bool simulated = settings.clock == ls_sim::Clock::kSimulated;
+  const bool simulated = settings.clock == ls_sim::Clock::kSimulated || settings.timing != nullptr;
+  const auto turns =
+      settings.timing != nullptr ? ls_sim::Interleaving::kByTime : ls_sim::Interleaving::kTurns;
   return {.spes = task.spes,
           .schedule = settings.schedule,
           .deadline = task.deadline,
-          .clock = settings.clock,
-          .interleaving = simulated ? ls_sim::Interleaving::kTurns : ls_sim::Interleaving::kFree,
+          .clock = simulated ? ls_sim::Clock::kSimulated : ls_sim::Clock::kHost,
+          .interleaving = simulated ? turns : ls_sim::Interleaving::kFree,
           .measure_stack = true,
+          .host_calls = settings.host_calls,
+          .timing = settings.timing,
+          .debugger = settings.debugger,
           .trace = settings.trace};
 }
 
@@ -40,6 +47,7 @@ std::vector<std::string> KernelRun::failures(const ls_sim::KernelImage& image) c
 
 KernelRun run_kernel(dma::AddressSpace& memory, const ls_sim::KernelImage& image,
                      const KernelBuffers& buffers, const KernelTask& task, const RunSettings& settings) {
+  SC_ASSERT(task.spes > 0 && task.spes <= dma::kSpeCount, "a task for {} SPEs", task.spes);
   ls_sim::Findings findings;
   ls_sim::SpeOptions options = spe_options(task, settings);
   if (image.checked) options.findings = &findings;

@@ -8,8 +8,10 @@
 #include "kernel_buffers.h"
 #include "kernel_task.h"
 #include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/host_calls.h"
 #include "softcell/ls_sim/image.h"
 #include "softcell/ls_sim/spe_group.h"
+#include "softcell/ls_sim/timing.h"
 
 namespace softcell::tool {
 
@@ -18,7 +20,11 @@ struct RunSettings {
   dma::Schedule schedule{};
   /// kSimulated: SPEs go in turns as well, so that the run is the same every time.
   ls_sim::Clock clock = ls_sim::Clock::kHost;
+  /// Collects cycles. Then the clock is the simulated one, and SPEs go in the order of its time.
+  ls_sim::Timing* timing = nullptr;
+  ls_sim::Debugger* debugger = nullptr;
   ls_sim::Trace* trace = nullptr;
+  const ls_sim::HostCalls* host_calls = nullptr;
 };
 
 /// What one SPE did, and what it left in its outbound mailboxes.

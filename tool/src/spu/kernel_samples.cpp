@@ -11,30 +11,36 @@
 namespace softcell::tool {
 namespace {
 
+// The widths of the contracts' numbers, for kernels built for the SPU.
+constexpr dma::BufferOptions kFloats{.element_bytes = sizeof(float)};
+constexpr dma::ElementRun kRotationsJobRecord[] = {{24, 8}, {104, 4}};
+constexpr dma::ElementRun kTransfersJobRecord[] = {{8, 8}, {120, 4}};
+constexpr dma::ElementRun kJobBoardRecord[] = {{4, 4}, {4, 2}, {120, 8}};
+
 /// Rotations that are far off and one that has to be found anew: the deepest ways.
 void run_rotations(SampleRun& sample) {
-  dma::Buffer<spu::RotationMatrices> matrices(sample.memory(), "matrices", 1);
-  dma::Buffer<spu::MatchRotations> starts(sample.memory(), "starts", 1);
-  const dma::Buffer<spu::MatchRotations> found(sample.memory(), "found", 1);
+  dma::Buffer<spu::RotationMatrices> matrices(sample.memory(), "matrices", 1, kFloats);
+  dma::Buffer<spu::MatchRotations> starts(sample.memory(), "starts", 1, kFloats);
+  const dma::Buffer<spu::MatchRotations> found(sample.memory(), "found", 1, kFloats);
   for (std::size_t lane = 0; lane < 4; ++lane) {
     for (std::size_t diagonal : {0, 4, 8}) matrices[0].element[diagonal][lane] = lane == 0 ? 1.0f : -1.0f;
     starts[0].w[lane] = 1;
   }
-  dma::Buffer<spu::RotationsJob> job(sample.memory(), "job", 1);
+  dma::Buffer<spu::RotationsJob> job(sample.memory(), "job", 1, {.record = kRotationsJobRecord});
   job[0] = {matrices.ea().value, starts.ea().value, found.ea().value, 1, 1, 0, 6, {}};
   sample.run(job.ea());
 }
 
 void run_transfers(SampleRun& sample) {
   const dma::Buffer<std::byte> data(sample.memory(), "data", 1024);
-  dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1);
+  dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1, {.record = kTransfersJobRecord});
   job[0] = {data.ea().value, 128, 16, 8, spu::kTransferGet, {}};
   sample.run(job.ea());
 }
 
 /// A board that tells the loop to end: the compiler makes one function with one frame of all it does.
 void run_job_loop(SampleRun& sample) {
-  dma::Buffer<spu::JobBoard> board(sample.memory(), "board", 1);
+  dma::Buffer<spu::JobBoard> board(sample.memory(), "board", 1, {.record = kJobBoardRecord});
   board[0].stop = 1;
   sample.run(board.ea());
 }

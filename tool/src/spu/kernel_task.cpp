@@ -15,6 +15,7 @@ namespace softcell::tool {
 namespace {
 
 constexpr std::size_t kInMboxDepth = 4;  // [CBEA, SPU mailboxes] documented
+constexpr std::size_t kThreadArguments = 4;
 
 bool is_name(std::string_view text) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
@@ -90,6 +91,19 @@ std::string_view name(BufferSpec::Direction direction) {
     default:
       return "inout";
   }
+}
+
+std::optional<ls_sim::Machine> parse_engine(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (text == "native") return ls_sim::Machine::kHost;
+  if (text == "interpreter") return ls_sim::Machine::kSpu;
+  throw UsageError("--engine " + text + ": give native or interpreter");
+}
+
+ls_sim::EntryState parse_entry(const std::string& text) {
+  if (text == "libspe2") return ls_sim::EntryState::kLibspe2;
+  if (text == "thread-group") return ls_sim::EntryState::kThreadGroup;
+  throw UsageError("--entry " + text + ": give libspe2 or thread-group");
 }
 
 BufferSpec parse_file_buffer(BufferSpec::Direction direction, const std::string& text) {
@@ -179,6 +193,9 @@ void check(const KernelTask& task) {
     if (const auto* address = std::get_if<AddressOf>(&argument)) known(address->buffer, "@");
     if (const auto* size = std::get_if<SizeOf>(&argument)) known(size->buffer, "#");
   }
+  if (task.entry_state == ls_sim::EntryState::kThreadGroup && task.arguments.size() > kThreadArguments)
+    throw UsageError(
+        "--entry thread-group takes at most four words of --arg, as a thread has no more arguments");
   if (task.in_mbox.size() > kInMboxDepth)
     throw UsageError("--in-mbox takes at most four values, as an inbound mailbox holds no more");
 }

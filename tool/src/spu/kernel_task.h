@@ -4,11 +4,14 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/image.h"
 #include "verb/verb_files.h"
 
 namespace softcell::tool {
@@ -40,6 +43,9 @@ using ArgumentSpec = std::variant<std::uint64_t, AddressOf, SizeOf>;
 struct KernelTask {
   std::string image = {};  ///< a file, or the name of a kernel of this project
   bool checked = false;
+  std::optional<ls_sim::Machine> machine = {};  ///< that of --engine; none: the image's own
+  /// Who starts a program built for the SPU. As a thread group does: `arguments`, at most four, are main's own.
+  ls_sim::EntryState entry_state = ls_sim::EntryState::kLibspe2;
   std::vector<BufferSpec> buffers = {};
   std::vector<ArgumentSpec> arguments = {};
   std::vector<std::uint32_t> in_mbox = {};  ///< waiting in the inbound mailbox of each SPE, at most four
@@ -49,6 +55,12 @@ struct KernelTask {
 
 // What the command line says, as the structures above.
 // @throws UsageError  one sentence with the text and what is allowed.
+
+/// "native" or "interpreter" of --engine; nothing of an empty text.
+std::optional<ls_sim::Machine> parse_engine(const std::string& text);
+
+/// "libspe2" or "thread-group" of --entry.
+ls_sim::EntryState parse_entry(const std::string& text);
 
 /// "NAME=FILE" of --in and --inout.
 BufferSpec parse_file_buffer(BufferSpec::Direction direction, const std::string& text);

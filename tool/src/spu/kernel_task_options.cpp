@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "command_line/shared_options.h"
+#include "softcell/dma/addresses.h"
 
 namespace softcell::tool {
 namespace {
@@ -25,15 +26,27 @@ std::string quoted(const std::string& word) {
 }  // namespace
 
 void KernelTaskOptions::add_to(CLI::App& verb) {
-  verb.add_option("IMAGE", image_, "A kernel: its .spu.elf file, or the name of one of softcell's own")
+  verb.add_option(
+          "IMAGE", image_,
+          "A kernel: its .spu.elf file, the name of one of softcell's own, or a program built for the SPU")
       ->required()
       ->type_name("KERNEL");
   verb.add_flag("--checked", checked_,
                 "Take the instrumented flavour, IMAGE's .checked.spu.elf: findings name file and line");
-  take_whole_number(
+  verb.add_option(
+          "--engine", engine_,
+          "What runs it: native for images built for the host, interpreter for programs built for the SPU "
+          "(default: what the image needs)")
+      ->type_name("native|interpreter");
+  verb.add_option("--entry", entry_,
+                  "Who starts a program built for the SPU: libspe2 (default), or thread-group, where the "
+                  "words of --arg, "
+                  "at most four, are main's own arguments")
+      ->type_name("libspe2|thread-group");
+  accept_whole_number(
       verb.add_option("--spes", spes_,
                       "SPEs that run it, 1 to 6 (default: 1); main's first parameter is the SPE's number"),
-      1, 6)
+      1, dma::kSpeCount)
       ->type_name("SPES");
   // One buffer behind each: the next word may be IMAGE.
   verb.add_option("--in", in_, "A buffer that the kernel reads, filled from the file")
@@ -59,7 +72,11 @@ void KernelTaskOptions::add_to(CLI::App& verb) {
 }
 
 KernelTask KernelTaskOptions::task() const {
-  KernelTask task{.image = image_, .checked = checked_, .spes = spes_};
+  KernelTask task{.image = image_,
+                  .checked = checked_,
+                  .machine = parse_engine(engine_),
+                  .entry_state = parse_entry(entry_),
+                  .spes = spes_};
   for (const std::string& text : in_) task.buffers.push_back(parse_file_buffer(BufferSpec::kIn, text));
   for (const std::string& text : inout_) task.buffers.push_back(parse_file_buffer(BufferSpec::kInOut, text));
   for (const std::string& text : out_) task.buffers.push_back(parse_out_buffer(text));
@@ -73,6 +90,8 @@ KernelTask KernelTaskOptions::task() const {
 std::string KernelTaskOptions::text() const {
   std::string text = quoted(image_);
   if (checked_) text += " --checked";
+  if (!engine_.empty()) text += " --engine " + engine_;
+  if (entry_ != "libspe2") text += " --entry " + entry_;
   if (spes_ != 1) text += " --spes " + std::to_string(spes_);
   const auto add = [&](const std::string& option, const std::vector<std::string>& values) {
     for (const std::string& value : values) {

@@ -25,6 +25,8 @@ class KernelTaskOptions {
   std::string deadline_;
   int spes_ = 1;
   bool checked_ = false;
+  std::string engine_;  ///< empty: as the image needs
+  std::string entry_ = "libspe2";
 };
 
 }  // namespace softcell::tool

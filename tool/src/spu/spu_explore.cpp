@@ -9,6 +9,7 @@
 #include "kernel_file.h"
 #include "kernel_outcome.h"
 #include "kernel_report.h"
+#include "softcell/base/assert.h"
 #include "spu_verbs.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
@@ -27,7 +28,7 @@ class Explorer {
  public:
   explicit Explorer(const SpuExploreOptions& options)
       : options_(options),
-        image_(load_kernel_file(options.task.image, options.task.checked)),
+        image_(load_kernel_file(options.task.image, options.task.checked, options.task.machine)),
         buffers_(memory_, options.task),
         files_({{"--json", options.json}}),
         json_(files_.open(options.json)) {}
@@ -59,7 +60,10 @@ class Explorer {
     });
   }
 
-  std::uint64_t last_seed() const { return kFirstSeed + tried_ - 1; }
+  std::uint64_t last_seed() const {
+    SC_ASSERT(tried_ > 0, "the last of {} seeds", tried_);
+    return kFirstSeed + tried_ - 1;
+  }
 
   void try_next_seed() {
     ++tried_;
@@ -96,7 +100,7 @@ class Explorer {
     }
     if (differences_.empty()) {
       fmt::print("kernel {}: the same outcome under {} seed{}{}\n", image_.name, tried_,
-                 tried_ == 1 ? "" : "s", exit_status() == 0 ? "" : ", and it is not a good one");
+                 tried_ == 1 ? "" : "s", exit_status() == 0 ? "" : ", and every run failed or had findings");
       return;
     }
     fmt::print(
@@ -107,7 +111,7 @@ class Explorer {
       fmt::print("{}\n", difference.sentence(fmt::format("seed {}", kFirstSeed),
                                              fmt::format("seed {}", last_seed())));
     }
-    fmt::print("to see either again{}:\n  {}\n  {}\n",
+    fmt::print("to reproduce either run{}:\n  {}\n  {}\n",
                replaces_inputs() ? " (each replaces the files of --inout: keep copies)" : "",
                reproduction(kFirstSeed), reproduction(last_seed()));
   }

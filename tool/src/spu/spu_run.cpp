@@ -2,45 +2,99 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
+#include <string_view>
 #include <vector>
 
+#include "coverage.h"
 #include "kernel_file.h"
 #include "kernel_report.h"
 #include "kernel_run.h"
+#include "kernel_timing.h"
 #include "softcell/ls_sim/trace.h"
 #include "spu_verbs.h"
 #include "verb/output_files.h"
 
 namespace softcell::tool {
 
+namespace {
+
+/// Of several SPEs, each call prints by itself.
+ls_sim::HostCalls host_calls_of(const SpuRunOptions& options) {
+  const auto printing_to = [](std::FILE* file) {
+    return [file](std::string_view text) {
+      std::fwrite(text.data(), 1, text.size(), file);
+      std::fflush(file);
+    };
+  };
+  return {.standard_output = printing_to(stdout),
+          .standard_error = printing_to(stderr),
+          .folder = options.folder};
+}
+
+void check_folder(const SpuRunOptions& options) {
+  if (!options.folder || std::filesystem::is_directory(*options.folder)) return;
+  throw std::runtime_error("--folder " + options.folder->string() + ": there is no such folder");
+}
+
+void check_coverage(const ls_sim::KernelImage& image) {
+  if (image.machine == ls_sim::Machine::kSpu) return;
+  throw std::runtime_error(
+      "--coverage: " + image.name +
+      " is built for the host; coverage is of programs that a compiler for the SPU has made");
+}
+
+}  // namespace
+
 int run_spu_run(const SpuRunOptions& options) {
   const KernelTask& task = options.task;
+  check_folder(options);
   std::vector<NamedFile> outputs = written_files(task);
   outputs.push_back({"--trace", options.trace});
+  outputs.push_back({"--coverage", options.coverage});
   outputs.push_back({"--json", options.json});
   check_kept(read_files(task), outputs);
   OutputFiles files(outputs);
-  const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked);
+  const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked, task.machine);
+  const auto coverage = options.coverage ? std::make_unique<Coverage>() : nullptr;
+  if (coverage != nullptr) check_coverage(image);
   dma::AddressSpace memory;
   const KernelBuffers buffers(memory, task);
   std::optional<ls_sim::Trace> trace;
-  if (options.trace) trace.emplace(task.spes);
+  const auto clock = options.timing ? ls_sim::TraceClock::kSimulated : ls_sim::TraceClock::kHost;
+  if (options.trace) trace.emplace(task.spes, ls_sim::Trace::kMostEvents, clock);
+  std::optional<ls_sim::Timing> timing;
+  if (options.timing) timing.emplace(task.spes);
 
-  const KernelRun run =
-      run_kernel(memory, image, buffers, task,
-                 {.schedule = options.schedule, .clock = options.clock, .trace = trace ? &*trace : nullptr});
+  const ls_sim::HostCalls host_calls = host_calls_of(options);
+  const KernelRun run = run_kernel(memory, image, buffers, task,
+                                   {.schedule = options.schedule,
+                                    .clock = options.clock,
+                                    .timing = timing ? &*timing : nullptr,
+                                    .debugger = coverage.get(),
+                                    .trace = trace ? &*trace : nullptr,
+                                    .host_calls = options.host_calls ? &host_calls : nullptr});
 
   const int status = exit_status(image, run);
   // Before files that perhaps cannot be written: what the kernel did is to be known all the same.
   print_statistics(image, run);
+  if (timing) print_timing(image, *timing);
   print_problems(image, run);
   if (status == 0) buffers.write_files(files);
   if (trace) trace->write(files.open(*options.trace));
+  if (coverage != nullptr) {
+    base::WholeFile& file = files.open(*options.coverage);
+    file.write(coverage->lcov(image));
+    file.finish();
+  }
   if (options.json) {
     auto document = to_json(image, run);
     document["dma_schedule"] = dma::to_string(options.schedule);
+    if (timing) document["timing"] = to_json(image, *timing);
     write_json(files.open(*options.json), document);
   }
   files.commit();

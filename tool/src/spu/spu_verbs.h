@@ -1,5 +1,5 @@
 #pragma once
-// softcell spu: run, explore, budget.
+// softcell spu: run, explore, timing, disasm, debug, budget.
 
 #include <cstdint>
 #include <filesystem>
@@ -27,8 +27,30 @@ struct SpuRunOptions {
   KernelTask task;
   dma::Schedule schedule{};
   ls_sim::Clock clock = ls_sim::Clock::kHost;
+  /// Programs built for the SPU may print, and use files in `folder` if there is one.
+  bool host_calls = false;
+  std::optional<std::filesystem::path> folder;
+  bool timing = false;  ///< cycles by the model of the SPU
+  std::optional<std::filesystem::path> coverage;
   std::optional<std::filesystem::path> trace;
   std::optional<std::filesystem::path> json;
+};
+
+/// Of `spu timing`, and of `spu disasm`, which runs nothing.
+struct SpuListingOptions {
+  KernelTask task;
+  dma::Schedule schedule{};
+  std::string function;        ///< empty: all
+  bool is_static = false;      ///< run nothing
+  bool with_schedule = false;  ///< of `spu disasm`
+  bool host_calls = false;
+  std::optional<std::filesystem::path> json;
+};
+
+struct SpuDebugOptions {
+  KernelTask task;
+  dma::Schedule schedule{};
+  std::uint16_t port = 0;  ///< 0: any that is free
 };
 
 struct SpuExploreOptions {
@@ -43,6 +65,11 @@ struct SpuExploreOptions {
 int run_budget(const BudgetOptions& options, std::span<const KernelSample> samples);
 /// @return  0; 1 when an SPE failed; 3 when a checked kernel has findings.
 int run_spu_run(const SpuRunOptions& options);
+/// The static schedule, and what a run took. @return  as run_spu_run()
+int run_spu_timing(const SpuListingOptions& options);
+int run_spu_disasm(const SpuListingOptions& options);
+/// Waits for a debugger, and serves it. Writes no buffers. @return  as run_spu_run(); 0 when the debugger has killed the program.
+int run_spu_debug(const SpuDebugOptions& options);
 /// @return  as run_spu_run() when all seeds agree, 1 when they do not, 130 when interrupted.
 int run_spu_explore(const SpuExploreOptions& options);
 

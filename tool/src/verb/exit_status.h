@@ -1,5 +1,5 @@
 #pragma once
-// How a verb ends that does not end with 0.
+// The exit statuses of a verb that does not end with 0.
 
 #include <stdexcept>
 
@@ -7,11 +7,10 @@ namespace softcell::tool {
 
 /// Checked kernels have findings.
 inline constexpr int kExitFindings = 3;
-/// What was interrupted, as a shell reports a process that SIGINT ended.
+/// The run was interrupted: the status that a shell reports for a process that SIGINT ended.
 inline constexpr int kExitInterrupted = 130;
 
-/// The command was called in a way that it does not have: exit status 2. Anything else that goes wrong is a
-/// std::runtime_error: exit status 1.
+/// The command line is wrong: exit status 2. Any other error is a std::runtime_error: exit status 1.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,11 +1,10 @@
 #pragma once
-// Ctrl-C, a request to end and the end of the terminal, asked for between pieces of work so that no file is
-// left half written.
+// Ctrl-C, SIGTERM and SIGHUP as a flag that is polled between pieces of work, so that no file is left half written.
 
 namespace softcell::tool {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP only set a flag; SIGHUP stays ignored where it was, as under
-/// nohup. One at a time.
+/// While an object of this class exists, SIGINT, SIGTERM and SIGHUP only set a flag. SIGHUP stays ignored if it was
+/// ignored before, as under nohup. At most one object exists at a time.
 class InterruptGuard {
  public:
   InterruptGuard();

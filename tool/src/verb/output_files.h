@@ -1,5 +1,5 @@
 #pragma once
-// What a verb writes, and standard output as one of its files.
+// The files that a verb writes; one of them may be standard output.
 
 #include <filesystem>
 #include <optional>
@@ -11,23 +11,23 @@
 
 namespace softcell::tool {
 
-/// In place of a file's name: standard output.
+/// Stands for standard output in place of a file's name.
 inline constexpr std::string_view kStandardOutput = "-";
 
-/// The files that a verb writes. They take their places together, none before all are written; without
-/// commit() none does. When one of them is standard output, everything that is printed after the construction
-/// goes to standard error, so that nothing but the file arrives where a program reads it.
+/// The files that a verb writes. commit() makes all of them appear, after all are written; without commit() none
+/// appears. If one of them is standard output, everything that is printed after the construction goes to standard
+/// error, so that a program that reads standard output gets the file alone.
 class OutputFiles {
  public:
-  /// @param files  those that will be opened, and others that none of them may replace.
+  /// @param files  the files that will be opened, and others that these must not replace.
   /// @throws UsageError  two of them are one file.
   /// @throws std::runtime_error  standard output is wanted and is closed.
   explicit OutputFiles(const std::vector<NamedFile>& files);
 
-  /// @param file  one of those that were announced.
+  /// @param file  one of the constructor's.
   /// @throws std::runtime_error  it cannot be written; the sentence says why.
   base::WholeFile& open(const std::filesystem::path& file);
-  /// Null when none is asked for.
+  /// Null for no file.
   base::WholeFile* open(const std::optional<std::filesystem::path>& file) {
     return file ? &open(*file) : nullptr;
   }
@@ -41,10 +41,10 @@ class OutputFiles {
 };
 
 /// @param option  "--record".
-/// @throws UsageError  its file is standard output, which that option cannot write to.
+/// @throws UsageError  the option's file is standard output, and the option cannot write to that.
 void refuse_standard_output(const NamedFile& option);
 
-/// What to call a file that was written.
+/// How messages call a file that was written.
 std::string shown_name(const std::filesystem::path& file);
 
 }  // namespace softcell::tool

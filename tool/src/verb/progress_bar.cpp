@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::tool {
 namespace {
 
@@ -20,8 +22,10 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::show(std::size_t done) {
+  SC_ASSERT(done <= total_, "{}: {} of {} done", label_, done, total_);
   const int percent = total_ == 0 ? 100 : static_cast<int>(100 * done / total_);
   if (!enabled_ || percent == percent_) return;
+  SC_ASSERT(percent >= 0 && percent <= 100, "{}: {} % of {} done", label_, percent, total_);
   percent_ = percent;
   const std::size_t filled = kWidth * static_cast<std::size_t>(percent) / 100;
   fmt::print(stderr, "\r{} [{:=<{}}{:{}}] {:3}%", label_, "", filled, "", kWidth - filled, percent);

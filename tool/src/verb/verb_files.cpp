@@ -7,6 +7,7 @@
 
 #include "exit_status.h"
 #include "output_files.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::tool {
 namespace {
@@ -38,6 +39,7 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
 
 void check_distinct(const std::vector<NamedFile>& files) {
   for (auto one = files.begin(); one != files.end(); ++one) {
+    SC_ASSERT(!one->name.empty(), "one of {} files has no name", files.size());
     const auto same = std::find_if(files.begin(), one, [&](const NamedFile& other) {
       return one->file && other.file && is_one_file(*one->file, *other.file);
     });
@@ -54,6 +56,8 @@ void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>
 }
 
 void write_json(base::WholeFile& file, const nlohmann::ordered_json& document) {
+  SC_ASSERT(!document.is_null() && !document.is_discarded(), "a document of {} values is nothing",
+            document.size());
   file.write(document.dump(2) + "\n");
   file.finish();
 }

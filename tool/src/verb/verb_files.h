@@ -11,24 +11,25 @@
 
 namespace softcell::tool {
 
-/// A file that a command was given, and for what: "--json".
+/// A file of the command line, and the option that names it: "--json".
 struct NamedFile {
   std::string name;
   std::optional<std::filesystem::path> file;  ///< none: not given
 };
 
-/// Whatever way the two paths are spelled. Devices and pipes are nobody's own: nothing is lost in them.
+/// Whether the two paths, however they are spelled, lead to one file. Devices and pipes never count as one file,
+/// because writing to them overwrites nothing.
 bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// For files that are written, and one that must not be replaced.
-/// @throws UsageError  two of them are one file, of which one would be lost.
+/// Checks that no two of these files are the same.
+/// @throws UsageError  two of them are.
 void check_distinct(const std::vector<NamedFile>& files);
 
-/// For files that are read, of which two may be one, and files that are written.
-/// @throws UsageError  one that is read would be replaced.
+/// Checks that no output replaces a file that is read.
+/// @throws UsageError  one would.
 void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
-/// All of a file that the caller commits. @throws std::runtime_error  it cannot be written.
+/// Writes the document as all of the file, which the caller commits. @throws std::runtime_error  it cannot be written.
 void write_json(base::WholeFile& file, const nlohmann::ordered_json& document);
 
 }  // namespace softcell::tool

@@ -26,7 +26,8 @@ namespace softcell::base::assertion {
 /// The message of an assertion with these values. The compiler checks that it has as many {} as values.
 template <class... Values>
 struct Message {
-  consteval Message(const char* message) : text(message) {  // NOLINT: a literal is a message
+  /// A literal is a message.
+  consteval Message(const char* message) : text(message) {  // NOLINT: hence not explicit
     std::size_t placeholders = 0;
     for (std::size_t at = text.find("{}"); at != text.npos; at = text.find("{}", at + 2)) ++placeholders;
     if (placeholders != sizeof...(Values)) throw "the message needs as many {} as there are values";

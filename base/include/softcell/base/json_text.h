@@ -17,6 +17,7 @@ class JsonText {
     return *this;
   }
 
+  /// Writes a whole number.
   JsonText& number(std::int64_t value) {
     char digits[24];
     text_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
@@ -33,10 +34,10 @@ class JsonText {
   /// Writes "0x0001F" in quotes, with at least `digits` digits. @pre 0 <= digits <= 16
   JsonText& hex(std::uint64_t value, int digits);
 
-  JsonText& boolean(bool value) { return raw(value ? "true" : "false"); }
+  JsonText& boolean(bool value) { return raw(value ? "true" : "false"); }  ///< true or false
 
-  const std::string& text() const { return text_; }
-  void clear() { text_.clear(); }
+  const std::string& text() const { return text_; }  ///< what was written so far
+  void clear() { text_.clear(); }                    ///< begins anew
 
  private:
   std::string text_;

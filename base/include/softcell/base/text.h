@@ -19,7 +19,9 @@ std::size_t utf8_length(std::string_view text, std::size_t at);
 /// and end.
 std::string one_line(std::string_view sentence);
 
-/// "0x01F": hexadecimal in upper case with at least `digits` digits. @pre 0 <= digits <= 16
+inline constexpr int kMostHexDigits = 16;  // of a 64-bit number
+
+/// "0x01F": hexadecimal in upper case with at least `digits` digits. @pre 0 <= digits <= kMostHexDigits
 std::string hex(std::uint64_t value, int digits = 1);
 
 /// "1 frame", "0 frames", "2 bodies".

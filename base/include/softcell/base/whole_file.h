@@ -25,6 +25,7 @@ namespace softcell::base {
 /// one object.
 class WholeFile {
  public:
+  /// Opens the temporary file beside `path`; a device or pipe is opened when the first byte is written.
   explicit WholeFile(std::filesystem::path path);
   /// Takes over a stream that is open already, as standard output is: written directly, and closed at the end.
   /// @param called  what errors call it.
@@ -77,6 +78,7 @@ class WholeFiles {
   /// @return  a reference that is valid as long as this object.
   /// @throws std::runtime_error  with the file and the reason why it cannot be written.
   WholeFile& open(const std::filesystem::path& file) { return files_.emplace_back(file); }
+  /// As WholeFile(stream, called).
   WholeFile& open(std::FILE* stream, const std::filesystem::path& called) {
     return files_.emplace_back(stream, called);
   }

@@ -1,12 +1,21 @@
 #pragma once
 // Main storage: main memory and video memory behind effective addresses, handed out as named buffers.
 //
-//   0x5EA010000000  main memory, 256 MB    +--------+--------+-----------+
+//   0x5EA010000000  main memory, 256 MB *  +--------+--------+-----------+
 //   0x5EA0C0000000  video memory, 256 MB   | buffer | buffer |   free    |  each starts at a line
 //   0x5EA0F0000000  local store of SPE 0, 256 KB, and its registers; those of SPE n are n MB further up
 //
+//   * as on a PS3; an address space of one's own can have from 1 MB to 2816 MB
+//
 // The bytes lie somewhere else in the host's memory; host pointers belong to the PPU side, effective
 // addresses to the SPEs, and only resolve() leads from one to the other.
+//
+// Main storage may also be the memory of the host program itself (HostProgram). Then effective addresses are
+// the program's own pointers, checked against what the process has mapped:
+//
+//   anything that is mapped               as its page permits
+//   below 4 GB, 1 MB for each SPE         local stores and registers, as above; a local store's address is
+//                                         a pointer to its bytes
 
 #include <atomic>
 #include <cstddef>
@@ -16,16 +25,20 @@
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <span>
 #include <string>
 #include <variant>
 
 #include "softcell/dma/addresses.h"
+#include "softcell/dma/element_layout.h"
 #include "softcell/dma/fault.h"
 #include "softcell/dma/reservations.h"
 
 namespace softcell::dma {
 
 class Arena;
+class HostAllocations;
+class HostMemory;
 class LocalStorePort;
 class LocalStores;
 
@@ -46,6 +59,16 @@ struct BufferOptions {
   /// Size of one element in bytes, 1, 2, 4 or 8, for engines that swap the byte order; 0 for elements of
   /// mixed or unknown width.
   std::uint32_t element_bytes = 0;
+  /// In place of element_bytes: the widths of a structure's members, which repeat to the buffer's end. The allocation
+  /// copies it.
+  std::span<const ElementRun> record = {};
+};
+
+/// The width of the numbers at an address, for engines that swap the byte order.
+struct ElementWidths {
+  std::uint32_t element_bytes = 0;        ///< of all; 0: bytes, or as `layout` says
+  const ElementLayout* layout = nullptr;  ///< of the buffer, and as long as the buffer
+  EffectiveAddress begin = {};            ///< of the buffer
 };
 
 /// One buffer as the MFC sees it.
@@ -57,6 +80,7 @@ struct Mapping {
   SpeAccess spe_access = SpeAccess::kNone;
   Memory memory = Memory::kMain;
   std::uint32_t element_bytes = 0;
+  const ElementLayout* layout = nullptr;  ///< of elements of several widths
 
   bool contains(EffectiveAddress address) const { return address.value - ea.value < bytes; }
   bool contains(EffectiveAddress address, std::uint64_t size) const {
@@ -69,15 +93,29 @@ struct Mapping {
   std::byte* host_of(EffectiveAddress address) const { return host + (address.value - ea.value); }
 };
 
+/// Options of storage that is the host program's memory.
+struct HostProgram {
+  int spes = 256;  ///< how many SPEs can be mapped
+};
+
 /// Main storage. All functions are thread safe: the PPU side may allocate while SPEs resolve addresses. A
 /// process may have several address spaces; they share their addresses and have separate bytes. An address
 /// space must outlive its buffers and every MFC that uses it.
 class AddressSpace {
  public:
-  /// Reserves 512 MB of host address space; the host provides memory for a page when it is first touched.
-  /// Once per process, it also makes the host addresses that are equal to effective addresses inaccessible.
-  /// @throws std::runtime_error  the host has no address range left.
-  AddressSpace();
+  /// Reserves host address space for main memory and 256 MB of video memory; the host provides memory for a
+  /// page when it is first touched. Once per process, it also makes the host addresses that are equal to
+  /// effective addresses inaccessible.
+  /// @param main_memory_bytes  whole megabytes (2^20 bytes), up to kMaxMainMemoryBytes.
+  /// @throws std::invalid_argument  another size of main memory.
+  /// @throws std::runtime_error     the host has no address range left.
+  explicit AddressSpace(std::uint64_t main_memory_bytes = kMainMemoryBytes);
+
+  /// Makes the memory of this process main storage. Such storage has no buffers: allocate() and free() throw.
+  /// It reserves 1 MB of host addresses below 4 GB for each SPE, and handles SIGSEGV and SIGBUS from now on, for
+  /// a transfer whose bytes are unmapped while they move: it ends with the fault ea-not-mapped.
+  /// @throws std::runtime_error  there is no such range left.
+  explicit AddressSpace(const HostProgram& options);
   ~AddressSpace();
   AddressSpace(const AddressSpace&) = delete;
   AddressSpace& operator=(const AddressSpace&) = delete;
@@ -88,17 +126,32 @@ class AddressSpace {
   /// @param bytes  at least 1; the buffer occupies whole lines of 128 bytes.
   /// @return  its address, a multiple of 128.
   /// @throws std::runtime_error  no free range is large enough; the message gives the sizes.
-  /// @throws std::invalid_argument  zero bytes, or an element width other than 0, 1, 2, 4 and 8.
+  /// @throws std::invalid_argument  zero bytes, an element width other than 0, 1, 2, 4 and 8, both a width and a record, or
+  ///                                a record that ElementLayout refuses.
   EffectiveAddress allocate(std::string name, std::uint64_t bytes, const BufferOptions& options = {});
 
   /// Frees a buffer. @pre no command is in flight to or from it
   /// @throws std::invalid_argument  no buffer begins at `ea`.
   void free(EffectiveAddress ea);
 
+  /// Whether this storage is the memory of the host program.
+  bool is_host_program() const { return host_ != nullptr; }
+
+  /// For the memory of a host program: who knows its allocations, so that the rule ea-outside-allocation can be
+  /// checked; null: nobody. It outlives this object. @pre is_host_program()
+  void set_allocations(const HostAllocations* allocations);
+
+  /// Where the local store of this SPE lies, mapped or not.
+  /// @pre  0 <= spe, and below 6 or the number of HostProgram.
+  EffectiveAddress local_store_ea(int spe) const;
+
+  /// Where the bytes of this SPE's local store have to lie; null: anywhere.
+  std::byte* place_of_local_store(int spe) const;
+
   /// Maps an SPE at local_store_ea(spe): its local store for any access, and its registers Sig_Notify_1,
   /// Sig_Notify_2 and SPU_In_Mbox for writes of 4 bytes. Every write that goes through reservations() calls
   /// the port.
-  /// @param spe   0..5.
+  /// @param spe   0..5, or below the number of HostProgram.
   /// @param port  must live until unmap_local_store().
   /// @throws std::invalid_argument  `spe` is out of range or mapped already, or the local store has another
   ///                                size than 256 KB.
@@ -119,10 +172,18 @@ class AddressSpace {
   std::variant<std::byte*, Fault> resolve(EffectiveAddress ea, std::uint64_t bytes, SpeAccess wanted) const;
 
   /// The buffer or local store that contains `ea`, if any.
-  std::optional<Mapping> mapping_at(EffectiveAddress ea) const;
+  /// @param wanted  of a host program's memory, an access that its page permits is looked for.
+  std::optional<Mapping> mapping_at(EffectiveAddress ea, SpeAccess wanted = SpeAccess::kNone) const;
+
+  /// The elements of what is at `ea`: of a typed buffer or a register; none for plain bytes, as in local stores and the
+  /// memory of a host program.
+  ElementWidths element_widths_at(EffectiveAddress ea) const;
 
   /// A number that changes whenever a mapping ends. Who keeps copies of mappings must drop them then.
-  std::uint64_t generation() const { return generation_.load(std::memory_order_acquire); }
+  std::uint64_t generation() const {
+    const std::uint64_t own = generation_.load(std::memory_order_acquire);
+    return is_host_program() ? own + allocations_generation() : own;  // both only grow
+  }
 
   /// The reservations of this storage. Every copy that must respect reserved lines goes through them.
   Reservations& reservations() const { return reservations_; }
@@ -136,9 +197,11 @@ class AddressSpace {
     Mapping mapping;
     std::string name;
     std::uint64_t allocated_bytes = 0;  // as asked for
+    std::unique_ptr<const ElementLayout> layout = nullptr;
   };
   using Registry = std::map<std::uint64_t, NamedBuffer>;  // by effective address
 
+  std::uint64_t allocations_generation() const;
   Arena& arena(Memory memory) const { return memory == Memory::kMain ? *main_ : *video_; }
   Registry::const_iterator last_at_or_below(EffectiveAddress ea) const;  // registry_mutex_ held
   std::string describe_unmapped(EffectiveAddress ea) const;              // registry_mutex_ held
@@ -151,6 +214,7 @@ class AddressSpace {
   Registry registry_;
   std::atomic<std::uint64_t> generation_{1};
 
+  const std::unique_ptr<HostMemory> host_;  ///< null: main and video memory of softcell
   const std::unique_ptr<LocalStores> local_stores_;
   mutable Reservations reservations_;
 };

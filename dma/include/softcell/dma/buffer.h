@@ -27,12 +27,13 @@ class Buffer {
   /// An empty buffer without memory.
   Buffer() = default;
 
-  /// @param options  element_bytes 0 means sizeof(T) if T is a number or an enumeration.
+  /// @param options  element_bytes 0, without a record, means sizeof(T) if T is a number or an enumeration.
   /// @throws std::runtime_error  no free range of that memory is large enough; the message gives the sizes.
   /// @throws std::invalid_argument  count is 0.
   Buffer(AddressSpace& space, std::string name, std::size_t count, BufferOptions options = {})
       : space_(&space) {
-    if (options.element_bytes == 0 && (std::is_arithmetic_v<T> || std::is_enum_v<T>)) {
+    if (options.element_bytes == 0 && options.record.empty() &&
+        (std::is_arithmetic_v<T> || std::is_enum_v<T>)) {
       options.element_bytes = sizeof(T);
     }
     // A product that does not fit is more than any memory holds; the largest number says so and is refused as

@@ -2,8 +2,10 @@
 // A fault: the rule that a kernel broke, where, what was found and what is allowed.
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "softcell/dma/mfc_command.h"
 
@@ -50,6 +52,13 @@ struct Fault {
   /// All of it in one line: "SPE 2, kernel skin, skin.cpp:41: ea-alignment: getf tag 3, LSA 0x00400, EA
   /// 0x5EA010000008, 16 bytes: EA is ..."
   std::string message() const;
+};
+
+/// Thrown where bytes move: the host program has unmapped them since the command was issued.
+class StorageLost : public std::runtime_error {
+ public:
+  explicit StorageLost(Fault what) : std::runtime_error(what.detail), fault(std::move(what)) {}
+  Fault fault;
 };
 
 }  // namespace softcell::dma

@@ -79,8 +79,9 @@ class ListTransfer {
   std::array<Transfer, kWindow> transfers_;
 };
 
-/// Element `index` of a list, as it is in local store now. @pre it lies in the list and in the local store
+/// Element `index` of a list, as it is in local store now. @param is_big_endian  the byte order of the local store.
+/// @pre it lies in the list and in the local store
 ListElement read_element(std::span<const std::byte> local_store, const MfcCommand& command,
-                         std::uint32_t index);
+                         std::uint32_t index, bool is_big_endian = false);
 
 }  // namespace softcell::dma

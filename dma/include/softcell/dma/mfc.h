@@ -56,6 +56,13 @@ class Mfc {
   void expect_code_everywhere() { port_.expect_code_everywhere(); }
   LocalStoreAddress code_end() const { return port_.code_end(); }
 
+  /// Which effective addresses mean something else to this SPE; none without this call.
+  void set_window(AddressWindow window) { port_.set_window(std::move(window)); }
+
+  /// Declares the byte order of the local store: see StoragePort. Little-endian without this call.
+  void set_big_endian(bool is_big_endian) { port_.set_big_endian(is_big_endian); }
+  bool is_big_endian() const { return port_.is_big_endian(); }
+
   /// Resets the MFC: empty queue and tag mask, no status request, no reservation. Commands that are still
   /// queued are dropped without a call of the observer; call drain() first if the last job ended without a
   /// fault. From here on, random decisions depend on the schedule's seed and on `job_id`, not on the SPE.
@@ -141,6 +148,12 @@ class Mfc {
   /// Completes every queued command, in an order that fences and barriers allow.
   /// @return  nothing, or the fault that prevents it: an element's, or list-stalled-for-ever.
   std::optional<Fault> drain();
+
+  /// Threads of a host program may have stored to the line that this MFC has reserved; the hardware would have
+  /// noticed. If they have, the reservation ends and its listener is called.
+  void look_for_host_stores() { port_.look_for_host_stores(); }
+  /// Whether this MFC has a reserved line to which that may happen.
+  bool may_miss_host_stores() const { return port_.may_miss_host_stores(); }
 
   const MfcStatistics& statistics() const { return statistics_; }
   void clear_statistics() { statistics_ = {}; }

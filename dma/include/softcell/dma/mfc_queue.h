@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -89,7 +90,7 @@ class MfcQueue {
   SlotSet slots_of(std::uint32_t tag_mask) const {
     SlotSet slots = 0;
     for (std::uint32_t rest = tag_mask & busy_tags_; rest != 0; rest &= rest - 1) {
-      slots |= groups_[std::countr_zero(rest)];
+      slots |= groups_[static_cast<std::size_t>(std::countr_zero(rest))];
     }
     return slots;
   }
@@ -130,6 +131,17 @@ class MfcQueue {
   static constexpr SlotSet kAllSlots = 0xFFFF;
 
  private:
+  /// Slots are ints.
+  template <typename Value>
+  class BySlot {
+   public:
+    Value& operator[](int slot) { return values_[static_cast<std::size_t>(slot)]; }
+    const Value& operator[](int slot) const { return values_[static_cast<std::size_t>(slot)]; }
+
+   private:
+    std::array<Value, kSlots> values_{};
+  };
+
   SlotSet predecessors(const MfcCommand& command, SlotSet group) const {
     if (command.is_queue_barrier()) return occupied_;
     const bool waits_for_group = command.has_fence() || command.has_barrier();
@@ -153,9 +165,9 @@ class MfcQueue {
   SlotSet queue_barriers_ = 0;  // of all tags
   std::uint32_t busy_tags_ = 0;
   std::uint64_t next_issue_ = 0;
-  std::array<SlotSet, kSlots> waits_for_{};  // of an empty slot: nothing
-  std::array<std::uint8_t, kSlots> tags_{};
-  std::array<std::uint64_t, kSlots> issued_{};
+  BySlot<SlotSet> waits_for_;  // of an empty slot: nothing
+  BySlot<std::uint8_t> tags_;
+  BySlot<std::uint64_t> issued_;
   std::array<SlotSet, kTagCount> groups_{};  // by tag
 };
 

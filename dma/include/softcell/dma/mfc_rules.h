@@ -20,10 +20,12 @@ namespace softcell::dma {
 ///   sndsig                4                         EA: a Sig_Notify register; LSA's low four bits are equal
 ///   data-cache hints      1 .. 16384                EA: anything
 ///
+/// @param local_stores  where SPE 0 lies in main storage.
 /// @return  nothing, or the first rule broken (of sndsig, its own one first), with the command set.
 /// @note    Pure; any thread.
 /// @source  [CBEA, MFC commands] documented; what is not is marked in rules.def
-std::optional<Fault> check_command(const MfcCommand& command);
+std::optional<Fault> check_command(const MfcCommand& command,
+                                   EffectiveAddress local_stores = kLocalStoresBase);
 
 /// Checks one element of a list command: reserved bits, size, alignment, the 4 GB rule and the local-store
 /// range.

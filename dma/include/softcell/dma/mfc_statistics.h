@@ -3,14 +3,19 @@
 
 #include <cstdint>
 
+#include "softcell/dma/addresses.h"
+#include "softcell/dma/mfc_command.h"
+
 namespace softcell::dma {
 
 /// Sums since construction or the last clear_statistics(). Commands that broke a rule do not count.
 struct MfcStatistics {
+  /// Commands of one kind.
   struct Traffic {
     std::uint64_t commands = 0;
     std::uint64_t bytes = 0;
   };
+  /// List commands of one kind.
   struct ListTraffic {
     std::uint64_t commands = 0;
     std::uint64_t elements = 0;  ///< executed so far, those of size 0 too

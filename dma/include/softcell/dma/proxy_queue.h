@@ -47,12 +47,19 @@ class ProxyQueue : private MfcObserver {
   ///          it is not queued.
   std::optional<Fault> issue(const MfcCommand& command);
 
+  /// As Mfc::set_big_endian().
+  void set_big_endian(bool is_big_endian);
+
   /// The tags of `tag_mask` without a queued command (Prxy_TagStatus). Time passes.
   std::uint32_t complete_tags(std::uint32_t tag_mask);
 
   /// Completes the commands of all, or of at least one, of the tags. @return  as complete_tags().
   std::uint32_t wait_all(std::uint32_t tag_mask);
   std::uint32_t wait_any(std::uint32_t tag_mask);
+
+  /// The fault of a queued command, if a host program has unmapped its bytes since it was issued. All commands
+  /// that were queued then are dropped, and count as complete.
+  std::optional<Fault> take_fault();
 
   /// Number of commands that can be queued without waiting, 0..8 (MFC_QStatus). Time passes.
   int free_slots();
@@ -72,7 +79,8 @@ class ProxyQueue : private MfcObserver {
   void on_reservation_lost(std::uint64_t number) override;
 
   template <class Step>
-  auto with_mfc(Step&& step);
+  auto with_mfc(Step&& step) -> decltype(step());
+  void drop_all(Fault&& why);
   std::uint32_t tag_status(std::uint32_t tag_mask, Condition condition);
 
   LocalStorePort& spe_;
@@ -84,6 +92,7 @@ class ProxyQueue : private MfcObserver {
   bool issuing_start_ = false;
   std::vector<std::uint64_t> starting_;  // the numbers of the queued commands with start
   int starts_due_ = 0;
+  std::optional<Fault> failure_;
 };
 
 }  // namespace softcell::dma

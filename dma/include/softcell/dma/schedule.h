@@ -9,6 +9,7 @@
 
 namespace softcell::dma {
 
+/// When queued transfers happen.
 struct Schedule {
   enum Kind : std::uint8_t {
     /// At issue, or as soon as the commands that they wait for are complete.

@@ -16,6 +16,10 @@ enum class Channel : std::uint8_t {
 #undef SC_CHANNEL
 };
 
+/// Of the stop codes 0x2100 to 0x21FF, by which a program calls a function of the PPU side. [libspe2, newlib]
+/// documented
+inline constexpr std::uint32_t kAssistedCalls = 0x2100;
+
 /// The result of a channel operation: a value, or the fault that stops the SPU. It fits into two registers,
 /// because every command of a kernel makes one.
 struct ChannelReply {
@@ -40,6 +44,17 @@ class ChannelPort {
 
   /// The instruction `sync`: from now on the SPU executes what was written to the local store.
   virtual void sync() = 0;
+
+  /// The SPU has stopped with a code that does not end its program. Returns when the PPU side lets it go on.
+  /// @param assist  of a call of the PPU side (codes 0x2100 to 0x21FF): its operation and the local-store
+  ///                address of its arguments, operation << 24 | address; on an SPU, the word behind the
+  ///                instruction. [libspe2, newlib] documented
+  /// @return  whether it goes on; otherwise its run ends with this code.
+  virtual bool stop(std::uint32_t code, std::uint32_t assist) {
+    static_cast<void>(code);
+    static_cast<void>(assist);
+    return false;
+  }
 };
 
 }  // namespace softcell::ls_sim

@@ -1,10 +1,12 @@
 #pragma once
-// Engines run the instructions of a kernel. The native engine runs images built for the host.
+// Engines run the instructions of a kernel: the native engine those of the host, the interpreter those of the SPU.
 
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "softcell/dma/fault.h"
 #include "softcell/ls_sim/channels.h"
@@ -13,11 +15,27 @@
 
 namespace softcell::ls_sim {
 
-/// The three 64-bit arguments of a kernel's main. [SPU ABI, libspe2]
+class Debugger;
+struct HostCalls;
+class SpeTimer;
+
+/// Who starts an SPU program, and so what its registers hold at first. Each argument is in bytes 0 to 7 of its
+/// register.
+enum class EntryState : std::uint8_t {
+  /// $3 to $5 are the arguments, $6 the effective address of the SPE's local store, $1 a stack. [libspe2] second-hand
+  kLibspe2,
+  /// $3 to $6 are the arguments, $1 is 0x3FFF0 in its preferred word, all others are zero. [lv2] second-hand
+  kThreadGroup,
+};
+
+/// The 64-bit arguments of a kernel's main: three by libspe2, four by lv2's thread groups, for which the first
+/// three are any numbers, too. [SPU ABI, libspe2; PSL1GHT, sys/spu.h]
 struct EntryArguments {
   std::uint64_t spe_id = 0;
   std::uint64_t argp = 0;
   std::uint64_t envp = 0;
+  std::uint64_t fourth = 0;                       ///< of programs that thread groups start
+  EntryState entry_state = EntryState::kLibspe2;  ///< of SPU programs only
 };
 
 /// The result of a run, which ends by main's return (or spu_stop) with a stop code, or by a fault.
@@ -25,6 +43,8 @@ struct RunResult {
   std::uint32_t stop_code = 0;  ///< 0x2000 + status for a normal end; 0..0x3FFF
   std::optional<dma::Fault> fault;
   dma::EffectiveAddress job = {};  ///< the job in progress when a resident kernel ended
+  /// After a fault of an SPU program: its last instructions, at most 32, the latest last.
+  std::vector<std::string> last_instructions = {};
 
   static constexpr std::uint32_t kNormalEnd = 0x2000;  // [libspe2, newlib] documented
   bool ended_normally() const { return !fault && (stop_code & ~0xFFu) == kNormalEnd; }
@@ -40,12 +60,23 @@ struct Access {
   dma::LocalStoreAddress stack_pointer;  ///< at that moment
 };
 
-/// Observes every load and store of a checked kernel, before it happens. Called by the thread that runs the
-/// SPE.
+/// One instruction of a checked program for the SPU.
+struct ExecutedInstruction {
+  dma::LocalStoreAddress address;
+  dma::LocalStoreAddress stack_pointer;  ///< before it
+  /// A register that the instruction takes an address from, and that the program has never written; -1: none.
+  int unset_address_register = -1;
+};
+
+/// Observes every load and store of a checked kernel, before it happens. Of a program for the SPU these are whole
+/// quadwords. Called by the thread that runs the SPE.
 class AccessObserver {
  public:
   virtual ~AccessObserver() = default;
   virtual void on_access(const Access& access) = 0;
+
+  /// Only programs for the SPU: called before each instruction.
+  virtual void on_instruction(const ExecutedInstruction&) {}
 };
 
 /// Observes where jobs begin and end inside a resident kernel. Called by the thread that runs the SPE.
@@ -76,7 +107,8 @@ class Engine {
   /// @pre  no run is in progress
   virtual void load(const KernelImage& image) = 0;
 
-  /// Runs the loaded image once. Initialised data are as linked; bss is as the last run left it.
+  /// Runs the loaded image once. Initialised data are as linked; bss is as the last run left it, and zero for a
+  /// program.
   /// @pre  load() was called
   /// @param accesses  called for loads and stores of a checked image; may be null.
   /// @param jobs      called for jobs inside the run; may be null.
@@ -95,13 +127,30 @@ class Engine {
 
   /// The most stack, in bytes, that any run since load() used: the part that no longer has the fill pattern.
   virtual std::uint32_t stack_high_water() const = 0;
+
+  /// SPU instructions executed since the engine was made. 0 if it does not count them, as the native one.
+  virtual std::uint64_t instructions() const { return 0; }
 };
 
 /// Makes the engine for images that softcell_add_spu_kernel has built for this host.
 /// @throws std::runtime_error  the processor lacks AVX2 or FMA.
 std::unique_ptr<Engine> make_native_engine(LocalStore& local_store);
 
-/// @throws std::runtime_error  one of the two is false: the native engine needs both.
+/// What an interpreter has to do besides; all of it outlives the engine.
+struct InterpreterOptions {
+  const HostCalls* host_calls = nullptr;  ///< what the host does for programs; null: nothing
+  SpeTimer* timer = nullptr;              ///< where instructions are timed; null: nowhere
+  Debugger* debugger = nullptr;  ///< who is told of each instruction; null: nobody. Then nothing is timed
+  int spe = 0;                   ///< the number that the debugger is told
+};
+
+/// Makes the engine for programs built for the SPU (load_spu_program()).
+/// @param local_store_ea  of this SPE, which a program gets from libspe2.
+/// @throws std::runtime_error  the processor lacks AVX2 or FMA.
+std::unique_ptr<Engine> make_interpreter_engine(LocalStore& local_store, dma::EffectiveAddress local_store_ea,
+                                                const InterpreterOptions& options = {});
+
+/// @throws std::runtime_error  one of the two is false: both engines need both.
 void require_vector_units(bool avx2, bool fma);
 
 }  // namespace softcell::ls_sim

@@ -13,6 +13,7 @@ namespace softcell::ls_sim {
 /// differ.
 bool is_same_mistake(const dma::Fault& a, const dma::Fault& b);
 
+/// A mistake that the checker has found, once for each rule, kernel and source line.
 struct Finding {
   dma::Fault fault;         ///< of its first occurrence
   std::uint64_t count = 0;  ///< occurrences with the same rule, kernel and source line, on any SPE

@@ -35,8 +35,16 @@ struct ImageObject {
   std::uint32_t bytes = 0;
 };
 
+/// Whose instructions an image has, and so which engine runs it.
+enum class Machine : std::uint8_t {
+  kHost,  ///< the host's: made by softcell_add_spu_kernel
+  kSpu,   ///< the SPU's: an executable of a real SPU compiler
+};
+
+/// A kernel as load_image() reads it: bytes that run wherever they are copied, and what is known about them.
 struct KernelImage {
   std::string name;
+  Machine machine = Machine::kHost;
   std::uint32_t begin = kEnvironmentBytes;  ///< local-store address of the first byte
   /// Local-store address from which its stack grows down. An image that is linked above the bottom of the
   /// local store has its stack below itself.
@@ -45,10 +53,17 @@ struct KernelImage {
   std::uint32_t data_begin = 0;  ///< local-store address of the writable initialised data
   std::uint32_t data_end = 0;
   std::uint32_t entry = 0;                         ///< local-store address
+  std::uint32_t main = 0;                          ///< local-store address of main; 0: not known
   std::uint32_t text_begin = 0, text_end = 0;      ///< local-store addresses of the instructions
   std::uint32_t rodata_begin = 0, rodata_end = 0;  ///< and of the constants
   ImageSizes sizes;
+  /// A program that is loaded whole, with a heap between its bss and its stack.
+  bool program = false;
+  /// Of a program: local-store addresses of words that hold an address in it, to which the place of the local
+  /// store on the host is added. An image that travels by DMA has none.
+  std::vector<dma::LocalStoreAddress> relocations;
   std::vector<ImageObject> objects;                   ///< in order of address
+  std::vector<ImageObject> functions;                 ///< in order of address; of Machine::kSpu only
   std::shared_ptr<const std::vector<std::byte>> elf;  ///< the file, for its line table
   bool checked = false;                               ///< built with calls for every load and store
 };
@@ -59,5 +74,21 @@ struct KernelImage {
 ///                             truncated, linked by another script, a relocation left, larger than a local
 ///                             store, segments that overlap, an entry outside the text.
 KernelImage load_image(std::string_view name, std::span<const std::byte> elf);
+
+/// The bytes of a section of such a file; none if there is no such section, or it is no such file. softcell-spu-gcc
+/// puts the checked flavour of a program into its section .softcell.checked, and its name into .softcell.name.
+std::span<const std::byte> image_section(std::span<const std::byte> elf, std::string_view section);
+
+/// True if the bytes begin as an ELF file for the SPU does: 32 bits, big-endian, machine 23.
+bool is_spu_program(std::span<const std::byte> elf);
+
+/// Reads an executable that a compiler for the SPU has made, for the interpreter. Its segments may lie anywhere in the
+/// local store; what is left above them is its stack, which starts where its own start-up code or the loader puts it.
+/// Any thread.
+/// @throws std::runtime_error  with the program's name and the reason: not ELF, another machine or class, not linked,
+///                             truncated, nothing to load, overlays, segments that overlap or leave the local store,
+///                             an entry outside what is loaded.
+/// @source  [GNU binutils, libspe2's loader] second-hand
+KernelImage load_spu_program(std::string_view name, std::span<const std::byte> elf);
 
 }  // namespace softcell::ls_sim

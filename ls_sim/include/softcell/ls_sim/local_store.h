@@ -9,16 +9,21 @@
 
 namespace softcell::ls_sim {
 
-/// 256 KB of readable, writable and executable memory. It is aligned to 256 KB, so that the low 18 bits of a
-/// pointer into it are the local-store address. On both sides lie 256 KB of inaccessible pages, so that a
+/// 256 KB of readable, writable and executable memory, below 4 GB, so that a kernel's pointers have the 32 bits
+/// that they have on an SPU. It is aligned to 256 KB, so that the low 18 bits of a pointer into it are the
+/// local-store address. On both sides lie 256 KB of inaccessible pages, so that a
 /// kernel that leaves the local store faults. Not copyable, not movable. Any thread may create one; its bytes
 /// belong to the SPE that runs.
 class LocalStore {
  public:
   static constexpr std::uint32_t kGuardBytes = dma::kLocalStoreBytes;
 
-  /// @throws std::runtime_error  the host refuses such memory.
-  LocalStore();
+  /// @throws std::runtime_error  the host refuses such memory, or has no room for it below 4 GB.
+  LocalStore() : LocalStore(nullptr) {}
+
+  /// @param place  where it is to lie, in addresses that somebody keeps for it and for what lies on both sides;
+  ///               null: anywhere.
+  explicit LocalStore(std::byte* place);
   ~LocalStore();
   LocalStore(const LocalStore&) = delete;
   LocalStore& operator=(const LocalStore&) = delete;
@@ -27,7 +32,9 @@ class LocalStore {
   std::byte* base() { return base_; }
 
  private:
-  void* mapping_ = nullptr;
+  void make_accessible();
+
+  void* mapping_ = nullptr;  ///< null: `base_` lies where others keep the addresses
   std::byte* base_ = nullptr;
 };
 

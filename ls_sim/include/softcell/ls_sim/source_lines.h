@@ -9,6 +9,12 @@
 
 namespace softcell::ls_sim {
 
+/// A line of a source file.
+struct SourcePlace {
+  std::string file;  ///< as the compiler was given it; empty: not known
+  int line = 0;
+};
+
 /// Reads the DWARF line table of an image. One thread at a time.
 class SourceLines {
  public:
@@ -22,6 +28,9 @@ class SourceLines {
   /// "saxpy.cpp:41": file name without its folder, and line. For code that was inlined from the headers of
   /// the SDK, the line that called them. Empty when not known.
   std::string place_of(dma::LocalStoreAddress instruction) const;
+
+  /// The same with the whole name of the file.
+  SourcePlace source_of(dma::LocalStoreAddress instruction) const;
 
  private:
   struct Reader;

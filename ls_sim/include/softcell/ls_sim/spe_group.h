@@ -115,10 +115,12 @@ class SpeGroup {
   /// prepare() and start() for a resident kernel: one that runs without a time limit and calls other kernels,
   /// jobs. It marks where each job begins and ends (spu_kernels/common/job_mark.h). Deadline, statistics and
   /// trace then concern the jobs. Checked jobs are checked even if the resident kernel is not.
+  /// @throws std::invalid_argument  the image is a program for the SPU that softcell_add_spu_kernel did not build.
   void start_resident(int spe, const KernelImage& image, const EntryArguments& arguments);
 
   /// Registers the image of the jobs whose code lies at `ea` in main storage, a multiple of 16. The image
   /// must outlive the group.
+  /// @throws std::invalid_argument  the image is a program for the SPU that softcell_add_spu_kernel did not build.
   void register_job_image(dma::EffectiveAddress ea, const KernelImage& image);
 
   /// Sets a function that is called at the end of each run, on a thread of the group, without a lock. It may

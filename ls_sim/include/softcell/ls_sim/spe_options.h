@@ -9,6 +9,9 @@
 
 namespace softcell::ls_sim {
 
+class Debugger;
+struct HostCalls;
+class Timing;
 class Trace;
 class Findings;
 
@@ -25,8 +28,12 @@ enum class Interleaving : std::uint8_t {
   /// One at a time. At a channel operation the turn may pass to another SPE, drawn from the schedule's seed,
   /// so that runs of several SPEs are reproducible.
   kTurns,
+  /// One at a time, and always the one whose simulated clock is behind, so that what SPEs share is used in the order
+  /// of time. Needs SpeOptions::timing.
+  kByTime,
 };
 
+/// How SPEs run. Every field has a default.
 struct SpeOptions {
   int spes = dma::kSpeCount;  ///< 1..6
   dma::Schedule schedule{};
@@ -38,6 +45,13 @@ struct SpeOptions {
   /// Where checked images report their findings; then images that are not checked are refused. Null: nothing
   /// is checked. It outlives the SPEs.
   Findings* findings = nullptr;
+  /// What programs built for the SPU may have the host do (host_calls.h). Null: nothing. It outlives the SPEs.
+  const HostCalls* host_calls = nullptr;
+  /// What the model of the SPU's pipelines says of programs built for the SPU, and that of transfers of all. Needs Clock::kSimulated and
+  /// Interleaving::kByTime. Null: nothing is timed. It outlives the SPEs.
+  Timing* timing = nullptr;
+  /// Is told of each instruction of programs built for the SPU, which are not timed then. Null: nobody. It outlives the SPEs.
+  Debugger* debugger = nullptr;
   Trace* trace = nullptr;  ///< null: nothing is recorded. It outlives the SPEs
 };
 

@@ -22,6 +22,7 @@ inline constexpr std::size_t kWaitingChannels = 31;
 struct SpeStatistics {
   std::uint64_t jobs = 0;  ///< runs
   std::uint64_t image_loads = 0;
+  std::uint64_t instructions = 0;  ///< of programs built for the SPU; those of native kernels are not counted
   std::chrono::nanoseconds busy{0};
   dma::MfcStatistics dma;
   std::uint64_t channel_waits = 0;  ///< channel operations that blocked, tag waits included

@@ -18,10 +18,13 @@ class WholeFile;
 
 namespace softcell::ls_sim {
 
-/// Nanoseconds of the host's steady clock.
+/// Nanoseconds of the clock of the trace.
 using TraceTime = std::int64_t;
-/// The time now. Any thread.
+/// The time now by the host's clock. Any thread.
 TraceTime trace_now();
+
+/// What the times of a trace are of: the host's steady clock, or the SPEs' simulated clocks (SpeOptions::timing).
+enum class TraceClock : std::uint8_t { kHost, kSimulated };
 
 struct SpeEvents;
 struct TracedCommand;
@@ -34,6 +37,17 @@ class SpeTrace final : public dma::MfcObserver {
   ~SpeTrace() override;
   SpeTrace(const SpeTrace&) = delete;
   SpeTrace& operator=(const SpeTrace&) = delete;
+
+  TraceClock clock() const { return clock_; }
+  /// The time now: by the host's clock, or as set_time() said last.
+  TraceTime now() const { return clock_ == TraceClock::kHost ? trace_now() : simulated_now_; }
+
+  // For a simulated clock.
+  void set_time(TraceTime now) { simulated_now_ = now; }
+  /// The command that was recorded last, for complete_at().
+  std::size_t last_command() const;
+  /// Says when a command is complete, whatever the order in which its bytes have moved here.
+  void complete_at(std::size_t command, TraceTime when);
 
   /// Records a run that has ended. Copies the declarations of an image when the image first occurs.
   /// @pre  begin <= end
@@ -60,12 +74,15 @@ class SpeTrace final : public dma::MfcObserver {
 
  private:
   friend class Trace;
-  explicit SpeTrace(std::size_t most_events);
+  SpeTrace(std::size_t most_events, TraceClock clock);
 
   /// Completes a command in flight. Null if the log had no room for it.
   TracedCommand* complete(std::uint64_t number);
 
   std::unique_ptr<SpeEvents> events_;
+  const TraceClock clock_;
+  TraceTime simulated_now_ = 0;
+  std::size_t last_command_ = 0;
 };
 
 /// The trace of a run. SPE n records to spe(n) while it runs; call write() when all SPEs have stopped.
@@ -76,16 +93,17 @@ class Trace {
 
   /// @param spes         1 or more.
   /// @param most_events  of each SPE and kind: jobs, waits, commands, findings.
-  explicit Trace(int spes, std::size_t most_events = kMostEvents);
+  explicit Trace(int spes, std::size_t most_events = kMostEvents, TraceClock clock = TraceClock::kHost);
   ~Trace();
 
   /// @pre 0 <= number < spes()
   SpeTrace& spe(int number);
   int spes() const;
+  TraceClock clock() const { return clock_; }
 
   /// Writes the Chrome / Perfetto JSON format: one process for each SPE with rows for its jobs, its waits and
   /// its overlapping commands, findings as instants, and for each image its local-store map. Time 0 is the
-  /// construction of the trace. The file is written atomically.
+  /// construction of the trace, or that of the simulated clocks. The file is written atomically.
   /// @throws std::runtime_error  the file cannot be written; the message says why.
   void write(const std::filesystem::path& file) const;
   /// Writes the same to a file that the caller commits.
@@ -94,6 +112,7 @@ class Trace {
  private:
   std::vector<std::unique_ptr<SpeTrace>> spes_;
   TraceTime begin_;
+  const TraceClock clock_;
 };
 
 }  // namespace softcell::ls_sim

@@ -61,7 +61,7 @@ class Box2dSoftBodies {
   /// The two halves of step(), for a caller who calls b2World::Step() himself between them, with the same
   /// length.
   void begin_step(float step);
-  void end_step(float step);
+  void end_step(float step);  ///< the second half
 
   /// Has the solver begin the next step's work now, of `step` seconds, while the caller does something else.
   /// When bodies are changed after all, or the step has another length, that work is dropped and done again:
@@ -75,16 +75,16 @@ class Box2dSoftBodies {
   /// woken in Box2D.
   void let_sleep(const std::optional<SleepSettings>& settings);
 
-  std::size_t size() const;
-  SoftBody<2>& operator[](std::size_t index);  ///< in the order of add()
-  const SoftBody<2>& operator[](std::size_t index) const;
+  std::size_t size() const;                                ///< number of soft bodies
+  SoftBody<2>& operator[](std::size_t index);              ///< in the order of add()
+  const SoftBody<2>& operator[](std::size_t index) const;  ///< in the order of add()
 
-  /// The soft body and the particle number that a b2Body stands for, for contact listeners; a null pointer
-  /// for everything else.
+  /// A particle of one of the soft bodies.
   struct Particle {
-    const SoftBody<2>* body = nullptr;
-    std::size_t number = 0;
+    const SoftBody<2>* body = nullptr;  ///< null: no particle
+    std::size_t number = 0;             ///< of the particle in its body
   };
+  /// The particle that a b2Body stands for, for contact listeners; without a body for every other b2Body.
   Particle particle_of(const b2Body& body) const;
 
   /// Time spent in this class's part of the steps so far, by the clock.

@@ -19,6 +19,11 @@
 //     SpeRuntime spes;                                         // spe_bodies/spe_runtime.h
 //     BulletSoftBodies soft_bodies(world, spes);               // SPEs do it
 //
+// With ContactMethod::kSurface there are no such spheres: bodies touch with what is drawn, and their particles
+// are moved here, before Bullet integrates:
+//
+//     substep:  [solver: v] [v += h g] [contacts: v, rigid bodies] [x += h v] [Bullet: collide, solve, integrate]
+//
 // To draw a body's mesh: soft_bodies/skinned_mesh.h, or, by the SPEs, spe_bodies/spe_skinner.h.
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -27,7 +32,9 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
 
@@ -35,12 +42,15 @@ namespace softcell::ppu {
 
 /// Where the time goes that soft bodies take inside stepSimulation(), since the beginning.
 struct SoftBodyTimes {
-  std::chrono::nanoseconds gather{0};  ///< processor time: particles from Bullet, inner ones integrated
-  std::chrono::nanoseconds solve{0};   ///< processor time of the solver on this thread
-  std::chrono::nanoseconds apply{0};   ///< processor time: velocities to Bullet
+  std::chrono::nanoseconds gather{0};    ///< processor time: particles from Bullet, inner ones integrated
+  std::chrono::nanoseconds solve{0};     ///< processor time of the solver on this thread
+  std::chrono::nanoseconds apply{0};     ///< processor time: velocities to Bullet
+  std::chrono::nanoseconds contacts{0};  ///< processor time of contacts of surfaces
   std::chrono::nanoseconds wait{0};  ///< by the clock, until the solver had finished; no work for this thread
 
-  std::chrono::nanoseconds processor() const { return gather + solve + apply; }
+  std::chrono::nanoseconds processor() const {
+    return gather + solve + apply + contacts;
+  }  ///< of the calling thread
 };
 
 /// The soft bodies of one world. Several of these may share a world.
@@ -50,7 +60,7 @@ struct SoftBodyTimes {
 /// caller installs later must call the one it replaces, or soft bodies lose their shape, and must be taken
 /// out before the last of these goes: what it calls is no more then.
 ///
-/// Used by the thread that steps the world. Allocates nothing in stepSimulation(); Bullet may.
+/// Used by the thread that steps the world. With spheres it allocates nothing in stepSimulation(); Bullet may.
 /// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
 class BulletSoftBodies {
  public:
@@ -61,12 +71,17 @@ class BulletSoftBodies {
   static constexpr float kMaxTravelInCells = 1.0f;
 
   /// @param world  outlives this.
-  explicit BulletSoftBodies(btDiscreteDynamicsWorld& world);
+  explicit BulletSoftBodies(btDiscreteDynamicsWorld& world, ContactMethod contacts = ContactMethod::kSpheres);
   /// @param solvers  makes the solver for these bodies; outlives this. Usually an SpeRuntime.
   /// @throws std::runtime_error  as SolverFactory::make_solver().
-  BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers);
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers,
+                   ContactMethod contacts = ContactMethod::kSpheres);
   /// @param solver  outlives this, and serves nobody else.
-  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver);
+  /// @param worker  for ContactMethod::kSurface: who finds and solves contacts, as SolverFactory makes it; null:
+  ///                the thread that steps the world
+  BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver,
+                   ContactMethod contacts = ContactMethod::kSpheres,
+                   std::shared_ptr<ContactWorker> worker = nullptr);
   /// Removes all bodies and leaves the world as it was found.
   ~BulletSoftBodies();
   BulletSoftBodies(const BulletSoftBodies&) = delete;
@@ -93,18 +108,23 @@ class BulletSoftBodies {
   /// wake what rested on it yourself, a soft body by add_velocity({0, 0, 0}).
   void let_sleep(const std::optional<SleepSettings>& settings);
 
-  SoftBodyTimes times() const;
+  /// Appends where soft bodies that touch with their surfaces press on something, as of the last substep.
+  /// Spheres are in Bullet's own contact manifolds.
+  void append_contacts(std::vector<Contact>& contacts) const;
 
-  std::size_t size() const;
-  SoftBody<3>& operator[](std::size_t index);  ///< in the order of add()
-  const SoftBody<3>& operator[](std::size_t index) const;
+  SoftBodyTimes times() const;  ///< since the construction
 
-  /// The soft body and the particle number that a collision object stands for, for contact callbacks; a null
-  /// pointer for everything else.
+  std::size_t size() const;                                ///< number of soft bodies
+  SoftBody<3>& operator[](std::size_t index);              ///< in the order of add()
+  const SoftBody<3>& operator[](std::size_t index) const;  ///< in the order of add()
+
+  /// A particle of one of the soft bodies.
   struct Particle {
-    const SoftBody<3>* body = nullptr;
-    std::size_t number = 0;
+    const SoftBody<3>* body = nullptr;  ///< null: no particle
+    std::size_t number = 0;             ///< of the particle in its body
   };
+  /// The particle that a collision object stands for, for contact callbacks; without a body for every other
+  /// object.
   static Particle particle_of(const btCollisionObject& object);
 
   /// Time spent in this class inside stepSimulation(), for all soft bodies of `world`, since the first was

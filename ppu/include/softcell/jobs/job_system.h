@@ -1,5 +1,6 @@
 #pragma once
-// Jobs for SPEs without help of the PPU: chains of jobs in main memory, which resident job loops work off.
+// Jobs that SPEs execute without help of the PPU: chains of jobs in main memory, from which resident job loops
+// take one after the other.
 //
 //   JobSystem jobs(memory, {.spes = 6}, job_loop);
 //   const JobImage skin = jobs.place(image);
@@ -28,7 +29,7 @@ class JobChain;
 /// An image in main memory, where job loops fetch it. Valid as long as its JobSystem.
 class JobImage {
  public:
-  const ls_sim::KernelImage& kernel() const { return *kernel_; }
+  const ls_sim::KernelImage& kernel() const { return *kernel_; }  ///< as it was given to place()
 
  private:
   friend class JobSystem;
@@ -40,8 +41,8 @@ class JobImage {
 /// One run of an image.
 struct Job {
   JobImage image;
-  dma::EffectiveAddress argp;
-  dma::EffectiveAddress envp = {};
+  dma::EffectiveAddress argp;  ///< main's second parameter, as a rule the address of the job's description
+  dma::EffectiveAddress envp = {};  ///< main's third
 };
 
 /// Why a job failed: the fault's message, or the status that the kernel returned.
@@ -53,14 +54,14 @@ struct JobFailure {
 /// Up to six SPEs with a job loop each. They sleep while there is nothing to do; no more are woken than there
 /// are jobs.
 ///
-/// A job that fails is its chain's affair. Where a loop itself fails, its job is not known: all loops end
-/// with what they are at, the chains that have not ended by then fail, and the next kick starts the loops
-/// anew.
+/// A job that fails ends its own chain only. If a job loop itself fails, nobody knows its job: then all loops
+/// finish their present jobs and end, every chain that has not ended by then fails, and the next kick starts
+/// the loops again.
 class JobSystem {
  public:
   /// @param options   the deadline is that of a job; findings: jobs must then be checked images.
   /// @param job_loop  the image of the kernel job_loop; outlives the system.
-  /// @throws std::invalid_argument  a loop that lies where jobs do; as SpeGroup.
+  /// @throws std::invalid_argument  `job_loop` is linked to the addresses at which jobs run; as SpeGroup.
   /// @throws std::runtime_error     as SpeGroup.
   JobSystem(dma::AddressSpace& memory, const ls_sim::SpeOptions& options,
             const ls_sim::KernelImage& job_loop);
@@ -82,7 +83,7 @@ class JobSystem {
   /// Of each SPE, up to the last job that it has ended. Any thread.
   std::vector<ls_sim::SpeStatistics> statistics() const;
 
-  int spes() const;
+  int spes() const;  ///< their number, 1..6
 
  private:
   friend class JobChain;
@@ -98,15 +99,15 @@ class JobChain {
   /// @throws std::runtime_error  there are 15 chains already, or main memory is full.
   JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs);
 
-  /// Waits for what is under way.
+  /// Waits for the jobs under way.
   ~JobChain();
   JobChain(const JobChain&) = delete;
   JobChain& operator=(const JobChain&) = delete;
 
-  // What the next kick() runs. Stays until cleared, so that a chain may be kicked again. @pre finished()
+  // The jobs of the next kick(). They stay until clear(), so that a chain can be kicked again. @pre finished()
 
-  void clear();
-  /// @throws std::length_error  more than most_jobs.
+  void clear();  ///< removes all jobs
+  /// Adds a job to the present stage. @throws std::length_error  more than most_jobs.
   void add(const Job& job);
   /// Ends a stage, if it has a job.
   void sync();

@@ -22,17 +22,20 @@ struct Csr {
   std::vector<std::uint32_t> offsets{0};
   std::vector<std::uint32_t> items;
 
-  std::size_t size() const { return offsets.size() - 1; }
+  std::size_t size() const { return offsets.size() - 1; }  ///< number of lists
+  /// List i. Valid until push().
   std::span<const std::uint32_t> operator[](std::size_t i) const {
     return {items.data() + offsets[i], items.data() + offsets[i + 1]};
   }
+  /// Appends a list.
   void push(std::span<const std::uint32_t> list) {
     items.insert(items.end(), list.begin(), list.end());
     offsets.push_back(static_cast<std::uint32_t>(items.size()));
   }
 };
 
-/// SPEs step far fewer: a body in tiles takes some 250 bytes of their main memory for each particle.
+/// The most particles of a lattice. Main memory may hold fewer: a body in tiles takes some 250 bytes of it for each
+/// particle.
 template <int kDimension>
 inline constexpr std::uint32_t kMaxLatticeParticles = kDimension == 2 ? 1u << 16 : 1u << 20;
 inline constexpr int kMaxLatticeCellsPerAxis = 256;
@@ -57,6 +60,7 @@ struct Lattice {
   /// Of each particle: the particles with which it shares a cell, ascending, itself excluded.
   Csr neighbours;
 
+  /// Metres, in the lattice's frame.
   Position rest_position(std::size_t particle) const {
     return origin + spacing * particles[particle].template cast<float>();
   }

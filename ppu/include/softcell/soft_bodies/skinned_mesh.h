@@ -1,6 +1,6 @@
 #pragma once
-// The surface of a soft body as floats, to be drawn: the mesh that its model was made from, deformed as the
-// body is, in the order of vertices and with the indices that the mesh has.
+// The surface of a soft body as floats, to be drawn: the mesh that its model was made from, deformed with the
+// body. Vertices have the order, and triangles the indices, of the mesh as it was given.
 //
 //     SkinnedMesh skin(body.shared_model());             // once for each body
 //     ...
@@ -8,8 +8,8 @@
 //     upload(skin.positions(), skin.normals());          // one of each for every vertex of skin.mesh()
 //     draw(skin.mesh().triangles);                       // its texture coordinates, colours and parts beside
 //
-// The calling thread does the work, whoever steps the body. SpeSkinner (spe_bodies/spe_skinner.h) has the
-// SPEs do it, one frame late.
+// The calling thread does the work, also for a body that SPEs step. SpeSkinner (spe_bodies/spe_skinner.h) has
+// the SPEs do it, one frame late.
 
 #include <Eigen/Core>
 #include <memory>
@@ -20,7 +20,7 @@
 
 namespace softcell::ppu {
 
-/// Writes where the vertices of body.model().mesh() are now, and their normals.
+/// Computes the present positions and normals of the vertices of body.model().mesh().
 ///
 ///   x = sum_k N_k x_k            n = normalize(cof(F) N)
 ///
@@ -39,7 +39,7 @@ class SkinnedMesh {
   /// The mesh as it was given, around the model's own origin. A model without a mesh has no vertices.
   explicit SkinnedMesh(std::shared_ptr<const SoftBodyModel<3>> model);
 
-  /// Takes over where the body is now. Allocates nothing.
+  /// Computes positions and normals of the body as it is now. Allocates nothing.
   /// @throws std::invalid_argument  the body is one of another model.
   void update(const SoftBody<3>& body);
 

@@ -1,8 +1,8 @@
 #pragma once
-// The moving state of one soft body.
+// The moving state of one soft body, without an engine.
 //
-// No engine here. An engine integrates the particles (see bullet/bullet_soft_bodies.h and
-// box2d/box2d_soft_bodies.h); what makes them one body is SoftBody::pull(), called once per time step.
+// An engine integrates the particles (bullet/bullet_soft_bodies.h, box2d/box2d_soft_bodies.h). What makes them
+// one body is SoftBody::pull(), which is called once per time step.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -19,22 +19,25 @@ namespace softcell::ppu {
 template <typename Real, int kDimension>
 class ShapeMatcher;
 
-/// What turns: in the plane by an angle and about the one axis that there is, in space about any.
+/// Rotations and angular velocities in two dimensions and three.
 template <int kDimension>
 struct Turning;
+/// In two dimensions.
 template <>
 struct Turning<2> {
-  using Rotation = Eigen::Rotation2Df;
-  using AxialVector = float;  ///< angular velocity or momentum, counter-clockwise above 0
+  using Rotation = Eigen::Rotation2Df;  ///< by an angle in radians, counter-clockwise above 0
+  using AxialVector = float;            ///< angular velocity or momentum, counter-clockwise above 0
 };
+/// In three dimensions.
 template <>
 struct Turning<3> {
-  using Rotation = Eigen::Quaternionf;
-  using AxialVector = Eigen::Vector3f;
+  using Rotation = Eigen::Quaternionf;  ///< of any length but 0
+  using AxialVector = Eigen::Vector3f;  ///< angular velocity or momentum, along the axis, right-handed
 };
 
-/// Positions and velocities of one body's particles. Used by one thread at a time; allocates nothing after
-/// construction. Copy a SoftBody to save it, assign to restore: a change by its user, as those below.
+/// Positions and velocities of one body's particles. One thread at a time uses it. It allocates nothing after
+/// construction. Copy a SoftBody to save its state, and assign the copy to restore it: that is a change by its
+/// user, as those below.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SoftBody {
@@ -46,20 +49,24 @@ class SoftBody {
   /// At rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model,
                     const Vector& position = Vector::Zero());
+  /// A copy with all of the other's state, rotations of its regions included.
   SoftBody(const SoftBody& other);
+  /// Becomes what the other is: counts up revision() and resets().
   SoftBody& operator=(const SoftBody& other);
   ~SoftBody();
 
+  /// What the body shares with all others of its make. Another one after an assignment from a body of another.
   const SoftBodyModel<kDimension>& model() const { return *model_; }
+  /// The same, for an owner that outlives the body.
   const std::shared_ptr<const SoftBodyModel<kDimension>>& shared_model() const { return model_; }
 
-  std::span<const Vector> positions() const { return x_; }  ///< metres, of each particle
-  const Vector& position(std::size_t particle) const { return x_[particle]; }
-  std::span<const Vector> velocities() const { return v_; }  ///< m/s, of each particle
-  /// The positions as x y z 0, 16 bytes each: for whoever copies them to SPEs or to a graphics card.
+  std::span<const Vector> positions() const { return x_; }                     ///< metres, of each particle
+  const Vector& position(std::size_t particle) const { return x_[particle]; }  ///< metres
+  std::span<const Vector> velocities() const { return v_; }                    ///< m/s, of each particle
+  /// The positions as x y z 0, 16 bytes each, to be copied to SPEs or to a graphics card.
   std::span<const Eigen::Vector4f> padded_positions() const requires(kDimension == 3) { return padded_; }
 
-  // What an engine's coupling does in a time step of `step` seconds, in this order.
+  // For an engine's coupling: what it calls in a time step of `step` seconds, in this order.
 
   /// Shape matching and damping: changes velocities, conserves momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
@@ -68,28 +75,28 @@ class SoftBody {
   void limit_speed(float limit);
   /// Integrates the inner particles under `gravity` (m/s^2): v += h g, x += h v. The engines' own order.
   void advance_inner(float step, const Vector& gravity);
-  /// Inner particles that have left the box around the outer ones go back to its edge, and lose the velocity
-  /// with which they left: nothing else keeps those of a crushed body from sinking through the ground. For
-  /// bodies whose outer particles are one layer only, as in two dimensions.
+  /// Moves inner particles that have left the box around the outer ones back to its edge, and removes the
+  /// velocity with which they left. Nothing else keeps the inner particles of a crushed body from sinking
+  /// through the ground. For bodies with one layer of outer particles, as in two dimensions.
   void keep_inner_inside();
-  /// Takes an outer particle over from the engine.
+  /// Sets an outer particle to the state that the engine has for it.
   void set_particle(std::size_t particle, const Vector& position, const Vector& velocity) {
     x_[particle] = position;
     v_[particle] = velocity;
     if constexpr (kDimension == 3) padded_[particle] = {position.x(), position.y(), position.z(), 0};
   }
 
-  /// What a solver has made of a velocity.
+  /// Sets a velocity that a solver has computed.
   void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
 
-  /// A body that sleeps is left as it is: no solver steps it. Couplings put bodies to sleep and wake them.
+  /// No solver steps a body that sleeps. Couplings put bodies to sleep and wake them.
   bool asleep() const { return asleep_; }
-  void set_asleep(bool asleep) { asleep_ = asleep; }
+  void set_asleep(bool asleep) { asleep_ = asleep; }  ///< for couplings
 
-  // What its user may do between time steps. Each counts up revision(), by which a coupling notices, and
-  // those after which the rotations of the last step say nothing count up resets() too.
+  // For the user, between time steps. Each of these functions increments revision(), by which a coupling
+  // notices the change. Those after which the rotations of the last step are useless increment resets(), too.
 
-  void translate(const Vector& by);
+  void translate(const Vector& by);  ///< metres; finite
   /// Back to the undeformed shape at rest, the model's own origin at `position`.
   void reset(const Vector& position);
   /// Teleports: turns the body about its centre of mass, then moves it. Velocities turn with the body.
@@ -98,10 +105,10 @@ class SoftBody {
   void reset_deformation();
   void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s
-  /// m/s, to every particle: adds a turn about the centre of mass, in rad/s.
+  /// Adds a turn about the centre of mass, in rad/s, to every particle's velocity.
   void add_angular_velocity(const AxialVector& dw);
-  std::uint32_t revision() const { return revision_; }
-  std::uint32_t resets() const { return resets_; }
+  std::uint32_t revision() const { return revision_; }  ///< how often its user has changed the body
+  std::uint32_t resets() const { return resets_; }  ///< how often it was teleported or put back into shape
 
   Vector centre_of_mass() const;         ///< metres
   Vector linear_momentum() const;        ///< kg m/s

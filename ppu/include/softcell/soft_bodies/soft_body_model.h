@@ -1,5 +1,5 @@
 #pragma once
-// What all soft bodies of one make share: lattice, masses, and what is made of them once.
+// What all soft bodies of one kind share: the lattice, its masses, and what is computed from them once.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,16 +17,16 @@ struct Embedding;
 template <typename Real, int kDimension>
 class MatchingPlan;
 
-/// All that bodies of one make share. Immutable; safe to read from any thread.
+/// What bodies of one kind share. Immutable; any thread may read it.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SoftBodyModel {
  public:
-  const SoftBodySettings& settings() const { return settings_; }
-  const Lattice<kDimension>& lattice() const { return lattice_; }
-  std::size_t particles() const { return masses_.size(); }
-  std::span<const float> masses() const { return masses_; }  ///< kg, of each particle
-  float mass() const { return mass_; }                       ///< kg, of the body
+  const SoftBodySettings& settings() const { return settings_; }   ///< as the model was made
+  const Lattice<kDimension>& lattice() const { return lattice_; }  ///< at rest, in the mesh's own frame
+  std::size_t particles() const { return masses_.size(); }         ///< their number
+  std::span<const float> masses() const { return masses_; }        ///< kg, of each particle
+  float mass() const { return mass_; }                             ///< kg, of the body
 
   /// Particle numbers, ascending. Outer particles collide; a body without contacts has none. In two
   /// dimensions they are those that are not surrounded by four cells. In three they are all corners of the
@@ -34,7 +34,7 @@ class SoftBodyModel {
   /// that is pressed flat on a floor would push its second layer, which carries the mesh too, through the
   /// first and the floor.
   std::span<const std::uint32_t> outer() const { return outer_; }
-  std::span<const std::uint32_t> inner() const { return inner_; }
+  std::span<const std::uint32_t> inner() const { return inner_; }  ///< all others, ascending
 
   /// Radius in metres of the circle or sphere with which an outer particle collides.
   ///

@@ -1,11 +1,11 @@
 #pragma once
-// What a soft body is made like, in two dimensions and three, and when it may sleep.
+// Settings of soft bodies in two dimensions and three, and of their sleep.
 
 #include <optional>
 
 namespace softcell::ppu {
 
-/// What a soft body is made like. Only `cell_size` has no default.
+/// Detail, material and contacts of a soft body. Only `cell_size` has no default.
 ///
 /// `alpha` and `damping` act per time step, so the same numbers make a stiffer and calmer body with shorter
 /// steps. `frequency` and `damping_time` say the same in hertz and seconds and take the step into account.
@@ -20,17 +20,18 @@ struct SoftBodySettings {
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
   std::optional<float> damping_time = {};  ///< s, in place of damping: deviations fall to 1/e in this time
 
-  /// alpha and damping of a time step of `step` seconds. @throws as validate().
+  /// alpha of a time step of `step` seconds, above 0: `alpha`, or computed from `frequency`.
   float alpha_of_step(float step) const;
+  /// damping of a time step of `step` seconds, above 0: `damping`, or computed from `damping_time`.
   float damping_of_step(float step) const;
 
   bool operator==(const SoftBodySettings&) const = default;
 };
 
-/// When bodies may sleep. A body at rest costs its coupling next to nothing then, and its solver nothing.
+/// When bodies fall asleep. A sleeping body costs its solver nothing, and its coupling next to nothing.
 struct SleepSettings {
-  float speed = 0.05f;  ///< m/s: slower than this are all particles of a body that rests
-  float seconds = 1;    ///< for so long
+  float speed = 0.05f;  ///< m/s: a body rests while all its particles are slower than this
+  float seconds = 1;    ///< a body that has rested for so long falls asleep
 };
 
 /// @throws std::runtime_error  a value is out of its range; the sentence names it and the range.

@@ -1,5 +1,6 @@
 #pragma once
-// Who does shape matching and damping of many bodies in a time step: the PPU, or SPEs (spe_solver.h).
+// Solvers: they do the shape matching and damping of many bodies in a time step. PpuSolver works on the calling
+// thread, SpeSolver (spe_bodies/spe_solver.h) on SPEs.
 
 #include <span>
 #include <vector>
@@ -8,33 +9,33 @@
 
 namespace softcell::ppu {
 
-/// Used by one thread. Between kick() and finish() or drop() the bodies must stay where they are; what is
-/// done to their particles then is lost.
+/// The interface of solvers. One thread uses a solver. Between kick() and finish() or drop(), bodies must not
+/// be moved or destroyed, and changes of their velocities are lost.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SoftBodySolver {
  public:
   virtual ~SoftBodySolver() = default;
 
-  /// Takes over positions and velocities of all bodies that are awake and begins a time step of `step`
-  /// seconds. @pre nothing has begun. @throws std::runtime_error  as the solver says.
+  /// Reads positions and velocities of all bodies that are awake and begins a time step of `step` seconds.
+  /// @pre no step is under way. @throws std::runtime_error  as the solver says.
   virtual void kick(std::span<SoftBody<kDimension>* const> bodies, float step) = 0;
 
-  /// Waits for what kick() has begun and changes the bodies' velocities.
+  /// Waits for the step that kick() has begun and changes the bodies' velocities.
   /// @throws std::runtime_error  a particle is NaN or infinite, or an SPE failed.
   virtual void finish() = 0;
 
-  /// Waits for what kick() has begun and changes no body. SPEs may have found rotations by then, from which
-  /// those of the next step start: it has the same result where they had converged, else one within the
-  /// tolerance of that iteration.
+  /// Waits for the step that kick() has begun and discards its result: no body changes. The next step starts
+  /// from the rotations that SPEs have found by then. Its result is the same if these had converged, and
+  /// otherwise within the tolerance of the iteration.
   virtual void drop() = 0;
 
-  /// What is known of the body from earlier steps is of no use any more: it was teleported, or goes.
-  /// @pre nothing has begun.
+  /// Discards what the solver knows of the body from earlier steps. Call it when a body was teleported, and
+  /// before it is destroyed. @pre no step is under way.
   virtual void forget(const SoftBody<kDimension>& body) = 0;
 };
 
-/// Bodies one after the other, by SoftBody::pull(): the reference. Works in finish().
+/// The reference: steps the bodies one after the other by SoftBody::pull(), in finish().
 template <int kDimension>
 class PpuSolver final : public SoftBodySolver<kDimension> {
  public:

@@ -21,20 +21,28 @@
 
 namespace softcell::ppu {
 
+/// How an SpeRuntime is made. Every field has a default.
 struct SpeRuntimeOptions {
   int spes = dma::kSpeCount;  ///< 1..6; results do not depend on it
   dma::Schedule schedule{};   ///< when transfers happen; dma::parse_schedule() reads "lazy" or "random:7"
+  /// kSpu: kernels and job loop as a compiler for the SPU has made them, interpreted instruction by instruction. The results are
+  /// the same bits.
+  ls_sim::Machine machine = ls_sim::Machine::kHost;
   /// Runs the kernels' checked flavours, which report each wrong access to SpeRuntime::findings() and take
   /// some ten times as long.
   bool checked = false;
   std::chrono::milliseconds deadline{10'000};  ///< for one job; one that takes longer is stopped and fails
+  /// Size of main memory: whole megabytes (2^20 bytes), from 1 to 2816. The host provides memory for what is in
+  /// use only.
+  std::uint64_t main_memory_bytes = dma::kMainMemoryBytes;
 };
 
 /// Outlives all that uses it: solvers, skinners, chains, worlds' soft bodies. Construct it first. The SPEs are
 /// host threads that sleep while there is nothing to do. Used by one thread at a time, except where stated.
 class SpeRuntime final : public SolverFactory {
  public:
-  /// @throws std::invalid_argument  another number of SPEs than 1..6.
+  /// @throws std::invalid_argument  another number of SPEs than 1..6, or another size of main memory than
+  ///                                SpeRuntimeOptions states.
   /// @throws std::runtime_error     the host has no address range or no threads left, or its processor lacks
   ///                                AVX2 or FMA.
   explicit SpeRuntime(const SpeRuntimeOptions& options = {});
@@ -46,14 +54,16 @@ class SpeRuntime final : public SolverFactory {
   /// A solver for the soft bodies of one Bullet world: BulletSoftBodies calls it. A job system has room for
   /// 15 chains; a solver takes one of them, a skinner two.
   std::unique_ptr<SoftBodySolver<3>> make_solver() override;
+  /// For contacts of what is drawn, of the soft bodies of one Bullet world; takes two chains.
+  std::shared_ptr<ContactWorker> make_contact_worker() override;
   /// A solver for the soft bodies of one Box2D world.
   std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override;
 
-  dma::AddressSpace& memory();  ///< main memory, 256 MB, from which buffers are made
-  JobSystem& jobs();
-  int spes() const;
+  dma::AddressSpace& memory();  ///< main memory, from which buffers are made
+  JobSystem& jobs();            ///< for kernels of one's own
+  int spes() const;             ///< their number, 1..6
 
-  /// One of softcell's own kernels, in the flavour of the options; loaded at the first call.
+  /// One of softcell's own kernels, for the machine and in the flavour of the options; loaded at the first call.
   /// @throws std::runtime_error  there is none of that name.
   const ls_sim::KernelImage& kernel(std::string_view name);
 

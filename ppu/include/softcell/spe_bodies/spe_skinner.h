@@ -63,11 +63,13 @@ struct DrawOrder {
   }
 };
 
+/// The order of the model's vertices; empty for a model without a mesh. Any thread.
 DrawOrder draw_order(const SoftBodyModel<3>& model);
 
 /// Skins bodies on SPEs. Used by one thread, between the steps of the bodies.
 class SpeSkinner {
  public:
+  /// @param spes  outlives the skinner. @throws std::runtime_error  as SpeRuntime::kernel().
   explicit SpeSkinner(SpeRuntime& spes);
   /// For a job system of one's own. `skin` is the image of that kernel. All three outlive the skinner.
   SpeSkinner(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& skin);

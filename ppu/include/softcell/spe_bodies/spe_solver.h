@@ -19,14 +19,17 @@ namespace softcell::ppu {
 /// The images of the kernels that step soft bodies. They must outlive the solver.
 template <int kDimension>
 struct MatchKernels;
+/// In two dimensions.
 template <>
 struct MatchKernels<2> {
-  const ls_sim::KernelImage& match_2d;
+  const ls_sim::KernelImage& match_2d;  ///< steps bodies that fit a local store
 };
+/// In three dimensions.
 template <>
 struct MatchKernels<3> {
-  const ls_sim::KernelImage& match;
-  const ls_sim::KernelImage& match_tiles;  ///< the same flavour, checked or not
+  const ls_sim::KernelImage& match;  ///< steps bodies that fit a local store
+  /// Steps larger ones, in tiles. Of the same flavour as `match`, checked or not.
+  const ls_sim::KernelImage& match_tiles;
 };
 
 /// The result is the same bits for any number of SPEs. The rotations of regions live in main memory, not in
@@ -51,6 +54,10 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   void finish() override;
   void drop() override;
   void forget(const Body& body) override;
+
+  /// How many bodies of the last kick(), awake or asleep, fit no local store in any way: the PPU steps them.
+  /// Checked kernels need part of the local store for their checks, so with them it may be more.
+  std::size_t bodies_on_ppu() const;
 
  private:
   struct Group;   // the bodies of one model

@@ -25,10 +25,11 @@ inline Colour srgb(std::uint32_t rrggbb) {
   return {channel(16), channel(8), channel(0)};
 }
 
-/// Handles to meshes of one Renderer.
+/// Handle to a mesh of one Renderer whose vertices change.
 struct MeshId {
   std::uint32_t value = 0;
 };
+/// Handle to a mesh of one Renderer that does not change.
 struct StaticMeshId {
   std::uint32_t value = 0;
 };
@@ -86,6 +87,7 @@ struct PixelRect {
   int left = 0, top = 0, right = 0, bottom = 0;
 };
 
+/// All that one picture shows. What the spans refer to must live until render() returns.
 struct FrameDescription {
   Camera camera = {};
   Light light = {};

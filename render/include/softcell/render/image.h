@@ -21,6 +21,7 @@ struct Image {
 
   /// The four channels of the pixel in column x and row y, counted from the top left. @pre inside the picture
   const std::uint8_t* pixel(int x, int y) const { return rgba.data() + offset(x, y); }
+  /// The same, to be changed.
   std::uint8_t* pixel(int x, int y) { return rgba.data() + offset(x, y); }
 
   /// Whether `rgba` has the four bytes of each pixel and no more: every function that takes a picture needs

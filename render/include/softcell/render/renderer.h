@@ -32,6 +32,7 @@ static_assert(sizeof(CellVertex) == 56, "uploaded as it is");
 /// Bytes of one corner: four floats, x y z in metres and one that is ignored.
 inline constexpr std::size_t kCellCornerBytes = 16;
 
+/// How a Renderer is made. Every field has a default; width and height are in pixels.
 struct RendererSettings {
   int width = 960;
   int height = 540;
@@ -111,8 +112,8 @@ class Renderer {
 
   /// Changes the size of the next pictures. @throws std::runtime_error  as the constructor.
   void resize(int width, int height);
-  int width() const;
-  int height() const;
+  int width() const;   ///< of the pictures, pixels
+  int height() const;  ///< of the pictures, pixels
 
   /// Reads the last frame back. The reference stays valid as long as the renderer; the next call overwrites
   /// the picture.

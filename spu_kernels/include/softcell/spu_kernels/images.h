@@ -7,10 +7,12 @@
 
 namespace softcell::spu_kernels {
 
+/// A kernel as an ELF file in the program.
 struct ImageFile {
   std::string_view name;
   std::span<const std::byte> elf;          ///< for ls_sim::load_image()
   std::span<const std::byte> checked_elf;  ///< its instrumented flavour; empty for one that would not fit
+  std::span<const std::byte> spu_elf;      ///< the executable for the SPU, for ls_sim::load_spu_program()
 };
 
 /// All of them, by name.
@@ -18,5 +20,8 @@ std::span<const ImageFile> image_files();
 
 /// The file of the kernel of that name, or of its checked flavour. @throws std::runtime_error  there is none.
 std::span<const std::byte> image_file(std::string_view name, bool checked);
+
+/// The executable for the SPU of the kernel of that name. @throws std::runtime_error  there is none.
+std::span<const std::byte> spu_image_file(std::string_view name);
 
 }  // namespace softcell::spu_kernels

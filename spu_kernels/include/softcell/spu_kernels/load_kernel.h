@@ -11,11 +11,14 @@ namespace softcell::spu_kernels {
 
 /// One of softcell's own kernels, as image_files() names them. Any thread.
 /// @param checked  its checked flavour, which reports each load and store
+/// @param machine  kSpu: as the compiler for the SPU has made it, for the interpreter. Any of those can be checked.
 /// @throws std::runtime_error  there is no such kernel, or it has no checked flavour.
-ls_sim::KernelImage load_kernel(std::string_view name, bool checked = false);
+ls_sim::KernelImage load_kernel(std::string_view name, bool checked = false,
+                                ls_sim::Machine machine = ls_sim::Machine::kHost);
 
 /// A kernel from a file that softcell_add_spu_kernel made: NAME.spu.elf, or NAME.checked.spu.elf for its
-/// checked flavour. The image's name is NAME. Any thread.
+/// checked flavour; or from an executable of a compiler for the SPU, NAME.elf, which the interpreter runs. The
+/// image's name is NAME. Any thread.
 /// @throws std::runtime_error  one sentence that names the file: it cannot be read, it is larger than 256 MB,
 ///         or it is no such image.
 ls_sim::KernelImage load_kernel_file(const std::filesystem::path& file);

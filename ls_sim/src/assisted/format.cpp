@@ -1,0 +1,150 @@
+#include "format.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+namespace softcell::ls_sim::assisted {
+namespace {
+
+constexpr int kMostWidth = 4096;  // of a field, and its digits: more is cut; C asks for 4095 [C17, 7.21.6.1]
+
+/// One conversion as it was read: "%-08.3ll" and "x".
+struct Conversion {
+  std::string flags;
+  int width = -1, precision = -1;
+  std::string length;
+  char kind = 0;
+
+  /// The same for the host's printf, with its own length.
+  std::string for_host(const char* host_length) const {
+    std::string text(1, '%');
+    text += flags;
+    if (width >= 0) text += std::to_string(width);
+    if (precision >= 0) {
+      text += '.';
+      text += std::to_string(precision);
+    }
+    text += host_length;
+    text += kind;
+    return text;
+  }
+};
+
+template <class Value>
+std::string print(const std::string& format, Value value) {
+  // The format is one conversion that was made by for_host() for this type.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+#pragma GCC diagnostic ignored "-Wformat-security"
+  const int size = std::snprintf(nullptr, 0, format.c_str(), value);
+  std::string text(static_cast<std::size_t>(std::max(size, 0)) + 1, '\0');
+  std::snprintf(text.data(), text.size(), format.c_str(), value);
+#pragma GCC diagnostic pop
+  text.pop_back();
+  return text;
+}
+
+/// Reads a conversion; `at` is behind the percent sign and moves behind what was read.
+Conversion read_conversion(const std::string& format, std::size_t& at, FormatArguments& arguments) {
+  Conversion c;
+  const auto is = [&](const char* these) {
+    return at < format.size() && format[at] != '\0' &&
+           std::string(these).find(format[at]) != std::string::npos;
+  };
+  const auto number = [&] {
+    if (is("*")) {
+      ++at;
+      return static_cast<int>(arguments.next_word());
+    }
+    int value = 0;
+    while (is("0123456789")) value = std::min(kMostWidth, value * 10 + (format[at++] - '0'));
+    return value;
+  };
+  while (is("-+ #0")) c.flags += format[at++];
+  if (is("*0123456789")) c.width = number();
+  if (c.width < -1) {
+    c.flags += '-';
+    c.width = -std::max(c.width, -kMostWidth);
+  }
+  c.width = std::min(c.width, kMostWidth);
+  if (is(".")) {
+    ++at;
+    c.precision = std::min(number(), kMostWidth);
+  }
+  while (is("hlLqjzt")) c.length += format[at++];
+  if (at < format.size()) c.kind = format[at++];
+  return c;
+}
+
+bool is_long(const Conversion& c) {
+  return c.length == "ll" || c.length == "q" || c.length == "j" || c.length == "L";
+}
+
+std::string convert(const Conversion& c, FormatArguments& arguments) {
+  switch (c.kind) {
+    case 'd':
+    case 'i': {
+      if (is_long(c)) return print(c.for_host("ll"), static_cast<long long>(arguments.next_doubleword()));
+      const auto value = static_cast<int>(arguments.next_word());
+      if (c.length == "hh") return print(c.for_host(""), static_cast<int>(static_cast<signed char>(value)));
+      return print(c.for_host(""), c.length == "h" ? static_cast<int>(static_cast<short>(value)) : value);
+    }
+    case 'u':
+    case 'o':
+    case 'x':
+    case 'X': {
+      if (is_long(c))
+        return print(c.for_host("ll"), static_cast<unsigned long long>(arguments.next_doubleword()));
+      const std::uint32_t value = arguments.next_word();
+      return print(c.for_host(""), c.length == "hh"  ? value & 0xFFu
+                                   : c.length == "h" ? value & 0xFFFFu
+                                                     : value);
+    }
+    case 'c':
+      return print(c.for_host(""), static_cast<int>(arguments.next_word() & 0xFFu));
+    case 's': {
+      const std::size_t most = c.precision < 0 ? std::string::npos : static_cast<std::size_t>(c.precision);
+      return print(c.for_host(""), arguments.text(arguments.next_word(), most).c_str());
+    }
+    case 'p': {
+      Conversion hexadecimal = c;
+      hexadecimal.kind = 'x';
+      if (hexadecimal.flags.find('#') == std::string::npos) hexadecimal.flags += '#';
+      return print(hexadecimal.for_host(""), arguments.local_store_address(arguments.next_word()));
+    }
+    case 'a':
+    case 'A':
+    case 'e':
+    case 'E':
+    case 'f':
+    case 'F':
+    case 'g':
+    case 'G':
+      return print(c.for_host(""), arguments.next_double());
+    case '%':
+      return "%";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::string format_text(const std::string& format, FormatArguments& arguments) {
+  std::string text;
+  for (std::size_t at = 0; at < format.size();) {
+    if (format[at] != '%') {
+      text += format[at++];
+    } else {
+      const std::size_t begin = at++;
+      const Conversion conversion = read_conversion(format, at, arguments);
+      static const std::string kKinds = "diuoxXcspaAeEfFgG%";
+      const bool known = conversion.kind != '\0' && kKinds.find(conversion.kind) != std::string::npos;
+      text += known ? convert(conversion, arguments) : format.substr(begin, at - begin);
+    }
+  }
+  return text;
+}
+
+}  // namespace softcell::ls_sim::assisted

@@ -1,0 +1,25 @@
+#pragma once
+// Text by a format of printf, for a program whose int and pointers have 32 bits.
+
+#include <cstdint>
+#include <string>
+
+namespace softcell::ls_sim::assisted {
+
+/// Where the arguments behind a format come from, one after another.
+class FormatArguments {
+ public:
+  virtual ~FormatArguments() = default;
+  virtual std::uint32_t next_word() = 0;
+  virtual std::uint64_t next_doubleword() = 0;
+  virtual double next_double() = 0;
+  /// The text at an address of the local store, up to its zero, `most` characters, or the end of the local store.
+  virtual std::string text(std::uint32_t address, std::size_t most) = 0;
+  virtual std::uint32_t local_store_address(std::uint32_t pointer) = 0;
+};
+
+/// What printf makes of them. `l`, `z` and `t` are 32 bits, `ll` and `j` 64, `L` is a double, `%p` shows a local-store address. `%n`
+/// and what is no conversion are copied as they stand. [C17, 7.21.6.1]
+std::string format_text(const std::string& format, FormatArguments& arguments);
+
+}  // namespace softcell::ls_sim::assisted

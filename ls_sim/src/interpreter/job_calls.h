@@ -1,0 +1,95 @@
+#pragma once
+// The jobs that a resident kernel built for the SPU calls.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "checked_observer.h"
+#include "core.h"
+#include "softcell/dma/fault.h"
+#include "softcell/ls_sim/engine.h"
+#include "softcell/ls_sim/local_store.h"
+
+namespace softcell::ls_sim::interpreter {
+
+/// Tells an observer where jobs begin and end. A call of code below the resident kernel's image begins a job, whose
+/// addresses the kernel has stored in its variable `job_mark` (spu_kernels/common/job_mark.h); the return ends it. What a job
+/// must not change is looked at then.
+class JobCalls {
+ public:
+  /// @param caller  the resident kernel. @param jobs  may be null: nobody wants to know.
+  JobCalls(const KernelImage& caller, LocalStore& local_store, const SpuState& state, JobObserver* jobs);
+
+  /// A jump was taken. @return  false when the run ends, by take_fault().
+  bool on_jump(std::uint32_t from, std::uint32_t to) {
+    if (jobs_ == nullptr || (from < caller_.begin) == (to < caller_.begin)) return true;
+    const HostArithmetic host;
+    return to < caller_.begin ? begin() : end();
+  }
+
+  bool are_watched() const { return jobs_ != nullptr; }
+  bool under_way() const { return under_way_; }
+  std::optional<dma::Fault> take_fault() { return std::exchange(fault_, std::nullopt); }
+  /// The local store below this has been the image of a job, or may have been; 0: no job was called.
+  std::uint32_t last_job_end() const { return last_job_end_; }
+
+ private:
+  bool begin();
+  bool end();
+  bool fail(dma::Rule rule, std::string detail);
+  std::uint32_t stack_limit() const;
+  std::span<std::byte> canary() const;
+  void fill_canary();
+  std::optional<std::string> changed_part() const;
+  std::span<const std::byte> variables() const;
+  std::span<const std::byte> frames() const;
+
+  const KernelImage& caller_;
+  LocalStore& local_store_;
+  const SpuState& state_;
+  JobObserver* jobs_;
+  std::uint32_t mark_ = 0;  ///< local-store address of job_mark
+  bool under_way_ = false;
+  const KernelImage* job_ = nullptr;  ///< null when it is not known
+  std::uint32_t last_job_end_ = 0;
+  std::uint32_t frames_begin_ = 0;
+  std::vector<std::byte> variables_before_, frames_before_;  ///< as they were when the job was called
+  std::optional<dma::Fault> fault_;
+};
+
+/// Tells an observer of instructions what it is told, and of jobs where they begin and end.
+template <class Observer>
+class WithJobs {
+ public:
+  WithJobs(JobCalls& jobs, Observer& observer) : jobs_(jobs), observer_(observer) {}
+  void on_instruction(const Operation& op, std::uint32_t pc) { observer_.on_instruction(op, pc); }
+  void on_load(std::uint32_t lsa, std::uint32_t pc) { observer_.on_load(lsa, pc); }
+  void on_store(std::uint32_t lsa, std::uint32_t pc) { observer_.on_store(lsa, pc); }
+  bool on_jump(std::uint32_t from, std::uint32_t to) { return jobs_.on_jump(from, to); }
+
+ private:
+  JobCalls& jobs_;
+  Observer& observer_;
+};
+
+/// Passes on what jobs do, and nothing of the kernel that calls them: that is not checked.
+class JobAccesses final : public AccessObserver {
+ public:
+  JobAccesses(const JobCalls& jobs, AccessObserver& to) : jobs_(jobs), to_(to) {}
+  void on_access(const Access& access) override {
+    if (jobs_.under_way()) to_.on_access(access);
+  }
+  void on_instruction(const ExecutedInstruction& instruction) override {
+    if (jobs_.under_way()) to_.on_instruction(instruction);
+  }
+
+ private:
+  const JobCalls& jobs_;
+  AccessObserver& to_;
+};
+
+}  // namespace softcell::ls_sim::interpreter

@@ -1,0 +1,341 @@
+#include "ppu/bullet/bullet_obstacles.h"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletCollision/CollisionShapes/btConeShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btShapeHull.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btConvexHullComputer.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "ppu/bullet/bullet_vector.h"
+#include "ppu/numbers/deterministic_math.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+constexpr int kRimPoints = 24;  // of the circles of cylinders and cones
+
+/// Turns the y axis into Bullet's axis of a capsule, cylinder or cone.
+Matrix3f from_y_to(int axis) {
+  SC_ASSERT(axis >= 0 && axis < 3, "axis {} of a shape", axis);
+  Matrix3f turn = Matrix3f::Identity();
+  if (axis == 0) turn << 0, 1, 0, -1, 0, 0, 0, 0, 1;
+  if (axis == 2) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return turn;
+}
+
+/// Turns the y axis into a plane's normal.
+Matrix3f from_y_to(const Vector3f& normal) {
+  return Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitY(), normal).toRotationMatrix();
+}
+
+std::vector<ObstacleEdge> edges_of_box(const Vector3f& half) {
+  std::vector<ObstacleEdge> edges;
+  for (int d = 0; d < 3; ++d) {
+    for (unsigned i = 0; i < 4; ++i) {
+      Vector3f from = -half;
+      if ((i & 1u) != 0) from[(d + 1) % 3] = half[(d + 1) % 3];
+      if ((i & 2u) != 0) from[(d + 2) % 3] = half[(d + 2) % 3];
+      Vector3f to = from;
+      to[d] = half[d];
+      edges.push_back({from, to});
+    }
+  }
+  return edges;
+}
+
+void add_rim(float radius, float height, std::vector<ObstacleEdge>& edges) {
+  const auto point = [&](int i) {
+    const double angle = 2 * std::numbers::pi * i / kRimPoints;
+    return Vector3f(radius * static_cast<float>(cosine(angle)), height,
+                    radius * static_cast<float>(sine(angle)));
+  };
+  for (int i = 0; i < kRimPoints; ++i) edges.push_back({point(i), point(i + 1)});
+}
+
+/// Faces and edges of the hull of some points.
+void find_hull(const std::vector<btVector3>& points, std::vector<Eigen::Vector4f>& planes,
+               std::vector<ObstacleEdge>& edges) {
+  btConvexHullComputer hull;
+  hull.compute(reinterpret_cast<const float*>(points.data()), sizeof(btVector3),
+               static_cast<int>(points.size()), 0, 0);
+  for (int f = 0; f < hull.faces.size(); ++f) {
+    // Newell's normal: a face of nearly collinear corners has one, too.
+    Vector3f normal = Vector3f::Zero();
+    float height = 0;
+    int corners = 0;
+    const btConvexHullComputer::Edge* const first = &hull.edges[hull.faces[f]];
+    const btConvexHullComputer::Edge* edge = first;
+    do {
+      const Vector3f a = to_eigen(hull.vertices[edge->getSourceVertex()]);
+      const Vector3f b = to_eigen(hull.vertices[edge->getTargetVertex()]);
+      normal += a.cross(b);
+      if (edge->getSourceVertex() < edge->getTargetVertex()) edges.push_back({a, b});
+      edge = edge->getNextEdgeOfFace();
+      ++corners;
+    } while (edge != first);
+    if (!(normal.norm() > 0)) continue;
+    normal.normalize();
+    for (edge = first; corners > 0; --corners, edge = edge->getNextEdgeOfFace())
+      height = edge == first ? normal.dot(to_eigen(hull.vertices[edge->getSourceVertex()]))
+                             : std::max(height, normal.dot(to_eigen(hull.vertices[edge->getSourceVertex()])));
+    planes.push_back({normal.x(), normal.y(), normal.z(), height});
+  }
+}
+
+std::vector<btVector3> points_of(const btConvexShape& shape) {
+  std::vector<btVector3> points;
+  if (shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE) {
+    const auto& hull = static_cast<const btConvexHullShape&>(shape);
+    for (int i = 0; i < hull.getNumPoints(); ++i) points.push_back(hull.getScaledPoint(i));
+    return points;
+  }
+  btShapeHull around(&shape);
+  around.buildHull(shape.getMargin());
+  points.assign(around.getVertexPointer(), around.getVertexPointer() + around.numVertices());
+  return points;
+}
+
+/// Collects what the broad phase finds.
+struct Collector final : btBroadphaseAabbCallback {
+  int group = 0, mask = 0;
+  std::vector<const btBroadphaseProxy*> found;
+  bool process(const btBroadphaseProxy* proxy) override {
+    if ((proxy->m_collisionFilterGroup & mask) != 0 && (proxy->m_collisionFilterMask & group) != 0)
+      found.push_back(proxy);
+    return true;
+  }
+};
+
+}  // namespace
+
+void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
+  SC_ASSERT(step > 0, "a substep of {} s", step);
+  world_ = &world;
+  step_ = step;
+  obstacles_.clear();
+  rigids_.clear();
+  before_.clear();
+  objects_.clear();
+  known_.clear();
+  edges_.clear();
+  triangles_.clear();
+}
+
+void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
+                               std::vector<std::uint32_t>& indices) {
+  SC_ASSERT(world_ != nullptr, "obstacles for groups {} are looked for before begin()", mask);
+  Collector near;
+  near.group = group, near.mask = mask;
+  // Broad phases are not const where they only look.
+  const_cast<btBroadphaseInterface*>(world_->getBroadphase())
+      ->aabbTest(to_bullet(box.low), to_bullet(box.high), near);
+  // In the order in which objects were added, whatever tree they are in.
+  std::sort(near.found.begin(), near.found.end(),
+            [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
+  for (const btBroadphaseProxy* const proxy : near.found) {
+    auto& object = *static_cast<btCollisionObject*>(proxy->m_clientObject);
+    if (overlap({to_eigen(proxy->m_aabbMin), to_eigen(proxy->m_aabbMax)}, box) && object.hasContactResponse())
+      add_object(object, box, indices);
+  }
+}
+
+void BulletObstacles::add_object(btCollisionObject& object, const Bounds<3>& box,
+                                 std::vector<std::uint32_t>& indices) {
+  const auto known = known_.find(&object);
+  if (known != known_.end()) {
+    indices.insert(indices.end(), known->second.begin(), known->second.end());
+    return;
+  }
+  std::vector<std::uint32_t> own;
+  add_shape(*object.getCollisionShape(), object.getWorldTransform(), rigid_of(object), box, own);
+  indices.insert(indices.end(), own.begin(), own.end());
+  // Of triangles there are others in every box.
+  if (!object.getCollisionShape()->isConcave() && !object.getCollisionShape()->isCompound())
+    known_[&object] = own;
+}
+
+std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
+  SC_ASSERT(rigids_.size() == objects_.size() && before_.size() == objects_.size(),
+            "{} rigid bodies, {} before, of {} objects", rigids_.size(), before_.size(), objects_.size());
+  const auto known = std::find(objects_.begin(), objects_.end(), &object);
+  if (known != objects_.end()) return static_cast<std::uint32_t>(known - objects_.begin());
+  ContactRigid rigid;
+  rigid.centre = to_eigen(object.getWorldTransform().getOrigin());
+  rigid.friction = object.getFriction();
+  if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
+    rigid.velocity = to_eigen(body->getLinearVelocity());
+    rigid.spin = to_eigen(body->getAngularVelocity());
+    if (!body->isStaticOrKinematicObject()) {
+      // Bullet adds forces, gravity among them, after this.
+      rigid.velocity +=
+          step_ * body->getInvMass() * to_eigen(body->getTotalForce() * body->getLinearFactor());
+      rigid.inverse_mass = body->getInvMass();
+      rigid.inverse_inertia = to_eigen(body->getInvInertiaTensorWorld());
+    }
+  }
+  rigids_.push_back(rigid);
+  before_.push_back(rigid);
+  objects_.push_back(&object);
+  return static_cast<std::uint32_t>(rigids_.size() - 1);
+}
+
+std::span<const ObstacleEdge> BulletObstacles::keep(std::vector<ObstacleEdge> edges) {
+  edges_.push_back(std::make_unique<std::vector<ObstacleEdge>>(std::move(edges)));
+  return *edges_.back();
+}
+
+void BulletObstacles::push(const Obstacle& obstacle, std::vector<std::uint32_t>& indices) {
+  SC_ASSERT(obstacle.rigid < rigids_.size(), "an obstacle of rigid body {} of {}", obstacle.rigid,
+            rigids_.size());
+  indices.push_back(static_cast<std::uint32_t>(obstacles_.size()));
+  obstacles_.push_back(obstacle);
+}
+
+void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
+                                const Bounds<3>& box, std::vector<std::uint32_t>& indices) {
+  Obstacle obstacle;
+  obstacle.rigid = rigid;
+  obstacle.position = to_eigen(pose.getOrigin());
+  obstacle.rotation = to_eigen(pose.getBasis());
+  switch (shape.getShapeType()) {
+    case COMPOUND_SHAPE_PROXYTYPE: {
+      const auto& compound = static_cast<const btCompoundShape&>(shape);
+      for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        add_shape(*compound.getChildShape(i), pose * compound.getChildTransform(i), rigid, box, indices);
+      return;
+    }
+    case STATIC_PLANE_PROXYTYPE: {
+      const auto& plane = static_cast<const btStaticPlaneShape&>(shape);
+      const Vector3f normal = to_eigen(plane.getPlaneNormal());
+      obstacle.kind = ObstacleKind::kPlane;
+      obstacle.position += obstacle.rotation * (plane.getPlaneConstant() * normal);
+      obstacle.rotation = obstacle.rotation * from_y_to(normal);
+      break;
+    }
+    case SPHERE_SHAPE_PROXYTYPE:
+      obstacle.kind = ObstacleKind::kBox;
+      obstacle.rounding = static_cast<const btSphereShape&>(shape).getRadius();
+      obstacle.edges = keep({{Vector3f::Zero(), Vector3f::Zero()}});
+      break;
+    case BOX_SHAPE_PROXYTYPE:
+      obstacle.kind = ObstacleKind::kBox;
+      obstacle.extent = to_eigen(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin());
+      obstacle.edges = keep(edges_of_box(obstacle.extent));
+      break;
+    case CAPSULE_SHAPE_PROXYTYPE: {
+      const auto& capsule = static_cast<const btCapsuleShape&>(shape);
+      obstacle.kind = ObstacleKind::kBox;
+      obstacle.rotation = obstacle.rotation * from_y_to(capsule.getUpAxis());
+      obstacle.extent = {0, capsule.getHalfHeight(), 0};
+      obstacle.rounding = capsule.getRadius();
+      obstacle.edges = keep({{-obstacle.extent, obstacle.extent}});
+      break;
+    }
+    case CYLINDER_SHAPE_PROXYTYPE: {
+      const auto& cylinder = static_cast<const btCylinderShape&>(shape);
+      const int axis = cylinder.getUpAxis();
+      obstacle.kind = ObstacleKind::kCylinder;
+      obstacle.rotation = obstacle.rotation * from_y_to(axis);
+      obstacle.extent = {cylinder.getRadius(), cylinder.getHalfExtentsWithMargin()[axis], 0};
+      std::vector<ObstacleEdge> edges;
+      for (const float height : {-obstacle.extent.y(), obstacle.extent.y()})
+        add_rim(obstacle.extent.x(), height, edges);
+      obstacle.edges = keep(std::move(edges));
+      break;
+    }
+    case CONE_SHAPE_PROXYTYPE: {
+      const auto& cone = static_cast<const btConeShape&>(shape);
+      obstacle.kind = ObstacleKind::kCone;
+      obstacle.rotation = obstacle.rotation * from_y_to(cone.getConeUpIndex());
+      obstacle.extent = {cone.getRadius(), cone.getHeight() / 2, 0};
+      const Vector3f tip(0, obstacle.extent.y(), 0);
+      std::vector<ObstacleEdge> edges{{tip, tip}};
+      add_rim(obstacle.extent.x(), -obstacle.extent.y(), edges);
+      obstacle.edges = keep(std::move(edges));
+      break;
+    }
+    default: {
+      if (shape.isConcave()) return add_triangles(shape, obstacle, box, indices);
+      if (!shape.isConvex())
+        throw std::runtime_error(std::string("soft bodies cannot touch a shape of the kind ") +
+                                 shape.getName() + "; it is neither convex nor made of triangles");
+      const Hull& hull = hull_of(shape, points_of(static_cast<const btConvexShape&>(shape)));
+      obstacle.kind = ObstacleKind::kHull;
+      obstacle.planes = hull.planes;
+      obstacle.edges = hull.edges;
+    }
+  }
+  push(obstacle, indices);
+}
+
+void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
+                                    std::vector<std::uint32_t>& indices) {
+  struct Gather final : btTriangleCallback {
+    std::vector<Triangle> triangles;
+    void processTriangle(btVector3* corner, int, int) override {
+      triangles.push_back({to_eigen(corner[0]), to_eigen(corner[1]), to_eigen(corner[2])});
+    }
+  } gather;
+  // The box in the shape's frame.
+  const Matrix3f turn = obstacle.rotation.transpose();
+  const Vector3f centre = turn * (0.5f * (box.low + box.high) - obstacle.position);
+  const Vector3f half = turn.cwiseAbs() * (0.5f * (box.high - box.low));
+  static_cast<const btConcaveShape&>(shape).processAllTriangles(&gather, to_bullet(centre - half),
+                                                                to_bullet(centre + half));
+  if (gather.triangles.empty()) return;
+  obstacle.kind = ObstacleKind::kTriangles;
+  std::vector<ObstacleEdge> edges;
+  for (const Triangle& t : gather.triangles)
+    for (std::size_t i = 0; i < 3; ++i) edges.push_back({t[i], t[(i + 1) % 3]});
+  obstacle.edges = keep(std::move(edges));
+  triangles_.push_back(std::make_unique<std::vector<Triangle>>(std::move(gather.triangles)));
+  obstacle.triangles = *triangles_.back();
+  push(obstacle, indices);
+}
+
+/// Made anew when the shape has other points than the one that was there before.
+const BulletObstacles::Hull& BulletObstacles::hull_of(const btCollisionShape& shape,
+                                                      std::vector<btVector3> points) {
+  Hull& hull = hulls_[&shape];
+  if (hull.points != points || hull.planes.empty()) {
+    hull = {};
+    find_hull(points, hull.planes, hull.edges);
+    hull.points = std::move(points);
+  }
+  return hull;
+}
+
+void BulletObstacles::apply() {
+  for (std::size_t i = 0; i < rigids_.size(); ++i) {
+    if (rigids_[i].inverse_mass == 0) continue;
+    const Vector3f dv = rigids_[i].velocity - before_[i].velocity, dw = rigids_[i].spin - before_[i].spin;
+    if (dv.isZero(0) && dw.isZero(0)) continue;
+    SC_ASSERT(btRigidBody::upcast(objects_[i]) != nullptr, "object {} of {} has a mass and is no rigid body",
+              i, objects_.size());
+    btRigidBody& body = *btRigidBody::upcast(objects_[i]);
+    body.setLinearVelocity(body.getLinearVelocity() + to_bullet(dv));
+    body.setAngularVelocity(body.getAngularVelocity() + to_bullet(dw));
+    body.activate();
+  }
+}
+
+}  // namespace softcell::ppu

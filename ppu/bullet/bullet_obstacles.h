@@ -1,0 +1,71 @@
+#pragma once
+// What is rigid near soft bodies, as plain data.
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ppu/contacts/obstacle.h"
+#include "softcell/soft_bodies/mesh.h"
+
+namespace softcell::ppu {
+
+/// The rigid bodies of a world that are near some boxes. Used by one thread. Allocates when there are more of
+/// them than ever before.
+///
+/// Knows planes, spheres, boxes, capsules, cylinders, cones, convex hulls, compounds, triangle meshes and
+/// height fields. Another convex shape becomes the hull of what its support function says in 42 directions.
+class BulletObstacles {
+ public:
+  /// Forgets what was near before.
+  void begin(const btDiscreteDynamicsWorld& world, float step);
+
+  /// Appends the indices of all obstacles in a box.
+  /// @param group, mask  Bullet's collision filter of what is in the box
+  /// @throws std::runtime_error  a shape that is neither convex nor made of triangles; the sentence names it.
+  void add_near(const Bounds<3>& box, int group, int mask, std::vector<std::uint32_t>& indices);
+
+  std::span<const Obstacle> obstacles() const { return obstacles_; }
+  std::span<ContactRigid> rigids() { return rigids_; }
+  /// Whose rigids() these are. A collision object that is no rigid body never moves.
+  std::span<btCollisionObject* const> objects() const { return objects_; }
+
+  /// Gives rigid bodies the velocities that contacts have given their ContactRigid.
+  void apply();
+
+ private:
+  /// Faces and edges of a convex hull.
+  struct Hull {
+    std::vector<btVector3> points;  // that it was made of
+    std::vector<Eigen::Vector4f> planes;
+    std::vector<ObstacleEdge> edges;
+  };
+  using Triangle = std::array<Eigen::Vector3f, 3>;
+
+  void add_object(btCollisionObject& object, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
+  std::uint32_t rigid_of(btCollisionObject& object);
+  void add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
+                 const Bounds<3>& box, std::vector<std::uint32_t>& indices);
+  void add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
+                     std::vector<std::uint32_t>& indices);
+  const Hull& hull_of(const btCollisionShape& shape, std::vector<btVector3> points);
+  std::span<const ObstacleEdge> keep(std::vector<ObstacleEdge> edges);
+  void push(const Obstacle& obstacle, std::vector<std::uint32_t>& indices);
+
+  const btDiscreteDynamicsWorld* world_ = nullptr;
+  float step_ = 0;
+  std::vector<Obstacle> obstacles_;
+  std::vector<ContactRigid> rigids_, before_;
+  std::vector<btCollisionObject*> objects_;
+  std::map<const btCollisionObject*, std::vector<std::uint32_t>>
+      known_;  // obstacles of an object without triangles
+  std::map<const btCollisionShape*, Hull> hulls_;
+  std::vector<std::unique_ptr<std::vector<ObstacleEdge>>> edges_;
+  std::vector<std::unique_ptr<std::vector<Triangle>>> triangles_;
+};
+
+}  // namespace softcell::ppu

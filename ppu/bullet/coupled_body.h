@@ -1,0 +1,109 @@
+#pragma once
+// One soft body in a Bullet world, whatever it touches with: spheres (sphere_body.h) or its drawn surface
+// (surface_body.h).
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "softcell/base/assert.h"
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::ppu {
+
+class CoupledBody {
+ public:
+  CoupledBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
+              const Eigen::Vector3f& position)
+      : world_(world), soft_(std::move(model), position) {}
+  virtual ~CoupledBody() = default;
+  CoupledBody(const CoupledBody&) = delete;
+  CoupledBody& operator=(const CoupledBody&) = delete;
+
+  SoftBody<3>& soft() { return soft_; }
+  const SoftBody<3>& soft() const { return soft_; }
+
+  /// Whether the body's user has changed it since the last substep.
+  bool was_changed() const { return soft_.revision() != seen_revision_; }
+
+  /// Whether what is known of its rotations is of no use since then.
+  bool was_reset() const { return soft_.resets() != seen_resets_; }
+
+  /// Before the solver: what the caller may have done to the body or, mostly to velocities, its particles.
+  virtual void begin_substep() = 0;
+
+  /// Whether particles are no longer as the solver knows them, though the body was not changed.
+  virtual bool was_pushed() const = 0;
+
+  /// Behind the solver: whoever moves the particles gets the new velocities.
+  virtual void apply(float step) = 0;
+
+  /// After Bullet has integrated.
+  virtual void end_substep(float step, const std::optional<SleepSettings>& sleep) = 0;
+
+  /// Whether it was too fast to fall asleep at the end of the last substep.
+  bool moves() const { return still_for_ == 0; }
+
+  virtual bool can_be_touched() const = 0;
+
+  /// The box around what can be touched. @pre can_be_touched()
+  virtual Bounds<3> box() const = 0;
+  virtual float reach() const = 0;  ///< metres, beyond that box, at which other soft bodies touch it
+
+  /// Wakes the body if it sleeps and may have lain on another, which was in `gone` and is there no longer.
+  void lose(const CoupledBody& other, const Bounds<3>& gone) {
+    if (!soft_.asleep() || !can_be_touched()) return;
+    constexpr float kGive = 1.2f;  // bodies that rest on each other are not quite as far apart as they touch
+    const Bounds<3> own = box();
+    const Eigen::Vector3f reaches = Eigen::Vector3f::Constant(kGive * (reach() + other.reach()));
+    if ((own.low - reaches - gone.high).maxCoeff() < 0 && (gone.low - own.high - reaches).maxCoeff() < 0)
+      rouse();
+  }
+
+  /// Wakes the body. It sleeps again when it has been still for as long as others.
+  void rouse() {
+    still_for_ = 0;
+    wake();
+  }
+
+ protected:
+  virtual void wake() { soft_.set_asleep(false); }
+  virtual void fall_asleep() = 0;  ///< at rest, in this gravity
+
+  void see_changes() {
+    seen_revision_ = soft_.revision();
+    seen_resets_ = soft_.resets();
+  }
+
+  bool falls_another_way() const { return world_.getGravity() != gravity_asleep_; }
+
+  /// A body that was woken by a touch does not count anew: still slow, it falls asleep again at once.
+  void fall_asleep_when_still(float step, const SleepSettings& settings) {
+    SC_ASSERT(!soft_.asleep() && step > 0,
+              "a body that has been still for {} s falls asleep after {} s more, or sleeps", still_for_,
+              step);
+    bool still = true;
+    for (const Eigen::Vector3f& v : soft_.velocities())
+      still = still && v.squaredNorm() < settings.speed * settings.speed;
+    still_for_ = still ? still_for_ + step : 0;
+    if (still_for_ < settings.seconds) return;
+    for (std::size_t i = 0; i < soft_.velocities().size(); ++i)
+      soft_.set_velocity(i, Eigen::Vector3f::Zero());
+    fall_asleep();
+    gravity_asleep_ = world_.getGravity();
+    soft_.set_asleep(true);
+  }
+
+  btDiscreteDynamicsWorld& world_;
+  SoftBody<3> soft_;
+  float still_for_ = 0;  // seconds
+
+ private:
+  std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
+  btVector3 gravity_asleep_{0, 0, 0};
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,65 @@
+#pragma once
+// A soft body that touches with its drawn surface. Bullet does not know it: surface_contacts.h moves it.
+
+#include <optional>
+#include <utility>
+
+#include "ppu/bullet/bullet_vector.h"
+#include "ppu/bullet/coupled_body.h"
+#include "ppu/contacts/contact_body.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+
+class SurfaceBody final : public CoupledBody {
+ public:
+  /// @param contact  of the model; outlives this
+  SurfaceBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
+              const Eigen::Vector3f& position, const ContactModel& contact)
+      : CoupledBody(world, std::move(model), position), contact_(contact) {}
+
+  const ContactModel& contact() const { return contact_; }
+
+  void begin_substep() override {
+    if (!was_changed()) return;
+    rouse();
+    see_changes();
+  }
+  bool was_pushed() const override { return false; }
+
+  /// Gravity; contacts come behind it and move the particles.
+  void apply(float step) override {
+    if (soft_.asleep()) return;
+    SC_ASSERT(step > 0, "a substep of {} s", step);
+    const Eigen::Vector3f dv = step * to_eigen(world_.getGravity());
+    for (std::size_t i = 0; i < soft_.velocities().size(); ++i)
+      soft_.set_velocity(i, soft_.velocities()[i] + dv);
+  }
+
+  void end_substep(float step, const std::optional<SleepSettings>& sleep) override {
+    if (soft_.asleep()) {
+      if (sleep && !falls_another_way()) return;
+      rouse();
+    }
+    if (sleep && !holds_a_moving_body_) fall_asleep_when_still(step, *sleep);
+  }
+
+  /// Whether a rigid body that is awake lies on it: then it must go on holding it.
+  void set_holds_a_moving_body(bool holds) { holds_a_moving_body_ = holds; }
+
+  bool can_be_touched() const override { return soft_.model().settings().contacts; }
+  Bounds<3> box() const override {
+    SC_ASSERT(can_be_touched(), "a body of {} particles that nothing touches has no box",
+              soft_.model().particles());
+    return soft_.bounds();
+  }
+  float reach() const override { return 0.1f * soft_.model().lattice().spacing; }
+
+ private:
+  void fall_asleep() override {}
+
+  const ContactModel& contact_;
+  bool holds_a_moving_body_ = false;
+};
+
+}  // namespace softcell::ppu

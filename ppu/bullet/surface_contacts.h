@@ -1,0 +1,48 @@
+#pragma once
+// The contacts of all soft bodies of a BulletSoftBodies that touch with their surfaces.
+
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ppu/bullet/bullet_obstacles.h"
+#include "ppu/bullet/surface_body.h"
+#include "ppu/contacts/contact_stage.h"
+
+namespace softcell::ppu {
+
+/// Used by the thread that steps the world.
+class SurfaceContacts {
+ public:
+  /// @param worker  finds and solves contacts; null: the thread that steps the world does
+  SurfaceContacts(btDiscreteDynamicsWorld& world, std::shared_ptr<ContactWorker> worker)
+      : world_(world), worker_(std::move(worker)) {
+    stage_.worker = worker_.get();
+  }
+
+  /// What bodies of one model share, made at the first call. Good as long as this.
+  const ContactModel& contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model);
+
+  /// Finds and solves the contacts of the substep that begins, moves all particles of bodies that are awake,
+  /// and gives rigid bodies their impulses. Bodies that are touched wake.
+  /// @param bodies  their velocities are those of the substep's end, without contacts
+  void step(std::span<SurfaceBody* const> bodies, float step);
+
+  /// Appends the contacts of the last substep that press.
+  void append_contacts(std::vector<Contact>& contacts) const { stage_.append_contacts(contacts); }
+
+ private:
+  template <typename Is>
+  bool any_near(const BodyInStage& body, const Is& is) const;
+
+  btDiscreteDynamicsWorld& world_;
+  std::shared_ptr<ContactWorker> worker_;
+  std::map<const SoftBodyModel<3>*, std::unique_ptr<ContactModel>> models_;
+  BulletObstacles obstacles_;
+  ContactStage stage_;
+  std::vector<BodyInStage> in_stage_;
+};
+
+}  // namespace softcell::ppu

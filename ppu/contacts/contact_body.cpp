@@ -1,0 +1,121 @@
+#include "ppu/contacts/contact_body.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <utility>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+/// Of each particle: the first cell that has it, and which corner it is.
+std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> homes_of_particles(const Lattice<3>& lattice) {
+  std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> homes(lattice.particles.size());
+  for (std::uint32_t cell = static_cast<std::uint32_t>(lattice.cells.size()); cell-- > 0;)
+    for (unsigned k = 0; k < 8; ++k)
+      homes[lattice.corners[cell][k]] = {cell, Eigen::Vector3i(k & 1u, k >> 1 & 1u, k >> 2).cast<float>()};
+  return homes;
+}
+
+}  // namespace
+
+ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> shared)
+    : model((SC_ASSERT(shared != nullptr, "contacts of a body without a model"), std::move(shared))),
+      surface(model->mesh(), model->lattice()) {
+  const Lattice<3>& lattice = model->lattice();
+  for (const SurfacePointAtRest& point : surface.points())
+    touch_points.push_back({anchor_in_cell(lattice, point.cell, point.xi), point.xi, 0});
+  const auto homes = homes_of_particles(lattice);
+  for (const TouchingParticle& touching : surface.particles()) {
+    const auto& [cell, xi] = homes[touching.particle];
+    touch_points.push_back({anchor_in_cell(lattice, cell, xi), xi, touching.allowance * lattice.spacing});
+  }
+  std::stable_sort(touch_points.begin(), touch_points.end(),
+                   [](const auto& a, const auto& b) { return a.anchor.cell < b.anchor.cell; });
+  first_of_cell.assign(lattice.cells.size() + 1, 0);
+  for (const TouchPoint& point : touch_points) ++first_of_cell[point.anchor.cell + 1];
+  for (std::size_t i = 1; i < first_of_cell.size(); ++i) first_of_cell[i] += first_of_cell[i - 1];
+  for (const float mass : model->masses()) inverse_masses.push_back(1 / mass);
+}
+
+Anchor anchor_in_cell(const Lattice<3>& lattice, std::uint32_t cell, const Eigen::Vector3f& xi) {
+  Anchor anchor;
+  anchor.cell = cell;
+  anchor.particle = lattice.corners[cell];
+  for (unsigned k = 0; k < 8; ++k) {
+    float share = 1;
+    for (unsigned d = 0; d < 3; ++d) share *= ((k >> d) & 1u) != 0 ? xi[d] : 1 - xi[d];
+    anchor.share[k] = share;
+  }
+  return anchor;
+}
+
+Bounds<3> ContactBody::box_of_cell(std::uint32_t cell) const {
+  const auto& corners = lattice().corners[cell];
+  Bounds<3> around{positions[corners[0]], positions[corners[0]]};
+  for (const std::uint32_t k : corners) {
+    around.low = around.low.cwiseMin(positions[k]).cwiseMin(ends[k]);
+    around.high = around.high.cwiseMax(positions[k]).cwiseMax(ends[k]);
+  }
+  return around;
+}
+
+/// Any rotation proves it; this one is made of the directions into which the cells' edges point on average.
+bool may_be_folded(const ContactBody& body, float most) {
+  using Eigen::Vector3f;
+  const Lattice<3>& lattice = body.lattice();
+  Vector3f x = Vector3f::Zero(), y = Vector3f::Zero(), centre = Vector3f::Zero(), rest = Vector3f::Zero();
+  for (const auto& corner : lattice.corners) {
+    x += body.ends[corner[1]] - body.ends[corner[0]] + body.ends[corner[7]] - body.ends[corner[6]];
+    y += body.ends[corner[2]] - body.ends[corner[0]] + body.ends[corner[7]] - body.ends[corner[5]];
+  }
+  for (std::size_t i = 0; i < body.ends.size(); ++i) {
+    centre += body.ends[i];
+    rest += lattice.rest_position(i);
+  }
+  centre /= static_cast<float>(body.ends.size());
+  rest /= static_cast<float>(body.ends.size());
+  const Vector3f z = x.cross(y);
+  if (!(z.norm() > 0)) return true;
+  Eigen::Matrix3f turn;
+  turn.col(0) = x.normalized();
+  turn.col(2) = z.normalized();
+  turn.col(1) = turn.col(2).cross(turn.col(0));
+  for (std::size_t i = 0; i < body.ends.size(); ++i) {
+    const Vector3f off = body.ends[i] - centre - turn * (lattice.rest_position(i) - rest);
+    if (off.squaredNorm() > most * most) return true;
+  }
+  return false;
+}
+
+void stiffen(ContactBody& body, std::uint32_t cell, float share) {
+  using Eigen::Vector3f;
+  const auto& corners = body.lattice().corners[cell];
+  const std::span<const float> masses = body.model->model->masses();
+  float mass = 0;
+  for (const std::uint32_t k : corners) mass += masses[k];
+  // Lengths in cells and masses as shares: the same numbers at every scale.
+  Vector3f centre = Vector3f::Zero(), velocity = Vector3f::Zero();
+  for (const std::uint32_t k : corners) {
+    centre += masses[k] / mass * body.positions[k];
+    velocity += masses[k] / mass * body.velocities[k];
+  }
+  const auto arm = [&](std::uint32_t k) -> Vector3f { return (body.positions[k] - centre) / body.spacing(); };
+  Eigen::Matrix3f inertia = Eigen::Matrix3f::Zero();
+  Vector3f spin = Vector3f::Zero();
+  for (const std::uint32_t k : corners) {
+    const Vector3f r = arm(k);
+    spin += masses[k] / mass * r.cross(body.velocities[k]);
+    inertia += masses[k] / mass * (r.squaredNorm() * Eigen::Matrix3f::Identity() - r * r.transpose());
+  }
+  // A cell that is pressed to a line cannot turn about it.
+  inertia.diagonal().array() += 1e-3f;
+  const Vector3f omega = inertia.inverse() * spin;
+  for (const std::uint32_t k : corners) {
+    body.velocities[k] += share * (velocity + omega.cross(arm(k)) - body.velocities[k]);
+  }
+}
+
+}  // namespace softcell::ppu

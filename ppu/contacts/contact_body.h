@@ -1,0 +1,90 @@
+#pragma once
+// A soft body in a substep's contacts: what it shares with its model, and where its particles are going.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ppu/contacts/contact_surface.h"
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::ppu {
+
+/// Where something holds on to a body: eight particles and their shares, which sum to 1.
+struct Anchor {
+  static constexpr std::uint32_t kNoCell = ~0u;
+  std::uint32_t cell = kNoCell;
+  std::array<std::uint32_t, 8> particle{};
+  std::array<float, 8> share{};
+
+  Eigen::Vector3f of(std::span<const Eigen::Vector3f> values) const {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (std::size_t k = 0; k < 8; ++k) sum += share[k] * values[particle[k]];
+    return sum;
+  }
+  void add(std::span<Eigen::Vector3f> values, std::span<const float> inverse_masses,
+           const Eigen::Vector3f& impulse) const {
+    for (std::size_t k = 0; k < 8; ++k)
+      values[particle[k]] += share[k] * inverse_masses[particle[k]] * impulse;
+  }
+  /// 1/kg: how much velocity an impulse of 1 gives the anchor itself.
+  float mobility(std::span<const float> inverse_masses) const {
+    float sum = 0;
+    for (std::size_t k = 0; k < 8; ++k) sum += share[k] * share[k] * inverse_masses[particle[k]];
+    return sum;
+  }
+};
+
+/// The place `xi` of a cell.
+Anchor anchor_in_cell(const Lattice<3>& lattice, std::uint32_t cell, const Eigen::Vector3f& xi);
+
+/// What touches of a body: a point of its surface, or a particle, which is a corner of the first cell that has
+/// it.
+struct TouchPoint {
+  Anchor anchor;
+  Eigen::Vector3f xi{0, 0, 0};  ///< in the anchor's cell
+  float allowance = 0;          ///< metres: how deep in others it may be
+};
+
+/// Of a model: its surface and what a particle weighs. Immutable.
+struct ContactModel {
+  explicit ContactModel(std::shared_ptr<const SoftBodyModel<3>> model);
+
+  std::shared_ptr<const SoftBodyModel<3>> model;
+  ContactSurface surface;
+  std::vector<TouchPoint> touch_points;      ///< ascending by cell
+  std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
+  std::vector<float> inverse_masses;         ///< 1/kg, of each particle
+};
+
+struct ContactBody;
+
+/// Takes a share of what the cell's corners do against each other off their velocities, momentum and angular
+/// momentum kept: what a contact does to one corner the cell as a whole feels at once.
+void stiffen(ContactBody& body, std::uint32_t cell, float share);
+
+/// Whether the body may touch itself at the substep's end: false where no particle is farther than `most`
+/// (metres) from where it would be in a body that is not deformed.
+bool may_be_folded(const ContactBody& body, float most);
+
+/// One body in one substep.
+struct ContactBody {
+  const ContactModel* model = nullptr;
+  std::span<const Eigen::Vector3f> positions;  ///< at the substep's beginning
+  std::vector<Eigen::Vector3f> velocities;     ///< changed by contacts
+  std::vector<Eigen::Vector3f> pushes;         ///< m/s, for this substep only: out of what it is in
+  std::vector<Eigen::Vector3f> ends;           ///< where particles would be at its end without contacts
+  Bounds<3> box{};                             ///< around positions and ends
+  bool asleep = false;                         ///< nothing moves it
+  std::span<const float> inverse_masses;       ///< 1/kg; 0 of a body that sleeps
+  float friction = 0.5f;
+
+  float spacing() const { return model->model->lattice().spacing; }
+  const Lattice<3>& lattice() const { return model->model->lattice(); }
+  Bounds<3> box_of_cell(std::uint32_t cell) const;  ///< around its corners' positions and ends
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,143 @@
+#include "ppu/contacts/contact_group.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+// A depth of up to kSlop cells stays; of what is deeper, kPushShare goes in a substep, and no more than
+// kMostPush cells.
+constexpr float kSlop = 0.01f, kPushShare = 0.1f, kMostPush = 0.02f;
+
+/// 1/kg, of a rigid body at a point in a direction.
+float mobility(const ContactRigid& rigid, const Vector3f& point, const Vector3f& direction) {
+  if (rigid.inverse_mass == 0) return 0;
+  const Vector3f arm = point - rigid.centre;
+  const Vector3f turn = arm.cross(direction);
+  return rigid.inverse_mass + turn.dot(rigid.inverse_inertia * turn);
+}
+
+float mobility(const SoftContact& contact, const ContactSides& sides, const Vector3f& direction) {
+  const float own = contact.a.mobility(sides.a->inverse_masses);
+  if (sides.b != nullptr) return own + contact.b.mobility(sides.b->inverse_masses);
+  return own + mobility(sides.rigids[contact.rigid], contact.point, direction);
+}
+
+Vector3f relative_velocity(const SoftContact& contact, const ContactSides& sides) {
+  const Vector3f a = contact.a.of(sides.a->velocities);
+  if (sides.b != nullptr) return a - contact.b.of(sides.b->velocities);
+  return a - sides.rigids[contact.rigid].velocity_at(contact.point);
+}
+
+void apply(const SoftContact& contact, const ContactSides& sides, const Vector3f& impulse) {
+  contact.a.add(sides.a->velocities, sides.a->inverse_masses, impulse);
+  if (sides.b != nullptr) {
+    contact.b.add(sides.b->velocities, sides.b->inverse_masses, -impulse);
+    return;
+  }
+  ContactRigid& rigid = sides.rigids[contact.rigid];
+  if (rigid.inverse_mass == 0) return;
+  rigid.velocity -= rigid.inverse_mass * impulse;
+  rigid.spin -= rigid.inverse_inertia * Vector3f(contact.point - rigid.centre).cross(impulse);
+}
+
+void solve_normal(SoftContact& contact, const ContactSides& sides) {
+  const float v = contact.normal.dot(relative_velocity(contact, sides));
+  const float wanted = contact.impulse + (contact.least_velocity - v) / contact.normal_mobility;
+  const float impulse = std::max(0.0f, wanted);
+  apply(contact, sides, (impulse - contact.impulse) * contact.normal);
+  contact.impulse = impulse;
+}
+
+/// Coulomb's law, the same in all directions.
+void solve_friction(SoftContact& contact, const ContactSides& sides) {
+  const Vector3f v = relative_velocity(contact, sides);
+  const Vector3f sliding = v - contact.normal.dot(v) * contact.normal;
+  const float speed = sliding.norm();
+  const float most = contact.friction * contact.impulse;
+  Vector3f wanted = contact.friction_impulse;
+  if (speed > 0) wanted -= sliding / mobility(contact, sides, sliding / speed);
+  const float length = wanted.norm();
+  if (length > most) wanted *= most / length;
+  apply(contact, sides, wanted - contact.friction_impulse);
+  contact.friction_impulse = wanted;
+}
+
+/// m/s along the normal, out of each other; 0: they are not deep enough.
+float push_velocity(const SoftContact& contact, float spacing, float step) {
+  const float excess = contact.depth - kSlop * spacing;
+  return excess > 0 ? std::min(kPushShare * excess, kMostPush * spacing) / step : 0.0f;
+}
+
+spu::SolveAnchor as_kernels_solve_it(const Anchor& anchor, std::span<const float> inverse_masses) {
+  spu::SolveAnchor result{};
+  for (std::size_t k = 0; k < 8; ++k) {
+    result.particle[k] = static_cast<std::uint16_t>(anchor.particle[k]);
+    result.weight[k] = anchor.share[k] * std::sqrt(inverse_masses[anchor.particle[k]]);
+  }
+  return result;
+}
+
+/// Soft bodies only: a rigid one is moved by its engine.
+void solve_push(SoftContact& contact, const ContactSides& sides, float step) {
+  const float target = push_velocity(contact, sides.a->spacing(), step);
+  if (target <= 0) return;
+  float v = contact.normal.dot(contact.a.of(sides.a->pushes));
+  if (sides.b != nullptr) v -= contact.normal.dot(contact.b.of(sides.b->pushes));
+  const float push = std::max(0.0f, contact.push + (target - v) / contact.push_mobility);
+  const Vector3f change = (push - contact.push) * contact.normal;
+  contact.push = push;
+  contact.a.add(sides.a->pushes, sides.a->inverse_masses, change);
+  if (sides.b != nullptr) contact.b.add(sides.b->pushes, sides.b->inverse_masses, -change);
+}
+
+}  // namespace
+
+void prepare(std::span<SoftContact> contacts, const ContactSides& sides) {
+  for (SoftContact& contact : contacts) {
+    contact.normal_mobility = mobility(contact, sides, contact.normal);
+    contact.push_mobility = contact.a.mobility(sides.a->inverse_masses);
+    if (sides.b != nullptr) contact.push_mobility += contact.b.mobility(sides.b->inverse_masses);
+  }
+}
+
+spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactSides& sides,
+                                      std::span<const ContactRigid> rigids, float step) {
+  spu::SolveContact result{};
+  result.a = as_kernels_solve_it(contact.a, sides.a->inverse_masses);
+  float mobility = contact.a.mobility(sides.a->inverse_masses);
+  Vector3f carried = -contact.a.of(sides.a->velocities);
+  result.cell_b = spu::kSolveNoCell;
+  if (sides.b != nullptr) {
+    result.b = as_kernels_solve_it(contact.b, sides.b->inverse_masses);
+    mobility += contact.b.mobility(sides.b->inverse_masses);
+    carried += contact.b.of(sides.b->velocities);
+    result.cell_b = static_cast<std::uint16_t>(contact.b.cell);
+  } else {
+    carried += rigids[contact.rigid].velocity_at(contact.point);
+  }
+  result.cell_a = static_cast<std::uint16_t>(contact.a.cell);
+  for (int d = 0; d < 3; ++d) {
+    result.normal[d] = contact.normal[d];
+    result.carried[d] = carried[d];
+    result.point[d] = contact.point[d];
+  }
+  result.least_velocity = contact.least_velocity;
+  result.mass = 1 / mobility;
+  result.friction = contact.friction;
+  result.push_velocity = push_velocity(contact, sides.a->spacing(), step);
+  return result;
+}
+
+void iterate(std::span<SoftContact> contacts, const ContactSides& sides, float step) {
+  for (SoftContact& contact : contacts) {
+    solve_normal(contact, sides);
+    solve_friction(contact, sides);
+    solve_push(contact, sides, step);
+  }
+}
+
+}  // namespace softcell::ppu

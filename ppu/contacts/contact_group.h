@@ -1,0 +1,55 @@
+#pragma once
+// Contacts that are solved together: of one soft body with rigid ones, of two with each other, or of one with
+// itself.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact_solve_job.h"
+#include "ppu/contacts/contact_body.h"
+#include "ppu/contacts/obstacle.h"
+
+namespace softcell::ppu {
+
+/// Something, called b, that a body, called a, must not enter.
+struct SoftContact {
+  Anchor a;
+  Anchor b;                         ///< of soft bodies
+  std::uint32_t rigid = 0;          ///< of rigid ones: its index
+  Eigen::Vector3f point{0, 0, 0};   ///< metres, world
+  Eigen::Vector3f normal{0, 1, 0};  ///< from b to a
+  float least_velocity = 0;         ///< m/s along the normal, of a against b
+  float depth = 0;                  ///< metres in which they are already, or less than 0
+  float friction = 0;
+
+  // What solving changes.
+  float impulse = 0;  ///< kg m/s along the normal
+  Eigen::Vector3f friction_impulse{0, 0, 0};
+  float push = 0;  ///< as impulse, of ContactBody::pushes
+
+  // And needs.
+  float normal_mobility = 1;  ///< 1/kg
+  float push_mobility = 1;
+};
+
+/// The two sides of a group's contacts. With rigid bodies `b` is null.
+struct ContactSides {
+  ContactBody* a = nullptr;
+  ContactBody* b = nullptr;
+  std::span<ContactRigid> rigids = {};
+};
+
+/// Before the first iteration.
+void prepare(std::span<SoftContact> contacts, const ContactSides& sides);
+
+/// A contact of two soft bodies, or with a rigid one that nothing moves, for the kernel contact_solve.
+/// @pre  particles and cells have 16 bits
+spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactSides& sides,
+                                      std::span<const ContactRigid> rigids, float step);
+
+/// One iteration over all contacts, one after the other (sequential impulses: [Cat05]).
+void iterate(std::span<SoftContact> contacts, const ContactSides& sides, float step);
+
+}  // namespace softcell::ppu

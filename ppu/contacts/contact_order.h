@@ -1,0 +1,49 @@
+#pragma once
+// In which order pairs of bodies are solved, so that many may be solved at the same time.
+//
+// Bodies are cut into slabs along the longest axis of where they are. The pairs of two slabs are a unit, solved
+// one after the other; units that share no slab may be solved at the same time. They make a stage:
+//
+//     slab       0     1     2     3
+//     stage 0   0-0   1-1   2-2   3-3
+//     stage 1      0-1         2-3
+//     stage 2            1-2
+//
+// The order depends on bodies only, not on who solves, so the result has the same bits.
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ppu/contacts/contact_body.h"
+
+namespace softcell::ppu {
+
+/// Used by one thread. Allocates when there is more than ever before.
+class ContactOrder {
+ public:
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+  /// @param pairs  of bodies, ascending; a body may be paired with itself
+  void arrange(std::span<const ContactBody> bodies, std::span<const Pair> pairs);
+
+  /// The pairs' numbers in the order in which they are solved.
+  std::span<const std::uint32_t> order() const { return order_; }
+  /// Of order(): a unit's first number. One more than there are units.
+  std::span<const std::uint32_t> units() const { return units_; }
+  /// Of units(): a stage's first unit. One more than there are stages.
+  std::span<const std::uint32_t> stages() const { return stages_; }
+
+ private:
+  void cut_into_slabs(std::span<const ContactBody> bodies);
+
+  std::vector<std::uint32_t> slab_;  // of each body
+  std::uint32_t slabs_ = 0;
+  std::vector<std::pair<float, std::uint32_t>> places_;
+  std::vector<std::uint32_t> stage_of_;   // of each pair of slabs
+  std::vector<std::vector<bool>> taken_;  // of each stage: slabs
+  std::vector<std::uint32_t> order_, units_, stages_;
+};
+
+}  // namespace softcell::ppu

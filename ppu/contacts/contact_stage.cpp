@@ -1,0 +1,350 @@
+#include "ppu/contacts/contact_stage.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "ppu/contacts/find_contacts.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+/// Of what is to be squared, too.
+void check_finite(const ContactBody& body) {
+  constexpr float kFarthest = 1e15f;  // metres
+  bool finite = (body.box.high - body.box.low).cwiseAbs().maxCoeff() < kFarthest;
+  for (const Vector3f& end : body.ends) finite = finite && end.cwiseAbs().maxCoeff() < kFarthest;
+  if (!finite)
+    throw std::runtime_error(
+        "a soft body has positions or velocities that are not finite numbers, or passes 1e15 m");
+}
+
+}  // namespace
+
+Bounds<3> box_of_step(const SoftBody<3>& body, float step) {
+  Bounds<3> box{body.position(0), body.position(0)};
+  for (std::size_t i = 0; i < body.positions().size(); ++i) {
+    const Vector3f end = body.position(i) + step * body.velocities()[i];
+    box.low = box.low.cwiseMin(body.position(i)).cwiseMin(end);
+    box.high = box.high.cwiseMax(body.position(i)).cwiseMax(end);
+  }
+  return box;
+}
+
+void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
+  bodies_.resize(bodies.size());
+  cells_.resize(bodies.size());
+  // Before the first body points into it.
+  for (const BodyInStage& body : bodies)
+    nothing_moves_.resize(std::max(nothing_moves_.size(), body.body->positions().size()));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const SoftBody<3>& soft = *bodies[i].body;
+    ContactBody& body = bodies_[i];
+    body.model = bodies[i].model;
+    body.positions = soft.positions();
+    body.velocities.assign(soft.velocities().begin(), soft.velocities().end());
+    body.pushes.assign(body.velocities.size(), Vector3f::Zero());
+    body.ends.resize(body.velocities.size());
+    body.friction = soft.model().settings().friction;
+    body.box = bodies[i].box;
+    body.asleep = bodies[i].asleep;
+    body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())
+                                      : body.model->inverse_masses;
+    for (std::size_t p = 0; p < body.ends.size(); ++p)
+      body.ends[p] = body.positions[p] + step * body.velocities[p];
+    check_finite(body);
+    cells_[i].begin(body);
+  }
+}
+
+/// Pairs of bodies whose boxes overlap, and folded bodies with themselves, in ascending order.
+void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
+  by_low_.clear();
+  for (std::uint32_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].touches) by_low_.push_back(i);
+  std::sort(by_low_.begin(), by_low_.end(), [&](std::uint32_t i, std::uint32_t j) {
+    return std::pair(bodies_[i].box.low.x(), i) < std::pair(bodies_[j].box.low.x(), j);
+  });
+  pairs_.clear();
+  for (std::size_t i = 0; i < by_low_.size(); ++i) {
+    const Bounds<3>& box = bodies_[by_low_[i]].box;
+    for (std::size_t j = i; j < by_low_.size() && bodies_[by_low_[j]].box.low.x() <= box.high.x(); ++j) {
+      const std::uint32_t a = std::min(by_low_[i], by_low_[j]), b = std::max(by_low_[i], by_low_[j]);
+      if (!overlap(box, bodies_[by_low_[j]].box) || (bodies[a].asleep && bodies[b].asleep)) continue;
+      if (a != b || may_touch_itself(bodies_[a])) pairs_.emplace_back(a, b);
+    }
+  }
+  std::sort(pairs_.begin(), pairs_.end());
+}
+
+ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, bool with_rigid) {
+  if (group_count_ == groups_.size()) groups_.emplace_back();
+  Group& group = groups_[group_count_++];
+  group.a = a, group.b = b, group.with_rigid = with_rigid;
+  group.by_worker = false;
+  group.contacts.clear();
+  group.solved = {};
+  return group;
+}
+
+/// Points of both bodies.
+void ContactStage::find_here(Group& group, float step) {
+  find_contacts(bodies_[group.a], bodies_[group.b], cells_[group.b], step, group.contacts);
+  if (group.a == group.b) return;
+  other_way_.clear();
+  find_contacts(bodies_[group.b], bodies_[group.a], cells_[group.a], step, other_way_);
+  for (SoftContact& contact : other_way_) {
+    std::swap(contact.a, contact.b);
+    contact.normal = -contact.normal;
+    group.contacts.push_back(contact);
+  }
+}
+
+/// What the worker was asked for is there already.
+void ContactStage::find_among_bodies(float step) {
+  const std::span<const FoundContacts> found =
+      asked_.empty() ? std::span<const FoundContacts>() : worker->found();
+  std::size_t next = 0;
+  for (const auto& pair : pairs_) {
+    Group& group = next_group(pair.first, pair.second, false);
+    if (next < asked_.size() && asked_[next] == pair) {
+      group.solved = found[next++];
+      group.by_worker = !group.solved.by_caller;
+    }
+    if (!group.by_worker) find_here(group, step);
+    if (group.size() == 0) --group_count_;
+  }
+  pair_groups_ = group_count_;
+}
+
+void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
+                                   std::span<const ContactRigid> rigids, float step) {
+  for (std::uint32_t a = 0; a < bodies_.size(); ++a) {
+    if (bodies[a].obstacles.empty()) continue;
+    Group& group = next_group(a, a, true);
+    for (const std::uint32_t obstacle : bodies[a].obstacles)
+      find_contacts(bodies_[a], cells_[a], obstacles[obstacle], rigids, step, group.contacts);
+    if (group.contacts.empty()) --group_count_;
+  }
+}
+
+/// Pairs as ContactOrder has them; then those with rigid bodies that move; then those with others.
+void ContactStage::put_in_order() {
+  pairs_.clear();
+  for (std::size_t i = 0; i < pair_groups_; ++i) pairs_.emplace_back(groups_[i].a, groups_[i].b);
+  order_.arrange(bodies_, pairs_);
+}
+
+/// Contacts of two soft bodies, or with rigid ones that nothing moves, to the worker's memory if he can solve
+/// them.
+void ContactStage::hand_to_worker(Group& group, std::span<const ContactRigid> rigids, float step) {
+  if (group.by_worker || group.contacts.size() > ContactWorker::kMostContacts) return;
+  if (!worker->holds(group.a) || !worker->holds(group.b)) return;
+  if (group.with_rigid) {
+    const auto moves = [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; };
+    if (std::any_of(group.contacts.begin(), group.contacts.end(), moves)) return;
+  }
+  const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], {}};
+  group.solved = {worker->room(group.contacts.size()), false, false};
+  for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+    group.solved.contacts[i] = as_kernels_solve_it(group.contacts[i], sides, rigids, step);
+    group.solved.pushes = group.solved.pushes || group.solved.contacts[i].push_velocity > 0;
+  }
+  group.by_worker = true;
+}
+
+void ContactStage::find_touched_cells() {
+  touched_.resize(bodies_.size());
+  for (auto& cells : touched_) cells.clear();
+  for (std::size_t i = 0; i < group_count_; ++i) {
+    const Group& group = groups_[i];
+    const auto touch = [&](std::uint32_t cell_a, std::uint32_t cell_b) {
+      touched_[group.a].push_back(cell_a);
+      if (!group.with_rigid) touched_[group.b].push_back(cell_b);
+    };
+    if (group.by_worker)
+      for (const spu::SolveContact& contact : group.solved.contacts) touch(contact.cell_a, contact.cell_b);
+    else
+      for (const SoftContact& contact : group.contacts) touch(contact.a.cell, contact.b.cell);
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    auto& cells = touched_[i];
+    if (bodies_[i].asleep) cells.clear();
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  }
+}
+
+void ContactStage::stiffen_touched_cells() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    for (const std::uint32_t cell : touched_[i]) stiffen(bodies_[i], cell, settings.stiffening);
+}
+
+void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
+                        std::span<ContactRigid> rigids, float step) {
+  take_over(bodies, step);
+  group_count_ = 0;
+  find_pairs(bodies);
+  asked_.clear();
+  if (worker != nullptr) {
+    worker->begin(bodies_, step);
+    for (const auto& [a, b] : pairs_)
+      if (worker->holds(a) && worker->holds(b)) asked_.emplace_back(a, b);
+    if (!asked_.empty()) worker->find(asked_);
+  }
+  find_among_bodies(step);
+  find_with_rigid(bodies, obstacles, rigids, step);
+  put_in_order();
+  if (group_count_ != 0) {
+    if (worker != nullptr)
+      solve_with_worker(rigids, step);
+    else
+      solve_here(rigids, step);
+  }
+  find_woken(bodies);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].asleep) continue;
+    const ContactBody& body = bodies_[i];
+    for (std::size_t p = 0; p < body.velocities.size(); ++p)
+      bodies[i].body->set_particle(p, body.positions[p] + step * (body.velocities[p] + body.pushes[p]),
+                                   body.velocities[p]);
+  }
+}
+
+void ContactStage::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
+  for (Group* const group : groups) {
+    const ContactSides sides{&bodies_[group->a], group->with_rigid ? nullptr : &bodies_[group->b], rigids};
+    for (int i = 0; i < settings.iterations; ++i) iterate(group->contacts, sides, step);
+  }
+}
+
+/// In the order in which a worker would do it, and those that are left to this thread.
+void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
+  here_.clear();
+  for (const std::uint32_t i : order_.order()) here_.push_back(&groups_[i]);
+  add_rigid_groups(rigids);
+  prepare_here(rigids);
+  find_touched_cells();
+  for (int round = 0; round < settings.rounds; ++round) {
+    if (round > 0) stiffen_touched_cells();
+    iterate_here(here_, rigids, step);
+  }
+}
+
+/// Rigid bodies that move before those that nothing moves.
+void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
+  const auto with_moving = [&](const Group& group) {
+    return std::any_of(group.contacts.begin(), group.contacts.end(),
+                       [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; });
+  };
+  for (const bool moving : {true, false})
+    for (std::size_t i = pair_groups_; i < group_count_; ++i)
+      if (!groups_[i].by_worker && with_moving(groups_[i]) == moving) here_.push_back(&groups_[i]);
+}
+
+void ContactStage::prepare_here(std::span<ContactRigid> rigids) {
+  for (Group* const group : here_)
+    prepare(group->contacts, {&bodies_[group->a], group->with_rigid ? nullptr : &bodies_[group->b], rigids});
+}
+
+/// The pairs of bodies that the worker solves, as units in stages.
+void ContactStage::add_pairs_to(SolveStages& stages) {
+  for (std::size_t stage = 0; stage + 1 < order_.stages().size(); ++stage) {
+    stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
+    for (std::uint32_t unit = order_.stages()[stage]; unit < order_.stages()[stage + 1]; ++unit) {
+      stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
+      for (std::uint32_t i = order_.units()[unit]; i < order_.units()[unit + 1]; ++i) {
+        const Group& group = groups_[order_.order()[i]];
+        if (group.by_worker)
+          stages.groups.push_back({group.a, group.b, group.solved.contacts, group.solved.pushes});
+      }
+    }
+  }
+}
+
+/// Of each body its contacts with what nothing moves, and its touched cells.
+void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
+  constexpr std::size_t kBodiesInUnit = 12;
+  stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
+  std::size_t rigid = pair_groups_, in_unit = 0;
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    SolveGroup of_body{.a = i, .contacts = {}};
+    while (rigid < group_count_ && groups_[rigid].a < i) ++rigid;
+    if (rigid < group_count_ && groups_[rigid].a == i && groups_[rigid].by_worker) {
+      of_body.contacts = groups_[rigid].solved.contacts;
+      of_body.pushes = groups_[rigid].solved.pushes;
+    }
+    if (stiffening > 0 && worker->holds(i)) of_body.cells = touched_[i];
+    of_body.stiffening = stiffening;
+    if (of_body.contacts.empty() && of_body.cells.empty()) continue;
+    if (in_unit++ % kBodiesInUnit == 0)
+      stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
+    stages.groups.push_back(of_body);
+  }
+}
+
+/// What only this thread can solve comes behind what bodies do to each other, and before what nothing moves.
+void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
+  for (std::size_t i = 0; i < group_count_; ++i) hand_to_worker(groups_[i], rigids, step);
+  here_.clear();
+  for (const std::uint32_t i : order_.order())
+    if (!groups_[i].by_worker) here_.push_back(&groups_[i]);
+  add_rigid_groups(rigids);
+  prepare_here(rigids);
+  find_touched_cells();
+  const auto iterations = static_cast<std::uint32_t>(settings.iterations);
+  stages_.clear();
+  for (int round = 0; round < settings.rounds; ++round) {
+    const float stiffening = round + 1 < settings.rounds ? settings.stiffening : 0;
+    add_pairs_to(stages_);
+    if (!here_.empty()) {
+      worker->solve(stages_, iterations);
+      stages_.clear();
+      take_from_worker();
+      iterate_here(here_, rigids, step);
+      for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+        if (worker->holds(i) || stiffening == 0) continue;
+        for (const std::uint32_t cell : touched_[i]) stiffen(bodies_[i], cell, stiffening);
+      }
+      give_to_worker();
+    }
+    add_bodies_to(stages_, stiffening);
+  }
+  worker->solve(stages_, iterations);
+  take_from_worker();
+}
+
+void ContactStage::take_from_worker() {
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i)
+    if (!touched_[i].empty() && worker->holds(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
+}
+
+void ContactStage::give_to_worker() {
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i)
+    if (!touched_[i].empty() && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
+}
+
+void ContactStage::find_woken(std::span<const BodyInStage> bodies) {
+  woken_.assign(bodies.size(), false);
+  for (std::size_t i = 0; i < group_count_; ++i) {
+    const Group& group = groups_[i];
+    if (group.with_rigid || bodies[group.a].asleep == bodies[group.b].asleep) continue;
+    const std::size_t sleeper = bodies[group.a].asleep ? group.a : group.b;
+    if (bodies[group.a + group.b - sleeper].moves) woken_[sleeper] = true;
+  }
+}
+
+void ContactStage::append_contacts(std::vector<Contact>& contacts) const {
+  for (std::size_t i = 0; i < group_count_; ++i) {
+    for (const spu::SolveContact& contact : groups_[i].solved.contacts)
+      if (contact.impulse > 0) contacts.push_back({Vector3f(contact.point), Vector3f(contact.normal)});
+    if (groups_[i].by_worker) continue;
+    for (const SoftContact& contact : groups_[i].contacts)
+      if (contact.impulse > 0) contacts.push_back({contact.point, contact.normal});
+  }
+}
+
+}  // namespace softcell::ppu

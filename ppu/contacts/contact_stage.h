@@ -1,0 +1,109 @@
+#pragma once
+// The contacts of all soft bodies of a world in one substep.
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ppu/contacts/contact_body.h"
+#include "ppu/contacts/contact_group.h"
+#include "ppu/contacts/contact_order.h"
+#include "ppu/contacts/contact_worker.h"
+#include "ppu/contacts/find_contacts.h"
+#include "ppu/contacts/obstacle.h"
+#include "softcell/soft_bodies/contact.h"
+
+namespace softcell::ppu {
+
+/// A soft body and what is near it.
+struct BodyInStage {
+  SoftBody<3>* body = nullptr;
+  const ContactModel* model = nullptr;
+  Bounds<3> box = {};                         ///< box_of_step()
+  std::vector<std::uint32_t> obstacles = {};  ///< indices of those that it may meet
+  bool touches = true;                        ///< false: it meets nothing
+  bool asleep = false;                        ///< nothing moves it
+  bool moves = true;                          ///< wakes those that sleep and touch it
+};
+
+struct ContactSettings {
+  int rounds = 2;           ///< over all groups
+  int iterations = 4;       ///< in a group, in a round
+  float stiffening = 0.5f;  ///< 0..1: share of what corners of touched cells do against each other
+};
+
+/// Around a body's particles and where they would be after `step` seconds.
+Bounds<3> box_of_step(const SoftBody<3>& body, float step);
+
+/// Used by one thread.
+class ContactStage {
+ public:
+  /// Finds the contacts that bodies would have in `step` seconds and changes velocities so that they have
+  /// them, then moves the bodies' particles: x += step (v + push). Rigid bodies' velocities change, too.
+  /// @param bodies  velocities hold gravity already
+  /// @throws std::runtime_error  a body is not finite, or 1e15 m large or far.
+  void step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
+            std::span<ContactRigid> rigids, float step);
+
+  /// Appends those of the last step that press.
+  void append_contacts(std::vector<Contact>& contacts) const;
+  /// Whether a body that slept was touched by one that moves in the last step.
+  bool was_woken(std::size_t body) const { return woken_[body]; }
+
+  ContactSettings settings;
+  /// Who finds and solves what he can; null: this thread does everything. Outlives the steps.
+  ContactWorker* worker = nullptr;
+
+ private:
+  /// The contacts of a pair of bodies, as seen from a, or of a body with rigid ones.
+  struct Group {
+    std::uint32_t a = 0, b = 0;
+    bool with_rigid = false;
+    bool by_worker = false;             ///< he solves them: they are in `solved`
+    std::vector<SoftContact> contacts;  ///< found here
+    FoundContacts solved;
+    std::size_t size() const { return by_worker ? solved.contacts.size() : contacts.size(); }
+  };
+  using Pair = ContactOrder::Pair;
+
+  void take_over(std::span<const BodyInStage> bodies, float step);
+  void find_pairs(std::span<const BodyInStage> bodies);
+  void find_here(Group& group, float step);
+  void find_among_bodies(float step);
+  void find_with_rigid(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
+                       std::span<const ContactRigid> rigids, float step);
+  Group& next_group(std::uint32_t a, std::uint32_t b, bool with_rigid);
+  void put_in_order();
+  void hand_to_worker(Group& group, std::span<const ContactRigid> rigids, float step);
+  void find_touched_cells();
+  void stiffen_touched_cells();
+  void solve_here(std::span<ContactRigid> rigids, float step);
+  void solve_with_worker(std::span<ContactRigid> rigids, float step);
+  void add_rigid_groups(std::span<const ContactRigid> rigids);
+  void prepare_here(std::span<ContactRigid> rigids);
+  void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
+  void add_pairs_to(SolveStages& stages);
+  void add_bodies_to(SolveStages& stages, float stiffening);
+  void take_from_worker();
+  void give_to_worker();
+  void find_woken(std::span<const BodyInStage> bodies);
+
+  std::vector<ContactBody> bodies_;
+  std::vector<float> nothing_moves_;  // inverse masses of bodies that sleep
+  std::vector<EndCells> cells_;       // of each body
+  std::vector<std::uint32_t> by_low_;
+  std::vector<Pair> pairs_, asked_;     // asked_: of the worker
+  std::vector<SoftContact> other_way_;  // b's points in a
+  std::vector<Group> groups_;           // of pairs, then with rigid bodies
+  std::size_t group_count_ = 0;
+  std::size_t pair_groups_ = 0;                      // of them
+  ContactOrder order_;                               // of the former
+  std::vector<std::vector<std::uint32_t>> touched_;  // of each body: cells, ascending
+  std::vector<Group*> here_;                         // solved here, among what the worker solves
+  SolveStages stages_;
+  std::vector<bool> woken_;
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,220 @@
+#include "ppu/contacts/contact_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+
+#include "ppu/contacts/triangle_distance.h"
+#include "ppu/lattice/locate.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector3i;
+
+// All in cells.
+constexpr float kPointSpacing = 0.45f;     // between points of a smooth surface
+constexpr float kSamePoint = 0.1f;         // nearer than this two points are one, whatever their normals
+constexpr float kCandidateSpacing = 0.2f;  // of what points are chosen from
+constexpr float kReach = 2;                // of exact distances; deeper inside they are counted in steps
+
+/// A grid index as one number, for tables.
+std::uint64_t key_of(const Vector3i& index) {
+  constexpr int kOffset = 1 << 20;
+  const auto part = [](int i) { return static_cast<std::uint64_t>(i + kOffset); };
+  return part(index.x()) << 42 | part(index.y()) << 21 | part(index.z());
+}
+
+/// Chooses points that keep their distance from each other.
+class PointChooser {
+ public:
+  explicit PointChooser(float spacing) : spacing_(spacing) {}
+
+  /// @return  whether the point is far enough from all that were chosen before
+  bool choose(const Vector3f& point, const Vector3f& normal) {
+    const Vector3i cube = (point / (kPointSpacing * spacing_)).array().floor().cast<int>();
+    for (int i = 0; i < 27; ++i) {
+      const auto found = chosen_.find(key_of(cube + Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+      if (found == chosen_.end()) continue;
+      for (const Chosen& other : found->second)
+        if (is_near(other, point, normal)) return false;
+    }
+    chosen_[key_of(cube)].push_back({point, normal});
+    return true;
+  }
+
+ private:
+  struct Chosen {
+    Vector3f point, normal;
+  };
+  bool is_near(const Chosen& other, const Vector3f& point, const Vector3f& normal) const {
+    constexpr float kOneSurface = 0.5f;  // cosine
+    const float apart = (other.point - point).norm() / spacing_;
+    return apart < kSamePoint || (apart < kPointSpacing && other.normal.dot(normal) > kOneSurface);
+  }
+
+  float spacing_;
+  std::unordered_map<std::uint64_t, std::vector<Chosen>> chosen_;
+};
+
+float volume_of(const TriangleMesh& mesh) {
+  float volume = 0;
+  for (const auto& t : mesh.triangles)
+    volume += mesh.positions[t[0]].dot(mesh.positions[t[1]].cross(mesh.positions[t[2]])) / 6;
+  return volume;
+}
+
+}  // namespace
+
+TriangleMesh boundary_of(const Lattice<3>& lattice) {
+  TriangleMesh mesh;
+  mesh.positions.reserve(lattice.particles.size());
+  for (std::size_t i = 0; i < lattice.particles.size(); ++i)
+    mesh.positions.push_back(lattice.rest_position(i));
+  mesh.normals.assign(mesh.positions.size(), Vector3f::UnitY());
+  for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
+    for (unsigned d = 0; d < 3; ++d) {
+      for (unsigned high = 0; high < 2; ++high) {
+        const Vector3i beyond = lattice.cells[c] + (high != 0 ? 1 : -1) * Vector3i(Vector3i::Unit(d));
+        if (find_cell(lattice, beyond)) continue;
+        // The face's corners, counter-clockwise seen from outside.
+        const unsigned u = 1u << ((d + 1) % 3), v = 1u << ((d + 2) % 3), at = high << d;
+        const auto& corners = lattice.corners[c];
+        std::array<std::uint32_t, 4> face{corners[at], corners[at | u], corners[at | u | v], corners[at | v]};
+        if (high == 0) std::reverse(face.begin(), face.end());
+        mesh.triangles.push_back({face[0], face[1], face[2]});
+        mesh.triangles.push_back({face[0], face[2], face[3]});
+      }
+    }
+  }
+  return mesh;
+}
+
+ContactSurface::ContactSurface(const TriangleMesh& mesh, const Lattice<3>& lattice) {
+  const TriangleMesh boundary = mesh.triangles.empty() ? boundary_of(lattice) : TriangleMesh{};
+  const TriangleMesh& surface = mesh.triangles.empty() ? boundary : mesh;
+  sample(surface, lattice);
+  measure(surface, lattice);
+}
+
+/// Vertices come first: those of sharp corners and edges must not give way to what lies beside them.
+void ContactSurface::sample(const TriangleMesh& mesh, const Lattice<3>& lattice) {
+  PointChooser chooser(lattice.spacing);
+  const auto offer = [&](const Vector3f& point, const Vector3f& normal) {
+    const auto place = locate(lattice, point);
+    if (!place || !chooser.choose(point, normal)) return;
+    points_.push_back({place->cell, place->xi.cast<float>(), point});
+  };
+  const auto for_each_triangle = [&](const auto& work) {
+    for (const auto& t : mesh.triangles) {
+      const Vector3f &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+      const Vector3f normal = (b - a).cross(c - a);
+      if (normal.squaredNorm() > 0) work(a, b, c, normal.normalized());
+    }
+  };
+  for_each_triangle([&](const Vector3f& a, const Vector3f& b, const Vector3f& c, const Vector3f& normal) {
+    offer(a, normal), offer(b, normal), offer(c, normal);
+  });
+  for_each_triangle([&](const Vector3f& a, const Vector3f& b, const Vector3f& c, const Vector3f& normal) {
+    const float longest =
+        std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+    const int steps = static_cast<int>(std::ceil(longest / (kCandidateSpacing * lattice.spacing)));
+    const float step = 1 / static_cast<float>(steps);
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; j <= steps - i; ++j)
+        offer(a + static_cast<float>(i) * step * (b - a) + static_cast<float>(j) * step * (c - a), normal);
+  });
+  std::stable_sort(points_.begin(), points_.end(),
+                   [](const auto& a, const auto& b) { return a.cell < b.cell; });
+}
+
+void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice) {
+  const TriangleGrid triangles(mesh, lattice.spacing);
+  const float outwards = volume_of(mesh) < 0 ? -1.0f : 1.0f;  // of a mesh turned inside out
+  constexpr int kPerCell = kNodesPerEdge - 1;                 // nodes from cell to cell
+  constexpr float kStep = 1.0f / kPerCell;
+
+  // Each node once, in the order of cells.
+  std::unordered_map<std::uint64_t, float> distances;
+  std::vector<Vector3i> unknown;
+  const auto for_each_node = [&](std::size_t cell, const auto& work) {
+    std::size_t n = 0;
+    for (int z = 0; z <= kPerCell; ++z)
+      for (int y = 0; y <= kPerCell; ++y)
+        for (int x = 0; x <= kPerCell; ++x)
+          work(n++, Vector3i(kPerCell * lattice.cells[cell] + Vector3i(x, y, z)));
+  };
+  constexpr float kUnknown = -std::numeric_limits<float>::max();
+  for (std::size_t c = 0; c < lattice.cells.size(); ++c) {
+    for_each_node(c, [&](std::size_t, const Vector3i& node) {
+      const auto [entry, is_new] = distances.try_emplace(key_of(node), kUnknown);
+      if (!is_new) return;
+      const Vector3f at = lattice.origin + lattice.spacing * kStep * node.cast<float>();
+      const float reach = kReach * lattice.spacing;
+      const float distance = outwards * triangles.signed_distance(at, reach) / lattice.spacing;
+      if (std::abs(distance) < kReach)
+        entry->second = distance;
+      else
+        unknown.push_back(node);
+    });
+  }
+  // Farther in than exact distances reach: in steps from node to node, layer by layer.
+  while (!unknown.empty()) {
+    std::vector<Vector3i> later;
+    std::vector<std::pair<std::uint64_t, float>> found;
+    for (const Vector3i& node : unknown) {
+      float deepest = kUnknown;
+      for (int d = 0; d < 6; ++d) {
+        const auto neighbour =
+            distances.find(key_of(node + (d < 3 ? 1 : -1) * Vector3i(Vector3i::Unit(d % 3))));
+        if (neighbour != distances.end()) deepest = std::max(deepest, neighbour->second);
+      }
+      if (deepest == kUnknown)
+        later.push_back(node);
+      else
+        found.emplace_back(key_of(node), std::min(deepest, 0.0f) - kStep);
+    }
+    for (const auto& [key, distance] : found) distances[key] = distance;
+    if (found.empty()) break;  // no triangle is anywhere near
+    unknown = std::move(later);
+  }
+  constexpr float kSlack = 0.1f;
+  for (std::uint32_t i = 0; i < lattice.particles.size(); ++i) {
+    const float outside = distances.at(key_of(kPerCell * lattice.particles[i]));
+    particles_.push_back({i, outside > 0 ? outside + kSlack : 0});
+  }
+  fields_.resize(lattice.cells.size());
+  for (std::size_t c = 0; c < lattice.cells.size(); ++c)
+    for_each_node(c,
+                  [&](std::size_t n, const Vector3i& node) { fields_[c][n] = distances.at(key_of(node)); });
+}
+
+FieldValue ContactSurface::field(std::uint32_t cell, const Vector3f& xi) const {
+  SC_ASSERT(cell < fields_.size(), "cell {} of {}", cell, fields_.size());
+  const CellField& nodes = fields_[cell];
+  constexpr float kScale = kNodesPerEdge - 1;
+  const Vector3f place = xi * kScale;
+  const Vector3i low =
+      place.cwiseMax(Vector3f::Zero()).cwiseMin(Vector3f::Constant(kScale - 0.5f)).cast<int>();
+  const Vector3f f = place - low.cast<float>();
+  const auto at = [&](int x, int y, int z) {
+    return nodes[static_cast<std::size_t>(((low.z() + z) * kNodesPerEdge + low.y() + y) * kNodesPerEdge +
+                                          low.x() + x)];
+  };
+  const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
+  const float d00 = mix(at(0, 0, 0), at(1, 0, 0), f.x()), d10 = mix(at(0, 1, 0), at(1, 1, 0), f.x());
+  const float d01 = mix(at(0, 0, 1), at(1, 0, 1), f.x()), d11 = mix(at(0, 1, 1), at(1, 1, 1), f.x());
+  const float d0 = mix(d00, d10, f.y()), d1 = mix(d01, d11, f.y());
+  const float x0 = mix(at(1, 0, 0) - at(0, 0, 0), at(1, 1, 0) - at(0, 1, 0), f.y());
+  const float x1 = mix(at(1, 0, 1) - at(0, 0, 1), at(1, 1, 1) - at(0, 1, 1), f.y());
+  return {mix(d0, d1, f.z()),
+          kScale * Vector3f(mix(x0, x1, f.z()), mix(d10 - d00, d11 - d01, f.z()), d1 - d0)};
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,74 @@
+#pragma once
+// What touches of a soft body: points of the drawn surface, and the distance field of its shape at rest.
+//
+// The points are looked up in the shapes of others; corners and edges of others, and the points of other soft
+// bodies, are looked up in the field, through the inverse of the deformed cell that holds them.
+// @source  [FL01] for deformed distance fields, [MZS+11] for contact of an embedded surface.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "softcell/soft_bodies/lattice.h"
+#include "softcell/soft_bodies/mesh.h"
+
+namespace softcell::ppu {
+
+/// A point of the surface and where it lies in its cell.
+struct SurfacePointAtRest {
+  std::uint32_t cell = 0;
+  Eigen::Vector3f xi{0, 0, 0};    ///< 0..1 along each edge of the cell
+  Eigen::Vector3f rest{0, 0, 0};  ///< metres, as Lattice::rest_position()
+};
+
+/// A particle, which touches when the surface around it does not keep things out: those outside of the surface
+/// lag behind it, and those inside may be all that is left between the two sides of a crushed body.
+struct TouchingParticle {
+  std::uint32_t particle = 0;
+  float allowance =
+      0;  ///< cells: how deep in others it may be, because it lies outside of the surface at rest
+};
+
+/// A signed distance and the direction in which it grows fastest.
+struct FieldValue {
+  float distance = 0;                 ///< below 0 inside, in cells
+  Eigen::Vector3f gradient{0, 0, 0};  ///< by xi
+};
+
+/// Of a model. Immutable.
+class ContactSurface {
+ public:
+  /// A field has 3 x 3 x 3 nodes in each cell, those of a face in both of its cells.
+  static constexpr int kNodesPerEdge = 3;
+  static constexpr std::size_t kNodes = 27;
+  using CellField = std::array<float, kNodes>;
+
+  /// @param mesh  closed, or nearly so; none: the lattice's own boundary
+  ContactSurface(const TriangleMesh& mesh, const Lattice<3>& lattice);
+
+  /// Ascending by cell. Nearer to each other than half a cell where the surface is smooth; at each corner and
+  /// along each sharp edge of the mesh.
+  std::span<const SurfacePointAtRest> points() const { return points_; }
+  /// All particles.
+  std::span<const TouchingParticle> particles() const { return particles_; }
+
+  /// Distances at a cell's nodes, in cells, x fastest.
+  const CellField& nodes(std::uint32_t cell) const { return fields_[cell]; }
+  /// The distance from the surface in the shape at rest. @param xi  may lie somewhat outside of the cell
+  FieldValue field(std::uint32_t cell, const Eigen::Vector3f& xi) const;
+
+ private:
+  void sample(const TriangleMesh& mesh, const Lattice<3>& lattice);
+  void measure(const TriangleMesh& mesh, const Lattice<3>& lattice);
+
+  std::vector<SurfacePointAtRest> points_;
+  std::vector<TouchingParticle> particles_;
+  std::vector<CellField> fields_;  // of each cell: distances at its nodes, in cells, x fastest
+};
+
+/// The boundary of a lattice as triangles.
+TriangleMesh boundary_of(const Lattice<3>& lattice);
+
+}  // namespace softcell::ppu

@@ -1,0 +1,137 @@
+#include "ppu/contacts/obstacle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+/// Inside, the way out through the nearest face; outside, from the nearest point.
+Separation from_box(const Vector3f& half, const Vector3f& p) {
+  const Vector3f beyond = p.cwiseAbs() - half;
+  Eigen::Index axis;
+  const float nearest = beyond.maxCoeff(&axis);
+  if (nearest <= 0) {
+    Separation inside{nearest, Vector3f::Zero()};
+    inside.normal[axis] = p[axis] < 0 ? -1.0f : 1.0f;
+    return inside;
+  }
+  const Vector3f away = p - p.cwiseMax(-half).cwiseMin(half);
+  const float distance = away.norm();
+  return {distance, away / distance};
+}
+
+/// A convex outline in the half-plane of radius and height, turned about the y axis.
+struct Profile {
+  float distance;
+  Vector2f normal;  // by radius and height
+};
+
+/// Of a polygon of three or four corners, counter-clockwise, of which edges on the axis do not count.
+template <std::size_t kCorners>
+Profile from_outline(const std::array<Vector2f, kCorners>& corner, const Vector2f& p) {
+  Profile inside{-std::numeric_limits<float>::max(), Vector2f::UnitY()};
+  float nearest = std::numeric_limits<float>::max();
+  Vector2f away = Vector2f::UnitY();
+  for (std::size_t i = 0; i + 1 < kCorners; ++i) {
+    const Vector2f a = corner[i], edge = corner[i + 1] - a;
+    const float length = edge.norm();
+    if (!(length > 0)) continue;
+    const Vector2f normal = Vector2f(edge.y(), -edge.x()) / length;
+    const float height = normal.dot(p - a);
+    if (height > inside.distance) inside = {height, normal};
+    const float along = std::clamp(edge.dot(p - a) / (length * length), 0.0f, 1.0f);
+    const Vector2f to_point = p - (a + along * edge);
+    if (to_point.squaredNorm() < nearest) nearest = to_point.squaredNorm(), away = to_point;
+  }
+  if (inside.distance <= 0 || !(nearest > 0)) return inside;
+  const float distance = std::sqrt(nearest);
+  return {distance, away / distance};
+}
+
+Separation turned(const Profile& profile, const Vector3f& p, float radius) {
+  const Vector3f outwards = radius > 0 ? Vector3f(p.x() / radius, 0, p.z() / radius) : Vector3f(1, 0, 0);
+  return {profile.distance, profile.normal.x() * outwards + Vector3f(0, profile.normal.y(), 0)};
+}
+
+Separation from_cylinder(float radius, float half, const Vector3f& p) {
+  const float r = std::hypot(p.x(), p.z());
+  const std::array<Vector2f, 4> outline{Vector2f(0, -half), {radius, -half}, {radius, half}, {0, half}};
+  return turned(from_outline(outline, {r, p.y()}), p, r);
+}
+
+Separation from_cone(float radius, float half, const Vector3f& p) {
+  const float r = std::hypot(p.x(), p.z());
+  const std::array<Vector2f, 3> outline{Vector2f(0, -half), {radius, -half}, {0, half}};
+  return turned(from_outline(outline, {r, p.y()}), p, r);
+}
+
+/// Outside, near an edge or a corner, this is less than the distance; nothing that has no part inside is ever
+/// found inside.
+Separation from_planes(std::span<const Eigen::Vector4f> planes, const Vector3f& p) {
+  Separation nearest{-std::numeric_limits<float>::max(), Vector3f::UnitY()};
+  for (const Eigen::Vector4f& plane : planes) {
+    const float height = plane.head<3>().dot(p) - plane.w();
+    if (height > nearest.distance) nearest = {height, plane.head<3>()};
+  }
+  return nearest;
+}
+
+Separation from_core(const Obstacle& obstacle, const Vector3f& p) {
+  switch (obstacle.kind) {
+    case ObstacleKind::kPlane:
+      return {p.y(), Vector3f::UnitY()};
+    case ObstacleKind::kBox:
+      return from_box(obstacle.extent, p);
+    case ObstacleKind::kCylinder:
+      return from_cylinder(obstacle.extent.x(), obstacle.extent.y(), p);
+    case ObstacleKind::kCone:
+      return from_cone(obstacle.extent.x(), obstacle.extent.y(), p);
+    case ObstacleKind::kHull:
+      return from_planes(obstacle.planes, p);
+    case ObstacleKind::kTriangles:
+      break;
+  }
+  SC_ASSERT(false, "triangles have no inside, kind {}", static_cast<std::uint32_t>(obstacle.kind));
+  return {};
+}
+
+}  // namespace
+
+Bounds<3> bounds(const Obstacle& obstacle) {
+  if (obstacle.kind == ObstacleKind::kPlane) {
+    const Vector3f endless = Vector3f::Constant(std::numeric_limits<float>::max());
+    return {-endless, endless};
+  }
+  const Vector3f rounding = Vector3f::Constant(obstacle.rounding);
+  if (obstacle.kind == ObstacleKind::kHull || obstacle.kind == ObstacleKind::kTriangles) {
+    SC_ASSERT(!obstacle.edges.empty(), "an obstacle of {} planes and {} triangles without edges",
+              obstacle.planes.size(), obstacle.triangles.size());
+    Bounds<3> box{obstacle.to_world(obstacle.edges[0].from), obstacle.to_world(obstacle.edges[0].from)};
+    for (const ObstacleEdge& edge : obstacle.edges) {
+      for (const Vector3f& end : {obstacle.to_world(edge.from), obstacle.to_world(edge.to)}) {
+        box.low = box.low.cwiseMin(end);
+        box.high = box.high.cwiseMax(end);
+      }
+    }
+    return {box.low - rounding, box.high + rounding};
+  }
+  Vector3f half = obstacle.extent;
+  if (obstacle.kind != ObstacleKind::kBox) half.z() = half.x();  // what is turned about its axis
+  const Vector3f reach = obstacle.rotation.cwiseAbs() * half + rounding;
+  return {obstacle.position - reach, obstacle.position + reach};
+}
+
+Separation separation(const Obstacle& obstacle, const Vector3f& point) {
+  Separation result = from_core(obstacle, point);
+  result.distance -= obstacle.rounding;
+  return result;
+}
+
+}  // namespace softcell::ppu

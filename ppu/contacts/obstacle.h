@@ -1,0 +1,80 @@
+#pragma once
+// Rigid shapes as plain data: what soft bodies touch.
+//
+// A coupling to an engine describes what is near its soft bodies with these, before each substep. A compound
+// is several of them with one rigid body.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "softcell/soft_bodies/mesh.h"
+
+namespace softcell::ppu {
+
+/// A rigid body as contacts see it, in the world's frame.
+struct ContactRigid {
+  Eigen::Vector3f centre{0, 0, 0};    ///< of mass, metres
+  Eigen::Vector3f velocity{0, 0, 0};  ///< m/s, of the centre: what it would have without contacts
+  Eigen::Vector3f spin{0, 0, 0};      ///< rad/s
+  float inverse_mass = 0;             ///< 1/kg; 0: nothing moves it
+  Eigen::Matrix3f inverse_inertia = Eigen::Matrix3f::Zero();  ///< 1/(kg m^2)
+  float friction = 0.5f;
+
+  Eigen::Vector3f velocity_at(const Eigen::Vector3f& point) const {
+    return velocity + spin.cross(Eigen::Vector3f(point - centre));
+  }
+};
+
+enum class ObstacleKind : std::uint32_t {
+  kPlane,     ///< the half-space y < 0
+  kBox,       ///< half edges `extent`; a sphere is a box of nothing with a rounding, a capsule one of a line
+  kCylinder,  ///< radius extent.x, half height extent.y, along y
+  kCone,      ///< radius of the base extent.x, half height extent.y, the tip at +y
+  kHull,      ///< the inside of all `planes`
+  kTriangles  ///< without an inside: both sides keep things out
+};
+
+/// A point of a shape that is sharper than the surface that it may meet: looked up in that body's field.
+struct ObstacleEdge {
+  Eigen::Vector3f from, to;  ///< the same for a tip
+};
+
+/// The lists belong to whoever made the obstacle.
+struct Obstacle {
+  ObstacleKind kind = ObstacleKind::kPlane;
+  std::uint32_t rigid = 0;  ///< index of its ContactRigid
+  Eigen::Vector3f position{0, 0, 0};
+  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  ///< from its frame to the world's
+  Eigen::Vector3f extent{0, 0, 0};                         ///< metres, by kind
+  float rounding = 0;                            ///< metres: what lies so near to the shape is inside
+  std::span<const Eigen::Vector4f> planes = {};  ///< outward unit normal, and its distance from 0
+  std::span<const std::array<Eigen::Vector3f, 3>> triangles = {};
+  std::span<const ObstacleEdge> edges = {};
+
+  Eigen::Vector3f to_own(const Eigen::Vector3f& world) const {
+    return rotation.transpose() * (world - position);
+  }
+  Eigen::Vector3f to_world(const Eigen::Vector3f& own) const { return rotation * own + position; }
+};
+
+/// How far a point is from a shape, and the direction away from it.
+struct Separation {
+  float distance = 0;               ///< metres, below 0 inside
+  Eigen::Vector3f normal{0, 1, 0};  ///< unit length
+};
+
+/// Whether two boxes have a point in common.
+inline bool overlap(const Bounds<3>& a, const Bounds<3>& b) {
+  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
+
+/// A box around it, in the world; endless around a plane.
+Bounds<3> bounds(const Obstacle& obstacle);
+
+/// @param point  in the obstacle's frame, as the result. @pre its kind has an inside: it is not kTriangles
+Separation separation(const Obstacle& obstacle, const Eigen::Vector3f& point);
+
+}  // namespace softcell::ppu

@@ -1,0 +1,115 @@
+#include "ppu/contacts/triangle_distance.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+
+using Eigen::Vector3f;
+using Eigen::Vector3i;
+
+Vector3f nearest_point(const std::array<Vector3f, 3>& triangle, const Vector3f& point) {
+  const auto& [a, b, c] = triangle;
+  const Vector3f ab = b - a, ac = c - a, ap = point - a;
+  const float d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vector3f bp = point - b;
+  const float d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const float vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const Vector3f cp = point - c;
+  const float d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const float vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const float va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  const float scale = 1 / (va + vb + vc);
+  return a + vb * scale * ab + vc * scale * ac;
+}
+
+TriangleGrid::TriangleGrid(const TriangleMesh& mesh, float cube_edge) : edge_(cube_edge) {
+  SC_ASSERT(cube_edge > 0 && !mesh.triangles.empty(), "a grid of cubes of {} m over {} triangles", cube_edge,
+            mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const std::array<Vector3f, 3> corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+    if ((corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() > 0)
+      triangles_.push_back(corners);
+  }
+  const Bounds<3> box = bounds(mesh);
+  low_ = box.low;
+  counts_ = ((box.high - box.low) / edge_).array().floor().cast<int>() + 1;
+
+  // Counted, then filled in: one array for all cubes.
+  const auto for_each_cube = [&](const auto& triangle, const auto& work) {
+    const Vector3i first = cube_of(triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]));
+    const Vector3i last = cube_of(triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]));
+    for (int z = first.z(); z <= last.z(); ++z)
+      for (int y = first.y(); y <= last.y(); ++y)
+        for (int x = first.x(); x <= last.x(); ++x)
+          work(static_cast<std::size_t>((z * counts_.y() + y) * counts_.x() + x));
+  };
+  begin_.assign(static_cast<std::size_t>(counts_.prod()) + 1, 0);
+  for (const auto& triangle : triangles_)
+    for_each_cube(triangle, [&](std::size_t cube) { ++begin_[cube + 1]; });
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  items_.resize(begin_.back());
+  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+    for_each_cube(triangles_[t], [&](std::size_t cube) { items_[next[cube]++] = t; });
+}
+
+Vector3i TriangleGrid::cube_of(const Vector3f& point) const {
+  const Vector3f place = (point - low_) / edge_;
+  const Vector3f last = (counts_.array() - 1).matrix().cast<float>();
+  return place.cwiseMax(Vector3f::Zero()).cwiseMin(last).cast<int>();
+}
+
+struct TriangleGrid::Nearest {
+  float squared = std::numeric_limits<float>::max();
+  float facing = 0;  // of the point and the triangle: cosine, above 0 in front
+};
+
+void TriangleGrid::look_at_cube(const Vector3i& cube, const Vector3f& point, Nearest& nearest) const {
+  if ((cube.array() < 0).any() || (cube.array() >= counts_.array()).any()) return;
+  constexpr float kEquallyNear = 1.0001f;
+  const auto index = static_cast<std::size_t>((cube.z() * counts_.y() + cube.y()) * counts_.x() + cube.x());
+  for (std::uint32_t i = begin_[index]; i < begin_[index + 1]; ++i) {
+    const auto& triangle = triangles_[items_[i]];
+    const Vector3f away = point - nearest_point(triangle, point);
+    const float squared = away.squaredNorm();
+    if (squared > nearest.squared * kEquallyNear) continue;
+    const Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+    const float facing = squared > 0 ? away.dot(normal) / std::sqrt(squared) : 1;
+    if (squared * kEquallyNear < nearest.squared || std::abs(facing) > std::abs(nearest.facing))
+      nearest.facing = facing;
+    nearest.squared = std::min(nearest.squared, squared);
+  }
+}
+
+float TriangleGrid::signed_distance(const Vector3f& point, float reach) const {
+  const Vector3i centre = ((point - low_) / edge_).array().floor().cast<int>();
+  Nearest nearest;
+  const int last_ring = static_cast<int>(std::ceil(reach / edge_)) + 1;
+  for (int ring = 0; ring <= last_ring; ++ring) {
+    // What lies in a ring is at least so far away.
+    const float least = static_cast<float>(ring - 1) * edge_;
+    if (ring > 0 && nearest.squared < least * least) break;
+    for (int z = -ring; z <= ring; ++z)
+      for (int y = -ring; y <= ring; ++y) {
+        const bool whole_row = std::abs(z) == ring || std::abs(y) == ring;
+        for (int x = -ring; x <= ring; x += whole_row || ring == 0 ? 1 : 2 * ring)
+          look_at_cube(centre + Vector3i(x, y, z), point, nearest);
+      }
+  }
+  const float distance = std::sqrt(nearest.squared);
+  if (distance >= reach) return reach;
+  return nearest.facing < 0 ? -distance : distance;
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,25 @@
+#pragma once
+// How soft bodies touch, and where they do.
+
+#include <Eigen/Core>
+
+namespace softcell::ppu {
+
+/// What soft bodies touch with.
+enum class ContactMethod {
+  /// A rigid sphere at each outer particle, which the engine moves: the way of the report of 2008. Costs a
+  /// rigid body for each, and things are kept at a distance from what is drawn.
+  kSpheres,
+  /// What is drawn: points of the mesh's surface meet rigid shapes and other soft bodies, whose edges and
+  /// points meet the body's distance field. The engine knows nothing of the body, and no rigid body stands
+  /// for its particles: rays, overlap tests and contact callbacks do not see it.
+  kSurface,
+};
+
+/// A point at which two bodies press on each other.
+struct Contact {
+  Eigen::Vector3f position{0, 0, 0};  ///< metres, in the world
+  Eigen::Vector3f normal{0, 1, 0};    ///< unit length, from the second body to the first
+};
+
+}  // namespace softcell::ppu

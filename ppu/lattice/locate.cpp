@@ -1,0 +1,51 @@
+#include "ppu/lattice/locate.h"
+#include "softcell/base/assert.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3i;
+
+/// How far past a face a point may lie and still belong to the cell behind it, in cells. The lattice is made
+/// in float: over 256 cells its faces are off by 2e-5 of a cell.
+constexpr double kFaceTolerance = 1e-4;
+
+}  // namespace
+
+std::optional<std::uint32_t> find_cell(const Lattice<3>& lattice, const Vector3i& index) {
+  const auto before = [](const Vector3i& a, const Vector3i& b) {
+    return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
+  };
+  const auto found = std::lower_bound(lattice.cells.begin(), lattice.cells.end(), index, before);
+  if (found == lattice.cells.end() || *found != index) return std::nullopt;
+  return static_cast<std::uint32_t>(found - lattice.cells.begin());
+}
+
+std::optional<PlaceInCell> locate(const Lattice<3>& lattice, const Eigen::Vector3f& position) {
+  SC_ASSERT(lattice.spacing > 0, "cells of {} m", lattice.spacing);
+  const Vector3d grid =
+      (position.cast<double>() - lattice.origin.cast<double>()) / static_cast<double>(lattice.spacing);
+  // Outside any lattice, and NaN: nothing to look for, and no index to overflow.
+  if (!(grid.cwiseAbs().maxCoeff() <= 2.0 * kMaxLatticeCellsPerAxis)) return std::nullopt;
+  const Vector3d low = grid.array().floor();
+  Vector3i step;
+  for (int d = 0; d < 3; ++d) {
+    const double beyond = grid[d] - low[d];
+    step[d] = beyond <= kFaceTolerance ? -1 : beyond >= 1 - kFaceTolerance ? 1 : 0;
+  }
+  for (unsigned choice = 0; choice < 8; ++choice) {
+    const Vector3i taken((choice & 1u) ? step.x() : 0, (choice & 2u) ? step.y() : 0,
+                         (choice & 4u) ? step.z() : 0);
+    const Vector3i index = low.cast<int>() + taken;
+    if (const auto cell = find_cell(lattice, index)) {
+      return PlaceInCell{*cell, (grid - index.cast<double>()).cwiseMax(0.0).cwiseMin(1.0)};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace softcell::ppu

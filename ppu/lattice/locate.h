@@ -1,0 +1,25 @@
+#pragma once
+// In which cell of a lattice a point lies, and where in it.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+struct PlaceInCell {
+  std::uint32_t cell = 0;
+  Eigen::Vector3d xi{0, 0, 0};  ///< 0..1 along each edge
+};
+
+/// The cell with this low corner.
+std::optional<std::uint32_t> find_cell(const Lattice<3>& lattice, const Eigen::Vector3i& index);
+
+/// The cell whose half-open box [low, low + 1) holds the point, else, for a point on a face, the first
+/// occupied cell beyond that face (x before y before z).
+/// @param position  metres, as Lattice::rest_position()
+std::optional<PlaceInCell> locate(const Lattice<3>& lattice, const Eigen::Vector3f& position);
+
+}  // namespace softcell::ppu

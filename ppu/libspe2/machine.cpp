@@ -1,0 +1,144 @@
+#include "machine.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+
+#include "registers.h"
+#include "softcell/base/json_text.h"
+#include "softcell/base/whole_file.h"
+
+namespace softcell::libspe2 {
+namespace {
+
+constexpr std::chrono::seconds kEndOfRuns{2};
+
+ls_sim::SpeOptions options_of(const Settings& settings, ls_sim::Findings& findings, ls_sim::Trace* trace) {
+  ls_sim::SpeOptions options;
+  options.spes = kMostContexts;
+  options.schedule = settings.schedule;
+  options.deadline = settings.deadline;
+  if (settings.turns) options.interleaving = ls_sim::Interleaving::kTurns;
+  if (settings.checked) options.findings = &findings;
+  options.trace = trace;
+  return options;
+}
+
+void append(base::JsonText& json, const std::vector<ls_sim::Finding>& findings) {
+  json.raw("[");
+  for (const ls_sim::Finding& finding : findings) {
+    if (&finding != &findings.front()) json.raw(",");
+    json.raw("\n  {\"rule\":").string(name(finding.fault.rule));
+    json.raw(",\"kernel\":").string(finding.fault.kernel);
+    json.raw(",\"place\":").string(finding.fault.place);
+    json.raw(",\"count\":").number(static_cast<std::int64_t>(finding.count));
+    json.raw(",\"message\":").string(finding.fault.message()).raw("}");
+  }
+  json.raw("]");
+}
+
+}  // namespace
+
+Machine& Machine::get() {
+  static Machine* const machine = [] {
+    try {
+      auto* made = new Machine;
+      std::atexit(&Machine::at_exit);
+      map_registers();
+      return made;
+    } catch (const std::exception& error) {
+      complain(error.what());
+      _exit(2);
+    }
+  }();
+  return *machine;
+}
+
+Machine::Machine()
+    : settings_(settings_from_environment()),
+      process_(getpid()),
+      memory_(dma::HostProgram{.spes = kMostContexts}),
+      trace_(settings_.trace_file.empty() ? nullptr : std::make_unique<ls_sim::Trace>(kMostContexts)),
+      contexts_(
+          std::make_unique<ls_sim::SpeContexts>(memory_, options_of(settings_, findings_, trace_.get()))) {
+  memory_.set_allocations(interposed_allocations());
+}
+
+void Machine::complain(std::string_view what) {
+  std::fprintf(stderr, "softcell: %.*s\n", static_cast<int>(what.size()), what.data());
+}
+
+void Machine::report(const dma::Fault& fault) {
+  complain(fault.message());
+  dma::Fault counted = fault;
+  if (counted.kernel.empty()) counted.kernel = "PPU side";  // a proxy command
+  faults_.add(counted);
+}
+
+void Machine::count_statistics(const ls_sim::SpeStatistics& statistics) {
+  commands_.fetch_add(statistics.dma.commands(), std::memory_order_relaxed);
+  bytes_.fetch_add(statistics.dma.bytes(), std::memory_order_relaxed);
+}
+
+void Machine::at_exit() {
+  Machine& machine = get();
+  if (machine.process_ != getpid()) return;  // a fork of the program
+  if (machine.is_ending_.exchange(true)) return;
+  try {
+    machine.end_runs();
+    machine.print_findings();
+    machine.write_trace();
+    machine.write_report();
+  } catch (const std::exception& error) {
+    complain(error.what());
+  }
+}
+
+void Machine::end_process(int status) {
+  at_exit();
+  std::fflush(nullptr);
+  _exit(status);
+}
+
+/// A program may end while contexts run; they end with it.
+void Machine::end_runs() {
+  contexts_->interrupt_all();
+  const auto until = std::chrono::steady_clock::now() + kEndOfRuns;
+  contexts_->wait([this] { return contexts_->none_runs_in_wait(); }, until);
+}
+
+void Machine::print_findings() const {
+  for (const ls_sim::Finding& finding : findings_.list()) {
+    const std::string times = finding.count == 1 ? "" : " (" + std::to_string(finding.count) + " times)";
+    complain("finding: " + finding.fault.message() + times);
+  }
+}
+
+void Machine::write_trace() const {
+  if (trace_ != nullptr) trace_->write(settings_.trace_file);
+}
+
+void Machine::write_report() const {
+  if (settings_.report_file.empty()) return;
+  base::JsonText json;
+  json.raw("{\"contexts\":").number(static_cast<std::int64_t>(contexts_made_.load()));
+  json.raw(",\"runs\":").number(static_cast<std::int64_t>(runs_.load()));
+  json.raw(",\"dma_commands\":").number(static_cast<std::int64_t>(commands_.load()));
+  json.raw(",\"dma_bytes\":").number(static_cast<std::int64_t>(bytes_.load()));
+  json.raw(",\"dma\":").string(to_string(settings_.schedule));
+  json.raw(",\"checked\":").boolean(settings_.checked);
+  json.raw(",\"findings\":");
+  append(json, findings_.list());
+  json.raw(",\"faults\":");
+  append(json, faults_.list());
+  json.raw("}\n");
+  base::WholeFile file(settings_.report_file);
+  file.write(json.text());
+  file.commit();
+}
+
+}  // namespace softcell::libspe2

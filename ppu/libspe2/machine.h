@@ -1,0 +1,71 @@
+#pragma once
+// What all contexts of the process share: main storage, which is the process's own memory, and what is found out
+// about the program.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string_view>
+
+#include "settings.h"
+#include "softcell/dma/address_space.h"
+#include "softcell/dma/fault.h"
+#include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/spe_contexts.h"
+#include "softcell/ls_sim/trace.h"
+
+namespace softcell::libspe2 {
+
+inline constexpr int kMostContexts = 256;
+
+/// Any thread. It is made at the first call of the library and never destroyed: SPE threads may outlive main().
+class Machine {
+ public:
+  /// Ends the process with status 2 if the environment has a setting that is not allowed, or the host cannot run
+  /// SPEs; standard error says why.
+  static Machine& get();
+
+  const Settings& settings() const { return settings_; }
+  ls_sim::SpeContexts& contexts() { return *contexts_; }
+  dma::AddressSpace& memory() { return memory_; }
+
+  /// Says on standard error what a kernel has done wrong, and counts it.
+  void report(const dma::Fault& fault);
+
+  /// Says on standard error why something failed.
+  static void complain(std::string_view what);
+
+  /// Ends the process at once, with its reports: the program itself may be waiting for ever.
+  [[noreturn]] void end_process(int status);
+  /// Whether the end of the process ends all runs.
+  bool is_ending() const { return is_ending_; }
+
+  void count_context() { contexts_made_.fetch_add(1, std::memory_order_relaxed); }
+  void count_run() { runs_.fetch_add(1, std::memory_order_relaxed); }
+  /// Adds up what a context has moved that is about to go.
+  void count_statistics(const ls_sim::SpeStatistics& statistics);
+
+ private:
+  Machine();
+  static void at_exit();
+  void end_runs();
+  void print_findings() const;
+  void write_trace() const;
+  void write_report() const;
+
+  std::atomic<bool> is_ending_{false};
+  const Settings settings_;
+  const int process_;
+  dma::AddressSpace memory_;
+  ls_sim::Findings findings_, faults_;
+  std::unique_ptr<ls_sim::Trace> trace_;
+  std::unique_ptr<ls_sim::SpeContexts> contexts_;
+  std::atomic<std::uint64_t> contexts_made_{0}, runs_{0}, commands_{0}, bytes_{0};
+};
+
+/// The address at which a program finds the blocks of its heap: an allocator that was loaded before the C library,
+/// if there is one.
+const dma::HostAllocations* interposed_allocations();
+
+}  // namespace softcell::libspe2

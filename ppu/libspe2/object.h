@@ -1,0 +1,155 @@
+#pragma once
+// What the library hands to the program as pointers: they are looked up, never followed, so that a pointer to
+// nothing or to what is gone is an error and not a crash.
+
+#include <pthread.h>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "libspe2.h"
+#include "machine.h"
+#include "softcell/dma/mfc_command.h"
+#include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/spe_contexts.h"
+
+/// SPE contexts that belong together.
+struct spe_gang_context {
+  std::atomic<int> contexts{0};
+  std::atomic<bool> has_memory_affinity{false};
+};
+
+struct spe_context {
+  explicit spe_context(unsigned int options) : flags(options) {}
+  ~spe_context();
+  spe_context(const spe_context&) = delete;
+  spe_context& operator=(const spe_context&) = delete;
+
+  softcell::ls_sim::ProblemState& problem_state() { return spe->problem_state(); }
+
+  const unsigned int flags;
+  std::shared_ptr<spe_gang_context> gang;
+  std::atomic<int> neighbours{0};
+  std::unique_ptr<softcell::ls_sim::SpeContext> spe;
+
+  std::atomic<bool> busy{false};       ///< a thread is in spe_context_run() or spe_program_load()
+  std::atomic<bool> destroyed{false};  ///< whoever waits for it returns
+  std::atomic<unsigned int> tags{0};   ///< of proxy commands since the tag status was read
+  std::mutex in_mbox;  ///< held while values are written, so that those of one call stay together
+
+  /// The registers that only hold a value until another is used.
+  struct Registers {
+    softcell::dma::MfcCommand command;
+    unsigned int query_mask = 0;
+  };
+
+  std::mutex mutex;  ///< guards all below
+  Registers registers;
+  std::shared_ptr<const softcell::ls_sim::KernelImage> image;
+  bool goes_on = false;                 ///< the last run has stopped so that it can go on
+  unsigned int next_entry = 0;          ///< then at this address
+  std::optional<spe_stop_info_t> stop;  ///< not read yet
+  std::atomic<bool> has_stop{false};    ///< whether there is one, for who waits
+};
+
+namespace softcell::libspe2 {
+
+/// The objects of one type that the program has. Any thread.
+template <class Object>
+class Objects {
+ public:
+  /// Of the process; never destroyed.
+  static Objects& all() {
+    static auto* const objects = new Objects;
+    return *objects;
+  }
+  Object* add(std::shared_ptr<Object> object) {
+    Object* const key = object.get();
+    const std::lock_guard lock(mutex_);
+    objects_.emplace(key, std::move(object));
+    return key;
+  }
+  /// @return  null: there is none, or no longer.
+  std::shared_ptr<Object> find(const void* key) {
+    const std::lock_guard lock(mutex_);
+    const auto found = objects_.find(key);
+    return found == objects_.end() ? nullptr : found->second;
+  }
+  /// The first for which condition(object) is true; null: none.
+  template <class Condition>
+  std::shared_ptr<Object> find_if(Condition&& condition) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, object] : objects_) {
+      if (condition(*object)) return object;
+    }
+    return nullptr;
+  }
+  /// @return  null: there was none.
+  std::shared_ptr<Object> remove(const void* key) {
+    const std::lock_guard lock(mutex_);
+    const auto found = objects_.find(key);
+    if (found == objects_.end()) return nullptr;
+    std::shared_ptr<Object> object = std::move(found->second);
+    objects_.erase(found);
+    return object;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<const void*, std::shared_ptr<Object>> objects_;
+};
+
+inline std::shared_ptr<spe_context> context_of(spe_context_ptr_t spe) {
+  return Objects<spe_context>::all().find(spe);
+}
+
+/// Sets errno. @return  -1
+inline int fail(int error) {
+  errno = error;
+  return -1;
+}
+
+/// While the object lives, the calling thread is not cancelled: its place in a wait must not be left.
+class NotCancelled {
+ public:
+  NotCancelled() { pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, &before_); }
+  ~NotCancelled() { pthread_setcancelstate(before_, nullptr); }
+  NotCancelled(const NotCancelled&) = delete;
+  NotCancelled& operator=(const NotCancelled&) = delete;
+
+ private:
+  int before_ = 0;
+};
+
+/// work(), which may throw, for a caller in C. @param failure  the result then, with errno set.
+template <class Result, class Work>
+Result shielded(Result failure, Work&& work) {
+  const NotCancelled here;
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    errno = ENOMEM;
+  } catch (const std::exception& error) {
+    Machine::complain(error.what());
+    errno = EFAULT;
+  }
+  return failure;
+}
+
+/// work(*context) of a context that there is, else ESRCH.
+template <class Work>
+int with_context(spe_context_ptr_t spe, Work&& work) {
+  return shielded(-1, [&] {
+    const std::shared_ptr<spe_context> context = context_of(spe);
+    return context == nullptr ? fail(ESRCH) : work(*context);
+  });
+}
+
+}  // namespace softcell::libspe2

@@ -1,0 +1,200 @@
+// Running contexts, and why they stop.
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+#include "callbacks.h"
+#include "libspe2.h"
+#include "object.h"
+#include "softcell/dma/addresses.h"
+#include "softcell/dma/fault.h"
+#include "softcell/ls_sim/channels.h"
+
+using softcell::dma::Fault;
+using softcell::dma::Rule;
+using softcell::libspe2::fail;
+using softcell::libspe2::Machine;
+using softcell::libspe2::with_context;
+using softcell::ls_sim::ContextStop;
+using softcell::ls_sim::EntryArguments;
+using softcell::ls_sim::kAssistedCalls;
+using softcell::ls_sim::RunResult;
+
+namespace {
+
+constexpr unsigned int kRunFlags = SPE_RUN_USER_REGS | SPE_NO_CALLBACKS;
+constexpr std::uint32_t kCallnumMask = 0xFF;  // [libspe2, newlib] documented
+constexpr int kStatusStopped = 0x2, kStatusHalted = 0x4,
+              kStatusCodeShift = 16;  // SPU_Status [CBEA] documented
+
+struct Outcome {
+  spe_stop_info_t info{};
+  int result = 0;
+  int error = 0;  ///< errno, with a result of -1
+};
+
+Outcome failure(unsigned int reason, int what, int spu_status, int error) {
+  Outcome outcome;
+  outcome.info.stop_reason = reason;
+  outcome.info.result.spe_runtime_error = what;  // the members of the union that are ints are one
+  outcome.info.spu_status = spu_status;
+  outcome.result = -1;
+  outcome.error = error;
+  return outcome;
+}
+
+/// What the hardware and the operating system would have made of it.
+Outcome outcome_of(const Fault& fault) {
+  switch (fault.rule) {
+    case Rule::kKernelHalt:
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_HALT, kStatusHalted, EIO);
+    case Rule::kIllegalInstruction:
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_INSTR, SPE_SPU_INVALID_INSTR, EIO);
+    case Rule::kIllegalChannel:
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_CHANNEL, SPE_SPU_INVALID_CHANNEL, EIO);
+    case Rule::kLsaAlignment:
+    case Rule::kEaAlignment:
+    case Rule::kLowBitsDiffer:
+    case Rule::kListAddress:
+    case Rule::kListElementAlignment:
+    case Rule::kAtomicAlignment:
+    case Rule::kSizeNotLegal:
+    case Rule::kListElementSize:
+      return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_ALIGNMENT, -1, EIO);
+    case Rule::kEaNotMapped:
+      return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_SEGMENTATION, -1, EIO);
+    case Rule::kEaNotReadable:
+    case Rule::kEaNotWritable:
+    case Rule::kEaOutsideAllocation:
+    case Rule::kRegisterAccess:
+      return failure(SPE_RUNTIME_EXCEPTION, SPE_DMA_STORAGE, -1, EIO);
+    case Rule::kUnknownCommand:
+    case Rule::kProxyFormOnly:
+    case Rule::kTagOutOfRange:
+    case Rule::kSizeZero:
+    case Rule::kLsaOutOfRange:
+    case Rule::kListSize:
+    case Rule::kSignalCommand:
+      return failure(SPE_RUNTIME_EXCEPTION, SPE_INVALID_DMA, -1, EIO);
+    default:  // what only softcell notices
+      return failure(SPE_RUNTIME_FATAL, EFAULT, -1, EFAULT);
+  }
+}
+
+Outcome outcome_of(const RunResult& result) {
+  if (result.fault) return outcome_of(*result.fault);
+  Outcome outcome;
+  outcome.info.spu_status = static_cast<int>(result.stop_code << kStatusCodeShift) | kStatusStopped;
+  if (result.ended_normally()) {
+    outcome.info.stop_reason = SPE_EXIT;
+    outcome.info.result.spe_exit_code = static_cast<int>(result.status());
+  } else {
+    outcome.info.stop_reason = SPE_STOP_AND_SIGNAL;
+    outcome.info.result.spe_signal_code = static_cast<int>(result.stop_code);
+    outcome.result = static_cast<int>(result.stop_code);
+  }
+  return outcome;
+}
+
+EntryArguments arguments_of(spe_context_ptr_t spe, unsigned int flags, void* argp, void* envp) {
+  if ((flags & SPE_RUN_USER_REGS) == 0) {
+    return {.spe_id = reinterpret_cast<std::uint64_t>(spe),
+            .argp = reinterpret_cast<std::uint64_t>(argp),
+            .envp = reinterpret_cast<std::uint64_t>(envp)};
+  }
+  std::array<std::uint64_t, 6> registers;  // three quadwords; an argument is the first half of its own
+  std::memcpy(registers.data(), argp, sizeof registers);
+  return {.spe_id = registers[0], .argp = registers[2], .envp = registers[4]};
+}
+
+/// Calls the PPU side as long as the program asks for it.
+/// @return  what no callback answers, or the failure of one.
+Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
+  for (;;) {
+    const std::uint32_t code = stop.result.stop_code;
+    const bool asks = stop.goes_on && (code & ~kCallnumMask) == kAssistedCalls;
+    auto* const callback = asks && callbacks ? softcell::libspe2::callback_of(code & kCallnumMask) : nullptr;
+    if (callback == nullptr) return outcome_of(stop.result);
+    if (const int result = callback(context.problem_state().local_store().data(), stop.assist)) {
+      return failure(SPE_CALLBACK_ERROR, result, static_cast<int>(code << kStatusCodeShift) | kStatusStopped,
+                     EFAULT);
+    }
+    stop = context.spe->resume();
+  }
+}
+
+/// @return  nothing: there is no such entry.
+std::optional<ContextStop> begin_or_go_on(spe_context& context, unsigned int entry,
+                                          const EntryArguments& arguments) {
+  bool goes_on = false;
+  {
+    const std::lock_guard lock(context.mutex);
+    goes_on = context.goes_on && entry == context.next_entry;
+    if (!goes_on && entry != SPE_DEFAULT_ENTRY && entry != context.image->entry) return std::nullopt;
+    context.goes_on = false;
+  }
+  return goes_on ? context.spe->resume() : context.spe->run(arguments);
+}
+
+int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsigned int flags, void* argp,
+        void* envp, spe_stop_info_t* stopinfo) {
+  {
+    const std::lock_guard lock(context.mutex);
+    if (context.image == nullptr) return fail(ENOEXEC);
+  }
+  Machine::get().count_run();
+  std::optional<ContextStop> stop;
+  try {
+    stop = begin_or_go_on(context, *entry, arguments_of(spe, flags, argp, envp));
+  } catch (const std::runtime_error& error) {
+    Machine::complain(error.what());
+    return fail(EAGAIN);
+  }
+  if (!stop) return fail(EINVAL);
+  const Outcome outcome = answer_calls(context, *stop, (flags & SPE_NO_CALLBACKS) == 0);
+  if (stop->result.fault) Machine::get().report(*stop->result.fault);
+  *entry = stop->next.value;
+  {
+    const std::lock_guard lock(context.mutex);
+    context.goes_on = stop->goes_on;
+    context.next_entry = stop->next.value;
+    context.stop = outcome.info;
+    context.has_stop = true;
+  }
+  Machine::get().contexts().wake();
+  if (stopinfo != nullptr) *stopinfo = outcome.info;
+  if (outcome.error != 0) errno = outcome.error;
+  return outcome.result;
+}
+
+}  // namespace
+
+int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int runflags, void* argp, void* envp,
+                    spe_stop_info_t* stopinfo) {
+  return with_context(spe, [&](spe_context& context) {
+    if (entry == nullptr || (runflags & ~kRunFlags) != 0) return fail(EINVAL);
+    if ((runflags & SPE_RUN_USER_REGS) != 0 && argp == nullptr) return fail(EINVAL);
+    if (context.busy.exchange(true)) return fail(EBUSY);
+    struct Release {
+      std::atomic<bool>& busy;
+      ~Release() { busy = false; }
+    };
+    const Release release{context.busy};
+    return run(spe, context, entry, runflags, argp, envp, stopinfo);
+  });
+}
+
+int spe_stop_info_read(spe_context_ptr_t spe, spe_stop_info_t* stopinfo) {
+  return with_context(spe, [&](spe_context& context) {
+    if (stopinfo == nullptr) return fail(EINVAL);
+    if ((context.flags & SPE_EVENTS_ENABLE) == 0) return fail(ENOTSUP);
+    const std::lock_guard lock(context.mutex);
+    if (!context.stop) return fail(EAGAIN);
+    *stopinfo = *context.stop;
+    context.stop.reset();
+    context.has_stop = false;
+    return 0;
+  });
+}

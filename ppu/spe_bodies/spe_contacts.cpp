@@ -1,0 +1,345 @@
+#include "ppu/spe_bodies/spe_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "ppu/spe_bodies/contact_records.h"
+#include "ppu/spe_bodies/find_model.h"
+#include "ppu/spe_bodies/match_orchestration.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindEnd);
+constexpr std::size_t kMostPairs = 4096;                     // that are looked at by the SPEs in a step
+constexpr std::uint32_t kNoTask = ~0u, kByCaller = ~0u - 1;  // of a pair, in place of a task's number
+constexpr std::size_t kContactsInRoom = 4096;                // of one buffer
+constexpr std::size_t kJobsPerSpe = 4;                       // of finding: some pairs take longer than others
+static_assert(kContactsInRoom >= ContactWorker::kMostContacts);
+
+/// Room for at least so many elements; what is in them is lost.
+template <typename T>
+void make_room(dma::AddressSpace& memory, const char* name, dma::Buffer<T>& buffer, std::size_t count) {
+  if (count <= buffer.size()) return;
+  buffer = {};
+  buffer = contact_buffer<T>(memory, name, count + count / 4);
+}
+
+/// A chain for so many jobs. @pre the one that is there has ended
+void make_room(JobSystem& jobs, const char* name, std::unique_ptr<JobChain>& chain, std::size_t& most,
+               std::size_t count) {
+  if (chain != nullptr && count <= most) return chain->clear();
+  chain.reset();
+  most = count + count / 4;
+  chain = std::make_unique<JobChain>(jobs, name, most);
+}
+
+spu::SolveVelocity times(float scale, const Vector3f& v, float root = 0) {
+  return {scale * v.x(), scale * v.y(), scale * v.z(), root};
+}
+
+}  // namespace
+
+SpeContacts::SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& contact_find,
+                         const ls_sim::KernelImage& contact_solve)
+    : memory_(memory),
+      jobs_(jobs),
+      contact_find_(jobs.place(contact_find)),
+      contact_solve_(jobs.place(contact_solve)) {}
+
+SpeContacts::~SpeContacts() = default;
+
+const SpeContacts::Model* SpeContacts::model_of(const ContactModel& contact) {
+  const auto known = models_.find(&contact);
+  if (known != models_.end()) return known->second.get();
+  std::unique_ptr<Model>& model = models_[&contact];
+  const FindModel arrays(contact);
+  if (contact.inverse_masses.size() > spu::kSolveMaxParticles || arrays.cells.size() > spu::kSolveMaxCells)
+    return nullptr;
+  auto made = std::make_unique<Model>();
+  made->cells = contact_buffer<spu::FindCell>(memory_, "contact cells", arrays.cells.size(), kSpesOnlyRead);
+  made->groups =
+      contact_buffer<spu::FindGroup>(memory_, "contact points", arrays.groups.size(), kSpesOnlyRead);
+  std::copy(arrays.cells.begin(), arrays.cells.end(), made->cells.span().begin());
+  std::copy(arrays.groups.begin(), arrays.groups.end(), made->groups.span().begin());
+  for (const float inverse : contact.inverse_masses) {
+    made->inverse_root_masses.push_back(std::sqrt(inverse));
+    made->root_masses.push_back(1 / std::sqrt(inverse));
+  }
+  model = std::move(made);
+  return model.get();
+}
+
+void SpeContacts::begin(std::span<const ContactBody> bodies, float step) {
+  bodies_ = bodies;
+  step_ = step;
+  room_ = used_ = 0;
+  places_.resize(bodies.size());
+  end_boxes_.resize(bodies.size());
+  std::size_t state = 0, velocities = 0, all_particles = 0;
+  started_.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    places_[i] = {model_of(*bodies[i].model), state, velocities, all_particles};
+    if (places_[i].model == nullptr) continue;
+    const std::size_t cells = places_[i].model->cells.size(), particles = bodies[i].ends.size();
+    all_particles += particles;
+    state += (cells + 3) / 4 * kQuadsOfBoxes + 2 * particles;
+    velocities += spu::solve_slots(static_cast<std::uint32_t>(particles)) + particles;
+  }
+  make_room(memory_, "bodies in contact", state_, state);
+  make_room(memory_, "velocities in contact", velocities_, velocities);
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (!holds(i)) continue;
+    write_particles(i);
+    write_boxes(i);
+  }
+}
+
+std::size_t SpeContacts::ends_of(std::uint32_t body) const {
+  return places_[body].state + (places_[body].model->cells.size() + 3) / 4 * kQuadsOfBoxes;
+}
+
+void SpeContacts::write_particles(std::uint32_t i) {
+  const ContactBody& body = bodies_[i];
+  const Model& model = *places_[i].model;
+  const std::size_t count = body.ends.size();
+  spu::FindEnd* const ends = state_.data() + ends_of(i);
+  auto* const begins = reinterpret_cast<spu::FindBegin*>(ends + count);
+  for (std::size_t p = 0; p < count; ++p) {
+    const Vector3f &x = body.positions[p], &end = body.ends[p];
+    begins[p] = {x.x(), x.y(), x.z(), body.asleep ? 0.0f : model.inverse_root_masses[p]};
+    ends[p] = {end.x(), end.y(), end.z(), 0};
+  }
+  spu::SolveVelocity* const start = velocities_.data() + start_of(i);
+  for (std::size_t p = 0; p < count; ++p)
+    start[p] = times(model.root_masses[p], body.velocities[p], model.root_masses[p]);
+  std::fill(velocities_.data() + places_[i].velocities, start, spu::SolveVelocity{});
+  started_.insert(started_.end(), body.velocities.begin(), body.velocities.end());
+}
+
+std::size_t SpeContacts::start_of(std::uint32_t body) const {
+  return places_[body].velocities + spu::solve_slots(static_cast<std::uint32_t>(bodies_[body].ends.size()));
+}
+
+/// Of cells, and of the whole body.
+void SpeContacts::write_boxes(std::uint32_t i) {
+  using Row = Eigen::Array4f;
+  const Model& model = *places_[i].model;
+  const spu::FindEnd* const ends = state_.data() + ends_of(i);
+  auto* const all_boxes = reinterpret_cast<spu::FindBoxes*>(state_.data() + places_[i].state);
+  const std::span<const spu::FindCell> cells = model.cells.span();
+  Row lowest = Row::Constant(std::numeric_limits<float>::max()), highest = -lowest;
+  for (std::size_t c = 0; c < (cells.size() + 3) / 4 * 4; ++c) {
+    const auto& corner = cells[std::min(c, cells.size() - 1)].corner;
+    Row low = Row::Map(&ends[corner[0]].x), high = low;
+    for (std::size_t k = 1; k < 8; ++k) {
+      const Row x = Row::Map(&ends[corner[k]].x);
+      low = low.min(x);
+      high = high.max(x);
+    }
+    lowest = lowest.min(low);
+    highest = highest.max(high);
+    spu::FindBoxes& boxes = all_boxes[c / 4];
+    const std::size_t lane = c % 4;
+    boxes.low_x[lane] = low[0], boxes.low_y[lane] = low[1], boxes.low_z[lane] = low[2];
+    boxes.high_x[lane] = high[0], boxes.high_y[lane] = high[1], boxes.high_z[lane] = high[2];
+  }
+  end_boxes_[i] = {lowest.head<3>(), highest.head<3>()};
+}
+
+spu::FindBody SpeContacts::find_body(std::uint32_t i) {
+  const Model& model = *places_[i].model;
+  spu::FindBody body{};
+  body.cells_ea = model.cells.ea().value;
+  body.groups_ea = model.groups.ea().value;
+  body.state_ea = state_.ea(places_[i].state).value;
+  body.cell_count = static_cast<std::uint32_t>(model.cells.size());
+  body.group_count = static_cast<std::uint32_t>(model.groups.size());
+  body.particle_count = static_cast<std::uint32_t>(bodies_[i].ends.size());
+  body.spacing = bodies_[i].spacing();
+  for (int d = 0; d < 3; ++d) body.middle[d] = 0.5f * (end_boxes_[i].low[d] + end_boxes_[i].high[d]);
+  return body;
+}
+
+spu::FindTask SpeContacts::find_task(std::uint32_t a, std::uint32_t b) {
+  spu::FindTask task{};
+  task.a = find_body(a);
+  task.b = find_body(b);
+  for (int d = 0; d < 3; ++d) {
+    task.low[d] = std::max(end_boxes_[a].low[d], end_boxes_[b].low[d]);
+    task.high[d] = std::min(end_boxes_[a].high[d], end_boxes_[b].high[d]);
+  }
+  task.step = step_;
+  task.inverse_step = 1 / step_;
+  task.friction = bodies_[a].friction * bodies_[b].friction;
+  task.itself = a == b ? 1 : 0;
+  return task;
+}
+
+void SpeContacts::find(std::span<const Pair> pairs) {
+  tasks_.clear();
+  task_of_.clear();
+  for (const auto& [a, b] : pairs) {
+    // What two bodies have in common at the end is less than what they have on their ways.
+    if (!(end_boxes_[a].low.array() <= end_boxes_[b].high.array()).all() ||
+        !(end_boxes_[b].low.array() <= end_boxes_[a].high.array()).all()) {
+      task_of_.push_back(kNoTask);
+      continue;
+    }
+    const spu::FindTask task = find_task(a, b);
+    if (spu::find_bytes(task) > spu::kFindMaxBytes || tasks_.size() == kMostPairs) {
+      task_of_.push_back(kByCaller);
+      continue;
+    }
+    task_of_.push_back(static_cast<std::uint32_t>(tasks_.size()));
+    tasks_.push_back(task);
+  }
+  const std::size_t tasks = tasks_.size();
+  make_room(memory_, "contacts found", contacts_, tasks * spu::kFindMaxContacts);
+  make_room(memory_, "tasks of finding contacts", find_tasks_, tasks);
+  make_room(memory_, "results of finding contacts", results_, tasks);
+  for (std::size_t i = 0; i < tasks; ++i) {
+    tasks_[i].contacts_ea = contacts_.ea(i * spu::kFindMaxContacts).value;
+    find_tasks_[i] = tasks_[i];
+  }
+  const std::size_t most_jobs = kJobsPerSpe * static_cast<std::size_t>(jobs_.spes());
+  const std::size_t per_job = (tasks + most_jobs - 1) / most_jobs;
+  const std::size_t job_count = tasks == 0 ? 0 : (tasks + per_job - 1) / per_job;
+  make_room(memory_, "jobs of finding contacts", find_jobs_, job_count);
+  make_room(jobs_, "finding contacts", finding_, most_find_jobs_, std::max<std::size_t>(job_count, 1));
+  for (std::size_t j = 0; j < job_count; ++j) {
+    const std::size_t first = j * per_job;
+    find_jobs_[j] = {};
+    find_jobs_[j].tasks_ea = find_tasks_.ea(first).value;
+    find_jobs_[j].results_ea = results_.ea(first).value;
+    find_jobs_[j].task_count = static_cast<std::uint32_t>(std::min(per_job, tasks - first));
+    finding_->add({.image = contact_find_, .argp = find_jobs_.ea(j)});
+  }
+  if (job_count != 0) finding_->kick();
+}
+
+std::span<const FoundContacts> SpeContacts::found() {
+  if (finding_->size() != 0) {
+    finding_->wait();
+    check_jobs(*finding_);
+  }
+  found_.clear();
+  for (const std::uint32_t number : task_of_) {
+    FoundContacts& found = found_.emplace_back();
+    found.by_caller = number == kByCaller;
+    if (number == kByCaller || number == kNoTask) continue;
+    const spu::FindResult& result = results_[number];
+    found.by_caller = result.overflow != 0;
+    found.contacts = contacts_.span().subspan(std::size_t{number} * spu::kFindMaxContacts, result.count);
+    found.pushes = result.pushes != 0;
+  }
+  return found_;
+}
+
+std::span<spu::SolveContact> SpeContacts::room(std::size_t contacts) {
+  SC_ASSERT(contacts <= kMostContacts, "{} contacts in a group", contacts);
+  if (used_ + contacts > kContactsInRoom) ++room_, used_ = 0;
+  if (room_ == rooms_.size()) rooms_.emplace_back(memory_, "contacts of the PPU", kContactsInRoom);
+  used_ += contacts;
+  return rooms_[room_].span().subspan(used_ - contacts, contacts);
+}
+
+dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveContact* contact) const {
+  const auto within = [&](const dma::Buffer<spu::SolveContact>& buffer) {
+    return !buffer.empty() && contact >= buffer.data() && contact < buffer.data() + buffer.size();
+  };
+  if (within(contacts_)) return contacts_.ea(static_cast<std::size_t>(contact - contacts_.data()));
+  const auto room = std::find_if(rooms_.begin(), rooms_.end(), within);
+  SC_ASSERT(room != rooms_.end(), "contacts that are in none of {} buffers", rooms_.size());
+  return room->ea(static_cast<std::size_t>(contact - room->data()));
+}
+
+spu::SolveTask SpeContacts::solve_task(const SolveGroup& group, std::uint32_t iterations) {
+  spu::SolveTask task{};
+  const auto particles = [&](std::uint32_t body) {
+    return static_cast<std::uint32_t>(bodies_[body].ends.size());
+  };
+  task.a_ea = velocities_.ea(places_[group.a].velocities).value;
+  task.a_count = particles(group.a);
+  task.a_sleeps = bodies_[group.a].asleep ? 1 : 0;
+  if (group.b != SolveGroup::kNobody) {
+    task.b_ea = velocities_.ea(places_[group.b].velocities).value;
+    task.b_count = particles(group.b);
+    task.b_sleeps = bodies_[group.b].asleep ? 1 : 0;
+  }
+  task.contact_count = static_cast<std::uint32_t>(group.contacts.size());
+  if (task.contact_count != 0) task.contacts_ea = ea_of(group.contacts.data()).value;
+  task.iterations = iterations;
+  task.pushes = group.pushes ? 1 : 0;
+  if (!group.cells.empty()) {
+    task.cells_ea = cells_.ea(cells_used_).value;
+    task.cell_count = static_cast<std::uint32_t>(group.cells.size());
+    task.positions_ea = state_.ea(ends_of(group.a) + task.a_count).value;
+    const std::span<const spu::FindCell> cells = places_[group.a].model->cells.span();
+    for (const std::uint32_t cell : group.cells)
+      std::copy_n(cells[cell].corner, 8, cells_[cells_used_++].particle);
+    task.start_ea = velocities_.ea(start_of(group.a)).value;
+    task.stiffening = group.stiffening;
+    task.inverse_spacing = 1 / bodies_[group.a].spacing();
+  }
+  return task;
+}
+
+void SpeContacts::solve(const SolveStages& stages, std::uint32_t iterations) {
+  if (stages.groups.empty()) return;
+  std::size_t cells = 0;
+  for (const SolveGroup& group : stages.groups) cells += group.cells.size();
+  cells_used_ = 0;
+  make_room(memory_, "cells to be stiffened", cells_, cells);
+  make_room(memory_, "tasks of solving contacts", solve_tasks_, stages.groups.size());
+  make_room(memory_, "jobs of solving contacts", solve_jobs_, stages.units.size());
+  make_room(jobs_, "solving contacts", solving_, most_solve_jobs_, stages.units.size());
+  for (std::size_t g = 0; g < stages.groups.size(); ++g)
+    solve_tasks_[g] = solve_task(stages.groups[g], iterations);
+  std::size_t stage = 0;
+  for (std::size_t u = 0; u < stages.units.size(); ++u) {
+    for (; stage < stages.stages.size() && stages.stages[stage] == u; ++stage) solving_->sync();
+    const std::size_t first = stages.units[u];
+    const std::size_t end = u + 1 < stages.units.size() ? stages.units[u + 1] : stages.groups.size();
+    if (first == end) continue;
+    solve_jobs_[u] = {};
+    solve_jobs_[u].tasks_ea = solve_tasks_.ea(first).value;
+    solve_jobs_[u].task_count = static_cast<std::uint32_t>(end - first);
+    solving_->add({.image = contact_solve_, .argp = solve_jobs_.ea(u)});
+  }
+  solving_->kick();
+  solving_->wait();
+  check_jobs(*solving_);
+}
+
+void SpeContacts::take(std::uint32_t body, std::span<Vector3f> velocities, std::span<Vector3f> pushes) const {
+  const std::size_t count = velocities.size();
+  const spu::SolveVelocity* const changes = velocities_.data() + places_[body].velocities;
+  const spu::SolveVelocity* const pushed = changes + count + 1;
+  const Vector3f* const started = started_.data() + places_[body].particles;
+  const std::vector<float>& by = places_[body].model->inverse_root_masses;
+  for (std::size_t p = 0; p < count; ++p) {
+    velocities[p] = started[p] + by[p] * Vector3f(changes[p].x, changes[p].y, changes[p].z);
+    pushes[p] = by[p] * Vector3f(pushed[p].x, pushed[p].y, pushed[p].z);
+  }
+}
+
+void SpeContacts::put(std::uint32_t body, std::span<const Vector3f> velocities,
+                      std::span<const Vector3f> pushes) {
+  const std::size_t count = velocities.size();
+  spu::SolveVelocity* const changes = velocities_.data() + places_[body].velocities;
+  const Vector3f* const started = started_.data() + places_[body].particles;
+  const std::vector<float>& roots = places_[body].model->root_masses;
+  for (std::size_t p = 0; p < count; ++p) {
+    changes[p] = times(roots[p], velocities[p] - started[p]);
+    changes[count + 1 + p] = times(roots[p], pushes[p]);
+  }
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,97 @@
+#pragma once
+// Contacts of soft bodies on SPEs, by the kernels `contact_find` and `contact_solve`.
+//
+//     begin   positions, ends, boxes of cells, velocities --> main memory
+//     find    a chain of jobs, each some pairs of bodies
+//     solve   a chain with a stage for each of SolveStages, a job for each unit
+
+#include <memory>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "contact_find_job.h"
+#include "contact_solve_job.h"
+#include "ppu/contacts/contact_worker.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/jobs/job_system.h"
+
+namespace softcell::ppu {
+
+/// The result is the same bits for any number of SPEs. Used by one thread. Allocates when there is more to do
+/// than ever before.
+class SpeContacts final : public ContactWorker {
+ public:
+  /// `memory`, `jobs` and the kernels' images outlive this.
+  /// @throws std::runtime_error  main memory is full.
+  SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& contact_find,
+              const ls_sim::KernelImage& contact_solve);
+  ~SpeContacts() override;
+
+  void begin(std::span<const ContactBody> bodies, float step) override;
+  bool holds(std::uint32_t body) const override { return places_[body].model != nullptr; }
+  void find(std::span<const Pair> pairs) override;
+  std::span<const FoundContacts> found() override;
+  std::span<spu::SolveContact> room(std::size_t contacts) override;
+  void solve(const SolveStages& stages, std::uint32_t iterations) override;
+  void take(std::uint32_t body, std::span<Eigen::Vector3f> velocities,
+            std::span<Eigen::Vector3f> pushes) const override;
+  void put(std::uint32_t body, std::span<const Eigen::Vector3f> velocities,
+           std::span<const Eigen::Vector3f> pushes) override;
+
+ private:
+  /// A model in main memory, and what its bodies need of it.
+  struct Model {
+    dma::Buffer<spu::FindCell> cells;
+    dma::Buffer<spu::FindGroup> groups;
+    std::vector<float> root_masses, inverse_root_masses;
+  };
+  /// Where a body's arrays begin.
+  struct Place {
+    const Model* model = nullptr;  ///< null: the body is too large
+    std::size_t state = 0, velocities = 0, particles = 0;
+  };
+  const Model* model_of(const ContactModel& contact);
+  /// Where its SolveTask::start_ea begins in velocities_, and its ends in state_.
+  std::size_t start_of(std::uint32_t body) const;
+  std::size_t ends_of(std::uint32_t body) const;
+  void write_boxes(std::uint32_t body);
+  void write_particles(std::uint32_t body);
+  spu::FindBody find_body(std::uint32_t body);
+  spu::FindTask find_task(std::uint32_t a, std::uint32_t b);
+  dma::EffectiveAddress ea_of(const spu::SolveContact* contact) const;
+  spu::SolveTask solve_task(const SolveGroup& group, std::uint32_t iterations);
+
+  dma::AddressSpace& memory_;
+  JobSystem& jobs_;
+  JobImage contact_find_, contact_solve_;
+  std::unordered_map<const ContactModel*, std::unique_ptr<Model>> models_;  // null: too large
+
+  std::span<const ContactBody> bodies_;
+  float step_ = 0;
+  std::vector<Place> places_;
+  std::vector<Bounds<3>> end_boxes_;  // of each body
+
+  dma::Buffer<spu::FindEnd> state_;             // FindBody::state_ea of each body
+  dma::Buffer<spu::SolveVelocity> velocities_;  // of each body: changes, pushes, and the start
+  std::vector<Eigen::Vector3f> started_;        // of all bodies: velocities at begin()
+
+  dma::Buffer<spu::FindTask> find_tasks_;
+  dma::Buffer<spu::FindResult> results_;
+  dma::Buffer<spu::FindJob> find_jobs_;
+  dma::Buffer<spu::SolveContact> contacts_;            // kFindMaxContacts for each pair
+  std::vector<dma::Buffer<spu::SolveContact>> rooms_;  // for contacts that others have found
+  std::size_t room_ = 0, used_ = 0;                    // the one that is being filled, and how far
+  std::vector<spu::FindTask> tasks_;
+  std::vector<std::uint32_t> task_of_;  // of each pair
+  std::vector<FoundContacts> found_;
+
+  dma::Buffer<spu::SolveTask> solve_tasks_;
+  dma::Buffer<spu::SolveJob> solve_jobs_;
+  dma::Buffer<spu::SolveCell> cells_;
+  std::size_t cells_used_ = 0;
+  std::size_t most_find_jobs_ = 0, most_solve_jobs_ = 0;
+  std::unique_ptr<JobChain> finding_, solving_;  // last: ended before what their jobs work on goes
+};
+
+}  // namespace softcell::ppu

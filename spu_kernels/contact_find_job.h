@@ -1,0 +1,125 @@
+#pragma once
+// The contract of the kernel `contact_find`: plain data in main memory, the same bytes for both sides.
+// Freestanding; included by the kernel and by the PPU side. All scalars are in the machine's own byte order.
+
+#include <stdint.h>
+
+#include "contact_solve_job.h"
+
+namespace softcell::spu {
+
+/// A cell of a model: its corners, the points in it that touch, and the distance from the surface at rest.
+struct alignas(16) FindCell {
+  uint16_t corner[8];                 ///< particles; corner k = bx + 2 by + 4 bz
+  int16_t grid[4];                    ///< place in the lattice, x y z and 0
+  uint16_t first_group, group_count;  ///< its FindGroups
+  uint16_t pad[2];
+  /// In the cell no distance is less than least.xyz . (xi - 1/2) + least.w.
+  float least[4];
+  float field[28];  ///< distances at 3 x 3 x 3 nodes, in cells, below 0 inside; x fastest; the last is 0
+};
+static_assert(sizeof(FindCell) == 160, "ten quadwords");
+
+/// Four points that touch, in one cell. A group that is not full has points whose allowance is kFindNoPoint.
+struct alignas(16) FindGroup {
+  float along_x[4], along_y[4], along_z[4];  ///< xi - 1/2 in the cell: -1/2..1/2, a lane to a point
+  float allowance[4];                        ///< metres: how deep in others a point may be
+};
+static_assert(sizeof(FindGroup) == 64, "four quadwords");
+constexpr float kFindNoPoint = 0x1.93e594p+99f;  // 1e30
+
+/// The boxes of four cells of a body, around the step's end. Those of the last group that are no cells repeat
+/// the last cell.
+struct alignas(16) FindBoxes {
+  float low_x[4], low_y[4], low_z[4];
+  float high_x[4], high_y[4], high_z[4];
+};
+
+/// A particle: where it is, and the root of its inverse mass; 0 for one that nothing moves.
+struct alignas(16) FindBegin {
+  float x, y, z, root;
+};
+/// Where it would be at the end of the step, without contacts.
+struct alignas(16) FindEnd {
+  float x, y, z, zero;
+};
+
+struct FindBody {
+  uint64_t cells_ea;   ///< cell_count FindCell, of the model
+  uint64_t groups_ea;  ///< group_count FindGroup, of the model
+  /// Of the body: (cell_count + 3) / 4 FindBoxes, particle_count FindEnd, and as many FindBegin.
+  uint64_t state_ea;
+  uint32_t cell_count, group_count, particle_count;
+  float spacing;    ///< of cells, metres
+  float middle[4];  ///< metres, about: of the box around the body; x y z 0
+  uint32_t pad[2];
+};
+static_assert(sizeof(FindBody) == 64, "half a line");
+
+/// The points of a in b, then those of b in a; of a body with itself, its points in it. All contacts are as
+/// seen from a.
+struct alignas(128) FindTask {
+  FindBody a, b;          ///< the same in all for a body with itself
+  uint64_t contacts_ea;   ///< room for kFindMaxContacts SolveContact
+  uint64_t result_ea;     ///< a FindResult
+  float low[4], high[4];  ///< the box that both bodies' ends have in common; x y z 0
+  float step;             ///< seconds
+  float inverse_step;
+  float friction;
+  uint32_t itself;  ///< not 0: a and b are one body
+  uint32_t pad[12];
+};
+static_assert(sizeof(FindTask) == 256, "two lines");
+
+struct alignas(16) FindResult {
+  uint32_t count;      ///< contacts
+  uint32_t pushes;     ///< not 0: one of them at least pushes
+  uint32_t overflow;   ///< not 0: there was no room for all that had to be looked at; then there are none
+  uint32_t looked_at;  ///< places in cells that were looked for
+};
+
+constexpr uint32_t kFindMaxContacts = 192;  ///< of a task
+/// Most bytes of a task: of its two models, or one, and of its bodies.
+constexpr uint32_t kFindMaxBytes = 131072;
+constexpr uint32_t kFindMaxParticles = 1024;
+constexpr uint32_t kFindMaxNear = 192;  ///< cells of one body that are near another body
+
+/// Bytes of FindBody::state_ea.
+inline uint32_t find_state_bytes(const FindBody& body) {
+  return (body.cell_count + 3) / 4 * static_cast<uint32_t>(sizeof(FindBoxes)) +
+         body.particle_count * static_cast<uint32_t>(sizeof(FindEnd) + sizeof(FindBegin));
+}
+/// Bytes of its FindCells and FindGroups.
+inline uint32_t find_model_bytes(const FindBody& body) {
+  return body.cell_count * static_cast<uint32_t>(sizeof(FindCell)) +
+         body.group_count * static_cast<uint32_t>(sizeof(FindGroup));
+}
+/// All that a task needs, of which bodies of one model share it.
+inline uint32_t find_bytes(const FindTask& task) {
+  const uint32_t first = find_model_bytes(task.a) + find_state_bytes(task.a);
+  if (task.itself != 0) return first;
+  return first + (task.a.cells_ea == task.b.cells_ea ? 0 : find_model_bytes(task.b)) +
+         find_state_bytes(task.b);
+}
+
+/// The job's descriptor, one line in main memory.
+struct alignas(128) FindJob {
+  uint64_t tasks_ea;    ///< task_count FindTask
+  uint64_t results_ea;  ///< room for a FindResult of each
+  uint32_t task_count;  ///< any number, 0 included
+  uint32_t pad[27];
+};
+static_assert(sizeof(FindJob) == 128, "one line");
+
+/// What is near, in cells: what comes nearer in a step is in contact.
+constexpr float kFindNear = 0.005f;
+/// A body does not touch itself in cells whose middles are nearer at rest, in cells.
+constexpr int32_t kFindApart = 3;
+/// A depth of up to kFindSlop cells stays; of what is deeper, kFindPushShare goes in a step, and no more than
+/// kFindMostPush cells.
+constexpr float kFindSlop = 0.01f, kFindPushShare = 0x1.99999ap-4f, kFindMostPush = 0.02f;  // 0.1
+
+/// What the kernel's main returns.
+enum FindStatus : uint32_t { kFindDone = 0, kFindTooLarge = 1 };
+
+}  // namespace softcell::spu

@@ -1,0 +1,75 @@
+#pragma once
+// Takes a share of what a cell's corners do against each other off their velocities, both momenta kept: what a
+// contact does to one corner the cell as a whole feels at once.
+
+#include <spu_intrinsics.h>
+#include <stdint.h>
+
+#include "common/reciprocal.h"
+#include "contact_solve_job.h"
+#include "contacts/quad_vector.h"
+
+namespace softcell::spu {
+
+/// Of one cell. The rigid motion that has the corners' momenta is V + omega x r, with r in cells from the centre
+/// of mass; what differs from it shrinks.
+/// @param changes    of velocities times the root of the mass, and 0
+/// @param start      what has changed, and that root
+/// @param positions  x y z and anything, metres
+inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* start,
+                    const vec_float4* positions, float share, float inverse_spacing) {
+  const vec_float4 zero = spu_splats(0.0f);
+  const vec_float4 first = positions[spu_extract(corner, 0)];  // far from the origin, sums would lose digits
+  vec_float4 arm[8], root[8], now[8];
+  vec_float4 mass = zero, moment = zero, momentum = zero;
+  for (int k = 0; k < 8; ++k) {
+    const uint32_t particle = spu_extract(corner, k);
+    root[k] = splat_lane<3>(start[particle]);
+    now[k] = only_xyz(spu_add(start[particle], changes[particle]));
+    const vec_float4 m = spu_mul(root[k], root[k]);
+    arm[k] = spu_mul(spu_sub(positions[particle], first), spu_splats(inverse_spacing));
+    mass = spu_add(mass, m);
+    moment = spu_madd(m, arm[k], moment);
+    momentum = spu_madd(root[k], now[k], momentum);
+  }
+  const vec_float4 by_mass = reciprocal(mass);
+  const vec_float4 centre = spu_mul(moment, by_mass);
+  const vec_float4 velocity = spu_mul(momentum, by_mass);
+
+  // Inertia by rows, and spin, both by mass.
+  vec_float4 squares = zero, spin = zero;  // x x, y y, z z
+  vec_float4 mixed = zero;                 // x y, y z, z x
+  for (int k = 0; k < 8; ++k) {
+    const vec_float4 r = only_xyz(spu_sub(arm[k], centre));
+    arm[k] = r;
+    const vec_float4 m = spu_mul(spu_mul(root[k], root[k]), by_mass);
+    const vec_float4 weighted = spu_mul(m, r);
+    squares = spu_madd(weighted, r, squares);
+    mixed = spu_madd(weighted, turned_left(r), mixed);
+    spin = spu_madd(spu_mul(root[k], by_mass), cross_of(r, now[k]), spin);
+  }
+  // A cell that is pressed to a line cannot turn about it.
+  const vec_float4 diagonal =
+      spu_add(spu_sub(sum_of_lanes(squares), squares), spu_splats(0x1.0624dep-10f));  // 1e-3
+  const vec_float4 off = spu_sub(zero, mixed);  // of rows and columns x y, y z, z x
+  // off: xy yz zx.
+  const vec_uchar16 first_row = {0, 1, 2, 3, 16, 17, 18, 19, 24, 25, 26, 27, 28, 29, 30, 31};
+  const vec_uchar16 second_row = {16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23, 28, 29, 30, 31};
+  const vec_uchar16 third_row = {24, 25, 26, 27, 20, 21, 22, 23, 8, 9, 10, 11, 28, 29, 30, 31};
+  const vec_float4 row_x = spu_shuffle(diagonal, off, first_row);
+  const vec_float4 row_y = spu_shuffle(diagonal, off, second_row);
+  const vec_float4 row_z = spu_shuffle(diagonal, off, third_row);
+  const vec_float4 c1 = cross_of(row_y, row_z), c2 = cross_of(row_z, row_x), c3 = cross_of(row_x, row_y);
+  const vec_float4 omega = spu_mul(
+      spu_madd(splat_lane<0>(spin), c1, spu_madd(splat_lane<1>(spin), c2, spu_mul(splat_lane<2>(spin), c3))),
+      reciprocal(dot_in_all_lanes(row_x, c1)));
+
+  const vec_float4 part = spu_splats(share);
+  for (int k = 0; k < 8; ++k) {
+    vec_float4& change = changes[spu_extract(corner, k)];
+    const vec_float4 rigid = spu_mul(root[k], spu_add(velocity, cross_of(omega, arm[k])));
+    change = spu_madd(part, only_xyz(spu_sub(rigid, now[k])), change);
+  }
+}
+
+}  // namespace softcell::spu

@@ -1,0 +1,321 @@
+/* The generic intrinsics, spu_*, for C: macros that choose a function by the type of their operands.  [LEXT, generic intrinsics]
+ * documented
+ */
+#ifndef SOFTCELL_C_GENERIC_H
+#define SOFTCELL_C_GENERIC_H
+
+#include "../shared/softcell_channels.h"
+#include "../shared/softcell_special_values.h"
+#include "softcell_c_environment.h"
+
+#define SC_C_NAME(name, V) softcell_c_##name##_##V
+#define SC_C_V_V(name, V, S, U, I) V SC_C_NAME(name, V)(V);
+#define SC_C_U_V(name, V, S, U, I) U SC_C_NAME(name, V)(V);
+#define SC_C_B_V(name, V, S, U, I) vec_uint4 SC_C_NAME(name, V)(V);
+#define SC_C_V_VV(name, V, S, U, I) V SC_C_NAME(name, V)(V, V);
+#define SC_C_U_VV(name, V, S, U, I) U SC_C_NAME(name, V)(V, V);
+#define SC_C_V_VVV(name, V, S, U, I) V SC_C_NAME(name, V)(V, V, V);
+#define SC_C_V_VVU(name, V, S, U, I) V SC_C_NAME(name, V)(V, V, U);
+#define SC_C_V_VVP(name, V, S, U, I) V SC_C_NAME(name, V)(V, V, vec_uchar16);
+#define SC_C_V_VU(name, V, S, U, I) V SC_C_NAME(name, V)(V, U);
+#define SC_C_V_VI(name, V, S, U, I) V SC_C_NAME(name, V)(V, I);
+#define SC_C_V_VN(name, V, S, U, I) V SC_C_NAME(name, V)(V, int);
+#define SC_C_1(R, name, A) R SC_C_NAME(name, A)(A);
+#define SC_C_2(R, name, A, B) R SC_C_NAME(name, A)(A, B);
+#define SC_C_3(R, name, A, B, C) R SC_C_NAME(name, A)(A, B, C);
+#define SC_C_Q1(name) qword softcell_c_si_##name(qword);
+#define SC_C_Q2(name) qword softcell_c_si_##name(qword, qword);
+#define SC_C_Q3(name) qword softcell_c_si_##name(qword, qword, qword);
+#include "softcell_c_rows.h"
+
+/* What the compiler's vectors do by themselves needs no function. Integer sums wrap: they are made of unsigned lanes. */
+#define SC_C_INTEGER(name, V, S, U, I)                                    \
+  SC_C_INLINE V softcell_c_add_##V(V a, V b) { return (V)((U)a + (U)b); } \
+  SC_C_INLINE V softcell_c_sub_##V(V a, V b) { return (V)((U)a - (U)b); }
+SC_C_16_32(SC_C_INTEGER, )
+/* Single precision is one instruction of the host each, as in softcell_single.h: an exact zero of a product is +0. */
+SC_C_INLINE vec_float4 softcell_c_add_vec_float4(vec_float4 a, vec_float4 b) { return a + b; }
+SC_C_INLINE vec_float4 softcell_c_sub_vec_float4(vec_float4 a, vec_float4 b) { return a - b; }
+SC_C_INLINE vec_float4 softcell_c_madd_vec_float4(vec_float4 a, vec_float4 b, vec_float4 c) {
+  return __builtin_ia32_vfmaddps(a, b, c);
+}
+SC_C_INLINE vec_float4 softcell_c_mul_vec_float4(vec_float4 a, vec_float4 b) {
+  return softcell_c_madd_vec_float4(a, b, (vec_float4)(vec_uint4){0});
+}
+SC_C_INLINE vec_float4 softcell_c_msub_vec_float4(vec_float4 a, vec_float4 b, vec_float4 c) {
+  return softcell_c_madd_vec_float4(a, b, -c);
+}
+SC_C_INLINE vec_float4 softcell_c_nmsub_vec_float4(vec_float4 a, vec_float4 b, vec_float4 c) {
+  return softcell_c_madd_vec_float4(-a, b, c);
+}
+#define SC_C_COMPARED(name, V, S, U, I)                                \
+  SC_C_INLINE U softcell_c_cmpeq_##V(V a, V b) { return (U)(a == b); } \
+  SC_C_INLINE U softcell_c_cmpgt_##V(V a, V b) { return (U)(a > b); }
+SC_C_8_16_32(SC_C_COMPARED, )
+#undef SC_C_COMPARED
+#define SC_C_ANY(name, V, S, U, I)                                           \
+  SC_C_INLINE V softcell_c_splats_##V(S s) {                                 \
+    S lanes[16 / sizeof(S)];                                                 \
+    V v;                                                                     \
+    for (unsigned int i = 0; i < 16 / sizeof(S); ++i) lanes[i] = s;          \
+    __builtin_memcpy(&v, lanes, 16);                                         \
+    return v;                                                                \
+  }                                                                          \
+  SC_C_INLINE V softcell_c_insert_##V(S s, V a, int element) {               \
+    a[(unsigned int)element & (16 / sizeof(S) - 1)] = s;                     \
+    return a;                                                                \
+  }                                                                          \
+  SC_C_INLINE S softcell_c_extract_##V(V a, int element) {                   \
+    return a[(unsigned int)element & (16 / sizeof(S) - 1)];                  \
+  }                                                                          \
+  SC_C_INLINE V softcell_c_and_##V(V a, V b) { return (V)((U)a & (U)b); }    \
+  SC_C_INLINE V softcell_c_or_##V(V a, V b) { return (V)((U)a | (U)b); }     \
+  SC_C_INLINE V softcell_c_xor_##V(V a, V b) { return (V)((U)a ^ (U)b); }    \
+  SC_C_INLINE V softcell_c_andc_##V(V a, V b) { return (V)((U)a & ~(U)b); }  \
+  SC_C_INLINE V softcell_c_orc_##V(V a, V b) { return (V)((U)a | ~(U)b); }   \
+  SC_C_INLINE V softcell_c_nand_##V(V a, V b) { return (V) ~((U)a & (U)b); } \
+  SC_C_INLINE V softcell_c_nor_##V(V a, V b) { return (V) ~((U)a | (U)b); }  \
+  SC_C_INLINE V softcell_c_eqv_##V(V a, V b) { return (V) ~((U)a ^ (U)b); }  \
+  SC_C_INLINE V softcell_c_sel_##V(V a, V b, U c) { return (V)(((U)a & ~c) | ((U)b & c)); }
+SC_C_ALL(SC_C_ANY, )
+#undef SC_C_INTEGER
+#undef SC_C_ANY
+
+/* Lists of a function's types. */
+#define SC_C_CASES_8(f) \
+  vec_uchar16:          \
+  SC_C_NAME(f, vec_uchar16), vec_char16 : SC_C_NAME(f, vec_char16)
+#define SC_C_CASES_16(f) \
+  vec_ushort8:           \
+  SC_C_NAME(f, vec_ushort8), vec_short8 : SC_C_NAME(f, vec_short8)
+#define SC_C_CASES_32(f) \
+  vec_uint4:             \
+  SC_C_NAME(f, vec_uint4), vec_int4 : SC_C_NAME(f, vec_int4) SC_C_CASES_COMPARISON(f)
+#ifdef __clang__
+/* What Clang makes of a comparison of words. */
+typedef long softcell_comparison __attribute__((vector_size(16)));
+#define SC_C_CASES_COMPARISON(f) , softcell_comparison : SC_C_NAME(f, vec_int4)
+#else
+#define SC_C_CASES_COMPARISON(f)
+#endif
+#define SC_C_CASES_64(f) \
+  vec_ullong2:           \
+  SC_C_NAME(f, vec_ullong2), vec_llong2 : SC_C_NAME(f, vec_llong2)
+#define SC_C_CASES_REAL(f) \
+  vec_float4:              \
+  SC_C_NAME(f, vec_float4), vec_double2 : SC_C_NAME(f, vec_double2)
+#define SC_C_CASES_16_32(f) SC_C_CASES_16(f), SC_C_CASES_32(f)
+#define SC_C_CASES_8_16_32(f) SC_C_CASES_8(f), SC_C_CASES_16_32(f)
+#define SC_C_CASES_ALL(f) SC_C_CASES_8_16_32(f), SC_C_CASES_64(f), SC_C_CASES_REAL(f)
+#define SC_C_PICK(list, f, a) _Generic(a, list(f))
+
+/* A scalar operand becomes a vector of the other's type. */
+#define SC_C_SPLAT(V, S)                                                            \
+  SC_C_INLINE V softcell_c_like_scalar_##V(S s) { return SC_C_NAME(splats, V)(s); } \
+  SC_C_INLINE V softcell_c_like_vector_##V(V v) { return v; }
+SC_C_SPLAT(vec_uchar16, unsigned char)
+SC_C_SPLAT(vec_char16, signed char)
+SC_C_SPLAT(vec_ushort8, unsigned short)
+SC_C_SPLAT(vec_short8, short)
+SC_C_SPLAT(vec_uint4, unsigned int)
+SC_C_SPLAT(vec_int4, int)
+SC_C_SPLAT(vec_ullong2, unsigned long long)
+SC_C_SPLAT(vec_llong2, long long)
+SC_C_SPLAT(vec_float4, float)
+SC_C_SPLAT(vec_double2, double)
+#undef SC_C_SPLAT
+#define SC_C_LIKE(b, V) _Generic((b), V : SC_C_NAME(like_vector, V), default : SC_C_NAME(like_scalar, V))
+#define SC_C_AS(a, b)                               \
+  (_Generic((a), vec_uchar16                        \
+            : SC_C_LIKE(b, vec_uchar16), vec_char16 \
+            : SC_C_LIKE(b, vec_char16), vec_ushort8 \
+            : SC_C_LIKE(b, vec_ushort8), vec_short8 \
+            : SC_C_LIKE(b, vec_short8), vec_uint4   \
+            : SC_C_LIKE(b, vec_uint4), vec_int4     \
+            : SC_C_LIKE(b, vec_int4), vec_ullong2   \
+            : SC_C_LIKE(b, vec_ullong2), vec_llong2 \
+            : SC_C_LIKE(b, vec_llong2), vec_float4  \
+            : SC_C_LIKE(b, vec_float4), vec_double2 \
+            : SC_C_LIKE(b, vec_double2))(b))
+
+/* Each operand is evaluated, and written out, once: macros in macros would grow without bound. */
+#define SC_C_CALL1(list, f, a)      \
+  __extension__({                   \
+    __auto_type sc_1 = (a);         \
+    SC_C_PICK(list, f, sc_1)(sc_1); \
+  })
+#define SC_C_CALL2(list, f, a, b)         \
+  __extension__({                         \
+    __auto_type sc_1 = (a);               \
+    __auto_type sc_2 = (b);               \
+    SC_C_PICK(list, f, sc_1)(sc_1, sc_2); \
+  })
+#define SC_C_CALL3(list, f, a, b, c)            \
+  __extension__({                               \
+    __auto_type sc_1 = (a);                     \
+    __auto_type sc_2 = (b);                     \
+    __auto_type sc_3 = (c);                     \
+    SC_C_PICK(list, f, sc_1)(sc_1, sc_2, sc_3); \
+  })
+/* The second operand a vector like the first, or a scalar. */
+#define SC_C_CALL2_LIKE(list, f, a, b)                   \
+  __extension__({                                        \
+    __auto_type sc_1 = (a);                              \
+    __auto_type sc_2 = (b);                              \
+    SC_C_PICK(list, f, sc_1)(sc_1, SC_C_AS(sc_1, sc_2)); \
+  })
+
+/* Constants, one lane. */
+#define SC_C_SCALARS(f)                                                                                      \
+  unsigned char : SC_C_NAME(f, vec_uchar16),                                                                 \
+                  signed char : SC_C_NAME(f, vec_char16),                                                    \
+                                char : SC_C_NAME(f, vec_uchar16),                                            \
+                                       unsigned short : SC_C_NAME(f, vec_ushort8),                           \
+                                                        short : SC_C_NAME(f, vec_short8),                    \
+                                                                unsigned int : SC_C_NAME(f, vec_uint4),      \
+                                                                               int : SC_C_NAME(f, vec_int4), \
+                                                                                     unsigned long long      \
+      : SC_C_NAME(f, vec_ullong2),                                                                           \
+        long long : SC_C_NAME(f, vec_llong2),                                                                \
+                    float : SC_C_NAME(f, vec_float4),                                                        \
+                            double : SC_C_NAME(f, vec_double2)
+#define spu_splats(s) SC_C_CALL1(SC_C_SCALARS, splats, s)
+#define spu_promote(s, element) ((void)(element), spu_splats(s))
+#define spu_insert(s, a, element)                                   \
+  __extension__({                                                   \
+    __auto_type sc_1 = (s);                                         \
+    __auto_type sc_2 = (a);                                         \
+    SC_C_PICK(SC_C_CASES_ALL, insert, sc_2)(sc_1, sc_2, (element)); \
+  })
+#define spu_extract(a, element) SC_C_CALL2(SC_C_CASES_ALL, extract, a, element)
+
+/* Conversions; the scale is an immediate. */
+#define spu_convtf(a, scale) SC_C_CALL2(SC_C_CASES_32, convtf, a, SC_C_CONSTANT(scale, 0, 127))
+#define spu_convts(a, scale) (softcell_c_convts_vec_float4((a), SC_C_CONSTANT(scale, 0, 127)))
+#define spu_convtu(a, scale) (softcell_c_convtu_vec_float4((a), SC_C_CONSTANT(scale, 0, 127)))
+#define SC_C_CASES_EXTENDED(f)                                              \
+  vec_char16:                                                               \
+  SC_C_NAME(f, vec_char16), vec_short8 : SC_C_NAME(f, vec_short8),          \
+                                         vec_int4 : SC_C_NAME(f, vec_int4), \
+                                                    vec_float4 : SC_C_NAME(f, vec_float4)
+#define spu_extend(a) SC_C_CALL1(SC_C_CASES_EXTENDED, extend, a)
+#define spu_roundtf(a) (softcell_c_roundtf_vec_double2(a))
+
+/* Arithmetic. */
+#define SC_C_CASES_SUMS(f) SC_C_CASES_16_32(f), SC_C_CASES_REAL(f)
+#define SC_C_CASES_FUSED(f) SC_C_CASES_REAL(f), vec_short8 : SC_C_NAME(f, vec_short8)
+#define spu_add(a, b) SC_C_CALL2_LIKE(SC_C_CASES_SUMS, add, a, b)
+#define spu_sub(a, b)                                                 \
+  __extension__({                                                     \
+    __auto_type sc_1 = (a);                                           \
+    __auto_type sc_2 = (b);                                           \
+    SC_C_PICK(SC_C_CASES_SUMS, sub, sc_2)(SC_C_AS(sc_2, sc_1), sc_2); \
+  })
+#define spu_addx(a, b, c) SC_C_CALL3(SC_C_CASES_32, addx, a, b, c)
+#define spu_subx(a, b, c) SC_C_CALL3(SC_C_CASES_32, subx, a, b, c)
+#define spu_gencx(a, b, c) SC_C_CALL3(SC_C_CASES_32, gencx, a, b, c)
+#define spu_genbx(a, b, c) SC_C_CALL3(SC_C_CASES_32, genbx, a, b, c)
+#define spu_genc(a, b) SC_C_CALL2(SC_C_CASES_32, genc, a, b)
+#define spu_genb(a, b) SC_C_CALL2(SC_C_CASES_32, genb, a, b)
+#define spu_mul(a, b) SC_C_CALL2(SC_C_CASES_REAL, mul, a, b)
+#define spu_madd(a, b, c) SC_C_CALL3(SC_C_CASES_FUSED, madd, a, b, c)
+#define spu_msub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, msub, a, b, c)
+#define spu_nmsub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, nmsub, a, b, c)
+#define spu_nmadd(a, b, c) (softcell_c_nmadd_vec_double2((a), (b), (c)))
+#define spu_mule(a, b) SC_C_CALL2(SC_C_CASES_16, mule, a, b)
+#define spu_mulo(a, b) SC_C_CALL2_LIKE(SC_C_CASES_16, mulo, a, b)
+#define spu_mulh(a, b) (softcell_c_mulh_vec_short8((a), (b)))
+#define spu_mulsr(a, b) (softcell_c_mulsr_vec_short8((a), (b)))
+#define spu_mhhadd(a, b, c) SC_C_CALL3(SC_C_CASES_16, mhhadd, a, b, c)
+#define spu_re(a) (softcell_c_re_vec_float4(a))
+#define spu_rsqrte(a) (softcell_c_rsqrte_vec_float4(a))
+
+/* Bytes. */
+#define spu_absd(a, b) (softcell_c_absd_vec_uchar16((a), (b)))
+#define spu_avg(a, b) (softcell_c_avg_vec_uchar16((a), (b)))
+#define spu_sumb(a, b) (softcell_c_sumb_vec_uchar16((a), (b)))
+
+/* Comparisons; halts. */
+#define SC_C_CASES_COMPARED(f) SC_C_CASES_8_16_32(f), SC_C_CASES_REAL(f)
+#define spu_cmpeq(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpeq, a, b)
+#define spu_cmpgt(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpgt, a, b)
+#define spu_cmpabseq(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabseq, a, b)
+#define spu_cmpabsgt(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabsgt, a, b)
+SC_C_INLINE void softcell_halt_if(int condition) {
+  if (condition) softcell_call_gate(softcell_halt, 0, 0);
+}
+#define spu_hcmpeq(a, b) (softcell_halt_if((a) == (b)))
+#define spu_hcmpgt(a, b) (softcell_halt_if((a) > (b)))
+
+/* Bits and masks. */
+#define SC_C_CASES_COUNTED(f) SC_C_CASES_32(f), vec_float4 : SC_C_NAME(f, vec_float4)
+#define SC_C_CASES_GATHERED(f) SC_C_CASES_8_16_32(f), vec_float4 : SC_C_NAME(f, vec_float4)
+#define spu_cntb(a) SC_C_CALL1(SC_C_CASES_8, cntb, a)
+#define spu_cntlz(a) SC_C_CALL1(SC_C_CASES_COUNTED, cntlz, a)
+#define spu_gather(a) SC_C_CALL1(SC_C_CASES_GATHERED, gather, a)
+#define spu_maskb(a) (softcell_c_maskb_int(a))
+#define spu_maskh(a) (softcell_c_maskh_int(a))
+#define spu_maskw(a) (softcell_c_maskw_int(a))
+#define spu_orx(a) SC_C_CALL1(SC_C_CASES_32, orx, a)
+#define spu_sel(a, b, c) SC_C_CALL3(SC_C_CASES_ALL, sel, a, b, c)
+#define spu_shuffle(a, b, c) SC_C_CALL3(SC_C_CASES_ALL, shuffle, a, b, c)
+
+/* Logic. */
+#define spu_and(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, and, a, b)
+#define spu_or(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, or, a, b)
+#define spu_xor(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, xor, a, b)
+#define spu_andc(a, b) SC_C_CALL2(SC_C_CASES_ALL, andc, a, b)
+#define spu_orc(a, b) SC_C_CALL2(SC_C_CASES_ALL, orc, a, b)
+#define spu_nand(a, b) SC_C_CALL2(SC_C_CASES_ALL, nand, a, b)
+#define spu_nor(a, b) SC_C_CALL2(SC_C_CASES_ALL, nor, a, b)
+#define spu_eqv(a, b) SC_C_CALL2(SC_C_CASES_ALL, eqv, a, b)
+
+/* Shifts and rotations of lanes, by a vector of counts or by one scalar. */
+#define SC_C_SHIFT(f, a, b)                                           \
+  __extension__({                                                     \
+    __auto_type sc_1 = (a);                                           \
+    __auto_type sc_2 = (b);                                           \
+    _Generic(sc_2, vec_ushort8                                        \
+             : SC_C_PICK(SC_C_CASES_16_32, f, sc_1), vec_short8       \
+             : SC_C_PICK(SC_C_CASES_16_32, f, sc_1), vec_uint4        \
+             : SC_C_PICK(SC_C_CASES_16_32, f, sc_1), vec_int4         \
+             : SC_C_PICK(SC_C_CASES_16_32, f, sc_1), default          \
+             : SC_C_PICK(SC_C_CASES_16_32, f##_n, sc_1))(sc_1, sc_2); \
+  })
+#define spu_sl(a, b) SC_C_SHIFT(sl, a, b)
+#define spu_sr(a, b) SC_C_SHIFT(sr, a, b)
+#define spu_sra(a, b) SC_C_SHIFT(sra, a, b)
+#define spu_rl(a, b) SC_C_SHIFT(rl, a, b)
+#define spu_rlmask(a, b) SC_C_SHIFT(rlmask, a, b)
+#define spu_rlmaska(a, b) SC_C_SHIFT(rlmaska, a, b)
+
+/* Shifts and rotations of the quadword. */
+#define SC_C_QUADWORD(f, a, n) SC_C_CALL2(SC_C_CASES_ALL, f, a, (int)(n))
+#define spu_slqw(a, n) SC_C_QUADWORD(slqw, a, n)
+#define spu_slqwbyte(a, n) SC_C_QUADWORD(slqwbyte, a, n)
+#define spu_slqwbytebc(a, n) SC_C_QUADWORD(slqwbytebc, a, n)
+#define spu_srqw(a, n) SC_C_QUADWORD(srqw, a, n)
+#define spu_srqwbyte(a, n) SC_C_QUADWORD(srqwbyte, a, n)
+#define spu_srqwbytebc(a, n) SC_C_QUADWORD(srqwbytebc, a, n)
+#define spu_rlqw(a, n) SC_C_QUADWORD(rlqw, a, n)
+#define spu_rlqwbyte(a, n) SC_C_QUADWORD(rlqwbyte, a, n)
+#define spu_rlqwbytebc(a, n) SC_C_QUADWORD(rlqwbytebc, a, n)
+#define spu_rlmaskqw(a, n) SC_C_QUADWORD(rlmaskqw, a, n)
+#define spu_rlmaskqwbyte(a, n) SC_C_QUADWORD(rlmaskqwbyte, a, n)
+#define spu_rlmaskqwbytebc(a, n) SC_C_QUADWORD(rlmaskqwbytebc, a, n)
+
+/* Control and channels. */
+#define spu_readch(channel) (softcell_call_gate(softcell_read, SC_C_CONSTANT(channel, 0, 127), 0))
+#define spu_readchqw(channel) ((vec_uint4){spu_readch(channel)})
+#define spu_readchcnt(channel) (softcell_call_gate(softcell_count, SC_C_CONSTANT(channel, 0, 127), 0))
+#define spu_writech(channel, value) \
+  (softcell_write_channel(SC_C_CONSTANT(channel, 0, 127), (uint32_t)(value)))
+#define spu_writechqw(channel, value) spu_writech(channel, spu_extract((vec_uint4)(value), 0))
+#define spu_stop(code) ((void)softcell_call_gate(softcell_stop, 0, SC_C_CONSTANT(code, 0, 0x3FFF)))
+#define spu_sync() ((void)softcell_call_gate(softcell_sync, 0, 0))
+#define spu_sync_c() spu_sync()
+#define spu_dsync() __asm__ volatile("" ::: "memory")
+#define spu_idisable() __asm__ volatile("" ::: "memory")
+#define __align_hint(pointer, base, offset) ((void)(pointer))
+
+#endif

@@ -1,0 +1,61 @@
+#pragma once
+// Memory between the image and its stack, numbers from text, sorting, and how a program ends. [C17, 7.22]
+
+#include <stddef.h>
+#include <sys/cdefs.h>
+
+#define EXIT_SUCCESS 0
+#define EXIT_FAILURE 1
+#define RAND_MAX 0x7FFFFFFF
+
+typedef struct {
+  int quot, rem;
+} div_t;
+typedef struct {
+  long quot, rem;
+} ldiv_t;
+typedef struct {
+  long long quot, rem;
+} lldiv_t;
+
+__BEGIN_DECLS
+/// Memory of the heap, which lies between bss and the declared stack, aligned to 16 bytes. Null when there is no room.
+void* malloc(size_t bytes);
+void* calloc(size_t count, size_t bytes);
+void* realloc(void* old, size_t bytes);
+/// @param alignment  a power of two
+void* memalign(size_t alignment, size_t bytes);
+void free(void* memory);
+
+int abs(int value);
+long labs(long value);
+long long llabs(long long value);
+div_t div(int a, int b);
+ldiv_t ldiv(long a, long b);
+lldiv_t lldiv(long long a, long long b);
+int atoi(const char* text);
+long atol(const char* text);
+long long atoll(const char* text);
+long strtol(const char* text, char** end, int base);
+unsigned long strtoul(const char* text, char** end, int base);
+long long strtoll(const char* text, char** end, int base);
+unsigned long long strtoull(const char* text, char** end, int base);
+
+/// The same numbers in every run. rand() is 0..RAND_MAX.
+int rand(void);
+int rand_r(unsigned int* state);
+void srand(unsigned int seed);
+
+/// Heapsort: no memory and no recursion. Equal elements may change places.
+void qsort(void* array, size_t count, size_t bytes, int (*compare)(const void*, const void*));
+void* bsearch(const void* key, const void* array, size_t count, size_t bytes,
+              int (*compare)(const void*, const void*));
+
+/// Ends the program with the stop code 0x2000 + the low eight bits of the status.
+void exit(int status) __attribute__((noreturn));
+void _exit(int status) __attribute__((noreturn));
+/// Ends it with status 1 and a message.
+void abort(void) __attribute__((noreturn));
+/// Called by exit(), the last first; 32 at most. @return  0, or -1 when there is no room.
+int atexit(void (*function)(void));
+__END_DECLS

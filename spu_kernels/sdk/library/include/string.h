@@ -1,0 +1,32 @@
+#pragma once
+// Memory and strings in the local store. [C17, 7.24; POSIX]
+
+#include <stddef.h>
+#include <sys/cdefs.h>
+
+__BEGIN_DECLS
+void* memcpy(void* to, const void* from, size_t bytes);
+void* memmove(void* to, const void* from, size_t bytes);
+void* memset(void* to, int value, size_t bytes);
+int memcmp(const void* a, const void* b, size_t bytes);
+void* memchr(const void* in, int value, size_t bytes);
+size_t strlen(const char* s);
+size_t strnlen(const char* s, size_t most);
+char* strcpy(char* to, const char* from);
+char* strncpy(char* to, const char* from, size_t most);
+char* strcat(char* to, const char* from);
+char* strncat(char* to, const char* from, size_t most);
+int strcmp(const char* a, const char* b);
+int strncmp(const char* a, const char* b, size_t most);
+int strcasecmp(const char* a, const char* b);
+int strncasecmp(const char* a, const char* b, size_t most);
+char* strchr(const char* s, int c);
+char* strrchr(const char* s, int c);
+char* strstr(const char* s, const char* part);
+size_t strspn(const char* s, const char* these);
+size_t strcspn(const char* s, const char* these);
+char* strpbrk(const char* s, const char* these);
+char* strtok(char* s, const char* separators);
+char* strtok_r(char* s, const char* separators, char** rest);
+char* strdup(const char* s);
+__END_DECLS

@@ -1,0 +1,110 @@
+// Strings, and kinds of characters in the locale "C".
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern "C" {
+
+int islower(int c) { return c >= 'a' && c <= 'z'; }
+int isupper(int c) { return c >= 'A' && c <= 'Z'; }
+int isdigit(int c) { return c >= '0' && c <= '9'; }
+int isalpha(int c) { return islower(c) || isupper(c); }
+int isalnum(int c) { return isalpha(c) || isdigit(c); }
+int isblank(int c) { return c == ' ' || c == '\t'; }
+int isspace(int c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+int iscntrl(int c) { return (c >= 0 && c < ' ') || c == 0x7F; }
+int isprint(int c) { return c >= ' ' && c < 0x7F; }
+int isgraph(int c) { return c > ' ' && c < 0x7F; }
+int ispunct(int c) { return isgraph(c) && !isalnum(c); }
+int isxdigit(int c) { return isdigit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
+int tolower(int c) { return isupper(c) ? c + ('a' - 'A') : c; }
+int toupper(int c) { return islower(c) ? c - ('a' - 'A') : c; }
+
+size_t strnlen(const char* s, size_t most) {
+  size_t n = 0;
+  while (n < most && s[n] != '\0') ++n;
+  return n;
+}
+size_t strlen(const char* s) { return strnlen(s, ~size_t{0}); }
+
+char* strcpy(char* to, const char* from) {
+  size_t i = 0;
+  do to[i] = from[i];
+  while (from[i++] != '\0');
+  return to;
+}
+char* strncpy(char* to, const char* from, size_t most) {
+  const size_t n = strnlen(from, most);
+  memcpy(to, from, n);
+  memset(to + n, 0, most - n);
+  return to;
+}
+char* strncat(char* to, const char* from, size_t most) {
+  const size_t at = strlen(to), n = strnlen(from, most);
+  memcpy(to + at, from, n);
+  to[at + n] = '\0';
+  return to;
+}
+char* strcat(char* to, const char* from) { return strncat(to, from, ~size_t{0}); }
+
+static int compare(const char* a, const char* b, size_t most, int (*kind)(int)) {
+  for (size_t i = 0; i < most; ++i) {
+    const int left = kind(static_cast<unsigned char>(a[i])), right = kind(static_cast<unsigned char>(b[i]));
+    if (left != right) return left - right;
+    if (left == 0) return 0;
+  }
+  return 0;
+}
+static int as_it_is(int c) { return c; }
+int strcmp(const char* a, const char* b) { return compare(a, b, ~size_t{0}, as_it_is); }
+int strncmp(const char* a, const char* b, size_t most) { return compare(a, b, most, as_it_is); }
+int strcasecmp(const char* a, const char* b) { return compare(a, b, ~size_t{0}, tolower); }
+int strncasecmp(const char* a, const char* b, size_t most) { return compare(a, b, most, tolower); }
+
+char* strchr(const char* s, int c) { return static_cast<char*>(memchr(s, c, strlen(s) + 1)); }
+char* strrchr(const char* s, int c) {
+  for (size_t i = strlen(s) + 1; i-- > 0;)
+    if (s[i] == static_cast<char>(c)) return const_cast<char*>(s + i);
+  return nullptr;
+}
+char* strstr(const char* s, const char* part) {
+  const size_t n = strlen(part);
+  for (;; ++s) {
+    if (strncmp(s, part, n) == 0) return const_cast<char*>(s);
+    if (*s == '\0') return nullptr;
+  }
+}
+
+static size_t run_of(const char* s, const char* these, bool inside) {
+  size_t n = 0;
+  while (s[n] != '\0' && (strchr(these, s[n]) != nullptr) == inside) ++n;
+  return n;
+}
+size_t strspn(const char* s, const char* these) { return run_of(s, these, true); }
+size_t strcspn(const char* s, const char* these) { return run_of(s, these, false); }
+char* strpbrk(const char* s, const char* these) {
+  s += strcspn(s, these);
+  return *s == '\0' ? nullptr : const_cast<char*>(s);
+}
+
+char* strtok_r(char* s, const char* separators, char** rest) {
+  if (s == nullptr) s = *rest;
+  s += strspn(s, separators);
+  char* const end = s + strcspn(s, separators);
+  *rest = *end == '\0' ? end : end + 1;
+  *end = '\0';
+  return end == s ? nullptr : s;
+}
+char* strtok(char* s, const char* separators) {
+  static char* rest;
+  return strtok_r(s, separators, &rest);
+}
+
+char* strdup(const char* s) {
+  const size_t bytes = strlen(s) + 1;
+  auto* const copy = static_cast<char*>(malloc(bytes));
+  return copy == nullptr ? nullptr : static_cast<char*>(memcpy(copy, s, bytes));
+}
+
+}  // extern "C"

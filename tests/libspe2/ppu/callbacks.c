@@ -1,0 +1,36 @@
+#include "run_in_thread.h"
+
+extern spe_program_handle_t calls;
+
+static int times;
+
+static int add(void* ls_base, unsigned int data) {
+  unsigned int* arguments = (unsigned int*)((char*)ls_base + (data & 0xFFFFFF));
+  CHECK(data >> 24 == 7);
+  arguments[0] += arguments[1];
+  arguments[1] = (unsigned int)++times;
+  return 0;
+}
+
+static int refuse(void* ls_base, unsigned int data) {
+  (void)ls_base;
+  (void)data;
+  return 33;
+}
+
+int main(void) {
+  spe_thread_t spe;
+  CHECK(spe_callback_handler_register((void*)add, 16, SPE_CALLBACK_NEW) == 0);
+  start_spe(&spe, &calls, 0, NULL, NULL);
+  CHECK(end_spe(&spe) == 55);
+  CHECK(times == 10);
+  CHECK(spe_callback_handler_register((void*)refuse, 16, SPE_CALLBACK_UPDATE) == 0);
+  start_spe(&spe, &calls, 0, NULL, NULL);
+  CHECK(pthread_join(spe.thread, NULL) == 0);
+  CHECK(spe.result == -1 && spe.stop.stop_reason == SPE_CALLBACK_ERROR &&
+        spe.stop.result.spe_callback_error == 33);
+  CHECK(spe_context_destroy(spe.context) == 0);
+  CHECK(spe_callback_handler_deregister(16) == 0);
+  puts("ok");
+  return 0;
+}

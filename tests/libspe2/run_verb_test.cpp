@@ -1,0 +1,130 @@
+// softcell run, and the environment variables that it sets.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "softcell/dma/sanitizers.h"
+#include "support/run_command.h"
+#include "support/scratch_folder.h"
+
+namespace softcell::tests {
+namespace {
+
+const std::string kPingPong = LIBSPE2_PROGRAMS "/libspe2_mailbox_ping_pong";
+const std::string kForgets = LIBSPE2_PROGRAMS "/libspe2_forgets_to_wait";
+const std::string kOverruns = LIBSPE2_PROGRAMS "/libspe2_overruns_a_block";
+
+bool has(const CommandResult& result, const std::string& text) {
+  return result.output.find(text) != std::string::npos;
+}
+
+TEST(RunVerb, RunsAProgramAndSaysWhatItDid) {
+  const CommandResult run = run_softcell("run -- " + kPingPong);
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(has(run, "ok\n")) << run.output;
+  EXPECT_TRUE(has(run, "ended with status 0; 4 SPE contexts, 4 runs, 0 DMA commands (0.0 MB), 0 findings"))
+      << run.output;
+}
+
+TEST(RunVerb, EndsAsTheProgramDoes) {
+  EXPECT_EQ(run_softcell("run -- " + kForgets + " 17").status, 17);
+  EXPECT_EQ(run_softcell("run -- sh -c 'kill -9 $$'").status, 137);
+  const CommandResult other = run_softcell("run -- true");
+  EXPECT_EQ(other.status, 0);
+  EXPECT_TRUE(has(other, "no SPE context was made")) << other.output;
+  const CommandResult none = run_softcell("run -- ./no_such_program");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_TRUE(has(none, "softcell: cannot run ./no_such_program: No such file or directory")) << none.output;
+}
+
+TEST(RunVerb, FindsAForgottenWaitOfACheckedProgram) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell("run --checked --json " + (folder / "r.json") + " -- " + kForgets);
+  EXPECT_EQ(run.status, 3) << run.output;
+  EXPECT_TRUE(has(run, "finding: SPE 0, kernel breaks_rules, breaks_rules.cpp:")) << run.output;
+  EXPECT_TRUE(has(run, "load-in-flight")) << run.output;
+  std::ifstream file(folder / "r.json");
+  const auto json = nlohmann::json::parse(file);
+  EXPECT_EQ(json.at("status"), 0);
+  EXPECT_EQ(json.at("report").at("findings").at(0).at("rule"), "load-in-flight");
+}
+
+TEST(RunVerb, SeedsTellWhatDependsOnTheOrder) {
+  const CommandResult run = run_softcell("run --seeds 30 --quiet -- " + kForgets);
+  EXPECT_EQ(run.status, 1) << run.output;
+  EXPECT_TRUE(has(
+      run,
+      "the outcome depends on the order of transfers or SPEs; see it again with softcell run --dma random:"))
+      << run.output;
+  const CommandResult good = run_softcell("run --seeds 5 --quiet -- " + kPingPong);
+  EXPECT_EQ(good.status, 0) << good.output;
+  EXPECT_TRUE(has(good, "softcell: 5 seeds: ")) << good.output;
+  EXPECT_TRUE(has(good, "with the same output")) << good.output;
+}
+
+TEST(RunVerb, HoldsTransfersAgainstTheBlocksOfTheHeap) {
+  if (SC_ADDRESS_SANITIZER) GTEST_SKIP() << "the sanitizer finds it first, and has an allocator of its own";
+  EXPECT_EQ(run_softcell("run -- " + kOverruns).status, 0) << "nobody knows of the block";
+  const CommandResult run = run_softcell("run --allocations -- " + kOverruns);
+  EXPECT_EQ(run.status, 3) << run.output;
+  EXPECT_TRUE(has(run, "ea-outside-allocation")) << run.output;
+  EXPECT_TRUE(has(run, "48 of 64 bytes lie in 40 bytes at")) << run.output;
+  EXPECT_TRUE(has(run, "allocated by make_block at overruns_a_block.c:")) << run.output;
+  EXPECT_EQ(run_softcell("run --allocations -- " + kPingPong).status, 0);
+}
+
+TEST(RunVerb, RecordsATrace) {
+  const ScratchFolder folder;
+  const CommandResult run = run_softcell("run --trace " + (folder / "t.json") + " -- " + kForgets);
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(run_softcell("report " + (folder / "t.json") + " --out " + (folder / "t.html")).status, 0);
+}
+
+TEST(RunVerb, RefusesWhatMakesNoSense) {
+  EXPECT_EQ(run_softcell("run").status, 2);
+  EXPECT_EQ(run_softcell("run --dma sometimes -- true").status, 2);
+  EXPECT_EQ(run_softcell("run --seeds 3 --dma lazy -- true").status, 2);
+  EXPECT_EQ(run_softcell("run --seeds 3 --trace t.json -- true").status, 2);
+}
+
+TEST(Environment, AWrongValueEndsTheProgramWithASentence) {
+  for (const std::string variable :
+       {"SOFTCELL_DMA=sometimes", "SOFTCELL_CHECKED=yes", "SOFTCELL_TURNS=2", "SOFTCELL_DEADLINE_MS=-1"}) {
+    const CommandResult run = run_shell(variable + " " + kPingPong);
+    EXPECT_EQ(run.status, 2) << run.output;
+    EXPECT_TRUE(
+        has(run, "softcell: the environment variable " + variable.substr(0, variable.find('=')) + " is '"))
+        << run.output;
+  }
+}
+
+TEST(Environment, ADeadlineEndsAProgramThatNeverEnds) {
+  const CommandResult run = run_shell("SOFTCELL_DEADLINE_MS=300 " LIBSPE2_PROGRAMS "/libspe2_never_ends");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(has(run, "deadline-exceeded")) << run.output;
+}
+
+TEST(Environment, AProgramMayEndWhileItsContextsRun) {
+  const CommandResult run = run_shell(LIBSPE2_PROGRAMS "/libspe2_never_ends leave");
+  EXPECT_EQ(run.status, 5) << run.output;
+}
+
+TEST(RunVerb, KeepsAllMemoryBelow4GB) {
+#if SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER
+  GTEST_SKIP() << "sanitizers have their own heap and stacks";
+#endif
+  const std::string program = std::string(LIBSPE2_PROGRAMS) + "/libspe2_keeps_pointers_in_32_bits";
+  EXPECT_EQ(run_softcell("run -- " + program).status, 1) << "a stack of a PC program lies high";
+  const CommandResult low = run_softcell("run --low-memory -- " + program);
+  EXPECT_EQ(low.status, 0) << low.output;
+  const CommandResult moving = run_softcell("run --low-memory -- " + kPingPong);
+  EXPECT_EQ(moving.status, 2);
+  EXPECT_NE(moving.output.find("is position-independent: link it with -no-pie"), std::string::npos)
+      << moving.output;
+}
+
+}  // namespace
+}  // namespace softcell::tests

@@ -1,0 +1,35 @@
+// Breaks the rule that argp names; envp is an address for it.
+#include <spu_intrinsics.h>
+#include <spu_mfcio.h>
+
+alignas(128) static volatile unsigned int buffer[64];
+
+int main(uint64_t, uint64_t argp, uint64_t envp) {
+  mfc_write_tag_mask(1);
+  switch (argp) {
+    case 1:
+      mfc_get(buffer, envp + 4, 64, 0, 0, 0);
+      break;
+    case 2:
+      mfc_get(buffer, envp, 64, 0, 0, 0);
+      break;
+    case 3:
+      mfc_put(buffer, envp, 64, 0, 0, 0);
+      break;
+    case 4:
+      mfc_get(buffer, envp, 64, 77, 0, 0);
+      break;
+    case 5:
+      spu_stop(0);
+      break;
+    case 6:
+      for (;;) spu_readchcnt(29);
+    case 7:
+      mfc_get(buffer, envp, 64, 0, 0, 0);
+      return static_cast<int>(buffer[0]);  // not waited for
+    default:
+      break;
+  }
+  mfc_read_tag_status_all();
+  return 0;
+}

@@ -1,0 +1,182 @@
+// Distances from shapes, triangles and surfaces at rest, and places in deformed cells, against formulas.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "ppu/contacts/cell_finder.h"
+#include "ppu/contacts/contact_body.h"
+#include "ppu/contacts/contact_surface.h"
+#include "ppu/contacts/obstacle.h"
+#include "ppu/contacts/triangle_distance.h"
+#include "softcell/soft_bodies/shapes.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+class RandomPoints {
+ public:
+  Vector3f in_cube(float half) {
+    std::uniform_real_distribution<float> coordinate(-half, half);
+    return {coordinate(engine_), coordinate(engine_), coordinate(engine_)};
+  }
+
+ private:
+  std::mt19937 engine_{7};
+};
+
+TEST(Obstacle, DistanceFromABoxASphereAndACapsule) {
+  Obstacle box;
+  box.kind = ObstacleKind::kBox;
+  box.extent = {1, 2, 3};
+  EXPECT_FLOAT_EQ(separation(box, {1.5f, 0, 0}).distance, 0.5f);
+  EXPECT_FLOAT_EQ(separation(box, {4, 6, 3}).distance, 5);
+  EXPECT_FLOAT_EQ(separation(box, {0.75f, 0, 0}).distance, -0.25f);
+  EXPECT_EQ(separation(box, {-0.75f, 0, 0}).normal, -Vector3f::UnitX());
+  Obstacle sphere;
+  sphere.kind = ObstacleKind::kBox;
+  sphere.rounding = 2;
+  EXPECT_FLOAT_EQ(separation(sphere, {0, 3, 4}).distance, 3);
+  EXPECT_TRUE(separation(sphere, {0, 3, 4}).normal.isApprox(Vector3f(0, 0.6f, 0.8f)));
+  Obstacle capsule = sphere;
+  capsule.extent = {0, 1, 0};
+  EXPECT_FLOAT_EQ(separation(capsule, {0, 4, 4}).distance, 3);
+  EXPECT_FLOAT_EQ(separation(capsule, {3, 0.5f, 0}).distance, 1);
+}
+
+TEST(Obstacle, DistanceFromACylinderAndACone) {
+  Obstacle cylinder;
+  cylinder.kind = ObstacleKind::kCylinder;
+  cylinder.extent = {2, 1, 0};
+  EXPECT_FLOAT_EQ(separation(cylinder, {0, 3, 0}).distance, 2);
+  EXPECT_FLOAT_EQ(separation(cylinder, {3, 0.5f, 4}).distance, 3);
+  EXPECT_FLOAT_EQ(separation(cylinder, {5, 5, 0}).distance, 5);
+  EXPECT_FLOAT_EQ(separation(cylinder, {0, 0.25f, 1.5f}).distance, -0.5f);
+  Obstacle cone = cylinder;
+  cone.kind = ObstacleKind::kCone;
+  cone.extent = {1, 1, 0};
+  EXPECT_FLOAT_EQ(separation(cone, {0, 2, 0}).distance, 1);
+  EXPECT_FLOAT_EQ(separation(cone, {0, -1.5f, 0}).distance, 0.5f);
+  // A point on the axis is as far from the slope as from the base where the inscribed circle's centre is.
+  const float slope = 2 / std::sqrt(5.0f);
+  EXPECT_NEAR(separation(cone, {0, 0, 0}).distance, -0.5f * slope, 1e-6f);
+}
+
+/// Wherever one stands, going along the normal by the distance leads to the surface.
+TEST(Obstacle, NormalsLeadToTheSurface) {
+  RandomPoints random;
+  for (const ObstacleKind kind : {ObstacleKind::kBox, ObstacleKind::kCylinder, ObstacleKind::kCone}) {
+    Obstacle obstacle;
+    obstacle.kind = kind;
+    obstacle.extent = {0.8f, 0.6f, 0.5f};
+    obstacle.rounding = 0.1f;
+    for (int i = 0; i < 1000; ++i) {
+      const Vector3f p = random.in_cube(2);
+      const Separation s = separation(obstacle, p);
+      EXPECT_NEAR(s.normal.norm(), 1, 1e-5f);
+      if (s.distance > 0) {
+        EXPECT_NEAR(separation(obstacle, p - s.distance * s.normal).distance, 0, 1e-4f);
+      }
+    }
+  }
+}
+
+TEST(TriangleGrid, AgreesWithASphere) {
+  const TriangleMesh mesh = make_sphere(1, 24);
+  const TriangleGrid grid(mesh, 0.2f);
+  RandomPoints random;
+  for (int i = 0; i < 500; ++i) {
+    const Vector3f p = random.in_cube(1.2f);
+    const float distance = p.norm() - 1;
+    if (std::abs(distance) < 0.5f) {
+      EXPECT_NEAR(grid.signed_distance(p, 0.6f), distance, 0.01f);
+    }
+  }
+}
+
+TEST(TriangleGrid, KnowsItsSidesAtEdgesAndCorners) {
+  const TriangleMesh mesh = make_box({2, 2, 2}, 1);
+  const TriangleGrid grid(mesh, 0.5f);
+  EXPECT_NEAR(grid.signed_distance({1.3f, 1.4f, 0}, 2), 0.5f, 1e-6f);
+  EXPECT_NEAR(grid.signed_distance({1.2f, 1.2f, 1.1f}, 2), 0.3f, 1e-6f);
+  EXPECT_NEAR(grid.signed_distance({0.9f, 0.8f, 0.7f}, 2), -0.1f, 1e-6f);
+}
+
+TEST(ContactSurface, ItsFieldIsTheDistanceInCells) {
+  constexpr float kCell = 0.1f;
+  const TriangleMesh mesh = make_sphere(0.42f, 24);
+  const Lattice<3> lattice = voxelize(mesh, kCell);
+  const ContactSurface surface(mesh, lattice);
+  RandomPoints random;
+  for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell) {
+    const Vector3f xi = random.in_cube(0.5f) + Vector3f::Constant(0.5f);
+    const Vector3f p = lattice.origin + kCell * (lattice.cells[cell].cast<float>() + xi);
+    const float distance = (p.norm() - 0.42f) / kCell;
+    if (distance > -1.5f) {
+      EXPECT_NEAR(surface.field(cell, xi).distance, distance, 0.06f);
+    }
+    EXPECT_LT(surface.field(cell, xi).distance, distance + 0.5f) << "deeper inside counts on";
+  }
+}
+
+TEST(ContactSurface, ItsGradientIsThatOfTheField) {
+  const TriangleMesh mesh = make_penguin(0.9f);
+  const Lattice<3> lattice = voxelize(mesh, 0.15f);
+  const ContactSurface surface(mesh, lattice);
+  RandomPoints random;
+  for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell) {
+    const Vector3f xi = Vector3f::Constant(0.25f) + random.in_cube(0.2f);
+    const FieldValue value = surface.field(cell, xi);
+    for (int d = 0; d < 3; ++d) {
+      const Vector3f by = 0.01f * Vector3f::Unit(d);
+      const float slope =
+          (surface.field(cell, xi + by).distance - surface.field(cell, xi - by).distance) / 0.02f;
+      EXPECT_NEAR(value.gradient[d], slope, 1e-2f);
+    }
+  }
+}
+
+TEST(ContactSurface, PointsCoverTheMesh) {
+  constexpr float kCell = 0.15f;
+  for (const TriangleMesh& mesh :
+       {make_penguin(0.9f), make_box({1, 0.5f, 0.5f}, 0.5f), make_cone(0.4f, 0.8f, 24)}) {
+    const Lattice<3> lattice = voxelize(mesh, kCell);
+    const ContactSurface surface(mesh, lattice);
+    for (const Vector3f& vertex : mesh.positions) {
+      float nearest = 1e9f;
+      for (const SurfacePointAtRest& point : surface.points())
+        nearest = std::min(nearest, (point.rest - vertex).norm());
+      EXPECT_LT(nearest, 0.46f * kCell);
+    }
+  }
+}
+
+TEST(CellFinder, FindsPlacesInATwistedLattice) {
+  const Lattice<3> lattice = voxelize(make_box({1, 1, 1}, 0.5f), 0.25f);
+  std::vector<Vector3f> twisted;
+  for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+    const Vector3f p = lattice.rest_position(i);
+    const Eigen::AngleAxisf turn(0.6f * p.y(), Vector3f::UnitY());
+    twisted.push_back(turn * Vector3f(p.x(), 1.3f * p.y(), p.z()) +
+                      0.03f * Vector3f(p.z() * p.z(), 0, p.x()));
+  }
+  CellFinder finder;
+  finder.place(lattice, twisted);
+  RandomPoints random;
+  for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell) {
+    const Vector3f xi = random.in_cube(0.45f) + Vector3f::Constant(0.5f);
+    const Vector3f p = anchor_in_cell(lattice, cell, xi).of(twisted);
+    const auto found = finder.find(p, [](std::uint32_t) { return true; });
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->cell, cell);
+    EXPECT_LT((found->xi - xi).norm(), 1e-3f);
+  }
+  EXPECT_FALSE(finder.find({3, 0, 0}, [](std::uint32_t) { return true; }));
+}
+
+}  // namespace
+}  // namespace softcell::ppu

@@ -1,0 +1,265 @@
+// Contacts on SPEs: they find what the PPU finds, hold what it holds, and give the same bits whoever computes.
+
+#include "ppu/spe_bodies/spe_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "contact_world.h"
+#include "ppu/contacts/find_contacts.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_runtime.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kStep = 1.0f / 120;
+
+/// A body somewhere, turned and bent, that moves.
+struct PlacedBody {
+  PlacedBody(const ContactModel& model, const Vector3f& position, const Vector3f& velocity, float bend) {
+    const Lattice<3>& lattice = model.model->lattice();
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+      const Vector3f p = lattice.rest_position(i);
+      const Eigen::AngleAxisf turn(0.7f + bend * p.y(), Vector3f(1, 2, -1).normalized());
+      positions.push_back(turn * p + position + bend * p.x() * p.z() * Vector3f(0.2f, 1, 0));
+    }
+    body.model = &model;
+    body.positions = positions;
+    body.velocities.assign(positions.size(), velocity);
+    body.pushes.assign(positions.size(), Vector3f::Zero());
+    body.inverse_masses = model.inverse_masses;
+    body.box = {positions[0], positions[0]};
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      body.ends.push_back(positions[i] + kStep * body.velocities[i]);
+      body.box.low = body.box.low.cwiseMin(positions[i]).cwiseMin(body.ends[i]);
+      body.box.high = body.box.high.cwiseMax(positions[i]).cwiseMax(body.ends[i]);
+    }
+  }
+  std::vector<Vector3f> positions;
+  ContactBody body;
+};
+
+/// Both directions, as seen from a.
+std::vector<SoftContact> found_by_ppu(const ContactBody& a, const ContactBody& b) {
+  EndCells cells_a, cells_b;
+  cells_a.begin(a), cells_b.begin(b);
+  std::vector<SoftContact> contacts, other_way;
+  find_contacts(a, b, cells_b, kStep, contacts);
+  if (&a == &b) return contacts;
+  find_contacts(b, a, cells_a, kStep, other_way);
+  for (SoftContact& contact : other_way) {
+    contact.normal = -contact.normal;
+    std::swap(contact.a, contact.b);
+    contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+Vector3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+class SpeContactsFind : public ::testing::TestWithParam<float> {};
+
+/// Each contact of the one is one of the other, but for those that are as near as contacts may be.
+TEST_P(SpeContactsFind, WhatThePpuFinds) {
+  const ContactModel penguin(make_soft_body_model(make_penguin(0.9f), settings_of(0.15f)));
+  const ContactModel ball(make_soft_body_model(make_sphere(0.35f, 16), settings_of(0.12f)));
+  SpeRuntime spes({.spes = 2});
+  SpeContacts worker(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));
+  int total = 0;
+  for (int i = 0; i < 12; ++i) {
+    const float angle = 0.5f * static_cast<float>(i);
+    const Vector3f apart = 0.42f * Vector3f(std::cos(angle), 0.4f * std::sin(2 * angle), std::sin(angle));
+    const PlacedBody first(penguin, {3, 2, 1}, {0.3f, 0, 0}, GetParam());
+    const PlacedBody second(i % 2 == 0 ? penguin : ball, Vector3f(3, 2, 1) + apart, -3 * apart, -GetParam());
+    const std::vector<ContactBody> bodies{first.body, second.body};
+    worker.begin(bodies, kStep);
+    const ContactWorker::Pair pair{0, 1};
+    worker.find({&pair, 1});
+    const FoundContacts found = worker.found()[0];
+    ASSERT_FALSE(found.by_caller);
+    const std::vector<SoftContact> expected = found_by_ppu(bodies[0], bodies[1]);
+    int missing = 0;
+    for (const SoftContact& contact : expected) {
+      const auto same = [&](const spu::SolveContact& other) {
+        return (vector_of(other.point) - contact.point).norm() < 1e-4f &&
+               (vector_of(other.normal) - contact.normal).norm() < 1e-2f &&
+               std::abs(other.least_velocity - contact.least_velocity) < 0.02f &&
+               other.cell_a == contact.a.cell && other.cell_b == contact.b.cell &&
+               std::abs(other.push_velocity * kStep) <= 0.0201f * 0.15f;
+      };
+      missing += std::none_of(found.contacts.begin(), found.contacts.end(), same);
+    }
+    total += static_cast<int>(expected.size());
+    EXPECT_LE(missing, 1 + static_cast<int>(expected.size()) / 20) << "of " << expected.size() << " at " << i;
+    EXPECT_NEAR(static_cast<double>(found.contacts.size()), static_cast<double>(expected.size()),
+                1 + static_cast<double>(expected.size()) / 20)
+        << i;
+    bool pushes = false;
+    for (const spu::SolveContact& contact : found.contacts) {
+      EXPECT_NEAR(vector_of(contact.normal).norm(), 1, 1e-5f);
+      float mobility = 0;
+      for (int k = 0; k < 8; ++k)
+        mobility += contact.a.weight[k] * contact.a.weight[k] + contact.b.weight[k] * contact.b.weight[k];
+      EXPECT_NEAR(contact.mass * mobility, 1, 1e-5f);
+      pushes = pushes || contact.push_velocity > 0;
+    }
+    EXPECT_EQ(found.pushes, pushes);
+  }
+  EXPECT_GT(total, 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bent, SpeContactsFind, ::testing::Values(0.0f, 0.5f, 1.5f));
+
+/// A long body bent until its ends meet.
+TEST(SpeContacts, ABodyMeetsItself) {
+  const ContactModel model(make_soft_body_model(make_box({1.8f, 0.2f, 0.2f}, 0.1f), settings_of(0.1f)));
+  PlacedBody ring(model, {0, 0, 0}, {0, 0, 0}, 0);
+  const Lattice<3>& lattice = model.model->lattice();
+  for (std::size_t i = 0; i < ring.positions.size(); ++i) {
+    const Vector3f p = lattice.rest_position(i);
+    const float angle = 3.7f * p.x(), radius = 0.4f - p.y();  // more than once around
+    ring.positions[i] = {radius * std::cos(angle), radius * std::sin(angle), p.z()};
+  }
+  ring.body.ends.assign(ring.positions.begin(), ring.positions.end());
+  ring.body.box = {Vector3f::Constant(-1), Vector3f::Constant(1)};
+  EXPECT_TRUE(may_touch_itself(ring.body));
+  SpeRuntime spes({.spes = 1});
+  SpeContacts worker(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));
+  const std::vector<ContactBody> bodies{ring.body};
+  worker.begin(bodies, kStep);
+  const ContactWorker::Pair itself{0, 0};
+  worker.find({&itself, 1});
+  const FoundContacts found = worker.found()[0];
+  const std::size_t expected = found_by_ppu(bodies[0], bodies[0]).size();
+  ASSERT_FALSE(found.by_caller);
+  EXPECT_GT(expected, 10u);
+  EXPECT_NEAR(static_cast<double>(found.contacts.size()), static_cast<double>(expected),
+              1 + static_cast<double>(expected) / 20);
+}
+
+/// Penguins, balls and boxes fall in a heap. @return  the hash of all states
+std::uint64_t heap(const SpeRuntimeOptions& options, int frames, ls_sim::Findings* findings = nullptr) {
+  SpeRuntime spes(options);
+  ContactWorld w({0, -9.81f, 0}, &spes);
+  w.add_floor();
+  w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 0.2f, 2)), 0, {0, 0.2f, 0});
+  w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 0.1f, 0.1f)), 4, {0.3f, 1.6f, 0});
+  const auto penguin = make_soft_body_model(make_penguin(0.6f), settings_of(0.15f));
+  const auto ball = make_soft_body_model(make_sphere(0.25f, 8), settings_of(0.12f));
+  for (int i = 0; i < 14; ++i)
+    w.bodies.add(i % 3 == 0 ? ball : penguin,
+                 {0.3f * static_cast<float>(i % 3), 0.6f + 0.28f * static_cast<float>(i),
+                  0.2f * static_cast<float>(i % 4)});
+  w.run(frames);
+  if (findings != nullptr)
+    for (const ls_sim::Finding& finding : spes.findings().list()) findings->add(finding.fault);
+  std::uint64_t hash = 0;
+  for (std::size_t i = 0; i < w.bodies.size(); ++i) hash = hash * 31 + state_hash(w.bodies[i]);
+  EXPECT_GT(hash, 0u);
+  return hash;
+}
+
+TEST(SpeContacts, TheSameBitsForAnyNumberOfSpesAndAnySchedule) {
+  const std::uint64_t expected = heap({.spes = 6}, 40);
+  EXPECT_EQ(heap({.spes = 1}, 40), expected);
+  EXPECT_EQ(heap({.spes = 3, .schedule = dma::parse_schedule("lazy")}, 40), expected);
+  EXPECT_EQ(heap({.spes = 2, .schedule = dma::parse_schedule("random:3")}, 40), expected);
+}
+
+TEST(SpeContacts, CheckedKernelsFindNothingAndGiveTheSameBits) {
+  SpeRuntimeOptions checked{.spes = 2, .schedule = dma::parse_schedule("random:1"), .checked = true};
+  ls_sim::Findings findings;
+  EXPECT_EQ(heap(checked, 24, &findings), heap({.spes = 2}, 24));
+  for (const ls_sim::Finding& finding : findings.list()) ADD_FAILURE() << finding.fault.message();
+}
+
+TEST(SpeContacts, WhatIsDrawnRestsOnWhatIsBelow) {
+  constexpr float kCell = 0.1f;
+  SpeRuntime spes({.spes = 2});
+  ContactWorld w({0, -9.81f, 0}, &spes);
+  w.add_floor();
+  const SoftBody<3>& body =
+      w.add(make_sphere(3.4f * kCell, 12), settings_of(kCell, 0.6f, 0.3f), {0, 0.45f, 0});
+  w.run(300);
+  EXPECT_NEAR(ContactWorld::lowest_drawn(body), 0, 0.05f * kCell);
+  EXPECT_LT(ContactWorld::fastest(body), 0.05f);
+  std::vector<Contact> contacts;
+  w.bodies.append_contacts(contacts);
+  ASSERT_FALSE(contacts.empty());
+  for (const Contact& contact : contacts) {
+    EXPECT_LT(contact.position.y(), 0.1f * kCell);
+    EXPECT_GT(contact.position.y(), -kCell) << "a particle may be outside of what is drawn";
+    EXPECT_GT(contact.normal.y(), 0.99f);
+  }
+}
+
+/// Two bodies fly at each other, or away from each other.
+/// @return  by how much the momentum of both has changed, as a share of the first one's, and that one's velocity
+std::pair<double, float> fly(bool towards) {
+  SpeRuntime spes({.spes = 2});
+  ContactWorld w({0, 0, 0}, &spes);
+  const float way = towards ? 1.0f : -1.0f;
+  SoftBody<3>& left = w.add(make_sphere(0.4f, 12), settings_of(0.1f), {0, 0, 0});
+  SoftBody<3>& right = w.add(make_penguin(0.9f), settings_of(0.12f), {1.1f, 0.1f, 0.05f});
+  left.add_velocity({3 * way, 0.2f, 0});
+  right.add_velocity({-way, 0, 0.3f});
+  const auto momentum = [&] {
+    return Eigen::Vector3d((left.linear_momentum() + right.linear_momentum()).cast<double>());
+  };
+  const Eigen::Vector3d p = momentum();
+  const double size = left.linear_momentum().norm();
+  w.run(150);
+  return {(momentum() - p).norm() / size, left.linear_momentum().x() / left.model().mass()};
+}
+
+/// Truncation costs some momentum, but contacts no more than shape matching does without them.
+TEST(SpeContacts, TwoBodiesKeepTheirMomentum) {
+  const auto [apart, unchanged] = fly(false);
+  const auto [meeting, changed] = fly(true);
+  EXPECT_NEAR(unchanged, -3, 0.01f);
+  EXPECT_LT(changed, 2) << "they have met";
+  EXPECT_LT(meeting, 1e-5 + 2 * apart) << apart;
+  EXPECT_LT(meeting, 2e-4);
+}
+
+/// What the SPEs cannot do, the PPU does in between: a rigid body that moves, and a body of too many particles.
+TEST(SpeContacts, RigidBodiesThatMoveAndLargeBodiesAreThere) {
+  constexpr float kCell = 0.1f;
+  SpeRuntime spes({.spes = 2});
+  ContactWorld w({0, -9.81f, 0}, &spes);
+  w.add_floor();
+  const SoftBody<3>& large =
+      w.add(make_box({1.2f, 0.6f, 1.2f}, kCell), settings_of(kCell, 0.7f, 0.3f), {0, 0.31f, 0});
+  ASSERT_GT(large.model().particles(), spu::kSolveMaxParticles);
+  const SoftBody<3>& small =
+      w.add(make_box({0.5f, 0.3f, 0.5f}, kCell), settings_of(kCell, 0.7f, 0.3f), {0, 0.8f, 0});
+  btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 10, {0, 1.1f, 0});
+  w.run(240);
+  EXPECT_NEAR(ContactWorld::lowest_drawn(large), 0, 0.05f * kCell);
+  EXPECT_GT(ContactWorld::lowest_drawn(small), 0.45f);
+  EXPECT_GT(box.getWorldTransform().getOrigin().y(), 0.45f + 0.15f);
+  EXPECT_LT(box.getLinearVelocity().length(), 0.1f);
+}
+
+TEST(SpeContacts, SleepersHoldWhatTouchesThemAndWake) {
+  SpeRuntime spes({.spes = 2});
+  ContactWorld w({0, 0, 0}, &spes);
+  w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.1f});
+  SoftBody<3>& sleeper = w.add(make_box({0.4f, 0.4f, 0.4f}, 0.1f), settings_of(0.1f), {0, 0, 0});
+  w.run(30);
+  ASSERT_TRUE(sleeper.asleep());
+  SoftBody<3>& thrown = w.add(make_box({0.4f, 0.4f, 0.4f}, 0.1f), settings_of(0.1f), {0, 0.5f, 0});
+  thrown.add_velocity({0, -2, 0});
+  const Vector3f momentum = thrown.linear_momentum();
+  w.run(30);
+  EXPECT_FALSE(sleeper.asleep());
+  EXPECT_LT((thrown.linear_momentum() + sleeper.linear_momentum() - momentum).norm(), 0.2f * momentum.norm());
+}
+
+}  // namespace
+}  // namespace softcell::ppu

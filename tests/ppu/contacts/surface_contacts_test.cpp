@@ -1,0 +1,287 @@
+// What must be true of contacts of what is drawn, in a Bullet world.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "contact_world.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+TriangleMesh cube(float edge, float cell) { return make_box({edge, edge, edge}, cell); }
+
+TEST(SurfaceContacts, WhatIsDrawnRestsOnWhatIsBelow) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  constexpr float kCell = 0.1f;
+  const TriangleMesh meshes[] = {cube(8 * kCell, kCell), cube(7.3f * kCell, kCell),
+                                 make_sphere(3.4f * kCell, 12), make_penguin(0.9f)};
+  for (const TriangleMesh& mesh : meshes) {
+    ContactWorld w;
+    w.add_floor();
+    const SoftBody<3>& body = w.add(mesh, settings_of(kCell, 0.6f, 0.3f), {0, 0.55f, 0});
+    w.run(400);
+    EXPECT_NEAR(ContactWorld::lowest_drawn(body), 0, 0.05f * kCell) << mesh.positions.size();
+    EXPECT_LT(ContactWorld::fastest(body), 0.05f) << mesh.positions.size();
+  }
+}
+
+/// The lowest that is drawn of a box that falls on a floor, over the whole run and at its end, in cells.
+std::pair<float, float> lowest_of_fall(float cell, float alpha, float gravity, int substeps, int frames) {
+  ContactWorld w({0, -gravity, 0});
+  w.add_floor();
+  const SoftBody<3>& body =
+      w.add(cube(10 * cell, cell), settings_of(cell, alpha, 0.05f), {0, 5.1f * cell, 0});
+  float lowest = 0;
+  for (int i = 0; i < frames; ++i) {
+    w.run(1, substeps);
+    lowest = std::min(lowest, ContactWorld::lowest_drawn(body) / cell);
+  }
+  float particle = 0;
+  for (const Vector3f& x : body.positions()) particle = std::min(particle, x.y() / cell);
+  return {lowest, particle};
+}
+
+TEST(SurfaceContacts, TheInsideOfAVerySoftBodyStaysAboveTheFloor) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  const auto [in_run, at_end] = lowest_of_fall(0.1f, 0.02f, 9.81f, 2, 295);
+  EXPECT_GT(in_run, -0.3f);
+  EXPECT_GT(at_end, -0.1f);
+}
+
+TEST(SurfaceContacts, StrongGravityAndOneSubstepTearNothing) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  const auto [in_run, at_end] = lowest_of_fall(0.05f, 0.3f, 300, 1, 299);
+  EXPECT_GT(in_run, -0.3f);
+  EXPECT_GT(at_end, -0.1f);
+}
+
+/// How far, in metres, a block slides down a slope in 1.5 s, the first half second apart.
+float slide(float slope, float friction, int frames_before = 30) {
+  constexpr float kCell = 0.1f;
+  ContactWorld w({9.81f * std::sin(slope), -9.81f * std::cos(slope), 0});
+  w.add_floor(friction / 0.6f);
+  SoftBody<3>& body = w.add(make_box({1, 0.5f, 1}, kCell), settings_of(kCell, 0.7f, 0.3f), {0, 0.252f, 0});
+  w.run(frames_before);
+  const float x = body.centre_of_mass().x(), v = body.linear_momentum().x() / body.model().mass();
+  w.run(60);
+  return body.centre_of_mass().x() - x - v;
+}
+
+TEST(SurfaceContacts, ABlockSticksOrSlidesAsItsFrictionSays) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  constexpr float kFriction = 0.5f;
+  EXPECT_NEAR(slide(std::atan(0.97f * kFriction), kFriction, 240), 0, 0.005f);
+  for (const float slope : {0.6f, 0.8f}) {
+    const float acceleration = 9.81f * (std::sin(slope) - kFriction * std::cos(slope));
+    EXPECT_NEAR(slide(slope, kFriction), acceleration / 2, 0.03f * acceleration / 2) << slope;
+  }
+}
+
+TEST(SurfaceContacts, NothingPassesAThinWall) {
+  constexpr float kCell = 0.1f;
+  for (const float speed : {5.0f, 20.0f, 100.0f}) {
+    ContactWorld w({0, 0, 0});
+    w.add(std::make_unique<btBoxShape>(btVector3(0.05f * kCell, 3, 3)), 0, {1, 0, 0});
+    SoftBody<3>& body = w.add(make_sphere(0.4f, 8), settings_of(kCell), {0, 0, 0});
+    body.add_velocity({speed, 0, 0});
+    for (int i = 0; i < 60; ++i) {
+      w.run(1);
+      for (const Vector3f& p : ContactWorld::drawn(body))
+        ASSERT_LT(p.x(), 1.02f) << speed << " m/s, frame " << i;
+    }
+  }
+}
+
+/// A floor of a thousand kilometres and a body of millimetres, thrown as fast as numbers allow: no loop runs for ever.
+TEST(SurfaceContacts, SizesAndSpeedsOfAllKindsEndInTime) {
+  constexpr float kCell = 0.001f;
+  ContactWorld w({0, 0, 0});
+  w.add(std::make_unique<btBoxShape>(btVector3(1e6f, 1, 1e6f)), 0, {0, -1, 0});
+  SoftBody<3>& body = w.add(cube(6 * kCell, kCell), settings_of(kCell), {0, 5 * kCell, 0});
+  for (const float speed : {1.0f, 1e3f, 1e6f, 1e12f}) {
+    body.add_velocity({speed, -speed, 0});
+    w.run(1, 1);
+  }
+  body.add_velocity({3e38f, 3e38f, 0});
+  EXPECT_THROW(w.run(2, 1), std::runtime_error);
+}
+
+TEST(SurfaceContacts, TwoBodiesKeepTheirMomenta) {
+  ContactWorld w({0, 0, 0});
+  SoftBody<3>& left = w.add(make_sphere(0.4f, 12), settings_of(0.1f), {0, 0, 0});
+  SoftBody<3>& right = w.add(make_penguin(0.9f), settings_of(0.12f), {1.1f, 0.1f, 0.05f});
+  left.add_velocity({3, 0.2f, 0});
+  right.add_velocity({-1, 0, 0.3f});
+  right.add_angular_velocity({0, 2, 1});
+  const auto momentum = [&] {
+    return Eigen::Vector3d((left.linear_momentum() + right.linear_momentum()).cast<double>());
+  };
+  const auto spin = [&] {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const SoftBody<3>* body : {&left, &right})
+      for (std::size_t i = 0; i < body->model().particles(); ++i)
+        sum += double{body->model().masses()[i]} *
+               body->position(i).cast<double>().cross(body->velocities()[i].cast<double>());
+    return sum;
+  };
+  const Eigen::Vector3d p = momentum(), l = spin();
+  const double size = left.linear_momentum().norm();
+  float most = 0;
+  for (int i = 0; i < 500; ++i) {
+    w.run(1);
+    most = std::max(most, (left.linear_momentum() - 3 * left.model().mass() * Vector3f::UnitX()).norm());
+  }
+  EXPECT_GT(most, 0.5f * static_cast<float>(size)) << "they have met";
+  EXPECT_LT((momentum() - p).norm(), 1e-5 * size);
+  EXPECT_LT((spin() - l).norm(), 2e-3 * size)
+      << "positions that are pushed apart turn nothing but in rounding";
+}
+
+TEST(SurfaceContacts, AHeavyBoxRestsOnASoftOne) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  constexpr float kCell = 0.15f;
+  ContactWorld w;
+  w.add_floor();
+  SoftBody<3>& body = w.add(make_box({14 * kCell, 4 * kCell, 14 * kCell}, kCell),
+                            settings_of(kCell, 0.7f, 0.3f), {0, 2 * kCell, 0});
+  btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.4f, 0.2f, 0.4f)), 2 * body.model().mass(),
+                           {0, 4 * kCell + 0.21f, 0});
+  w.run(600);
+  const float height = box.getWorldTransform().getOrigin().y();
+  EXPECT_GT(height, 0.2f + kCell);
+  w.run(600);
+  EXPECT_NEAR(box.getWorldTransform().getOrigin().y(), height, 0.05f * kCell);
+  EXPECT_LT(box.getLinearVelocity().length(), 0.02f);
+}
+
+TEST(SurfaceContacts, ABoxThrownAtABodyKeepsTheirMomentum) {
+  ContactWorld w({0, 0, 0});
+  SoftBody<3>& body = w.add(cube(0.8f, 0.1f), settings_of(0.1f), {0, 0, 0});
+  const float mass = 2 * body.model().mass();
+  btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), mass, {-1, 0.05f, 0});
+  box.setLinearVelocity({4, 0, 0});
+  w.run(120);
+  const Vector3f momentum = body.linear_momentum() + mass * to_eigen(box.getLinearVelocity());
+  EXPECT_LT((momentum - Vector3f(4 * mass, 0, 0)).norm(), 1e-5f * 4 * mass);
+  EXPECT_GT(body.linear_momentum().x(), 0.4f * 4 * mass);
+}
+
+TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  constexpr float kCell = 0.1f;
+  struct Thing {
+    const char* name;
+    std::unique_ptr<btCollisionShape> shape;
+    Vector3f position, tip;
+  };
+  std::vector<Thing> things;
+  things.push_back(
+      {"cone", std::make_unique<btConeShape>(0.3f, 0.6f), {0.03f, 0.3f, 0.02f}, {0.03f, 0.6f, 0.02f}});
+  things.push_back({"knife",
+                    std::make_unique<btBoxShape>(btVector3(0.01f, 0.3f, 1)),
+                    {0.04f, 0.3f, 0},
+                    {0.04f, 0.6f, 0.13f}});
+  things.push_back(
+      {"wire", std::make_unique<btCapsuleShapeZ>(0.005f, 2), {0.04f, 0.3f, 0}, {0.04f, 0.3f, 0.13f}});
+  for (Thing& thing : things) {
+    ContactWorld w;
+    w.add_floor();
+    w.add(std::move(thing.shape), 0, thing.position);
+    const SoftBody<3>& body = w.add(make_sphere(0.42f, 12), settings_of(kCell, 0.7f, 0.2f), {0, 1.1f, 0});
+    for (int i = 0; i < 240; ++i) {
+      w.run(1);
+      if (i % 6 != 0) continue;
+      ASSERT_LT(ContactWorld::depth_in_drawn(body, thing.tip), 1.5f * kCell) << thing.name << ' ' << i;
+    }
+  }
+}
+
+TEST(SurfaceContacts, TheSameAtEveryScale) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  std::vector<Vector3f> shape;
+  for (const float cell : {0.001f, 0.1f, 100.0f}) {
+    const float scale = cell / 0.1f;
+    ContactWorld w({0, -9.81f * scale, 0});
+    w.add(std::make_unique<btBoxShape>(btVector3(10 * scale, scale, 10 * scale)), 0, {0, -scale, 0});
+    const SoftBody<3>& body = w.add(cube(8 * cell, cell), settings_of(cell, 0.5f, 0.3f), {0, 5 * cell, 0});
+    w.run(240);
+    std::vector<Vector3f> here;
+    for (const Vector3f& p : ContactWorld::drawn(body)) here.push_back(p / cell);
+    if (shape.empty()) shape = here;
+    for (std::size_t i = 0; i < here.size(); ++i)
+      ASSERT_LT((here[i] - shape[i]).norm(), 0.08f) << cell << " m, vertex " << i;
+  }
+}
+
+TEST(SurfaceContacts, WhatRestsSleepsAndWakesWhereItIsTouched) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  ContactWorld w;
+  w.add_floor();
+  w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.5f});
+  const auto model = make_soft_body_model(make_box({1.2f, 0.4f, 1.2f}, 0.1f), settings_of(0.1f, 0.6f, 0.4f));
+  SoftBody<3>& lower = w.bodies.add(model, {0, 0.21f, 0});
+  SoftBody<3>& far = w.bodies.add(model, {5, 0.21f, 0});
+  w.run(200);
+  ASSERT_TRUE(lower.asleep() && far.asleep());
+  SoftBody<3>& upper = w.bodies.add(model, {0.1f, 0.9f, 0});
+  w.run(30);
+  EXPECT_FALSE(lower.asleep());
+  EXPECT_TRUE(far.asleep());
+  w.run(900);
+  EXPECT_TRUE(upper.asleep() && lower.asleep());
+  EXPECT_NEAR(upper.centre_of_mass().y() - lower.centre_of_mass().y(), 0.37f, 0.08f);
+}
+
+/// Sleepers of different sizes share what says that nothing moves them.
+TEST(SurfaceContacts, SleepersOfAllSizesHoldWhatTouchesThem) {
+  ContactWorld w({0, 0, 0});
+  w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.1f});
+  SoftBody<3>& small = w.add(cube(0.4f, 0.1f), settings_of(0.1f), {0, 0, 0});
+  SoftBody<3>& large = w.add(cube(1.2f, 0.1f), settings_of(0.1f), {5, 0, 0});
+  w.run(30);
+  ASSERT_TRUE(small.asleep() && large.asleep());
+  SoftBody<3>& thrown = w.add(cube(0.4f, 0.1f), settings_of(0.1f), {0, 0.5f, 0});
+  thrown.add_velocity({0, -2, 0});
+  const Vector3f momentum = thrown.linear_momentum();
+  w.run(30);
+  EXPECT_FALSE(small.asleep());
+  EXPECT_TRUE(large.asleep());
+  EXPECT_LT((thrown.linear_momentum() + small.linear_momentum() - momentum).norm(), 0.2f * momentum.norm());
+}
+
+TEST(SurfaceContacts, KindsOfShapesHoldABody) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  const auto mesh = [](std::vector<btVector3> corners, btTriangleMesh& triangles) {
+    triangles.addTriangle(corners[0], corners[1], corners[2]);
+    triangles.addTriangle(corners[0], corners[2], corners[3]);
+  };
+  btTriangleMesh ground;
+  mesh({{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}}, ground);
+  std::vector<std::pair<const char*, std::unique_ptr<btCollisionShape>>> shapes;
+  shapes.emplace_back("plane", std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), 0));
+  shapes.emplace_back("triangles", std::make_unique<btBvhTriangleMeshShape>(&ground, true));
+  auto hull = std::make_unique<btConvexHullShape>();
+  for (int i = 0; i < 8; ++i)
+    hull->addPoint(
+        btVector3((i & 1) != 0 ? 2.f : -2.f, (i & 2) != 0 ? 0.f : -1.f, (i & 4) != 0 ? 2.f : -2.f));
+  shapes.emplace_back("hull", std::move(hull));
+  shapes.emplace_back("capsule", std::make_unique<btCapsuleShapeX>(0.0f + 0.4f, 4));
+  shapes.emplace_back("cylinder", std::make_unique<btCylinderShape>(btVector3(1, 0.5f, 1)));
+  shapes.emplace_back("sphere", std::make_unique<btSphereShape>(3));
+  for (auto& [name, shape] : shapes) {
+    ContactWorld w;
+    const std::string kind = name;
+    const float top = kind == "capsule" ? 0.4f : kind == "cylinder" ? 0.5f : kind == "sphere" ? 3.0f : 0.0f;
+    w.add(std::move(shape), 0, {0, -top, 0});
+    const SoftBody<3>& body = w.add(cube(0.8f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0, 0.45f, 0});
+    w.run(200);
+    EXPECT_NEAR(body.centre_of_mass().y(), 0.37f, 0.07f) << kind;
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ppu

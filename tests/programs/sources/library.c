@@ -1,0 +1,86 @@
+/* The C library of the local store. */
+#include <assert.h>
+#include <ctype.h>
+#include <libmisc.h>
+#include <limits.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+
+static int by_value(const void* a, const void* b) { return *(const int*)a - *(const int*)b; }
+
+static void strings(void) {
+  char text[32] = "local";
+  char list[] = "a,b;;c";
+  int parts = 0;
+  strcat(text, " store");
+  CHECK(strcmp(text, "local store") == 0 && strlen(text) == 11 && strncmp(text, "locale", 5) == 0);
+  CHECK(strchr(text, 's') == text + 6 && strrchr(text, 'l') == text + 4 && strstr(text, "sto") == text + 6);
+  for (char* part = strtok(list, ",;"); part != NULL; part = strtok(NULL, ",;")) ++parts;
+  CHECK(parts == 3);
+  memmove(text + 1, text, 5);
+  CHECK(memcmp(text, "llocal", 6) == 0 && memchr(text, 'c', 8) == text + 3);
+  CHECK(strcasecmp("SPU", "spu") == 0 && strcspn("abc1", "0123") == 3 && toupper('q') == 'Q' &&
+        !isalpha('1'));
+}
+
+static void numbers(void) {
+  char* end;
+  int values[50];
+  CHECK(strtol("  -0x1Fz", &end, 0) == -31 && *end == 'z' && atoi("42") == 42);
+  CHECK(strtol("99999999999", NULL, 10) == LONG_MAX && strtoul("4294967295", NULL, 10) == ULONG_MAX);
+  CHECK(strtol("-2147483648", NULL, 10) == LONG_MIN && strtoll("-12345678901", NULL, 10) == -12345678901ll);
+  srand(5);
+  for (int i = 0; i < 50; ++i) values[i] = rand() % 1000;
+  qsort(values, 50, sizeof values[0], by_value);
+  for (int i = 1; i < 50; ++i) CHECK(values[i - 1] <= values[i]);
+  CHECK(bsearch(&values[17], values, 50, sizeof values[0], by_value) != NULL && div(-7, 2).rem == -1);
+}
+
+static void heap(void) {
+  char* blocks[16];
+  int i;
+  char* const large = malloc(100000);
+  CHECK(large != NULL && ((uintptr_t)large & 15) == 0 && malloc(200000) == NULL);
+  free(large);
+  for (i = 0; i < 16; ++i) {
+    blocks[i] = malloc(1000 + i);
+    CHECK(blocks[i] != NULL);
+    memset(blocks[i], i, 1000 + i);
+  }
+  for (i = 0; i < 16; ++i) CHECK(blocks[i][0] == i && blocks[i][999 + i] == i);
+  for (i = 0; i < 16; i += 2) free(blocks[i]);
+  for (i = 1; i < 16; i += 2) free(blocks[i]);
+  char* const again = malloc(200000);
+  CHECK(again != NULL);
+  free(again);
+  char* const aligned = malloc_align(300, 7);
+  CHECK(((uintptr_t)aligned & 127) == 0);
+  char* const grown = realloc(calloc(4, 4), 64);
+  CHECK(grown != NULL && grown[0] == 0 && grown[15] == 0);
+  free(grown);
+  free_align(aligned);
+}
+
+static void output(void) {
+  char text[80];
+  CHECK(snprintf(text, sizeof text, "%d %u %s %c %5.2f|%-4x|%08llX %%", -1, 3000000000u, "spu", 'x', 3.14159,
+                 0xABu, 0x123456789ull) == 42);
+  CHECK(strcmp(text, "-1 3000000000 spu x  3.14|ab  |123456789 %") == 0);
+  CHECK(sprintf(text, "%d%d%d%d%d%d%d%d %g %g", 1, 2, 3, 4, 5, 6, 7, 8, 0.5, 1.5) == 16 &&
+        strcmp(text, "12345678 0.5 1.5") == 0);
+  CHECK(snprintf(text, 4, "%s", "truncated") == 9 && strcmp(text, "tru") == 0);
+  CHECK(sprintf(text, "%ld %zu %hd %*d %.3s", -5l, sizeof text, (short)-2, 4, 7, "abcdef") == 17);
+}
+
+int main(int argc, char** argv) {
+  assert(failures == 0);
+  strings();
+  numbers();
+  heap();
+  output();
+  printf("%d failures of %s\n", failures, "library.c");
+  exit(failures);
+}

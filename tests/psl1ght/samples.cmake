@@ -1,0 +1,23 @@
+# Builds the samples with their own Makefiles and runs them under several orders.
+include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
+if(NOT SAMPLES OR NOT EXISTS ${SAMPLES}/spudma/Makefile)
+  message("SKIPPED: SOFTCELL_PSL1GHT_SAMPLES names no folder with PSL1GHT's samples")
+  return()
+endif()
+file(REMOVE_RECURSE ${SCRATCH})
+set(says_spudma "output text: ABCDEFGHIJKLMNOP")
+set(says_spuparallel "Output array: ( [0-9]+)+ 44 46 48")
+set(says_spuchain "Output array:  64 128 192 256")
+set(says_sputhread "output values: 33 55")
+set(says_sputest "SPU Mailbox return value: 1337baad")
+foreach(sample spudma spuparallel spuchain sputhread sputest)
+  file(COPY ${SAMPLES}/${sample} DESTINATION ${SCRATCH} FILE_PERMISSIONS OWNER_READ OWNER_WRITE
+    DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+  file(MAKE_DIRECTORY ${SCRATCH}/${sample}/data)
+  step("make of ${sample}" make -C ${SCRATCH}/${sample} PSL1GHT=${RULES})
+  set(program ${SCRATCH}/${sample}/${sample}.self)
+  foreach(way SOFTCELL_DMA=eager SOFTCELL_DMA=lazy SOFTCELL_DMA=random:7 "SOFTCELL_DMA=random:5;SOFTCELL_TURNS=1"
+      "SOFTCELL_CHECKED=1;SOFTCELL_DMA=lazy")
+    says(0 "${says_${sample}}" ${CMAKE_COMMAND} -E env ${way} ${program})
+  endforeach()
+endforeach()

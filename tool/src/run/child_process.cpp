@@ -1,0 +1,123 @@
+#include "child_process.h"
+#include "softcell/base/assert.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+extern char** environ;
+
+namespace softcell::tool {
+namespace {
+
+std::vector<std::string> environment_with(const std::map<std::string, std::string>& variables) {
+  SC_ASSERT(std::ranges::none_of(variables,
+                                 [](const auto& variable) {
+                                   return variable.first.empty() ||
+                                          variable.first.find('=') != std::string::npos;
+                                 }),
+            "one of {} variables has no name, or = in it", variables.size());
+  std::vector<std::string> environment;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    if (!variables.contains(std::string(text.substr(0, text.find('='))))) environment.emplace_back(text);
+  }
+  for (const auto& [name, value] : variables) {
+    if (!value.empty()) environment.push_back(name + "=" + value);
+  }
+  return environment;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+/// While the object lives, the interrupts of the terminal are for the child alone.
+class InterruptsLeftToTheChild {
+ public:
+  InterruptsLeftToTheChild() {
+    struct sigaction ignore {};
+    ignore.sa_handler = SIG_IGN;
+    sigaction(SIGINT, &ignore, &interrupt_);
+    sigaction(SIGQUIT, &ignore, &quit_);
+  }
+  ~InterruptsLeftToTheChild() {
+    sigaction(SIGINT, &interrupt_, nullptr);
+    sigaction(SIGQUIT, &quit_, nullptr);
+  }
+  InterruptsLeftToTheChild(const InterruptsLeftToTheChild&) = delete;
+  InterruptsLeftToTheChild& operator=(const InterruptsLeftToTheChild&) = delete;
+
+ private:
+  struct sigaction interrupt_ {
+  }, quit_{};
+};
+
+}  // namespace
+
+ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::string, std::string>& variables,
+                   const std::filesystem::path& output) {
+  SC_ASSERT(!words.empty(), "a child process of {} variables runs nothing", variables.size());
+  std::vector<std::string> arguments = words, environment = environment_with(variables);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  if (!output.empty())
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_TRUNC, 0);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t usual;
+  sigemptyset(&usual);
+  sigaddset(&usual, SIGINT);
+  sigaddset(&usual, SIGQUIT);
+  posix_spawnattr_setsigdefault(&attributes, &usual);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+
+  const InterruptsLeftToTheChild here;
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, arguments.front().c_str(), &actions, &attributes,
+                                 pointers_to(arguments).data(), pointers_to(environment).data());
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) throw std::runtime_error("cannot run " + words.front() + ": " + std::strerror(error));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFSIGNALED(status)) return {128 + WTERMSIG(status), WTERMSIG(status)};
+  return {WEXITSTATUS(status), 0};
+}
+
+ScratchFile::ScratchFile() {
+  std::string name = std::filesystem::temp_directory_path() / "softcell-run-XXXXXX";
+  const int file = mkstemp(name.data());
+  if (file < 0)
+    throw std::runtime_error("cannot make the temporary file " + name + ": " + std::strerror(errno));
+  close(file);
+  path_ = name;
+}
+
+ScratchFile::~ScratchFile() {
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+}
+
+std::string ScratchFile::text() const {
+  std::ifstream file(path_, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+}  // namespace softcell::tool

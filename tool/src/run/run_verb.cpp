@@ -1,0 +1,189 @@
+#include "run_verb.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "child_process.h"
+#include "command_line/shared_options.h"
+#include "run_report.h"
+#include "softcell/base/assert.h"
+#include "softcell/base/whole_file.h"
+#include "verb/exit_status.h"
+#include "verb/output_files.h"
+#include "verb/progress_bar.h"
+
+namespace softcell::tool {
+namespace {
+
+constexpr int kExitDifference = 1;
+constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
+constexpr std::uint64_t kMaxDeadline = 4'000'000;
+
+/// A library that is loaded before those of the program.
+std::string library_for(const char* option, const std::string& name) {
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  for (const char* place : {SOFTCELL_ALLOCATIONS_BUILT, SOFTCELL_ALLOCATIONS_INSTALLED}) {
+    const auto file = (folder / place / name).lexically_normal();
+    if (std::filesystem::exists(file)) return file.string();
+  }
+  throw std::runtime_error(fmt::format("{}: {} was not found where softcell is installed, under {}", option,
+                                       name, folder.string()));
+}
+
+/// What LD_PRELOAD has to name; empty for no change.
+std::string preloaded(const RunOptions& options) {
+  std::string libraries;
+  const auto add = [&](const std::string& library) { libraries += (libraries.empty() ? "" : ":") + library; };
+  if (options.allocations) add(library_for("--allocations", "libsoftcell_allocations.so"));
+  if (options.low_memory) add(library_for("--low-memory", "libsoftcell_low_memory.so"));
+  const char* const others = std::getenv("LD_PRELOAD");
+  if (!libraries.empty() && others != nullptr && *others != '\0') add(others);
+  return libraries;
+}
+
+std::map<std::string, std::string> variables_of(const RunOptions& options) {
+  std::map<std::string, std::string> variables{
+      {"SOFTCELL_DMA", options.dma},
+      {"SOFTCELL_TURNS", options.turns ? "1" : "0"},
+      {"SOFTCELL_CHECKED", options.checked ? "1" : "0"},
+      {"SOFTCELL_DEADLINE_MS", std::to_string(options.deadline_ms)},
+      {"SOFTCELL_TRACE", options.trace ? std::filesystem::absolute(*options.trace).string() : ""}};
+  if (const std::string libraries = preloaded(options); !libraries.empty())
+    variables["LD_PRELOAD"] = libraries;
+  return variables;
+}
+
+ProgramRun run_once(const RunOptions& options, bool collect) {
+  SC_ASSERT(!options.words.empty(), "a run of no program under {}", options.dma);
+  const ScratchFile report, output;
+  auto variables = variables_of(options);
+  variables["SOFTCELL_REPORT"] = report.path();
+  const ChildEnd end = run_child(options.words, variables, collect ? output.path() : std::filesystem::path());
+  return program_run(end, collect ? output.text() : std::string(), report.text());
+}
+
+std::string how_it_ended(const ProgramRun& run) {
+  if (run.end.signal != 0) return fmt::format("was ended by signal {}", run.end.signal);
+  return fmt::format("ended with status {}", run.end.status);
+}
+
+nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run) {
+  return {{"program", options.words},
+          {"status", run.end.status},
+          {"signal", run.end.signal},
+          {"report", run.report}};
+}
+
+int run_one(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
+  const ProgramRun run = run_once(options, false);
+  fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), how_it_ended(run), run.summary());
+  if (json != nullptr) write_json(*json, document(options, run));
+  files.commit();
+  return run.exit_status();
+}
+
+int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
+  RunOptions seeded = options;
+  seeded.turns = true;
+  SC_ASSERT(options.seeds > 0, "{} runs under {} seeds", options.words.size(), options.seeds);
+  ProgramRun first;
+  std::uint64_t seed = 0;
+  bool differs = false;
+  {
+    ProgressBar bar("run", options.seeds, options.quiet);
+    while (seed < options.seeds && !differs) {
+      seeded.dma = fmt::format("random:{}", ++seed);
+      ProgramRun run = run_once(seeded, true);
+      if (seed == 1) {
+        first = std::move(run);
+      } else if (run.outcome() != first.outcome()) {
+        differs = true;
+        fmt::print(stderr, "softcell: under seed {} {} {}, under seed 1 it {}\n", seed, options.words.front(),
+                   how_it_ended(run), how_it_ended(first));
+      }
+      if (first.end.signal != 0 && first.report.is_null()) break;  // somebody wants it to end
+      if (!options.quiet) bar.show(seed);
+    }
+  }
+  fmt::print("{}", first.output);
+  if (differs) {
+    fmt::print(stderr,
+               "softcell: the outcome depends on the order of transfers or SPEs; see it again with softcell "
+               "run --dma "
+               "random:{} --turns{} -- {}\n",
+               seed, options.checked ? " --checked" : "", fmt::join(options.words, " "));
+  } else {
+    fmt::print(stderr, "softcell: {} seeds: {} {} under each, with the same output; {}\n", seed,
+               options.words.front(), how_it_ended(first), first.summary());
+  }
+  if (json != nullptr) {
+    nlohmann::ordered_json all = document(options, first);
+    all["seeds"] = seed;
+    all["same"] = !differs;
+    write_json(*json, all);
+  }
+  files.commit();
+  return differs ? kExitDifference : first.exit_status();
+}
+
+class RunVerb final : public Verb {
+ public:
+  void add_to(CLI::App& command, Call& chosen) override {
+    CLI::App* r = command.add_subcommand(
+        "run", "Run a program that uses libspe2: softcell run --checked -- ./program its arguments");
+    r->add_option("PROGRAM", options_.words, "The program and its arguments, behind --")
+        ->required()
+        ->expected(1, -1)
+        ->type_name("PROGRAM");
+    add_dma_option(*r, options_.dma);
+    r->add_flag("--turns", options_.turns,
+                "SPEs run one at a time; whose turn it is follows from the seed of --dma random:SEED");
+    r->add_flag("--checked", options_.checked,
+                "Take the instrumented flavours of the SPE programs and report every mistake in their loads "
+                "and stores");
+    r->add_flag("--allocations", options_.allocations,
+                "Hold addresses of transfers against the blocks of the program's heap");
+    r->add_flag(
+        "--low-memory", options_.low_memory,
+        "Keep all memory of the program below 4 GB, for code that keeps pointers in 32 bits; the program "
+        "must be linked with -no-pie");
+    accept_whole_number(
+        r->add_option("--deadline", options_.deadline_ms,
+                      "End a run of an SPE context that takes longer (milliseconds; default: none)"),
+        1, kMaxDeadline)
+        ->type_name("MS");
+    CLI::Option* seeds = accept_whole_number(
+        r->add_option("--seeds", options_.seeds,
+                      "Run it under random:1 to random:SEEDS with --turns; all must have the same outcome"),
+        1, kMaxSeeds);
+    seeds->type_name("SEEDS");
+    r->add_flag("--quiet", options_.quiet, "No progress bar");
+    add_trace_option(*r, options_.trace);
+    add_json_option(*r, options_.json, "how it ended, statistics, findings and faults");
+    r->callback([this, &chosen] { chosen = [this] { return run_program(options_); }; });
+  }
+
+ private:
+  RunOptions options_;
+};
+
+}  // namespace
+
+int run_program(const RunOptions& options) {
+  static_cast<void>(parse_dma(options.dma));
+  if (options.seeds != 0 && options.trace)
+    throw UsageError("--trace with --seeds: trace one of the runs, with --dma random:SEED --turns");
+  if (options.seeds != 0 && options.dma != "eager")
+    throw UsageError("--dma with --seeds: the seeds are those of --dma random:1 to random:SEEDS");
+  OutputFiles files({{"--json", options.json}});
+  base::WholeFile* const json = files.open(options.json);
+  return options.seeds == 0 ? run_one(options, files, json) : run_many(options, files, json);
+}
+
+std::unique_ptr<Verb> run_verb() { return std::make_unique<RunVerb>(); }
+
+}  // namespace softcell::tool

@@ -1,0 +1,28 @@
+#pragma once
+// softcell run: a program that uses libspe2.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line/verb.h"
+
+namespace softcell::tool {
+
+struct RunOptions {
+  std::vector<std::string> words;  ///< the program and its arguments
+  std::string dma = "eager";
+  bool turns = false, checked = false, allocations = false, low_memory = false, quiet = false;
+  std::uint64_t deadline_ms = 0;  ///< 0: none
+  std::uint64_t seeds = 0;        ///< 0: one run
+  std::optional<std::filesystem::path> trace, json;
+};
+
+int run_program(const RunOptions& options);
+
+std::unique_ptr<Verb> run_verb();
+
+}  // namespace softcell::tool

@@ -1,0 +1,116 @@
+#include "coverage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "softcell/ls_sim/source_lines.h"
+#include "softcell/ls_sim/spu_listing.h"
+
+namespace softcell::tool {
+namespace {
+
+struct Branch {
+  std::uint64_t executed, taken;
+};
+struct Line {
+  std::uint64_t executed = 0;
+  std::vector<Branch> branches;
+};
+struct Function {
+  std::string name;
+  std::uint64_t executed;
+};
+struct SourceFile {
+  std::map<int, Line> lines;
+  std::map<int, Function> functions;  ///< by the line of their first instruction
+};
+
+/// brz, brhnz, bihz, ...: all that may go either way.
+bool is_conditional(const std::string& mnemonic) {
+  if (!mnemonic.starts_with("br") && !mnemonic.starts_with("bi")) return false;
+  const std::string condition = mnemonic.substr(2);
+  return condition == "z" || condition == "nz" || condition == "hz" || condition == "hnz";
+}
+
+std::string text_of(const std::string& name, const SourceFile& file) {
+  std::string text = fmt::format("TN:\nSF:{}\n", name);
+  for (const auto& [line, function] : file.functions) text += fmt::format("FN:{},{}\n", line, function.name);
+  for (const auto& [line, function] : file.functions)
+    text += fmt::format("FNDA:{},{}\n", function.executed, function.name);
+  text += fmt::format(
+      "FNF:{}\nFNH:{}\n", file.functions.size(),
+      std::ranges::count_if(file.functions, [](const auto& f) { return f.second.executed != 0; }));
+  std::size_t branches = 0, branches_hit = 0, lines_hit = 0;
+  for (const auto& [number, line] : file.lines) {
+    for (std::size_t i = 0; i < line.branches.size(); ++i) {
+      const Branch& branch = line.branches[i];
+      const std::uint64_t ways[] = {branch.taken, branch.executed - branch.taken};
+      for (int way = 0; way < 2; ++way) {
+        text += fmt::format("BRDA:{},{},{},{}\n", number, i, way,
+                            branch.executed == 0 ? "-" : std::to_string(ways[way]));
+        ++branches;
+        if (ways[way] != 0) ++branches_hit;
+      }
+    }
+  }
+  text += fmt::format("BRF:{}\nBRH:{}\n", branches, branches_hit);
+  for (const auto& [number, line] : file.lines) {
+    text += fmt::format("DA:{},{}\n", number, line.executed);
+    if (line.executed != 0) ++lines_hit;
+  }
+  return text + fmt::format("LF:{}\nLH:{}\nend_of_record\n", file.lines.size(), lines_hit);
+}
+
+}  // namespace
+
+bool Coverage::on_instruction(int spe, dma::LocalStoreAddress pc) {
+  Counts& counts = spes_[static_cast<std::size_t>(spe)];
+  const std::uint32_t word = pc.value / 4;
+  if (counts.has_last && word == counts.last + 1) ++counts.went_on[counts.last];
+  ++counts.executed[word];
+  counts.last = word;
+  counts.has_last = true;
+  return true;
+}
+
+std::uint64_t Coverage::executed(dma::LocalStoreAddress pc) const {
+  std::uint64_t sum = 0;
+  for (const Counts& counts : spes_) sum += counts.executed[pc.value / 4];
+  return sum;
+}
+std::uint64_t Coverage::went_on(dma::LocalStoreAddress pc) const {
+  std::uint64_t sum = 0;
+  for (const Counts& counts : spes_) sum += counts.went_on[pc.value / 4];
+  return sum;
+}
+
+std::string Coverage::lcov(const ls_sim::KernelImage& image) const {
+  const ls_sim::SourceLines lines(image);
+  std::map<std::string, SourceFile> files;
+  for (const ls_sim::ImageObject& function : ls_sim::code_of(image)) {
+    const ls_sim::SourcePlace begin = lines.source_of(function.begin);
+    if (!begin.file.empty() && !function.name.empty())
+      files[begin.file].functions.try_emplace(begin.line, Function{function.name, executed(function.begin)});
+    for (const ls_sim::ListedInstruction& instruction :
+         ls_sim::list_instructions(image, function.begin, {function.begin.value + function.bytes})) {
+      const ls_sim::SourcePlace place = lines.source_of(instruction.address);
+      if (place.file.empty() || place.line <= 0) continue;
+      Line& line = files[place.file].lines[place.line];
+      const std::uint64_t count = executed(instruction.address);
+      line.executed = std::max(line.executed, count);
+      if (is_conditional(instruction.mnemonic))
+        line.branches.push_back({count, count - std::min(count, went_on(instruction.address))});
+    }
+  }
+  if (files.empty())
+    throw std::runtime_error("--coverage: " + image.name +
+                             " has no debug information; have the compiler write it (-g)");
+  std::string text;
+  for (const auto& [name, file] : files) text += text_of(name, file);
+  return text;
+}
+
+}  // namespace softcell::tool

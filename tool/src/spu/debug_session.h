@@ -1,0 +1,147 @@
+#pragma once
+// A run that stops where a debugger wants it, and goes backwards by running again.
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "kernel_run.h"
+#include "kernel_task.h"
+#include "softcell/ls_sim/debugger.h"
+
+namespace softcell::tool {
+
+/// Which accesses to some bytes of each local store stop the run.
+struct Watchpoint {
+  enum Kind : std::uint8_t { kStores, kLoads, kBoth };
+  Kind kind = kStores;
+  std::uint32_t begin = 0, bytes = 0;
+  bool operator==(const Watchpoint&) const = default;
+};
+
+/// Why the SPEs stand still.
+struct DebugStop {
+  enum Kind : std::uint8_t { kStep, kBreakpoint, kWatchpoint, kInterrupted, kBeginning, kEnded };
+  Kind kind = kStep;
+  int spe = 0;                 ///< whose instruction is next
+  Watchpoint watchpoint = {};  ///< of kWatchpoint
+};
+
+/// SPEs take turns by the schedule's seed and the clock is simulated, so the program does the same in every run: an
+/// instruction has a number, and going back is running again up to a smaller one. What the debugger has written to
+/// registers and local stores is written again at its place. One thread uses it, besides the SPEs'.
+class DebugSession final : private ls_sim::Debugger {
+ public:
+  /// Called while SPEs run; true stops them.
+  using Interrupted = std::function<bool()>;
+
+  /// @param image, task, settings  outlive it. The image is a program built for the SPU.
+  DebugSession(const ls_sim::KernelImage& image, const KernelTask& task, const RunSettings& settings);
+  ~DebugSession() override { abandon(); }
+  DebugSession(const DebugSession&) = delete;
+  DebugSession& operator=(const DebugSession&) = delete;
+
+  /// Begins, and stops before the first instruction.
+  DebugStop start();
+
+  // @pre the last stop was not kEnded
+  DebugStop go_on(const Interrupted& interrupted);
+  /// One instruction of this SPE; others may execute some meanwhile.
+  DebugStop step(int spe, const Interrupted& interrupted);
+  /// To the last stop before this place; without any, to the beginning.
+  DebugStop go_back(const Interrupted& interrupted);
+  DebugStop step_back(const Interrupted& interrupted);
+
+  /// Runs to the end without stops.
+  DebugStop finish();
+
+  void set_breakpoint(std::uint32_t address, bool is_set) { breakpoints_[address / 4] = is_set; }
+  void set_watchpoint(const Watchpoint& watchpoint, bool is_set);
+
+  // While it stands.
+  int spes() const { return task_.spes; }
+  /// Of an SPE that runs: false before its first instruction and after its end.
+  bool is_running(int spe) const { return states_[index(spe)] != nullptr; }
+  /// The instruction that the SPE is at: the next, or one that waits.
+  std::uint32_t position(int spe) const { return positions_[index(spe)]; }
+  ls_sim::RegisterBytes read_register(int spe, int number) const;
+  /// All do nothing for an SPE that does not run.
+  void write_register(int spe, int number, const ls_sim::RegisterBytes& value);
+  /// @pre the range lies in the local store
+  std::vector<std::byte> read_memory(int spe, std::uint32_t address, std::uint32_t bytes) const;
+  void write_memory(int spe, std::uint32_t address, const std::vector<std::byte>& bytes);
+  /// The number of the next instruction, the first being 1.
+  std::uint64_t instruction() const { return count_; }
+
+  /// After kEnded.
+  const KernelRun& result() const { return *result_; }
+
+ private:
+  struct Edit {
+    std::uint64_t at;  ///< before this instruction
+    int spe;
+    std::variant<int, std::uint32_t> where;  ///< register, or address
+    std::vector<std::byte> bytes;
+  };
+  /// What the SPEs' threads look for.
+  struct Goal {
+    enum Kind : std::uint8_t { kStops, kStepOf, kNumber, kLastStopBefore, kEnd };
+    Kind kind = kStops;
+    int spe = 0;
+    std::uint64_t number = 0;
+  };
+
+  static std::size_t index(int spe) { return static_cast<std::size_t>(spe); }
+
+  // ls_sim::Debugger, by the threads of SPEs, one at a time.
+  void on_begin(int spe, ls_sim::DebuggedSpe& state) override { states_[index(spe)] = &state; }
+  void on_end(int spe) override { states_[index(spe)] = nullptr; }
+  bool on_instruction(int spe, dma::LocalStoreAddress pc) override;
+  void on_access(int spe, dma::LocalStoreAddress quadword, bool is_store) override;
+
+  std::optional<DebugStop> stop_at(int spe, std::uint32_t pc);
+  bool stand(const DebugStop& stop);
+  void apply(const Edit& edit);
+  void edit(Edit made);
+
+  void begin(const Goal& goal);
+  DebugStop run_to(const Goal& goal, const Interrupted& interrupted);
+  DebugStop run_again_to(std::uint64_t number, const Interrupted& interrupted);
+  DebugStop wait(const Interrupted& interrupted);
+  void abandon();
+
+  const ls_sim::KernelImage& image_;
+  const KernelTask& task_;
+  RunSettings settings_;
+
+  // Of the SPEs' threads while they run, and of the session's while they stand.
+  std::array<ls_sim::DebuggedSpe*, dma::kSpeCount> states_{};
+  std::array<std::uint32_t, dma::kSpeCount> positions_{};
+  std::uint64_t count_ = 0;
+  Goal goal_;
+  std::optional<Watchpoint> accessed_;  ///< by the instruction before
+  std::optional<DebugStop> best_;       ///< of kLastStopBefore
+  std::uint64_t best_number_ = 0;
+  std::vector<bool> breakpoints_ = std::vector<bool>(dma::kLocalStoreBytes / 4);
+  std::vector<Watchpoint> watchpoints_;
+  std::vector<Edit> edits_;  ///< in order
+
+  std::atomic<bool> abandoned_{false}, interrupt_{false};
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  enum class State : std::uint8_t { kRunning, kStanding, kEnded };
+  State state_ = State::kEnded;
+  DebugStop stop_;
+  std::optional<KernelRun> result_;
+  std::jthread runner_;
+};
+
+}  // namespace softcell::tool

@@ -1,0 +1,18 @@
+#pragma once
+// The cycles of a run: for the reader, and for other programs.
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "softcell/ls_sim/image.h"
+#include "softcell/ls_sim/timing.h"
+
+namespace softcell::tool {
+
+/// Prints for each SPE cycles, instructions, stalls by cause and waits, and the same by function.
+/// @param image  what has run on all SPEs
+void print_timing(const ls_sim::KernelImage& image, const ls_sim::Timing& timing);
+
+nlohmann::ordered_json to_json(const ls_sim::CycleCounts& counts);
+nlohmann::ordered_json to_json(const ls_sim::KernelImage& image, const ls_sim::Timing& timing);
+
+}  // namespace softcell::tool

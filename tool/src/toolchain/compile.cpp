@@ -1,0 +1,124 @@
+#include "compile.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "toolchain_settings.h"
+
+namespace softcell::toolchain {
+namespace {
+
+void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
+
+/// The compiler with the flags of a language, up to the headers of the SPU.
+Words command_of(Language language, bool checked, const Places& places) {
+  Words command{places.compiler};
+  if (language == Language::kC) {
+    append(command, {"-x", "c", "-std=gnu17"});
+    append(command, flags_of(settings::kCFlags, places));
+    command.push_back("-DSOFTCELL_VECTOR_CASTS");
+    if (checked) append(command, flags_of(settings::kCCheckedFlags, places));
+  } else {
+    append(command, {"-x", "c++"});
+    append(command, flags_of(settings::kCxxFlags, places));
+    if (checked) append(command, flags_of(settings::kCxxCheckedFlags, places));
+    append(command, {"-isystem", (places.sdk / "..").lexically_normal().string()});
+  }
+  append(command, {"-isystem", (places.sdk / "host").string()});
+  return command;
+}
+
+bool has(const Words& words, std::string_view option) {
+  return std::ranges::any_of(words, [&](const std::string& word) { return word.starts_with(option); });
+}
+
+/// The preprocessor's options; what it notes of dependencies is about the object.
+Words preprocessor_options(const Options& options, const std::filesystem::path& object) {
+  Words words = options.preprocessor;
+  if (!has(words, "-MD") && !has(words, "-MMD")) return words;
+  if (!has(words, "-MF"))
+    append(words, {"-MF", std::filesystem::path(object).replace_extension(".d").string()});
+  if (!has(words, "-MT") && !has(words, "-MQ")) append(words, {"-MT", object.string()});
+  return words;
+}
+
+/// Those of dependencies are left out: they were written for the other flavour.
+Words without_dependencies(const Words& options) {
+  Words words;
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    if (!options[i].starts_with("-M")) {
+      words.push_back(options[i]);
+    } else if (options[i] == "-MF" || options[i] == "-MT" || options[i] == "-MQ") {
+      ++i;
+    }
+  }
+  return words;
+}
+
+void say(const Options& options, const Words& command) {
+  if (!options.verbose) return;
+  std::string text;
+  for (const std::string& word : command) text += " " + word;
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void compile_flavour(const Input& source, const std::filesystem::path& object, bool checked,
+                     const Words& preprocessor, const Options& options, const Places& places,
+                     ScratchFolder& scratch) {
+  // What the compiler has to say it says once.
+  const auto go = [&](const Words& command) {
+    say(options, command);
+    if (const int status = run(command, checked); status != 0) throw Failed{status};
+  };
+  Words command = command_of(*source.language, checked, places);
+  append(command, preprocessor);
+  append(command, options.compiler);
+  if (*source.language == Language::kCxx) {
+    append(command, {"-c", source.file, "-o", object.string()});
+    return go(command);
+  }
+  // Between the preprocessor and the compiler, casts of vectors get the meaning that they have on an SPU.
+  const std::string text = scratch.file("source.i"), rewritten = scratch.file("rewritten.i");
+  append(command, {"-E", source.file, "-o", text});
+  go(command);
+  go({places.vector_casts.string(), text, rewritten});
+  command = command_of(Language::kC, checked, places);
+  command[2] = "cpp-output";
+  append(command, options.compiler);
+  append(command, {"-Wno-unused-command-line-argument", "-c", rewritten, "-o", object.string()});
+  if (std::string_view(settings::kCompilerName) == "g++")
+    std::erase(command, "-Wno-unused-command-line-argument");
+  go(command);
+}
+
+}  // namespace
+
+void compile(const Input& source, const std::filesystem::path& object, const Options& options,
+             const Places& places, ScratchFolder& scratch) {
+  compile_flavour(source, object, false, preprocessor_options(options, object), options, places, scratch);
+  const auto checked = scratch.file("checked.o");
+  compile_flavour(source, checked, true, without_dependencies(options.preprocessor), options, places,
+                  scratch);
+  add_section(object, kCheckedSection, checked);
+}
+
+void preprocess(const Options& options, const Places& places) {
+  for (const Input& input : options.inputs) {
+    if (!input.language) continue;
+    Words command = command_of(*input.language, false, places);
+    append(command, options.preprocessor);
+    append(command, options.compiler);
+    if (options.step == Step::kPreprocess) command.push_back("-E");
+    command.push_back(input.file);
+    if (options.output) append(command, {"-o", *options.output});
+    run_or_fail(command);
+  }
+}
+
+void add_section(const std::filesystem::path& object, const std::string& section,
+                 const std::filesystem::path& file) {
+  run_or_fail({"objcopy", "--remove-section", section, "--add-section", section + "=" + file.string(),
+               "--set-section-flags", section + "=noload,readonly", object.string()});
+}
+
+}  // namespace softcell::toolchain

@@ -1,0 +1,154 @@
+#include "link.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "compile.h"
+#include "toolchain_settings.h"
+
+namespace softcell::toolchain {
+namespace {
+
+constexpr std::uint32_t kLocalStoreBytes = 0x40000;
+constexpr std::uint32_t kLeastStack = 4096, kMostStack = 0x20000;
+
+void append(Words& to, const Words& words) { to.insert(to.end(), words.begin(), words.end()); }
+
+/// The checked flavour of an object. @return  false: it has none
+bool extract_checked(const std::string& object, const std::filesystem::path& to) {
+  const Words command{"objcopy", "--dump-section", std::string(kCheckedSection) + "=" + to.string(), object,
+                      "/dev/null"};
+  return run(command, true) == 0 && std::filesystem::exists(to);
+}
+
+/// The checked flavours of an archive's members, as an archive.
+bool extract_checked_archive(const std::filesystem::path& archive, const std::filesystem::path& to,
+                             ScratchFolder& scratch) {
+  const std::filesystem::path members = scratch.file("members");
+  std::filesystem::create_directory(members);
+  run_or_fail({"ar", "x", "--output=" + members.string(), archive.string()});
+  Words command{"ar", "rcs", to.string()};
+  for (const auto& member : std::filesystem::directory_iterator(members)) {
+    const auto checked = scratch.file(member.path().filename());
+    if (!extract_checked(member.path(), checked)) return false;
+    command.push_back(checked);
+  }
+  run_or_fail(command);
+  return true;
+}
+
+/// The files with their checked flavours in their place. @return  none: `missing` has none
+Words checked_files(const Words& files, ScratchFolder& scratch, std::string& missing) {
+  Words checked;
+  for (const std::string& file : files) {
+    const std::filesystem::path path(file);
+    const auto to = scratch.file(path.filename());
+    const bool found =
+        path.extension() == ".a" ? extract_checked_archive(path, to, scratch) : extract_checked(file, to);
+    if (!found) {
+      missing = file;
+      return {};
+    }
+    checked.push_back(to);
+  }
+  return checked;
+}
+
+/// One flavour. @param quiet  the linker's messages are dropped. @return  the linker's status.
+int link_flavour(const Words& files, const std::filesystem::path& output, bool checked, std::uint32_t stack,
+                 const Options& options, const Places& places, bool quiet) {
+  Words command{settings::kLinker,
+                "-m",
+                "elf32_x86_64",
+                "-pie",
+                "--no-dynamic-linker",
+                "-T",
+                (places.sdk / "ls.ld").string()};
+  const auto define = [&](const std::string& symbol, std::uint32_t value) {
+    append(command, {"--defsym", symbol + "=" + std::to_string(value)});
+  };
+  define("softcell_stack_bytes", stack);
+  define("softcell_budget_bytes", kLocalStoreBytes);
+  define("softcell_is_checked", checked ? 1 : 0);
+  define("softcell_is_program", 1);
+  define("softcell_image_begin", 0x80);
+  append(command, {"--emit-relocs", "--build-id=none", "-z", "noexecstack", "--no-warn-rwx-segments", "-z",
+                   "max-page-size=128"});
+  if (!checked) append(command, options.linker);
+  append(command, files);
+  append(command, {"-e", "softcell_start", "--gc-sections", "-z", "muldefs", "-u", "softcell_start"});
+  if (checked) command.push_back(places.access_reports);
+  command.push_back(checked ? places.checked_library : places.library);
+  append(command, {"-o", output.string()});
+  return run(command, quiet);
+}
+
+/// What the image leaves free is for the stack and the heap: half for each.
+std::uint32_t stack_beside(const std::filesystem::path& image) {
+  const std::string symbols = output_of({"nm", image.string()});
+  std::istringstream lines(symbols);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.ends_with(" _end")) continue;
+    const auto end = static_cast<std::uint32_t>(std::strtoul(line.c_str(), nullptr, 16));
+    const std::uint32_t free = kLocalStoreBytes - std::min(end, kLocalStoreBytes);
+    return std::clamp(free / 2 / 16 * 16, kLeastStack, kMostStack);
+  }
+  throw std::runtime_error(image.string() + " has no symbol _end");
+}
+
+/// Links a flavour with as much stack as there is room for. @return  the linker's status.
+int link_with_stack(const Words& files, const std::filesystem::path& output, bool checked,
+                    const Options& options, const Places& places, bool quiet) {
+  const std::uint32_t more = checked ? settings::kCheckedStackBytes : 0;
+  const int status = link_flavour(files, output, checked, options.stack_bytes.value_or(kLeastStack) + more,
+                                  options, places, quiet);
+  if (status != 0 || options.stack_bytes) return status;
+  const std::uint32_t stack = stack_beside(output);
+  return link_flavour(files, output, checked, stack, options, places, quiet);
+}
+
+void link_object(const Words& files, const std::filesystem::path& output) {
+  Words command{settings::kLinker, "-m", "elf32_x86_64", "-r", "-o", output.string()};
+  append(command, files);
+  run_or_fail(command);
+}
+
+}  // namespace
+
+void link(const Words& files, const std::filesystem::path& output, const Options& options,
+          const Places& places, ScratchFolder& scratch) {
+  std::string missing;
+  const Words checked = checked_files(files, scratch, missing);
+  const auto checked_output = scratch.file("checked.elf");
+  if (options.relocatable) {
+    link_object(files, output);
+    if (missing.empty()) {
+      link_object(checked, checked_output);
+      add_section(output, kCheckedSection, checked_output);
+    }
+    return;
+  }
+  const auto whole = scratch.file("program.elf");
+  if (const int status = link_with_stack(files, whole, false, options, places, false); status != 0)
+    throw Failed{status};
+  const bool has_checked =
+      missing.empty() && link_with_stack(checked, checked_output, true, options, places, true) == 0;
+  if (has_checked) {
+    add_section(whole, kCheckedSection, checked_output);
+  } else {
+    const std::string why = missing.empty() ? "it does not fit into a local store" : missing + " has none";
+    std::fprintf(stderr, "softcell-spu-ld: note: %s gets no checked flavour: %s\n", output.c_str(),
+                 why.c_str());
+  }
+  const auto name = scratch.file("name");
+  std::ofstream(name) << output.stem().string();
+  add_section(whole, ".softcell.name", name);
+  std::filesystem::copy_file(whole, output, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::permissions(output, std::filesystem::status(whole).permissions());
+}
+
+}  // namespace softcell::toolchain

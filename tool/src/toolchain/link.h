@@ -1,0 +1,17 @@
+#pragma once
+// Objects to a program: an image of a local store, with its checked flavour in a section.
+
+#include <filesystem>
+
+#include "options.h"
+#include "places.h"
+#include "process.h"
+
+namespace softcell::toolchain {
+
+/// Links objects and archives, in order. With `options.relocatable`, to one object.
+/// @throws Failed  the linker has said why.
+void link(const Words& files, const std::filesystem::path& output, const Options& options,
+          const Places& places, ScratchFolder& scratch);
+
+}  // namespace softcell::toolchain

@@ -1,0 +1,138 @@
+// softcell-spu-gcc, -g++, -ld, -ar, ... and softcell-embedspu: one program, which does what its name says.
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "compile.h"
+#include "embed.h"
+#include "link.h"
+#include "options.h"
+#include "places.h"
+#include "process.h"
+#include "toolchain_settings.h"
+
+namespace {
+
+using namespace softcell::toolchain;
+
+constexpr int kWrongUsage = 2;
+
+constexpr const char kHelp[] =
+    "Compiles and links SPU programs in C and C++ for softcell, with the options of spu-gcc.\n"
+    "\n"
+    "  softcell-spu-gcc -O2 -c kernel.c -o kernel.o     -c, -E, -M, -I, -D, -W..., -std=, -l, -L, -r as "
+    "usual\n"
+    "  softcell-spu-gcc kernel.o -o kernel.elf          a program: softcell spu run, spe_image_open(), "
+    "embedspu\n"
+    "  softcell-embedspu kernel kernel.elf kernel_elf.o an object with spe_program_handle_t kernel\n"
+    "\n"
+    "  -Wl,-z,stack-size=BYTES   the stack; without it, half of what the program leaves free, at most 128 "
+    "KB\n"
+    "  SOFTCELL_CXX              another host compiler;  SOFTCELL_QUIET: no notes about options without "
+    "meaning\n";
+
+/// Answers what build systems ask compilers. @return  whether it was such a question
+bool answer_question(const Words& words) {
+  if (words.size() != 1) return false;
+  if (words[0] == "--version") {
+    std::printf("softcell-spu-gcc (softcell) %s\n", settings::kVersion);
+  } else if (words[0] == "-dumpversion") {
+    std::printf("%s\n", settings::kVersion);
+  } else if (words[0] == "-dumpmachine") {
+    std::printf("spu\n");
+  } else if (words[0] == "--help") {
+    std::printf("%s", kHelp);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+int link_inputs(const Words& files, const Options& options, const Places& places, ScratchFolder& scratch) {
+  link(files, options.output.value_or("a.out"), options, places, scratch);
+  return 0;
+}
+
+int gcc(const std::string& command, const Words& words, Language language) {
+  if (answer_question(words)) return 0;
+  const Options options = parse_compiler_options(words, language);
+  note_meaningless(command, options);
+  const Places places = find_places();
+  if (options.step == Step::kDependencies || options.step == Step::kPreprocess) {
+    preprocess(options, places);
+    return 0;
+  }
+  ScratchFolder scratch;
+  Words files;
+  for (const Input& input : options.inputs) {
+    if (!input.language) {
+      files.push_back(input.file);
+      continue;
+    }
+    const auto stem = std::filesystem::path(input.file).stem().string() + ".o";
+    const bool keeps = options.step == Step::kCompile && !options.relocatable;
+    const std::filesystem::path object =
+        keeps ? std::filesystem::path(options.output.value_or(stem)) : scratch.file(stem);
+    compile(input, object, options, places, scratch);
+    files.push_back(object);
+  }
+  return options.step == Step::kCompile && !options.relocatable
+             ? 0
+             : link_inputs(files, options, places, scratch);
+}
+
+int ld(const std::string& command, const Words& words) {
+  if (answer_question(words)) return 0;
+  const Options options = parse_linker_options(words);
+  note_meaningless(command, options);
+  Words files;
+  for (const Input& input : options.inputs) files.push_back(input.file);
+  ScratchFolder scratch;
+  return link_inputs(files, options, find_places(), scratch);
+}
+
+int run_command(const std::string& command, Words words) {
+  if (command == "softcell-spu-gcc") return gcc(command, words, Language::kC);
+  if (command == "softcell-spu-g++") return gcc(command, words, Language::kCxx);
+  if (command == "softcell-spu-ld") return ld(command, words);
+  if (command == "softcell-embedspu") return embedspu(words);
+  if (command == "softcell-bin2s") return bin2s(words);
+  // Objects and programs are ELF files of the host.
+  static const std::map<std::string, std::string> kTools{
+      {"softcell-spu-ar", "ar"},     {"softcell-spu-ranlib", "ranlib"},
+      {"softcell-spu-size", "size"}, {"softcell-spu-objdump", "objdump"},
+      {"softcell-spu-nm", "nm"},     {"softcell-spu-strip", "strip"}};
+  const auto tool = kTools.find(command);
+  if (tool == kTools.end())
+    throw std::invalid_argument("call it by one of its names, softcell-spu-gcc for example");
+  if (command == "softcell-spu-strip") {
+    // The symbols of a program are few, and softcell reads them; strip leaves both flavours.
+    words.insert(words.begin(), {"--strip-debug", "--keep-section=.softcell.*"});
+    std::erase(words, "-s");
+    std::erase(words, "--strip-all");
+  }
+  words.insert(words.begin(), tool->second);
+  become(words);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string command = std::filesystem::path(argv[0]).filename();
+  try {
+    return run_command(command, Words(argv + 1, argv + argc));
+  } catch (const Failed& failed) {
+    return failed.status;
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "%s: %s\n", command.c_str(), error.what());
+    return kWrongUsage;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", command.c_str(), error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,327 @@
+#include "options.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace softcell::toolchain {
+namespace {
+
+template <class... Texts>
+bool is_any(std::string_view text, const Texts&... texts) {
+  return ((text == texts) || ...);
+}
+template <class... Texts>
+bool starts_with_any(std::string_view text, const Texts&... texts) {
+  return (text.starts_with(texts) || ...);
+}
+
+/// Libraries of a Cell toolchain whose functions softcell's own library has, or that there is nothing of to link.
+bool is_in_library(std::string_view name) {
+  return is_any(name, "c", "m", "gcc", "gloss", "stdc++", "supc++", "misc", "sync", "simdmath", "sputhread",
+                "spuatomic", "spudma", "ea", "profile", "gmath", "spu_timer", "sputimer");
+}
+
+/// Reads the words of a file: they end at spaces, and quotes hold them together. [GCC, @file] documented
+Words words_of_file(const std::string& name) {
+  std::ifstream file(name);
+  if (!file) throw std::invalid_argument("the file of options " + name + " cannot be read");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  Words words;
+  std::string word;
+  char quote = 0;
+  bool within = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote == 0 && (c == ' ' || c == '\n' || c == '\t' || c == '\r')) {
+      if (within) words.push_back(std::exchange(word, {}));
+      within = false;
+      continue;
+    }
+    within = true;
+    if (c == '\\' && i + 1 < text.size()) {
+      word += text[++i];
+    } else if (quote == c) {
+      quote = 0;
+    } else if (quote == 0 && (c == '"' || c == '\'')) {
+      quote = c;
+    } else {
+      word += c;
+    }
+  }
+  if (within) words.push_back(word);
+  return words;
+}
+
+Words with_files_expanded(const Words& words) {
+  Words all;
+  for (const std::string& word : words) {
+    if (word.size() > 1 && word.front() == '@') {
+      const Words more = words_of_file(word.substr(1));
+      all.insert(all.end(), more.begin(), more.end());
+    } else {
+      all.push_back(word);
+    }
+  }
+  return all;
+}
+
+std::optional<Language> language_by_name(std::string_view name) {
+  if (is_any(name, "c", "cpp-output", "c-header")) return Language::kC;
+  if (is_any(name, "c++", "c++-cpp-output", "c++-header")) return Language::kCxx;
+  return std::nullopt;
+}
+
+class Parser {
+ public:
+  Parser(const Words& words, Language language) : words_(with_files_expanded(words)), language_(language) {}
+
+  Options compiler_options() {
+    for (; at_ < words_.size(); ++at_) take_compiler_word(words_[at_]);
+    finish();
+    return std::move(options_);
+  }
+  Options linker_options() {
+    for (; at_ < words_.size(); ++at_) take_linker_word(words_[at_]);
+    finish();
+    return std::move(options_);
+  }
+
+ private:
+  /// The value of an option: the rest of its word, or the next word.
+  std::string value(std::string_view word, std::string_view option) {
+    if (word.size() > option.size()) return std::string(word.substr(option.size()));
+    if (++at_ == words_.size()) throw std::invalid_argument(std::string(option) + " needs a value");
+    return words_[at_];
+  }
+  void keep_with_value(Words& to, const std::string& word, std::string_view option) {
+    to.push_back(word);
+    if (word == option) to.push_back(value(word, option));
+  }
+
+  void take_compiler_word(const std::string& word) {
+    if (word == "-" || !word.starts_with('-')) return take_input(word);
+    for (const std::string_view option : {"-isystem", "-iquote", "-idirafter", "-include", "-imacros", "-I",
+                                          "-D", "-U", "-MF", "-MT", "-MQ"}) {
+      if (word.starts_with(option)) return keep_with_value(options_.preprocessor, word, option);
+    }
+    if (is_any(word, "-MD", "-MMD", "-MP", "-MG", "-C", "-P", "-undef"))
+      return options_.preprocessor.push_back(word);
+    if (is_any(word, "-M", "-MM")) {
+      options_.step = Step::kDependencies;
+      return options_.preprocessor.push_back(word);
+    }
+    if (word.starts_with("-o")) {
+      options_.output = value(word, "-o");
+    } else if (word.starts_with("-x")) {
+      take_language(value(word, "-x"));
+    } else if (word == "-c") {
+      options_.step =
+          std::max(options_.step == Step::kLink ? Step::kCompile : options_.step, Step::kDependencies);
+    } else if (word == "-E") {
+      options_.step = Step::kPreprocess;
+    } else if (word == "-S") {
+      throw std::invalid_argument(
+          "-S: there are no SPU instructions here, the program runs on the PC's processor; a real spu-gcc "
+          "writes them");
+    } else if (starts_with_any(word, "-l", "-L")) {
+      take_library(word);
+    } else if (word.starts_with("-Wl,")) {
+      take_linker_list(word.substr(4));
+    } else if (word == "-Xlinker") {
+      take_linker_list(value(word, "-Xlinker"));
+    } else if (word == "-T" || word == "-Xassembler" || word == "-Xpreprocessor" || word == "--param") {
+      options_.meaningless.push_back(word + " " + value(word, word));
+    } else if (word == "-r") {
+      options_.relocatable = true;
+    } else if (word == "-v" || word == "-###") {
+      options_.verbose = true;
+    } else if (word.starts_with("-std=")) {
+      take_standard(word);
+    } else if (word == "-ansi") {
+      if (language_ == Language::kC) options_.compiler.push_back("-std=gnu90");
+    } else if (is_any(word, "-pipe", "-static", "-O", "-O1", "-O2", "-O3", "-Os", "-pthread", "-s") ||
+               starts_with_any(word, "-g", "-mtune=", "-march=", "-mcpu=")) {
+      // How fast a program is and what a debugger knows of it is the same under all of them.
+    } else if (word == "-w" || starts_with_any(word, "-W", "-pedantic")) {
+      if (word.starts_with("-Wa,")) {
+        options_.meaningless.push_back(word);
+      } else {
+        options_.compiler.push_back(word);
+      }
+    } else if (is_of_language(word)) {
+      options_.compiler.push_back(word);
+    } else if (starts_with_any(word, "-f", "-m", "-O", "-nost", "-nodef", "-shared-libgcc", "-static-lib",
+                               "-no-")) {
+      options_.meaningless.push_back(word);
+    } else {
+      throw std::invalid_argument("unknown option " + word);
+    }
+  }
+
+  /// What changes the meaning of a source, and has one here.
+  static bool is_of_language(std::string_view word) {
+    return is_any(word, "-fsigned-char", "-funsigned-char", "-fno-strict-aliasing", "-fstrict-aliasing",
+                  "-fwrapv", "-fpermissive", "-fcommon", "-fno-common", "-fgnu89-inline", "-fms-extensions",
+                  "-fplan9-extensions", "-fshort-enums", "-fno-short-enums", "-fsigned-bitfields",
+                  "-funsigned-bitfields") ||
+           starts_with_any(word, "-fpack-struct", "-fmax-errors", "-fdiagnostics", "-ftemplate-depth");
+  }
+
+  void take_linker_word(const std::string& word) {
+    if (!word.starts_with('-')) return take_input(word);
+    if (word.starts_with("-o")) {
+      options_.output = value(word, "-o");
+    } else if (starts_with_any(word, "-l", "-L")) {
+      take_library(word);
+    } else if (is_any(word, "-r", "-i", "--relocatable")) {
+      options_.relocatable = true;
+    } else if (word.starts_with("-Map=") || is_any(word, "-M", "--print-map", "--trace", "-t", "--verbose")) {
+      options_.linker.push_back(word);
+    } else if (word == "-Map") {
+      options_.linker.insert(options_.linker.end(), {word, value(word, word)});
+    } else if (word == "-z") {
+      take_keyword(value(word, word));
+    } else if (word.starts_with("--defsym=")) {
+      options_.linker.push_back(word);
+    } else if (is_any(word, "-e", "-T", "-m", "-u", "-h", "-Ttext", "-Tdata", "-Tbss", "--script",
+                      "--entry")) {
+      options_.meaningless.push_back(word + " " + value(word, word));
+    } else if (word == "--defsym") {
+      options_.linker.insert(options_.linker.end(), {word, value(word, word)});
+    } else {
+      options_.meaningless.push_back(word);
+    }
+  }
+
+  /// Words of the linker, with commas between them; some take the next as their value.
+  void take_linker_list(std::string_view list) {
+    Words words;
+    for (std::size_t at = 0; at <= list.size();) {
+      const auto comma = std::min(list.find(',', at), list.size());
+      words.emplace_back(list.substr(at, comma - at));
+      at = comma + 1;
+    }
+    const Words outer = std::exchange(words_, words);
+    const std::size_t outer_at = std::exchange(at_, 0);
+    for (; at_ < words_.size(); ++at_) take_linker_word(words_[at_]);
+    words_ = outer;
+    at_ = outer_at;
+  }
+
+  void take_keyword(const std::string& keyword) {
+    constexpr std::string_view kStack = "stack-size=";
+    if (!keyword.starts_with(kStack)) return options_.meaningless.push_back("-z " + keyword);
+    const std::string number = keyword.substr(kStack.size());
+    char* end = nullptr;
+    const unsigned long bytes = std::strtoul(number.c_str(), &end, 0);
+    constexpr unsigned long kLocalStore = 0x40000;
+    if (number.empty() || *end != '\0' || bytes < 16 || bytes > kLocalStore)
+      throw std::invalid_argument("-z " + keyword + ": a stack has 16 to 262144 bytes");
+    options_.stack_bytes = static_cast<std::uint32_t>((bytes + 15) / 16 * 16);
+  }
+
+  void take_language(const std::string& name) {
+    forced_ = language_by_name(name);
+    if (!forced_ && name != "none")
+      throw std::invalid_argument("-x " + name + ": only C and C++ can be compiled here");
+  }
+
+  void take_standard(const std::string& word) {
+    // The headers of the SPU are C++17.
+    constexpr std::array kOld{"98", "03", "0x", "11", "1y", "14", "1z"};
+    if (word.find("++") == word.npos) {
+      options_.compiler.push_back(word);
+    } else if (std::ranges::any_of(kOld, [&](const char* year) { return word.ends_with(year); })) {
+      options_.meaningless.push_back(word);
+    } else {
+      options_.compiler.push_back(word);
+    }
+  }
+
+  void take_input(const std::string& file) {
+    std::optional<Language> language = forced_;
+    const std::string extension = std::filesystem::path(file).extension();
+    if (!language && file != "-") {
+      if (is_any(extension, ".c", ".i", ".h")) {
+        language = language_;
+      } else if (is_any(extension, ".cc", ".cpp", ".cxx", ".C", ".cp", ".c++", ".CPP", ".ii")) {
+        language = Language::kCxx;
+      } else if (is_any(extension, ".s", ".S", ".asm")) {
+        throw std::invalid_argument(
+            file +
+            ": SPU instructions cannot run on the PC's processor; assemble it with a real "
+            "spu-gcc, and run the whole program by softcell spu run");
+      }
+    } else if (!language) {
+      language = language_;
+    }
+    options_.inputs.push_back({file, language});
+  }
+
+  void take_library(const std::string& word) {
+    if (word.starts_with("-L")) return folders_.push_back(value(word, "-L"));
+    libraries_.push_back({value(word, "-l"), options_.inputs.size()});
+  }
+
+  void finish() {
+    // From the last, so that the places of the others stay.
+    for (auto library = libraries_.rbegin(); library != libraries_.rend(); ++library) {
+      const auto& [name, place] = *library;
+      const auto file = find_library(name);
+      if (file)
+        options_.inputs.insert(options_.inputs.begin() + static_cast<std::ptrdiff_t>(place),
+                               Input{*file, {}});
+    }
+    if (options_.inputs.empty()) throw std::invalid_argument("there are no input files");
+    const bool one_output = options_.output && options_.step != Step::kLink && !options_.relocatable;
+    const auto sources =
+        std::ranges::count_if(options_.inputs, [](const Input& i) { return i.language.has_value(); });
+    if (one_output && sources > 1)
+      throw std::invalid_argument("-o names one file, and there are several sources");
+  }
+
+  std::optional<std::string> find_library(const std::string& name) const {
+    for (const std::string& folder : folders_) {
+      const std::filesystem::path file = std::filesystem::path(folder) / ("lib" + name + ".a");
+      if (std::filesystem::exists(file)) return file.string();
+    }
+    if (is_in_library(name)) return std::nullopt;
+    if (options_.step != Step::kLink) return std::nullopt;
+    throw std::invalid_argument("-l" + name + ": there is no lib" + name +
+                                ".a in the folders of -L, and softcell's "
+                                "library has no part of that name");
+  }
+
+  Words words_;
+  std::size_t at_ = 0;
+  const Language language_;
+  std::optional<Language> forced_;
+  Words folders_;
+  std::vector<std::pair<std::string, std::size_t>> libraries_;  ///< and before which input they stand
+  Options options_;
+};
+
+}  // namespace
+
+Options parse_compiler_options(const Words& words, Language language) {
+  return Parser(words, language).compiler_options();
+}
+
+Options parse_linker_options(const Words& words) { return Parser(words, Language::kC).linker_options(); }
+
+void note_meaningless(const std::string& command, const Options& options) {
+  if (options.meaningless.empty() || std::getenv("SOFTCELL_QUIET") != nullptr) return;
+  std::string text;
+  for (const std::string& option : options.meaningless) text += " " + option;
+  std::fprintf(stderr, "%s: note: without meaning on a PC:%s\n", command.c_str(), text.c_str());
+}
+
+}  // namespace softcell::toolchain

@@ -1,0 +1,48 @@
+#pragma once
+// Other programs, and files for a while.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace softcell::toolchain {
+
+using Words = std::vector<std::string>;
+
+/// Runs a program and waits for its end. It shares our input, output and standard error.
+/// @param quiet  its standard error is dropped.
+/// @return  its status; 1 if a signal has ended it.
+/// @throws std::runtime_error  it cannot be run; the message names it.
+int run(const Words& command, bool quiet = false);
+
+/// As run(), and gives what it prints on standard output, without the last line's end.
+std::string output_of(const Words& command);
+
+/// Puts a program in place of this one. @throws std::runtime_error  it cannot be run.
+[[noreturn]] void become(const Words& command);
+
+/// A folder that goes with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  /// A name in the folder that no other call gets.
+  std::filesystem::path file(const std::string& name);
+
+ private:
+  std::filesystem::path path_;
+  int files_ = 0;
+};
+
+/// Ends the command with its status: the program that it has called has said why.
+struct Failed {
+  int status;
+};
+
+/// run(), and Failed if its status is not 0.
+void run_or_fail(const Words& command);
+
+}  // namespace softcell::toolchain
