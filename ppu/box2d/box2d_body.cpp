@@ -41,8 +41,8 @@ void Box2dBody::add_particle(std::uint32_t number) {
   fixture.restitution = 0;
   fixture.filter.groupIndex = group_;
   particle->CreateFixture(&fixture);
-  b2MassData mass{};
-  mass.mass = soft_.model().masses()[number];
+  // All of it: braces alone leave the centre unset, as b2Vec2 has a constructor that does nothing.
+  const b2MassData mass{.mass = soft_.model().masses()[number], .center = {0, 0}, .I = 0};
   particle->SetMassData(&mass);
   particles_.push_back(particle);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -37,6 +38,25 @@ TEST(Box2dCoupling, RestsOnAFloorInShape) {
   EXPECT_LT(fastest, 0.005f);
   EXPECT_LT(body.deformation(), 0.02f);
   EXPECT_NEAR(lowest(body), body.model().contact_radius(), 0.02f);
+}
+
+/// Leaves large numbers where the frames of the functions that are called next will lie.
+[[gnu::noinline]] void litter_the_stack() {
+  std::array<volatile float, 4096> litter;
+  for (volatile float& number : litter) number = 1e6f;
+}
+
+// b2Vec2's default constructor sets nothing, not even by empty braces: the centre was what lay on the stack.
+TEST(Box2dCoupling, TheCentreOfMassOfAParticleIsItsPosition) {
+  World2d world;
+  const std::shared_ptr<const SoftBodyModel<2>> model = rectangle_model({3, 3}, rubber());
+  litter_the_stack();
+  world.soft.add(model, {0, 10});
+  for (const b2Body* particle = world.box2d.GetBodyList(); particle != nullptr;
+       particle = particle->GetNext()) {
+    EXPECT_EQ(particle->GetLocalCenter(), b2Vec2(0, 0));
+    EXPECT_EQ(particle->GetInertia(), 0);
+  }
 }
 
 TEST(Box2dCoupling, FallsAsEverythingFalls) {

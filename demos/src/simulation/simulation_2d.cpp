@@ -74,7 +74,7 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction)
   fixture.friction = friction;
   std::visit(MakeShape{*body, fixture}, rigid.shape);
   if (rigid.mass > 0) {
-    b2MassData mass{};
+    b2MassData mass;
     body->GetMassData(&mass);
     SC_ASSERT(mass.mass > 0, "a shape of density 1 has a mass of {} kg", mass.mass);
     mass.I *= rigid.mass / mass.mass;
