@@ -6,7 +6,7 @@
 extern spe_program_handle_t breaks_rules;
 
 int main(int argc, char** argv) {
-  spe_thread_t spe;
+  static spe_thread_t spe; /* its thread writes to it when main has returned */
   (void)argv;
   start_spe(&spe, &breaks_rules, 0, (void*)6, NULL);
   if (argc > 1) {
