@@ -5,6 +5,18 @@
 
 set(SOFTCELL_SPU_CXX "" CACHE FILEPATH "C++ compiler for spu-elf (GCC 7 to 9), which builds each kernel for the SPU as well")
 
+# softcell_spu_source_options(<variable> <include folders> <options> <warnings as errors>): of a kernel's source, for either compiler.
+function(softcell_spu_source_options variable folders options warnings_as_errors)
+  foreach(folder IN LISTS folders)
+    cmake_path(ABSOLUTE_PATH folder)
+    list(APPEND options -I${folder})
+  endforeach()
+  if("${warnings_as_errors}")
+    list(APPEND options -Werror)
+  endif()
+  set(${variable} ${options} PARENT_SCOPE)
+endfunction()
+
 # softcell_find_spu_tool(<variable> <tool>): the tool beside the compiler, spu-elf-gcc of spu-elf-g++.
 function(softcell_find_spu_tool variable tool)
   cmake_path(GET SOFTCELL_SPU_CXX PARENT_PATH folder)
@@ -29,15 +41,8 @@ function(softcell_add_spu_elf name)
   # The compiler's own library: products of 64 bits, the manager of MFC tags. Nothing of a C library.
   execute_process(COMMAND ${SOFTCELL_SPU_CXX} -print-libgcc-file-name OUTPUT_VARIABLE libgcc OUTPUT_STRIP_TRAILING_WHITESPACE
     COMMAND_ERROR_IS_FATAL ANY)
-  set(includes -I${SOFTCELL_SDK_DIR}/.. -I${SOFTCELL_SDK_DIR}/shared)
-  foreach(folder IN LISTS arg_INCLUDES)
-    cmake_path(ABSOLUTE_PATH folder)
-    list(APPEND includes -I${folder})
-  endforeach()
-  set(warnings)
-  if(arg_WARNINGS_AS_ERRORS)
-    set(warnings -Werror)
-  endif()
+  softcell_spu_source_options(options "${arg_INCLUDES}" "${arg_OPTIONS}" "${arg_WARNINGS_AS_ERRORS}")
+  list(APPEND options -I${SOFTCELL_SDK_DIR}/.. -I${SOFTCELL_SDK_DIR}/shared)
   set(objects)
   foreach(source IN LISTS arg_SOURCES)
     cmake_path(ABSOLUTE_PATH source)
@@ -48,7 +53,7 @@ function(softcell_add_spu_elf name)
       set(compiler ${c_compiler} ${SOFTCELL_SPU_C_FLAGS})
     endif()
     add_custom_command(OUTPUT ${object}
-      COMMAND ${compiler} ${warnings} ${arg_OPTIONS} ${includes} -MD -MF ${object}.d -MT ${object} -c ${source} -o ${object}
+      COMMAND ${compiler} ${options} -MD -MF ${object}.d -MT ${object} -c ${source} -o ${object}
       DEPENDS ${source} DEPFILE ${object}.d VERBATIM
       COMMENT "Compiling ${file} of ${name} for the SPU")
     list(APPEND objects ${object})

@@ -65,20 +65,12 @@ function(softcell_compile_c_source object name source)
   cmake_path(ABSOLUTE_PATH source)
   cmake_path(GET source FILENAME file)
   set(stem ${CMAKE_CURRENT_BINARY_DIR}/${name}.${file})
-  set(includes)
-  foreach(folder IN LISTS arg_INCLUDES)
-    cmake_path(ABSOLUTE_PATH folder)
-    list(APPEND includes -I${folder})
-  endforeach()
-  set(warnings)
-  if(arg_WARNINGS_AS_ERRORS)
-    set(warnings -Werror)
-  endif()
+  softcell_spu_source_options(options "${arg_INCLUDES}" "${arg_OPTIONS}" "${arg_WARNINGS_AS_ERRORS}")
   add_custom_command(OUTPUT ${stem}.o
-    COMMAND ${CMAKE_CXX_COMPILER} -x c -std=gnu17 ${SOFTCELL_C_FLAGS} ${SOFTCELL_PROGRAM_FLAGS} -DSOFTCELL_VECTOR_CASTS ${arg_OPTIONS}
-      ${includes} -isystem ${SOFTCELL_SDK_DIR}/host -MD -MF ${stem}.d -MT ${stem}.o -E ${source} -o ${stem}.i
+    COMMAND ${CMAKE_CXX_COMPILER} -x c -std=gnu17 ${SOFTCELL_C_FLAGS} ${SOFTCELL_PROGRAM_FLAGS} -DSOFTCELL_VECTOR_CASTS ${options}
+      -Wno-unused-command-line-argument -isystem ${SOFTCELL_SDK_DIR}/host -MD -MF ${stem}.d -MT ${stem}.o -E ${source} -o ${stem}.i
     COMMAND softcell_vector_casts ${stem}.i ${stem}.softcell.i
-    COMMAND ${CMAKE_CXX_COMPILER} -x cpp-output -std=gnu17 ${SOFTCELL_C_FLAGS} ${SOFTCELL_PROGRAM_FLAGS} ${arg_OPTIONS} ${warnings}
+    COMMAND ${CMAKE_CXX_COMPILER} -x cpp-output -std=gnu17 ${SOFTCELL_C_FLAGS} ${SOFTCELL_PROGRAM_FLAGS} ${options}
       -Wno-unused-command-line-argument -c ${stem}.softcell.i -o ${stem}.o
     DEPENDS ${source} softcell_vector_casts DEPFILE ${stem}.d
     COMMAND_EXPAND_LISTS VERBATIM

@@ -5,7 +5,9 @@
 #include <cerrno>
 
 #include "libspe2.h"
+#include "object.h"
 
+namespace softcell::libspe2 {
 namespace {
 
 constexpr unsigned int kCallbacks = 256;
@@ -15,14 +17,7 @@ std::atomic<void*>& slot(unsigned int callnum) {
   return slots[callnum];
 }
 
-int fail(int error) {
-  errno = error;
-  return -1;
-}
-
 }  // namespace
-
-namespace softcell::libspe2 {
 
 Callback* callback_of(unsigned int callnum) {
   if (callnum >= kCallbacks) return nullptr;
@@ -30,6 +25,8 @@ Callback* callback_of(unsigned int callnum) {
 }
 
 }  // namespace softcell::libspe2
+
+using namespace softcell::libspe2;
 
 int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned int mode) {
   if (handler == nullptr || callnum >= kCallbacks) return fail(EINVAL);

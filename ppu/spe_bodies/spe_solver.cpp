@@ -218,11 +218,12 @@ void SpeSolver<kDimension>::hand_over(Member& member) {
 template <int kDimension>
 void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
   SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
-  SC_ASSERT(chain_->finished(), "kick() of {} bodies, with {} jobs of the one before under way",
-            bodies.size(), chain_->size());
+  SC_ASSERT(!is_stepping_, "kick() of {} bodies, with {} jobs of the one before under way", bodies.size(),
+            chain_->size());
   SC_ASSERT(std::ranges::find(bodies, nullptr) == bodies.end(), "one of {} bodies is null", bodies.size());
   if (!knows(bodies)) regroup(bodies);
   step_ = step;
+  is_stepping_ = true;
   left_to_ppu_.clear();
   for (const auto& group : groups_) group->awake.clear();
   for (Member& member : members_) {
@@ -267,6 +268,7 @@ void SpeSolver<kDimension>::take_back(const Member& member) {
 
 template <int kDimension>
 void SpeSolver<kDimension>::finish() {
+  is_stepping_ = false;  // also if something throws
   try {
     for (Body* const body : left_to_ppu_) body->pull(step_);
   } catch (...) {
@@ -288,12 +290,13 @@ void SpeSolver<kDimension>::finish() {
 
 template <int kDimension>
 void SpeSolver<kDimension>::drop() {
+  is_stepping_ = false;
   chain_->wait();
 }
 
 template <int kDimension>
 void SpeSolver<kDimension>::forget(const Body& body) {
-  SC_ASSERT(chain_->finished(), "forget() with {} jobs under way", chain_->size());
+  SC_ASSERT(!is_stepping_, "forget() with {} jobs under way", chain_->size());
   for (const Member& member : members_) {
     if (member.body != &body) continue;
     if (member.group->bodies) member.group->bodies->reset(member.number);

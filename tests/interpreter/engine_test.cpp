@@ -296,22 +296,7 @@ TEST(Interpreter, EndsARoundThroughAllOfTheLocalStore) {
 }
 
 TEST(Interpreter, ExecutesWhatItHasWritten) {
-  // Copies the quadword with `stop 0x2005` over the one that it runs into.
-  const std::vector<std::uint32_t> words = {
-      ri16(lqa, 3, 0xA0 / 4),
-      ri16(stqa, 3, 0x90 / 4),
-      opcode(sync),
-      0x40200000,  // 0x80
-      stop_with(0x2001),
-      0x40200000,
-      0x40200000,
-      0x40200000,  // 0x90
-      stop_with(0x2005),
-      0x40200000,
-      0x40200000,
-      0x40200000,  // 0xA0
-  };
-  EXPECT_EQ(run_words(words).stop_code, 0x2005u);
+  EXPECT_EQ(run_words(overwrites_its_code(opcode(sync))).stop_code, 0x2005u);
 }
 
 TEST(Interpreter, RefusesChannelsThatDoNotExist) {

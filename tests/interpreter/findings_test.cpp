@@ -74,24 +74,8 @@ TEST(SpuFindings, CodeThatTheProgramHasWrittenItselfIsNoJumpOutside) {
 }
 
 TEST(SpuFindings, CodeThatIsExecutedWithoutASync) {
-  const auto words = [](std::uint32_t between) {
-    return std::vector<std::uint32_t>{
-        ri16(lqa, 3, 0xA0 / 4),
-        ri16(stqa, 3, 0x90 / 4),
-        between,
-        0x40200000,  // 0x80
-        stop_with(0x2001),
-        0x40200000,
-        0x40200000,
-        0x40200000,  // 0x90
-        stop_with(0x2005),
-        0x40200000,
-        0x40200000,
-        0x40200000,  // 0xA0
-    };
-  };
-  EXPECT_EQ(run_checked(words(0x40200000)).count(dma::Rule::kCodeWithoutSync), 1);
-  EXPECT_EQ(run_checked(words(opcode(sync))).count(dma::Rule::kCodeWithoutSync), 0);
+  EXPECT_EQ(run_checked(overwrites_its_code(0x40200000)).count(dma::Rule::kCodeWithoutSync), 1);
+  EXPECT_EQ(run_checked(overwrites_its_code(opcode(sync))).count(dma::Rule::kCodeWithoutSync), 0);
 }
 
 TEST(SpuFindings, AStackThatGrowsIntoTheProgram) {

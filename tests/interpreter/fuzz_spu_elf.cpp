@@ -1,37 +1,24 @@
 // libFuzzer target: any bytes give a program that fits a local store, or one sentence of refusal; and whatever the
 // program does, it stays within its local store.
 
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "interpreter/execute.h"
+#include "ls_sim/image_invariants.h"
 #include "softcell/ls_sim/image.h"
 
 namespace {
 
 using namespace softcell;
 
-void require(bool condition) {
-  if (!condition) std::abort();
-}
+using ls_sim::require;
 
 void check(const ls_sim::KernelImage& image) {
-  require(image.sizes.end <= dma::kLocalStoreBytes && image.sizes.total() <= dma::kLocalStoreBytes);
-  require(image.begin + image.bytes.size() <= image.sizes.end);
-  require(image.begin <= image.text_begin && image.text_begin <= image.text_end);
+  ls_sim::require_sound(image);
   require(image.entry >= image.begin && image.entry < image.sizes.end && image.entry % 4 == 0);
-  require(image.text_end <= image.rodata_begin && image.rodata_begin <= image.rodata_end);
-  require(image.rodata_end <= image.data_begin && image.data_begin <= image.data_end);
-  require(image.data_end <= image.begin + image.bytes.size());
-  for (const auto* objects : {&image.objects, &image.functions}) {
-    for (const ls_sim::ImageObject& object : *objects) {
-      require(object.begin.value >= image.begin && object.begin.value < image.sizes.end);
-      require(object.bytes <= image.sizes.end - object.begin.value);
-    }
-  }
 }
 
 void run_a_while(const ls_sim::KernelImage& image) {

@@ -39,6 +39,26 @@ inline std::uint32_t rrr(Mnemonic mnemonic, std::uint32_t rt, std::uint32_t ra, 
 }
 inline std::uint32_t stop_with(std::uint32_t code) { return code; }
 
+/// Copies the quadword with `stop 0x2005` over the one that it then runs into, which has `stop 0x2001`.
+/// @param between  is executed between the store and what was stored: a sync, or another word
+inline std::vector<std::uint32_t> overwrites_its_code(std::uint32_t between) {
+  constexpr std::uint32_t kNop = 0x40200000;
+  return {
+      ri16(lqa, 3, 0xA0 / 4),
+      ri16(stqa, 3, 0x90 / 4),
+      between,
+      kNop,  // 0x80
+      stop_with(0x2001),
+      kNop,
+      kNop,
+      kNop,  // 0x90
+      stop_with(0x2005),
+      kNop,
+      kNop,
+      kNop,  // 0xA0
+  };
+}
+
 /// A program that begins and lies at `begin`, without variables.
 inline KernelImage program_of(const std::vector<std::uint32_t>& words, std::uint32_t begin = 0x80) {
   KernelImage image;

@@ -2,14 +2,15 @@
 #include <sstream>
 
 #include "intrinsics_support.h"
+#include "support/published_estimates.h"
 
 namespace softcell::test {
 namespace {
 
 class IntrinsicsEstimate : public SpuArithmetic {};
 
-/// Fractions in hexadecimal; "x2" repeats the one before it. [read off hardware by the RPCS3 project]
-/// second-hand
+/// Fractions in hexadecimal; "x2" repeats the one before it. [second-hand: read off hardware by the RPCS3
+/// project]
 std::vector<std::uint32_t> parse(const char* text) {
   std::vector<std::uint32_t> table;
   std::istringstream in(text);
@@ -86,25 +87,12 @@ TEST_F(IntrinsicsEstimate, InterpolationOfUnrelatedOperands) {
 }
 
 TEST_F(IntrinsicsEstimate, KnownVectors) {
-  const struct {
-    std::uint32_t x, estimate, reciprocal, root_estimate, root;
-  } known[] = {
-      {0x00000000, 0x7FFFFBE0, 0x7FFFF800, 0x7FB50160, 0x7FB50000},
-      {0x80000000, 0xFFFFFBE0, 0xFFFFF800, 0x7FB50160, 0x7FB50000},
-      {0x00800000, 0x7E7FFBE0, 0x7E7FF800, 0x5EFFFDF4, 0x5EFFFC00},
-      {0x3F800000, 0x3F7FFBE0, 0x3F7FF800, 0x3F7FFDF4, 0x3F7FFC00},
-      {0x40000000, 0x3EFFFBE0, 0x3EFFF800, 0x3F350160, 0x3F350000},
-      {0x40400000, 0x3EAAA9BE, 0x3EAAA800, 0x3F13CCC0, 0x3F13CC00},
-      {0x3F000000, 0x3FFFFBE0, 0x3FFFF800, 0x3FB50160, 0x3FB50000},
-      {0x41200000, 0x3DCCCA7E, 0x3DCCC800, 0x3EA1E4F9, 0x3EA1E400},
-      {0x7E800000, 0x007FFBE0, 0x007FF800, 0x1FFFFDF4, 0x1FFFFC00},
-  };
-  for (const auto& k : known) {
-    const qword x = si_from_uint(k.x);
-    EXPECT_EQ(si(si_frest(x)), k.estimate) << std::hex << k.x;
-    EXPECT_EQ(si(si_fi(x, si_frest(x))), k.reciprocal) << std::hex << k.x;
-    EXPECT_EQ(si(si_frsqest(x)), k.root_estimate) << std::hex << k.x;
-    EXPECT_EQ(si(si_fi(x, si_frsqest(x))), k.root) << std::hex << k.x;
+  for (const PublishedEstimate& known : kPublishedEstimates) {
+    const qword x = si_from_uint(known.x);
+    EXPECT_EQ(si(si_frest(x)), known.reciprocal) << std::hex << known.x;
+    EXPECT_EQ(si(si_fi(x, si_frest(x))), known.interpolated_reciprocal) << std::hex << known.x;
+    EXPECT_EQ(si(si_frsqest(x)), known.root) << std::hex << known.x;
+    EXPECT_EQ(si(si_fi(x, si_frsqest(x))), known.interpolated_root) << std::hex << known.x;
   }
 }
 

@@ -80,6 +80,7 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   std::vector<Member> members_;  // in the order of kick()
   std::vector<Body*> left_to_ppu_;
   float step_ = 0;
+  bool is_stepping_ = false;         // between kick() and finish() or drop()
   std::unique_ptr<JobChain> chain_;  // last, so that it has ended before what its jobs work on goes
 };
 
