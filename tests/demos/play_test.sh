@@ -54,9 +54,11 @@ same_again() {
     [ "$(hash_of)" = "$hash" ] || fail "the replay ends in $(hash_of), not in $hash ($how)"
   done
 }
-# shot NAME: a picture of the window, as soon as it shows more than a plain background.
+# shot NAME: a picture of the window, as soon as it shows more than a plain background. (A large scene takes its time to be made under
+# a sanitizer, on a machine that does other things too.)
 shot() {
-  for _ in $(seq 100); do
+  local begin=$SECONDS
+  while ((SECONDS - begin < 90)); do
     import -window "$window" "$shots/$1.png"
     [ "$(identify -format %k "$shots/$1.png")" -gt 100 ] && return
     sleep 0.1
