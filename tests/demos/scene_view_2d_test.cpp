@@ -106,7 +106,9 @@ TEST(Moved2d, IsLittleOfThePictureOfTheMan) {
 
 TEST(Moved2d, TakesSoftBodiesAndHandsForRestless) {
   Shown2d shown{.particles = {{{1, 1}, {2, 1}}}, .rigid_poses = {}, .hands = {}};
-  Moved2d moved({}, {0.25f});
+  Scene2d scene;
+  scene.soft_bodies.resize(1);
+  Moved2d moved(scene, {0.25f});
   moved.since_last(shown);
   const Moved2d::Box still = moved.since_last(shown);
   EXPECT_EQ(still.min(), Eigen::Vector2f(0.75f, 0.75f));
