@@ -245,7 +245,8 @@ std::span<const FoundContacts> SpeContacts::found() {
 std::span<spu::SolveContact> SpeContacts::room(std::size_t contacts) {
   SC_ASSERT(contacts <= kMostContacts, "{} contacts in a group", contacts);
   if (used_ + contacts > kContactsInRoom) ++room_, used_ = 0;
-  if (room_ == rooms_.size()) rooms_.emplace_back(memory_, "contacts of the PPU", kContactsInRoom);
+  if (room_ == rooms_.size())
+    rooms_.push_back(contact_buffer<spu::SolveContact>(memory_, "contacts of the PPU", kContactsInRoom));
   used_ += contacts;
   return rooms_[room_].span().subspan(used_ - contacts, contacts);
 }

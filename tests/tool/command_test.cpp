@@ -84,16 +84,6 @@ TEST(Command, SkinsOnTheGpuFromTheParticlesAlone) {
   EXPECT_NE(wrong.output.find("--skin cpu: give spe or gpu"), std::string::npos) << wrong.output;
 }
 
-TEST(Command, ContactsOfWhatIsDrawnAreNotInterpreted) {
-  const CommandResult run =
-      run_softcell(kDrop + std::string("--frames 1 --engine interpreter --contacts surface"));
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(
-      run.output.find("--engine interpreter: the kernels of surface contacts do not run interpreted yet"),
-      std::string::npos)
-      << run.output;
-}
-
 TEST(Command, TheLastPictureIsTheSameWithAndWithoutFiles) {
   const ScratchFolder folder;
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out") + " --json " +

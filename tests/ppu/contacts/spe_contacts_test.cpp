@@ -171,6 +171,11 @@ TEST(SpeContacts, TheSameBitsForAnyNumberOfSpesAndAnySchedule) {
   EXPECT_EQ(heap({.spes = 2, .schedule = dma::parse_schedule("random:3")}, 40), expected);
 }
 
+/// In the SPU's byte order, with the SPU compiler's code.
+TEST(SpeContacts, InterpretedKernelsGiveTheSameBits) {
+  EXPECT_EQ(heap({.spes = 2, .machine = ls_sim::Machine::kSpu}, 16), heap({.spes = 2}, 16));
+}
+
 TEST(SpeContacts, CheckedKernelsFindNothingAndGiveTheSameBits) {
   SpeRuntimeOptions checked{.spes = 2, .schedule = dma::parse_schedule("random:1"), .checked = true};
   ls_sim::Findings findings;

@@ -120,11 +120,6 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
   if (options.video && !is_mp4(*options.video))
     throw UsageError("--video " + options.video->string() + ": give a file name that ends in .mp4");
-  if (options.machine == ls_sim::Machine::kSpu && options.contacts == ppu::ContactMethod::kSurface) {
-    throw UsageError(
-        "--engine interpreter: the kernels of surface contacts do not run interpreted yet; give --contacts "
-        "spheres, or --engine native");
-  }
   check_files(options);
   OutputFiles files(written_files(options));
   const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any
