@@ -42,6 +42,7 @@ inline std::uint32_t stop_with(std::uint32_t code) { return code; }
 /// Copies the quadword with `stop 0x2005` over the one that it then runs into, which has `stop 0x2001`.
 /// @param between  is executed between the store and what was stored: a sync, or another word
 inline std::vector<std::uint32_t> overwrites_its_code(std::uint32_t between) {
+  using enum Mnemonic;
   constexpr std::uint32_t kNop = 0x40200000;
   return {
       ri16(lqa, 3, 0xA0 / 4),
