@@ -75,6 +75,7 @@ pictures = [30, 2]
 gravity = 3.5
 friction = 0.25
 substeps = 3
+contacts = "surface"
 frames = 40
 [framework]
 half_width = 2
@@ -141,6 +142,7 @@ begin = 2
   EXPECT_EQ(scene.gravity, 3.5f);
   EXPECT_EQ(scene.friction, 0.25f);
   EXPECT_EQ(scene.substeps, 3);
+  EXPECT_EQ(scene.contacts, ppu::ContactMethod::kSurface);
   EXPECT_EQ(scene.frames, 40);
   ASSERT_EQ(scene.boxes.size(), 6u);  // floor, four walls, the box
   EXPECT_EQ(scene.boxes[0].size, Eigen::Vector3f(5, 1, 5));

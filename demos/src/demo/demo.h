@@ -31,6 +31,7 @@ class Demo {
   /// Frames of the replay, or the number that the scene suggests for a run without a user.
   virtual int frames() const = 0;
   virtual DemoCounts counts() const = 0;
+  virtual ppu::ContactMethod contacts() const = 0;
 
   /// Simulates a frame of 1/60 s.
   /// @throws std::runtime_error  an SPE failed, a body became NaN, or a recording is full.

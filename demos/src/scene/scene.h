@@ -10,6 +10,7 @@
 #include "scripted_input.h"
 #include "softcell/render/camera.h"
 #include "softcell/render/frame.h"
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/mesh.h"
 #include "softcell/soft_bodies/soft_body.h"
 
@@ -58,7 +59,8 @@ struct Scene {
   TiltScript tilt;
   float gravity = 9.81f;  ///< m/s^2
   float friction = 0.6f;
-  int substeps = 2;  ///< of a frame of 1/60 s
+  int substeps = 2;                                            ///< of a frame of 1/60 s
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSpheres;  ///< unless the user wants another
   int frames = 300;  ///< how long the scene is worth watching without a user
   render::Camera camera;
   render::Light light;

@@ -102,10 +102,11 @@ class Hash {
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
-  const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps, frames, camera,
-               light, script, pictures, files] = scene;
+  const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps, contacts,
+               frames, camera, light, script, pictures, files] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
+  if (contacts != ppu::ContactMethod::kSpheres) hash.add(static_cast<int>(contacts));
   return hash.value();
 }
 

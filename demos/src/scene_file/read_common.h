@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "field_reader.h"
 #include "scene/scripted_input.h"
 #include "softcell/base/assert.h"
+#include "softcell/soft_bodies/contact.h"
 
 namespace softcell::demos {
 
@@ -29,6 +32,8 @@ inline constexpr Range kMass{.low = 0, .high = kMaxMass};
 inline constexpr Range kTime{.low = 0, .high = kMaxTime};
 inline constexpr Range kVelocity{.low = -kMaxSpeed, .high = kMaxSpeed};
 inline constexpr Range kAnyFriction{.low = 0, .high = 100};
+inline constexpr std::array<std::string_view, 2> kContactMethods{"spheres",
+                                                                 "surface"};  // in the enum's order
 
 /// "soft body 2 ('torus')".
 inline std::string item_name(const char* kind, std::size_t index, const std::string& name = {}) {
@@ -53,12 +58,17 @@ void read_world(FieldReader& fields, SceneOf& scene) {
   fields.text("title", scene.title);
   const std::span<const Value> pictures = fields.items("pictures", kMaxPictures);
   if (const Value* world = fields.field("world")) {
-    FieldReader(*world, "world")
-        .number("gravity", scene.gravity, kGravity)
+    FieldReader reader(*world, "world");
+    reader.number("gravity", scene.gravity, kGravity)
         .number("friction", scene.friction, kAnyFriction)
         .integer("substeps", scene.substeps, 1, kMaxSubsteps)
-        .integer("frames", scene.frames, 1, kMaxFrames)
-        .finish();
+        .integer("frames", scene.frames, 1, kMaxFrames);
+    if constexpr (requires { scene.contacts; }) {
+      auto contacts = static_cast<std::size_t>(scene.contacts);
+      reader.choice("contacts", contacts, kContactMethods);
+      scene.contacts = static_cast<ppu::ContactMethod>(contacts);
+    }
+    reader.finish();
   }
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     scene.pictures.push_back(

@@ -104,7 +104,8 @@ struct Simulation3d::State {
         match_tiles(options.kernel("match_tiles")),
         jobs(memory, options.spe_options(), job_loop),
         solver(make_solver(options.solver)),
-        soft_bodies(world.world(), *solver, options.contacts, make_contact_worker(options)) {
+        contacts(options.contacts.value_or(scene.contacts)),
+        soft_bodies(world.world(), *solver, contacts, make_contact_worker(options)) {
     if (options.skin == Skin::kSpe) {
       skin = options.kernel("skin");
       orchestrator.emplace(memory, jobs, *skin);
@@ -139,7 +140,7 @@ struct Simulation3d::State {
 
   /// Whoever steps the bodies has their contacts, too.
   std::shared_ptr<ppu::ContactWorker> make_contact_worker(const SimulationOptions& options) {
-    if (on_spes == nullptr || options.contacts != ppu::ContactMethod::kSurface) return nullptr;
+    if (on_spes == nullptr || contacts != ppu::ContactMethod::kSurface) return nullptr;
     contact_find = options.kernel("contact_find");
     contact_solve = options.kernel("contact_solve");
     return std::make_shared<ppu::SpeContacts>(memory, jobs, *contact_find, *contact_solve);
@@ -226,6 +227,7 @@ struct Simulation3d::State {
   ppu::JobSystem jobs;
   const ppu::SpeSolver<3>* on_spes = nullptr;  // null: the PPU steps all bodies
   std::unique_ptr<ppu::SoftBodySolver<3>> solver;
+  const ppu::ContactMethod contacts;
   ppu::BulletSoftBodies soft_bodies;
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::span<const Eigen::Vector4f>> positions;
@@ -302,6 +304,7 @@ void Simulation3d::stop() {
 std::span<const InputEvent<3>> Simulation3d::last_events() const { return state_->events; }
 
 std::size_t Simulation3d::soft_bodies() const { return state_->soft_bodies.size(); }
+ppu::ContactMethod Simulation3d::contacts() const { return state_->contacts; }
 std::size_t Simulation3d::bodies_on_ppu() const {
   return state_->on_spes != nullptr ? state_->on_spes->bodies_on_ppu() : soft_bodies();
 }

@@ -42,6 +42,7 @@ class Simulation3d {
   std::size_t soft_bodies() const;
   /// How many of them the PPU steps: all with Solver::kReference, else those that fit no local store.
   std::size_t bodies_on_ppu() const;
+  ppu::ContactMethod contacts() const;  ///< what the soft bodies touch with
   std::size_t particles() const;
   std::size_t vertices() const;  ///< of the meshes
   std::size_t rigid_bodies() const;

@@ -33,6 +33,7 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
             .vertices = simulation().particles(),
             .bodies_on_ppu = simulation().bodies_on_ppu()};
   }
+  ppu::ContactMethod contacts() const override { return ppu::ContactMethod::kSpheres; }
 };
 
 }  // namespace

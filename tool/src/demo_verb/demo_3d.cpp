@@ -55,6 +55,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
             .vertices = simulation().vertices(),
             .bodies_on_ppu = simulation().bodies_on_ppu()};
   }
+  ppu::ContactMethod contacts() const override { return simulation().contacts(); }
 
  private:
   render::Camera eye(const demos::Look& look) const {

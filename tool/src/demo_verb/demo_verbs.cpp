@@ -111,14 +111,15 @@ class DemoVerbs final : public Verb {
                   "Who makes mesh vertices from particles: spe (default), or gpu, a vertex shader")
         ->type_name("spe|gpu");
     d->add_option("--contacts", contacts_,
-                  "What soft bodies touch with: spheres (default), rigid ones at their outer particles, or "
-                  "surface, what is drawn")
+                  "What soft bodies touch with: spheres, rigid ones at their outer particles, or surface, "
+                  "what is drawn "
+                  "(default: the scene's, mostly spheres)")
         ->type_name("spheres|surface");
     d->callback([&] {
       chosen = [this] {
         parse_texts(demo_3d_);
         demo_3d_.skin = parse_skin(skin_);
-        demo_3d_.contacts = parse_contacts(contacts_);
+        if (contacts_) demo_3d_.contacts = parse_contacts(*contacts_);
         demo_3d_.view = parse_view_3d(view_3d_);
         return run_demo_3d(demo_3d_);
       };
@@ -188,7 +189,7 @@ class DemoVerbs final : public Verb {
   std::string schedule_ = "eager";
   std::string engine_ = "native";
   std::string skin_ = "spe";
-  std::string contacts_ = "spheres";
+  std::optional<std::string> contacts_;
 };
 
 int run_scenes() {
