@@ -51,6 +51,10 @@ INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
                                          Moment{"contact_before", 180}, Moment{"contact_after", 180},
                                          Moment{"penguins", 1}, Moment{"big", 30}, Moment{"press", 50}));
 
+INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
+                         testing::Values(Moment{"touch", 180}, Moment{"gap", 150}, Moment{"pile", 240},
+                                         Moment{"knot", 90}, Moment{"torus_fold", 300}));
+
 class SceneGoldenLattice : public testing::TestWithParam<const char*> {};
 
 TEST_P(SceneGoldenLattice, LooksAsItDid) {
