@@ -12,9 +12,11 @@ namespace {
 constexpr double kMicrosecond = 1e3, kMillisecond = 1e6;
 
 /// Of several prefixes that a name has, the longest counts.
-constexpr std::array<BenchGroup, 11> kGroups{
+constexpr std::array<BenchGroup, 12> kGroups{
     {{"frame/", "Whole frames of 1/60 s, without pictures, and parts of them", "a frame", "ms", kMillisecond,
       BenchPeer::kFrame},
+     {"contact/", "Frames in which bodies touch, skinning included: processor time of all threads",
+      "a particle and frame", "ns", 1, BenchPeer::kOurs},
      {"solver3d/", "A step of shape matching and damping in three dimensions, one SPE", "a particle", "ns", 1,
       BenchPeer::kSpe},
      {"solver3d/one1000/", "The same of one body of 1000 particles by itself, from kick to result",
@@ -53,9 +55,11 @@ std::string bench_peer(std::string_view name) {
     case BenchPeer::kNone:
       break;
     case BenchPeer::kSpe:
+    case BenchPeer::kOurs:
       SC_ASSERT(name.rfind('/') >= group.prefix.size(),
                 "the benchmark {} has no body between its group and its solver", name);
-      return std::string(name.substr(0, name.rfind('/'))) + "/spe";
+      return std::string(name.substr(0, name.rfind('/'))) +
+             (group.peer == BenchPeer::kSpe ? "/spe" : "/ours");
     case BenchPeer::kMemcpy:
       return "dma/memcpy16k";
     case BenchPeer::kFrame:

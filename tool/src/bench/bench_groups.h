@@ -12,6 +12,7 @@ enum class BenchPeer {
   kNone,
   kSpe,     ///< the SPE's kernel: the same name with `spe` as its last part
   kMemcpy,  ///< the host's memcpy
+  kOurs,    ///< the same case by softcell: the same name with `ours` as its last part
   kFrame,   ///< the whole frame, of which they are parts
 };
 

@@ -35,6 +35,7 @@ std::vector<Benchmark> all_benchmarks() {
   add_interpreter_benchmarks(all);
   add_frame_benchmarks(all);
   add_frame_2d_benchmarks(all);
+  add_contact_benchmarks(all);
   return all;
 }
 
