@@ -15,6 +15,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -62,13 +63,25 @@ std::vector<ObstacleEdge> edges_of_box(const Vector3f& half) {
   return edges;
 }
 
+/// The corners of a rim of radius 1, the last one again the first.
+const std::array<Eigen::Vector2f, kRimPoints + 1>& unit_rim() {
+  static const auto rim = [] {
+    std::array<Eigen::Vector2f, kRimPoints + 1> corners;
+    for (int i = 0; i <= kRimPoints; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kRimPoints;
+      corners[static_cast<std::size_t>(i)] = {static_cast<float>(cosine(angle)),
+                                              static_cast<float>(sine(angle))};
+    }
+    return corners;
+  }();
+  return rim;
+}
+
 void add_rim(float radius, float height, std::vector<ObstacleEdge>& edges) {
-  const auto point = [&](int i) {
-    const double angle = 2 * std::numbers::pi * i / kRimPoints;
-    return Vector3f(radius * static_cast<float>(cosine(angle)), height,
-                    radius * static_cast<float>(sine(angle)));
+  const auto point = [&](std::size_t i) {
+    return Vector3f(radius * unit_rim()[i].x(), height, radius * unit_rim()[i].y());
   };
-  for (int i = 0; i < kRimPoints; ++i) edges.push_back({point(i), point(i + 1)});
+  for (std::size_t i = 0; i < kRimPoints; ++i) edges.push_back({point(i), point(i + 1)});
 }
 
 /// Faces and edges of the hull of some points.
