@@ -20,6 +20,11 @@ class Hash {
   void add(const Values&... values) {
     (add(values), ...);
   }
+  /// What older recordings do not know.
+  template <class Value>
+  void add_unless(const Value& value, const Value& usual) {
+    if (value != usual) add(value);
+  }
 
  private:
   void add_bytes(const void* data, std::size_t size) { value_ = XXH3_64bits_withSeed(data, size, value_); }
@@ -52,10 +57,6 @@ class Hash {
   }
 
   /// What scenes did not always have says nothing where it is as it always was: older recordings still fit.
-  template <class Value>
-  void add_unless(const Value& value, const Value& usual) {
-    if (value != usual) add(value);
-  }
 
   void add(const ppu::TriangleMesh& mesh) {
     const auto& [positions, normals, triangles, texture_coordinates, colours, parts] = mesh;
@@ -106,7 +107,7 @@ std::uint64_t scene_hash(const Scene& scene) {
                frames, camera, light, script, pictures, files] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
-  if (contacts != ppu::ContactMethod::kSpheres) hash.add(static_cast<int>(contacts));
+  hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
   return hash.value();
 }
 
