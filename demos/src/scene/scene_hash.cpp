@@ -20,7 +20,7 @@ class Hash {
   void add(const Values&... values) {
     (add(values), ...);
   }
-  /// What older recordings do not know.
+  /// What scenes did not always have says nothing where it is as it always was: older recordings still fit.
   template <class Value>
   void add_unless(const Value& value, const Value& usual) {
     if (value != usual) add(value);
@@ -55,8 +55,6 @@ class Hash {
     add(value.index());
     std::visit([this](const auto& alternative) { this->add(alternative); }, value);
   }
-
-  /// What scenes did not always have says nothing where it is as it always was: older recordings still fit.
 
   void add(const ppu::TriangleMesh& mesh) {
     const auto& [positions, normals, triangles, texture_coordinates, colours, parts] = mesh;
