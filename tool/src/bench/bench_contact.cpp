@@ -1,9 +1,5 @@
 // Whole frames in which bodies touch: contacts of what is drawn, rigid spheres at particles, and Bullet's own soft bodies.
 
-#include <BulletSoftBody/btSoftBody.h>
-#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
-#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
-#include <btBulletDynamicsCommon.h>
 #include <fmt/format.h>
 #include <time.h>
 
@@ -16,6 +12,12 @@
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/base/assert.h"
+
+// Last: btSoftBody.h has a global variable named `seed`.
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <btBulletDynamicsCommon.h>
 
 namespace softcell::tool {
 namespace {
