@@ -14,7 +14,7 @@ for i = 0, 19 do
   table.insert(bodies, {
     shape = kinds[(i + layer) % 5 + 1],
     material = "jelly",
-    position = { 0.42 * (column % 2) - 0.21, 0.5 + 0.85 * layer, 0.42 * (column // 2) - 0.21 },
+    position = { 0.95 * (column % 2) - 0.47, 0.6 + 0.95 * layer, 0.95 * (column // 2) - 0.47 },
     colour = colours[(2 * i + layer) % 5 + 1],
   })
 end
@@ -24,7 +24,7 @@ return {
   pictures = { 1, 60, 240 },
   world = { frames = 360, contacts = "surface" },
   framework = { half_width = 1.1, height = 0.6, thickness = 0.12, front_opacity = 0.15 },
-  camera = { eye = { 1.2, 2.6, 4.6 }, target = { 0, 0.75, 0 }, near = 0.4, far = 40 },
+  camera = { eye = { 0.9, 2.2, 3.6 }, target = { 0, 0.6, 0 }, near = 0.4, far = 40 },
   light = { shadow_radius = 4 },
   materials = { jelly = { cell_size = 0.11, half_width = 2, density = 200, alpha = 0.35, damping = 0.1 } },
   soft_body = bodies,

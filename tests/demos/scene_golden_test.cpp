@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
 
 INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
                          testing::Values(Moment{"touch", 180}, Moment{"gap", 150}, Moment{"pile", 240},
-                                         Moment{"knot", 90}, Moment{"torus_fold", 300}));
+                                         Moment{"knot", 40}, Moment{"torus_fold", 40}));
 
 class SceneGoldenLattice : public testing::TestWithParam<const char*> {};
 
