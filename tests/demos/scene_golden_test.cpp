@@ -49,7 +49,8 @@ INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
                                          Moment{"torus_on_spike", 180}, Moment{"sphere_on_wall", 50},
                                          Moment{"bumper_car", 55}, Moment{"small_object", 150},
                                          Moment{"contact_before", 180}, Moment{"contact_after", 180},
-                                         Moment{"penguins", 1}, Moment{"big", 30}, Moment{"press", 50}));
+                                         Moment{"penguins", 1}, Moment{"penguins", 120}, Moment{"big", 30},
+                                         Moment{"press", 50}));
 
 INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
                          testing::Values(Moment{"touch", 180}, Moment{"gap", 150}, Moment{"pile", 240},
