@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
                                          Moment{"torus_on_spike", 180}, Moment{"sphere_on_wall", 50},
                                          Moment{"bumper_car", 55}, Moment{"small_object", 150},
                                          Moment{"contact_before", 180}, Moment{"contact_after", 180},
-                                         Moment{"penguins", 1}, Moment{"penguins", 120}, Moment{"big", 30},
+                                         Moment{"penguins", 1}, Moment{"penguins", 60}, Moment{"big", 30},
                                          Moment{"press", 50}));
 
 INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
