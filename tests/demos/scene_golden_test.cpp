@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
                                          Moment{"press", 50}));
 
 INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
-                         testing::Values(Moment{"touch", 180}, Moment{"gap", 150}, Moment{"pile", 240},
+                         testing::Values(Moment{"touch", 180}, Moment{"gap", 150}, Moment{"pile", 90},
                                          Moment{"knot", 40}, Moment{"torus_fold", 40}));
 
 class SceneGoldenLattice : public testing::TestWithParam<const char*> {};
