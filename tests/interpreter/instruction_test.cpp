@@ -11,6 +11,7 @@
 #include "interpreter/instruction_set.h"
 #include "interpreter/spu_state.h"
 #include "spu_words.h"
+#include "support/published_estimates.h"
 
 namespace softcell::ls_sim::interpreter {
 namespace {
@@ -150,23 +151,12 @@ TEST_F(Instruction, FusesWithOneRounding) {
 }
 
 TEST_F(Instruction, EstimatesAsConsolesDo) {
-  struct Row {
-    std::uint32_t x, frest, fi, frsqest, fi_of_root;
-  };
-  const Row rows[] = {{0x00000000, 0x7FFFFBE0, 0x7FFFF800, 0x7FB50160, 0x7FB50000},
-                      {0x80000000, 0xFFFFFBE0, 0xFFFFF800, 0x7FB50160, 0x7FB50000},
-                      {0x00800000, 0x7E7FFBE0, 0x7E7FF800, 0x5EFFFDF4, 0x5EFFFC00},
-                      {0x3F800000, 0x3F7FFBE0, 0x3F7FF800, 0x3F7FFDF4, 0x3F7FFC00},
-                      {0x40400000, 0x3EAAA9BE, 0x3EAAA800, 0x3F13CCC0, 0x3F13CC00},
-                      {0x3F000000, 0x3FFFFBE0, 0x3FFFF800, 0x3FB50160, 0x3FB50000},
-                      {0x41200000, 0x3DCCCA7E, 0x3DCCC800, 0x3EA1E4F9, 0x3EA1E400},
-                      {0x7E800000, 0x007FFBE0, 0x007FF800, 0x1FFFFDF4, 0x1FFFFC00}};
-  for (const Row& row : rows) {
-    set(4, {row.x, 0, 0, 0});
-    EXPECT_EQ(result(rr(Mnemonic::frest, 3, 4))[0], row.frest) << std::hex << row.x;
-    EXPECT_EQ(result(rr(Mnemonic::fi, 3, 4, 3))[0], row.fi) << std::hex << row.x;
-    EXPECT_EQ(result(rr(Mnemonic::frsqest, 3, 4))[0], row.frsqest) << std::hex << row.x;
-    EXPECT_EQ(result(rr(Mnemonic::fi, 3, 4, 3))[0], row.fi_of_root) << std::hex << row.x;
+  for (const test::PublishedEstimate& known : test::kPublishedEstimates) {
+    set(4, {known.x, 0, 0, 0});
+    EXPECT_EQ(result(rr(Mnemonic::frest, 3, 4))[0], known.reciprocal) << std::hex << known.x;
+    EXPECT_EQ(result(rr(Mnemonic::fi, 3, 4, 3))[0], known.interpolated_reciprocal) << std::hex << known.x;
+    EXPECT_EQ(result(rr(Mnemonic::frsqest, 3, 4))[0], known.root) << std::hex << known.x;
+    EXPECT_EQ(result(rr(Mnemonic::fi, 3, 4, 3))[0], known.interpolated_root) << std::hex << known.x;
   }
 }
 

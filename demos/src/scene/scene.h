@@ -3,8 +3,10 @@
 // and benchmarks. Metres, kilograms, seconds; y is up.
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scripted_input.h"
@@ -50,6 +52,9 @@ struct TiltScript {
   float period_x = 1, period_z = 1;        ///< seconds
   float begin = 0;                         ///< seconds
 };
+
+/// Names of ppu::ContactMethod in scene files, on the command line and in statistics, in the enum's order.
+inline constexpr std::array<std::string_view, 2> kContactMethods{"spheres", "surface"};
 
 struct Scene {
   std::string name, title;

@@ -4,13 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "field_reader.h"
+#include "scene/scene.h"
 #include "scene/scripted_input.h"
 #include "softcell/base/assert.h"
-#include "softcell/soft_bodies/contact.h"
 
 namespace softcell::demos {
 
@@ -32,8 +30,6 @@ inline constexpr Range kMass{.low = 0, .high = kMaxMass};
 inline constexpr Range kTime{.low = 0, .high = kMaxTime};
 inline constexpr Range kVelocity{.low = -kMaxSpeed, .high = kMaxSpeed};
 inline constexpr Range kAnyFriction{.low = 0, .high = 100};
-inline constexpr std::array<std::string_view, 2> kContactMethods{"spheres",
-                                                                 "surface"};  // in the enum's order
 
 /// "soft body 2 ('torus')".
 inline std::string item_name(const char* kind, std::size_t index, const std::string& name = {}) {

@@ -1,6 +1,5 @@
 // Bullet's own soft bodies on the lattices of the other solvers, without collisions.
 
-#include <BulletSoftBody/btSoftBody.h>
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -9,14 +8,18 @@
 
 #include "bench_bodies.h"
 #include "benchmarks.h"
+#include "ppu/bullet/bullet_vector.h"
 #include "softcell/base/assert.h"
+
+// Behind the others.
+#include "bullet_links.h"
 
 namespace softcell::tool {
 namespace {
 
 constexpr float kStep = 1.0f / 60, kDamping = 0.1f, kMatching = 0.5f, kDensity = 1000;
 
-btVector3 to_bullet(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
+using ppu::to_bullet;
 
 /// A btSoftBody that is stepped from the same bent pose each time.
 class BulletSoftBody {
@@ -43,7 +46,7 @@ class BulletSoftBody {
       body_->m_cfg.kMT = kMatching;
       body_->setPose(false, true);
     } else {
-      add_links(lattice);
+      append_links(lattice, *body_);
     }
   }
 
@@ -61,17 +64,6 @@ class BulletSoftBody {
   }
 
  private:
-  void add_links(const ppu::Lattice<3>& lattice) {
-    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
-      for (const std::uint32_t other : lattice.neighbours[i]) {
-        SC_ASSERT(other < lattice.particles.size(), "particle {} has neighbour {} of {}", i, other,
-                  lattice.particles.size());
-        const int apart = (lattice.particles[i] - lattice.particles[other]).squaredNorm();
-        if (other > i && apart <= 2) body_->appendLink(static_cast<int>(i), static_cast<int>(other));
-      }
-    }
-  }
-
   btSoftBodyWorldInfo world_;
   std::unique_ptr<btSoftBody> body_;
   std::vector<btVector3> bent_;

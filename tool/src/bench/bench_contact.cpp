@@ -9,20 +9,23 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "ppu/bullet/bullet_vector.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/base/assert.h"
 
-// Last: btSoftBody.h has a global variable named `seed`.
-#include <BulletSoftBody/btSoftBody.h>
+// Behind the others.
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
+
+#include "bullet_links.h"
 
 namespace softcell::tool {
 namespace {
 
 using demos::kFrameSeconds;
+using ppu::to_bullet;
 
 constexpr int kFramesOfRun = 10;
 
@@ -69,8 +72,6 @@ class OurFrames final : public Frames {
   demos::Scene scene_;
   demos::Simulation3d simulation_;
 };
-
-btVector3 to_bullet(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
 /// The same with Bullet's soft bodies: a node for each particle, links along edges and across faces of cells, the whole body's pose, and
 /// contacts of clusters with rigid bodies and other soft bodies.
@@ -128,12 +129,7 @@ class BulletFrames final : public Frames {
       at.push_back(to_bullet(placement.position + lattice.rest_position(i)));
     auto soft =
         std::make_unique<btSoftBody>(&info_, static_cast<int>(at.size()), at.data(), model->masses().data());
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      for (const std::uint32_t other : lattice.neighbours[i]) {
-        const int apart = (lattice.particles[i] - lattice.particles[other]).squaredNorm();
-        if (other > i && apart <= 2) soft->appendLink(static_cast<int>(i), static_cast<int>(other));
-      }
-    }
+    append_links(lattice, *soft);
     soft->m_cfg.collisions = btSoftBody::fCollision::CL_SS | btSoftBody::fCollision::CL_RS;
     soft->m_cfg.kDP = placement.settings.damping;
     soft->m_cfg.kMT = placement.settings.alpha;
@@ -159,7 +155,7 @@ class BulletFrames final : public Frames {
   int substeps_;
 };
 
-std::chrono::nanoseconds processor_time() {
+std::chrono::nanoseconds processor_time_of_all_threads() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
@@ -176,9 +172,9 @@ class Cycle {
   std::chrono::nanoseconds spent() const { return spent_; }
   void run() {
     if (frame_ + kFramesOfRun > case_.last_frame) begin();
-    const auto before = processor_time();
+    const auto before = processor_time_of_all_threads();
     for (int i = 0; i < kFramesOfRun; ++i) frames_->step();
-    spent_ += processor_time() - before;
+    spent_ += processor_time_of_all_threads() - before;
     frame_ += kFramesOfRun;
   }
 

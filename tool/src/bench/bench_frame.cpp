@@ -21,7 +21,7 @@ namespace softcell::tool {
 namespace {
 
 constexpr int kFramesBefore = 120;  // so that bodies lie on each other when measuring begins
-constexpr float kFrameSeconds = 1.0f / 60;
+using demos::kFrameSeconds;
 
 using SoftFrames = SceneFrames<demos::Scene, demos::Simulation3d>;
 

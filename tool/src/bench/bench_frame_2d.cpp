@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kFramesBefore = 300;  // so that all is on the floor when measuring begins
 constexpr int kFrames = 20;         // in one measurement
-constexpr float kFrameSeconds = 1.0f / 60;
+using demos::kFrameSeconds;
 
 using SoftFrames2d = SceneFrames<demos::Scene2d, demos::Simulation2d>;
 

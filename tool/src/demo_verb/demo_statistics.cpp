@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "scene/scene.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 #include "verb/output_files.h"
@@ -93,31 +94,32 @@ const char* engine_name(const DemoOptions& options) {
 
 DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo,
                          const demos::RunRecord& record) {
-  DemoFigures figures{.scene = demo.scene_name(),
-                      .dma = dma::to_string(options.schedule),
-                      .engine = engine_name(options),
-                      .contacts = demo.contacts() == ppu::ContactMethod::kSurface ? "surface" : "spheres",
-                      .frames = record.frames,
-                      .counts = demo.counts(),
-                      .ppu_ms = summarize(record.ppu_ms),
-                      .gather_ms = summarize(record.gather_ms),
-                      .solve_ms = summarize(record.solve_ms),
-                      .apply_ms = summarize(record.apply_ms),
-                      .contacts_ms = summarize(record.contacts_ms),
-                      .physics_ms = summarize(record.physics_ms),
-                      .skin_ms = summarize(record.skin_ms),
-                      .solver_wait_ms = summarize(record.solver_wait_ms),
-                      .skin_wait_ms = summarize(record.skin_wait_ms),
-                      .ppu_share = record.ppu_share(),
-                      .picture_ms = summarize(record.picture_ms),
-                      .pictures = record.picture_ms.size(),
-                      .upload_bytes = record.upload_bytes_of_a_picture(),
-                      .simulated_fps = record.simulated_fps(),
-                      .time_shares = {},
-                      .seconds = record.seconds,
-                      .spe_busy = {},
-                      .state_hash = demo.state_hash(),
-                      .image_hash = record.image_hash};
+  DemoFigures figures{
+      .scene = demo.scene_name(),
+      .dma = dma::to_string(options.schedule),
+      .engine = engine_name(options),
+      .contacts = std::string(demos::kContactMethods.at(static_cast<std::size_t>(demo.contacts()))),
+      .frames = record.frames,
+      .counts = demo.counts(),
+      .ppu_ms = summarize(record.ppu_ms),
+      .gather_ms = summarize(record.gather_ms),
+      .solve_ms = summarize(record.solve_ms),
+      .apply_ms = summarize(record.apply_ms),
+      .contacts_ms = summarize(record.contacts_ms),
+      .physics_ms = summarize(record.physics_ms),
+      .skin_ms = summarize(record.skin_ms),
+      .solver_wait_ms = summarize(record.solver_wait_ms),
+      .skin_wait_ms = summarize(record.skin_wait_ms),
+      .ppu_share = record.ppu_share(),
+      .picture_ms = summarize(record.picture_ms),
+      .pictures = record.picture_ms.size(),
+      .upload_bytes = record.upload_bytes_of_a_picture(),
+      .simulated_fps = record.simulated_fps(),
+      .time_shares = {},
+      .seconds = record.seconds,
+      .spe_busy = {},
+      .state_hash = demo.state_hash(),
+      .image_hash = record.image_hash};
   fill_in_time(options, record, figures);
   for (const ls_sim::SpeStatistics& spe : demo.spe_statistics()) {
     SC_ASSERT(spe.busy.count() >= 0, "an SPE was busy for {} ns", spe.busy.count());

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "command_line/shared_options.h"
+#include "scene/scene.h"
 #include "scene_file/scene_library.h"
 #include "softcell/soft_bodies/lattice.h"
 #include "verb/exit_status.h"
@@ -53,9 +54,10 @@ void parse_engine(const std::string& text, DemoOptions& options) {
 }
 
 ppu::ContactMethod parse_contacts(const std::string& text) {
-  if (text == "spheres") return ppu::ContactMethod::kSpheres;
-  if (text == "surface") return ppu::ContactMethod::kSurface;
-  throw UsageError("--contacts " + text + ": give spheres or surface");
+  const auto found = std::ranges::find(demos::kContactMethods, text);
+  if (found == demos::kContactMethods.end())
+    throw UsageError("--contacts " + text + ": give spheres or surface");
+  return static_cast<ppu::ContactMethod>(found - demos::kContactMethods.begin());
 }
 
 demos::Skin parse_skin(const std::string& text) {
@@ -112,8 +114,7 @@ class DemoVerbs final : public Verb {
         ->type_name("spe|gpu");
     d->add_option("--contacts", contacts_,
                   "What soft bodies touch with: spheres, rigid ones at their outer particles, or surface, "
-                  "what is drawn "
-                  "(default: the scene's, mostly spheres)")
+                  "what is drawn (default: the scene's, mostly spheres)")
         ->type_name("spheres|surface");
     d->callback([&] {
       chosen = [this] {
