@@ -21,7 +21,12 @@ set(SOFTCELL_KERNEL_FLAGS
   -mno-red-zone -fomit-frame-pointer
   # No loops turned into calls of memcpy or memset: there is no C library in a local store.
   -fno-builtin
-  -Wall -Wextra -Wshadow -Wno-unused-parameter -Wno-unknown-warning-option)
+  -Wall -Wextra -Wshadow -Wno-unused-parameter)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND SOFTCELL_KERNEL_FLAGS -fno-diagnostics-show-labels)  # a message names the types already
+else()
+  list(APPEND SOFTCELL_KERNEL_FLAGS -Wno-unknown-warning-option)
+endif()
 
 # And the C++ sources of kernels and programs besides.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -54,6 +59,12 @@ execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=include OUTPUT_VA
   OUTPUT_STRIP_TRAILING_WHITESPACE)
 set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdinc
   -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS})  # joined: CMake drops a second -isystem
+# Of a C source that softcell_vector_casts has rewritten: lines are those of the source, columns are not.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(SOFTCELL_C_REWRITTEN_FLAGS -fno-diagnostics-show-caret)
+else()
+  set(SOFTCELL_C_REWRITTEN_FLAGS -fno-caret-diagnostics -Wno-unused-command-line-argument)
+endif()
 set(SOFTCELL_C_FLAGS ${SOFTCELL_KERNEL_FLAGS})
 list(REMOVE_ITEM SOFTCELL_C_FLAGS -std=c++17 -fno-exceptions -fno-rtti -fno-builtin -Wextra -Wshadow)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -71,7 +71,7 @@ function(softcell_compile_c_source object name source)
       -Wno-unused-command-line-argument -isystem ${SOFTCELL_SDK_DIR}/host -MD -MF ${stem}.d -MT ${stem}.o -E ${source} -o ${stem}.i
     COMMAND softcell_vector_casts ${stem}.i ${stem}.softcell.i
     COMMAND ${CMAKE_CXX_COMPILER} -x cpp-output -std=gnu17 ${SOFTCELL_C_FLAGS} ${SOFTCELL_PROGRAM_FLAGS} ${options}
-      -Wno-unused-command-line-argument -c ${stem}.softcell.i -o ${stem}.o
+      ${SOFTCELL_C_REWRITTEN_FLAGS} -c ${stem}.softcell.i -o ${stem}.o
     DEPENDS ${source} softcell_vector_casts DEPFILE ${stem}.d
     COMMAND_EXPAND_LISTS VERBATIM
     COMMENT "Compiling C kernel source ${file}")

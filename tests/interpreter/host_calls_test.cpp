@@ -4,19 +4,27 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "interpreter/assisted_calls.h"
+#include "assisted/assisted_calls.h"
 #include "softcell/ls_sim/spe_group.h"
 #include "spu_words.h"
 
-namespace softcell::ls_sim::interpreter {
+namespace softcell::ls_sim::assisted {
 namespace {
+
+using interpreter::program_of;
+using interpreter::stop_with;
 
 constexpr std::uint32_t kArguments = 0x1000, kText = 0x4000, kVariable = 0x2000, kBuffer = 0x8000;
 
@@ -53,7 +61,9 @@ class HostCallsTest : public testing::Test {
   std::vector<std::byte> local_store_ = std::vector<std::byte>(dma::kLocalStoreBytes);
   CallMemory memory_{local_store_};
   HostCalls calls_;
-  AssistedCalls served_{calls_, local_store_};
+  std::atomic<bool> interrupted_ = false;
+  FilesInFolder files_{calls_, interrupted_};
+  AssistedCalls served_{files_, local_store_, CallerKind::kSpu};
   std::string printed_;
   std::uint32_t next_text_ = kText;
 };
@@ -178,6 +188,113 @@ TEST_F(HostCallsTest, FilesStayInTheFolder) {
   std::filesystem::remove_all(root);
 }
 
+TEST_F(HostCallsTest, ReadsInputAndScansIt) {
+  std::string input = "12 abc 1.5\nsecond line\nx";
+  bool is_late = true;
+  calls_.standard_input = [&](std::span<char> to) -> std::optional<std::size_t> {
+    if (std::exchange(is_late, false)) return std::nullopt;  // it comes later
+    const std::size_t count = std::min(to.size(), input.size());
+    std::ranges::copy(input.substr(0, count), to.begin());
+    input.erase(0, count);
+    return count;
+  };
+  set_argument(0, text("%d %2s%c %lf"));
+  set_argument(1, kVariable);
+  set_argument(2, 0);
+  for (std::uint32_t i = 0; i < 4; ++i) memory_.set_word(kVariable + 16 * i, kBuffer + 32 * i);
+  EXPECT_EQ(serve(kC99Call, 38), 4);  // vscanf
+  EXPECT_EQ(memory_.word(kBuffer), 12u);
+  EXPECT_EQ(memory_.text(kBuffer + 32), "ab");
+  EXPECT_EQ(memory_.byte(kBuffer + 64), 'c');
+  EXPECT_EQ(std::bit_cast<double>(memory_.doubleword(kBuffer + 96)), 1.5);
+  EXPECT_EQ(serve(kC99Call, 20), '\n');  // getchar
+  const auto gets = [&] {
+    set_argument(0, kBuffer);
+    set_argument(1, 100);
+    set_argument(2, kStandardInput);
+    return serve(kC99Call, 8);
+  };
+  EXPECT_EQ(gets(), static_cast<std::int32_t>(kBuffer));
+  EXPECT_EQ(memory_.text(kBuffer), "second line\n");
+  set_argument(0, 0);
+  set_argument(1, kBuffer);
+  set_argument(2, 100);
+  EXPECT_EQ(serve(kPosixCall, 16), 1);
+  EXPECT_EQ(memory_.byte(kBuffer), 'x');
+  EXPECT_EQ(gets(), 0);
+  set_argument(0, kStandardInput);
+  EXPECT_EQ(serve(kC99Call, 3), 1);  // feof
+}
+
+TEST_F(HostCallsTest, ScansTextsAndRefusesHostileFormats) {
+  const auto scan = [&](const std::string& from, const std::string& format) {
+    set_argument(0, text(from));
+    set_argument(1, text(format));
+    set_argument(2, kVariable);
+    set_argument(3, 0);
+    for (std::uint32_t i = 0; i < 4; ++i) memory_.set_word(kVariable + 16 * i, kBuffer + 32 * i);
+    return serve(kC99Call, 41);
+  };
+  EXPECT_EQ(scan("0x10 -5 beef", "%i %hd %x"), 3);
+  EXPECT_EQ(memory_.word(kBuffer), 16u);
+  EXPECT_EQ(memory_.byte(kBuffer + 32), 0xFFu);
+  EXPECT_EQ(memory_.byte(kBuffer + 33), 0xFBu);
+  EXPECT_EQ(memory_.word(kBuffer + 64), 0xBEEFu);
+  EXPECT_EQ(scan("", "%d"), -1);
+  EXPECT_EQ(scan("x", "%d"), 0);
+  for (const std::string& format : {std::string("%"), std::string("%["), std::string("%[^"),
+                                    std::string("%[]"), std::string("%99999999999s"), std::string("%*"),
+                                    std::string("%lllllld"), std::string("%Q"), std::string(3000, '%')})
+    EXPECT_LE(scan("text", format), 1) << format;
+}
+
+TEST_F(HostCallsTest, NeitherSleepNorInputOutlastsTheRun) {
+  interrupted_ = true;
+  calls_.standard_input = [](std::span<char>) { return std::nullopt; };
+  EXPECT_EQ(serve(kC99Call, 20), -1);
+  set_argument(0, kBuffer);
+  set_argument(1, kBuffer + 16);
+  memory_.set_word(kBuffer, 1000000);
+  EXPECT_EQ(serve(kPosixCall, 32), -1);
+  EXPECT_EQ(error(), EINTR);
+  EXPECT_GE(memory_.word(kBuffer + 16), 999000u);
+}
+
+TEST_F(HostCallsTest, StreamsStayInTheFolder) {
+  const auto root = std::filesystem::path(testing::TempDir()) / "softcell_host_streams";
+  std::filesystem::remove_all(root);
+  std::filesystem::create_directories(root / "in");
+  std::ofstream(root / "secret") << "secret";
+  const auto open_stream = [&](const std::string& path, const std::string& mode) {
+    set_argument(0, text(path));
+    set_argument(1, text(mode));
+    return serve(kC99Call, 10);
+  };
+  EXPECT_EQ(open_stream("a", "w"), 0);
+  EXPECT_EQ(error(), EACCES);
+  calls_.folder = root / "in";
+  EXPECT_EQ(open_stream("../secret", "r"), 0);
+  const std::int32_t stream = open_stream("a", "w+");
+  ASSERT_GT(stream, 3);
+  set_argument(0, text("ab"));
+  set_argument(1, static_cast<std::uint32_t>(stream));
+  EXPECT_GE(serve(kC99Call, 12), 0);
+  set_argument(0, static_cast<std::uint32_t>(stream));
+  EXPECT_EQ(serve(kC99Call, 2), 0);
+  EXPECT_EQ(std::filesystem::file_size(root / "in" / "a"), 2u);
+  set_argument(0, text("a"));
+  set_argument(1, text("../stolen"));
+  EXPECT_EQ(serve(kC99Call, 27), -1);
+  set_argument(0, text("a"));
+  set_argument(1, text("b"));
+  EXPECT_EQ(serve(kC99Call, 27), 0);
+  set_argument(0, text("b"));
+  EXPECT_EQ(serve(kC99Call, 26), 0);
+  EXPECT_TRUE(std::filesystem::is_empty(root / "in"));
+  EXPECT_FALSE(std::filesystem::exists(root / "stolen"));
+  std::filesystem::remove_all(root);
+}
+
 /// puts() of a text in the program, and an end with the status 3.
 std::vector<std::uint32_t> calling_puts() {
   return {stop_with(kC99Call),
@@ -212,4 +329,4 @@ TEST(HostCallsOfAProgram, EndItIfNobodyServesThem) {
 }
 
 }  // namespace
-}  // namespace softcell::ls_sim::interpreter
+}  // namespace softcell::ls_sim::assisted

@@ -1,4 +1,5 @@
-"""Holds the tables of functions in docs/guide/cell-programs.md against the headers and against what the tests call.
+"""Holds the tables of functions in docs/guide/cell-programs.md and docs/reference/c-library.md against the headers and against what the
+tests call.
 
 Usage: check_table.py ROOT
 """
@@ -10,6 +11,37 @@ import sys
 
 def without_comments(file):
     return re.sub(r"/\*.*?\*/", "", file.read_text(), flags=re.S)
+
+
+def sources_of(root, folders):
+    return "".join(
+        file.read_text()
+        for folder in folders
+        for file in sorted((root / folder).rglob("*"))
+        if file.suffix in (".c", ".cpp", ".h")
+    )
+
+
+def check_c_library(root):
+    """The functions of the C library of the local store; those of math.h count with their float twins."""
+    headers = root / "spu_kernels/sdk/library/include"
+    declared = set()
+    for header in sorted(headers.rglob("*.h")):
+        text = re.sub(r"//[^\n]*", "", without_comments(header))
+        declared |= set(re.findall(r"^[A-Za-z_][\w \t*]*?[\s*](\w+)\s*\([^;{]*\)[^;{]*;", text, flags=re.M))
+        declared |= set(re.findall(r"^SC_FUNCTION_OF_[12]\((\w+)\)", text, flags=re.M))
+        declared |= set(re.findall(r"^#define _\w+4? (\w+(?:4|d2))$", text, flags=re.M))
+    declared -= {"softcell_assertion_failed", "name"}
+    declared = {each for each in declared if not (each.endswith("f") and each[:-1] in declared)}
+    page = set(re.findall(r"`(\w+)`", (root / "docs/reference/c-library.md").read_text()))
+    called = sources_of(root, ("tests/programs/sources", "tests/labs", "tests/psl1ght", "tests/libspe2"))
+    stems = set(re.findall(r"OF_(?:ONE|TWO|DOUBLES)\((\w+)\)", called)) | set(re.findall(r"\bX\((\w+)\)", called))
+    words = set(re.findall(r"\w+", called)) | {stem + end for stem in stems for end in ("", "f", "4", "d2")}
+    wrong = [f"{each}: is declared, and docs/reference/c-library.md does not have it" for each in declared - page]
+    wrong += [f"{each}: no test calls it" for each in declared if each not in words and each + "f" not in words]
+    if len(declared) < 200:
+        wrong.append(f"only {len(declared)} functions of the C library are found")
+    return wrong
 
 
 def main():
@@ -29,18 +61,13 @@ def main():
             text = re.sub(r"#define.*?[^\\]\n", "\n", without_comments(root / header), flags=re.S)
             declared |= set(re.findall(rf"^\w[^;{{]*?\b({name})\s*\(", text, flags=re.M))
         table = set(re.findall(rf"^\| `({name})` \|", guide, flags=re.M))
-        sources = "".join(
-            file.read_text()
-            for folder in tests
-            for file in sorted((root / folder).rglob("*"))
-            if file.suffix in (".c", ".cpp", ".h")
-        )
-        called = set(re.findall(rf"\b({name})\b", sources))
+        called = set(re.findall(rf"\b({name})\b", sources_of(root, tests)))
         wrong += [f"{each}: is declared, and the table does not have it" for each in declared - table]
         wrong += [f"{each}: is in the table, and no header declares it" for each in table - declared]
         wrong += [f"{each}: no test calls it" for each in declared - called]
         if not declared:
             wrong.append(f"{headers} declare nothing that this script finds")
+    wrong += check_c_library(root)
     for sentence in sorted(wrong):
         print(sentence, file=sys.stderr)
     return 1 if wrong else 0

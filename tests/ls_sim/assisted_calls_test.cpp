@@ -27,8 +27,8 @@ std::uint32_t fwrite_to(const char* file, std::uint32_t size, std::uint32_t coun
   if (to == nullptr) return ~1u;
   std::setvbuf(to, nullptr, _IONBF, 0);
   std::FILE* const before = std::exchange(stdout, to);
-  const std::uint32_t written =
-      serve_c99_call(local_store, std::uint32_t{C99Function::kFwrite} << 24 | kRequest);
+  const std::uint32_t written = AssistedCalls(files_of_process(), local_store, CallerKind::kHost)
+                                    .serve(kC99Call, std::uint32_t{C99Function::kFwrite} << 24 | kRequest);
   stdout = before;
   std::fclose(to);
   return written;

@@ -1,136 +1,395 @@
 #include "assisted_calls.h"
 
-#include <algorithm>
-#include <cstdio>
-#include <cstring>
-#include <string>
+#include <fcntl.h>
+#include <sys/time.h>
+#include <unistd.h>
 
-#include "format.h"
-#include "softcell/base/assert.h"
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+
+#include "scan.h"
+#include "variable_arguments.h"
 
 namespace softcell::ls_sim::assisted {
 namespace {
 
-constexpr std::uint32_t kError = ~0u;
-constexpr std::uint32_t kStandardError = 3;  // of the three FILEs: 1 in, 2 out, 3 error
+constexpr std::uint32_t kFunctionShift = 24, kAddressMask = 0xFFFFFF;
 
-class Memory {
- public:
-  explicit Memory(std::span<std::byte> bytes) : bytes_(bytes) {
-    SC_ASSERT(bytes.size() == dma::kLocalStoreBytes, "a local store of {} bytes", bytes.size());
-  }
-
-  /// Addresses wrap at the end of the local store, as the SPU's do.
-  template <class T>
-  T read(std::uint32_t address) const {
-    T value;
-    auto* const to = reinterpret_cast<std::byte*>(&value);
-    for (std::size_t i = 0; i < sizeof value; ++i)
-      to[i] = bytes_[(address + static_cast<std::uint32_t>(i)) & dma::kLocalStoreMask];
-    return value;
-  }
-  template <class T>
-  void write(std::uint32_t address, T value) {
-    const auto* const from = reinterpret_cast<const std::byte*>(&value);
-    for (std::size_t i = 0; i < sizeof value; ++i)
-      bytes_[(address + static_cast<std::uint32_t>(i)) & dma::kLocalStoreMask] = from[i];
-  }
-  std::string text(std::uint32_t address, std::size_t most) const {
-    const std::span<const std::byte> rest = bytes_.subspan(address & dma::kLocalStoreMask);
-    const auto whole = rest.first(std::min(most, rest.size()));
-    const auto end = std::find(whole.begin(), whole.end(), std::byte{0});
-    return {reinterpret_cast<const char*>(whole.data()), static_cast<std::size_t>(end - whole.begin())};
-  }
-  std::string bytes(std::uint32_t address, std::size_t count) const {
-    const std::span<const std::byte> rest = bytes_.subspan(address & dma::kLocalStoreMask);
-    return {reinterpret_cast<const char*>(rest.data()), std::min(count, rest.size())};
-  }
-
- private:
-  std::span<std::byte> bytes_;
-};
-
-/// The arguments of a variadic function.  [x32 psABI, variable argument lists] documented
-class VariadicArguments final : public FormatArguments {
- public:
-  VariadicArguments(Memory& memory, std::uint32_t list) : memory_(memory), list_(list) {}
-
-  std::uint32_t next_word() override { return memory_.read<std::uint32_t>(next_integer()); }
-  std::uint64_t next_doubleword() override { return memory_.read<std::uint64_t>(next_integer()); }
-  double next_double() override { return memory_.read<double>(next(kVectorOffset, kVectorsEnd, 16)); }
-  std::string text(std::uint32_t address, std::size_t most) override { return memory_.text(address, most); }
-  std::uint32_t local_store_address(std::uint32_t pointer) override { return pointer & dma::kLocalStoreMask; }
-
- private:
-  // Of a va_list: how far the saved registers have been used, the arguments on the stack, the saved registers.
-  static constexpr std::uint32_t kIntegerOffset = 0, kVectorOffset = 4, kStack = 8, kRegisters = 12;
-  static constexpr std::uint32_t kIntegersEnd = 48, kVectorsEnd = 176;
-
-  std::uint32_t next_integer() { return next(kIntegerOffset, kIntegersEnd, 8); }
-
-  /// The address of the next argument of a class.
-  std::uint32_t next(std::uint32_t offset_at, std::uint32_t end, std::uint32_t step) {
-    const auto offset = memory_.read<std::uint32_t>(list_ + offset_at);
-    if (offset < end) {
-      memory_.write(list_ + offset_at, offset + step);
-      return memory_.read<std::uint32_t>(list_ + kRegisters) + offset;
-    }
-    const auto stack = memory_.read<std::uint32_t>(list_ + kStack);
-    memory_.write(list_ + kStack, stack + 8);
-    return stack;
-  }
-
-  Memory& memory_;
-  std::uint32_t list_;
-};
-
-std::uint32_t put(std::uint32_t file, const std::string& text) {
-  std::FILE* const to = file == kStandardError ? stderr : stdout;
-  if (std::fwrite(text.data(), 1, text.size(), to) != text.size()) return kError;
-  return static_cast<std::uint32_t>(text.size());
+/// The program's flags are those of Linux; others than these are not for it.
+int flags_of_host(std::uint32_t flags) {
+  return static_cast<int>(flags) & (O_ACCMODE | O_CREAT | O_EXCL | O_TRUNC | O_APPEND);
 }
+
+/// Of a mode of fopen(). [C17, 7.21.5.3]
+std::optional<int> flags_of_mode(const std::string& mode) {
+  const bool updates = mode.find('+') != std::string::npos;
+  const int access = updates ? O_RDWR : O_WRONLY;
+  const int exclusive = mode.find('x') != std::string::npos ? O_EXCL : 0;
+  switch (mode.empty() ? '\0' : mode[0]) {
+    case 'r':
+      return updates ? O_RDWR : O_RDONLY;
+    case 'w':
+      return access | O_CREAT | O_TRUNC | exclusive;
+    case 'a':
+      return access | O_CREAT | O_APPEND | exclusive;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Of a stream that did not give what was asked for: 0 at its end.
+int error_of(std::FILE* stream) { return std::ferror(stream) != 0 ? errno : 0; }
 
 }  // namespace
 
-std::uint32_t serve_c99_call(std::span<std::byte> local_store, std::uint32_t request) {
-  Memory memory(local_store);
-  const auto argument = [&](std::uint32_t i) { return memory.read<std::uint32_t>(request + 16 * i); };
-  const auto formatted = [&](std::uint32_t format, std::uint32_t list) {
-    VariadicArguments arguments(memory, list);
-    return format_text(memory.text(format, std::string::npos), arguments);
-  };
-  switch (request >> 24) {
-    case kFflush:
-      return static_cast<std::uint32_t>(std::fflush(nullptr));
-    case kFputc:
-      put(argument(1), std::string(1, static_cast<char>(argument(0))));
-      return argument(0) & 0xFFu;
-    case kPutchar:
-      put(0, std::string(1, static_cast<char>(argument(0))));
-      return argument(0) & 0xFFu;
-    case kFputs:
-      return put(argument(1), memory.text(argument(0), std::string::npos));
-    case kPuts:
-      return put(0, memory.text(argument(0), std::string::npos) + "\n");
-    case kFwrite: {
-      const std::uint32_t size = argument(1), wanted = size * argument(2);
-      if (size == 0) return 0;
-      const std::uint32_t written = put(argument(3), memory.bytes(argument(0), wanted));
-      return written == kError ? 0 : written / size;
-    }
-    case kVprintf:
-      return put(0, formatted(argument(0), argument(1)));
-    case kVfprintf:
-      return put(argument(0), formatted(argument(1), argument(2)));
-    case kVsnprintf: {
-      const std::string text = formatted(argument(2), argument(3));
-      const std::uint32_t room = std::min(argument(1), dma::kLocalStoreBytes);
-      for (std::uint32_t i = 0; room != 0 && i <= text.size() && i < room; ++i)
-        memory.write(argument(0) + i, i < text.size() && i + 1 < room ? text[i] : '\0');
-      return static_cast<std::uint32_t>(text.size());
-    }
+std::uint32_t AssistedCalls::serve(std::uint32_t code, std::uint32_t request) {
+  arguments_ = request & kAddressMask & dma::kLocalStoreMask;
+  const std::uint32_t function = request >> kFunctionShift;
+  errno = 0;
+  std::optional<Result> result;
+  if (code == kPosixCall) result = posix(function);
+  if (!result && code == kC99Call) result = output(function);
+  if (!result && code == kC99Call) result = input(function);
+  if (!result && code == kC99Call) result = files(function);
+  if (!result) result = Result{-1, ENOSYS};
+  memory_.set_word(arguments_, static_cast<std::uint32_t>(result->value));
+  memory_.set_word(arguments_ + 4, 0);
+  memory_.set_word(arguments_ + 8, 0);
+  memory_.set_word(arguments_ + 12, static_cast<std::uint32_t>(result->error));
+  return static_cast<std::uint32_t>(result->value);
+}
+
+// ---- what prints
+
+AssistedCalls::Result AssistedCalls::print(std::uint32_t handle, const std::string& text) {
+  const Stream to = files_.stream(handle);
+  if (to == nullptr || std::fwrite(text.data(), 1, text.size(), to.get()) != text.size()) return {-1, errno};
+  return {static_cast<std::int64_t>(text.size()), 0};
+}
+
+std::unique_ptr<FormatArguments> AssistedCalls::variable_arguments(int number) {
+  if (kind_ == CallerKind::kHost) return std::make_unique<HostVariableArguments>(memory_, argument(number));
+  return std::make_unique<SpuVariableArguments>(memory_, argument(number), argument(number + 1));
+}
+
+/// @param format_argument  the number of the argument with the format; the va_list follows it.
+std::string AssistedCalls::formatted(int format_argument) {
+  return format_text(memory_.text(argument(format_argument)), *variable_arguments(format_argument + 1));
+}
+
+AssistedCalls::Result AssistedCalls::store_text(std::uint32_t to, std::uint32_t room,
+                                                const std::string& text) {
+  if (room != 0) {
+    const std::size_t length = std::min<std::size_t>(text.size(), room - 1);
+    memory_.set_bytes(to, std::string_view(text).substr(0, length));
+    memory_.set_byte(to + static_cast<std::uint32_t>(length), 0);
   }
-  return kError;
+  return {static_cast<std::int64_t>(text.size()), 0};
+}
+
+std::optional<AssistedCalls::Result> AssistedCalls::output(std::uint32_t function) {
+  const auto character = [&](std::uint32_t handle) -> Result {
+    const char letter = static_cast<char>(argument(0));
+    const Result result = print(handle, std::string(1, letter));
+    return result.error == 0 ? Result{static_cast<unsigned char>(letter), 0} : result;
+  };
+  switch (function) {
+    case kVprintf:
+      return print(kStandardOutput, formatted(0));
+    case kVfprintf:
+      return print(argument(0), formatted(1));
+    case kVsprintf:
+      return store_text(argument(0), dma::kLocalStoreBytes, formatted(1));
+    case kVsnprintf:
+      return store_text(argument(0), std::min(argument(1), dma::kLocalStoreBytes), formatted(2));
+    case kPuts:
+      return print(kStandardOutput, memory_.text(argument(0)) + "\n");
+    case kFputs:
+      return print(argument(1), memory_.text(argument(0)));
+    case kPutchar:
+      return character(kStandardOutput);
+    case kPutc:
+    case kFputc:
+      return character(argument(1));
+    case kFwrite: {
+      const std::uint64_t bytes = std::uint64_t{argument(1)} * argument(2);
+      if (bytes > dma::kLocalStoreBytes) return Result{0, EFAULT};
+      if (bytes == 0) return Result{0, 0};
+      const Result result = print(argument(3), memory_.bytes(argument(0), static_cast<std::uint32_t>(bytes)));
+      return result.error == 0 ? Result{argument(2), 0} : Result{0, result.error};
+    }
+    case kFflush: {
+      const Stream stream = argument(0) == 0 ? nullptr : files_.stream(argument(0));
+      if (argument(0) != 0 && stream == nullptr) return Result{EOF, errno};
+      const int result = std::fflush(stream.get());
+      return Result{result, result == 0 ? 0 : errno};
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+// ---- what reads
+
+AssistedCalls::Result AssistedCalls::get_character(std::uint32_t handle) {
+  const Stream from = files_.stream(handle);
+  if (from == nullptr) return {EOF, errno};
+  const int letter = std::getc(from.get());
+  return {letter, letter == EOF ? error_of(from.get()) : 0};
+}
+
+/// fgets
+AssistedCalls::Result AssistedCalls::get_line() {
+  const Stream from = files_.stream(argument(2));
+  const auto room = static_cast<std::int32_t>(argument(1));
+  if (from == nullptr || room <= 0) return {0, from == nullptr ? errno : EINVAL};
+  std::string line(static_cast<std::size_t>(std::min<std::int32_t>(room, dma::kLocalStoreBytes)), '\0');
+  if (std::fgets(line.data(), static_cast<int>(line.size()), from.get()) == nullptr)
+    return {0, error_of(from.get())};
+  memory_.set_bytes(argument(0), std::string_view(line.c_str(), line.find('\0') + 1));
+  return {argument(0), 0};
+}
+
+/// fread
+AssistedCalls::Result AssistedCalls::read_items() {
+  const Stream from = files_.stream(argument(3));
+  const std::uint64_t bytes = std::uint64_t{argument(1)} * argument(2);
+  if (from == nullptr || bytes > dma::kLocalStoreBytes) return {0, from == nullptr ? errno : EFAULT};
+  if (bytes == 0) return {0, 0};
+  std::string data(bytes, '\0');
+  const std::size_t count = std::fread(data.data(), 1, data.size(), from.get());
+  memory_.set_bytes(argument(0), std::string_view(data).substr(0, count));
+  return {static_cast<std::int64_t>(count / argument(1)), count == bytes ? 0 : error_of(from.get())};
+}
+
+AssistedCalls::Result AssistedCalls::scan(std::FILE* from, int format_argument) {
+  if (from == nullptr) return {EOF, errno};
+  const int stored = scan_stream(from, memory_.text(argument(format_argument)),
+                                 *variable_arguments(format_argument + 1), memory_);
+  return {stored, 0};
+}
+
+/// sscanf
+AssistedCalls::Result AssistedCalls::scan_text() {
+  std::string text = memory_.text(argument(0));
+  std::FILE* const from = fmemopen(text.data(), text.size(), "r");
+  const Result result = scan(from, 1);
+  if (from != nullptr) std::fclose(from);
+  return result;
+}
+
+std::optional<AssistedCalls::Result> AssistedCalls::input(std::uint32_t function) {
+  switch (function) {
+    case kFgetc:
+    case kGetc:
+      return get_character(argument(0));
+    case kGetchar:
+      return get_character(kStandardInput);
+    case kFgets:
+      return get_line();
+    case kFread:
+      return read_items();
+    case kUngetc: {
+      const Stream to = files_.stream(argument(1));
+      if (to == nullptr) return Result{EOF, errno};
+      return Result{std::ungetc(static_cast<int>(argument(0)), to.get()), 0};
+    }
+    case kVscanf:
+      return scan(files_.stream(kStandardInput).get(), 0);
+    case kVfscanf:
+      return scan(files_.stream(argument(0)).get(), 1);
+    case kVsscanf:
+      return scan_text();
+    default:
+      return std::nullopt;
+  }
+}
+
+// ---- streams and files
+
+/// @return  a handle; 0 is an error
+AssistedCalls::Result AssistedCalls::open_stream() {
+  const std::string mode = memory_.text(argument(1));
+  const std::optional<int> flags = flags_of_mode(mode);
+  if (!flags) return {0, EINVAL};
+  const int descriptor = files_.open(memory_.text(argument(0)), *flags, 0666);
+  if (descriptor < 0) return {0, errno};
+  std::FILE* const stream = fdopen(descriptor, mode.c_str());
+  if (stream == nullptr) return close(descriptor), Result{0, EINVAL};
+  const std::uint32_t handle = files_.add_stream(stream);
+  return {handle, handle == 0 ? errno : 0};
+}
+
+AssistedCalls::Result AssistedCalls::temporary_file() {
+  const int descriptor = files_.open(".", O_TMPFILE | O_RDWR, 0600);
+  if (descriptor < 0) return {0, errno};
+  const std::uint32_t handle = files_.add_stream(fdopen(descriptor, "w+"));
+  return {handle, handle == 0 ? errno : 0};
+}
+
+std::optional<AssistedCalls::Result> AssistedCalls::files(std::uint32_t function) {
+  const auto with_stream = [&](const auto& work) -> Result {
+    const Stream stream = files_.stream(argument(0));
+    if (stream == nullptr) return {-1, errno};
+    const std::int64_t value = work(stream.get());
+    return {value, value < 0 ? errno : 0};
+  };
+  switch (function) {
+    case kFopen:
+      return open_stream();
+    case kTmpfile:
+      return temporary_file();
+    case kFclose: {
+      const int result = files_.close_stream(argument(0));
+      return Result{result, result == 0 ? 0 : errno};
+    }
+    case kRemove: {
+      const int result = files_.remove(memory_.text(argument(0)));
+      return Result{result, result == 0 ? 0 : errno};
+    }
+    case kRename: {
+      const int result = files_.rename(memory_.text(argument(0)), memory_.text(argument(1)));
+      return Result{result, result == 0 ? 0 : errno};
+    }
+    case kClearerr:
+      return with_stream([](std::FILE* stream) { return std::clearerr(stream), 0; });
+    case kFeof:
+      return with_stream([](std::FILE* stream) { return std::feof(stream) != 0 ? 1 : 0; });
+    case kFerror:
+      return with_stream([](std::FILE* stream) { return std::ferror(stream) != 0 ? 1 : 0; });
+    case kFileno:
+      return with_stream([](std::FILE* stream) { return fileno(stream); });
+    case kFseek:
+      return with_stream([&](std::FILE* stream) {
+        return std::fseek(stream, static_cast<std::int32_t>(argument(1)), static_cast<int>(argument(2)));
+      });
+    case kFtell:
+      return with_stream([](std::FILE* stream) { return std::ftell(stream); });
+    case kRewind:
+      return with_stream([](std::FILE* stream) { return std::rewind(stream), 0; });
+    default:
+      return std::nullopt;
+  }
+}
+
+// ---- POSIX
+
+AssistedCalls::Result AssistedCalls::open_descriptor() {
+  const int descriptor = files_.open(memory_.text(argument(0)), flags_of_host(argument(1)), argument(2));
+  if (descriptor < 0) return {-1, errno};
+  const int number = files_.add_descriptor(descriptor);
+  return {number, number < 0 ? errno : 0};
+}
+
+AssistedCalls::Result AssistedCalls::read_descriptor() {
+  std::string data(std::min(argument(2), dma::kLocalStoreBytes), '\0');
+  ssize_t count = 0;
+  if (argument(0) == STDIN_FILENO) {
+    // By way of the stream, which may have read more than was asked for.
+    const Stream from = files_.stream(kStandardInput);
+    const int first = data.empty() ? EOF : std::getc(from.get());
+    if (first != EOF) {
+      data[static_cast<std::size_t>(count++)] = static_cast<char>(first);
+      while (count < static_cast<ssize_t>(data.size()) && data[static_cast<std::size_t>(count - 1)] != '\n') {
+        const int letter = std::getc(from.get());
+        if (letter == EOF) break;
+        data[static_cast<std::size_t>(count++)] = static_cast<char>(letter);
+      }
+    }
+  } else {
+    const int descriptor = files_.descriptor_of(argument(0));
+    if (descriptor < 0) return {-1, EBADF};
+    count = read(descriptor, data.data(), data.size());
+  }
+  if (count < 0) return {-1, errno};
+  memory_.set_bytes(argument(1), std::string_view(data).substr(0, static_cast<std::size_t>(count)));
+  return {count, 0};
+}
+
+AssistedCalls::Result AssistedCalls::write_descriptor() {
+  const std::uint32_t to = argument(0);
+  const std::string data = memory_.bytes(argument(1), argument(2));
+  if (to == STDOUT_FILENO || to == STDERR_FILENO) return print(to + 1, data);  // its handle is one more
+  const int descriptor = files_.descriptor_of(to);
+  if (descriptor < 0) return {-1, EBADF};
+  const ssize_t count = write(descriptor, data.data(), data.size());
+  return {count, count < 0 ? errno : 0};
+}
+
+/// Seconds and nanoseconds, a word each.
+AssistedCalls::Result AssistedCalls::sleep() {
+  using namespace std::chrono;
+  const auto second = static_cast<std::int32_t>(memory_.word(argument(0)));
+  const auto fraction = static_cast<std::int32_t>(memory_.word(argument(0) + 4));
+  if (second < 0 || fraction < 0 || fraction >= 1000000000) return {-1, EINVAL};
+  const auto end = steady_clock::now() + seconds(second) + nanoseconds(fraction);
+  // In short naps, as the run may have to end; a signal does so, too.
+  constexpr nanoseconds kNap = milliseconds(20);
+  nanoseconds left = end - steady_clock::now();
+  bool awake = false;
+  for (; left > nanoseconds(0) && !awake; left = end - steady_clock::now()) {
+    const timespec nap{0, static_cast<long>(std::min(left, kNap).count())};
+    awake = nanosleep(&nap, nullptr) != 0 || files_.is_interrupted();
+  }
+  left = std::max(left, nanoseconds(0));
+  if (argument(1) != 0) {
+    memory_.set_word(argument(1), static_cast<std::uint32_t>(left / seconds(1)));
+    memory_.set_word(argument(1) + 4, static_cast<std::uint32_t>(left % seconds(1) / nanoseconds(1)));
+  }
+  return awake ? Result{-1, EINTR} : Result{0, 0};
+}
+
+AssistedCalls::Result AssistedCalls::posix(std::uint32_t function) {
+  const auto with_descriptor = [&](const auto& work) -> Result {
+    const int descriptor = files_.descriptor_of(argument(0));
+    if (descriptor < 0) return {-1, EBADF};
+    const std::int64_t value = work(descriptor);
+    return {value, value < 0 ? errno : 0};
+  };
+  switch (function) {
+    case kOpen:
+      return open_descriptor();
+    case kRead:
+      return read_descriptor();
+    case kWrite:
+      return write_descriptor();
+    case kNanosleep:
+      return sleep();
+    case kLseek:
+      return with_descriptor([&](int descriptor) {
+        return lseek(descriptor, static_cast<std::int32_t>(argument(1)), static_cast<int>(argument(2)));
+      });
+    case kFtruncate:
+      return with_descriptor(
+          [&](int descriptor) { return ftruncate(descriptor, static_cast<std::int32_t>(argument(1))); });
+    case kClose: {
+      const int result = files_.close_descriptor(argument(0));
+      return {result, result < 0 ? errno : 0};
+    }
+    case kUnlink: {
+      const int result = files_.remove(memory_.text(argument(0)));
+      return {result, result < 0 ? errno : 0};
+    }
+    case kAccess: {
+      // What may be opened so may be accessed so.
+      const bool writes = (argument(1) & W_OK) != 0;
+      const int descriptor = files_.open(memory_.text(argument(0)), writes ? O_WRONLY : O_RDONLY, 0);
+      if (descriptor < 0) return {-1, errno};
+      close(descriptor);
+      return {0, 0};
+    }
+    case kGettimeofday: {
+      timeval now{};
+      gettimeofday(&now, nullptr);
+      memory_.set_word(argument(0), static_cast<std::uint32_t>(now.tv_sec));
+      memory_.set_word(argument(0) + 4, static_cast<std::uint32_t>(now.tv_usec));
+      return {0, 0};
+    }
+    default:
+      return {-1, ENOSYS};
+  }
 }
 
 }  // namespace softcell::ls_sim::assisted

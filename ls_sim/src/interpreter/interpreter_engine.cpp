@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "assisted_calls.h"
+#include "assisted/assisted_calls.h"
 #include "checked_observer.h"
 #include "debug_observer.h"
 #include "disassembler.h"
@@ -72,8 +72,11 @@ class InterpreterEngine final : public Engine {
         spe_(options.spe) {
     if (options.timer != nullptr && debugger_ == nullptr)
       issue_model_ = std::make_unique<IssueModel>(*options.timer, &state_);
-    if (options.host_calls != nullptr)
-      calls_ = std::make_unique<AssistedCalls>(*options.host_calls, local_store.bytes());
+    if (options.host_calls != nullptr) {
+      files_ = std::make_unique<assisted::FilesInFolder>(*options.host_calls, stop_wanted_);
+      calls_ =
+          std::make_unique<assisted::AssistedCalls>(*files_, local_store.bytes(), assisted::CallerKind::kSpu);
+    }
     require_vector_units(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0);
   }
 
@@ -110,7 +113,8 @@ class InterpreterEngine final : public Engine {
   DecodedStore decoded_;
   std::unique_ptr<IssueModel> issue_model_;  ///< null: nothing is timed
   Trail trail_;
-  std::unique_ptr<AssistedCalls> calls_;  ///< null: none is served
+  std::unique_ptr<assisted::FilesInFolder> files_;  ///< null: the host does nothing for programs
+  std::unique_ptr<assisted::AssistedCalls> calls_;  ///< null likewise
   std::uint64_t instructions_ = 0;
   std::uint32_t last_job_end_ = 0;  ///< as JobCalls'
   std::atomic<bool> stop_wanted_{false};
@@ -173,7 +177,7 @@ RunResult InterpreterEngine::run(const EntryArguments& arguments, ChannelPort& c
   } while (serve_call(core));
   if (issue_model_ != nullptr) issue_model_->end_run();
   if (debugger_ != nullptr) debugger_->on_end(spe_);
-  if (calls_ != nullptr) calls_->close_all();
+  if (files_ != nullptr) files_->close_all();
   last_job_end_ = job_calls.last_job_end();
   return result_of(core, access, job_calls);
 }
@@ -212,10 +216,10 @@ void InterpreterEngine::run(Core& core, Observer& observer, JobCalls& jobs) {
 
 /// The word after the stop says what is wanted, and execution goes on behind it. [libspe2, newlib] second-hand
 bool InterpreterEngine::serve_call(const Core& core) {
-  const bool is_call =
-      core.ending == Ending::kStop && (core.stop_code == kC99Call || core.stop_code == kPosixCall);
+  const bool is_call = core.ending == Ending::kStop &&
+                       (core.stop_code == assisted::kC99Call || core.stop_code == assisted::kPosixCall);
   if (!is_call || calls_ == nullptr) return false;
-  calls_->serve(core.stop_code, CallMemory(local_store_.bytes()).word(state_.pc));
+  calls_->serve(core.stop_code, assisted::CallMemory(local_store_.bytes()).word(state_.pc));
   state_.pc = (state_.pc + 4) & kInstructionMask;
   trail_.add(core.last_pc, state_.pc);
   return true;

@@ -296,11 +296,13 @@ std::optional<RunResult> NativeEngine::answer() {
     return end;
   }
   if (context_.operation() == Operation::kAssist) {
-    if (context_.channel() == 0) {  // the C library's
-      context_.reply = assisted::serve_c99_call(local_store_.bytes(), context_.value);
+    const std::uint32_t code = kAssistedCalls | context_.channel();
+    if (code == assisted::kC99Call || code == assisted::kPosixCall) {
+      assisted::AssistedCalls calls(assisted::files_of_process(), local_store_.bytes(),
+                                    assisted::CallerKind::kHost);
+      context_.reply = calls.serve(code, context_.value);
       return std::nullopt;
     }
-    const std::uint32_t code = kAssistedCalls | context_.channel();
     if (channels_->stop(code, context_.value)) return std::nullopt;
     return RunResult{code, std::nullopt, {}};
   }

@@ -5,6 +5,7 @@
 #define SOFTCELL_C_GENERIC_H
 
 #include "../shared/softcell_channels.h"
+#include "../shared/softcell_generic_names.h"
 #include "../shared/softcell_special_values.h"
 #include "softcell_c_environment.h"
 
@@ -107,7 +108,26 @@ typedef long softcell_comparison __attribute__((vector_size(16)));
 #define SC_C_CASES_16_32(f) SC_C_CASES_16(f), SC_C_CASES_32(f)
 #define SC_C_CASES_8_16_32(f) SC_C_CASES_8(f), SC_C_CASES_16_32(f)
 #define SC_C_CASES_ALL(f) SC_C_CASES_8_16_32(f), SC_C_CASES_64(f), SC_C_CASES_REAL(f)
-#define SC_C_PICK(list, f, a) _Generic(a, list(f))
+#define SC_C_PICK(list, f, a) _Generic(a, list(f), default : softcell_c_nothing)
+int softcell_c_nothing();
+
+/* Operands of types that an intrinsic has no form for are told from others before the call, so that the compiler says one sentence. What
+ * stands for them is of types that fit. */
+#define SC_C_NO_FORM(name) SOFTCELL_HAS_NO_FORM(name) void no_form_of_spu_##name(void);
+SOFTCELL_GENERIC_NAMES(SC_C_NO_FORM)
+#undef SC_C_NO_FORM
+#define SC_C_KNOWN(name, V, S, U, I) softcell_c_known_##V = 1,
+enum { SC_C_ALL(SC_C_KNOWN, ) softcell_c_known_softcell_comparison = 1 };
+#undef SC_C_KNOWN
+#define SC_C_IN(list, a) _Generic((a), list(known), default : 0)
+#ifdef __clang__ /* whose vectors change their types by themselves */
+#define SC_C_SAME(a, b) 1
+#else
+#define SC_C_SAME(a, b) __builtin_types_compatible_p(__typeof__(a), __typeof__(b))
+#endif
+#define SC_C_DEMAND(f, condition) \
+  if (!(condition)) no_form_of_spu_##f()
+#define SC_C_IF(condition, a, otherwise) __builtin_choose_expr(condition, a, otherwise)
 
 /* A scalar operand becomes a vector of the other's type. */
 #define SC_C_SPLAT(V, S)                                                            \
@@ -136,33 +156,71 @@ SC_C_SPLAT(vec_double2, double)
             : SC_C_LIKE(b, vec_ullong2), vec_llong2 \
             : SC_C_LIKE(b, vec_llong2), vec_float4  \
             : SC_C_LIKE(b, vec_float4), vec_double2 \
-            : SC_C_LIKE(b, vec_double2))(b))
+            : SC_C_LIKE(b, vec_double2), default    \
+            : softcell_c_nothing)(b))
 
 /* Each operand is evaluated, and written out, once: macros in macros would grow without bound. */
-#define SC_C_CALL1(list, f, a)      \
-  __extension__({                   \
-    __auto_type sc_1 = (a);         \
-    SC_C_PICK(list, f, sc_1)(sc_1); \
+#define SC_C_CALL1(list, f, a)                                          \
+  __extension__({                                                       \
+    __auto_type sc_1 = (a);                                             \
+    SC_C_DEMAND(f, SC_C_IN(list, sc_1));                                \
+    SC_C_IF(SC_C_IN(list, sc_1), SC_C_PICK(list, f, sc_1)(sc_1), sc_1); \
   })
-#define SC_C_CALL2(list, f, a, b)         \
-  __extension__({                         \
-    __auto_type sc_1 = (a);               \
-    __auto_type sc_2 = (b);               \
-    SC_C_PICK(list, f, sc_1)(sc_1, sc_2); \
+/* The second operand an int. */
+#define SC_C_CALL2_INT(list, f, a, n)                                         \
+  __extension__({                                                             \
+    __auto_type sc_1 = (a);                                                   \
+    __auto_type sc_2 = (n);                                                   \
+    SC_C_DEMAND(f, SC_C_IN(list, sc_1));                                      \
+    SC_C_IF(SC_C_IN(list, sc_1), SC_C_PICK(list, f, sc_1)(sc_1, sc_2), sc_1); \
   })
-#define SC_C_CALL3(list, f, a, b, c)            \
-  __extension__({                               \
-    __auto_type sc_1 = (a);                     \
-    __auto_type sc_2 = (b);                     \
-    __auto_type sc_3 = (c);                     \
-    SC_C_PICK(list, f, sc_1)(sc_1, sc_2, sc_3); \
+/* Both of one type. */
+#define SC_C_CALL2(list, f, a, b)                                                                            \
+  __extension__({                                                                                            \
+    __auto_type sc_1 = (a);                                                                                  \
+    __auto_type sc_2 = (b);                                                                                  \
+    SC_C_DEMAND(f, SC_C_IN(list, sc_1) && SC_C_SAME(sc_1, sc_2));                                            \
+    SC_C_IF(SC_C_IN(list, sc_1), SC_C_PICK(list, f, sc_1)(sc_1, SC_C_IF(SC_C_SAME(sc_1, sc_2), sc_2, sc_1)), \
+            sc_1);                                                                                           \
   })
+/* The first two of one type, the third of that of `third`. */
+#define SC_C_CALL3_AND(list, f, a, b, c, third)                                                   \
+  __extension__({                                                                                 \
+    __auto_type sc_1 = (a);                                                                       \
+    __auto_type sc_2 = (b);                                                                       \
+    __auto_type sc_3 = (c);                                                                       \
+    SC_C_DEMAND(f, SC_C_IN(list, sc_1) && SC_C_SAME(sc_1, sc_2) && SC_C_SAME(third(sc_1), sc_3)); \
+    SC_C_IF(SC_C_IN(list, sc_1),                                                                  \
+            SC_C_PICK(list, f, sc_1)(sc_1, SC_C_IF(SC_C_SAME(sc_1, sc_2), sc_2, sc_1),            \
+                                     SC_C_IF(SC_C_SAME(third(sc_1), sc_3), sc_3, third(sc_1))),   \
+            sc_1);                                                                                \
+  })
+#define SC_C_CALL3(list, f, a, b, c) SC_C_CALL3_AND(list, f, a, b, c, SC_C_THE_SAME)
+#define SC_C_THE_SAME(a) (a)
+#define SC_C_ZERO(V) ((V){0})
+#define SC_C_SUM_OF_HALVES(a) \
+  _Generic((a), vec_short8 : SC_C_ZERO(vec_int4), vec_ushort8 : SC_C_ZERO(vec_uint4), default : (a))
+#define SC_C_PATTERN(a) SC_C_ZERO(vec_uchar16)
+#define SC_C_MASK(a)                             \
+  _Generic((a), vec_uchar16                      \
+           : SC_C_ZERO(vec_uchar16), vec_char16  \
+           : SC_C_ZERO(vec_uchar16), vec_ushort8 \
+           : SC_C_ZERO(vec_ushort8), vec_short8  \
+           : SC_C_ZERO(vec_ushort8), vec_ullong2 \
+           : SC_C_ZERO(vec_ullong2), vec_llong2  \
+           : SC_C_ZERO(vec_ullong2), vec_double2 \
+           : SC_C_ZERO(vec_ullong2), default     \
+           : SC_C_ZERO(vec_uint4))
 /* The second operand a vector like the first, or a scalar. */
-#define SC_C_CALL2_LIKE(list, f, a, b)                   \
-  __extension__({                                        \
-    __auto_type sc_1 = (a);                              \
-    __auto_type sc_2 = (b);                              \
-    SC_C_PICK(list, f, sc_1)(sc_1, SC_C_AS(sc_1, sc_2)); \
+#define SC_C_FITS(a, b) (SC_C_SAME(a, b) || !SC_C_IN(SC_C_CASES_ALL, b))
+#define SC_C_CALL2_LIKE(list, f, a, b)                                                                 \
+  __extension__({                                                                                      \
+    __auto_type sc_1 = (a);                                                                            \
+    __auto_type sc_2 = (b);                                                                            \
+    SC_C_DEMAND(f, SC_C_IN(list, sc_1) && SC_C_FITS(sc_1, sc_2));                                      \
+    SC_C_IF(SC_C_IN(list, sc_1),                                                                       \
+            SC_C_PICK(list, f, sc_1)(sc_1, SC_C_AS(sc_1, SC_C_IF(SC_C_FITS(sc_1, sc_2), sc_2, sc_1))), \
+            sc_1);                                                                                     \
   })
 
 /* Constants, one lane. */
@@ -179,7 +237,11 @@ SC_C_SPLAT(vec_double2, double)
         long long : SC_C_NAME(f, vec_llong2),                                                                \
                     float : SC_C_NAME(f, vec_float4),                                                        \
                             double : SC_C_NAME(f, vec_double2)
-#define spu_splats(s) SC_C_CALL1(SC_C_SCALARS, splats, s)
+#define spu_splats(s)                            \
+  __extension__({                                \
+    __auto_type sc_1 = (s);                      \
+    SC_C_PICK(SC_C_SCALARS, splats, sc_1)(sc_1); \
+  })
 #define spu_promote(s, element) ((void)(element), spu_splats(s))
 #define spu_insert(s, a, element)                                   \
   __extension__({                                                   \
@@ -187,10 +249,10 @@ SC_C_SPLAT(vec_double2, double)
     __auto_type sc_2 = (a);                                         \
     SC_C_PICK(SC_C_CASES_ALL, insert, sc_2)(sc_1, sc_2, (element)); \
   })
-#define spu_extract(a, element) SC_C_CALL2(SC_C_CASES_ALL, extract, a, element)
+#define spu_extract(a, element) SC_C_CALL2_INT(SC_C_CASES_ALL, extract, a, element)
 
 /* Conversions; the scale is an immediate. */
-#define spu_convtf(a, scale) SC_C_CALL2(SC_C_CASES_32, convtf, a, SC_C_CONSTANT(scale, 0, 127))
+#define spu_convtf(a, scale) SC_C_CALL2_INT(SC_C_CASES_32, convtf, a, SC_C_CONSTANT(scale, 0, 127))
 #define spu_convts(a, scale) (softcell_c_convts_vec_float4((a), SC_C_CONSTANT(scale, 0, 127)))
 #define spu_convtu(a, scale) (softcell_c_convtu_vec_float4((a), SC_C_CONSTANT(scale, 0, 127)))
 #define SC_C_CASES_EXTENDED(f)                                              \
@@ -205,11 +267,15 @@ SC_C_SPLAT(vec_double2, double)
 #define SC_C_CASES_SUMS(f) SC_C_CASES_16_32(f), SC_C_CASES_REAL(f)
 #define SC_C_CASES_FUSED(f) SC_C_CASES_REAL(f), vec_short8 : SC_C_NAME(f, vec_short8)
 #define spu_add(a, b) SC_C_CALL2_LIKE(SC_C_CASES_SUMS, add, a, b)
-#define spu_sub(a, b)                                                 \
-  __extension__({                                                     \
-    __auto_type sc_1 = (a);                                           \
-    __auto_type sc_2 = (b);                                           \
-    SC_C_PICK(SC_C_CASES_SUMS, sub, sc_2)(SC_C_AS(sc_2, sc_1), sc_2); \
+#define spu_sub(a, b)                                                                                        \
+  __extension__({                                                                                            \
+    __auto_type sc_1 = (a);                                                                                  \
+    __auto_type sc_2 = (b);                                                                                  \
+    SC_C_DEMAND(sub, SC_C_IN(SC_C_CASES_SUMS, sc_2) && SC_C_FITS(sc_2, sc_1));                               \
+    SC_C_IF(SC_C_IN(SC_C_CASES_SUMS, sc_2),                                                                  \
+            SC_C_PICK(SC_C_CASES_SUMS, sub, sc_2)(SC_C_AS(sc_2, SC_C_IF(SC_C_FITS(sc_2, sc_1), sc_1, sc_2)), \
+                                                  sc_2),                                                     \
+            sc_2);                                                                                           \
   })
 #define spu_addx(a, b, c) SC_C_CALL3(SC_C_CASES_32, addx, a, b, c)
 #define spu_subx(a, b, c) SC_C_CALL3(SC_C_CASES_32, subx, a, b, c)
@@ -218,7 +284,7 @@ SC_C_SPLAT(vec_double2, double)
 #define spu_genc(a, b) SC_C_CALL2(SC_C_CASES_32, genc, a, b)
 #define spu_genb(a, b) SC_C_CALL2(SC_C_CASES_32, genb, a, b)
 #define spu_mul(a, b) SC_C_CALL2(SC_C_CASES_REAL, mul, a, b)
-#define spu_madd(a, b, c) SC_C_CALL3(SC_C_CASES_FUSED, madd, a, b, c)
+#define spu_madd(a, b, c) SC_C_CALL3_AND(SC_C_CASES_FUSED, madd, a, b, c, SC_C_SUM_OF_HALVES)
 #define spu_msub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, msub, a, b, c)
 #define spu_nmsub(a, b, c) SC_C_CALL3(SC_C_CASES_REAL, nmsub, a, b, c)
 #define spu_nmadd(a, b, c) (softcell_c_nmadd_vec_double2((a), (b), (c)))
@@ -226,7 +292,7 @@ SC_C_SPLAT(vec_double2, double)
 #define spu_mulo(a, b) SC_C_CALL2_LIKE(SC_C_CASES_16, mulo, a, b)
 #define spu_mulh(a, b) (softcell_c_mulh_vec_short8((a), (b)))
 #define spu_mulsr(a, b) (softcell_c_mulsr_vec_short8((a), (b)))
-#define spu_mhhadd(a, b, c) SC_C_CALL3(SC_C_CASES_16, mhhadd, a, b, c)
+#define spu_mhhadd(a, b, c) SC_C_CALL3_AND(SC_C_CASES_16, mhhadd, a, b, c, SC_C_SUM_OF_HALVES)
 #define spu_re(a) (softcell_c_re_vec_float4(a))
 #define spu_rsqrte(a) (softcell_c_rsqrte_vec_float4(a))
 
@@ -257,8 +323,8 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 #define spu_maskh(a) (softcell_c_maskh_int(a))
 #define spu_maskw(a) (softcell_c_maskw_int(a))
 #define spu_orx(a) SC_C_CALL1(SC_C_CASES_32, orx, a)
-#define spu_sel(a, b, c) SC_C_CALL3(SC_C_CASES_ALL, sel, a, b, c)
-#define spu_shuffle(a, b, c) SC_C_CALL3(SC_C_CASES_ALL, shuffle, a, b, c)
+#define spu_sel(a, b, c) SC_C_CALL3_AND(SC_C_CASES_ALL, sel, a, b, c, SC_C_MASK)
+#define spu_shuffle(a, b, c) SC_C_CALL3_AND(SC_C_CASES_ALL, shuffle, a, b, c, SC_C_PATTERN)
 
 /* Logic. */
 #define spu_and(a, b) SC_C_CALL2_LIKE(SC_C_CASES_ALL, and, a, b)
@@ -290,7 +356,7 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 #define spu_rlmaska(a, b) SC_C_SHIFT(rlmaska, a, b)
 
 /* Shifts and rotations of the quadword. */
-#define SC_C_QUADWORD(f, a, n) SC_C_CALL2(SC_C_CASES_ALL, f, a, (int)(n))
+#define SC_C_QUADWORD(f, a, n) SC_C_CALL2_INT(SC_C_CASES_ALL, f, a, (int)(n))
 #define spu_slqw(a, n) SC_C_QUADWORD(slqw, a, n)
 #define spu_slqwbyte(a, n) SC_C_QUADWORD(slqwbyte, a, n)
 #define spu_slqwbytebc(a, n) SC_C_QUADWORD(slqwbytebc, a, n)

@@ -22,6 +22,7 @@
 #include "softcell_integer.h"
 #include "softcell_lanes.h"
 #include "softcell_logic.h"
+#include "softcell_no_form.h"
 #include "softcell_operators.h"
 #include "softcell_quadword.h"
 #include "softcell_shift.h"

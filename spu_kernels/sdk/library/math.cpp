@@ -1,24 +1,63 @@
-// math.h, in double precision; each float function truncates the result of its namesake.
+// math.h: in double precision, rounded to nearest as an SPU's doubles are; each float function rounds the result of its namesake once.
+//
+// The same source makes the same bits on an SPU (tests/programs compares them): nothing is fused, and square roots and quotients are
+// exactly rounded on both.
 
-#include <emmintrin.h>
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
+
+#ifndef __x86_64__
+#include <spu_intrinsics.h>
+#define SC_REGISTER "r"
+#else
+#include <emmintrin.h>
+#define SC_REGISTER "x"
+#endif
 
 namespace {
 
+/// A kernel for the host truncates, as its single precision does; as long as this lives doubles round to nearest.
+class DoubleArithmetic {
+ public:
+#ifndef __x86_64__
+  DoubleArithmetic() {}
+#else
+  DoubleArithmetic() {
+    const unsigned int nearest = 0x1FC0;  // all exceptions masked, denormal operands zero
+    asm volatile("stmxcsr %0\n\tldmxcsr %1" : "=m"(before_) : "m"(nearest) : "memory");
+  }
+  ~DoubleArithmetic() { asm volatile("ldmxcsr %0" : : "m"(before_) : "memory"); }
+
+ private:
+  unsigned int before_;
+#endif
+};
+
+/// A value that no compiler knows, so that what is made of it is computed where it stands.
+template <class T>
+inline T as_it_is_here(T x) {
+  asm volatile("" : "+" SC_REGISTER(x) : : "memory");
+  return x;
+}
+
 constexpr double kLn2 = 0x1.62E42FEFA39EFp-1, kLog2e = 0x1.71547652B82FEp0, kPi = 0x1.921FB54442D18p1;
-constexpr double kLargest = HUGE_VALF;
+constexpr double kLn10 = 0x1.26BB1BBB55516p1, kSqrt2 = 0x1.6A09E667F3BCDp0;
+constexpr double kLargest = 0x1.FFFFFEp127, kSmallest = 0x1p-126;  // of floats
 
 int64_t bits_of(double x) {
   int64_t bits;
-  memcpy(&bits, &x, sizeof bits);
+  __builtin_memcpy(&bits, &x, sizeof bits);
   return bits;
 }
 double of_bits(int64_t bits) {
   double x;
-  memcpy(&x, &bits, sizeof x);
+  __builtin_memcpy(&x, &bits, sizeof x);
   return x;
+}
+
+double size_of(double x) { return of_bits(bits_of(x) & INT64_MAX); }
+double with_sign_of(double x, double y) {
+  return of_bits((bits_of(x) & INT64_MAX) | (bits_of(y) & INT64_MIN));
 }
 
 /// 2^n, of which the exponent is cut to that of a double.
@@ -34,136 +73,281 @@ double polynomial(double x, const double (&coefficients)[N]) {
   return sum;
 }
 
-/// The nearest whole number, of halves the one away from zero.
-double nearest(double x) {
-  return x < 0 ? static_cast<double>(static_cast<int64_t>(x - 0.5))
-               : static_cast<double>(static_cast<int64_t>(x + 0.5));
-}
+/// The nearest whole number, of halves the one away from zero. |x| < 2^62
+int64_t nearest(double x) { return static_cast<int64_t>(x < 0 ? x - 0.5 : x + 0.5); }
 
-/// x = quadrant pi / 2 + rest. Three parts of pi / 2, of which the first two have 33 bits, so that their products are exact.
-double reduce(double x, int& quadrant) {
-  const double k = nearest(x * (2 / kPi));
-  quadrant = static_cast<int>(static_cast<int64_t>(k) & 3);
-  return x - k * 0x1.921FB544p0 - k * 0x1.0B4611A6p-34 - k * 0x1.3198A2E037073p-69;
-}
-/// |x| <= pi / 4: the series, whose next term is below 1e-13.
-double sine(double x) {
-  const double s = x * x;
-  return x + x * s *
-                 polynomial(s, {-1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
-                                1.0 / 6227020800.0});
-}
-double cosine(double x) {
-  const double s = x * x;
-  return 1 + s * polynomial(s, {-1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
-                                -1.0 / 87178291200.0});
-}
-double sine_in(int quadrant, double x) {
-  const double value = (quadrant & 1) != 0 ? cosine(x) : sine(x);
-  return (quadrant & 2) != 0 ? -value : value;
-}
+// ---- whole numbers and parts
 
-}  // namespace
-
-extern "C" {
-
-double sqrt(double x) { return x < 0 ? 0 : _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(x))); }
-double fabs(double x) { return of_bits(bits_of(x) & INT64_MAX); }
-double copysign(double x, double y) { return of_bits((bits_of(x) & INT64_MAX) | (bits_of(y) & INT64_MIN)); }
-double fmin(double x, double y) { return x < y ? x : y; }
-double fmax(double x, double y) { return x > y ? x : y; }
-
-double trunc(double x) {
-  return fabs(x) < 0x1p52 ? copysign(static_cast<double>(static_cast<int64_t>(x)), x) : x;
+double truncated(double x) {
+  return size_of(x) < 0x1p52 ? with_sign_of(static_cast<double>(static_cast<int64_t>(x)), x) : x;
 }
-double floor(double x) {
-  const double whole = trunc(x);
+double floor_of(double x) {
+  const double whole = truncated(x);
   return whole > x ? whole - 1 : whole;
 }
-double ceil(double x) { return -floor(-x); }
-double round(double x) {
-  const double whole = trunc(x);
-  return fabs(x - whole) < 0.5 ? whole : whole + copysign(1, x);
+double ceil_of(double x) { return -floor_of(-x); }
+double rounded(double x) {
+  const double whole = truncated(x);
+  return size_of(x - whole) < 0.5 ? whole : whole + with_sign_of(1, x);
 }
-double modf(double x, double* whole) {
-  *whole = trunc(x);
-  return x - *whole;
+/// Halves to the even one.
+double rounded_to_even(double x) {
+  const double whole = rounded(x);
+  if (size_of(x - truncated(x)) != 0.5) return whole;
+  return 2 * rounded(x / 2) == whole ? whole : truncated(x);
 }
-double ldexp(double x, int exponent) {
-  // In two steps, as 2^exponent may be no double.
-  return x * power_of_2(exponent / 2) * power_of_2(exponent - exponent / 2);
+
+double scaled(double x, int exponent) {
+  const int cut = exponent > 2200 ? 2200 : exponent < -2200 ? -2200 : exponent;
+  // In three steps, as 2^exponent may be no double.
+  const int third = cut / 3;
+  return x * power_of_2(third) * power_of_2(third) * power_of_2(cut - 2 * third);
+}
+
+/// x = part * 2^exponent, |part| in [1/2, 1).
+double parted(double x, int* exponent) {
+  *exponent = 0;
+  if (x == 0 || size_of(x) > 0x1.FFFFFFFFFFFFFp1023) return x;
+  *exponent = static_cast<int>(bits_of(x) >> 52 & 0x7FF) - 1022;
+  return of_bits((bits_of(x) & ~(int64_t{0x7FF} << 52)) | (int64_t{1022} << 52));
 }
 
 /// The remainder of a division by subtraction, exact at each step.
-double fmod(double x, double y) {
-  const double divisor = fabs(y);
-  double rest = fabs(x);
-  if (divisor == 0) return 0;
+double remainder_towards_zero(double x, double y) {
+  const double divisor = size_of(y);
+  double rest = size_of(x);
+  if (divisor == 0 || rest > 0x1.FFFFFFFFFFFFFp1023) return 0;
   while (rest >= divisor) {
     const int64_t difference = (bits_of(rest) >> 52) - (bits_of(divisor) >> 52);
     double part = divisor * power_of_2(difference);
     if (part > rest) part *= 0.5;
     rest -= part;
   }
-  return copysign(rest, x);
+  return with_sign_of(rest, x);
 }
 
-double exp(double x) {
+/// Of the quotient that is nearest, halves to even.
+double remainder_to_nearest(double x, double y) {
+  const double divisor = size_of(y), twice = divisor + divisor;
+  double rest = size_of(twice < kLargest * kLargest ? remainder_towards_zero(x, twice) : x);
+  if (divisor == 0) return 0;
+  if (rest > 0.5 * divisor) {
+    rest -= divisor;
+    if (rest >= 0.5 * divisor) rest -= divisor;
+  }
+  return bits_of(x) < 0 ? -rest : rest;
+}
+
+// ---- roots
+
+#ifndef __x86_64__
+double scalar_fused(double a, double b, double c) {
+  return spu_extract(spu_madd(spu_promote(a, 0), spu_promote(b, 0), spu_promote(c, 0)), 0);
+}
+
+/// Correctly rounded: from an estimate the double below the root, and then by the sign of a residue that is exact.
+double root_of(double x) {
+  if (!(x > 0) || x > 0x1.FFFFFFFFFFFFFp1023) return x > 0 ? x : 0;
+  int exponent;
+  double part = parted(x, &exponent);
+  if ((exponent & 1) != 0) {
+    part *= 0.5;
+    ++exponent;
+  }
+  // 1/4 <= part < 1. One over its root, to 12 bits and then thrice as many digits.
+  double r = static_cast<double>(spu_extract(spu_rsqrte(spu_promote(static_cast<float>(part), 0)), 0));
+  for (int i = 0; i < 3; ++i) r = r * (1.5 - 0.5 * part * r * r);
+  double root = part * r;
+  root = root + 0.5 * r * scalar_fused(-root, root, part);
+  // Now within a unit in the last place. root - u/2 < sqrt(part) < root + u/2 by squares: (root +- u/2)^2 = root^2 +- u root + u^2/4.
+  const double unit = 0x1p-53;
+  for (;;) {
+    const double rest = scalar_fused(-root, root, part);
+    if (rest > root * unit)
+      root += unit;
+    else if (rest <= -(root * unit))
+      root -= unit;
+    else
+      break;
+  }
+  return scaled(root, exponent / 2);
+}
+#else
+double root_of(double x) {
+  return !(x > 0) ? 0 : _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(x)));
+}
+#endif
+
+// ---- exponentials
+
+/// e^r - 1 for |r| <= ln 2 / 2: the series, whose next term is below 1e-14 of it.
+double small_exponential(double r) {
+  return r * polynomial(r, {1, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320,
+                            1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600});
+}
+
+double exponential(double x) {
   if (x > 709) return HUGE_VAL;
-  if (x < -708) return 0;
-  const double k = nearest(x * kLog2e);
-  const double r = x - k * 0x1.62E42FEEp-1 - k * 0x1.A39EF35793C76p-33;
-  return power_of_2(static_cast<int64_t>(k)) *
-         polynomial(r, {1, 1, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320,
-                        1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800});
+  if (!(x > -708)) return 0;
+  const int64_t k = nearest(x * kLog2e);
+  const double n = static_cast<double>(k);
+  const double r = x - n * 0x1.62E42FEEp-1 - n * 0x1.A39EF35793C76p-33;
+  return power_of_2(k) * (1 + small_exponential(r));
 }
-double exp2(double x) { return exp(x * kLn2); }
+double exponential_of_2(double x) {
+  if (x > 1024) return HUGE_VAL;
+  if (!(x > -1022)) return 0;
+  const int64_t k = nearest(x);
+  return power_of_2(k) * (1 + small_exponential((x - static_cast<double>(k)) * kLn2));
+}
+double exponential_less_1(double x) { return size_of(x) < 0.34 ? small_exponential(x) : exponential(x) - 1; }
 
-double log(double x) {
-  if (x <= 0) return -kLargest;
-  int64_t exponent = (bits_of(x) >> 52) - 1023;
-  double m = of_bits((bits_of(x) & 0xFFFFFFFFFFFFF) | (int64_t{1023} << 52));
-  if (m > M_SQRT2) {
+/// ln x = exponent ln 2 + ln m, of x > 0. 1/sqrt(2) < m <= sqrt(2)
+struct Logarithm {
+  double exponent, of_part;
+};
+Logarithm logarithm(double x) {
+  int exponent;
+  double m = 2 * parted(x, &exponent);
+  --exponent;
+  if (m > kSqrt2) {
     m *= 0.5;
     ++exponent;
   }
   const double s = (m - 1) / (m + 1), q = s * s;
   const double series =
       polynomial(q, {1, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13, 1.0 / 15, 1.0 / 17});
-  return static_cast<double>(exponent) * kLn2 + 2 * s * series;
+  return {static_cast<double>(exponent), 2 * s * series};
 }
-double log2(double x) { return x <= 0 ? -kLargest : log(x) * kLog2e; }
-double log10(double x) { return x <= 0 ? -kLargest : log(x) * (1 / M_LN10); }
+/// What no positive number has: of 0 the largest number below zero, of others 0.
+double no_logarithm(double x) { return x == 0 ? -kLargest : 0; }
 
-double pow(double x, double y) {
+double natural_logarithm(double x) {
+  if (!(x > 0)) return no_logarithm(x);
+  if (x > 0x1.FFFFFFFFFFFFFp1023) return x;
+  const Logarithm l = logarithm(x);
+  return l.exponent * kLn2 + l.of_part;
+}
+double logarithm_to_2(double x) {
+  if (!(x > 0)) return no_logarithm(x);
+  const Logarithm l = logarithm(x);
+  return l.exponent + l.of_part * kLog2e;
+}
+double logarithm_to_10(double x) { return x > 0 ? natural_logarithm(x) / kLn10 : no_logarithm(x); }
+/// ln (1 + x), by the logarithm of what 1 + x is rounded to.
+double logarithm_of_1_and(double x) {
+  if (!(x > -1)) return no_logarithm(x + 1);
+  const double u = 1 + x;
+  return u == 1 ? x : natural_logarithm(u) * (x / (u - 1));
+}
+
+double power(double x, double y) {
   if (y == 0 || x == 1) return 1;
   if (x == 0) return y > 0 ? 0 : HUGE_VAL;
-  const double size = exp(y * log(fabs(x)));
-  if (x > 0) return size;
-  if (trunc(y) != y) return 0;
-  return fmod(y, 2) == 0 ? size : -size;
-}
-double cbrt(double x) { return x == 0 ? x : copysign(exp(log(fabs(x)) / 3), x); }
-double hypot(double x, double y) { return sqrt(x * x + y * y); }
-
-double sin(double x) {
-  int quadrant;
-  const double rest = reduce(x, quadrant);
-  return sine_in(quadrant, rest);
-}
-double cos(double x) {
-  int quadrant;
-  const double rest = reduce(x, quadrant);
-  return sine_in(quadrant + 1, rest);
-}
-double tan(double x) {
-  int quadrant;
-  const double rest = reduce(x, quadrant);
-  return sine_in(quadrant, rest) / sine_in(quadrant + 1, rest);
+  const bool whole = truncated(y) == y;
+  if (x < 0 && !whole) return 0;
+  const double size = exponential(y * natural_logarithm(size_of(x)));
+  return x < 0 && remainder_towards_zero(y, 2) != 0 ? -size : size;
 }
 
-double atan(double x) {
-  const double size = fabs(x);
+/// From an estimate by Newton's iteration, once, so that cubes of whole numbers have whole roots.
+double cube_root(double x) {
+  if (x == 0 || size_of(x) > 0x1.FFFFFFFFFFFFFp1023) return x;
+  const double size = size_of(x), root = exponential(natural_logarithm(size) / 3);
+  return with_sign_of(root - (root * root * root - size) / (3 * root * root), x);
+}
+
+double hypotenuse(double x, double y) { return root_of(x * x + y * y); }
+
+// ---- angles
+
+/// 2 / pi behind its point.
+constexpr uint32_t kTwoOverPi[] = {0xA2F9836E, 0x4E441529, 0xFC2757D1, 0xF534DDC0,
+                                   0xDB629599, 0x3C439041, 0xFE5163AB};
+
+/// x = quadrant pi / 2 + rest.
+struct Angle {
+  int quadrant;
+  double rest;
+};
+
+/// |x| >= 2^20 and a float: the 24 bits of x times those 96 bits of 2 / pi that are neither above a turn nor below notice.
+Angle reduce_large(double x) {
+  const int exponent =
+      static_cast<int>(bits_of(x) >> 52 & 0x7FF) - 1023 - 23;  // of the last of 24 bits; -3..104
+  const uint64_t m = static_cast<uint64_t>((bits_of(x) & 0xFFFFFFFFFFFFF) >> 29 | 1 << 23);
+  // The product's bits from 4 on: they start `skipped` bits behind the point of 2 / pi.
+  const int skipped = exponent > 2 ? exponent - 2 : 0;
+  uint32_t window[3];
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t* const word = kTwoOverPi + skipped / 32 + i;
+    const int shift = skipped % 32;
+    window[i] = shift == 0 ? word[0] : word[0] << shift | word[1] >> (32 - shift);
+  }
+  // m * window as a number of 96 bits; what is above it are whole turns.
+  const uint64_t low = m * window[2], middle = m * window[1] + (low >> 32);
+  const uint64_t high = m * window[0] + (middle >> 32);
+  // In front of the point there are `whole` bits of the 96, and all that is above them.
+  const int whole = exponent - skipped;  // -3..2
+  const uint64_t above = high >> 32;
+  uint64_t behind = high << 32 | (middle & 0xFFFFFFFF);
+  int quadrant;
+  if (whole > 0) {
+    quadrant = static_cast<int>(above << whole | behind >> (64 - whole));
+    behind = behind << whole | (low & 0xFFFFFFFF) >> (32 - whole);
+  } else {
+    quadrant = static_cast<int>(above >> -whole);
+    if (whole < 0) behind = above << (64 + whole) | behind >> -whole;
+  }
+  const bool to_next = behind >> 63 != 0;  // it is nearer
+  if (to_next) {
+    ++quadrant;
+    behind = 0 - behind;
+  }
+  const double size = static_cast<double>(static_cast<int64_t>(behind >> 1)) * 0x1p-63;
+  const double fraction = to_next ? -size : size;
+  const double rest = fraction * (kPi / 2);
+  return x < 0 ? Angle{-quadrant & 3, -rest} : Angle{quadrant & 3, rest};
+}
+
+/// pi / 2 in three parts, of which the first two have 33 bits, so that their products are exact.
+Angle reduce(double x) {
+  if (size_of(x) >= 0x1p20) return size_of(x) <= kLargest ? reduce_large(x) : Angle{0, 0};
+  const int64_t k = nearest(x * (2 / kPi));
+  const double n = static_cast<double>(k);
+  return {static_cast<int>(k & 3), x - n * 0x1.921FB544p0 - n * 0x1.0B4611A6p-34 - n * 0x1.3198A2E037073p-69};
+}
+/// |x| <= pi / 4: the series, whose next term is below 1e-13.
+double small_sine(double x) {
+  const double s = x * x;
+  return x + x * s *
+                 polynomial(s, {-1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
+                                1.0 / 6227020800.0});
+}
+double small_cosine(double x) {
+  const double s = x * x;
+  return 1 + s * polynomial(s, {-1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
+                                -1.0 / 87178291200.0});
+}
+double sine_in(int quadrant, double x) {
+  const double value = (quadrant & 1) != 0 ? small_cosine(x) : small_sine(x);
+  return (quadrant & 2) != 0 ? -value : value;
+}
+double sine(double x) {
+  const Angle a = reduce(x);
+  return sine_in(a.quadrant, a.rest);
+}
+double cosine(double x) {
+  const Angle a = reduce(x);
+  return sine_in(a.quadrant + 1, a.rest);
+}
+double tangent(double x) {
+  const Angle a = reduce(x);
+  return sine_in(a.quadrant, a.rest) / sine_in(a.quadrant + 1, a.rest);
+}
+
+double arc_tangent(double x) {
+  const double size = size_of(x);
   // Beyond tan(pi / 8) by the angles between it and pi / 4 or pi / 2.
   const double base = size > 2.414213562373095 ? kPi / 2 : size > 0.4142135623730950 ? kPi / 4 : 0;
   const double t = size > 2.414213562373095    ? -1 / size
@@ -172,71 +356,183 @@ double atan(double x) {
   const double q = t * t;
   const double series = polynomial(q, {1, -1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11, 1.0 / 13,
                                        -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25});
-  return copysign(base + t * series, x);
+  return with_sign_of(base + t * series, x);
 }
-double atan2(double y, double x) {
+double arc_tangent_of(double y, double x) {
   if (x == 0 && y == 0) return 0;
-  if (fabs(y) > fabs(x)) return copysign(kPi / 2, y) - atan(x / y);
-  const double angle = atan(y / x);
-  return x > 0 ? angle : angle + copysign(kPi, y);
+  if (size_of(y) > size_of(x)) return with_sign_of(kPi / 2, y) - arc_tangent(x / y);
+  const double angle = arc_tangent(y / x);
+  return x > 0 ? angle : angle + with_sign_of(kPi, y);
 }
-double asin(double x) { return fabs(x) > 1 ? 0 : atan2(x, sqrt((1 - x) * (1 + x))); }
-double acos(double x) { return fabs(x) > 1 ? 0 : atan2(sqrt((1 - x) * (1 + x)), x); }
+double arc_sine(double x) { return size_of(x) > 1 ? 0 : arc_tangent_of(x, root_of((1 - x) * (1 + x))); }
+double arc_cosine(double x) { return size_of(x) > 1 ? 0 : arc_tangent_of(root_of((1 - x) * (1 + x)), x); }
 
-double sinh(double x) {
-  if (fabs(x) < 0.5) {  // where the difference of exponentials would lose digits
+// ---- hyperbolic functions
+
+double hyperbolic_sine(double x) {
+  if (size_of(x) < 0.5) {  // where the difference of exponentials would lose digits
     const double s = x * x;
     return x + x * s * polynomial(s, {1.0 / 6, 1.0 / 120, 1.0 / 5040, 1.0 / 362880, 1.0 / 39916800});
   }
-  const double e = exp(fabs(x));
-  return copysign((e - 1 / e) / 2, x);
+  const double e = exponential(size_of(x));
+  return with_sign_of((e - 1 / e) / 2, x);
 }
-double cosh(double x) {
-  const double e = exp(fabs(x));
+double hyperbolic_cosine(double x) {
+  const double e = exponential(size_of(x));
   return (e + 1 / e) / 2;
 }
-double tanh(double x) { return fabs(x) > 20 ? copysign(1, x) : sinh(x) / cosh(x); }
+double hyperbolic_tangent(double x) {
+  return size_of(x) > 20 ? with_sign_of(1, x) : hyperbolic_sine(x) / hyperbolic_cosine(x);
+}
+double area_hyperbolic_sine(double x) {
+  const double size = size_of(x);
+  const double area = size > 0x1p30 ? natural_logarithm(size) + kLn2
+                                    : logarithm_of_1_and(size + size * size / (1 + root_of(size * size + 1)));
+  return with_sign_of(area, x);
+}
+double area_hyperbolic_cosine(double x) {
+  if (!(x >= 1)) return 0;
+  const double t = x - 1;
+  return x > 0x1p30 ? natural_logarithm(x) + kLn2 : logarithm_of_1_and(t + root_of(2 * t + t * t));
+}
+double area_hyperbolic_tangent(double x) {
+  if (size_of(x) >= 1) return size_of(x) == 1 ? with_sign_of(kLargest, x) : 0;
+  return 0.5 * logarithm_of_1_and(2 * x / (1 - x));
+}
 
-static float to_float(double x) {
+double lesser(double x, double y) { return x < y ? x : y; }
+double greater(double x, double y) { return x > y ? x : y; }
+double positive_difference(double x, double y) { return x > y ? x - y : 0; }
+double exponent_of(double x) {
+  if (x == 0) return -kLargest;
+  int exponent;
+  parted(x, &exponent);
+  return exponent - 1;
+}
+
+// ---- floats
+
+/// What has the largest exponent is a number on an SPU, larger than any that is computed with here: the largest float stands for it.
+double from_float(float x) {
+  uint32_t bits;
+  __builtin_memcpy(&bits, &x, sizeof bits);
+  if ((bits & 0x7F800000) == 0x7F800000) return (bits >> 31) != 0 ? -kLargest : kLargest;
+  return static_cast<double>(x);
+}
+float to_float(double x) {
+  if (size_of(x) < kSmallest) {
+    // What the rounding lifts to the smallest.
+    if (size_of(x) < 0x1.FFFFFFp-127) return 0;
+    return static_cast<float>(with_sign_of(kSmallest, x));
+  }
   return static_cast<float>(x > kLargest ? kLargest : x < -kLargest ? -kLargest : x);
 }
 
-#define SC_FLOAT_1(name) \
-  float name##f(float x) { return to_float(name(x)); }
-#define SC_FLOAT_2(name) \
-  float name##f(float x, float y) { return to_float(name(x, y)); }
-SC_FLOAT_1(sqrt)
-SC_FLOAT_1(cbrt)
-SC_FLOAT_1(exp)
-SC_FLOAT_1(exp2)
-SC_FLOAT_1(log)
-SC_FLOAT_1(log2)
-SC_FLOAT_1(log10)
-SC_FLOAT_1(sin)
-SC_FLOAT_1(cos)
-SC_FLOAT_1(tan)
-SC_FLOAT_1(asin)
-SC_FLOAT_1(acos)
-SC_FLOAT_1(atan)
-SC_FLOAT_1(sinh)
-SC_FLOAT_1(cosh)
-SC_FLOAT_1(tanh)
-SC_FLOAT_1(floor)
-SC_FLOAT_1(ceil)
-SC_FLOAT_1(trunc)
-SC_FLOAT_1(round)
-SC_FLOAT_1(fabs)
-SC_FLOAT_2(pow)
-SC_FLOAT_2(atan2)
-SC_FLOAT_2(hypot)
-SC_FLOAT_2(fmod)
-SC_FLOAT_2(fmin)
-SC_FLOAT_2(fmax)
-SC_FLOAT_2(copysign)
-float ldexpf(float x, int exponent) { return to_float(ldexp(x, exponent)); }
+template <double (*kFunction)(double)>
+inline double computed(double x) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(kFunction(as_it_is_here(x)));
+}
+template <double (*kFunction)(double, double)>
+inline double computed(double x, double y) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(kFunction(as_it_is_here(x), as_it_is_here(y)));
+}
+template <double (*kFunction)(double)>
+inline float computed(float x) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(to_float(kFunction(from_float(as_it_is_here(x)))));
+}
+template <double (*kFunction)(double, double)>
+inline float computed(float x, float y) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(to_float(kFunction(from_float(as_it_is_here(x)), from_float(as_it_is_here(y)))));
+}
+
+}  // namespace
+
+extern "C" {
+
+#define SC_OF_1(name, function)                           \
+  double name(double x) { return computed<function>(x); } \
+  float name##f(float x) { return computed<function>(x); }
+#define SC_OF_2(name, function)                                        \
+  double name(double x, double y) { return computed<function>(x, y); } \
+  float name##f(float x, float y) { return computed<function>(x, y); }
+SC_OF_1(sqrt, root_of)
+SC_OF_1(cbrt, cube_root)
+SC_OF_1(exp, exponential)
+SC_OF_1(exp2, exponential_of_2)
+SC_OF_1(expm1, exponential_less_1)
+SC_OF_1(log, natural_logarithm)
+SC_OF_1(log2, logarithm_to_2)
+SC_OF_1(log10, logarithm_to_10)
+SC_OF_1(log1p, logarithm_of_1_and)
+SC_OF_1(logb, exponent_of)
+SC_OF_1(sin, sine)
+SC_OF_1(cos, cosine)
+SC_OF_1(tan, tangent)
+SC_OF_1(asin, arc_sine)
+SC_OF_1(acos, arc_cosine)
+SC_OF_1(atan, arc_tangent)
+SC_OF_1(sinh, hyperbolic_sine)
+SC_OF_1(cosh, hyperbolic_cosine)
+SC_OF_1(tanh, hyperbolic_tangent)
+SC_OF_1(asinh, area_hyperbolic_sine)
+SC_OF_1(acosh, area_hyperbolic_cosine)
+SC_OF_1(atanh, area_hyperbolic_tangent)
+SC_OF_1(floor, floor_of)
+SC_OF_1(ceil, ceil_of)
+SC_OF_1(trunc, truncated)
+SC_OF_1(round, rounded)
+SC_OF_1(rint, rounded_to_even)
+SC_OF_1(nearbyint, rounded_to_even)
+SC_OF_1(fabs, size_of)
+SC_OF_2(pow, power)
+SC_OF_2(atan2, arc_tangent_of)
+SC_OF_2(hypot, hypotenuse)
+SC_OF_2(fmod, remainder_towards_zero)
+SC_OF_2(remainder, remainder_to_nearest)
+SC_OF_2(fmin, lesser)
+SC_OF_2(fmax, greater)
+SC_OF_2(fdim, positive_difference)
+SC_OF_2(copysign, with_sign_of)
+
+double ldexp(double x, int exponent) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(scaled(as_it_is_here(x), exponent));
+}
+float ldexpf(float x, int exponent) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(to_float(scaled(from_float(as_it_is_here(x)), exponent)));
+}
+double scalbn(double x, int exponent) { return ldexp(x, exponent); }
+float scalbnf(float x, int exponent) { return ldexpf(x, exponent); }
+double scalbln(double x, long exponent) { return ldexp(x, static_cast<int>(exponent)); }
+float scalblnf(float x, long exponent) { return ldexpf(x, static_cast<int>(exponent)); }
+double frexp(double x, int* exponent) { return parted(x, exponent); }
+float frexpf(float x, int* exponent) { return static_cast<float>(parted(from_float(x), exponent)); }
+int ilogb(double x) { return x == 0 ? FP_ILOGB0 : static_cast<int>(logb(x)); }
+int ilogbf(float x) { return x == 0 ? FP_ILOGB0 : static_cast<int>(logbf(x)); }
+double modf(double x, double* whole) {
+  *whole = trunc(x);
+  return copysign(x - *whole, x);
+}
 float modff(float x, float* whole) {
   *whole = truncf(x);
-  return x - *whole;
+  return copysignf(x - *whole, x);
 }
+float fmaf(float x, float y, float z) {
+  const DoubleArithmetic rounding;
+  return as_it_is_here(to_float(from_float(as_it_is_here(x)) * from_float(y) + from_float(as_it_is_here(z))));
+}
+
+#define SC_TO_INTEGER(type, name, function)                      \
+  type name(double x) { return static_cast<type>(function(x)); } \
+  type name##f(float x) { return static_cast<type>(function##f(x)); }
+SC_TO_INTEGER(long, lrint, rint)
+SC_TO_INTEGER(long long, llrint, rint)
+SC_TO_INTEGER(long, lround, round)
+SC_TO_INTEGER(long long, llround, round)
 
 }  // extern "C"

@@ -1,44 +1,11 @@
-// stdio.h: each function is a call of the PPU side. [newlib, jsre.h] documented
+// stdio.h: what prints.
 
-#include <softcell_environment.h>
 #include <stdio.h>
+#include <string.h>
 
-namespace {
+#include "assist.h"
 
-/// The value of one argument, in word 0 of a quadword.
-struct alignas(16) Argument {
-  uint32_t value;
-};
-template <class T>
-Argument argument(T value) {
-  return {static_cast<uint32_t>(value)};
-}
-template <class T>
-Argument argument(T* pointer) {
-  return {static_cast<uint32_t>(reinterpret_cast<uintptr_t>(pointer))};
-}
-
-enum Call : uint32_t {
-  kFflush = 5,
-  kFputc = 11,
-  kFputs = 12,
-  kFwrite = 18,
-  kPutchar = 24,
-  kPuts = 25,
-  kVfprintf = 35,
-  kVprintf = 37,
-  kVsnprintf = 39
-};
-
-template <class... Values>
-int call(Call function, Values... values) {
-  Argument arguments[] = {argument(values)...};
-  const uint32_t request =
-      static_cast<uint32_t>(function) << 24 | softcell_sdk::local_store_address(arguments);
-  return static_cast<int>(softcell_sdk::call_gate(softcell_sdk::kAssist, 0, request));
-}
-
-}  // namespace
+using namespace softcell_library;
 
 extern "C" {
 
@@ -71,5 +38,13 @@ size_t fwrite(const void* from, size_t bytes, size_t count, FILE* file) {
   return static_cast<size_t>(call(kFwrite, from, bytes, count, file));
 }
 int fflush(FILE* file) { return call(kFflush, file); }
+
+void perror(const char* text) {
+  const char* const said = strerror(errno);
+  if (text != nullptr && *text != '\0')
+    fprintf(stderr, "%s: %s\n", text, said);
+  else
+    fprintf(stderr, "%s\n", said);
+}
 
 }  // extern "C"

@@ -1,6 +1,7 @@
 // Strings, and kinds of characters in the locale "C".
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -105,6 +106,42 @@ char* strdup(const char* s) {
   const size_t bytes = strlen(s) + 1;
   auto* const copy = static_cast<char*>(malloc(bytes));
   return copy == nullptr ? nullptr : static_cast<char*>(memcpy(copy, s, bytes));
+}
+
+char* strerror(int error) {
+  static const struct {
+    int number;
+    const char* text;
+  } kErrors[] = {{0, "Success"},
+                 {EPERM, "Operation not permitted"},
+                 {ENOENT, "No such file or directory"},
+                 {EINTR, "Interrupted system call"},
+                 {EIO, "Input/output error"},
+                 {EBADF, "Bad file descriptor"},
+                 {EAGAIN, "Resource temporarily unavailable"},
+                 {ENOMEM, "Cannot allocate memory"},
+                 {EACCES, "Permission denied"},
+                 {EFAULT, "Bad address"},
+                 {EBUSY, "Device or resource busy"},
+                 {EEXIST, "File exists"},
+                 {EXDEV, "Invalid cross-device link"},
+                 {ENOTDIR, "Not a directory"},
+                 {EISDIR, "Is a directory"},
+                 {EINVAL, "Invalid argument"},
+                 {ENFILE, "Too many open files in system"},
+                 {EMFILE, "Too many open files"},
+                 {EFBIG, "File too large"},
+                 {ENOSPC, "No space left on device"},
+                 {ESPIPE, "Illegal seek"},
+                 {EROFS, "Read-only file system"},
+                 {EPIPE, "Broken pipe"},
+                 {EDOM, "Numerical argument out of domain"},
+                 {ERANGE, "Numerical result out of range"},
+                 {ENAMETOOLONG, "File name too long"},
+                 {ENOSYS, "Function not implemented"}};
+  for (const auto& known : kErrors)
+    if (known.number == error) return const_cast<char*>(known.text);
+  return const_cast<char*>("Unknown error");
 }
 
 }  // extern "C"

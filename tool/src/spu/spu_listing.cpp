@@ -179,6 +179,7 @@ int run_spu_timing(const SpuListingOptions& options) {
     buffers.emplace(memory, task);
     const ls_sim::HostCalls host_calls{.standard_output = write_to_standard_output,
                                        .standard_error = write_to_standard_output,
+                                       .standard_input = {},
                                        .folder = {}};
     run = run_kernel(memory, image, *buffers, task,
                      {.schedule = options.schedule,

@@ -1,11 +1,15 @@
 // softcell spu run: one kernel on the user's own data.
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -31,8 +35,15 @@ ls_sim::HostCalls host_calls_of(const SpuRunOptions& options) {
       std::fflush(file);
     };
   };
+  const auto read_input = [](std::span<char> to) -> std::optional<std::size_t> {
+    constexpr int kMilliseconds = 50;
+    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (poll(&input, 1, kMilliseconds) == 0) return std::nullopt;
+    return static_cast<std::size_t>(std::max<ssize_t>(read(STDIN_FILENO, to.data(), to.size()), 0));
+  };
   return {.standard_output = printing_to(stdout),
           .standard_error = printing_to(stderr),
+          .standard_input = read_input,
           .folder = options.folder};
 }
 

@@ -57,7 +57,8 @@ class SpuVerbs final : public Verb {
                   "operation and SPEs take turns, so that a run is the same every time")
         ->type_name("host|simulated");
     r->add_flag("--host-calls", run_.host_calls,
-                "Serve the calls of programs built for the SPU that print (stop 0x2100 and 0x2101)");
+                "Serve the calls of programs built for the SPU that print, read and open files (stop 0x2100 "
+                "and 0x2101)");
     r->add_option("--folder", run_.folder,
                   "With --host-calls: a folder in which the program may open, create and remove files")
         ->type_name("FOLDER")

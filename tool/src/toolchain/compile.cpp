@@ -85,9 +85,8 @@ void compile_flavour(const Input& source, const std::filesystem::path& object, b
   command = command_of(Language::kC, checked, places);
   command[2] = "cpp-output";
   append(command, options.compiler);
-  append(command, {"-Wno-unused-command-line-argument", "-c", rewritten, "-o", object.string()});
-  if (std::string_view(settings::kCompilerName) == "g++")
-    std::erase(command, "-Wno-unused-command-line-argument");
+  append(command, flags_of(settings::kCRewrittenFlags, places));
+  append(command, {"-c", rewritten, "-o", object.string()});
   go(command);
 }
 

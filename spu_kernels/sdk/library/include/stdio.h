@@ -1,14 +1,22 @@
 #pragma once
-// Output on the PPU side: each call stops the SPE until the PPU side has served it. There are no files and no input. [C17, 7.21]
+// Streams on the PPU side: each call stops the SPE until the PPU side has served it. Files are those of the process that runs the PPU side.
+// [C17, 7.21]
 
 #include <stdarg.h>
 #include <stddef.h>
 #include <sys/cdefs.h>
 
 typedef struct softcell_file FILE;
+#define stdin ((FILE*)1)
 #define stdout ((FILE*)2)
 #define stderr ((FILE*)3)
 #define EOF (-1)
+#define BUFSIZ 1024
+#define FILENAME_MAX 4096
+#define FOPEN_MAX 64
+#define SEEK_SET 0
+#define SEEK_CUR 1
+#define SEEK_END 2
 
 __BEGIN_DECLS
 int printf(const char* format, ...) __attribute__((format(printf, 1, 2)));
@@ -26,4 +34,32 @@ int fputc(int c, FILE* file);
 int putc(int c, FILE* file);
 size_t fwrite(const void* from, size_t bytes, size_t count, FILE* file);
 int fflush(FILE* file);
+void perror(const char* text);
+
+int scanf(const char* format, ...) __attribute__((format(scanf, 1, 2)));
+int fscanf(FILE* file, const char* format, ...) __attribute__((format(scanf, 2, 3)));
+int sscanf(const char* text, const char* format, ...) __attribute__((format(scanf, 2, 3)));
+int vscanf(const char* format, va_list arguments);
+int vfscanf(FILE* file, const char* format, va_list arguments);
+int vsscanf(const char* text, const char* format, va_list arguments);
+int getchar(void);
+int fgetc(FILE* file);
+int getc(FILE* file);
+int ungetc(int c, FILE* file);
+char* fgets(char* to, int bytes, FILE* file);
+size_t fread(void* to, size_t bytes, size_t count, FILE* file);
+
+/// At most FOPEN_MAX streams of all SPEs together. @return  null is an error, and errno says which
+FILE* fopen(const char* path, const char* mode);
+FILE* tmpfile(void);
+int fclose(FILE* file);
+int fseek(FILE* file, long offset, int from);
+long ftell(FILE* file);
+void rewind(FILE* file);
+int feof(FILE* file);
+int ferror(FILE* file);
+void clearerr(FILE* file);
+int fileno(FILE* file);
+int remove(const char* path);
+int rename(const char* from, const char* to);
 __END_DECLS

@@ -40,6 +40,12 @@ long strtol(const char* text, char** end, int base);
 unsigned long strtoul(const char* text, char** end, int base);
 long long strtoll(const char* text, char** end, int base);
 unsigned long long strtoull(const char* text, char** end, int base);
+/// The nearest double of a number with up to 19 significant digits; more of them count only where these lie exactly between two doubles.
+/// What is smaller than the smallest normal double is 0, and what is too large infinite; both set errno to ERANGE.
+double strtod(const char* text, char** end);
+/// The float nearest to that double, where too large ones are the largest.
+float strtof(const char* text, char** end);
+double atof(const char* text);
 
 /// The same numbers in every run. rand() is 0..RAND_MAX.
 int rand(void);

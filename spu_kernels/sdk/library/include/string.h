@@ -29,4 +29,6 @@ char* strpbrk(const char* s, const char* these);
 char* strtok(char* s, const char* separators);
 char* strtok_r(char* s, const char* separators, char** rest);
 char* strdup(const char* s);
+/// Of a number in errno.h.
+char* strerror(int error);
 __END_DECLS

@@ -6,6 +6,7 @@
 
 typedef int ssize_t;
 typedef long off_t;
+typedef unsigned int mode_t;
 typedef unsigned int uint;
 typedef unsigned short ushort;
 typedef unsigned char u_char;

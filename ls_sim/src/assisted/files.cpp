@@ -1,0 +1,82 @@
+#include "files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <utility>
+
+namespace softcell::ls_sim::assisted {
+namespace {
+
+constexpr std::uint32_t kFirstHandle = kStandardError + 1;
+constexpr std::size_t kMostStreams = 64;
+
+class FilesOfProcess final : public Files {
+ public:
+  int open(const std::string& path, int flags, unsigned int mode) override {
+    return ::open(path.c_str(), flags, mode);
+  }
+  int remove(const std::string& path) override { return std::remove(path.c_str()); }
+  int rename(const std::string& from, const std::string& to) override {
+    return std::rename(from.c_str(), to.c_str());
+  }
+  int add_descriptor(int descriptor) override { return descriptor; }
+  int descriptor_of(std::uint32_t number) override { return static_cast<int>(number); }
+  int close_descriptor(std::uint32_t number) override { return close(static_cast<int>(number)); }
+
+ protected:
+  Stream standard_stream(std::uint32_t handle) override {
+    std::FILE* const stream = handle == kStandardInput ? stdin : handle == kStandardOutput ? stdout : stderr;
+    return {stream, [](std::FILE*) {}};
+  }
+};
+
+}  // namespace
+
+Files& files_of_process() {
+  static FilesOfProcess files;
+  return files;
+}
+
+std::uint32_t Files::add_stream(std::FILE* opened) {
+  if (opened == nullptr) return 0;
+  Stream stream(opened, &std::fclose);
+  const std::lock_guard lock(mutex_);
+  auto free = std::ranges::find(streams_, nullptr);
+  if (free == streams_.end()) {
+    if (streams_.size() == kMostStreams) return errno = EMFILE, 0;
+    free = streams_.emplace(streams_.end());
+  }
+  *free = std::move(stream);
+  return static_cast<std::uint32_t>(free - streams_.begin()) + kFirstHandle;
+}
+
+Stream Files::stream(std::uint32_t handle) {
+  if (handle >= kStandardInput && handle <= kStandardError) return standard_stream(handle);
+  const std::lock_guard lock(mutex_);
+  const std::size_t index = std::size_t{handle} - kFirstHandle;
+  if (index < streams_.size() && streams_[index] != nullptr) return streams_[index];
+  errno = EBADF;
+  return nullptr;
+}
+
+/// What is still in its buffer is written here, so that an error is the caller's.
+int Files::close_stream(std::uint32_t handle) {
+  const Stream closed = stream(handle);
+  if (closed == nullptr) return EOF;
+  const int result = std::fflush(closed.get());
+  if (handle < kFirstHandle) return result;  // the process goes on to use it
+  const std::lock_guard lock(mutex_);
+  streams_[handle - kFirstHandle] = nullptr;
+  return result;
+}
+
+void Files::close_streams() {
+  const std::lock_guard lock(mutex_);
+  streams_.clear();
+}
+
+}  // namespace softcell::ls_sim::assisted

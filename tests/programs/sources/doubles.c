@@ -1,0 +1,47 @@
+/* math.h: each function of doubles at a place where its value is known, and what takes or gives integers. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "check.h"
+
+static int near(double a, double b) { return fabs(a - b) <= 1e-11 * (fabs(b) + 1e-3); }
+
+static void functions(void) {
+  CHECK(sqrt(2) == 0x1.6A09E667F3BCDp0 && near(cbrt(-27), -3) && near(hypot(3, 4), 5) && near(pow(2, 0.5), sqrt(2)) && pow(-2, 3) == -8);
+  CHECK(near(exp(1), M_E) && near(exp2(-3), 0.125) && near(expm1(1e-9), 1.0000000005e-9) && near(log(M_E), 1) && near(log2(8), 3));
+  CHECK(near(log10(1000), 3) && near(log1p(1e-9), 9.999999995e-10) && logb(10) == 3 && logb(0.3) == -2);
+  CHECK(near(sin(1), 0.8414709848078965) && near(cos(1), 0.5403023058681398) && near(tan(1), 1.5574077246549022));
+  CHECK(near(asin(0.5), M_PI / 6) && near(acos(0.5), M_PI / 3) && near(atan(1), M_PI_4) && near(atan2(-1, -1), -3 * M_PI_4));
+  CHECK(near(sinh(1), 1.1752011936438014) && near(cosh(1), 1.5430806348152437) && near(tanh(0.5), 0.46211715726000973));
+  CHECK(near(asinh(1), 0.881373587019543) && near(acosh(2), 1.3169578969248167) && near(atanh(0.5), 0.5493061443340549));
+  CHECK(floor(-2.5) == -3 && ceil(-2.5) == -2 && trunc(-2.5) == -2 && round(-2.5) == -3 && rint(-2.5) == -2 && nearbyint(3.5) == 4);
+  CHECK(fmod(-7, 3) == -1 && remainder(7, 4) == -1 && remainder(6, 4) == -2 && fmin(1, 2) == 1 && fmax(1, 2) == 2 && fdim(3, 1) == 2);
+  CHECK(copysign(1, -0.0) == -1 && fabs(-1.5) == 1.5 && fdim(1, 3) == 0);
+}
+
+static void parts(void) {
+  int exponent;
+  double whole;
+  float whole_f;
+  CHECK(frexp(-12, &exponent) == -0.75 && exponent == 4 && ldexp(-0.75, 4) == -12 && scalbn(1, 10) == 1024 && scalbln(1, -1) == 0.5);
+  CHECK(frexpf(0.375f, &exponent) == 0.75f && exponent == -1 && ldexpf(1, -126) > 0 && ldexpf(1, -127) == 0 && ldexpf(1, 200) == HUGE_VALF);
+  CHECK(scalbnf(3, 2) == 12 && scalblnf(3, -1) == 1.5f && ilogb(1000) == 9 && ilogbf(0.1f) == -4 && ilogb(0) == FP_ILOGB0);
+  CHECK(modf(-3.25, &whole) == -0.25 && whole == -3 && modff(2.5f, &whole_f) == 0.5f && whole_f == 2);
+  CHECK(lrint(2.5) == 2 && lround(2.5) == 3 && llrint(-1e12) == -1000000000000ll && llround(0.5) == 1);
+  CHECK(lrintf(-2.5f) == -2 && lroundf(-2.5f) == -3 && llrintf(3.5f) == 4 && llroundf(1e10f) == 10000000000ll);
+}
+
+static void floats(void) {
+  CHECK(fmaf(3, 4, -12) == 0 && fmaf(0x1.000002p0f, 0x1.000002p0f, -1) == 0x1p-22f);
+  CHECK(fminf(1, 2) == 1 && fmaxf(1, 2) == 2 && fdimf(5, 2) == 3 && copysignf(2, -1) == -2 && remainderf(5, 3) == -1);
+  CHECK(fmodf(5.5f, -2) == 1.5f && powf(2, 10) == 1024 && atan2f(0, 0) == 0 && hypotf(6, 8) == 10);
+  CHECK(sqrtf(-1) == 0 && logf(-1) == 0 && logf(0) == -HUGE_VALF && asinf(2) == 0 && expf(100) == HUGE_VALF && expf(-100) == 0);
+  CHECK(isfinite(1.0) && !isfinite(HUGE_VAL) && isnan(NAN) && isinf(-HUGE_VAL) && signbit(-1.0) && fpclassify(0.0) == FP_ZERO && isnormal(1.0));
+}
+
+int main(void) {
+  functions();
+  parts();
+  floats();
+  exit(failures);
+}

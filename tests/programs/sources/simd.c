@@ -1,0 +1,93 @@
+/* simdmath.h: each lane has what math.h gives for it. */
+#include <simdmath.h>
+#include <simdmath/divf4.h>
+#include <simdmath/sinf4.h>
+#include <stdlib.h>
+
+#include "check.h"
+
+#define LANE(v, i) spu_extract(v, i)
+static const vec_float4 a = {0.25f, 0.5f, 0.75f, 0.125f}, b = {1.5f, -2.0f, 3.25f, 1.0f};
+
+#define OF_ONE(name)                                                     \
+  do {                                                                   \
+    int lane;                                                            \
+    const vec_float4 v = _##name##4(a);                                  \
+    for (lane = 0; lane < 4; ++lane) CHECK(LANE(v, lane) == name(LANE(a, lane))); \
+  } while (0)
+#define OF_TWO(name)                                                     \
+  do {                                                                   \
+    int lane;                                                            \
+    const vec_float4 v = name##4(a, b);                                  \
+    for (lane = 0; lane < 4; ++lane) CHECK(LANE(v, lane) == name(LANE(a, lane), LANE(b, lane))); \
+  } while (0)
+#define OF_DOUBLES(name)                                                 \
+  do {                                                                   \
+    const vec_double2 v = name##d2(x);                                   \
+    CHECK(LANE(v, 0) == name(LANE(x, 0)) && LANE(v, 1) == name(LANE(x, 1))); \
+  } while (0)
+
+static int near(vec_float4 v, vec_float4 w, float ulps) {
+  int lane;
+  for (lane = 0; lane < 4; ++lane)
+    if (fabsf(LANE(v, lane) - LANE(w, lane)) > ulps * 0x1p-23f * fabsf(LANE(w, lane))) return 0;
+  return 1;
+}
+
+int main(void) {
+  const vec_double2 x = {2.25, -0.5}, y = {0.5, 2.0};
+  const vec_float4 third = {1 / 0.25f, 1 / 0.5f, 1 / 0.75f, 1 / 0.125f};
+  const vec_int4 steps = {1, -1, 0, 3};
+  vec_float4 sine, cosine;
+  OF_ONE(sqrtf);
+  OF_ONE(cbrtf);
+  OF_ONE(expf);
+  OF_ONE(exp2f);
+  OF_ONE(expm1f);
+  OF_ONE(logf);
+  OF_ONE(log2f);
+  OF_ONE(log10f);
+  OF_ONE(log1pf);
+  OF_ONE(logbf);
+  OF_ONE(sinf);
+  OF_ONE(cosf);
+  OF_ONE(tanf);
+  OF_ONE(asinf);
+  OF_ONE(acosf);
+  OF_ONE(atanf);
+  OF_ONE(sinhf);
+  OF_ONE(coshf);
+  OF_ONE(tanhf);
+  OF_ONE(asinhf);
+  OF_ONE(atanhf);
+  OF_ONE(floorf);
+  OF_ONE(ceilf);
+  OF_ONE(truncf);
+  OF_ONE(roundf);
+  OF_ONE(rintf);
+  OF_ONE(nearbyintf);
+  OF_TWO(powf);
+  OF_TWO(atan2f);
+  OF_TWO(hypotf);
+  OF_TWO(fmodf);
+  OF_TWO(remainderf);
+  OF_TWO(fdimf);
+  OF_DOUBLES(sqrt);
+  OF_DOUBLES(exp);
+  OF_DOUBLES(log);
+  OF_DOUBLES(sin);
+  OF_DOUBLES(cos);
+  OF_DOUBLES(tan);
+  OF_DOUBLES(floor);
+  OF_DOUBLES(ceil);
+  OF_DOUBLES(fabs);
+  CHECK(LANE(acoshf4(third), 0) == acoshf(4.0f));
+  CHECK(near(recipf4(a), third, 2) && near(divf4(b, a), spu_mul(b, third), 3) && near(rsqrtf4(a), sqrtf4(third), 3));
+  CHECK(LANE(fminf4(a, b), 1) == -2.0f && LANE(fmaxf4(a, b), 1) == 0.5f && LANE(copysignf4(a, b), 1) == -0.5f);
+  CHECK(LANE(fabsf4(b), 1) == 2.0f && LANE(negatef4(b), 1) == 2.0f && LANE(absi4(steps), 1) == 1);
+  CHECK(LANE(fmaf4(a, b, a), 2) == 0.75f * 3.25f + 0.75f && LANE(ldexpf4(a, steps), 3) == 1.0f && LANE(ldexpf4(a, steps), 1) == 0.25f);
+  sincosf4(a, &sine, &cosine);
+  CHECK(LANE(sine, 2) == sinf(0.75f) && LANE(cosine, 3) == cosf(0.125f));
+  CHECK(LANE(powd2(fabsd2(x), y), 0) == pow(2.25, 0.5) && LANE(fmodd2(x, y), 1) == -0.5 && LANE(divd2(x, y), 0) == 4.5);
+  exit(failures);
+}

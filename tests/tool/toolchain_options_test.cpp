@@ -1,0 +1,126 @@
+// The command lines of softcell-spu-gcc and its kin.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "support/scratch_folder.h"
+#include "toolchain/options.h"
+
+namespace softcell::toolchain {
+namespace {
+
+Options parsed(const Words& words, Language language = Language::kC) {
+  return parse_compiler_options(words, language);
+}
+
+/// What is said of words that cannot be followed; empty if they can.
+std::string refusal(const Words& words) {
+  try {
+    parse_compiler_options(words, Language::kC);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(ToolchainOptions, SayHowFarTheCompilerGoes) {
+  EXPECT_EQ(parsed({"a.c"}).step, Step::kLink);
+  EXPECT_EQ(parsed({"-c", "a.c"}).step, Step::kCompile);
+  EXPECT_EQ(parsed({"-E", "a.c"}).step, Step::kPreprocess);
+  EXPECT_EQ(parsed({"-M", "a.c"}).step, Step::kDependencies);
+  EXPECT_EQ(parsed({"-MM", "-c", "a.c"}).step, Step::kDependencies);
+  EXPECT_EQ(parsed({"-MD", "-c", "a.c"}).step, Step::kCompile);
+  EXPECT_EQ(parsed({"-oprogram", "a.c"}).output, "program");
+  EXPECT_EQ(parsed({"-o", "program", "a.c"}).output, "program");
+  EXPECT_TRUE(parsed({"-r", "a.o", "b.o"}).relocatable);
+  EXPECT_TRUE(parsed({"-v", "a.c"}).verbose);
+}
+
+TEST(ToolchainOptions, KnowLanguagesByNameOptionAndCommand) {
+  const Options options =
+      parsed({"a.c", "b.cpp", "d.o", "-x", "c++", "e.c", "-xc", "f.cpp", "-x", "none", "g.C", "h.cc"});
+  ASSERT_EQ(options.inputs.size(), 7u);
+  const std::optional<Language> expected[] = {Language::kC, Language::kCxx, std::nullopt,  Language::kCxx,
+                                              Language::kC, Language::kCxx, Language::kCxx};
+  for (std::size_t i = 0; i < 7; ++i)
+    EXPECT_EQ(options.inputs[i].language, expected[i]) << options.inputs[i].file;
+  EXPECT_EQ(parsed({"a.c"}, Language::kCxx).inputs[0].language, Language::kCxx);
+  EXPECT_EQ(parsed({"-"}).inputs[0].language, Language::kC);
+}
+
+TEST(ToolchainOptions, GoToTheStepThatTheyAreFor) {
+  const Options options =
+      parsed({"-Iinclude", "-I", "more", "-DONE", "-D", "TWO=2", "-UX", "-include", "first.h", "-MMD", "-MF",
+              "a.d", "-Wall", "-w", "-std=c99", "-fwrapv", "-Wl,-Map=a.map,-z,stack-size=5000", "a.c"});
+  EXPECT_EQ(options.preprocessor, (Words{"-Iinclude", "-I", "more", "-DONE", "-D", "TWO=2", "-UX", "-include",
+                                         "first.h", "-MMD", "-MF", "a.d"}));
+  EXPECT_EQ(options.compiler, (Words{"-Wall", "-w", "-std=c99", "-fwrapv"}));
+  EXPECT_EQ(options.linker, Words{"-Map=a.map"});
+  EXPECT_EQ(options.stack_bytes, 5008u) << "whole quadwords";
+  EXPECT_TRUE(options.meaningless.empty());
+}
+
+TEST(ToolchainOptions, WithoutMeaningAreKeptForOneNote) {
+  const Options options =
+      parsed({"-O3", "-g", "-pipe", "-funroll-loops", "-mfixed-range=80-127", "-std=c++98", "-T", "script.ld",
+              "-Wl,--gc-sections,-e,_start", "-Xassembler", "-x", "-Wa,-a", "a.c"});
+  EXPECT_EQ(options.meaningless,
+            (Words{"-funroll-loops", "-mfixed-range=80-127", "-std=c++98", "-T script.ld", "--gc-sections",
+                   "-e _start", "-Xassembler -x", "-Wa,-a"}));
+  EXPECT_TRUE(options.compiler.empty());
+}
+
+TEST(ToolchainOptions, TakeLibrariesWhereTheyStand) {
+  const tests::ScratchFolder scratch;
+  const std::string folder = scratch.path().string();
+  std::ofstream(scratch.path() / "libown.a") << "";
+  const Options options = parsed({"a.o", "-L" + folder, "-lown", "b.o", "-lm", "-lsimdmath"});
+  ASSERT_EQ(options.inputs.size(), 3u) << "-lm is in softcell's own";
+  EXPECT_EQ(options.inputs[1].file, folder + "/libown.a");
+  EXPECT_EQ(refusal({"a.o", "-lmissing"}),
+            "-lmissing: there is no libmissing.a in the folders of -L, and softcell's library has no part of "
+            "that name");
+  EXPECT_EQ(refusal({"-c", "a.c", "-lmissing"}), "") << "nothing is linked";
+}
+
+TEST(ToolchainOptions, ComeFromFilesToo) {
+  const tests::ScratchFolder scratch;
+  const std::string file = (scratch.path() / "options").string();
+  std::ofstream(file) << "-c  'a b.c'\n-D\"TEXT=x y\"\t-o out\\ put.o";
+  const Options options = parsed({"@" + file});
+  EXPECT_EQ(options.step, Step::kCompile);
+  EXPECT_EQ(options.inputs[0].file, "a b.c");
+  EXPECT_EQ(options.preprocessor, Words{"-DTEXT=x y"});
+  EXPECT_EQ(options.output, "out put.o");
+  EXPECT_EQ(refusal({"@" + file + ".no"}), "the file of options " + file + ".no cannot be read");
+}
+
+TEST(ToolchainOptions, AreRefusedInASentence) {
+  EXPECT_EQ(refusal({}), "there are no input files");
+  EXPECT_EQ(refusal({"a.c", "-o"}), "-o needs a value");
+  EXPECT_EQ(refusal({"--unknown", "a.c"}), "unknown option --unknown");
+  EXPECT_EQ(refusal({"-x", "fortran", "a.f"}), "-x fortran: only C and C++ can be compiled here");
+  EXPECT_EQ(refusal({"-c", "a.c", "b.c", "-o", "c.o"}), "-o names one file, and there are several sources");
+  for (const char* const bytes : {"", "x", "8", "262145", "-1", "16x"})
+    EXPECT_EQ(refusal({"a.c", "-Wl,-z,stack-size=" + std::string(bytes)}),
+              "-z stack-size=" + std::string(bytes) + ": a stack has 16 to 262144 bytes");
+  EXPECT_NE(refusal({"-S", "a.c"}).find("a real spu-gcc writes them"), std::string::npos);
+  EXPECT_NE(refusal({"a.s"}).find("assemble it with a real spu-gcc"), std::string::npos);
+}
+
+TEST(ToolchainOptions, OfTheLinkerAreItsOwn) {
+  const Options options = parse_linker_options({"-r", "-o", "out.o", "a.o", "-Map", "map", "--defsym", "x=1",
+                                                "-T", "script", "--gc-sections", "-z", "relro"});
+  EXPECT_TRUE(options.relocatable);
+  EXPECT_EQ(options.output, "out.o");
+  EXPECT_EQ(options.inputs.size(), 1u);
+  EXPECT_EQ(options.linker, (Words{"-Map", "map", "--defsym", "x=1"}));
+  EXPECT_EQ(options.meaningless, (Words{"-T script", "--gc-sections", "-z relro"}));
+}
+
+}  // namespace
+}  // namespace softcell::toolchain
