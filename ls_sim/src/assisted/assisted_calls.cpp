@@ -140,28 +140,31 @@ AssistedCalls::Result AssistedCalls::get_character(std::uint32_t handle) {
   return {letter, letter == EOF ? error_of(from.get()) : 0};
 }
 
-/// fgets
+/// fgets. What is read may fall on the arguments.
 AssistedCalls::Result AssistedCalls::get_line() {
-  const Stream from = files_.stream(argument(2));
+  const std::uint32_t to = argument(0);
   const auto room = static_cast<std::int32_t>(argument(1));
+  const Stream from = files_.stream(argument(2));
   if (from == nullptr || room <= 0) return {0, from == nullptr ? errno : EINVAL};
   std::string line(static_cast<std::size_t>(std::min<std::int32_t>(room, dma::kLocalStoreBytes)), '\0');
   if (std::fgets(line.data(), static_cast<int>(line.size()), from.get()) == nullptr)
     return {0, error_of(from.get())};
-  memory_.set_bytes(argument(0), std::string_view(line.c_str(), line.find('\0') + 1));
-  return {argument(0), 0};
+  memory_.set_bytes(to, std::string_view(line.c_str(), line.find('\0') + 1));
+  return {to, 0};
 }
 
-/// fread
+/// fread. Likewise.
 AssistedCalls::Result AssistedCalls::read_items() {
+  const std::uint32_t to = argument(0), size = argument(1);
   const Stream from = files_.stream(argument(3));
-  const std::uint64_t bytes = std::uint64_t{argument(1)} * argument(2);
+  const std::uint64_t bytes = std::uint64_t{size} * argument(2);
   if (from == nullptr || bytes > dma::kLocalStoreBytes) return {0, from == nullptr ? errno : EFAULT};
   if (bytes == 0) return {0, 0};
   std::string data(bytes, '\0');
   const std::size_t count = std::fread(data.data(), 1, data.size(), from.get());
-  memory_.set_bytes(argument(0), std::string_view(data).substr(0, count));
-  return {static_cast<std::int64_t>(count / argument(1)), count == bytes ? 0 : error_of(from.get())};
+  const int error = count == bytes ? 0 : error_of(from.get());
+  memory_.set_bytes(to, std::string_view(data).substr(0, count));
+  return {static_cast<std::int64_t>(count / size), error};
 }
 
 AssistedCalls::Result AssistedCalls::scan(std::FILE* from, int format_argument) {
@@ -334,9 +337,9 @@ AssistedCalls::Result AssistedCalls::sleep() {
     awake = nanosleep(&nap, nullptr) != 0 || files_.is_interrupted();
   }
   left = std::max(left, nanoseconds(0));
-  if (argument(1) != 0) {
-    memory_.set_word(argument(1), static_cast<std::uint32_t>(left / seconds(1)));
-    memory_.set_word(argument(1) + 4, static_cast<std::uint32_t>(left % seconds(1) / nanoseconds(1)));
+  if (const std::uint32_t to = argument(1); to != 0) {
+    memory_.set_word(to, static_cast<std::uint32_t>(left / seconds(1)));
+    memory_.set_word(to + 4, static_cast<std::uint32_t>(left % seconds(1) / nanoseconds(1)));
   }
   return awake ? Result{-1, EINTR} : Result{0, 0};
 }
@@ -383,8 +386,9 @@ AssistedCalls::Result AssistedCalls::posix(std::uint32_t function) {
     case kGettimeofday: {
       timeval now{};
       gettimeofday(&now, nullptr);
-      memory_.set_word(argument(0), static_cast<std::uint32_t>(now.tv_sec));
-      memory_.set_word(argument(0) + 4, static_cast<std::uint32_t>(now.tv_usec));
+      const std::uint32_t to = argument(0);
+      memory_.set_word(to, static_cast<std::uint32_t>(now.tv_sec));
+      memory_.set_word(to + 4, static_cast<std::uint32_t>(now.tv_usec));
       return {0, 0};
     }
     default:

@@ -7,6 +7,7 @@
 namespace softcell::ls_sim::assisted {
 namespace {
 
+constexpr std::size_t kMostText = 1 << 20;  // more than any local store holds
 constexpr int kMostWidth = 4096;  // of a field, and its digits: more is cut; C asks for 4095 [C17, 7.21.6.1]
 
 /// One conversion as it was read: "%-08.3ll" and "x".
@@ -133,7 +134,7 @@ std::string convert(const Conversion& c, FormatArguments& arguments) {
 
 std::string format_text(const std::string& format, FormatArguments& arguments) {
   std::string text;
-  for (std::size_t at = 0; at < format.size();) {
+  for (std::size_t at = 0; at < format.size() && text.size() < kMostText;) {
     if (format[at] != '%') {
       text += format[at++];
     } else {
@@ -144,6 +145,7 @@ std::string format_text(const std::string& format, FormatArguments& arguments) {
       text += known ? convert(conversion, arguments) : format.substr(begin, at - begin);
     }
   }
+  text.resize(std::min(text.size(), kMostText));
   return text;
 }
 

@@ -122,8 +122,9 @@ class Scan {
       case 'g':
       case 'G':
         return real(c);
-      case 's':
       case 'c':
+        return characters(c);
+      case 's':
       case '[':
         return text(c);
       default:
@@ -165,23 +166,32 @@ class Scan {
     return true;
   }
 
+  bool characters(const Conversion& c) {
+    std::string found;
+    const std::size_t width = std::max<std::size_t>(c.width, 1);
+    while (found.size() < width) {
+      const int letter = std::getc(from_);
+      if (letter == EOF) break;
+      found += static_cast<char>(letter);
+    }
+    consumed_ += static_cast<long long>(found.size());
+    if (!got_one(c, found.empty() ? EOF : 1)) return false;
+    if (c.stores) memory_.set_bytes(arguments_.next_word(), found);
+    return true;
+  }
+
   bool text(const Conversion& c) {
     char* found = nullptr;
-    const long long before = consumed_;
-    const std::size_t width = c.width != 0 ? c.width : c.kind == 'c' ? 1 : dma::kLocalStoreBytes - 1;
+    const std::size_t width = c.width != 0 ? c.width : dma::kLocalStoreBytes - 1;
     const std::string kind = c.kind == '[' ? c.set : std::string(1, c.kind);
     const int scanned = scan_one(from_, "%" + std::to_string(width) + "m" + kind, &found, consumed_);
     const std::unique_ptr<char, decltype(&std::free)> owner(found, &std::free);
     if (!got_one(c, scanned)) return false;
     if (!c.stores) return true;
     const std::uint32_t to = arguments_.next_word();
-    if (c.kind == 'c') {
-      memory_.set_bytes(to, {found, static_cast<std::size_t>(consumed_ - before)});
-    } else {
-      const std::string_view letters(found);
-      memory_.set_bytes(to, letters);
-      memory_.set_byte(to + static_cast<std::uint32_t>(letters.size()), 0);
-    }
+    const std::string_view letters(found);
+    memory_.set_bytes(to, letters);
+    memory_.set_byte(to + static_cast<std::uint32_t>(letters.size()), 0);
     return true;
   }
 
