@@ -1,6 +1,7 @@
 #include "softcell/dma/list_transfer.h"
 
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "softcell/base/assert.h"

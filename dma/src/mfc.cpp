@@ -1,6 +1,7 @@
 #include "softcell/dma/mfc.h"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 #include <string>
 

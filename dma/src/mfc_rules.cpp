@@ -1,6 +1,7 @@
 #include "softcell/dma/mfc_rules.h"
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "softcell/base/assert.h"

@@ -1,5 +1,7 @@
 #include "softcell/dma/translation_cache.h"
 
+#include <optional>
+
 #include "softcell/base/assert.h"
 
 namespace softcell::dma {

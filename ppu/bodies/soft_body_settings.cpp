@@ -1,6 +1,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include "ppu/matching/regions.h"
 #include "ppu/matching/stiffness.h"

@@ -3,6 +3,7 @@
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>

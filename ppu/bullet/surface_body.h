@@ -1,6 +1,7 @@
 #pragma once
 // A soft body that touches with its drawn surface. Bullet does not know it: surface_contacts.h moves it.
 
+#include <memory>
 #include <optional>
 #include <utility>
 

@@ -1,6 +1,7 @@
 #include "ppu/contacts/find_contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 

@@ -1,6 +1,7 @@
 #include "ppu/lattice/embedding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "ppu/lattice/fill_fraction.h"
 #include "ppu/lattice/triangle_box.h"

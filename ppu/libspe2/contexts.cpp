@@ -1,6 +1,8 @@
 // Contexts and gangs.
 
 #include "libspe2.h"
+
+#include <memory>
 #include "object.h"
 
 using softcell::libspe2::context_of;

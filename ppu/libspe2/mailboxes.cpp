@@ -1,6 +1,7 @@
 // Mailboxes and signals.
 
 #include <cstdint>
+#include <mutex>
 
 #include "libspe2.h"
 #include "object.h"

@@ -1,6 +1,7 @@
 // Problem state as the PPU program's memory: its loads and stores at spe_ps_area_get().
 
 #include <cstdint>
+#include <mutex>
 
 #include "libspe2.h"
 #include "object.h"

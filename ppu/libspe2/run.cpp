@@ -1,8 +1,11 @@
 // Running contexts, and why they stop.
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 
 #include "callbacks.h"

@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "ppu/mesh/vertex_normals.h"
 #include "ppu/numbers/deterministic_math.h"

@@ -2,9 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <vector>
 
 #include "softcell/base/assert.h"
 

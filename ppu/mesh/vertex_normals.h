@@ -1,6 +1,7 @@
 #pragma once
 // Vertex normals for a mesh that has none: smooth across an edge unless the surface bends sharply there.
 
+#include <array>
 #include <span>
 
 #include "softcell/soft_bodies/mesh.h"

@@ -2,6 +2,7 @@
 // The three checks behind check_mesh_file(); see there.
 
 #include <string>
+#include <string_view>
 
 #include "ppu/mesh_import/mesh_file_check.h"
 

@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "ppu/mesh_import/mesh_file_check_formats.h"
 #include "ppu/mesh_import/mesh_file_text.h"

@@ -6,7 +6,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "ppu/mesh_import/mesh_file_check_formats.h"
 #include "ppu/mesh_import/mesh_file_text.h"

@@ -5,6 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
 
 #include "ppu/mesh_import/mesh_file_check_formats.h"
 #include "ppu/mesh_import/mesh_file_text.h"

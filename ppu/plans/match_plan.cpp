@@ -1,6 +1,8 @@
 #include "ppu/plans/match_plan.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "ppu/plans/lattice_sums.h"
 #include "ppu/plans/match_constants.h"

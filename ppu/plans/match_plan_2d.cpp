@@ -1,6 +1,8 @@
 #include "ppu/plans/match_plan_2d.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "ppu/matching/one_plate.h"
 #include "ppu/plans/plan_writer.h"

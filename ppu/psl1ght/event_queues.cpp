@@ -2,6 +2,9 @@
 
 #include "lv2.h"
 
+#include <memory>
+#include <mutex>
+
 using namespace softcell::psl1ght;
 
 namespace {

@@ -9,8 +9,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/fault.h"

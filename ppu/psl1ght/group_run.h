@@ -2,6 +2,7 @@
 // The run of a thread group: from its start to its end.
 
 #include <memory>
+#include <mutex>
 
 #include "lv2.h"
 

@@ -1,6 +1,8 @@
 #include "images.h"
 
 #include <cerrno>
+#include <stdexcept>
+#include <string>
 
 #include "ppu/libspe2/object.h"
 #include "ppu/libspe2/programs.h"

@@ -1,8 +1,12 @@
 // Raw SPUs: the program itself loads and starts them, and reads their registers.
 
+#include <chrono>
 #include <cstring>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "images.h"

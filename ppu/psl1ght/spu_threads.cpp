@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstring>
+#include <memory>
+#include <mutex>
 #include <span>
 
 #include "group_run.h"

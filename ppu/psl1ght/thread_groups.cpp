@@ -1,6 +1,9 @@
 // Thread groups as the program makes, starts and joins them.
 
 #include "group_run.h"
+
+#include <memory>
+#include <mutex>
 #include "lv2.h"
 
 using namespace softcell::psl1ght;

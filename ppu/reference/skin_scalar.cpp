@@ -1,5 +1,7 @@
 #include "ppu/reference/skin_scalar.h"
 
+#include <array>
+
 #include "ppu/numbers/half.h"
 #include "ppu/reference/skin_slots.h"
 #include "softcell/base/assert.h"

@@ -2,6 +2,8 @@
 // The kernels that step a body as a whole, `match_2d` in two dimensions and `match` in three, behind one set
 // of names: what MatchBodies needs to know of them.
 
+#include <span>
+
 #include <Eigen/Core>
 
 #include "match_2d_job.h"

@@ -5,6 +5,7 @@
 #include "softcell/base/nearest_name.h"
 
 #include <string>
+#include <string_view>
 
 namespace softcell::base {
 namespace {

@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <span>
+#include <vector>
 
 #include "ppu/numbers/half.h"
 #include "ppu/reference/skin_scalar.h"

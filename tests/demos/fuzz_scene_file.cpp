@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <variant>
 
 #include "scene_file/scene_library.h"
 #include "scene_file/value.h"

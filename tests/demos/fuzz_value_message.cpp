@@ -2,6 +2,9 @@
 
 #include "scene_file/value_message.h"
 
+#include <memory>
+#include <string>
+
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   static const auto file = std::make_shared<const std::string>("fuzz.lua");
   try {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 #include <regex>
+#include <string>
+#include <vector>
 
 #include "ppu/matching/stiffness.h"
 #include "scene_file/scene_library.h"

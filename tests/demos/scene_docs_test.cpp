@@ -4,6 +4,10 @@
 
 #include <fstream>
 #include <regex>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "scene_file/scene_library.h"
 #include "support/scratch_folder.h"

@@ -1,5 +1,7 @@
 // Scenes at several moments, as pictures that were looked at.
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "demo/page.h"

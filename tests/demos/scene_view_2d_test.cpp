@@ -1,5 +1,8 @@
 // In two dimensions only what has moved is drawn anew: the pictures are those of drawing everything.
 
+#include <memory>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "scene_file/scene_library.h"

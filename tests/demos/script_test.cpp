@@ -1,5 +1,9 @@
 // What a scene's script does to a simulation.
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "input/script_player.h"

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <vector>
 
 #include "simulation/simulation_3d.h"
 #include "softcell/soft_bodies/shapes.h"

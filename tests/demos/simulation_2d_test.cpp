@@ -2,6 +2,9 @@
 
 #include "simulation/simulation_2d.h"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "random_play.h"

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <set>
+#include <vector>
 
 #include "scene/scene_camera.h"
 #include "scene_file/scene_library.h"

@@ -1,5 +1,7 @@
 #include "softcell/dma/address_window.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace softcell::dma {

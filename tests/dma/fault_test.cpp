@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace softcell::dma {
 namespace {

@@ -6,6 +6,10 @@
 #include <atomic>
 #include <cstring>
 #include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 

@@ -1,6 +1,12 @@
 // The line commands: getllar, putllc, putlluc at once, putqlluc in its turn, and their status.
 #include "mfc_fixture.h"
 
+#include <cstring>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
 namespace softcell::dma {
 namespace {
 

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <ostream>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "softcell/dma/buffer.h"

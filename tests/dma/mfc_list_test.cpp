@@ -1,5 +1,9 @@
 // Lists: where elements go, what stalls and how it goes on, and what is found only while a list executes.
+#include <optional>
 #include <set>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "mfc_fixture.h"
 

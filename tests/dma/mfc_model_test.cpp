@@ -5,9 +5,13 @@
 // Memory is seen in lines of 128 bytes, four in the local store and four in a buffer, each filled with one
 // value. A stream is cut into events, which are indivisible: a get poisons its destination and then moves its
 // lines, a put moves its lines, in any order.
+#include <algorithm>
+#include <array>
 #include <map>
 #include <random>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "mfc_fixture.h"
 

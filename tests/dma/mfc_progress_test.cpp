@@ -1,5 +1,8 @@
 // Time: how long a command may stay queued, what moves while the SPU sleeps, and who is told of it.
+#include <algorithm>
 #include <map>
+#include <variant>
+#include <vector>
 
 #include "mfc_fixture.h"
 

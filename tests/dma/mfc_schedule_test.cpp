@@ -1,6 +1,9 @@
 // The promise of schedules: a correct kernel gives the same bits under each, a wrong one does not.
+#include <algorithm>
 #include <random>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "mfc_fixture.h"
 

@@ -1,5 +1,10 @@
 // Signals and the data-cache commands: the queue's commands that are no plain transfers.
 #include "fake_spe.h"
+
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
 #include "mfc_fixture.h"
 
 namespace softcell::dma {

@@ -1,7 +1,11 @@
 // The MFC's channels: commands, tag status, queue-full stalls, statistics, jobs.
 #include "softcell/dma/mfc.h"
 
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "mfc_fixture.h"
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "softcell/dma/buffer.h"

@@ -2,6 +2,7 @@
 // program does, it stays within its local store.
 
 #include <cstring>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstring>
 #include <fstream>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 

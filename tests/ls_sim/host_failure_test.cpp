@@ -1,5 +1,7 @@
 // What the host throws on an SPE's thread ends the run, not the process.
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "../support/allocation_counter.h"

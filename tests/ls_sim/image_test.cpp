@@ -5,6 +5,8 @@
 
 #include <cstring>
 #include <functional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "test_images.h"

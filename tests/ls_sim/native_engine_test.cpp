@@ -1,10 +1,16 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
+#include <array>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <ctime>
+#include <memory>
+#include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "image/low_memory.h"
 #include "softcell/ls_sim/engine.h"

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <string>
+#include <vector>
 
 #include "softcell/dma/atomics.h"
 #include "softcell/dma/buffer.h"

@@ -1,5 +1,8 @@
 #include "softcell/ls_sim/source_lines.h"
 
+#include <memory>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "softcell/ls_sim/engine.h"

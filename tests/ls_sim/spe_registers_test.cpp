@@ -1,5 +1,8 @@
 // Mailboxes, signal registers, events, decrementer and time base, each by itself.
 
+#include <chrono>
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "channels/decrementer.h"

@@ -5,8 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <ostream>
+#include <stdexcept>
 
 #include "soft_body_2d_scenes.h"
 #include "softcell/soft_bodies/state_hash.h"

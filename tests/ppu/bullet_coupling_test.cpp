@@ -8,6 +8,9 @@
 #include <numeric>
 #include <optional>
 #include <ostream>
+#include <span>
+#include <stdexcept>
+#include <vector>
 
 #include "ppu/reference/skin_scalar.h"
 #include "soft_body_scenes.h"

@@ -2,6 +2,9 @@
 
 #include "ppu/reference/eigen_solver.h"
 
+#include <memory>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "lattices.h"

@@ -8,6 +8,8 @@
 #include <map>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "ppu/numbers/half.h"
 #include "ppu/reference/skin_scalar.h"

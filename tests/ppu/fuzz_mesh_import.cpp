@@ -2,6 +2,7 @@
 // a std::runtime_error. Behind a line "#mtl" an OBJ file's bytes are its material library.
 
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>

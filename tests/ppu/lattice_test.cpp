@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "lattices.h"
 #include "ppu/lattice/embedding.h"

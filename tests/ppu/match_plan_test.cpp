@@ -7,6 +7,8 @@
 #include <array>
 #include <cstring>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "lattices.h"
 #include "ppu/plans/sum_list.h"

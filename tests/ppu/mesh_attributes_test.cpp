@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "ppu/mesh_import/material_library.h"
 #include "ppu/mesh_import/parse_mesh.h"

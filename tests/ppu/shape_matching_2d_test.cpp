@@ -5,8 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "ppu/matching/regions.h"
 

@@ -6,9 +6,16 @@
 
 #include <Eigen/SVD>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "lattices.h"
 #include "particle_vectors.h"

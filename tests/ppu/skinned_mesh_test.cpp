@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "ppu/lattice/embedding.h"
 #include "ppu/reference/skin_scalar.h"

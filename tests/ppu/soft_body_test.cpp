@@ -6,6 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "ppu/lattice/embedding.h"
 #include "soft_body_scenes.h"

@@ -7,7 +7,11 @@
 #include <Eigen/Geometry>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <span>
+#include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "lattices_2d.h"
 #include "ppu/plans/match_plan_2d.h"

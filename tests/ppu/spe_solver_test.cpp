@@ -7,7 +7,10 @@
 
 #include <chrono>
 #include <limits>
+#include <memory>
+#include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "ppu/plans/match_plan.h"
 #include "ppu/plans/tile_plan.h"

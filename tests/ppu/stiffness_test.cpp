@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
+#include <vector>
 
 #include "lattices.h"
 #include "ppu/numbers/deterministic_math.h"

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <bit>
 #include <set>
+#include <span>
+#include <stdexcept>
+#include <vector>
 
 #include "lattices.h"
 #include "ppu/matching/lanes.h"

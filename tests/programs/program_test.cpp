@@ -13,7 +13,9 @@
 #include <fstream>
 #include <random>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "softcell/dma/address_space.h"
@@ -26,8 +28,9 @@
 #define SC_PROGRAMS(X)                                                                               \
   X(vectors)                                                                                         \
   X(language)                                                                                        \
-  X(library) X(jumps) X(fails) X(maths) X(counts) X(files) X(calendar) X(text_numbers) X(characters) \
-      X(doubles) X(shared_words) X(prints) X(simd) X(statics) X(no_parameters)
+  X(library)                                                                                         \
+  X(jumps) X(fails) X(maths) X(counts) X(files) X(calendar) X(text_numbers) X(characters) X(doubles) \
+      X(shared_words) X(prints) X(simd) X(statics) X(no_parameters)
 extern "C" {
 #define SC_DECLARE(name)                                                                         \
   extern const std::byte softcell_image_program_##name[], softcell_image_program_##name##_end[]; \

@@ -1,5 +1,8 @@
 #include "support/golden.h"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <stdlib.h>
 

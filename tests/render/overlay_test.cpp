@@ -1,5 +1,7 @@
 #include "softcell/render/overlay.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 #include <imgui.h>
 

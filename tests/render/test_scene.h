@@ -3,8 +3,10 @@
 // bodies in half floats (a torus and a sphere), and a particle lattice.
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "softcell/render/renderer.h"

@@ -1,6 +1,9 @@
 // Casts, shuffles and quadword shifts against a register of sixteen big-endian bytes.
 #include "intrinsics_support.h"
 
+#include <array>
+#include <cstring>
+
 namespace softcell::test {
 namespace {
 

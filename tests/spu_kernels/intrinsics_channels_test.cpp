@@ -1,5 +1,9 @@
 // Channels, DMA, halts, loads and stores: what kernels ask of the gate, seen from a stack inside a local
 // store.
+#include <array>
+#include <cstring>
+#include <functional>
+
 #include <spu_mfcio.h>
 
 #include "intrinsics_support.h"

@@ -1,5 +1,6 @@
 // Conversions between integers and floats, for all 128 scales.
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "intrinsics_support.h"

@@ -1,5 +1,7 @@
 // Reciprocal estimates and their interpolation: the tables as published, the integer rules, known vectors.
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "intrinsics_support.h"
 #include "support/published_estimates.h"

@@ -1,5 +1,7 @@
 // Single precision against the SPU's own rules: arithmetic by exact doubles, compares as sign and magnitude.
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "intrinsics_support.h"
 

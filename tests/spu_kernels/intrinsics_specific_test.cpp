@@ -2,6 +2,8 @@
 // bytes.
 #include "intrinsics_support.h"
 
+#include <vector>
+
 namespace softcell::test {
 namespace {
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "ppu/matching/rotation.h"
 #include "rotations_job.h"

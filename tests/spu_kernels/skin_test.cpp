@@ -6,7 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <random>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "ppu/numbers/half.h"
 #include "ppu/reference/skin_scalar.h"

@@ -2,6 +2,8 @@
 
 // Instruction words of the model's table, for tests.
 
+#include <string_view>
+
 #include "spu_model/instruction.h"
 
 namespace softcell::spu_model {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <string_view>
 
 #include "softcell/base/assert.h"
 #include "spu_model/compares_and_branches.h"

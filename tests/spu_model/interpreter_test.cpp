@@ -8,7 +8,11 @@
 
 #include <array>
 #include <cstdlib>
+#include <functional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "softcell/dma/sanitizers.h"
 #include "spu_model/operands.h"

@@ -10,6 +10,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <string_view>
 
 #include "spu_model/encode.h"
 #include "support/published_estimates.h"

@@ -1,6 +1,7 @@
 #include "spu_model/operands.h"
 
 #include <array>
+#include <span>
 #include <string_view>
 
 namespace softcell::spu_model {

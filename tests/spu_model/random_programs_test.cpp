@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <string_view>
+#include <vector>
 
 #include "softcell/ls_sim/engine.h"
 #include "softcell/ls_sim/local_store.h"

@@ -5,7 +5,10 @@
 
 #include <optional>
 #include <ostream>
+#include <span>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "softcell/dma/address_space.h"
 #include "softcell/dma/buffer.h"

@@ -1,6 +1,8 @@
 // The programs that need nothing but registers and local store, on the model of tests/spu_model: both must be
 // right, or neither is.
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "spu_model/machine.h"

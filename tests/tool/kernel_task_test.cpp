@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <stdexcept>
+#include <string>
 
 #include "spu/kernel_buffers.h"
 #include "support/scratch_folder.h"

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
 
 #include "report/report_page.h"
 #include "softcell/ls_sim/trace.h"

@@ -1,7 +1,9 @@
 #include "kernel_run.h"
 
+#include <chrono>
 #include <fstream>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 
 #include "softcell/dma/address_space.h"

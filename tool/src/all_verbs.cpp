@@ -1,6 +1,7 @@
 #include "all_verbs.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "bench/bench_verb.h"
 #include "bench/body_samples.h"

@@ -1,6 +1,9 @@
 // The command without demos: nothing here needs a physics engine, a renderer or a mesh.
 
 #include "all_verbs.h"
+
+#include <span>
+#include <string_view>
 #include "report/report_verb.h"
 #include "run/run_verb.h"
 #include "spu/spu_verbs.h"

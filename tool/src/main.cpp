@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 #include "all_verbs.h"
 #include "command_line/shell_verbs.h"

@@ -10,6 +10,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
 
 #include "lua_sandbox.h"
 #include "value_message.h"

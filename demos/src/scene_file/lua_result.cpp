@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "softcell/base/assert.h"
 

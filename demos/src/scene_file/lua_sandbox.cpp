@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <lua.hpp>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 

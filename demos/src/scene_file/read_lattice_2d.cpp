@@ -1,5 +1,10 @@
 #include "read_lattice_2d.h"
 
+#include <array>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
 #include <fmt/format.h>
 #include <sys/resource.h>
 

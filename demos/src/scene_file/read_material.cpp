@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "ppu/matching/regions.h"
 #include "ppu/matching/stiffness.h"

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "softcell/mesh_import/mesh_import.h"
 #include "softcell/soft_bodies/shapes.h"

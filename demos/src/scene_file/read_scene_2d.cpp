@@ -1,6 +1,10 @@
 #include "read_scene.h"
 
 #include <algorithm>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "ppu/numbers/deterministic_math.h"
 #include "read_common.h"

@@ -1,5 +1,12 @@
 #include "read_scene.h"
 
+#include <array>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <stdexcept>
 
 #include "scene_library.h"
 #include "softcell/base/assert.h"

@@ -5,6 +5,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <memory>
+#include <string>
+#include <string_view>
 
 namespace softcell::demos {
 namespace {

@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <variant>
 
 #include "input/controls.h"
 #include "input/script_player.h"

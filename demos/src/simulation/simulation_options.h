@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/schedule.h"

@@ -1,6 +1,7 @@
 #include "moved_2d.h"
 
 #include <algorithm>
+#include <variant>
 
 #include "softcell/base/assert.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <variant>
 
 #include "ppu/numbers/half.h"
 #include "softcell/base/assert.h"

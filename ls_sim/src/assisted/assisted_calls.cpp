@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <ctime>
+#include <string_view>
 
 #include "scan.h"
 #include "variable_arguments.h"

@@ -2,6 +2,7 @@
 // Calls of a program on an SPE that the PPU side serves: stop 0x2100 for the C library, stop 0x2101 for POSIX.
 // [libspe2, C99 and POSIX handlers; newlib, jsre.h] documented
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,7 @@
 #include "spu_channels.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>

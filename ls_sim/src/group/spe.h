@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "channels/spe_monitor.h"
 #include "channels/spe_registers.h"

@@ -1,6 +1,7 @@
 #include "softcell/ls_sim/spe_group.h"
 
 #include <array>
+#include <chrono>
 #include <condition_variable>
 #include <stdexcept>
 #include <string>

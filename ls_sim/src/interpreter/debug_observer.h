@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <span>
 
 #include "core.h"
 #include "softcell/ls_sim/debugger.h"

@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <cstring>
+#include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "assisted/assisted_calls.h"
 #include "checked_observer.h"

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <vector>
 
 #include "run_loop.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 
 #include "element_interconnect.h"
 #include "softcell/base/assert.h"

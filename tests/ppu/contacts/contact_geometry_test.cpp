@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_body.h"

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "contact_world.h"
 #include "ppu/contacts/find_contacts.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <time.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <utility>

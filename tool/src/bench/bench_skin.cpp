@@ -1,6 +1,10 @@
 // Skinning on an SPE beside its scalar twin.
 
+#include <functional>
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "benchmarks.h"
 #include "ppu/reference/skin_scalar.h"

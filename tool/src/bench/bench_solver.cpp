@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include "bench_bodies.h"
 #include "benchmarks.h"

@@ -6,6 +6,9 @@
 #include <memory>
 #include <numeric>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "benchmarks.h"
 #include "ppu/reference/eigen_solver.h"

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "benchmarks.h"
 #include "softcell/base/assert.h"

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "bench_bodies.h"
 #include "benchmarks.h"

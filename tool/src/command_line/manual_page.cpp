@@ -1,4 +1,7 @@
 #include "help_texts.h"
+
+#include <string>
+#include <vector>
 #include "softcell/base/assert.h"
 
 #include <fmt/format.h>

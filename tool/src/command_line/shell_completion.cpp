@@ -1,6 +1,8 @@
 #include "help_texts.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "softcell/base/assert.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "demo/scene_demo.h"
 #include "demo_verbs.h"

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "scene/scene.h"
 #include "softcell/base/assert.h"

@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 #include <regex>
+#include <string>
 
 #include "command_line/shared_options.h"
 #include "scene/scene.h"

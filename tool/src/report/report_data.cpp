@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "softcell/base/assert.h"
 #include "softcell/dma/mfc_command.h"

@@ -1,5 +1,7 @@
 #include "report_verb.h"
 
+#include <string>
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

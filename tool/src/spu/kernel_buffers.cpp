@@ -1,7 +1,9 @@
 #include "kernel_buffers.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"

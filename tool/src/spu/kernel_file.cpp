@@ -6,6 +6,7 @@
 #include <fstream>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 
 #include "softcell/spu_kernels/images.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 
 #include "command_line/shared_options.h"
 #include "softcell/dma/addresses.h"

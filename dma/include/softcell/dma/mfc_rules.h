@@ -2,6 +2,8 @@
 // The rules for a single DMA command or list element that do not depend on any other state.
 
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "softcell/dma/fault.h"
 #include "softcell/dma/list_element.h"

@@ -9,6 +9,7 @@
 //     finish():  velocities <-- main memory               when the last job has ended
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "softcell/jobs/job_system.h"
