@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <span>
-#include <stdexcept>
 
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/mesh_import/mesh_import.h"

@@ -25,12 +25,12 @@
 #include "softcell/ls_sim/image.h"
 #include "softcell/ls_sim/spe_group.h"
 
-#define SC_PROGRAMS(X)                                                                               \
-  X(vectors)                                                                                         \
-  X(language)                                                                                        \
-  X(library)                                                                                         \
-  X(jumps) X(fails) X(maths) X(counts) X(files) X(calendar) X(text_numbers) X(characters) X(doubles) \
-      X(shared_words) X(prints) X(simd) X(statics) X(no_parameters)
+// clang-format off
+#define SC_PROGRAMS(X)                                                                  \
+  X(vectors) X(language) X(library) X(jumps) X(fails) X(maths) X(counts) X(files)       \
+  X(calendar) X(text_numbers) X(characters) X(doubles) X(shared_words) X(prints) X(simd) \
+  X(statics) X(no_parameters)
+// clang-format on
 extern "C" {
 #define SC_DECLARE(name)                                                                         \
   extern const std::byte softcell_image_program_##name[], softcell_image_program_##name##_end[]; \
