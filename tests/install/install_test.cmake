@@ -78,6 +78,19 @@ file(WRITE ${SCRATCH}/spu.cpp "#include \"softcell/jobs/job_system.h\"\n#include
 pkg_config_builds(spu_by_hand ${SCRATCH}/spu.cpp softcell-spu softcell-spe-bodies)
 says(0 "" ${SCRATCH}/spu_by_hand)
 
+# A Makefile's project and the programs of the tests with the installed commands of an SPU toolchain.
+set(lab ${SCRATCH}/lab)
+file(COPY ${EXAMPLES}/../tests/toolchain/lab DESTINATION ${SCRATCH})
+step("a Makefile's project" make -C ${lab} SPU_CC=${prefix}/bin/softcell-spu-gcc SPU_CXX=${prefix}/bin/softcell-spu-g++
+  SPU_AR=${prefix}/bin/softcell-spu-ar SPU_SIZE=${prefix}/bin/softcell-spu-size PPU_EMBEDSPU=${prefix}/bin/softcell-embedspu PPU_CC=gcc
+  "PPU_CFLAGS=-O2 -Wall -I${prefix}/include" "PPU_LDFLAGS=-L${prefix}/lib -Wl,-rpath,${prefix}/lib")
+says(0 "the SPU says: 3\nthe PPU says: 189" ${lab}/lab)
+foreach(program characters simd calendar text_numbers)
+  step("program ${program}" ${prefix}/bin/softcell-spu-gcc -Wall ${EXAMPLES}/../tests/programs/sources/${program}.c -lm -o ${SCRATCH}/${program})
+endforeach()
+says(0 "" ${prefix}/bin/softcell spu run ${SCRATCH}/characters)
+says(0 "" ${prefix}/bin/softcell spu run ${SCRATCH}/simd)
+
 # What comes with it.
 foreach(file share/doc/softcell/LICENSE share/doc/softcell/README.md share/doc/softcell/examples/saxpy/CMakeLists.txt
     share/man/man1/softcell.1 share/bash-completion/completions/softcell share/zsh/site-functions/_softcell
