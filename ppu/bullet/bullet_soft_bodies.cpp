@@ -3,8 +3,10 @@
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -83,7 +85,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     std::unique_ptr<CoupledBody> body;
     if (surfaces) {
       const ContactModel& contact = surfaces->contact_model(model);
-      auto with_surface = std::make_unique<SurfaceBody>(world, std::move(model), position, contact);
+      auto with_surface =
+          std::make_unique<SurfaceBody>(world, std::move(model), position, contact, next_number++);
       with_surfaces.push_back(with_surface.get());
       body = std::move(with_surface);
     } else {
@@ -92,6 +95,15 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     solve.add(body->soft());
     bodies.push_back(std::move(body));
     return bodies.back()->soft();
+  }
+
+  /// @throws std::invalid_argument  it is not one of `bodies`
+  auto find(const SoftBody<3>& body, const char* purpose) {
+    const auto found = std::find_if(bodies.begin(), bodies.end(),
+                                    [&](const auto& coupled) { return &coupled->soft() == &body; });
+    if (found == bodies.end())
+      throw std::invalid_argument(std::string("the soft body ") + purpose + " is not in this world");
+    return found;
   }
 
   /// Nobody may sleep on a body that goes, or may go, from where Bullet knows it.
@@ -106,7 +118,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   std::vector<std::unique_ptr<CoupledBody>> bodies;
   std::optional<SurfaceContacts> surfaces;  // of bodies that touch with their surfaces: all, or none
   std::vector<SurfaceBody*> with_surfaces;  // of `bodies`
-  StepAhead<3> solve;                       // of `bodies`
+  std::uint32_t next_number = 0;
+  StepAhead<3> solve;  // of `bodies`
   std::optional<SleepSettings> sleep;
   SoftBodyTimes times;
 };
@@ -132,11 +145,7 @@ SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model
 }
 
 void BulletSoftBodies::remove(const SoftBody<3>& body) {
-  const auto found = std::find_if(impl_->bodies.begin(), impl_->bodies.end(),
-                                  [&](const auto& coupled) { return &coupled->soft() == &body; });
-  if (found == impl_->bodies.end()) {
-    throw std::invalid_argument("the soft body to be removed is not in this world");
-  }
+  const auto found = impl_->find(body, "to be removed");
   impl_->solve.remove(body);
   impl_->tell_others(**found);
   SC_ASSERT((*found)->soft().model().particles() > 0, "a body without particles, one of {}, is removed",
@@ -159,6 +168,33 @@ void BulletSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {
 
 void BulletSoftBodies::append_contacts(std::vector<Contact>& contacts) const {
   if (impl_->surfaces) impl_->surfaces->append_contacts(contacts);
+}
+
+void BulletSoftBodies::set_filter(const SoftBody<3>& body, const CollisionFilter& filter) {
+  const auto found = impl_->find(body, "that gets a filter");
+  impl_->tell_others(**found);
+  (*found)->set_filter(filter);
+}
+
+void BulletSoftBodies::watch_contacts(bool watch) {
+  if (impl_->surfaces) impl_->surfaces->watch(watch);
+}
+std::vector<ContactEvent> BulletSoftBodies::take_contact_events() {
+  return impl_->surfaces ? impl_->surfaces->take_events() : std::vector<ContactEvent>();
+}
+
+std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
+                                                     const CollisionFilter& filter) const {
+  SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {}, {})", from.x(), from.y(), from.z());
+  std::optional<SoftRayHit> nearest;
+  const Eigen::Vector3f middle = 0.5f * (from + to), half = 0.5f * (to - from).cwiseAbs();
+  for (const auto& body : impl_->bodies) {
+    const Bounds<3> box = body->soft().bounds();
+    if (!body->filter().lets(filter) || !overlap(box, {middle - half, middle + half})) continue;
+    const auto hit = SurfaceQuery(body->soft()).cast_ray(from, to);
+    if (hit && (!nearest || hit->share < nearest->hit.share)) nearest = SoftRayHit{&body->soft(), *hit};
+  }
+  return nearest;
 }
 
 SoftBodyTimes BulletSoftBodies::times() const { return impl_->times; }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "softcell/base/assert.h"
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {
@@ -52,6 +53,12 @@ class CoupledBody {
   /// The box around what can be touched. @pre can_be_touched()
   virtual Bounds<3> box() const = 0;
   virtual float reach() const = 0;  ///< metres, beyond that box, at which other soft bodies touch it
+
+  const CollisionFilter& filter() const { return filter_; }
+  virtual void set_filter(const CollisionFilter& filter) {
+    filter_ = filter;
+    rouse();
+  }
 
   /// Wakes the body if it sleeps and may have lain on another, which was in `gone` and is there no longer.
   void lose(const CoupledBody& other, const Bounds<3>& gone) {
@@ -99,6 +106,7 @@ class CoupledBody {
 
   btDiscreteDynamicsWorld& world_;
   SoftBody<3> soft_;
+  CollisionFilter filter_;
   float still_for_ = 0;  // seconds
 
  private:

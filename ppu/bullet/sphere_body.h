@@ -44,6 +44,15 @@ class SphereBody final : public CoupledBody {
     }
   }
 
+  /// Bullet takes a filter with a body only.
+  void set_filter(const CollisionFilter& filter) override {
+    CoupledBody::set_filter(filter);
+    for (btRigidBody& particle : particles_) {
+      world_.removeRigidBody(&particle);
+      world_.addRigidBody(&particle, filter.group, filter.mask);
+    }
+  }
+
   /// Of its particles as Bullet knows them.
   Bounds<3> box() const override {
     SC_ASSERT(!particles_.empty(), "a body without contacts has no box in Bullet");

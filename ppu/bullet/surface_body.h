@@ -1,6 +1,7 @@
 #pragma once
 // A soft body that touches with its drawn surface. Bullet does not know it: surface_contacts.h moves it.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,10 +16,12 @@ namespace softcell::ppu {
 class SurfaceBody final : public CoupledBody {
  public:
   /// @param contact  of the model; outlives this
+  /// @param number  of no other body of the world
   SurfaceBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
-              const Eigen::Vector3f& position, const ContactModel& contact)
-      : CoupledBody(world, std::move(model), position), contact_(contact) {}
+              const Eigen::Vector3f& position, const ContactModel& contact, std::uint32_t number)
+      : CoupledBody(world, std::move(model), position), contact_(contact), number_(number) {}
 
+  std::uint32_t number() const { return number_; }
   const ContactModel& contact() const { return contact_; }
 
   void begin_substep() override {
@@ -60,6 +63,7 @@ class SurfaceBody final : public CoupledBody {
   void fall_asleep() override {}
 
   const ContactModel& contact_;
+  std::uint32_t number_;
   bool holds_a_moving_body_ = false;
 };
 

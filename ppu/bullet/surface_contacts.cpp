@@ -45,12 +45,13 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     in_stage.obstacles.clear();
     in_stage.touches = bodies[i]->can_be_touched();
     if (in_stage.touches) {
-      obstacles_.add_near(in_stage.box, btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter,
+      obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                           in_stage.obstacles);
     }
     if (bodies[i]->soft().asleep() && any_near(in_stage, moves)) bodies[i]->rouse();
     in_stage.asleep = bodies[i]->soft().asleep();
     in_stage.moves = bodies[i]->moves();
+    in_stage.filter = bodies[i]->filter();
     if (in_stage.asleep) in_stage.obstacles.clear();
   }
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
@@ -58,7 +59,66 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     if (stage_.was_woken(i)) bodies[i]->rouse();
     bodies[i]->set_holds_a_moving_body(any_near(in_stage_[i], is_awake));
   }
+  if (watches_) note_touches(bodies);
   obstacles_.apply();
+}
+
+void SurfaceContacts::note_touches(std::span<SurfaceBody* const> bodies) {
+  pressing_.clear();
+  stage_.append_contacts(pressing_);
+  for (const PressingContact& contact : pressing_) {
+    const SurfaceBody& a = *bodies[contact.a];
+    const btCollisionObject* const object =
+        contact.with_rigid ? obstacles_.objects()[contact.rigid] : nullptr;
+    const SurfaceBody* const b = contact.with_rigid ? nullptr : bodies[contact.b];
+    const int other =
+        object != nullptr ? object->getBroadphaseHandle()->m_uniqueId : static_cast<int>(b->number());
+    Touch& touch = touches_[{a.number(), contact.with_rigid, other}];
+    touch.event.body = &a.soft();
+    touch.event.other = b != nullptr ? &b->soft() : nullptr;
+    touch.event.object = object;
+    if (!touch.presses) touch.event.impulse = 0, touch.event.position.setZero(), touch.event.normal.setZero();
+    touch.presses = true;
+    // Sums, which take_events() divides.
+    touch.event.impulse += contact.impulse;
+    touch.event.position += contact.impulse * contact.point;
+    touch.event.normal += contact.impulse * contact.normal;
+  }
+}
+
+void SurfaceContacts::append_contacts(std::vector<Contact>& contacts) const {
+  pressing_.clear();
+  stage_.append_contacts(pressing_);
+  for (const PressingContact& contact : pressing_) contacts.push_back({contact.point, contact.normal});
+}
+
+void SurfaceContacts::watch(bool events) {
+  watches_ = events;
+  if (!events) touches_.clear();
+}
+
+std::vector<ContactEvent> SurfaceContacts::take_events() {
+  std::vector<ContactEvent> events;
+  for (auto entry = touches_.begin(); entry != touches_.end();) {
+    Touch& touch = entry->second;
+    ContactEvent& event = events.emplace_back(touch.event);
+    if (!touch.presses) {
+      event.kind = ContactEvent::Kind::kEnd;
+      event.impulse = 0;
+      entry = touches_.erase(entry);
+      continue;
+    }
+    event.kind = touch.is_old ? ContactEvent::Kind::kPersist : ContactEvent::Kind::kBegin;
+    event.position /= event.impulse;
+    event.normal = event.normal.norm() > 0 ? event.normal.normalized() : Eigen::Vector3f::UnitY();
+    // Where it ends is where it pressed last.
+    touch.event.position = event.position;
+    touch.event.normal = event.normal;
+    touch.is_old = true;
+    touch.presses = false;
+    ++entry;
+  }
+  return events;
 }
 
 }  // namespace softcell::ppu

@@ -1,15 +1,18 @@
 #pragma once
 // The contacts of all soft bodies of a BulletSoftBodies that touch with their surfaces.
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/contact_stage.h"
+#include "softcell/bullet/bullet_soft_bodies.h"
 
 namespace softcell::ppu {
 
@@ -31,11 +34,26 @@ class SurfaceContacts {
   void step(std::span<SurfaceBody* const> bodies, float step);
 
   /// Appends the contacts of the last substep that press.
-  void append_contacts(std::vector<Contact>& contacts) const { stage_.append_contacts(contacts); }
+  void append_contacts(std::vector<Contact>& contacts) const;
+
+  /// Whether events are kept from the next substep on.
+  void watch(bool events);
+  /// What has begun, gone on or ended since the last call.
+  std::vector<ContactEvent> take_events();
 
  private:
+  /// Two that touch, or did when events were taken last.
+  struct Touch {
+    ContactEvent event;
+    bool is_old = false;   ///< it was among those that were taken
+    bool presses = false;  ///< in a substep since then
+  };
+  /// A soft body's number, whether the other one is a collision object, and that one's number: in an order that does not depend on addresses.
+  using TouchKey = std::tuple<std::uint32_t, bool, int>;
+
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
+  void note_touches(std::span<SurfaceBody* const> bodies);
 
   btDiscreteDynamicsWorld& world_;
   std::shared_ptr<ContactWorker> worker_;
@@ -43,6 +61,9 @@ class SurfaceContacts {
   BulletObstacles obstacles_;
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
+  bool watches_ = false;
+  std::map<TouchKey, Touch> touches_;
+  mutable std::vector<PressingContact> pressing_;
 };
 
 }  // namespace softcell::ppu

@@ -74,6 +74,7 @@ void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
     for (std::size_t j = i; j < by_low_.size() && bodies_[by_low_[j]].box.low.x() <= box.high.x(); ++j) {
       const std::uint32_t a = std::min(by_low_[i], by_low_[j]), b = std::max(by_low_[i], by_low_[j]);
       if (!overlap(box, bodies_[by_low_[j]].box) || (bodies[a].asleep && bodies[b].asleep)) continue;
+      if (a != b && !bodies[a].filter.lets(bodies[b].filter)) continue;
       if (a != b || may_touch_itself(bodies_[a])) pairs_.emplace_back(a, b);
     }
   }
@@ -337,13 +338,25 @@ void ContactStage::find_woken(std::span<const BodyInStage> bodies) {
   }
 }
 
-void ContactStage::append_contacts(std::vector<Contact>& contacts) const {
+void ContactStage::append_contacts(std::vector<PressingContact>& contacts) const {
   for (std::size_t i = 0; i < group_count_; ++i) {
-    for (const spu::SolveContact& contact : groups_[i].solved.contacts)
-      if (contact.impulse > 0) contacts.push_back({Vector3f(contact.point), Vector3f(contact.normal)});
-    if (groups_[i].by_worker) continue;
-    for (const SoftContact& contact : groups_[i].contacts)
-      if (contact.impulse > 0) contacts.push_back({contact.point, contact.normal});
+    const Group& group = groups_[i];
+    const auto append = [&](std::size_t c, float impulse, const auto& point, const auto& normal) {
+      if (!(impulse > 0)) return;
+      const std::uint32_t rigid = group.with_rigid ? group.contacts[c].rigid : 0;
+      contacts.push_back(
+          {group.a, group.b, group.with_rigid, rigid, Vector3f(point), Vector3f(normal), impulse});
+    };
+    // Those with rigid bodies were found here, also where the worker has solved them.
+    if (group.by_worker) {
+      for (std::size_t c = 0; c < group.solved.contacts.size(); ++c) {
+        const spu::SolveContact& contact = group.solved.contacts[c];
+        append(c, contact.impulse, contact.point, contact.normal);
+      }
+    } else {
+      for (std::size_t c = 0; c < group.contacts.size(); ++c)
+        append(c, group.contacts[c].impulse, group.contacts[c].point, group.contacts[c].normal);
+    }
   }
 }
 

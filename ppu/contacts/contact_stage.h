@@ -26,6 +26,17 @@ struct BodyInStage {
   bool touches = true;                        ///< false: it meets nothing
   bool asleep = false;                        ///< nothing moves it
   bool moves = true;                          ///< wakes those that sleep and touch it
+  CollisionFilter filter = {};                ///< of other soft bodies
+};
+
+/// A contact of the last step that presses.
+struct PressingContact {
+  std::uint32_t a = 0, b = 0;  ///< bodies; b is of no use with a rigid one
+  bool with_rigid = false;
+  std::uint32_t rigid = 0;          ///< with_rigid: which
+  Eigen::Vector3f point{0, 0, 0};   ///< metres
+  Eigen::Vector3f normal{0, 1, 0};  ///< from b, or the rigid body, to a
+  float impulse = 0;                ///< kg m/s along the normal, above 0
 };
 
 struct ContactSettings {
@@ -47,8 +58,8 @@ class ContactStage {
   void step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
             std::span<ContactRigid> rigids, float step);
 
-  /// Appends those of the last step that press.
-  void append_contacts(std::vector<Contact>& contacts) const;
+  /// Appends those of the last step that press, in the order of bodies.
+  void append_contacts(std::vector<PressingContact>& contacts) const;
   /// Whether a body that slept was touched by one that moves in the last step.
   bool was_woken(std::size_t body) const { return woken_[body]; }
 

@@ -37,6 +37,7 @@
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
+#include "softcell/soft_bodies/surface_query.h"
 
 namespace softcell::ppu {
 
@@ -51,6 +52,28 @@ struct SoftBodyTimes {
   std::chrono::nanoseconds processor() const {
     return gather + solve + apply + contacts;
   }  ///< of the calling thread
+};
+
+/// A soft body touches something, as BulletSoftBodies::take_contact_events() tells it: all contacts of the two together.
+struct ContactEvent {
+  enum class Kind {
+    kBegin,    ///< they did not touch when events were taken last
+    kPersist,  ///< they did
+    kEnd       ///< they touch no longer; one of them may be gone, and its address only a name
+  };
+  Kind kind = Kind::kBegin;
+  const SoftBody<3>* body = nullptr;
+  const SoftBody<3>* other = nullptr;  ///< another soft body, or `body` itself, which is folded; else null
+  const btCollisionObject* object = nullptr;  ///< or something that Bullet knows
+  Eigen::Vector3f position{0, 0, 0};          ///< metres: the mean of where they press, by impulse
+  Eigen::Vector3f normal{0, 1, 0};            ///< unit length, from the other one to `body`
+  float impulse = 0;  ///< kg m/s along the contacts' normals, since events were taken last
+};
+
+/// What a ray meets first.
+struct SoftRayHit {
+  const SoftBody<3>* body = nullptr;
+  SurfaceHit hit;
 };
 
 /// The soft bodies of one world. Several of these may share a world.
@@ -111,6 +134,22 @@ class BulletSoftBodies {
   /// Appends where soft bodies that touch with their surfaces press on something, as of the last substep.
   /// Spheres are in Bullet's own contact manifolds.
   void append_contacts(std::vector<Contact>& contacts) const;
+
+  /// What a body may touch; all that moves and that stands still, if nothing is said. The body wakes, and so does what may lie on it.
+  /// @throws std::invalid_argument  the body is not one of these.
+  void set_filter(const SoftBody<3>& body, const CollisionFilter& filter);
+
+  /// Whether contacts of bodies that touch with their surfaces are watched; not, if nothing is said, and then they cost nothing. Of spheres
+  /// Bullet's own callbacks tell.
+  void watch_contacts(bool watch);
+  /// What has begun, gone on or ended since the last call, an event for each two, in the order in which bodies were added.
+  std::vector<ContactEvent> take_contact_events();
+
+  /// The first point of a ray on the drawn surface of one of these bodies, from either side of it. Each body whose box the ray meets costs some
+  /// microseconds for a thousand triangles: for many rays keep a SurfaceQuery for each body.
+  /// @param filter  bodies that it does not let are not seen  @pre from and to are finite, metres
+  std::optional<SoftRayHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
+                                     const CollisionFilter& filter = {}) const;
 
   SoftBodyTimes times() const;  ///< since the construction
 

@@ -12,8 +12,20 @@ enum class ContactMethod {
   kSpheres,
   /// What is drawn: points of the mesh's surface meet rigid shapes and other soft bodies, whose edges and
   /// points meet the body's distance field. The engine knows nothing of the body, and no rigid body stands
-  /// for its particles: rays, overlap tests and contact callbacks do not see it.
+  /// for its particles, so that its own rays, overlap tests and contact callbacks do not see it:
+  /// BulletSoftBodies has cast_ray() and take_contact_events(), and SurfaceQuery looks at one body.
   kSurface,
+};
+
+/// What may touch what: two bodies do if the group of each has a bit in common with the mask of the other. The numbers are Bullet's, where 1 is
+/// what moves and 2 what stands still.
+struct CollisionFilter {
+  int group = 1;
+  int mask = -1;
+
+  bool lets(const CollisionFilter& other) const {
+    return (group & other.mask) != 0 && (other.group & mask) != 0;
+  }
 };
 
 /// A point at which two bodies press on each other.

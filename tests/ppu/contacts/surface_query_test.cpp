@@ -1,0 +1,237 @@
+// Rays, spheres and distances against deformed surfaces, and what bodies of a world are told of their contacts.
+
+#include "softcell/soft_bodies/surface_query.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "contact_world.h"
+#include "softcell/spe_bodies/spe_runtime.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+/// A cube of 1 m whose middle is at the origin.
+SoftBody<3> unit_cube() {
+  return SoftBody<3>(make_soft_body_model(make_box({1, 1, 1}, 0.25f), settings_of(0.25f)), Vector3f(0, 0, 0));
+}
+
+TEST(SurfaceQuery, ARayMeetsTheNearestFace) {
+  const SurfaceQuery cube(unit_cube());
+  const auto hit = cube.cast_ray({-2, 0.1f, 0.2f}, {2, 0.1f, 0.2f});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->share, 1.5f / 4, 1e-5f);
+  EXPECT_TRUE(hit->position.isApprox(Vector3f(-0.5f, 0.1f, 0.2f), 1e-4f));
+  EXPECT_TRUE(hit->normal.isApprox(Vector3f(-1, 0, 0), 1e-4f));
+  // From within it meets the other side, whose normal still points outwards.
+  const auto from_within = cube.cast_ray({0, 0, 0}, {0, 3, 0});
+  ASSERT_TRUE(from_within);
+  EXPECT_NEAR(from_within->share, 0.5f / 3, 1e-5f);
+  EXPECT_TRUE(from_within->normal.isApprox(Vector3f::UnitY(), 1e-4f));
+  EXPECT_FALSE(cube.cast_ray({-2, 0.1f, 0.2f}, {-0.6f, 0.1f, 0.2f})) << "it ends before";
+  EXPECT_FALSE(cube.cast_ray({-2, 0.6f, 0}, {2, 0.6f, 0})) << "it passes by";
+  EXPECT_FALSE(cube.cast_ray({1, 1, 1}, {1, 1, 1})) << "a point outside";
+}
+
+TEST(SurfaceQuery, ARayAtAnEdgeOfTwoTrianglesFallsThroughNowhere) {
+  const SurfaceQuery cube(unit_cube());
+  for (int i = -8; i <= 8; ++i)
+    for (int j = -8; j <= 8; ++j)
+      EXPECT_TRUE(cube.cast_ray({0.0625f * static_cast<float>(i), 0.0625f * static_cast<float>(j), 2},
+                                {0.0625f * static_cast<float>(i), 0.0625f * static_cast<float>(j), 0}))
+          << i << " " << j;
+}
+
+TEST(SurfaceQuery, DistancesAreThoseOfABox) {
+  const SurfaceQuery cube(unit_cube());
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> coordinate(-1, 1);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3f p(coordinate(engine), coordinate(engine), coordinate(engine));
+    const Vector3f beyond = p.cwiseAbs() - Vector3f::Constant(0.5f);
+    const float expected = beyond.maxCoeff() <= 0 ? beyond.maxCoeff() : beyond.cwiseMax(0.0f).norm();
+    EXPECT_NEAR(cube.distance(p), expected, 1e-4f) << p.transpose();
+  }
+}
+
+TEST(SurfaceQuery, AMovedSphereStopsWhereItTouches) {
+  const SurfaceQuery cube(unit_cube());
+  const auto hit = cube.cast_sphere({0, 3, 0}, {0, -3, 0}, 0.25f);
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->share, (3 - 0.75f) / 6, 1e-3f);
+  EXPECT_TRUE(hit->normal.isApprox(Vector3f::UnitY(), 1e-3f));
+  // Past a corner: nearer than its radius, or not.
+  EXPECT_TRUE(cube.cast_sphere({0.6f, 0.6f, -3}, {0.6f, 0.6f, 3}, 0.2f));
+  EXPECT_FALSE(cube.cast_sphere({0.6f, 0.6f, -3}, {0.6f, 0.6f, 3}, 0.12f));
+  const auto at_once = cube.cast_sphere({0, 0.6f, 0}, {5, 0.6f, 0}, 0.2f);
+  ASSERT_TRUE(at_once);
+  EXPECT_EQ(at_once->share, 0);
+}
+
+TEST(SurfaceQuery, SeesTheBodyAsItIsDeformed) {
+  SoftBody<3> body = unit_cube();
+  for (std::size_t i = 0; i < body.positions().size(); ++i) {
+    const Vector3f x = body.position(i);
+    body.set_particle(i, {2 * x.x(), 0.5f * x.y(), x.z() + 0.3f * x.x()}, {0, 0, 0});
+  }
+  const SurfaceQuery surface(body);
+  EXPECT_NEAR(surface.bounds().high.x(), 1, 1e-4f);
+  const auto hit = surface.cast_ray({0, 2, 0}, {0, -2, 0});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->position.y(), 0.25f, 1e-4f);
+  EXPECT_NEAR(surface.distance({0.5f, 0.45f, 0.1f}), 0.2f, 1e-4f);
+}
+
+TEST(SurfaceQuery, IsTheSameAsLookingAtEachTriangle) {
+  const SoftBody<3> body(make_soft_body_model(make_penguin(0.9f), settings_of(0.1f)),
+                         Vector3f(0.1f, 0.2f, 0.3f));
+  const SurfaceQuery surface(body);
+  std::vector<Vector3f> positions(body.model().mesh().positions.size()), normals(positions.size());
+  skin(body, positions, normals);
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<float> coordinate(-1, 1);
+  int hits = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3f from =
+        body.centre_of_mass() + 2 * Vector3f(coordinate(engine), coordinate(engine), coordinate(engine));
+    const Vector3f to =
+        body.centre_of_mass() + 0.5f * Vector3f(coordinate(engine), coordinate(engine), coordinate(engine));
+    float nearest = std::numeric_limits<float>::max(), best = 2;
+    for (const auto& t : body.model().mesh().triangles) {
+      const std::array<Vector3f, 3> triangle{positions[t[0]], positions[t[1]], positions[t[2]]};
+      nearest = std::min(nearest, (nearest_point(triangle, from) - from).norm());
+      // By its plane, and then whether the point lies in it.
+      const Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+      const float share = normal.dot(triangle[0] - from) / normal.dot(to - from);
+      const Vector3f at = from + share * (to - from);
+      if (share >= 0 && share <= 1 && (nearest_point(triangle, at) - at).norm() < 1e-5f)
+        best = std::min(best, share);
+    }
+    EXPECT_NEAR(std::abs(surface.distance(from)), nearest, 1e-5f);
+    const auto hit = surface.cast_ray(from, to);
+    EXPECT_EQ(hit.has_value(), best <= 1) << i;
+    if (!hit) continue;
+    EXPECT_NEAR(hit->share, best, 1e-4f);
+    ++hits;
+  }
+  EXPECT_GT(hits, 50);
+}
+
+TEST(SurfaceQuery, OfABodyWithoutAMeshIsTheLatticesBoundary) {
+  const Lattice<3> lattice = voxelize(make_box({1, 1, 1}, 0.25f), 0.25f);
+  const SoftBody<3> body(make_soft_body_model(lattice, settings_of(0.25f)), Vector3f(0, 0, 0));
+  const SurfaceQuery surface(body);
+  const Vector3f middle = body.centre_of_mass();
+  EXPECT_NEAR(surface.distance(middle), -0.5f, 1e-3f);
+  EXPECT_TRUE(surface.cast_ray(middle + Vector3f(0, 3, 0), middle));
+}
+
+TEST(SurfaceQuery, RefusesWhatIsNotFinite) {
+  SoftBody<3> body = unit_cube();
+  body.set_particle(3, Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()), {0, 0, 0});
+  EXPECT_THROW(SurfaceQuery{body}, std::runtime_error);
+}
+
+TEST(SoftBodiesInBullet, ARayMeetsTheNearestBodyThatItsFilterLets) {
+  ContactWorld w({0, 0, 0});
+  const SoftBody<3>& near = w.add(make_box({1, 1, 1}, 0.25f), settings_of(0.25f), {0, 0, 0});
+  const SoftBody<3>& far = w.add(make_box({1, 1, 1}, 0.25f), settings_of(0.25f), {3, 0, 0});
+  const auto hit = w.bodies.cast_ray({-5, 0, 0}, {5, 0, 0});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->body, &near);
+  EXPECT_NEAR(hit->hit.share, 0.45f, 1e-4f);
+  w.bodies.set_filter(near, {.group = 4, .mask = -1});
+  EXPECT_EQ(w.bodies.cast_ray({-5, 0, 0}, {5, 0, 0}, {.group = 1, .mask = ~4})->body, &far);
+  EXPECT_FALSE(w.bodies.cast_ray({-5, 2, 0}, {5, 2, 0}));
+  const SoftBody<3> stranger = unit_cube();
+  EXPECT_THROW(w.bodies.set_filter(stranger, {}), std::invalid_argument);
+}
+
+TEST(SoftBodiesInBullet, FiltersSayWhatTouches) {
+  // Two pass through each other, and one of them through the floor; the other one rests on it.
+  for (const ContactMethod method : {ContactMethod::kSurface, ContactMethod::kSpheres}) {
+    ContactWorld w;
+    BulletSoftBodies other(w.world, method);
+    w.add_floor();
+    const auto model = make_soft_body_model(make_box({0.5f, 0.5f, 0.5f}, 0.125f), settings_of(0.125f));
+    const SoftBody<3>& falls = other.add(model, {0, 0.3f, 0});
+    const SoftBody<3>& rests = other.add(model, {0.1f, 0.9f, 0});
+    other.set_filter(falls, {.group = 4, .mask = ~(2 | 8)});  // 2: what stands still
+    other.set_filter(rests, {.group = 8, .mask = -1});
+    w.run(90);
+    EXPECT_LT(falls.centre_of_mass().y(), -5) << static_cast<int>(method);
+    EXPECT_NEAR(rests.centre_of_mass().y(), 0.25f, 0.05f) << static_cast<int>(method);
+    other.remove(falls), other.remove(rests);
+  }
+}
+
+/// Events of a box that falls on the floor, is hit by another one, and is thrown off.
+void expect_events(SolverFactory* solvers) {
+  using Kind = ContactEvent::Kind;
+  ContactWorld w({0, -9.81f, 0}, solvers);
+  const btRigidBody& floor = w.add_floor();
+  SoftBody<3>& lower =
+      w.add(make_box({0.5f, 0.5f, 0.5f}, 0.125f), settings_of(0.125f, 0.5f, 0.3f), {0, 0.3f, 0});
+  SoftBody<3>& upper =
+      w.add(make_box({0.5f, 0.5f, 0.5f}, 0.125f), settings_of(0.125f, 0.5f, 0.3f), {0, 1.5f, 0});
+  w.run(10);
+  EXPECT_TRUE(w.bodies.take_contact_events().empty()) << "nobody watches";
+  w.bodies.watch_contacts(true);
+  w.run(1);
+  std::vector<ContactEvent> events = w.bodies.take_contact_events();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, Kind::kBegin);
+  EXPECT_EQ(events[0].body, &lower);
+  EXPECT_EQ(events[0].object, &floor);
+  EXPECT_EQ(events[0].other, nullptr);
+  EXPECT_NEAR(events[0].position.y(), 0, 0.01f);
+  EXPECT_GT(events[0].normal.y(), 0.99f);
+  w.run(120);
+  w.bodies.take_contact_events();
+  w.run(60);
+  events = w.bodies.take_contact_events();
+  ASSERT_EQ(events.size(), 2u);
+  // Those with soft bodies and those with objects, by the number of the first body.
+  const ContactEvent& between = events[0].other != nullptr ? events[0] : events[1];
+  const ContactEvent& below = events[0].other != nullptr ? events[1] : events[0];
+  EXPECT_EQ(between.kind, Kind::kPersist);
+  EXPECT_EQ(between.body, &lower);
+  EXPECT_EQ(between.other, &upper);
+  EXPECT_LT(between.normal.y(), -0.99f) << "from the other one to the body";
+  EXPECT_NEAR(between.position.y(), 0.5f, 0.05f);
+  // A second of weight.
+  EXPECT_NEAR(between.impulse, 9.81f * upper.model().mass(), 0.03f * 9.81f * upper.model().mass());
+  EXPECT_NEAR(below.impulse, 2 * 9.81f * upper.model().mass(), 0.06f * 9.81f * upper.model().mass());
+  upper.add_velocity({0, 5, 0});
+  w.run(5);
+  events = w.bodies.take_contact_events();
+  w.run(5);
+  events = w.bodies.take_contact_events();
+  ASSERT_GE(events.size(), 1u);
+  const auto ended =
+      std::find_if(events.begin(), events.end(), [&](const ContactEvent& e) { return e.other == &upper; });
+  ASSERT_NE(ended, events.end());
+  EXPECT_EQ(ended->kind, Kind::kEnd);
+  EXPECT_EQ(ended->impulse, 0);
+  w.bodies.watch_contacts(false);
+  EXPECT_TRUE(w.bodies.take_contact_events().empty());
+}
+
+TEST(SoftBodiesInBullet, TellOfContacts) { expect_events(nullptr); }
+TEST(SoftBodiesInBullet, TellOfContactsThatSpesSolve) {
+  SpeRuntime spes({.spes = 2});
+  expect_events(&spes);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
