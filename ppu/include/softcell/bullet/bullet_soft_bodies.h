@@ -56,6 +56,7 @@ struct SoftBodyTimes {
 
 /// A soft body touches something, as BulletSoftBodies::take_contact_events() tells it: all contacts of the two together.
 struct ContactEvent {
+  /// Since when they touch.
   enum class Kind {
     kBegin,    ///< they did not touch when events were taken last
     kPersist,  ///< they did

@@ -23,6 +23,7 @@ struct CollisionFilter {
   int group = 1;
   int mask = -1;
 
+  /// Whether two with these filters may touch.
   bool lets(const CollisionFilter& other) const {
     return (group & other.mask) != 0 && (other.group & mask) != 0;
   }
