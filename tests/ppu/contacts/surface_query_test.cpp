@@ -170,7 +170,7 @@ TEST(SoftBodiesInBullet, FiltersSayWhatTouches) {
     other.set_filter(rests, {.group = 8, .mask = -1});
     w.run(90);
     EXPECT_LT(falls.centre_of_mass().y(), -5) << static_cast<int>(method);
-    EXPECT_NEAR(rests.centre_of_mass().y(), 0.25f, 0.05f) << static_cast<int>(method);
+    EXPECT_NEAR(rests.centre_of_mass().y(), 0.25f, 0.1f) << static_cast<int>(method);
     other.remove(falls), other.remove(rests);
   }
 }
@@ -213,15 +213,15 @@ void expect_events(SolverFactory* solvers) {
   EXPECT_NEAR(between.impulse, 9.81f * upper.model().mass(), 0.03f * 9.81f * upper.model().mass());
   EXPECT_NEAR(below.impulse, 2 * 9.81f * upper.model().mass(), 0.06f * 9.81f * upper.model().mass());
   upper.add_velocity({0, 5, 0});
-  w.run(5);
-  events = w.bodies.take_contact_events();
-  w.run(5);
-  events = w.bodies.take_contact_events();
-  ASSERT_GE(events.size(), 1u);
+  events.clear();
+  for (int i = 0; i < 3; ++i) {
+    w.run(3);
+    for (const ContactEvent& event : w.bodies.take_contact_events())
+      if (event.kind == Kind::kEnd) events.push_back(event);
+  }
   const auto ended =
       std::find_if(events.begin(), events.end(), [&](const ContactEvent& e) { return e.other == &upper; });
   ASSERT_NE(ended, events.end());
-  EXPECT_EQ(ended->kind, Kind::kEnd);
   EXPECT_EQ(ended->impulse, 0);
   w.bodies.watch_contacts(false);
   EXPECT_TRUE(w.bodies.take_contact_events().empty());
