@@ -68,11 +68,14 @@ class Sweeper {
   template <class Use>
   void run(std::uint32_t function, std::uint64_t arguments, std::uint32_t stride, const Use& use) {
     const std::size_t spes = work_.size();
-    for (std::uint64_t done = 0; done < arguments; done += spes * kBatch) {
+    const std::uint64_t of_each = (arguments + spes - 1) / spes;
+    const auto batch =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(kBatch, (of_each + 1023) / 1024 * 1024));
+    for (std::uint64_t done = 0; done < arguments; done += spes * batch) {
       for (std::size_t spe = 0; spe < spes; ++spe) {
-        const auto first = static_cast<std::uint32_t>((done + spe * kBatch) * stride);
+        const auto first = static_cast<std::uint32_t>((done + spe * batch) * stride);
         *work_[spe].data() = {.function = function,
-                              .count = kBatch,
+                              .count = batch,
                               .first = first,
                               .stride = stride,
                               .results = results_[spe].ea().value};
@@ -83,9 +86,9 @@ class Sweeper {
         ASSERT_TRUE(ended.ended_normally()) << (ended.fault ? ended.fault->message() : "");
       }
       for (std::size_t spe = 0; spe < spes; ++spe) {
-        const std::uint64_t begin = done + spe * kBatch;
+        const std::uint64_t begin = done + spe * batch;
         if (begin >= arguments) break;
-        const std::size_t count = std::min<std::uint64_t>(kBatch, arguments - begin);
+        const std::size_t count = std::min<std::uint64_t>(batch, arguments - begin);
         use(work_[spe].data()->first, std::span<const float>(results_[spe].data(), count));
       }
     }
