@@ -41,7 +41,20 @@ inline T as_it_is_here(T x) {
 }
 
 constexpr double kLn2 = 0x1.62E42FEFA39EFp-1, kLog2e = 0x1.71547652B82FEp0, kPi = 0x1.921FB54442D18p1;
-constexpr double kLn10 = 0x1.26BB1BBB55516p1, kSqrt2 = 0x1.6A09E667F3BCDp0;
+constexpr double kLn10 = 0x1.26BB1BBB55516p1, kSqrt2 = 0x1.6A09E667F3BCDp0, kTwoOverPi = 2 / kPi;
+// Coefficients are constants: a compiler that must not round for itself would divide at each call.
+constexpr double kExponential[] = {
+    1,          1.0 / 2,     1.0 / 6,      1.0 / 24,      1.0 / 120,      1.0 / 720,
+    1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600};
+constexpr double kLogarithm[] = {1,        1.0 / 3,  1.0 / 5,  1.0 / 7, 1.0 / 9,
+                                 1.0 / 11, 1.0 / 13, 1.0 / 15, 1.0 / 17};
+constexpr double kSine[] = {-1.0 / 6,     1.0 / 120,       -1.0 / 5040,
+                            1.0 / 362880, -1.0 / 39916800, 1.0 / 6227020800.0};
+constexpr double kCosine[] = {-1.0 / 2,       1.0 / 24,        -1.0 / 720,          1.0 / 40320,
+                              -1.0 / 3628800, 1.0 / 479001600, -1.0 / 87178291200.0};
+constexpr double kArcTangent[] = {1,         -1.0 / 3, 1.0 / 5,   -1.0 / 7, 1.0 / 9,   -1.0 / 11, 1.0 / 13,
+                                  -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
+constexpr double kHyperbolicSine[] = {1.0 / 6, 1.0 / 120, 1.0 / 5040, 1.0 / 362880, 1.0 / 39916800};
 constexpr double kLargest = 0x1.FFFFFEp127, kSmallest = 0x1p-126;  // of floats
 
 int64_t bits_of(double x) {
@@ -181,10 +194,7 @@ double root_of(double x) {
 // ---- exponentials
 
 /// e^r - 1 for |r| <= ln 2 / 2: the series, whose next term is below 1e-14 of it.
-double small_exponential(double r) {
-  return r * polynomial(r, {1, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320,
-                            1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600});
-}
+double small_exponential(double r) { return r * polynomial(r, kExponential); }
 
 double exponential(double x) {
   if (x > 709) return HUGE_VAL;
@@ -215,8 +225,7 @@ Logarithm logarithm(double x) {
     ++exponent;
   }
   const double s = (m - 1) / (m + 1), q = s * s;
-  const double series =
-      polynomial(q, {1, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13, 1.0 / 15, 1.0 / 17});
+  const double series = polynomial(q, kLogarithm);
   return {static_cast<double>(exponent), 2 * s * series};
 }
 /// What no positive number has: of 0 the largest number below zero, of others 0.
@@ -262,8 +271,8 @@ double hypotenuse(double x, double y) { return root_of(x * x + y * y); }
 // ---- angles
 
 /// 2 / pi behind its point.
-constexpr uint32_t kTwoOverPi[] = {0xA2F9836E, 0x4E441529, 0xFC2757D1, 0xF534DDC0,
-                                   0xDB629599, 0x3C439041, 0xFE5163AB};
+constexpr uint32_t kDigitsOfTwoOverPi[] = {0xA2F9836E, 0x4E441529, 0xFC2757D1, 0xF534DDC0,
+                                           0xDB629599, 0x3C439041, 0xFE5163AB};
 
 /// x = quadrant pi / 2 + rest.
 struct Angle {
@@ -280,7 +289,7 @@ Angle reduce_large(double x) {
   const int skipped = exponent > 2 ? exponent - 2 : 0;
   uint32_t window[3];
   for (int i = 0; i < 3; ++i) {
-    const uint32_t* const word = kTwoOverPi + skipped / 32 + i;
+    const uint32_t* const word = kDigitsOfTwoOverPi + skipped / 32 + i;
     const int shift = skipped % 32;
     window[i] = shift == 0 ? word[0] : word[0] << shift | word[1] >> (32 - shift);
   }
@@ -313,21 +322,18 @@ Angle reduce_large(double x) {
 /// pi / 2 in three parts, of which the first two have 33 bits, so that their products are exact.
 Angle reduce(double x) {
   if (size_of(x) >= 0x1p20) return size_of(x) <= kLargest ? reduce_large(x) : Angle{0, 0};
-  const int64_t k = nearest(x * (2 / kPi));
+  const int64_t k = nearest(x * kTwoOverPi);
   const double n = static_cast<double>(k);
   return {static_cast<int>(k & 3), x - n * 0x1.921FB544p0 - n * 0x1.0B4611A6p-34 - n * 0x1.3198A2E037073p-69};
 }
 /// |x| <= pi / 4: the series, whose next term is below 1e-13.
 double small_sine(double x) {
   const double s = x * x;
-  return x + x * s *
-                 polynomial(s, {-1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
-                                1.0 / 6227020800.0});
+  return x + x * s * polynomial(s, kSine);
 }
 double small_cosine(double x) {
   const double s = x * x;
-  return 1 + s * polynomial(s, {-1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
-                                -1.0 / 87178291200.0});
+  return 1 + s * polynomial(s, kCosine);
 }
 double sine_in(int quadrant, double x) {
   const double value = (quadrant & 1) != 0 ? small_cosine(x) : small_sine(x);
@@ -354,8 +360,7 @@ double arc_tangent(double x) {
                    : size > 0.4142135623730950 ? (size - 1) / (size + 1)
                                                : size;
   const double q = t * t;
-  const double series = polynomial(q, {1, -1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11, 1.0 / 13,
-                                       -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25});
+  const double series = polynomial(q, kArcTangent);
   return with_sign_of(base + t * series, x);
 }
 double arc_tangent_of(double y, double x) {
@@ -372,7 +377,7 @@ double arc_cosine(double x) { return size_of(x) > 1 ? 0 : arc_tangent_of(root_of
 double hyperbolic_sine(double x) {
   if (size_of(x) < 0.5) {  // where the difference of exponentials would lose digits
     const double s = x * x;
-    return x + x * s * polynomial(s, {1.0 / 6, 1.0 / 120, 1.0 / 5040, 1.0 / 362880, 1.0 / 39916800});
+    return x + x * s * polynomial(s, kHyperbolicSine);
   }
   const double e = exponential(size_of(x));
   return with_sign_of((e - 1 / e) / 2, x);
