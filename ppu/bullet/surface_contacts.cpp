@@ -97,12 +97,25 @@ void SurfaceContacts::watch(bool events) {
   if (!events) touches_.clear();
 }
 
+void SurfaceContacts::forget(const SurfaceBody& body) {
+  for (auto& [key, touch] : touches_)
+    if (touch.event.body == &body.soft() || touch.event.other == &body.soft()) touch.is_over = true;
+}
+
 std::vector<ContactEvent> SurfaceContacts::take_events() {
+  // Contacts of those that sleep are not looked for, and go on.
+  const auto sleeps = [](const Touch& touch) {
+    return touch.event.body->asleep() && (touch.event.other == nullptr || touch.event.other->asleep());
+  };
   std::vector<ContactEvent> events;
   for (auto entry = touches_.begin(); entry != touches_.end();) {
     Touch& touch = entry->second;
+    if (!touch.is_over && !touch.presses && sleeps(touch)) {
+      ++entry;
+      continue;
+    }
     ContactEvent& event = events.emplace_back(touch.event);
-    if (!touch.presses) {
+    if (touch.is_over || !touch.presses) {
       event.kind = ContactEvent::Kind::kEnd;
       event.impulse = 0;
       entry = touches_.erase(entry);

@@ -40,6 +40,8 @@ class SurfaceContacts {
   void watch(bool events);
   /// What has begun, gone on or ended since the last call.
   std::vector<ContactEvent> take_events();
+  /// A body goes: what it touched ends.
+  void forget(const SurfaceBody& body);
 
  private:
   /// Two that touch, or did when events were taken last.
@@ -47,6 +49,7 @@ class SurfaceContacts {
     ContactEvent event;
     bool is_old = false;   ///< it was among those that were taken
     bool presses = false;  ///< in a substep since then
+    bool is_over = false;  ///< one of them is gone
   };
   /// A soft body's number, whether the other one is a collision object, and that one's number: in an order that does not depend on addresses.
   using TouchKey = std::tuple<std::uint32_t, bool, int>;

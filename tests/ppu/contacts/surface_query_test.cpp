@@ -227,6 +227,25 @@ void expect_events(SolverFactory* solvers) {
   EXPECT_TRUE(w.bodies.take_contact_events().empty());
 }
 
+TEST(SoftBodiesInBullet, SleepEndsNoContactAndRemovalDoes) {
+  ContactWorld w;
+  w.add_floor();
+  w.bodies.watch_contacts(true);
+  w.bodies.let_sleep(SleepSettings{});
+  SoftBody<3>& body =
+      w.add(make_box({0.5f, 0.5f, 0.5f}, 0.125f), settings_of(0.125f, 0.5f, 0.3f), {0, 0.251f, 0});
+  for (int i = 0; i < 600 && !body.asleep(); ++i) w.run(1);
+  ASSERT_TRUE(body.asleep());
+  w.bodies.take_contact_events();
+  w.run(10);
+  EXPECT_TRUE(w.bodies.take_contact_events().empty());
+  w.bodies.remove(body);
+  const std::vector<ContactEvent> events = w.bodies.take_contact_events();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, ContactEvent::Kind::kEnd);
+  EXPECT_TRUE(w.bodies.take_contact_events().empty());
+}
+
 TEST(SoftBodiesInBullet, TellOfContacts) { expect_events(nullptr); }
 TEST(SoftBodiesInBullet, TellOfContactsThatSpesSolve) {
   SpeRuntime spes({.spes = 2});

@@ -143,7 +143,8 @@ class BulletSoftBodies {
   /// Whether contacts of bodies that touch with their surfaces are watched; not, if nothing is said, and then they cost nothing. Of spheres
   /// Bullet's own callbacks tell.
   void watch_contacts(bool watch);
-  /// What has begun, gone on or ended since the last call, an event for each two, in the order in which bodies were added.
+  /// What has begun, gone on or ended since the last call, an event for each two, in the order in which bodies were added. Of two that
+  /// sleep on each other there are none until one wakes.
   std::vector<ContactEvent> take_contact_events();
 
   /// The first point of a ray on the drawn surface of one of these bodies, from either side of it. Each body whose box the ray meets costs some
