@@ -230,9 +230,11 @@ void gather_boxes(const BodyInStore& body, const NearCells& near) {
     const float* const box = box_of(body, near.cell[i]);
     for (uint32_t k = 0; k < 6; ++k) ls.box[k][i] = box[4 * k];
   }
-  for (uint32_t i = near.count; i < near.count + 4; ++i) {  // what fills up the last four meets nothing
-    for (uint32_t k = 0; k < 3; ++k) ls.box[k][i] = 0x1.93e594p+99f;   // 1e30
-    for (uint32_t k = 3; k < 6; ++k) ls.box[k][i] = -0x1.93e594p+99f;  // 1e30
+  // What fills up the last four meets nothing.
+  constexpr float kFar = 0x1.93e594p+99f;  // 1e30
+  for (uint32_t k = 0; k < 6; ++k) {
+    float* const side = ls.box[k] + near.count;
+    side[0] = side[1] = side[2] = side[3] = k < 3 ? kFar : -kFar;
   }
 }
 
@@ -267,8 +269,10 @@ bool belong_together(const CellAtRest& a, const CellAtRest& b) {
 /// The points of one body in another.
 class Direction {
  public:
-  Direction(const BodyInStore& mine, const BodyInStore& other, const NearCells& near_mine,
-            const NearCells& near_other, bool swap, const TaskTerms& terms)
+  /// @param near_mine, near_other  which of ls.near. (References to them would be constant addresses, which compilers put into tables
+  ///                               together, and an image must hold no address.)
+  Direction(const BodyInStore& mine, const BodyInStore& other, uint32_t near_mine, uint32_t near_other,
+            bool swap, const TaskTerms& terms)
       : mine_(mine),
         other_(other),
         near_mine_(near_mine),
@@ -279,15 +283,15 @@ class Direction {
 
   /// @return  false: there is no room
   bool find() {
-    gather_boxes(other_, near_other_);
+    const NearCells &near_mine = ls.near[near_mine_], &near_other = ls.near[near_other_];
+    gather_boxes(other_, near_other);
     for (uint32_t i = 0; i < kInverses; ++i) ls.cell_of_inverse[i] = kNoCell;
-    for (uint32_t i = 0; i < near_mine_.count; ++i) {
-      const uint32_t cell = near_mine_.cell[i];
+    for (uint32_t i = 0; i < near_mine.count; ++i) {
+      const uint32_t cell = near_mine.cell[i];
       if (spu_extract(mine_.cells[cell].place, 5) == 0) continue;  // no points in it
       const float* const box = box_of(mine_, cell);
       const auto all = [&](uint32_t k) __attribute__((always_inline)) { return spu_splats(box[4 * k]); };
-      const uint32_t meets =
-          gather_meeting({{all(0), all(1), all(2)}, {all(3), all(4), all(5)}}, near_other_);
+      const uint32_t meets = gather_meeting({{all(0), all(1), all(2)}, {all(3), all(4), all(5)}}, near_other);
       if (meets != 0 && !try_cell(cell, meets)) return false;
     }
     return true;
@@ -389,7 +393,7 @@ class Direction {
 
   const BodyInStore& mine_;
   const BodyInStore& other_;
-  const NearCells &near_mine_, &near_other_;
+  uint32_t near_mine_, near_other_;
   bool swap_;
   const TaskTerms& terms_;
   float least_volume_;
@@ -405,7 +409,7 @@ bool find_between(const BodyInStore& a, const BodyInStore& b, const FindTask& ta
   BoxInAllLanes around_a, around_b;
   if (task.itself != 0) {
     if (!gather_near(a, {box, nullptr, 0, 0}, near_a, around_a)) return false;
-    return Direction(a, a, near_a, near_a, false, terms).find();
+    return Direction(a, a, 0, 0, false, terms).find();
   }
   // Between two planes across the line between their middles: only there the bodies meet.
   const vec_float4 direction = spu_sub(*reinterpret_cast<const vec_float4*>(task.b.middle),
@@ -420,8 +424,7 @@ bool find_between(const BodyInStore& a, const BodyInStore& b, const FindTask& ta
   if (near_a.count == 0) return true;
   if (!gather_near(b, {common(box, around_a), ls.along[1], reach_a.least, reach_a.most}, near_b, around_b))
     return false;
-  return Direction(a, b, near_a, near_b, false, terms).find() &&
-         Direction(b, a, near_b, near_a, true, terms).find();
+  return Direction(a, b, 0, 1, false, terms).find() && Direction(b, a, 1, 0, true, terms).find();
 }
 
 bool do_task(const FindTask& task) {

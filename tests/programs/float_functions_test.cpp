@@ -150,7 +150,7 @@ TEST_P(FloatSweeps, HaveTheSameBitsBuiltForTheSpu) {
   const KernelImage native =
       load_image("float_sweep", {softcell_image_program_float_sweep, softcell_image_program_float_sweep_end});
   const std::vector<std::byte> file = base::read_file(SOFTCELL_FLOAT_SWEEP_ELF, 1 << 20);
-  const KernelImage spu = load_image("float_sweep", file);
+  const KernelImage spu = load_spu_program("float_sweep", file);
   ASSERT_EQ(spu.machine, Machine::kSpu);
   std::vector<float> expected;
   const auto keep = [&](std::uint32_t, std::span<const float> results) {

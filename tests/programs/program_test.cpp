@@ -202,7 +202,7 @@ void expect_to_pass_with_a_buffer(const char* name, const Prepare& prepare) {
     prepare(buffer.span());
     const KernelImage image = load_image(name, checked ? program(name).checked : program(name).plain);
     Findings findings;
-    SpeGroup group(memory, {.spes = 1, .findings = &findings});
+    SpeGroup group(memory, {.spes = 1, .findings = checked ? &findings : nullptr});
     testing::internal::CaptureStdout();
     group.start(0, image, {.argp = buffer.ea().value});
     const RunResult ended = group.wait(0);

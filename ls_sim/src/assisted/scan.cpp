@@ -12,7 +12,7 @@ namespace softcell::ls_sim::assisted {
 namespace {
 
 /// One conversion as it was read: "%*5lld", "%[^,]".
-struct Conversion {
+struct ScanConversion {
   bool stores = true;
   std::size_t width = 0;  ///< 0: none was said
   std::string length;
@@ -21,8 +21,8 @@ struct Conversion {
 };
 
 /// Reads a conversion; `at` is behind the percent sign and moves behind what was read.
-Conversion read_conversion(const std::string& format, std::size_t& at) {
-  Conversion c;
+ScanConversion read_scan_conversion(const std::string& format, std::size_t& at) {
+  ScanConversion c;
   const auto is = [&](const std::string& these) {
     return at < format.size() && these.find(format[at]) != std::string::npos;
   };
@@ -44,15 +44,18 @@ Conversion read_conversion(const std::string& format, std::size_t& at) {
   return c;
 }
 
-/// One conversion by the host's scanf; counts what it reads.
+/// One conversion by the host's scanf, given without its percent sign; counts what it reads.
 template <class Value>
 int scan_one(std::FILE* from, const std::string& conversion, Value* value, long long& consumed) {
   int used = 0;
+  std::string format(1, '%');
+  format += conversion;
+  format += "%n";
   // The format is one conversion that was made for this type.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
 #pragma GCC diagnostic ignored "-Wformat-security"
-  const int stored = std::fscanf(from, (conversion + "%n").c_str(), value, &used);
+  const int stored = std::fscanf(from, format.c_str(), value, &used);
 #pragma GCC diagnostic pop
   consumed += used;
   return stored;
@@ -73,7 +76,7 @@ class Scan {
         if (!match(letter)) return result();
         ++at;
       } else {
-        const Conversion c = read_conversion(format, ++at);
+        const ScanConversion c = read_scan_conversion(format, ++at);
         if (!convert(c)) return result();
       }
     }
@@ -97,7 +100,7 @@ class Scan {
     return false;
   }
 
-  bool convert(const Conversion& c) {
+  bool convert(const ScanConversion& c) {
     switch (c.kind) {
       case '%':
         skip_space();
@@ -133,32 +136,32 @@ class Scan {
     }
   }
 
-  static std::uint32_t size_of(const Conversion& c) {
+  static std::uint32_t size_of(const ScanConversion& c) {
     if (c.length == "hh") return 1;
     if (c.length == "h") return 2;
     return c.length == "ll" || c.length == "q" || c.length == "j" || c.length == "L" ? 8 : 4;
   }
-  static std::string width_of(const Conversion& c) { return c.width == 0 ? "" : std::to_string(c.width); }
+  static std::string width_of(const ScanConversion& c) { return c.width == 0 ? "" : std::to_string(c.width); }
 
   /// @return  whether there is a value, which has been counted if it is to be stored
-  bool got_one(const Conversion& c, int scanned) {
+  bool got_one(const ScanConversion& c, int scanned) {
     ended_ = scanned == EOF;
     if (scanned != 1) return false;
     if (c.stores) ++stored_;
     return true;
   }
 
-  bool integer(const Conversion& c) {
+  bool integer(const ScanConversion& c) {
     unsigned long long value = 0;
     const char kind = c.kind == 'p' ? 'x' : c.kind;
-    if (!got_one(c, scan_one(from_, "%" + width_of(c) + "ll" + kind, &value, consumed_))) return false;
+    if (!got_one(c, scan_one(from_, width_of(c) + "ll" + kind, &value, consumed_))) return false;
     if (c.stores) memory_.set_value(arguments_.next_word(), value, c.kind == 'p' ? 4 : size_of(c));
     return true;
   }
 
-  bool real(const Conversion& c) {
+  bool real(const ScanConversion& c) {
     double value = 0;
-    if (!got_one(c, scan_one(from_, "%" + width_of(c) + "lf", &value, consumed_))) return false;
+    if (!got_one(c, scan_one(from_, width_of(c) + "lf", &value, consumed_))) return false;
     if (!c.stores) return true;
     if (c.length.empty())
       memory_.set_word(arguments_.next_word(), std::bit_cast<std::uint32_t>(static_cast<float>(value)));
@@ -167,7 +170,7 @@ class Scan {
     return true;
   }
 
-  bool characters(const Conversion& c) {
+  bool characters(const ScanConversion& c) {
     std::string found;
     const std::size_t width = std::max<std::size_t>(c.width, 1);
     while (found.size() < width) {
@@ -181,11 +184,11 @@ class Scan {
     return true;
   }
 
-  bool text(const Conversion& c) {
+  bool text(const ScanConversion& c) {
     char* found = nullptr;
     const std::size_t width = c.width != 0 ? c.width : dma::kLocalStoreBytes - 1;
     const std::string kind = c.kind == '[' ? c.set : std::string(1, c.kind);
-    const int scanned = scan_one(from_, "%" + std::to_string(width) + "m" + kind, &found, consumed_);
+    const int scanned = scan_one(from_, std::to_string(width) + "m" + kind, &found, consumed_);
     const std::unique_ptr<char, decltype(&std::free)> owner(found, &std::free);
     if (!got_one(c, scanned)) return false;
     if (!c.stores) return true;

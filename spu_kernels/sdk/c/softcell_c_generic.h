@@ -115,6 +115,7 @@ int softcell_c_nothing();
  * stands for them is of types that fit. */
 #define SC_C_NO_FORM(name) SOFTCELL_HAS_NO_FORM(name) void no_form_of_spu_##name(void);
 SOFTCELL_GENERIC_NAMES(SC_C_NO_FORM)
+SC_C_NO_FORM(convtf)
 #undef SC_C_NO_FORM
 #define SC_C_KNOWN(name, V, S, U, I) softcell_c_known_##V = 1,
 enum { SC_C_ALL(SC_C_KNOWN, ) softcell_c_known_softcell_comparison = 1 };

@@ -86,6 +86,7 @@ double too_small() {
 }
 
 double nearest(const Decimal& d) {
+  constexpr uint64_t kLeast = 1ull << 52;  // of a double's 53 bits
   if (d.digits == 0) return 0;
   if (d.exponent > 310) return too_large();
   if (d.exponent < -345) return too_small();
@@ -93,18 +94,27 @@ double nearest(const Decimal& d) {
   const double near =
       times_power_of_10(times_power_of_10(static_cast<double>(d.digits), half), d.exponent - half);
   if (d.exponent == 0 && d.digits <= 1ull << 53) return near;
-  if (near < 0x1p-1021) return near < 0x1p-1022 ? too_small() : near;
-  if (near > 0x1.fffffffffffffp1023) return too_large();
-  // An estimate that is right to some units in the last place.
-  int q;
-  uint64_t m = static_cast<uint64_t>(ldexp(frexp(near, &q), 53));
-  q -= 53;
-  constexpr uint64_t kLeast = 1ull << 52;
+  // An estimate that is right to some units in the last place, and within the normal numbers.
+  constexpr int kLeastPower = -1074, kMostPower = 971;
+  int q = 0;
+  uint64_t m = 0;
+  if (near < 0x1p-1022) {
+    if (near < 0x1p-1023) return too_small();
+    m = kLeast;
+    q = kLeastPower;
+  } else if (near > 0x1.fffffffffffffp1023) {
+    m = 2 * kLeast - 1;
+    q = kMostPower;
+  } else {
+    m = static_cast<uint64_t>(ldexp(frexp(near, &q), 53));
+    q -= 53;
+  }
   for (;;) {
     if (m == 2 * kLeast) {
       m = kLeast;
       ++q;
     }
+    if (q > kMostPower) return too_large();
     const int above = compare(d, 2 * m + 1, q - 1);
     if (above > 0 || (above == 0 && (m & 1) != 0)) {
       ++m;
@@ -115,10 +125,9 @@ double nearest(const Decimal& d) {
     const int below = is_power ? compare(d, 4 * m - 1, q - 2) : compare(d, 2 * m - 1, q - 1);
     if (below > 0 || (below == 0 && (m & 1) == 0)) break;
     m = is_power ? 2 * kLeast - 1 : m - 1;
-    if (is_power) --q;
+    if (is_power && --q < kLeastPower) return too_small();
   }
-  const double result = ldexp(static_cast<double>(m), q);
-  return result > 0x1.fffffffffffffp1023 ? too_large() : result;
+  return ldexp(static_cast<double>(m), q);
 }
 
 bool starts_with(const char* s, const char* word) {
@@ -228,7 +237,7 @@ double strtod(const char* text, char** end) {
     if (any) value = nearest(decimal);
   }
   if (end != nullptr) *end = const_cast<char*>(any ? s : text);
-  return negative ? -value : value;
+  return negative && any ? -value : value;
 }
 
 float strtof(const char* text, char** end) {

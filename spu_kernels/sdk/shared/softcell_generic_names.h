@@ -4,8 +4,7 @@
 
 // clang-format off
 #define SOFTCELL_GENERIC_NAMES(X) \
-  X(absd) X(add) X(addx) X(and) X(andc) X(avg) X(cmpabseq) X(cmpabsgt) X(cmpeq) X(cmpgt) X(cntb) X(cntlz) X(convtf) \
-  X(convts) X(convtu) X(eqv) \
+  X(absd) X(add) X(addx) X(and) X(andc) X(avg) X(cmpabseq) X(cmpabsgt) X(cmpeq) X(cmpgt) X(cntb) X(cntlz) X(eqv) \
   X(extend) X(extract) X(gather) X(genb) X(genbx) X(genc) X(gencx) X(insert) X(madd) X(mhhadd) X(msub) X(mul) X(mule) \
   X(mulh) X(mulo) X(mulsr) X(nand) X(nmadd) X(nmsub) X(nor) X(or) X(orc) X(orx) X(re) X(rl) X(rlmask) X(rlmaska) \
   X(roundtf) X(rsqrte) X(sel) X(shuffle) X(sl) X(slqw) X(slqwbyte) X(slqwbytebc) X(sr) X(sra) X(srqw) X(srqwbyte) \

@@ -14,7 +14,7 @@ static void calendar(void) {
   CHECK(gmtime_r(&billion, &t)->tm_year == 101 && t.tm_mon == 8 && t.tm_mday == 9 && t.tm_wday == 0 && t.tm_yday == 251);
   CHECK(t.tm_hour == 1 && t.tm_min == 46 && t.tm_sec == 40 && mktime(&t) == billion);
   CHECK(strftime(text, sizeof text, "%a %A %b %B %d %e %H:%M:%S %I %p %j %y %Y %m %u %w %U %W %%", &t) > 0);
-  CHECK(strcmp(text, "Sun Sunday Sep September 09  9 01:46:40 01 AM 252 01 2001 09 7 0 36 35 %") == 0);
+  CHECK(strcmp(text, "Sun Sunday Sep September 09  9 01:46:40 01 AM 252 01 2001 09 7 0 36 36 %") == 0);
   CHECK(strftime(text, sizeof text, "%c|%D|%F|%T|%R|%r|%x|%X|%C|%h|%n|%t|%z|%Z", &t) > 0);
   CHECK(strcmp(text, "Sun Sep  9 01:46:40 2001|09/09/01|2001-09-09|01:46:40|01:46|01:46:40 AM|09/09/01|01:46:40|20|Sep|"
                      "\n|\t|+0000|UTC") == 0);
