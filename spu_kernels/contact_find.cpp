@@ -3,7 +3,7 @@
 //   array     direction  element                     count             alignment
 //   job       in         FindJob, 128 bytes          1                 128
 //   tasks     in         FindTask, 256 bytes         any               128
-//   cells     in         FindCell, 96 bytes          of two models     16
+//   cells     in         FindCell, 160 bytes         of two models     16
 //   groups    in         FindGroup, 64 bytes         of two models     16
 //   boxes     in         FindBoxes, 96 bytes         of two bodies     16
 //   ends      in         FindEnd, 16 bytes           of two bodies     16
@@ -15,8 +15,8 @@
 // parallelepipeds and a plane below the distance field; what is left is found by Newton's iteration, four points at a time. Few points
 // come so far.
 //
-// Budget: 232 KB. 152 KB of bodies and their models, 11 KB of contacts, 37 KB of cells that are near and places of particles; the rest
-// for code and 6 KB of stack.
+// Budget: 232 KB. 128 KB of bodies and their models, 33 KB of contacts, 30 KB of cells that are near; the rest for code and 6 KB of
+// stack.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
 
@@ -40,18 +40,12 @@ struct Part {
   uint32_t offset;
 };
 
-/// Cells of a body that are near the other one, ascending.
+/// Cells of a body that are near the other one: their boxes, as in FindBoxes but close together.
 struct NearCells {
   uint32_t count;
+  alignas(16) float box[6][kFindMaxNear + 4];
   uint16_t cell[kFindMaxNear];
 };
-
-/// Inverses of cells that were needed not long ago: each near cell has one place, which it shares with others.
-constexpr uint32_t kInverses = 128;
-constexpr uint16_t kNoCell = 0xFFFF;
-
-/// As many contacts wait in the local store until they are written together.
-constexpr uint32_t kContactBatch = 64;
 
 /// Everything this kernel keeps in local store beside its code and stack.
 struct alignas(128) LocalStoreMap {
@@ -61,16 +55,12 @@ struct alignas(128) LocalStoreMap {
   FindResult result;
   alignas(128) char bytes[kFindMaxBytes];  // model and state of a, then those of b
   Part model[2], state[2];
-  alignas(128) SolvedContact contacts[kContactBatch];
+  alignas(128) SolvedContact contacts[kFindMaxContacts];
   NearCells near[2];  // of a, of b
-  alignas(16) float box[6][kFindMaxNear +
-                           4];          // of the near cells of one body, as in FindBoxes but close together
-  RoughInverse inverse[kInverses];      // of near cells of the same body
-  uint16_t cell_of_inverse[kInverses];  // kNoCell: none yet
+  RoughInverse inverse[kFindMaxNear];
+  bool has_inverse[kFindMaxNear];
   uint16_t meets[kFindMaxNear];
   alignas(16) float along[2][kFindMaxParticles];  // places of particles between the two bodies
-  uint64_t contacts_ea;                           // where the next ones go
-  uint32_t waiting;                               // contacts that are not written yet
   uint32_t under_way;                             // tag groups with transfers
 };
 LocalStoreMap ls;
@@ -115,16 +105,6 @@ void fetch_state(Part& part, uint32_t offset, const FindBody& body) {
 void wait_for_all() {
   if (ls.under_way != 0) wait_for_tags(ls.under_way);
   ls.under_way = 0;
-}
-
-/// Begins to write the contacts that wait. @pre those before are written
-void begin_to_write_contacts() {
-  const uint32_t bytes = ls.waiting * static_cast<uint32_t>(sizeof(SolvedContact));
-  ls.waiting = 0;
-  if (bytes == 0) return;
-  put_large(ls.contacts, ls.contacts_ea, bytes, kTagOut);
-  ls.contacts_ea += bytes;
-  ls.under_way |= 1u << kTagOut;
 }
 
 /// A box in all lanes.
@@ -207,6 +187,7 @@ bool gather_near(const BodyInStore& body, const Nearness& nearness, NearCells& n
       }
       if (near.count == kFindMaxNear) return false;
       const float* const of_lane = reinterpret_cast<const float*>(b) + lane;
+      for (uint32_t i = 0; i < 6; ++i) near.box[i][near.count] = of_lane[4 * i];
       const vec_float4 low = {of_lane[0], of_lane[4], of_lane[8], 0.0f};
       const vec_float4 high = {of_lane[12], of_lane[16], of_lane[20], 0.0f};
       around_low = smaller(around_low, low);
@@ -215,27 +196,12 @@ bool gather_near(const BodyInStore& body, const Nearness& nearness, NearCells& n
       ++near.count;
     }
   }
+  for (uint32_t i = near.count; i < near.count + 4; ++i) {  // what fills up the last four meets nothing
+    for (uint32_t k = 0; k < 3; ++k) near.box[k][i] = 0x1.93e594p+99f;   // 1e30
+    for (uint32_t k = 3; k < 6; ++k) near.box[k][i] = -0x1.93e594p+99f;  // 1e30
+  }
   around = {in_all_lanes(around_low), in_all_lanes(around_high)};
   return true;
-}
-
-/// A cell's box: its six sides are 16 bytes apart.
-inline const float* box_of(const BodyInStore& body, uint32_t cell) {
-  return reinterpret_cast<const float*>(body.boxes + cell / 4 * 6) + cell % 4;
-}
-
-/// The boxes of near cells, to ls.box.
-void gather_boxes(const BodyInStore& body, const NearCells& near) {
-  for (uint32_t i = 0; i < near.count; ++i) {
-    const float* const box = box_of(body, near.cell[i]);
-    for (uint32_t k = 0; k < 6; ++k) ls.box[k][i] = box[4 * k];
-  }
-  // What fills up the last four meets nothing.
-  constexpr float kFar = 0x1.93e594p+99f;  // 1e30
-  for (uint32_t k = 0; k < 6; ++k) {
-    float* const side = ls.box[k] + near.count;
-    side[0] = side[1] = side[2] = side[3] = k < 3 ? kFar : -kFar;
-  }
 }
 
 inline BoxInAllLanes common(const BoxInAllLanes& a, const BoxInAllLanes& b) {
@@ -243,15 +209,15 @@ inline BoxInAllLanes common(const BoxInAllLanes& a, const BoxInAllLanes& b) {
           {smaller(a.high.x, b.high.x), smaller(a.high.y, b.high.y), smaller(a.high.z, b.high.z)}};
 }
 
-/// Those near cells whose boxes in ls.box meet a box, ascending, to ls.meets.
+/// Those near cells that meet a box, ascending, to ls.meets.
 uint32_t gather_meeting(const BoxInAllLanes& box, const NearCells& near) {
   uint32_t count = 0;
   for (uint32_t i = 0; i < near.count; i += 4) {
     const auto at = [&](uint32_t k) __attribute__((always_inline)) {
-      return *reinterpret_cast<const vec_float4*>(ls.box[k] + i);
+      return *reinterpret_cast<const vec_float4*>(near.box[k] + i);
     };
     uint32_t left = lanes_left(apart(box, at(0), at(1), at(2), at(3), at(4), at(5)));
-    while (left != 0) ls.meets[count++] = near.cell[i + take_lane(left)];
+    while (left != 0) ls.meets[count++] = static_cast<uint16_t>(i + take_lane(left));
   }
   return count;
 }
@@ -269,10 +235,8 @@ bool belong_together(const CellAtRest& a, const CellAtRest& b) {
 /// The points of one body in another.
 class Direction {
  public:
-  /// @param near_mine, near_other  which of ls.near. (References to them would be constant addresses, which compilers put into tables
-  ///                               together, and an image must hold no address.)
-  Direction(const BodyInStore& mine, const BodyInStore& other, uint32_t near_mine, uint32_t near_other,
-            bool swap, const TaskTerms& terms)
+  Direction(const BodyInStore& mine, const BodyInStore& other, const NearCells& near_mine,
+            const NearCells& near_other, bool swap, const TaskTerms& terms)
       : mine_(mine),
         other_(other),
         near_mine_(near_mine),
@@ -283,30 +247,29 @@ class Direction {
 
   /// @return  false: there is no room
   bool find() {
-    const NearCells &near_mine = ls.near[near_mine_], &near_other = ls.near[near_other_];
-    gather_boxes(other_, near_other);
-    for (uint32_t i = 0; i < kInverses; ++i) ls.cell_of_inverse[i] = kNoCell;
-    for (uint32_t i = 0; i < near_mine.count; ++i) {
-      const uint32_t cell = near_mine.cell[i];
+    for (uint32_t i = 0; i < near_other_.count; ++i) ls.has_inverse[i] = false;
+    for (uint32_t i = 0; i < near_mine_.count; ++i) {
+      const uint32_t cell = near_mine_.cell[i];
       if (spu_extract(mine_.cells[cell].place, 5) == 0) continue;  // no points in it
-      const float* const box = box_of(mine_, cell);
-      const auto all = [&](uint32_t k) __attribute__((always_inline)) { return spu_splats(box[4 * k]); };
-      const uint32_t meets = gather_meeting({{all(0), all(1), all(2)}, {all(3), all(4), all(5)}}, near_other);
+      const auto all = [&](uint32_t k) __attribute__((always_inline)) {
+        return spu_splats(near_mine_.box[k][i]);
+      };
+      const uint32_t meets =
+          gather_meeting({{all(0), all(1), all(2)}, {all(3), all(4), all(5)}}, near_other_);
       if (meets != 0 && !try_cell(cell, meets)) return false;
     }
     return true;
   }
 
  private:
-  const RoughInverse& inverse_of(uint32_t cell) {
-    RoughInverse& inverse = ls.inverse[cell % kInverses];
-    if (ls.cell_of_inverse[cell % kInverses] != cell) {
-      const CellAtRest& at_rest = other_.cells[cell];
-      inverse = rough_inverse(deformed_cell(at_rest.corner, other_.ends), least_of(at_rest), least_volume_,
-                              kNearInField);
-      ls.cell_of_inverse[cell % kInverses] = static_cast<uint16_t>(cell);
+  const RoughInverse& inverse_of(uint32_t near_index) {
+    if (!ls.has_inverse[near_index]) {
+      const CellAtRest& cell = other_.cells[near_other_.cell[near_index]];
+      ls.inverse[near_index] =
+          rough_inverse(deformed_cell(cell.corner, other_.ends), cell.least, least_volume_, kNearInField);
+      ls.has_inverse[near_index] = true;
     }
-    return inverse;
+    return ls.inverse[near_index];
   }
 
   /// Four points of a cell at the step's end.
@@ -343,9 +306,10 @@ class Direction {
   }
 
   /// @return  false: there is no room
-  bool try_points(uint32_t cell, uint32_t there, FourPoints* points, uint32_t count) {
+  bool try_points(uint32_t cell, uint32_t near_index, FourPoints* points, uint32_t count) {
+    const uint32_t there = near_other_.cell[near_index];
     if (&mine_ == &other_ && belong_together(mine_.cells[cell], other_.cells[there])) return true;
-    const RoughInverse4 inverse = in_all_lanes(inverse_of(there));
+    const RoughInverse4 inverse = in_all_lanes(inverse_of(near_index));
     for (uint32_t i = 0; i < count; ++i) {
       FourPoints& four = points[i];
       const Vector3x4 rough = rough_place(inverse, four.end);
@@ -381,10 +345,8 @@ class Direction {
           cell,       there,       p_own[lane],
           p_at[lane], p1[lane],    p2[lane],
           p3[lane],   p_end[lane], spu_extract(four.allowance, static_cast<int>(lane))};
-      if (ls.waiting == kContactBatch) begin_to_write_contacts(), wait_for_all();
-      SolvedContact& contact = ls.contacts[ls.waiting];
+      SolvedContact& contact = ls.contacts[ls.result.count];
       if (!make_contact(mine_, other_, point, swap_, terms_, contact)) continue;
-      ++ls.waiting;
       ++ls.result.count;
       if (spu_extract(contact.terms, 2) > 0.0f) ls.result.pushes = 1;
     }
@@ -393,7 +355,7 @@ class Direction {
 
   const BodyInStore& mine_;
   const BodyInStore& other_;
-  uint32_t near_mine_, near_other_;
+  const NearCells &near_mine_, &near_other_;
   bool swap_;
   const TaskTerms& terms_;
   float least_volume_;
@@ -409,7 +371,7 @@ bool find_between(const BodyInStore& a, const BodyInStore& b, const FindTask& ta
   BoxInAllLanes around_a, around_b;
   if (task.itself != 0) {
     if (!gather_near(a, {box, nullptr, 0, 0}, near_a, around_a)) return false;
-    return Direction(a, a, 0, 0, false, terms).find();
+    return Direction(a, a, near_a, near_a, false, terms).find();
   }
   // Between two planes across the line between their middles: only there the bodies meet.
   const vec_float4 direction = spu_sub(*reinterpret_cast<const vec_float4*>(task.b.middle),
@@ -424,7 +386,8 @@ bool find_between(const BodyInStore& a, const BodyInStore& b, const FindTask& ta
   if (near_a.count == 0) return true;
   if (!gather_near(b, {common(box, around_a), ls.along[1], reach_a.least, reach_a.most}, near_b, around_b))
     return false;
-  return Direction(a, b, 0, 1, false, terms).find() && Direction(b, a, 1, 0, true, terms).find();
+  return Direction(a, b, near_a, near_b, false, terms).find() &&
+         Direction(b, a, near_b, near_a, true, terms).find();
 }
 
 bool do_task(const FindTask& task) {
@@ -449,10 +412,11 @@ bool do_task(const FindTask& task) {
   const BodyInStore b = itself ? a : body_in_store(one_model ? 0 : model_b, state_b, task.b);
   const TaskTerms terms = {task.step, task.inverse_step, task.friction, task.a.spacing};
   ls.result = {0, 0, 0, 0};
-  ls.contacts_ea = task.contacts_ea;
-  ls.waiting = 0;
-  if (!find_between(a, b, task, terms)) ls.result = {0, 0, 1, 0}, ls.waiting = 0;
-  begin_to_write_contacts();
+  if (!find_between(a, b, task, terms)) ls.result = {0, 0, 1, 0};
+  if (ls.result.count == 0) return true;
+  put_large(ls.contacts, task.contacts_ea, ls.result.count * static_cast<uint32_t>(sizeof(SolvedContact)),
+            kTagOut);
+  ls.under_way |= 1u << kTagOut;
   return true;
 }
 

@@ -9,17 +9,16 @@
 namespace softcell::spu {
 
 /// A cell of a model: its corners, the points in it that touch, and the distance from the surface at rest.
-/// Distances are in cells, as binary16, of which none is subnormal.
 struct alignas(16) FindCell {
   uint16_t corner[8];                 ///< particles; corner k = bx + 2 by + 4 bz
   int16_t grid[4];                    ///< place in the lattice, x y z and 0
   uint16_t first_group, group_count;  ///< its FindGroups
   uint16_t pad[2];
   /// In the cell no distance is less than least.xyz . (xi - 1/2) + least.w.
-  uint16_t least[4];
-  uint16_t field[28];  ///< distances at 3 x 3 x 3 nodes, below 0 inside; x fastest; the last is 0
+  float least[4];
+  float field[28];  ///< distances at 3 x 3 x 3 nodes, in cells, below 0 inside; x fastest; the last is 0
 };
-static_assert(sizeof(FindCell) == 96, "six quadwords");
+static_assert(sizeof(FindCell) == 160, "ten quadwords");
 
 /// Four points that touch, in one cell. A group that is not full has points whose allowance is kFindNoPoint.
 struct alignas(16) FindGroup {
@@ -81,9 +80,9 @@ struct alignas(16) FindResult {
 
 constexpr uint32_t kFindMaxContacts = 192;  ///< of a task
 /// Most bytes of a task: of its two models, or one, and of its bodies.
-constexpr uint32_t kFindMaxBytes = 155648;
+constexpr uint32_t kFindMaxBytes = 131072;
 constexpr uint32_t kFindMaxParticles = 1024;
-constexpr uint32_t kFindMaxNear = 512;  ///< cells of one body that are near another body
+constexpr uint32_t kFindMaxNear = 192;  ///< cells of one body that are near another body
 
 /// Bytes of FindBody::state_ea.
 inline uint32_t find_state_bytes(const FindBody& body) {

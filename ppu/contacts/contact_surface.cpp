@@ -70,13 +70,6 @@ float volume_of(const TriangleMesh& mesh) {
   return volume;
 }
 
-/// As a binary16 that is not subnormal.
-float in_half_precision(float distance) {
-  constexpr float kLeastNormal = 0x1p-14f;
-  const Eigen::half rounded(std::clamp(distance, -kDeepestInField, kDeepestInField));
-  return std::abs(distance) < kLeastNormal ? 0.0f : static_cast<float>(rounded);
-}
-
 }  // namespace
 
 TriangleMesh boundary_of(const Lattice<3>& lattice) {
@@ -198,9 +191,8 @@ void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice
   }
   fields_.resize(lattice.cells.size());
   for (std::size_t c = 0; c < lattice.cells.size(); ++c)
-    for_each_node(c, [&](std::size_t n, const Vector3i& node) {
-      fields_[c][n] = in_half_precision(distances.at(key_of(node)));
-    });
+    for_each_node(c,
+                  [&](std::size_t n, const Vector3i& node) { fields_[c][n] = distances.at(key_of(node)); });
 }
 
 FieldValue ContactSurface::field(std::uint32_t cell, const Vector3f& xi) const {

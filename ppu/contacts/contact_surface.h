@@ -37,9 +37,6 @@ struct FieldValue {
   Eigen::Vector3f gradient{0, 0, 0};  ///< by xi
 };
 
-/// No distance of a field is larger, in cells: binary16 has no larger ones.
-constexpr float kDeepestInField = 65504;
-
 /// Of a model. Immutable.
 class ContactSurface {
  public:
@@ -57,7 +54,7 @@ class ContactSurface {
   /// All particles.
   std::span<const TouchingParticle> particles() const { return particles_; }
 
-  /// Distances at a cell's nodes, in cells, x fastest: each one a normal binary16 or 0, as SPEs have them.
+  /// Distances at a cell's nodes, in cells, x fastest.
   const CellField& nodes(std::uint32_t cell) const { return fields_[cell]; }
   /// The distance from the surface in the shape at rest. @param xi  may lie somewhat outside of the cell
   FieldValue field(std::uint32_t cell, const Eigen::Vector3f& xi) const;

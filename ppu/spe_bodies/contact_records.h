@@ -15,7 +15,7 @@ template <typename T>
 struct ContactRecord;
 template <>
 struct ContactRecord<spu::FindCell> {
-  static constexpr dma::ElementRun kRuns[] = {{96, 2}};
+  static constexpr dma::ElementRun kRuns[] = {{32, 2}, {128, 4}};
 };
 template <>
 struct ContactRecord<spu::FindGroup> {

@@ -1,7 +1,7 @@
 #pragma once
 // Rounds four floats to four half floats (binary16): to the nearest, ties away from zero. Uses integer
 // arithmetic, since the SPU's floating point truncates. (Ties to even would take three operations more for
-// each, and be no more accurate.) And back, of those that are normal.
+// each, and be no more accurate.)
 
 #include <spu_intrinsics.h>
 
@@ -29,13 +29,6 @@ inline vec_uint4 high_half_of_rebiased(vec_float4 rebiased) {
   const vec_uint4 bits = (vec_uint4)spu_add(rebiased, spu_splats(0.0f));
   const vec_uint4 rounded = spu_add(bits, spu_splats(0x1000u));
   return spu_or(spu_sl(rounded, 3), spu_and(bits, spu_splats(0x80000000u)));
-}
-
-/// Four floats of binary16 bits in the high half of each word, of numbers that are normal or 0. The low halves do not count.
-inline vec_float4 float_of_high_half(vec_uint4 halves) {
-  const vec_float4 rebiased = (vec_float4)spu_rlmask(spu_and(halves, spu_splats(0x7FFF0000u)), -3);
-  const vec_float4 magnitude = spu_mul(rebiased, spu_splats(1 / kHalfRebias));
-  return (vec_float4)spu_or((vec_uint4)magnitude, spu_and(halves, spu_splats(0x80000000u)));
 }
 
 /// Likewise of the value itself.

@@ -5,7 +5,6 @@
 #include <spu_intrinsics.h>
 #include <stdint.h>
 
-#include "common/half.h"
 #include "common/reciprocal.h"
 #include "contact_find_job.h"
 #include "contacts/deformed_cell.h"
@@ -18,19 +17,10 @@ namespace softcell::spu {
 struct CellAtRest {
   vec_ushort8 corner;
   vec_short8 place;  // grid index x y z 0, first group, number of groups
-  vec_ushort8 least_and_field;
-  vec_ushort8 field[3];
+  vec_float4 least;
+  float field[28];
 };
 static_assert(sizeof(CellAtRest) == sizeof(FindCell), "the same bytes");
-
-/// What its FindCell has as numbers.
-inline vec_float4 least_of(const CellAtRest& cell) {
-  const vec_uchar16 to_high = {0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7};
-  return float_of_high_half((vec_uint4)spu_shuffle(cell.least_and_field, cell.least_and_field, to_high));
-}
-inline const uint16_t* field_of(const CellAtRest& cell) {
-  return reinterpret_cast<const uint16_t*>(&cell.least_and_field) + 4;
-}
 
 /// One body of a task in the local store.
 struct BodyInStore {
@@ -51,19 +41,16 @@ inline vec_float4 exact_reciprocal_sqrt(vec_float4 x) {
 }
 
 /// The distance in cells and its derivatives by s, trilinear between the nodes of an eighth of the cell.
-/// @param field  of a FindCell
-/// @param s      -1/2..1/2; x y z
-/// @return       d/ds1, d/ds2, d/ds3, and the distance
-inline vec_float4 field_at(const uint16_t* field, vec_float4 s) {
+/// @param s  -1/2..1/2; x y z
+/// @return   d/ds1, d/ds2, d/ds3, and the distance
+inline vec_float4 field_at(const float* field, vec_float4 s) {
   const vec_float4 place = spu_madd(s, spu_splats(2.0f), spu_splats(1.0f));  // 0..2
   const vec_int4 upper = (vec_int4)spu_andc(spu_splats(1u), spu_rlmask((vec_uint4)s, -31));
   const int32_t x = spu_extract(upper, 0), y = spu_extract(upper, 1), z = spu_extract(upper, 2);
   const vec_float4 f = spu_sub(place, spu_convtf(upper, 0));
-  const uint16_t* const node = field + (z * 3 + y) * 3 + x;
-  const auto at = [&](int i) __attribute__((always_inline)) { return static_cast<uint32_t>(node[i]) << 16; };
-  const vec_float4 low =
-      float_of_high_half((vec_uint4){at(0), at(3), at(9), at(12)});  // x = 0: y z 00 10 01 11
-  const vec_float4 high = float_of_high_half((vec_uint4){at(1), at(4), at(10), at(13)});
+  const float* const node = field + (z * 3 + y) * 3 + x;
+  const vec_float4 low = {node[0], node[3], node[9], node[12]};  // x = 0: y z 00 10 01 11
+  const vec_float4 high = {node[1], node[4], node[10], node[13]};
   const vec_float4 by_x = spu_sub(high, low);
   const vec_float4 at_x = spu_madd(splat_lane<0>(f), by_x, low);
   // Over y, then z: of the distances and of their slopes along x.
@@ -133,7 +120,7 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   const CellAtRest& there = other.cells[point.cell];
   const vec_float4 half = spu_splats(0.5f);
   const vec_float4 s = larger(smaller(point.s, half), negative(half));
-  const vec_float4 field = field_at(field_of(there), s);
+  const vec_float4 field = field_at(there.field, s);
   const vec_float4 c1 = cross_of(point.f2, point.f3), c2 = cross_of(point.f3, point.f1);
   const vec_float4 c3 = cross_of(point.f1, point.f2);
   const vec_float4 by_volume = reciprocal(dot_in_all_lanes(point.f1, c1));
