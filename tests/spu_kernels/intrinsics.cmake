@@ -32,7 +32,7 @@ foreach(source IN LISTS host_refused)
   cmake_path(GET source STEM stem)
   add_test(NAME spu_intrinsics.refuses.${stem}
     COMMAND ${CMAKE_COMMAND} -DSOURCE=${source} -P ${CMAKE_CURRENT_LIST_DIR}/check_refused.cmake --
-      ${CMAKE_CXX_COMPILER} ${SOFTCELL_KERNEL_FLAGS} -fsyntax-only -I ${SOFTCELL_SDK_DIR}/host ${source})
+      ${CMAKE_CXX_COMPILER} ${SOFTCELL_KERNEL_FLAGS} -S -o /dev/null -I ${SOFTCELL_SDK_DIR}/host ${source})
 endforeach()
 
 # host_code/*.cpp must compile to few instructions.

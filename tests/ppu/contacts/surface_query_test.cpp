@@ -168,7 +168,7 @@ TEST(SoftBodiesInBullet, FiltersSayWhatTouches) {
     const SoftBody<3>& rests = other.add(model, {0.1f, 0.9f, 0});
     other.set_filter(falls, {.group = 4, .mask = ~(2 | 8)});  // 2: what stands still
     other.set_filter(rests, {.group = 8, .mask = -1});
-    w.run(90);
+    w.run(240);
     EXPECT_LT(falls.centre_of_mass().y(), -5) << static_cast<int>(method);
     EXPECT_NEAR(rests.centre_of_mass().y(), 0.25f, 0.1f) << static_cast<int>(method);
     other.remove(falls), other.remove(rests);
@@ -194,7 +194,7 @@ void expect_events(SolverFactory* solvers) {
   EXPECT_EQ(events[0].body, &lower);
   EXPECT_EQ(events[0].object, &floor);
   EXPECT_EQ(events[0].other, nullptr);
-  EXPECT_NEAR(events[0].position.y(), 0, 0.01f);
+  EXPECT_NEAR(events[0].position.y(), 0, 0.05f);
   EXPECT_GT(events[0].normal.y(), 0.99f);
   w.run(120);
   w.bodies.take_contact_events();
@@ -207,8 +207,8 @@ void expect_events(SolverFactory* solvers) {
   EXPECT_EQ(between.kind, Kind::kPersist);
   EXPECT_EQ(between.body, &lower);
   EXPECT_EQ(between.other, &upper);
-  EXPECT_LT(between.normal.y(), -0.99f) << "from the other one to the body";
-  EXPECT_NEAR(between.position.y(), 0.5f, 0.05f);
+  EXPECT_LT(between.normal.y(), -0.95f) << "from the other one to the body";
+  EXPECT_NEAR(between.position.y(), 0.5f, 0.1f);
   // A second of weight.
   EXPECT_NEAR(between.impulse, 9.81f * upper.model().mass(), 0.03f * 9.81f * upper.model().mass());
   EXPECT_NEAR(below.impulse, 2 * 9.81f * upper.model().mass(), 0.06f * 9.81f * upper.model().mass());
