@@ -150,8 +150,7 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
   impl_->tell_others(**found);
   SC_ASSERT((*found)->soft().model().particles() > 0, "a body without particles, one of {}, is removed",
             impl_->bodies.size());
-  for (const SurfaceBody* const with_surface : impl_->with_surfaces)
-    if (with_surface == found->get()) impl_->surfaces->forget(*with_surface);
+  if (impl_->surfaces) impl_->surfaces->forget(body);
   std::erase_if(impl_->with_surfaces,
                 [&](const SurfaceBody* with_surface) { return with_surface == found->get(); });
   impl_->bodies.erase(found);

@@ -87,9 +87,9 @@ void SurfaceContacts::note_touches(std::span<SurfaceBody* const> bodies) {
 }
 
 void SurfaceContacts::append_contacts(std::vector<Contact>& contacts) const {
-  pressing_.clear();
-  stage_.append_contacts(pressing_);
-  for (const PressingContact& contact : pressing_) contacts.push_back({contact.point, contact.normal});
+  std::vector<PressingContact> pressing;
+  stage_.append_contacts(pressing);
+  for (const PressingContact& contact : pressing) contacts.push_back({contact.point, contact.normal});
 }
 
 void SurfaceContacts::watch(bool events) {
@@ -97,9 +97,9 @@ void SurfaceContacts::watch(bool events) {
   if (!events) touches_.clear();
 }
 
-void SurfaceContacts::forget(const SurfaceBody& body) {
+void SurfaceContacts::forget(const SoftBody<3>& body) {
   for (auto& [key, touch] : touches_)
-    if (touch.event.body == &body.soft() || touch.event.other == &body.soft()) touch.is_over = true;
+    if (touch.event.body == &body || touch.event.other == &body) touch.is_over = true;
 }
 
 std::vector<ContactEvent> SurfaceContacts::take_events() {

@@ -41,7 +41,7 @@ class SurfaceContacts {
   /// What has begun, gone on or ended since the last call.
   std::vector<ContactEvent> take_events();
   /// A body goes: what it touched ends.
-  void forget(const SurfaceBody& body);
+  void forget(const SoftBody<3>& body);
 
  private:
   /// Two that touch, or did when events were taken last.
@@ -66,7 +66,7 @@ class SurfaceContacts {
   std::vector<BodyInStage> in_stage_;
   bool watches_ = false;
   std::map<TouchKey, Touch> touches_;
-  mutable std::vector<PressingContact> pressing_;
+  std::vector<PressingContact> pressing_;  // of a substep, while events are kept
 };
 
 }  // namespace softcell::ppu

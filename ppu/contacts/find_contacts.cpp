@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "ppu/contacts/triangle_distance.h"
+#include "ppu/contacts/way_in_box.h"
 
 namespace softcell::ppu {
 namespace {
@@ -155,18 +156,7 @@ class ObstacleContacts {
     const Vector3f from = obstacle_.rotation * edge.from + obstacle_.position;
     const Vector3f along = obstacle_.rotation * (edge.to - edge.from);
     // The part of the edge in the body's box, as shares of its length.
-    float first = 0, last = 1;
-    for (int d = 0; d < 3; ++d) {
-      const float low = body_.box.low[d] - from[d], high = body_.box.high[d] - from[d];
-      if (along[d] == 0) {
-        if (low > 0 || high < 0) return;
-        continue;
-      }
-      const float enter = (along[d] > 0 ? low : high) / along[d],
-                  leave = (along[d] > 0 ? high : low) / along[d];
-      first = std::max(first, enter);
-      last = std::min(last, leave);
-    }
+    const auto [first, last] = way_in_box(body_.box, from, along);
     if (first > last) return;
     // Points stay where they are on the edge, however the body moves along it.
     const float length = along.norm(), spacing = kEdgeSpacing * body_.spacing();

@@ -8,6 +8,7 @@
 
 #include "ppu/contacts/contact_surface.h"
 #include "ppu/contacts/triangle_distance.h"
+#include "ppu/contacts/way_in_box.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/skinned_mesh.h"
 
@@ -30,18 +31,9 @@ float square_of_distance(const Bounds<3>& box, const Vector3f& point) {
 
 /// Where a way enters a box, as a share of it; beyond 1: nowhere.
 float entry_of(const Bounds<3>& box, const Vector3f& from, const Vector3f& along) {
-  float first = 0, last = 1;
-  for (int d = 0; d < 3; ++d) {
-    if (along[d] == 0) {
-      if (from[d] < box.low[d] || from[d] > box.high[d]) return kFarthest;
-      continue;
-    }
-    const float a = (box.low[d] - from[d]) / along[d], b = (box.high[d] - from[d]) / along[d];
-    first = std::max(first, std::min(a, b));
-    last = std::min(last, std::max(a, b));
-  }
+  const WayInBox part = way_in_box(box, from, along);
   // Rounding must not part two boxes that share a side.
-  return first <= last + 1e-6f ? first : kFarthest;
+  return part.first <= part.last + 1e-6f ? part.first : kFarthest;
 }
 
 /// The share of the way at which it passes a triangle; beyond 1: it does not.  [MT97]
@@ -133,67 +125,63 @@ SurfaceHit SurfaceQuery::hit_of(std::uint32_t triangle, float share, const Vecto
   return {share, position, area > 0 ? Vector3f(cross / area) : Vector3f::UnitY(), numbers_[triangle]};
 }
 
+template <typename Cost, typename Limit, typename Work>
+void SurfaceQuery::visit(const Cost& cost, const Limit& limit, const Work& work) const {
+  std::vector<std::uint32_t> open{0};
+  while (!open.empty()) {
+    const Node& node = nodes_[open.back()];
+    open.pop_back();
+    if (cost(node.box) > limit()) continue;
+    if (node.count == 0) {
+      const bool second_first = cost(nodes_[node.first + 1].box) < cost(nodes_[node.first].box);
+      open.push_back(node.first + (second_first ? 0 : 1));
+      open.push_back(node.first + (second_first ? 1 : 0));
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) work(i);
+  }
+}
+
 std::optional<SurfaceHit> SurfaceQuery::cast_ray(const Vector3f& from, const Vector3f& to) const {
   SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {}, {})", from.x(), from.y(), from.z());
   const Vector3f along = to - from;
   float best = kFarthest;
   std::uint32_t best_triangle = 0;
-  std::vector<std::uint32_t> open{0};
-  while (!open.empty()) {
-    const Node& node = nodes_[open.back()];
-    open.pop_back();
-    if (entry_of(node.box, from, along) > std::min(best, 1.0f)) continue;
-    if (node.count == 0) {
-      const bool second_first =
-          entry_of(nodes_[node.first + 1].box, from, along) < entry_of(nodes_[node.first].box, from, along);
-      open.push_back(node.first + (second_first ? 0 : 1));
-      open.push_back(node.first + (second_first ? 1 : 0));
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const float share = share_of(triangles_[i], from, along);
-      // Of equal ones that with the lower number.
-      if (share < best || (share == best && share <= 1 && numbers_[i] < numbers_[best_triangle]))
-        best = share, best_triangle = i;
-    }
-  }
+  visit([&](const Bounds<3>& box) { return entry_of(box, from, along); },
+        [&] { return std::min(best, 1.0f); },
+        [&](std::uint32_t i) {
+          const float share = share_of(triangles_[i], from, along);
+          // Of equal ones that with the lower number.
+          if (share < best || (share == best && share <= 1 && numbers_[i] < numbers_[best_triangle]))
+            best = share, best_triangle = i;
+        });
   if (best > 1) return std::nullopt;
   return hit_of(best_triangle, best, from + best * along);
 }
 
-/// Where several triangles are equally near, at edges and corners, the one that looks at the point most squarely decides about the side.
+/// Where several triangles are equally near, at edges and corners, the one that looks at the point most
+/// squarely decides about the side.
 SurfaceQuery::Nearest SurfaceQuery::nearest(const Vector3f& point) const {
   constexpr float kEqual = 1 + 1e-5f;
   Nearest best{.square = kFarthest};
-  std::vector<std::uint32_t> open{0};
-  while (!open.empty()) {
-    const Node& node = nodes_[open.back()];
-    open.pop_back();
-    if (square_of_distance(node.box, point) > best.square * kEqual) continue;
-    if (node.count == 0) {
-      const bool second_first = square_of_distance(nodes_[node.first + 1].box, point) <
-                                square_of_distance(nodes_[node.first].box, point);
-      open.push_back(node.first + (second_first ? 0 : 1));
-      open.push_back(node.first + (second_first ? 1 : 0));
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Vector3f position = nearest_point(triangles_[i], point), off = point - position;
-      const float square = off.squaredNorm();
-      if (square > best.square * kEqual) continue;
-      const float towards = off.dot(hit_of(i, 0, position).normal);
-      const float facing = square > 0 ? std::abs(towards) / std::sqrt(square) : 1;
-      if (square * kEqual < best.square || facing > best.facing)
-        best = {std::min(square, best.square), facing, towards < 0, i, position};
-    }
-  }
+  visit([&](const Bounds<3>& box) { return square_of_distance(box, point); },
+        [&] { return best.square * kEqual; },
+        [&](std::uint32_t i) {
+          const Vector3f position = nearest_point(triangles_[i], point), off = point - position;
+          const float square = off.squaredNorm();
+          if (square > best.square * kEqual) return;
+          const float towards = off.dot(hit_of(i, 0, position).normal);
+          const float facing = square > 0 ? std::abs(towards) / std::sqrt(square) : 1;
+          if (square * kEqual < best.square || facing > best.facing)
+            best = {std::min(square, best.square), facing, towards < 0, i, position};
+        });
   return best;
 }
 
+float SurfaceQuery::Nearest::distance() const { return behind ? -std::sqrt(square) : std::sqrt(square); }
+
 float SurfaceQuery::distance(const Vector3f& point) const {
   SC_ASSERT(point.allFinite(), "the distance of ({}, {}, {})", point.x(), point.y(), point.z());
-  const Nearest found = nearest(point);
-  return found.behind ? -std::sqrt(found.square) : std::sqrt(found.square);
+  return nearest(point).distance();
 }
 
 /// Goes on by as much as is free, which is never too far.
@@ -207,7 +195,7 @@ std::optional<SurfaceHit> SurfaceQuery::cast_sphere(const Vector3f& from, const 
   for (;;) {
     const Vector3f centre = length > 0 ? Vector3f(from + done / length * along) : from;
     const Nearest found = nearest(centre);
-    const float distance = found.behind ? -std::sqrt(found.square) : std::sqrt(found.square);
+    const float distance = found.distance();
     if (distance - radius <= near) {
       SurfaceHit hit = hit_of(found.triangle, length > 0 ? done / length : 0, found.position);
       if (distance > 0) hit.normal = (centre - found.position) / distance;

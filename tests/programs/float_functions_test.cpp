@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "float_error.h"
 #include "softcell/base/read_file.h"
 #include "softcell/dma/address_space.h"
 #include "softcell/dma/buffer.h"
@@ -26,8 +27,6 @@ extern const std::byte softcell_image_program_float_sweep[], softcell_image_prog
 
 namespace softcell::ls_sim {
 namespace {
-
-constexpr double kUlps = 0.501;  // spu_kernels/sdk/library/include/math.h
 
 struct Function {
   const char* name;
@@ -107,19 +106,6 @@ double argument_of(std::uint32_t bits) {
   constexpr std::uint32_t kExponent = 0x7F800000;
   if ((bits & kExponent) == kExponent) return bits >> 31 != 0 ? -FLT_MAX : FLT_MAX;
   return (bits & kExponent) == 0 ? 0 : double{std::bit_cast<float>(bits)};
-}
-
-/// In units in the last place of what is exact, as math.h counts what a float cannot hold.
-double error_of(float result, double exact) {
-  if (std::isnan(exact)) exact = 0;  // not defined
-  exact = std::clamp<double>(exact, -FLT_MAX, FLT_MAX);
-  if (result == exact) return 0;
-  const double size = std::fabs(exact);
-  if (size < FLT_MIN)
-    return result == 0 ? (size < 0x1.FFFFFFp-127 ? 0 : 1) : std::fabs(result - exact) * 0x1p149;
-  // 2^(exponent - 23)
-  const double unit = std::bit_cast<double>((std::bit_cast<std::uint64_t>(size) >> 52) << 52) * 0x1p-23;
-  return std::fabs(result - exact) / unit;
 }
 
 class FloatSweeps : public testing::TestWithParam<std::uint32_t> {};

@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "float_error.h"
 #include "softcell/dma/address_space.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/schedule.h"
@@ -337,7 +338,6 @@ class FloatFunctions : public testing::TestWithParam<MathCase> {};
 
 TEST_P(FloatFunctions, AreWithinTheErrorThatTheirHeaderStates) {
   constexpr std::uint32_t kCount = 16 * 1024;
-  constexpr double kUlps = 0.501;  // spu_kernels/sdk/library/include/math.h
   const MathCase& c = GetParam();
   dma::AddressSpace memory;
   dma::Buffer<float> x(memory, "x", kCount), y(memory, "y", kCount), result(memory, "result", kCount);
@@ -363,9 +363,7 @@ TEST_P(FloatFunctions, AreWithinTheErrorThatTheirHeaderStates) {
   for (std::uint32_t i = 0; i < kCount; ++i) {
     const double exact = c.one != nullptr ? c.one(x.data()[i]) : c.two(x.data()[i], y.data()[i]);
     if (std::fabs(exact) < FLT_MIN) continue;  // flushed to zero
-    int exponent = 0;
-    std::frexp(exact, &exponent);
-    const double error = std::fabs(result.data()[i] - exact) / std::ldexp(1.0, exponent - 24);
+    const double error = error_of(result.data()[i], exact);
     if (!(error <= worst)) worst = error, at = x.data()[i];
   }
   EXPECT_LE(worst, kUlps) << c.name << " of " << at;

@@ -49,18 +49,21 @@ std::uint32_t AssistedCalls::serve(std::uint32_t code, std::uint32_t request) {
   arguments_ = request & kAddressMask & dma::kLocalStoreMask;
   const std::uint32_t function = request >> kFunctionShift;
   errno = 0;
-  std::optional<Result> result;
-  if (code == kPosixCall) result = posix(function);
-  if (!result && code == kC99Call) result = output(function);
-  if (!result && code == kC99Call) result = input(function);
-  if (!result && code == kC99Call) result = files(function);
-  if (!result) result = Result{-1, ENOSYS};
-  memory_.set_word(arguments_, static_cast<std::uint32_t>(result->value));
+  const Result result = code == kPosixCall ? posix(function) : c99(function);
+  memory_.set_word(arguments_, static_cast<std::uint32_t>(result.value));
   memory_.set_word(arguments_ + 4, 0);
   memory_.set_word(arguments_ + 8, 0);
-  memory_.set_word(arguments_ + 12, static_cast<std::uint32_t>(result->error));
-  return static_cast<std::uint32_t>(result->value);
+  memory_.set_word(arguments_ + 12, static_cast<std::uint32_t>(result.error));
+  return static_cast<std::uint32_t>(result.value);
 }
+
+AssistedCalls::Result AssistedCalls::c99(std::uint32_t function) {
+  for (const auto& part : {&AssistedCalls::output, &AssistedCalls::input, &AssistedCalls::files})
+    if (const std::optional<Result> result = (this->*part)(function)) return *result;
+  return {-1, ENOSYS};
+}
+
+AssistedCalls::Result AssistedCalls::of_host(std::int64_t value) { return {value, value < 0 ? errno : 0}; }
 
 // ---- what prints
 
@@ -124,8 +127,7 @@ std::optional<AssistedCalls::Result> AssistedCalls::output(std::uint32_t functio
     case kFflush: {
       const Stream stream = argument(0) == 0 ? nullptr : files_.stream(argument(0));
       if (argument(0) != 0 && stream == nullptr) return Result{EOF, errno};
-      const int result = std::fflush(stream.get());
-      return Result{result, result == 0 ? 0 : errno};
+      return of_host(std::fflush(stream.get()));
     }
     default:
       return std::nullopt;
@@ -237,26 +239,19 @@ std::optional<AssistedCalls::Result> AssistedCalls::files(std::uint32_t function
   const auto with_stream = [&](const auto& work) -> Result {
     const Stream stream = files_.stream(argument(0));
     if (stream == nullptr) return {-1, errno};
-    const std::int64_t value = work(stream.get());
-    return {value, value < 0 ? errno : 0};
+    return of_host(work(stream.get()));
   };
   switch (function) {
     case kFopen:
       return open_stream();
     case kTmpfile:
       return temporary_file();
-    case kFclose: {
-      const int result = files_.close_stream(argument(0));
-      return Result{result, result == 0 ? 0 : errno};
-    }
-    case kRemove: {
-      const int result = files_.remove(memory_.text(argument(0)));
-      return Result{result, result == 0 ? 0 : errno};
-    }
-    case kRename: {
-      const int result = files_.rename(memory_.text(argument(0)), memory_.text(argument(1)));
-      return Result{result, result == 0 ? 0 : errno};
-    }
+    case kFclose:
+      return of_host(files_.close_stream(argument(0)));
+    case kRemove:
+      return of_host(files_.remove(memory_.text(argument(0))));
+    case kRename:
+      return of_host(files_.rename(memory_.text(argument(0)), memory_.text(argument(1))));
     case kClearerr:
       return with_stream([](std::FILE* stream) { return std::clearerr(stream), 0; });
     case kFeof:
@@ -282,9 +277,7 @@ std::optional<AssistedCalls::Result> AssistedCalls::files(std::uint32_t function
 
 AssistedCalls::Result AssistedCalls::open_descriptor() {
   const int descriptor = files_.open(memory_.text(argument(0)), flags_of_host(argument(1)), argument(2));
-  if (descriptor < 0) return {-1, errno};
-  const int number = files_.add_descriptor(descriptor);
-  return {number, number < 0 ? errno : 0};
+  return of_host(descriptor < 0 ? descriptor : files_.add_descriptor(descriptor));
 }
 
 AssistedCalls::Result AssistedCalls::read_descriptor() {
@@ -293,14 +286,10 @@ AssistedCalls::Result AssistedCalls::read_descriptor() {
   if (argument(0) == STDIN_FILENO) {
     // By way of the stream, which may have read more than was asked for.
     const Stream from = files_.stream(kStandardInput);
-    const int first = data.empty() ? EOF : std::getc(from.get());
-    if (first != EOF) {
-      data[static_cast<std::size_t>(count++)] = static_cast<char>(first);
-      while (count < static_cast<ssize_t>(data.size()) && data[static_cast<std::size_t>(count - 1)] != '\n') {
-        const int letter = std::getc(from.get());
-        if (letter == EOF) break;
-        data[static_cast<std::size_t>(count++)] = static_cast<char>(letter);
-      }
+    for (int letter = 0; letter != '\n' && count < static_cast<ssize_t>(data.size());) {
+      letter = std::getc(from.get());
+      if (letter == EOF) break;
+      data[static_cast<std::size_t>(count++)] = static_cast<char>(letter);
     }
   } else {
     const int descriptor = files_.descriptor_of(argument(0));
@@ -318,8 +307,7 @@ AssistedCalls::Result AssistedCalls::write_descriptor() {
   if (to == STDOUT_FILENO || to == STDERR_FILENO) return print(to + 1, data);  // its handle is one more
   const int descriptor = files_.descriptor_of(to);
   if (descriptor < 0) return {-1, EBADF};
-  const ssize_t count = write(descriptor, data.data(), data.size());
-  return {count, count < 0 ? errno : 0};
+  return of_host(write(descriptor, data.data(), data.size()));
 }
 
 /// Seconds and nanoseconds, a word each.
@@ -349,8 +337,7 @@ AssistedCalls::Result AssistedCalls::posix(std::uint32_t function) {
   const auto with_descriptor = [&](const auto& work) -> Result {
     const int descriptor = files_.descriptor_of(argument(0));
     if (descriptor < 0) return {-1, EBADF};
-    const std::int64_t value = work(descriptor);
-    return {value, value < 0 ? errno : 0};
+    return of_host(work(descriptor));
   };
   switch (function) {
     case kOpen:
@@ -368,14 +355,10 @@ AssistedCalls::Result AssistedCalls::posix(std::uint32_t function) {
     case kFtruncate:
       return with_descriptor(
           [&](int descriptor) { return ftruncate(descriptor, static_cast<std::int32_t>(argument(1))); });
-    case kClose: {
-      const int result = files_.close_descriptor(argument(0));
-      return {result, result < 0 ? errno : 0};
-    }
-    case kUnlink: {
-      const int result = files_.remove(memory_.text(argument(0)));
-      return {result, result < 0 ? errno : 0};
-    }
+    case kClose:
+      return of_host(files_.close_descriptor(argument(0)));
+    case kUnlink:
+      return of_host(files_.remove(memory_.text(argument(0))));
     case kAccess: {
       // What may be opened so may be accessed so.
       const bool writes = (argument(1) & W_OK) != 0;

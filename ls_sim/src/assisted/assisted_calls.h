@@ -99,6 +99,11 @@ class AssistedCalls {
   std::uint32_t argument(int number) const {
     return memory_.word(arguments_ + static_cast<std::uint32_t>(number) * dma::kQuadwordBytes);
   }
+  /// What a function of the host has returned: below 0 is an error, and errno says which.
+  static Result of_host(std::int64_t value);
+
+  Result c99(std::uint32_t function);
+  // Each serves a part of the C library; nothing: the function is of another part.
   std::optional<Result> output(std::uint32_t function);
   std::optional<Result> input(std::uint32_t function);
   std::optional<Result> files(std::uint32_t function);

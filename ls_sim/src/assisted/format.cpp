@@ -78,15 +78,12 @@ Conversion read_conversion(const std::string& format, std::size_t& at, FormatArg
   return c;
 }
 
-bool is_long(const Conversion& c) {
-  return c.length == "ll" || c.length == "q" || c.length == "j" || c.length == "L";
-}
-
 std::string convert(const Conversion& c, FormatArguments& arguments) {
   switch (c.kind) {
     case 'd':
     case 'i': {
-      if (is_long(c)) return print(c.for_host("ll"), static_cast<long long>(arguments.next_doubleword()));
+      if (is_long_long(c.length))
+        return print(c.for_host("ll"), static_cast<long long>(arguments.next_doubleword()));
       const auto value = static_cast<int>(arguments.next_word());
       if (c.length == "hh") return print(c.for_host(""), static_cast<int>(static_cast<signed char>(value)));
       return print(c.for_host(""), c.length == "h" ? static_cast<int>(static_cast<short>(value)) : value);
@@ -95,7 +92,7 @@ std::string convert(const Conversion& c, FormatArguments& arguments) {
     case 'o':
     case 'x':
     case 'X': {
-      if (is_long(c))
+      if (is_long_long(c.length))
         return print(c.for_host("ll"), static_cast<unsigned long long>(arguments.next_doubleword()));
       const std::uint32_t value = arguments.next_word();
       return print(c.for_host(""), c.length == "hh"  ? value & 0xFFu
@@ -131,6 +128,10 @@ std::string convert(const Conversion& c, FormatArguments& arguments) {
 }
 
 }  // namespace
+
+bool is_long_long(const std::string& length) {
+  return length == "ll" || length == "q" || length == "j" || length == "L";
+}
 
 std::string format_text(const std::string& format, FormatArguments& arguments) {
   std::string text;

@@ -18,6 +18,9 @@ class FormatArguments {
   virtual std::uint32_t local_store_address(std::uint32_t pointer) = 0;
 };
 
+/// Whether a conversion's length says 64 bits.
+bool is_long_long(const std::string& length);
+
 /// What printf makes of them, cut at 2^20 characters. `l`, `z` and `t` are 32 bits, `ll` and `j` 64, `L` is a double, `%p` shows a local-store address. `%n`
 /// and what is no conversion are copied as they stand. [C17, 7.21.6.1]
 std::string format_text(const std::string& format, FormatArguments& arguments);

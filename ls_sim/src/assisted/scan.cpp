@@ -139,7 +139,7 @@ class Scan {
   static std::uint32_t size_of(const ScanConversion& c) {
     if (c.length == "hh") return 1;
     if (c.length == "h") return 2;
-    return c.length == "ll" || c.length == "q" || c.length == "j" || c.length == "L" ? 8 : 4;
+    return is_long_long(c.length) ? 8 : 4;
   }
   static std::string width_of(const ScanConversion& c) { return c.width == 0 ? "" : std::to_string(c.width); }
 

@@ -3,7 +3,16 @@
 
 #include <errno.h>
 #include <softcell_environment.h>
+#include <stdarg.h>
 #include <stdint.h>
+
+/// The body of a function with `...` behind its parameter `last`: the value of an expression in which `list` is its va_list.
+#define SC_VARIADIC(last, expression) \
+  va_list list;                       \
+  va_start(list, last);               \
+  const int result = expression;      \
+  va_end(list);                       \
+  return result
 
 namespace softcell_library {
 

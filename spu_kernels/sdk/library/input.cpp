@@ -12,12 +12,6 @@ int vscanf(const char* format, va_list list) { return call(kVscanf, format, list
 int vfscanf(FILE* file, const char* format, va_list list) { return call(kVfscanf, file, format, list); }
 int vsscanf(const char* text, const char* format, va_list list) { return call(kVsscanf, text, format, list); }
 
-#define SC_VARIADIC(last, expression) \
-  va_list list;                       \
-  va_start(list, last);               \
-  const int result = expression;      \
-  va_end(list);                       \
-  return result
 int scanf(const char* format, ...) { SC_VARIADIC(format, vscanf(format, list)); }
 int fscanf(FILE* file, const char* format, ...) { SC_VARIADIC(format, vfscanf(file, format, list)); }
 int sscanf(const char* text, const char* format, ...) { SC_VARIADIC(format, vsscanf(text, format, list)); }

@@ -16,12 +16,6 @@ int vsnprintf(char* to, size_t bytes, const char* format, va_list list) {
 }
 int vsprintf(char* to, const char* format, va_list list) { return vsnprintf(to, 0x40000, format, list); }
 
-#define SC_VARIADIC(last, expression) \
-  va_list list;                       \
-  va_start(list, last);               \
-  const int result = expression;      \
-  va_end(list);                       \
-  return result
 int printf(const char* format, ...) { SC_VARIADIC(format, vprintf(format, list)); }
 int fprintf(FILE* file, const char* format, ...) { SC_VARIADIC(format, vfprintf(file, format, list)); }
 int snprintf(char* to, size_t bytes, const char* format, ...) {

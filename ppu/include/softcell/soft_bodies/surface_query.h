@@ -61,8 +61,13 @@ class SurfaceQuery {
     bool behind = false;  ///< the point is behind the triangle
     std::uint32_t triangle = 0;
     Eigen::Vector3f position{0, 0, 0};
+
+    float distance() const;  ///< metres, below 0 behind it
   };
 
+  /// Calls `work` with triangles, the nearest boxes' first, while their boxes' cost is no more than limit().
+  template <typename Cost, typename Limit, typename Work>
+  void visit(const Cost& cost, const Limit& limit, const Work& work) const;
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t count);
   Nearest nearest(const Eigen::Vector3f& point) const;
   SurfaceHit hit_of(std::uint32_t triangle, float share, const Eigen::Vector3f& position) const;

@@ -1,0 +1,31 @@
+#pragma once
+// The part of a straight way that lies in a box.
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// From `first` to `last`, as shares of the way, 0..1. Where `first` is larger, no part is in the box.
+struct WayInBox {
+  float first = 0, last = 1;
+};
+
+/// @param along  from the way's begin to its end
+inline WayInBox way_in_box(const Bounds<3>& box, const Eigen::Vector3f& from, const Eigen::Vector3f& along) {
+  WayInBox part;
+  for (int d = 0; d < 3; ++d) {
+    const float low = box.low[d] - from[d], high = box.high[d] - from[d];
+    if (along[d] == 0) {
+      if (low > 0 || high < 0) return {1, 0};
+      continue;
+    }
+    part.first = std::max(part.first, (along[d] > 0 ? low : high) / along[d]);
+    part.last = std::min(part.last, (along[d] > 0 ? high : low) / along[d]);
+  }
+  return part;
+}
+
+}  // namespace softcell::ppu
