@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
@@ -113,6 +114,10 @@ class DoneListener final : public dma::ReservationListener {
     std::unique_lock lock(mutex_);
     wake_up_.wait(lock, [this] { return written_; });
   }
+  void wait_for(std::chrono::milliseconds time) {
+    std::unique_lock lock(mutex_);
+    wake_up_.wait_for(lock, time, [this] { return written_; });
+  }
 
  private:
   std::mutex mutex_;
@@ -127,6 +132,7 @@ struct JobChain::State {
   ~State();
 
   void link_stages();
+  bool look();
   bool finished();
   void wait();
   void collect();
@@ -180,6 +186,7 @@ struct JobSystem::State {
   dma::AddressSpace& memory;
   const ls_sim::KernelImage& loop;
   bool wants_checked;
+  bool takes_turns;  // SPEs run only while the PPU side waits for them
   dma::Buffer<JobBoard> board;
   dma::Buffer<JobBell> bells;  // of each SPE
   /// Of each chain, by its place on the board. They stay when a chain goes: an SPE that has read the board
@@ -203,6 +210,7 @@ JobSystem::State::State(dma::AddressSpace& space, const ls_sim::SpeOptions& opti
     : memory(space),
       loop(require_loop(job_loop)),
       wants_checked(options.findings != nullptr),
+      takes_turns(options.interleaving != ls_sim::Interleaving::kFree),
       board(space, "job board", 1, {.record = kBoardRecord}),
       bells(space, "job bells", dma::kSpeCount, kWords),
       chain_states(space, "job chains", spu::kMaxChains, {.record = kStateRecord}),
@@ -437,7 +445,7 @@ void JobChain::State::link_stages() {
 }
 
 /// Looks at the last line, and reserves it, so that the listener hears of its next change.
-bool JobChain::State::finished() {
+bool JobChain::State::look() {
   if (!under_way) return true;
   ChainDone last;
   listener.reset();
@@ -449,8 +457,20 @@ bool JobChain::State::finished() {
   return true;
 }
 
+bool JobChain::State::finished() {
+  if (under_way && shared.takes_turns) shared.group.wait_until_idle();
+  return look();
+}
+
+/// Where SPEs take turns, all sleep now: until the deadline of a job that waits for nothing, behind which loops that start anew want turns.
 void JobChain::State::wait() {
-  while (!finished()) listener.wait();
+  constexpr std::chrono::milliseconds kNextLook{5};
+  while (!finished()) {
+    if (shared.takes_turns)
+      listener.wait_for(kNextLook);
+    else
+      listener.wait();
+  }
 }
 
 void JobChain::State::collect() {

@@ -16,10 +16,12 @@ ls_sim::SpeOptions options_of(const SpeRuntimeOptions& options, ls_sim::Findings
     throw std::invalid_argument("a runtime of " + std::to_string(options.spes) + " SPEs; 1 to " +
                                 std::to_string(dma::kSpeCount) + " are possible");
   }
-  return {.spes = options.spes,
-          .schedule = options.schedule,
-          .deadline = options.deadline,
-          .findings = options.checked ? &findings : nullptr};
+  ls_sim::SpeOptions spe_options{.spes = options.spes,
+                                 .schedule = options.schedule,
+                                 .deadline = options.deadline,
+                                 .findings = options.checked ? &findings : nullptr};
+  ls_sim::time_by(options.timing, spe_options);
+  return spe_options;
 }
 
 }  // namespace

@@ -210,6 +210,17 @@ TEST_F(TransferTiming, IsTheSameInEveryRunOfSixSpes) {
   }
 }
 
+/// It comes to its transfer first, by the host's time, and last by its own.
+TEST_F(TransferTiming, OfAnSpeThatHasComputedForLongComesInItsTurn) {
+  Program early;
+  for (std::uint32_t i = 0; i < 4; ++i) early.command(kGet, 0x10000, 0, 128, 3).wait(1 << 3);
+  run({early.image()});
+  const std::uint64_t alone = tag_wait(0);
+  run({Program().work(5000).command(kGet, 0x10000, 0, 128, 3).wait(1 << 3).image(), early.image()});
+  EXPECT_EQ(tag_wait(1), alone);
+  EXPECT_EQ(tag_wait(0), alone / 4);
+}
+
 TEST_F(TransferTiming, LinesTakeCyclesOfThePort) {
   Program program;
   program.command(kGet, 0x20000, 0, 16384, 3);

@@ -18,6 +18,7 @@
 #include "job_chain.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/timing.h"
 #include "softcell/ls_sim/trace.h"
 #include "softcell/spu_kernels/images.h"
 #include "support/text_file.h"
@@ -50,6 +51,9 @@ void expect_parts(const std::string& message, const std::vector<std::string>& pa
     EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
   }
 }
+
+/// Tests that fail jobs do so whether or not SPEs take turns.
+constexpr ls_sim::Interleaving kInterleavings[] = {ls_sim::Interleaving::kFree, ls_sim::Interleaving::kTurns};
 
 class JobSystemTest : public testing::Test {
  protected:
@@ -85,6 +89,38 @@ TEST_F(JobSystemTest, RunsEveryJobOnceForAnyNumberOfSpesAndAnySchedule) {
       std::uint64_t run = 0;
       for (const ls_sim::SpeStatistics& s : jobs.statistics()) run += s.jobs;
       EXPECT_EQ(run, 100u);
+    }
+  }
+}
+
+/// SPEs that take turns run while somebody waits, and not otherwise.
+TEST_F(JobSystemTest, OfSpesThatTakeTurnsEndsItsJobs) {
+  for (const bool by_time : {false, true}) {
+    for (int spes = 1; spes <= 6; ++spes) {
+      ls_sim::Timing timing(spes);
+      SpeOptions options{.spes = spes, .interleaving = ls_sim::Interleaving::kTurns};
+      if (by_time) ls_sim::time_by(&timing, options);
+      JobSystem jobs(memory_, options, loop_);
+      auto lines = make_lines(40);
+      const JobImage adds = jobs.place(adds_);
+      JobChain first(jobs, "first", 20), second(jobs, "second", 20);
+      for (std::size_t i = 0; i < 40; ++i) (i < 20 ? first : second).add({adds, lines.ea(i)});
+      for (int kick = 0; kick < 2; ++kick) {
+        first.kick();
+        second.kick();
+        EXPECT_TRUE(second.finished()) << spes;
+        EXPECT_TRUE(first.finished()) << spes;
+      }
+      for (JobChain* const chain : {&first, &second}) expect_no_failures(*chain);
+      for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(lines[i][0], i + 2) << spes;
+      if (!by_time) continue;
+      const auto kernels = timing.by_kernel();
+      ASSERT_EQ(kernels.size(), 1u);
+      EXPECT_EQ(kernels[0].kernel, adds_.name);
+      EXPECT_EQ(kernels[0].jobs, 80u);
+      EXPECT_GT(kernels[0].cycles, kernels[0].waits);
+      EXPECT_GT(kernels[0].waits, 0u);
+      EXPECT_GT(timing.now(), kernels[0].cycles / static_cast<std::uint64_t>(spes));
     }
   }
 }
@@ -331,17 +367,19 @@ TEST_F(JobSystemTest, EveryWayToCrashIsReported) {
         std::pair{"read_effective_address", "effective-address-as-pointer"},
         std::pair{"stack_overflow_deep", "stack-overflow"}, std::pair{"exits", "code 291"}}) {
     const KernelImage image = test_image(kernel);
-    JobSystem jobs(memory_, {.spes = 1}, loop_);
-    auto lines = make_lines(1);
-    const JobImage crashes = jobs.place(image), adds = jobs.place(adds_);
-    JobChain chain(jobs, "crashes", 2);
-    chain.add({crashes, lines.ea(), {4096}});  // envp: a depth of stack
-    chain.add({adds, lines.ea()});
-    chain.kick();
-    chain.wait();
-    ASSERT_EQ(chain.failures().size(), 1u) << kernel;
-    expect_parts(chain.failures()[0].message, {kernel, rule});
-    EXPECT_EQ(lines[0][0], 1u) << kernel;
+    for (const ls_sim::Interleaving interleaving : kInterleavings) {
+      JobSystem jobs(memory_, {.spes = 1, .interleaving = interleaving}, loop_);
+      auto lines = make_lines(1);
+      const JobImage crashes = jobs.place(image), adds = jobs.place(adds_);
+      JobChain chain(jobs, "crashes", 2);
+      chain.add({crashes, lines.ea(), {4096}});  // envp: a depth of stack
+      chain.add({adds, lines.ea()});
+      chain.kick();
+      chain.wait();
+      ASSERT_EQ(chain.failures().size(), 1u) << kernel;
+      expect_parts(chain.failures()[0].message, {kernel, rule});
+      EXPECT_EQ(lines[0][0], 1u) << kernel;
+    }
   }
 }
 
@@ -366,15 +404,17 @@ TEST_F(JobSystemTest, TheDeadlineIsThatOfAJobNotOfTheLoop) {
 
 TEST_F(JobSystemTest, AJobThatWaitsForWhatNeverComesEndsAtTheDeadline) {
   const KernelImage image = test_image("waits");
-  JobSystem jobs(memory_, {.spes = 2, .deadline = 100ms}, loop_);
-  JobChain chain(jobs, "waits", 3);
-  const JobImage waits = jobs.place(image);
-  for (const std::uint64_t channel : {29, 3, 0}) chain.add({waits, {channel}, {0x2}});
-  chain.kick();
-  chain.wait();
-  ASSERT_EQ(chain.failures().size(), 3u);
-  for (const JobFailure& failure : chain.failures()) {
-    expect_parts(failure.message, {"SPE ", "kernel waits", "deadline-exceeded", "waits.cpp:"});
+  for (const ls_sim::Interleaving interleaving : kInterleavings) {
+    JobSystem jobs(memory_, {.spes = 2, .deadline = 100ms, .interleaving = interleaving}, loop_);
+    JobChain chain(jobs, "waits", 3);
+    const JobImage waits = jobs.place(image);
+    for (const std::uint64_t channel : {29, 3, 0}) chain.add({waits, {channel}, {0x2}});
+    chain.kick();
+    chain.wait();
+    ASSERT_EQ(chain.failures().size(), 3u);
+    for (const JobFailure& failure : chain.failures()) {
+      expect_parts(failure.message, {"SPE ", "kernel waits", "deadline-exceeded", "waits.cpp:"});
+    }
   }
 }
 

@@ -7,10 +7,12 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "ppu/numbers/half.h"
 #include "soft_body_scenes.h"
 #include "softcell/dma/buffer.h"
+#include "softcell/ls_sim/timing.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/skinned_mesh.h"
 #include "softcell/soft_bodies/state_hash.h"
@@ -66,6 +68,42 @@ TEST(SpeRuntime, ServesSeveralWorldsUnderEverySchedule) {
   std::uint64_t jobs = 0;
   for (const ls_sim::SpeStatistics& spe : eager.statistics()) jobs += spe.jobs;
   EXPECT_GT(jobs, 0u);
+}
+
+/// What a body's fall takes by the model of time, and its state behind it.
+struct TimedFall {
+  std::uint64_t cycles = 0, hash = 0;
+  std::vector<ls_sim::KernelCycles> kernels;
+};
+
+TimedFall timed_fall(int spes, const char* schedule = "eager") {
+  ls_sim::Timing timing(spes);
+  TimedFall result;
+  {
+    SpeRuntime runtime({.spes = spes,
+                        .schedule = dma::parse_schedule(schedule),
+                        .machine = ls_sim::Machine::kSpu,
+                        .timing = &timing});
+    result.hash = fall(runtime, 30);
+  }
+  result.cycles = timing.now();
+  result.kernels = timing.by_kernel();
+  return result;
+}
+
+TEST(SpeRuntime, CountsTheCyclesOfAPs3) {
+  SpeRuntime plain;
+  const std::uint64_t expected = fall(plain, 30);
+  const TimedFall once = timed_fall(2), again = timed_fall(2), lazy = timed_fall(2, "lazy");
+  EXPECT_EQ(once.hash, expected);
+  EXPECT_EQ(once.cycles, again.cycles);
+  EXPECT_EQ(once.cycles, lazy.cycles) << "when transfers happen is no matter of the model";
+  ASSERT_EQ(once.kernels.size(), 1u);
+  EXPECT_EQ(once.kernels[0].kernel, "match");
+  EXPECT_EQ(once.kernels[0].jobs, 60u) << "30 frames of two substeps";
+  EXPECT_EQ(once.kernels[0].cycles, again.kernels[0].cycles);
+  EXPECT_LT(once.kernels[0].waits, once.kernels[0].cycles / 2);
+  EXPECT_LT(once.kernels[0].cycles, once.cycles) << "the loops take something, too";
 }
 
 TEST(SpeRuntime, CheckedKernelsGiveTheSameBitsAndNoFindings) {

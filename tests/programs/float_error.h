@@ -9,7 +9,8 @@
 
 namespace softcell::ls_sim {
 
-inline constexpr double kUlps = 0.501;  // spu_kernels/sdk/library/include/math.h
+inline constexpr double kUlps = 0.501;
+inline constexpr double kUlpsOfOneArgument = 0.50005;  // spu_kernels/sdk/library/include/math.h
 
 /// In units in the last place of what is exact, as math.h counts what a float cannot hold.
 inline double error_of(float result, double exact) {

@@ -9,12 +9,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,7 @@
 #include "support/files_in.h"
 #include "support/run_command.h"
 #include "support/scratch_folder.h"
+#include "support/text_file.h"
 
 namespace softcell::tests {
 namespace {
@@ -385,12 +388,70 @@ TEST(Command, ComparesWithAnEarlierRunAndMarksWhatGotSlower) {
       << refused.output;
 }
 
+/// A row of docs/notes/ps3.md by its cells.
+std::vector<std::string> row_of_scene(const std::string& scene, const std::string& contacts) {
+  std::istringstream page(test::text_of(SOFTCELL_PS3_PAGE));
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with("| `" + scene + "` | " + contacts + " |")) continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line.substr(2));
+    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+    return cells;
+  }
+  ADD_FAILURE() << "docs/notes/ps3.md has no row of " << scene;
+  return std::vector<std::string>(11);
+}
+
+/// The figures are the same in every run and on every host.
+TEST(Command, SaysWhatTheWorkOfTheSpesTakesOnAPs3) {
+  if (SOFTCELL_SLOW_BUILD)
+    GTEST_SKIP() << "a sanitizer takes a minute for it; SpeRuntime.CountsTheCyclesOfAPs3 runs there";
+  const ScratchFolder folder;
+  for (const auto& [scene, dimension, contacts] :
+       {std::tuple{"cell", "3d", "spheres"}, std::tuple{"two_way", "2d", "circles"}}) {
+    const std::string json = folder / "run.json";
+    const CommandResult run =
+        run_softcell(std::string("demo ") + dimension + " --scene " + scene +
+                     " --headless --frames 120 --size 64x64 --engine interpreter --json " + json);
+    ASSERT_EQ(run.status, 0) << run.output;
+    EXPECT_NE(run.output.find("\non a PS3:  0.0"), std::string::npos) << run.output;
+    const auto on_ps3 = read_json(json).at("on_ps3");
+    const std::vector<std::string> row = row_of_scene(scene, contacts);
+    EXPECT_NEAR(std::stod(row.at(5)), on_ps3["ms"]["mean"].get<double>(), 0.0051) << scene;
+    EXPECT_NEAR(std::stod(row.at(6)), on_ps3["ms"]["p99"].get<double>(), 0.0051) << scene;
+    EXPECT_NEAR(std::stod(row.at(8)), 100 * on_ps3["busy"].get<double>(), 0.51) << scene;
+    EXPECT_NEAR(std::stod(row.at(9)), 100 * on_ps3["waits"].get<double>(), 0.51) << scene;
+    double jobs = 0;
+    for (const auto& kernel : on_ps3["kernels"]) jobs += kernel["ms"].get<double>();
+    EXPECT_NEAR(jobs / (6 * on_ps3["ms"]["mean"].get<double>()), on_ps3["busy"].get<double>(), 0.1) << scene;
+  }
+  // A trace then has the clocks of the SPEs.
+  const std::string trace = folder / "run.trace";
+  ASSERT_EQ(
+      run_softcell(
+          "demo 2d --scene two_way --headless --frames 2 --size 64x64 --engine interpreter --trace " + trace)
+          .status,
+      0);
+  EXPECT_NE(test::text_of(trace).find("simulated clocks of the SPEs"), std::string::npos);
+  ASSERT_EQ(run_softcell("demo 2d --scene two_way --headless --frames 2 --size 64x64 --json " +
+                         (folder / "native.json"))
+                .status,
+            0);
+  EXPECT_FALSE(read_json(folder / "native.json").contains("on_ps3"));
+}
+
 TEST(Command, PrintsTheBudgetOfEveryKernel) {
   const ScratchFolder folder;
   const CommandResult run = run_softcell("spu budget --json " + (folder / "b.json"));
   ASSERT_EQ(run.status, 0) << run.output;
   const auto table = read_json(folder / "b.json");
   ASSERT_FALSE(table.empty());
+  // Cycles for a piece of work, as spu_kernels/spu_elf has the kernels now, and a fiftieth. They are the same on every host: what is
+  // above has become slower.
+  const std::map<std::string, double> most_cycles{
+      {"contact_find", 1'880'000}, {"contact_solve", 14'330}, {"job_loop", 520},    {"match", 908},
+      {"match_2d", 507},           {"match_tiles", 1'796},    {"rotations", 8'442}, {"skin", 50},
+      {"transfers", 179}};
   bool has_skin = false;
   for (const auto& row : table) {
     for (const char* key :
@@ -406,6 +467,12 @@ TEST(Command, PrintsTheBudgetOfEveryKernel) {
     EXPECT_LE(spu["stack_used"], spu["stack"]) << row["kernel"];
     EXPECT_GT(spu["stack_used"], 0) << row["kernel"];
     EXPECT_GT(spu["text"], 0) << row["kernel"];
+    const auto limit = most_cycles.find(row["kernel"]);
+    ASSERT_NE(limit, most_cycles.end()) << row["kernel"] << " has no limit of cycles: " << spu;
+    EXPECT_LE(spu["cycles"], limit->second) << row["kernel"];
+    double by_function = 0;
+    for (const auto& function : spu["functions"]) by_function += function["cycles"].get<double>();
+    EXPECT_NEAR(by_function / spu["pieces"].get<double>(), spu["cycles"].get<double>(), 1) << row["kernel"];
     if (row["kernel"] != "skin") continue;
     has_skin = true;
     EXPECT_LE(row["total"], 96 * 1024);

@@ -99,6 +99,8 @@ const std::map<dma::Rule, std::string> kNotForKernels = {
     {dma::Rule::kStopZero, "kernels of the host have no such instruction; see the tests of the interpreter"},
     {dma::Rule::kJumpOutsideCode, "the host's processor does not tell; see the tests of the interpreter"},
     {dma::Rule::kUninitialisedAddress, "compilers warn of it for the host; see the tests of the interpreter"},
+    {dma::Rule::kUninitialisedValue,
+     "kernels of the host are not followed so far; see the tests of the interpreter"},
     {dma::Rule::kHostFailure, "the host fails, not the kernel; see the tests of host failures"},
 };
 

@@ -19,7 +19,7 @@ namespace softcell::demos {
 struct RunRecord {
   /// Of each frame.
   std::vector<double> physics_ms, ppu_ms, gather_ms, solve_ms, apply_ms, contacts_ms, skin_ms, solver_wait_ms,
-      skin_wait_ms;
+      skin_wait_ms, ps3_ms;
   std::vector<double> picture_ms;  ///< of each picture
   std::uint64_t upload_bytes = 0;  ///< of vertices or particles, for all pictures
   double seconds = 0;              ///< of the frame loop, pictures included
@@ -40,6 +40,7 @@ struct RunRecord {
     skin_ms.push_back(times.skin_ms);
     solver_wait_ms.push_back(times.solver_wait_ms);
     skin_wait_ms.push_back(times.skin_wait_ms);
+    ps3_ms.push_back(times.ps3_ms);
     ++frames;
   }
 

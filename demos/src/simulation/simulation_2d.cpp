@@ -133,7 +133,10 @@ Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
 
 struct Simulation2d::State {
   State(const Scene2d& scene_description, const SimulationOptions& options)
-      : scene(scene_description), script(scene.script), controls({0, -scene.gravity}) {
+      : scene(scene_description),
+        script(scene.script),
+        controls({0, -scene.gravity}),
+        timing(options.timing) {
     SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     if (options.solver == Solver::kSpe) {
       spes.emplace(options);
@@ -167,6 +170,7 @@ struct Simulation2d::State {
   Models models;
   ScriptPlayer<2> script;
   Controls<2> controls;
+  const ls_sim::Timing* timing;  // null: nothing is timed
   ppu::PpuSolver<2> on_this_thread;
   std::optional<Spes> spes;
   ppu::SoftBodySolver<2>* solver = &on_this_thread;
@@ -190,6 +194,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   if (!s.controls.advance()) return {};
 
   World& world = *s.world;
+  const FrameOnPs3 on_ps3(s.timing);
   const auto matched_before = world.soft_bodies.time_spent(), waited_before = s.waited();
   world.world.SetGravity(to_box2d(s.controls.gravity()));
   for (int i = 0; i < s.scene.substeps; ++i) {
@@ -209,6 +214,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   times.ppu_ms = coupling - waiting;
   times.solve_ms = times.ppu_ms;
   times.solver_wait_ms = waiting;
+  times.ps3_ms = on_ps3.milliseconds();
   return times;
 }
 

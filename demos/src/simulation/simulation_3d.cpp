@@ -99,6 +99,7 @@ struct Simulation3d::State {
       : scene(scene_description),
         script(scene.script),
         controls({0, -scene.gravity, 0}),
+        timing(options.timing),
         job_loop(options.job_loop()),
         match(options.kernel("match")),
         match_tiles(options.kernel("match_tiles")),
@@ -220,6 +221,7 @@ struct Simulation3d::State {
   ppu::BulletWorld world;
   std::vector<std::size_t> boxes;  // numbers in the world
 
+  const ls_sim::Timing* timing;  // null: nothing is timed
   dma::AddressSpace memory;
   ls_sim::KernelImage job_loop, match, match_tiles;
   std::optional<ls_sim::KernelImage> skin;                         // none: the GPU does it
@@ -273,6 +275,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   ++s.frame;
   s.world.set_gravity(s.tilt.transpose() * s.controls.gravity());
   s.controls.hands().pull(s.soft_bodies);
+  const FrameOnPs3 on_ps3(s.timing);
   const ppu::SoftBodyTimes begin = s.soft_bodies.times();
   const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
   s.contacts_stand = true;
@@ -291,6 +294,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   times.skin_ms = milliseconds(s.skin_time);
   times.ppu_ms = times.gather_ms + times.solve_ms + times.apply_ms + times.contacts_ms + times.skin_ms;
   times.solver_wait_ms = milliseconds(end.wait - begin.wait);
+  times.ps3_ms = on_ps3.milliseconds();
   return times;
 }
 

@@ -7,6 +7,7 @@
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/spe_options.h"
+#include "softcell/ls_sim/timing.h"
 #include "softcell/ls_sim/trace.h"
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/spu_kernels/load_kernel.h"
@@ -41,9 +42,13 @@ struct SimulationOptions {
   dma::Schedule schedule{};
   ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked
   ls_sim::Trace* trace = nullptr;        ///< of at least as many SPEs; null: nothing is recorded
+  /// Of at least as many SPEs: counts what their work takes on a PS3, for kernels built for the SPU. The SPEs then take turns. Null:
+  /// nothing is timed.
+  ls_sim::Timing* timing = nullptr;
 
   ls_sim::SpeOptions spe_options() const {
     ls_sim::SpeOptions options{.spes = spes, .schedule = schedule, .findings = findings, .trace = trace};
+    ls_sim::time_by(timing, options);
     if (machine == ls_sim::Machine::kSpu) options.deadline *= kInterpretedDeadline;
     return options;
   }
@@ -65,6 +70,23 @@ struct FrameTimes {
   double solver_wait_ms = 0;  ///< by the clock, until the solver had finished; in none of the above
   /// Waiting for the SPEs, so that pictures are the same on every host; in none of the above.
   double skin_wait_ms = 0;
+  /// By the clocks of the SPEs, on a PS3: from the frame's first job to its last, without the PPU's time. 0: nothing is timed.
+  double ps3_ms = 0;
+};
+
+/// Measures FrameTimes::ps3_ms.
+class FrameOnPs3 {
+ public:
+  /// @param timing  null: 0 ms
+  explicit FrameOnPs3(const ls_sim::Timing* timing) : timing_(timing), begin_(now()) {}
+  double milliseconds() const {
+    return static_cast<double>(now() - begin_) * 1e3 / static_cast<double>(ls_sim::kCyclesPerSecond);
+  }
+
+ private:
+  std::uint64_t now() const { return timing_ == nullptr ? 0 : timing_->now(); }
+  const ls_sim::Timing* timing_;
+  std::uint64_t begin_;
 };
 
 }  // namespace softcell::demos

@@ -5,10 +5,12 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "call_memory.h"
 #include "files.h"
@@ -82,6 +84,9 @@ class AssistedCalls {
       : files_(files),
         memory_(local_store, kind == CallerKind::kSpu ? std::endian::big : std::endian::little),
         kind_(kind) {}
+
+  /// Is told of each byte of the local store that calls change. Empty: nobody.
+  void on_write(std::function<void(std::uint32_t lsa)> listener) { memory_.on_write(std::move(listener)); }
 
   /// Serves the call and writes its result over its first argument: the value in word 0, errno in word 3.
   /// @param code     kC99Call or kPosixCall

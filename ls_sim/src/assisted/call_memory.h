@@ -5,9 +5,11 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
@@ -31,6 +33,7 @@ class CallMemory {
 
   void set_byte(std::uint32_t lsa, std::uint8_t value) {
     bytes_[lsa & dma::kLocalStoreMask] = static_cast<std::byte>(value);
+    if (on_write_) on_write_(lsa & dma::kLocalStoreMask);
   }
   /// @param size  bytes, 1 to 8; of the value as many low ones
   void set_value(std::uint32_t lsa, std::uint64_t value, std::uint32_t size) {
@@ -38,6 +41,9 @@ class CallMemory {
       set_byte(lsa + i, static_cast<std::uint8_t>(value >> 8 * place(i, size)));
   }
   void set_word(std::uint32_t lsa, std::uint32_t value) { set_value(lsa, value, 4); }
+
+  /// Is told of each byte that is set. Empty: nobody.
+  void on_write(std::function<void(std::uint32_t lsa)> listener) { on_write_ = std::move(listener); }
 
   /// Up to its zero, at the longest `most` characters or a whole local store.
   std::string text(std::uint32_t lsa, std::size_t most = dma::kLocalStoreBytes) const {
@@ -68,6 +74,7 @@ class CallMemory {
 
   std::span<std::byte> bytes_;
   std::endian order_;
+  std::function<void(std::uint32_t)> on_write_;
 };
 
 }  // namespace softcell::ls_sim::assisted

@@ -160,6 +160,11 @@ void SpeMonitor::ppu_pause(Lock& lock) {
   ppu_wait(lock, [&] { return turns_drawn_ != before || !any(State::kRunnable); });
 }
 
+void SpeMonitor::ppu_wait_until_idle(Lock& lock) {
+  SC_ASSERT(takes_turns_, "{} SPEs that do not take turns are waited for", spes());
+  ppu_wait(lock, [this] { return is_idle(); });
+}
+
 void SpeMonitor::change_outside(int difference) {
   SC_ASSERT(outside_ + difference >= 0, "{} act outside, and {} are taken away", outside_, -difference);
   outside_ += difference;
@@ -168,6 +173,14 @@ void SpeMonitor::change_outside(int difference) {
 
 bool SpeMonitor::any(State state) const {
   return std::ranges::any_of(used(), [state](const Member& m) { return m.state == state; });
+}
+
+/// Whether only somebody else can make an SPE run.
+bool SpeMonitor::is_idle() const {
+  return std::ranges::none_of(used(), [](const Member& m) {
+    return m.state == State::kRunnable ||
+           (m.state == State::kAsleep && (m.sleep.until || m.sleep.simulated_ticks));
+  });
 }
 
 bool SpeMonitor::ppu_acts() const {

@@ -126,6 +126,9 @@ class SpeMonitor {
   /// @return  the last answer of `ready`.
   bool ppu_wait(Lock& lock, const std::function<bool()>& ready, std::optional<HostTime> until = {});
 
+  /// Sleeps until no SPE runs or will run by itself. With the lock. @pre SPEs take turns
+  void ppu_wait_until_idle(Lock& lock);
+
   /// The PPU side has polled without success: if SPEs take turns, one of them runs for a while.
   void ppu_pause(Lock& lock);
 
@@ -161,6 +164,7 @@ class SpeMonitor {
     return member(spe).stopped || (member(spe).state == State::kRunnable && has_turn(spe));
   }
   bool any(State state) const;
+  bool is_idle() const;
   std::span<Member> used() { return std::span(members_).first(members_used_); }
   std::span<const Member> used() const { return std::span(members_).first(members_used_); }
 

@@ -49,6 +49,9 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   } else {
     written_.mark(kEnvironmentBytes, static_cast<std::uint32_t>(image.bytes.size()));
   }
+  // The outermost frame is there before the program begins.
+  if (runs_spu_program() && image.stack_top == dma::kLocalStoreBytes)
+    written_.mark(dma::kLocalStoreBytes - dma::kQuadwordBytes, dma::kQuadwordBytes);
   stack_overflow_known_ = false;
   for (const PaddingRange& gap : padding_) written_.mark(gap.lsa, gap.bytes);
   in_flight_.clear();
@@ -126,15 +129,40 @@ void Checker::on_instruction(const ExecutedInstruction& instruction) {
     written_.mark(lsa, 4);  // said once
   }
   check_code(instruction.address);
-  if (instruction.unset_address_register >= 0) {
-    report(Rule::kUninitialisedAddress, instruction.address,
-           "register $" + std::to_string(instruction.unset_address_register) + " at LSA " + hex(lsa));
-  }
+  if (instruction.undefined) report_undefined(instruction);
   if (instruction.stack_pointer.value >= image_->sizes.end || stack_overflow_known_) return;
   stack_overflow_known_ = true;  // all that follows does the same
   report(Rule::kStackOverflow, instruction.address,
          "the stack pointer is " + hex(instruction.stack_pointer.value) +
              ", and the program's variables end at " + hex(image_->sizes.end));
+}
+
+void Checker::report_undefined(const ExecutedInstruction& instruction) {
+  const UndefinedUse& use = *instruction.undefined;
+  static constexpr const char* kUses[] = {"the address of this access", "whether this branch is taken",
+                                          "where this branch goes", "whether this stops the SPU",
+                                          "what is written to this channel"};
+  std::string what = std::string(kUses[static_cast<std::size_t>(use.kind)]) + " depends on register $" +
+                     std::to_string(use.reg) + " (LSA " + hex(instruction.address.value) + ")";
+  if (!use.from) {
+    what += ", which the program has never written";
+  } else {
+    const std::string place = place_of(use.from->instruction);
+    // Of a program with a heap nobody knows where the stack begins.
+    const bool is_free = image_->main == 0 && use.from->lsa.value >= image_->sizes.end;
+    what += ", on bytes " + (is_free ? "of heap or stack" : "at " + objects_->describe(use.from->lsa.value)) +
+            " (LSA " + hex(use.from->lsa.value) + ") that nobody has written; they were loaded at " +
+            (place.empty() ? "" : place + ", ") + "LSA " + hex(use.from->instruction.value);
+  }
+  const bool is_address = use.kind == UndefinedUse::Kind::kAddress;
+  report(is_address ? Rule::kUninitialisedAddress : Rule::kUninitialisedValue, instruction.address,
+         std::move(what));
+}
+
+UndefinedBits Checker::undefined_bits(dma::LocalStoreAddress quadword) {
+  UndefinedBits bits;
+  for (std::uint32_t i = 0; i < bits.size(); ++i) bits[i] = written_.undefined(quadword.value + i);
+  return bits;
 }
 
 // ---- loads and stores
@@ -155,14 +183,16 @@ void Checker::on_access(const Access& access) {
     check_load(access);
   }
   if (!access.is_store) return;
-  written_.mark(access.lsa.value, access.bytes);
   if (runs_spu_program()) {
     SC_ASSERT(access.bytes == dma::kQuadwordBytes && access.lsa.value % dma::kQuadwordBytes == 0,
               "an SPU stores {} bytes at {}", access.bytes, access.lsa);
     last_store_ = QuadwordStore{access.lsa.value, access.instruction, {}};
     std::ranges::copy(to_.local_store.subspan(access.lsa.value, access.bytes), last_store_->before.begin());
+    for (std::uint32_t i = 0; i < access.bytes; ++i)
+      written_.mark_but(access.lsa.value + i, access.undefined[i]);
     return;
   }
+  written_.mark(access.lsa.value, access.bytes);
   mark_unsynced({.lsa = access.lsa.value, .bytes = access.bytes}, access.instruction);
 }
 
@@ -190,7 +220,9 @@ void Checker::check_load(const Access& access) {
     return;
   }
   // The compiler passes arguments on the stack without telling, and warns of variables that are not set. A
-  // load of which some bytes were written takes padding along.
+  // load of which some bytes were written takes padding along. Of a program with a heap bytes are followed to where
+  // they matter: it stores to part of a quadword by loading it first.
+  if (runs_spu_program() && image_->main == 0) return;
   if (objects_->in_stack(access.lsa.value) || written_.any(access.lsa.value, access.bytes)) return;
   report(Rule::kLoadNeverWritten, access.instruction,
          describe(access) + ": this job has not written these bytes");

@@ -85,6 +85,10 @@ class Checker final : public ChannelPort, public AccessObserver {
   bool stop(std::uint32_t code, std::uint32_t assist) override { return to_.channels.stop(code, assist); }
   void on_access(const Access& access) override;
   void on_instruction(const ExecutedInstruction& instruction) override;
+  UndefinedBits undefined_bits(dma::LocalStoreAddress quadword) override;
+  void on_host_write(dma::LocalStoreAddress lsa, std::uint32_t bytes) override {
+    written_.mark(lsa.value, bytes);
+  }
 
  private:
   using Address = dma::LocalStoreAddress;
@@ -109,6 +113,7 @@ class Checker final : public ChannelPort, public AccessObserver {
   void mark_unsynced(const MovedRange& range, Address writer);
   void check_store(const Access& access);
   void check_load(const Access& access);
+  void report_undefined(const ExecutedInstruction& instruction);
   void check_ranges(CommandInFlight& command);
   void check_line_command(const dma::MfcCommand& command);
   void check_local_range(const dma::MfcCommand& command, const MovedRange& range, bool is_get);

@@ -1,5 +1,5 @@
 #pragma once
-// The bytes of a local store that have been written: a flag for each.
+// The bytes of a local store that have been written: a flag for each, and of some the bits.
 
 #include <algorithm>
 #include <array>
@@ -25,6 +25,19 @@ class WrittenBytes {
 
   void mark(std::uint32_t lsa, std::uint32_t bytes) { add(lsa, bytes, kByProgram); }
 
+  /// A store of the program of which these bits are what nobody has written.
+  void mark_but(std::uint32_t lsa, std::uint8_t undefined) {
+    if (undefined == 0) return mark(lsa, 1);
+    const bool is_part = undefined != 0xFF;
+    if (is_part) undefined_[lsa] = undefined;
+    flags_[lsa].store(is_part ? kByProgram | kInPart : 0, kRelaxed);
+  }
+  /// The bits of a byte that nobody has written.
+  std::uint8_t undefined(std::uint32_t lsa) const {
+    const std::uint8_t flags = flags_[lsa].load(kRelaxed);
+    return flags == 0 ? 0xFF : (flags & kInPart) != 0 ? undefined_[lsa] : 0;
+  }
+
   /// Any thread.
   void mark_external(std::uint32_t lsa, std::uint32_t bytes) { add(lsa, bytes, kFromOutside); }
 
@@ -38,7 +51,7 @@ class WrittenBytes {
   }
 
  private:
-  static constexpr std::uint8_t kByProgram = 1, kFromOutside = 2;
+  static constexpr std::uint8_t kByProgram = 1, kFromOutside = 2, kInPart = 4;
   static constexpr auto kRelaxed = std::memory_order_relaxed;
 
   static std::pair<std::uint32_t, std::uint32_t> clip(std::uint32_t lsa, std::uint32_t bytes) {
@@ -52,11 +65,14 @@ class WrittenBytes {
     const auto [begin, end] = clip(lsa, bytes);
     for (std::uint32_t i = begin; i < end; ++i) {
       // Once set it stays, so that most of the time nothing has to be written.
-      if ((flags_[i].load(kRelaxed) & flag) == 0) flags_[i].fetch_or(flag, kRelaxed);
+      const std::uint8_t flags = flags_[i].load(kRelaxed);
+      if ((flags & kInPart) != 0) flags_[i].fetch_and(static_cast<std::uint8_t>(~kInPart), kRelaxed);
+      if ((flags & flag) == 0) flags_[i].fetch_or(flag, kRelaxed);
     }
   }
 
   std::array<std::atomic<std::uint8_t>, dma::kLocalStoreBytes> flags_{};
+  std::array<std::uint8_t, dma::kLocalStoreBytes> undefined_{};  ///< of those that were written in part
 };
 
 }  // namespace softcell::ls_sim

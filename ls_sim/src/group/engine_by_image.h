@@ -18,7 +18,7 @@ class EngineByImage final : public Engine {
       : local_store_(local_store),
         local_store_ea_(local_store_ea),
         options_(options),
-        native_(make_native_engine(local_store)),
+        native_(make_native_engine(local_store, {.debugger = options.debugger, .spe = options.spe})),
         current_(native_.get()) {}
 
   /// The engine that an image needs is made here, so that no run allocates it.

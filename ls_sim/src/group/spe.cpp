@@ -122,6 +122,9 @@ class Spe::TimeOfSpe final : public TimeOrder {
  public:
   TimeOfSpe(SpeMonitor& monitor, int spe) : monitor_(monitor), spe_(spe) {}
   void set_time(std::uint64_t now, std::uint64_t effect) override { monitor_.set_time(spe_, now, effect); }
+  void await_turn() override {
+    monitor_.pass_turn(spe_);
+  }  // one that has been stopped hears of it at its next operation
   std::uint64_t woken_at() override { return monitor_.take_woken_at(spe_); }
 
  private:
@@ -211,6 +214,7 @@ const KernelImage* Spe::on_job_begin(dma::EffectiveAddress image, dma::Effective
     monitor_.begin_job(number_, now);
   }
   channels_.begin_job();
+  if (timer_ != nullptr) timer_->jobs.begin(timer_->clock);
   if (is_checked_job()) checker_->begin_run(*job_->image, stack_of_job());
   return job_->image;
 }
@@ -224,6 +228,7 @@ std::optional<dma::Fault> Spe::on_job_returned() {
 void Spe::on_job_end() {
   SC_ASSERT(job_.has_value(), "a job ends in SPE {}, and none was under way", number_);
   count_job(image_under_way(), statistics_.jobs, job_->begin, job_->trace_begin, false);
+  if (timer_ != nullptr) timer_->jobs.end(image_under_way(), timer_->clock);
   channels_.end_job();
   job_.reset();
   const SpeMonitor::Lock lock = monitor_.lock();

@@ -203,6 +203,12 @@ RunResult SpeGroup::wait(int spe) {
   return *result;
 }
 
+void SpeGroup::wait_until_idle() {
+  state_->move_proxies();
+  SpeMonitor::Lock lock = state_->monitor().lock();
+  state_->monitor().ppu_wait_until_idle(lock);
+}
+
 ProblemState& SpeGroup::problem_state(int spe) { return state_->door(spe); }
 
 SpeStatistics SpeGroup::statistics(int spe) const {

@@ -149,13 +149,16 @@ Layout read_layout(const ElfFile& elf, const Elf64_Phdr& segment) {
   return layout;
 }
 
-/// The variables, in order of address.
-std::vector<ImageObject> read_objects(const ElfFile& elf, std::uint32_t begin, std::uint32_t end) {
+/// The variables or functions, in order of address.
+/// @param type  STT_OBJECT or STT_FUNC
+std::vector<ImageObject> read_objects(const ElfFile& elf, unsigned type, std::uint32_t begin,
+                                      std::uint32_t end) {
   std::vector<ImageObject> objects;
   for (const auto& [name, symbol] : elf.symbols()) {
-    if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size == 0) continue;
+    if (ELF64_ST_TYPE(symbol.st_info) != type || symbol.st_size == 0) continue;
     if (symbol.st_value < begin || symbol.st_value >= end || symbol.st_size > end - symbol.st_value) {
-      elf.refuse("its variable " + demangled(name) + " lies outside it");
+      elf.refuse((type == STT_FUNC ? "its function " : "its variable ") + demangled(name) +
+                 " lies outside it");
     }
     objects.push_back({demangled(name),
                        {static_cast<std::uint32_t>(symbol.st_value)},
@@ -206,7 +209,8 @@ KernelImage load_image(std::string_view name, std::span<const std::byte> file) {
   image.rodata_end = image.rodata_begin + image.sizes.rodata;
   image.data_begin = narrow(image.sizes.data != 0 ? layout.data.header.sh_addr : file_end);
   image.data_end = image.data_begin + image.sizes.data;
-  image.objects = read_objects(elf, image.begin, declared.end);
+  image.objects = read_objects(elf, STT_OBJECT, image.begin, declared.end);
+  image.functions = read_objects(elf, STT_FUNC, image.begin, declared.end);
   image.checked = (declared.flavour & kChecked) != 0;
   image.program = is_program;
   const auto bytes = elf.slice(segment.p_offset, segment.p_filesz, "its segment");

@@ -18,6 +18,12 @@ namespace {
 
 }  // namespace
 
+void compute(SpuState& state, const Operation& operation) {
+  ChannelAccess nothing(state, nullptr);
+  Core core{.state = state, .local_store = nullptr, .surroundings = nothing};
+  perform_alone(core, operation);
+}
+
 Step execute(SpuState& state, std::span<std::byte, dma::kLocalStoreBytes> local_store, std::uint32_t word,
              ChannelPort* channels) {
   SC_ASSERT((state.pc & ~kInstructionMask) == 0, "the program counter is {}", state.pc);

@@ -1,5 +1,5 @@
 #pragma once
-// One instruction alone, without engine or SPE: for tests.
+// One instruction alone, without engine or SPE: for tests, and for checks that try other operands.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +10,10 @@
 #include "spu_state.h"
 
 namespace softcell::ls_sim::interpreter {
+
+/// Changes the target of an instruction that computes it from registers and the immediate alone (Kind::kCompute, kFloat or
+/// kEnhancedDouble). Called in the SPU's floating-point mode.
+void compute(SpuState& state, const Operation& operation);
 
 /// What one instruction did to the flow of control.
 struct Step {

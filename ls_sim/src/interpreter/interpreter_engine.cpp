@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,7 +99,12 @@ class InterpreterEngine final : public Engine {
  private:
   void copy_program();
   void set_entry_state(const EntryArguments& arguments);
-  void execute(Core& core, AccessObserver* accesses, JobCalls& jobs);
+  /// What a checked run is observed by.
+  struct Checks {
+    AccessObserver& accesses;
+    UndefinedValues values;
+  };
+  void execute(Core& core, Checks* checks, JobCalls& jobs);
   template <class Observer>
   void run(Core& core, Observer& observer, JobCalls& jobs);
   bool serve_call(const Core& core);
@@ -176,24 +182,30 @@ RunResult InterpreterEngine::run(const EntryArguments& arguments, ChannelPort& c
   EngineChannels access(state_, channels, accesses != nullptr);
   Core core{.state = state_, .local_store = local_store_.base(), .surroundings = access};
   JobCalls job_calls(*image_, local_store_, state_, jobs);
+  std::optional<Checks> checks;
+  if (accesses != nullptr)
+    checks.emplace(Checks{*accesses, UndefinedValues(arguments.entry_state)});
+  if (calls_ != nullptr && accesses != nullptr)
+    calls_->on_write([accesses](std::uint32_t lsa) { accesses->on_host_write({lsa}, 1); });
   do {
-    execute(core, accesses, job_calls);
+    execute(core, checks ? &*checks : nullptr, job_calls);
   } while (serve_call(core));
-  if (issue_model_ != nullptr) issue_model_->end_run();
+  if (calls_ != nullptr) calls_->on_write({});
+  if (issue_model_ != nullptr) issue_model_->bring_clock();
   if (debugger_ != nullptr) debugger_->on_end(spe_);
   if (files_ != nullptr) files_->close_all();
   last_job_end_ = job_calls.last_job_end();
   return result_of(core, access, job_calls);
 }
 
-void InterpreterEngine::execute(Core& core, AccessObserver* accesses, JobCalls& jobs) {
+void InterpreterEngine::execute(Core& core, Checks* checks, JobCalls& jobs) {
   const SpuArithmetic arithmetic;
   /// With the checks before it, if there are any.
   const auto run_checked = [&](auto& observer) {
-    if (accesses == nullptr) return run(core, observer, jobs);
-    JobAccesses of_jobs(jobs, *accesses);
-    AccessObserver& checks = jobs.are_watched() ? of_jobs : *accesses;
-    BothObservers both(CheckedObserver(state_, checks), observer);
+    if (checks == nullptr) return run(core, observer, jobs);
+    JobAccesses of_jobs(jobs, checks->accesses);
+    AccessObserver& accesses = jobs.are_watched() ? of_jobs : checks->accesses;
+    BothObservers both(CheckedObserver(state_, checks->values, accesses), observer);
     run(core, both, jobs);
   };
   if (debugger_ != nullptr) {

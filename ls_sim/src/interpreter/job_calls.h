@@ -24,9 +24,13 @@ class JobCalls {
   /// @param caller  the resident kernel. @param jobs  may be null: nobody wants to know.
   JobCalls(const KernelImage& caller, LocalStore& local_store, const SpuState& state, JobObserver* jobs);
 
+  /// Whether a jump begins a job, or ends one.
+  bool is_border(std::uint32_t from, std::uint32_t to) const {
+    return jobs_ != nullptr && (from < caller_.begin) != (to < caller_.begin);
+  }
   /// A jump was taken. @return  false when the run ends, by take_fault().
   bool on_jump(std::uint32_t from, std::uint32_t to) {
-    if (jobs_ == nullptr || (from < caller_.begin) == (to < caller_.begin)) return true;
+    if (!is_border(from, to)) return true;
     const HostArithmetic host;
     return to < caller_.begin ? begin() : end();
   }
@@ -69,7 +73,12 @@ class WithJobs {
   void on_instruction(const Operation& op, std::uint32_t pc) { observer_.on_instruction(op, pc); }
   void on_load(std::uint32_t lsa, std::uint32_t pc) { observer_.on_load(lsa, pc); }
   void on_store(std::uint32_t lsa, std::uint32_t pc) { observer_.on_store(lsa, pc); }
-  bool on_jump(std::uint32_t from, std::uint32_t to) { return jobs_.on_jump(from, to); }
+  bool on_jump(std::uint32_t from, std::uint32_t to) {
+    if constexpr (requires { observer_.bring_clock(); }) {
+      if (jobs_.is_border(from, to)) observer_.bring_clock();
+    }
+    return jobs_.on_jump(from, to);
+  }
 
  private:
   JobCalls& jobs_;
@@ -85,6 +94,9 @@ class JobAccesses final : public AccessObserver {
   }
   void on_instruction(const ExecutedInstruction& instruction) override {
     if (jobs_.under_way()) to_.on_instruction(instruction);
+  }
+  UndefinedBits undefined_bits(dma::LocalStoreAddress quadword) override {
+    return jobs_.under_way() ? to_.undefined_bits(quadword) : UndefinedBits{};
   }
 
  private:

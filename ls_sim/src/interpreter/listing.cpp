@@ -112,10 +112,10 @@ std::vector<ListedInstruction> list_instructions(const KernelImage& image, dma::
 }
 
 std::vector<ImageObject> code_of(const KernelImage& image) {
-  const std::uint32_t begin = (image.text_begin + kWordBytes - 1) / kWordBytes * kWordBytes;
+  const std::uint32_t unit = image.machine == Machine::kSpu ? kWordBytes : 1;
+  const std::uint32_t begin = (image.text_begin + unit - 1) / unit * unit;
   const std::uint32_t end =
-      std::min(image.text_end, image.begin + static_cast<std::uint32_t>(image.bytes.size())) / kWordBytes *
-      kWordBytes;
+      std::min(image.text_end, image.begin + static_cast<std::uint32_t>(image.bytes.size())) / unit * unit;
   std::vector<ImageObject> parts;
   const auto add = [&](const std::string& name, std::uint32_t from) {
     if (!parts.empty() && parts.back().begin.value == from) return;  // two names of one function
@@ -123,7 +123,7 @@ std::vector<ImageObject> code_of(const KernelImage& image) {
   };
   if (begin < end) add("", begin);
   for (const ImageObject& function : image.functions) {
-    if (function.begin.value < begin || function.begin.value >= end || function.begin.value % kWordBytes != 0)
+    if (function.begin.value < begin || function.begin.value >= end || function.begin.value % unit != 0)
       continue;
     if (function.begin.value == begin) parts.clear();
     add(function.name, function.begin.value);

@@ -78,7 +78,7 @@ void IssueModel::begin_run(std::uint32_t pc) {
   next_line_ready_ = last_issue_;
 }
 
-void IssueModel::end_run() {
+void IssueModel::bring_clock() {
   if (is_in_channel_) finish_channel();
   timer_.clock.advance_to(last_issue_);
 }

@@ -26,8 +26,8 @@ class IssueModel {
 
   /// A program begins at `pc`, with all registers ready, at the time of the SPE's clock.
   void begin_run(std::uint32_t pc);
-  /// The clock becomes that of the last instruction.
-  void end_run();
+  /// The clock becomes that of the last instruction: at the end of a run, or where somebody looks at it between channel operations.
+  void bring_clock();
 
   /// The next instruction, before it does anything. Of a channel instruction, the clock then is at its issue.
   void on_instruction(const Operation& op, std::uint32_t pc) {

@@ -14,6 +14,10 @@
 #include <csignal>
 #include <cstdint>
 
+namespace softcell::ls_sim {
+class Debugger;
+}
+
 namespace softcell::ls_sim::native {
 
 /// First quadwords of the local store, as spu_kernels/sdk/host/softcell_environment.h declares them (a test
@@ -95,7 +99,22 @@ struct KernelContext {
   volatile std::sig_atomic_t interrupted = 0;
   volatile std::sig_atomic_t stepping = 0;  ///< the instruction that failed is being executed once more
   bool repeat_what_failed = true;           ///< false under a debugger, which steps through kernels itself
+  Debugger* stepper = nullptr;              ///< is told of each instruction; null: nobody
+  int spe = 0;
 };
+
+/// If somebody is told of each instruction: from now on each one of this thread is followed by a SIGTRAP, or none is.
+/// [AMD64 manual, volume 2, single-step trap] documented
+inline void step(const KernelContext& context, bool on) {
+  if (context.stepper == nullptr) return;
+  // Beyond the 128 bytes below the stack pointer, which the compiler may use.
+  if (on)
+    asm volatile("lea -128(%%rsp), %%rsp\n pushfq\n orq $0x100, (%%rsp)\n popfq\n lea 128(%%rsp), %%rsp" ::
+                     : "memory", "cc");
+  else
+    asm volatile("lea -128(%%rsp), %%rsp\n pushfq\n andq $-0x101, (%%rsp)\n popfq\n lea 128(%%rsp), %%rsp" ::
+                     : "memory", "cc");
+}
 
 /// The context that this thread runs, or null. Set for the time of a run.
 KernelContext*& current_context();

@@ -61,7 +61,7 @@ std::string describe_stack(const ImageSizes& sizes) {
 
 class NativeEngine final : public Engine {
  public:
-  explicit NativeEngine(LocalStore& local_store)
+  NativeEngine(LocalStore& local_store, const NativeOptions& options)
       : local_store_(local_store), landing_stack_(std::make_unique<std::byte[]>(kLandingStackBytes)) {
     require_vector_units(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("fma") != 0);
     native::install_signal_handlers();
@@ -74,7 +74,9 @@ class NativeEngine final : public Engine {
               "a local store at {}, which kernels' pointers do not reach", local_store_.base());
     const auto top = reinterpret_cast<std::uintptr_t>(landing_stack_.get()) + kLandingStackBytes;
     context_.landing_stack_top = top & ~std::uintptr_t{15};
-    context_.repeat_what_failed = !debugger_wanted_;
+    context_.stepper = options.debugger;
+    context_.spe = options.spe;
+    context_.repeat_what_failed = !debugger_wanted_ && context_.stepper == nullptr;
   }
 
   void load(const KernelImage& image) override {
@@ -231,7 +233,9 @@ void NativeEngine::run_kernel() {
                                                             image_->sizes.stack, native::kernel_start);
   context_.in_kernel = 1;
   std::atomic_signal_fence(std::memory_order_seq_cst);
+  native::step(context_, true);
   boost::context::detail::jump_fcontext(kernel, &context_);
+  native::step(context_, false);
   std::atomic_signal_fence(std::memory_order_seq_cst);
   context_.in_kernel = 0;
   if (context_.operation() == Operation::kFault) result_ = {0, classify_trap()};
@@ -269,6 +273,7 @@ void NativeEngine::interrupt() {
 
 /// Called by the gate, on this thread's own stack below run_kernel().
 bool NativeEngine::serve_request() noexcept {
+  native::step(context_, false);
   context_.in_kernel = 0;
   std::atomic_signal_fence(std::memory_order_seq_cst);
   try {
@@ -282,6 +287,7 @@ bool NativeEngine::serve_request() noexcept {
   }
   std::atomic_signal_fence(std::memory_order_seq_cst);
   context_.in_kernel = 1;
+  native::step(context_, true);
   return true;
 }
 
@@ -579,8 +585,8 @@ std::uint32_t NativeEngine::stack_high_water() const {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_native_engine(LocalStore& local_store) {
-  return std::make_unique<NativeEngine>(local_store);
+std::unique_ptr<Engine> make_native_engine(LocalStore& local_store, const NativeOptions& options) {
+  return std::make_unique<NativeEngine>(local_store, options);
 }
 
 }  // namespace softcell::ls_sim

@@ -9,6 +9,7 @@
 #include "kernel_context.h"
 #include "serialise.h"
 #include "softcell/dma/addresses.h"
+#include "softcell/ls_sim/debugger.h"
 
 namespace softcell::ls_sim::native {
 namespace {
@@ -80,8 +81,20 @@ void record_trap(KernelContext& context, int signal, const siginfo_t& info, cons
                   .stack = static_cast<std::uintptr_t>(machine.gregs[REG_RSP])};
 }
 
+/// The trap flag has stopped the thread before its next instruction, and goes on being set.
+bool is_step(KernelContext& context, int signal, const siginfo_t& info, const mcontext_t& machine) {
+  if (context.stepper == nullptr || signal != SIGTRAP || info.si_code != TRAP_TRACE) return false;
+  const auto instruction = static_cast<std::uintptr_t>(machine.gregs[REG_RIP]);
+  if (in_arena(context, instruction))
+    context.stepper->on_instruction(context.spe, {static_cast<std::uint32_t>(instruction - context.arena)});
+  return true;
+}
+
 void handle(int signal, siginfo_t* info, void* machine_context) {
   KernelContext* context = current_context();
+  if (context != nullptr &&
+      is_step(*context, signal, *info, static_cast<ucontext_t*>(machine_context)->uc_mcontext))
+    return;
   if (signal == kInterruptSignal && info->si_code == SI_TKILL) {
     // Late, or between kernel and worker: the flag is read at the next channel operation.
     if (context == nullptr) return;

@@ -24,9 +24,13 @@ class SimulatedClock {
   bool wait_until(std::uint64_t cycle, Stall why) {
     if (cycle <= now_) return false;
     waited_[static_cast<std::size_t>(why)] += cycle - now_;
+    all_waits_ += cycle - now_;
     now_ = cycle;
     return true;
   }
+
+  /// All waits so far.
+  std::uint64_t waited() const { return all_waits_; }
 
   /// The waits since the last call, by reason.
   std::array<std::uint64_t, kStalls> take_waits() {
@@ -36,7 +40,7 @@ class SimulatedClock {
   }
 
  private:
-  std::uint64_t now_ = 0;
+  std::uint64_t now_ = 0, all_waits_ = 0;
   std::array<std::uint64_t, kStalls> waited_{};
 };
 

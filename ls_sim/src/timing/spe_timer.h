@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "job_cycles.h"
 #include "mfc_timer.h"
 #include "port_use.h"
 #include "program_cycles.h"
@@ -23,6 +24,7 @@ class SpeTimer {
   MfcTimer mfc;
   ProgramCycles program;
   PipelineCounts pipeline;
+  JobTimer jobs;
   CycleCounts native;  ///< of kernels built for the host, whose instructions nobody sees
   std::uint64_t tag_waits = 0, queue_waits = 0, other_waits = 0;
 };

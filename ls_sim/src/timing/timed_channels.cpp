@@ -125,6 +125,7 @@ ChannelReply TimedChannels::count(std::uint32_t channel) {
 /// The command waits for a free slot first. What it does to other SPEs, it does at its end.
 ChannelReply TimedChannels::issue(const dma::MfcCommand& command) {
   arrive();
+  order_.await_turn();  // what its lines need of the bus they take now, and SPEs behind would find it taken
   if (command.kind() != dma::CommandKind::kLine &&
       wait_until(timer_.mfc.slot_free(timer_.clock.now()), Stall::kDmaQueue, Channel::kMfcCmd))
     ++timer_.queue_waits;

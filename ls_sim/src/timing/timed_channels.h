@@ -21,6 +21,8 @@ class TimeOrder {
 
   /// The SPE's next operation is at `now`, and others see what it does at `effect`.
   virtual void set_time(std::uint64_t now, std::uint64_t effect) = 0;
+  /// Waits until no other SPE's clock is behind.
+  virtual void await_turn() = 0;
   /// When somebody did what the SPE has slept for; 0: it has not slept.
   virtual std::uint64_t woken_at() = 0;
 };

@@ -77,6 +77,17 @@ CycleCounts& CycleCounts::operator+=(const CycleCounts& other) {
   return *this;
 }
 
+CycleCounts& CycleCounts::operator-=(const CycleCounts& other) {
+  SC_ASSERT(instructions >= other.instructions && cycles >= other.cycles,
+            "{} instructions in {} cycles are taken from {} in {}", other.instructions, other.cycles,
+            instructions, cycles);
+  instructions -= other.instructions;
+  cycles -= other.cycles;
+  pairs -= other.pairs;
+  for (std::size_t i = 0; i < kStalls; ++i) stalls[i] -= other.stalls[i];
+  return *this;
+}
+
 Timing::Timing(int spes, const TimingParameters& parameters)
     : parameters_(parameters), interconnect_(std::make_unique<ElementInterconnect>(parameters_)) {
   SC_ASSERT(spes > 0 && spes <= dma::kSpeCount, "the timing of {} SPEs", spes);
@@ -119,6 +130,28 @@ TransferCounts Timing::transfers(int spe) const {
 std::uint64_t Timing::now(int spe) const {
   SC_ASSERT(spe >= 0 && spe < spes(), "SPE {} of {}", spe, spes());
   return timers_[static_cast<std::size_t>(spe)]->clock.now();
+}
+
+std::uint64_t Timing::now() const {
+  std::uint64_t latest = 0;
+  for (const auto& timer : timers_) latest = std::max(latest, timer->clock.now());
+  return latest;
+}
+
+std::vector<KernelCycles> Timing::by_kernel() const {
+  std::map<std::string, KernelCycles> sums;
+  for (const auto& timer : timers_) {
+    for (const KernelCycles& each : timer->jobs.kernels()) {
+      KernelCycles& sum = sums[each.kernel];
+      sum.kernel = each.kernel;
+      sum.jobs += each.jobs;
+      sum.cycles += each.cycles;
+      sum.waits += each.waits;
+    }
+  }
+  std::vector<KernelCycles> kernels;
+  for (const auto& [name, sum] : sums) kernels.push_back(sum);
+  return kernels;
 }
 
 CycleCounts Timing::at(int spe, dma::LocalStoreAddress instruction) const {

@@ -82,11 +82,9 @@ class InterpreterRig {
 
  private:
   ls_sim::SpeOptions options() const {
-    if (timing_ == nullptr) return {.spes = 1};
-    return {.spes = 1,
-            .clock = ls_sim::Clock::kSimulated,
-            .interleaving = ls_sim::Interleaving::kByTime,
-            .timing = timing_.get()};
+    ls_sim::SpeOptions options{.spes = 1};
+    ls_sim::time_by(timing_.get(), options);
+    return options;
   }
 
   dma::AddressSpace memory_;

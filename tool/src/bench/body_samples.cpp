@@ -41,25 +41,39 @@ void run_skin(SampleRun& sample) {
   const dma::Buffer<spu::SkinnedVertex> vertices(sample.memory(), "vertices", 4 * embedding.groups.size(),
                                                  {.element_bytes = 2});
   dma::Buffer<spu::SkinJob> job(sample.memory(), "job", 1, {.record = ppu::kSkinJobRecord});
-  for (const ppu::SkinPart& part : embedding.parts) {
-    job[0] = {};
-    job[0].groups_ea = groups.ea(part.first_group).value;
-    job[0].vertices_ea = vertices.ea(std::size_t{part.first_group} * 4).value;
-    for (std::size_t w = 0; w < 2; ++w) {
-      job[0].window[w].ea = corners.ea(part.window[w].first_particle).value;
-      job[0].window[w].count = part.window[w].count;
+  const auto skin = [&](float origin) {
+    for (const ppu::SkinPart& part : embedding.parts) {
+      job[0] = {};
+      job[0].groups_ea = groups.ea(part.first_group).value;
+      job[0].vertices_ea = vertices.ea(std::size_t{part.first_group} * 4).value;
+      for (std::size_t w = 0; w < 2; ++w) {
+        job[0].window[w].ea = corners.ea(part.window[w].first_particle).value;
+        job[0].window[w].count = part.window[w].count;
+      }
+      SC_ASSERT(part.group_count > 0 && part.first_group + part.group_count <= embedding.groups.size(),
+                "groups {} to {} of {}", part.first_group, part.first_group + part.group_count,
+                embedding.groups.size());
+      job[0].group_count = part.group_count;
+      std::fill_n(job[0].origin, 3, origin);
+      sample.run(job.ea(), std::size_t{part.group_count} * 4);
     }
-    SC_ASSERT(part.group_count > 0 && part.first_group + part.group_count <= embedding.groups.size(),
-              "groups {} to {} of {}", part.first_group, part.first_group + part.group_count,
-              embedding.groups.size());
-    job[0].group_count = part.group_count;
-    sample.run(job.ea());
-  }
+  };
+  skin(0);
+  sample.begin_timing();
+  skin(-1.5f);  // below the body, as skinners choose it
+}
+
+/// A block of 1,000 particles.
+ppu::Lattice<3> block() { return ppu::voxelize(ppu::make_box({0.899f, 0.899f, 0.899f}, 1), 0.1f); }
+
+/// Where its particles are when it is a little bent.
+Eigen::Vector3f bent(const Eigen::Vector3f& x) {
+  return {x.x() + 0.05f * x.y() * x.y(), x.y() - 0.03f * x.z(), x.z() + 0.02f * x.x() * x.y()};
 }
 
 /// One SPE's share of a step of one body, as MatchBodies makes it.
 void run_match(SampleRun& sample) {
-  const ppu::Lattice<3> lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
+  const ppu::Lattice<3> lattice = block();
   const std::size_t particles = lattice.particles.size();
   const ppu::MatchPlan plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)});
   dma::Buffer<std::byte> plan_bytes(sample.memory(), "plan", plan.bytes().size(), {.record = plan.record()});
@@ -80,12 +94,22 @@ void run_match(SampleRun& sample) {
   job[0].damping = 0.1f;
   job[0].most_iterations = 6;
   // Rotations from nothing, then from the last step: the deepest ways through the kernel.
-  for (const std::uint32_t cold : {1u, 0u}) {
+  const auto step = [&](bool is_cold) {
     SC_ASSERT(state.size_bytes() >= sizeof(spu::MatchResult), "a state of {} bytes has no room for a result",
               state.size_bytes());
-    reinterpret_cast<spu::MatchResult*>(state.data())->cold = cold;
-    sample.run(job.ea());
+    reinterpret_cast<spu::MatchResult*>(state.data())->cold = is_cold ? 1 : 0;
+    sample.run(job.ea(), particles);
+  };
+  step(true);
+  step(false);
+  // And as a body moves from step to step.
+  for (std::size_t i = 0; i < particles; ++i) {
+    const Eigen::Vector3f x = bent(lattice.rest_position(i));
+    positions[i] = {x.x(), x.y(), x.z(), 0};
   }
+  step(true);
+  sample.begin_timing();
+  step(false);
 }
 
 /// A step of three bodies, as MatchBodies makes it.
@@ -107,34 +131,49 @@ void run_match_2d(SampleRun& sample) {
                                       kBodies * spu::match_2d_state_stride(plan.header()), kFloats);
   dma::Buffer<spu::MatchJob2d> job(sample.memory(), "job", 1, {.record = ppu::kMatchJob2dRecord});
   job[0] = {plan_bytes.ea().value, positions.ea().value, states.ea().value, kBodies, 30, 0.1f, {}};
-  sample.run(job.ea());
+  sample.run(job.ea(), kBodies * lattice.particles.size());
 }
 
 /// All passes over a body in tiles, rotations from nothing and then from the last step.
 void run_match_tiles(SampleRun& sample) {
-  const ppu::Lattice<3> lattice = ppu::voxelize(ppu::make_sphere(1, 20), 0.5f);
+  const ppu::Lattice<3> lattice = block();
   const ppu::TilePlan plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)},
-                           {.planes = 3, .rows = 3});
+                           {.planes = 5, .rows = 10});
   ppu::TiledMemory body(sample.memory(), plan);
   for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
     const Eigen::Vector3f x = lattice.rest_position(i);
     body.positions()[plan.place_of()[i]] = {-x.x(), x.y(), x.z(), 0};
   }
-  for (int step = 0; step < 2; ++step) {
+  const auto step = [&] {
     body.begin_step({.pull = 30, .damping = 0.1f});
     for (const spu::TilePass pass : ppu::kTilePasses)
       for (std::size_t tile = 0; tile < body.tiles(); ++tile)
-        if (const auto job = body.job(pass, tile)) sample.run(*job);
+        if (const auto job = body.job(pass, tile)) sample.run(*job, 0);
     body.end_step();
+  };
+  step();
+  step();
+  for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+    const Eigen::Vector3f x = bent(lattice.rest_position(i));
+    body.positions()[plan.place_of()[i]] = {x.x(), x.y(), x.z(), 0};
   }
+  step();
+  sample.begin_timing();
+  step();
+  sample.worked(lattice.particles.size());
 }
 
 }  // namespace
 
 std::span<const KernelSample> body_samples() {
   static constexpr KernelSample kSamples[] = {
-      {"contact_find", run_contact_find}, {"contact_solve", run_contact_solve}, {"match", run_match},
-      {"match_2d", run_match_2d},         {"match_tiles", run_match_tiles},     {"skin", run_skin}};
+      {"contact_find", "pair of bodies", run_contact_find},
+      {"contact_solve", "contact", run_contact_solve},
+      {"match", "particle", run_match},
+      {"match_2d", "particle", run_match_2d},
+      {"match_tiles", "particle", run_match_tiles},
+      {"skin", "vertex", run_skin},
+  };
   return kSamples;
 }
 

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "demo/run_record.h"
 #include "demo_options.h"
+#include "softcell/ls_sim/timing.h"
 
 namespace softcell::tool {
 
@@ -23,6 +25,20 @@ struct TimeShare {
   std::string_view key;    ///< in JSON: "physics"
   std::string_view words;  ///< "contacts and rigid bodies"
   double share = 0;        ///< 0 to 1
+};
+
+/// What the SPEs' work takes on a PS3, by the model of time.
+struct FiguresOnPs3 {
+  /// A kernel's jobs.
+  struct Kernel {
+    std::string name;
+    double ms = 0;    ///< a frame, of all SPEs together
+    double jobs = 0;  ///< a frame
+  };
+  Summary ms;                   ///< of a frame: from its first job to its last, without the PPU's time
+  double busy = 0;              ///< share of that in which an SPE runs jobs, waits included
+  double waits = 0;             ///< share of the jobs' time in which they wait for transfers
+  std::vector<Kernel> kernels;  ///< the one that takes most first
 };
 
 /// Everything that either form needs.
@@ -46,10 +62,13 @@ struct DemoFigures {
   std::vector<double> spe_busy;  ///< share of `seconds`, of each SPE
   std::uint64_t spe_jobs = 0, dma_bytes = 0, dma_commands = 0;
   std::uint64_t state_hash = 0, image_hash = 0;
+  std::optional<FiguresOnPs3> on_ps3;  ///< none: nothing was timed
 };
 
-/// @param demo  stopped
-DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo, const demos::RunRecord& record);
+/// @param demo    stopped
+/// @param timing  null: nothing was timed
+DemoFigures demo_figures(const DemoOptions& options, const demos::Demo& demo, const demos::RunRecord& record,
+                         const ls_sim::Timing* timing);
 
 /// What --json writes; docs/guide/playing.md lists it.
 nlohmann::ordered_json to_json(const DemoFigures& figures);

@@ -134,8 +134,13 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   base::WholeFile* const trace_file = files.open(options.trace);
   base::WholeFile* const json_file = files.open(options.json);
   ls_sim::Findings findings;
+  // What kernels built for the SPU take there is known for each run of them.
+  std::optional<ls_sim::Timing> timing;
+  if (options.machine == ls_sim::Machine::kSpu) timing.emplace(options.spes);
   std::optional<ls_sim::Trace> trace;
-  if (options.trace) trace.emplace(options.spes);
+  if (options.trace)
+    trace.emplace(options.spes, ls_sim::Trace::kMostEvents,
+                  timing ? ls_sim::TraceClock::kSimulated : ls_sim::TraceClock::kHost);
   SC_ASSERT(options.spes >= 1 && options.spes <= dma::kSpeCount, "{} SPEs of {}", options.spes,
             dma::kSpeCount);
   const demos::SimulationOptions how{.solver = options.solver,
@@ -144,7 +149,8 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
                                      .spes = options.spes,
                                      .schedule = options.schedule,
                                      .findings = options.checked ? &findings : nullptr,
-                                     .trace = trace ? &*trace : nullptr};
+                                     .trace = trace ? &*trace : nullptr,
+                                     .timing = timing ? &*timing : nullptr};
   const demos::Run run = options.headless ? run_headless(options, verb, scenes.front(), how, guard)
                                           : demos::play({.title = "softcell " + std::string(verb),
                                                          .width = options.size.width,
@@ -159,7 +165,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   const demos::DemoCounts counts = run.demo->counts();
   if (!options.quiet && counts.soft_bodies + counts.rigid_bodies == 0)
     fmt::print(stderr, "softcell: the scene {} has no bodies\n", run.demo->scene_name());
-  const DemoFigures figures = demo_figures(options, *run.demo, run.record);
+  const DemoFigures figures = demo_figures(options, *run.demo, run.record, timing ? &*timing : nullptr);
   const std::vector<ls_sim::Finding> found = findings.list();
   print_findings(found);  // before a file that cannot be written ends the run
   if (trace) trace->write(*trace_file);

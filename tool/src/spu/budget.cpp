@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kernel_file.h"
+#include "kernel_timing.h"
 #include "softcell/dma/addresses.h"
 #include "spu_verbs.h"
 #include "verb/output_files.h"
@@ -21,7 +22,7 @@ namespace {
 /// A kernel as one of the compilers has made it.
 struct Build {
   ls_sim::KernelImage kernel;
-  std::optional<std::uint32_t> stack_used;  ///< bytes; none: it was not measured
+  std::optional<SampleNeeds> needs;  ///< none: they were not measured
 };
 
 struct BudgetRow {
@@ -35,7 +36,7 @@ BudgetRow budget_row(const std::string& kernel, bool checked, std::span<const Ke
   BudgetRow row{{load_kernel_file(kernel, checked), {}}, {}};
   if (find_kernel_file(kernel, checked) || row.build.kernel.checked) return row;
   row.on_spu = Build{load_kernel_file(kernel, false, ls_sim::Machine::kSpu), {}};
-  for (Build* build : {&row.build, &*row.on_spu}) build->stack_used = measure_stack(build->kernel, samples);
+  for (Build* build : {&row.build, &*row.on_spu}) build->needs = measure(build->kernel, samples);
   return row;
 }
 
@@ -54,19 +55,23 @@ void print_table(const std::vector<BudgetRow>& rows) {
       std::ranges::any_of(rows, [](const BudgetRow& row) { return row.on_spu.has_value(); });
   fmt::print("{:<{}} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>6} {:>8}{}\n", "kernel", width, "text",
              "rodata", "data", "bss", "stack", "stack used", "total", "share", "budget",
-             any_on_spu ? " | SPU: text  stack used   total  share" : "");
+             any_on_spu ? " | SPU: text  stack used   total  share  cycles" : "");
   bool any_checked = false;
-  const auto bytes = [](std::optional<std::uint32_t> count) { return count ? std::to_string(*count) : "-"; };
+  const auto stack = [](const std::optional<SampleNeeds>& needs) {
+    return needs ? std::to_string(needs->stack) : "-";
+  };
   for (const auto& [build, on_spu] : rows) {
-    const auto& [kernel, used] = build;
+    const auto& [kernel, needs] = build;
     const ls_sim::ImageSizes& s = kernel.sizes;
     fmt::print("{:<{}} {:>7} {:>7} {:>7} {:>7} {:>7} {:>10} {:>7} {:>5.1f}% {:>8}", kernel.name, width,
-               s.text, s.rodata, s.data, s.bss, s.stack, bytes(used), s.total(),
+               s.text, s.rodata, s.data, s.bss, s.stack, stack(needs), s.total(),
                100.0 * s.total() / dma::kLocalStoreBytes, s.budget);
     if (on_spu) {
       const ls_sim::ImageSizes& there = on_spu->kernel.sizes;
-      fmt::print(" | {:>9} {:>11} {:>7} {:>5.1f}%", there.text, bytes(on_spu->stack_used), there.total(),
+      fmt::print(" | {:>9} {:>11} {:>7} {:>5.1f}%", there.text, stack(on_spu->needs), there.total(),
                  100.0 * there.total() / dma::kLocalStoreBytes);
+      if (on_spu->needs && on_spu->needs->cycles)
+        fmt::print("  {:.0f} a {}", *on_spu->needs->cycles, on_spu->needs->piece);
     }
     fmt::print("\n");
     any_checked = any_checked || kernel.checked;
@@ -78,9 +83,16 @@ void print_table(const std::vector<BudgetRow>& rows) {
         kCheckStackBytes);
 }
 
+void print_functions_of(const BudgetRow& row) {
+  if (!row.on_spu || !row.on_spu->needs) return;
+  const SampleNeeds& needs = *row.on_spu->needs;
+  print_functions(fmt::format("{}, {} times a {}", row.build.kernel.name, needs.pieces, needs.piece),
+                  needs.functions);
+}
+
 nlohmann::ordered_json to_json(const Build& build) {
   const ls_sim::ImageSizes& s = build.kernel.sizes;
-  return {
+  nlohmann::ordered_json fields{
       {"kernel", build.kernel.name},
       {"checked", build.kernel.checked},
       {"text", s.text},
@@ -89,9 +101,16 @@ nlohmann::ordered_json to_json(const Build& build) {
       {"bss", s.bss},
       {"stack", s.stack},
       {"stack_for_checks", stack_for_checks(build.kernel)},
-      {"stack_used", build.stack_used ? nlohmann::ordered_json(*build.stack_used) : nlohmann::ordered_json()},
+      {"stack_used", build.needs ? nlohmann::ordered_json(build.needs->stack) : nlohmann::ordered_json()},
       {"total", s.total()},
       {"budget", s.budget}};
+  if (build.needs && build.needs->cycles) {
+    fields["cycles"] = *build.needs->cycles;
+    fields["cycles_for"] = build.needs->piece;
+    fields["pieces"] = build.needs->pieces;
+    fields["functions"] = tool::to_json(build.needs->functions);
+  }
+  return fields;
 }
 
 nlohmann::ordered_json to_json(const BudgetRow& row) {
@@ -126,6 +145,8 @@ int run_budget(const BudgetOptions& options, std::span<const KernelSample> sampl
   OutputFiles files({{"--json", options.json}});
   const std::vector<BudgetRow> rows = budget_rows(options, samples);
   print_table(rows);
+  if (options.functions)
+    for (const BudgetRow& row : rows) print_functions_of(row);
   if (options.json) {
     auto document = nlohmann::ordered_json::array();
     for (const BudgetRow& row : rows) document.push_back(to_json(row));

@@ -1,5 +1,5 @@
 #pragma once
-// Which lines and branches of a program built for the SPU were executed.
+// Which lines and branches of a kernel were executed.
 
 #include <array>
 #include <cstdint>
@@ -14,31 +14,38 @@ namespace softcell::tool {
 /// Counts instructions, and where execution went from each. SPEs may run at once.
 class Coverage final : public ls_sim::Debugger {
  public:
+  /// @param image  what will run. Outlives this.
+  explicit Coverage(const ls_sim::KernelImage& image);
+
   /// In the tracefile format of lcov: lines with how often they were executed, branches with how often each way was taken,
   /// functions. A line counts as often as its instruction that was executed most; code that was inlined from the
   /// SDK's headers counts for the line that called it.
-  /// @param image  what has run. @throws std::runtime_error  it has no debug information.
-  std::string lcov(const ls_sim::KernelImage& image) const;
+  /// @throws std::runtime_error  the image has no debug information.
+  std::string lcov() const;
 
  private:
-  static constexpr std::size_t kWords = dma::kLocalStoreBytes / 4;
+  /// By address.
   struct Counts {
-    std::vector<std::uint64_t> executed = std::vector<std::uint64_t>(kWords);
-    std::vector<std::uint64_t> went_on = std::vector<std::uint64_t>(kWords);  ///< with the next word
+    std::vector<std::uint64_t> executed = std::vector<std::uint64_t>(dma::kLocalStoreBytes);
+    std::vector<std::uint64_t> went_on =
+        std::vector<std::uint64_t>(dma::kLocalStoreBytes);  ///< with the next instruction
     std::uint32_t last = 0;
-    bool has_last = false;
+    std::uint32_t next = kNowhere;  ///< behind the last one
   };
+  static constexpr std::uint32_t kNowhere = ~0u;
 
   void on_begin(int spe, ls_sim::DebuggedSpe&) override {
-    spes_[static_cast<std::size_t>(spe)].has_last = false;
+    spes_[static_cast<std::size_t>(spe)].next = kNowhere;
   }
   void on_end(int) override {}
   bool on_instruction(int spe, dma::LocalStoreAddress pc) override;
   void on_access(int, dma::LocalStoreAddress, bool) override {}
 
+  std::uint32_t behind(std::uint32_t pc) const;
   std::uint64_t executed(dma::LocalStoreAddress pc) const;
   std::uint64_t went_on(dma::LocalStoreAddress pc) const;
 
+  const ls_sim::KernelImage& image_;
   std::array<Counts, dma::kSpeCount> spes_;
 };
 

@@ -8,19 +8,19 @@ namespace softcell::tool {
 namespace {
 
 ls_sim::SpeOptions spe_options(const KernelTask& task, const RunSettings& settings) {
-  const bool simulated = settings.clock == ls_sim::Clock::kSimulated || settings.timing != nullptr;
-  const auto turns =
-      settings.timing != nullptr ? ls_sim::Interleaving::kByTime : ls_sim::Interleaving::kTurns;
-  return {.spes = task.spes,
-          .schedule = settings.schedule,
-          .deadline = task.deadline,
-          .clock = simulated ? ls_sim::Clock::kSimulated : ls_sim::Clock::kHost,
-          .interleaving = simulated ? turns : ls_sim::Interleaving::kFree,
-          .measure_stack = true,
-          .host_calls = settings.host_calls,
-          .timing = settings.timing,
-          .debugger = settings.debugger,
-          .trace = settings.trace};
+  const bool is_simulated = settings.clock == ls_sim::Clock::kSimulated;
+  ls_sim::SpeOptions options{
+      .spes = task.spes,
+      .schedule = settings.schedule,
+      .deadline = task.deadline,
+      .clock = settings.clock,
+      .interleaving = is_simulated ? ls_sim::Interleaving::kTurns : ls_sim::Interleaving::kFree,
+      .measure_stack = true,
+      .host_calls = settings.host_calls,
+      .debugger = settings.debugger,
+      .trace = settings.trace};
+  ls_sim::time_by(settings.timing, options);
+  return options;
 }
 
 }  // namespace

@@ -28,14 +28,14 @@ void run_rotations(SampleRun& sample) {
   }
   dma::Buffer<spu::RotationsJob> job(sample.memory(), "job", 1, {.record = kRotationsJobRecord});
   job[0] = {matrices.ea().value, starts.ea().value, found.ea().value, 1, 1, 0, 6, {}};
-  sample.run(job.ea());
+  sample.run(job.ea(), 4);
 }
 
 void run_transfers(SampleRun& sample) {
   const dma::Buffer<std::byte> data(sample.memory(), "data", 1024);
   dma::Buffer<spu::TransfersJob> job(sample.memory(), "job", 1, {.record = kTransfersJobRecord});
   job[0] = {data.ea().value, 128, 16, 8, spu::kTransferGet, {}};
-  sample.run(job.ea());
+  sample.run(job.ea(), 16);
 }
 
 /// A board that tells the loop to end: the compiler makes one function with one frame of all it does.
@@ -47,26 +47,59 @@ void run_job_loop(SampleRun& sample) {
 
 }  // namespace
 
-void SampleRun::run(dma::EffectiveAddress argp) {
+ls_sim::SpeOptions SampleRun::options() {
+  ls_sim::SpeOptions options{.spes = 1, .measure_stack = true};
+  if (kernel_.machine == ls_sim::Machine::kSpu) ls_sim::time_by(&timing_, options);
+  return options;
+}
+
+void SampleRun::begin_timing() {
+  begin_ = timing_.now();
+  before_ = timing_.by_function(0, kernel_);
+  pieces_ = 0;
+}
+
+std::vector<ls_sim::FunctionCycles> SampleRun::functions() const {
+  if (kernel_.machine != ls_sim::Machine::kSpu) return {};
+  std::vector<ls_sim::FunctionCycles> functions = timing_.by_function(0, kernel_);
+  for (ls_sim::FunctionCycles& function : functions) {
+    const auto before = std::ranges::find(
+        before_, function.begin.value, [](const ls_sim::FunctionCycles& each) { return each.begin.value; });
+    if (before != before_.end()) function.counts -= before->counts;
+  }
+  std::erase_if(functions, [](const ls_sim::FunctionCycles& each) { return each.counts.cycles == 0; });
+  std::ranges::stable_sort(functions, std::ranges::greater{},
+                           [](const ls_sim::FunctionCycles& each) { return each.counts.cycles; });
+  return functions;
+}
+
+std::optional<double> SampleRun::cycles_a_piece() const {
+  if (kernel_.machine != ls_sim::Machine::kSpu || pieces_ == 0) return {};
+  return static_cast<double>(timing_.now() - begin_) / static_cast<double>(pieces_);
+}
+
+void SampleRun::run(dma::EffectiveAddress argp, std::size_t pieces) {
   spes_.start(0, kernel_, {.spe_id = 0, .argp = argp.value, .envp = 0});
   const ls_sim::RunResult result = spes_.wait(0);
   if (result.fault) throw std::runtime_error(result.fault->message());
   if (result.status() != 0) throw std::runtime_error("kernel " + kernel_.name + " refused its sample");
+  pieces_ += pieces;
 }
 
 std::span<const KernelSample> plain_samples() {
-  static constexpr KernelSample kSamples[] = {
-      {"job_loop", run_job_loop}, {"rotations", run_rotations}, {"transfers", run_transfers}};
+  static constexpr KernelSample kSamples[] = {{"job_loop", "end", run_job_loop},
+                                              {"rotations", "matrix", run_rotations},
+                                              {"transfers", "transfer", run_transfers}};
   return kSamples;
 }
 
-std::optional<std::uint32_t> measure_stack(const ls_sim::KernelImage& kernel,
-                                           std::span<const KernelSample> samples) {
+std::optional<SampleNeeds> measure(const ls_sim::KernelImage& kernel, std::span<const KernelSample> samples) {
   const auto found = std::ranges::find(samples, kernel.name, &KernelSample::kernel);
   if (found == samples.end()) return std::nullopt;
   SampleRun sample(kernel);
   found->run(sample);
-  return sample.stack_used();
+  return SampleNeeds{sample.stack_used(), sample.cycles_a_piece(), found->piece, sample.pieces(),
+                     sample.functions()};
 }
 
 }  // namespace softcell::tool

@@ -58,18 +58,6 @@ std::string shown(const ls_sim::FunctionCycles& function) {
   return function.name.empty() ? fmt::format("at 0x{:05X}", function.begin.value) : function.name;
 }
 
-void print_functions(const ls_sim::KernelImage& image, const ls_sim::Timing& timing, int spe) {
-  const std::vector<ls_sim::FunctionCycles> functions = timing.by_function(spe, image);
-  if (functions.empty()) return;
-  const std::vector<Stall> stalls = stalls_in(timing.total(spe));
-  print_heading(fmt::format("SPE {}", spe).c_str(), stalls);
-  for (const ls_sim::FunctionCycles& function : functions) {
-    fmt::print("    ");
-    print_counts(function.counts, stalls);
-    fmt::print("  {}\n", shown(function));
-  }
-}
-
 void print_details(const ls_sim::Timing& timing, int spe) {
   const ls_sim::PipelineCounts pipeline = timing.pipeline(spe);
   const ls_sim::TransferCounts transfers = timing.transfers(spe);
@@ -121,6 +109,29 @@ ordered_json details(const ls_sim::Timing& timing, int spe) {
 
 }  // namespace
 
+void print_functions(const std::string& what, const std::vector<ls_sim::FunctionCycles>& functions) {
+  if (functions.empty()) return;
+  CycleCounts sum;
+  for (const ls_sim::FunctionCycles& function : functions) sum += function.counts;
+  const std::vector<Stall> stalls = stalls_in(sum);
+  print_heading(what.c_str(), stalls);
+  for (const ls_sim::FunctionCycles& function : functions) {
+    fmt::print("    ");
+    print_counts(function.counts, stalls);
+    fmt::print("  {}\n", shown(function));
+  }
+}
+
+ordered_json to_json(const std::vector<ls_sim::FunctionCycles>& functions) {
+  ordered_json rows = ordered_json::array();
+  for (const ls_sim::FunctionCycles& function : functions) {
+    ordered_json row{{"function", function.name}, {"address", function.begin.value}};
+    row.update(to_json(function.counts));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 void print_timing(const ls_sim::KernelImage& image, const ls_sim::Timing& timing) {
   CycleCounts sum;
   for (int spe = 0; spe < timing.spes(); ++spe) sum += timing.total(spe);
@@ -133,7 +144,7 @@ void print_timing(const ls_sim::KernelImage& image, const ls_sim::Timing& timing
     fmt::print("  {:.3f} us\n", microseconds(counts.cycles));
   }
   for (int spe = 0; spe < timing.spes(); ++spe) {
-    print_functions(image, timing, spe);
+    print_functions(fmt::format("SPE {}", spe), timing.by_function(spe, image));
     print_details(timing, spe);
   }
 }
@@ -156,12 +167,7 @@ ordered_json to_json(const ls_sim::KernelImage& image, const ls_sim::Timing& tim
     ordered_json one{{"spe", spe}, {"end_us", microseconds(timing.now(spe))}};
     one.update(to_json(timing.total(spe)));
     one.update(details(timing, spe));
-    one["functions"] = ordered_json::array();
-    for (const ls_sim::FunctionCycles& function : timing.by_function(spe, image)) {
-      ordered_json row{{"function", function.name}, {"address", function.begin.value}};
-      row.update(to_json(function.counts));
-      one["functions"].push_back(std::move(row));
-    }
+    one["functions"] = to_json(timing.by_function(spe, image));
     spes.push_back(std::move(one));
   }
   ordered_json parameters;

@@ -53,13 +53,6 @@ void check_folder(const SpuRunOptions& options) {
   throw std::runtime_error("--folder " + options.folder->string() + ": there is no such folder");
 }
 
-void check_coverage(const ls_sim::KernelImage& image) {
-  if (image.machine == ls_sim::Machine::kSpu) return;
-  throw std::runtime_error(
-      "--coverage: " + image.name +
-      " is built for the host; coverage is of programs that a compiler for the SPU has made");
-}
-
 }  // namespace
 
 int run_spu_run(const SpuRunOptions& options) {
@@ -72,8 +65,7 @@ int run_spu_run(const SpuRunOptions& options) {
   check_kept(read_files(task), outputs);
   OutputFiles files(outputs);
   const ls_sim::KernelImage image = load_kernel_file(task.image, task.checked, task.machine);
-  const auto coverage = options.coverage ? std::make_unique<Coverage>() : nullptr;
-  if (coverage != nullptr) check_coverage(image);
+  const auto coverage = options.coverage ? std::make_unique<Coverage>(image) : nullptr;
   dma::AddressSpace memory;
   const KernelBuffers buffers(memory, task);
   std::optional<ls_sim::Trace> trace;
@@ -100,7 +92,7 @@ int run_spu_run(const SpuRunOptions& options) {
   if (trace) trace->write(files.open(*options.trace));
   if (coverage != nullptr) {
     base::WholeFile& file = files.open(*options.coverage);
-    file.write(coverage->lcov(image));
+    file.write(coverage->lcov());
     file.finish();
   }
   if (options.json) {

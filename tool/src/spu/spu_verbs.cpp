@@ -42,6 +42,8 @@ class SpuVerbs final : public Verb {
     b->add_flag(
         "--checked", budget_.checked,
         "Show the instrumented flavours, whose stack has room for the checks beside the kernel's own");
+    b->add_flag("--functions", budget_.functions,
+                "Show also in which functions the cycles went on a PS3, of softcell's own kernels");
     add_json_option(*b, budget_.json, "the table");
     b->callback([&] { chosen = [this] { return run_budget(budget_, samples_); }; });
   }
@@ -67,9 +69,8 @@ class SpuVerbs final : public Verb {
         "--timing", run_.timing,
         "Say what the run takes on a PS3 by a model of SPUs and transfers: cycles, stalls by cause and "
         "function, waits for transfers; of a kernel built for the host only the waits");
-    r->add_option(
-         "--coverage", run_.coverage,
-         "Write which lines and branches of a program built for the SPU were executed, in the format of lcov")
+    r->add_option("--coverage", run_.coverage,
+                  "Write which lines and branches were executed, in the format of lcov")
         ->type_name("FILE")
         ->excludes("--timing");
     add_trace_option(*r, run_.trace);

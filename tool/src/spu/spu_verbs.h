@@ -20,6 +20,7 @@ namespace softcell::tool {
 struct BudgetOptions {
   std::vector<std::string> kernels;  ///< names or files; empty: all of softcell's own
   bool checked = false;
+  bool functions = false;  ///< where the cycles of samples went
   std::optional<std::filesystem::path> json;
 };
 

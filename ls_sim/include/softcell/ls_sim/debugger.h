@@ -1,5 +1,5 @@
 #pragma once
-// The interpreter as a debugger sees it.
+// What runs on an SPE, as a debugger sees it: whole of the interpreter, instruction by instruction of kernels built for the host.
 
 #include <array>
 #include <cstddef>
@@ -29,6 +29,9 @@ class DebuggedSpe {
 /// Is told of each step of programs built for the SPU (SpeOptions::debugger), by the threads that run the SPEs, with the
 /// host's own arithmetic. A function that does not return keeps the SPE standing; with Interleaving::kTurns all others
 /// stand then, too.
+///
+/// Of a kernel built for the host it is told of each instruction only, at any address, by a handler of signals: on_instruction()
+/// then may not allocate, lock or throw, and its result means nothing. A kernel takes some thousand times as long.
 class Debugger {
  public:
   virtual ~Debugger() = default;

@@ -1,6 +1,7 @@
 #pragma once
 // Engines run the instructions of a kernel: the native engine those of the host, the interpreter those of the SPU.
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -51,6 +52,9 @@ struct RunResult {
   std::uint32_t status() const { return stop_code & 0xFFu; }
 };
 
+/// Bits of a quadword in the order of the local store, a byte to each of its bytes: set where they come from nowhere.
+using UndefinedBits = std::array<std::uint8_t, 16>;
+
 /// One load or store of a checked kernel.
 struct Access {
   dma::LocalStoreAddress lsa;  ///< first byte
@@ -58,14 +62,33 @@ struct Access {
   bool is_store = false;
   dma::LocalStoreAddress instruction;    ///< local-store address of the load or store
   dma::LocalStoreAddress stack_pointer;  ///< at that moment
+  UndefinedBits undefined{};             ///< of what a program for the SPU stores
+};
+
+/// A quadword that a program has loaded.
+struct LoadedFrom {
+  dma::LocalStoreAddress lsa, instruction;
+};
+
+/// What depends on bytes that nobody has written, neither in a register nor in the local store.
+struct UndefinedUse {
+  enum class Kind : std::uint8_t {
+    kAddress,    ///< of a load or store
+    kCondition,  ///< of a branch
+    kTarget,     ///< of a branch
+    kHalt,       ///< on a condition
+    kChannel,    ///< what is written to one
+  };
+  Kind kind = Kind::kAddress;
+  int reg = 0;                     ///< which has the bytes
+  std::optional<LoadedFrom> from;  ///< where they come from; none: a register that was never written
 };
 
 /// One instruction of a checked program for the SPU.
 struct ExecutedInstruction {
   dma::LocalStoreAddress address;
-  dma::LocalStoreAddress stack_pointer;  ///< before it
-  /// A register that the instruction takes an address from, and that the program has never written; -1: none.
-  int unset_address_register = -1;
+  dma::LocalStoreAddress stack_pointer;        ///< before it
+  std::optional<UndefinedUse> undefined = {};  ///< that it makes; none: none
 };
 
 /// Observes every load and store of a checked kernel, before it happens. Of a program for the SPU these are whole
@@ -75,8 +98,14 @@ class AccessObserver {
   virtual ~AccessObserver() = default;
   virtual void on_access(const Access& access) = 0;
 
-  /// Only programs for the SPU: called before each instruction.
+  // Only of programs for the SPU:
+
+  /// Called before each instruction.
   virtual void on_instruction(const ExecutedInstruction&) {}
+  /// Of a quadword: what nobody has written.
+  virtual UndefinedBits undefined_bits(dma::LocalStoreAddress) { return {}; }
+  /// The host has written there, in a call that it serves.
+  virtual void on_host_write(dma::LocalStoreAddress, std::uint32_t) {}
 };
 
 /// Observes where jobs begin and end inside a resident kernel. Called by the thread that runs the SPE.
@@ -132,9 +161,15 @@ class Engine {
   virtual std::uint64_t instructions() const { return 0; }
 };
 
+/// What the native engine has to do besides; all of it outlives the engine.
+struct NativeOptions {
+  Debugger* debugger = nullptr;  ///< is told of each instruction (Debugger::on_instruction); null: nobody
+  int spe = 0;                   ///< whose engine it is, for the debugger
+};
+
 /// Makes the engine for images that softcell_add_spu_kernel has built for this host.
 /// @throws std::runtime_error  the processor lacks AVX2 or FMA.
-std::unique_ptr<Engine> make_native_engine(LocalStore& local_store);
+std::unique_ptr<Engine> make_native_engine(LocalStore& local_store, const NativeOptions& options = {});
 
 /// What an interpreter has to do besides; all of it outlives the engine.
 struct InterpreterOptions {

@@ -63,7 +63,7 @@ struct KernelImage {
   /// store on the host is added. An image that travels by DMA has none.
   std::vector<dma::LocalStoreAddress> relocations;
   std::vector<ImageObject> objects;                   ///< in order of address
-  std::vector<ImageObject> functions;                 ///< in order of address; of Machine::kSpu only
+  std::vector<ImageObject> functions;                 ///< in order of address
   std::shared_ptr<const std::vector<std::byte>> elf;  ///< the file, for its line table
   bool checked = false;                               ///< built with calls for every load and store
 };

@@ -133,6 +133,10 @@ class SpeGroup {
   /// @throws std::logic_error  the SPE was never started.
   RunResult wait(int spe);
 
+  /// Waits until each SPE has ended its run or sleeps at a channel where only the PPU side can wake it.
+  /// @pre  SPEs take turns: Interleaving::kTurns or kByTime
+  void wait_until_idle();
+
   ProblemState& problem_state(int spe);
 
   /// Statistics up to the end of the SPE's last run or job.

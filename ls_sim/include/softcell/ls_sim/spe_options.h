@@ -50,9 +50,17 @@ struct SpeOptions {
   /// What the model of the SPU's pipelines says of programs built for the SPU, and that of transfers of all. Needs Clock::kSimulated and
   /// Interleaving::kByTime. Null: nothing is timed. It outlives the SPEs.
   Timing* timing = nullptr;
-  /// Is told of each instruction of programs built for the SPU, which are not timed then. Null: nobody. It outlives the SPEs.
+  /// Is told of each instruction (debugger.h). Programs built for the SPU are not timed then. Null: nobody. It outlives the SPEs.
   Debugger* debugger = nullptr;
   Trace* trace = nullptr;  ///< null: nothing is recorded. It outlives the SPEs
 };
+
+/// Has SPEs with these options run by the model of time. @param timing  null: the options stay as they are
+inline void time_by(Timing* timing, SpeOptions& options) {
+  if (timing == nullptr) return;
+  options.timing = timing;
+  options.clock = Clock::kSimulated;
+  options.interleaving = Interleaving::kByTime;
+}
 
 }  // namespace softcell::ls_sim

@@ -56,6 +56,7 @@ struct CycleCounts {
   /// Of the cycles in which anything issued, the share in which two did: 0..1.
   double dual_issue_share() const;
   CycleCounts& operator+=(const CycleCounts& other);
+  CycleCounts& operator-=(const CycleCounts& other);  ///< @pre `other` is of an earlier moment
 };
 
 /// Cycles that waited for a result, by the kind of instruction that computes it, and counts of branches.
@@ -85,10 +86,19 @@ struct FunctionCycles {
   CycleCounts counts;
 };
 
+/// What the jobs of one kernel took that a resident kernel has called.
+struct KernelCycles {
+  std::string kernel = {};
+  std::uint64_t jobs = 0;
+  std::uint64_t cycles = 0;  ///< from the call to the return
+  std::uint64_t waits = 0;   ///< of these: for transfers, the queue and other SPEs
+};
+
 class SpeTimer;
 class ElementInterconnect;
 
-/// Collects the cycles of up to six SPEs, from its construction on. Read it when the SPEs have stopped.
+/// Collects the cycles of up to six SPEs, from its construction on. Read it when the SPEs have stopped, or sleep as
+/// SpeGroup::wait_until_idle() leaves them.
 class Timing {
  public:
   /// @param spes  1..6
@@ -107,6 +117,10 @@ class Timing {
   TransferCounts transfers(int spe) const;
   /// The SPE's clock: cycles since the construction, waits for others before its runs included.
   std::uint64_t now(int spe) const;
+  /// The clock that is farthest.
+  std::uint64_t now() const;
+  /// Of all SPEs together, in the order of names.
+  std::vector<KernelCycles> by_kernel() const;
   /// Of the instruction at this address, whatever program was there.
   CycleCounts at(int spe, dma::LocalStoreAddress instruction) const;
   /// By function, the one with the most cycles first. @param image  what has run.

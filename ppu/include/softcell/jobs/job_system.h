@@ -57,6 +57,9 @@ struct JobFailure {
 /// A job that fails ends its own chain only. If a job loop itself fails, nobody knows its job: then all loops
 /// finish their present jobs and end, every chain that has not ended by then fails, and the next kick starts
 /// the loops again.
+///
+/// With SpeOptions::interleaving other than kFree, SPEs run only while the PPU side waits: finished() and wait() then
+/// return when all SPEs sleep. So a run, and with SpeOptions::timing its cycles, is the same every time.
 class JobSystem {
  public:
   /// @param options   the deadline is that of a job; findings: jobs must then be checked images.

@@ -31,6 +31,9 @@ struct SpeRuntimeOptions {
   /// Runs the kernels' checked flavours, which report each wrong access to SpeRuntime::findings() and take
   /// some ten times as long.
   bool checked = false;
+  /// Where SPEs that run by the timing model count their cycles; they then take turns, and work only while the PPU side
+  /// waits for them. With machine = kSpu the cycles are those of a PS3. Null: nothing is timed. It outlives the runtime.
+  ls_sim::Timing* timing = nullptr;
   std::chrono::milliseconds deadline{10'000};  ///< for one job; one that takes longer is stopped and fails
   /// Size of main memory: whole megabytes (2^20 bytes), from 1 to 2816. The host provides memory for what is in
   /// use only.

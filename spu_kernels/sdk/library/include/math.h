@@ -1,8 +1,8 @@
 #pragma once
 // Functions of floats, and those of doubles by the same arithmetic. [C17, 7.12]
 //
-// All are computed in double precision and rounded once. The error of a float function is below 0.501 units in the last place,
-// measured for a million arguments of each function over all floats (`ci/float-functions` tries all of them), with these rules: denormal arguments and results are 0; there are no NaN and no
+// All are computed in double precision and rounded once. The error of a float function of one argument is at most 0.50005 units in
+// the last place, measured for all 2^32 arguments (`ci/float-functions`), with these rules: denormal arguments and results are 0; there are no NaN and no
 // infinities in single precision, so what is not defined gives 0, what is too large the largest float, and an argument of 2^128 or more counts
 // as the largest float. An SPU built from the same source has the same bits. Double functions have some twelve digits; sin(), cos()
 // and tan() of doubles from 2^20 on take the first 24 bits of their argument. There are no erf() and no gamma functions.

@@ -1,0 +1,23 @@
+#pragma once
+// The instructions of kernels built for the host.
+
+#include <vector>
+
+#include "softcell/dma/addresses.h"
+#include "softcell/ls_sim/image.h"
+
+namespace softcell::tool {
+
+/// An instruction, as coverage sees it.
+struct CoveredInstruction {
+  dma::LocalStoreAddress address;
+  bool is_conditional = false;  ///< a branch that may go either way
+};
+
+/// From `begin` to `end`, which lie in the image. @pre Machine::kHost
+/// @throws std::runtime_error  there is no memory for the disassembler.
+std::vector<CoveredInstruction> list_host_instructions(const ls_sim::KernelImage& image,
+                                                       dma::LocalStoreAddress begin,
+                                                       dma::LocalStoreAddress end);
+
+}  // namespace softcell::tool
