@@ -183,8 +183,7 @@ RunResult InterpreterEngine::run(const EntryArguments& arguments, ChannelPort& c
   Core core{.state = state_, .local_store = local_store_.base(), .surroundings = access};
   JobCalls job_calls(*image_, local_store_, state_, jobs);
   std::optional<Checks> checks;
-  if (accesses != nullptr)
-    checks.emplace(Checks{*accesses, UndefinedValues(arguments.entry_state)});
+  if (accesses != nullptr) checks.emplace(Checks{*accesses, UndefinedValues(arguments.entry_state)});
   if (calls_ != nullptr && accesses != nullptr)
     calls_->on_write([accesses](std::uint32_t lsa) { accesses->on_host_write({lsa}, 1); });
   do {
