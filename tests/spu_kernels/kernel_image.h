@@ -15,8 +15,9 @@ inline ls_sim::Machine machine_of_tests() {
                                                                    : ls_sim::Machine::kHost;
 }
 
-inline ls_sim::KernelImage kernel_image(const std::string& name, bool checked = false) {
-  return spu_kernels::load_kernel(name, checked, machine_of_tests());
+inline ls_sim::KernelImage kernel_image(const std::string& name, bool checked = false,
+                                        ls_sim::Machine machine = machine_of_tests()) {
+  return spu_kernels::load_kernel(name, checked, machine);
 }
 
 }  // namespace softcell::test

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iostream>
 #include <memory>
 #include <random>
 #include <span>
@@ -19,6 +20,7 @@
 #include "ppu/spe_bodies/skin_orchestrator.h"
 #include "softcell/jobs/job_system.h"
 #include "softcell/ls_sim/findings.h"
+#include "softcell/ls_sim/timing.h"
 #include "softcell/soft_bodies/lattice.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "spu_kernels/kernel_image.h"
@@ -31,10 +33,12 @@ using Eigen::Vector3f;
 /// A mesh in a lattice, skinned by the kernel.
 class SkinRig {
  public:
-  explicit SkinRig(const ppu::TriangleMesh& mesh, float cell_size, const ls_sim::SpeOptions& options = {})
+  explicit SkinRig(const ppu::TriangleMesh& mesh, float cell_size, const ls_sim::SpeOptions& options = {},
+                   ls_sim::Machine machine = test::machine_of_tests())
       : lattice(ppu::voxelize(mesh, cell_size)),
         embedding(std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice))),
-        image_(test::kernel_image("skin", options.findings != nullptr)),
+        image_(test::kernel_image("skin", options.findings != nullptr, machine)),
+        job_loop_(test::kernel_image("job_loop", false, machine)),
         jobs_(memory_, options, job_loop_),
         orchestrator_(memory_, jobs_, image_) {
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) positions.push_back(lattice.rest_position(i));
@@ -77,7 +81,7 @@ class SkinRig {
 
  private:
   dma::AddressSpace memory_;
-  ls_sim::KernelImage image_, job_loop_ = test::kernel_image("job_loop");
+  ls_sim::KernelImage image_, job_loop_;
   ppu::JobSystem jobs_;
   ppu::SkinOrchestrator orchestrator_;
 };
@@ -174,6 +178,24 @@ TEST(Skin, AgreesWithItsScalarTwinToOneUnit) {
     for (int d = 0; d < 3; ++d)
       ASSERT_LE(std::abs(int{twin[i].position[d]} - int{body.vertices[i].position[d]}), 1) << "slot " << i;
   }
+}
+
+/// Cycles of a PS3 for a vertex, waits for transfers included.
+double cycles_a_vertex(const ppu::TriangleMesh& mesh, float cell_size) {
+  ls_sim::Timing timing(1);
+  ls_sim::SpeOptions options{.spes = 1, .interleaving = ls_sim::Interleaving::kTurns};
+  ls_sim::time_by(&timing, options);
+  SkinRig rig(mesh, cell_size, options, ls_sim::Machine::kSpu);
+  rig.skin();
+  const auto kernels = timing.by_kernel();
+  EXPECT_EQ(kernels.size(), 1u);
+  return static_cast<double>(kernels[0].cycles) / static_cast<double>(mesh.positions.size());
+}
+
+TEST(Skin, TakesFewCyclesOfAPs3) {
+  std::cout << cycles_a_vertex(ppu::make_sphere(1, 120), 0.25f) << " " << cycles_a_vertex(ppu::make_sphere(1, 20), 0.25f) << "\n";
+  EXPECT_LE(cycles_a_vertex(ppu::make_sphere(1, 120), 0.25f), 30);  // many vertices in a cell
+  EXPECT_LE(cycles_a_vertex(ppu::make_sphere(1, 20), 0.25f), 60);   // few
 }
 
 TEST(Skin, RefusesAJobWithTooManyCorners) {
