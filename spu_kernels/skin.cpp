@@ -61,10 +61,11 @@ struct Surface {
 };
 
 template <Positions kPositions>
-__attribute__((always_inline)) inline Surface surface_of(const CellPolynomial& p, const Group& g) {
-  const Component x = evaluate(p.x, g.xi, g.eta, g.zeta);
-  const Component y = evaluate(p.y, g.xi, g.eta, g.zeta);
-  const Component z = evaluate(p.z, g.xi, g.eta, g.zeta);
+__attribute__((always_inline)) inline Surface surface_of(const CellPolynomial& p, const Group& g,
+                                                         vec_float4 zeta) {
+  const Component x = evaluate(p.x, g.xi, g.eta, zeta);
+  const Component y = evaluate(p.y, g.xi, g.eta, zeta);
+  const Component z = evaluate(p.z, g.xi, g.eta, zeta);
   return {half_positions<kPositions>({x.position, y.position, z.position}),
           deformed_normal({x.f1, y.f1, z.f1}, {x.f2, y.f2, z.f2}, {x.f3, y.f3, z.f3}, g.normal)};
 }
@@ -77,15 +78,16 @@ __attribute__((always_inline)) inline Surface surface_of(const CellPolynomial& p
 template <Positions kPositions>
 void skin_chunk(const Group* groups, uint32_t count, vec_ushort8* vertices) {
   CellPolynomial p = polynomial_of(ls.corner, groups[0].corner);  // a chunk may begin in the middle of a cell
-  Surface before = surface_of<kPositions>(p, groups[0]);
-  const auto continues = [&](uint32_t i) __attribute__((always_inline)) {
-    return spu_extract(groups[i < count ? i : count - 1].continues, 0) != 0;
-  };
-  bool same_cell = continues(1);
+  Surface before = surface_of<kPositions>(p, groups[0], groups[0].zeta);
+  const Group* group = groups + (count > 1);
+  uint32_t same_cell = spu_extract(group->continues, 0);
+  vec_float4 zeta = group->zeta;
   for (uint32_t i = 1; i < count; ++i, vertices += 4) {
-    if (!same_cell) p = polynomial_of(ls.corner, groups[i].corner);
-    same_cell = continues(i + 1);
-    const Surface surface = surface_of<kPositions>(p, groups[i]);
+    if (__builtin_expect(same_cell == 0, 0)) p = polynomial_of(ls.corner, group->corner);
+    const Surface surface = surface_of<kPositions>(p, *group, zeta);
+    group = groups + (i + (i + 1 < count));  // without a branch
+    same_cell = spu_extract(group->continues, 0);
+    zeta = group->zeta;
     store(before.position, half_normals<kPositions>(before.normal), vertices);
     before = surface;
   }
@@ -111,17 +113,22 @@ inline void put_chunk(uint32_t chunk) {
           0);
 }
 
-/// Fetches both windows of corners, one behind the other, and takes the origin off them.
-/// @return  how positions between them have to be converted
-Positions load_corners() {
+/// Fetches both windows of corners, one behind the other.
+void fetch_corners() {
   const SkinWindow& first = ls.job.window[0];
   const SkinWindow& second = ls.job.window[1];
   get_large(ls.corner, first.ea, first.count * 16u, kTagCorners);
   get_large(ls.corner + first.count, second.ea, second.count * 16u, kTagCorners);
+}
+
+/// Waits for the corners and takes the origin off them.
+/// @return  how positions between them have to be converted
+Positions prepare_corners() {
   wait_for_tag(kTagCorners);
   const vec_float4 origin = {ls.job.origin[0], ls.job.origin[1], ls.job.origin[2], 0.0f};
   vec_uint4 odd = spu_splats(0u);
-  for (uint32_t i = 0; i < first.count + second.count; ++i) {
+  const uint32_t count = ls.job.window[0].count + ls.job.window[1].count;
+  for (uint32_t i = 0; i < count; ++i) {
     ls.corner[i] = spu_sub(ls.corner[i], origin);
     odd = note_odd(odd, ls.corner[i]);
   }
@@ -147,8 +154,9 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   //   put             [0 A]     [1 B]     [2 A]   an output buffer when its put of two chunks ago is complete
   //
   const uint32_t chunks = (ls.job.group_count + kChunkGroups - 1) / kChunkGroups;
-  if (chunks != 0) fetch_chunk(0);
-  const Positions positions = load_corners();
+  fetch_corners();
+  if (chunks != 0) fetch_chunk(0);  // arrives while the corners are prepared
+  const Positions positions = prepare_corners();
   const auto skin =
       positions == Positions::kOrdinary ? skin_chunk<Positions::kOrdinary> : skin_chunk<Positions::kAny>;
   for (uint32_t chunk = 0; chunk < chunks; ++chunk) {

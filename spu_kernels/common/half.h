@@ -25,10 +25,13 @@ constexpr float kHalfRebias = 0x1p-112f;
 /// The same for either sign, of a value times kHalfRebias. Values too small for a normal binary16 become +0.
 /// For magnitudes below kHalfOverflow.
 inline vec_uint4 high_half_of_rebiased(vec_float4 rebiased) {
-  // What an SPU flushes is +0 already; on a host, which keeps the sign, the sum makes it so.
+#ifdef __SPU__  // what it multiplies to nothing is +0 already
+  const vec_uint4 bits = (vec_uint4)rebiased;
+#else  // a host keeps the sign: the sum takes it away
   const vec_uint4 bits = (vec_uint4)spu_add(rebiased, spu_splats(0.0f));
+#endif
   const vec_uint4 rounded = spu_add(bits, spu_splats(0x1000u));
-  return spu_or(spu_sl(rounded, 3), spu_and(bits, spu_splats(0x80000000u)));
+  return spu_sel(spu_sl(rounded, 3), bits, spu_splats(0x80000000u));
 }
 
 /// Likewise of the value itself.

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <iostream>
 #include <memory>
 #include <random>
 #include <span>
@@ -193,7 +192,6 @@ double cycles_a_vertex(const ppu::TriangleMesh& mesh, float cell_size) {
 }
 
 TEST(Skin, TakesFewCyclesOfAPs3) {
-  std::cout << cycles_a_vertex(ppu::make_sphere(1, 120), 0.25f) << " " << cycles_a_vertex(ppu::make_sphere(1, 20), 0.25f) << "\n";
   EXPECT_LE(cycles_a_vertex(ppu::make_sphere(1, 120), 0.25f), 30);  // many vertices in a cell
   EXPECT_LE(cycles_a_vertex(ppu::make_sphere(1, 20), 0.25f), 60);   // few
 }
