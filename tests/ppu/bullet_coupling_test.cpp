@@ -374,7 +374,7 @@ TEST(BulletSoftBodies, AnOverlapFilterThatWasThereStillCounts) {
   RefuseAll refuse;
   bullet.world().getPairCache()->setOverlapFilterCallback(&refuse);
   {
-    BulletSoftBodies soft(bullet.world());
+    BulletSoftBodies soft(bullet.world(), ContactMethod::kSpheres);
     bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, 0.6f);
     SoftBody<3>& body = soft.add(block_model({2, 2, 2}, stiff(0.2f)), {0, 0.1f, 0});
     for (int i = 0; i < 60; ++i) bullet.step(kFrame, 2);

@@ -31,7 +31,7 @@ inline std::shared_ptr<const SoftBodyModel<3>> block_model(const Eigen::Vector3i
 /// A Bullet world with soft bodies, and a floor whose top is at y = 0 when asked for.
 struct World {
   BulletWorld bullet;
-  BulletSoftBodies soft{bullet.world()};
+  BulletSoftBodies soft{bullet.world(), ContactMethod::kSpheres};
 
   void add_floor(float friction = 0.6f) { bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, friction); }
   void run(float seconds, int substeps = 2) {

@@ -65,7 +65,7 @@ struct Scene {
   float gravity = 9.81f;  ///< m/s^2
   float friction = 0.6f;
   int substeps = 2;                                            ///< of a frame of 1/60 s
-  ppu::ContactMethod contacts = ppu::ContactMethod::kSpheres;  ///< unless the user wants another
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;  ///< unless the user wants another
   int frames = 300;  ///< how long the scene is worth watching without a user
   render::Camera camera;
   render::Light light;

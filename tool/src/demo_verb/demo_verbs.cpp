@@ -116,7 +116,7 @@ class DemoVerbs final : public Verb {
         ->type_name("spe|gpu");
     d->add_option("--contacts", contacts_,
                   "What soft bodies touch with: spheres, rigid ones at their outer particles, or surface, "
-                  "what is drawn (default: the scene's, mostly spheres)")
+                  "what is drawn (default: the scene's, mostly surface)")
         ->type_name("spheres|surface");
     d->callback([&] {
       chosen = [this] {

@@ -95,16 +95,16 @@ class BulletSoftBodies {
   static constexpr float kMaxTravelInCells = 1.0f;
 
   /// @param world  outlives this.
-  explicit BulletSoftBodies(btDiscreteDynamicsWorld& world, ContactMethod contacts = ContactMethod::kSpheres);
+  explicit BulletSoftBodies(btDiscreteDynamicsWorld& world, ContactMethod contacts = ContactMethod::kSurface);
   /// @param solvers  makes the solver for these bodies; outlives this. Usually an SpeRuntime.
   /// @throws std::runtime_error  as SolverFactory::make_solver().
   BulletSoftBodies(btDiscreteDynamicsWorld& world, SolverFactory& solvers,
-                   ContactMethod contacts = ContactMethod::kSpheres);
+                   ContactMethod contacts = ContactMethod::kSurface);
   /// @param solver  outlives this, and serves nobody else.
   /// @param worker  for ContactMethod::kSurface: who finds and solves contacts, as SolverFactory makes it; null:
   ///                the thread that steps the world
   BulletSoftBodies(btDiscreteDynamicsWorld& world, SoftBodySolver<3>& solver,
-                   ContactMethod contacts = ContactMethod::kSpheres,
+                   ContactMethod contacts = ContactMethod::kSurface,
                    std::shared_ptr<ContactWorker> worker = nullptr);
   /// Removes all bodies and leaves the world as it was found.
   ~BulletSoftBodies();
