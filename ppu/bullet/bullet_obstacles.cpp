@@ -33,6 +33,7 @@ using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
 constexpr int kRimPoints = 24;  // of the circles of cylinders and cones
+constexpr std::uint32_t kNone = ~0u;
 
 /// Turns the y axis into Bullet's axis of a capsule, cylinder or cone.
 Matrix3f from_y_to(int axis) {
@@ -48,8 +49,7 @@ Matrix3f from_y_to(const Vector3f& normal) {
   return Eigen::Quaternionf::FromTwoVectors(Vector3f::UnitY(), normal).toRotationMatrix();
 }
 
-std::vector<ObstacleEdge> edges_of_box(const Vector3f& half) {
-  std::vector<ObstacleEdge> edges;
+void add_edges_of_box(const Vector3f& half, std::vector<ObstacleEdge>& edges) {
   for (int d = 0; d < 3; ++d) {
     for (unsigned i = 0; i < 4; ++i) {
       Vector3f from = -half;
@@ -60,7 +60,6 @@ std::vector<ObstacleEdge> edges_of_box(const Vector3f& half) {
       edges.push_back({from, to});
     }
   }
-  return edges;
 }
 
 /// The corners of a rim of radius 1, the last one again the first.
@@ -114,29 +113,38 @@ void find_hull(const std::vector<btVector3>& points, std::vector<Eigen::Vector4f
   }
 }
 
-std::vector<btVector3> points_of(const btConvexShape& shape) {
-  std::vector<btVector3> points;
+void find_points(const btConvexShape& shape, std::vector<btVector3>& points) {
+  points.clear();
   if (shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE) {
     const auto& hull = static_cast<const btConvexHullShape&>(shape);
     for (int i = 0; i < hull.getNumPoints(); ++i) points.push_back(hull.getScaledPoint(i));
-    return points;
+    return;
   }
   btShapeHull around(&shape);
   around.buildHull(shape.getMargin());
   points.assign(around.getVertexPointer(), around.getVertexPointer() + around.numVertices());
-  return points;
 }
 
 /// Collects what the broad phase finds.
 struct Collector final : btBroadphaseAabbCallback {
-  int group = 0, mask = 0;
-  std::vector<const btBroadphaseProxy*> found;
+  Collector(int its_group, int its_mask, std::vector<const btBroadphaseProxy*>& list)
+      : group(its_group), mask(its_mask), found(list) {}
+  int group, mask;
+  std::vector<const btBroadphaseProxy*>& found;
   bool process(const btBroadphaseProxy* proxy) override {
     if ((proxy->m_collisionFilterGroup & mask) != 0 && (proxy->m_collisionFilterMask & group) != 0)
       found.push_back(proxy);
     return true;
   }
 };
+
+/// An empty list, which keeps what it has room for from one substep to the next.
+template <typename T>
+std::vector<T>& next_list(std::vector<std::vector<T>>& lists, std::size_t& used) {
+  if (used == lists.size()) lists.emplace_back();
+  lists[used].clear();
+  return lists[used++];
+}
 
 }  // namespace
 
@@ -148,23 +156,22 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   rigids_.clear();
   before_.clear();
   objects_.clear();
-  known_.clear();
-  edges_.clear();
-  triangles_.clear();
+  obstacle_of_.clear();
+  edges_used_ = triangles_used_ = 0;
 }
 
 void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
                                std::vector<std::uint32_t>& indices) {
   SC_ASSERT(world_ != nullptr, "obstacles for groups {} are looked for before begin()", mask);
-  Collector near;
-  near.group = group, near.mask = mask;
+  found_.clear();
+  Collector near(group, mask, found_);
   // Broad phases are not const where they only look.
   const_cast<btBroadphaseInterface*>(world_->getBroadphase())
       ->aabbTest(to_bullet(box.low), to_bullet(box.high), near);
   // In the order in which objects were added, whatever tree they are in.
-  std::sort(near.found.begin(), near.found.end(),
+  std::sort(found_.begin(), found_.end(),
             [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
-  for (const btBroadphaseProxy* const proxy : near.found) {
+  for (const btBroadphaseProxy* const proxy : found_) {
     auto& object = *static_cast<btCollisionObject*>(proxy->m_clientObject);
     if (overlap({to_eigen(proxy->m_aabbMin), to_eigen(proxy->m_aabbMax)}, box) && object.hasContactResponse())
       add_object(object, box, indices);
@@ -173,22 +180,19 @@ void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
 
 void BulletObstacles::add_object(btCollisionObject& object, const Bounds<3>& box,
                                  std::vector<std::uint32_t>& indices) {
-  const auto known = known_.find(&object);
-  if (known != known_.end()) {
-    indices.insert(indices.end(), known->second.begin(), known->second.end());
-    return;
-  }
-  std::vector<std::uint32_t> own;
-  add_shape(*object.getCollisionShape(), object.getWorldTransform(), rigid_of(object), box, own);
-  indices.insert(indices.end(), own.begin(), own.end());
+  const std::uint32_t rigid = rigid_of(object);
+  if (obstacle_of_[rigid] != kNone) return indices.push_back(obstacle_of_[rigid]);
+  const btCollisionShape& shape = *object.getCollisionShape();
   // Of triangles there are others in every box.
-  if (!object.getCollisionShape()->isConcave() && !object.getCollisionShape()->isCompound())
-    known_[&object] = own;
+  if (!shape.isConcave() && !shape.isCompound())
+    obstacle_of_[rigid] = static_cast<std::uint32_t>(obstacles_.size());
+  add_shape(shape, object.getWorldTransform(), rigid, box, indices);
 }
 
 std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
-  SC_ASSERT(rigids_.size() == objects_.size() && before_.size() == objects_.size(),
-            "{} rigid bodies, {} before, of {} objects", rigids_.size(), before_.size(), objects_.size());
+  SC_ASSERT(rigids_.size() == objects_.size() && obstacle_of_.size() == objects_.size(),
+            "{} rigid bodies, {} with obstacles, of {} objects", rigids_.size(), obstacle_of_.size(),
+            objects_.size());
   const auto known = std::find(objects_.begin(), objects_.end(), &object);
   if (known != objects_.end()) return static_cast<std::uint32_t>(known - objects_.begin());
   ContactRigid rigid;
@@ -208,12 +212,14 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   rigids_.push_back(rigid);
   before_.push_back(rigid);
   objects_.push_back(&object);
+  obstacle_of_.push_back(kNone);
   return static_cast<std::uint32_t>(rigids_.size() - 1);
 }
 
-std::span<const ObstacleEdge> BulletObstacles::keep(std::vector<ObstacleEdge> edges) {
-  edges_.push_back(std::make_unique<std::vector<ObstacleEdge>>(std::move(edges)));
-  return *edges_.back();
+std::vector<ObstacleEdge>& BulletObstacles::more_edges() { return next_list(edges_, edges_used_); }
+
+std::vector<BulletObstacles::Triangle>& BulletObstacles::more_triangles() {
+  return next_list(triangles_, triangles_used_);
 }
 
 void BulletObstacles::push(const Obstacle& obstacle, std::vector<std::uint32_t>& indices) {
@@ -229,6 +235,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
   obstacle.rigid = rigid;
   obstacle.position = to_eigen(pose.getOrigin());
   obstacle.rotation = to_eigen(pose.getBasis());
+  std::vector<ObstacleEdge>* edges = nullptr;
   switch (shape.getShapeType()) {
     case COMPOUND_SHAPE_PROXYTYPE: {
       const auto& compound = static_cast<const btCompoundShape&>(shape);
@@ -247,12 +254,14 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
     case SPHERE_SHAPE_PROXYTYPE:
       obstacle.kind = ObstacleKind::kBox;
       obstacle.rounding = static_cast<const btSphereShape&>(shape).getRadius();
-      obstacle.edges = keep({{Vector3f::Zero(), Vector3f::Zero()}});
+      edges = &more_edges();
+      edges->push_back({Vector3f::Zero(), Vector3f::Zero()});
       break;
     case BOX_SHAPE_PROXYTYPE:
       obstacle.kind = ObstacleKind::kBox;
       obstacle.extent = to_eigen(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin());
-      obstacle.edges = keep(edges_of_box(obstacle.extent));
+      edges = &more_edges();
+      add_edges_of_box(obstacle.extent, *edges);
       break;
     case CAPSULE_SHAPE_PROXYTYPE: {
       const auto& capsule = static_cast<const btCapsuleShape&>(shape);
@@ -260,7 +269,8 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       obstacle.rotation = obstacle.rotation * from_y_to(capsule.getUpAxis());
       obstacle.extent = {0, capsule.getHalfHeight(), 0};
       obstacle.rounding = capsule.getRadius();
-      obstacle.edges = keep({{-obstacle.extent, obstacle.extent}});
+      edges = &more_edges();
+      edges->push_back({-obstacle.extent, obstacle.extent});
       break;
     }
     case CYLINDER_SHAPE_PROXYTYPE: {
@@ -269,10 +279,9 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       obstacle.kind = ObstacleKind::kCylinder;
       obstacle.rotation = obstacle.rotation * from_y_to(axis);
       obstacle.extent = {cylinder.getRadius(), cylinder.getHalfExtentsWithMargin()[axis], 0};
-      std::vector<ObstacleEdge> edges;
+      edges = &more_edges();
       for (const float height : {-obstacle.extent.y(), obstacle.extent.y()})
-        add_rim(obstacle.extent.x(), height, edges);
-      obstacle.edges = keep(std::move(edges));
+        add_rim(obstacle.extent.x(), height, *edges);
       break;
     }
     case CONE_SHAPE_PROXYTYPE: {
@@ -281,9 +290,9 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       obstacle.rotation = obstacle.rotation * from_y_to(cone.getConeUpIndex());
       obstacle.extent = {cone.getRadius(), cone.getHeight() / 2, 0};
       const Vector3f tip(0, obstacle.extent.y(), 0);
-      std::vector<ObstacleEdge> edges{{tip, tip}};
-      add_rim(obstacle.extent.x(), -obstacle.extent.y(), edges);
-      obstacle.edges = keep(std::move(edges));
+      edges = &more_edges();
+      edges->push_back({tip, tip});
+      add_rim(obstacle.extent.x(), -obstacle.extent.y(), *edges);
       break;
     }
     default: {
@@ -291,23 +300,25 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       if (!shape.isConvex())
         throw std::runtime_error(std::string("soft bodies cannot touch a shape of the kind ") +
                                  shape.getName() + "; it is neither convex nor made of triangles");
-      const Hull& hull = hull_of(shape, points_of(static_cast<const btConvexShape&>(shape)));
+      const Hull& hull = hull_of(static_cast<const btConvexShape&>(shape));
       obstacle.kind = ObstacleKind::kHull;
       obstacle.planes = hull.planes;
       obstacle.edges = hull.edges;
     }
   }
+  if (edges != nullptr) obstacle.edges = *edges;
   push(obstacle, indices);
 }
 
 void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
                                     std::vector<std::uint32_t>& indices) {
   struct Gather final : btTriangleCallback {
-    std::vector<Triangle> triangles;
+    explicit Gather(std::vector<Triangle>& list) : triangles(list) {}
+    std::vector<Triangle>& triangles;
     void processTriangle(btVector3* corner, int, int) override {
       triangles.push_back({to_eigen(corner[0]), to_eigen(corner[1]), to_eigen(corner[2])});
     }
-  } gather;
+  } gather(more_triangles());
   // The box in the shape's frame.
   const Matrix3f turn = obstacle.rotation.transpose();
   const Vector3f centre = turn * (0.5f * (box.low + box.high) - obstacle.position);
@@ -316,23 +327,22 @@ void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obst
                                                                 to_bullet(centre + half));
   if (gather.triangles.empty()) return;
   obstacle.kind = ObstacleKind::kTriangles;
-  std::vector<ObstacleEdge> edges;
+  std::vector<ObstacleEdge>& edges = more_edges();
   for (const Triangle& t : gather.triangles)
     for (std::size_t i = 0; i < 3; ++i) edges.push_back({t[i], t[(i + 1) % 3]});
-  obstacle.edges = keep(std::move(edges));
-  triangles_.push_back(std::make_unique<std::vector<Triangle>>(std::move(gather.triangles)));
-  obstacle.triangles = *triangles_.back();
+  obstacle.edges = edges;
+  obstacle.triangles = gather.triangles;
   push(obstacle, indices);
 }
 
 /// Made anew when the shape has other points than the one that was there before.
-const BulletObstacles::Hull& BulletObstacles::hull_of(const btCollisionShape& shape,
-                                                      std::vector<btVector3> points) {
+const BulletObstacles::Hull& BulletObstacles::hull_of(const btConvexShape& shape) {
+  find_points(shape, points_);
   Hull& hull = hulls_[&shape];
-  if (hull.points != points || hull.planes.empty()) {
+  if (hull.points != points_ || hull.planes.empty()) {
     hull = {};
-    find_hull(points, hull.planes, hull.edges);
-    hull.points = std::move(points);
+    find_hull(points_, hull.planes, hull.edges);
+    hull.points = points_;
   }
   return hull;
 }

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -53,8 +52,9 @@ class BulletObstacles {
                  const Bounds<3>& box, std::vector<std::uint32_t>& indices);
   void add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
                      std::vector<std::uint32_t>& indices);
-  const Hull& hull_of(const btCollisionShape& shape, std::vector<btVector3> points);
-  std::span<const ObstacleEdge> keep(std::vector<ObstacleEdge> edges);
+  const Hull& hull_of(const btConvexShape& shape);
+  std::vector<ObstacleEdge>& more_edges();
+  std::vector<Triangle>& more_triangles();
   void push(const Obstacle& obstacle, std::vector<std::uint32_t>& indices);
 
   const btDiscreteDynamicsWorld* world_ = nullptr;
@@ -62,11 +62,14 @@ class BulletObstacles {
   std::vector<Obstacle> obstacles_;
   std::vector<ContactRigid> rigids_, before_;
   std::vector<btCollisionObject*> objects_;
-  std::map<const btCollisionObject*, std::vector<std::uint32_t>>
-      known_;  // obstacles of an object without triangles
+  std::vector<std::uint32_t> obstacle_of_;  // of each object without triangles; kNone: not known yet
   std::map<const btCollisionShape*, Hull> hulls_;
-  std::vector<std::unique_ptr<std::vector<ObstacleEdge>>> edges_;
-  std::vector<std::unique_ptr<std::vector<Triangle>>> triangles_;
+  // Lists of obstacles of this substep, and behind them those that lists of others may use again.
+  std::vector<std::vector<ObstacleEdge>> edges_;
+  std::vector<std::vector<Triangle>> triangles_;
+  std::size_t edges_used_ = 0, triangles_used_ = 0;
+  std::vector<const btBroadphaseProxy*> found_;
+  std::vector<btVector3> points_;
 };
 
 }  // namespace softcell::ppu

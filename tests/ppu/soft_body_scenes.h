@@ -30,8 +30,10 @@ inline std::shared_ptr<const SoftBodyModel<3>> block_model(const Eigen::Vector3i
 
 /// A Bullet world with soft bodies, and a floor whose top is at y = 0 when asked for.
 struct World {
+  explicit World(ContactMethod contacts = ContactMethod::kSpheres) : soft(bullet.world(), contacts) {}
+
   BulletWorld bullet;
-  BulletSoftBodies soft{bullet.world(), ContactMethod::kSpheres};
+  BulletSoftBodies soft;
 
   void add_floor(float friction = 0.6f) { bullet.add_box({20, 1, 20}, 0, {0, -0.5f, 0}, friction); }
   void run(float seconds, int substeps = 2) {
