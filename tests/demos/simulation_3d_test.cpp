@@ -30,8 +30,8 @@ TEST_P(FrameTimesOf, ThePpuAreTheSumOfItsPartsAndNoMoreThanTheThreadHasUsed) {
     EXPECT_GT(times.apply_ms, 0) << "frame " << frame;
     EXPECT_GT(times.skin_ms, 0) << "frame " << frame;
     EXPECT_GT(times.contacts_ms, 0) << "frame " << frame;
-    EXPECT_DOUBLE_EQ(times.ppu_ms, times.gather_ms + times.solve_ms + times.apply_ms + times.contacts_ms +
-                                       times.skin_ms)
+    EXPECT_DOUBLE_EQ(times.ppu_ms,
+                     times.gather_ms + times.solve_ms + times.apply_ms + times.contacts_ms + times.skin_ms)
         << "frame " << frame << ": gather " << times.gather_ms << ", solve " << times.solve_ms << ", apply "
         << times.apply_ms << ", contacts " << times.contacts_ms << ", skin " << times.skin_ms;
     EXPECT_LE(times.ppu_ms, used.count()) << "frame " << frame;

@@ -56,8 +56,9 @@ void expect_nothing_lost(const Simulation3d& simulation) {
       ASSERT_TRUE(x.allFinite() && body.velocities()[i].allFinite()) << name;
     }
     const ppu::Bounds<3> drawn = ppu::SurfaceQuery(body).bounds();
-    if (between_walls(drawn.low) && between_walls(drawn.high))
+    if (between_walls(drawn.low) && between_walls(drawn.high)) {
       ASSERT_GT(drawn.low.y(), -0.05f * body.model().settings().cell_size) << name << " is in the floor";
+    }
     const Eigen::Vector3f middle = body.centre_of_mass();
     ASSERT_TRUE(between_walls(middle) && middle.y() < 10) << name << " is at " << middle.transpose();
   }

@@ -100,13 +100,20 @@ TEST(SpeRuntime, CountsTheCyclesOfAPs3) {
   EXPECT_EQ(once.cycles, again.cycles);
   EXPECT_EQ(once.cycles, lazy.cycles) << "when transfers happen is no matter of the model";
   ASSERT_EQ(once.kernels.size(), 2u);
-  EXPECT_EQ(once.kernels[0].kernel, "match");
-  EXPECT_EQ(once.kernels[1].kernel, "contact_solve");
-  EXPECT_GT(once.kernels[1].jobs, 0u);
-  EXPECT_EQ(once.kernels[0].jobs, 60u) << "30 frames of two substeps";
-  EXPECT_EQ(once.kernels[0].cycles, again.kernels[0].cycles);
-  EXPECT_LT(once.kernels[0].waits, once.kernels[0].cycles / 2);
-  EXPECT_LT(once.kernels[0].cycles, once.cycles) << "the loops take something, too";
+  std::uint64_t in_kernels = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ls_sim::KernelCycles& kernel = once.kernels[i];
+    EXPECT_EQ(kernel.cycles, again.kernels[i].cycles) << kernel.kernel;
+    EXPECT_LT(kernel.waits, kernel.cycles / 2) << kernel.kernel;
+    in_kernels += kernel.cycles;
+    if (kernel.kernel == "match") {
+      EXPECT_EQ(kernel.jobs, 60u) << "30 frames of two substeps";
+    } else {
+      EXPECT_EQ(kernel.kernel, "contact_solve");
+      EXPECT_GT(kernel.jobs, 0u) << "when it has reached the floor";
+    }
+  }
+  EXPECT_LT(in_kernels, once.cycles) << "the loops take something, too";
 }
 
 TEST(SpeRuntime, CheckedKernelsGiveTheSameBitsAndNoFindings) {
