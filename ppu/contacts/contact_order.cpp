@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace softcell::ppu {
 namespace {
@@ -45,18 +46,22 @@ void ContactOrder::arrange(std::span<const ContactBody> bodies, std::span<const 
   std::vector<std::uint32_t>& units = units_;
   units.clear();
   for (std::uint32_t i = 0; i < pairs.size(); ++i) units.push_back(unit_of(i));
-  std::sort(units.begin(), units.end());
-  units.erase(std::unique(units.begin(), units.end()), units.end());
   // A slab with itself first: it has most pairs.
-  std::stable_partition(units.begin(), units.end(),
-                        [&](std::uint32_t unit) { return unit / slabs_ == unit % slabs_; });
+  std::sort(units.begin(), units.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(a / slabs_ != a % slabs_, a) < std::pair(b / slabs_ != b % slabs_, b);
+  });
+  units.erase(std::unique(units.begin(), units.end()), units.end());
+  const auto taken = [&](std::uint32_t stage, std::uint32_t slab) {
+    return taken_[std::size_t{stage} * slabs_ + slab];
+  };
   for (const std::uint32_t unit : units) {
+    const std::uint32_t low = unit / slabs_, high = unit % slabs_;
     std::uint32_t stage = 0;
     for (;; ++stage) {
-      if (stage == taken_.size()) taken_.emplace_back(slabs_, false);
-      if (!taken_[stage][unit / slabs_] && !taken_[stage][unit % slabs_]) break;
+      if (std::size_t{stage} * slabs_ == taken_.size()) taken_.resize(taken_.size() + slabs_, false);
+      if (!taken(stage, low) && !taken(stage, high)) break;
     }
-    taken_[stage][unit / slabs_] = taken_[stage][unit % slabs_] = true;
+    taken(stage, low) = taken(stage, high) = true;
     stage_of_[unit] = stage;
   }
   order_.resize(pairs.size());

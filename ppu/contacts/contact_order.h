@@ -41,8 +41,8 @@ class ContactOrder {
   std::vector<std::uint32_t> slab_;  // of each body
   std::uint32_t slabs_ = 0;
   std::vector<std::pair<float, std::uint32_t>> places_;
-  std::vector<std::uint32_t> stage_of_;   // of each pair of slabs
-  std::vector<std::vector<bool>> taken_;  // of each stage: slabs
+  std::vector<std::uint32_t> stage_of_;  // of each pair of slabs
+  std::vector<bool> taken_;              // of each stage, by slab
   std::vector<std::uint32_t> order_, units_, stages_;
 };
 
