@@ -17,6 +17,12 @@ using Eigen::Vector3i;
 constexpr float kCubeInCells = 1.5f;
 constexpr int kMostCubesPerAxis = 64;  // of a body that is stretched far: cubes grow
 
+/// Room for twice as much, if there is not enough: a body that turns does not allocate again and again.
+template <typename T>
+void make_room(std::vector<T>& list, std::size_t count) {
+  if (count > list.capacity()) list.reserve(2 * count);
+}
+
 }  // namespace
 
 void CellFinder::place(const Lattice<3>& lattice, std::span<const Vector3f> positions) {
@@ -52,9 +58,13 @@ void CellFinder::place(const Lattice<3>& lattice, std::span<const Vector3f> posi
         for (int x = first.x(); x <= last.x(); ++x)
           work(static_cast<std::size_t>((z * counts_.y() + y) * counts_.x() + x));
   };
-  begin_.assign(static_cast<std::size_t>(counts_.prod()) + 1, 0);
+  const std::size_t cubes = static_cast<std::size_t>(counts_.prod());
+  make_room(begin_, cubes + 1);
+  make_room(next_, cubes);
+  begin_.assign(cubes + 1, 0);
   for (const Box& box : boxes_) for_each_cube(box, [&](std::size_t i) { ++begin_[i + 1]; });
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  make_room(cells_, begin_.back());
   cells_.resize(begin_.back());
   next_.assign(begin_.begin(), begin_.end() - 1);
   for (std::uint32_t c = 0; c < boxes_.size(); ++c)
