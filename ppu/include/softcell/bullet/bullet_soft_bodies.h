@@ -19,8 +19,8 @@
 //     SpeRuntime spes;                                         // spe_bodies/spe_runtime.h
 //     BulletSoftBodies soft_bodies(world, spes);               // SPEs do it
 //
-// With ContactMethod::kSurface there are no such spheres: bodies touch with what is drawn, and their particles
-// are moved here, before Bullet integrates:
+// That is so with ContactMethod::kSpheres. With ContactMethod::kSurface, the default, there are no such spheres:
+// bodies touch with what is drawn, and their particles are moved here, before Bullet integrates:
 //
 //     substep:  [solver: v] [v += h g] [contacts: v, rigid bodies] [x += h v] [Bullet: collide, solve, integrate]
 //
@@ -84,7 +84,8 @@ struct SoftRayHit {
 /// caller installs later must call the one it replaces, or soft bodies lose their shape, and must be taken
 /// out before the last of these goes: what it calls is no more then.
 ///
-/// Used by the thread that steps the world. With spheres it allocates nothing in stepSimulation(); Bullet may.
+/// Used by the thread that steps the world. In stepSimulation() it allocates nothing but
+/// room for more contacts or obstacles than ever before; Bullet may.
 /// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
 class BulletSoftBodies {
  public:

@@ -10,7 +10,7 @@ enum class ContactMethod {
   /// A rigid sphere at each outer particle, which the engine moves: the way of the report of 2008. Costs a
   /// rigid body for each, and things are kept at a distance from what is drawn.
   kSpheres,
-  /// What is drawn: points of the mesh's surface meet rigid shapes and other soft bodies, whose edges and
+  /// What is drawn, unless a program asks for the other: points of the mesh's surface meet rigid shapes and other soft bodies, whose edges and
   /// points meet the body's distance field. The engine knows nothing of the body, and no rigid body stands
   /// for its particles, so that its own rays, overlap tests and contact callbacks do not see it:
   /// BulletSoftBodies has cast_ray() and take_contact_events(), and SurfaceQuery looks at one body.
