@@ -13,6 +13,7 @@
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/bullet/bullet_hook.h"
 #include "ppu/bullet/contact_sphere.h"
+#include "ppu/bullet/free_body.h"
 #include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
@@ -83,7 +84,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 
   SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position) {
     std::unique_ptr<CoupledBody> body;
-    if (surfaces) {
+    if (!model->settings().contacts) {
+      body = std::make_unique<FreeBody>(world, std::move(model), position);
+    } else if (surfaces) {
       const ContactModel& contact = surfaces->contact_model(model);
       auto with_surface =
           std::make_unique<SurfaceBody>(world, std::move(model), position, contact, next_number++);
@@ -116,7 +119,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 
   btDiscreteDynamicsWorld& world;
   std::vector<std::unique_ptr<CoupledBody>> bodies;
-  std::optional<SurfaceContacts> surfaces;  // of bodies that touch with their surfaces: all, or none
+  std::optional<SurfaceContacts>
+      surfaces;  // of bodies that touch with their surfaces: all that touch, or none
   std::vector<SurfaceBody*> with_surfaces;  // of `bodies`
   std::uint32_t next_number = 0;
   StepAhead<3> solve;  // of `bodies`

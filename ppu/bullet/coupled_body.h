@@ -1,6 +1,6 @@
 #pragma once
-// One soft body in a Bullet world, whatever it touches with: spheres (sphere_body.h) or its drawn surface
-// (surface_body.h).
+// One soft body in a Bullet world, whatever it touches with: spheres (sphere_body.h), its drawn surface
+// (surface_body.h) or nothing (free_body.h).
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 

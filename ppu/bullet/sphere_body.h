@@ -67,7 +67,7 @@ class SphereBody final : public CoupledBody {
 
   float reach() const override { return soft_.model().soft_contact_radius(); }
 
-  bool can_be_touched() const override { return !particles_.empty(); }
+  bool can_be_touched() const override { return true; }
 
   /// Whether particles are no longer as they were gathered last.
   bool was_pushed() const override {

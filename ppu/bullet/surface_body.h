@@ -51,12 +51,8 @@ class SurfaceBody final : public CoupledBody {
   /// Whether a rigid body that is awake lies on it: then it must go on holding it.
   void set_holds_a_moving_body(bool holds) { holds_a_moving_body_ = holds; }
 
-  bool can_be_touched() const override { return soft_.model().settings().contacts; }
-  Bounds<3> box() const override {
-    SC_ASSERT(can_be_touched(), "a body of {} particles that nothing touches has no box",
-              soft_.model().particles());
-    return soft_.bounds();
-  }
+  bool can_be_touched() const override { return true; }
+  Bounds<3> box() const override { return soft_.bounds(); }
   float reach() const override { return 0.1f * soft_.model().lattice().spacing; }
 
  private:

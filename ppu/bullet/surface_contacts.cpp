@@ -43,11 +43,8 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     in_stage = {&bodies[i]->soft(), &bodies[i]->contact(), box_of_step(bodies[i]->soft(), step),
                 std::move(in_stage.obstacles)};
     in_stage.obstacles.clear();
-    in_stage.touches = bodies[i]->can_be_touched();
-    if (in_stage.touches) {
-      obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
-                          in_stage.obstacles);
-    }
+    obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
+                        in_stage.obstacles);
     if (bodies[i]->soft().asleep() && any_near(in_stage, moves)) bodies[i]->rouse();
     in_stage.asleep = bodies[i]->soft().asleep();
     in_stage.moves = bodies[i]->moves();

@@ -1,6 +1,7 @@
 #include "ppu/contacts/contact_stage.h"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -62,9 +63,8 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
 
 /// Pairs of bodies whose boxes overlap, and folded bodies with themselves, in ascending order.
 void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
-  by_low_.clear();
-  for (std::uint32_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i].touches) by_low_.push_back(i);
+  by_low_.resize(bodies.size());
+  std::iota(by_low_.begin(), by_low_.end(), 0u);
   std::sort(by_low_.begin(), by_low_.end(), [&](std::uint32_t i, std::uint32_t j) {
     return std::pair(bodies_[i].box.low.x(), i) < std::pair(bodies_[j].box.low.x(), j);
   });

@@ -23,7 +23,6 @@ struct BodyInStage {
   const ContactModel* model = nullptr;
   Bounds<3> box = {};                         ///< box_of_step()
   std::vector<std::uint32_t> obstacles = {};  ///< indices of those that it may meet
-  bool touches = true;                        ///< false: it meets nothing
   bool asleep = false;                        ///< nothing moves it
   bool moves = true;                          ///< wakes those that sleep and touch it
   CollisionFilter filter = {};                ///< of other soft bodies
