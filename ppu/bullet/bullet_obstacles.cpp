@@ -173,7 +173,8 @@ void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
             [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
   for (const btBroadphaseProxy* const proxy : found_) {
     auto& object = *static_cast<btCollisionObject*>(proxy->m_clientObject);
-    if (overlap({to_eigen(proxy->m_aabbMin), to_eigen(proxy->m_aabbMax)}, box) && object.hasContactResponse())
+    const bool wanted = object.hasContactResponse() == (role_ == Objects::kSolid);
+    if (wanted && overlap({to_eigen(proxy->m_aabbMin), to_eigen(proxy->m_aabbMax)}, box))
       add_object(object, box, indices);
   }
 }

@@ -21,6 +21,13 @@ namespace softcell::ppu {
 /// height fields. Another convex shape becomes the hull of what its support function says in 42 directions.
 class BulletObstacles {
  public:
+  /// Which objects of the world.
+  enum class Objects {
+    kSolid,    ///< those that keep others out
+    kTriggers  ///< trigger volumes: objects that Bullet knows as without contact response
+  };
+  explicit BulletObstacles(Objects objects) : role_(objects) {}
+
   /// Forgets what was near before.
   void begin(const btDiscreteDynamicsWorld& world, float step);
 
@@ -57,6 +64,7 @@ class BulletObstacles {
   std::vector<Triangle>& more_triangles();
   void push(const Obstacle& obstacle, std::vector<std::uint32_t>& indices);
 
+  Objects role_;
   const btDiscreteDynamicsWorld* world_ = nullptr;
   float step_ = 0;
   std::vector<Obstacle> obstacles_;

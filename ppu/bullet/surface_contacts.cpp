@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "ppu/contacts/overlap.h"
+
 namespace softcell::ppu {
 namespace {
 
@@ -56,30 +58,64 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     if (stage_.was_woken(i)) bodies[i]->rouse();
     bodies[i]->set_holds_a_moving_body(any_near(in_stage_[i], is_awake));
   }
-  if (watches_) note_touches(bodies);
+  if (watches_) {
+    note_touches(bodies);
+    note_triggers(bodies, step);
+  }
   obstacles_.apply();
+}
+
+void SurfaceContacts::Touch::add(float impulse, float its_weight, const Eigen::Vector3f& point,
+                                 const Eigen::Vector3f& normal) {
+  if (!goes_on) event.impulse = 0, weight = 0, event.position.setZero(), event.normal.setZero();
+  goes_on = true;
+  event.impulse += impulse;
+  weight += its_weight;
+  event.position += its_weight * point;
+  event.normal += its_weight * normal;
+}
+
+/// @param other, object  one of them is null
+SurfaceContacts::Touch& SurfaceContacts::touch_of(const SurfaceBody& body, const SurfaceBody* other,
+                                                  const btCollisionObject* object) {
+  const int number =
+      object != nullptr ? object->getBroadphaseHandle()->m_uniqueId : static_cast<int>(other->number());
+  Touch& touch = touches_[{body.number(), object != nullptr, number}];
+  touch.event.body = &body.soft();
+  touch.event.other = other != nullptr ? &other->soft() : nullptr;
+  touch.event.object = object;
+  return touch;
 }
 
 void SurfaceContacts::note_touches(std::span<SurfaceBody* const> bodies) {
   pressing_.clear();
   stage_.append_contacts(pressing_);
   for (const PressingContact& contact : pressing_) {
-    const SurfaceBody& a = *bodies[contact.a];
-    const btCollisionObject* const object =
-        contact.with_rigid ? obstacles_.objects()[contact.rigid] : nullptr;
-    const SurfaceBody* const b = contact.with_rigid ? nullptr : bodies[contact.b];
-    const int other =
-        object != nullptr ? object->getBroadphaseHandle()->m_uniqueId : static_cast<int>(b->number());
-    Touch& touch = touches_[{a.number(), contact.with_rigid, other}];
-    touch.event.body = &a.soft();
-    touch.event.other = b != nullptr ? &b->soft() : nullptr;
-    touch.event.object = object;
-    if (!touch.presses) touch.event.impulse = 0, touch.event.position.setZero(), touch.event.normal.setZero();
-    touch.presses = true;
-    // Sums, which take_events() divides.
-    touch.event.impulse += contact.impulse;
-    touch.event.position += contact.impulse * contact.point;
-    touch.event.normal += contact.impulse * contact.normal;
+    Touch& touch = contact.with_rigid
+                       ? touch_of(*bodies[contact.a], nullptr, obstacles_.objects()[contact.rigid])
+                       : touch_of(*bodies[contact.a], bodies[contact.b], nullptr);
+    touch.is_trigger = false;
+    touch.add(contact.impulse, contact.impulse, contact.point, contact.normal);
+  }
+}
+
+/// Of bodies where the substep has moved them, also of those that sleep.
+void SurfaceContacts::note_triggers(std::span<SurfaceBody* const> bodies, float step) {
+  triggers_.begin(world_, step);
+  for (SurfaceBody* const body : bodies) {
+    const SoftBody<3>& soft = body->soft();
+    near_.clear();
+    triggers_.add_near(soft.bounds(), body->filter().group, body->filter().mask, near_);
+    if (near_.empty()) continue;
+    cells_.place(soft.model().lattice(), soft.positions());
+    for (const std::uint32_t trigger : near_) {
+      const Obstacle& volume = triggers_.obstacles()[trigger];
+      const auto overlap = find_overlap(soft, body->contact(), cells_, volume);
+      if (!overlap) continue;
+      Touch& touch = touch_of(*body, nullptr, triggers_.objects()[volume.rigid]);
+      touch.is_trigger = true;
+      touch.add(0, 1, overlap->point, overlap->normal);
+    }
   }
 }
 
@@ -100,32 +136,33 @@ void SurfaceContacts::forget(const SoftBody<3>& body) {
 }
 
 std::vector<ContactEvent> SurfaceContacts::take_events() {
-  // Contacts of those that sleep are not looked for, and go on.
+  // Contacts of those that sleep are not looked for, and go on; trigger volumes are.
   const auto sleeps = [](const Touch& touch) {
-    return touch.event.body->asleep() && (touch.event.other == nullptr || touch.event.other->asleep());
+    return !touch.is_trigger && touch.event.body->asleep() &&
+           (touch.event.other == nullptr || touch.event.other->asleep());
   };
   std::vector<ContactEvent> events;
   for (auto entry = touches_.begin(); entry != touches_.end();) {
     Touch& touch = entry->second;
-    if (!touch.is_over && !touch.presses && sleeps(touch)) {
+    if (!touch.is_over && !touch.goes_on && sleeps(touch)) {
       ++entry;
       continue;
     }
     ContactEvent& event = events.emplace_back(touch.event);
-    if (touch.is_over || !touch.presses) {
+    if (touch.is_over || !touch.goes_on) {
       event.kind = ContactEvent::Kind::kEnd;
       event.impulse = 0;
       entry = touches_.erase(entry);
       continue;
     }
     event.kind = touch.is_old ? ContactEvent::Kind::kPersist : ContactEvent::Kind::kBegin;
-    event.position /= event.impulse;
+    event.position /= touch.weight;
     event.normal = event.normal.norm() > 0 ? event.normal.normalized() : Eigen::Vector3f::UnitY();
-    // Where it ends is where it pressed last.
+    // Where it ends is where they touched last.
     touch.event.position = event.position;
     touch.event.normal = event.normal;
     touch.is_old = true;
-    touch.presses = false;
+    touch.goes_on = false;
     ++entry;
   }
   return events;

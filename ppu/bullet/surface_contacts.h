@@ -11,6 +11,7 @@
 
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_body.h"
+#include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_stage.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 
@@ -47,26 +48,36 @@ class SurfaceContacts {
   /// Two that touch, or did when events were taken last.
   struct Touch {
     ContactEvent event;
-    bool is_old = false;   ///< it was among those that were taken
-    bool presses = false;  ///< in a substep since then
-    bool is_over = false;  ///< one of them is gone
+    bool is_trigger = false;  ///< the object is a trigger volume
+    bool is_old = false;      ///< it was among those that were taken
+    bool goes_on = false;     ///< they touched in a substep since then
+    bool is_over = false;     ///< one of them is gone
+    float weight = 0;         ///< of the sums since then: position and normal are not divided by it yet
+
+    void add(float impulse, float its_weight, const Eigen::Vector3f& point, const Eigen::Vector3f& normal);
   };
   /// A soft body's number, whether the other one is a collision object, and that one's number: in an order that does not depend on addresses.
   using TouchKey = std::tuple<std::uint32_t, bool, int>;
 
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
+  Touch& touch_of(const SurfaceBody& body, const SurfaceBody* other, const btCollisionObject* object);
   void note_touches(std::span<SurfaceBody* const> bodies);
+  void note_triggers(std::span<SurfaceBody* const> bodies, float step);
 
   btDiscreteDynamicsWorld& world_;
   std::shared_ptr<ContactWorker> worker_;
   std::map<const SoftBodyModel<3>*, std::unique_ptr<ContactModel>> models_;
-  BulletObstacles obstacles_;
+  BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
   bool watches_ = false;
   std::map<TouchKey, Touch> touches_;
-  std::vector<PressingContact> pressing_;  // of a substep, while events are kept
+  // While events are kept, in each substep:
+  std::vector<PressingContact> pressing_;
+  BulletObstacles triggers_{BulletObstacles::Objects::kTriggers};
+  std::vector<std::uint32_t> near_;  // triggers_ near a body
+  CellFinder cells_;                 // of a body near one
 };
 
 }  // namespace softcell::ppu

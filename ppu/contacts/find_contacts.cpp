@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "ppu/contacts/edge_points.h"
 #include "ppu/contacts/triangle_distance.h"
-#include "ppu/contacts/way_in_box.h"
 
 namespace softcell::ppu {
 namespace {
@@ -17,8 +17,7 @@ using Eigen::Vector3f;
 // In cells. What comes nearer than kNear in a substep is in contact. Ways are followed in steps, none below
 // kLeastStep.
 constexpr float kNear = 0.005f, kLeastStep = 0.02f;
-constexpr float kMostSteps = 256;          // of a way: what is faster goes in longer ones
-constexpr double kMostPointsOfEdge = 1e4;  // in a body that is stretched far
+constexpr float kMostSteps = 256;  // of a way: what is faster goes in longer ones
 // A point so near behind a triangle, in cells, has been pressed through it.
 constexpr float kPressedThrough = 0.25f;
 constexpr float kEdgeSpacing = 0.5f;  // of points along an obstacle's edges
@@ -155,18 +154,8 @@ class ObstacleContacts {
   void try_edge(const ObstacleEdge& edge) {
     const Vector3f from = obstacle_.rotation * edge.from + obstacle_.position;
     const Vector3f along = obstacle_.rotation * (edge.to - edge.from);
-    // The part of the edge in the body's box, as shares of its length.
-    const auto [first, last] = way_in_box(body_.box, from, along);
-    if (first > last) return;
-    // Points stay where they are on the edge, however the body moves along it.
-    const float length = along.norm(), spacing = kEdgeSpacing * body_.spacing();
-    if (!(length > spacing)) return try_corner(from), try_corner(from + along);
-    const double step = double{spacing} / double{length};
-    const double begin = std::ceil(double{first} / step);
-    const int count =
-        static_cast<int>(std::min(kMostPointsOfEdge, std::floor(double{last} / step) - begin + 1));
-    for (int i = 0; i < count; ++i) try_corner(from + static_cast<float>((begin + i) * step) * along);
-    if (last == 1) try_corner(from + along);
+    for_each_point_of_edge(from, along, body_.box, kEdgeSpacing * body_.spacing(),
+                           [&](const Vector3f& point) { try_corner(point); });
   }
 
   void try_corner(const Vector3f& point) {

@@ -6,23 +6,23 @@
 //     world.stepSimulation(dt, max_substeps, fixed_step);      // as before
 //     draw(ball.positions());
 //
-// Each outer particle is a btRigidBody: a small sphere that cannot turn (one that rolls has no friction).
-// Bullet moves them and solves their contacts, with everything else in the world and with other soft bodies.
-// In every internal substep, before Bullet integrates, shape matching changes their velocities, with that
-// substep's length; positions are Bullet's own business, because moving a body spoils its contacts. Inner
-// particles, which nothing can touch, are integrated here.
+// Bodies touch with what is drawn of them, rigid bodies and each other. In every internal substep, before Bullet integrates, shape
+// matching changes the velocities of their particles, with that substep's length; contacts are found and solved, which gives rigid
+// bodies their impulses; and the particles move. Bullet knows nothing of them:
 //
-//     substep:  [solver: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
+//     substep:  [solver: v] [v += h g] [contacts: v, rigid bodies] [x += h v] [Bullet: collide, solve, integrate]
 //
 // The thread that steps the world does the shape matching, unless the constructor is given somebody else:
 //
 //     SpeRuntime spes;                                         // spe_bodies/spe_runtime.h
 //     BulletSoftBodies soft_bodies(world, spes);               // SPEs do it
 //
-// That is so with ContactMethod::kSpheres. With ContactMethod::kSurface, the default, there are no such spheres:
-// bodies touch with what is drawn, and their particles are moved here, before Bullet integrates:
+// With ContactMethod::kSpheres, the way of 2008, each outer particle is a btRigidBody: a small sphere that cannot turn (one that rolls
+// has no friction). Bullet moves them and solves their contacts, with everything else in the world and with other soft bodies;
+// positions are Bullet's own business, because moving a body spoils its contacts. Inner particles, which nothing can touch, are
+// integrated here:
 //
-//     substep:  [solver: v] [v += h g] [contacts: v, rigid bodies] [x += h v] [Bullet: collide, solve, integrate]
+//     substep:  [solver: v] [Bullet: collide, solve, x += h v] [gather x v, inner x += h v]
 //
 // To draw a body's mesh: soft_bodies/skinned_mesh.h, or, by the SPEs, spe_bodies/spe_skinner.h.
 
@@ -54,7 +54,7 @@ struct SoftBodyTimes {
   }  ///< of the calling thread
 };
 
-/// A soft body touches something, as BulletSoftBodies::take_contact_events() tells it: all contacts of the two together.
+/// A soft body touches something, or is in a trigger volume, as BulletSoftBodies::take_contact_events() tells it: all contacts of the two together.
 struct ContactEvent {
   /// Since when they touch.
   enum class Kind {
@@ -65,10 +65,15 @@ struct ContactEvent {
   Kind kind = Kind::kBegin;
   const SoftBody<3>* body = nullptr;
   const SoftBody<3>* other = nullptr;  ///< another soft body, or `body` itself, which is folded; else null
-  const btCollisionObject* object = nullptr;  ///< or something that Bullet knows
-  Eigen::Vector3f position{0, 0, 0};          ///< metres: the mean of where they press, by impulse
-  Eigen::Vector3f normal{0, 1, 0};            ///< unit length, from the other one to `body`
-  float impulse = 0;  ///< kg m/s along the contacts' normals, since events were taken last
+  const btCollisionObject* object =
+      nullptr;  ///< or something that Bullet knows; a trigger volume, if hasContactResponse() is false
+  Eigen::Vector3f position{
+      0, 0,
+      0};  ///< metres: the mean of where they press, by impulse; of a trigger volume, a point that both have in common
+  Eigen::Vector3f normal{
+      0, 1, 0};  ///< unit length, from the other one to `body`; of a trigger volume, the way out of it
+  float impulse =
+      0;  ///< kg m/s along the contacts' normals, since events were taken last; 0 of a trigger volume, which holds nothing
 };
 
 /// What a ray meets first.
@@ -146,6 +151,10 @@ class BulletSoftBodies {
   void watch_contacts(bool watch);
   /// What has begun, gone on or ended since the last call, an event for each two, in the order in which bodies were added. Of two that
   /// sleep on each other there are none until one wakes.
+  ///
+  /// A collision object or rigid body with btCollisionObject::CF_NO_CONTACT_RESPONSE, a btGhostObject for example, is a trigger volume:
+  /// nothing bounces off it, and the events say which bodies are in it, also of those that sleep. Its filter counts. One of triangles has
+  /// no inside: bodies are in it that it cuts.
   std::vector<ContactEvent> take_contact_events();
 
   /// The first point of a ray on the drawn surface of one of these bodies, from either side of it. Each body whose box the ray meets costs some

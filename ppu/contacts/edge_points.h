@@ -1,0 +1,33 @@
+#pragma once
+// Points along an edge of an obstacle, in a box.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "ppu/contacts/way_in_box.h"
+
+namespace softcell::ppu {
+
+/// Calls work(point) for points at most `spacing` metres apart on the edge from `from` to `from + along`, those in the box and perhaps
+/// a few beside it; for both ends of an edge that is no longer than that. Points stay where they are on the edge, however the box moves.
+template <typename Work>
+void for_each_point_of_edge(const Eigen::Vector3f& from, const Eigen::Vector3f& along, const Bounds<3>& box,
+                            float spacing, const Work& work) {
+  constexpr double kMostPoints = 1e4;  // in a body that is stretched far
+  const auto [first, last] = way_in_box(box, from, along);
+  if (first > last) return;
+  const float length = along.norm();
+  if (!(length > spacing)) {
+    work(from);
+    work(from + along);
+    return;
+  }
+  const double step = double{spacing} / double{length};
+  const double begin = std::ceil(double{first} / step);
+  const int count = static_cast<int>(std::min(kMostPoints, std::floor(double{last} / step) - begin + 1));
+  for (int i = 0; i < count; ++i) work(from + static_cast<float>((begin + i) * step) * along);
+  if (last == 1) work(from + along);
+}
+
+}  // namespace softcell::ppu
