@@ -9,6 +9,9 @@
 
 namespace softcell::ppu {
 
+/// Cells between points along an obstacle's edges.
+inline constexpr float kEdgeSpacing = 0.5f;
+
 /// Calls work(point) for points at most `spacing` metres apart on the edge from `from` to `from + along`, those in the box and perhaps
 /// a few beside it; for both ends of an edge that is no longer than that. Points stay where they are on the edge, however the box moves.
 template <typename Work>

@@ -20,7 +20,6 @@ constexpr float kNear = 0.005f, kLeastStep = 0.02f;
 constexpr float kMostSteps = 256;  // of a way: what is faster goes in longer ones
 // A point so near behind a triangle, in cells, has been pressed through it.
 constexpr float kPressedThrough = 0.25f;
-constexpr float kEdgeSpacing = 0.5f;  // of points along an obstacle's edges
 constexpr int kApartAtRest =
     3;  // a point never meets cells of its own body that are nearer at rest: their middles
 

@@ -13,8 +13,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kEdgeSpacing = 0.5f;  // cells: of points along an obstacle's edges
-
 class OverlapSearch {
  public:
   OverlapSearch(const SoftBody<3>& body, const ContactModel& model, const CellFinder& cells,
@@ -110,8 +108,8 @@ class OverlapSearch {
 
 }  // namespace
 
-std::optional<Overlap> find_overlap(const SoftBody<3>& body, const ContactModel& model, const CellFinder& cells,
-                                    const Obstacle& obstacle) {
+std::optional<Overlap> find_overlap(const SoftBody<3>& body, const ContactModel& model,
+                                    const CellFinder& cells, const Obstacle& obstacle) {
   SC_ASSERT(&body.model() == model.model.get(), "a body of {} particles with the surface of another model",
             body.positions().size());
   return OverlapSearch(body, model, cells, obstacle).find();

@@ -49,12 +49,12 @@ struct SoftBodyTimes {
   std::chrono::nanoseconds contacts{0};  ///< processor time of contacts of surfaces
   std::chrono::nanoseconds wait{0};  ///< by the clock, until the solver had finished; no work for this thread
 
-  std::chrono::nanoseconds processor() const {
-    return gather + solve + apply + contacts;
-  }  ///< of the calling thread
+  /// Of the calling thread.
+  std::chrono::nanoseconds processor() const { return gather + solve + apply + contacts; }
 };
 
-/// A soft body touches something, or is in a trigger volume, as BulletSoftBodies::take_contact_events() tells it: all contacts of the two together.
+/// A soft body touches something, or is in a trigger volume: all contacts of the two together, as BulletSoftBodies::take_contact_events()
+/// returns them.
 struct ContactEvent {
   /// Since when they touch.
   enum class Kind {
@@ -64,16 +64,16 @@ struct ContactEvent {
   };
   Kind kind = Kind::kBegin;
   const SoftBody<3>* body = nullptr;
-  const SoftBody<3>* other = nullptr;  ///< another soft body, or `body` itself, which is folded; else null
-  const btCollisionObject* object =
-      nullptr;  ///< or something that Bullet knows; a trigger volume, if hasContactResponse() is false
-  Eigen::Vector3f position{
-      0, 0,
-      0};  ///< metres: the mean of where they press, by impulse; of a trigger volume, a point that both have in common
-  Eigen::Vector3f normal{
-      0, 1, 0};  ///< unit length, from the other one to `body`; of a trigger volume, the way out of it
-  float impulse =
-      0;  ///< kg m/s along the contacts' normals, since events were taken last; 0 of a trigger volume, which holds nothing
+  /// Another soft body, or `body` itself, which is folded; else null.
+  const SoftBody<3>* other = nullptr;
+  /// Or something that Bullet knows; a trigger volume, if hasContactResponse() is false.
+  const btCollisionObject* object = nullptr;
+  /// Metres: the mean of where they press, by impulse; of a trigger volume, a point that both have in common.
+  Eigen::Vector3f position{0, 0, 0};
+  /// Unit length, from the other one to `body`; of a trigger volume, the way out of it.
+  Eigen::Vector3f normal{0, 1, 0};
+  /// kg m/s along the contacts' normals, since events were taken last; 0 of a trigger volume, which holds nothing.
+  float impulse = 0;
 };
 
 /// What a ray meets first.
