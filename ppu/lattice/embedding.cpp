@@ -169,8 +169,8 @@ Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
         ++used;
       }
       SC_ASSERT(used > 0, "group {} of cell {} has no vertex", number, cell);
-      const std::uint32_t vertex =
-          order[next + used - 1];  // a group that is not full repeats its last vertex
+      // A group that is not full repeats its last vertex.
+      const std::uint32_t vertex = order[next + used - 1];
       embedding.vertex_of_slot.push_back(vertex);
       set_lane(group, lane, places[vertex].xi, mesh.normals[vertex]);
     }

@@ -19,23 +19,24 @@ constexpr unsigned int kFlags = SPE_CFG_SIGNOTIFY1_OR | SPE_CFG_SIGNOTIFY2_OR | 
 constexpr int kMostNeighbours = 2;
 
 /// @return  null, with errno set.
-spe_context_ptr_t refuse(int error) {
+spe_context_ptr_t no_context(int error) {
   errno = error;
   return nullptr;
 }
 
 spe_context_ptr_t create(unsigned int flags, spe_context* neighbour, std::shared_ptr<spe_gang_context> gang) {
-  if ((flags & ~kFlags) != 0) return refuse(EINVAL);
-  if ((flags & kIsolation) != 0) return refuse(ENODEV);
-  if (neighbour != nullptr && neighbour->neighbours >= kMostNeighbours) return refuse(EEXIST);
+  if ((flags & ~kFlags) != 0) return no_context(EINVAL);
+  if ((flags & kIsolation) != 0) return no_context(ENODEV);
+  if (neighbour != nullptr && neighbour->neighbours >= kMostNeighbours) return no_context(EEXIST);
   auto context = std::make_shared<spe_context>(flags);
   context->spe = Machine::get().contexts().create();
-  if (context->spe == nullptr) return refuse(ENOMEM);
+  if (context->spe == nullptr) return no_context(ENOMEM);
   using softcell::ls_sim::SignalMode;
   if ((flags & SPE_CFG_SIGNOTIFY1_OR) != 0) context->problem_state().set_signal_mode(1, SignalMode::kOr);
   if ((flags & SPE_CFG_SIGNOTIFY2_OR) != 0) context->problem_state().set_signal_mode(2, SignalMode::kOr);
   if (gang != nullptr) {
-    if ((flags & SPE_AFFINITY_MEMORY) != 0 && gang->has_memory_affinity.exchange(true)) return refuse(EEXIST);
+    if ((flags & SPE_AFFINITY_MEMORY) != 0 && gang->has_memory_affinity.exchange(true))
+      return no_context(EEXIST);
     gang->contexts.fetch_add(1);
     context->gang = std::move(gang);
   }
@@ -60,7 +61,7 @@ spe_context_ptr_t spe_context_create(unsigned int flags, spe_gang_context_ptr_t 
   return shielded<spe_context_ptr_t>(nullptr, [&] {
     std::shared_ptr<spe_gang_context> with;
     if (gang != nullptr && (with = Objects<spe_gang_context>::all().find(gang)) == nullptr)
-      return refuse(ESRCH);
+      return no_context(ESRCH);
     return create(flags, nullptr, std::move(with));
   });
 }
@@ -68,14 +69,14 @@ spe_context_ptr_t spe_context_create(unsigned int flags, spe_gang_context_ptr_t 
 spe_context_ptr_t spe_context_create_affinity(unsigned int flags, spe_context_ptr_t affinity_neighbor,
                                               spe_gang_context_ptr_t gang) {
   return shielded<spe_context_ptr_t>(nullptr, [&] {
-    if (gang == nullptr) return refuse(EINVAL);
+    if (gang == nullptr) return no_context(EINVAL);
     auto with = Objects<spe_gang_context>::all().find(gang);
-    if (with == nullptr) return refuse(ESRCH);
+    if (with == nullptr) return no_context(ESRCH);
     std::shared_ptr<spe_context> neighbour;
     if (affinity_neighbor != nullptr) {
       neighbour = context_of(affinity_neighbor);
-      if (neighbour == nullptr) return refuse(ESRCH);
-      if (neighbour->gang != with) return refuse(EINVAL);
+      if (neighbour == nullptr) return no_context(ESRCH);
+      if (neighbour->gang != with) return no_context(EINVAL);
     }
     return create(flags, neighbour.get(), std::move(with));
   });

@@ -127,7 +127,7 @@ std::filesystem::path checked_file(const std::filesystem::path& file) {
   return file.parent_path() / (stem + ".checked" + name.substr(stem.size()));
 }
 
-spe_program_handle_t* refuse(int error) {
+spe_program_handle_t* no_program(int error) {
   errno = error;
   return nullptr;
 }
@@ -186,10 +186,10 @@ std::shared_ptr<const KernelImage> program_in_file(const std::string& path, std:
 
 spe_program_handle_t* spe_image_open(const char* filename) {
   return shielded<spe_program_handle_t*>(nullptr, [&] {
-    if (filename == nullptr) return refuse(EFAULT);
+    if (filename == nullptr) return no_program(EFAULT);
     auto program = std::make_shared<OpenedProgram>();
     auto bytes = read_file(filename);
-    if (!bytes) return refuse(errno);
+    if (!bytes) return no_program(errno);
     program->bytes = std::move(*bytes);
     program->name = program_name(filename);
     if (Machine::get().settings().checked) {
@@ -203,7 +203,7 @@ spe_program_handle_t* spe_image_open(const char* filename) {
         static_cast<void>(softcell::ls_sim::load_image(program->name, program->checked_bytes));
     } catch (const std::runtime_error& error) {
       Machine::complain(error.what());
-      return refuse(ENOEXEC);
+      return no_program(ENOEXEC);
     }
     program->handle = {
         .base = {.handle_size = sizeof(ProgramHandle),

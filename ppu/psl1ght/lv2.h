@@ -54,6 +54,8 @@ inline s32 result(std::uint32_t error) { return static_cast<s32>(error); }
 /// The most threads of a group, and SPUs of a program: those that the console leaves to games.
 inline constexpr u32 kMostSpus = 6;
 inline constexpr std::uint8_t kPorts = 64;
+/// The bits of an SPU's signal mode: each register overwrites, or ORs.
+inline constexpr u64 kSignalModes = SPU_SIGNAL1_OR | SPU_SIGNAL2_OR;
 
 struct Queue {
   const s32 type;

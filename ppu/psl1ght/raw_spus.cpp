@@ -27,7 +27,6 @@ constexpr u32 kClasses = 3, kClassOfMailboxes = 2;
 constexpr u64 kMailboxInterrupt = 1, kStopInterrupt = 2;
 // SPU_Status [CBEA] documented
 constexpr u32 kRunning = 1, kStopped = 2, kHalted = 4, kCodeShift = 16;
-constexpr u32 kSignalModes = SPU_SIGNAL1_OR | SPU_SIGNAL2_OR;
 
 /// @return  null: there is none with that number
 std::shared_ptr<RawSpu> find(u32 number) {

@@ -15,8 +15,6 @@ using softcell::ls_sim::EntryArguments;
 
 namespace {
 
-constexpr u64 kSignalModes = SPU_SIGNAL1_OR | SPU_SIGNAL2_OR;
-
 /// work(group, thread) of a thread that there is, with the lock.
 template <class Work>
 s32 with_thread(u32 number, Work&& work) {

@@ -297,8 +297,8 @@ TEST(Embedding, RefusesAVertexOutsideTheLattice) {
 }
 
 TEST(Embedding, EmbedsAMeshThatNobodyHereModelled) {
-  const std::filesystem::path bunny =
-      "/usr/share/glmark2/models/bunny.obj";  // Debian package glmark2-data, GPL-3+
+  // Debian package glmark2-data, GPL-3+.
+  const std::filesystem::path bunny = "/usr/share/glmark2/models/bunny.obj";
   if (!std::filesystem::exists(bunny)) GTEST_SKIP() << "install glmark2-data for " << bunny;
   TriangleMesh mesh = import_mesh(bunny);
   fit(mesh, 1);

@@ -117,8 +117,8 @@ class Matching : public ::testing::Test {
   static constexpr bool kFloat = sizeof(Real) == 4;
   static constexpr double kMomentum = kFloat ? 1e-5 : 1e-12;   // metres, or metres^2, per kilogram of body
   static constexpr double kRigid = kFloat ? 2e-6 : 1e-14 * 8;  // metres; bodies are about a metre long
-  static constexpr double kGoals =
-      kFloat ? 2e-5 : 1e-11;  // metres, where rotations come out of different sums
+  // Metres, where rotations come out of different sums.
+  static constexpr double kGoals = kFloat ? 2e-5 : 1e-11;
 };
 using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(Matching, Reals);
@@ -383,8 +383,8 @@ TYPED_TEST(Matching, CopiedStateContinuesWithTheSameBits) {
 
 TYPED_TEST(Matching, AfterResetNothingIsRemembered) {
   Body<TypeParam> body(test::block(4, 3, 2), 1), fresh(test::block(4, 3, 2), 1);
-  const auto flat =
-      moved(body.rest(), Vector3d(1, 0, 0).asDiagonal(), Vector3d::Zero());  // leaves the twist open
+  // Leaves the twist open.
+  const auto flat = moved(body.rest(), Vector3d(1, 0, 0).asDiagonal(), Vector3d::Zero());
   body.goals(moved(body.rest(), Random(30).rotation().toRotationMatrix(), {1, 2, 3}));
   EXPECT_GT(largest_difference(body.goals(flat), fresh.goals(flat)), 1e-4);
   body.matcher().reset();

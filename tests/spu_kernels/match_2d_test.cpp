@@ -172,8 +172,8 @@ void for_all_bodies(const Check& check) {
 
 Vectors zero(std::size_t count) { return Vectors(count, Vector2d::Zero()); }
 
-constexpr double kMomentum =
-    1e-5;                        // metres, or metres^2, per kilogram of body: bodies are about a metre long
+// Metres, or metres^2, per kilogram of body: bodies are about a metre long.
+constexpr double kMomentum = 1e-5;
 constexpr double kRigid = 3e-6;  // metres
 
 TEST(Match2d, IsItsScalarTwinBitForBit) {
@@ -498,8 +498,8 @@ TEST(Match2d, StiffnessOfABarPulledAtItsEndsIsTheFormula) {
     const double s = double{bar.lattice.spacing};
     const auto at = [&](std::size_t i) { return bar.lattice.particles[i].x(); };
     double line_density = total_mass(bar.masses) / (kCells * s);
-    const double force =
-        0.01 * line_density * ppu::specific_modulus(s, double{kStep}, 1, w);  // stretches by 1 %
+    // Stretches by 1 %.
+    const double force = 0.01 * line_density * ppu::specific_modulus(s, double{kStep}, 1, w);
     for (int step = 0; step < 6000; ++step) {
       bar.step({.pull = 1 / kStep, .damping = 0});
       for (std::size_t i = 0; i < bar.masses.size(); ++i) {

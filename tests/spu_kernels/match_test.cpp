@@ -171,8 +171,8 @@ void for_all_bodies(const Check& check) {
 
 Vectors zero(std::size_t count) { return Vectors(count, Vector3d::Zero()); }
 
-constexpr double kMomentum =
-    1e-5;                        // metres, or metres^2, per kilogram of body: bodies are about a metre long
+// Metres, or metres^2, per kilogram of body: bodies are about a metre long.
+constexpr double kMomentum = 1e-5;
 constexpr double kRigid = 3e-6;  // metres
 
 TEST(Match, KeepsLinearAndAngularMomentum) {

@@ -338,8 +338,8 @@ TEST(KernelRotation, IsContinuousThroughFlatAndInvertedShapes) {
       const double t = static_cast<double>(step) / kSteps;
       std::array<Matrix3d, 4> expected;
       for (std::size_t lane = 0; lane < 4; ++lane) {
-        const Matrix3d turned =
-            AngleAxisd(2 * t, axis[lane]).toRotationMatrix() * u[lane];  // 0.01 rad a step
+        // 0.01 rad a step.
+        const Matrix3d turned = AngleAxisd(2 * t, axis[lane]).toRotationMatrix() * u[lane];
         batch.a[lane] = turned * Vector3d(1, 0.8, 0.9 - 1.55 * t).asDiagonal() * v[lane].transpose();
         expected[lane] = turned * v[lane].transpose();
       }

@@ -24,8 +24,8 @@ constexpr std::size_t kMostDescriptors = 64;
 /// Opens what lies in a folder; the kernel refuses all that leads out of it.
 int open_beneath(int folder, const char* path, int flags, unsigned int mode) {
   open_how how{};
-  how.flags =
-      static_cast<unsigned int>(flags) | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;  // a pipe would wait for ever
+  // A pipe would wait for ever.
+  how.flags = static_cast<unsigned int>(flags) | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
   how.mode = (how.flags & O_CREAT) != 0 ? mode & 0666 : 0;
   how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS;
   return static_cast<int>(syscall(SYS_openat2, folder, path, &how, sizeof how));

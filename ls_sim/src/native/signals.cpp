@@ -43,8 +43,8 @@ constexpr greg_t kDirectionFlag = 0x400, kTrapFlag = 0x100;
 /// stack.
 void redirect_to_landing(const KernelContext& context, mcontext_t& machine) {
   machine.gregs[REG_RIP] = reinterpret_cast<greg_t>(&land);
-  machine.gregs[REG_RSP] =
-      static_cast<greg_t>(context.landing_stack_top - 8);   // as if called: 8 below a multiple of 16
+  // As if called: 8 below a multiple of 16.
+  machine.gregs[REG_RSP] = static_cast<greg_t>(context.landing_stack_top - 8);
   machine.gregs[REG_EFL] &= ~(kDirectionFlag | kTrapFlag);  // direction flag clear, as the ABI asks
 }
 

@@ -27,8 +27,8 @@ class Coverage final : public ls_sim::Debugger {
   /// By address.
   struct Counts {
     std::vector<std::uint64_t> executed = std::vector<std::uint64_t>(dma::kLocalStoreBytes);
-    std::vector<std::uint64_t> went_on =
-        std::vector<std::uint64_t>(dma::kLocalStoreBytes);  ///< with the next instruction
+    /// With the next instruction.
+    std::vector<std::uint64_t> went_on = std::vector<std::uint64_t>(dma::kLocalStoreBytes);
     std::uint32_t last = 0;
     std::uint32_t next = kNowhere;  ///< behind the last one
   };

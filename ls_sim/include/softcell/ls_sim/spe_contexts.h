@@ -35,8 +35,8 @@ struct ContextStop {
   /// Of a stop that asks the PPU side for a service (0x2100 to 0x21FF): what for, in the upper 8 bits, and the
   /// local-store address of the arguments. [libspe2, newlib] documented
   std::uint32_t assist = 0;
-  dma::LocalStoreAddress next =
-      {};  ///< where it would continue; also an address within a fault's instruction
+  /// Where it would continue; also an address within a fault's instruction.
+  dma::LocalStoreAddress next = {};
 };
 
 /// What a context's mailboxes hold, and whether it runs.
