@@ -30,6 +30,7 @@ void validate(const SoftBodySettings& s) {
   require(s.alpha >= 0 && s.alpha <= 1, "alpha", s.alpha, "from 0 to 1");
   require(s.damping >= 0 && s.damping <= 1, "damping", s.damping, "from 0 to 1");
   require(s.friction >= 0, "friction", s.friction, "0 or above");
+  require(s.restitution >= 0 && s.restitution <= 1, "restitution", s.restitution, "from 0 to 1");
   if (s.frequency) require(*s.frequency >= 0, "frequency", *s.frequency, "in hertz and 0 or above");
   if (s.damping_time)
     require(*s.damping_time >= 0, "damping_time", *s.damping_time, "in seconds and 0 or above");

@@ -38,6 +38,7 @@ void Box2dBody::add_particle(std::uint32_t number) {
   fixture.shape = &circle;
   fixture.density = 1;
   fixture.friction = soft_.model().settings().friction;
+  fixture.restitution = soft_.model().settings().restitution;
   fixture.restitution = 0;
   fixture.filter.groupIndex = group_;
   particle->CreateFixture(&fixture);

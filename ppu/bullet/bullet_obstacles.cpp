@@ -197,8 +197,10 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   const auto known = std::find(objects_.begin(), objects_.end(), &object);
   if (known != objects_.end()) return static_cast<std::uint32_t>(known - objects_.begin());
   ContactRigid rigid;
+  rigid.number = static_cast<std::uint32_t>(object.getBroadphaseHandle()->m_uniqueId);
   rigid.centre = to_eigen(object.getWorldTransform().getOrigin());
   rigid.friction = object.getFriction();
+  rigid.restitution = object.getRestitution();
   if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
     rigid.velocity = to_eigen(body->getLinearVelocity());
     rigid.spin = to_eigen(body->getAngularVelocity());

@@ -45,14 +45,16 @@ struct BulletWorld::Impl {
   }
 
   std::size_t add(std::unique_ptr<btCollisionShape> shape, float mass, const Eigen::Vector3f& position,
-                  float friction) {
-    SC_ASSERT(shape != nullptr && mass >= 0 && friction >= 0,
-              "rigid body {} has a mass of {} kg and friction {}", bodies.size(), mass, friction);
+                  float friction, float restitution) {
+    SC_ASSERT(shape != nullptr && mass >= 0 && friction >= 0 && restitution >= 0,
+              "rigid body {} has a mass of {} kg, friction {} and restitution {}", bodies.size(), mass,
+              friction, restitution);
     btVector3 inertia(0, 0, 0);
     if (mass > 0) shape->calculateLocalInertia(mass, inertia);
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape.get(), inertia);
     info.m_startWorldTransform.setOrigin(to_bullet(position));
     info.m_friction = friction;
+    info.m_restitution = restitution;
     auto body = std::make_unique<btRigidBody>(info);
     if (mass > 0) body->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(body.get());
@@ -73,21 +75,23 @@ BulletWorld::BulletWorld() : impl_(std::make_unique<Impl>()) {
 BulletWorld::~BulletWorld() = default;
 
 std::size_t BulletWorld::add_box(const Eigen::Vector3f& size, float mass, const Eigen::Vector3f& position,
-                                 float friction) {
+                                 float friction, float restitution) {
   if (!(size.minCoeff() > 0) || !(mass >= 0) || !(friction >= 0)) {
     throw std::invalid_argument("a box needs edges above 0, and a mass and friction of 0 or above");
   }
-  return impl_->add(std::make_unique<btBoxShape>(to_bullet(size / 2)), mass, position, friction);
+  if (!(restitution >= 0 && restitution <= 1))
+    throw std::invalid_argument("a box needs a restitution from 0 to 1");
+  return impl_->add(std::make_unique<btBoxShape>(to_bullet(size / 2)), mass, position, friction, restitution);
 }
 
-std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position,
-                                    float friction) {
+std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction,
+                                    float restitution) {
   if (mesh.positions.empty()) throw std::invalid_argument("a convex obstacle needs a mesh with positions");
   auto hull = std::make_unique<btConvexHullShape>();
   for (const Eigen::Vector3f& p : mesh.positions) hull->addPoint(to_bullet(p), false);
   hull->optimizeConvexHull();  // drops what lies inside: GJK looks at every point
   hull->recalcLocalAabb();
-  return impl_->add(std::move(hull), 0, position, friction);
+  return impl_->add(std::move(hull), 0, position, friction, restitution);
 }
 
 void BulletWorld::reset() {

@@ -34,13 +34,15 @@ class BulletWorld {
 
   /// @param size  edge lengths, positive    @param mass  kg; 0 for one that never moves
   /// @param position  of its centre         @param friction  coefficient, multiplied with the other body's
+  /// @param restitution  0..1, multiplied with the other body's
   /// @throws std::invalid_argument  not as stated.
   std::size_t add_box(const Eigen::Vector3f& size, float mass, const Eigen::Vector3f& position,
-                      float friction);
+                      float friction, float restitution = 0);
 
   /// The convex hull of a mesh, which never moves. Its mesh's origin lies at `position`.
   /// @throws std::invalid_argument  the mesh has no positions.
-  std::size_t add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction);
+  std::size_t add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction,
+                         float restitution = 0);
 
   /// Puts all rigid bodies back to where they were added, at rest, and forgets contacts.
   void reset();

@@ -136,7 +136,7 @@ class SphereBody final : public CoupledBody {
                                                   btVector3(0, 0, 0));
     info.m_startWorldTransform.setOrigin(to_bullet(soft_.position(number)));
     info.m_friction = soft_.model().settings().friction;
-    info.m_restitution = 0;
+    info.m_restitution = soft_.model().settings().restitution;
     info.m_linearDamping = 0;
     info.m_angularDamping = 0;
     SC_ASSERT(particles_.size() < particles_.capacity(),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ppu/bullet/bullet_vector.h"
 #include "ppu/contacts/overlap.h"
 
 namespace softcell::ppu {
@@ -53,6 +54,8 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     in_stage.filter = bodies[i]->filter();
     if (in_stage.asleep) in_stage.obstacles.clear();
   }
+  stage_.settings.bounces = {world_.getSolverInfo().m_restitutionVelocityThreshold,
+                             to_eigen(world_.getGravity())};
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (stage_.was_woken(i)) bodies[i]->rouse();

@@ -81,6 +81,7 @@ struct ContactBody {
   bool asleep = false;                         ///< nothing moves it
   std::span<const float> inverse_masses;       ///< 1/kg; 0 of a body that sleeps
   float friction = 0.5f;
+  float restitution = 0;
 
   float spacing() const { return model->model->lattice().spacing; }
   const Lattice<3>& lattice() const { return model->model->lattice(); }

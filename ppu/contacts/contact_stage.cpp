@@ -1,6 +1,7 @@
 #include "ppu/contacts/contact_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -50,6 +51,7 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     body.pushes.assign(body.velocities.size(), Vector3f::Zero());
     body.ends.resize(body.velocities.size());
     body.friction = soft.model().settings().friction;
+    body.restitution = soft.model().settings().restitution;
     body.box = bodies[i].box;
     body.asleep = bodies[i].asleep;
     body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())
@@ -157,6 +159,71 @@ void ContactStage::hand_to_worker(Group& group, std::span<const ContactRigid> ri
   group.by_worker = true;
 }
 
+/// Contacts of bodies with a restitution, whoever has found them. Two that pressed on each other in the last
+/// substep do not hit each other: what they do against each other is their deformation.
+void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
+  bounces_.clear();
+  for (std::size_t i = 0; i < group_count_; ++i) {
+    const Group& group = groups_[i];
+    const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
+    const bool itself = !group.with_rigid && group.a == group.b;
+    if (!(a.restitution > 0) || itself) continue;
+    BounceContact bounce{.a = group.a};
+    if (!group.with_rigid) bounce.b = group.b;
+    const auto add = [&](std::uint32_t other, const Vector3f& point, const Vector3f& normal,
+                         float least_velocity, float along, float friction, float restitution) {
+      const std::array<std::uint32_t, 3> pair{group.a, other, group.with_rigid};
+      if (!(restitution > 0) || std::binary_search(pressed_.begin(), pressed_.end(), pair)) return;
+      bounce.point = point, bounce.normal = normal;
+      bounce.gap = -step * least_velocity, bounce.approach = -along;
+      bounce.friction = friction, bounce.restitution = std::min(restitution, 1.0f);
+      bounces_.add(bounce);
+    };
+    // Those with rigid bodies were found here, also where the worker will solve them.
+    if (group.by_worker && !group.with_rigid) {
+      for (const spu::SolveContact& contact : group.solved.contacts) {
+        const Vector3f normal(contact.normal);
+        add(group.b, Vector3f(contact.point), normal, contact.least_velocity,
+            -normal.dot(Vector3f(contact.carried)), contact.friction, a.restitution * b.restitution);
+      }
+      continue;
+    }
+    for (const SoftContact& contact : group.contacts) {
+      Vector3f v = contact.a.of(a.velocities);
+      if (group.with_rigid) {
+        const ContactRigid& rigid = rigids[contact.rigid];
+        v -= rigid.velocity_at(contact.point);
+        bounce.rigid = contact.rigid;
+        add(rigid.number, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
+            contact.friction, a.restitution * rigid.restitution);
+      } else {
+        v -= contact.b.of(b.velocities);
+        add(group.b, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
+            contact.friction, a.restitution * b.restitution);
+      }
+    }
+  }
+  if (!bounces_.empty()) bounces_.solve(bodies_, rigids, settings.bounces, step);
+}
+
+/// For the bounces of the next substep.
+void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
+  pressed_.clear();
+  for (std::size_t i = 0; i < group_count_; ++i) {
+    const Group& group = groups_[i];
+    if (!(bodies_[group.a].restitution > 0)) continue;
+    const auto remember = [&](std::size_t c, float impulse) {
+      if (!(impulse > 0)) return;
+      const std::uint32_t other = group.with_rigid ? rigids[group.contacts[c].rigid].number : group.b;
+      if (pressed_.empty() || pressed_.back()[0] != group.a || pressed_.back()[1] != other)
+        pressed_.push_back({group.a, other, group.with_rigid});
+    };
+    for (std::size_t c = 0; c < group.size(); ++c)
+      remember(c, group.by_worker ? group.solved.contacts[c].impulse : group.contacts[c].impulse);
+  }
+  std::sort(pressed_.begin(), pressed_.end());
+}
+
 void ContactStage::find_touched_cells() {
   touched_.resize(bodies_.size());
   for (auto& cells : touched_) cells.clear();
@@ -205,6 +272,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
     else
       solve_here(rigids, step);
   }
+  remember_who_presses(rigids);
   find_woken(bodies);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].asleep) continue;
@@ -224,6 +292,7 @@ void ContactStage::iterate_here(std::span<Group* const> groups, std::span<Contac
 
 /// In the order in which a worker would do it, and those that are left to this thread.
 void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
+  bounce(rigids, step);
   here_.clear();
   for (const std::uint32_t i : order_.order()) here_.push_back(&groups_[i]);
   add_rigid_groups(rigids);
@@ -290,6 +359,10 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
 /// What only this thread can solve comes behind what bodies do to each other, and before what nothing moves.
 void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
   for (std::size_t i = 0; i < group_count_; ++i) hand_to_worker(groups_[i], rigids, step);
+  bounce(rigids, step);
+  if (!bounces_.empty())
+    for (const std::uint32_t i : bounces_.changed())
+      if (worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
   here_.clear();
   for (const std::uint32_t i : order_.order())
     if (!groups_[i].by_worker) here_.push_back(&groups_[i]);

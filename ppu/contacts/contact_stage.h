@@ -2,11 +2,14 @@
 // The contacts of all soft bodies of a world in one substep.
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "ppu/contacts/bounces.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/contact_group.h"
 #include "ppu/contacts/contact_order.h"
@@ -42,6 +45,7 @@ struct ContactSettings {
   int rounds = 2;           ///< over all groups
   int iterations = 4;       ///< in a group, in a round
   float stiffening = 0.5f;  ///< 0..1: share of what corners of touched cells do against each other
+  BounceSettings bounces = {};
 };
 
 /// Around a body's particles and where they would be after `step` seconds.
@@ -87,6 +91,8 @@ class ContactStage {
   Group& next_group(std::uint32_t a, std::uint32_t b, bool with_rigid);
   void put_in_order();
   void hand_to_worker(Group& group, std::span<const ContactRigid> rigids, float step);
+  void bounce(std::span<ContactRigid> rigids, float step);
+  void remember_who_presses(std::span<const ContactRigid> rigids);
   void find_touched_cells();
   void stiffen_touched_cells();
   void solve_here(std::span<ContactRigid> rigids, float step);
@@ -111,7 +117,10 @@ class ContactStage {
   std::size_t pair_groups_ = 0;                      // of them
   ContactOrder order_;                               // of the former
   std::vector<std::vector<std::uint32_t>> touched_;  // of each body: cells, ascending
-  std::vector<Group*> here_;                         // solved here, among what the worker solves
+  Bounces bounces_;
+  std::vector<std::array<std::uint32_t, 3>>
+      pressed_;               // in the last substep: a, b or a rigid one's number, and which
+  std::vector<Group*> here_;  // solved here, among what the worker solves
   SolveStages stages_;
   std::vector<bool> woken_;
 };

@@ -80,6 +80,7 @@ pictures = [30, 2]
 [world]
 gravity = 3.5
 friction = 0.25
+restitution = 0.75
 substeps = 3
 contacts = "surface"
 frames = 40
@@ -95,6 +96,7 @@ density = 100
 frequency = 4
 damping_time = 0.5
 friction = 0.1
+restitution = 0.5
 [[box]]
 size = [1, 2, 3]
 mass = 4
@@ -147,6 +149,7 @@ begin = 2
   EXPECT_EQ(scene.pictures, (std::vector<int>{2, 30}));
   EXPECT_EQ(scene.gravity, 3.5f);
   EXPECT_EQ(scene.friction, 0.25f);
+  EXPECT_EQ(scene.restitution, 0.75f);
   EXPECT_EQ(scene.substeps, 3);
   EXPECT_EQ(scene.contacts, ppu::ContactMethod::kSurface);
   EXPECT_EQ(scene.frames, 40);
@@ -170,6 +173,7 @@ begin = 2
   EXPECT_EQ(body.settings.frequency, 4.0f);
   EXPECT_EQ(body.settings.damping_time, 0.5f);
   EXPECT_EQ(body.settings.friction, 0.1f);
+  EXPECT_EQ(body.settings.restitution, 0.5f);
   EXPECT_EQ(body.position, Eigen::Vector3f(3, 2.5f, 4));
   ASSERT_EQ(scene.script.impulses.size(), 1u);
   EXPECT_EQ(scene.script.impulses[0].velocity, Eigen::Vector3f(1, 2, 3));

@@ -45,6 +45,7 @@ TEST(SoftBodySettings, RefuseValuesOutOfTheirRangeByName) {
   EXPECT_NE(sentence([=](auto& s) { s.alpha = kNan; }).find("alpha is nan"), std::string::npos);
   EXPECT_NE(sentence([](auto& s) { s.damping = 2; }).find("damping is 2"), std::string::npos);
   EXPECT_NE(sentence([](auto& s) { s.friction = -1; }).find("friction is -1"), std::string::npos);
+  EXPECT_NE(sentence([](auto& s) { s.restitution = 2; }).find("restitution is 2"), std::string::npos);
   EXPECT_NE(sentence([](auto& s) { s.frequency = -1.0f; }).find("frequency is -1"), std::string::npos);
   EXPECT_NE(sentence([](auto& s) { s.damping_time = -1.0f; }).find("damping_time is -1"), std::string::npos);
 }

@@ -59,6 +59,7 @@ struct Scene2d {
   std::vector<RigidBody2d> rigid_bodies;  ///< the framework's walls first: left, right, bottom, top
   float gravity = 9.81f;                  ///< m/s^2, downwards
   float friction = 0.6f;
+  float restitution = 0;  ///< 0..1, of rigid bodies
   int substeps = 2;  ///< of a frame of 1/60 s
   int frames = 300;  ///< how long the scene is worth watching without a user
   Camera2d camera;

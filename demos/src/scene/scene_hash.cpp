@@ -62,9 +62,10 @@ class Hash {
     add(positions, triangles);  // all else is looks
   }
   void add(const ppu::SoftBodySettings& settings) {
-    const auto& [cell_size, half_width, density, alpha, damping, friction, contacts, frequency,
+    const auto& [cell_size, half_width, density, alpha, damping, friction, restitution, contacts, frequency,
                  damping_time] = settings;
     add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
+    add_unless(restitution, 0.0f);
     add_unless(contacts, true);
   }
   void add(const SoftBodyPlacement& body) {
@@ -102,19 +103,21 @@ class Hash {
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
-  const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps, contacts,
-               frames, camera, light, script, pictures, files] = scene;
+  const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, restitution, substeps,
+               contacts, frames, camera, light, script, pictures, files] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
+  hash.add_unless(restitution, 0.0f);
   hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
   return hash.value();
 }
 
 std::uint64_t scene_hash(const Scene2d& scene) {
-  const auto& [name, title, soft_bodies, rigid_bodies, gravity, friction, substeps, frames, camera, script,
-               pictures, files] = scene;
+  const auto& [name, title, soft_bodies, rigid_bodies, gravity, friction, restitution, substeps, frames,
+               camera, script, pictures, files] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
+  hash.add_unless(restitution, 0.0f);
   return hash.value();
 }
 

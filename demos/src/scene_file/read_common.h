@@ -59,6 +59,7 @@ void read_world(FieldReader& fields, SceneOf& scene) {
     FieldReader reader(*world, "world");
     reader.number("gravity", scene.gravity, kGravity)
         .number("friction", scene.friction, kAnyFriction)
+        .number("restitution", scene.restitution, kShare)
         .integer("substeps", scene.substeps, 1, kMaxSubsteps)
         .integer("frames", scene.frames, 1, kMaxFrames);
     if constexpr (requires { scene.contacts; }) {

@@ -50,7 +50,8 @@ void read_fields(FieldReader& fields, Material& material, Need cell_size) {
       .number("modulus", material.modulus, kModulus)
       .number("damping", s.damping, kShare)
       .number("damping_time", s.damping_time, kDampingTime)
-      .number("friction", s.friction, kFriction);
+      .number("friction", s.friction, kFriction)
+      .number("restitution", s.restitution, kShare);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ struct MakeShape {
   }
 };
 
-b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction) {
+b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction, float restitution) {
   b2BodyDef definition;
   definition.type = rigid.mass > 0 ? b2_dynamicBody : b2_staticBody;
   definition.position = to_box2d(rigid.position);
@@ -73,6 +73,7 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction)
   b2FixtureDef fixture;
   fixture.density = 1;
   fixture.friction = friction;
+  fixture.restitution = restitution;
   std::visit(MakeShape{*body, fixture}, rigid.shape);
   if (rigid.mass > 0) {
     b2MassData mass;
@@ -94,7 +95,7 @@ struct World {
     // A body that sleeps would not notice that gravity changes.
     world.SetAllowSleeping(false);
     for (const RigidBody2d& body : scene.rigid_bodies)
-      rigid_bodies.push_back(add_rigid_body(world, body, scene.friction));
+      rigid_bodies.push_back(add_rigid_body(world, body, scene.friction, scene.restitution));
     for (std::size_t i = 0; i < models.size(); ++i) soft_bodies.add(models[i], scene.soft_bodies[i].position);
   }
 

@@ -113,10 +113,10 @@ struct Simulation3d::State {
     }
     SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     for (const RigidBox& box : scene.boxes) {
-      boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction));
+      boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction, scene.restitution));
     }
     for (const Obstacle& obstacle : scene.obstacles)
-      world.add_convex(obstacle.mesh, obstacle.position, scene.friction);
+      world.add_convex(obstacle.mesh, obstacle.position, scene.friction, scene.restitution);
     const auto models = models_of(scene.soft_bodies);
     for (std::size_t i = 0; i < models.size(); ++i) {
       const SoftBodyPlacement& placement = scene.soft_bodies[i];

@@ -38,19 +38,20 @@ class ContactWorld {
 
   /// @param mass  kg; 0: it never moves
   btRigidBody& add(std::unique_ptr<btCollisionShape> shape, float mass, const Eigen::Vector3f& position,
-                   float friction = 1) {
+                   float friction = 1, float restitution = 0) {
     btVector3 inertia(0, 0, 0);
     if (mass > 0) shape->calculateLocalInertia(mass, inertia);
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape.get(), inertia);
     info.m_startWorldTransform.setOrigin(to_bullet(position));
     info.m_friction = friction;
+    info.m_restitution = restitution;
     shapes_.push_back(std::move(shape));
     rigid_.push_back(std::make_unique<btRigidBody>(info));
     world.addRigidBody(rigid_.back().get());
     return *rigid_.back();
   }
-  btRigidBody& add_floor(float friction = 1) {
-    return add(std::make_unique<btBoxShape>(btVector3(50, 1, 50)), 0, {0, -1, 0}, friction);
+  btRigidBody& add_floor(float friction = 1, float restitution = 0) {
+    return add(std::make_unique<btBoxShape>(btVector3(50, 1, 50)), 0, {0, -1, 0}, friction, restitution);
   }
 
   SoftBody<3>& add(const TriangleMesh& mesh, const SoftBodySettings& settings,

@@ -16,7 +16,10 @@ struct SoftBodySettings {
   float alpha = 0.5f;     ///< 0..1: the share of the way to its goal that a particle makes up for in one step
   float damping = 0.05f;  ///< 0..1: the share of the deviation from rigid motion taken away in one step
   float friction = 0.6f;  ///< coefficient of the particles; Bullet multiplies it with the other body's
-  bool contacts = true;   ///< false: nothing touches the body, whose particles then are all inner ones
+  float restitution =
+      0;                 ///< 0..1: share of its speed with which the body as a whole leaves what it hits; the
+                         ///< engine combines it with the other body's: Bullet by product, Box2D by maximum
+  bool contacts = true;  ///< false: nothing touches the body, whose particles then are all inner ones
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
   std::optional<float> damping_time = {};  ///< s, in place of damping: deviations fall to 1/e in this time
 

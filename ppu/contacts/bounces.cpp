@@ -1,0 +1,238 @@
+#include "ppu/contacts/bounces.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr int kIterations = 40;  // over the contacts of one substep that bounce: few bodies bounce at a time
+// Bodies that gravity makes this many times as fast in one substep rest on each other, they do not hit.
+constexpr double kRestingSteps = 2;
+// In cells: what is no farther apart when a body first touches something touches, too.
+constexpr float kTouches = 0.02f;
+
+void insert(std::vector<std::uint32_t>& ascending, std::uint32_t number) {
+  const auto at = std::lower_bound(ascending.begin(), ascending.end(), number);
+  if (at == ascending.end() || *at != number) ascending.insert(at, number);
+}
+
+std::size_t index_in(std::span<const std::uint32_t> ascending, std::uint32_t number) {
+  const auto at = std::lower_bound(ascending.begin(), ascending.end(), number);
+  SC_ASSERT(at != ascending.end() && *at == number, "body {} is none of {} that bounce", number,
+            ascending.size());
+  return static_cast<std::size_t>(at - ascending.begin());
+}
+
+/// Of the substep, until the two surfaces of a contact touch.
+float share_until_touch(const BounceContact& contact, float step) {
+  return std::min(contact.gap / (step * contact.approach), 1.0f);
+}
+
+}  // namespace
+
+double Bounces::Whole::mobility(const Vector3d& point, const Vector3d& direction) const {
+  if (inverse_mass == 0) return 0;
+  const Vector3d turn = (point - centre).cross(direction);
+  return inverse_mass + turn.dot(inverse_inertia * turn);
+}
+
+void Bounces::Whole::push(const Vector3d& point, const Vector3d& impulse) {
+  if (inverse_mass == 0) return;
+  velocity += inverse_mass * impulse;
+  spin += inverse_inertia * Vector3d(point - centre).cross(impulse);
+}
+
+/// @param time  seconds after the substep's beginning
+Bounces::Whole Bounces::whole_of(const ContactBody& body, double time) {
+  const std::span<const float> masses = body.model->model->masses();
+  const auto place = [&](std::size_t p) -> Vector3d {
+    return body.positions[p].cast<double>() + time * body.velocities[p].cast<double>();
+  };
+  Whole whole;
+  double mass = 0;
+  for (std::size_t p = 0; p < masses.size(); ++p) {
+    mass += double{masses[p]};
+    whole.centre += double{masses[p]} * place(p);
+    whole.velocity += double{masses[p]} * body.velocities[p].cast<double>();
+  }
+  whole.centre /= mass;
+  whole.velocity /= mass;
+  Matrix3d inertia = Matrix3d::Zero();
+  Vector3d spin = Vector3d::Zero();
+  for (std::size_t p = 0; p < masses.size(); ++p) {
+    const Vector3d r = place(p) - whole.centre;
+    spin += double{masses[p]} * r.cross(body.velocities[p].cast<double>());
+    inertia += double{masses[p]} * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
+  }
+  // A body that is pressed to a line cannot turn about it.
+  inertia.diagonal().array() += 1e-9 * inertia.trace();
+  const Matrix3d inverse = inertia.inverse();
+  whole.spin = inverse * spin;
+  if (!body.asleep) {
+    whole.inverse_mass = 1 / mass;
+    whole.inverse_inertia = inverse;
+  }
+  whole.velocity_before = whole.velocity;
+  whole.spin_before = whole.spin;
+  return whole;
+}
+
+Bounces::Whole Bounces::whole_of(const ContactRigid& rigid) {
+  Whole whole;
+  whole.centre = rigid.centre.cast<double>();
+  whole.velocity = whole.velocity_before = rigid.velocity.cast<double>();
+  whole.spin = whole.spin_before = rigid.spin.cast<double>();
+  whole.inverse_mass = double{rigid.inverse_mass};
+  whole.inverse_inertia = rigid.inverse_inertia.cast<double>();
+  return whole;
+}
+
+void Bounces::add(const BounceContact& contact) {
+  SC_ASSERT(contact.restitution > 0 && contact.restitution <= 1 && contact.gap >= 0,
+            "a bounce with restitution {} over {} m", contact.restitution, contact.gap);
+  contacts_.push_back(contact);
+}
+
+/// Which contacts may bounce, which bodies they have, and when these first touch.
+void Bounces::choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
+                     const BounceSettings& settings, float step) {
+  chosen_.clear(), changed_.clear(), rigids_.clear();
+  for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
+    const BounceContact& contact = contacts_[i];
+    if (!(contact.approach > settings.least_speed)) continue;
+    chosen_.push_back(i);
+    insert(changed_, contact.a);
+    if (contact.b != BounceContact::kNobody)
+      insert(changed_, contact.b);
+    else
+      insert(rigids_, contact.rigid);
+  }
+  share_.assign(changed_.size(), 1.0f);
+  for (const std::uint32_t i : chosen_) {
+    const BounceContact& contact = contacts_[i];
+    const float share = share_until_touch(contact, step);
+    float& of_a = share_[index_in(changed_, contact.a)];
+    of_a = std::min(of_a, share);
+    if (contact.b == BounceContact::kNobody) continue;
+    float& of_b = share_[index_in(changed_, contact.b)];
+    of_b = std::min(of_b, share);
+  }
+  wholes_.clear();
+  for (std::size_t i = 0; i < changed_.size(); ++i)
+    wholes_.push_back(whole_of(bodies[changed_[i]], double{share_[i]} * double{step}));
+  for (const std::uint32_t rigid : rigids_) wholes_.push_back(whole_of(rigids[rigid]));
+
+  bounces_.clear();
+  for (const std::uint32_t i : chosen_) {
+    const BounceContact& contact = contacts_[i];
+    const bool with_rigid = contact.b == BounceContact::kNobody;
+    Bounce bounce;
+    bounce.contact = i;
+    bounce.a = &wholes_[index_in(changed_, contact.a)];
+    bounce.b = &wholes_[with_rigid ? changed_.size() + index_in(rigids_, contact.rigid)
+                                   : index_in(changed_, contact.b)];
+    bounce.normal = contact.normal.cast<double>();
+    const auto waits = [&](std::uint32_t body) {
+      const float until_first = step * share_[index_in(changed_, body)];
+      return contact.gap - until_first * contact.approach > kTouches * bodies[body].spacing();
+    };
+    if (waits(contact.a) || (!with_rigid && waits(contact.b))) continue;
+    const double share = double{share_until_touch(contact, step)};
+    const Vector3d end = contact.point.cast<double>();
+    bounce.point = end - (1 - share) * double{step} * bounce.a->velocity_at(end);
+    // Velocities hold the gravity of the whole substep, but it acts before and after the bounce: a velocity of
+    // a substep is exact in its middle.
+    const auto falls = [](const Whole& whole) { return whole.inverse_mass > 0 ? 1.0 : 0.0; };
+    const double fall = (falls(*bounce.a) - falls(*bounce.b)) * double{step} *
+                        bounce.normal.dot(settings.gravity.cast<double>());
+    const double hits =
+        bounce.normal.dot(bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point)) +
+        fall * (share - 0.5);
+    if (!(-hits > std::max(double{settings.least_speed}, kRestingSteps * std::abs(fall)))) continue;
+    bounce.target = -double{contact.restitution} * hits + fall * (0.5 - share);
+    const double mobility =
+        bounce.a->mobility(bounce.point, bounce.normal) + bounce.b->mobility(bounce.point, bounce.normal);
+    if (!(mobility > 0)) continue;
+    bounce.mobility = mobility;
+    bounces_.push_back(bounce);
+  }
+}
+
+/// As contact_group.cpp does it for particles: an impulse along each normal, and friction by Coulomb's law.
+void Bounces::iterate() {
+  const auto apply = [](const Bounce& bounce, const Vector3d& impulse) {
+    bounce.a->push(bounce.point, impulse);
+    bounce.b->push(bounce.point, -impulse);
+  };
+  for (Bounce& bounce : bounces_) {
+    const auto velocity = [&]() -> Vector3d {
+      return bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point);
+    };
+    const double wanted = bounce.impulse + (bounce.target - bounce.normal.dot(velocity())) / bounce.mobility;
+    const double impulse = std::max(0.0, wanted);
+    apply(bounce, (impulse - bounce.impulse) * bounce.normal);
+    bounce.impulse = impulse;
+
+    const Vector3d v = velocity();
+    const Vector3d sliding = v - bounce.normal.dot(v) * bounce.normal;
+    const double speed = sliding.norm();
+    Vector3d friction = bounce.friction_impulse;
+    if (speed > 0) {
+      const Vector3d direction = sliding / speed;
+      friction -= sliding /
+                  (bounce.a->mobility(bounce.point, direction) + bounce.b->mobility(bounce.point, direction));
+    }
+    const double most = double{contacts_[bounce.contact].friction} * impulse;
+    const double length = friction.norm();
+    if (length > most) friction *= most / length;
+    apply(bounce, friction - bounce.friction_impulse);
+    bounce.friction_impulse = friction;
+  }
+}
+
+void Bounces::apply(std::span<ContactBody> bodies, std::span<ContactRigid> rigids, float step) const {
+  for (std::size_t i = 0; i < changed_.size(); ++i) {
+    const Whole& whole = wholes_[i];
+    ContactBody& body = bodies[changed_[i]];
+    const Vector3d change = whole.velocity - whole.velocity_before;
+    const Vector3d turn = whole.spin - whole.spin_before;
+    const double time = double{share_[i]} * double{step};
+    for (std::size_t p = 0; p < body.velocities.size(); ++p) {
+      const Vector3d touching = body.positions[p].cast<double>() + time * body.velocities[p].cast<double>();
+      const Vector3d by = change + turn.cross(touching - whole.centre);
+      const Vector3d velocity = body.velocities[p].cast<double>() + by;
+      body.velocities[p] = velocity.cast<float>();
+      body.pushes[p] -= (double{share_[i]} * by).cast<float>();
+    }
+  }
+  for (std::size_t i = 0; i < rigids_.size(); ++i) {
+    const Whole& whole = wholes_[changed_.size() + i];
+    rigids[rigids_[i]].velocity += (whole.velocity - whole.velocity_before).cast<float>();
+    rigids[rigids_[i]].spin += (whole.spin - whole.spin_before).cast<float>();
+  }
+}
+
+void Bounces::solve(std::span<ContactBody> bodies, std::span<ContactRigid> rigids,
+                    const BounceSettings& settings, float step) {
+  SC_ASSERT(step > 0, "a substep of {} s", step);
+  choose(bodies, rigids, settings, step);
+  if (bounces_.empty()) return changed_.clear();
+  for (int i = 0; i < kIterations; ++i) iterate();
+  apply(bodies, rigids, step);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < changed_.size(); ++i)
+    if (wholes_[i].velocity != wholes_[i].velocity_before || wholes_[i].spin != wholes_[i].spin_before)
+      changed_[kept++] = changed_[i];
+  changed_.resize(kept);
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,92 @@
+#pragma once
+// Restitution: a body that hits something fast enough leaves it as a rigid body would.
+//
+// Shape matching carries an impulse from the surface to the rest of a body one substep later, so a restitution of the
+// surface alone is lost inside the body. Bounces therefore change the rigid motion of whole bodies: six numbers
+// each. They come before the other contacts, which then find the bodies on their way back.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ppu/contacts/contact_body.h"
+#include "ppu/contacts/obstacle.h"
+
+namespace softcell::ppu {
+
+struct BounceSettings {
+  float least_speed = 0.2f;  ///< m/s: what hits more slowly does not bounce, so that it comes to rest
+  Eigen::Vector3f gravity{0, 0,
+                          0};  ///< m/s^2, of bodies and of rigid ones that move; velocities hold it already
+};
+
+/// A contact that bounces if it is fast enough.
+struct BounceContact {
+  static constexpr std::uint32_t kNobody = ~0u;
+  std::uint32_t a = 0, b = kNobody;  ///< bodies; b kNobody: `rigid`
+  std::uint32_t rigid = 0;
+  Eigen::Vector3f point{0, 0, 0};   ///< metres, of a at the substep's end if nothing touched
+  Eigen::Vector3f normal{0, 1, 0};  ///< from the other one to a
+  float gap = 0;                    ///< metres at the substep's beginning, not negative
+  float approach = 0;               ///< m/s, of the two surfaces against each other
+  float restitution = 0;            ///< above 0, at most 1
+  float friction = 0;
+};
+
+/// Used by one thread. Allocates when there are more contacts or bodies than ever before.
+class Bounces {
+ public:
+  void clear() { contacts_.clear(); }
+  void add(const BounceContact& contact);
+  bool empty() const { return contacts_.empty(); }
+
+  /// Changes the velocities of bodies that bounce, and their pushes: in this substep a body goes as far as it
+  /// touches with the velocity that it had, and the rest with the one that it gets. Momentum, angular momentum
+  /// and, but for what gravity does within the substep, energy of a restitution of 1 are kept.
+  void solve(std::span<ContactBody> bodies, std::span<ContactRigid> rigids, const BounceSettings& settings,
+             float step);
+
+  /// The bodies of the last solve() whose velocities have changed, ascending.
+  std::span<const std::uint32_t> changed() const { return changed_; }
+
+ private:
+  /// A body as if it were rigid, where it first touches.
+  struct Whole {
+    Eigen::Vector3d centre{0, 0, 0};
+    Eigen::Vector3d velocity{0, 0, 0}, spin{0, 0, 0};
+    Eigen::Vector3d velocity_before{0, 0, 0}, spin_before{0, 0, 0};
+    double inverse_mass = 0;
+    Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();
+
+    Eigen::Vector3d velocity_at(const Eigen::Vector3d& point) const {
+      return velocity + spin.cross(Eigen::Vector3d(point - centre));
+    }
+    double mobility(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
+    void push(const Eigen::Vector3d& point, const Eigen::Vector3d& impulse);
+  };
+  /// A contact on its way to be solved.
+  struct Bounce {
+    std::uint32_t contact = 0;
+    Whole *a = nullptr, *b = nullptr;
+    Eigen::Vector3d point{0, 0, 0}, normal{0, 1, 0};
+    double target = 0, mobility = 1, impulse = 0;
+    Eigen::Vector3d friction_impulse{0, 0, 0};
+  };
+
+  static Whole whole_of(const ContactBody& body, double time);
+  static Whole whole_of(const ContactRigid& rigid);
+  void choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
+              const BounceSettings& settings, float step);
+  void iterate();
+  void apply(std::span<ContactBody> bodies, std::span<ContactRigid> rigids, float step) const;
+
+  std::vector<BounceContact> contacts_;
+  std::vector<std::uint32_t> chosen_;            // of contacts_
+  std::vector<std::uint32_t> changed_, rigids_;  // that bounce, ascending
+  std::vector<float> share_;                     // of each of changed_: of the substep until it touches
+  std::vector<Whole> wholes_;                    // of changed_, then of rigids_
+  std::vector<Bounce> bounces_;
+};
+
+}  // namespace softcell::ppu
