@@ -87,7 +87,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
   if (group_count_ == groups_.size()) groups_.emplace_back();
   Group& group = groups_[group_count_++];
   group.a = a, group.b = b, group.with_rigid = with_rigid;
-  group.by_worker = false;
+  group.by_worker = group.heavy = false;
   group.contacts.clear();
   group.solved = {};
   return group;
@@ -286,7 +286,8 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
 void ContactStage::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
   for (Group* const group : groups) {
     const ContactSides sides{&bodies_[group->a], group->with_rigid ? nullptr : &bodies_[group->b], rigids};
-    for (int i = 0; i < settings.iterations; ++i) iterate(group->contacts, sides, step);
+    const int iterations = group->heavy ? settings.heavy_iterations : settings.iterations;
+    for (int i = 0; i < iterations; ++i) iterate(group->contacts, sides, step);
   }
 }
 
@@ -306,10 +307,18 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
 
 /// Rigid bodies that move before those that nothing moves.
 void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
+  const auto with_heavy = [&](const Group& group) {
+    return std::any_of(group.contacts.begin(), group.contacts.end(), [&](const SoftContact& contact) {
+      const float inverse_mass = rigids[contact.rigid].inverse_mass;
+      return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->model->mass() < 1;
+    });
+  };
   const auto with_moving = [&](const Group& group) {
     return std::any_of(group.contacts.begin(), group.contacts.end(),
                        [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; });
   };
+  for (std::size_t i = pair_groups_; i < group_count_; ++i)
+    groups_[i].heavy = !groups_[i].by_worker && with_heavy(groups_[i]);
   for (const bool moving : {true, false})
     for (std::size_t i = pair_groups_; i < group_count_; ++i)
       if (!groups_[i].by_worker && with_moving(groups_[i]) == moving) here_.push_back(&groups_[i]);

@@ -42,9 +42,10 @@ struct PressingContact {
 };
 
 struct ContactSettings {
-  int rounds = 2;           ///< over all groups
-  int iterations = 4;       ///< in a group, in a round
-  float stiffening = 0.5f;  ///< 0..1: share of what corners of touched cells do against each other
+  int rounds = 2;             ///< over all groups
+  int iterations = 4;         ///< in a group, in a round
+  int heavy_iterations = 16;  ///< likewise, of a body with a rigid one that outweighs it
+  float stiffening = 0.5f;    ///< 0..1: share of what corners of touched cells do against each other
   BounceSettings bounces = {};
 };
 
@@ -76,6 +77,7 @@ class ContactStage {
     std::uint32_t a = 0, b = 0;
     bool with_rigid = false;
     bool by_worker = false;             ///< he solves them: they are in `solved`
+    bool heavy = false;                 ///< solved here, with a rigid body that outweighs a
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
     std::size_t size() const { return by_worker ? solved.contacts.size() : contacts.size(); }

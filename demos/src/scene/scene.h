@@ -64,7 +64,7 @@ struct Scene {
   TiltScript tilt;
   float gravity = 9.81f;  ///< m/s^2
   float friction = 0.6f;
-  float restitution = 0;  ///< 0..1, of rigid bodies
+  float restitution = 0;                                       ///< 0..1, of rigid bodies
   int substeps = 2;                                            ///< of a frame of 1/60 s
   ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;  ///< unless the user wants another
   int frames = 300;  ///< how long the scene is worth watching without a user

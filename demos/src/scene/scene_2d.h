@@ -60,8 +60,8 @@ struct Scene2d {
   float gravity = 9.81f;                  ///< m/s^2, downwards
   float friction = 0.6f;
   float restitution = 0;  ///< 0..1, of rigid bodies
-  int substeps = 2;  ///< of a frame of 1/60 s
-  int frames = 300;  ///< how long the scene is worth watching without a user
+  int substeps = 2;       ///< of a frame of 1/60 s
+  int frames = 300;       ///< how long the scene is worth watching without a user
   Camera2d camera;
   ScriptedInput<2> script;
   std::vector<int> pictures;                 ///< frames worth a picture, ascending

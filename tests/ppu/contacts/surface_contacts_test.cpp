@@ -33,58 +33,6 @@ TEST(SurfaceContacts, WhatIsDrawnRestsOnWhatIsBelow) {
   }
 }
 
-/// The lowest that is drawn of a box that falls on a floor, over the whole run and at its end, in cells.
-std::pair<float, float> lowest_of_fall(float cell, float alpha, float gravity, int substeps, int frames) {
-  ContactWorld w({0, -gravity, 0});
-  w.add_floor();
-  const SoftBody<3>& body =
-      w.add(cube(10 * cell, cell), settings_of(cell, alpha, 0.05f), {0, 5.1f * cell, 0});
-  float lowest = 0;
-  for (int i = 0; i < frames; ++i) {
-    w.run(1, substeps);
-    lowest = std::min(lowest, ContactWorld::lowest_drawn(body) / cell);
-  }
-  float particle = 0;
-  for (const Vector3f& x : body.positions()) particle = std::min(particle, x.y() / cell);
-  return {lowest, particle};
-}
-
-TEST(SurfaceContacts, TheInsideOfAVerySoftBodyStaysAboveTheFloor) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
-  const auto [in_run, at_end] = lowest_of_fall(0.1f, 0.02f, 9.81f, 2, 295);
-  EXPECT_GT(in_run, -0.3f);
-  EXPECT_GT(at_end, -0.1f);
-}
-
-TEST(SurfaceContacts, StrongGravityAndOneSubstepTearNothing) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
-  const auto [in_run, at_end] = lowest_of_fall(0.05f, 0.3f, 300, 1, 299);
-  EXPECT_GT(in_run, -0.3f);
-  EXPECT_GT(at_end, -0.1f);
-}
-
-/// How far, in metres, a block slides down a slope in 1.5 s, the first half second apart.
-float slide(float slope, float friction, int frames_before = 30) {
-  constexpr float kCell = 0.1f;
-  ContactWorld w({9.81f * std::sin(slope), -9.81f * std::cos(slope), 0});
-  w.add_floor(friction / 0.6f);
-  SoftBody<3>& body = w.add(make_box({1, 0.5f, 1}, kCell), settings_of(kCell, 0.7f, 0.3f), {0, 0.252f, 0});
-  w.run(frames_before);
-  const float x = body.centre_of_mass().x(), v = body.linear_momentum().x() / body.model().mass();
-  w.run(60);
-  return body.centre_of_mass().x() - x - v;
-}
-
-TEST(SurfaceContacts, ABlockSticksOrSlidesAsItsFrictionSays) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
-  constexpr float kFriction = 0.5f;
-  EXPECT_NEAR(slide(std::atan(0.97f * kFriction), kFriction, 240), 0, 0.005f);
-  for (const float slope : {0.6f, 0.8f}) {
-    const float acceleration = 9.81f * (std::sin(slope) - kFriction * std::cos(slope));
-    EXPECT_NEAR(slide(slope, kFriction), acceleration / 2, 0.03f * acceleration / 2) << slope;
-  }
-}
-
 TEST(SurfaceContacts, NothingPassesAThinWall) {
   constexpr float kCell = 0.1f;
   for (const float speed : {5.0f, 20.0f, 100.0f}) {
@@ -201,23 +149,6 @@ TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
       if (i % 6 != 0) continue;
       ASSERT_LT(ContactWorld::depth_in_drawn(body, thing.tip), 1.5f * kCell) << thing.name << ' ' << i;
     }
-  }
-}
-
-TEST(SurfaceContacts, TheSameAtEveryScale) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
-  std::vector<Vector3f> shape;
-  for (const float cell : {0.001f, 0.1f, 100.0f}) {
-    const float scale = cell / 0.1f;
-    ContactWorld w({0, -9.81f * scale, 0});
-    w.add(std::make_unique<btBoxShape>(btVector3(10 * scale, scale, 10 * scale)), 0, {0, -scale, 0});
-    const SoftBody<3>& body = w.add(cube(8 * cell, cell), settings_of(cell, 0.5f, 0.3f), {0, 5 * cell, 0});
-    w.run(240);
-    std::vector<Vector3f> here;
-    for (const Vector3f& p : ContactWorld::drawn(body)) here.push_back(p / cell);
-    if (shape.empty()) shape = here;
-    for (std::size_t i = 0; i < here.size(); ++i)
-      ASSERT_LT((here[i] - shape[i]).norm(), 0.08f) << cell << " m, vertex " << i;
   }
 }
 

@@ -1,0 +1,72 @@
+// Rigid bodies heavier than the soft ones that they lie on or hit.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "contact_world.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr float kCube = 0.15f;  // of the lattice, metres
+
+/// Seconds that the box lies there: SOFTCELL_HEAVY_SECONDS, 600 where nobody waits.
+int seconds_at_rest() {
+  const char* const text = std::getenv("SOFTCELL_HEAVY_SECONDS");
+  return text != nullptr ? std::atoi(text) : 20;
+}
+
+TEST(HeavyBody, OfTenTimesItsMassRestsOnASoftOneForGood) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  for (const float alpha : {0.5f, 1.0f}) {
+    ContactWorld w;
+    w.add_floor();
+    const SoftBody<3>& body = w.add(make_box({5 * kCube, 2 * kCube, 5 * kCube}, kCube),
+                                    settings_of(kCube, alpha, 0.3f), {0, kCube, 0});
+    btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(2 * kCube, 0.2f, 2 * kCube)),
+                             10 * body.model().mass(), {0, 2 * kCube + 0.21f, 0});
+    const auto place = [&] { return to_eigen(box.getWorldTransform().getOrigin()); };
+    w.run(20 * 60);
+    const Vector3f at_rest = place();
+    EXPECT_GT(at_rest.y() - 0.2f, 0.8f * kCube) << "it is carried, not let through, at alpha " << alpha;
+    for (int second = 0; second < seconds_at_rest(); ++second) {
+      w.run(60);
+      ASSERT_LT((place() - at_rest).norm(), 0.01f * kCube) << second << " s, at alpha " << alpha;
+    }
+    EXPECT_LT(box.getLinearVelocity().length(), 0.001f);
+    EXPECT_LT(ContactWorld::fastest(body), 0.01f);
+  }
+}
+
+TEST(HeavyBody, OfTwiceItsMassIsStoppedByASoftWallAndMomentumIsKept) {
+  constexpr float kSpeed = 6;
+  ContactWorld w({0, 0, 0});
+  const SoftBody<3>& wall =
+      w.add(make_box({2 * kCube, 6 * kCube, 6 * kCube}, kCube), settings_of(kCube, 0.5f, 0.2f), {0, 0, 0});
+  const float mass = 2 * wall.model().mass();
+  btRigidBody& box =
+      w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), mass, {-1, 0.05f, 0.02f});
+  box.setLinearVelocity({kSpeed, 0, 0});
+  const auto momentum = [&] {
+    Vector3d sum = double{mass} * to_eigen(box.getLinearVelocity()).cast<double>();
+    for (std::size_t i = 0; i < wall.velocities().size(); ++i)
+      sum += double{wall.model().masses()[i]} * wall.velocities()[i].cast<double>();
+    return sum;
+  };
+  for (int frame = 0; frame < 120; ++frame) {
+    w.run(1);
+    ASSERT_LT(box.getWorldTransform().getOrigin().x(), wall.centre_of_mass().x()) << "it is through";
+    ASSERT_LT((momentum() - Vector3d(mass * kSpeed, 0, 0)).norm(), 1e-5 * double{mass} * kSpeed) << frame;
+  }
+  // Both move on together, or apart: the box has two thirds of the mass.
+  EXPECT_LT(box.getLinearVelocity().x(), wall.linear_momentum().x() / wall.model().mass() + 0.01f);
+  EXPECT_LT(box.getLinearVelocity().x(), 0.68f * kSpeed);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
