@@ -2,6 +2,7 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -114,7 +115,28 @@ Eigen::Matrix4f BulletWorld::pose(std::size_t body) const {
   return pose;
 }
 
+btRigidBody& BulletWorld::rigid_body(std::size_t body) { return *impl_->bodies.at(body).body; }
+
 std::size_t BulletWorld::rigid_bodies() const { return impl_->bodies.size(); }
+
+std::vector<BulletWorld::RayHit> BulletWorld::cast_ray(const Eigen::Vector3f& from,
+                                                       const Eigen::Vector3f& to) const {
+  SC_ASSERT(from.allFinite() && to.allFinite() && from != to, "a ray from ({}, {}, {})", from.x(), from.y(),
+            from.z());
+  std::vector<RayHit> hits;
+  const btTransform begin(btQuaternion::getIdentity(), to_bullet(from));
+  const btTransform end(btQuaternion::getIdentity(), to_bullet(to));
+  for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
+    btRigidBody& body = *impl_->bodies[i].body;
+    btCollisionWorld::ClosestRayResultCallback nearest(to_bullet(from), to_bullet(to));
+    btCollisionWorld::rayTestSingle(begin, end, &body, body.getCollisionShape(), body.getWorldTransform(),
+                                    nearest);
+    if (nearest.hasHit())
+      hits.push_back({i, nearest.m_closestHitFraction, to_eigen(nearest.m_hitPointWorld)});
+  }
+  std::ranges::stable_sort(hits, {}, &RayHit::share);
+  return hits;
+}
 
 void BulletWorld::set_gravity(const Eigen::Vector3f& gravity) { impl_->world.setGravity(to_bullet(gravity)); }
 

@@ -10,6 +10,7 @@
 #include "softcell/soft_bodies/mesh.h"
 
 class btDiscreteDynamicsWorld;
+class btRigidBody;
 
 namespace softcell::ppu {
 
@@ -48,6 +49,7 @@ class BulletWorld {
   void reset();
 
   Eigen::Matrix4f pose(std::size_t body) const;  ///< from the body's frame to the world's
+  btRigidBody& rigid_body(std::size_t body);     ///< for what is not offered here
   std::size_t rigid_bodies() const;
 
   void set_gravity(const Eigen::Vector3f& gravity);  ///< m/s^2
@@ -60,6 +62,15 @@ class BulletWorld {
   /// Replaces what is in `contacts` by those of the last substep, soft bodies' particles included. Touching
   /// without pressing does not count.
   void contacts(std::vector<Contact>& contacts) const;
+
+  /// A rigid body on a ray.
+  struct RayHit {
+    std::size_t body = 0;
+    float share = 0;                    ///< 0..1, of the way
+    Eigen::Vector3f position{0, 0, 0};  ///< metres
+  };
+  /// Where a ray enters the rigid bodies on its way, the nearest first. @pre from and to are finite, metres, and differ
+  std::vector<RayHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
   /// For BulletSoftBodies, and for whatever is not offered here.
   btDiscreteDynamicsWorld& world();

@@ -94,6 +94,21 @@ finish
 for event in 'tilt 0 0 -0.35' 'push all 0 5 0' 'home all' 'pause'; do recorded "$event" play3; done
 same_again 3d play3
 
+# The mouse takes a body in three dimensions, lifts it, moves it away with the wheel, and throws it.
+start 3d --scene drop --record "$folder/hold.rec"
+shot demo3d_drop
+sleep 1
+xdotool mousemove --window "$window" 640 420 mousedown 1
+for y in 380 330 280 240; do xdotool mousemove --window "$window" 640 $y; sleep 0.1; done
+xdotool click 4
+sleep 0.5
+shot demo3d_held
+xdotool mousemove --window "$window" 500 200 mouseup 1
+sleep 0.2
+finish
+for event in 'hold user 0' 'move user' 'release user'; do recorded "$event" hold; done
+same_again 3d hold
+
 # On to the next scene, in a window of another size.
 start 3d --size 400x300
 xdotool key n

@@ -16,8 +16,9 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
   using Event = InputEvent<Dimension>;
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
   Event event;
-  // The last action, tilting, is for 3D.
-  event.action = static_cast<Action>(below(Dimension == 3 ? kActions : kActions - 1));
+  do {
+    event.action = static_cast<Action>(below(kActions));
+  } while (Dimension == 2 && (event.action == Action::kTilt || event.action == Action::kHold));
   const auto use_hand = [&] { event.hand = below(3) == 0 ? below(4) : kUsersHand; };
   const auto use_body = [&] { event.body = below(3) == 0 ? below(6) : kEveryBody; };
   const auto use_value = [&](float size) {
@@ -26,6 +27,8 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
   };
   switch (event.action) {
     case Action::kGrab:
+    case Action::kHold:
+    case Action::kHoldRigid:
       use_hand();
       use_body();
       use_value(3);

@@ -85,6 +85,27 @@ TEST(SceneGoldenViews, LookAsTheyDid) {
   }
 }
 
+TEST(SceneGoldenHands, LookAsTheyDid) {
+  const Scene scene = load_scene_3d("drop");
+  Simulation3d simulation(scene, {});
+  auto taken = simulation.touch({.from = {0.7f, 5, 0}, .along = {0, -1, 0}});
+  ASSERT_TRUE(taken);
+  taken->hand = kUsersHand;
+  simulation.step({&*taken, 1});
+  taken->action = Action::kMoveHand;
+  for (int frame = 0; frame < 40; ++frame) {
+    taken->value += Eigen::Vector3f(-0.01f, -0.008f, 0);
+    simulation.step({&*taken, 1});
+  }
+  taken->value += Eigen::Vector3f(0.25f, 0.25f, 0.2f);  // a jerk: the thread is seen
+  simulation.step({&*taken, 1});
+  simulation.finish();
+  const auto context = render::create_offscreen_context();
+  render::Renderer renderer(*context, {.width = 480, .height = 270});
+  SceneView view(scene, simulation, renderer, View::kMesh);
+  EXPECT_TRUE(test::compare_with_golden(view.draw(), "drop_hand"));
+}
+
 struct Moment2d {
   const char* scene;
   int frame;

@@ -2,6 +2,7 @@
 
 #include "simulation/simulation_2d.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -159,6 +160,44 @@ TEST(Simulation2d, AHandCarriesTheManAndThrowsHim) {
   simulation.step(std::vector<Event>{hand(Action::kRelease)});
   EXPECT_TRUE(simulation.held().empty());
   EXPECT_GT(simulation.soft_body(0).linear_momentum().x(), 0);
+}
+
+TEST(Simulation2d, AHandLiftsARigidBodyAndThrowsIt) {
+  const Scene2d scene = load_scene_2d("stack");
+  Simulation2d simulation(scene);
+  const auto is_box = [](const RigidBody2d& body) { return body.mass > 0; };
+  const auto box =
+      static_cast<std::size_t>(std::ranges::find_if(scene.rigid_bodies, is_box) - scene.rigid_bodies.begin());
+  const auto position = [&] { return simulation.rigid_pose(box).position; };
+  Vector2f at = position() + Vector2f(0.3f, 0.2f);
+  auto take = simulation.touch(at);
+  ASSERT_TRUE(take);
+  EXPECT_EQ(take->action, Action::kHoldRigid);
+  EXPECT_EQ(take->body, box);
+  take->hand = kUsersHand;
+  simulation.step(std::vector<Event>{*take});
+  const auto move = [&](const Vector2f& velocity, int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      at += velocity / 60;
+      simulation.step(std::vector<Event>{hand(Action::kMoveHand, at)});
+    }
+  };
+  move({0, 1.5f}, 30);
+  move({0, 0}, 90);
+  EXPECT_NEAR(position().x(), at.x(), 0.1f) << "it hangs from the hand, by a corner";
+  EXPECT_NEAR(position().y(), at.y() - Vector2f(0.3f, 0.2f).norm(), 0.1f);
+  Shown2d shown;
+  simulation.show(shown);
+  ASSERT_EQ(shown.hands.size(), 1u);
+  EXPECT_LT((shown.hands[0][0] - at).norm(), 0.02f);
+  move({-2, 0}, 20);
+  simulation.step(std::vector<Event>{hand(Action::kRelease)});
+  const Vector2f before = position();
+  simulation.step();
+  EXPECT_NEAR((position() - before).x() * 60, -2, 0.4f);
+  const auto particle = simulation.touch(simulation.soft_body(0).position(0));
+  ASSERT_TRUE(particle);
+  EXPECT_EQ(particle->action, Action::kGrab) << "where no rigid body is";
 }
 
 TEST(Simulation2d, APauseHoldsAndASingleStepIsOneFrame) {

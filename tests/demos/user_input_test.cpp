@@ -56,9 +56,15 @@ SDL_Event accelerometer(float x, float y, float z) {
   return event;
 }
 
+/// A rigid body stands left of x = -2; everything else is particles.
+std::optional<InputEvent<2>> pick_2d(const Vector2f& point) {
+  if (point.x() < -2) return InputEvent<2>{.action = Action::kHoldRigid, .body = 4, .value = point};
+  return InputEvent<2>{.action = Action::kGrab, .body = kEveryBody, .value = point};
+}
+
 /// The input of a picture of 800 x 600 that shows 8 m x 6 m about (1, 2).
 UserInput<2> input_2d() {
-  UserInput<2> input(kViews2d, {MouseHand({.centre = {1, 2}, .height = 6}, 800, 600)});
+  UserInput<2> input(kViews2d, {MouseHand({.centre = {1, 2}, .height = 6}, &pick_2d, 800, 600)});
   input.follow({0, -10}, false);
   return input;
 }
@@ -86,6 +92,15 @@ TEST(UserInput, TheMouseTakesAParticleDragsItAndLetsGo) {
   EXPECT_EQ(release, (Events2d{{.action = Action::kMoveHand, .hand = kUsersHand, .value = {5, -1}},
                                {.action = Action::kRelease, .hand = kUsersHand}}));
   EXPECT_TRUE(frame_of(input, {mouse_to(1, 1)}).empty()) << "a hand that holds nothing";
+}
+
+TEST(UserInput, TheMouseTakesARigidBodyWhereOneIs) {
+  UserInput<2> input = input_2d();
+  const auto hold = frame_of(input, {mouse_button(SDL_MOUSEBUTTONDOWN, 0, 300)});
+  EXPECT_EQ(hold,
+            (Events2d{{.action = Action::kHoldRigid, .hand = kUsersHand, .body = 4, .value = {-3, 2}}}));
+  EXPECT_EQ(frame_of(input, {mouse_to(400, 300)}),
+            (Events2d{{.action = Action::kMoveHand, .hand = kUsersHand, .value = {1, 2}}}));
 }
 
 TEST(UserInput, OnlyTheLeftButtonTakes) {
@@ -416,22 +431,22 @@ MouseReach reach_from_above() {
   const auto eye = [](const Look&) {
     return render::Camera{.eye = {0, 10, 0}, .target = {0, 0, 0}, .up = {0, 0, -1}, .tan_half_fov_y = 0.3f};
   };
-  const auto pick = [](const Ray& ray) -> std::optional<Vector3f> {
+  const auto pick = [](const Ray& ray) -> std::optional<InputEvent<3>> {
     const Vector3f ground = ray.from - ray.from.y() / ray.along.y() * ray.along;
     if ((ground - Vector3f(1, 0, 1)).norm() > 1) return std::nullopt;
-    return Vector3f(1, 0.5f, 1);
+    return InputEvent<3>{.action = Action::kHold, .body = 2, .value = {1, 0.5f, 1}};
   };
   return {eye, pick, 800, 600};
 }
 
-TEST(UserInput3d, TheMouseTakesAParticleAndMovesItInThePlaneThatFacesTheEye) {
+TEST(UserInput3d, TheMouseTakesABodyAndMovesItInThePlaneThatFacesTheEye) {
   UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
   input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390));
   auto events = input.next_frame();
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_EQ(events[0].action, Action::kGrab);
+  EXPECT_EQ(events[0].action, Action::kHold);
   EXPECT_EQ(events[0].hand, kUsersHand);
-  EXPECT_EQ(events[0].body, kEveryBody);
+  EXPECT_EQ(events[0].body, 2u);
   EXPECT_EQ(events[0].value, Vector3f(1, 0.5f, 1));
 
   SDL_Event motion = mouse_to(100, 100);
@@ -452,6 +467,33 @@ TEST(UserInput3d, TheMouseTakesAParticleAndMovesItInThePlaneThatFacesTheEye) {
   events = input.next_frame();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].action, Action::kRelease);
+}
+
+TEST(UserInput3d, TheWheelMovesWhatIsHeldAndElseTheCamera) {
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  SDL_Event wheel{};
+  wheel.wheel.type = SDL_MOUSEWHEEL;
+  wheel.wheel.preciseY = 1;
+  input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300));  // in the middle: straight below the eye
+  EXPECT_TRUE(input.next_frame().empty()) << "nothing is there";
+  input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 500, 400));
+  input.next_frame();
+  input.handle(wheel);
+  auto events = input.next_frame();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].action, Action::kMoveHand);
+  EXPECT_NEAR(events[0].value.y(), 10 - 9.5f * 1.05f, 1e-4f) << "a twentieth farther from the eye";
+  EXPECT_EQ(input.look().distance, 1);
+  for (int notch = 0; notch < 500; ++notch) {
+    wheel.wheel.preciseY = -1;
+    input.handle(wheel);
+  }
+  events = input.next_frame();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_LE(events[0].value.y(), 10 - 0.1f) << "not behind the eye, nor at it";
+  input.handle(mouse_button(SDL_MOUSEBUTTONUP, 500, 400));
+  input.handle(wheel);
+  EXPECT_GT(input.look().distance, 1);
 }
 
 TEST(UserInput3d, WhereThereIsNothingToTakeTheMouseTurnsTheCamera) {

@@ -41,26 +41,6 @@ TEST(SeenFrom, TheGroundTiltsForAnObserverWhoStands) {
   EXPECT_LT((tilt * tilted.up - scene.camera.up).norm(), 1e-6f);
 }
 
-TEST(ParticleUnder, IsTheNearestOneThatTheRayMeets) {
-  const Scene scene = load_scene_3d("drop");
-  const Simulation3d simulation(scene, {});
-  const auto positions = simulation.soft_body(0).positions();
-  const Vector3f aimed_at = positions[0];
-  const float reach = 0.6f * simulation.model(0).lattice().spacing;
-  const Ray ray{.from = aimed_at + Vector3f(0, 0, 50), .along = -Vector3f::UnitZ()};
-  const auto found = particle_under(ray, simulation);
-  ASSERT_TRUE(found);
-  EXPECT_LT((*found - aimed_at).head<2>().norm(), reach);
-  for (const Vector3f& p : positions) {
-    if ((p - aimed_at).head<2>().norm() < reach) {
-      EXPECT_LE(p.z(), found->z());
-    }
-  }
-  EXPECT_FALSE(particle_under({.from = ray.from, .along = Vector3f::UnitZ()}, simulation))
-      << "it lies behind";
-  EXPECT_FALSE(particle_under({.from = ray.from, .along = Vector3f::UnitY()}, simulation));
-}
-
 TEST(RotationAxes, AreThoseOfTheBodyThatWasTurned) {
   const auto model = ppu::make_soft_body_model(ppu::make_box({1, 0.6f, 0.4f}, 1), {.cell_size = 0.2f});
   const Eigen::Matrix3f turn = Eigen::AngleAxisf(0.7f, Vector3f(1, 2, -1).normalized()).toRotationMatrix();

@@ -20,20 +20,32 @@ class Controls {
 
   /// Applies events in their order.
   /// @param bodies  the soft bodies: see Hands
-  /// @param world   has reset(), which restores bodies and world as they were at the beginning, and home(i), which
-  ///                does so with soft body i
+  /// @param world   has reset(), which restores bodies and world as they were at the beginning, home(i), which does so
+  ///                with soft body i, and hold(event), hold_rigid(event), move_hand(event) and release(hand) of hands
+  ///                that hold more than a particle
   template <class Bodies, class World>
   void apply(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
       switch (event.action) {
         case Action::kGrab:
+          world.release(event.hand);
           hands_.grab(event, bodies);
+          break;
+        case Action::kHold:
+          hands_.release(event.hand);
+          if constexpr (Dimension == 3) world.hold(event);
+          break;
+        case Action::kHoldRigid:
+          hands_.release(event.hand);
+          world.hold_rigid(event);
           break;
         case Action::kMoveHand:
           hands_.move(event);
+          world.move_hand(event);
           break;
         case Action::kRelease:
           hands_.release(event.hand);
+          world.release(event.hand);
           break;
         case Action::kPush:
           for_each(event.body, bodies, [&](std::size_t b) { bodies[b].add_velocity(event.value); });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "input_event.h"
@@ -22,17 +23,27 @@ class Hands {
   template <class Bodies>
   void grab(const Event& event, const Bodies& bodies) {
     release(event.hand);
-    Held held{.hand = event.hand, .body = 0, .particle = 0, .target = event.value};
+    if (const auto nearest = nearest_particle(event, bodies))
+      held_.push_back({event.hand, nearest->body, nearest->particle, event.value});
+  }
+
+  struct Particle {
+    std::size_t body, particle;
+  };
+  /// Of the event's body, or of every body, the particle nearest to the event's value. None: there is no such body.
+  template <class Bodies>
+  static std::optional<Particle> nearest_particle(const Event& event, const Bodies& bodies) {
+    std::optional<Particle> nearest;
     float least = std::numeric_limits<float>::infinity();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       if (event.body != kEveryBody && event.body != b) continue;
       const auto positions = bodies[b].positions();
       for (std::size_t i = 0; i < positions.size(); ++i) {
         const float distance = (positions[i] - event.value).squaredNorm();
-        if (distance < least) least = distance, held.body = b, held.particle = i;
+        if (distance < least) least = distance, nearest = Particle{b, i};
       }
     }
-    if (least < std::numeric_limits<float>::infinity()) held_.push_back(held);
+    return nearest;
   }
 
   void move(const Event& event) {

@@ -20,10 +20,12 @@ enum class Action : std::uint8_t {
   kSingleStep,  ///< during a pause: one frame
   kHome,        ///< `body` is where it was at the beginning, at rest and in its own shape
   kTilt,        ///< in 3D: the ground is tilted by `value` (radians) about x, then z, from now on; its y is 0
+  kHold,  ///< in 3D: hand: holds soft body `body` at `value` (m), a point of its surface; lets go of another
+  kHoldRigid,  ///< hand: holds rigid body `body` of the scene at `value` (m), if it moves; lets go of another
 };
-inline constexpr int kActions = 11;
+inline constexpr int kActions = 13;
 
-/// For `body`: to grab, whichever has the nearest particle; else all.
+/// For `body`: to grab or to hold, whichever has the nearest particle; else all.
 inline constexpr std::uint32_t kEveryBody = std::numeric_limits<std::uint32_t>::max();
 /// For `hand`: the user's. The hands of a script are numbered from 0, one for each drag.
 inline constexpr std::uint32_t kUsersHand = std::numeric_limits<std::uint32_t>::max();

@@ -16,11 +16,11 @@ void MouseHand::handle(const SDL_Event& event, std::vector<InputEvent<2>>& event
       break;
     case SDL_MOUSEBUTTONDOWN:
       if (event.button.button != SDL_BUTTON_LEFT) break;
-      holds_ = true;
-      events.push_back({.action = Action::kGrab,
-                        .hand = kUsersHand,
-                        .body = kEveryBody,
-                        .value = camera_.point_at(event.button.x, event.button.y, width_, height_)});
+      if (auto taken = pick_(camera_.point_at(event.button.x, event.button.y, width_, height_))) {
+        taken->hand = kUsersHand;
+        events.push_back(*taken);
+        holds_ = true;
+      }
       break;
     case SDL_MOUSEMOTION:
       if (holds_) move(event.motion, events);

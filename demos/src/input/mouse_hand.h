@@ -3,19 +3,28 @@
 
 #include <SDL.h>
 
+#include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "input_event.h"
 #include "scene/scene_2d.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::demos {
 
-/// The left button takes the nearest particle, which then follows the mouse; letting go throws it.
+/// The left button takes what is under the mouse, which then follows it; letting go throws it.
 class MouseHand {
  public:
+  /// How a hand takes what is at a point of the scene, all but the hand. None: there is nothing.
+  using Pick = std::function<std::optional<InputEvent<2>>(const Eigen::Vector2f&)>;
+
   /// @param width, height  of the window, in the units in which SDL gives the mouse
-  MouseHand(const Camera2d& camera, int width, int height)
-      : camera_(camera), width_(width), height_(height) {}
+  MouseHand(const Camera2d& camera, Pick pick, int width, int height)
+      : camera_(camera), pick_(std::move(pick)), width_(width), height_(height) {
+    SC_ASSERT(pick_ && width > 0 && height > 0, "a picture of {} by {} pixels", width, height);
+  }
 
   /// Appends what the event means. Of moves that follow one another, the last counts.
   void handle(const SDL_Event& event, std::vector<InputEvent<2>>& events);
@@ -24,6 +33,7 @@ class MouseHand {
   void move(const SDL_MouseMotionEvent& motion, std::vector<InputEvent<2>>& events) const;
 
   Camera2d camera_;
+  Pick pick_;
   int width_, height_;
   bool holds_ = false;
 };

@@ -1,11 +1,17 @@
 #include "mouse_reach.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {
+namespace {
+
+constexpr float kFartherPerNotch = 1.05f;  // of the wheel, turned away from the user
+
+}  // namespace
 
 MouseReach::MouseReach(Eye eye, Pick pick, int width, int height)
     : eye_(std::move(eye)), pick_(std::move(pick)), width_(width), height_(height) {
@@ -24,12 +30,19 @@ bool MouseReach::handle(const SDL_Event& event, const Look& look, std::vector<In
     case SDL_MOUSEBUTTONDOWN:
       return event.button.button == SDL_BUTTON_LEFT && grab(event.button, look, events);
     case SDL_MOUSEMOTION:
-      if (!taken_) return false;
-      move(event.motion, look, events);
+      if (!depth_) return false;
+      x_ = event.motion.x;
+      y_ = event.motion.y;
+      move(look, events);
+      return true;
+    case SDL_MOUSEWHEEL:
+      if (!depth_) return false;
+      depth_ = std::max(*depth_ * std::pow(kFartherPerNotch, event.wheel.preciseY), eye_(look).near_plane);
+      move(look, events);
       return true;
     case SDL_MOUSEBUTTONUP:
-      if (event.button.button != SDL_BUTTON_LEFT || !taken_) return false;
-      taken_.reset();
+      if (event.button.button != SDL_BUTTON_LEFT || !depth_) return false;
+      depth_.reset();
       events.push_back({.action = Action::kRelease, .hand = kUsersHand});
       return true;
     default:
@@ -40,22 +53,25 @@ bool MouseReach::handle(const SDL_Event& event, const Look& look, std::vector<In
 bool MouseReach::grab(const SDL_MouseButtonEvent& button, const Look& look,
                       std::vector<InputEvent<3>>& events) {
   if (!pick_) return false;
-  taken_ = pick_(ray_through(eye_(look), button.x, button.y, width_, height_));
-  if (!taken_) return false;
-  events.push_back({.action = Action::kGrab, .hand = kUsersHand, .body = kEveryBody, .value = *taken_});
+  const render::Camera camera = eye_(look);
+  auto taken = pick_(ray_through(camera, button.x, button.y, width_, height_));
+  if (!taken) return false;
+  x_ = button.x;
+  y_ = button.y;
+  depth_ = (taken->value - camera.eye).dot((camera.target - camera.eye).normalized());
+  taken->hand = kUsersHand;
+  events.push_back(*taken);
   return true;
 }
 
-void MouseReach::move(const SDL_MouseMotionEvent& motion, const Look& look,
-                      std::vector<InputEvent<3>>& events) const {
-  SC_ASSERT(taken_, "the mouse moves nothing to ({}, {})", motion.x, motion.y);
+void MouseReach::move(const Look& look, std::vector<InputEvent<3>>& events) const {
+  SC_ASSERT(depth_, "the mouse moves nothing to ({}, {})", x_, y_);
   const render::Camera camera = eye_(look);
-  const Ray ray = ray_through(camera, motion.x, motion.y, width_, height_);
-  const Eigen::Vector3f forward = camera.target - camera.eye;
-  const float depth = (*taken_ - ray.from).dot(forward) / ray.along.dot(forward);
+  const Ray ray = ray_through(camera, x_, y_, width_, height_);
+  const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
   if (events.empty() || events.back().action != Action::kMoveHand)
     events.push_back({.action = Action::kMoveHand, .hand = kUsersHand});
-  events.back().value = ray.from + depth * ray.along;
+  events.back().value = ray.from + *depth_ / ray.along.dot(forward) * ray.along;
 }
 
 }  // namespace softcell::demos

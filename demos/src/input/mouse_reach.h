@@ -14,14 +14,14 @@
 
 namespace softcell::demos {
 
-/// The left button takes the particle under the mouse, which then follows it; letting go throws it. Where
-/// there is no particle, the mouse is left to others.
+/// The left button takes what is under the mouse, which then follows it; letting go throws it. The wheel moves what is held
+/// nearer and farther. Where there is nothing to take, the mouse is left to others.
 class MouseReach {
  public:
   /// From where the scene is seen now.
   using Eye = std::function<render::Camera(const Look&)>;
-  /// The particle that one sees along a ray.
-  using Pick = std::function<std::optional<Eigen::Vector3f>(const Ray&)>;
+  /// How a hand takes what one sees along a ray, all but the hand. None: nothing that can be taken.
+  using Pick = std::function<std::optional<InputEvent<3>>(const Ray&)>;
 
   /// Reaches nothing.
   MouseReach() = default;
@@ -34,12 +34,13 @@ class MouseReach {
 
  private:
   bool grab(const SDL_MouseButtonEvent& button, const Look& look, std::vector<InputEvent<3>>& events);
-  void move(const SDL_MouseMotionEvent& motion, const Look& look, std::vector<InputEvent<3>>& events) const;
+  void move(const Look& look, std::vector<InputEvent<3>>& events) const;
 
   Eye eye_;
   Pick pick_;
   int width_ = 1, height_ = 1;
-  std::optional<Eigen::Vector3f> taken_;  // where, in the world
+  int x_ = 0, y_ = 0;           // of the mouse while it holds something
+  std::optional<float> depth_;  // of what it holds, along the camera's axis, metres; none: it holds nothing
 };
 
 }  // namespace softcell::demos

@@ -47,6 +47,8 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "single_step"},
     {.name = "home", .body = true},
     {.name = "tilt", .value = true, .lowest_dimension = 3},
+    {.name = "hold", .hand = true, .body = true, .value = true, .lowest_dimension = 3},
+    {.name = "hold_rigid", .hand = true, .body = true, .value = true},
 }};
 
 /// A number of 32 bits that has a name when it is the largest: kUsersHand, kEveryBody.

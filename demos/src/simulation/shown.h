@@ -23,7 +23,7 @@ struct Pose2d {
 struct Shown2d {
   std::vector<std::vector<Eigen::Vector2f>> particles;  ///< of each soft body
   std::vector<Pose2d> rigid_poses;                      ///< of Scene2d::rigid_bodies, in order
-  std::vector<std::array<Eigen::Vector2f, 2>> hands;    ///< the particle that is held, and the hand
+  std::vector<std::array<Eigen::Vector2f, 2>> hands;    ///< the point that is held, and the hand
 };
 
 struct Shown3d {
@@ -35,6 +35,7 @@ struct Shown3d {
   std::vector<Body> bodies;
   std::vector<Eigen::Matrix4f> box_poses;              ///< of Scene::boxes, in order
   std::vector<ppu::Contact> contacts;                  ///< if they are noted
+  std::vector<std::array<Eigen::Vector3f, 2>> hands;   ///< the point that is held, and the hand
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();  ///< from the ground's frame to the observer's
 };
 

@@ -12,8 +12,10 @@
 #include <optional>
 #include <variant>
 
+#include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
+#include "rigid_grip_2d.h"
 #include "scene/shared_models.h"
 #include "softcell/base/assert.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
@@ -147,7 +149,15 @@ struct Simulation2d::State {
     reset();
   }
 
+  // For Controls:
+  void hold_rigid(const InputEvent<2>& event) {
+    if (event.body < scene.rigid_bodies.size() && scene.rigid_bodies[event.body].mass > 0)
+      held.hold(event.hand, std::make_unique<RigidGrip2d>(*world->rigid_bodies[event.body], event.value));
+  }
+  void move_hand(const InputEvent<2>& event) { held.move(event.hand, event.value); }
+  void release(std::uint32_t hand) { held.release(hand); }
   void reset() {
+    held.release_all();
     SC_ASSERT(solver != nullptr, "scene '{}' has no solver", scene.name);
     world.emplace(scene, models, *solver);
   }
@@ -177,6 +187,7 @@ struct Simulation2d::State {
   ppu::SoftBodySolver<2>* solver = &on_this_thread;
   std::optional<World> world;
   Bodies bodies{world};
+  HeldBodies<2> held;                 // rigid ones, of `world`
   std::vector<InputEvent<2>> events;  // of the last step
   std::int64_t frame = 0;             // of the script: counts without a break
 };
@@ -198,8 +209,11 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   const FrameOnPs3 on_ps3(s.timing);
   const auto matched_before = world.soft_bodies.time_spent(), waited_before = s.waited();
   world.world.SetGravity(to_box2d(s.controls.gravity()));
+  s.held.begin_frame(kFrameSeconds);
   for (int i = 0; i < s.scene.substeps; ++i) {
     s.controls.hands().pull(s.bodies);
+    s.held.pull(i, s.scene.substeps, s.controls.gravity(),
+                kFrameSeconds / static_cast<float>(s.scene.substeps));
     world.soft_bodies.step(kFrameSeconds / static_cast<float>(s.scene.substeps));
   }
 
@@ -256,6 +270,19 @@ Pose2d Simulation2d::rigid_pose(std::size_t body) const {
   return {.position = {pose.p.x, pose.p.y}, .cosine = pose.q.c, .sine = pose.q.s};
 }
 
+std::optional<InputEvent<2>> Simulation2d::touch(const Vector2f& point) const {
+  for (std::uint32_t i = 0; i < state_->scene.rigid_bodies.size(); ++i) {
+    const b2Body& body = *state_->world->rigid_bodies[i];
+    if (!(state_->scene.rigid_bodies[i].mass > 0)) continue;
+    for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext()) {
+      if (fixture->TestPoint(to_box2d(point)))
+        return InputEvent<2>{.action = Action::kHoldRigid, .body = i, .value = point};
+    }
+  }
+  if (soft_bodies() == 0) return std::nullopt;
+  return InputEvent<2>{.action = Action::kGrab, .body = kEveryBody, .value = point};
+}
+
 bool Simulation2d::paused() const { return state_->controls.paused(); }
 std::span<const Hands<2>::Held> Simulation2d::held() const { return state_->controls.hands().held(); }
 const Vector2f& Simulation2d::gravity() const { return state_->controls.gravity(); }
@@ -276,6 +303,7 @@ void Simulation2d::show(Shown2d& shown) const {
               held.particle, shown.particles[held.body].size());
     shown.hands.push_back({shown.particles[held.body][held.particle], held.target});
   }
+  state_->held.append(shown.hands);
 }
 
 std::uint64_t Simulation2d::state_hash() const {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,9 @@ class Simulation2d {
   /// Valid until the next step(), which may reset the world.
   const ppu::SoftBody<2>& soft_body(std::size_t body) const;
   Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
+  /// What a hand at a point takes: Action::kHoldRigid of a rigid body that moves and is there, else Action::kGrab of the
+  /// nearest particle. None: there is no soft body.
+  std::optional<InputEvent<2>> touch(const Eigen::Vector2f& point) const;
   bool paused() const;
   std::span<const Hands<2>::Held> held() const;
   const Eigen::Vector2f& gravity() const;  ///< m/s^2

@@ -2,25 +2,30 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
 #include "ppu/bullet/bullet_world.h"
 #include "ppu/bullet/processor_time.h"
 #include "ppu/numbers/deterministic_math.h"
 #include "ppu/spe_bodies/spe_contacts.h"
+#include "rigid_grip.h"
 #include "scene/shared_models.h"
 #include "softcell/base/assert.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_solver.h"
+#include "surface_grip.h"
 
 namespace softcell::demos {
 namespace {
 
 constexpr double kTiltGrowsFor = 3;  // seconds
+constexpr float kOpaque = 0.5f;      // opacity of walls that hide what is behind them
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -92,6 +97,7 @@ struct Simulation3d::State {
     std::vector<std::vector<Eigen::Vector4f>> particles;
     std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
     std::vector<ppu::Contact> contacts;
+    std::vector<std::array<Eigen::Vector3f, 2>> hands;
     Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
   };
 
@@ -165,6 +171,7 @@ struct Simulation3d::State {
               snapshot.particles.size(), boxes.size(), positions.size());
     snapshot.tilt = tilt;
     copy_contacts(snapshot);
+    copy_hands(snapshot);
     if (orchestrator) {
       copy_particles(snapshot);
       const auto before = ppu::processor_time();
@@ -193,6 +200,13 @@ struct Simulation3d::State {
     }
   }
 
+  void copy_hands(Snapshot& snapshot) const {
+    snapshot.hands.clear();
+    for (const Hands<3>::Held& hand : controls.hands().held())
+      snapshot.hands.push_back({soft_bodies[hand.body].position(hand.particle), hand.target});
+    held.append(snapshot.hands);
+  }
+
   /// Waits for the SPEs; what was handed over is shown from now on.
   void take_over() {
     if (!handed_over) return;
@@ -201,7 +215,36 @@ struct Simulation3d::State {
     newest = 1 - newest;
   }
 
+  // For Controls:
+  void hold(const InputEvent<3>& event) {
+    if (const auto nearest = Hands<3>::nearest_particle(event, soft_bodies))
+      held.hold(event.hand, std::make_unique<SurfaceGrip>(soft_bodies[nearest->body], event.value));
+  }
+  void hold_rigid(const InputEvent<3>& event) {
+    if (event.body < boxes.size() && scene.boxes[event.body].mass > 0)
+      held.hold(event.hand, std::make_unique<RigidGrip>(world.rigid_body(boxes[event.body]), event.value));
+  }
+  void move_hand(const InputEvent<3>& event) { held.move(event.hand, event.value); }
+  void release(std::uint32_t hand) { held.release(hand); }
+
+  /// Simulates a frame. Hands pull before each substep.
+  ppu::StepTimes step_world() {
+    if (held.empty()) return world.step(kFrameSeconds, scene.substeps);
+    held.begin_frame(kFrameSeconds);
+    const Eigen::Vector3f gravity = tilt.transpose() * controls.gravity();
+    const float step = kFrameSeconds / static_cast<float>(scene.substeps);
+    ppu::StepTimes times;
+    for (int substep = 0; substep < scene.substeps; ++substep) {
+      held.pull(substep, scene.substeps, gravity, step);
+      const ppu::StepTimes of_substep = world.step(step, 1);
+      times.physics_ms += of_substep.physics_ms;
+      times.soft_body_ms += of_substep.soft_body_ms;
+    }
+    return times;
+  }
+
   void reset() {
+    held.release_all();
     world.reset();
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
     tilt.setIdentity();
@@ -234,6 +277,7 @@ struct Simulation3d::State {
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
+  HeldBodies<3> held;  // of `soft_bodies` and `world`
   bool records_contacts = false;
   bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
 
@@ -277,7 +321,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.controls.hands().pull(s.soft_bodies);
   const FrameOnPs3 on_ps3(s.timing);
   const ppu::SoftBodyTimes begin = s.soft_bodies.times();
-  const ppu::StepTimes step = s.world.step(kFrameSeconds, s.scene.substeps);
+  const ppu::StepTimes step = s.step_world();
   s.contacts_stand = true;
 
   const auto waiting = std::chrono::steady_clock::now();
@@ -370,7 +414,31 @@ void Simulation3d::show(Shown3d& to) const {
   }
   to.box_poses.assign(shown_box_poses().begin(), shown_box_poses().end());
   to.contacts.assign(shown_contacts().begin(), shown_contacts().end());
+  to.hands = state_->shown().hands;
   to.tilt = shown_tilt();
+}
+
+std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
+  SC_ASSERT(std::abs(ray.along.norm() - 1) < 1e-3f, "a ray along a direction {} long", ray.along.norm());
+  constexpr float kReach = 1000;  // metres: beyond any scene
+  const Eigen::Vector3f end = ray.from + kReach * ray.along;
+  std::optional<InputEvent<3>> touched;
+  float share = 1;
+  if (const auto soft = state_->soft_bodies.cast_ray(ray.from, end)) {
+    std::uint32_t body = 0;
+    while (&state_->soft_bodies[body] != soft->body) ++body;
+    touched = {.action = Action::kHold, .body = body, .value = soft->hit.position};
+    share = soft->hit.share;
+  }
+  for (const ppu::BulletWorld::RayHit& hit : state_->world.cast_ray(ray.from, end)) {
+    if (hit.share >= share) break;
+    const auto box =
+        static_cast<std::uint32_t>(std::ranges::find(state_->boxes, hit.body) - state_->boxes.begin());
+    if (box < state_->boxes.size() && state_->scene.boxes[box].mass > 0)
+      return InputEvent<3>{.action = Action::kHoldRigid, .body = box, .value = hit.position};
+    if (box == state_->boxes.size() || state_->scene.boxes[box].opacity >= kOpaque) return std::nullopt;
+  }
+  return touched;
 }
 
 bool Simulation3d::paused() const { return state_->controls.paused(); }

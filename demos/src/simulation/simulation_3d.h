@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "ppu/bullet/bullet_world.h"
 #include "ppu/spe_bodies/skin_orchestrator.h"
 #include "scene/scene.h"
+#include "scene/scene_camera.h"
 #include "shown.h"
 #include "simulation_options.h"
 
@@ -35,6 +37,10 @@ class Simulation3d {
 
   /// Waits for the SPEs, so that the newest frame becomes the shown one. @throws as step().
   void finish();
+
+  /// What a hand at the end of a ray takes, as things are now: Action::kHold of a soft body or Action::kHoldRigid of a rigid
+  /// one that moves, whichever the ray meets first. None: it meets neither, or an opaque thing that does not move before.
+  std::optional<InputEvent<3>> touch(const Ray& ray) const;
 
   /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<3>> last_events() const;

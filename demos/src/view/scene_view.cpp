@@ -1,7 +1,6 @@
 #include "scene_view.h"
 
 #include <cmath>
-#include <limits>
 
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/shapes.h"
@@ -47,7 +46,7 @@ std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
 
 SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer,
                      View view)
-    : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view) {
+    : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view), hands_(renderer) {
   const auto add_static = [&](const ppu::TriangleMesh& mesh) {
     return renderer_.add_static_mesh(mesh.positions, mesh.normals, mesh.triangles);
   };
@@ -145,6 +144,15 @@ void SceneView::draw_contacts(const Shown3d& shown) {
   frame_.lattices = marks_;
 }
 
+void SceneView::draw_hands(const Shown3d& shown) {
+  if (shown.hands.empty()) return;
+  with_hands_ = statics_;
+  marks_with_hands_.assign(frame_.lattices.begin(), frame_.lattices.end());
+  hands_.append(shown.hands, frame_.camera, with_hands_, marks_with_hands_);
+  frame_.statics = with_hands_;
+  frame_.lattices = marks_with_hands_;
+}
+
 const render::Image& SceneView::draw() {
   simulation_.show(now_);
   draw(now_, {.view = static_cast<int>(view_)});
@@ -175,26 +183,8 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
       draw_contacts(shown);
       break;
   }
+  draw_hands(shown);
   renderer_.render(frame_);
-}
-
-std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d& simulation) {
-  constexpr float kReachInCells = 0.6f;
-  SC_ASSERT(std::abs(ray.along.norm() - 1) < 1e-3f, "a ray along a direction {} long", ray.along.norm());
-  std::optional<Eigen::Vector3f> found;
-  float nearest = std::numeric_limits<float>::infinity();
-  for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
-    const float reach = kReachInCells * simulation.model(b).lattice().spacing;
-    for (const Eigen::Vector3f& particle : simulation.soft_body(b).positions()) {
-      const float along = (particle - ray.from).dot(ray.along);
-      const float squared = (particle - ray.from - along * ray.along).squaredNorm();
-      if (along > 0 && along < nearest && squared < reach * reach) {
-        nearest = along;
-        found = particle;
-      }
-    }
-  }
-  return found;
 }
 
 }  // namespace softcell::demos

@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "hand_drawing.h"
 #include "rotation_axes.h"
 #include "scene/look.h"
 #include "scene/scene.h"
@@ -37,6 +37,7 @@ class SceneView {
   void draw_lattice(const Shown3d& shown);
   void draw_rotations(const Shown3d& shown);
   void draw_contacts(const Shown3d& shown);
+  void draw_hands(const Shown3d& shown);
 
   const Scene& scene_;
   const Simulation3d& simulation_;
@@ -46,6 +47,8 @@ class SceneView {
 
   std::vector<render::SkinnedDraw> skinned_;
   std::vector<render::StaticDraw> statics_;  // boxes, then obstacles
+  HandDrawing hands_;
+  std::vector<render::StaticDraw> with_hands_;  // statics_, and hands
   struct LatticeBuffers {
     std::vector<Eigen::Vector3f> particles;
     std::vector<std::array<std::uint32_t, 2>> links;
@@ -55,12 +58,8 @@ class SceneView {
   RotationAxes rotations_;
   std::vector<Eigen::Vector3f> points_;  // contacts
   Lines normals_;                        // at contacts
-  std::vector<render::LatticeDraw> marks_;
+  std::vector<render::LatticeDraw> marks_, marks_with_hands_;
   render::FrameDescription frame_;  // the one in making
 };
-
-/// The particle under the mouse: of those that the ray passes within 0.6 cells (so that it cannot slip through a
-/// body) the one nearest to its origin. None: the ray meets no soft body.
-std::optional<Eigen::Vector3f> particle_under(const Ray& ray, const Simulation3d& simulation);
 
 }  // namespace softcell::demos

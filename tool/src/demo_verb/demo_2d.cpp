@@ -23,8 +23,11 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
  public:
   Demo2d(const demos::Scene2d& scene, const Log& log, const demos::SimulationOptions& how,
          const Demo2dOptions& options)
-      : SceneDemo(scene, log, how, options.view,
-                  {demos::MouseHand(scene.camera, options.size.width, options.size.height)}) {}
+      : SceneDemo(
+            scene, log, how, options.view,
+            {demos::MouseHand(
+                scene.camera, [this](const Eigen::Vector2f& point) { return simulation().touch(point); },
+                options.size.width, options.size.height)}) {}
 
   demos::DemoCounts counts() const override {
     return {.soft_bodies = simulation().soft_bodies(),

@@ -38,12 +38,12 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
  public:
   Demo3d(const demos::Scene& scene, const Log& log, const demos::SimulationOptions& how,
          const Demo3dOptions& options)
-      : SceneDemo(scene, log, skinned_by(options.skin, how), options.view,
-                  {.tilt = {},
-                   .hand = demos::MouseReach(
-                       [this](const demos::Look& look) { return eye(look); },
-                       [this](const demos::Ray& ray) { return demos::particle_under(ray, simulation()); },
-                       options.size.width, options.size.height)}) {}
+      : SceneDemo(
+            scene, log, skinned_by(options.skin, how), options.view,
+            {.tilt = {},
+             .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
+                                       [this](const demos::Ray& ray) { return simulation().touch(ray); },
+                                       options.size.width, options.size.height)}) {}
 
   demos::FrameTimes step() override {
     simulation().record_contacts(static_cast<demos::View>(input().look().view) == demos::View::kContacts);
