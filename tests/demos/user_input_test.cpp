@@ -176,10 +176,11 @@ TEST(UserInput, AHeldKeyActsOnceExceptWhereItHelps) {
   UserInput<2> input = input_2d();
   for (const KeyBinding& binding : key_bindings()) {
     if (binding.command == Command::kQuit) continue;
-    const auto repeated = command_of(key(SDL_KEYDOWN, binding.key, true), 2);
+    const int dimension = binding.only_in_3d ? 3 : 2;
+    const auto repeated = command_of(key(SDL_KEYDOWN, binding.key, true), dimension);
     EXPECT_EQ(repeated.has_value(), binding.repeats) << binding.key_name;
-    EXPECT_EQ(command_of(press(binding.key), 2), binding.command) << binding.key_name;
-    EXPECT_EQ(command_of(key(SDL_KEYUP, binding.key), 2), std::nullopt) << binding.key_name;
+    EXPECT_EQ(command_of(press(binding.key), dimension), binding.command) << binding.key_name;
+    EXPECT_EQ(command_of(key(SDL_KEYUP, binding.key), dimension), std::nullopt) << binding.key_name;
   }
 }
 
@@ -440,7 +441,7 @@ MouseReach reach_from_above() {
 }
 
 TEST(UserInput3d, TheMouseTakesABodyAndMovesItInThePlaneThatFacesTheEye) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
   input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390));
   auto events = input.next_frame();
   ASSERT_EQ(events.size(), 1u);
@@ -470,7 +471,7 @@ TEST(UserInput3d, TheMouseTakesABodyAndMovesItInThePlaneThatFacesTheEye) {
 }
 
 TEST(UserInput3d, TheWheelMovesWhatIsHeldAndElseTheCamera) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
   SDL_Event wheel{};
   wheel.wheel.type = SDL_MOUSEWHEEL;
   wheel.wheel.preciseY = 1;
@@ -497,7 +498,7 @@ TEST(UserInput3d, TheWheelMovesWhatIsHeldAndElseTheCamera) {
 }
 
 TEST(UserInput3d, WhereThereIsNothingToTakeTheMouseTurnsTheCamera) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
   input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 100, 100));
   SDL_Event motion = mouse_to(150, 100);
   motion.motion.state = SDL_BUTTON_LMASK;
@@ -511,7 +512,7 @@ TEST(UserInput3d, WhereThereIsNothingToTakeTheMouseTurnsTheCamera) {
 }
 
 TEST(UserInput3d, TheMouseKnowsTheWindowsSize) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above()});
+  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
   SDL_Event resized{};
   resized.type = SDL_WINDOWEVENT;
   resized.window.event = SDL_WINDOWEVENT_SIZE_CHANGED;

@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <string>
+#include <variant>
 #include <vector>
 
+#include "input/camera_control.h"
 #include "scene/scene_camera.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
@@ -39,6 +44,136 @@ TEST(SeenFrom, TheGroundTiltsForAnObserverWhoStands) {
   EXPECT_LT((straight.eye - scene.camera.eye).norm(), 1e-6f);
   EXPECT_LT((tilt * tilted.eye - scene.camera.eye).norm(), 1e-5f);
   EXPECT_LT((tilt * tilted.up - scene.camera.up).norm(), 1e-6f);
+}
+
+render::Camera a_camera() { return {.eye = {1, 3, 4}, .target = {0, 1, 0}, .tan_half_fov_y = 0.4f}; }
+
+TEST(MovedCamera, IsTheScenesOwnUntilTheUserMovesIt) {
+  const render::Camera camera = a_camera(), same = moved_by(camera, {});
+  EXPECT_EQ(same.eye, camera.eye);
+  EXPECT_EQ(same.target, camera.target);
+}
+
+TEST(MovedCamera, GoesAboutItsTargetAndNeverOverTheTop) {
+  const render::Camera camera = a_camera();
+  for (const float turn : {0.4f, -2.0f, 3.1f}) {
+    Look look;
+    look.turn = turn;
+    const Vector3f expected = Eigen::AngleAxisf(turn, Vector3f::UnitY()) * (camera.eye - camera.target);
+    EXPECT_LT((moved_by(camera, look).eye - camera.target - expected).norm(), 1e-5f);
+  }
+  const float distance = (camera.eye - camera.target).norm();
+  for (const float rise : {-1.5f, -0.3f, 0.2f, 1.5f}) {
+    for (const bool looks_around : {false, true}) {
+      Look look;
+      look.rise = rise;
+      look.distance = 2;
+      look.looks_around = looks_around;
+      const Vector3f from_target = moved_by(camera, look).eye - camera.target;
+      EXPECT_NEAR(from_target.norm(), 2 * distance, 1e-4f);
+      EXPECT_GT(from_target.dot(Vector3f(1, 0, 4)), 0) << "on the same side";
+      const float angle = std::asin(from_target.normalized().y());
+      const float whole = std::asin(2 / distance) + rise;
+      EXPECT_NEAR(angle, std::clamp(whole, looks_around ? -1.5f : 0.03f, 1.5f), 1e-3f);
+    }
+  }
+}
+
+SDL_Event drag(Uint32 buttons, int x, int y) {
+  SDL_Event event{};
+  event.motion.type = SDL_MOUSEMOTION;
+  event.motion.state = buttons;
+  event.motion.xrel = x;
+  event.motion.yrel = y;
+  return event;
+}
+
+TEST(CameraControl, TheMiddleButtonDragsThePictureWithTheMouse) {
+  constexpr int kWidth = 640, kHeight = 360;
+  const render::Camera camera = a_camera();
+  CameraControl control(camera, kHeight);
+  Look look;
+  look.turn = 0.7f;
+  look.distance = 1.4f;
+  const Vector3f seen = moved_by(camera, look).target;  // in the middle
+  EXPECT_TRUE(control.handle(drag(SDL_BUTTON_MMASK, 100, -40), look));
+  const Ray ray = ray_through(moved_by(camera, look), kWidth / 2 + 100, kHeight / 2 - 40, kWidth, kHeight);
+  EXPECT_LT((seen - ray.from).cross(ray.along).norm(), 1e-3f) << "what was under the mouse still is";
+}
+
+TEST(CameraControl, TheRightButtonLooksAroundAndFlies) {
+  const render::Camera camera = a_camera();
+  CameraControl control(camera, 360);
+  Look look;
+  SDL_Event button{};
+  button.button.type = SDL_MOUSEBUTTONDOWN;
+  button.button.button = SDL_BUTTON_RIGHT;
+  SDL_Event key{};
+  key.key.type = SDL_KEYDOWN;
+  key.key.keysym.sym = SDLK_w;
+  EXPECT_FALSE(control.handle(key, look)) << "without the button a key has another use";
+  control.handle(button, look);
+  control.handle(drag(SDL_BUTTON_RMASK, 200, -300), look);
+  const render::Camera turned = moved_by(camera, look);
+  EXPECT_LT((turned.eye - camera.eye).norm(), 1e-4f) << "the eye stays";
+  EXPECT_GT((turned.target - camera.target).norm(), 1);
+  EXPECT_GT(turned.target.y(), turned.eye.y()) << "it looks upwards";
+  EXPECT_TRUE(control.handle(key, look));
+  for (int frame = 0; frame < 60; ++frame) control.next_frame(look);
+  const Vector3f way = moved_by(camera, look).eye - turned.eye;
+  EXPECT_GT(way.norm(), 1);
+  EXPECT_GT(way.normalized().dot((turned.target - turned.eye).normalized()), 0.999f) << "forwards";
+  button.button.type = SDL_MOUSEBUTTONUP;
+  control.handle(button, look);
+  const Vector3f there = look.moved;
+  control.next_frame(look);
+  EXPECT_EQ(look.moved, there) << "it has landed";
+}
+
+TEST(KeptOutside, TheEyeGoesBackUntilItIsInNoBody) {
+  render::Camera camera{.eye = {0, 1, 2}, .target = {0, 0, 0}, .near_plane = 0.1f};
+  const std::vector<ppu::Bounds<3>> far{{{5, 0, 0}, {6, 1, 1}}};
+  EXPECT_EQ(kept_outside(camera, far).eye, camera.eye);
+  const std::vector<ppu::Bounds<3>> around{{{-1, -1, -1}, {1, 2, 3}}, {{-1, 0, 2.5f}, {1, 4, 5}}};
+  const render::Camera outside = kept_outside(camera, around);
+  for (const ppu::Bounds<3>& body : around)
+    EXPECT_TRUE((outside.eye.array() < body.low.array()).any() ||
+                (outside.eye.array() > body.high.array()).any());
+  EXPECT_LT((outside.eye - outside.target).cross(camera.eye - camera.target).norm(), 1e-4f)
+      << "the same view";
+}
+
+TEST(FramedBodies, AreInThePictureFromTheBeginningToTheGround) {
+  constexpr float kAspect = 16.0f / 9;
+  for (const ppu::TriangleMesh& mesh :
+       {ppu::make_penguin(30), ppu::make_torus(0.02f, 0.005f, 24, 12), ppu::make_car(2)}) {
+    const ppu::Bounds<3> box = ppu::bounds(mesh);
+    const Scene scene =
+        load_scene_3d("drop", OwnModel{.mesh = mesh, .cell_size = (box.high - box.low).maxCoeff() / 8});
+    Simulation3d simulation(scene, {.spes = 2});
+    float widest = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+      for (const Vector3f& particle : simulation.soft_body(0).positions()) {
+        const Eigen::Vector4f clip = view_projection(scene.camera, kAspect) * particle.homogeneous();
+        ASSERT_GT(clip.w(), 0);
+        const float y = std::abs(clip.y() / clip.w()), x = std::abs(clip.x() / clip.w());
+        ASSERT_LT(std::max(x, y), 1) << "frame " << frame;
+        widest = std::max({widest, y, x * kAspect});
+      }
+      simulation.step();
+    }
+    EXPECT_GT(widest, 0.5f) << "and it is not far away";
+  }
+}
+
+TEST(FramedBodies, AreOfScenesWithoutACamera) {
+  const std::string body =
+      "[[soft_body]]\nshape = { kind = \"sphere\" }\ncell_size = 0.3\nposition = [40, 7, -3]\n";
+  const Scene framed = std::get<Scene>(parse_scene(body, "s.toml"));
+  EXPECT_LT((framed.camera.target - Vector3f(40, 7, -3)).norm(), 0.5f);
+  const Scene given = std::get<Scene>(parse_scene("[camera]\neye = [0, 0, 9]\n" + body, "s.toml"));
+  EXPECT_EQ(given.camera.eye, Vector3f(0, 0, 9));
+  EXPECT_EQ(given.camera.target, Vector3f(0, 0, 0));
 }
 
 TEST(RotationAxes, AreThoseOfTheBodyThatWasTurned) {

@@ -49,8 +49,9 @@ class Demo {
 
   /// Before the first drawing. The renderer must outlive the last one.
   virtual void make_view(render::Renderer& renderer) = 0;
-  /// The frame that is shown. @pre make_view()
-  virtual const render::Image& draw() = 0;
+  /// The frame that is shown, in three dimensions with the camera turned about what it looks at. @pre make_view()
+  /// @param turn  radians, counter-clockwise from above
+  virtual const render::Image& draw(float turn = 0) = 0;
 
   // In a window:
 

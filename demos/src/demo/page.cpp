@@ -53,7 +53,7 @@ void draw_figures(const Page& page, const std::optional<double>& shown_per_secon
 void draw_help(int dimension) {
   if (!ImGui::BeginTable("help", 2)) return;
   for (const KeyBinding& binding : key_bindings()) {
-    if (binding.only_in_2d && dimension != 2) continue;
+    if ((binding.only_in_2d && dimension != 2) || (binding.only_in_3d && dimension != 3)) continue;
     const char* const button = binding.button == SDL_CONTROLLER_BUTTON_INVALID
                                    ? nullptr
                                    : SDL_GameControllerGetStringForButton(binding.button);
@@ -64,9 +64,11 @@ void draw_help(int dimension) {
     }
   }
   if (dimension == 2) {
-    row("mouse", "drag a particle, and throw it");
+    row("mouse", "drag a body, and throw it");
   } else {
-    row("mouse", "drag a particle, and throw it; else the camera about the scene; wheel: nearer");
+    row("mouse", "drag a body, and throw it; wheel meanwhile: farther, nearer");
+    row("", "drag anything else: camera about the scene; middle button, or Shift: sideways; wheel: nearer");
+    row("right button", "look around; with W A S D Q E: fly");
     row("arrows", "tilt the ground (controller: left stick, motion sensor)");
   }
   ImGui::EndTable();

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
+#include <numbers>
 #include <regex>
 #include <stdexcept>
 
@@ -46,7 +48,8 @@ void FrameFolder::write(int frame, const render::Image& image) const {
   render::write_png(folder_ / fmt::format("frame_{:05}.png", frame), image, render::PngEffort::fast);
 }
 
-Pictures::Pictures(const PictureOptions& options, Demo& demo) : demo_(demo) {
+Pictures::Pictures(const PictureOptions& options, Demo& demo) : demo_(demo), turntable_(options.turntable) {
+  SC_ASSERT(!turntable_ || *turntable_ > 0, "a camera that turns in {} s", turntable_.value_or(0));
   SC_ASSERT(options.size.width > 0 && options.size.height > 0, "pictures of {} by {} pixels",
             options.size.width, options.size.height);
   if (options.out) folder_.emplace(*options.out);
@@ -66,8 +69,10 @@ void Pictures::follow(const FrameTimes& times) {
     statistics_->page = statistics_->pages.next(demo_, times, {}, renderer_->width(), renderer_->height());
 }
 
-const render::Image& Pictures::draw() {
-  const render::Image& image = demo_.draw();
+const render::Image& Pictures::draw(int frame) {
+  const double turns = turntable_ ? frame / (kFramesPerSecond * *turntable_) : 0;
+  const render::Image& image =
+      demo_.draw(static_cast<float>(2 * std::numbers::pi * (turns - std::floor(turns))));
   if (!statistics_) return image;
   draw_statistics(statistics_->page, kTextScale, statistics_->overlay, *renderer_);
   return renderer_->pixels();
@@ -76,7 +81,7 @@ const render::Image& Pictures::draw() {
 void Pictures::add(int frame) {
   SC_ASSERT(frame >= 0, "a picture of frame {}", frame);
   const auto begin = std::chrono::steady_clock::now();
-  const render::Image& image = draw();
+  const render::Image& image = draw(frame);
   if (folder_) folder_->write(frame, image);
   if (video_) video_->add_frame(image);
   hash_ = render::image_hash(image);

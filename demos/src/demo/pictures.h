@@ -26,6 +26,8 @@ struct PictureOptions {
   std::optional<std::filesystem::path> video;
   PictureSize size;
   bool statistics = false;  ///< of each frame, over its picture
+  /// In three dimensions, seconds in which the camera goes about the scene once; none: it stays.
+  std::optional<double> turntable = {};
 };
 
 /// Makes the folders that pictures and videos go to. @throws std::runtime_error  --out is no folder and
@@ -71,9 +73,10 @@ class Pictures {
     Page page;
   };
 
-  const render::Image& draw();
+  const render::Image& draw(int frame);
 
   Demo& demo_;
+  std::optional<double> turntable_;
   std::optional<FrameFolder> folder_;
   std::unique_ptr<render::VideoWriter> video_;
   std::unique_ptr<render::GlContext> context_;

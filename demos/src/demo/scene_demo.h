@@ -54,8 +54,9 @@ class SceneDemo : public Demo {
   void save_recording() override { log_.save(state_hash()); }
   void check_replay() const override { log_.check(); }
   void make_view(render::Renderer& renderer) override { view_.emplace(scene_, simulation_, renderer, kind_); }
-  const render::Image& draw() override {
+  const render::Image& draw(float turn) override {
     SC_ASSERT(view_, "draw() before make_view() of scene '{}'", scene_.name);
+    if constexpr (kDimension == 3) return view_->draw(turn);
     return view_->draw();
   }
 

@@ -31,6 +31,10 @@ constexpr std::array kBindings{
                false, true},
     KeyBinding{Command::kNextView, SDLK_v, SDL_CONTROLLER_BUTTON_A, "V", "next view"},
     KeyBinding{Command::kNextScene, SDLK_n, SDL_CONTROLLER_BUTTON_B, "N", "next scene"},
+    KeyBinding{Command::kScenesCamera, SDLK_c, kNoButton, "C", "the scene's own camera again", false, false,
+               true},
+    KeyBinding{Command::kFollow, SDLK_f, kNoButton, "F", "camera follows the body that was held last, or not",
+               false, false, true},
     KeyBinding{Command::kStatistics, SDLK_s, SDL_CONTROLLER_BUTTON_LEFTSTICK, "S", "statistics"},
     KeyBinding{Command::kHelp, SDLK_F1, SDL_CONTROLLER_BUTTON_RIGHTSTICK, "F1", "this help"},
     KeyBinding{Command::kQuit, SDLK_ESCAPE, kNoButton, "Esc", "the end"},
@@ -57,7 +61,7 @@ std::optional<Command> command_of(const SDL_Event& event, int dimension) {
   SC_ASSERT(dimension == 2 || dimension == 3, "an event in {} dimensions", dimension);
   if (event.type == SDL_QUIT) return Command::kQuit;
   for (const KeyBinding& binding : kBindings) {
-    if (binding.only_in_2d && dimension != 2) continue;
+    if ((binding.only_in_2d && dimension != 2) || (binding.only_in_3d && dimension != 3)) continue;
     const bool by_key = event.type == SDL_KEYDOWN && same_as(event.key.keysym.sym) == binding.key &&
                         (event.key.repeat == 0 || binding.repeats);
     const bool by_button = event.type == SDL_CONTROLLERBUTTONDOWN && binding.button != kNoButton &&

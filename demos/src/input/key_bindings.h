@@ -24,6 +24,8 @@ enum class Command : std::uint8_t {
   kGravityDown,
   kNextView,
   kNextScene,
+  kScenesCamera,
+  kFollow,
   kStatistics,
   kHelp,
   kQuit,
@@ -37,6 +39,7 @@ struct KeyBinding {
   const char* does;
   bool repeats = false;     ///< while the key is held
   bool only_in_2d = false;  ///< in 3D the key has another use
+  bool only_in_3d = false;  ///< in 2D there is nothing for it to do
 };
 
 std::span<const KeyBinding> key_bindings();

@@ -5,28 +5,6 @@
 #include <cmath>
 
 namespace softcell::demos {
-namespace {
-
-constexpr float kRadiansPerUnit = 0.006f;
-constexpr float kMostRise = 1.5f;
-constexpr float kPerNotch = 0.9f, kNearest = 0.3f, kFarthest = 3;
-
-/// The mouse moves the camera of three dimensions: dragging turns it about the scene, the wheel takes it
-/// nearer.
-void move_camera(const SDL_Event& event, Look& look) {
-  if (event.type == SDL_MOUSEMOTION && event.motion.state != 0) {
-    look.turn =
-        std::remainder(look.turn - kRadiansPerUnit * static_cast<float>(event.motion.xrel), 6.2831853f);
-    look.rise = std::clamp(look.rise + kRadiansPerUnit * static_cast<float>(event.motion.yrel), -kMostRise,
-                           kMostRise);
-  } else if (event.type == SDL_MOUSEWHEEL) {
-    look.distance =
-        std::clamp(look.distance * std::pow(kPerNotch, event.wheel.preciseY), kNearest, kFarthest);
-  }
-}
-
-}  // namespace
-
 bool WindowInput::handle_command(Command command) {
   switch (command) {
     case Command::kNextView:
@@ -41,6 +19,12 @@ bool WindowInput::handle_command(Command command) {
       return true;
     case Command::kHelp:
       look_.help = !look_.help;
+      return true;
+    case Command::kScenesCamera:
+      look_ = look_.with_scenes_camera();
+      return true;
+    case Command::kFollow:
+      look_.follows = !look_.follows;
       return true;
     case Command::kQuit:
       quit_ = true;
@@ -59,14 +43,14 @@ void UserInput<Dimension>::follow(const Vector& gravity, bool paused) {
 
 template <int Dimension>
 void UserInput<Dimension>::handle(const SDL_Event& event) {
+  if constexpr (Dimension == 3) {
+    if (pointing_.hand.handle(event, look_, coming_) || pointing_.camera.handle(event, look_)) return;
+    pointing_.tilt.handle(event);
+  } else {
+    pointing_.hand.handle(event, coming_);
+  }
   if (const auto command = command_of(event, Dimension); command && !handle_command(*command))
     do_command(*command);
-  if constexpr (Dimension == 2) {
-    pointing_.hand.handle(event, coming_);
-  } else {
-    if (!pointing_.hand.handle(event, look_, coming_)) move_camera(event, look_);
-    pointing_.tilt.handle(event);
-  }
 }
 
 template <int Dimension>
@@ -74,6 +58,7 @@ std::span<const InputEvent<Dimension>> UserInput<Dimension>::next_frame() {
   frame_.swap(coming_);
   coming_.clear();
   if constexpr (Dimension == 3) {
+    pointing_.camera.next_frame(look_);
     if (const auto tilt = pointing_.tilt.next_frame())
       frame_.push_back({.action = Action::kTilt, .value = *tilt});
   }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "camera_control.h"
 #include "ground_tilt.h"
 #include "input_event.h"
 #include "key_bindings.h"
@@ -29,6 +30,11 @@ class WindowInput {
 
   const Look& look() const { return look_; }
   void set_look(const Look& look) { look_ = look; }
+  /// Has a camera that follows a body come nearer to where it should be. @param wanted  metres, of Look::followed
+  void follow_body(const Eigen::Vector3f& wanted) {
+    constexpr float kShare = 0.12f;  // in a frame: what shakes the body does not shake the picture
+    look_.followed += kShare * (wanted - look_.followed);
+  }
   bool wants_to_quit() const { return quit_; }
   bool wants_next_scene() const { return next_scene_; }
 
@@ -44,7 +50,7 @@ class WindowInput {
 };
 
 /// The pointing devices: the mouse, which is a hand in both dimensions, and in three what tilts the ground. In
-/// three dimensions a mouse that grabs nothing moves the camera.
+/// three dimensions a mouse that holds nothing moves the camera.
 template <int Dimension>
 struct Pointing;
 template <>
@@ -55,6 +61,7 @@ template <>
 struct Pointing<3> {
   GroundTilt tilt;
   MouseReach hand;
+  CameraControl camera;
 };
 
 template <int Dimension>

@@ -1,6 +1,7 @@
 #pragma once
 // What a picture shows of a scene, and from where; none of it reaches the simulation.
 
+#include <Eigen/Core>
 #include <cstdint>
 
 namespace softcell::demos {
@@ -28,9 +29,16 @@ inline constexpr int kViews2d = 3;
 struct Look {
   int view = 0;                          ///< View2d or View, as a number
   bool statistics = true, help = false;  ///< pages over the picture
-  // Of the camera in three dimensions, about what it looks at:
-  float turn = 0, rise = 0;  ///< radians, counter-clockwise from above and upwards
-  float distance = 1;        ///< as a factor
+  // Of the camera in three dimensions, against the scene's own:
+  float turn = 0, rise = 0;  ///< radians about what it looks at, counter-clockwise from above and upwards
+  float distance = 1;        ///< from what it looks at, as a factor
+  Eigen::Vector3f moved{0, 0, 0};     ///< metres, with what it looks at: by the user
+  Eigen::Vector3f followed{0, 0, 0};  ///< likewise, behind a body
+  bool looks_around = false;          ///< it may look upwards, too
+  bool follows = false;               ///< it goes where a body goes
+
+  /// The same with the scene's own camera.
+  Look with_scenes_camera() const { return {.view = view, .statistics = statistics, .help = help}; }
 };
 
 }  // namespace softcell::demos

@@ -3,38 +3,127 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
+#include "ppu/numbers/deterministic_math.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {
 namespace {
 
-render::Camera orbited(render::Camera camera, const Look& look) {
-  if (look.turn == 0 && look.rise == 0 && look.distance == 1) return camera;  // the scene's own, to the bit
-  constexpr float kLowest = 0.03f, kHighest = 1.5f;                           // above the horizon, radians
-  const Eigen::Vector3f from_target = camera.eye - camera.target;
-  const float distance = from_target.norm();
-  SC_ASSERT(distance > 0 && look.distance > 0, "a camera {} m from its target, {} times as far away",
-            distance, look.distance);
-  const float turn = std::atan2(from_target.x(), from_target.z()) + look.turn;
-  const float rise = std::clamp(std::asin(std::clamp(from_target.y() / distance, -1.0f, 1.0f)) + look.rise,
-                                kLowest, kHighest);
-  const Eigen::Vector3f direction(std::cos(rise) * std::sin(turn), std::sin(rise),
-                                  std::cos(rise) * std::cos(turn));
-  camera.eye = camera.target + look.distance * distance * direction;
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+// Sines of the lowest and highest place of the eye above the horizon of what it looks at: 0.03, -1.5 and 1.5 radians.
+constexpr float kLowest = 0.03f, kLowestOfAll = -0.9975f, kHighest = 0.9975f;
+
+/// Eye and target in the ground's frame. What tilts there is the observer.
+render::Camera tilted(render::Camera camera, const Matrix3f& tilt) {
+  const Matrix3f to_ground = tilt.transpose();
+  camera.eye = to_ground * camera.eye;
+  camera.target = to_ground * camera.target;
+  camera.up = to_ground * camera.up;
   return camera;
 }
 
 }  // namespace
 
-render::Camera seen_from(const Scene& scene, const Look& look, const Eigen::Matrix3f& tilt) {
-  // The world is simulated in the ground's frame; what tilts there is the observer.
-  const Eigen::Matrix3f to_ground = tilt.transpose();
-  render::Camera camera = orbited(scene.camera, look);
-  camera.eye = to_ground * camera.eye;
-  camera.target = to_ground * camera.target;
-  camera.up = to_ground * camera.up;
+render::Camera moved_by(render::Camera camera, const Look& look) {
+  const Vector3f shift = look.moved + look.followed;
+  if (look.turn != 0 || look.rise != 0 || look.distance != 1) {  // else it is the scene's own, to the bit
+    const Vector3f from_target = camera.eye - camera.target;
+    const double distance = double{from_target.norm()};
+    const double x = double{from_target.x()}, y = double{from_target.y()}, z = double{from_target.z()};
+    const double level = std::sqrt(x * x + z * z);
+    SC_ASSERT(distance > 0 && look.distance > 0, "a camera {} m from its target, {} times as far away",
+              distance, look.distance);
+    // Turned and raised without an arc: the same bits on every host.
+    const double st = ppu::sine(double{look.turn}), ct = ppu::cosine(double{look.turn});
+    const double sr = ppu::sine(double{look.rise}), cr = ppu::cosine(double{look.rise});
+    const double east = level > 0 ? x / level : 0, south = level > 0 ? z / level : 1;
+    const double raised = (level * sr + y * cr) / distance;
+    const double forward = (level * cr - y * sr) / distance;  // below 0: over the top
+    const double lowest = double{look.looks_around ? kLowestOfAll : kLowest};
+    const double height =
+        forward > 0 ? std::clamp(raised, lowest, double{kHighest}) : (raised > 0 ? double{kHighest} : lowest);
+    const double across = std::sqrt(1 - height * height);
+    const Eigen::Vector3d direction(across * (east * ct + south * st), height,
+                                    across * (south * ct - east * st));
+    camera.eye = camera.target + (double{look.distance} * distance * direction).cast<float>();
+  }
+  if (!shift.isZero(0)) camera.eye += shift, camera.target += shift;
   return camera;
+}
+
+render::Camera seen_from(const Scene& scene, const Look& look, const Matrix3f& tilt) {
+  return tilted(moved_by(scene.camera, look), tilt);
+}
+
+render::Camera kept_outside(render::Camera camera, std::span<const ppu::Bounds<3>> bodies) {
+  const Vector3f back = (camera.eye - camera.target).normalized();
+  const Vector3f margin = Vector3f::Constant(2 * camera.near_plane);
+  for (std::size_t again = 0; again < bodies.size(); ++again) {  // behind one there may be another
+    bool inside = false;
+    for (const ppu::Bounds<3>& body : bodies) {
+      const Vector3f low = body.low - margin, high = body.high + margin;
+      if ((camera.eye.array() <= low.array()).any() || (camera.eye.array() >= high.array()).any()) continue;
+      float way = std::numeric_limits<float>::infinity();
+      for (int axis = 0; axis < 3; ++axis) {
+        if (back[axis] == 0) continue;
+        const float side = back[axis] > 0 ? high[axis] : low[axis];
+        way = std::min(way, (side - camera.eye[axis]) / back[axis]);
+      }
+      camera.eye += way * back;
+      inside = true;
+    }
+    if (!inside) break;
+  }
+  return camera;
+}
+
+void frame_bodies(Scene& scene) {
+  std::optional<ppu::Bounds<3>> all;
+  const auto add = [&](const Vector3f& low, const Vector3f& high) {
+    if (!all) all = ppu::Bounds<3>{low, high};
+    all->low = all->low.cwiseMin(low);
+    all->high = all->high.cwiseMax(high);
+  };
+  /// The top of what lies below, that it may fall onto.
+  const auto ground_below = [&](const Vector3f& low, const Vector3f& high) {
+    std::optional<float> ground;
+    const Vector3f middle = 0.5f * (low + high);
+    for (const RigidBox& box : scene.boxes) {
+      const Vector3f reach = (middle - box.position).cwiseAbs() - 0.5f * box.size;
+      const float top = box.position.y() + 0.5f * box.size.y();
+      if (box.mass == 0 && reach.x() < 0 && reach.z() < 0 && top <= low.y() && (!ground || top > *ground))
+        ground = top;
+    }
+    return ground;
+  };
+  const auto add_with_fall = [&](const Vector3f& low, const Vector3f& high) {
+    add(low, high);
+    if (const auto ground = ground_below(low, high)) {
+      const Vector3f fall(0, low.y() - *ground, 0);
+      add(low - fall, high - fall);
+    }
+  };
+  for (const SoftBodyPlacement& body : scene.soft_bodies) {
+    const ppu::Bounds<3> box = ppu::bounds(body.mesh);
+    add_with_fall(box.low + body.position, box.high + body.position);
+  }
+  for (const RigidBox& box : scene.boxes)
+    if (box.mass > 0) add_with_fall(box.position - 0.5f * box.size, box.position + 0.5f * box.size);
+  if (!all) return;
+  constexpr float kMargin = 1.1f;
+  render::Camera& camera = scene.camera;
+  const float radius = std::max(0.5f * (all->high - all->low).norm(), 1e-3f);
+  const float t = camera.tan_half_fov_y, distance = kMargin * radius * std::sqrt(1 + t * t) / t;
+  const Vector3f back = (camera.eye - camera.target).normalized();
+  camera.target = 0.5f * (all->low + all->high);
+  camera.eye = camera.target + distance * back;
+  camera.near_plane = std::min(camera.near_plane, 0.1f * distance);
+  camera.far_plane = std::max(camera.far_plane, 10 * distance);
 }
 
 Ray ray_through(const render::Camera& camera, int x, int y, int picture_width, int picture_height) {

@@ -2,17 +2,29 @@
 // From where a scene in three dimensions is seen.
 
 #include <Eigen/Core>
+#include <span>
 
 #include "look.h"
 #include "scene.h"
 #include "softcell/render/camera.h"
+#include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::demos {
 
-/// The scene's camera where the user has moved it, in the ground's frame: about the point it looks at, and
-/// never over the top.
+/// A camera where the user has moved it: about the point it looks at, never over the top, then with that point. The same bits on
+/// every host.
+render::Camera moved_by(render::Camera camera, const Look& look);
+
+/// The scene's camera where the user has moved it, in the ground's frame.
 /// @param tilt  from the ground's frame, in which the world is simulated, to the observer's
 render::Camera seen_from(const Scene& scene, const Look& look, const Eigen::Matrix3f& tilt);
+
+/// Moves the eye back, away from what it looks at, until it is in none of these boxes.
+render::Camera kept_outside(render::Camera camera, std::span<const ppu::Bounds<3>> bodies);
+
+/// Moves the scene's camera along its line of sight and sideways so that it shows everything that moves, where it is at the beginning
+/// and on the ground below. A scene in which nothing moves keeps its camera.
+void frame_bodies(Scene& scene);
 
 /// Half a line.
 struct Ray {

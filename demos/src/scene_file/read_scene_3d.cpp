@@ -10,6 +10,7 @@
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"
+#include "scene/scene_camera.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {
@@ -233,6 +234,8 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   read_soft_bodies(soft_bodies, source, materials, model, vertices, scene);
   read_script<3>(root, scene);
   if (camera != nullptr) read_camera(*camera, scene.camera);
+  if (camera == nullptr) scene.camera.eye = {1.9f, 2.2f, 4.2f};  // from where frame_bodies() looks
+  if (camera == nullptr || model) frame_bodies(scene);
   if (light != nullptr) read_light(*light, scene.light);
   if (tilt != nullptr) read_tilt(*tilt, scene.tilt);
   root.finish();

@@ -200,10 +200,13 @@ struct Simulation3d::State {
     }
   }
 
+  /// A script's hands at particles are not seen: they are how a scene is arranged.
   void copy_hands(Snapshot& snapshot) const {
     snapshot.hands.clear();
-    for (const Hands<3>::Held& hand : controls.hands().held())
-      snapshot.hands.push_back({soft_bodies[hand.body].position(hand.particle), hand.target});
+    for (const Hands<3>::Held& hand : controls.hands().held()) {
+      if (hand.hand == kUsersHand)
+        snapshot.hands.push_back({soft_bodies[hand.body].position(hand.particle), hand.target});
+    }
     held.append(snapshot.hands);
   }
 

@@ -153,23 +153,41 @@ void SceneView::draw_hands(const Shown3d& shown) {
   frame_.lattices = marks_with_hands_;
 }
 
-const render::Image& SceneView::draw() {
+const render::Image& SceneView::draw() { return draw(0); }
+
+const render::Image& SceneView::draw(float turn) {
   simulation_.show(now_);
-  draw(now_, {.view = static_cast<int>(view_)});
+  Look look;
+  look.view = static_cast<int>(view_);
+  look.turn = turn;
+  draw(now_, look.view, seen_from(scene_, look, now_.tilt));
   return renderer_.pixels();
 }
 
 void SceneView::draw(const Shown3d& shown, const Look& look) {
+  boxes_.clear();
+  for (const Shown3d::Body& body : shown.bodies) {
+    ppu::Bounds<3>& box = boxes_.emplace_back();
+    box.low = box.high = body.particles.front().head<3>();
+    for (const Eigen::Vector4f& particle : body.particles) {
+      box.low = box.low.cwiseMin(particle.head<3>());
+      box.high = box.high.cwiseMax(particle.head<3>());
+    }
+  }
+  draw(shown, look.view, kept_outside(seen_from(scene_, look, shown.tilt), boxes_));
+}
+
+void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camera) {
   SC_ASSERT(shown.box_poses.size() <= statics_.size(), "{} boxes among {} rigid bodies",
             shown.box_poses.size(), statics_.size());
   for (std::size_t i = 0; i < shown.box_poses.size(); ++i) statics_[i].pose = shown.box_poses[i];
 
   frame_ = {};
-  frame_.camera = seen_from(scene_, look, shown.tilt);
+  frame_.camera = camera;
   frame_.light = scene_.light;
   frame_.light.toward = shown.tilt.transpose() * scene_.light.toward;
   frame_.statics = statics_;
-  switch (static_cast<View>(look.view)) {
+  switch (static_cast<View>(view)) {
     case View::kMesh:
       draw_mesh(shown, 1);
       break;

@@ -25,11 +25,15 @@ class SceneView {
 
   /// Draws the newest frame that the SPEs have finished.
   const render::Image& draw();
+  /// The same with the camera turned about what it looks at. @param turn  radians, counter-clockwise from above
+  const render::Image& draw(float turn);
 
-  /// Draws what was copied from the simulation, which may go on meanwhile. The picture is in the renderer.
+  /// Draws what was copied from the simulation, which may go on meanwhile. The camera is kept outside of bodies. The picture is in
+  /// the renderer.
   void draw(const Shown3d& shown, const Look& look);
 
  private:
+  void draw(const Shown3d& shown, int view, const render::Camera& camera);
   render::MeshId add_skinned_mesh(const ppu::SoftBodyModel<3>& model);
   void update_meshes(const Shown3d& shown);
   void update_lattices(const Shown3d& shown);
@@ -44,6 +48,7 @@ class SceneView {
   render::Renderer& renderer_;
   View view_;
   Shown3d now_;
+  std::vector<ppu::Bounds<3>> boxes_;  // of soft bodies
 
   std::vector<render::SkinnedDraw> skinned_;
   std::vector<render::StaticDraw> statics_;  // boxes, then obstacles

@@ -94,7 +94,7 @@ Run play(const WindowOptions& options, const std::vector<MakeDemo>& scenes, cons
     });
     run.record.interrupted = interrupted();
     if (!next) return run;
-    look = run.demo->input().look();
+    look = run.demo->input().look().with_scenes_camera();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "demo/scene_demo.h"
 #include "demo_verbs.h"
@@ -43,11 +44,14 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
             {.tilt = {},
              .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
                                        [this](const demos::Ray& ray) { return simulation().touch(ray); },
-                                       options.size.width, options.size.height)}) {}
+                                       options.size.width, options.size.height),
+             .camera = demos::CameraControl(scene.camera, options.size.height)}) {}
 
   demos::FrameTimes step() override {
     simulation().record_contacts(static_cast<demos::View>(input().look().view) == demos::View::kContacts);
-    return SceneDemo::step();
+    const demos::FrameTimes times = SceneDemo::step();
+    follow_body();
+    return times;
   }
   demos::DemoCounts counts() const override {
     return {.soft_bodies = simulation().soft_bodies(),
@@ -60,8 +64,25 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
 
  private:
   render::Camera eye(const demos::Look& look) const {
-    return demos::seen_from(scene(), look, simulation().shown_tilt());
+    std::vector<ppu::Bounds<3>> boxes;
+    for (std::size_t b = 0; b < simulation().soft_bodies(); ++b)
+      boxes.push_back(simulation().soft_body(b).bounds());
+    return demos::kept_outside(demos::seen_from(scene(), look, simulation().shown_tilt()), boxes);
   }
+
+  /// The camera goes as far as the body that was held last, or the first one, has gone since the beginning.
+  void follow_body() {
+    for (const demos::InputEvent<3>& event : simulation().last_events())
+      if (event.action == demos::Action::kHold && event.body < simulation().soft_bodies())
+        followed_ = event.body;
+    if (!input().look().follows || simulation().soft_bodies() == 0) return;
+    const auto& body = simulation().soft_body(followed_);
+    const ppu::Bounds<3> rest = ppu::bounds(scene().soft_bodies[followed_].mesh), now = body.bounds();
+    const Eigen::Vector3f begin = scene().soft_bodies[followed_].position + 0.5f * (rest.low + rest.high);
+    input().follow_body(simulation().shown_tilt() * (0.5f * (now.low + now.high) - begin));
+  }
+
+  std::size_t followed_ = 0;  // number of a soft body
 };
 
 demos::Scene load_with_model(const std::string& name, const std::optional<demos::OwnModel>& model) {
@@ -79,6 +100,11 @@ int run_demo_3d(const Demo3dOptions& options) {
   if (const auto cell = options.model.cell;
       options.model.mesh && cell && !(*cell > 0 && std::isfinite(*cell)))
     throw UsageError(fmt::format("--cell {}: give a length above 0, in the model's units", *cell));
+  if (options.turntable && !(*options.turntable > 0 && std::isfinite(*options.turntable)))
+    throw UsageError(
+        fmt::format("--turntable {}: give the seconds of one turn, above 0", *options.turntable));
+  if (options.turntable && !options.headless)
+    throw UsageError("--turntable is for pictures without a window: give --headless too");
   return run_demo(options, "demo 3d", [&](bool all) {
     const std::optional<demos::OwnModel> model = demos::load_own_model(options.model);
     demos::InputLog<3> log(options);

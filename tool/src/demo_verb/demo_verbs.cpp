@@ -111,6 +111,9 @@ class DemoVerbs final : public Verb {
         ->type_name("LENGTH");
     d->add_option("--view", view_3d_, "What is drawn of soft bodies (default: mesh)")
         ->type_name("mesh|lattice|rotations|contacts");
+    d->add_option("--turntable", demo_3d_.turntable,
+                  "The camera goes about the scene once in so many seconds (with --headless)")
+        ->type_name("SECONDS");
     d->add_option("--skin", skin_,
                   "Who makes mesh vertices from particles: spe (default), or gpu, a vertex shader")
         ->type_name("spe|gpu");
