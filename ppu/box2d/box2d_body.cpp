@@ -39,7 +39,6 @@ void Box2dBody::add_particle(std::uint32_t number) {
   fixture.density = 1;
   fixture.friction = soft_.model().settings().friction;
   fixture.restitution = soft_.model().settings().restitution;
-  fixture.restitution = 0;
   fixture.filter.groupIndex = group_;
   particle->CreateFixture(&fixture);
   // All of it: braces alone leave the centre unset, as b2Vec2 has a constructor that does nothing.
