@@ -87,6 +87,26 @@ TEST(Box2dCoupling, KeepsMomentumInCollisionsWithRigidBodies) {
   EXPECT_LT(body.linear_momentum().x(), -0.5f) << "and pushed it";
 }
 
+/// The highest point of the body's centre between 0.6 s and 1.6 s: it falls for 0.5 s and comes back.
+float bounces_to(float restitution) {
+  World2d world;
+  world.add_box({0, -1}, {10, 1});
+  SoftBodySettings settings = rubber();
+  settings.restitution = restitution;
+  SoftBody<2>& body = world.soft.add(rectangle_model({4, 4}, settings), {0, 1.6f});
+  world.run(0.6f);
+  float highest = 0;
+  for (int i = 0; i < 120; ++i) {
+    world.soft.step(1.0f / 120);
+    highest = std::max(highest, body.centre_of_mass().y());
+  }
+  return highest;
+}
+
+TEST(Box2dCoupling, ItsParticlesHaveTheRestitutionOfTheMaterial) {
+  EXPECT_GT(bounces_to(0.9f), bounces_to(0) + 0.05f);
+}
+
 TEST(Box2dCoupling, MakesNoContactsWithinABody) {
   World2d world;
   world.soft.add(rectangle_model({5, 5}, rubber()), {0, 0});
