@@ -11,6 +11,7 @@
 
 #include "cell_skinner.h"
 #include "gl_objects.h"
+#include "material_painter.h"
 #include "overlay_painter.h"
 #include "shaders.h"
 #include "softcell/base/assert.h"
@@ -23,6 +24,7 @@ static_assert(sizeof(Eigen::Vector3f) == 12, "spans of vectors are uploaded as t
 constexpr GLuint kPositionAttribute = 0;
 constexpr GLuint kNormalAttribute = 1;
 constexpr GLuint kTextureAttribute = 2;
+constexpr GLuint kColourAttribute = 3;
 constexpr GLenum kPictureUnit = GL_TEXTURE1;  // the shadow map has unit 0
 constexpr GLint kPictureUnitNumber = 1;
 constexpr GLuint kFrameBinding = 0;
@@ -89,6 +91,7 @@ struct MeshBuffers {
   std::size_t vertices_needed = 0;  ///< the largest index and one
   bool filled = false;              ///< the vertices have been given
   std::optional<GlObject> texture_coordinates;
+  std::optional<GlObject> colours;
   std::optional<CellMesh> cells;  ///< what the vertices are made from, unless they are given
 };
 
@@ -114,6 +117,23 @@ Eigen::Matrix3f normal_matrix(const Eigen::Matrix4f& pose) {
   Eigen::Matrix3f cofactors;
   cofactors << y.cross(z), z.cross(x), x.cross(y);
   return cofactors;
+}
+
+GLint wrap_mode(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::repeat:
+      return GL_REPEAT;
+    case Wrap::mirror:
+      return GL_MIRRORED_REPEAT;
+    case Wrap::clamp:
+      return GL_CLAMP_TO_EDGE;
+  }
+  return GL_REPEAT;
+}
+
+bool any_two_sided(std::span<const PartDraw> parts) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [](const PartDraw& part) { return part.material.two_sided; });
 }
 
 Eigen::Matrix4f translation(const Eigen::Vector3f& offset) {
@@ -148,7 +168,13 @@ struct Renderer::State {
   void draw_lattice(const LatticeDraw& lattice);
   void draw_background();
   void draw_translucent(const FrameDescription& frame);
+  void check_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts) const;
   void draw(const MeshBuffers& buffers) const;
+  void draw_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts, const Eigen::Matrix4f& pose,
+                  float opacity, bool two_sided) const;
+  template <class Value>
+  void set_attribute(MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
+                     std::span<const Value> values, const char* what) const;
   void cull_back_faces(bool cull) const;
   void draw_surface(const SkinnedDraw& item) const;
   void draw_surface(const StaticDraw& item) const;
@@ -190,6 +216,7 @@ struct Renderer::State {
   GlObject lattice_layout, lattice_vertices, lattice_indices;
   GlObject empty_layout;  ///< for the background, which has no vertices
   std::unique_ptr<Programs> programs;
+  std::unique_ptr<MaterialPainter> materials;
   std::unique_ptr<OverlayPainter> overlay;  ///< made when it is first asked for
   std::unique_ptr<CellSkinner> skinner;     ///< likewise
   std::vector<MeshBuffers> skinned;
@@ -222,7 +249,9 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
   description = context.backend_name() + ", " + reinterpret_cast<const char*>(gl.GetString(GL_RENDERER)) +
                 ", " + std::to_string(samples) + " samples";
 
-  programs = std::make_unique<Programs>(gl, settings.soft_shadows ? kSoftSunlight : kQuickSunlight);
+  const char* const sun = settings.soft_shadows ? kSoftSunlight : kQuickSunlight;
+  programs = std::make_unique<Programs>(gl, sun);
+  materials = std::make_unique<MaterialPainter>(gl, sun, kFrameBinding);
   gl.UseProgram(programs->textured.object.name());
   gl.Uniform1i(gl.GetUniformLocation(programs->textured.object.name(), "picture"), kPictureUnitNumber);
   make_picture_buffers(width, height);
@@ -374,9 +403,31 @@ const GlObject& Renderer::State::texture(TextureId id) const {
   return textures[id.value];
 }
 
+void Renderer::State::check_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts) const {
+  const std::uint64_t triangles = static_cast<std::uint64_t>(buffers.index_count) / 3;
+  for (const PartDraw& part : parts) {
+    if (std::uint64_t{part.first_triangle} + part.triangle_count > triangles) {
+      throw std::invalid_argument("a part of " + std::to_string(part.triangle_count) + " triangles from " +
+                                  std::to_string(part.first_triangle) + " on is drawn of a mesh that has " +
+                                  std::to_string(triangles));
+    }
+    const Material& material = part.material;
+    for (const auto& used : {material.base_texture, material.metallic_roughness_texture,
+                             material.normal_texture, material.emission_texture}) {
+      if (!used) continue;
+      texture(*used);
+      if (!buffers.texture_coordinates)
+        throw std::invalid_argument("a part with a texture belongs to a mesh without texture coordinates");
+    }
+    if (material.vertex_colours && !buffers.colours)
+      throw std::invalid_argument("a part with vertex colours belongs to a mesh that has none");
+  }
+}
+
 void Renderer::State::check(const FrameDescription& frame) const {
   for (const SkinnedDraw& item : frame.skinned) {
     const MeshBuffers& buffers = mesh(item.mesh);
+    check_parts(buffers, item.parts);
     if (!item.texture) continue;
     texture(*item.texture);
     if (!buffers.texture_coordinates) {
@@ -384,7 +435,7 @@ void Renderer::State::check(const FrameDescription& frame) const {
                                   " is to be drawn with a texture and has no texture coordinates");
     }
   }
-  for (const StaticDraw& item : frame.statics) mesh(item.mesh);
+  for (const StaticDraw& item : frame.statics) check_parts(mesh(item.mesh), item.parts);
   for (const LatticeDraw& lattice : frame.lattices) {
     for (const auto& link : lattice.links) {
       if (link[0] >= lattice.particles.size() || link[1] >= lattice.particles.size()) {
@@ -444,6 +495,22 @@ void Renderer::State::draw(const MeshBuffers& buffers) const {
   gl.DrawElements(GL_TRIANGLES, buffers.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
+void Renderer::State::draw_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts,
+                                 const Eigen::Matrix4f& pose, float opacity, bool two_sided) const {
+  if (!buffers.filled) return;
+  const Eigen::Matrix3f normals = normal_matrix(pose);
+  gl.BindVertexArray(buffers.layout.name());
+  for (const PartDraw& part : parts) {
+    materials->use(part.material, textures, pose, normals, opacity);
+    cull_back_faces(!two_sided && !part.material.two_sided);
+    const bool by_alpha = opacity >= 1 && MaterialPainter::covers_by_alpha(part.material);
+    if (by_alpha) gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);  // without blending, in any order
+    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * part.triangle_count), GL_UNSIGNED_INT,
+                    buffer_offset(bytes_of(part.first_triangle, sizeof(Triangle))));
+    if (by_alpha) gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+  }
+}
+
 void Renderer::State::cull_back_faces(bool cull) const {
   if (cull) {
     gl.Enable(GL_CULL_FACE);
@@ -464,13 +531,15 @@ void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
   gl.UseProgram(programs->shadow.object.name());
   for (const SkinnedDraw& item : frame.skinned) {
     if (item.opacity < 1) continue;
-    cull_back_faces(!item.two_sided);
+    cull_back_faces(!item.two_sided && !any_two_sided(item.parts));
     draw_shadow(mesh(item.mesh), translation(item.origin));
   }
-  cull_back_faces(true);
   for (const StaticDraw& item : frame.statics) {
-    if (item.opacity >= 1) draw_shadow(mesh(item.mesh), item.pose);
+    if (item.opacity < 1) continue;
+    cull_back_faces(!any_two_sided(item.parts));
+    draw_shadow(mesh(item.mesh), item.pose);
   }
+  cull_back_faces(true);
   gl.UseProgram(programs->particle_shadow.object.name());
   for (const LatticeDraw& lattice : frame.lattices) {
     upload_lattice(lattice);
@@ -493,6 +562,9 @@ void Renderer::State::draw_surface(const Program& program, const MeshBuffers& bu
 }
 
 void Renderer::State::draw_surface(const SkinnedDraw& item) const {
+  if (!item.parts.empty()) {
+    return draw_parts(mesh(item.mesh), item.parts, translation(item.origin), item.opacity, item.two_sided);
+  }
   cull_back_faces(!item.two_sided);
   if (item.texture) {
     gl.ActiveTexture(kPictureUnit);
@@ -504,6 +576,7 @@ void Renderer::State::draw_surface(const SkinnedDraw& item) const {
 }
 
 void Renderer::State::draw_surface(const StaticDraw& item) const {
+  if (!item.parts.empty()) return draw_parts(mesh(item.mesh), item.parts, item.pose, item.opacity, false);
   cull_back_faces(true);
   const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->surface;
   draw_surface(program, mesh(item.mesh), item.pose, item.colour, item.opacity);
@@ -622,26 +695,52 @@ void Renderer::update_corners(MeshId id, std::span<const std::byte> corners, con
   state.filled(id, corners.size());
 }
 
-void Renderer::set_texture_coordinates(MeshId id, std::span<const Eigen::Vector2f> coordinates) {
-  State& state = *state_;
-  const std::size_t needed = state.mesh(id).vertices_needed;
-  if (coordinates.size() < needed) {
-    throw std::invalid_argument(std::to_string(coordinates.size()) + " texture coordinates for a mesh of " +
-                                std::to_string(needed) + " vertices");
+template <class Value>
+void Renderer::State::set_attribute(MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
+                                    std::span<const Value> values, const char* what) const {
+  if (values.size() < buffers.vertices_needed) {
+    throw std::invalid_argument(std::to_string(values.size()) + " " + what + " for a mesh of " +
+                                std::to_string(buffers.vertices_needed) + " vertices");
   }
-  MeshBuffers& buffers = state.skinned[id.value];
-  state.context.make_current();
-  const GladGLContext& gl = state.gl;
-  if (!buffers.texture_coordinates) buffers.texture_coordinates = make_buffer(gl);
+  context.make_current();
+  if (!buffer) buffer = make_buffer(gl);
   gl.BindVertexArray(buffers.layout.name());
-  gl.BindBuffer(GL_ARRAY_BUFFER, buffers.texture_coordinates->name());
-  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(coordinates.size_bytes()), coordinates.data(),
-                GL_STATIC_DRAW);
-  gl.EnableVertexAttribArray(kTextureAttribute);
-  gl.VertexAttribPointer(kTextureAttribute, 2, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector2f), nullptr);
+  gl.BindBuffer(GL_ARRAY_BUFFER, buffer->name());
+  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size_bytes()), values.data(), GL_STATIC_DRAW);
+  gl.EnableVertexAttribArray(attribute);
+  gl.VertexAttribPointer(attribute, sizeof(Value) / sizeof(float), GL_FLOAT, GL_FALSE, sizeof(Value),
+                         nullptr);
 }
 
-TextureId Renderer::add_texture(const Image& picture) {
+namespace {
+constexpr char kCoordinates[] = "texture coordinates", kVertexColours[] = "vertex colours";
+}
+
+void Renderer::set_texture_coordinates(MeshId id, std::span<const Eigen::Vector2f> coordinates) {
+  state_->mesh(id);
+  MeshBuffers& buffers = state_->skinned[id.value];
+  state_->set_attribute(buffers, buffers.texture_coordinates, kTextureAttribute, coordinates, kCoordinates);
+}
+
+void Renderer::set_texture_coordinates(StaticMeshId id, std::span<const Eigen::Vector2f> coordinates) {
+  state_->mesh(id);
+  MeshBuffers& buffers = state_->statics[id.value];
+  state_->set_attribute(buffers, buffers.texture_coordinates, kTextureAttribute, coordinates, kCoordinates);
+}
+
+void Renderer::set_vertex_colours(MeshId id, std::span<const Eigen::Vector4f> colours) {
+  state_->mesh(id);
+  MeshBuffers& buffers = state_->skinned[id.value];
+  state_->set_attribute(buffers, buffers.colours, kColourAttribute, colours, kVertexColours);
+}
+
+void Renderer::set_vertex_colours(StaticMeshId id, std::span<const Eigen::Vector4f> colours) {
+  state_->mesh(id);
+  MeshBuffers& buffers = state_->statics[id.value];
+  state_->set_attribute(buffers, buffers.colours, kColourAttribute, colours, kVertexColours);
+}
+
+TextureId Renderer::add_texture(const Image& picture, const TextureSettings& settings) {
   State& state = *state_;
   if (picture.width < 1 || picture.height < 1 || picture.width > state.largest_side ||
       picture.height > state.largest_side) {
@@ -661,11 +760,13 @@ TextureId Renderer::add_texture(const Image& picture) {
   GlObject texture = make_texture(gl);
   gl.ActiveTexture(kPictureUnit);
   gl.BindTexture(GL_TEXTURE_2D, texture.name());
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, picture.width, picture.height, 0, GL_RGBA,
-                GL_UNSIGNED_BYTE, flipped.rgba.data());
+  gl.TexImage2D(GL_TEXTURE_2D, 0, settings.linear ? GL_RGBA8 : GL_SRGB8_ALPHA8, picture.width, picture.height,
+                0, GL_RGBA, GL_UNSIGNED_BYTE, flipped.rgba.data());
   gl.GenerateMipmap(GL_TEXTURE_2D);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_mode(settings.wrap_u));
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_mode(settings.wrap_v));
   gl.ActiveTexture(GL_TEXTURE0);
   state.textures.push_back(std::move(texture));
   return {static_cast<std::uint32_t>(state.textures.size() - 1)};
@@ -701,6 +802,7 @@ StaticMeshId Renderer::add_static_mesh(std::span<const Eigen::Vector3f> position
                          buffer_offset(0));
   gl.VertexAttribPointer(kNormalAttribute, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f),
                          buffer_offset(positions.size_bytes()));
+  buffers.vertices_needed = positions.size();
   buffers.filled = true;
   state.statics.push_back(std::move(buffers));
   return {static_cast<std::uint32_t>(state.statics.size() - 1)};

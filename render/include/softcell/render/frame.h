@@ -9,6 +9,7 @@
 #include <span>
 
 #include "softcell/render/camera.h"
+#include "softcell/render/material.h"
 
 namespace softcell::render {
 
@@ -33,10 +34,6 @@ struct MeshId {
 struct StaticMeshId {
   std::uint32_t value = 0;
 };
-/// Handle to a texture of one Renderer.
-struct TextureId {
-  std::uint32_t value = 0;
-};
 
 enum class Pattern : std::uint8_t {
   plain,
@@ -51,6 +48,9 @@ struct SkinnedDraw {
   float opacity = 1;       ///< 0..1; below 1 the mesh is blended over what is behind it and casts no shadow
   bool two_sided = false;  ///< draw inner sides, too, for meshes with holes; takes about 1.6 times as long
   std::optional<TextureId> texture = {};  ///< its colours are multiplied with `colour`; none: `colour` alone
+  /// Parts with materials of their own, in place of `colour` and `texture`; triangles of no part are not drawn. None: the
+  /// whole mesh has one colour.
+  std::span<const PartDraw> parts = {};
 };
 
 /// A mesh that does not change, moved as a whole.
@@ -60,6 +60,7 @@ struct StaticDraw {
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;  ///< 0..1; below 1 front sides are blended over what is behind them, without shadow
   Pattern pattern = Pattern::plain;
+  std::span<const PartDraw> parts = {};  ///< as SkinnedDraw has them, in place of `colour` and `pattern`
 };
 
 /// A particle lattice: spheres and the links between them.

@@ -80,13 +80,19 @@ class Renderer {
 
   /// The texture coordinates of a mesh's vertices, in their order. They stay when the vertices are given anew.
   /// @param coordinates  one for each vertex that the indices speak of, or more: (0, 0) is the picture's lower
-  /// left corner, (1, 1) the upper right one; beyond them the picture is repeated.
+  /// left corner, (1, 1) the upper right one.
   /// @throws std::invalid_argument  too few, or no such mesh.
   void set_texture_coordinates(MeshId mesh, std::span<const Eigen::Vector2f> coordinates);
+  void set_texture_coordinates(StaticMeshId mesh, std::span<const Eigen::Vector2f> coordinates);
 
-  /// A picture to draw meshes with. Its alpha channel is not used. The pixels are copied before it returns.
+  /// The colours of a mesh's vertices, in their order: red, green, blue in linear light, and alpha, each 0..1. They
+  /// stay likewise. @throws std::invalid_argument  too few, or no such mesh.
+  void set_vertex_colours(MeshId mesh, std::span<const Eigen::Vector4f> colours);
+  void set_vertex_colours(StaticMeshId mesh, std::span<const Eigen::Vector4f> colours);
+
+  /// A picture to draw meshes with. The pixels are copied before it returns.
   /// @throws std::invalid_argument  a picture without pixels, or larger than the context takes.
-  TextureId add_texture(const Image& picture);
+  TextureId add_texture(const Image& picture, const TextureSettings& settings = {});
 
   /// Bytes uploaded by update_mesh() and update_corners() since construction.
   std::uint64_t uploaded_bytes() const;
@@ -99,8 +105,8 @@ class Renderer {
   /// Draws one frame: first opaque meshes, then meshes with an opacity below 1 in the given order, static
   /// ones last.
   /// @pre  opacities are 0..1; poses have a determinant above 0; shadow radii are above 0, those of particles not below
-  /// @throws std::invalid_argument  a handle is not of this renderer, a link is out of range, or a mesh with a
-  /// texture has no texture coordinates.
+  /// @throws std::invalid_argument  a handle is not of this renderer, a link is out of range, a mesh with a
+  /// texture has no texture coordinates, one with vertex colours has none, or a part is outside of its mesh.
   void render(const FrameDescription& frame);
 
   /// Draws text and widgets over the last frame.
