@@ -83,7 +83,8 @@ macro(softcell_install_component component)
       softcell_install_pkg_config(soft_bodies "meshes given as arrays, lattices, models and bodies"
         REQUIRES eigen3 LIBS -lsoftcell_soft_bodies -lsoftcell_base -lxxhash)
     elseif("${component}" STREQUAL "mesh_import")
-      softcell_install_pkg_config(mesh_import "meshes from files" REQUIRES softcell-soft-bodies assimp LIBS -lsoftcell_mesh_import)
+      softcell_install_pkg_config(mesh_import "meshes from files"
+        REQUIRES softcell-soft-bodies assimp libpng libturbojpeg LIBS -lsoftcell_mesh_import)
     elseif("${component}" STREQUAL "bullet")
       softcell_install_pkg_config(bullet "soft bodies in a Bullet world" REQUIRES softcell-soft-bodies bullet LIBS -lsoftcell_bullet)
     elseif("${component}" STREQUAL "box2d")
@@ -136,6 +137,7 @@ function(softcell_install_package)
     ${PROJECT_SOURCE_DIR}/cmake/SoftcellSpuElf.cmake
     ${PROJECT_SOURCE_DIR}/cmake/CheckSpuBudget.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindBulletFloat.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindTurboJpeg.cmake
     DESTINATION ${SOFTCELL_INSTALL_MODULES} COMPONENT development)
 
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/softcellConfig.cmake.in ${PROJECT_BINARY_DIR}/softcellConfig.cmake

@@ -38,7 +38,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsoftcell-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # A static library has no list of what it needs: these are the headers and libraries that a program links with it.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "binutils, libassimp-dev, libboost-context-dev, libbox2d-dev, libbullet-dev, libdw-dev, libeigen3-dev, libelf-dev, libpng-dev, libxxhash-dev")
+  "binutils, libassimp-dev, libboost-context-dev, libbox2d-dev, libbullet-dev, libdw-dev, libeigen3-dev, libelf-dev, libpng-dev, libturbojpeg0-dev, libxxhash-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake (>= 3.25), g++ (>= 4:12), libosmesa6, softcell")
 
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME softcell-doc)

@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/mesh_import/mesh_import.h"
@@ -50,8 +49,11 @@ int main(int argc, char** argv) try {
   const ppu::DrawOrder order = ppu::draw_order(*model);
   render::SkinnedDraw skin{.mesh = renderer.add_mesh(order.indices), .colour = {1, 1, 1}};
   renderer.set_texture_coordinates(skin.mesh, order.reorder(mesh.texture_coordinates));
-  const auto texture = std::filesystem::path(argv[1]).replace_filename(mesh.parts.at(0).texture);
-  skin.texture = renderer.add_texture(render::read_png(texture));
+  const auto painted = mesh.materials.at(0).base_texture.picture;
+  if (painted == nullptr) throw std::runtime_error("the jelly's material has no texture");
+  render::Image texture(painted->width, painted->height);
+  texture.rgba = painted->rgba;
+  skin.texture = renderer.add_texture(texture);
   const auto add = [&](const ppu::TriangleMesh& m) {
     return render::StaticDraw{.mesh = renderer.add_static_mesh(m.positions, m.normals, m.triangles)};
   };

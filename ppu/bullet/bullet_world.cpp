@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -18,7 +19,7 @@ namespace {
 struct RigidBody {
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> body;
-  btVector3 start;
+  btTransform start;
 };
 
 double milliseconds(std::chrono::nanoseconds time) {
@@ -45,7 +46,7 @@ struct BulletWorld::Impl {
     for (RigidBody& rigid : bodies) world.removeRigidBody(rigid.body.get());
   }
 
-  std::size_t add(std::unique_ptr<btCollisionShape> shape, float mass, const Eigen::Vector3f& position,
+  std::size_t add(std::unique_ptr<btCollisionShape> shape, float mass, const btTransform& start,
                   float friction, float restitution) {
     SC_ASSERT(shape != nullptr && mass >= 0 && friction >= 0 && restitution >= 0,
               "rigid body {} has a mass of {} kg, friction {} and restitution {}", bodies.size(), mass,
@@ -53,13 +54,13 @@ struct BulletWorld::Impl {
     btVector3 inertia(0, 0, 0);
     if (mass > 0) shape->calculateLocalInertia(mass, inertia);
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape.get(), inertia);
-    info.m_startWorldTransform.setOrigin(to_bullet(position));
+    info.m_startWorldTransform = start;
     info.m_friction = friction;
     info.m_restitution = restitution;
     auto body = std::make_unique<btRigidBody>(info);
     if (mass > 0) body->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(body.get());
-    bodies.push_back({std::move(shape), std::move(body), to_bullet(position)});
+    bodies.push_back({std::move(shape), std::move(body), start});
     return bodies.size() - 1;
   }
 };
@@ -76,13 +77,18 @@ BulletWorld::BulletWorld() : impl_(std::make_unique<Impl>()) {
 BulletWorld::~BulletWorld() = default;
 
 std::size_t BulletWorld::add_box(const Eigen::Vector3f& size, float mass, const Eigen::Vector3f& position,
-                                 float friction, float restitution) {
+                                 float friction, float restitution, const Eigen::Quaternionf& rotation) {
   if (!(size.minCoeff() > 0) || !(mass >= 0) || !(friction >= 0)) {
     throw std::invalid_argument("a box needs edges above 0, and a mass and friction of 0 or above");
   }
   if (!(restitution >= 0 && restitution <= 1))
     throw std::invalid_argument("a box needs a restitution from 0 to 1");
-  return impl_->add(std::make_unique<btBoxShape>(to_bullet(size / 2)), mass, position, friction, restitution);
+  if (!(std::abs(rotation.norm() - 1) < 1e-3f))
+    throw std::invalid_argument("a box needs a rotation of unit length");
+  btTransform start(btQuaternion(rotation.x(), rotation.y(), rotation.z(), rotation.w()),
+                    to_bullet(position));
+  if (rotation.coeffs() == Eigen::Quaternionf::Identity().coeffs()) start.getBasis().setIdentity();
+  return impl_->add(std::make_unique<btBoxShape>(to_bullet(size / 2)), mass, start, friction, restitution);
 }
 
 std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction,
@@ -92,15 +98,15 @@ std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vecto
   for (const Eigen::Vector3f& p : mesh.positions) hull->addPoint(to_bullet(p), false);
   hull->optimizeConvexHull();  // drops what lies inside: GJK looks at every point
   hull->recalcLocalAabb();
-  return impl_->add(std::move(hull), 0, position, friction, restitution);
+  return impl_->add(std::move(hull), 0, btTransform(btMatrix3x3::getIdentity(), to_bullet(position)),
+                    friction, restitution);
 }
 
 void BulletWorld::reset() {
   for (RigidBody& rigid : impl_->bodies) {
     btRigidBody& body = *rigid.body;
-    const btTransform start(btQuaternion::getIdentity(), rigid.start);
-    body.setWorldTransform(start);
-    body.setInterpolationWorldTransform(start);
+    body.setWorldTransform(rigid.start);
+    body.setInterpolationWorldTransform(rigid.start);
     body.setLinearVelocity({0, 0, 0});
     body.setAngularVelocity({0, 0, 0});
     body.clearForces();

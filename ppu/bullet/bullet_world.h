@@ -2,6 +2,7 @@
 // A Bullet world with settings that give the same result in every run, and the rigid things in it.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -36,9 +37,11 @@ class BulletWorld {
   /// @param size  edge lengths, positive    @param mass  kg; 0 for one that never moves
   /// @param position  of its centre         @param friction  coefficient, multiplied with the other body's
   /// @param restitution  0..1, multiplied with the other body's
+  /// @param rotation  of unit length
   /// @throws std::invalid_argument  not as stated.
   std::size_t add_box(const Eigen::Vector3f& size, float mass, const Eigen::Vector3f& position,
-                      float friction, float restitution = 0);
+                      float friction, float restitution = 0,
+                      const Eigen::Quaternionf& rotation = Eigen::Quaternionf::Identity());
 
   /// The convex hull of a mesh, which never moves. Its mesh's origin lies at `position`.
   /// @throws std::invalid_argument  the mesh has no positions.

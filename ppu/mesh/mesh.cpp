@@ -1,5 +1,6 @@
 #include "softcell/soft_bodies/mesh.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
@@ -15,6 +16,16 @@ void require_one_for_each(const char* what, std::size_t count, std::size_t posit
 }
 
 }  // namespace
+
+bool MeshTexture::operator==(const MeshTexture& other) const {
+  const bool same_picture =
+      picture == other.picture || (picture && other.picture && *picture == *other.picture);
+  return file == other.file && wrap_u == other.wrap_u && wrap_v == other.wrap_v && same_picture;
+}
+
+bool MeshMaterial::has_looks() const {
+  return base_colour || base_texture.picture || normal_texture.picture || !emission.isZero(0);
+}
 
 Bounds<3> bounds(const TriangleMesh& mesh) {
   SC_ASSERT(!mesh.positions.empty(), "a mesh without positions has no box");
@@ -38,6 +49,25 @@ void fit(TriangleMesh& mesh, float longest_side) {
   }
 }
 
+void rotate(TriangleMesh& mesh, const Eigen::Matrix3f& rotation) {
+  SC_ASSERT((rotation * rotation.transpose() - Eigen::Matrix3f::Identity()).norm() < 1e-4f &&
+                rotation.determinant() > 0,
+            "a rotation with determinant {}", rotation.determinant());
+  for (Eigen::Vector3f& position : mesh.positions) position = (rotation * position).eval();
+  for (Eigen::Vector3f& normal : mesh.normals) normal = (rotation * normal).eval();
+}
+
+void turn_z_up(TriangleMesh& mesh) {
+  const auto turn = [](Eigen::Vector3f& v) { v = Eigen::Vector3f(v.x(), v.z(), 0 - v.y()); };
+  for (Eigen::Vector3f& position : mesh.positions) turn(position);
+  for (Eigen::Vector3f& normal : mesh.normals) turn(normal);
+}
+
+void scale(TriangleMesh& mesh, float factor) {
+  SC_ASSERT(factor > 0 && std::isfinite(factor), "a mesh is scaled by {}", factor);
+  for (Eigen::Vector3f& position : mesh.positions) position *= factor;
+}
+
 void validate(const TriangleMesh& mesh) {
   const std::size_t positions = mesh.positions.size();
   require_one_for_each("normals", mesh.normals.size(), positions);
@@ -59,6 +89,10 @@ void validate(const TriangleMesh& mesh) {
                                   std::to_string(next));
     }
     next += part.triangle_count;
+    if (part.material && *part.material >= mesh.materials.size()) {
+      throw std::invalid_argument("a part of a mesh has material " + std::to_string(*part.material) +
+                                  "; the mesh has " + std::to_string(mesh.materials.size()));
+    }
   }
   if (!mesh.parts.empty() && next != mesh.triangles.size()) {
     throw std::invalid_argument("the parts of a mesh have " + std::to_string(next) +

@@ -2,22 +2,18 @@
 // Material libraries of OBJ files (.mtl): what softcell hands on of them. The importing library never sees
 // them.
 
-#include <Eigen/Core>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include "softcell/soft_bodies/mesh_material.h"
+
 namespace softcell::ppu {
 
-struct Material {
-  std::optional<Eigen::Vector3f> base_colour;  ///< Kd, 0..1
-  std::string texture;                         ///< the file name of map_Kd
-};
+/// By name. Of textures the names of their files are known.
+using MaterialLibrary = std::map<std::string, MeshMaterial, std::less<>>;
 
-using MaterialLibrary = std::map<std::string, Material, std::less<>>;
-
-/// Statements other than newmtl, Kd and map_Kd are skipped.
+/// Statements other than newmtl, Kd, map_Kd, d, Tr, Pr, Pm and norm are skipped.
 /// @throws std::runtime_error  a clause without the file's name: the line, what is wrong, what was expected.
 MaterialLibrary parse_material_library(std::string_view text);
 

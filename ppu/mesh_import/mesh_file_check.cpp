@@ -32,7 +32,7 @@ std::string mesh_part_name(std::span<const std::string_view> words) {
 
 void extend_parts(MeshFileContents& contents, const std::string& object, const std::string& material) {
   SC_ASSERT(contents.triangles <= kMaxMeshTriangles, "a file of {} triangles", contents.triangles);
-  std::vector<MeshPart>& parts = contents.parts;
+  std::vector<NamedPart>& parts = contents.parts;
   if (parts.empty() || parts.back().object != object || parts.back().material != material) {
     if (parts.size() == kMaxMeshParts) {
       refuse("its objects and materials change more than " + std::to_string(kMaxMeshParts) + " times");
@@ -46,6 +46,9 @@ void extend_parts(MeshFileContents& contents, const std::string& object, const s
 MeshFileContents check_mesh_file(std::string_view bytes, MeshFormat format) {
   MeshFileContents contents;
   switch (format) {
+    case MeshFormat::kGltf:
+      SC_ASSERT(false, "glTF of {} bytes is read by parse_gltf()", bytes.size());
+      break;
     case MeshFormat::kObj:
       contents = check_obj(bytes);
       break;
@@ -58,7 +61,7 @@ MeshFileContents check_mesh_file(std::string_view bytes, MeshFormat format) {
   }
   if (contents.triangles == 0)
     refuse("it has no faces, only points or lines; a mesh of triangles was expected");
-  const auto has_no_name = [](const MeshPart& part) { return part.object.empty() && part.material.empty(); };
+  const auto has_no_name = [](const NamedPart& part) { return part.object.empty() && part.material.empty(); };
   if (std::all_of(contents.parts.begin(), contents.parts.end(), has_no_name)) contents.parts.clear();
   return contents;
 }

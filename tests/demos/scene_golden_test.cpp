@@ -58,6 +58,9 @@ INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
                          testing::Values(Moment{"touch", 180}, Moment{"gap", 150}, Moment{"pile", 90},
                                          Moment{"knot", 40}, Moment{"torus_fold", 40}));
 
+INSTANTIATE_TEST_SUITE_P(Materials, SceneGolden,
+                         testing::Values(Moment{"painted", 1}, Moment{"painted", 55}));
+
 class SceneGoldenLattice : public testing::TestWithParam<const char*> {};
 
 TEST_P(SceneGoldenLattice, LooksAsItDid) {

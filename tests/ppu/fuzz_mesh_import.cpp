@@ -1,6 +1,7 @@
 // libFuzzer target: any bytes, as each of the three formats (chosen by the first byte), give a valid mesh or
 // a std::runtime_error. Behind a line "#mtl" an OBJ file's bytes are its material library.
 
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <stdexcept>
@@ -41,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   const std::size_t library = bytes.find(kLibraryBegins);
   try {
     check(parse_mesh(bytes.substr(0, library), formats[data[0] % 3],
-                     [&](const std::string&) -> std::optional<std::string> {
+                     [&](const std::string&, std::uint64_t) -> std::optional<std::string> {
                        if (library == std::string_view::npos) return std::nullopt;
                        return std::string(bytes.substr(library + kLibraryBegins.size()));
                      }));

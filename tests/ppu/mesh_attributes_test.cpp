@@ -24,10 +24,11 @@ using Eigen::Vector4f;
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TriangleMesh obj(const std::string& text, const std::string& library = "") {
-  return parse_mesh(text, MeshFormat::kObj, [&](const std::string& name) -> std::optional<std::string> {
-    if (name != "paint.mtl") return std::nullopt;
-    return library;
-  });
+  return parse_mesh(text, MeshFormat::kObj,
+                    [&](const std::string& name, std::uint64_t) -> std::optional<std::string> {
+                      if (name != "paint.mtl") return std::nullopt;
+                      return library;
+                    });
 }
 
 std::string refusal(const std::string& text, const std::string& library) {
@@ -122,17 +123,25 @@ TEST(MeshAttributes, ObjectsAndMaterialsAreRangesOfTriangles) {
           "newmtl hair\nKd 0.25\nmap_Kd my hair.png\nnewmtl other\nKd xyz 1 1 1\n");
   ASSERT_EQ(mesh.triangles.size(), 4u);  // the one without area is gone
   ASSERT_EQ(mesh.parts.size(), 3u);
-  EXPECT_EQ(mesh.parts[0], (MeshPart{"head of it", "skin", 0, 2, Vector3f(0.9f, 0.6f, 0.5f), "skin.png"}));
-  EXPECT_EQ(mesh.parts[1],
-            (MeshPart{"head of it", "hair", 2, 1, Vector3f(0.25f, 0.25f, 0.25f), "my hair.png"}));
-  EXPECT_EQ(mesh.parts[2], (MeshPart{"body", "skin", 3, 1, Vector3f(0.9f, 0.6f, 0.5f), "skin.png"}));
+  EXPECT_EQ(mesh.parts[0], (MeshPart{"head of it", 0, 0, 2}));
+  EXPECT_EQ(mesh.parts[1], (MeshPart{"head of it", 1, 2, 1}));
+  EXPECT_EQ(mesh.parts[2], (MeshPart{"body", 0, 3, 1}));
+  ASSERT_EQ(mesh.materials.size(), 2u);
+  EXPECT_EQ(mesh.materials[0], (MeshMaterial{.name = "skin",
+                                             .base_colour = Vector4f(0.9f, 0.6f, 0.5f, 1),
+                                             .base_texture = {.file = "skin.png", .picture = nullptr}}));
+  EXPECT_EQ(mesh.materials[1], (MeshMaterial{.name = "hair",
+                                             .base_colour = Vector4f(0.25f, 0.25f, 0.25f, 1),
+                                             .base_texture = {.file = "my hair.png", .picture = nullptr}}));
   validate(mesh);
 }
 
 TEST(MeshAttributes, AMissingMaterialLibraryLeavesTheNames) {
   const TriangleMesh mesh = obj("mtllib elsewhere.mtl\nusemtl red\n" + kSquare + "f 1 2 3\n");
   ASSERT_EQ(mesh.parts.size(), 1u);
-  EXPECT_EQ(mesh.parts[0], (MeshPart{"", "red", 0, 1, std::nullopt, ""}));
+  EXPECT_EQ(mesh.parts[0], (MeshPart{"", 0, 0, 1}));
+  EXPECT_EQ(mesh.materials, std::vector{MeshMaterial{.name = "red"}});
+  EXPECT_FALSE(mesh.materials[0].has_looks());
 }
 
 TEST(MeshAttributes, SolidsOfTextStlAreParts) {
@@ -142,8 +151,8 @@ TEST(MeshAttributes, SolidsOfTextStlAreParts) {
       parse_mesh("solid lid\n" + facet + "endsolid lid\nsolid pot\n" + facet + facet + "endsolid pot\n",
                  MeshFormat::kStl);
   ASSERT_EQ(mesh.parts.size(), 2u);
-  EXPECT_EQ(mesh.parts[0], (MeshPart{"lid", "", 0, 1, std::nullopt, ""}));
-  EXPECT_EQ(mesh.parts[1], (MeshPart{"pot", "", 1, 2, std::nullopt, ""}));
+  EXPECT_EQ(mesh.parts[0], (MeshPart{"lid", std::nullopt, 0, 1}));
+  EXPECT_EQ(mesh.parts[1], (MeshPart{"pot", std::nullopt, 1, 2}));
 }
 
 TEST(MeshAttributes, ABrokenMaterialLibraryIsRefused) {
@@ -188,7 +197,7 @@ TEST(MeshAttributes, ArraysThatDoNotFitEachOtherAreNamed) {
   mesh.triangles[3][1] = 24;
   EXPECT_EQ(problem(mesh), "triangle 3 of a mesh names vertex 24; the mesh has 24");
   mesh = good;
-  mesh.parts = {{.object = "half", .material = "", .first_triangle = 0, .triangle_count = 6}};
+  mesh.parts = {{.object = "half", .material = std::nullopt, .first_triangle = 0, .triangle_count = 6}};
   EXPECT_EQ(problem(mesh), "the parts of a mesh have 6 triangles, the mesh has 12");
 }
 

@@ -343,7 +343,7 @@ TEST_F(MeshImport, RefusesWhatIsNoMeshFile) {
   expect_path_refused(folder_ / "folder.obj", "it is a directory");
   expect_path_refused("/dev/null.obj", "there is no such file");
   for (const char* name : {"a.obj", "a.ply", "a.stl"}) expect_refused(name, "", "it is empty");
-  expect_refused("a.fbx", "x", "its extension '.fbx' is not one of .obj, .ply, .stl");
+  expect_refused("a.fbx", "x", "its extension '.fbx' is not one of .gltf, .glb, .obj, .ply, .stl");
   expect_refused("noextension", "x", "its extension '' is not one of");
 }
 

@@ -3,6 +3,7 @@
 // and benchmarks. Metres, kilograms, seconds; y is up.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
 #include <string>
@@ -26,12 +27,14 @@ struct SoftBodyPlacement {
   /// rad/s: how fast its two ends along x turn about x at the beginning, against each other.
   float twist = 0;
   render::Colour colour{0.8f, 0.8f, 0.8f};
+  bool own_materials = false;  ///< the mesh's materials are drawn, where it has any, in place of `colour`
 };
 
 struct RigidBox {
   Eigen::Vector3f size{1, 1, 1};
   float mass = 0;  ///< 0: does not move
   Eigen::Vector3f position{0, 0, 0};
+  Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
   render::Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;
   render::Pattern pattern = render::Pattern::plain;
@@ -42,6 +45,7 @@ struct Obstacle {
   ppu::TriangleMesh mesh;
   Eigen::Vector3f position{0, 0, 0};
   render::Colour colour{0.8f, 0.8f, 0.8f};
+  bool own_materials = false;  ///< as of a soft body
 };
 
 /// The ground tilts about the x and z axes: angle(t) = amplitude sin(2 pi t / period), with the tilt growing
@@ -73,6 +77,7 @@ struct Scene {
   ScriptedInput<3> script;
   std::vector<int> pictures;                 ///< frames worth a picture, ascending
   std::vector<std::filesystem::path> files;  ///< that it was read from: nothing may be written there
+  std::vector<std::string> notes;  ///< for the user, a sentence each: what of its meshes was not read
 };
 
 }  // namespace softcell::demos

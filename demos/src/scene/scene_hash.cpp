@@ -58,7 +58,7 @@ class Hash {
   }
 
   void add(const ppu::TriangleMesh& mesh) {
-    const auto& [positions, normals, triangles, texture_coordinates, colours, parts] = mesh;
+    const auto& [positions, normals, triangles, texture_coordinates, colours, parts, materials] = mesh;
     add(positions, triangles);  // all else is looks
   }
   void add(const ppu::SoftBodySettings& settings) {
@@ -69,16 +69,17 @@ class Hash {
     add_unless(contacts, true);
   }
   void add(const SoftBodyPlacement& body) {
-    const auto& [name, mesh, settings, position, twist, colour] = body;
+    const auto& [name, mesh, settings, position, twist, colour, own_materials] = body;
     add(mesh, settings, position);
     add_unless(twist, 0.0f);
   }
   void add(const RigidBox& box) {
-    const auto& [size, mass, position, colour, opacity, pattern] = box;
+    const auto& [size, mass, position, rotation, colour, opacity, pattern] = box;
     add(size, mass, position);
+    add_unless(Eigen::Vector4f(rotation.coeffs()), Eigen::Vector4f(0, 0, 0, 1));
   }
   void add(const Obstacle& obstacle) {
-    const auto& [mesh, position, colour] = obstacle;
+    const auto& [mesh, position, colour, own_materials] = obstacle;
     add(mesh, position);
   }
   void add(const TiltScript& tilt) {
@@ -104,7 +105,7 @@ class Hash {
 
 std::uint64_t scene_hash(const Scene& scene) {
   const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, restitution, substeps,
-               contacts, frames, camera, light, script, pictures, files] = scene;
+               contacts, frames, camera, light, script, pictures, files, notes] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);

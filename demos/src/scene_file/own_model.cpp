@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mesh_files.h"
 #include "read_common.h"
 #include "softcell/base/assert.h"
 #include "softcell/mesh_import/mesh_import.h"
@@ -63,7 +64,11 @@ void check_lattice(const OwnModelOptions& options, const ppu::TriangleMesh& mesh
 
 std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
   if (!options.mesh) return std::nullopt;
-  OwnModel model{.mesh = ppu::import_mesh(*options.mesh)};
+  ppu::ImportReport report;
+  OwnModel model{.mesh = ppu::import_mesh(*options.mesh, &report)};
+  model.files = report.files;
+  if (!report.not_read.empty()) model.notes = {not_read_of(options.mesh->string(), report)};
+  if (options.z_up) ppu::turn_z_up(model.mesh);
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);
   const double longest = (box.high - box.low).maxCoeff();
   const double cell = cell_size(options, longest);

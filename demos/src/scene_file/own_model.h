@@ -10,6 +10,7 @@ namespace softcell::demos {
 
 struct OwnModelOptions {
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
+  bool z_up = false;                          ///< its z axis points upwards, not its y axis
   int cells = 8;                              ///< along the model's longest side
   std::optional<double> cell;  ///< their size in the model's own units, above 0, in place of `cells`
 };

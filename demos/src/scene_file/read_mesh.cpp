@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "softcell/mesh_import/mesh_import.h"
+#include "ppu/numbers/deterministic_math.h"
 #include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {
@@ -85,6 +85,7 @@ ppu::TriangleMesh marked_cells(FieldReader& fields) {
   return ppu::make_marked_cells(size, ball);
 }
 
+constexpr std::array<std::string_view, 2> kAxes{"y", "z"};
 constexpr std::array<std::string_view, 9> kMeshKinds{"box",     "car",    "cone",  "cylinder", "marked_cells",
                                                      "penguin", "sphere", "torus", "wedge"};
 constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 9> kMeshMakers{
@@ -100,25 +101,66 @@ ppu::TriangleMesh primitive(const Value& value, const std::string& owner) {
 
 }  // namespace
 
-ppu::TriangleMesh read_mesh(FieldReader& body, const SceneSource& source) {
+Eigen::Quaternionf read_rotation(FieldReader& body) {
+  constexpr Range kTurn{.low = -3600, .high = 3600};
+  const Value* const value = body.field("rotation");
+  if (value == nullptr) return Eigen::Quaternionf::Identity();
+  Eigen::Vector3f axis{0, 1, 0};
+  float degrees = 0;
+  FieldReader fields(*value, "the rotation of " + body.what());
+  fields.vector("axis", axis, kCoordinate).number("degrees", degrees, kTurn, Need::kRequired).finish();
+  if (axis.norm() < 1e-4f)
+    throw SceneError(fields.place("axis"), "axis of " + fields.what() + " must not be 0");
+  const double half = double{degrees} * ppu::kPi / 360;
+  const Eigen::Vector3d turn = ppu::sine(half) * axis.cast<double>().normalized();
+  return {static_cast<float>(ppu::cosine(half)), static_cast<float>(turn.x()), static_cast<float>(turn.y()),
+          static_cast<float>(turn.z())};
+}
+
+ppu::TriangleMesh read_mesh(FieldReader& body, MeshFiles& files) {
   const Value* shape = body.field("shape");
   std::string file;
-  std::optional<float> longest_side;
-  body.text("mesh", file).number("longest_side", longest_side, kLength).finish();
+  std::optional<float> longest_side, scale;
+  std::size_t up = 0;
+  body.text("mesh", file)
+      .choice("up", up, kAxes)
+      .number("scale", scale, kLength)
+      .number("longest_side", longest_side, kLength)
+      .finish();
   if ((shape != nullptr) == body.has("mesh")) {
     throw SceneError(body.place(), body.what() + " needs either a shape or a mesh");
   }
+  for (const char* const field : {"up", "scale"}) {
+    if (shape != nullptr && body.has(field))
+      throw SceneError(body.place(field), fmt::format("{} of {} is for a mesh from a file, not for a shape",
+                                                      field, body.what()));
+  }
+  if (scale && longest_side)
+    throw SceneError(body.place("scale"), body.what() + " has both scale and longest_side; give one of them");
   const Place& place = body.place(shape != nullptr ? "shape" : "mesh");
+  ppu::TriangleMesh mesh;
   try {
-    ppu::TriangleMesh mesh =
-        shape != nullptr ? primitive(*shape, body.what()) : ppu::import_mesh(source.mesh(file, place));
-    if (longest_side) ppu::fit(mesh, *longest_side);
-    return mesh;
+    mesh = shape != nullptr ? primitive(*shape, body.what()) : files.mesh(file, place);
   } catch (const SceneError&) {
     throw;
   } catch (const std::exception& error) {
     throw SceneError(place, error.what());
   }
+  if (up == 1) ppu::turn_z_up(mesh);
+  if (scale) {
+    ppu::scale(mesh, *scale);
+    const ppu::Bounds<3> box = ppu::bounds(mesh);
+    if (!((box.high - box.low).maxCoeff() <= static_cast<float>(kFar)))
+      throw SceneError(body.place("scale"), fmt::format("scale of {} is {}, which makes it larger than {} m",
+                                                        body.what(), *scale, kFar));
+  }
+  if (longest_side) ppu::fit(mesh, *longest_side);
+  return mesh;
+}
+
+void rotate(ppu::TriangleMesh& mesh, const Eigen::Quaternionf& rotation) {
+  if (rotation.vec().isZero(0)) return;  // not a bit of it changes
+  ppu::rotate(mesh, rotation.toRotationMatrix());
 }
 
 }  // namespace softcell::demos

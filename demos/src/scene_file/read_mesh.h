@@ -1,14 +1,22 @@
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "field_reader.h"
-#include "scene_source.h"
+#include "mesh_files.h"
 #include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::demos {
 
-/// The mesh of a soft body or an obstacle: its field `shape`, a primitive, or `mesh`, a file.
-/// These are the last fields that are read of the body: what else it has is refused.
+/// The field `rotation` of a body: a table of `axis` and `degrees`. @throws SceneError
+Eigen::Quaternionf read_rotation(FieldReader& body);
+
+/// The mesh of a soft body or an obstacle: its field `shape`, a primitive, or `mesh`, a file, with `up`, `scale` or
+/// `longest_side`. These are the last fields that are read of the body: what else it has is refused.
 /// @throws SceneError
-ppu::TriangleMesh read_mesh(FieldReader& body, const SceneSource& source);
+ppu::TriangleMesh read_mesh(FieldReader& body, MeshFiles& files);
+
+/// Turns a mesh about its origin, unless the rotation is none.
+void rotate(ppu::TriangleMesh& mesh, const Eigen::Quaternionf& rotation);
 
 }  // namespace softcell::demos

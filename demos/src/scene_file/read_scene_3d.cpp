@@ -58,6 +58,7 @@ RigidBox read_box(const Value& value, std::size_t index) {
   std::size_t pattern = 0;
   FieldReader fields(value, item_name("box", index));
   read_mass(fields, box.mass);
+  box.rotation = read_rotation(fields);
   fields.vector<3>("size", box.size, kLength, Need::kRequired)
       .vector<3>("position", box.position, kCoordinate)
       .colour("colour", box.colour)
@@ -85,11 +86,14 @@ class VertexCount {
   std::size_t vertices_ = 0;
 };
 
-Obstacle read_obstacle(const Value& value, std::size_t index, const SceneSource& source) {
+Obstacle read_obstacle(const Value& value, std::size_t index, MeshFiles& files) {
   FieldReader fields(value, item_name("obstacle", index));
   Obstacle obstacle;
   fields.vector<3>("position", obstacle.position, kCoordinate).colour("colour", obstacle.colour);
-  obstacle.mesh = read_mesh(fields, source);
+  const Eigen::Quaternionf rotation = read_rotation(fields);
+  obstacle.own_materials = !fields.has("colour");
+  obstacle.mesh = read_mesh(fields, files);
+  rotate(obstacle.mesh, rotation);
   return obstacle;
 }
 
@@ -116,8 +120,8 @@ std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
 }
 
 /// @return whether the model has taken the body's place.
-bool read_soft_body(const Value& value, std::size_t index, const SceneSource& source,
-                    const Materials& materials, const OwnModel* model, Scene& scene) {
+bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, const Materials& materials,
+                    const OwnModel* model, Scene& scene) {
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
   SoftBodyPlacement& body = scene.soft_bodies.emplace_back();
   std::optional<float> own_model_side, above;
@@ -133,23 +137,26 @@ bool read_soft_body(const Value& value, std::size_t index, const SceneSource& so
   check_name(fields, scene);
   const bool replaced = model != nullptr && own_model_side;
   Material material = materials.read(fields, replaced ? Need::kOptional : Need::kRequired);
-  body.mesh = read_mesh(fields, source);
+  const Eigen::Quaternionf rotation = read_rotation(fields);
+  body.own_materials = replaced || !fields.has("colour");
+  body.mesh = read_mesh(fields, files);
   if (replaced) {
     take_place(body, *model, *own_model_side);
     material.settings.cell_size = body.settings.cell_size;
   }
+  rotate(body.mesh, rotation);
   body.settings = material.settings_for(step_of(scene));
   body.settings.contacts = contacts;
   if (above) body.position.y() = *above - ppu::bounds(body.mesh).low.y();
   return replaced;
 }
 
-void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
+void read_soft_bodies(std::span<const Value> items, MeshFiles& files, const Materials& materials,
                       const std::optional<OwnModel>& model, VertexCount& vertices, Scene& scene) {
   bool place_taken = false;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const OwnModel* own = model && !place_taken ? &*model : nullptr;
-    place_taken = read_soft_body(items[i], i, source, materials, own, scene) || place_taken;
+    place_taken = read_soft_body(items[i], i, files, materials, own, scene) || place_taken;
     vertices.add(scene.soft_bodies.back().mesh, items[i].place);
   }
   std::size_t particles = 0;
@@ -227,11 +234,13 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   if (framework != nullptr) read_framework(*framework, scene);
   for (std::size_t i = 0; i < boxes.size(); ++i) scene.boxes.push_back(read_box(boxes[i], i));
   VertexCount vertices;
+  MeshFiles files(source);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    scene.obstacles.push_back(read_obstacle(obstacles[i], i, source));
+    scene.obstacles.push_back(read_obstacle(obstacles[i], i, files));
     vertices.add(scene.obstacles.back().mesh, obstacles[i].place);
   }
-  read_soft_bodies(soft_bodies, source, materials, model, vertices, scene);
+  read_soft_bodies(soft_bodies, files, materials, model, vertices, scene);
+  scene.notes = files.notes();
   read_script<3>(root, scene);
   if (camera != nullptr) read_camera(*camera, scene.camera);
   if (camera == nullptr) scene.camera.eye = {1.9f, 2.2f, 4.2f};  // from where frame_bodies() looks

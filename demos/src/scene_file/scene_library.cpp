@@ -52,6 +52,7 @@ const std::vector<SceneListing>& list_scenes() {
   static const std::vector<SceneListing> scenes = [] {
     std::vector<SceneListing> found;
     for (const base::EmbeddedFile& file : embedded_scenes()) {
+      if (!is_scene_file(file.name)) continue;  // a model
       const Value document =
           read_document({std::string(file.text), std::make_shared<const std::string>(file.name)});
       if (is_lattice(document)) continue;

@@ -3,6 +3,7 @@
 //
 // A scene or lattice in Lua runs in a child process, made by fork(): load scenes before threads are started.
 
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -27,7 +28,9 @@ const std::vector<SceneListing>& list_scenes();
 /// The user's own model. It replaces the body of the scene that has the field `own_model_side`.
 struct OwnModel {
   ppu::TriangleMesh mesh;
-  float cell_size = 0;  ///< in the mesh's units
+  float cell_size = 0;                            ///< in the mesh's units
+  std::vector<std::string> notes = {};            ///< as Scene::notes
+  std::vector<std::filesystem::path> files = {};  ///< that it was read from
 };
 
 /// The user gives a model, and no body of the scene can be replaced by it.

@@ -116,4 +116,12 @@ fs::path SceneSource::mesh(const std::string& file, const Place& place) const {
   return path;
 }
 
+const base::EmbeddedFile* SceneSource::embedded_mesh(const std::string& file) const {
+  return folder_ ? nullptr : base::find_embedded(embedded_scenes(), file);
+}
+
+void SceneSource::add_files(std::span<const fs::path> files) const {
+  files_.insert(files_.end(), files.begin(), files.end());
+}
+
 }  // namespace softcell::demos

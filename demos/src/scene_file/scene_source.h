@@ -48,6 +48,10 @@ class SceneSource {
   /// A file that the scene names at `place`. @throws SceneError  there is none, or it may not be named.
   SourceText text(const std::string& file, const Place& place) const;
   std::filesystem::path mesh(const std::string& file, const Place& place) const;
+  /// A model that is built in, for a built-in scene; null: there is none.
+  const base::EmbeddedFile* embedded_mesh(const std::string& file) const;
+  /// More files that belong to the scene: those that its meshes name.
+  void add_files(std::span<const std::filesystem::path> files) const;
 
  private:
   std::filesystem::path locate(const std::string& file, const Place& place) const;

@@ -119,7 +119,8 @@ struct Simulation3d::State {
     }
     SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     for (const RigidBox& box : scene.boxes) {
-      boxes.push_back(world.add_box(box.size, box.mass, box.position, scene.friction, scene.restitution));
+      boxes.push_back(
+          world.add_box(box.size, box.mass, box.position, scene.friction, scene.restitution, box.rotation));
     }
     for (const Obstacle& obstacle : scene.obstacles)
       world.add_convex(obstacle.mesh, obstacle.position, scene.friction, scene.restitution);

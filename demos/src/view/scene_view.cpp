@@ -46,7 +46,12 @@ std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
 
 SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer,
                      View view)
-    : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view), hands_(renderer) {
+    : scene_(scene),
+      simulation_(simulation),
+      renderer_(renderer),
+      view_(view),
+      looks_(renderer),
+      hands_(renderer) {
   const auto add_static = [&](const ppu::TriangleMesh& mesh) {
     return renderer_.add_static_mesh(mesh.positions, mesh.normals, mesh.triangles);
   };
@@ -59,6 +64,10 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
   for (const Obstacle& obstacle : scene_.obstacles) {
     render::StaticDraw draw{.mesh = add_static(obstacle.mesh), .colour = obstacle.colour};
     draw.pose.topRightCorner<3, 1>() = obstacle.position;
+    if (obstacle.own_materials && MeshLooks::has_looks(obstacle.mesh)) {
+      parts_.push_back(looks_.upload(obstacle.mesh, obstacle.colour, draw.mesh));
+      draw.parts = parts_.back();
+    }
     statics_.push_back(draw);
   }
 
@@ -69,6 +78,11 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
     const ppu::SoftBodyModel<3>& model = simulation_.model(b);
     const auto& colour = scene_.soft_bodies[b].colour;
     skinned_.push_back({.mesh = add_skinned_mesh(model), .colour = colour});
+    if (scene_.soft_bodies[b].own_materials && MeshLooks::has_looks(model.mesh())) {
+      parts_.push_back(
+          looks_.upload(model.mesh(), model.embedding().vertex_of_slot, colour, skinned_.back().mesh));
+      skinned_.back().parts = parts_.back();
+    }
     rotations_.add_body(model.plan());
     LatticeBuffers& buffers = lattice_buffers_[b];
     buffers.particles.resize(model.lattice().particles.size());

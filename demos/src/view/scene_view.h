@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hand_drawing.h"
+#include "mesh_looks.h"
 #include "rotation_axes.h"
 #include "scene/look.h"
 #include "scene/scene.h"
@@ -50,6 +51,9 @@ class SceneView {
   Shown3d now_;
   std::vector<ppu::Bounds<3>> boxes_;  // of soft bodies
 
+  MeshLooks looks_;
+  std::vector<std::vector<render::PartDraw>>
+      parts_;  // of what is drawn with materials of its own; stays as it is
   std::vector<render::SkinnedDraw> skinned_;
   std::vector<render::StaticDraw> statics_;  // boxes, then obstacles
   HandDrawing hands_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "scene/scene_camera.h"
 #include "scene_file/own_model.h"
 #include "simulation/simulation_3d.h"
+#include "softcell/base/text.h"
 #include "verb/exit_status.h"
 #include "view/scene_view.h"
 
@@ -85,6 +87,11 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
   std::size_t followed_ = 0;  // number of a soft body
 };
 
+/// What of the models is not shown; it does not keep the demo from running.
+void print_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "softcell: {}\n", base::one_line(note));
+}
+
 demos::Scene load_with_model(const std::string& name, const std::optional<demos::OwnModel>& model) {
   try {
     return demos::load_scene_3d(name, model);
@@ -110,7 +117,10 @@ int run_demo_3d(const Demo3dOptions& options) {
     demos::InputLog<3> log(options);
     const std::string usual = model ? "drop" : "arena";
     demos::Scene scene = load_with_model(options.scene.value_or(log.scene_name().value_or(usual)), model);
+    if (model) scene.files.insert(scene.files.end(), model->files.begin(), model->files.end());
     check_scene_kept(scene.files, options);
+    if (model && !options.quiet) print_notes(model->notes);
+    if (!options.quiet) print_notes(scene.notes);
     log.begin(scene);
     return demos_of<Demo3d>(options, log, scene, all,
                             [](std::string_view name) { return demos::load_scene_3d(name); });

@@ -68,6 +68,12 @@ demos::Skin parse_skin(const std::string& text) {
   throw UsageError("--skin " + text + ": give spe or gpu");
 }
 
+/// @return  whether it is z
+bool parse_up(const std::string& text) {
+  if (text != "y" && text != "z") throw UsageError("--up " + text + ": give y or z");
+  return text == "z";
+}
+
 class DemoVerbs final : public Verb {
  public:
   void add_to(CLI::App& command, Call& chosen) override {
@@ -96,8 +102,11 @@ class DemoVerbs final : public Verb {
     CLI::App* d = demo.add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
     add_demo_options(*d, demo_3d_, "arena");
     d->add_option("--mesh", demo_3d_.model.mesh,
-                  "Put this OBJ, PLY or STL model into the scene (default: drop)")
+                  "Put this glTF, OBJ, PLY or STL model into the scene (default: drop)")
         ->type_name("FILE");
+    d->add_option("--up", up_, "The model's axis that points upwards (default: y)")
+        ->needs("--mesh")
+        ->type_name("y|z");
     CLI::Option* const cells =
         accept_whole_number(d->add_option("--cells", demo_3d_.model.cells,
                                           "Lattice cells along the model's longest side (default: 8)"),
@@ -125,6 +134,7 @@ class DemoVerbs final : public Verb {
       chosen = [this] {
         parse_texts(demo_3d_);
         demo_3d_.skin = parse_skin(skin_);
+        demo_3d_.model.z_up = parse_up(up_);
         if (contacts_) demo_3d_.contacts = parse_contacts(*contacts_);
         demo_3d_.view = parse_view_3d(view_3d_);
         return run_demo_3d(demo_3d_);
@@ -195,6 +205,7 @@ class DemoVerbs final : public Verb {
   std::string schedule_ = "eager";
   std::string engine_ = "native";
   std::string skin_ = "spe";
+  std::string up_ = "y";
   std::optional<std::string> contacts_;
 };
 

@@ -2,22 +2,46 @@
 // Triangle meshes from files.
 
 #include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {
 
-/// Reads an OBJ, PLY or STL file (by its extension). Positions that are equal are joined; normals are taken
-/// from the file or made, smooth up to a crease. A position whose corners have several normals, texture
-/// coordinates or colours becomes as many vertices. Any thread.
+/// What import_mesh() says beside the mesh.
+struct ImportReport {
+  /// What the file has and the mesh has not, for a sentence that begins with "not read: ": "animations",
+  /// "the picture 'bark.webp', which is neither PNG nor JPEG". Empty: all was read.
+  std::vector<std::string> not_read;
+  /// The files that were read: the mesh's own, its material library, buffers and pictures.
+  std::vector<std::filesystem::path> files;
+};
+
+/// Reads a glTF 2.0 (.gltf, .glb), OBJ, PLY or STL file (by its extension). Positions that are equal are joined;
+/// normals are taken from the file or made, smooth up to a crease. A position whose corners have several normals,
+/// texture coordinates or colours becomes as many vertices. Any thread.
 ///
-/// Attributes that are kept: texture coordinates and vertex colours (OBJ, PLY; binary STL has colours of
-/// triangles), and parts: objects, groups and materials of OBJ, solids of text STL. Base colours and names of
-/// texture files come from the OBJ file's material library if it lies in the same folder; one that is missing
-/// or lies elsewhere is ignored. softcell opens no texture.
+/// What is kept beside positions and normals:
+/// - glTF: the objects of the scene where their nodes have them, materials with their pictures (PNG, JPEG), one set of
+///   texture coordinates, vertex colours. Animations, skins, morph targets and most extensions are not read.
+/// - OBJ: objects, groups, texture coordinates, vertex colours, and of the material library the statements Kd, map_Kd,
+///   d, Tr, Pr, Pm and norm with their pictures.
+/// - PLY: texture coordinates, vertex colours. STL: solids (text), colours of triangles (binary).
+///
+/// Other files that the mesh's file names (buffers, material library, pictures) are opened only if they lie in its
+/// folder or below, after links are followed. A mesh can do without material library and pictures.
+/// @param report  receives what was not read; null: nobody asks.
 /// @throws std::runtime_error  one sentence that names the file and what is wrong with it: there is no such
-/// file, the format is unknown, the file cannot be read as one, it has no triangles or more than 4 million,
-/// a coordinate is NaN or infinite, an index is out of range.
-TriangleMesh import_mesh(const std::filesystem::path& path);
+/// file, the format is unknown, the file, or one that it names, cannot be read as one, it has no triangles or more than
+/// 4 million, its pictures have more than 64 million pixels, a coordinate is NaN or infinite, an index is out of range,
+/// it requires an extension of glTF that softcell does not read.
+TriangleMesh import_mesh(const std::filesystem::path& path, ImportReport* report = nullptr);
+
+/// The same for a file in memory, which can name no other files.
+/// @param name  whose extension is that of the format, and which errors name: "crate.glb"
+TriangleMesh import_mesh(std::span<const std::byte> bytes, const std::filesystem::path& name,
+                         ImportReport* report = nullptr);
 
 }  // namespace softcell::ppu

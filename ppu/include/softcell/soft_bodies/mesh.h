@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "softcell/soft_bodies/mesh_material.h"
+
 namespace softcell::ppu {
 
 /// Consecutive triangles of a mesh that belong to one object and have one material.
 struct MeshPart {
-  std::string object;    ///< the object's or group's name; empty: it has none
-  std::string material;  ///< the material's name; empty: it has none
+  std::string object;                     ///< the object's or group's name; empty: it has none
+  std::optional<std::uint32_t> material;  ///< its number in TriangleMesh::materials; none: it has none
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
-  std::optional<Eigen::Vector3f> base_colour = {};  ///< red, green, blue, 0..1, as the file has them
-  std::string texture = {};  ///< the texture file's name, as the file has it; empty: none is known
 
   bool operator==(const MeshPart&) const = default;
 };
@@ -30,8 +30,10 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
 
   std::vector<Eigen::Vector2f> texture_coordinates = {};  ///< one per position; v grows upwards
-  std::vector<Eigen::Vector4f> colours = {};              ///< one per position: red, green, blue, alpha, 0..1
-  std::vector<MeshPart> parts = {};                       ///< ascending; together they are all triangles
+  /// One per position: red, green, blue, alpha, 0..1, sRGB-encoded. Multiplied with the material's base colour.
+  std::vector<Eigen::Vector4f> colours = {};
+  std::vector<MeshPart> parts = {};          ///< ascending; together they are all triangles
+  std::vector<MeshMaterial> materials = {};  ///< of the parts
 
   bool operator==(const TriangleMesh&) const = default;
 };
@@ -49,9 +51,18 @@ Bounds<3> bounds(const TriangleMesh& mesh);
 /// metres. @pre at least one position; longest_side is positive and finite.
 void fit(TriangleMesh& mesh, float longest_side);
 
+/// Turns the mesh about its origin. @pre `rotation` is orthogonal, with determinant 1.
+void rotate(TriangleMesh& mesh, const Eigen::Matrix3f& rotation);
+
+/// Turns a mesh whose z axis points upwards so that its y axis does: (x, y, z) becomes (x, z, -y), exactly.
+void turn_z_up(TriangleMesh& mesh);
+
+/// Multiplies all lengths. @pre the factor is positive and finite.
+void scale(TriangleMesh& mesh, float factor);
+
 /// @throws std::invalid_argument  the mesh's arrays do not fit each other: another number of normals or of an
-/// attribute than of positions, an index out of range, parts that leave triangles out; the sentence says
-/// which.
+/// attribute than of positions, an index out of range, parts that leave triangles out or name a material
+/// that there is not; the sentence says which.
 void validate(const TriangleMesh& mesh);
 
 }  // namespace softcell::ppu
