@@ -55,7 +55,8 @@ TEST_P(GpuSkin, GivesThePicturesOfTheSpes) {
   EXPECT_GT(2 * within, kPictures);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GpuSkin, testing::Values("arena", "torus_on_spike", "bumper_car", "painted"));
+INSTANTIATE_TEST_SUITE_P(Scenes, GpuSkin,
+                         testing::Values("arena", "torus_on_spike", "bumper_car", "painted"));
 
 TEST(GpuSkinJobs, NoneAreLeftForTheSpes) {
   const Scene scene = load_scene_3d("drop");

@@ -969,9 +969,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{SC_DEMO "--mesh %s/cube.obj --cell inf", 2, "--cell inf: give a length"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --up x", 2, "--up x: give y or z"},
-        Refusal{SC_DEMO "--up z", 2, "--up"},
-        Refusal{"report", 2, "softcell report needs TRACE"}, Refusal{"report %s/file", 2, "--out"},
-        Refusal{"bench --filter [", 2, "regular expression"}, Refusal{"bench --rounds 0", 2, "--rounds"},
+        Refusal{SC_DEMO "--up z", 2, "--up"}, Refusal{"report", 2, "softcell report needs TRACE"},
+        Refusal{"report %s/file", 2, "--out"}, Refusal{"bench --filter [", 2, "regular expression"},
+        Refusal{"bench --rounds 0", 2, "--rounds"},
         Refusal{"bench --list --json %s/l.json", 2, "--list measures nothing"},
         Refusal{"bench --filter nothing-is-called-so", 2, "--list"}));
 
