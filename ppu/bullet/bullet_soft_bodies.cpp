@@ -202,6 +202,10 @@ std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from
   return nearest;
 }
 
+CrushedCellCount BulletSoftBodies::crushed_cells() const {
+  return impl_->surfaces ? impl_->surfaces->crushed_cells() : CrushedCellCount{};
+}
+
 SoftBodyTimes BulletSoftBodies::times() const { return impl_->times; }
 
 std::size_t BulletSoftBodies::size() const { return impl_->bodies.size(); }

@@ -84,7 +84,7 @@ spu::SolveAnchor as_kernels_solve_it(const Anchor& anchor, std::span<const float
 /// Soft bodies only: a rigid one is moved by its engine.
 void solve_push(SoftContact& contact, const ContactSides& sides, float step) {
   const float target = push_velocity(contact, sides.a->spacing(), step);
-  if (target <= 0) return;
+  if (target <= 0 && !contact.holds_pushes) return;
   float v = contact.normal.dot(contact.a.of(sides.a->pushes));
   if (sides.b != nullptr) v -= contact.normal.dot(contact.b.of(sides.b->pushes));
   const float push = std::max(0.0f, contact.push + (target - v) / contact.push_mobility);
@@ -129,7 +129,14 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
   result.mass = 1 / mobility;
   result.friction = contact.friction;
   result.push_velocity = push_velocity(contact, sides.a->spacing(), step);
+  if (contact.holds_pushes) hold_pushes(result);
   return result;
+}
+
+/// The kernel lets contacts alone that push with 0 m/s.
+void hold_pushes(spu::SolveContact& contact) {
+  constexpr float kAsGoodAsNothing = 1e-20f;  // m/s
+  contact.push_velocity = std::max(contact.push_velocity, kAsGoodAsNothing);
 }
 
 void iterate(std::span<SoftContact> contacts, const ContactSides& sides, float step) {

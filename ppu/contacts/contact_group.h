@@ -23,6 +23,7 @@ struct SoftContact {
   float least_velocity = 0;         ///< m/s along the normal, of a against b
   float depth = 0;                  ///< metres in which they are already, or less than 0
   float friction = 0;
+  bool holds_pushes = false;  ///< a body has pushes of its own, which must not lead into the other one
 
   // What solving changes.
   float impulse = 0;  ///< kg m/s along the normal
@@ -48,6 +49,9 @@ void prepare(std::span<SoftContact> contacts, const ContactSides& sides);
 /// @pre  particles and cells have 16 bits
 spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactSides& sides,
                                       std::span<const ContactRigid> rigids, float step);
+
+/// As SoftContact::holds_pushes, of a contact that the kernel contact_find has found.
+void hold_pushes(spu::SolveContact& contact);
 
 /// One iteration over all contacts, one after the other (sequential impulses: [Cat05]).
 void iterate(std::span<SoftContact> contacts, const ContactSides& sides, float step);

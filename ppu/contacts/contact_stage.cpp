@@ -39,6 +39,8 @@ Bounds<3> box_of_step(const SoftBody<3>& body, float step) {
 void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
   bodies_.resize(bodies.size());
   cells_.resize(bodies.size());
+  is_crushed_.resize(bodies.size());
+  crushed_ = {};
   // Before the first body points into it.
   for (const BodyInStage& body : bodies)
     nothing_moves_.resize(std::max(nothing_moves_.size(), body.body->positions().size()));
@@ -56,6 +58,13 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     body.asleep = bodies[i].asleep;
     body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())
                                       : body.model->inverse_masses;
+    is_crushed_[i] = false;
+    if (!body.asleep) {
+      crushed_cells_.hold(body, step);
+      crushed_.crushed += crushed_cells_.count();
+      crushed_.inside_out += crushed_cells_.inside_out();
+      is_crushed_[i] = crushed_cells_.count() > 0;
+    }
     for (std::size_t p = 0; p < body.ends.size(); ++p)
       body.ends[p] = body.positions[p] + step * body.velocities[p];
     check_finite(body);
@@ -157,6 +166,18 @@ void ContactStage::hand_to_worker(Group& group, std::span<const ContactRigid> ri
     group.solved.pushes = group.solved.pushes || group.solved.contacts[i].push_velocity > 0;
   }
   group.by_worker = true;
+}
+
+/// What pushes a body's cells apart must not push it into others.
+void ContactStage::hold_pushes_of_crushed_bodies() {
+  for (std::size_t i = 0; i < group_count_; ++i) {
+    Group& group = groups_[i];
+    if (!is_crushed_[group.a] && !is_crushed_[group.b]) continue;
+    for (SoftContact& contact : group.contacts) contact.holds_pushes = true;
+    if (!group.by_worker) continue;
+    for (spu::SolveContact& contact : group.solved.contacts) hold_pushes(contact);
+    group.solved.pushes = true;
+  }
 }
 
 /// Contacts of bodies with a restitution, whoever has found them. Two that pressed on each other in the last
@@ -266,6 +287,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   find_among_bodies(step);
   find_with_rigid(bodies, obstacles, rigids, step);
   put_in_order();
+  hold_pushes_of_crushed_bodies();
   if (group_count_ != 0) {
     if (worker != nullptr)
       solve_with_worker(rigids, step);
@@ -372,6 +394,8 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   if (!bounces_.empty())
     for (const std::uint32_t i : bounces_.changed())
       if (worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i)
+    if (is_crushed_[i] && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
   here_.clear();
   for (const std::uint32_t i : order_.order())
     if (!groups_[i].by_worker) here_.push_back(&groups_[i]);

@@ -14,6 +14,7 @@
 #include "ppu/contacts/contact_group.h"
 #include "ppu/contacts/contact_order.h"
 #include "ppu/contacts/contact_worker.h"
+#include "ppu/contacts/crushed_cells.h"
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
@@ -67,6 +68,9 @@ class ContactStage {
   /// Whether a body that slept was touched by one that moves in the last step.
   bool was_woken(std::size_t body) const { return woken_[body]; }
 
+  /// Of the last step, of all bodies that are awake.
+  CrushedCellCount crushed_cells() const { return crushed_; }
+
   ContactSettings settings;
   /// Who finds and solves what he can; null: this thread does everything. Outlives the steps.
   ContactWorker* worker = nullptr;
@@ -93,6 +97,7 @@ class ContactStage {
   Group& next_group(std::uint32_t a, std::uint32_t b, bool with_rigid);
   void put_in_order();
   void hand_to_worker(Group& group, std::span<const ContactRigid> rigids, float step);
+  void hold_pushes_of_crushed_bodies();
   void bounce(std::span<ContactRigid> rigids, float step);
   void remember_who_presses(std::span<const ContactRigid> rigids);
   void find_touched_cells();
@@ -119,6 +124,9 @@ class ContactStage {
   std::size_t pair_groups_ = 0;                      // of them
   ContactOrder order_;                               // of the former
   std::vector<std::vector<std::uint32_t>> touched_;  // of each body: cells, ascending
+  CrushedCells crushed_cells_;
+  CrushedCellCount crushed_;
+  std::vector<bool> is_crushed_;  // of each body: it has crushed cells
   Bounces bounces_;
   std::vector<std::array<std::uint32_t, 3>>
       pressed_;               // in the last substep: a, b or a rigid one's number, and which

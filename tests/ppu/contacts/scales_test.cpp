@@ -5,6 +5,8 @@
 #include <ctime>
 
 #include <limits>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "contact_world.h"

@@ -165,6 +165,11 @@ class BulletSoftBodies {
 
   SoftBodyTimes times() const;  ///< since the construction
 
+  /// At the beginning of the last substep, of bodies that were awake and touch with what is drawn. Contacts hold
+  /// crushed cells from being pressed further and push them back; many of them, for long, say that a body is too soft
+  /// or too light for what lies on it.
+  CrushedCellCount crushed_cells() const;
+
   std::size_t size() const;                                ///< number of soft bodies
   SoftBody<3>& operator[](std::size_t index);              ///< in the order of add()
   const SoftBody<3>& operator[](std::size_t index) const;  ///< in the order of add()

@@ -2,6 +2,7 @@
 // How soft bodies touch, and where they do.
 
 #include <Eigen/Core>
+#include <cstddef>
 
 namespace softcell::ppu {
 
@@ -27,6 +28,12 @@ struct CollisionFilter {
   bool lets(const CollisionFilter& other) const {
     return (group & other.mask) != 0 && (other.group & mask) != 0;
   }
+};
+
+/// Cells that contacts have pressed to less than a part of their volume.
+struct CrushedCellCount {
+  std::size_t crushed = 0;  ///< cells with less than half of their volume, those turned inside out included
+  std::size_t inside_out = 0;  ///< cells of negative volume
 };
 
 /// A point at which two bodies press on each other.

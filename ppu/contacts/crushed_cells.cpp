@@ -1,0 +1,112 @@
+#include "ppu/contacts/crushed_cells.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int kIterations = 3;
+// In a substep so much of the volume that is missing comes back, and no more than kMostBack of the volume at rest.
+constexpr float kShareBack = 0.3f, kMostBack = 0.1f;
+// Of cells without any extent a small change of volume would be a large motion: their mobility counts as this much
+// at least, in 1 / (mass of the cell), of a cell with edges of 1.
+constexpr float kLeastMobility = 0.05f;
+
+/// Mean edges, in cells.
+struct Edges {
+  Vector3f x, y, z;
+  float volume() const { return x.dot(y.cross(z)); }
+};
+
+/// Where a corner lies along each axis: -1 or 1.
+constexpr float side(unsigned corner, unsigned axis) { return (corner >> axis & 1u) != 0 ? 1.0f : -1.0f; }
+
+template <typename Place>
+Edges edges_of(const Place& place) {
+  Edges edges{Vector3f::Zero(), Vector3f::Zero(), Vector3f::Zero()};
+  for (unsigned k = 0; k < 8; ++k) {
+    const Vector3f p = place(k);
+    edges.x += 0.25f * side(k, 0) * p;
+    edges.y += 0.25f * side(k, 1) * p;
+    edges.z += 0.25f * side(k, 2) * p;
+  }
+  return edges;
+}
+
+/// By how much the volume grows with each corner's place, in cells.
+std::array<Vector3f, 8> gradient(const Edges& edges) {
+  const Vector3f yz = edges.y.cross(edges.z), zx = edges.z.cross(edges.x), xy = edges.x.cross(edges.y);
+  std::array<Vector3f, 8> by_corner;
+  for (unsigned k = 0; k < 8; ++k)
+    by_corner[k] = 0.25f * (side(k, 0) * yz + side(k, 1) * zx + side(k, 2) * xy);
+  return by_corner;
+}
+
+/// Changes motions, in cells a substep, so that the volume grows by `wanted`.
+void grow(std::vector<Vector3f>& values, float per_value, const std::array<std::uint32_t, 8>& corners,
+          const Edges& edges, float wanted, const ContactBody& body) {
+  const auto by_corner = gradient(edges);
+  const std::span<const float> masses = body.model->model->masses();
+  float mass = 0, mobility = 0;
+  for (unsigned k = 0; k < 8; ++k) {
+    mass += masses[corners[k]];
+    mobility += by_corner[k].squaredNorm() / masses[corners[k]];
+  }
+  const float impulse = wanted / std::max(mobility, kLeastMobility * 8 / mass);
+  for (unsigned k = 0; k < 8; ++k)
+    values[corners[k]] += per_value * impulse / masses[corners[k]] * by_corner[k];
+}
+
+}  // namespace
+
+bool CrushedCells::hold(ContactBody& body, float step) {
+  SC_ASSERT(step > 0, "a substep of {} s", step);
+  cells_.clear();
+  least_.clear();
+  count_ = inside_out_ = 0;
+  const Lattice<3>& lattice = body.lattice();
+  const float per_spacing = 1 / body.spacing();
+  const auto edges_at_end = [&](const std::array<std::uint32_t, 8>& corners) {
+    return edges_of([&](unsigned k) -> Vector3f {
+      return per_spacing * (body.positions[corners[k]] + step * body.velocities[corners[k]]);
+    });
+  };
+  const auto edges_at_beginning = [&](const std::array<std::uint32_t, 8>& corners) {
+    return edges_of([&](unsigned k) -> Vector3f { return per_spacing * body.positions[corners[k]]; });
+  };
+  for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell)
+    if (edges_at_end(lattice.corners[cell]).volume() < kLeastVolume) cells_.push_back(cell);
+  if (cells_.empty()) return false;
+
+  bool changed = false;
+  for (const std::uint32_t cell : cells_) {
+    const auto& corners = lattice.corners[cell];
+    const Edges edges = edges_at_beginning(corners);
+    const float volume = edges.volume();
+    least_.push_back(std::min(volume, kLeastVolume));
+    if (volume >= kLeastVolume) continue;
+    ++count_;
+    if (volume < 0) ++inside_out_;
+    const float back = std::min(kShareBack * (kLeastVolume - volume), kMostBack);
+    grow(body.pushes, body.spacing() / step, corners, edges, back, body);
+  }
+  for (int i = 0; i < kIterations; ++i) {
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      const auto& corners = lattice.corners[cells_[c]];
+      const Edges edges = edges_at_end(corners);
+      const float missing = least_[c] - edges.volume();
+      if (missing <= 0) continue;
+      grow(body.velocities, body.spacing() / step, corners, edges, missing, body);
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+}  // namespace softcell::ppu

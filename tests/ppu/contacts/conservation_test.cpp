@@ -1,0 +1,133 @@
+// What contacts keep: momentum, angular momentum, and no energy from nothing.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "contact_world.h"
+#include "softcell/spe_bodies/spe_runtime.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// Of all bodies of a world: momentum, angular momentum about the origin, kinetic and potential energy, and the scales that errors of
+/// momenta are measured by.
+struct Sums {
+  Vector3d momentum{0, 0, 0}, spin{0, 0, 0};
+  double kinetic = 0, potential = 0;
+  double way = 0, turn = 0;  // sums of |m v| and |r x m v|
+};
+
+Sums sums_of(BulletSoftBodies& bodies, const Vector3f& gravity = {0, 0, 0}) {
+  Sums sums;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (std::size_t i = 0; i < bodies[b].model().particles(); ++i) {
+      const double mass = double{bodies[b].model().masses()[i]};
+      const Vector3d x = bodies[b].position(i).cast<double>(), v = bodies[b].velocities()[i].cast<double>();
+      sums.momentum += mass * v;
+      sums.spin += mass * x.cross(v);
+      sums.kinetic += 0.5 * mass * v.squaredNorm();
+      sums.potential -= mass * gravity.cast<double>().dot(x);
+      sums.way += mass * v.norm();
+      sums.turn += mass * x.cross(v).norm();
+    }
+  return sums;
+}
+
+/// Two bodies that turn meet near the origin: 1,000 steps, in which they do not go far. Momenta are measured by the sum of what the
+/// particles have, whatever its direction.
+void expect_momenta(SolverFactory* solvers, double tolerance) {
+  ContactWorld w({0, 0, 0}, solvers);
+  SoftBody<3>& left = w.add(make_sphere(0.4f, 12), settings_of(0.1f), {-0.6f, 0, 0});
+  SoftBody<3>& right = w.add(make_penguin(0.9f), settings_of(0.12f), {0.5f, 0.1f, 0.05f});
+  left.add_velocity({1, 0.05f, 0});
+  right.add_velocity(-left.linear_momentum() / right.model().mass());
+  right.add_angular_velocity({0, 2, 1});
+  const Sums before = sums_of(w.bodies);
+  w.run(500);
+  const Sums after = sums_of(w.bodies);
+  EXPECT_LT(left.linear_momentum().x(), 0.7f * left.model().mass()) << "they have met";
+  EXPECT_LT((after.momentum - before.momentum).norm(), tolerance * before.way);
+  EXPECT_LT((after.spin - before.spin).norm(), tolerance * (before.turn + after.turn));
+}
+
+// The tolerances are those of matching, which rounds (on SPEs: truncates) with contacts or without them.
+TEST(Conservation, OfBothMomentaOfTwoBodiesThatMeet) { expect_momenta(nullptr, 5e-5); }
+
+TEST(Conservation, OfBothMomentaOfTwoBodiesThatMeetOnSpes) {
+  SpeRuntime spes({.spes = 2});
+  expect_momenta(&spes, 3e-4);
+}
+
+/// Random bodies fall on each other and on random boxes, at random scales: nothing becomes NaN, and no energy comes from nothing.
+class RandomScene {
+ public:
+  explicit RandomScene(unsigned seed) : random_(seed) {}
+
+  void expect_sane(unsigned seed) {
+    const float cell = std::pow(10.0f, number(-3, 3));
+    const float gravity = number(0, 20) * cell / 0.1f;
+    const int substeps = 1 + static_cast<int>(number(0, 3));
+    ContactWorld w({0, -gravity, 0});
+    w.add(std::make_unique<btBoxShape>(btVector3(500 * cell, 10 * cell, 500 * cell)), 0, {0, -10 * cell, 0},
+          number(0, 2));
+    for (int i = static_cast<int>(number(0, 3)); i > 0; --i)
+      w.add(std::make_unique<btBoxShape>(
+                btVector3(number(0.2f, 3) * cell, number(0.2f, 3) * cell, number(0.2f, 3) * cell)),
+            0, place(6, 0, 6) * cell);
+    const int bodies = 1 + static_cast<int>(number(0, 4));
+    for (int i = 0; i < bodies; ++i) {
+      SoftBodySettings settings;
+      settings.cell_size = cell;
+      settings.half_width = static_cast<int>(number(0, 4));
+      settings.density = std::pow(10.0f, number(0, 4));
+      settings.alpha = number(0, 1);
+      settings.damping = number(0, 0.5f);
+      settings.friction = number(0, 2);
+      const float size = number(2, 6) * cell;
+      const TriangleMesh mesh = i % 3 == 0   ? make_box({size, number(1, 6) * cell, size}, cell)
+                                : i % 3 == 1 ? make_sphere(0.5f * size, 8)
+                                             : make_penguin(1.3f * size);
+      SoftBody<3>& body =
+          w.add(mesh, settings, cell * Vector3f(number(-2, 2), 7 + 8 * static_cast<float>(i), number(-2, 2)));
+      body.add_velocity(cell * place(30, 60, 30));
+    }
+    const Vector3f down(0, -gravity,
+                        0);  // the floor is at 0: potential energy is positive but for what is in the floor
+    const Sums before = sums_of(w.bodies, down);
+    for (int frame = 0; frame < 60; ++frame) {
+      w.run(1, substeps);
+      const Sums now = sums_of(w.bodies, down);
+      ASSERT_TRUE(std::isfinite(now.kinetic) && std::isfinite(now.potential))
+          << "seed " << seed << ", frame " << frame;
+      ASSERT_LT(now.kinetic + now.potential, 1.05 * (before.kinetic + before.potential))
+          << "seed " << seed << ", frame " << frame << ", cells of " << cell << " m";
+    }
+  }
+
+ private:
+  float number(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
+  Vector3f place(float x, float y, float z) { return {number(-x, x), number(-y, 0), number(-z, z)}; }
+
+  std::mt19937 random_;
+};
+
+/// SOFTCELL_RANDOM_SCENES: how many.
+TEST(Conservation, RandomScenesHaveNoEnergyFromNothing) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  const char* const text = std::getenv("SOFTCELL_RANDOM_SCENES");
+  const unsigned count = text != nullptr ? static_cast<unsigned>(std::atoi(text)) : 15;
+  for (unsigned seed = 1; seed <= count; ++seed) RandomScene(seed).expect_sane(seed);
+}
+
+}  // namespace
+}  // namespace softcell::ppu

@@ -1,0 +1,145 @@
+// Cells that are pressed flat or turned inside out are found, held and pushed back.
+
+#include "ppu/contacts/crushed_cells.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "contact_world.h"
+#include "softcell/spe_bodies/spe_runtime.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// Of a cell, as a share of that at rest: of the parallelepiped of its mean edges.
+float volume_of(const SoftBody<3>& body, std::size_t cell) {
+  const auto& corners = body.model().lattice().corners[cell];
+  Eigen::Matrix3f edges = Eigen::Matrix3f::Zero();
+  for (int k = 0; k < 8; ++k)
+    for (int axis = 0; axis < 3; ++axis)
+      edges.col(axis) +=
+          ((k >> axis & 1) != 0 ? 0.25f : -0.25f) * body.position(corners[static_cast<std::size_t>(k)]);
+  return (edges / body.model().lattice().spacing).determinant();
+}
+
+int inside_out(const SoftBody<3>& body) {
+  int count = 0;
+  for (std::size_t i = 0; i < body.model().lattice().cells.size(); ++i) count += volume_of(body, i) < 0;
+  return count;
+}
+
+/// A cube whose upper half has been pressed through its lower half.
+struct FoldedCube {
+  FoldedCube() {
+    const Lattice<3>& lattice = contact.model->lattice();
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+      Vector3f p = lattice.rest_position(i);
+      if (p.y() > 0.01f) p.y() *= -0.5f;
+      positions.push_back(p);
+    }
+    body.model = &contact;
+    body.positions = positions;
+    for (const Vector3f& p : positions) body.velocities.push_back(Vector3f(p.z(), -20 * p.y(), 0.5f));
+    body.pushes.assign(positions.size(), Vector3f::Zero());
+    body.inverse_masses = contact.inverse_masses;
+  }
+  ContactModel contact{make_soft_body_model(make_box({0.4f, 0.4f, 0.4f}, 0.1f), settings_of(0.1f))};
+  std::vector<Vector3f> positions;
+  ContactBody body;
+};
+
+TEST(CrushedCells, AreCountedAndBothMomentaAreKept) {
+  FoldedCube cube;
+  const auto momenta = [&](const std::vector<Vector3f>& motions) {
+    Eigen::Vector<double, 6> sum = Eigen::Vector<double, 6>::Zero();
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const Vector3d p = double{cube.contact.model->masses()[i]} * motions[i].cast<double>();
+      sum.head<3>() += p;
+      sum.tail<3>() += cube.positions[i].cast<double>().cross(p);
+    }
+    return sum;
+  };
+  double size = 0;
+  for (std::size_t i = 0; i < cube.positions.size(); ++i)
+    size += double{cube.contact.model->masses()[i]} * double{cube.body.velocities[i].norm()};
+  const auto before = momenta(cube.body.velocities);
+  CrushedCells crushed;
+  crushed.hold(cube.body, 1.0f / 120);
+  EXPECT_EQ(crushed.inside_out(), 32u) << "the two upper layers of four";
+  EXPECT_GE(crushed.count(), crushed.inside_out());
+  EXPECT_LT((momenta(cube.body.velocities) - before).norm(), 1e-5 * size);
+  EXPECT_LT(momenta(cube.body.pushes).norm(), 1e-5 * size) << "pushes move neither the middle nor turn";
+  double pushes = 0;
+  for (const Vector3f& push : cube.body.pushes) pushes = std::max(pushes, double{push.norm()});
+  EXPECT_GT(pushes, 0.1);
+}
+
+TEST(CrushedCells, WhatIsNotCrushedIsLeftAlone) {
+  FoldedCube cube;
+  for (std::size_t i = 0; i < cube.positions.size(); ++i)
+    cube.positions[i] = 0.85f * cube.contact.model->lattice().rest_position(i);  // 0.61 of the volume
+  for (Vector3f& v : cube.body.velocities) v = {1, 2, 3};
+  CrushedCells crushed;
+  EXPECT_FALSE(crushed.hold(cube.body, 1.0f / 120));
+  EXPECT_EQ(crushed.count(), 0u);
+  for (const Vector3f& v : cube.body.velocities) EXPECT_EQ(v, Vector3f(1, 2, 3));
+}
+
+/// A cell keeps at least the volume that it has, however fast its corners come together.
+TEST(CrushedCells, AreNotPressedFurther) {
+  FoldedCube cube;
+  const Lattice<3>& lattice = cube.contact.model->lattice();
+  for (std::size_t i = 0; i < cube.positions.size(); ++i) {
+    cube.positions[i] = lattice.rest_position(i);
+    cube.body.velocities[i] = {0, -90 * lattice.rest_position(i).y(), 0};  // to a quarter in this substep
+  }
+  CrushedCells crushed;
+  EXPECT_TRUE(crushed.hold(cube.body, 1.0f / 120));
+  for (const auto& corners : lattice.corners) {
+    const float height = cube.positions[corners[2]].y() - cube.positions[corners[0]].y() +
+                         (cube.body.velocities[corners[2]].y() - cube.body.velocities[corners[0]].y()) / 120;
+    EXPECT_GT(height, 0.4f * 0.1f);
+  }
+}
+
+/// Four boxes fall on one, in a shaft that is as wide as they are. @return  cells that are inside out after 3 s
+int inside_out_in_a_shaft(SolverFactory* solvers, std::size_t& most_reported) {
+  ContactWorld w({0, -9.81f, 0}, solvers);
+  w.add_floor(0.6f);
+  for (const float side : {-1.0f, 1.0f}) {
+    w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 4, 2)), 0, {0.5f * side, 4, 0}, 0.6f);
+    w.add(std::make_unique<btBoxShape>(btVector3(2, 4, 0.1f)), 0, {0, 4, 0.5f * side}, 0.6f);
+  }
+  const auto model =
+      make_soft_body_model(make_box({0.6f, 0.45f, 0.6f}, 0.11f), settings_of(0.11f, 0.35f, 0.1f));
+  for (int i = 0; i < 5; ++i)
+    w.bodies.add(model, {0.02f * static_cast<float>(i), 0.6f + 0.95f * static_cast<float>(i), 0});
+  most_reported = 0;
+  for (int frame = 0; frame < 180; ++frame) {
+    w.run(1);
+    most_reported = std::max(most_reported, w.bodies.crushed_cells().crushed);
+  }
+  int count = 0;
+  for (std::size_t i = 0; i < w.bodies.size(); ++i) count += inside_out(w.bodies[i]);
+  return count;
+}
+
+TEST(CrushedCells, ComeBackInAShaft) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  std::size_t reported = 0;
+  EXPECT_EQ(inside_out_in_a_shaft(nullptr, reported), 0);
+  EXPECT_GT(reported, 10u) << "the fall crushes some for a moment, and the step reports it";
+  SpeRuntime spes({.spes = 2});
+  EXPECT_EQ(inside_out_in_a_shaft(&spes, reported), 0);
+  EXPECT_GT(reported, 10u);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
