@@ -36,6 +36,9 @@ class BulletObstacles {
   /// @throws std::runtime_error  a shape that is neither convex nor made of triangles; the sentence names it.
   void add_near(const Bounds<3>& box, int group, int mask, std::vector<std::uint32_t>& indices);
 
+  /// The index of an object's rigid body, near or not. @pre begin() was called
+  std::uint32_t rigid_of(btCollisionObject& object);
+
   std::span<const Obstacle> obstacles() const { return obstacles_; }
   std::span<ContactRigid> rigids() { return rigids_; }
   /// Whose rigids() these are. A collision object that is no rigid body never moves.
@@ -54,7 +57,6 @@ class BulletObstacles {
   using Triangle = std::array<Eigen::Vector3f, 3>;
 
   void add_object(btCollisionObject& object, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
-  std::uint32_t rigid_of(btCollisionObject& object);
   void add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
                  const Bounds<3>& box, std::vector<std::uint32_t>& indices);
   void add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,

@@ -77,6 +77,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     const auto begin = std::chrono::steady_clock::now();
     timed(times.gather, [&] {
       for (const auto& body : bodies) body->end_substep(step, sleep);
+      if (sleep && surfaces) surfaces->attachments().let_sleep(*sleep);
     });
     BulletHook::find(world)->add_time(std::chrono::steady_clock::now() - begin);
   }
@@ -107,6 +108,21 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (found == bodies.end())
       throw std::invalid_argument(std::string("the soft body ") + purpose + " is not in this world");
     return found;
+  }
+
+  /// @throws std::invalid_argument  as find(); it does not touch with its surface
+  SurfaceBody& find_attachable(const SoftBody<3>& body) {
+    const CoupledBody* const coupled = find(body, "to be attached")->get();
+    for (SurfaceBody* const with_surface : with_surfaces)
+      if (with_surface == coupled) return *with_surface;
+    throw std::invalid_argument(
+        "the soft body to be attached does not touch with its surface; attachments are solved with contacts "
+        "of surfaces");
+  }
+  /// @throws std::invalid_argument  there are none
+  SurfaceAttachments& attachments() {
+    if (!surfaces) throw std::invalid_argument("bodies that touch with spheres have no attachments");
+    return surfaces->attachments();
   }
 
   /// Nobody may sleep on a body that goes, or may go, from where Bullet knows it.
@@ -155,9 +171,41 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
   SC_ASSERT((*found)->soft().model().particles() > 0, "a body without particles, one of {}, is removed",
             impl_->bodies.size());
   if (impl_->surfaces) impl_->surfaces->forget(body);
+  for (const SurfaceBody* const with_surface : impl_->with_surfaces)
+    if (with_surface == found->get()) impl_->surfaces->attachments().forget(*with_surface);
   std::erase_if(impl_->with_surfaces,
                 [&](const SurfaceBody* with_surface) { return with_surface == found->get(); });
   impl_->bodies.erase(found);
+}
+
+AttachmentId BulletSoftBodies::attach(const SoftBody<3>& body, const Patch<3>& patch,
+                                      const AttachmentSettings<3>& settings) {
+  SurfaceBody& attached = impl_->find_attachable(body);
+  return impl_->surfaces->attachments().add(attached, patch, nullptr, settings);
+}
+AttachmentId BulletSoftBodies::attach(const SoftBody<3>& body, const Patch<3>& patch, btRigidBody& rigid,
+                                      const AttachmentSettings<3>& settings) {
+  SurfaceBody& attached = impl_->find_attachable(body);
+  return impl_->surfaces->attachments().add(attached, patch, &rigid, settings);
+}
+AttachmentId BulletSoftBodies::attach(const SoftBody<3>& body, const Patch<3>& patch,
+                                      const SoftBody<3>& other, const Patch<3>& other_patch,
+                                      const AttachmentSettings<3>& settings) {
+  SurfaceBody& attached = impl_->find_attachable(body);
+  return impl_->surfaces->attachments().add(attached, patch, impl_->find_attachable(other), other_patch,
+                                            settings);
+}
+
+void BulletSoftBodies::detach(AttachmentId id) { impl_->attachments().remove(id); }
+void BulletSoftBodies::move_attachment(AttachmentId id, const Eigen::Vector3f& position,
+                                       const Eigen::Quaternionf& rotation, float seconds) {
+  impl_->attachments().move(id, position, rotation, seconds);
+}
+std::optional<AttachmentState<3>> BulletSoftBodies::attachment(AttachmentId id) const {
+  return impl_->surfaces ? impl_->surfaces->attachments().state(id) : std::nullopt;
+}
+std::vector<EndedAttachment> BulletSoftBodies::take_ended_attachments() {
+  return impl_->surfaces ? impl_->surfaces->attachments().take_ended() : std::vector<EndedAttachment>();
 }
 
 void BulletSoftBodies::begin_ahead(float step) {

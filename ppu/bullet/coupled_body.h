@@ -89,6 +89,11 @@ class CoupledBody {
 
   /// A body that was woken by a touch does not count anew: still slow, it falls asleep again at once.
   void fall_asleep_when_still(float step, const SleepSettings& settings) {
+    count_stillness(step, settings);
+    if (still_for_ >= settings.seconds) fall_asleep_now();
+  }
+
+  void count_stillness(float step, const SleepSettings& settings) {
     SC_ASSERT(!soft_.asleep() && step > 0,
               "a body that has been still for {} s falls asleep after {} s more, or sleeps", still_for_,
               step);
@@ -96,7 +101,9 @@ class CoupledBody {
     for (const Eigen::Vector3f& v : soft_.velocities())
       still = still && v.squaredNorm() < settings.speed * settings.speed;
     still_for_ = still ? still_for_ + step : 0;
-    if (still_for_ < settings.seconds) return;
+  }
+
+  void fall_asleep_now() {
     for (std::size_t i = 0; i < soft_.velocities().size(); ++i)
       soft_.set_velocity(i, Eigen::Vector3f::Zero());
     fall_asleep();

@@ -45,8 +45,19 @@ class SurfaceBody final : public CoupledBody {
       if (sleep && !falls_another_way()) return;
       rouse();
     }
-    if (sleep && !holds_a_moving_body_) fall_asleep_when_still(step, *sleep);
+    if (!sleep) return;
+    if (is_attached_)
+      count_stillness(step, *sleep);
+    else if (!holds_a_moving_body_)
+      fall_asleep_when_still(step, *sleep);
   }
+
+  /// An attached body sleeps with what it is attached to.
+  void set_attached(bool attached) { is_attached_ = attached; }
+  bool may_fall_asleep(const SleepSettings& sleep) const {
+    return still_for_ >= sleep.seconds && !holds_a_moving_body_;
+  }
+  void fall_asleep_with_others() { fall_asleep_now(); }
 
   /// Whether a rigid body that is awake lies on it: then it must go on holding it.
   void set_holds_a_moving_body(bool holds) { holds_a_moving_body_ = holds; }
@@ -61,6 +72,7 @@ class SurfaceBody final : public CoupledBody {
   const ContactModel& contact_;
   std::uint32_t number_;
   bool holds_a_moving_body_ = false;
+  bool is_attached_ = false;
 };
 
 }  // namespace softcell::ppu

@@ -40,6 +40,7 @@ bool SurfaceContacts::any_near(const BodyInStage& body, const Is& is) const {
 
 void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   obstacles_.begin(world_, step);
+  if (!attachments_.empty()) attachments_.begin();
   in_stage_.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyInStage& in_stage = in_stage_[i];
@@ -48,6 +49,7 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     in_stage.obstacles.clear();
     obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                         in_stage.obstacles);
+    if (!attachments_.empty()) attachments_.part(*bodies[i], obstacles_, in_stage.obstacles);
     if (bodies[i]->soft().asleep() && any_near(in_stage, moves)) bodies[i]->rouse();
     in_stage.asleep = bodies[i]->soft().asleep();
     in_stage.moves = bodies[i]->moves();
@@ -56,11 +58,16 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   }
   stage_.settings.bounces = {world_.getSolverInfo().m_restitutionVelocityThreshold,
                              to_eigen(world_.getGravity())};
+  in_step_.clear();
+  if (!attachments_.empty()) attachments_.fill(in_step_, bodies, obstacles_, step);
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (stage_.was_woken(i)) bodies[i]->rouse();
-    bodies[i]->set_holds_a_moving_body(any_near(in_stage_[i], is_awake));
+    bodies[i]->set_holds_a_moving_body(any_near(in_stage_[i], [&](const btCollisionObject& object) {
+      return is_awake(object) && !attachments_.joins(*bodies[i], object);
+    }));
   }
+  if (!attachments_.empty()) attachments_.end(step);
   if (watches_) {
     note_touches(bodies);
     note_triggers(bodies, step);

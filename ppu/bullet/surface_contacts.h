@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ppu/bullet/bullet_obstacles.h"
+#include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_stage.h"
@@ -24,6 +25,7 @@ class SurfaceContacts {
   SurfaceContacts(btDiscreteDynamicsWorld& world, std::shared_ptr<ContactWorker> worker)
       : world_(world), worker_(std::move(worker)) {
     stage_.worker = worker_.get();
+    stage_.attachments = &in_step_;
   }
 
   /// What bodies of one model share, made at the first call. Good as long as this.
@@ -33,6 +35,9 @@ class SurfaceContacts {
   /// and gives rigid bodies their impulses. Bodies that are touched wake.
   /// @param bodies  their velocities are those of the substep's end, without contacts
   void step(std::span<SurfaceBody* const> bodies, float step);
+
+  SurfaceAttachments& attachments() { return attachments_; }
+  const SurfaceAttachments& attachments() const { return attachments_; }
 
   /// Appends the contacts of the last substep that press.
   void append_contacts(std::vector<Contact>& contacts) const;
@@ -71,6 +76,8 @@ class SurfaceContacts {
   std::shared_ptr<ContactWorker> worker_;
   std::map<const SoftBodyModel<3>*, std::unique_ptr<ContactModel>> models_;
   BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
+  SurfaceAttachments attachments_{world_};
+  Attachments<3> in_step_;
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
   bool watches_ = false;

@@ -86,6 +86,7 @@ void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
       const std::uint32_t a = std::min(by_low_[i], by_low_[j]), b = std::max(by_low_[i], by_low_[j]);
       if (!overlap(box, bodies_[by_low_[j]].box) || (bodies[a].asleep && bodies[b].asleep)) continue;
       if (a != b && !bodies[a].filter.lets(bodies[b].filter)) continue;
+      if (a != b && has_attachments() && attachments->parts(a, b)) continue;
       if (a != b || may_touch_itself(bodies_[a])) pairs_.emplace_back(a, b);
     }
   }
@@ -288,7 +289,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   find_with_rigid(bodies, obstacles, rigids, step);
   put_in_order();
   hold_pushes_of_crushed_bodies();
-  if (group_count_ != 0) {
+  if (group_count_ != 0 || has_attachments()) {
     if (worker != nullptr)
       solve_with_worker(rigids, step);
     else
@@ -321,10 +322,27 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
   add_rigid_groups(rigids);
   prepare_here(rigids);
   find_touched_cells();
+  const std::span<Group* const> moving = std::span(here_).first(here_that_move_);
   for (int round = 0; round < settings.rounds; ++round) {
     if (round > 0) stiffen_touched_cells();
-    iterate_here(here_, rigids, step);
+    iterate_here(moving, rigids, step);
+    solve_attachments(rigids, step, round);
+    iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
   }
+  if (has_attachments()) attachments->finish();
+}
+
+/// Each round on what contacts have left.
+void ContactStage::solve_attachments(std::span<ContactRigid> rigids, float step, int round) {
+  if (!has_attachments()) return;
+  if (round == 0) {
+    attached_.clear();
+    for (ContactBody& body : bodies_)
+      attached_.push_back(
+          {body.positions, body.velocities, body.pushes, body.inverse_masses, body.spacing(), body.asleep});
+    attachments->begin(attached_, rigids, step);
+  }
+  attachments->iterate(2 * settings.iterations);
 }
 
 /// Rigid bodies that move before those that nothing moves.
@@ -341,9 +359,11 @@ void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
   };
   for (std::size_t i = pair_groups_; i < group_count_; ++i)
     groups_[i].heavy = !groups_[i].by_worker && with_heavy(groups_[i]);
-  for (const bool moving : {true, false})
+  for (const bool moving : {true, false}) {
     for (std::size_t i = pair_groups_; i < group_count_; ++i)
       if (!groups_[i].by_worker && with_moving(groups_[i]) == moving) here_.push_back(&groups_[i]);
+    if (moving) here_that_move_ = here_.size();
+  }
 }
 
 void ContactStage::prepare_here(std::span<ContactRigid> rigids) {
@@ -407,11 +427,13 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   for (int round = 0; round < settings.rounds; ++round) {
     const float stiffening = round + 1 < settings.rounds ? settings.stiffening : 0;
     add_pairs_to(stages_);
-    if (!here_.empty()) {
+    if (!here_.empty() || has_attachments()) {
       worker->solve(stages_, iterations);
       stages_.clear();
       take_from_worker();
-      iterate_here(here_, rigids, step);
+      iterate_here(std::span(here_).first(here_that_move_), rigids, step);
+      solve_attachments(rigids, step, round);
+      iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
       for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
         if (worker->holds(i) || stiffening == 0) continue;
         for (const std::uint32_t cell : touched_[i]) stiffen(bodies_[i], cell, stiffening);
@@ -422,6 +444,7 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   }
   worker->solve(stages_, iterations);
   take_from_worker();
+  if (has_attachments()) attachments->finish();
 }
 
 void ContactStage::take_from_worker() {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/contacts/attachments.h"
 #include "ppu/contacts/bounces.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/contact_group.h"
@@ -74,6 +75,9 @@ class ContactStage {
   ContactSettings settings;
   /// Who finds and solves what he can; null: this thread does everything. Outlives the steps.
   ContactWorker* worker = nullptr;
+  /// Of these bodies, solved with contacts: behind those of bodies that move, before those with what nothing moves. Null: none. Outlives
+  /// the steps.
+  Attachments<3>* attachments = nullptr;
 
  private:
   /// The contacts of a pair of bodies, as seen from a, or of a body with rigid ones.
@@ -106,6 +110,8 @@ class ContactStage {
   void solve_with_worker(std::span<ContactRigid> rigids, float step);
   void add_rigid_groups(std::span<const ContactRigid> rigids);
   void prepare_here(std::span<ContactRigid> rigids);
+  bool has_attachments() const { return attachments != nullptr && !attachments->empty(); }
+  void solve_attachments(std::span<ContactRigid> rigids, float step, int round);
   void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
   void add_pairs_to(SolveStages& stages);
   void add_bodies_to(SolveStages& stages, float stiffening);
@@ -128,9 +134,11 @@ class ContactStage {
   CrushedCellCount crushed_;
   std::vector<bool> is_crushed_;  // of each body: it has crushed cells
   Bounces bounces_;
-  std::vector<std::array<std::uint32_t, 3>>
-      pressed_;               // in the last substep: a, b or a rigid one's number, and which
-  std::vector<Group*> here_;  // solved here, among what the worker solves
+  // In the last substep: a, b or a rigid one's number, and which.
+  std::vector<std::array<std::uint32_t, 3>> pressed_;
+  std::vector<Group*> here_;               // solved here, among what the worker solves
+  std::size_t here_that_move_ = 0;         // of them, the first ones
+  std::vector<AttachedBody<3>> attached_;  // bodies_, as attachments see them
   SolveStages stages_;
   std::vector<bool> woken_;
 };

@@ -15,7 +15,7 @@ endfunction()
 set(prefix ${SCRATCH}/prefix)
 file(REMOVE_RECURSE ${SCRATCH})
 step("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
-foreach(example hello_kernel saxpy ping_pong jelly_3d jelly_2d jelly_on_spes)
+foreach(example hello_kernel saxpy ping_pong jelly_3d tyre_3d jelly_2d jelly_on_spes)
   build_and_test(${example})
 endforeach()
 set(copy ${SCRATCH}/saxpy)
@@ -24,6 +24,7 @@ set(build ${copy}/build)
 # Soft bodies: the box comes to rest on the jelly.
 says(0 "4\\.0 s: the box is at height 1\\.[01]" ${SCRATCH}/jelly_3d/build/jelly_3d ${SCRATCH}/jelly_3d/jelly.obj)
 says(1 "no_such.obj: there is no such file" ${SCRATCH}/jelly_3d/build/jelly_3d no_such.obj)
+says(0 "1\\.50 s: the axle is at [34]\\." ${SCRATCH}/tyre_3d/build/tyre_3d)
 says(0 "4\\.0 s: the box is at height 1\\.[0-3]" ${SCRATCH}/jelly_2d/build/jelly_2d)
 
 # SPEs make a picture of a textured jelly. Without its texture it would have the one colour that it is multiplied with.

@@ -29,11 +29,13 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "softcell/soft_bodies/attachment.h"
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
@@ -124,6 +126,34 @@ class BulletSoftBodies {
 
   /// @throws std::invalid_argument  the body is not one of these.
   void remove(const SoftBody<3>& body);
+
+  /// Holds a patch of a body to the world: to the place where it is now, which move_attachment() may move.
+  ///
+  /// The bodies wake, as when an attachment is moved, detached or breaks; what is attached to each other sleeps together. Bodies of
+  /// ContactMethod::kSurface that touch things can be attached.
+  /// @throws std::invalid_argument  a body is not one of these, or cannot be attached; a setting is out of its range; the patch is empty,
+  ///         or too small for what is asked of it. The sentence says what was found and what was expected.
+  AttachmentId attach(const SoftBody<3>& body, const Patch<3>& patch,
+                      const AttachmentSettings<3>& settings = {});
+  /// To a rigid body, until that is removed from the world. @throws as above; it is not in the world.
+  AttachmentId attach(const SoftBody<3>& body, const Patch<3>& patch, btRigidBody& rigid,
+                      const AttachmentSettings<3>& settings = {});
+  /// To a patch of another soft body of these. @throws as above; it is the same body.
+  AttachmentId attach(const SoftBody<3>& body, const Patch<3>& patch, const SoftBody<3>& other,
+                      const Patch<3>& other_patch, const AttachmentSettings<3>& settings = {});
+  /// @throws std::invalid_argument  there is no such attachment: it may have ended.
+  void detach(AttachmentId id);
+  /// Moves the place in the world to which something is attached: of a hinge or rope its point, of a weld the middle of its patch when it
+  /// was attached. It moves evenly and is there after `seconds` of simulated time, at the earliest at the next substep's end.
+  /// @param rotation  from how it was when it was attached; of any length but 0
+  /// @throws std::invalid_argument  there is no such attachment, or it is to a body; a value is not finite; seconds below 0.
+  void move_attachment(AttachmentId id, const Eigen::Vector3f& position,
+                       const Eigen::Quaternionf& rotation = Eigen::Quaternionf::Identity(),
+                       float seconds = 0);
+  /// What it did in the last substep; nothing when it has ended.
+  std::optional<AttachmentState<3>> attachment(AttachmentId id) const;
+  /// Those that have broken, or lost a body, since the last call. Those that were detached are none of them.
+  std::vector<EndedAttachment> take_ended_attachments();
 
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
   /// else. When bodies are changed after all, or the substep has another length, that work is dropped and

@@ -1,0 +1,322 @@
+#include "ppu/bullet/surface_attachments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "ppu/contacts/attachment_patch.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+constexpr float kMovesFrom = 0.05f;  // m/s and rad/s, of kinematic bodies
+
+bool touches(const AttachmentSettings<3>& settings) {
+  return settings.touch.value_or(settings.kind == AttachmentKind::kRope);
+}
+
+/// Where a rigid body is.
+AttachmentFrame<3> frame_of(const btRigidBody& rigid) {
+  AttachmentFrame<3> frame;
+  frame.position = frame.end_position = to_eigen(rigid.getWorldTransform().getOrigin());
+  frame.rotation = frame.end_rotation = to_eigen(rigid.getWorldTransform().getBasis());
+  return frame;
+}
+
+bool is_moved_by_bullet(const btRigidBody& rigid) { return !rigid.isStaticOrKinematicObject(); }
+
+/// Kinematic ones, too.
+bool is_slow(const btRigidBody& rigid, float speed) {
+  return rigid.getLinearVelocity().length2() < speed * speed &&
+         rigid.getAngularVelocity().length2() < speed * speed;
+}
+
+template <typename T>
+bool contains(const std::vector<T*>& list, const void* item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+}  // namespace
+
+AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, btRigidBody* rigid,
+                                     const AttachmentSettings<3>& settings) {
+  validate(settings);
+  AttachmentSettings<3> full = settings;
+  const PatchParticles<3> particles = particles_of(patch, body.soft(), body.contact());
+  AttachmentFrame<3> frame;
+  int number = 0;
+  if (rigid != nullptr) {
+    if (rigid->getBroadphaseHandle() == nullptr ||
+        world_.getCollisionObjectArray().findLinearSearch(rigid) == world_.getCollisionObjectArray().size())
+      throw std::invalid_argument("the rigid body of an attachment is not in this world");
+    number = rigid->getBroadphaseHandle()->m_uniqueId;
+    frame = frame_of(*rigid);
+    if (settings.kind == AttachmentKind::kRope && !full.point) full.point = frame.position;
+  } else {
+    if (settings.kind == AttachmentKind::kRope && !full.point)
+      throw std::invalid_argument("a rope to the world has no point; it needs the place of its other end");
+    frame.position = frame.end_position = full.point.value_or(particles.middle());
+  }
+  return add(Link{.a = &body,
+                  .rigid = rigid,
+                  .rigid_number = number,
+                  .touch = touches(full),
+                  .rows = AttachmentRows<3>(full, particles, frame),
+                  .frame = frame,
+                  .goal_position = frame.position});
+}
+
+AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, SurfaceBody& other,
+                                     const Patch<3>& other_patch, const AttachmentSettings<3>& settings) {
+  validate(settings);
+  if (&body == &other) throw std::invalid_argument("a soft body cannot be attached to itself");
+  return add(Link{.a = &body,
+                  .b = &other,
+                  .touch = touches(settings),
+                  .rows = AttachmentRows<3>(settings, particles_of(patch, body.soft(), body.contact()),
+                                            particles_of(other_patch, other.soft(), other.contact()))});
+}
+
+AttachmentId SurfaceAttachments::add(Link link) {
+  end_gone();
+  link.id = AttachmentId{next_++};
+  links_.push_back(std::make_unique<Link>(std::move(link)));
+  rouse(*links_.back());
+  find_islands();
+  return links_.back()->id;
+}
+
+SurfaceAttachments::Link& SurfaceAttachments::find(AttachmentId id) {
+  const auto found =
+      std::find_if(links_.begin(), links_.end(), [&](const auto& link) { return link->id == id; });
+  if (found == links_.end())
+    throw std::invalid_argument("there is no attachment " + std::to_string(static_cast<std::uint32_t>(id)));
+  return **found;
+}
+
+void SurfaceAttachments::remove(AttachmentId id) {
+  end_gone();
+  const Link& link = find(id);
+  rouse(link);
+  std::erase_if(links_, [&](const auto& other) { return other.get() == &link; });
+  find_islands();
+}
+
+void SurfaceAttachments::move(AttachmentId id, const Eigen::Vector3f& position,
+                              const Eigen::Quaternionf& rotation, float seconds) {
+  Link& link = find(id);
+  if (link.b != nullptr || link.rigid != nullptr)
+    throw std::invalid_argument("an attachment to another body cannot be moved; only those to the world can");
+  if (!position.allFinite() || !rotation.coeffs().allFinite() || !(rotation.norm() > 0))
+    throw std::invalid_argument(
+        "an attachment is moved to a place that is not finite, or turned by a rotation of length 0");
+  if (!(seconds >= 0) || !std::isfinite(seconds))
+    throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
+                                " s; it must be 0 or above, and finite");
+  link.goal_position = position;
+  link.goal_rotation = rotation.normalized();
+  link.seconds = seconds;
+  link.moves = true;
+  rouse(link);
+}
+
+std::optional<AttachmentState<3>> SurfaceAttachments::state(AttachmentId id) const {
+  for (const auto& link : links_)
+    if (link->id == id) return link->rows.state();
+  return std::nullopt;
+}
+
+std::vector<EndedAttachment> SurfaceAttachments::take_ended() { return std::exchange(ended_, {}); }
+
+void SurfaceAttachments::forget(const SurfaceBody& body) {
+  end_gone();
+  std::vector<bool> which;
+  for (const auto& link : links_) which.push_back(link->a == &body || link->b == &body);
+  end_links(EndedAttachment::Reason::kGone, which);
+}
+
+void SurfaceAttachments::end_links(EndedAttachment::Reason reason, const std::vector<bool>& which) {
+  if (std::find(which.begin(), which.end(), true) == which.end()) return;
+  std::vector<std::unique_ptr<Link>> left;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (!which[i]) {
+      left.push_back(std::move(links_[i]));
+      continue;
+    }
+    ended_.push_back({links_[i]->id, reason});
+    rouse(*links_[i]);
+  }
+  links_ = std::move(left);
+  find_islands();
+}
+
+void SurfaceAttachments::rouse(const Link& link) {
+  link.a->rouse();
+  if (link.b != nullptr) link.b->rouse();
+  if (link.rigid != nullptr) link.rigid->activate();
+}
+
+/// Without a look at the body, which may be no more, unless the world has it.
+bool SurfaceAttachments::is_there(const Link& link) const {
+  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+  if (objects.findLinearSearch(link.rigid) == objects.size()) return false;
+  const btBroadphaseProxy* const proxy = link.rigid->getBroadphaseHandle();
+  return proxy != nullptr && proxy->m_uniqueId == link.rigid_number;
+}
+
+/// Nothing else looks at the rigid bodies of attachments before it has been called.
+void SurfaceAttachments::end_gone() {
+  std::vector<bool> gone;
+  for (const auto& link : links_) {
+    gone.push_back(link->rigid != nullptr && !is_there(*link));
+    if (gone.back()) link->rigid = nullptr;
+  }
+  end_links(EndedAttachment::Reason::kGone, gone);
+}
+
+/// What only bodies that nothing moves have in common is not attached to each other.
+void SurfaceAttachments::find_islands() {
+  for (const Island& island : islands_)
+    for (SurfaceBody* const body : island.bodies) body->set_attached(false);
+  islands_.clear();
+  for (const auto& link : links_) {
+    const bool by_rigid = link->rigid != nullptr && !link->rigid->isStaticObject();
+    Island island{.bodies = {link->a}, .rigids = {}, .links = {link.get()}};
+    if (link->b != nullptr) island.bodies.push_back(link->b);
+    if (by_rigid) island.rigids.push_back(link->rigid);
+    for (auto other = islands_.begin(); other != islands_.end();) {
+      const bool joined =
+          contains(other->bodies, link->a) || (link->b != nullptr && contains(other->bodies, link->b)) ||
+          (by_rigid && !link->rigid->isKinematicObject() && contains(other->rigids, link->rigid));
+      if (!joined) {
+        ++other;
+        continue;
+      }
+      const auto join = [](auto& to, const auto& from) {
+        for (auto* const item : from)
+          if (!contains(to, item)) to.push_back(item);
+      };
+      join(island.bodies, other->bodies);
+      join(island.rigids, other->rigids);
+      join(island.links, other->links);
+      other = islands_.erase(other);
+    }
+    islands_.push_back(std::move(island));
+  }
+  for (const Island& island : islands_)
+    for (SurfaceBody* const body : island.bodies) body->set_attached(true);
+}
+
+void SurfaceAttachments::begin() {
+  end_gone();
+  for (const Island& island : islands_) {
+    const bool awake =
+        std::any_of(island.bodies.begin(), island.bodies.end(),
+                    [](const auto* body) { return !body->soft().asleep(); }) ||
+        std::any_of(island.rigids.begin(), island.rigids.end(), [](const auto* rigid) {
+          return rigid->isActive() && (is_moved_by_bullet(*rigid) || !is_slow(*rigid, kMovesFrom));
+        });
+    if (!awake) continue;
+    for (SurfaceBody* const body : island.bodies)
+      if (body->soft().asleep()) body->rouse();
+    for (btRigidBody* const rigid : island.rigids)
+      if (!rigid->isActive()) rigid->activate();
+  }
+}
+
+void SurfaceAttachments::part(const SurfaceBody& body, BulletObstacles& obstacles,
+                              std::vector<std::uint32_t>& near) const {
+  for (const auto& link : links_) {
+    if (link->a != &body || link->rigid == nullptr || link->touch) continue;
+    std::erase_if(near, [&](std::uint32_t obstacle) {
+      return obstacles.objects()[obstacles.obstacles()[obstacle].rigid] == link->rigid;
+    });
+  }
+}
+
+bool SurfaceAttachments::joins(const SurfaceBody& body, const btCollisionObject& object) const {
+  return std::any_of(islands_.begin(), islands_.end(), [&](const Island& island) {
+    return contains(island.bodies, &body) && contains(island.rigids, btRigidBody::upcast(&object));
+  });
+}
+
+void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody* const> bodies,
+                              BulletObstacles& obstacles, float step) {
+  attachments.clear();
+  const auto number_of = [&](const SurfaceBody* body) {
+    const auto found = std::find(bodies.begin(), bodies.end(), body);
+    SC_ASSERT(found != bodies.end(), "an attached body is none of {}", bodies.size());
+    return static_cast<std::uint32_t>(found - bodies.begin());
+  };
+  for (const auto& link : links_) {
+    AttachmentInStep<3> in_step{
+        .rows = &link->rows, .a = number_of(link->a), .frame = link->frame, .touch = link->touch};
+    if (link->b != nullptr) {
+      in_step.b = number_of(link->b);
+    } else if (link->rigid != nullptr) {
+      in_step.rigid = obstacles.rigid_of(*link->rigid);
+      in_step.frame = frame_of(*link->rigid);
+    } else if (link->moves) {
+      Link moved = *link;
+      moved.advance(step);
+      in_step.frame.end_position = moved.frame.position;
+      in_step.frame.end_rotation = moved.frame.rotation;
+    }
+    attachments.add(in_step);
+  }
+}
+
+/// Evenly, and in the last step to its goal exactly.
+void SurfaceAttachments::Link::advance(float step) {
+  const bool arrives = !(step < seconds);
+  const float share = arrives ? 1.0f : step / seconds;
+  frame.position =
+      arrives ? goal_position : Eigen::Vector3f(frame.position + share * (goal_position - frame.position));
+  const float way = rotation.dot(goal_rotation) < 0 ? -1.0f : 1.0f;
+  rotation.coeffs() += share * (way * goal_rotation.coeffs() - rotation.coeffs());
+  rotation.normalize();
+  frame.rotation = rotation.toRotationMatrix();
+  frame.end_position = frame.position;
+  frame.end_rotation = frame.rotation;
+  seconds -= step;
+  moves = !arrives;
+}
+
+void SurfaceAttachments::end(float step) {
+  std::vector<bool> broken;
+  for (const auto& link : links_) {
+    if (link->moves) link->advance(step);
+    broken.push_back(link->rows.broke());
+  }
+  end_links(EndedAttachment::Reason::kBroken, broken);
+}
+
+void SurfaceAttachments::let_sleep(const SleepSettings& sleep) {
+  for (const Island& island : islands_) {
+    const bool rest =
+        std::all_of(
+            island.bodies.begin(), island.bodies.end(),
+            [&](const auto* body) { return body->soft().asleep() || body->may_fall_asleep(sleep); }) &&
+        std::all_of(
+            island.rigids.begin(), island.rigids.end(),
+            [&](const auto* rigid) {
+              return is_slow(*rigid, sleep.speed) &&
+                     (!is_moved_by_bullet(*rigid) || rigid->getActivationState() != DISABLE_DEACTIVATION);
+            }) &&
+        std::none_of(island.links.begin(), island.links.end(), [](const Link* link) { return link->moves; });
+    if (!rest) continue;
+    for (SurfaceBody* const body : island.bodies)
+      if (!body->soft().asleep()) body->fall_asleep_with_others();
+    for (btRigidBody* const rigid : island.rigids) {
+      if (!is_moved_by_bullet(*rigid)) continue;
+      rigid->setLinearVelocity({0, 0, 0});
+      rigid->setAngularVelocity({0, 0, 0});
+      rigid->forceActivationState(ISLAND_SLEEPING);
+    }
+  }
+}
+
+}  // namespace softcell::ppu

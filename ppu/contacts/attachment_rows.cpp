@@ -1,0 +1,552 @@
+#include "ppu/contacts/attachment_rows.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+// No more than this many cells of an error of position go in a substep: what is far from where it should be flies there.
+constexpr float kMostPushInCells = 0.25f;
+// Of a place that several particles have in common a share of it: pushes deform the patch, too, which it works off in some substeps.
+constexpr float kPushShareOfPlaces = 0.2f;
+
+/// Mass, middle and spread of a patch.
+template <int kDimension>
+struct Spread {
+  using Vector = Eigen::Vector<float, kDimension>;
+  using Matrix = Eigen::Matrix<float, kDimension, kDimension>;
+  float mass = 0;
+  Vector middle = Vector::Zero();
+  Matrix root = Matrix::Zero();  // L, lower triangular; L L' = S
+
+  void add_masses(const PatchParticles<kDimension>& patch) {
+    for (std::size_t i = 0; i < patch.particles.size(); ++i) {
+      mass += patch.masses[i];
+      middle += patch.masses[i] * patch.positions[i];
+    }
+  }
+  void add_squares(const PatchParticles<kDimension>& patch) {
+    for (std::size_t i = 0; i < patch.particles.size(); ++i) {
+      const Vector r = patch.positions[i] - middle;
+      root += patch.masses[i] / mass * (r * r.transpose());
+    }
+  }
+  /// @throws std::invalid_argument  the particles lie in a plane (in two dimensions on a line), or nearly so.
+  void take_root() {
+    constexpr float kFlat = 1e-3f;
+    const Eigen::LLT<Matrix> cholesky(root);
+    root = cholesky.matrixL();
+    const float thinnest = root.diagonal().minCoeff(), thickest = root.diagonal().maxCoeff();
+    if (cholesky.info() != Eigen::Success || !(thinnest * thinnest > kFlat * thickest * thickest))
+      throw std::invalid_argument(kDimension == 3 ? "a hinge, or a weld of two soft bodies, needs patches of "
+                                                    "at least four particles that do not lie in a plane"
+                                                  : "a hinge, or a weld of two soft bodies, needs patches of "
+                                                    "at least three particles that do not lie on a line");
+  }
+};
+
+template <int kDimension>
+Spread<kDimension> spread_of(const PatchParticles<kDimension>& a,
+                             const PatchParticles<kDimension>* b = nullptr) {
+  Spread<kDimension> spread;
+  spread.add_masses(a);
+  if (b != nullptr) spread.add_masses(*b);
+  SC_ASSERT(spread.mass > 0, "a patch of {} particles has a mass of {} kg", a.particles.size(), spread.mass);
+  spread.middle /= spread.mass;
+  spread.add_squares(a);
+  if (b != nullptr) spread.add_squares(*b);
+  spread.take_root();
+  return spread;
+}
+
+/// The corners of a regular simplex of dimension + 1 corners, of which any two have the product -1.
+template <int kDimension>
+std::vector<Eigen::Vector<float, kDimension>> simplex() {
+  if constexpr (kDimension == 3) {
+    return {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  } else {
+    const float height = std::sqrt(1.5f), half = std::sqrt(0.5f);
+    return {{0, 2 * half}, {height, -half}, {-height, -half}};
+  }
+}
+
+}  // namespace
+
+template <int kDimension>
+Eigen::Vector<float, kDimension> PatchParticles<kDimension>::middle() const {
+  Eigen::Vector<float, kDimension> sum = Eigen::Vector<float, kDimension>::Zero();
+  float mass = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    sum += masses[i] * positions[i];
+    mass += masses[i];
+  }
+  return sum / mass;
+}
+
+template <int kDimension>
+auto AttachmentRows<kDimension>::Side::of(const Place& place, std::span<const Vector> values) const
+    -> Vector {
+  if (place.count == 1) return values[particle[place.first]];
+  Vector sum = Vector::Zero();
+  for (std::uint32_t i = place.first; i < place.first + place.count; ++i)
+    sum += share[i] * values[particle[i]];
+  return sum;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::Side::add(const Place& place, const AttachedBody<kDimension>& body,
+                                           std::span<Vector> values, const Vector& impulse) const {
+  for (std::uint32_t i = place.first; i < place.first + place.count; ++i)
+    values[particle[i]] += share[i] * body.inverse_masses[particle[i]] * impulse;
+}
+
+template <int kDimension>
+float AttachmentRows<kDimension>::Side::mobility(const Place& place,
+                                                 std::span<const float> inverse_masses) const {
+  float sum = 0;
+  for (std::uint32_t i = place.first; i < place.first + place.count; ++i)
+    sum += share[i] * share[i] * inverse_masses[particle[i]];
+  return sum;
+}
+
+template <int kDimension>
+auto AttachmentRows<kDimension>::Side::append(std::uint32_t its_particle, float its_share) -> Place {
+  particle.push_back(its_particle);
+  share.push_back(its_share);
+  return {static_cast<std::uint32_t>(particle.size() - 1), 1};
+}
+
+template <int kDimension>
+auto AttachmentRows<kDimension>::Side::append(const PatchParticles<kDimension>& patch, const Vector& point)
+    -> Place {
+  const Spread<kDimension> spread = spread_of(patch);
+  const auto lower = spread.root.template triangularView<Eigen::Lower>();
+  constexpr float kFarthest = 12;
+  const float reaches = lower.solve(Vector(point - spread.middle)).norm();
+  if (reaches > kFarthest)
+    throw std::invalid_argument("a patch is held at a place " + std::to_string(reaches) +
+                                " times as far from its middle as the patch reaches; it may be 12 times as "
+                                "far: a larger patch can be "
+                                "held there");
+  // S^-1 (p - c)
+  const Vector pull = lower.transpose().solve(lower.solve(Vector(point - spread.middle)));
+  const Place place{static_cast<std::uint32_t>(particle.size()),
+                    static_cast<std::uint32_t>(patch.particles.size())};
+  for (std::size_t i = 0; i < patch.particles.size(); ++i)
+    append(patch.particles[i],
+           patch.masses[i] / spread.mass * (1 + pull.dot(Vector(patch.positions[i] - spread.middle))));
+  return place;
+}
+
+template <int kDimension>
+auto AttachmentRows<kDimension>::Side::append_middle(const PatchParticles<kDimension>& patch) -> Place {
+  const Place place{static_cast<std::uint32_t>(particle.size()),
+                    static_cast<std::uint32_t>(patch.particles.size())};
+  float mass = 0;
+  for (const float m : patch.masses) mass += m;
+  for (std::size_t i = 0; i < patch.particles.size(); ++i) append(patch.particles[i], patch.masses[i] / mass);
+  return place;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::add_row(const Vector& point, const PatchParticles<kDimension>& a,
+                                         const PatchParticles<kDimension>* b,
+                                         const AttachmentFrame<kDimension>* frame) {
+  Row& row = rows_.emplace_back();
+  row.a = a_.append(a, point);
+  if (b != nullptr) row.b = b_.append(*b, point);
+  if (frame != nullptr) row.own = frame->to_own(point);
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::add_places_in_common(const PatchParticles<kDimension>& a,
+                                                      const PatchParticles<kDimension>& b) {
+  const Spread<kDimension> spread = spread_of(a, &b);
+  for (const Vector& corner : simplex<kDimension>())
+    add_row(spread.middle + spread.root.template triangularView<Eigen::Lower>() * corner, a, &b, nullptr);
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::add_hinge(const PatchParticles<kDimension>& a,
+                                           const PatchParticles<kDimension>* b,
+                                           const AttachmentFrame<kDimension>* frame) {
+  const Vector point = settings_.point.value_or(a.middle());
+  if constexpr (kDimension == 2) {
+    add_row(point, a, b, frame);
+  } else {
+    const Spread<kDimension> spread = spread_of(a, b);
+    const Vector axis = settings_.axis.normalized();
+    const auto lower = spread.root.template triangularView<Eigen::Lower>();
+    const float reach =
+        1 / lower.solve(axis).norm();  // such that the two do not feel each other around the middle
+    for (const float way : {-reach, reach}) add_row(point + way * axis, a, b, frame);
+  }
+}
+
+template <int kDimension>
+AttachmentRows<kDimension>::AttachmentRows(const AttachmentSettings<kDimension>& settings,
+                                           const PatchParticles<kDimension>& a,
+                                           const PatchParticles<kDimension>& b)
+    : settings_(settings) {
+  switch (settings.kind) {
+    case AttachmentKind::kWeld:
+      add_places_in_common(a, b);
+      break;
+    case AttachmentKind::kHinge:
+      add_hinge(a, &b, nullptr);
+      break;
+    case AttachmentKind::kRope:
+      Row& row = rows_.emplace_back();
+      row.a = a_.append_middle(a);
+      row.b = b_.append_middle(b);
+      length_ = settings.length.value_or((a.middle() - b.middle()).norm());
+      break;
+  }
+}
+
+template <int kDimension>
+AttachmentRows<kDimension>::AttachmentRows(const AttachmentSettings<kDimension>& settings,
+                                           const PatchParticles<kDimension>& a,
+                                           const AttachmentFrame<kDimension>& frame)
+    : settings_(settings) {
+  switch (settings.kind) {
+    case AttachmentKind::kWeld:
+      for (std::size_t i = 0; i < a.particles.size(); ++i) {
+        Row& row = rows_.emplace_back();
+        row.a = a_.append(a.particles[i], 1);
+        row.own = frame.to_own(a.positions[i]);
+      }
+      break;
+    case AttachmentKind::kHinge:
+      add_hinge(a, nullptr, &frame);
+      break;
+    case AttachmentKind::kRope:
+      SC_ASSERT(settings.point.has_value(), "a rope of {} particles without its other end",
+                a.particles.size());
+      Row& row = rows_.emplace_back();
+      row.a = a_.append_middle(a);
+      row.own = frame.to_own(*settings.point);
+      length_ = settings.length.value_or((a.middle() - *settings.point).norm());
+      break;
+  }
+}
+
+template <int kDimension>
+auto AttachmentRows<kDimension>::relative_velocity(const Row& row) const -> Vector {
+  const Vector v = a_.of(row.a, sides_.a.velocities);
+  if (sides_.b != nullptr) return v - b_.of(row.b, sides_.b->velocities);
+  if (sides_.rigid != nullptr) return v - AttachedRigid<kDimension>::velocity_at(*sides_.rigid, row.point);
+  return v - row.carried;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::apply(const Row& row, const Vector& impulse) {
+  a_.add(row.a, sides_.a, sides_.a.velocities, impulse);
+  if (sides_.b != nullptr)
+    b_.add(row.b, *sides_.b, sides_.b->velocities, -impulse);
+  else if (sides_.rigid != nullptr && sides_.rigid->inverse_mass != 0)
+    AttachedRigid<kDimension>::apply(*sides_.rigid, row.point, -impulse);
+}
+
+/// Soft bodies only: a rigid one is moved by its engine.
+template <int kDimension>
+auto AttachmentRows<kDimension>::relative_push(const Row& row) const -> Vector {
+  const Vector push = a_.of(row.a, sides_.a.pushes);
+  return sides_.b != nullptr ? Vector(push - b_.of(row.b, sides_.b->pushes)) : push;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::apply_push(const Row& row, const Vector& impulse) {
+  a_.add(row.a, sides_.a, sides_.a.pushes, impulse);
+  if (sides_.b != nullptr) b_.add(row.b, *sides_.b, sides_.b->pushes, -impulse);
+}
+
+template <int kDimension>
+auto AttachmentRows<kDimension>::begin_row(Row& row) -> Vector {
+  const float h = step_;
+  Vector place = Vector::Zero();  // where b holds it
+  if (sides_.b != nullptr) {
+    place = row.point = b_.of(row.b, sides_.b->positions);
+  } else {
+    place = row.point = sides_.frame->to_world(row.own);
+    if (sides_.rigid == nullptr)
+      row.carried = (sides_.frame->to_world_at_end(row.own) - row.point) / h;
+    else
+      place += 0.5f * h * h * AttachedRigid<kDimension>::curve(*sides_.rigid, row.point);
+  }
+  const Vector apart = a_.of(row.a, sides_.a.positions) - place;
+  row.error = apart / h;
+  if (softness_ == 0 && row.a.count > 1 && settings_.kind != AttachmentKind::kRope)
+    row.error *= kPushShareOfPlaces;
+
+  row.push_mobility = a_.mobility(row.a, sides_.a.inverse_masses);
+  if (sides_.b != nullptr) row.push_mobility += b_.mobility(row.b, sides_.b->inverse_masses);
+  if (with_rigid_at_once_) row.mobility = row.push_mobility + softness_;
+  Matrix mobility = (row.push_mobility + softness_) * Matrix::Identity();
+  if (sides_.rigid != nullptr) mobility += AttachedRigid<kDimension>::mobility(*sides_.rigid, row.point);
+  if (settings_.kind == AttachmentKind::kRope) {
+    row.inverse_mobility = mobility;
+    begin_rope(row, apart);
+    return apart;
+  }
+  if (!with_rigid_at_once_)
+    row.inverse_mobility =
+        sides_.rigid != nullptr ? Matrix(mobility.inverse()) : Matrix(Matrix::Identity() / mobility(0, 0));
+  const float most = kMostPushInCells * sides_.a.spacing / h, speed = row.error.norm();
+  if (softness_ == 0) {
+    if (speed > most) row.error *= most / speed;
+    pushes_ = pushes_ || speed > 0;
+  }
+  return apart;
+}
+
+/// The places of a side have the same particles in the same order.
+template <int kDimension>
+void AttachmentRows<kDimension>::begin_places() {
+  const auto count = static_cast<Eigen::Index>(rows_.size());
+  Places mobilities = Places::Zero(count, count);
+  const auto add = [&](const Side& side, Place Row::*place, std::span<const float> inverse_masses) {
+    for (Eigen::Index k = 0; k < count; ++k) {
+      for (Eigen::Index l = 0; l <= k; ++l) {
+        const Place& first = rows_[static_cast<std::size_t>(k)].*place;
+        const Place& second = rows_[static_cast<std::size_t>(l)].*place;
+        for (std::uint32_t i = 0; i < first.count; ++i)
+          mobilities(k, l) += side.share[first.first + i] * side.share[second.first + i] *
+                              inverse_masses[side.particle[first.first + i]];
+      }
+    }
+  };
+  add(a_, &Row::a, sides_.a.inverse_masses);
+  if (sides_.b != nullptr) add(b_, &Row::b, sides_.b->inverse_masses);
+  for (Eigen::Index k = 0; k < count; ++k)
+    for (Eigen::Index l = k + 1; l < count; ++l) mobilities(k, l) = mobilities(l, k);
+  inverse_of_pushes_ = mobilities.inverse();
+  mobilities.diagonal().array() += softness_;
+  inverse_of_places_ = mobilities.inverse();
+}
+
+/// Of the rigid body's mass and inertia, and of its rows'. @pre it has both
+template <int kDimension>
+void AttachmentRows<kDimension>::begin_weld_to_rigid() {
+  using Of = AttachedRigid<kDimension>;
+  sum_ = 1 / sides_.rigid->inverse_mass;
+  sum_of_arms_.setZero();
+  inverse_inertia_ = Of::inertia(*sides_.rigid);
+  for (const Row& row : rows_) {
+    const float mass = row.mobility > 0 ? 1 / row.mobility : 0;
+    const Vector arm = row.point - sides_.rigid->centre;
+    sum_ += mass;
+    sum_of_arms_ += mass * arm;
+    inverse_inertia_ += mass * Of::inertia_of_arm(arm);
+  }
+  inverse_inertia_ -= Of::inertia_of_arm(sum_of_arms_) / sum_;
+  inverse_inertia_ = inverse_inertia_.inverse().eval();
+}
+
+/// A rope may be as long as it is where its ends will have gone round each other, not where they would go straight on: so it takes no
+/// energy from what swings.
+template <int kDimension>
+void AttachmentRows<kDimension>::begin_rope(Row& row, const Vector& apart) {
+  const float h = step_, distance = apart.norm(), length = length_;
+  row.along = distance > 0 ? Vector(apart / distance) : Vector(Vector::UnitY());
+  row.mobility = row.along.dot(row.inverse_mobility * row.along);
+  const Vector v = relative_velocity(row);
+  const float across = (v - row.along.dot(v) * row.along).squaredNorm() * h * h;
+  const float reach = std::sqrt(std::max(length * length - across, 0.25f * length * length));
+  const float excess = std::max(distance - length, 0.0f);
+  row.most = (reach - (softness_ > 0 ? distance : std::min(distance, length))) / h;
+  row.push_most = softness_ > 0 ? 0 : -std::min(excess, kMostPushInCells * sides_.a.spacing) / h;
+  row.push = 0;
+  pushes_ = pushes_ || row.push_most < 0;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::begin(const Sides& sides, float step) {
+  SC_ASSERT(step > 0 && (sides.b != nullptr || sides.frame != nullptr), "a substep of {} s, of {} rows", step,
+            rows_.size());
+  sides_ = sides;
+
+  step_ = step;
+  const float rows = static_cast<float>(rows_.size());
+  softness_ = settings_.compliance * rows / (step * step);
+  pushes_ = false;
+  const bool is_weld_to_frame = settings_.kind == AttachmentKind::kWeld && sides.b == nullptr;
+  with_rigid_at_once_ = is_weld_to_frame && sides.rigid != nullptr && sides.rigid->inverse_mass > 0 &&
+                        AttachedRigid<kDimension>::can_turn(*sides.rigid);
+  is_direct_ =
+      is_weld_to_frame && (with_rigid_at_once_ || sides.rigid == nullptr || sides.rigid->inverse_mass == 0);
+  places_at_once_ = settings_.kind != AttachmentKind::kRope && !is_weld_to_frame &&
+                    (sides.b != nullptr || sides.rigid == nullptr || sides.rigid->inverse_mass == 0);
+  is_direct_ = is_direct_ || places_at_once_;
+  Vector apart = Vector::Zero();
+  for (Row& row : rows_) {
+    row.impulse.setZero();
+    apart += begin_row(row);
+  }
+  state_.gap = apart.norm() / rows;
+  if (with_rigid_at_once_) begin_weld_to_rigid();
+  if (places_at_once_) begin_places();
+}
+
+template <int kDimension>
+float AttachmentRows<kDimension>::solve(Row& row) {
+  Vector v = relative_velocity(row);
+  if (softness_ > 0) v += row.error + softness_ * row.impulse;
+  const Vector change = -(row.inverse_mobility * v);
+  row.impulse += change;
+  apply(row, change);
+  solve_push(row);
+  return v.squaredNorm();
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::solve_push(const Row& row) {
+  if (pushes_ && row.push_mobility > 0)
+    apply_push(row, -(relative_push(row) + row.error) / row.push_mobility);
+}
+
+template <int kDimension>
+float AttachmentRows<kDimension>::solve_places() {
+  Eigen::Matrix<float, Eigen::Dynamic, kDimension, 0, kDimension + 1, kDimension> missing(
+      static_cast<Eigen::Index>(rows_.size()), kDimension);
+  float largest = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    Vector v = relative_velocity(rows_[k]);
+    if (softness_ > 0) v += rows_[k].error + softness_ * rows_[k].impulse;
+    largest = std::max(largest, v.squaredNorm());
+    missing.row(static_cast<Eigen::Index>(k)) = -v;
+  }
+  missing = (inverse_of_places_ * missing).eval();
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const Vector change = missing.row(static_cast<Eigen::Index>(k));
+    rows_[k].impulse += change;
+    apply(rows_[k], change);
+  }
+  if (!pushes_) return largest;
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    missing.row(static_cast<Eigen::Index>(k)) = -(relative_push(rows_[k]) + rows_[k].error);
+  missing = (inverse_of_pushes_ * missing).eval();
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    apply_push(rows_[k], missing.row(static_cast<Eigen::Index>(k)));
+  return largest;
+}
+
+/// All rows at once: their velocities first, then the rigid body's change, then their impulses.
+template <int kDimension>
+float AttachmentRows<kDimension>::solve_weld_to_rigid() {
+  using Of = AttachedRigid<kDimension>;
+  Rigid& rigid = *sides_.rigid;
+  Vector momentum = Vector::Zero();
+  typename Of::Axial turn = Of::Axial::Zero();
+  float largest = 0;
+  for (Row& row : rows_) {
+    row.carried = relative_velocity(row);
+    if (softness_ > 0) row.carried += row.error + softness_ * row.impulse;
+    if (!(row.mobility > 0)) continue;
+    const Vector pull = row.carried / row.mobility;
+    momentum += pull;
+    turn += Of::moment(row.point - rigid.centre, pull);
+    largest = std::max(largest, row.carried.squaredNorm());
+  }
+  const typename Of::Axial spin = inverse_inertia_ * (turn - Of::moment(sum_of_arms_, momentum) / sum_);
+  const Vector velocity = (momentum - Of::turned(spin, sum_of_arms_)) / sum_;
+  Vector given = Vector::Zero();
+  for (Row& row : rows_) {
+    if (!(row.mobility > 0)) continue;
+    const Vector change =
+        (velocity + Of::turned(spin, row.point - rigid.centre) - row.carried) / row.mobility;
+    row.impulse += change;
+    given += change;
+    a_.add(row.a, sides_.a, sides_.a.velocities, change);
+    solve_push(row);
+  }
+  // What the rows were given it loses, to the last bit that a float has.
+  Of::change(rigid, -rigid.inverse_mass * given, spin);
+  return largest;
+}
+
+template <int kDimension>
+float AttachmentRows<kDimension>::solve_rope(Row& row) {
+  const float before = row.along.dot(row.impulse);
+  const float error = row.most - row.along.dot(relative_velocity(row)) - softness_ * before;
+  const float after = std::min(0.0f, before + error / row.mobility);
+  apply(row, (after - before) * row.along);
+  row.impulse = after * row.along;
+  if (row.push_most < 0 && row.push_mobility > 0) {
+    const float missing = row.push_most - row.along.dot(relative_push(row));
+    const float push = std::min(0.0f, row.push + missing / row.push_mobility);
+    apply_push(row, (push - row.push) * row.along);
+    row.push = push;
+  }
+  const float change = (after - before) * row.mobility;
+  return change * change;
+}
+
+template <int kDimension>
+auto AttachmentRows<kDimension>::carried_impulse() const -> Vector {
+  Vector sum = Vector::Zero();
+  for (const Row& row : rows_) sum += row.impulse;
+  return sum;
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::keep_below_break_force() {
+  if (!std::isfinite(settings_.break_force)) return;
+  const float impulse = carried_impulse().norm(), most = settings_.break_force * step_;
+  broke_ = impulse > most;
+  if (!broke_) return;
+  for (Row& row : rows_) {
+    const Vector kept = most / impulse * row.impulse;
+    apply(row, kept - row.impulse);
+    row.impulse = kept;
+  }
+}
+
+template <int kDimension>
+float AttachmentRows<kDimension>::iterate() {
+  float largest = 0;
+  const bool is_rope = settings_.kind == AttachmentKind::kRope;
+  if (with_rigid_at_once_) {
+    largest = solve_weld_to_rigid();
+  } else if (places_at_once_) {
+    largest = solve_places();
+  } else {
+    for (Row& row : rows_) largest = std::max(largest, is_rope ? solve_rope(row) : solve(row));
+  }
+  keep_below_break_force();
+  return largest;
+}
+
+/// Attachments that contradict each other push further and further.
+template <int kDimension>
+void AttachmentRows<kDimension>::limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const {
+  if (!pushes_) return;
+  const float most = kMostPushInCells * body.spacing / step_;
+  for (const std::uint32_t particle : side.particle) {
+    Vector& push = body.pushes[particle];
+    const float speed = push.norm();
+    if (speed > most) push *= most / speed;
+  }
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::finish() {
+  state_.force = carried_impulse() / step_;
+  limit_pushes(a_, sides_.a);
+  if (sides_.b != nullptr) limit_pushes(b_, *sides_.b);
+}
+
+template struct PatchParticles<2>;
+template struct PatchParticles<3>;
+template class AttachmentRows<2>;
+template class AttachmentRows<3>;
+
+}  // namespace softcell::ppu

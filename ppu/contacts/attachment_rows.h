@@ -1,0 +1,189 @@
+#pragma once
+// The constraints of one attachment: places of a soft body that are held at places of another one, or of a frame.
+//
+// A weld to a frame (a rigid body, or what the program moves) holds each particle of the patch at its place in the frame. Two soft bodies
+// have places in common: points of the space around both patches, of which each patch holds a share. The place p of a patch of particles
+// with masses m, positions x, mass M and centre c moves with the mean deformation of the patch:
+//
+//     p = sum w x    w = m/M (1 + r' S^-1 (p - c))    r = x - c    S = sum m/M r r'
+//
+// so an impulse at p gives w/m of it to each particle, and momentum and angular momentum are those of an impulse at p. Places at
+// c + L t, with L L' = S and t the corners of a regular simplex with t.t' = -1, do not feel each other's impulses: four of them (in two
+// dimensions three) are a weld, two on its axis (one) a hinge, the middle of the patch is an end of a rope.
+//
+// A weld to a rigid body that moves is solved at once, not row by row: each row gives u = v_particle - v_rigid and takes an impulse of
+// -D (u - dv - dw x r), D the inverse of its mobility, and what all of them do to the rigid body is its dv and dw: six equations.
+//
+// Rows of places, too, are solved at once where no rigid body moves: impulses at places give velocities at places by a matrix of one number for
+// each two of them, the sum of w_k w_l / m, the same along each axis.
+//
+// Rows of ropes, and of hinges to rigid bodies, are solved one after the other, together with contacts: sequential impulses [Cat05]. They start with no impulse: what hangs together
+// in a soft body takes some substeps to feel a load anyway, and the impulses of the last substep would add energy to what turns. What
+// is left of an error of position goes by pushes, which last one substep and give no energy, as contacts' depth does.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ppu/contacts/attached_rigid.h"
+#include "softcell/soft_bodies/attachment.h"
+
+namespace softcell::ppu {
+
+/// A soft body in one substep.
+template <int kDimension>
+struct AttachedBody {
+  using Vector = Eigen::Vector<float, kDimension>;
+  std::span<const Vector> positions;      ///< at the substep's beginning
+  std::span<Vector> velocities;           ///< changed by attachments
+  std::span<Vector> pushes;               ///< m/s, for this substep only
+  std::span<const float> inverse_masses;  ///< 1/kg; 0 of a body that sleeps
+  float spacing = 0;                      ///< metres, of a cell
+  bool asleep = false;                    ///< nothing moves it
+};
+
+/// Where what is not soft is at the substep's beginning and, if nothing but the program moves it, at its end.
+template <int kDimension>
+struct AttachmentFrame {
+  using Vector = Eigen::Vector<float, kDimension>;
+  using Matrix = Eigen::Matrix<float, kDimension, kDimension>;
+  Vector position = Vector::Zero(), end_position = Vector::Zero();  ///< metres
+  Matrix rotation = Matrix::Identity(), end_rotation = Matrix::Identity();
+
+  Vector to_world(const Vector& own) const { return position + rotation * own; }
+  Vector to_world_at_end(const Vector& own) const { return end_position + end_rotation * own; }
+  Vector to_own(const Vector& world) const { return rotation.transpose() * (world - position); }
+};
+
+/// The particles of a patch as they are when it is attached.
+template <int kDimension>
+struct PatchParticles {
+  std::vector<std::uint32_t> particles;  ///< ascending
+  std::vector<Eigen::Vector<float, kDimension>> positions;
+  std::vector<float> masses;  ///< kg
+
+  Eigen::Vector<float, kDimension> middle() const;  ///< of mass
+};
+
+/// Constraints between a patch of a body, called a, and a patch of another one or a frame, called b.
+template <int kDimension>
+class AttachmentRows {
+ public:
+  using Vector = Eigen::Vector<float, kDimension>;
+  using Matrix = Eigen::Matrix<float, kDimension, kDimension>;
+  using Rigid = typename AttachedRigid<kDimension>::Rigid;
+
+  /// Of two soft bodies.
+  /// @throws std::invalid_argument  a patch is too small, or flat, for what is asked of it.
+  AttachmentRows(const AttachmentSettings<kDimension>& settings, const PatchParticles<kDimension>& a,
+                 const PatchParticles<kDimension>& b);
+  /// @throws as above.
+  AttachmentRows(const AttachmentSettings<kDimension>& settings, const PatchParticles<kDimension>& a,
+                 const AttachmentFrame<kDimension>& frame);
+
+  /// The two sides in a substep; b is null where rows are of a frame, rigid where nothing moves it but the program.
+  struct Sides {
+    AttachedBody<kDimension> a;
+    const AttachedBody<kDimension>* b = nullptr;
+    const AttachmentFrame<kDimension>* frame = nullptr;
+    Rigid* rigid = nullptr;
+  };
+  /// Begins a substep. The sides stay where they are until finish().
+  void begin(const Sides& sides, float step);
+  /// Whether one iteration finds what more would find, as long as nobody else changes the sides.
+  bool is_direct() const { return is_direct_; }
+  /// One iteration. @return  the largest error of velocity that a row had, squared (m/s)^2
+  float iterate();
+  void finish();
+
+  /// Whether the last iteration of the last substep would have passed the break force.
+  bool broke() const { return broke_; }
+  const AttachmentState<kDimension>& state() const { return state_; }
+
+ private:
+  /// Particles and their shares in a place, which sum to 1.
+  struct Place {
+    std::uint32_t first = 0, count = 0;
+  };
+  struct Side {
+    std::vector<std::uint32_t> particle;
+    std::vector<float> share;
+
+    Vector of(const Place& place, std::span<const Vector> values) const;
+    void add(const Place& place, const AttachedBody<kDimension>& body, std::span<Vector> values,
+             const Vector& impulse) const;
+    float mobility(const Place& place, std::span<const float> inverse_masses) const;
+    Place append(std::uint32_t particle, float share);
+    /// The place `point` of a patch.
+    Place append(const PatchParticles<kDimension>& patch, const Vector& point);
+    Place append_middle(const PatchParticles<kDimension>& patch);
+  };
+  struct Row {
+    Place a, b;
+    Vector own = Vector::Zero();      // in the frame
+    Vector impulse = Vector::Zero();  // kg m/s, on a
+
+    // Of this substep:
+    Vector point = Vector::Zero();                 // metres: b's place
+    Vector carried = Vector::Zero();               // m/s: b's velocity, where only the program moves it
+    Vector error = Vector::Zero();                 // m/s: the error of position, over the step
+    Matrix inverse_mobility = Matrix::Identity();  // kg, softness included
+    float push_mobility = 0;                       // 1/kg
+    // Of ropes:
+    Vector along = Vector::Zero();  // unit length, from b to a
+    float most = 0;                 // m/s, along it, of a against b
+    float mobility = 0;   // 1/kg, softness included; also of rows of a weld to a rigid body, its own left out
+    float push_most = 0;  // m/s
+    float push = 0;       // kg m/s
+  };
+
+  void add_row(const Vector& point, const PatchParticles<kDimension>& a, const PatchParticles<kDimension>* b,
+               const AttachmentFrame<kDimension>* frame);
+  void add_places_in_common(const PatchParticles<kDimension>& a, const PatchParticles<kDimension>& b);
+  void add_hinge(const PatchParticles<kDimension>& a, const PatchParticles<kDimension>* b,
+                 const AttachmentFrame<kDimension>* frame);
+  /// @return  metres, from where b holds it to a's place
+  Vector begin_row(Row& row);
+  void begin_weld_to_rigid();
+  void begin_rope(Row& row, const Vector& apart);
+  Vector relative_velocity(const Row& row) const;
+  Vector relative_push(const Row& row) const;
+  void apply(const Row& row, const Vector& impulse);
+  void apply_push(const Row& row, const Vector& impulse);
+  float solve(Row& row);
+  void begin_places();
+  float solve_places();
+  float solve_weld_to_rigid();
+  void solve_push(const Row& row);
+  float solve_rope(Row& row);
+  void keep_below_break_force();
+  void limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const;
+  Vector carried_impulse() const;
+
+  AttachmentSettings<kDimension> settings_;
+  float length_ = 0;  // of a rope
+  Side a_, b_;
+  std::vector<Row> rows_;
+  Sides sides_;
+  float step_ = 0;      // seconds
+  float softness_ = 0;  // 1/kg: compliance of a row over the step squared
+  bool pushes_ = false;
+  bool broke_ = false;
+  bool is_direct_ = false;
+  bool with_rigid_at_once_ = false;
+  bool places_at_once_ = false;
+  // Of places: the inverse of their mobilities, with softness and without. kg
+  using Places = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, 0, kDimension + 1, kDimension + 1>;
+  Places inverse_of_places_, inverse_of_pushes_;
+  // Of a weld to a rigid body that moves: the sums of D and D r, and the inverse of what is left of the equations for its spin.
+  float sum_ = 0;
+  Vector sum_of_arms_ = Vector::Zero();
+  Eigen::Matrix<float, AttachedRigid<kDimension>::kAxes, AttachedRigid<kDimension>::kAxes> inverse_inertia_;
+  AttachmentState<kDimension> state_;
+};
+
+extern template class AttachmentRows<2>;
+extern template class AttachmentRows<3>;
+
+}  // namespace softcell::ppu

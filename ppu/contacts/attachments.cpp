@@ -1,0 +1,65 @@
+#include "ppu/contacts/attachments.h"
+
+#include <algorithm>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+
+template <int kDimension>
+void Attachments<kDimension>::clear() {
+  all_.clear();
+  solved_.clear();
+  parted_.clear();
+}
+
+template <int kDimension>
+void Attachments<kDimension>::add(const AttachmentInStep<kDimension>& attachment) {
+  SC_ASSERT(attachment.rows != nullptr && attachment.a != attachment.b, "attachment {} of body {} to itself",
+            all_.size(), attachment.a);
+  all_.push_back(attachment);
+  if (attachment.b != AttachmentInStep<kDimension>::kNone && !attachment.touch)
+    parted_.emplace_back(std::min(attachment.a, attachment.b), std::max(attachment.a, attachment.b));
+}
+
+template <int kDimension>
+bool Attachments<kDimension>::parts(std::uint32_t a, std::uint32_t b) const {
+  return std::find(parted_.begin(), parted_.end(), std::pair(a, b)) != parted_.end();
+}
+
+template <int kDimension>
+void Attachments<kDimension>::begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids,
+                                    float step) {
+  constexpr std::uint32_t kNone = AttachmentInStep<kDimension>::kNone;
+  solved_.clear();
+  for (const AttachmentInStep<kDimension>& attachment : all_) {
+    const AttachedBody<kDimension>* const b = attachment.b != kNone ? &bodies[attachment.b] : nullptr;
+    if (bodies[attachment.a].asleep && (b == nullptr || b->asleep)) continue;
+    Rigid* const rigid = attachment.rigid != kNone ? &rigids[attachment.rigid] : nullptr;
+    attachment.rows->begin({bodies[attachment.a], b, b == nullptr ? &attachment.frame : nullptr, rigid},
+                           step);
+    solved_.push_back(attachment.rows);
+  }
+}
+
+template <int kDimension>
+void Attachments<kDimension>::iterate(int iterations) {
+  constexpr float kDone = 1e-8f;  // of the first iteration's error, squared
+  float first = 0;
+  for (int i = 0; i < iterations; ++i) {
+    float error = 0;
+    for (AttachmentRows<kDimension>* const rows : solved_) error = std::max(error, rows->iterate());
+    if (i == 0) first = error;
+    if (error <= kDone * first || (solved_.size() == 1 && solved_[0]->is_direct())) return;
+  }
+}
+
+template <int kDimension>
+void Attachments<kDimension>::finish() {
+  for (AttachmentRows<kDimension>* const rows : solved_) rows->finish();
+}
+
+template class Attachments<2>;
+template class Attachments<3>;
+
+}  // namespace softcell::ppu

@@ -1,0 +1,605 @@
+// What must be true of attachments, in a Bullet world.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "contact_world.h"
+#include "ppu/contacts/attachments.h"
+#include "softcell/soft_bodies/attachment.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_runtime.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kCell = 0.1f;
+constexpr float kStep = 1.0f / 120;
+
+TriangleMesh block(const Vector3f& size) { return make_box(size, kCell); }
+
+/// The particles of a body whose rest position passes a test.
+template <typename Is>
+std::vector<std::uint32_t> particles_where(const SoftBody<3>& body, const Is& is) {
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < body.model().particles(); ++i)
+    if (is(body.model().lattice().rest_position(i))) numbers.push_back(i);
+  return numbers;
+}
+
+float mass_of(const SoftBody<3>& body, const std::vector<std::uint32_t>& particles) {
+  float mass = 0;
+  for (const std::uint32_t i : particles) mass += body.model().masses()[i];
+  return mass;
+}
+
+Vector3f middle_of(const SoftBody<3>& body, const std::vector<std::uint32_t>& particles) {
+  Vector3f sum = Vector3f::Zero();
+  float mass = 0;
+  for (const std::uint32_t i : particles) {
+    sum += body.model().masses()[i] * body.position(i);
+    mass += body.model().masses()[i];
+  }
+  return sum / mass;
+}
+
+Eigen::Vector3d momentum_of(const SoftBody<3>& body) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < body.model().particles(); ++i)
+    sum += double{body.model().masses()[i]} * body.velocities()[i].cast<double>();
+  return sum;
+}
+
+/// The top layer of a block.
+std::vector<std::uint32_t> top_of(const SoftBody<3>& body) {
+  float top = -1e9f;
+  for (std::uint32_t i = 0; i < body.model().particles(); ++i)
+    top = std::max(top, body.model().lattice().rest_position(i).y());
+  return particles_where(body, [&](const Vector3f& p) { return p.y() > top - 0.5f * kCell; });
+}
+
+SoftBodySettings stiff() {
+  SoftBodySettings settings = settings_of(kCell, 1, 0.3f);
+  settings.half_width = 4;
+  return settings;
+}
+
+/// A hundred times the weight of the patch hangs from it: most of it is a rigid body that is welded to the soft one's lower end.
+TEST(Attachments, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  ContactWorld w;
+  SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), stiff(), {0, 2, 0});
+  const auto top = top_of(body);
+  const auto bottom = particles_where(body, [](const Vector3f& p) { return p.y() < -0.15f; });
+  const float load = 100 * mass_of(body, top) - body.model().mass();
+  ASSERT_GT(load, 10);
+  btRigidBody& weight = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), load, {0, 1.55f, 0});
+  const AttachmentId weld = w.bodies.attach(body, Patch<3>::of_particles(top));
+  w.bodies.attach(body, Patch<3>::of_particles(bottom), weight);
+  std::vector<Vector3f> before;
+  for (const std::uint32_t i : top) before.push_back(body.position(i));
+  float worst = 0;
+  for (int second = 0; second < 600; ++second) {
+    w.run(60);
+    for (std::size_t i = 0; i < top.size(); ++i)
+      worst = std::max(worst, (body.position(top[i]) - before[i]).norm());
+  }
+  EXPECT_LT(worst, 0.01f * kCell);
+  const auto state = w.bodies.attachment(weld);
+  ASSERT_TRUE(state);
+  EXPECT_NEAR(state->force.y(), 9.81f * (load + body.model().mass()),
+              0.02f * 9.81f * (load + body.model().mass()));
+  EXPECT_LT(weight.getLinearVelocity().length(), 0.05f);
+}
+
+/// A pendulum, and one that falls into its rope.
+TEST(Attachments, ARopeIsNeverLongerThanItsLength) {
+  for (const Vector3f& throw_at :
+       {Vector3f(0, 0, 0), Vector3f(4, 0, 1), Vector3f(0, -6, 0), Vector3f(8, 8, 0)}) {
+    ContactWorld w;
+    SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.5f, 0.1f), {0, 0, 0});
+    const auto top = top_of(body);
+    const Vector3f hook(0, 0.2f + 1.0f, 0);
+    constexpr float kLength = 1.5f;
+    w.bodies.attach(body, Patch<3>::of_particles(top),
+                    {.kind = AttachmentKind::kRope, .point = hook, .length = kLength});
+    body.add_velocity(throw_at);
+    float longest = 0;
+    for (int i = 0; i < 600; ++i) {
+      w.run(1);
+      longest = std::max(longest, (middle_of(body, top) - hook).norm());
+    }
+    EXPECT_LT(longest, 1.01f * kLength) << throw_at.transpose();
+    EXPECT_GT(longest, 0.99f * kLength) << throw_at.transpose();
+  }
+}
+
+/// What hangs keeps swinging: a rope takes no more energy than a simulation without damping may lose.
+TEST(Attachments, APendulumKeepsItsEnergy) {
+  ContactWorld w;
+  SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 1, 0.3f), {2, 2, 0});
+  w.bodies.attach(body, Patch<3>::of_particles(particles_where(body, [](const Vector3f&) { return true; })),
+                  {.kind = AttachmentKind::kRope, .point = Vector3f(0, 2, 0)});
+  float fastest = 0;
+  for (int i = 0; i < 60 * 20; ++i) {
+    w.run(1);
+    if (i > 60 * 16) fastest = std::max(fastest, body.linear_momentum().norm() / body.model().mass());
+  }
+  const float expected = std::sqrt(2 * 9.81f * 2);
+  EXPECT_LT(fastest, 1.01f * expected);
+  EXPECT_GT(fastest, 0.93f * expected);
+}
+
+/// By the momentum of the body, not by what the attachment says of itself.
+/// @return  force on the body in each substep, with the break force given; 0 after it broke
+std::vector<float> forces_on(float break_force, bool suddenly, AttachmentKind kind,
+                             int* broken_at = nullptr) {
+  ContactWorld w({0, 0, 0});
+  SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.5f, 0.2f), {0, 0, 0});
+  AttachmentSettings<3> settings{.kind = kind, .break_force = break_force};
+  if (kind == AttachmentKind::kRope) settings.point = Vector3f(0, 1, 0);
+  const auto upper = particles_where(body, [](const Vector3f& p) { return p.y() > 0.05f; });
+  const AttachmentId id = w.bodies.attach(body, Patch<3>::of_particles(upper), settings);
+  std::vector<float> forces;
+  if (suddenly) body.add_velocity({0, -3, 0});
+  for (int i = 0; i < 480; ++i) {
+    const float gravity = suddenly ? 0.0f : 0.05f * static_cast<float>(i);
+    w.world.setGravity({0, -gravity, 0});
+    const Eigen::Vector3d before = momentum_of(body);
+    w.run(1, 1);
+    const Eigen::Vector3d changed = momentum_of(body) - before;
+    forces.push_back(static_cast<float>(changed.norm() == 0 ? 0 : (changed / (1.0 / 60)).y()) +
+                     gravity * body.model().mass());
+    if (broken_at != nullptr && *broken_at < 0 && !w.bodies.attachment(id)) *broken_at = i;
+  }
+  return forces;
+}
+
+TEST(Attachments, BreakWhenTheyWouldCarryMore) {
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
+    for (const bool suddenly : {false, true}) {
+      const std::vector<float> held = forces_on(1e9f, suddenly, kind);
+      const float most = *std::max_element(held.begin(), held.end());
+      for (const float share : {0.3f, 0.6f, 0.9f}) {
+        const float force = share * most;
+        int broken_at = -1;
+        const std::vector<float> broke = forces_on(force, suddenly, kind, &broken_at);
+        ASSERT_GE(broken_at, 0) << share << " suddenly: " << suddenly;
+        for (int i = 0; i < broken_at; ++i) EXPECT_LE(broke[i], 1.05f * force);
+        // It carries no more than its break force, and breaks when the one that holds carries that.
+        EXPECT_NEAR(broke[broken_at], force, 0.05f * force) << share << " suddenly: " << suddenly;
+        EXPECT_GE(held[broken_at], 0.95f * force) << share << " suddenly: " << suddenly;
+        EXPECT_NEAR(broke.back(), 0, 0.01f * force);
+      }
+    }
+  }
+}
+
+TEST(Attachments, TwoFreeBodiesKeepTheirMomentum) {
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
+    ContactWorld w({0, 0, 0});
+    SoftBody<3>& left = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell), {0, 0, 0});
+    SoftBody<3>& right = w.add(make_sphere(0.25f, 8), settings_of(0.12f), {0.6f, 0, 0});
+    w.bodies.attach(left, Patch<3>::of_surface({0.2f, 0, 0}, 0.12f), right,
+                    Patch<3>::of_surface({0.35f, 0, 0}, 0.12f), {.kind = kind});
+    left.add_velocity({1, 2, 0.5f});
+    right.add_velocity({3, -1, 0});
+    right.add_angular_velocity({1, 4, 2});
+    const double size = momentum_of(left).norm() + momentum_of(right).norm();
+    const Eigen::Vector3d before = momentum_of(left) + momentum_of(right);
+    const Vector3f apart = right.centre_of_mass() - left.centre_of_mass();
+    w.run(500);
+    EXPECT_LT((momentum_of(left) + momentum_of(right) - before).norm(), 1e-5 * size);
+    EXPECT_LT((right.centre_of_mass() - left.centre_of_mass()).norm(), 2 * apart.norm())
+        << "they are attached";
+    EXPECT_LT(left.deformation(), kCell);
+  }
+}
+
+/// A cantilever: one body is held whole, the other sticks out from it.
+TEST(Attachments, AWeldOfTwoBodiesCarriesTorque) {
+  ContactWorld w;
+  SoftBodySettings settings = settings_of(kCell, 0.6f, 0.4f);
+  settings.half_width = 3;
+  SoftBody<3>& left = w.add(block({0.4f, 0.4f, 0.4f}), settings, {0, 0, 0});
+  SoftBody<3>& right = w.add(block({0.4f, 0.4f, 0.4f}), settings, {0.42f, 0, 0});
+  w.bodies.attach(left, Patch<3>::of_particles(particles_where(left, [](const Vector3f&) { return true; })));
+  w.bodies.attach(left, Patch<3>::of_surface({0.2f, 0, 0}, 0.25f), right,
+                  Patch<3>::of_surface({0.22f, 0, 0}, 0.25f));
+  w.run(300);
+  EXPECT_NEAR(right.centre_of_mass().y(), 0, 0.1f * kCell);
+  const Vector3f at_rest = right.centre_of_mass();
+  w.run(60);
+  EXPECT_LT((right.centre_of_mass() - at_rest).norm(), 1e-4f);
+  EXPECT_NEAR(right.centre_of_mass().x(), 0.42f, 0.03f);
+}
+
+TEST(Attachments, AHingeTurnsAboutItsAxisOnly) {
+  ContactWorld w({0, -9.81f, 0});
+  SoftBody<3>& door = w.add(block({0.8f, 0.8f, 0.2f}), stiff(), {0.4f, 0, 0});
+  const Patch<3> edge =
+      Patch<3>::of_particles(particles_where(door, [](const Vector3f& p) { return p.x() < -0.25f; }));
+  w.bodies.attach(door, edge,
+                  {.kind = AttachmentKind::kHinge, .point = Vector3f(0, 0, 0), .axis = {0, 1, 0}});
+  door.add_particle_velocity(0, {0, 0, 0});
+  for (std::uint32_t i = 0; i < door.model().particles(); ++i)
+    door.add_particle_velocity(i, {0, 0, -2 * door.position(i).x()});
+  float turned = 0;
+  Vector3f last = door.centre_of_mass();
+  for (int i = 0; i < 240; ++i) {
+    w.run(1);
+    const Vector3f now = door.centre_of_mass();
+    turned += std::atan2(last.x() * now.z() - last.z() * now.x(), last.x() * now.x() + last.z() * now.z());
+    last = now;
+    ASSERT_NEAR(std::hypot(now.x(), now.z()), 0.4f, 0.05f) << i;
+    ASSERT_NEAR(now.y(), 0, 0.1f) << i;
+  }
+  EXPECT_NEAR(std::abs(turned), 2 * 4, 1.0f) << "radians, at 2 a second for 4 s";
+}
+
+TEST(Attachments, AHungBodyCarriesOneThatStandsOnIt) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  for (const bool on_spes : {false, true}) {
+    std::unique_ptr<SpeRuntime> spes =
+        on_spes ? std::make_unique<SpeRuntime>(SpeRuntimeOptions{.spes = 2}) : nullptr;
+    ContactWorld w({0, -9.81f, 0}, spes.get());
+    SoftBody<3>& hung = w.add(block({0.8f, 0.3f, 0.8f}), settings_of(kCell, 0.7f, 0.3f), {0, 0, 0});
+    SoftBody<3>& standing = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 0.7f, 0.3f), {0, 0.32f, 0});
+    std::vector<AttachmentId> ropes;
+    for (const float x : {-0.35f, 0.35f})
+      for (const float z : {-0.35f, 0.35f})
+        ropes.push_back(w.bodies.attach(hung, Patch<3>::of_surface({x, 0.15f, z}, 0.1f),
+                                        {.kind = AttachmentKind::kRope, .point = Vector3f(x, 1.5f, z)}));
+    w.run(400);
+    float carried = 0;
+    for (const AttachmentId rope : ropes) carried += w.bodies.attachment(rope)->force.y();
+    const float weight = 9.81f * (hung.model().mass() + standing.model().mass());
+    EXPECT_NEAR(carried, weight, 0.03f * weight);
+    EXPECT_GT(ContactWorld::lowest_drawn(standing), -0.15f);
+    EXPECT_LT(ContactWorld::fastest(standing), 0.05f);
+  }
+}
+
+TEST(Attachments, ARigidBodyFeelsWhatHangsOnIt) {
+  ContactWorld w({0, 0, 0});
+  btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 5, {0, 0, 0});
+  SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell), {0.36f, 0, 0});
+  w.bodies.attach(body, Patch<3>::of_surface({0.21f, 0, 0}, 0.2f), box);
+  box.setLinearVelocity({1, 0.5f, 0});
+  box.setAngularVelocity({0, 0, 3});
+  const auto momentum = [&] {
+    return Eigen::Vector3d(momentum_of(body) + 5.0 * to_eigen(box.getLinearVelocity()).cast<double>());
+  };
+  const Eigen::Vector3d before = momentum();
+  w.run(240);
+  EXPECT_LT((momentum() - before).norm(), 1e-5 * before.norm());
+  const Vector3f apart = body.centre_of_mass() - to_eigen(box.getWorldTransform().getOrigin());
+  EXPECT_NEAR(apart.norm(), 0.36f, 0.05f);
+  const Vector3f own = to_eigen(box.getWorldTransform().getBasis()).transpose() * apart;
+  EXPECT_NEAR(own.x(), 0.36f, 0.05f) << "it turns with the box";
+}
+
+/// A spring of a known stiffness gives as Hooke says.
+TEST(Attachments, ComplianceGives) {
+  ContactWorld w;
+  SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), stiff(), {0, 0, 0});
+  const auto top = top_of(body);
+  const float weight = 9.81f * body.model().mass();
+  const float before = middle_of(body, top).y();
+  w.bodies.attach(body, Patch<3>::of_particles(top), {.compliance = 0.05f / weight});
+  w.run(1200);
+  EXPECT_NEAR(before - middle_of(body, top).y(), 0.05f, 0.002f);
+}
+
+TEST(Attachments, FollowAPointThatTheProgramMoves) {
+  ContactWorld w({0, 0, 0});
+  SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 0.5f, 0.5f), {0, 0, 0});
+  const auto top = top_of(body);
+  const AttachmentId hand = w.bodies.attach(body, Patch<3>::of_particles(top));
+  const Vector3f start = middle_of(body, top);
+  const Eigen::Quaternionf turn(Eigen::AngleAxisf(1, Vector3f::UnitY()));
+  w.bodies.move_attachment(hand, start + Vector3f(1, 0.5f, 0), turn, 0.5f);
+  w.run(15);
+  EXPECT_LT((middle_of(body, top) - start - Vector3f(0.5f, 0.25f, 0)).norm(), 1e-3f) << "evenly";
+  w.run(240);
+  EXPECT_LT((middle_of(body, top) - start - Vector3f(1, 0.5f, 0)).norm(), 1e-3f);
+  EXPECT_LT(ContactWorld::fastest(body), 0.2f);
+  const Vector3f arm = body.position(top.back()) - body.position(top.front());
+  EXPECT_GT(arm.normalized().dot((turn * (body.model().lattice().rest_position(top.back()) -
+                                          body.model().lattice().rest_position(top.front())))
+                                     .normalized()),
+            0.999f);
+}
+
+TEST(Attachments, WhatIsAttachedSleepsAndWakesTogether) {
+  ContactWorld w;
+  w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.2f});
+  SoftBody<3>& upper = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 0.7f, 0.4f), {0, 0, 0});
+  SoftBody<3>& lower = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 0.7f, 0.4f), {0, -0.8f, 0});
+  btRigidBody& weight = w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 0.1f, 0.1f)), 2, {0, -1.5f, 0});
+  const AttachmentId weld = w.bodies.attach(upper, Patch<3>::of_particles(top_of(upper)));
+  w.bodies.attach(upper, Patch<3>::of_surface({0, -0.15f, 0}, 0.12f), lower,
+                  Patch<3>::of_surface({0, -0.65f, 0}, 0.12f), {.kind = AttachmentKind::kRope});
+  w.bodies.attach(lower, Patch<3>::of_surface({0, -0.95f, 0}, 0.12f), weight,
+                  {.kind = AttachmentKind::kRope});
+  for (int i = 0; i < 1200 && !upper.asleep(); ++i) {
+    w.run(1);
+    ASSERT_EQ(upper.asleep(), lower.asleep());
+  }
+  ASSERT_TRUE(upper.asleep());
+  const Vector3f rest = to_eigen(weight.getWorldTransform().getOrigin());
+  w.run(120);
+  EXPECT_TRUE(upper.asleep());
+  EXPECT_LT((to_eigen(weight.getWorldTransform().getOrigin()) - rest).norm(), 1e-4f)
+      << "it hangs on what sleeps";
+  weight.activate();
+  weight.setLinearVelocity({1, 0, 0});
+  w.run(1);
+  EXPECT_FALSE(upper.asleep());
+  EXPECT_FALSE(lower.asleep());
+  for (int i = 0; i < 2400 && !upper.asleep(); ++i) w.run(1);
+  ASSERT_TRUE(upper.asleep());
+  w.bodies.detach(weld);
+  EXPECT_FALSE(upper.asleep());
+  w.run(30);
+  EXPECT_LT(lower.centre_of_mass().y(), -1) << "all of it falls";
+}
+
+TEST(Attachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
+  ContactWorld w;
+  SoftBody<3>& first = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell), {0, 0, 0});
+  SoftBody<3>& second = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell), {0.5f, 0, 0});
+  const Patch<3> of_first = Patch<3>::of_surface({0.15f, 0, 0}, 0.1f),
+                 of_second = Patch<3>::of_surface({0.35f, 0, 0}, 0.1f);
+  const AttachmentId rope =
+      w.bodies.attach(first, of_first, second, of_second, {.kind = AttachmentKind::kRope});
+  btSphereShape shape(0.1f);
+  auto rigid = std::make_unique<btRigidBody>(1, nullptr, &shape);
+  EXPECT_THROW(w.bodies.attach(first, of_first, *rigid), std::invalid_argument) << "it is not in the world";
+  w.world.addRigidBody(rigid.get());
+  const AttachmentId weld = w.bodies.attach(first, of_first, *rigid);
+  w.run(2);
+  w.world.removeRigidBody(rigid.get());
+  rigid.reset();
+  EXPECT_NO_THROW(w.bodies.attach(first, of_first, second, of_second, {.kind = AttachmentKind::kRope}));
+  w.run(2);
+  ASSERT_FALSE(w.bodies.attachment(weld));
+  auto ended = w.bodies.take_ended_attachments();
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_EQ(ended[0].id, weld);
+  EXPECT_EQ(ended[0].reason, EndedAttachment::Reason::kGone);
+  EXPECT_THROW(w.bodies.detach(weld), std::invalid_argument);
+  w.bodies.remove(second);
+  EXPECT_FALSE(w.bodies.attachment(rope));
+  EXPECT_EQ(w.bodies.take_ended_attachments().size(), 2u);
+  w.run(2);
+}
+
+/// The sentence of what is refused, or nothing.
+template <typename Work>
+std::string refusal(const Work& work) {
+  try {
+    work();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Attachments, SayWhatIsOutOfRange) {
+  ContactWorld w;
+  SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell), {0, 0, 0});
+  const Patch<3> patch = Patch<3>::of_surface({0.15f, 0, 0}, 0.1f);
+  const auto refuse = [&](const Patch<3>& its_patch, const AttachmentSettings<3>& settings) {
+    return refusal([&] { w.bodies.attach(body, its_patch, settings); });
+  };
+  EXPECT_EQ(refuse(patch, {.compliance = -1}),
+            "an attachment's compliance is -1.000000; it must be in m/N, 0 or above, and finite");
+  EXPECT_EQ(refuse(patch, {.break_force = 0}),
+            "an attachment's break_force is 0.000000; it must be in newtons and above 0");
+  EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kRope, .length = -2}),
+            "an attachment's length is -2.000000; it must be in metres, above 0, and finite");
+  EXPECT_EQ(refuse(patch, {.length = 2}), "an attachment has a length and is no rope; only ropes have one");
+  EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kRope}),
+            "a rope to the world has no point; it needs the place of its other end");
+  EXPECT_EQ(refuse(patch, {.kind = AttachmentKind::kHinge, .axis = {0, 0, 0}}),
+            "a hinge's axis has no direction; it must be finite and longer than 0");
+  EXPECT_EQ(refuse(Patch<3>::of_particles({0}), {.kind = AttachmentKind::kHinge}),
+            "a hinge, or a weld of two soft bodies, needs patches of at least four particles that do not lie "
+            "in a plane");
+  EXPECT_EQ(refuse({}, {}), "a patch has 0 of particles, cells and a radius; it needs exactly one of them");
+  EXPECT_EQ(refuse(Patch<3>::of_particles({64}), {}),
+            "a patch has particle 64; the soft body has 64, numbered from 0");
+  EXPECT_EQ(refuse(Patch<3>::of_surface({2.15f, 0, 0}, 0.5f), {}).substr(0, 92),
+            "no surface of the soft body is within 0.500000 m of the middle of a patch; the nearest is 2.");
+  EXPECT_EQ(refusal([&] { w.bodies.attach(body, patch, body, patch); }),
+            "a soft body cannot be attached to itself");
+  const AttachmentId weld = w.bodies.attach(body, patch);
+  EXPECT_EQ(refusal([&] {
+              w.bodies.move_attachment(weld, {0, 0, 0}, Eigen::Quaternionf::Identity(), -1);
+            }),
+            "an attachment is moved within -1.000000 s; it must be 0 or above, and finite");
+  EXPECT_EQ(refusal([&] { w.bodies.detach(AttachmentId{7}); }), "there is no attachment 7");
+
+  BulletSoftBodies spheres(w.world, ContactMethod::kSpheres);
+  SoftBody<3>& of_spheres =
+      spheres.add(make_soft_body_model(block({0.3f, 0.3f, 0.3f}), settings_of(kCell)), {5, 0, 0});
+  EXPECT_EQ(refusal([&] { spheres.attach(of_spheres, Patch<3>::of_particles({0})); }),
+            "the soft body to be attached does not touch with its surface; attachments are solved with "
+            "contacts of surfaces");
+}
+
+/// Chains of bodies swing against each other and a wall. @return  the hash of all states
+std::uint64_t chains(const SpeRuntimeOptions& options) {
+  SpeRuntime spes(options);
+  ContactWorld w({0, -9.81f, 0}, &spes);
+  w.add_floor();
+  w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 1, 1)), 0, {0.9f, 0.5f, 0});
+  btRigidBody& weight = w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 0.1f, 0.1f)), 3, {0, 0.4f, 0});
+  std::vector<SoftBody<3>*> bodies;
+  for (int i = 0; i < 6; ++i)
+    bodies.push_back(&w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell),
+                            {0.4f * static_cast<float>(i % 2), 0.9f + 0.35f * static_cast<float>(i / 2), 0}));
+  for (std::size_t i = 0; i + 2 < bodies.size(); ++i) {
+    const Vector3f joint = 0.5f * (bodies[i]->centre_of_mass() + bodies[i + 2]->centre_of_mass());
+    w.bodies.attach(
+        *bodies[i], Patch<3>::of_surface(joint, 0.2f), *bodies[i + 2], Patch<3>::of_surface(joint, 0.2f),
+        {.kind = i % 2 == 0 ? AttachmentKind::kWeld : AttachmentKind::kHinge, .break_force = 400});
+  }
+  for (std::size_t i = 4; i < 6; ++i) w.bodies.attach(*bodies[i], Patch<3>::of_particles(top_of(*bodies[i])));
+  w.bodies.attach(*bodies[0], Patch<3>::of_surface({0, 0.75f, 0}, 0.1f), weight,
+                  {.kind = AttachmentKind::kRope});
+  bodies[0]->add_velocity({3, 0, 1});
+  w.run(60);
+  std::uint64_t hash = 0;
+  for (const auto* body : bodies) hash = hash * 31 + state_hash(*body);
+  return hash;
+}
+
+TEST(Attachments, TheSameBitsForAnyNumberOfSpesAndAnySchedule) {
+  const std::uint64_t expected = chains({.spes = 6});
+  EXPECT_EQ(chains({.spes = 1}), expected);
+  EXPECT_EQ(chains({.spes = 3, .schedule = dma::parse_schedule("lazy")}), expected);
+  EXPECT_EQ(chains({.spes = 2, .schedule = dma::parse_schedule("random:5")}), expected);
+}
+
+/// Random attachments to things that come and go: nothing becomes infinite, and nobody gets energy from nothing.
+TEST(Attachments, SurviveRandomLives) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    const auto pick = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
+    const auto number = [&](float low, float high) {
+      return low + (high - low) * static_cast<float>(random() % 1000) / 1000;
+    };
+    ContactWorld w;
+    w.add_floor();
+    btBoxShape shape(btVector3(0.15f, 0.15f, 0.15f));
+    std::vector<std::unique_ptr<btRigidBody>> rigid;
+    std::vector<AttachmentId> ids;
+    const auto model = make_soft_body_model(block({0.3f, 0.3f, 0.3f}), settings_of(kCell));
+    // A crushed cell may be too flat for a hinge, and another body too far away.
+    const auto attach = [&](const auto& work) {
+      try {
+        ids.push_back(work());
+      } catch (const std::invalid_argument& error) {
+        const std::string sentence = error.what();
+        EXPECT_TRUE(sentence.find("lie in a plane") != std::string::npos ||
+                    sentence.find("as far from its middle") != std::string::npos)
+            << sentence;
+      }
+    };
+    for (int i = 0; i < 150; ++i) {
+      const Vector3f place(number(-1, 1), number(0.3f, 2), number(-1, 1));
+      switch (pick(7)) {
+        case 0:
+          if (w.bodies.size() < 6) w.bodies.add(model, place);
+          break;
+        case 1:
+          if (w.bodies.size() > 2)
+            w.bodies.remove(w.bodies[static_cast<std::size_t>(pick(static_cast<int>(w.bodies.size())))]);
+          break;
+        case 2:
+          if (rigid.size() < 4) {
+            btVector3 inertia;
+            shape.calculateLocalInertia(2, inertia);
+            rigid.push_back(std::make_unique<btRigidBody>(2, nullptr, &shape, inertia));
+            rigid.back()->getWorldTransform().setOrigin(to_bullet(place));
+            w.world.addRigidBody(rigid.back().get());
+          }
+          break;
+        case 3:
+          if (!rigid.empty()) {
+            w.world.removeRigidBody(rigid.back().get());
+            rigid.pop_back();
+          }
+          break;
+        default: {
+          if (w.bodies.size() == 0) break;
+          SoftBody<3>& body = w.bodies[static_cast<std::size_t>(pick(static_cast<int>(w.bodies.size())))];
+          AttachmentSettings<3> settings{.kind = static_cast<AttachmentKind>(pick(3)),
+                                         .compliance = pick(2) == 0 ? 0 : number(0, 1e-3f),
+                                         .break_force = pick(2) == 0 ? 1e9f : number(1, 500)};
+          if (settings.kind == AttachmentKind::kRope) settings.length = number(0.1f, 1);
+          const Patch<3> patch =
+              pick(2) == 0 ? Patch<3>::of_surface(body.centre_of_mass(), 0.4f) : Patch<3>::of_cells({0});
+          SoftBody<3>& other = w.bodies[static_cast<std::size_t>(pick(static_cast<int>(w.bodies.size())))];
+          if (settings.kind == AttachmentKind::kRope && rigid.empty()) settings.point = place;
+          if (pick(2) == 0 && &other != &body) {
+            settings.point.reset();
+            attach([&] { return w.bodies.attach(body, patch, other, Patch<3>::of_cells({1}), settings); });
+          } else if (!rigid.empty()) {
+            attach([&] { return w.bodies.attach(body, patch, *rigid[0], settings); });
+          } else {
+            attach([&] { return w.bodies.attach(body, patch, settings); });
+          }
+          if (ids.size() > 8) {
+            for (const AttachmentId id : ids)
+              if (w.bodies.attachment(id)) w.bodies.detach(id);
+            ids.clear();
+          }
+        }
+      }
+      w.run(2);
+      for (std::size_t b = 0; b < w.bodies.size(); ++b) {
+        ASSERT_LT(ContactWorld::fastest(w.bodies[b]), 100) << seed << " " << i;
+        ASSERT_LT(w.bodies[b].bounds().high.cwiseAbs().maxCoeff(), 100) << seed << " " << i;
+      }
+    }
+    for (const auto& body : rigid) w.world.removeRigidBody(body.get());
+  }
+}
+
+/// What is attached costs this much more a substep. (Measured: docs/notes/performance.md; here only that it is no multiple.)
+TEST(Attachments, APatchOfTwentyParticlesCostsMicroseconds) {
+  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers";
+  const auto model = make_soft_body_model(block({0.4f, 0.4f, 0.4f}), settings_of(kCell));
+  SoftBody<3> body(model);
+  PatchParticles<3> patch;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    patch.particles.push_back(i);
+    patch.positions.push_back(body.position(i));
+    patch.masses.push_back(model->masses()[i]);
+  }
+  ContactRigid rigid;
+  rigid.inverse_mass = 0.1f;
+  rigid.inverse_inertia = Eigen::Matrix3f::Identity();
+  std::vector<Vector3f> velocities(body.positions().size(), Vector3f(0, -0.1f, 0)),
+      pushes(velocities.size(), Vector3f::Zero());
+  std::vector<float> inverse_masses;
+  for (const float mass : model->masses()) inverse_masses.push_back(1 / mass);
+  for (const bool to_rigid : {false, true}) {
+    AttachmentRows<3> rows({}, patch, AttachmentFrame<3>{});
+    Attachments<3> attachments;
+    attachments.add({.rows = &rows, .rigid = to_rigid ? 0 : AttachmentInStep<3>::kNone});
+    const AttachedBody<3> attached{body.positions(), velocities, pushes, inverse_masses, kCell, false};
+    double least = 1e9;
+    for (int repeat = 0; repeat < 50; ++repeat) {
+      constexpr int kSteps = 200;
+      const auto begin = std::chrono::steady_clock::now();
+      for (int i = 0; i < kSteps; ++i) {
+        for (const std::uint32_t p : patch.particles) velocities[p].y() -= 0.08f;
+        attachments.begin({&attached, 1}, {&rigid, 1}, kStep);
+        for (int round = 0; round < 2; ++round) attachments.iterate(4);
+        attachments.finish();
+      }
+      const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
+      least = std::min(least, time.count() / kSteps);
+    }
+    RecordProperty(to_rigid ? "rigid_us" : "world_us", std::to_string(least));
+    std::printf("a patch of 20 particles to %s: %.2f us a substep\n", to_rigid ? "a rigid body" : "the world",
+                least);
+    EXPECT_LT(least, 6) << "a busy machine has three times what is promised";
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ppu
