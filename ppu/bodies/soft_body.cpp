@@ -118,6 +118,7 @@ typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& b
 template <int kDimension>
 SoftBody<kDimension>::SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model, const Vector& position)
     : model_((SC_ASSERT(model != nullptr, "a soft body without a model"), std::move(model))),
+      settings_(model_->settings()),
       x_(model_->particles()),
       v_(model_->particles(), Vector::Zero()),
       padded_(kDimension == 3 ? model_->particles() : 0),
@@ -128,6 +129,7 @@ SoftBody<kDimension>::SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> 
 template <int kDimension>
 SoftBody<kDimension>::SoftBody(const SoftBody& other)
     : model_(other.model_),
+      settings_(other.settings_),
       x_(other.x_),
       v_(other.v_),
       padded_(other.padded_),
@@ -139,6 +141,7 @@ SoftBody<kDimension>::SoftBody(const SoftBody& other)
 template <int kDimension>
 SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
   model_ = other.model_;
+  settings_ = other.settings_;
   x_ = other.x_;
   v_ = other.v_;
   padded_ = other.padded_;
@@ -173,8 +176,7 @@ void SoftBody<kDimension>::set_position(std::size_t particle, const Vector& posi
 
 template <int kDimension>
 void SoftBody<kDimension>::pull(float step) {
-  const SoftBodySettings& settings = model_->settings();
-  matcher_->step_velocities(x_, v_, settings.alpha_of_step(step), step, settings.damping_of_step(step));
+  matcher_->step_velocities(x_, v_, settings_.alpha_of_step(step), step, settings_.damping_of_step(step));
 }
 
 template <int kDimension>
@@ -209,6 +211,19 @@ void SoftBody<kDimension>::keep_inner_inside() {
     }
     set_particle(i, inside, v);
   }
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::set_material(const SoftBodySettings& settings) {
+  const SoftBodySettings& of_model = model_->settings();
+  SC_ASSERT(settings.cell_size == of_model.cell_size && settings.half_width == of_model.half_width &&
+                settings.density == of_model.density && settings.contacts == of_model.contacts,
+            "a material of cells of {} m, half-width {} and {} kg/m^3 for a body of {} m, {} and {} kg/m^3",
+            settings.cell_size, settings.half_width, settings.density, of_model.cell_size,
+            of_model.half_width, of_model.density);
+  validate(settings);
+  settings_ = settings;
+  ++revision_;
 }
 
 template <int kDimension>

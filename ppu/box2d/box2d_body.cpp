@@ -1,6 +1,7 @@
 #include "ppu/box2d/box2d_body.h"
 
 #include <box2d/b2_circle_shape.h>
+#include <box2d/b2_contact.h>
 #include <box2d/b2_fixture.h>
 
 #include <algorithm>
@@ -37,8 +38,8 @@ void Box2dBody::add_particle(std::uint32_t number) {
   b2FixtureDef fixture;
   fixture.shape = &circle;
   fixture.density = 1;
-  fixture.friction = soft_.model().settings().friction;
-  fixture.restitution = soft_.model().settings().restitution;
+  fixture.friction = soft_.settings().friction;
+  fixture.restitution = soft_.settings().restitution;
   fixture.filter.groupIndex = group_;
   particle->CreateFixture(&fixture);
   // All of it: braces alone leave the centre unset, as b2Vec2 has a constructor that does nothing.
@@ -134,6 +135,13 @@ void Box2dBody::place_particles() {
     const b2Vec2 position = to_box2d(soft_.position(outer[i]));
     if (position != particles_[i]->GetPosition()) particles_[i]->SetTransform(position, 0);
     particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
+  }
+  if (particles_.empty() || particles_.front()->GetFixtureList()->GetFriction() == soft_.settings().friction)
+    return;
+  for (b2Body* const particle : particles_) {
+    particle->GetFixtureList()->SetFriction(soft_.settings().friction);
+    for (b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next)
+      edge->contact->ResetFriction();  // contacts keep the friction with which they began
   }
 }
 

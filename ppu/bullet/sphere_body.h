@@ -39,6 +39,7 @@ class SphereBody final : public CoupledBody {
     if (was_changed()) {
       rouse();
       place_particles();
+      for (btRigidBody& particle : particles_) particle.setFriction(soft_.settings().friction);
     } else if (!soft_.asleep()) {
       gather();
     }
@@ -135,8 +136,8 @@ class SphereBody final : public CoupledBody {
     btRigidBody::btRigidBodyConstructionInfo info(soft_.model().masses()[number], nullptr, &shape_,
                                                   btVector3(0, 0, 0));
     info.m_startWorldTransform.setOrigin(to_bullet(soft_.position(number)));
-    info.m_friction = soft_.model().settings().friction;
-    info.m_restitution = soft_.model().settings().restitution;
+    info.m_friction = soft_.settings().friction;
+    info.m_restitution = soft_.settings().restitution;
     info.m_linearDamping = 0;
     info.m_angularDamping = 0;
     SC_ASSERT(particles_.size() < particles_.capacity(),

@@ -52,8 +52,8 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     body.velocities.assign(soft.velocities().begin(), soft.velocities().end());
     body.pushes.assign(body.velocities.size(), Vector3f::Zero());
     body.ends.resize(body.velocities.size());
-    body.friction = soft.model().settings().friction;
-    body.restitution = soft.model().settings().restitution;
+    body.friction = soft.settings().friction;
+    body.restitution = soft.settings().restitution;
     body.box = bodies[i].box;
     body.asleep = bodies[i].asleep;
     body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())

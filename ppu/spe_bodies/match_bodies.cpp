@@ -119,26 +119,32 @@ void MatchBodies<3>::write_bodies(spu::MatchJob& job, std::span<const std::size_
 }
 
 template <int kDimension>
-void MatchBodies<kDimension>::add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
+void MatchBodies<kDimension>::add_jobs(JobChain& chain, const JobImage& match,
+                                       std::span<const MatchSettings> settings,
                                        std::span<const std::size_t> bodies, std::size_t bodies_per_job) {
-  validate(settings);
+  for (const MatchSettings& of_body : settings) validate(of_body);
+  SC_ASSERT(settings.size() == bodies.size(), "settings of {} bodies of {}", settings.size(), bodies.size());
   SC_ASSERT(bodies_per_job > 0, "jobs of {} bodies", bodies_per_job);
   SC_ASSERT(std::ranges::adjacent_find(bodies, std::ranges::greater_equal()) == bodies.end(),
             "the numbers of {} bodies do not ascend", bodies.size());
   SC_ASSERT(bodies.empty() || bodies.back() < size(), "body {} of {}", bodies.back(), size());
   stepped_.assign(bodies.begin(), bodies.end());
   for (std::size_t first = 0, number = 0; first < bodies.size(); ++number) {
-    const std::size_t count = bodies_of_job(bodies.subspan(first), bodies_per_job);
+    const MatchSettings& of_job = settings[first];
+    const auto other =
+        std::ranges::find_if(settings.subspan(first), [&](const MatchSettings& s) { return s != of_job; });
+    const auto alike = static_cast<std::size_t>(other - settings.subspan(first).begin());
+    const std::size_t count = bodies_of_job(bodies.subspan(first, alike), bodies_per_job);
     typename Kernel::Job& job = descriptors_[number];
     job = {};
     job.plan_ea = plan_.ea().value;
     write_bodies(job, bodies.subspan(first, count), first);
     job.body_count = static_cast<std::uint32_t>(count);
-    job.pull = settings.pull;
-    job.damping = settings.damping;
+    job.pull = of_job.pull;
+    job.damping = of_job.damping;
     if constexpr (kDimension == 3) {
-      job.least_iterations = settings.least_iterations;
-      job.most_iterations = settings.most_iterations;
+      job.least_iterations = of_job.least_iterations;
+      job.most_iterations = of_job.most_iterations;
     }
     chain.add({.image = match, .argp = descriptors_.ea(number)});
     first += count;

@@ -20,6 +20,8 @@ struct MatchSettings {
   // has a closed form.
   std::uint32_t least_iterations = 0;
   std::uint32_t most_iterations = 6;
+
+  bool operator==(const MatchSettings&) const = default;
 };
 
 /// @throws std::invalid_argument  a setting is out of its range; the sentence names it.
@@ -55,12 +57,20 @@ class MatchBodies {
   void take_rotations(std::size_t body, const MatchBodies& other, std::size_t other_body);
 
   /// Adds the jobs of one step to a chain: at most one for each body.
-  /// @param bodies          numbers of the bodies to be stepped, ascending
+  /// @param settings        of each body to be stepped; a job steps bodies of the same settings
+  /// @param bodies          their numbers, ascending
   /// @param bodies_per_job  a job fetches the plan once and steps at most so many bodies
   /// @throws std::length_error      the chain has no room for them.
   /// @throws std::invalid_argument  as validate().
-  void add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
+  void add_jobs(JobChain& chain, const JobImage& match, std::span<const MatchSettings> settings,
                 std::span<const std::size_t> bodies, std::size_t bodies_per_job);
+
+  /// The same for bodies of one material.
+  void add_jobs(JobChain& chain, const JobImage& match, const MatchSettings& settings,
+                std::span<const std::size_t> bodies, std::size_t bodies_per_job) {
+    alike_.assign(bodies.size(), settings);
+    add_jobs(chain, match, alike_, bodies, bodies_per_job);
+  }
 
   /// After these jobs have ended well. @return the bodies whose positions or velocities are not finite; they
   /// are as they were before the step.
@@ -92,6 +102,7 @@ class MatchBodies {
   dma::Buffer<std::byte> plan_, positions_, states_;
   dma::Buffer<spu::MatchBody> places_;  // of the bodies to be stepped; in two dimensions unused
   dma::Buffer<typename Kernel::Job> descriptors_;
+  std::vector<MatchSettings> alike_;
   std::vector<std::size_t> stepped_;  // by the jobs added last
 };
 

@@ -26,8 +26,8 @@ std::size_t bodies_per_job(std::size_t bodies, int spes) {
 }
 
 template <int kDimension>
-MatchSettings settings_of(const SoftBodyModel<kDimension>& model, float step) {
-  const SoftBodySettings& settings = model.settings();
+MatchSettings settings_of(const SoftBody<kDimension>& body, float step) {
+  const SoftBodySettings& settings = body.settings();
   return {.pull = settings.alpha_of_step(step) / step, .damping = settings.damping_of_step(step)};
 }
 
@@ -62,6 +62,7 @@ struct SpeSolver<kDimension>::Group {
   std::shared_ptr<const TilePlan> tiles;  // in three dimensions only
   std::size_t count = 0;
   std::vector<std::size_t> awake;
+  std::vector<MatchSettings> settings;  // of these
 };
 
 template <int kDimension>
@@ -196,6 +197,7 @@ void SpeSolver<kDimension>::hand_over(Member& member) {
   Group& group = *member.group;
   if (group.bodies) {
     group.awake.push_back(member.number);
+    group.settings.push_back(settings_of(body, step_));
     const auto positions = as_the_kernel_reads_them(body);
     SC_ASSERT(positions.size() == group.bodies->positions(member.number).size(),
               "a body of {} particles in a plan of {}", positions.size(),
@@ -212,7 +214,7 @@ void SpeSolver<kDimension>::hand_over(Member& member) {
       member.tiled->positions()[place_of[i]] = Kernel::written(body.positions()[i]);
       member.tiled->velocities()[place_of[i]] = Kernel::written(body.velocities()[i]);
     }
-    member.tiled->begin_step(settings_of(*group.model, step_));
+    member.tiled->begin_step(settings_of(body, step_));
   }
 }
 
@@ -226,7 +228,7 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
   step_ = step;
   is_stepping_ = true;
   left_to_ppu_.clear();
-  for (const auto& group : groups_) group->awake.clear();
+  for (const auto& group : groups_) group->awake.clear(), group->settings.clear();
   for (Member& member : members_) {
     member.stepped = false;
     if (member.body->asleep()) continue;
@@ -239,7 +241,7 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
   chain_->clear();
   for (const auto& group : groups_) {
     if (group->awake.empty()) continue;
-    group->bodies->add_jobs(*chain_, match_, settings_of(*group->model, step), group->awake,
+    group->bodies->add_jobs(*chain_, match_, group->settings, group->awake,
                             bodies_per_job(group->awake.size(), jobs_.spes()));
   }
   for (const spu::TilePass pass : kTilePasses) {

@@ -1,6 +1,7 @@
 #pragma once
 // What a wild user might do.
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -54,6 +55,21 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
       use_value(0.5f);
       event.value[1] = 0;
       break;
+    case Action::kTimeScale:
+    case Action::kSubsteps:
+    case Action::kAlpha:
+    case Action::kFrequency:
+    case Action::kModulus:
+    case Action::kDamping:
+    case Action::kFriction: {
+      const NumberRange& range = *number_of(event.action);
+      if (event.action != Action::kTimeScale && event.action != Action::kSubsteps) use_body();
+      event.value[0] = range.whole
+                           ? range.low + static_cast<float>(below(4))
+                           : range.low + (std::min(range.high, 300.0f) - range.low) *
+                                             static_cast<float>(random()) / static_cast<float>(random.max());
+      break;
+    }
     case Action::kReset:
     case Action::kPause:
     case Action::kResume:

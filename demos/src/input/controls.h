@@ -1,8 +1,10 @@
 #pragma once
 // The state of a run that events change: gravity, tilt, hands, pause.
 
+#include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "hands.h"
 #include "input_event.h"
@@ -22,7 +24,8 @@ class Controls {
   /// @param bodies  the soft bodies: see Hands
   /// @param world   has reset(), which restores bodies and world as they were at the beginning, home(i), which does so
   ///                with soft body i, and hold(event), hold_rigid(event), move_hand(event) and release(hand) of hands
-  ///                that hold more than a particle
+  ///                that hold more than a particle, and set_material(event, i)
+  ///                of soft body i
   template <class Bodies, class World>
   void apply(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
@@ -57,6 +60,9 @@ class Controls {
           hands_.release_all();
           gravity_ = initial_gravity_;
           tilt_.reset();
+          time_scale_ = 1;
+          due_ = 0;
+          substeps_.reset();
           world.reset();
           break;
         case Action::kPause:
@@ -74,23 +80,49 @@ class Controls {
         case Action::kTilt:
           tilt_ = event.value;
           break;
+        case Action::kTimeScale:
+          time_scale_ = number(event);
+          break;
+        case Action::kSubsteps:
+          substeps_ = static_cast<int>(number(event));
+          break;
+        case Action::kAlpha:
+        case Action::kFrequency:
+        case Action::kModulus:
+        case Action::kDamping:
+        case Action::kFriction:
+          for_each(event.body, bodies, [&](std::size_t b) { world.set_material(event, b); });
+          break;
       }
     }
   }
 
-  /// Whether this frame is simulated. Ends a single step, so call it once per frame.
-  bool advance() {
-    const bool goes_on = !paused_ || single_step_;
-    single_step_ = false;
-    return goes_on;
+  /// How many substeps are due in this frame, of which there are `substeps` in one of 1/60 s: none in a pause, all of them in a single step. In
+  /// slow motion there are frames without any; the substeps are as long as always, and bodies as stiff. Ends a single step, so call it once
+  /// per frame.
+  int due_substeps(int substeps) {
+    if (std::exchange(single_step_, false) && paused_) return substeps;
+    if (paused_) return 0;
+    due_ += time_scale_ * static_cast<float>(substeps);
+    const int now = static_cast<int>(due_);
+    due_ -= static_cast<float>(now);
+    return now;
   }
 
+  float time_scale() const { return time_scale_; }
+  /// Of a frame of 1/60 s. @param of_scene  while nobody has changed it
+  int substeps(int of_scene) const { return substeps_.value_or(of_scene); }
   const Vector& gravity() const { return gravity_; }           ///< m/s^2
   const std::optional<Vector>& tilt() const { return tilt_; }  ///< radians; none: as the scene has it
   const Hands<Dimension>& hands() const { return hands_; }
   bool paused() const { return paused_; }
 
  private:
+  static float number(const Event& event) {
+    const NumberRange& range = *number_of(event.action);
+    return std::clamp(event.value[0], range.low, range.high);
+  }
+
   template <class Bodies, class Do>
   static void for_each(std::uint32_t body, const Bodies& bodies, const Do& act) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -102,6 +134,8 @@ class Controls {
   Vector initial_gravity_, gravity_;
   std::optional<Vector> tilt_;
   bool paused_ = false, single_step_ = false;
+  float time_scale_ = 1, due_ = 0;  // of a substep, what is due
+  std::optional<int> substeps_;     // none: as the scene has it
 };
 
 }  // namespace softcell::demos

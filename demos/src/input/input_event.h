@@ -3,6 +3,8 @@
 // for each frame. They are all the same to it.
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -22,8 +24,35 @@ enum class Action : std::uint8_t {
   kTilt,        ///< in 3D: the ground is tilted by `value` (radians) about x, then z, from now on; its y is 0
   kHold,  ///< in 3D: hand: holds soft body `body` at `value` (m), a point of its surface; lets go of another
   kHoldRigid,  ///< hand: holds rigid body `body` of the scene at `value` (m), if it moves; lets go of another
+  // With a number, which is the first of `value`; what the number means is in kNumbers:
+  kTimeScale,  ///< how much time passes: 1 as on the clock, less is slow motion
+  kSubsteps,   ///< of a frame, from now on
+  kAlpha,      ///< of `body`: see ppu::SoftBodySettings, for this and the next four
+  kFrequency,
+  kModulus,  ///< sets alpha
+  kDamping,
+  kFriction,
 };
-inline constexpr int kActions = 13;
+inline constexpr int kActions = 20;
+
+/// What the number of an action may be.
+struct NumberRange {
+  Action action;
+  float low, high;
+  bool whole = false;
+};
+inline constexpr std::array<NumberRange, 7> kNumbers{{{Action::kTimeScale, 0.02f, 4},
+                                                      {Action::kSubsteps, 1, 32, true},
+                                                      {Action::kAlpha, 0, 1},
+                                                      {Action::kFrequency, 0, 1000},
+                                                      {Action::kModulus, 0, 1e9f},
+                                                      {Action::kDamping, 0, 1},
+                                                      {Action::kFriction, 0, 100}}};
+/// Null: the action has no number.
+inline const NumberRange* number_of(Action action) {
+  const auto* const found = std::ranges::find(kNumbers, action, &NumberRange::action);
+  return found == kNumbers.end() ? nullptr : found;
+}
 
 /// For `body`: to grab or to hold, whichever has the nearest particle; else all.
 inline constexpr std::uint32_t kEveryBody = std::numeric_limits<std::uint32_t>::max();

@@ -49,6 +49,13 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "tilt", .value = true, .lowest_dimension = 3},
     {.name = "hold", .hand = true, .body = true, .value = true, .lowest_dimension = 3},
     {.name = "hold_rigid", .hand = true, .body = true, .value = true},
+    {.name = "time_scale"},
+    {.name = "substeps"},
+    {.name = "alpha", .body = true},
+    {.name = "frequency", .body = true},
+    {.name = "modulus", .body = true},
+    {.name = "damping", .body = true},
+    {.name = "friction", .body = true},
 }};
 
 /// A number of 32 bits that has a name when it is the largest: kUsersHand, kEveryBody.
@@ -75,6 +82,7 @@ void append_line(std::string& text, const RecordedEvent<Dimension>& recorded) {
   // The shortest text that reads back as the same number.
   for (int i = 0; syntax.value && i < Dimension; ++i)
     fmt::format_to(std::back_inserter(text), " {}", event.value[i]);
+  if (number_of(event.action) != nullptr) fmt::format_to(std::back_inserter(text), " {}", event.value[0]);
   text += '\n';
 }
 
@@ -210,6 +218,13 @@ InputEvent<Dimension> read_event(Reader& reader) {
   if (found->hand) event.hand = reader.named_number("a hand", kUserName);
   if (found->body) event.body = reader.named_number("a body", kEveryBodyName);
   for (int i = 0; found->value && i < Dimension; ++i) event.value[i] = reader.coordinate();
+  if (const NumberRange* const number = number_of(event.action)) {
+    const float value = event.value[0] = reader.coordinate();
+    if (value < number->low || value > number->high || (number->whole && value != std::floor(value))) {
+      reader.refuse(fmt::format("{} is {}; it must be a {} from {} to {}", name, value,
+                                number->whole ? "whole number" : "number", number->low, number->high));
+    }
+  }
   reader.line_ends();
   return event;
 }

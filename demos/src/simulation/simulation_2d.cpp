@@ -12,6 +12,7 @@
 #include <optional>
 #include <variant>
 
+#include "changed_material.h"
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
@@ -154,6 +155,13 @@ struct Simulation2d::State {
     if (event.body < scene.rigid_bodies.size() && scene.rigid_bodies[event.body].mass > 0)
       held.hold(event.hand, std::make_unique<RigidGrip2d>(*world->rigid_bodies[event.body], event.value));
   }
+  void set_material(const InputEvent<2>& event, std::size_t body) {
+    ppu::SoftBody<2>& soft = world->soft_bodies[body];
+    soft.set_material(changed_material(soft.settings(), event, substep()));
+  }
+  int substeps_of_frame() const { return controls.substeps(scene.substeps); }
+  /// Seconds of one.
+  float substep() const { return kFrameSeconds / static_cast<float>(substeps_of_frame()); }
   void move_hand(const InputEvent<2>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
   void reset() {
@@ -203,22 +211,22 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
   s.controls.apply(s.events, s.bodies, s);
-  if (!s.controls.advance()) return {};
+  const int substeps = s.controls.due_substeps(s.substeps_of_frame());
+  if (substeps == 0) return {};
 
   World& world = *s.world;
   const FrameOnPs3 on_ps3(s.timing);
   const auto matched_before = world.soft_bodies.time_spent(), waited_before = s.waited();
   world.world.SetGravity(to_box2d(s.controls.gravity()));
-  s.held.begin_frame(kFrameSeconds);
-  for (int i = 0; i < s.scene.substeps; ++i) {
+  s.held.begin_frame(static_cast<float>(substeps) * s.substep());
+  for (int i = 0; i < substeps; ++i) {
     s.controls.hands().pull(s.bodies);
-    s.held.pull(i, s.scene.substeps, s.controls.gravity(),
-                kFrameSeconds / static_cast<float>(s.scene.substeps));
-    world.soft_bodies.step(kFrameSeconds / static_cast<float>(s.scene.substeps));
+    s.held.pull(i, substeps, s.controls.gravity(), s.substep());
+    world.soft_bodies.step(s.substep());
   }
 
   // The SPEs work on the next frame's first step while this frame is drawn.
-  world.soft_bodies.begin_ahead(kFrameSeconds / static_cast<float>(s.scene.substeps));
+  world.soft_bodies.begin_ahead(s.substep());
 
   using Milliseconds = std::chrono::duration<double, std::milli>;
   const double all = Milliseconds(std::chrono::steady_clock::now() - begin).count();
@@ -283,6 +291,8 @@ std::optional<InputEvent<2>> Simulation2d::touch(const Vector2f& point) const {
   return InputEvent<2>{.action = Action::kGrab, .body = kEveryBody, .value = point};
 }
 
+float Simulation2d::time_scale() const { return state_->controls.time_scale(); }
+int Simulation2d::substeps() const { return state_->substeps_of_frame(); }
 bool Simulation2d::paused() const { return state_->controls.paused(); }
 std::span<const Hands<2>::Held> Simulation2d::held() const { return state_->controls.hands().held(); }
 const Vector2f& Simulation2d::gravity() const { return state_->controls.gravity(); }

@@ -49,6 +49,8 @@ class Simulation2d {
   /// nearest particle. None: there is no soft body.
   std::optional<InputEvent<2>> touch(const Eigen::Vector2f& point) const;
   bool paused() const;
+  float time_scale() const;
+  int substeps() const;  ///< of a frame of 1/60 s
   std::span<const Hands<2>::Held> held() const;
   const Eigen::Vector2f& gravity() const;  ///< m/s^2
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "changed_material.h"
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
@@ -185,7 +186,7 @@ struct Simulation3d::State {
       skin_time = ppu::processor_time() - before;
     }
     handed_over = true;
-    soft_bodies.begin_ahead(kFrameSeconds / static_cast<float>(scene.substeps));
+    soft_bodies.begin_ahead(substep());
   }
 
   void copy_particles(Snapshot& snapshot) const {
@@ -228,18 +229,24 @@ struct Simulation3d::State {
     if (event.body < boxes.size() && scene.boxes[event.body].mass > 0)
       held.hold(event.hand, std::make_unique<RigidGrip>(world.rigid_body(boxes[event.body]), event.value));
   }
+  void set_material(const InputEvent<3>& event, std::size_t body) {
+    soft_bodies[body].set_material(changed_material(soft_bodies[body].settings(), event, substep()));
+  }
   void move_hand(const InputEvent<3>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
 
-  /// Simulates a frame. Hands pull before each substep.
-  ppu::StepTimes step_world() {
-    if (held.empty()) return world.step(kFrameSeconds, scene.substeps);
-    held.begin_frame(kFrameSeconds);
+  int substeps_of_frame() const { return controls.substeps(scene.substeps); }
+  /// Seconds of one.
+  float substep() const { return kFrameSeconds / static_cast<float>(substeps_of_frame()); }
+
+  /// Hands pull before each substep.
+  ppu::StepTimes step_world(int substeps) {
+    const float step = substep();
     const Eigen::Vector3f gravity = tilt.transpose() * controls.gravity();
-    const float step = kFrameSeconds / static_cast<float>(scene.substeps);
+    held.begin_frame(static_cast<float>(substeps) * step);
     ppu::StepTimes times;
-    for (int substep = 0; substep < scene.substeps; ++substep) {
-      held.pull(substep, scene.substeps, gravity, step);
+    for (int number = 0; number < substeps; ++number) {
+      held.pull(number, substeps, gravity, step);
       const ppu::StepTimes of_substep = world.step(step, 1);
       times.physics_ms += of_substep.physics_ms;
       times.soft_body_ms += of_substep.soft_body_ms;
@@ -251,6 +258,8 @@ struct Simulation3d::State {
     held.release_all();
     world.reset();
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b)
+      soft_bodies[b].set_material(soft_bodies[b].model().settings());
     tilt.setIdentity();
     frame = 0;
   }
@@ -291,7 +300,7 @@ struct Simulation3d::State {
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
   std::vector<InputEvent<3>> events;      // of the last step
   std::int64_t script_frame = 0;          // counts frames without a break
-  std::int64_t frame = 0;                 // simulated since the last reset
+  double frame = 0;                       // frames of 1/60 s that were simulated since the last reset
   std::chrono::nanoseconds skin_time{0};  // of the PPU, to hand over the last frame
 };
 
@@ -307,7 +316,8 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
   s.controls.apply(s.events, s.soft_bodies, s);
-  if (!s.controls.advance()) {
+  const int substeps = s.controls.due_substeps(s.substeps_of_frame());
+  if (substeps == 0) {
     finish();
     if (puts_elsewhere(s.events)) {
       s.contacts_stand = false;
@@ -318,14 +328,13 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
     return times;
   }
   const auto& tilt = s.controls.tilt();
-  s.tilt = tilt ? tilted_by(double{tilt->x()}, double{tilt->z()})
-                : tilt_at(s.scene.tilt, static_cast<double>(s.frame) / 60);
-  ++s.frame;
+  s.tilt = tilt ? tilted_by(double{tilt->x()}, double{tilt->z()}) : tilt_at(s.scene.tilt, s.frame / 60);
+  s.frame += static_cast<double>(substeps) / s.substeps_of_frame();
   s.world.set_gravity(s.tilt.transpose() * s.controls.gravity());
   s.controls.hands().pull(s.soft_bodies);
   const FrameOnPs3 on_ps3(s.timing);
   const ppu::SoftBodyTimes begin = s.soft_bodies.times();
-  const ppu::StepTimes step = s.step_world();
+  const ppu::StepTimes step = s.step_world(substeps);
   s.contacts_stand = true;
 
   const auto waiting = std::chrono::steady_clock::now();
@@ -446,6 +455,8 @@ std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
 }
 
 bool Simulation3d::paused() const { return state_->controls.paused(); }
+float Simulation3d::time_scale() const { return state_->controls.time_scale(); }
+int Simulation3d::substeps() const { return state_->substeps_of_frame(); }
 const Eigen::Vector3f& Simulation3d::gravity() const { return state_->controls.gravity(); }
 
 std::vector<ls_sim::SpeStatistics> Simulation3d::spe_statistics() const { return state_->jobs.statistics(); }

@@ -76,6 +76,8 @@ class Simulation3d {
 
   // Of the events so far:
   bool paused() const;
+  float time_scale() const;
+  int substeps() const;                    ///< of a frame of 1/60 s
   const Eigen::Vector3f& gravity() const;  ///< m/s^2
 
   /// Waits for the SPEs and ends their job loops, so that statistics and trace are complete. Do not step

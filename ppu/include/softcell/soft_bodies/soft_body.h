@@ -60,6 +60,9 @@ class SoftBody {
   /// The same, for an owner that outlives the body.
   const std::shared_ptr<const SoftBodyModel<kDimension>>& shared_model() const { return model_; }
 
+  /// What this body is made of: as its model until set_material().
+  const SoftBodySettings& settings() const { return settings_; }
+
   std::span<const Vector> positions() const { return x_; }                     ///< metres, of each particle
   const Vector& position(std::size_t particle) const { return x_[particle]; }  ///< metres
   std::span<const Vector> velocities() const { return v_; }                    ///< m/s, of each particle
@@ -96,6 +99,10 @@ class SoftBody {
   // For the user, between time steps. Each of these functions increments revision(), by which a coupling
   // notices the change. Those after which the rotations of the last step are useless increment resets(), too.
 
+  /// Changes stiffness, damping and friction; the next time step has them.
+  /// @throws std::runtime_error  as validate(); nothing has changed then
+  /// @pre cell_size, half_width, density and contacts are the model's
+  void set_material(const SoftBodySettings& settings);
   void translate(const Vector& by);  ///< metres; finite
   /// Back to the undeformed shape at rest, the model's own origin at `position`.
   void reset(const Vector& position);
@@ -123,6 +130,7 @@ class SoftBody {
   void forget_rotations();
 
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
+  SoftBodySettings settings_;
   std::vector<Vector> x_, v_;
   std::vector<Eigen::Vector4f> padded_;  // x_ again, in three dimensions
   std::unique_ptr<ShapeMatcher<float, kDimension>> matcher_;

@@ -1,0 +1,49 @@
+#pragma once
+// What an event makes of a soft body's material.
+
+#include <algorithm>
+
+#include "input/input_event.h"
+#include "ppu/matching/stiffness.h"
+#include "softcell/base/assert.h"
+#include "softcell/soft_bodies/soft_body_settings.h"
+
+namespace softcell::demos {
+
+/// @param event  of Action::kAlpha, kFrequency, kModulus, kDamping or kFriction  @param step  seconds of a substep
+template <int Dimension>
+ppu::SoftBodySettings changed_material(ppu::SoftBodySettings settings, const InputEvent<Dimension>& event,
+                                       float step) {
+  const NumberRange* const range = number_of(event.action);
+  SC_ASSERT(range != nullptr && step > 0, "action {} with substeps of {} s sets no material",
+            static_cast<int>(event.action), step);
+  const float value = std::clamp(event.value[0], range->low, range->high);
+  switch (event.action) {
+    case Action::kAlpha:
+      settings.frequency.reset();
+      settings.alpha = value;
+      break;
+    case Action::kFrequency:
+      settings.frequency = value;
+      break;
+    case Action::kModulus: {
+      const double stiffest =
+          ppu::specific_modulus(double{settings.cell_size}, double{step}, 1, settings.half_width);
+      settings.frequency.reset();
+      settings.alpha = stiffest > 0 ? static_cast<float>(std::min(1.0, double{value} / stiffest)) : 1;
+      break;
+    }
+    case Action::kDamping:
+      settings.damping_time.reset();
+      settings.damping = value;
+      break;
+    case Action::kFriction:
+      settings.friction = value;
+      break;
+    default:
+      break;
+  }
+  return settings;
+}
+
+}  // namespace softcell::demos
