@@ -2,11 +2,33 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "softcell/base/assert.h"
 
 namespace softcell::render {
+namespace {
+
+/// Where distributions have a font without serifs. Without one of them, text is in Dear ImGui's own letters, which are bitmaps.
+constexpr std::array kFonts{"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                            "/usr/share/fonts/TTF/DejaVuSans.ttf",
+                            "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"};
+
+void add_font(ImFontAtlas& atlas, float scale) {
+  for (const char* const file : kFonts) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) continue;
+    if (atlas.AddFontFromFileTTF(file, std::floor(14 * scale)) != nullptr) return;
+  }
+  ImFontConfig own;
+  own.SizePixels = std::floor(13 * scale);
+  atlas.AddFontDefault(&own);
+}
+
+}  // namespace
 
 Overlay::Overlay(float scale) : context_(ImGui::CreateContext()) {
   SC_ASSERT(scale > 0, "a font scaled by {}", scale);
@@ -15,9 +37,7 @@ Overlay::Overlay(float scale) : context_(ImGui::CreateContext()) {
   io.IniFilename = nullptr;  // windows stand where the program puts them
   io.LogFilename = nullptr;
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  ImFontConfig font;
-  font.SizePixels = std::floor(13 * scale);
-  io.Fonts->AddFontDefault(&font);
+  add_font(*io.Fonts, scale);
   unsigned char* coverage = nullptr;
   int width = 0, height = 0;
   io.Fonts->GetTexDataAsAlpha8(&coverage, &width, &height);

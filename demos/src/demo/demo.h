@@ -11,8 +11,22 @@
 #include "simulation/simulation_options.h"
 #include "softcell/ls_sim/statistics.h"
 #include "softcell/render/renderer.h"
+#include "softcell/soft_bodies/soft_body_settings.h"
 
 namespace softcell::demos {
+
+/// What the user may have changed of a run.
+struct DemoSettings {
+  float gravity = 0;  ///< m/s^2, its strength
+  float time_scale = 1;
+  int substeps = 1;   ///< of 1/60 s
+  float substep = 0;  ///< seconds of one
+};
+
+struct BodyMaterial {
+  std::string name;
+  ppu::SoftBodySettings settings;
+};
 
 /// How much there is in a scene.
 struct DemoCounts {
@@ -60,6 +74,8 @@ class Demo {
   virtual int dimension() const = 0;
   virtual bool paused() const = 0;
   virtual bool replays() const = 0;
+  virtual DemoSettings settings() const = 0;
+  virtual std::vector<BodyMaterial> materials() const = 0;  ///< of the soft bodies, in order
   /// Copies the present frame, for draw_published().
   virtual void publish() = 0;
   /// Draws the newest published frame. A second thread may call it while the first one steps the demo. That
@@ -69,4 +85,10 @@ class Demo {
 
 /// Sets a scene up that is loaded already.
 using MakeDemo = std::function<std::unique_ptr<Demo>(const SimulationOptions&)>;
+
+struct NamedDemo {
+  std::string name, title;
+  MakeDemo make;
+};
+
 }  // namespace softcell::demos

@@ -54,9 +54,7 @@ void draw_help(int dimension) {
   if (!ImGui::BeginTable("help", 2)) return;
   for (const KeyBinding& binding : key_bindings()) {
     if ((binding.only_in_2d && dimension != 2) || (binding.only_in_3d && dimension != 3)) continue;
-    const char* const button = binding.button == SDL_CONTROLLER_BUTTON_INVALID
-                                   ? nullptr
-                                   : SDL_GameControllerGetStringForButton(binding.button);
+    const char* const button = button_name(binding.button);
     if (button != nullptr) {
       row(binding.key_name, "%s (controller: %s)", binding.does, button);
     } else {
@@ -107,11 +105,14 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
             shown_per_second);
   const float margin = kMargin * scale;
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
-  if (page.look.statistics && !page.look.help) draw_statistics_box(page, scale, shown_per_second);
+  if (page.look.statistics && !page.look.help && !page.look.menu)
+    draw_statistics_box(page, scale, shown_per_second);
   if (page.look.help) {
     draw_box("help", {width / 2, height / 2}, {0.5f, 0.5f}, [&] { draw_help(page.dimension); });
   } else {
-    draw_box("hint", {margin, height - margin}, {0, 1}, [] { ImGui::TextUnformatted("F1: help"); });
+    if (!page.look.menu)
+      draw_box("hint", {margin, height - margin}, {0, 1},
+               [] { ImGui::TextUnformatted("M: menu   F1: help"); });
   }
 }
 
@@ -136,6 +137,7 @@ Page DemoPages::next(const Demo& demo, const FrameTimes& times, const Look& look
   for (std::size_t i = 0; i < now.size(); ++i) {
     const std::chrono::duration<double, std::milli> busy = now[i].busy - before_[i].busy;
     page.spe_ms = std::max(page.spe_ms, busy.count());
+    page.each_spe_ms.push_back(busy.count());
     page.dma_bytes += now[i].dma.bytes() - before_[i].dma.bytes();
   }
   before_ = std::move(now);

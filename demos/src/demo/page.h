@@ -20,9 +20,10 @@ struct Page {
   DemoCounts counts;
   FrameTimes times;
   bool paused = false, replays = false;
-  std::size_t spes = 0;         ///< at work
-  double spe_ms = 0;            ///< of the busiest SPE, in the frame before
-  std::uint64_t dma_bytes = 0;  ///< in the frame before
+  std::size_t spes = 0;                  ///< at work
+  double spe_ms = 0;                     ///< of the busiest SPE, in the frame before
+  std::vector<double> each_spe_ms = {};  ///< of each
+  std::uint64_t dma_bytes = 0;           ///< in the frame before
 };
 
 inline constexpr float kTextScale = 1.3f;  ///< of a page's text on displays of usual density

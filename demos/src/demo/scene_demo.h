@@ -64,6 +64,19 @@ class SceneDemo : public Demo {
   int dimension() const override { return kDimension; }
   bool paused() const override { return simulation_.paused(); }
   bool replays() const override { return log_.replays(); }
+  DemoSettings settings() const override {
+    const int substeps = simulation_.substeps();
+    return {.gravity = simulation_.gravity().norm(),
+            .time_scale = simulation_.time_scale(),
+            .substeps = substeps,
+            .substep = kFrameSeconds / static_cast<float>(substeps)};
+  }
+  std::vector<BodyMaterial> materials() const override {
+    std::vector<BodyMaterial> materials;
+    for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b)
+      materials.push_back({scene_.soft_bodies[b].name, simulation_.soft_body(b).settings()});
+    return materials;
+  }
   void publish() override {
     simulation_.show(shown_.next());
     shown_.publish();

@@ -31,6 +31,7 @@ constexpr std::array kBindings{
                false, true},
     KeyBinding{Command::kNextView, SDLK_v, SDL_CONTROLLER_BUTTON_A, "V", "next view"},
     KeyBinding{Command::kNextScene, SDLK_n, SDL_CONTROLLER_BUTTON_B, "N", "next scene"},
+    KeyBinding{Command::kMenu, SDLK_m, kNoButton, "M", "menu"},
     KeyBinding{Command::kScenesCamera, SDLK_c, kNoButton, "C", "the scene's own camera again", false, false,
                true},
     KeyBinding{Command::kFollow, SDLK_f, kNoButton, "F", "camera follows the body that was held last, or not",
@@ -54,6 +55,41 @@ SDL_Keycode same_as(SDL_Keycode key) {
 }
 
 }  // namespace
+
+const char* button_name(SDL_GameControllerButton button) {
+  switch (button) {
+    case SDL_CONTROLLER_BUTTON_A:
+      return "A / Cross";
+    case SDL_CONTROLLER_BUTTON_B:
+      return "B / Circle";
+    case SDL_CONTROLLER_BUTTON_X:
+      return "X / Square";
+    case SDL_CONTROLLER_BUTTON_Y:
+      return "Y / Triangle";
+    case SDL_CONTROLLER_BUTTON_BACK:
+      return "Back / Select";
+    case SDL_CONTROLLER_BUTTON_START:
+      return "Start";
+    case SDL_CONTROLLER_BUTTON_LEFTSTICK:
+      return "left stick pressed";
+    case SDL_CONTROLLER_BUTTON_RIGHTSTICK:
+      return "right stick pressed";
+    case SDL_CONTROLLER_BUTTON_LEFTSHOULDER:
+      return "LB / L1";
+    case SDL_CONTROLLER_BUTTON_RIGHTSHOULDER:
+      return "RB / R1";
+    case SDL_CONTROLLER_BUTTON_DPAD_UP:
+      return "D-pad up";
+    case SDL_CONTROLLER_BUTTON_DPAD_DOWN:
+      return "D-pad down";
+    case SDL_CONTROLLER_BUTTON_DPAD_LEFT:
+      return "D-pad left";
+    case SDL_CONTROLLER_BUTTON_DPAD_RIGHT:
+      return "D-pad right";
+    default:
+      return nullptr;
+  }
+}
 
 std::span<const KeyBinding> key_bindings() { return kBindings; }
 

@@ -24,6 +24,7 @@ enum class Command : std::uint8_t {
   kGravityDown,
   kNextView,
   kNextScene,
+  kMenu,
   kScenesCamera,
   kFollow,
   kStatistics,
@@ -43,6 +44,9 @@ struct KeyBinding {
 };
 
 std::span<const KeyBinding> key_bindings();
+
+/// As the makers of controllers print it: Xbox, and where it has another name, PlayStation. Null: no button.
+const char* button_name(SDL_GameControllerButton button);
 
 /// What an event asks for: a key or button that goes down. None: nothing, or it is no such event.
 std::optional<Command> command_of(const SDL_Event& event, int dimension);

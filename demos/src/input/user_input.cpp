@@ -20,6 +20,9 @@ bool WindowInput::handle_command(Command command) {
     case Command::kHelp:
       look_.help = !look_.help;
       return true;
+    case Command::kMenu:
+      look_.menu = !look_.menu;
+      return true;
     case Command::kScenesCamera:
       look_ = look_.with_scenes_camera();
       return true;
@@ -51,6 +54,18 @@ void UserInput<Dimension>::handle(const SDL_Event& event) {
   }
   if (const auto command = command_of(event, Dimension); command && !handle_command(*command))
     do_command(*command);
+}
+
+template <int Dimension>
+void UserInput<Dimension>::change(Action action, std::uint32_t body, float value) {
+  const NumberRange* const range = number_of(action);
+  SC_ASSERT(range != nullptr, "action {} has no number", static_cast<int>(action));
+  std::erase_if(coming_, [&](const Event& event) { return event.action == action && event.body == body; });
+  Event event;
+  event.action = action;
+  event.body = body;
+  event.value[0] = std::clamp(value, range->low, range->high);
+  coming_.push_back(event);
 }
 
 template <int Dimension>

@@ -27,6 +27,12 @@ class WindowInput {
   virtual ~WindowInput() = default;
 
   virtual void handle(const SDL_Event& event) = 0;
+  /// As if the user had pressed its key.
+  virtual void do_now(Command command) = 0;
+  /// An action with a number: see kNumbers. Of changes of one thing in a frame the last counts.
+  virtual void change(Action action, std::uint32_t body, float value) = 0;
+  /// Gravity's direction stays. @param strength  m/s^2, not negative
+  virtual void set_strength_of_gravity(float strength) = 0;
 
   const Look& look() const { return look_; }
   void set_look(const Look& look) { look_ = look; }
@@ -81,6 +87,13 @@ class UserInput final : public WindowInput {
   void follow(const Vector& gravity, bool paused);
 
   void handle(const SDL_Event& event) override;
+  void do_now(Command command) override {
+    if (!handle_command(command)) do_command(command);
+  }
+  void change(Action action, std::uint32_t body, float value) override;
+  void set_strength_of_gravity(float strength) override {
+    set_gravity(gravity_when_on_.normalized() * strength);
+  }
 
   /// What has been done since the frame before. Good until the next call.
   std::span<const Event> next_frame();

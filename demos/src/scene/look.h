@@ -27,8 +27,8 @@ inline constexpr int kViews2d = 3;
 
 /// How a window shows a scene.
 struct Look {
-  int view = 0;                          ///< View2d or View, as a number
-  bool statistics = true, help = false;  ///< pages over the picture
+  int view = 0;                                        ///< View2d or View, as a number
+  bool statistics = true, help = false, menu = false;  ///< pages over the picture
   // Of the camera in three dimensions, against the scene's own:
   float turn = 0, rise = 0;  ///< radians about what it looks at, counter-clockwise from above and upwards
   float distance = 1;        ///< from what it looks at, as a factor
@@ -38,7 +38,9 @@ struct Look {
   bool follows = false;               ///< it goes where a body goes
 
   /// The same with the scene's own camera.
-  Look with_scenes_camera() const { return {.view = view, .statistics = statistics, .help = help}; }
+  Look with_scenes_camera() const {
+    return {.view = view, .statistics = statistics, .help = help, .menu = menu};
+  }
 };
 
 }  // namespace softcell::demos

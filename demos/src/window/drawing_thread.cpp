@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "softcell/base/assert.h"
-#include "softcell/render/overlay.h"
 
 namespace softcell::demos {
 namespace {
@@ -44,9 +43,8 @@ bool draws_in_software(const render::Renderer& renderer) {
 
 }  // namespace
 
-DrawingThread::DrawingThread(render::Window& window, Demo& demo)
-    : window_(window), demo_(demo), scale_(kTextScale * window.density()) {
-  SC_ASSERT(scale_ > 0, "text scaled by {}", scale_);
+DrawingThread::DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font)
+    : window_(window), demo_(demo), font_(font) {
   pages_.next().width = window.width();
   pages_.next().height = window.height();
   window_.release();
@@ -78,7 +76,7 @@ void DrawingThread::run(std::promise<void> ready) {
   try {
     render::GlContext& context = window_.context();
     context.make_current();
-    const Page& first = pages_.next();  // the other thread waits
+    const WindowPage& first = pages_.next();  // the other thread waits
     render::RendererSettings settings{.width = first.width, .height = first.height};
     std::optional<render::Renderer> renderer(std::in_place, context, settings);
     if (draws_in_software(*renderer)) {
@@ -90,7 +88,7 @@ void DrawingThread::run(std::promise<void> ready) {
     demo_.make_view(*renderer);
     is_ready = true;
     ready.set_value();
-    draw_all(*renderer, scale_);
+    draw_all(*renderer);
   } catch (...) {
     if (is_ready) {
       failure_ = std::current_exception();
@@ -102,23 +100,19 @@ void DrawingThread::run(std::promise<void> ready) {
   window_.release();
 }
 
-void DrawingThread::draw_all(render::Renderer& renderer, float scale) {
-  render::Overlay overlay(scale);
+void DrawingThread::draw_all(render::Renderer& renderer) {
   Rate rate;
-  auto before = Clock::now() - std::chrono::milliseconds(16);
   while (pages_.wait()) {
     const auto begin = Clock::now();
-    const Page& page = pages_.current();
+    const WindowPage& page = pages_.current();
     if (page.width != renderer.width() || page.height != renderer.height())
       renderer.resize(std::max(page.width, 1), std::max(page.height, 1));
     demo_.draw_published(page.look);
-    overlay.begin(renderer.width(), renderer.height(), static_cast<float>(Seconds(begin - before).count()));
-    draw_page(page, scale, rate.per_second());
-    renderer.draw_overlay(overlay.font(), overlay.end());
+    renderer.draw_overlay(font_, page.overlay);
     window_.show(renderer);
-    before = begin;
     const auto end = Clock::now();
     rate.count(end);
+    shown_per_second_ = rate.per_second();
     drawn_.picture_ms.push_back(Seconds(end - begin).count() * 1e3);
   }
   drawn_.upload_bytes = renderer.uploaded_bytes();

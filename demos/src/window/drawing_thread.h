@@ -11,10 +11,18 @@
 
 #include "demo/demo.h"
 #include "demo/latest.h"
-#include "demo/page.h"
+#include "scene/look.h"
+#include "softcell/render/overlay_mesh.h"
 #include "softcell/render/window.h"
 
 namespace softcell::demos {
+
+/// What is drawn over the newest published frame of a demo.
+struct WindowPage {
+  Look look;
+  int width = 0, height = 0;  ///< of the window, pixels
+  render::OverlayMesh overlay;
+};
 
 /// What was drawn.
 struct Drawn {
@@ -28,14 +36,15 @@ class DrawingThread {
  public:
   /// Waits until the demo's view is made.
   /// @throws std::runtime_error  the window cannot draw.
-  DrawingThread(render::Window& window, Demo& demo);
+  /// @param font  of the overlays; outlives this
+  DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font);
   /// Finishes the picture that is being drawn.
   ~DrawingThread();
   DrawingThread(const DrawingThread&) = delete;
   DrawingThread& operator=(const DrawingThread&) = delete;
 
-  /// The text over the next picture, to be filled.
-  Page& next_page() { return pages_.next(); }
+  /// What stands over the next picture, to be filled.
+  WindowPage& next_page() { return pages_.next(); }
   /// Has the drawing thread draw the newest published frame of the demo with next_page() over it, unless a newer
   /// one is published before.
   void show() { pages_.publish(); }
@@ -43,15 +52,18 @@ class DrawingThread {
   /// Waits for the picture that is being drawn. @throws  the exception of a picture that failed
   const Drawn& finish();
   bool failed() const { return failed_; }
+  /// Pictures that the window showed of late, a second.
+  double shown_per_second() const { return shown_per_second_; }
 
  private:
   void run(std::promise<void> ready);
-  void draw_all(render::Renderer& renderer, float scale);
+  void draw_all(render::Renderer& renderer);
 
   render::Window& window_;
   Demo& demo_;
-  Latest<Page> pages_;
-  float scale_;
+  render::OverlayFont font_;
+  Latest<WindowPage> pages_;
+  std::atomic<double> shown_per_second_ = 0;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;
   Drawn drawn_;

@@ -127,7 +127,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any
   demos::make_picture_folders(options);  // where other outputs may be wanted, too
   // A recording and a trace are of one scene.
-  const std::vector<demos::MakeDemo> scenes =
+  const std::vector<demos::NamedDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);
   SC_ASSERT(!scenes.empty(), "{} runs no scene", verb);
   // What cannot be written is no surprise at the end of a long run.
@@ -151,7 +151,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
                                      .findings = options.checked ? &findings : nullptr,
                                      .trace = trace ? &*trace : nullptr,
                                      .timing = timing ? &*timing : nullptr};
-  const demos::Run run = options.headless ? run_headless(options, verb, scenes.front(), how, guard)
+  const demos::Run run = options.headless ? run_headless(options, verb, scenes.front().make, how, guard)
                                           : demos::play({.title = "softcell " + std::string(verb),
                                                          .width = options.size.width,
                                                          .height = options.size.height,

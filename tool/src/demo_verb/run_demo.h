@@ -29,7 +29,7 @@ void check_scene_kept(const std::vector<std::filesystem::path>& scene, const Dem
 
 /// Loads the scene that the options ask for; with `all` those of the same dimension that come with softcell,
 /// too. The first is the one to begin with.
-using LoadScenes = std::function<std::vector<demos::MakeDemo>(bool all)>;
+using LoadScenes = std::function<std::vector<demos::NamedDemo>(bool all)>;
 
 /// Runs a demo, in a window or without; steps it, writes its pictures, reports what it cost.
 /// @param verb  "demo 3d"   @param load  is called once, before threads are started: scenes in Lua fork
@@ -45,14 +45,14 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
 ///               may not be installed.
 /// @tparam OneDemo  a SceneDemo, made of a scene, a log, SimulationOptions and the options.
 template <class OneDemo, class Options>
-std::vector<demos::MakeDemo> demos_of(const Options& options, const typename OneDemo::Log& log,
-                                      const typename OneDemo::Scene& first, bool all,
-                                      typename OneDemo::Scene (*load)(std::string_view)) {
-  std::vector<demos::MakeDemo> made;
+std::vector<demos::NamedDemo> demos_of(const Options& options, const typename OneDemo::Log& log,
+                                       const typename OneDemo::Scene& first, bool all,
+                                       typename OneDemo::Scene (*load)(std::string_view)) {
+  std::vector<demos::NamedDemo> made;
   const auto add = [&](const typename OneDemo::Scene& scene) {
-    made.push_back([&options, scene, log](const demos::SimulationOptions& how) {
-      return std::make_unique<OneDemo>(scene, log, how, options);
-    });
+    made.push_back({scene.name, scene.title, [&options, scene, log](const demos::SimulationOptions& how) {
+                      return std::make_unique<OneDemo>(scene, log, how, options);
+                    }});
   };
   add(first);
   SC_ASSERT(load != nullptr, "nobody loads the scenes beside {}", first.name);

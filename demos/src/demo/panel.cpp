@@ -1,0 +1,189 @@
+#include "panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "ppu/matching/stiffness.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr float kFrameMs = 1000.0f / 60;
+constexpr float kGraphMs = 2 * kFrameMs;  // the height of the graph
+
+struct Part {
+  const char* name;
+  ImU32 colour;
+};
+// As in the figures of a run; docs/guide/playing.md.
+constexpr std::array<Part, 5> kDrawnParts{{{"rigid bodies", IM_COL32(230, 150, 60, 255)},
+                                           {"contacts", IM_COL32(210, 80, 80, 255)},
+                                           {"shape matching", IM_COL32(90, 160, 230, 255)},
+                                           {"copying, skinning", IM_COL32(120, 200, 120, 255)},
+                                           {"waiting for SPEs", IM_COL32(150, 150, 160, 255)}}};
+
+/// A slider of a value that an event changes.
+/// @param format  as printf's
+bool slider(const char* name, float& value, float low, float high, const char* format,
+            bool logarithmic = false) {
+  return ImGui::SliderFloat(name, &value, low, high, format,
+                            ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+}
+
+}  // namespace
+
+void Panel::follow(const Page& page) {
+  const FrameTimes& times = page.times;
+  const std::array<double, kParts> parts{times.physics_ms, times.contacts_ms, times.solve_ms,
+                                         times.gather_ms + times.apply_ms + times.skin_ms,
+                                         times.solver_wait_ms + times.skin_wait_ms};
+  static_assert(kDrawnParts.size() == kParts);
+  std::ranges::transform(parts, milliseconds_[next_].begin(),
+                         [](double ms) { return static_cast<float>(ms); });
+  next_ = (next_ + 1) % kFrames;
+  spe_ms_ = page.each_spe_ms;
+}
+
+void Panel::draw(const Demo& demo, float scale, int height, WindowInput& input) {
+  SC_ASSERT(scale > 0, "a panel scaled by {}", scale);
+  const bool opens = input.look().menu && !was_open_;
+  was_open_ = input.look().menu;
+  if (!was_open_) {
+    area_ = {};
+    return;
+  }
+  const float margin = 10 * scale;
+  ImGui::SetNextWindowPos({margin, margin}, ImGuiCond_Always);
+  ImGui::SetNextWindowSize({300 * scale, std::max(static_cast<float>(height) - 2 * margin, 1.0f)});
+  if (opens) ImGui::SetNextWindowFocus();
+  bool open = true;
+  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings;
+  if (ImGui::Begin("Menu (M)", &open, kFixed)) {
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    area_ = {at.x, at.y, at.x + size.x, at.y + size.y};
+    ImGui::PushItemWidth(130 * scale);
+    if (!scenes_.empty()) draw_scenes(demo.scene_name());
+    draw_time(demo, input);
+    draw_material(demo, input);
+    draw_graph(scale);
+    ImGui::PopItemWidth();
+  }
+  ImGui::End();
+  if (!open) input.do_now(Command::kMenu);
+}
+
+bool Panel::contains(float x, float y) const {
+  return x >= area_[0] && y >= area_[1] && x < area_[2] && y < area_[3];
+}
+
+void Panel::draw_scenes(const std::string& current) {
+  if (!ImGui::CollapsingHeader("Scenes", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  if (ImGui::BeginListBox("##scenes", {-1, 7.5f * ImGui::GetTextLineHeightWithSpacing()})) {
+    for (std::size_t i = 0; i < scenes_.size(); ++i) {
+      if (ImGui::Selectable(scenes_[i].name.c_str(), scenes_[i].name == current)) choice_ = i;
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", scenes_[i].title.c_str());
+    }
+    ImGui::EndListBox();
+  }
+}
+
+void Panel::draw_time(const Demo& demo, WindowInput& input) const {
+  if (!ImGui::CollapsingHeader("Time and gravity", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  if (ImGui::Button(demo.paused() ? "Continue" : "Pause")) input.do_now(Command::kPause);
+  ImGui::SameLine();
+  if (ImGui::Button("Step")) {
+    if (!demo.paused()) input.do_now(Command::kPause);
+    input.do_now(Command::kSingleStep);
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Reset")) input.do_now(Command::kReset);
+  const DemoSettings settings = demo.settings();
+  float time_scale = settings.time_scale, gravity = settings.gravity;
+  int substeps = settings.substeps;
+  if (slider("time scale", time_scale, 0.05f, 2, "%.2f", true))
+    input.change(Action::kTimeScale, 0, time_scale);
+  if (ImGui::SliderInt("substeps", &substeps, 1, 10, "%d", ImGuiSliderFlags_AlwaysClamp))
+    input.change(Action::kSubsteps, 0, static_cast<float>(substeps));
+  if (slider("gravity", gravity, 0, 30, "%.1f m/s\xC2\xB2")) input.set_strength_of_gravity(gravity);
+}
+
+void Panel::draw_material(const Demo& demo, WindowInput& input) {
+  const std::vector<BodyMaterial> bodies = demo.materials();
+  if (bodies.empty() || !ImGui::CollapsingHeader("Material", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  body_ = std::min(body_, static_cast<int>(bodies.size()) - 1);
+  if (ImGui::BeginCombo("body", body_ < 0 ? "all" : bodies[static_cast<std::size_t>(body_)].name.c_str())) {
+    if (ImGui::Selectable("all", body_ < 0)) body_ = -1;
+    for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+      ImGui::PushID(b);
+      if (ImGui::Selectable(bodies[static_cast<std::size_t>(b)].name.c_str(), body_ == b)) body_ = b;
+      ImGui::PopID();
+    }
+    ImGui::EndCombo();
+  }
+  const std::uint32_t changed = body_ < 0 ? kEveryBody : static_cast<std::uint32_t>(body_);
+  const ppu::SoftBodySettings& shown = bodies[static_cast<std::size_t>(std::max(body_, 0))].settings;
+  const float step = demo.settings().substep;
+  ImGui::Combo("stiffness by", &stiffness_by_, "alpha\0frequency\0modulus\0");
+  const float alpha = shown.alpha_of_step(step);
+  if (stiffness_by_ == 0) {
+    float value = alpha;
+    if (slider("alpha", value, 0, 1, "%.3f")) input.change(Action::kAlpha, changed, value);
+  } else if (stiffness_by_ == 1) {
+    // What alpha 1 is, no frequency exceeds: a sixth of the steps' rate.
+    float value = shown.frequency.value_or(0);
+    if (slider("frequency", value, 0, 1 / (6 * step), shown.frequency ? "%.1f Hz" : "not set"))
+      input.change(Action::kFrequency, changed, value);
+  } else {
+    const auto stiffest =
+        static_cast<float>(ppu::specific_modulus(double{shown.cell_size}, double{step}, 1, shown.half_width));
+    float value = alpha * stiffest;
+    if (slider("modulus", value, 0.001f * stiffest, stiffest, "%.0f m\xC2\xB2/s\xC2\xB2", true))
+      input.change(Action::kModulus, changed, value);
+  }
+  float damping = shown.damping_of_step(step), friction = shown.friction;
+  if (slider("damping", damping, 0, 1, "%.3f")) input.change(Action::kDamping, changed, damping);
+  if (slider("friction", friction, 0, 2, "%.2f")) input.change(Action::kFriction, changed, friction);
+}
+
+void Panel::draw_graph(float scale) const {
+  if (!ImGui::CollapsingHeader("Milliseconds", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, height = 80 * scale;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, {at.x + width, at.y + height}, IM_COL32(20, 24, 30, 255));
+  const float column = width / static_cast<float>(kFrames);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const auto& parts = milliseconds_[(next_ + i) % kFrames];
+    float below = 0;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const float low = height * std::min(below / kGraphMs, 1.0f);
+      below += parts[part];
+      const float high = height * std::min(below / kGraphMs, 1.0f);
+      const float x = at.x + column * static_cast<float>(i);
+      if (high > low)
+        list.AddRectFilled({x, at.y + height - high}, {x + column, at.y + height - low},
+                           kDrawnParts[part].colour);
+    }
+  }
+  const float frame = at.y + height * (1 - kFrameMs / kGraphMs);
+  list.AddLine({at.x, frame}, {at.x + width, frame}, IM_COL32(255, 255, 255, 120));
+  ImGui::Dummy({width, height});
+  const auto& last = milliseconds_[(next_ + kFrames - 1) % kFrames];
+  for (std::size_t part = 0; part < last.size(); ++part) {
+    ImGui::PushStyleColor(ImGuiCol_Text, kDrawnParts[part].colour);
+    ImGui::Text("%5.2f  %s", static_cast<double>(last[part]), kDrawnParts[part].name);
+    ImGui::PopStyleColor();
+  }
+  for (std::size_t spe = 0; spe < spe_ms_.size(); ++spe) {
+    const auto busy = static_cast<float>(spe_ms_[spe]) / kFrameMs;
+    ImGui::ProgressBar(std::min(busy, 1.0f), {-1, ImGui::GetTextLineHeight()},
+                       fmt::format("SPE {}: {:.0f} %", spe, 100 * busy).c_str());
+  }
+}
+
+}  // namespace softcell::demos

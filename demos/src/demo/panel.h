@@ -1,0 +1,61 @@
+#pragma once
+// The menu at the side of a window: scenes, time, gravity, materials, and where the time goes. By Dear ImGui, with the mouse or by keyboard
+// alone.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demo.h"
+#include "input/user_input.h"
+#include "page.h"
+
+namespace softcell::demos {
+
+/// A scene to choose.
+struct SceneTitle {
+  std::string name, title;
+};
+
+/// Used by one thread. What the user does there becomes commands and events of the input.
+class Panel {
+ public:
+  /// @param scenes  none: this run has one scene
+  explicit Panel(std::vector<SceneTitle> scenes) : scenes_(std::move(scenes)) {}
+
+  /// Call it once for each frame, drawn or not: the graph shows all of them.
+  void follow(const Page& page);
+
+  /// Between begin() and end() of an overlay. Draws nothing while Look::menu is off.
+  /// @param scale  of text and sizes
+  void draw(const Demo& demo, float scale, int height, WindowInput& input);
+
+  /// A point of the window, pixels, is on the panel as it was drawn last.
+  bool contains(float x, float y) const;
+
+  /// The number of the scene that the user has chosen; asking forgets it.
+  std::optional<std::size_t> take_choice() { return std::exchange(choice_, std::nullopt); }
+
+ private:
+  static constexpr std::size_t kFrames = 180;  // of the graph
+  static constexpr std::size_t kParts = 5;
+
+  void draw_scenes(const std::string& current);
+  void draw_time(const Demo& demo, WindowInput& input) const;
+  void draw_material(const Demo& demo, WindowInput& input);
+  void draw_graph(float scale) const;
+
+  std::vector<SceneTitle> scenes_;
+  std::optional<std::size_t> choice_;
+  bool was_open_ = false;
+  std::array<float, 4> area_{};  // left, top, right, bottom
+  int body_ = -1;                // whose material is shown; -1: all bodies'
+  int stiffness_by_ = 0;         // alpha, frequency, modulus
+  std::array<std::array<float, kParts>, kFrames> milliseconds_{};
+  std::size_t next_ = 0;
+  std::vector<double> spe_ms_;
+};
+
+}  // namespace softcell::demos
