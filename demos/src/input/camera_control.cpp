@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 constexpr float kRadiansPerUnit = 0.006f;
 constexpr float kMostRise = 1.5f;
 constexpr float kPerNotch = 0.9f, kNearest = 0.1f, kFarthest = 10;
-constexpr float kFlightInFrame = 0.02f;  // of the distance to what it looks at: 1.2 times that in a second
+constexpr float kFlightInFrame = 0.01f;  // of the distance to what it looks at: 0.6 times that in a second
 
 /// To the right, upwards, and towards the viewer.
 struct Axes {
