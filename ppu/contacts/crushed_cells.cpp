@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "softcell/base/assert.h"
 
