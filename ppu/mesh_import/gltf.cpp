@@ -35,7 +35,7 @@ void check_extensions(const GltfValue& root) {
   for (std::size_t i = 0; i < root.size("extensionsRequired"); ++i) {
     const std::string& extension = root.text_at("extensionsRequired", i);
     if (!may_be_required(extension)) {
-      refuse("it requires the extension " + in_quotes(extension) +
+      refuse("it requires the extension " + name_in_quotes(extension) +
              ", which softcell does not read; export it without compression and the like");
     }
   }
@@ -158,7 +158,7 @@ class GltfImport {
     if (mode < kTriangles) return add_not_read("points and lines");
     if (primitive.has("targets")) add_not_read("morph targets");
     for (const std::string& extension : primitive.names("extensions"))
-      add_not_read("the extension " + in_quotes(extension));
+      add_not_read("the extension " + name_in_quotes(extension));
     const auto material = material_of(primitive);
     const Attributes attributes =
         attributes_of(primitive, material ? coordinates_[*material] : GltfCoordinates());

@@ -175,7 +175,7 @@ std::string_view GltfBuffers::buffer(std::uint32_t number) {
         const std::string name = file_of_uri(*uri);
         std::optional<std::string> read;
         if (read_neighbour_) read = read_neighbour_(name, kMaxBufferBytes - loaded_bytes_);
-        if (!read) description.refuse(in_quotes(*uri) + " is no file in the model's folder or below");
+        if (!read) description.refuse(name_in_quotes(*uri) + " is no file in the model's folder or below");
         kept = std::move(*read);
       }
       loaded_bytes_ += kept.size();

@@ -49,7 +49,7 @@ std::shared_ptr<const MeshPicture> GltfMaterials::picture(std::uint32_t image, s
       uri != nullptr && !uri->starts_with("data:")) {
     file = file_of_uri(*uri).substr(0, kMaxMeshNameBytes);
     if (file.empty()) {
-      add_not_read("the picture " + in_quotes(*uri) + ", which is no file");
+      add_not_read("the picture " + name_in_quotes(*uri) + ", which is no file");
       return nullptr;
     }
     return pictures_.from_file(file_of_uri(*uri));
@@ -69,7 +69,7 @@ GltfCoordinates GltfMaterials::coordinates(const GltfValue& use) {
   found.set = static_cast<std::uint32_t>(use.whole("texCoord", kMaxTextureSets, 0));
   for (const std::string& extension : use.names("extensions")) {
     if (extension != kTransform) {
-      add_not_read("the extension " + in_quotes(extension));
+      add_not_read("the extension " + name_in_quotes(extension));
       continue;
     }
     const GltfValue transform = use.object("extensions").object(kTransform);
@@ -100,7 +100,7 @@ MeshTexture GltfMaterials::texture(const GltfValue& owner, const char* key,
   if (!number) use->refuse("it has no 'index'");
   const GltfValue description = root_.item("textures", *number);
   for (const std::string& extension : description.names("extensions"))
-    add_not_read("the extension " + in_quotes(extension));
+    add_not_read("the extension " + name_in_quotes(extension));
   if (const auto sampler_number = description.index("sampler", "samplers", root_.size("samplers"))) {
     const GltfValue sampler = root_.item("samplers", *sampler_number);
     texture.wrap_u = wrap_of(sampler, "wrapS");
@@ -131,7 +131,7 @@ GltfMaterial GltfMaterials::read(std::uint32_t number) {
   for (const std::string& extension : description.names("extensions")) {
     constexpr std::string_view kOlder = "KHR_materials_pbrSpecularGlossiness";
     if (extension != kOlder || description.has("pbrMetallicRoughness")) {
-      add_not_read("the extension " + in_quotes(extension));
+      add_not_read("the extension " + name_in_quotes(extension));
       continue;
     }
     // The model before metallic-roughness: what both have in common.

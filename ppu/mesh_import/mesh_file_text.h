@@ -16,11 +16,14 @@ namespace softcell::ppu {
 [[noreturn]] inline void refuse(const std::string& problem) { throw std::runtime_error(problem); }
 
 /// A word of a file as it may appear in a message: short, and printable.
-inline std::string in_quotes(std::string_view word) {
+inline std::string in_quotes(std::string_view word, std::size_t longest = 24) {
   std::string text = "'";
-  for (const char c : word.substr(0, 24)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text + (word.size() > 24 ? "...'" : "'");
+  for (const char c : word.substr(0, longest)) text += c >= ' ' && c <= '~' ? c : '?';
+  return text + (word.size() > longest ? "...'" : "'");
 }
+
+/// The same for names of files and extensions, which a user must recognise.
+inline std::string name_in_quotes(std::string_view name) { return in_quotes(name, 80); }
 
 /// Takes a text apart into lines of words. Views stay valid as long as the text.
 class LineReader {

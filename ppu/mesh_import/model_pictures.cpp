@@ -42,9 +42,9 @@ std::shared_ptr<const MeshPicture> ModelPictures::from_file(const std::string& n
   if (read_neighbour_) bytes = read_neighbour_(name, kMaxPictureBytes);
   if (!bytes) {
     add_not_read(not_read_,
-                 "the picture " + in_quotes(name) + ", which is not in the model's folder or below");
+                 "the picture " + name_in_quotes(name) + ", which is not in the model's folder or below");
   }
-  return files_[name] = bytes ? from_bytes(*bytes, in_quotes(name)) : nullptr;
+  return files_[name] = bytes ? from_bytes(*bytes, name_in_quotes(name)) : nullptr;
 }
 
 }  // namespace softcell::ppu

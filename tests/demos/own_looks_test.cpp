@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -85,17 +86,26 @@ TEST_F(OwnLooks, ARotationTurnsTheMeshAndKeepsItsSize) {
   }
 }
 
-TEST_F(OwnLooks, ABoxThatIsTurnedStandsSo) {
-  const Scene turned = load_scene_3d(write("b.toml",
-                                           "[[box]]\nsize = [1, 2, 3]\nposition = [0, 5, 0]\nmass = "
-                                           "1\nrotation = { axis = [1, 0, 0], degrees = 90 }\n"
-                                           "[[soft_body]]\nshape = { kind = \"box\" }\ncell_size = 0.5\n"));
+TEST_F(OwnLooks, ABoxThatIsTurnedStandsSoAndAgainAfterAReset) {
+  const Scene turned = load_scene_3d(
+      write("b.toml",
+            "[[box]]\nsize = [1, 2, 3]\nposition = [0, 5, 0]\nmass = 1\nrotation = { axis = [1, 0, 0], "
+            "degrees = 90 }\n"
+            "[[soft_body]]\nshape = { kind = \"box\" }\ncell_size = 0.5\n[[reset]]\ntime = 0.5\n"));
   Simulation3d simulation(turned, {});
-  const Eigen::Matrix4f pose = simulation.shown_box_poses()[0];
   Eigen::Matrix3f expected;
   expected << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  EXPECT_LT((pose.topLeftCorner<3, 3>() - expected).norm(), 1e-5f);
-  EXPECT_EQ(pose(1, 3), 5);
+  const auto is_as_at_the_beginning = [&] {
+    const Eigen::Matrix4f pose = simulation.shown_box_poses()[0];
+    return (pose.topLeftCorner<3, 3>() - expected).norm() < 1e-5f && std::abs(pose(1, 3) - 5) < 0.01f;
+  };
+  EXPECT_TRUE(is_as_at_the_beginning());
+  for (int frame = 0; frame < 30; ++frame) simulation.step();
+  simulation.finish();
+  EXPECT_FALSE(is_as_at_the_beginning()) << "it falls";
+  simulation.step();  // after the reset
+  simulation.finish();
+  EXPECT_TRUE(is_as_at_the_beginning());
 }
 
 TEST_F(OwnLooks, FieldsAtTheirDefaultsLeaveTheSceneAsItWas) {

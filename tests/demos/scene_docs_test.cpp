@@ -72,7 +72,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "dimension = 2\n[[circle]]\nQQQQQQQQQ = 1", "dimension = 2\n[[polygon]]\nQQQQQQQQQ = 1",
                     "[[soft_body]]\nQQQQQQQQQ = 1", "dimension = 2\n[[soft_body]]\nQQQQQQQQQ = 1",
                     "[[impulse]]\nQQQQQQQQQ = 1", "[[drag]]\nQQQQQQQQQ = 1", "[[gravity]]\nQQQQQQQQQ = 1",
-                    "[[pause]]\nQQQQQQQQQ = 1", "[[reset]]\nQQQQQQQQQ = 1"));
+                    "[[pause]]\nQQQQQQQQQ = 1", "[[reset]]\nQQQQQQQQQ = 1",
+                    "[[box]]\nrotation = { QQQQQQQQQ = 1 }"));
 
 }  // namespace
 }  // namespace softcell::demos

@@ -299,7 +299,7 @@ TEST(GltfImport, WrongFilesAreRefusedInOneSentence) {
             "nodes[0]: its rotation is not a quaternion of length 1");
   EXPECT_EQ(with(R"("nodes":[{"matrix":[1]}])"), "nodes[0].matrix does not have 16 finite numbers");
   EXPECT_EQ(with(R"("extensionsRequired":["KHR_draco_mesh_compression"])"),
-            "it requires the extension 'KHR_draco_mesh_compressi...', which softcell does not read; export "
+            "it requires the extension 'KHR_draco_mesh_compression', which softcell does not read; export "
             "it without "
             "compression and the like");
   EXPECT_EQ(primitive("{}"), "meshes[0].primitives[0]: it has no 'attributes'");
