@@ -8,15 +8,19 @@
 //   boxes     in         FindBoxes, 96 bytes         of two bodies     16
 //   ends      in         FindEnd, 16 bytes           of two bodies     16
 //   begins    in         FindBegin, 16 bytes         of two bodies     16
+//   candid.   in, out    FindCandidate, 8 bytes      <= 448 of a task  16
 //   contacts  out        SolveContact, 176 bytes     <= 192 of a task  16
 //   results   out        FindResult, 16 bytes        1 of a task       16
 //
-// Cells of the two bodies are held against each other by their boxes, four at a time; then points, four at a time, against
-// parallelepipeds and a plane below the distance field; what is left is found by Newton's iteration, four points at a time. Few points
-// come so far.
+// Candidates: cells of the two bodies are held against each other by their boxes, four at a time; then points, four at a time, against
+// parallelepipeds and a plane below the distance field. All of these bounds are widened by a margin, so that candidates serve for the
+// next steps, too. Contacts: the points of candidates against the same bounds without the margin; what is left is found by Newton's
+// iteration, four points at a time. Few points come so far.
 //
-// Budget: 232 KB. 128 KB of bodies and their models, 33 KB of contacts, 30 KB of cells that are near; the rest for code and 6 KB of
-// stack.
+// Contacts do not depend on the margin: a point that is in a cell is its candidate with any.
+//
+// Budget: 244 KB. 128 KB of bodies and their models, 33 KB of contacts, 40 KB of cells that are near, their bounds and candidates;
+// the rest for code and 6.5 KB of stack.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
 
@@ -33,7 +37,10 @@ namespace {
 
 enum Tag : uint32_t { kTagTask = 0, kTagIn = 1, kTagOut = 2 };
 
-constexpr uint32_t kBatch = 16;  // tasks that are fetched together
+constexpr uint32_t kBatch = 16;     // tasks that are fetched together
+constexpr uint32_t kInverses = 64;  // that are kept
+constexpr uint16_t kNoCell = 0xFFFF;
+constexpr uint32_t kGroups = 4;  // of a FindCandidate
 /// Something that is in the local store already.
 struct Part {
   uint64_t ea;  // 0: nothing
@@ -47,6 +54,22 @@ struct NearCells {
   uint16_t cell[kFindMaxNear];
 };
 
+/// Of near cells, as RoughInverse, a cell to a lane: what is no farther from the three pairs of planes than a distance, and from the
+/// plane below the surface, may be in the cell.
+struct NearBounds {
+  enum Row : uint32_t {
+    kMiddle = 0,   // x y z
+    kRow1 = 3,     // x y z of each of the inverse's rows
+    kReach = 12,   // by s1 s2 s3
+    kLength = 15,  // of the three rows, 1/m: how much of reach a metre is
+    kSlope = 18,   // x y z: of the plane below the field, in the world
+    kLimit = 21,   // of what it says
+    kSteep = 22,   // length of the slope
+    kRows = 23
+  };
+  alignas(16) float row[kRows][kFindMaxNear + 4];
+};
+
 /// Everything this kernel keeps in local store beside its code and stack.
 struct alignas(128) LocalStoreMap {
   FindJob job;
@@ -56,12 +79,17 @@ struct alignas(128) LocalStoreMap {
   alignas(128) char bytes[kFindMaxBytes];  // model and state of a, then those of b
   Part model[2], state[2];
   alignas(128) SolvedContact contacts[kFindMaxContacts];
-  NearCells near[2];  // of a, of b
-  RoughInverse inverse[kFindMaxNear];
-  bool has_inverse[kFindMaxNear];
+  NearCells near[2];                // of a, of b
+  RoughInverse inverse[kInverses];  // of a cell at its number modulo kInverses
+  uint16_t inverse_of[kInverses];   // whose it is
   uint16_t meets[kFindMaxNear];
-  alignas(16) float along[2][kFindMaxParticles];  // places of particles between the two bodies
-  uint32_t under_way;                             // tag groups with transfers
+  alignas(128) FindCandidate candidates[kFindMaxCandidates];
+  uint32_t candidate_count;
+  union {
+    alignas(16) float along[2][kFindMaxParticles];  // places of particles between the two bodies
+    NearBounds bounds;                              // behind that
+  };
+  uint32_t under_way;  // tag groups with transfers
 };
 LocalStoreMap ls;
 
@@ -99,6 +127,11 @@ void fetch_state(Part& part, uint32_t offset, const FindBody& body) {
   if (is_there(part, body.state_ea, offset)) return;
   get_large(ls.bytes + offset, body.state_ea, find_state_bytes(body), kTagIn);
   ls.under_way |= 1u << kTagIn;
+}
+
+/// In whole quadwords.
+inline uint32_t bytes_of_candidates(uint32_t count) {
+  return (count + 1) / 2 * 2 * static_cast<uint32_t>(sizeof(FindCandidate));
 }
 
 /// Until all transfers of bodies and contacts are complete.
@@ -151,6 +184,17 @@ Reach reach_along(const BodyInStore& body, vec_float4 direction, float* along) {
     most = larger(most, place);
   }
   return {-largest_lane(negative(least)), largest_lane(most)};
+}
+
+/// |v|, of a vector whose fourth lane is 0.
+inline vec_float4 length_in_all_lanes(vec_float4 v) {
+  const vec_float4 square = dot_in_all_lanes(v, v);
+  return spu_mul(square, reciprocal_sqrt(square));
+}
+
+inline Reach widened(const Reach& reach, vec_float4 direction, float margin) {
+  const vec_float4 wide = spu_mul(length_in_all_lanes(direction), spu_splats(margin));
+  return {reach.least - spu_extract(wide, 0), reach.most + spu_extract(wide, 0)};
 }
 
 /// What a cell has to meet to be near: a box, and a plane between the two bodies.
@@ -209,14 +253,66 @@ inline BoxInAllLanes common(const BoxInAllLanes& a, const BoxInAllLanes& b) {
           {smaller(a.high.x, b.high.x), smaller(a.high.y, b.high.y), smaller(a.high.z, b.high.z)}};
 }
 
-/// Those near cells that meet a box, ascending, to ls.meets.
-uint32_t gather_meeting(const BoxInAllLanes& box, const NearCells& near) {
+/// @param by  x y z
+inline BoxInAllLanes widened(const BoxInAllLanes& box, vec_float4 by) {
+  const Vector3x4 wide = in_all_lanes(by);
+  return {difference(box.low, wide),
+          {spu_add(box.high.x, wide.x), spu_add(box.high.y, wide.y), spu_add(box.high.z, wide.z)}};
+}
+
+/// Where the points of a cell are: in a box, and in a ball. In all lanes.
+struct Region {
+  BoxInAllLanes box;
+  Vector3x4 middle;
+  vec_float4 radius;
+};
+
+/// Bounds of four near cells, or of one in all lanes.
+struct Bounds4 {
+  Vector3x4 middle, row1, row2, row3, reach, length, slope;
+  vec_float4 limit, steep;
+};
+
+/// @param at  what is in a row of ls.bounds
+template <typename At>
+inline Bounds4 bounds_at(const At& at) {
+  const auto three = [&](uint32_t first) __attribute__((always_inline)) {
+    return Vector3x4{at(first), at(first + 1), at(first + 2)};
+  };
+  using B = NearBounds;
+  return {three(B::kMiddle), three(B::kRow1),  three(B::kRow1 + 3), three(B::kRow1 + 6), three(B::kReach),
+          three(B::kLength), three(B::kSlope), at(B::kLimit),       at(B::kSteep)};
+}
+
+/// Words whose top bit is set where points cannot be in a cell and near its surface.
+/// @param distance  metres: of all that may be there from the points
+inline vec_uint4 surely_far(const Bounds4& cell, const Vector3x4& point, vec_float4 distance) {
+  const Vector3x4 d = difference(point, cell.middle);
+  const auto beyond = [&](const Vector3x4& row, vec_float4 reach, vec_float4 length)
+      __attribute__((always_inline)) {
+    return less(spu_madd(length, distance, reach), absolute(dot(row, d)));
+  };
+  return spu_or(
+      spu_or(beyond(cell.row1, cell.reach.x, cell.length.x), beyond(cell.row2, cell.reach.y, cell.length.y)),
+      spu_or(beyond(cell.row3, cell.reach.z, cell.length.z),
+             less(spu_madd(cell.steep, distance, cell.limit), dot(cell.slope, d))));
+}
+
+/// Those near cells that may hold a point of a region, ascending, to ls.meets.
+/// @param margin  metres, in all lanes
+uint32_t gather_meeting(const Region& region, vec_float4 margin, const NearCells& near) {
+  const vec_float4 distance = spu_add(region.radius, margin);
   uint32_t count = 0;
   for (uint32_t i = 0; i < near.count; i += 4) {
     const auto at = [&](uint32_t k) __attribute__((always_inline)) {
       return *reinterpret_cast<const vec_float4*>(near.box[k] + i);
     };
-    uint32_t left = lanes_left(apart(box, at(0), at(1), at(2), at(3), at(4), at(5)));
+    const vec_uint4 far = apart(region.box, at(0), at(1), at(2), at(3), at(4), at(5));
+    if (lanes_left(far) == 0) continue;
+    const Bounds4 cells = bounds_at([&](uint32_t k) __attribute__((always_inline)) {
+      return *reinterpret_cast<const vec_float4*>(ls.bounds.row[k] + i);
+    });
+    uint32_t left = lanes_left(spu_or(far, surely_far(cells, region.middle, distance)));
     while (left != 0) ls.meets[count++] = static_cast<uint16_t>(i + take_lane(left));
   }
   return count;
@@ -232,101 +328,110 @@ bool belong_together(const CellAtRest& a, const CellAtRest& b) {
   return square <= kFindApart * kFindApart;
 }
 
-/// The points of one body in another.
-class Direction {
- public:
-  Direction(const BodyInStore& mine, const BodyInStore& other, const NearCells& near_mine,
-            const NearCells& near_other, bool swap, const TaskTerms& terms)
-      : mine_(mine),
-        other_(other),
-        near_mine_(near_mine),
-        near_other_(near_other),
-        swap_(swap),
-        terms_(terms),
-        least_volume_(0x1.0624dep-10f * other.spacing * other.spacing * other.spacing) {}  // 1e-3
+/// Two bodies as a Direction sees them: whose points, in whose cells.
+struct Sides {
+  const BodyInStore& mine;
+  const BodyInStore& other;
+  bool swap;  // contacts are as seen from `other`
+  float least_volume;
+  vec_float4 per_spacing;  // of the other
 
-  /// @return  false: there is no room
+  Sides(const BodyInStore& my, const BodyInStore& its, bool seen_from_other)
+      : mine(my),
+        other(its),
+        swap(seen_from_other),
+        least_volume(0x1.0624dep-10f * its.spacing * its.spacing * its.spacing),  // 1e-3
+        per_spacing(reciprocal(spu_splats(its.spacing))) {}
+};
+
+/// Inverses are of another body from now on.
+void forget_inverses() {
+  const vec_ushort8 nobody = spu_splats(kNoCell);
+  for (uint32_t i = 0; i < kInverses; i += 8) *reinterpret_cast<vec_ushort8*>(ls.inverse_of + i) = nobody;
+}
+
+const RoughInverse& inverse_of(const Sides& sides, uint32_t cell) {
+  const uint32_t place = cell % kInverses;
+  if (ls.inverse_of[place] != cell) {
+    const CellAtRest& at_rest = sides.other.cells[cell];
+    // In two steps: of a result that a function writes where it belongs, the checker hears nothing.
+    const RoughInverse inverse = rough_inverse(deformed_cell(at_rest.corner, sides.other.ends), at_rest.least,
+                                               sides.least_volume, kNearInField);
+    ls.inverse[place] = inverse;
+    ls.inverse_of[place] = static_cast<uint16_t>(cell);
+  }
+  return ls.inverse[place];
+}
+
+/// Four points of a cell at the step's end.
+struct FourPoints {
+  Vector3x4 s, end;
+  vec_float4 allowance;  // metres
+  vec_float4 allowance_in_cells;
+  vec_uint4 done;  // top bit set: found in a cell, or no point
+};
+
+inline void place_points(const Sides& sides, const CellMap& map, uint32_t number, FourPoints& four) {
+  const vec_float4* const group = sides.mine.groups + number * 4;
+  four.s = {group[0], group[1], group[2]};
+  four.end = map_points(map, four.s).position;
+  four.allowance = group[3];
+  four.allowance_in_cells = spu_mul(group[3], sides.per_spacing);
+  four.done = less(spu_splats(0.5f * kFindNoPoint), group[3]);
+}
+
+/// Contacts of candidates.
+class Contacts {
+ public:
+  Contacts(const BodyInStore& a, const BodyInStore& b, const TaskTerms& terms)
+      : a_in_b_(a, b, false), b_in_a_(b, a, true), terms_(terms) {}
+
+  /// Those in ls.candidates. @return  false: there is no room
   bool find() {
-    for (uint32_t i = 0; i < near_other_.count; ++i) ls.has_inverse[i] = false;
-    for (uint32_t i = 0; i < near_mine_.count; ++i) {
-      const uint32_t cell = near_mine_.cell[i];
-      if (spu_extract(mine_.cells[cell].place, 5) == 0) continue;  // no points in it
-      const auto all = [&](uint32_t k) __attribute__((always_inline)) {
-        return spu_splats(near_mine_.box[k][i]);
-      };
-      const uint32_t meets =
-          gather_meeting({{all(0), all(1), all(2)}, {all(3), all(4), all(5)}}, near_other_);
-      if (meets != 0 && !try_cell(cell, meets)) return false;
+    const Sides* now = nullptr;  // whose inverses are there
+    for (uint32_t i = 0; i < ls.candidate_count;) {
+      const bool of_b = (ls.candidates[i].of_groups & kFindOfB) != 0;
+      const Sides& sides = of_b ? b_in_a_ : a_in_b_;
+      if (now != &sides) forget_inverses();
+      now = &sides;
+      if (!find_of_cell(sides, i)) return false;
     }
     return true;
   }
 
  private:
-  const RoughInverse& inverse_of(uint32_t near_index) {
-    if (!ls.has_inverse[near_index]) {
-      const CellAtRest& cell = other_.cells[near_other_.cell[near_index]];
-      ls.inverse[near_index] =
-          rough_inverse(deformed_cell(cell.corner, other_.ends), cell.least, least_volume_, kNearInField);
-      ls.has_inverse[near_index] = true;
-    }
-    return ls.inverse[near_index];
-  }
-
-  /// Four points of a cell at the step's end.
-  struct FourPoints {
-    Vector3x4 s, end;
-    vec_float4 allowance;  // metres
-    vec_float4 allowance_in_cells;
-    vec_uint4 done;  // top bit set: found in a cell, or no point
-  };
-
-  bool try_cell(uint32_t cell, uint32_t meets) {
-    const CellAtRest& own = mine_.cells[cell];
-    uint32_t first = static_cast<uint32_t>(spu_extract(own.place, 4)) & 0xFFFFu;
-    const uint32_t end = first + (static_cast<uint32_t>(spu_extract(own.place, 5)) & 0xFFFFu);
-    const CellMap map = in_all_lanes(deformed_cell(own.corner, mine_.ends));
-    const vec_float4 per_spacing = reciprocal(spu_splats(other_.spacing));
-    constexpr uint32_t kGroups = 4;
+  /// All of the same four groups. @param i  the first of them; becomes the first one of others
+  bool find_of_cell(const Sides& sides, uint32_t& i) {
+    const FindCandidate first = ls.candidates[i];
+    const CellMap map = in_all_lanes(deformed_cell(sides.mine.cells[first.cell].corner, sides.mine.ends));
     FourPoints points[kGroups];
-    for (; first < end; first += kGroups) {
-      const uint32_t count = end - first < kGroups ? end - first : kGroups;
-      for (uint32_t i = 0; i < count; ++i) {
-        const vec_float4* const group = mine_.groups + (first + i) * 4;
-        FourPoints& four = points[i];
-        four.s = {group[0], group[1], group[2]};
-        four.end = map_points(map, four.s).position;
-        four.allowance = group[3];
-        four.allowance_in_cells = spu_mul(group[3], per_spacing);
-        four.done = less(spu_splats(0.5f * kFindNoPoint), group[3]);
+    uint32_t placed = 0;
+    for (; i < ls.candidate_count; ++i) {
+      const FindCandidate& candidate = ls.candidates[i];
+      if (candidate.first != first.first || ((candidate.of_groups ^ first.of_groups) & kFindOfB) != 0) break;
+      const RoughInverse4 inverse = in_all_lanes(inverse_of(sides, candidate.other));
+      for (uint32_t g = 0; g < kGroups; ++g) {
+        if ((candidate.of_groups >> g & 1) == 0) continue;
+        FourPoints& four = points[g];
+        if ((placed >> g & 1) == 0) place_points(sides, map, candidate.first + g, four);
+        placed |= 1u << g;
+        const Vector3x4 rough = rough_place(inverse, four.end);
+        const vec_uint4 elsewhere =
+            spu_or(four.done, surely_elsewhere(inverse, rough, four.allowance_in_cells));
+        if (lanes_left(elsewhere) != 0 && !find_in_cell(sides, candidate, inverse, four, rough, elsewhere))
+          return false;
       }
-      for (uint32_t i = 0; i < meets; ++i)
-        if (!try_points(cell, ls.meets[i], points, count)) return false;
     }
     return true;
   }
 
-  /// @return  false: there is no room
-  bool try_points(uint32_t cell, uint32_t near_index, FourPoints* points, uint32_t count) {
-    const uint32_t there = near_other_.cell[near_index];
-    if (&mine_ == &other_ && belong_together(mine_.cells[cell], other_.cells[there])) return true;
-    const RoughInverse4 inverse = in_all_lanes(inverse_of(near_index));
-    for (uint32_t i = 0; i < count; ++i) {
-      FourPoints& four = points[i];
-      const Vector3x4 rough = rough_place(inverse, four.end);
-      const vec_uint4 elsewhere =
-          spu_or(four.done, surely_elsewhere(inverse, rough, four.allowance_in_cells));
-      if (lanes_left(elsewhere) != 0 && !try_group(cell, there, inverse, four, rough, elsewhere))
-        return false;
-    }
-    return true;
-  }
-
-  __attribute__((noinline)) bool try_group(uint32_t cell, uint32_t there, const RoughInverse4& inverse,
-                                           FourPoints& four, const Vector3x4& rough, vec_uint4 elsewhere) {
-    const CellMap map = in_all_lanes(deformed_cell(other_.cells[there].corner, other_.ends));
+  __attribute__((noinline)) bool find_in_cell(const Sides& sides, const FindCandidate& candidate,
+                                              const RoughInverse4& inverse, FourPoints& four,
+                                              const Vector3x4& rough, vec_uint4 elsewhere) {
+    const BodyInStore& other = sides.other;
+    const CellMap map = in_all_lanes(deformed_cell(other.cells[candidate.other].corner, other.ends));
     const FoundPlaces places =
-        find_places(map, inverse, four.end, rough, four.allowance_in_cells, elsewhere, least_volume_);
-    ls.result.looked_at += 4;
+        find_places(map, inverse, four.end, rough, four.allowance_in_cells, elsewhere, sides.least_volume);
     const uint32_t left = lanes_left(places.elsewhere);
     if (left == 0) return true;
     four.done = spu_or(four.done, spu_andc(spu_splats(0x80000000u), places.elsewhere));
@@ -342,58 +447,243 @@ class Direction {
       if ((left & 8u >> lane) == 0) continue;
       if (ls.result.count == kFindMaxContacts) return false;
       const PointInCell point = {
-          cell,       there,       p_own[lane],
-          p_at[lane], p1[lane],    p2[lane],
-          p3[lane],   p_end[lane], spu_extract(four.allowance, static_cast<int>(lane))};
+          candidate.cell, candidate.other, p_own[lane],
+          p_at[lane],     p1[lane],        p2[lane],
+          p3[lane],       p_end[lane],     spu_extract(four.allowance, static_cast<int>(lane))};
       SolvedContact& contact = ls.contacts[ls.result.count];
-      if (!make_contact(mine_, other_, point, swap_, terms_, contact)) continue;
+      if (!make_contact(sides.mine, other, point, sides.swap, terms_, contact)) continue;
       ++ls.result.count;
       if (spu_extract(contact.terms, 2) > 0.0f) ls.result.pushes = 1;
     }
     return true;
   }
 
-  const BodyInStore& mine_;
-  const BodyInStore& other_;
-  const NearCells &near_mine_, &near_other_;
-  bool swap_;
+  Sides a_in_b_, b_in_a_;
   const TaskTerms& terms_;
-  float least_volume_;
 };
+
+/// What is known of candidates: all are in ls.candidates, or some have made room already.
+enum class Candidates { kThere, kUsed, kTooMany };
+
+/// Of four near cells to ls.bounds.
+void bound_four(const Sides& sides, const NearCells& near, uint32_t first) {
+  vec_float4 middle[4], row1[4], row2[4], row3[4], reach[4], lengths[4], slope[4];
+  for (uint32_t i = 0; i < 4; ++i) {
+    const uint32_t k = first + i < near.count ? first + i : near.count - 1;
+    const CellAtRest& at_rest = sides.other.cells[near.cell[k]];
+    const RoughInverse inverse = rough_inverse(deformed_cell(at_rest.corner, sides.other.ends), at_rest.least,
+                                               sides.least_volume, kNearInField);
+    middle[i] = inverse.middle;
+    row1[i] = only_xyz(inverse.row1);
+    row2[i] = only_xyz(inverse.row2);
+    row3[i] = only_xyz(inverse.row3);
+    const vec_float4 uphill = spu_madd(
+        splat_lane<0>(inverse.least), row1[i],
+        spu_madd(splat_lane<1>(inverse.least), row2[i], spu_mul(splat_lane<2>(inverse.least), row3[i])));
+    vec_float4 limit = spu_sub(inverse.limit, splat_lane<3>(inverse.least));
+    reach[i] = inverse.reach;
+    if (spu_extract(inverse.reach, 0) < 0.0f)  // nothing is in it now; when it is less flat, there may be
+      reach[i] = limit = spu_splats(0x1.93e594p+99f);  // 1e30
+    const vec_float4 length12 = interleave_low(length_in_all_lanes(row1[i]), length_in_all_lanes(row2[i]));
+    const vec_uchar16 two_and_one = {0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23};
+    lengths[i] = with_fourth(spu_shuffle(length12, length_in_all_lanes(row3[i]), two_and_one),
+                             length_in_all_lanes(uphill));
+    slope[i] = with_fourth(uphill, limit);
+  }
+  const auto store = [&](uint32_t row, const vec_float4* of_cells, uint32_t count)
+      __attribute__((always_inline)) {
+    const Rows4 rows = transpose(Rows4{of_cells[0], of_cells[1], of_cells[2], of_cells[3]});
+    const vec_float4* const quads = &rows.a;
+    for (uint32_t k = 0; k < count; ++k)
+      *reinterpret_cast<vec_float4*>(ls.bounds.row[row + k] + first) = quads[k];
+  };
+  using B = NearBounds;
+  store(B::kMiddle, middle, 3);
+  store(B::kRow1, row1, 3);
+  store(B::kRow1 + 3, row2, 3);
+  store(B::kRow1 + 6, row3, 3);
+  store(B::kReach, reach, 3);
+  store(B::kSlope, slope, 4);  // and kLimit
+  store(B::kLength, lengths, 3);
+  const Rows4 rows = transpose(Rows4{lengths[0], lengths[1], lengths[2], lengths[3]});
+  *reinterpret_cast<vec_float4*>(ls.bounds.row[B::kSteep] + first) = rows.d;
+}
+
+/// Candidates of one body's points in the other body.
+class Direction {
+ public:
+  /// @param contacts  finds contacts of those that make room
+  Direction(const Sides& sides, const NearCells& near_mine, const NearCells& near_other, float margin,
+            Contacts& contacts, Candidates& candidates)
+      : sides_(sides),
+        near_mine_(near_mine),
+        near_other_(near_other),
+        // Rounding must not make a difference.
+        margin_(spu_splats(margin + 0x1.a36e2ep-14f * sides.other.spacing)),  // 1e-4
+        contacts_(contacts),
+        candidates_(candidates) {}
+
+  /// @return  false: there is no room for contacts
+  bool find() {
+    for (uint32_t i = 0; i < near_other_.count; i += 4) bound_four(sides_, near_other_, i);
+    for (uint32_t i = 0; i < near_mine_.count; ++i)
+      if (!try_cell(near_mine_.cell[i])) return false;
+    return true;
+  }
+
+ private:
+  bool try_cell(uint32_t cell) {
+    const CellAtRest& own = sides_.mine.cells[cell];
+    uint32_t first = static_cast<uint32_t>(spu_extract(own.place, 4)) & 0xFFFFu;
+    const uint32_t end = first + (static_cast<uint32_t>(spu_extract(own.place, 5)) & 0xFFFFu);
+    if (first == end) return true;
+    const CellMap map = in_all_lanes(deformed_cell(own.corner, sides_.mine.ends));
+    FourPoints points[kGroups];
+    for (; first < end; first += kGroups) {
+      const uint32_t count = end - first < kGroups ? end - first : kGroups;
+      for (uint32_t i = 0; i < count; ++i) place_points(sides_, map, first + i, points[i]);
+      const uint32_t meets = gather_meeting(region_of(points, count), margin_, near_other_);
+      if (ls.candidate_count + meets > kFindMaxCandidates) {
+        candidates_ = Candidates::kUsed;
+        if (!contacts_.find()) return false;
+        ls.candidate_count = 0;
+      }
+      for (uint32_t i = 0; i < meets; ++i) try_points(cell, ls.meets[i], first, points, count);
+    }
+    return true;
+  }
+
+  /// Around all points, and the margin around the box.
+  Region region_of(const FourPoints* points, uint32_t count) const {
+    Vector3x4 low = points[0].end, high = low;
+    for (uint32_t i = 1; i < count; ++i) {
+      const Vector3x4& at = points[i].end;
+      low = {smaller(low.x, at.x), smaller(low.y, at.y), smaller(low.z, at.z)};
+      high = {larger(high.x, at.x), larger(high.y, at.y), larger(high.z, at.z)};
+    }
+    const vec_float4 zero = spu_splats(0.0f), half = spu_splats(0.5f);
+    const Rows4 lows = transpose(Rows4{low.x, low.y, low.z, zero});
+    const Rows4 highs = transpose(Rows4{high.x, high.y, high.z, zero});
+    const vec_float4 lowest = smaller(smaller(lows.a, lows.b), smaller(lows.c, lows.d));
+    const vec_float4 highest = larger(larger(highs.a, highs.b), larger(highs.c, highs.d));
+    const vec_float4 reach = spu_mul(spu_sub(highest, lowest), half);
+    Region region;
+    region.box = {in_all_lanes(spu_sub(lowest, margin_)), in_all_lanes(spu_add(highest, margin_))};
+    region.middle = in_all_lanes(spu_mul(spu_add(lowest, highest), half));
+    region.radius = length_in_all_lanes(reach);
+    return region;
+  }
+
+  void try_points(uint32_t cell, uint32_t near_index, uint32_t first, const FourPoints* points,
+                  uint32_t count) {
+    const BodyInStore &mine = sides_.mine, &other = sides_.other;
+    const uint32_t there = near_other_.cell[near_index];
+    if (&mine == &other && belong_together(mine.cells[cell], other.cells[there])) return;
+    const Bounds4 bounds = bounds_at([&](uint32_t k) __attribute__((always_inline)) {
+      return spu_splats(ls.bounds.row[k][near_index]);
+    });
+    const vec_float4 half = spu_splats(0.5f);
+    uint32_t of_groups = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      const FourPoints& four = points[i];
+      Bounds4 allowing = bounds;
+      allowing.limit = spu_nmsub(four.allowance_in_cells, half, bounds.limit);
+      const vec_uint4 far = spu_or(four.done, surely_far(allowing, four.end, margin_));
+      if (lanes_left(far) != 0) of_groups |= 1u << i;
+    }
+    if (of_groups == 0) return;
+    ls.candidates[ls.candidate_count++] = {
+        static_cast<uint16_t>(cell), static_cast<uint16_t>(there), static_cast<uint16_t>(first),
+        static_cast<uint16_t>(sides_.swap ? of_groups | kFindOfB : of_groups)};
+  }
+
+  const Sides& sides_;
+  const NearCells &near_mine_, &near_other_;
+  vec_float4 margin_;  // metres
+  Contacts& contacts_;
+  Candidates& candidates_;
+};
+
+/// To ls.candidates; contacts of those that do not fit to ls.contacts.
+/// @return  false: there is no room for contacts
+bool find_candidates(const BodyInStore& a, const BodyInStore& b, const FindTask& task, float margin,
+                     Contacts& contacts, Candidates& candidates) {
+  const vec_float4 wide = only_xyz(spu_splats(margin));
+  const vec_float4 low = spu_sub(*reinterpret_cast<const vec_float4*>(task.low), wide);
+  const vec_float4 high = spu_add(*reinterpret_cast<const vec_float4*>(task.high), wide);
+  const BoxInAllLanes box = {in_all_lanes(low), in_all_lanes(high)};
+  NearCells &near_a = ls.near[0], &near_b = ls.near[1];
+  BoxInAllLanes around_a, around_b;
+  candidates = Candidates::kTooMany;
+  if (task.itself != 0) {
+    if (!gather_near(a, {box, nullptr, 0, 0}, near_a, around_a)) return true;
+    candidates = Candidates::kThere;
+    const Sides itself(a, a, false);
+    return Direction(itself, near_a, near_a, margin, contacts, candidates).find();
+  }
+  // Between two planes across the line between their middles: only there the bodies meet.
+  const vec_float4 direction = only_xyz(spu_sub(*reinterpret_cast<const vec_float4*>(task.b.middle),
+                                                *reinterpret_cast<const vec_float4*>(task.a.middle)));
+  const Reach reach_a = widened(reach_along(a, direction, ls.along[0]), direction, margin);
+  const Reach reach_b = widened(reach_along(b, direction, ls.along[1]), direction, margin);
+  near_a.count = near_b.count = 0;
+  if (reach_b.least <= reach_a.most && reach_a.least <= reach_b.most) {
+    if (!gather_near(b, {box, ls.along[1], reach_a.least, reach_a.most}, near_b, around_b)) return true;
+    if (near_b.count != 0 &&
+        !gather_near(a, {common(box, widened(around_b, wide)), ls.along[0], reach_b.least, reach_b.most},
+                     near_a, around_a))
+      return true;
+    if (near_a.count != 0 &&
+        !gather_near(b, {common(box, widened(around_a, wide)), ls.along[1], reach_a.least, reach_a.most},
+                     near_b, around_b))
+      return true;
+  }
+  candidates = Candidates::kThere;
+  if (near_a.count == 0) return true;
+  const Sides a_in_b(a, b, false), b_in_a(b, a, true);
+  return Direction(a_in_b, near_a, near_b, margin, contacts, candidates).find() &&
+         Direction(b_in_a, near_b, near_a, margin, contacts, candidates).find();
+}
 
 /// What two bodies have to do with each other; to ls.result and ls.contacts.
 /// @return  false: there is no room
 bool find_between(const BodyInStore& a, const BodyInStore& b, const FindTask& task, const TaskTerms& terms) {
-  const vec_float4 low = *reinterpret_cast<const vec_float4*>(task.low);
-  const vec_float4 high = *reinterpret_cast<const vec_float4*>(task.high);
-  const BoxInAllLanes box = {in_all_lanes(low), in_all_lanes(high)};
-  NearCells &near_a = ls.near[0], &near_b = ls.near[1];
-  BoxInAllLanes around_a, around_b;
-  if (task.itself != 0) {
-    if (!gather_near(a, {box, nullptr, 0, 0}, near_a, around_a)) return false;
-    return Direction(a, a, near_a, near_a, false, terms).find();
+  Contacts contacts(a, b, terms);
+  ls.result.candidate_count = task.candidate_count;
+  if (task.candidate_count != kFindUnknown) {
+    ls.candidate_count = task.candidate_count;
+    return contacts.find();
   }
-  // Between two planes across the line between their middles: only there the bodies meet.
-  const vec_float4 direction = spu_sub(*reinterpret_cast<const vec_float4*>(task.b.middle),
-                                       *reinterpret_cast<const vec_float4*>(task.a.middle));
-  const Reach reach_a = reach_along(a, direction, ls.along[0]);
-  const Reach reach_b = reach_along(b, direction, ls.along[1]);
-  if (reach_b.least > reach_a.most || reach_a.least > reach_b.most) return true;
-  if (!gather_near(b, {box, ls.along[1], reach_a.least, reach_a.most}, near_b, around_b)) return false;
-  if (near_b.count == 0) return true;
-  if (!gather_near(a, {common(box, around_b), ls.along[0], reach_b.least, reach_b.most}, near_a, around_a))
-    return false;
-  if (near_a.count == 0) return true;
-  if (!gather_near(b, {common(box, around_a), ls.along[1], reach_a.least, reach_a.most}, near_b, around_b))
-    return false;
-  return Direction(a, b, near_a, near_b, false, terms).find() &&
-         Direction(b, a, near_b, near_a, true, terms).find();
+  Candidates candidates;
+  bool is_wanted = task.candidates_ea != 0;
+  ls.candidate_count = 0;
+  if (!find_candidates(a, b, task, task.margin, contacts, candidates)) return false;
+  if (candidates == Candidates::kTooMany && task.margin > 0.0f) {
+    is_wanted = false;
+    if (!find_candidates(a, b, task, 0.0f, contacts, candidates)) return false;
+  }
+  if (candidates == Candidates::kTooMany) return false;
+  if (candidates == Candidates::kThere && is_wanted) {
+    ls.result.candidate_count = ls.candidate_count;
+    if (ls.candidate_count != 0) {
+      put_large(ls.candidates, task.candidates_ea, bytes_of_candidates(ls.candidate_count), kTagOut);
+      ls.under_way |= 1u << kTagOut;
+    }
+  }
+  return contacts.find();
 }
 
 bool do_task(const FindTask& task) {
   if (find_bytes(task) > kFindMaxBytes || task.a.particle_count > kFindMaxParticles ||
       task.b.particle_count > kFindMaxParticles)
     return false;
+  const uint32_t known = task.candidate_count;
+  if (known != kFindUnknown && known != 0) {
+    if (known > kFindMaxCandidates) return false;
+    wait_for_all();  // those of the task before are gone
+    get_large(ls.candidates, task.candidates_ea, bytes_of_candidates(known), kTagIn);
+    ls.under_way |= 1u << kTagIn;
+  }
   const bool itself = task.itself != 0, one_model = task.a.cells_ea == task.b.cells_ea;
   const uint32_t state_a = find_model_bytes(task.a);
   fetch_model(ls.model[0], 0, task.a);
@@ -411,8 +701,8 @@ bool do_task(const FindTask& task) {
   const BodyInStore a = body_in_store(0, state_a, task.a);
   const BodyInStore b = itself ? a : body_in_store(one_model ? 0 : model_b, state_b, task.b);
   const TaskTerms terms = {task.step, task.inverse_step, task.friction, task.a.spacing};
-  ls.result = {0, 0, 0, 0};
-  if (!find_between(a, b, task, terms)) ls.result = {0, 0, 1, 0};
+  ls.result = {0, 0, 0, kFindUnknown};
+  if (!find_between(a, b, task, terms)) ls.result = {0, 0, 1, kFindUnknown};
   if (ls.result.count == 0) return true;
   put_large(ls.contacts, task.contacts_ea, ls.result.count * static_cast<uint32_t>(sizeof(SolvedContact)),
             kTagOut);

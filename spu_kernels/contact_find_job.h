@@ -56,33 +56,52 @@ struct FindBody {
 };
 static_assert(sizeof(FindBody) == 64, "half a line");
 
+/// Up to four groups of points of a cell, and a cell of the other body that is near them.
+struct FindCandidate {
+  uint16_t cell;       ///< whose points they are
+  uint16_t other;      ///< the other body's
+  uint16_t first;      ///< group of the four
+  uint16_t of_groups;  ///< bit i: group first + i; kFindOfB: `cell` is b's, and `other` a's
+};
+static_assert(sizeof(FindCandidate) == 8, "half a quadword");
+constexpr uint16_t kFindOfB = 0x8000;
+
 /// The points of a in b, then those of b in a; of a body with itself, its points in it. All contacts are as
 /// seen from a.
+///
+/// What may touch is found in two steps: candidates, by bounds, and contacts among them. Candidates stay the same as long as
+/// nothing in one body has moved by more than `margin` against anything in the other since they were found.
 struct alignas(128) FindTask {
-  FindBody a, b;          ///< the same in all for a body with itself
-  uint64_t contacts_ea;   ///< room for kFindMaxContacts SolveContact
-  uint64_t result_ea;     ///< a FindResult
-  float low[4], high[4];  ///< the box that both bodies' ends have in common; x y z 0
-  float step;             ///< seconds
+  FindBody a, b;           ///< the same in all for a body with itself
+  uint64_t contacts_ea;    ///< room for kFindMaxContacts SolveContact
+  uint64_t candidates_ea;  ///< room for kFindMaxCandidates FindCandidate; 0: nobody wants them
+  float low[4], high[4];   ///< the box that both bodies' ends have in common; x y z 0
+  float step;              ///< seconds
   float inverse_step;
   float friction;
   uint32_t itself;  ///< not 0: a and b are one body
-  uint32_t pad[12];
+  float margin;     ///< metres, 0 or more: of the candidates that are looked for
+  /// How many there are, from a task before, which are taken; kFindUnknown: they are looked for.
+  uint32_t candidate_count;
+  uint32_t pad[10];
 };
 static_assert(sizeof(FindTask) == 256, "two lines");
 
 struct alignas(16) FindResult {
-  uint32_t count;      ///< contacts
-  uint32_t pushes;     ///< not 0: one of them at least pushes
-  uint32_t overflow;   ///< not 0: there was no room for all that had to be looked at; then there are none
-  uint32_t looked_at;  ///< places in cells that were looked for
+  uint32_t count;     ///< contacts
+  uint32_t pushes;    ///< not 0: one of them at least pushes
+  uint32_t overflow;  ///< not 0: there was no room for all that had to be looked at; then there are none
+  /// How many there are at candidates_ea; kFindUnknown: the margin was too large, or there are more than fit.
+  uint32_t candidate_count;
 };
+constexpr uint32_t kFindUnknown = 0xFFFFFFFFu;
 
 constexpr uint32_t kFindMaxContacts = 192;  ///< of a task
 /// Most bytes of a task: of its two models, or one, and of its bodies.
 constexpr uint32_t kFindMaxBytes = 131072;
 constexpr uint32_t kFindMaxParticles = 1024;
 constexpr uint32_t kFindMaxNear = 192;  ///< cells of one body that are near another body
+constexpr uint32_t kFindMaxCandidates = 448;
 
 /// Bytes of FindBody::state_ea.
 inline uint32_t find_state_bytes(const FindBody& body) {

@@ -30,6 +30,10 @@ struct ContactRecord<spu::FindTask> {
   static constexpr dma::ElementRun kRuns[] = {{24, 8}, {40, 4}, {24, 8}, {40, 4}, {16, 8}, {112, 4}};
 };
 template <>
+struct ContactRecord<spu::FindCandidate> {
+  static constexpr dma::ElementRun kRuns[] = {{8, 2}};
+};
+template <>
 struct ContactRecord<spu::FindResult> {
   static constexpr dma::ElementRun kRuns[] = {{16, 4}};
 };

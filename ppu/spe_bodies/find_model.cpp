@@ -43,6 +43,11 @@ FindModel::FindModel(const ContactModel& model) {
       if (lane == 0) {
         spu::FindGroup& fresh = groups.emplace_back();
         std::fill(std::begin(fresh.allowance), std::end(fresh.allowance), spu::kFindNoPoint);
+        // Lanes without a point are where the first one is: the region around all of them is no larger.
+        const Eigen::Vector3f s = model.touch_points[i].xi.array() - 0.5f;
+        std::fill(std::begin(fresh.along_x), std::end(fresh.along_x), s.x());
+        std::fill(std::begin(fresh.along_y), std::end(fresh.along_y), s.y());
+        std::fill(std::begin(fresh.along_z), std::end(fresh.along_z), s.z());
       }
       const TouchPoint& point = model.touch_points[i];
       spu::FindGroup& group = groups.back();

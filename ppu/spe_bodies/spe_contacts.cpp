@@ -77,27 +77,38 @@ const SpeContacts::Model* SpeContacts::model_of(const ContactModel& contact) {
   return model.get();
 }
 
+/// Of all bodies. @return  whether they are the same bodies as before, as far as memory is concerned
+bool SpeContacts::find_places(std::size_t& state, std::size_t& velocities) {
+  bool same = places_.size() == bodies_.size();
+  places_.resize(bodies_.size());
+  std::size_t all_particles = 0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Model* const model = model_of(*bodies_[i].model);
+    same = same && places_[i].model == model;
+    places_[i] = {model, state, velocities, all_particles};
+    if (model == nullptr) continue;
+    const std::size_t particles = bodies_[i].ends.size();
+    all_particles += particles;
+    state += (model->cells.size() + 3) / 4 * kQuadsOfBoxes + 2 * particles;
+    velocities += spu::solve_slots(static_cast<std::uint32_t>(particles)) + particles;
+  }
+  return same;
+}
+
 void SpeContacts::begin(std::span<const ContactBody> bodies, float step) {
   bodies_ = bodies;
   step_ = step;
   room_ = used_ = 0;
-  places_.resize(bodies.size());
   end_boxes_.resize(bodies.size());
-  std::size_t state = 0, velocities = 0, all_particles = 0;
+  std::size_t state = 0, velocities = 0;
+  const bool same = find_places(state, velocities);
   started_.clear();
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    places_[i] = {model_of(*bodies[i].model), state, velocities, all_particles};
-    if (places_[i].model == nullptr) continue;
-    const std::size_t cells = places_[i].model->cells.size(), particles = bodies[i].ends.size();
-    all_particles += particles;
-    state += (cells + 3) / 4 * kQuadsOfBoxes + 2 * particles;
-    velocities += spu::solve_slots(static_cast<std::uint32_t>(particles)) + particles;
-  }
   make_room(memory_, "bodies in contact", state_, state);
   make_room(memory_, "velocities in contact", velocities_, velocities);
+  if (!same) pairs_.clear(bodies.size());
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (!holds(i)) continue;
-    write_particles(i);
+    write_particles(i, same);
     write_boxes(i);
   }
 }
@@ -106,17 +117,25 @@ std::size_t SpeContacts::ends_of(std::uint32_t body) const {
   return places_[body].state + (places_[body].model->cells.size() + 3) / 4 * kQuadsOfBoxes;
 }
 
-void SpeContacts::write_particles(std::uint32_t i) {
+/// @param was_there  in the step before, at the same place: then its way is known
+void SpeContacts::write_particles(std::uint32_t i, bool was_there) {
   const ContactBody& body = bodies_[i];
   const Model& model = *places_[i].model;
   const std::size_t count = body.ends.size();
   spu::FindEnd* const ends = state_.data() + ends_of(i);
   auto* const begins = reinterpret_cast<spu::FindBegin*>(ends + count);
+  using Row = Eigen::Array4f;
+  Row least = Row::Constant(std::numeric_limits<float>::max()), most = -least;
   for (std::size_t p = 0; p < count; ++p) {
     const Vector3f &x = body.positions[p], &end = body.ends[p];
     begins[p] = {x.x(), x.y(), x.z(), body.asleep ? 0.0f : model.inverse_root_masses[p]};
-    ends[p] = {end.x(), end.y(), end.z(), 0};
+    const Row now(end.x(), end.y(), end.z(), 0);
+    auto before = Row::Map(&ends[p].x);
+    least = least.min(now - before);
+    most = most.max(now - before);
+    before = now;
   }
+  if (was_there) pairs_.add_way(i, least.head<3>(), most.head<3>());
   spu::SolveVelocity* const start = velocities_.data() + start_of(i);
   for (std::size_t p = 0; p < count; ++p)
     start[p] = times(model.root_masses[p], body.velocities[p], model.root_masses[p]);
@@ -180,12 +199,15 @@ spu::FindTask SpeContacts::find_task(std::uint32_t a, std::uint32_t b) {
   task.inverse_step = 1 / step_;
   task.friction = bodies_[a].friction * bodies_[b].friction;
   task.itself = a == b ? 1 : 0;
+  task.candidate_count = spu::kFindUnknown;
   return task;
 }
 
 void SpeContacts::find(std::span<const Pair> pairs) {
   tasks_.clear();
   task_of_.clear();
+  known_of_task_.clear();
+  pairs_.begin_step();
   for (const auto& [a, b] : pairs) {
     // What two bodies have in common at the end is less than what they have on their ways.
     if (!(end_boxes_[a].low.array() <= end_boxes_[b].high.array()).all() ||
@@ -193,20 +215,34 @@ void SpeContacts::find(std::span<const Pair> pairs) {
       task_of_.push_back(kNoTask);
       continue;
     }
-    const spu::FindTask task = find_task(a, b);
+    spu::FindTask task = find_task(a, b);
     if (spu::find_bytes(task) > spu::kFindMaxBytes || tasks_.size() == kMostPairs) {
       task_of_.push_back(kByCaller);
       continue;
     }
+    const CandidatePairs::Known& known =
+        pairs_.of({a, b}, std::min(bodies_[a].spacing(), bodies_[b].spacing()));
+    if (known.count == 0) {
+      task_of_.push_back(kNoTask);
+      continue;
+    }
+    task.margin = known.margin;
+    task.candidate_count = known.count;
+    known_of_task_.push_back(static_cast<std::uint32_t>(pairs_.known().size() - 1));
     task_of_.push_back(static_cast<std::uint32_t>(tasks_.size()));
     tasks_.push_back(task);
   }
+  pairs_.end_step();
   const std::size_t tasks = tasks_.size();
+  make_room_for_candidates();
   make_room(memory_, "contacts found", contacts_, tasks * spu::kFindMaxContacts);
   make_room(memory_, "tasks of finding contacts", find_tasks_, tasks);
   make_room(memory_, "results of finding contacts", results_, tasks);
   for (std::size_t i = 0; i < tasks; ++i) {
+    const CandidatePairs::Known& known = pairs_.known()[known_of_task_[i]];
     tasks_[i].contacts_ea = contacts_.ea(i * spu::kFindMaxContacts).value;
+    if (known.margin > 0)
+      tasks_[i].candidates_ea = candidates_.ea(known.slot * std::size_t{spu::kFindMaxCandidates}).value;
     find_tasks_[i] = tasks_[i];
   }
   const std::size_t most_jobs = kJobsPerSpe * static_cast<std::size_t>(jobs_.spes());
@@ -225,11 +261,22 @@ void SpeContacts::find(std::span<const Pair> pairs) {
   if (job_count != 0) finding_->kick();
 }
 
+/// What is in them stays.
+void SpeContacts::make_room_for_candidates() {
+  const std::size_t count = pairs_.slots() * spu::kFindMaxCandidates;
+  if (count <= candidates_.size()) return;
+  auto more = contact_buffer<spu::FindCandidate>(memory_, "candidates of contacts", count + count / 4);
+  std::copy(candidates_.span().begin(), candidates_.span().end(), more.span().begin());
+  candidates_ = std::move(more);
+}
+
 std::span<const FoundContacts> SpeContacts::found() {
   if (finding_->size() != 0) {
     finding_->wait();
     check_jobs(*finding_);
   }
+  for (std::size_t i = 0; i < tasks_.size(); ++i)
+    pairs_.known()[known_of_task_[i]].count = results_[i].candidate_count;
   found_.clear();
   for (const std::uint32_t number : task_of_) {
     FoundContacts& found = found_.emplace_back();

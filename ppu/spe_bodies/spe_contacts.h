@@ -14,6 +14,7 @@
 #include "contact_find_job.h"
 #include "contact_solve_job.h"
 #include "ppu/contacts/contact_worker.h"
+#include "ppu/spe_bodies/candidate_pairs.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 
@@ -56,9 +57,11 @@ class SpeContacts final : public ContactWorker {
   /// Where its SolveTask::start_ea begins in velocities_, and its ends in state_.
   std::size_t start_of(std::uint32_t body) const;
   std::size_t ends_of(std::uint32_t body) const;
+  bool find_places(std::size_t& state, std::size_t& velocities);
   void write_boxes(std::uint32_t body);
-  void write_particles(std::uint32_t body);
+  void write_particles(std::uint32_t body, bool was_there);
   spu::FindBody find_body(std::uint32_t body);
+  void make_room_for_candidates();
   spu::FindTask find_task(std::uint32_t a, std::uint32_t b);
   dma::EffectiveAddress ea_of(const spu::SolveContact* contact) const;
   spu::SolveTask solve_task(const SolveGroup& group, std::uint32_t iterations);
@@ -72,19 +75,22 @@ class SpeContacts final : public ContactWorker {
   float step_ = 0;
   std::vector<Place> places_;
   std::vector<Bounds<3>> end_boxes_;  // of each body
+  CandidatePairs pairs_;
 
   dma::Buffer<spu::FindEnd> state_;             // FindBody::state_ea of each body
   dma::Buffer<spu::SolveVelocity> velocities_;  // of each body: changes, pushes, and the start
   std::vector<Eigen::Vector3f> started_;        // of all bodies: velocities at begin()
 
   dma::Buffer<spu::FindTask> find_tasks_;
+  dma::Buffer<spu::FindCandidate> candidates_;  // kFindMaxCandidates for each of pairs_.slots()
   dma::Buffer<spu::FindResult> results_;
   dma::Buffer<spu::FindJob> find_jobs_;
   dma::Buffer<spu::SolveContact> contacts_;            // kFindMaxContacts for each pair
   std::vector<dma::Buffer<spu::SolveContact>> rooms_;  // for contacts that others have found
   std::size_t room_ = 0, used_ = 0;                    // the one that is being filled, and how far
   std::vector<spu::FindTask> tasks_;
-  std::vector<std::uint32_t> task_of_;  // of each pair
+  std::vector<std::uint32_t> task_of_;        // of each pair
+  std::vector<std::uint32_t> known_of_task_;  // which of pairs_.known() a task is about
   std::vector<FoundContacts> found_;
 
   dma::Buffer<spu::SolveTask> solve_tasks_;

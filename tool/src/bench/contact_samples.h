@@ -86,6 +86,7 @@ inline void run_contacts(SampleRun& sample, bool solves) {
   std::fill_n(task[0].low, 3, -2.0f);
   std::fill_n(task[0].high, 3, 2.0f);
   task[0].contacts_ea = contacts.ea().value;
+  task[0].candidate_count = spu::kFindUnknown;
   task[0].step = 0.01f;
   task[0].inverse_step = 100;
   auto result = ppu::contact_buffer<spu::FindResult>(sample.memory(), "result", 1);
