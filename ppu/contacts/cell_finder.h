@@ -40,6 +40,32 @@ class CellFinder {
     return {};
   }
 
+  /// Calls work(cell) for each cell whose box has a point in common with `box`: for some of them several times.
+  template <typename Work>
+  void for_each_cell_near(const Bounds<3>& box, const Work& work) const {
+    const auto cube_of = [&](const Eigen::Vector3f& point) -> Eigen::Vector3i {
+      const Eigen::Vector3f last = (counts_.array() - 1).matrix().cast<float>();
+      return ((point - low_) * per_cube_)
+          .cwiseMax(-1.0f)
+          .cwiseMin(last + Eigen::Vector3f::Ones())
+          .array()
+          .floor()
+          .cast<int>();
+    };
+    const Eigen::Vector3i first = cube_of(box.low).cwiseMax(0);
+    const Eigen::Vector3i last = cube_of(box.high).cwiseMin((counts_.array() - 1).matrix());
+    for (int z = first.z(); z <= last.z(); ++z)
+      for (int y = first.y(); y <= last.y(); ++y)
+        for (int x = first.x(); x <= last.x(); ++x) {
+          const auto index = static_cast<std::size_t>((z * counts_.y() + y) * counts_.x() + x);
+          for (std::uint32_t i = begin_[index]; i < begin_[index + 1]; ++i) {
+            const Box& cell = boxes_[cells_[i]];
+            if ((box.low.array() <= cell.high.array()).all() && (cell.low.array() <= box.high.array()).all())
+              work(cells_[i]);
+          }
+        }
+  }
+
  private:
   struct Box {
     Eigen::Vector3f low, high;

@@ -52,16 +52,6 @@ Anchor anchor_in_cell(const Lattice<3>& lattice, std::uint32_t cell, const Eigen
   return anchor;
 }
 
-Bounds<3> ContactBody::box_of_cell(std::uint32_t cell) const {
-  const auto& corners = lattice().corners[cell];
-  Bounds<3> around{positions[corners[0]], positions[corners[0]]};
-  for (const std::uint32_t k : corners) {
-    around.low = around.low.cwiseMin(positions[k]).cwiseMin(ends[k]);
-    around.high = around.high.cwiseMax(positions[k]).cwiseMax(ends[k]);
-  }
-  return around;
-}
-
 /// Any rotation proves it; this one is made of the directions into which the cells' edges point on average.
 bool may_be_folded(const ContactBody& body, float most) {
   using Eigen::Vector3f;

@@ -85,7 +85,6 @@ struct ContactBody {
 
   float spacing() const { return model->model->lattice().spacing; }
   const Lattice<3>& lattice() const { return model->model->lattice(); }
-  Bounds<3> box_of_cell(std::uint32_t cell) const;  ///< around its corners' positions and ends
 };
 
 }  // namespace softcell::ppu

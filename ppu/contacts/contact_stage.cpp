@@ -105,10 +105,10 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
 
 /// Points of both bodies.
 void ContactStage::find_here(Group& group, float step) {
-  find_contacts(bodies_[group.a], bodies_[group.b], cells_[group.b], step, group.contacts);
+  find_contacts(bodies_[group.a], cells_[group.a], bodies_[group.b], cells_[group.b], step, group.contacts);
   if (group.a == group.b) return;
   other_way_.clear();
-  find_contacts(bodies_[group.b], bodies_[group.a], cells_[group.a], step, other_way_);
+  find_contacts(bodies_[group.b], cells_[group.b], bodies_[group.a], cells_[group.a], step, other_way_);
   for (SoftContact& contact : other_way_) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;

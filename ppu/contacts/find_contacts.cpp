@@ -101,20 +101,15 @@ class ObstacleContacts {
     const Vector3f margin = Vector3f::Constant(reach);
     const Bounds<3> box = bounds(obstacle_);
     const Vector3f low = box.low - margin, high = box.high + margin;
-    const ContactModel& model = *body_.model;
-    for (std::uint32_t cell = 0; cell + 1 < model.first_of_cell.size(); ++cell) {
-      if (model.first_of_cell[cell] == model.first_of_cell[cell + 1]) continue;
-      if (!overlap(body_.box_of_cell(cell), {low, high})) continue;
-      for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
-        const TouchPoint& point = model.touch_points[i];
-        const Vector3f from = point.anchor.of(body_.positions), to = point.anchor.of(body_.ends);
-        if ((from.cwiseMax(to).array() < low.array()).any() ||
-            (from.cwiseMin(to).array() > high.array()).any())
-          continue;
-        try_point(point, from, to);
-      }
-    }
-    for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge);
+    near_ = {low, high};
+    if (obstacle_.kind == ObstacleKind::kTriangles) return find_with_triangles(reach);
+    cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
+      for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+        if (const auto hit = meet(obstacle_, way_of(from, to), point.allowance, body_.spacing()))
+          add(point.anchor, to, *hit);
+      });
+    });
+    for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge, reach);
   }
 
  private:
@@ -125,18 +120,86 @@ class ObstacleContacts {
     return (box.low - rigid_.centre).cwiseAbs().cwiseMax((box.high - rigid_.centre).cwiseAbs()).norm();
   }
 
-  void try_point(const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
-    const Vector3f carried = step_ * rigid_.velocity_at(to);
-    const Way way{obstacle_.to_own(from), obstacle_.to_own(to - carried)};
-    if (obstacle_.kind == ObstacleKind::kTriangles) {
-      if (point.allowance > 0) return;  // it may be on either side
-      for (const auto& triangle : obstacle_.triangles)
-        if (const auto hit = meet_triangle(triangle, obstacle_.rounding, way, kNear * body_.spacing(),
-                                           kPressedThrough * body_.spacing()))
-          add(point.anchor, to, *hit);
-    } else if (const auto hit = meet(obstacle_, way, point.allowance, body_.spacing())) {
-      add(point.anchor, to, *hit);
+  /// Calls work(point, from, to) for a cell's points that pass what is near the obstacle.
+  template <typename Work>
+  void for_each_point_near(std::uint32_t cell, const Work& work) const {
+    const ContactModel& model = *body_.model;
+    for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
+      const TouchPoint& point = model.touch_points[i];
+      const Vector3f from = point.anchor.of(body_.positions), to = point.anchor.of(body_.ends);
+      if ((from.cwiseMax(to).array() < near_.low.array()).any() ||
+          (from.cwiseMin(to).array() > near_.high.array()).any())
+        continue;
+      work(point, from, to);
     }
+  }
+
+  Way way_of(const Vector3f& from, const Vector3f& to) const {
+    const Vector3f carried = step_ * rigid_.velocity_at(to);
+    return {obstacle_.to_own(from), obstacle_.to_own(to - carried)};
+  }
+
+  /// Points meet the triangles near their cell only.
+  void find_with_triangles(float reach) {
+    find_triangles_near_cells(reach);
+    const std::vector<CellAndTriangle>& near = cells_.triangles;
+    for (std::size_t i = 0, end; i < near.size(); i = end) {
+      const std::uint32_t cell = near[i].cell;
+      for (end = i; end < near.size() && near[end].cell == cell;) ++end;
+      for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+        if (point.allowance > 0) return;  // it may be on either side
+        for (std::size_t t = i; t < end; ++t)
+          if (const auto hit =
+                  meet_triangle(obstacle_.triangles[near[t].triangle], obstacle_.rounding, way_of(from, to),
+                                kNear * body_.spacing(), kPressedThrough * body_.spacing()))
+            add(point.anchor, to, *hit);
+      });
+    }
+    try_edges_of_triangles(reach);
+  }
+
+  /// Of triangles near cells. The ends of short edges belong to many of them: each is looked up once.
+  void try_edges_of_triangles(float reach) {
+    cells_.corners.clear();
+    for (const std::uint32_t triangle : cells_.triangles_near_any) {
+      for (const ObstacleEdge& edge : obstacle_.edges.subspan(3 * std::size_t{triangle}, 3)) {
+        if ((edge.to - edge.from).norm() > kEdgeSpacing * body_.spacing()) {
+          try_edge(edge, reach);
+          continue;
+        }
+        for (const Vector3f& end : {edge.from, edge.to})
+          cells_.corners.push_back({end.x(), end.y(), end.z()});
+      }
+    }
+    std::sort(cells_.corners.begin(), cells_.corners.end());
+    const auto last = std::unique(cells_.corners.begin(), cells_.corners.end());
+    for (auto corner = cells_.corners.begin(); corner != last; ++corner)
+      try_corner(obstacle_.to_world({(*corner)[0], (*corner)[1], (*corner)[2]}));
+  }
+
+  /// To cells_.triangles, ascending by cells, then by triangles.
+  void find_triangles_near_cells(float reach) {
+    cells_.triangles.clear();
+    cells_.triangles_near_any.clear();
+    // Triangles are held against cells at the substep's end, so they have to be as much larger as anything moves until then.
+    Eigen::Array3f farthest = Eigen::Array3f::Zero();
+    for (std::size_t i = 0; i < body_.ends.size(); ++i)
+      farthest = farthest.max((body_.ends[i] - body_.positions[i]).array().abs());
+    const Vector3f margin = farthest.matrix() + Vector3f::Constant(reach + obstacle_.rounding);
+    for (std::uint32_t t = 0; t < obstacle_.triangles.size(); ++t) {
+      const auto& own = obstacle_.triangles[t];
+      const Vector3f a = obstacle_.to_world(own[0]), b = obstacle_.to_world(own[1]),
+                     c = obstacle_.to_world(own[2]);
+      const Bounds<3> box{a.cwiseMin(b).cwiseMin(c) - margin, a.cwiseMax(b).cwiseMax(c) + margin};
+      const std::size_t before = cells_.triangles.size();
+      cells_.finder().for_each_cell_near(box, [&](std::uint32_t cell) {
+        cells_.triangles.push_back({cell, t});
+      });
+      if (cells_.triangles.size() != before) cells_.triangles_near_any.push_back(t);
+    }
+    std::sort(cells_.triangles.begin(), cells_.triangles.end());
+    cells_.triangles.erase(std::unique(cells_.triangles.begin(), cells_.triangles.end()),
+                           cells_.triangles.end());
   }
 
   void add(const Anchor& anchor, const Vector3f& point, const Hit& hit) {
@@ -150,9 +213,13 @@ class ObstacleContacts {
   }
 
   /// Points of the edge that are in the body: it has to give way there.
-  void try_edge(const ObstacleEdge& edge) {
+  void try_edge(const ObstacleEdge& edge, float reach) {
     const Vector3f from = obstacle_.rotation * edge.from + obstacle_.position;
     const Vector3f along = obstacle_.rotation * (edge.to - edge.from);
+    const auto [first, last] = way_in_box(body_.box, from, along);
+    if (first > last) return;
+    const Vector3f a = from + first * along, b = from + last * along, margin = Vector3f::Constant(2 * reach);
+    if (!cells_.boxes().any_meets({a.cwiseMin(b) - margin, a.cwiseMax(b) + margin})) return;
     for_each_point_of_edge(from, along, body_.box, kEdgeSpacing * body_.spacing(),
                            [&](const Vector3f& point) { try_corner(point); });
   }
@@ -182,6 +249,7 @@ class ObstacleContacts {
   float friction_;
   float step_;
   std::vector<SoftContact>& contacts_;
+  Bounds<3> near_{};  // around the obstacle, as far as anything that moves may come from
 };
 
 }  // namespace
@@ -213,8 +281,8 @@ bool may_touch_itself(const ContactBody& body) {
   return may_be_folded(body, 0.5f * (kApartAtRest - 0.9f) * body.spacing());
 }
 
-void find_contacts(const ContactBody& a, const ContactBody& b, EndCells& cells_of_b, float step,
-                   std::vector<SoftContact>& contacts) {
+void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody& b, EndCells& cells_of_b,
+                   float step, std::vector<SoftContact>& contacts) {
   const float friction = a.friction * b.friction;
   const Lattice<3>& lattice_b = b.lattice();
   const bool itself = &a == &b;
@@ -243,12 +311,10 @@ void find_contacts(const ContactBody& a, const ContactBody& b, EndCells& cells_o
     const Vector3f v = contact.a.of(a.velocities) - contact.b.of(b.velocities);
     complete(contact, distance, contact.normal.dot(v), friction, step);
   };
-  for (std::uint32_t cell = 0; cell + 1 < model.first_of_cell.size(); ++cell) {
-    if (model.first_of_cell[cell] == model.first_of_cell[cell + 1]) continue;
-    if (!overlap(a.box_of_cell(cell), b.box)) continue;
+  cells_of_a.boxes().for_each_meeting(b.box, [&](std::uint32_t cell) {
     for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i)
       try_point(cell, model.touch_points[i]);
-  }
+  });
 }
 
 }  // namespace softcell::ppu

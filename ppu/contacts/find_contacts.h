@@ -1,28 +1,49 @@
 #pragma once
 // Where bodies would enter something in the coming substep.
 
+#include <array>
+#include <compare>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "ppu/contacts/cell_boxes.h"
 #include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_group.h"
 
 namespace softcell::ppu {
 
+/// A triangle of an obstacle that is near a cell.
+struct CellAndTriangle {
+  std::uint32_t cell = 0, triangle = 0;
+  auto operator<=>(const CellAndTriangle&) const = default;
+};
+
 /// The cells of where a body will be, placed when somebody asks: most bodies need none.
 class EndCells {
  public:
-  void begin(const ContactBody& body) { body_ = &body, is_placed_ = false; }
+  void begin(const ContactBody& body) { body_ = &body, is_placed_ = has_boxes_ = false; }
   const CellFinder& finder() {
     if (!is_placed_) finder_.place(body_->lattice(), body_->ends);
     is_placed_ = true;
     return finder_;
   }
+  /// Around cells on their ways to where they will be.
+  const CellBoxes& boxes() {
+    if (!has_boxes_) boxes_.place(body_->lattice(), body_->positions, body_->ends);
+    has_boxes_ = true;
+    return boxes_;
+  }
+  // For those who look for contacts with triangles, again and again without allocating.
+  std::vector<CellAndTriangle> triangles;
+  std::vector<std::uint32_t> triangles_near_any;
+  std::vector<std::array<float, 3>> corners;
 
  private:
   const ContactBody* body_ = nullptr;
   CellFinder finder_;
-  bool is_placed_ = false;
+  CellBoxes boxes_;
+  bool is_placed_ = false, has_boxes_ = false;
 };
 
 /// Points of the body's surface, and its particles, in an obstacle, and the obstacle's edges in the body.
@@ -33,8 +54,9 @@ void find_contacts(const ContactBody& body, EndCells& cells, const Obstacle& obs
                    std::span<const ContactRigid> rigids, float step, std::vector<SoftContact>& contacts);
 
 /// Points of a's surface in b. Appends to `contacts`, as seen from a.
-void find_contacts(const ContactBody& a, const ContactBody& b, EndCells& cells_of_b, float step,
-                   std::vector<SoftContact>& contacts);
+/// @param cells_of_a, cells_of_b  the bodies'
+void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody& b, EndCells& cells_of_b,
+                   float step, std::vector<SoftContact>& contacts);
 
 /// Whether a body may touch itself. Else it need not be asked for.
 bool may_touch_itself(const ContactBody& body);

@@ -52,9 +52,9 @@ std::vector<SoftContact> found_by_ppu(const ContactBody& a, const ContactBody& b
   EndCells cells_a, cells_b;
   cells_a.begin(a), cells_b.begin(b);
   std::vector<SoftContact> contacts, other_way;
-  find_contacts(a, b, cells_b, kStep, contacts);
+  find_contacts(a, cells_a, b, cells_b, kStep, contacts);
   if (&a == &b) return contacts;
-  find_contacts(b, a, cells_a, kStep, other_way);
+  find_contacts(b, cells_b, a, cells_a, kStep, other_way);
   for (SoftContact& contact : other_way) {
     contact.normal = -contact.normal;
     std::swap(contact.a, contact.b);

@@ -11,9 +11,12 @@
 
 #include "benchmarks.h"
 #include "ppu/bullet/bullet_vector.h"
+#include "ppu/bullet/bullet_world.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/base/assert.h"
+#include "softcell/bullet/bullet_soft_bodies.h"
+#include "softcell/spe_bodies/spe_runtime.h"
 
 // Behind the others.
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
@@ -39,7 +42,7 @@ struct ContactCase {
 };
 
 // In `fall` penguins fall through bars, in `rest` four bodies lie side by side, in `pile` twenty in a heap, in `self` a long
-// body lies on itself.
+// body lies on itself; in `mesh` and `coarse_mesh` a body lies on triangles.
 constexpr ContactCase kCases[] = {{"fall", "penguins", 150, 60, 120},
                                   {"rest", "pile", 4, 120, 240},
                                   {"pile", "pile", 20, 120, 240},
@@ -107,6 +110,7 @@ class BulletFrames final : public Frames {
       world_.stepSimulation(kFrameSeconds / static_cast<float>(substeps_), 0);
   }
   std::size_t particles() const override { return nodes_; }
+  btDynamicsWorld& world() { return world_; }
 
  private:
   void add_rigid(std::unique_ptr<btCollisionShape> shape, float mass, const Eigen::Vector3f& position,
@@ -162,6 +166,90 @@ std::chrono::nanoseconds processor_time_of_all_threads() {
   return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
 }
 
+/// A floor of triangles, some 0.6 m x 0.6 m of which are near a body.
+class TriangleFloor {
+ public:
+  /// @param edge  metres, of the squares that two triangles make
+  explicit TriangleFloor(float edge) {
+    constexpr float kHalf = 1.2f;  // metres
+    const int count = static_cast<int>(2 * kHalf / edge);
+    const auto at = [&](int i, int j) {
+      return btVector3(edge * static_cast<float>(i) - kHalf, 0, edge * static_cast<float>(j) - kHalf);
+    };
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        triangles_.addTriangle(at(i, j), at(i, j + 1), at(i + 1, j + 1));
+        triangles_.addTriangle(at(i, j), at(i + 1, j + 1), at(i + 1, j));
+      }
+    }
+    shape_ = std::make_unique<btBvhTriangleMeshShape>(&triangles_, true);
+    btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shape_.get());
+    info.m_friction = 1;
+    body_ = std::make_unique<btRigidBody>(info);
+  }
+  btRigidBody& body() { return *body_; }
+
+ private:
+  btTriangleMesh triangles_;
+  std::unique_ptr<btBvhTriangleMeshShape> shape_;
+  std::unique_ptr<btRigidBody> body_;
+};
+
+demos::Scene one_penguin() {
+  demos::Scene scene = demos::load_scene_3d("penguins");
+  scene.soft_bodies.resize(1);
+  scene.soft_bodies[0].position = {0, 0.6f, 0};
+  scene.boxes.clear();
+  scene.obstacles.clear();
+  return scene;
+}
+
+/// A body that falls on the floor and lies there; nothing is skinned.
+class OurMeshFrames final : public Frames {
+ public:
+  OurMeshFrames(float edge, ppu::ContactMethod contacts)
+      : floor_(edge), soft_bodies_(world_.world(), spes_, contacts) {
+    const demos::Scene scene = one_penguin();
+    const demos::SoftBodyPlacement& placement = scene.soft_bodies[0];
+    world_.world().addRigidBody(&floor_.body());
+    soft_bodies_.add(ppu::make_soft_body_model(placement.mesh, placement.settings), placement.position);
+  }
+  ~OurMeshFrames() override { world_.world().removeRigidBody(&floor_.body()); }
+  OurMeshFrames(const OurMeshFrames&) = delete;
+  OurMeshFrames& operator=(const OurMeshFrames&) = delete;
+
+  void step() override { world_.step(kFrameSeconds, 2); }
+  std::size_t particles() const override { return soft_bodies_[0].model().particles(); }
+
+ private:
+  TriangleFloor floor_;
+  ppu::SpeRuntime spes_;
+  ppu::BulletWorld world_;
+  ppu::BulletSoftBodies soft_bodies_;
+};
+
+/// The same with Bullet's soft body.
+class BulletMeshFrames final : public Frames {
+ public:
+  explicit BulletMeshFrames(float edge) : floor_(edge), frames_(one_penguin()) {
+    frames_.world().addRigidBody(&floor_.body());
+  }
+  ~BulletMeshFrames() override { frames_.world().removeRigidBody(&floor_.body()); }
+  BulletMeshFrames(const BulletMeshFrames&) = delete;
+  BulletMeshFrames& operator=(const BulletMeshFrames&) = delete;
+
+  void step() override { frames_.step(); }
+  std::size_t particles() const override { return frames_.particles(); }
+
+ private:
+  TriangleFloor floor_;
+  BulletFrames frames_;
+};
+
+// About 1,000 triangles in the box around the body, and about 10.
+constexpr float kFineEdge = 0.027f, kCoarseEdge = 0.6f;
+constexpr ContactCase kMeshCases[] = {{"mesh", "", 1, 40, 160}, {"coarse_mesh", "", 1, 40, 160}};
+
 using MakeFrames = std::function<std::unique_ptr<Frames>()>;
 
 /// The frames of a case, again and again; only they count.
@@ -211,6 +299,14 @@ void add_contact_benchmarks(std::vector<Benchmark>& all) {
     add_case(all, of, "spheres",
              [=] { return std::make_unique<OurFrames>(scene_of(of), ppu::ContactMethod::kSpheres); });
     add_case(all, of, "btsoftbody", [=] { return std::make_unique<BulletFrames>(scene_of(of)); });
+  }
+  for (const ContactCase& of : kMeshCases) {
+    const float edge = &of == &kMeshCases[0] ? kFineEdge : kCoarseEdge;
+    add_case(all, of, "ours",
+             [=] { return std::make_unique<OurMeshFrames>(edge, ppu::ContactMethod::kSurface); });
+    add_case(all, of, "spheres",
+             [=] { return std::make_unique<OurMeshFrames>(edge, ppu::ContactMethod::kSpheres); });
+    add_case(all, of, "btsoftbody", [=] { return std::make_unique<BulletMeshFrames>(edge); });
   }
 }
 

@@ -92,9 +92,9 @@ void add_interpreter_benchmarks(std::vector<Benchmark>& all);
 /// with a loose Bullet sphere for each particle that Bullet has to do with, nothing matched or skinned.
 void add_frame_benchmarks(std::vector<Benchmark>& all);
 
-/// contact/<fall|rest|pile|self>/<ours|spheres|btsoftbody>: frames in which bodies touch, in processor time of all threads; an item
+/// contact/<fall|rest|pile|self|mesh|coarse_mesh>/<ours|spheres|btsoftbody>: frames in which bodies touch, in processor time of all threads; an item
 /// is a particle in one frame. `ours`: contacts of what is drawn; `spheres`: a rigid sphere at each outer particle; `btsoftbody`: Bullet's own
-/// soft bodies with a node for each particle, whose clusters touch.
+/// soft bodies with a node for each particle, whose clusters touch. `mesh`: 1,000 static triangles near a body; `coarse_mesh`: ten.
 void add_contact_benchmarks(std::vector<Benchmark>& all);
 
 /// frame/<scene>, .../ppu; .../circles: as spheres, with circles in Box2D.

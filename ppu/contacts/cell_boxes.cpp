@@ -1,0 +1,35 @@
+#include "ppu/contacts/cell_boxes.h"
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+
+void CellBoxes::place(const Lattice<3>& lattice, std::span<const Eigen::Vector3f> begins,
+                      std::span<const Eigen::Vector3f> ends) {
+  SC_ASSERT(
+      begins.size() == lattice.particles.size() && ends.size() == begins.size() && !lattice.cells.empty(),
+      "{} and {} places of {} particles", begins.size(), ends.size(), lattice.particles.size());
+  least_.resize(begins.size());
+  most_.resize(begins.size());
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    const Eigen::Array4f begin(begins[i].x(), begins[i].y(), begins[i].z(), 0);
+    const Eigen::Array4f end(ends[i].x(), ends[i].y(), ends[i].z(), 0);
+    least_[i] = begin.min(end);
+    most_[i] = begin.max(end);
+  }
+  cells_ = lattice.cells.size();
+  fours_.resize((cells_ + 3) / 4);
+  for (std::size_t c = 0; c < 4 * fours_.size(); ++c) {
+    const auto& corners = lattice.corners[std::min(c, cells_ - 1)];
+    Eigen::Array4f low = least_[corners[0]], high = most_[corners[0]];
+    for (std::size_t k = 1; k < 8; ++k) {
+      low = low.min(least_[corners[k]]);
+      high = high.max(most_[corners[k]]);
+    }
+    Four& four = fours_[c / 4];
+    const auto lane = static_cast<Eigen::Index>(c % 4);
+    for (int d = 0; d < 3; ++d) four.low[d][lane] = low[d], four.high[d][lane] = high[d];
+  }
+}
+
+}  // namespace softcell::ppu
