@@ -167,8 +167,8 @@ class ObstacleContacts {
           try_edge(edge, reach);
           continue;
         }
-        for (const Vector3f& end : {edge.from, edge.to})
-          cells_.corners.push_back({end.x(), end.y(), end.z()});
+        // Where it ends the next edge of the triangle begins.
+        cells_.corners.push_back({edge.from.x(), edge.from.y(), edge.from.z()});
       }
     }
     std::sort(cells_.corners.begin(), cells_.corners.end());

@@ -54,7 +54,7 @@ struct Obstacle {
   float rounding = 0;                            ///< metres: what lies so near to the shape is inside
   std::span<const Eigen::Vector4f> planes = {};  ///< outward unit normal, and its distance from 0
   std::span<const std::array<Eigen::Vector3f, 3>> triangles = {};
-  std::span<const ObstacleEdge> edges = {};  ///< of triangles: three of each, in their order
+  std::span<const ObstacleEdge> edges = {};  ///< of triangles: three around each, in their order
 
   Eigen::Vector3f to_own(const Eigen::Vector3f& world) const {
     return rotation.transpose() * (world - position);
