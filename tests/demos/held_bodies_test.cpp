@@ -299,6 +299,30 @@ TEST(HeldBodies, NoHandHoldsWhatIsNotThere) {
   EXPECT_EQ(held.state_hash(), left.state_hash());
 }
 
+TEST(HeldBodies, AHandThatIsSentOutOfTheWorldBreaksNothing) {
+  const Scene scene = rigid_scene(1);
+  Simulation3d simulation(scene, {.spes = 1});
+  constexpr float kFar = std::numeric_limits<float>::max();
+  InputEvent<3> hold = users(Action::kHold, {kFar, -kFar, kFar}),
+                rigid = users(Action::kHoldRigid, {0, 0.4f, 0});
+  rigid.hand = 3;
+  rigid.body = 1;
+  simulation.step({&hold, 1});
+  simulation.step({&rigid, 1});
+  for (const float sign : {1.0f, -1.0f, 1.0f}) {
+    for (const std::uint32_t hand : {kUsersHand, 3u}) {
+      InputEvent<3> move = users(Action::kMoveHand, sign * Vector3f(kFar, kFar, -kFar));
+      move.hand = hand;
+      simulation.step({&move, 1});
+    }
+    for (int frame = 0; frame < 5; ++frame) simulation.step();
+  }
+  EXPECT_TRUE(simulation.soft_body(0).bounds().low.allFinite());
+  EXPECT_LT(velocity_of(simulation.soft_body(0)).norm(), 40);
+  simulation.finish();
+  EXPECT_TRUE(simulation.shown_box_poses()[1].allFinite());
+}
+
 /// A wild user.
 class RandomDrags {
  public:

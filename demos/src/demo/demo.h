@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "scene/look.h"
+#include "simulation/body_material.h"
 #include "simulation/simulation_options.h"
 #include "softcell/ls_sim/statistics.h"
 #include "softcell/render/renderer.h"
-#include "softcell/soft_bodies/soft_body_settings.h"
 
 namespace softcell::demos {
 
@@ -21,11 +21,6 @@ struct DemoSettings {
   float time_scale = 1;
   int substeps = 1;   ///< of 1/60 s
   float substep = 0;  ///< seconds of one
-};
-
-struct BodyMaterial {
-  std::string name;
-  ppu::SoftBodySettings settings;
 };
 
 /// How much there is in a scene.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "ppu/matching/stiffness.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {
@@ -126,12 +125,11 @@ void Panel::draw_material(const Demo& demo, WindowInput& input) {
     ImGui::EndCombo();
   }
   const std::uint32_t changed = body_ < 0 ? kEveryBody : static_cast<std::uint32_t>(body_);
-  const ppu::SoftBodySettings& shown = bodies[static_cast<std::size_t>(std::max(body_, 0))].settings;
+  const BodyMaterial& shown = bodies[static_cast<std::size_t>(std::max(body_, 0))];
   const float step = demo.settings().substep;
   ImGui::Combo("stiffness by", &stiffness_by_, "alpha\0frequency\0modulus\0");
-  const float alpha = shown.alpha_of_step(step);
   if (stiffness_by_ == 0) {
-    float value = alpha;
+    float value = shown.alpha;
     if (slider("alpha", value, 0, 1, "%.3f")) input.change(Action::kAlpha, changed, value);
   } else if (stiffness_by_ == 1) {
     // What alpha 1 is, no frequency exceeds: a sixth of the steps' rate.
@@ -139,13 +137,12 @@ void Panel::draw_material(const Demo& demo, WindowInput& input) {
     if (slider("frequency", value, 0, 1 / (6 * step), shown.frequency ? "%.1f Hz" : "not set"))
       input.change(Action::kFrequency, changed, value);
   } else {
-    const auto stiffest =
-        static_cast<float>(ppu::specific_modulus(double{shown.cell_size}, double{step}, 1, shown.half_width));
-    float value = alpha * stiffest;
-    if (slider("modulus", value, 0.001f * stiffest, stiffest, "%.0f m\xC2\xB2/s\xC2\xB2", true))
+    float value = shown.modulus;
+    if (slider("modulus", value, 0.001f * shown.most_modulus, shown.most_modulus, "%.0f m\xC2\xB2/s\xC2\xB2",
+               true))
       input.change(Action::kModulus, changed, value);
   }
-  float damping = shown.damping_of_step(step), friction = shown.friction;
+  float damping = shown.damping, friction = shown.friction;
   if (slider("damping", damping, 0, 1, "%.3f")) input.change(Action::kDamping, changed, damping);
   if (slider("friction", friction, 0, 2, "%.2f")) input.change(Action::kFriction, changed, friction);
 }

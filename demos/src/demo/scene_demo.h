@@ -74,7 +74,8 @@ class SceneDemo : public Demo {
   std::vector<BodyMaterial> materials() const override {
     std::vector<BodyMaterial> materials;
     for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b)
-      materials.push_back({scene_.soft_bodies[b].name, simulation_.soft_body(b).settings()});
+      materials.push_back(
+          material_of(scene_.soft_bodies[b].name, simulation_.soft_body(b).settings(), settings().substep));
     return materials;
   }
   void publish() override {

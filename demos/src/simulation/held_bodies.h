@@ -46,7 +46,15 @@ class HeldBodies {
   /// After the events of a frame of `seconds`.
   void begin_frame(float seconds) {
     SC_ASSERT(seconds > 0, "a frame of {} s", seconds);
-    for (Hand& hand : hands_) hand.velocity += kNewShare * ((hand.to - hand.from) / seconds - hand.velocity);
+    using Strength = HandStrength<Dimension>;
+    for (Hand& hand : hands_) {
+      // Wherever somebody sends it, from one end of the range of numbers to the other.
+      const typename Strength::Vector way =
+          hand.to.template cast<double>() - hand.from.template cast<double>();
+      const Vector velocity =
+          Strength::limited(way / double{seconds}, Strength::kMostSpeed).template cast<float>();
+      hand.velocity += kNewShare * (velocity - hand.velocity);
+    }
   }
   /// Before each substep of the frame, `step` seconds long: a hand moves evenly from where it was to where it is.
   /// @param gravity  m/s^2
@@ -54,7 +62,7 @@ class HeldBodies {
     SC_ASSERT(0 <= substep && substep < substeps, "substep {} of {}", substep, substeps);
     const float share = static_cast<float>(substep + 1) / static_cast<float>(substeps);
     for (Hand& hand : hands_) {
-      hand.grip->pull({hand.from + share * (hand.to - hand.from), hand.velocity}, gravity, step);
+      hand.grip->pull({(1 - share) * hand.from + share * hand.to, hand.velocity}, gravity, step);
       if (substep + 1 == substeps) hand.from = hand.to;
     }
   }
