@@ -82,6 +82,12 @@ class Hash {
     const auto& [mesh, position, colour, own_materials] = obstacle;
     add(mesh, position);
   }
+  void add(const AttachmentPlacement& attachment) {
+    const auto& [body, other, box, at, radius, other_at, other_radius, settings] = attachment;
+    const auto& [kind, point, axis, length, compliance, break_force, touch] = settings;
+    add(body, other, box, at, radius, other_at, other_radius);
+    add(static_cast<int>(kind), point, axis, length, compliance, break_force, touch);
+  }
   void add(const TiltScript& tilt) {
     const auto& [amplitude_x, amplitude_z, period_x, period_z, begin] = tilt;
     add(amplitude_x, amplitude_z, period_x, period_z, begin);
@@ -104,12 +110,13 @@ class Hash {
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
-  const auto& [name, title, soft_bodies, boxes, obstacles, tilt, gravity, friction, restitution, substeps,
-               contacts, frames, camera, light, script, pictures, files, notes] = scene;
+  const auto& [name, title, soft_bodies, boxes, obstacles, attachments, tilt, gravity, friction, restitution,
+               substeps, contacts, frames, camera, light, script, pictures, files, notes] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
+  if (!attachments.empty()) hash.add("attach"[0], attachments);
   return hash.value();
 }
 

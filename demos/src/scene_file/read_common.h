@@ -16,7 +16,7 @@ namespace softcell::demos {
 
 // More than these no host plays, and a slip of the pen is more likely.
 inline constexpr std::size_t kMaxSoftBodies = 256, kMaxRigidBodies = 1000, kMaxEvents = 1000,
-                             kMaxPictures = 1000;
+                             kMaxPictures = 1000, kMaxAttachments = 1000;
 inline constexpr std::uint32_t kMaxParticlesOfScene = 300'000;
 inline constexpr std::size_t kMaxVerticesOfScene = 2'000'000;
 inline constexpr int kMaxFrames = 1'000'000;
@@ -110,17 +110,22 @@ void check_name(const FieldReader& fields, const SceneOf& scene) {
                                bodies.back().name));
 }
 
+/// The number of the soft body of that name. @throws SceneError  there is none.
+template <class SceneOf>
+std::size_t find_body(const std::string& name, const Place& place, const SceneOf& scene) {
+  const auto found = std::find_if(scene.soft_bodies.begin(), scene.soft_bodies.end(),
+                                  [&](const auto& body) { return body.name == name; });
+  if (found == scene.soft_bodies.end())
+    throw SceneError(place, fmt::format("there is no soft body '{}'", name));
+  return static_cast<std::size_t>(found - scene.soft_bodies.begin());
+}
+
 /// The number of the soft body that an event names. @throws SceneError  none has that name.
 template <class SceneOf>
 std::size_t read_body(FieldReader& event, const SceneOf& scene) {
   std::string name;
   event.text("body", name, Need::kRequired);
-  const auto found = std::find_if(scene.soft_bodies.begin(), scene.soft_bodies.end(),
-                                  [&](const auto& body) { return body.name == name; });
-  if (event.has("body") && found == scene.soft_bodies.end()) {
-    throw SceneError(event.place("body"), fmt::format("there is no soft body '{}'", name));
-  }
-  return static_cast<std::size_t>(found - scene.soft_bodies.begin());
+  return event.has("body") ? find_body(name, event.place("body"), scene) : scene.soft_bodies.size();
 }
 
 /// The fields `begin` and `end` of an event that lasts. @throws SceneError  it ends before it begins.

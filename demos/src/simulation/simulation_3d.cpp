@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "changed_material.h"
 #include "held_bodies.h"
@@ -137,6 +139,7 @@ struct Simulation3d::State {
       positions.push_back(body.padded_positions());
       vertices += model->embedding().slot_of_vertex.size();
     }
+    attach();
     for (Snapshot& snapshot : snapshots) {
       snapshot.box_poses.resize(boxes.size());
       for (const auto& body : positions)
@@ -160,6 +163,29 @@ struct Simulation3d::State {
     auto made = std::make_unique<ppu::SpeSolver<3>>(memory, jobs, ppu::MatchKernels<3>{match, match_tiles});
     on_spes = made.get();
     return made;
+  }
+
+  /// As the scene says, also those that have broken.
+  void attach() {
+    attachments.clear();
+    for (const AttachmentPlacement& placement : scene.attachments) {
+      const ppu::SoftBody<3>& body = soft_bodies[placement.body];
+      const auto patch = ppu::Patch<3>::of_surface(placement.at, placement.radius);
+      try {
+        if (placement.other)
+          attachments.push_back(soft_bodies.attach(
+              body, patch, soft_bodies[*placement.other],
+              ppu::Patch<3>::of_surface(placement.other_at, placement.other_radius), placement.settings));
+        else if (placement.box)
+          attachments.push_back(
+              soft_bodies.attach(body, patch, world.rigid_body(boxes[*placement.box]), placement.settings));
+        else
+          attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
+      } catch (const std::invalid_argument& error) {
+        throw std::runtime_error("attach " + std::to_string(attachments.size() + 1) + " of scene " +
+                                 scene.name + ": " + error.what());
+      }
+    }
   }
 
   /// Copies what a picture needs and starts the SPEs: with the next step's dynamics, which go first, and the
@@ -260,6 +286,9 @@ struct Simulation3d::State {
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
       soft_bodies[b].set_material(soft_bodies[b].model().settings());
+    for (const ppu::AttachmentId id : attachments)
+      if (soft_bodies.attachment(id)) soft_bodies.detach(id);
+    attach();
     tilt.setIdentity();
     frame = 0;
   }
@@ -287,6 +316,7 @@ struct Simulation3d::State {
   std::unique_ptr<ppu::SoftBodySolver<3>> solver;
   const ppu::ContactMethod contacts;
   ppu::BulletSoftBodies soft_bodies;
+  std::vector<ppu::AttachmentId> attachments;         // of the scene, in order
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
   std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
