@@ -1,0 +1,75 @@
+#pragma once
+// The smooth shape with which a soft body in two dimensions is drawn: triangles and outlines whose vertices hang in
+// the lattice's cells and deform with them. Made once for each model, placed with the positions of the moment:
+//
+//     const Skin2d skin = make_skin_2d(model->lattice(), SoftBodyModel<2>::kContactRadiusInCells);   // once
+//     ...
+//     place(skin, body.positions(), positions, slopes);                                             // each frame
+//     draw_triangles(positions, skin.triangles);
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// A point that moves with a cell: the sum of the corners, each times its share. The shares sum to 1; those of a
+/// point outside of its cell extrapolate.
+struct CellPoint2d {
+  std::array<std::uint32_t, 4> corner{};  ///< particle numbers, in the order of Lattice<2>::corners
+  std::array<float, 4> share{};
+
+  Eigen::Vector2f at(std::span<const Eigen::Vector2f> particles) const {
+    return share[0] * particles[corner[0]] + share[1] * particles[corner[1]] +
+           share[2] * particles[corner[2]] + share[3] * particles[corner[3]];
+  }
+};
+
+/// A drawn shape in the cells of one lattice.
+struct Skin2d {
+  std::vector<CellPoint2d> vertices;
+  std::vector<Eigen::Vector2f> rest;  ///< of each vertex: where it is at rest, in grid coordinates
+  /// Of each vertex at rest: where the edge is, and how near. As a surface that is level in the middle and falls off
+  /// to the edge has its slope: (0, 0) farther than a cell and a half from the edge, some 0.65 long on it, outwards.
+  std::vector<Eigen::Vector2f> slopes;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise at rest
+  std::vector<std::uint32_t> cells;                     ///< of each triangle: the number of the nearest cell
+  /// Closed loops of vertices: those around the body counter-clockwise, those around its holes clockwise.
+  std::vector<std::vector<std::uint32_t>> outlines;
+  float spacing = 0;  ///< edge of a cell, metres
+};
+
+/// Most of make_skin_2d()'s margin; also how far outside of its cells a lattice's points may be.
+inline constexpr float kMaxSkinMargin = 0.5f;
+
+/// The lattice's cells, wider by `margin` all around, with round corners and without stairs. With a margin of the
+/// contact radius the shape meets other things where the body does. Gaps that are one cell wide stay open.
+/// Deterministic.
+/// @param margin  in cells, 0..kMaxSkinMargin
+/// @pre  the lattice has cells
+Skin2d make_skin_2d(const Lattice<2>& lattice, float margin);
+
+/// All cells of the lattice and those around it that `drawn` asks for, as triangles: for a picture that is
+/// transparent outside of the body. It has no slopes and no outlines. Deterministic.
+/// @param drawn  asked of cells beside the lattice's, by the grid index of their low corner
+/// @pre  the lattice has cells
+Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const Eigen::Vector2i&)>& drawn);
+
+/// The point of the nearest cell.
+/// @param at  grid coordinates: a particle of the lattice is at its grid index
+/// @pre  the lattice has cells
+CellPoint2d point_in_cells(const Lattice<2>& lattice, const Eigen::Vector2f& at);
+
+/// Where the vertices are, and the slopes there, turned and stretched with the cells.
+/// @param particles  positions of the lattice's particles, metres
+/// @param positions,slopes  one for each vertex
+/// @pre  the sizes fit
+void place(const Skin2d& skin, std::span<const Eigen::Vector2f> particles,
+           std::span<Eigen::Vector2f> positions, std::span<Eigen::Vector2f> slopes);
+
+}  // namespace softcell::ppu
