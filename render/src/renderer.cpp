@@ -13,6 +13,7 @@
 #include "gl_objects.h"
 #include "material_painter.h"
 #include "overlay_painter.h"
+#include "painter_2d.h"
 #include "shaders.h"
 #include "softcell/base/assert.h"
 
@@ -176,6 +177,7 @@ struct Renderer::State {
   void set_attribute(MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
                      std::span<const Value> values, const char* what) const;
   void cull_back_faces(bool cull) const;
+  void resolve(GLuint framebuffer) const;
   void draw_surface(const SkinnedDraw& item) const;
   void draw_surface(const StaticDraw& item) const;
   void draw_surface(const Program& program, const MeshBuffers& buffers, const Eigen::Matrix4f& pose,
@@ -190,7 +192,8 @@ struct Renderer::State {
   int largest_side = 0;  ///< of a picture or texture, in pixels
   int samples = 1;
   std::string description;
-  bool has_picture = false;  ///< of the last frame, before it is resolved
+  bool has_picture = false;     ///< of the last frame, before it is resolved
+  bool has_picture_2d = false;  ///< likewise, of a frame in two dimensions
 
   struct Programs {
     /// @param sun  one of the two ways in which shaders.h has sunlight
@@ -219,6 +222,7 @@ struct Renderer::State {
   std::unique_ptr<MaterialPainter> materials;
   std::unique_ptr<OverlayPainter> overlay;  ///< made when it is first asked for
   std::unique_ptr<CellSkinner> skinner;     ///< likewise
+  std::unique_ptr<Painter2d> painter_2d;    ///< likewise
   std::vector<MeshBuffers> skinned;
   std::uint64_t uploaded_bytes = 0;
   std::vector<MeshBuffers> statics;
@@ -317,7 +321,7 @@ void Renderer::State::make_picture_buffers(int new_width, int new_height) {
   picture_buffers = std::move(made);
   width = new_width;
   height = new_height;
-  has_picture = false;
+  has_picture = has_picture_2d = false;
 }
 
 void Renderer::State::make_shadow_map() {
@@ -612,6 +616,12 @@ void Renderer::State::draw_lattice(const LatticeDraw& lattice) {
   gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 
+void Renderer::State::resolve(GLuint framebuffer) const {
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture_buffers.resolved_framebuffer.name());
+  gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
 void Renderer::State::draw_background() {
   gl.DepthFunc(GL_LEQUAL);  // it lies exactly on the far plane
   gl.UseProgram(programs->background.object.name());
@@ -828,10 +838,31 @@ void Renderer::render(const FrameDescription& frame) {
     state.has_picture = true;
   }
 
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.sampled_framebuffer.name());
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
-  gl.BlitFramebuffer(0, 0, state.width, state.height, 0, 0, state.width, state.height, GL_COLOR_BUFFER_BIT,
-                     GL_NEAREST);
+  state.resolve(state.picture_buffers.sampled_framebuffer.name());
+}
+
+Shape2dId Renderer::add_shape(std::span<const Triangle> triangles) {
+  State& state = *state_;
+  state.context.make_current();
+  if (state.painter_2d == nullptr) state.painter_2d = std::make_unique<Painter2d>(state.gl);
+  return state.painter_2d->add_shape(triangles);
+}
+
+void Renderer::render(const Frame2d& frame) {
+  State& state = *state_;
+  state.context.make_current();
+  if (state.painter_2d == nullptr) state.painter_2d = std::make_unique<Painter2d>(state.gl);
+  state.painter_2d->check(frame);
+  for (const Shape2d& shape : frame.shapes) {
+    if (shape.texture) state.texture(*shape.texture);
+  }
+  const PixelRect part = state.part_to_draw(state.has_picture_2d ? frame.changes : std::nullopt);
+  if (part.left < part.right && part.top < part.bottom) {
+    state.painter_2d->draw(frame, {.width = state.width, .height = state.height, .part = part},
+                           [&](TextureId id) { return state.texture(id).name(); });
+    state.has_picture = state.has_picture_2d = true;
+  }
+  state.resolve(state.painter_2d->framebuffer());
 }
 
 const Image& Renderer::pixels() {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "softcell/render/frame.h"
+#include "softcell/render/frame_2d.h"
 #include "softcell/render/gl_context.h"
 #include "softcell/render/image.h"
 #include "softcell/render/overlay_mesh.h"
@@ -108,6 +109,16 @@ class Renderer {
   /// @throws std::invalid_argument  a handle is not of this renderer, a link is out of range, a mesh with a
   /// texture has no texture coordinates, one with vertex colours has none, or a part is outside of its mesh.
   void render(const FrameDescription& frame);
+
+  /// Adds the triangles of a shape in two dimensions. Each frame gives their vertices.
+  /// @throws std::invalid_argument  more triangles than OpenGL counts.
+  Shape2dId add_shape(std::span<const Triangle> triangles);
+
+  /// Draws one frame in two dimensions.
+  /// @pre  its height and its squares are above 0; opacities are 0..1
+  /// @throws std::invalid_argument  a handle is not of this renderer, a shape has too few vertices, a line too few
+  /// points or another number of normals, or a link is out of range.
+  void render(const Frame2d& frame);
 
   /// Draws text and widgets over the last frame.
   void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh);

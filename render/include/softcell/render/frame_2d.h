@@ -1,0 +1,105 @@
+#pragma once
+// One frame in two dimensions as plain data: shapes, lines and dots on paper. Metres, y up. Spans must live until
+// render() returns.
+//
+// Everything lies in one plane, seen straight on. Shapes throw soft shadows on the paper and on nothing else. Lines
+// and dots have smooth edges whether or not the context has several samples a pixel; a shape gets one by a line along
+// its outline.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "softcell/render/frame.h"
+
+namespace softcell::render {
+
+/// Handle to the triangles of one Renderer's shape.
+struct Shape2dId {
+  std::uint32_t value = 0;
+};
+
+/// A corner of a shape's triangles.
+struct Vertex2d {
+  Eigen::Vector2f position{0, 0};  ///< metres
+  Eigen::Vector2f slope{0, 0};     ///< which way the surface falls there, and how steeply; level: (0, 0)
+  Eigen::Vector2f texture{0, 0};   ///< (0, 0) is the lower left corner of the texture
+};
+static_assert(sizeof(Vertex2d) == 24, "uploaded as it is");
+
+enum class Fill2d : std::uint8_t {
+  plain,
+  hatched,  ///< with slanting lines, as drawings show what stands firm
+};
+
+/// Triangles of one colour, lit from the upper left.
+struct Shape2d {
+  Shape2dId shape = {};
+  std::span<const Vertex2d> vertices;  ///< shapes one behind the other that share them upload them once
+  Colour colour{0.8f, 0.8f, 0.8f};
+  float opacity = 1;
+  Fill2d fill = Fill2d::plain;
+  bool casts_shadow = true;
+  std::optional<TextureId> texture = {};  ///< in place of the colour; what its alpha leaves out is not there
+};
+
+/// A line through points, with round ends.
+struct Line2d {
+  std::span<const Eigen::Vector2f> points;  ///< two at least
+  /// To which side each point's edge is pushed: of any length above 0. Empty: the line's own.
+  std::span<const Eigen::Vector2f> normals = {};
+  bool closed = false;
+  float width = 0.01f;  ///< metres
+  Colour colour{0, 0, 0};
+  float opacity = 1;
+};
+
+/// Straight lines between pairs of points.
+struct Links2d {
+  std::span<const Eigen::Vector2f> points;
+  std::span<const std::array<std::uint32_t, 2>> links;  ///< indices into `points`
+  float width = 0.01f;                                  ///< metres
+  Colour colour{0, 0, 0};
+  float opacity = 1;
+};
+
+/// Discs of one size.
+struct Dots2d {
+  std::span<const Eigen::Vector2f> centres;
+  float radius = 0.02f;  ///< metres
+  Colour colour{0, 0, 0};
+  float opacity = 1;
+};
+
+/// What the shapes lie on: squared paper.
+struct Paper {
+  Colour colour = srgb(0xF6F1E6);
+  Colour line_colour = srgb(0x7FA3C4);
+  float squares = 0.25f;  ///< side of a square, metres; every fourth line is stronger
+};
+
+/// Of the shapes' shadows, as shares of the height that the picture shows.
+struct Shadow2d {
+  Eigen::Vector2f offset{0.010f, -0.015f};
+  float blur = 0.022f;     ///< how far outwards and inwards an edge is spread
+  float strength = 0.30f;  ///< 0..1: how much of the light is taken
+};
+
+/// All that one picture shows: the paper with the shadows, then lines, shapes, links, lines and dots, each in order.
+struct Frame2d {
+  Eigen::Vector2f centre{0, 0};  ///< of what the picture shows, metres
+  float height = 10;             ///< of what the picture shows, metres
+  Paper paper = {};
+  Shadow2d shadow = {};
+  std::span<const Line2d> lines_below = {};  ///< what shapes cover of them is not seen
+  std::span<const Shape2d> shapes = {};
+  std::span<const Links2d> links = {};
+  std::span<const Line2d> lines = {};
+  std::span<const Dots2d> dots = {};
+  /// As FrameDescription::changes.
+  std::optional<PixelRect> changes = {};
+};
+
+}  // namespace softcell::render
