@@ -66,31 +66,90 @@ std::string last_line(int descriptor) {
   }
 }
 
-std::vector<std::string> arguments(const std::filesystem::path& output, int width, int height, int rate) {
-  return {"ffmpeg", "-y", "-nostdin", "-hide_banner", "-loglevel", "error",
-          // A full disk is an error also when the file's end is written: without it the status is 0 then.
-          "-xerror",
-          // In: the frames as they are in memory.
-          "-f", "rawvideo", "-pix_fmt", "rgba", "-s", std::to_string(width) + "x" + std::to_string(height),
-          "-r", std::to_string(rate), "-i", "pipe:0",
-          // Chroma is stored for squares of two by two pixels, so sizes must be even; the colours are named,
-          // or players guess.
-          "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
-          "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
-          // One thread and no dates or versions: the same file from the same frames.
-          "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-threads", "1", "-fflags", "+bitexact",
-          "-flags:v", "+bitexact", "-map_metadata", "-1",
-          // The index at the front: a browser plays it while it loads.
-          "-movflags", "+faststart",
-          // A path that begins with a dash, or looks like a protocol, is still a file.
-          "file:" + output.string()};
+/// What ffmpeg makes of the frames.
+std::vector<std::string> encoding(VideoFormat format) {
+  // Chroma is stored for squares of two by two pixels, so sizes must be even; the colours are named, or players guess.
+  const char* const kEven =
+      "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+  const auto in_bt709 = [&](std::vector<std::string> words) {
+    for (const char* const word : {"-vf", kEven, "-colorspace", "bt709", "-color_primaries", "bt709",
+                                   "-color_trc", "bt709", "-color_range", "tv"}) {
+      words.emplace_back(word);
+    }
+    return words;
+  };
+  switch (format) {
+    case VideoFormat::mp4:
+      // The index at the front: a browser plays it while it loads.
+      return in_bt709(
+          {"-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-movflags", "+faststart", "-f", "mp4"});
+    case VideoFormat::webm:
+      return in_bt709({"-c:v", "libvpx-vp9", "-crf", "22", "-b:v", "0", "-deadline", "good", "-cpu-used", "5",
+                       "-f", "webm"});
+    case VideoFormat::gif:
+      // A palette for each frame: one for all would need all frames in memory. Ordered dither, so that what stands
+      // still stays still. No differences between frames: they would be of numbers, whatever the palettes.
+      return {"-filter_complex",
+              "format=rgb24,split[frames][same];[frames]palettegen=stats_mode=single[palettes];"
+              "[same][palettes]paletteuse=new=1:dither=bayer:bayer_scale=4",
+              "-loop",
+              "0",
+              "-f",
+              "gif"};
+    case VideoFormat::apng:
+      return {"-vf", "format=rgb24", "-c:v", "apng", "-pred", "mixed", "-plays", "0", "-f", "apng"};
+  }
+  return {};
+}
+
+std::vector<std::string> arguments(const std::filesystem::path& output, VideoFormat format, int width,
+                                   int height, int rate) {
+  std::vector<std::string> words{
+      "ffmpeg", "-y", "-nostdin", "-hide_banner", "-loglevel", "error",
+      // A full disk is an error also when the file's end is written: without it the status is 0 then.
+      "-xerror",
+      // In: the frames as they are in memory.
+      "-f", "rawvideo", "-pix_fmt", "rgba", "-s", std::to_string(width) + "x" + std::to_string(height), "-r",
+      std::to_string(rate), "-i", "pipe:0"};
+  for (const std::string& word : encoding(format)) words.push_back(word);
+  // One thread and no dates or versions: the same file from the same frames.
+  for (const char* const word :
+       {"-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1"})
+    words.emplace_back(word);
+  // A path that begins with a dash, or looks like a protocol, is still a file.
+  words.push_back("file:" + output.string());
+  return words;
+}
+
+VideoFormat format_of(const std::filesystem::path& path) {
+  const std::optional<VideoFormat> format = video_format(path);
+  if (!format) fail(path, std::string("give a file name that ends in ") + kVideoEndings);
+  return *format;
 }
 
 }  // namespace
 
+std::optional<VideoFormat> video_format(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  for (const auto& [name, format] : {std::pair(".mp4", VideoFormat::mp4),
+                                     {".webm", VideoFormat::webm},
+                                     {".gif", VideoFormat::gif},
+                                     {".apng", VideoFormat::apng}}) {
+    if (ending == name) return format;
+  }
+  return std::nullopt;
+}
+
+int highest_frame_rate(VideoFormat format) { return format == VideoFormat::gif ? 50 : 60; }
+
 struct VideoWriter::Encoder {
   Encoder(const std::filesystem::path& video_path, int frame_width, int frame_height, int rate)
-      : path(video_path), width(frame_width), height(frame_height), file(video_path) {
+      : path(video_path),
+        format(format_of(video_path)),
+        width(frame_width),
+        height(frame_height),
+        file(video_path) {
     if (width <= 0 || height <= 0) fail(path, "width and height must be above 0");
     if (rate <= 0) fail(path, "the frame rate must be above 0");
     start(rate);
@@ -108,6 +167,7 @@ struct VideoWriter::Encoder {
   [[noreturn]] void report(int status);
 
   std::filesystem::path path;
+  VideoFormat format;
   int width;
   int height;
   base::WholeFile file;
@@ -150,7 +210,7 @@ void VideoWriter::Encoder::start(int rate) {
   posix_spawnattr_setflags(&attributes,
                            POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 
-  std::vector<std::string> words = arguments(file.written_path(), width, height, rate);
+  std::vector<std::string> words = arguments(file.written_path(), format, width, height, rate);
   std::vector<char*> argv;
   argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());

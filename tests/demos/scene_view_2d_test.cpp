@@ -29,7 +29,7 @@ class ScenesIn2d : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(ScenesIn2d, LookAsIfAllWereDrawn) {
-  for (const View2d view : {View2d::kFilled, View2d::kDots}) {
+  for (const View2d view : {View2d::kFilled, View2d::kDots, View2d::kLattice}) {
     Simulation2d simulation(scene_);
     render::Renderer renderer(*context_, kSettings);
     SceneView2d drawn(scene_, simulation, renderer, view);
@@ -74,33 +74,38 @@ TEST(Moved2d, IsTheOldAndTheNewPlaceOfWhatMoves) {
   scene.rigid_bodies[0].shape = CircleShape{.radius = 0.5f};
   scene.rigid_bodies[1].shape = Box2dShape{.size = {6, 8}};
   Shown2d shown{.particles = {}, .rigid_poses = {{.position = {1, 0}}, {.position = {9, 9}}}, .hands = {}};
-  Moved2d moved(scene, {});
-  moved.since_last(shown);
-  EXPECT_TRUE(moved.since_last(shown).isEmpty());
+  Moved2d moved(scene);
+  const Moved2d::Box none;
+  moved.since_last(shown, none);
+  EXPECT_TRUE(moved.since_last(shown, none).isEmpty());
 
   shown.rigid_poses[0].position = {3, 1};
-  const Moved2d::Box box = moved.since_last(shown);
+  const Moved2d::Box box = moved.since_last(shown, none);
   EXPECT_EQ(box.min(), Eigen::Vector2f(0.5f, -0.5f));
   EXPECT_EQ(box.max(), Eigen::Vector2f(3.5f, 1.5f));
 
   shown.rigid_poses[1].sine = 0.1f;  // half the diagonal of 6 by 8
-  const Moved2d::Box turned = moved.since_last(shown);
+  const Moved2d::Box turned = moved.since_last(shown, none);
   EXPECT_EQ(turned.min(), Eigen::Vector2f(4, 4));
   EXPECT_EQ(turned.max(), Eigen::Vector2f(14, 14));
-  EXPECT_TRUE(moved.since_last(shown).isEmpty());
+  EXPECT_TRUE(moved.since_last(shown, none).isEmpty());
 }
 
 // What makes sixty pictures a second without a GPU.
 TEST(Moved2d, IsLittleOfThePictureOfTheMan) {
   const Scene2d scene = load_scene_2d("man");
   Simulation2d simulation(scene);
-  Moved2d moved(scene, {simulation.soft_body(0).model().contact_radius()});
+  Moved2d moved(scene);
+  const Eigen::Vector2f radius = Eigen::Vector2f::Constant(simulation.soft_body(0).model().contact_radius());
   Shown2d shown;
   const float picture = scene.camera.height * scene.camera.height * 16 / 9;
   for (int frame = 0; frame < 120; ++frame) {
     simulation.step();
     simulation.show(shown);
-    const Moved2d::Box box = moved.since_last(shown);
+    Moved2d::Box man;
+    for (const Eigen::Vector2f& particle : shown.particles[0])
+      man.extend(Moved2d::Box(particle - radius, particle + radius));
+    const Moved2d::Box box = moved.since_last(shown, man);
     if (frame > 0) {
       EXPECT_LT(box.volume(), 0.4f * picture) << "frame " << frame;
     }
@@ -108,19 +113,19 @@ TEST(Moved2d, IsLittleOfThePictureOfTheMan) {
 }
 
 TEST(Moved2d, TakesSoftBodiesAndHandsForRestless) {
-  Shown2d shown{.particles = {{{1, 1}, {2, 1}}}, .rigid_poses = {}, .hands = {}};
-  Scene2d scene;
-  scene.soft_bodies.resize(1);
-  Moved2d moved(scene, {0.25f});
-  moved.since_last(shown);
-  const Moved2d::Box still = moved.since_last(shown);
-  EXPECT_EQ(still.min(), Eigen::Vector2f(0.75f, 0.75f));
-  EXPECT_EQ(still.max(), Eigen::Vector2f(2.25f, 1.25f));
+  Shown2d shown;
+  const Scene2d scene;
+  Moved2d moved(scene);
+  const Moved2d::Box soft(Eigen::Vector2f(0.75f, 0.75f), Eigen::Vector2f(2.25f, 1.25f));
+  moved.since_last(shown, soft);
+  const Moved2d::Box still = moved.since_last(shown, soft);
+  EXPECT_EQ(still.min(), soft.min());
+  EXPECT_EQ(still.max(), soft.max());
 
   shown.hands.push_back({Eigen::Vector2f(1, 1), Eigen::Vector2f(-3, 5)});
-  moved.since_last(shown);
+  moved.since_last(shown, soft);
   shown.hands.clear();
-  const Moved2d::Box let_go = moved.since_last(shown);  // where the hand was
+  const Moved2d::Box let_go = moved.since_last(shown, soft);  // where the hand was
   EXPECT_EQ(let_go.min(), Eigen::Vector2f(-3, 0.75f));
   EXPECT_EQ(let_go.max(), Eigen::Vector2f(2.25f, 5));
 }

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -41,6 +42,67 @@ TEST(Png, RoundTripKeepsEveryChannel) {
     }
   }
   EXPECT_EQ(directory.entries(), std::vector<std::string>{"picture.png"});
+}
+
+TEST(Png, KeepsTextsOfAnyAlphabet) {
+  const TemporaryDirectory directory;
+  const std::vector<PngText> texts{
+      {"Software", "softcell"}, {"Scene", "l\xC3\xA4mmchen \xF0\x9F\x90\x91"}, {"Command", ""}};
+  write_png(directory / "picture.png", noise(9, 5, true), PngEffort::fast, texts);
+  const std::vector<PngText> read = read_png_texts(directory / "picture.png");
+  ASSERT_EQ(read.size(), texts.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    EXPECT_EQ(read[i].keyword, texts[i].keyword);
+    EXPECT_EQ(read[i].text, texts[i].text);
+  }
+  EXPECT_EQ(read_png(directory / "picture.png"), noise(9, 5, true));
+  write_png(directory / "plain.png", noise(9, 5, true));
+  EXPECT_TRUE(read_png_texts(directory / "plain.png").empty());
+}
+
+TEST(Picture, IsReadAndRefusedInOneSentence) {
+  const TemporaryDirectory directory;
+  write_png(directory / "picture.png", noise(37, 21, false));
+  EXPECT_EQ(read_picture(directory / "picture.png"), noise(37, 21, false));
+  write_png(directory / "wide.png", Image(kMaxPictureSide + 1, 1));
+  EXPECT_EQ(error_of([&] { read_picture(directory / "wide.png"); }),
+            "cannot read " + directory.string() +
+                "/wide.png: it has 4097 by 1 pixels; a picture may have at most 4096 a side");
+  EXPECT_NE(error_of([&] { read_picture("/dev/zero"); }).find("/dev/zero"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_picture(directory / "none.png"); }).find("none.png"), std::string::npos);
+  std::ofstream(directory / "text.png") << "This is no picture at all, whatever its name says.";
+  EXPECT_NE(error_of([&] { read_picture(directory / "text.png"); }).find("text.png"), std::string::npos);
+  std::filesystem::resize_file(directory / "picture.png", 200);
+  EXPECT_NE(error_of([&] { read_picture(directory / "picture.png"); }).find("picture.png"),
+            std::string::npos);
+}
+
+TEST(MakeSmaller, TakesTheMeanInLinearLight) {
+  // Half of white is encoded as 188, not as 128.
+  Image chess(6, 4);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 6; ++x) {
+      for (int c = 0; c < 3; ++c) chess.pixel(x, y)[c] = (x + y) % 2 == 0 ? 255 : 0;
+      chess.pixel(x, y)[3] = 255;
+    }
+  }
+  Image result;
+  make_smaller(chess, 2, result);
+  ASSERT_EQ(result.width, 3);
+  ASSERT_EQ(result.height, 2);
+  for (std::size_t i = 0; i < result.rgba.size(); ++i) EXPECT_NEAR(result.rgba[i], i % 4 == 3 ? 255 : 188, 1);
+}
+
+TEST(MakeSmaller, LeavesPlainColoursAsTheyAre) {
+  for (int value = 0; value < 256; ++value) {
+    Image plain(3, 3);
+    std::fill(plain.rgba.begin(), plain.rgba.end(), static_cast<std::uint8_t>(value));
+    Image result;
+    make_smaller(plain, 3, result);
+    EXPECT_EQ(result.rgba, std::vector<std::uint8_t>(4, static_cast<std::uint8_t>(value)));
+    make_smaller(plain, 1, result);
+    EXPECT_EQ(result, plain);
+  }
 }
 
 TEST(Png, SmallIsSmallerThanFastForAPlainPicture) {

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <stdlib.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -123,15 +124,82 @@ TEST_F(VideoWithFfmpeg, LeavesNothingWhenItIsAbandoned) {
   EXPECT_TRUE(directory_.entries().empty());
 }
 
-TEST_F(VideoWithFfmpeg, TellsWhatFfmpegSaidOfAnUnknownFormat) {
-  const std::string error = error_of([&] {
-    VideoWriter video(directory_ / "demo.nosuchformat", kWidth, kHeight, 30);
-    for (int i = 0; i < 100; ++i) video.add_frame(plain_frame(kWidth, kHeight, 1, 2, 3));
+class VideoFormats : public VideoWithFfmpeg, public testing::WithParamInterface<const char*> {};
+
+TEST_P(VideoFormats, HoldEveryFrameInItsColourAndAreTheSameEachTime) {
+  constexpr int kFrames = 6;
+  const std::string name = std::string("film") + GetParam(), again = std::string("again") + GetParam();
+  for (const std::string& file : {name, again}) {
+    VideoWriter video(directory_ / file, kWidth, kHeight, 20);
+    for (int i = 0; i < kFrames; ++i)
+      video.add_frame(plain_frame(kWidth, kHeight, static_cast<std::uint8_t>(40 * i), 60, 130));
     video.finish();
-  });
-  EXPECT_NE(error.find("demo.nosuchformat: ffmpeg: "), std::string::npos) << error;
-  EXPECT_NE(error.find("Invalid argument"), std::string::npos) << error;
-  EXPECT_TRUE(directory_.entries().empty());
+  }
+  EXPECT_EQ(bytes_of(directory_ / name), bytes_of(directory_ / again));
+  const std::vector<char> frames = decode(directory_ / name, directory_ / "frames");
+  ASSERT_EQ(frames.size(), kFrames * kRgbBytes);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const std::size_t middle = i * kRgbBytes + kRgbBytes / 2 + std::size_t{3} * kWidth / 2;
+    EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle]), 40 * static_cast<int>(i), 6) << "frame " << i;
+    EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle + 1]), 60, 6);
+    EXPECT_NEAR(static_cast<std::uint8_t>(frames[middle + 2]), 130, 6);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Endings, VideoFormats, testing::Values(".mp4", ".webm", ".gif", ".apng", ".GIF"));
+
+// Each frame of a GIF has its own palette: what stands still must keep its colours all the same.
+TEST_F(VideoWithFfmpeg, AGifKeepsWhatStandsStill) {
+  const auto frame = [](int number) {
+    Image image = plain_frame(kWidth, kHeight, 0, 0, 0);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        std::uint8_t* const pixel = image.pixel(x, y);
+        const bool box = x >= 4 * number && x < 4 * number + 8 && y < 8;
+        pixel[0] = static_cast<std::uint8_t>(box ? 60 * number : 4 * x);
+        pixel[1] = static_cast<std::uint8_t>(box ? 250 - 60 * number : 5 * y);
+        pixel[2] = static_cast<std::uint8_t>(box ? 30 * number : 255 - 4 * x);
+      }
+    }
+    return image;
+  };
+  VideoWriter video(directory_ / "still.gif", kWidth, kHeight, 20);
+  for (int i = 0; i < 4; ++i) video.add_frame(frame(i));
+  video.finish();
+  const std::vector<char> frames = decode(directory_ / "still.gif", directory_ / "frames");
+  ASSERT_EQ(frames.size(), 4 * kRgbBytes);
+  const Image last = frame(3);
+  double squares = 0;
+  for (std::size_t i = 3 * kRgbBytes; i < 4 * kRgbBytes; ++i) {
+    const std::size_t at = i - 3 * kRgbBytes;
+    const double difference = static_cast<std::uint8_t>(frames[i]) - double{last.rgba[at / 3 * 4 + at % 3]};
+    squares += difference * difference;
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(kRgbBytes)), 12) << "root mean square of the last frame";
+}
+
+TEST_F(VideoWithFfmpeg, SaysWhatFfmpegCannotDo) {
+  // One that has been built without an encoder.
+  make_fake_ffmpeg(directory_, "echo \"Unknown encoder 'libvpx-vp9'\" >&2; exit 1\n");
+  const PathOverride fake(directory_.string());
+  VideoWriter video(directory_ / "demo.webm", kWidth, kHeight, 30);
+  EXPECT_NE(error_of([&] { video.finish(); }).find("demo.webm: ffmpeg: Unknown encoder 'libvpx-vp9'"),
+            std::string::npos);
+}
+
+TEST(Video, KnowsFormatsByTheirEndings) {
+  EXPECT_EQ(video_format("a/b.mp4"), VideoFormat::mp4);
+  EXPECT_EQ(video_format("b.MP4"), VideoFormat::mp4);
+  EXPECT_EQ(video_format("b.webm"), VideoFormat::webm);
+  EXPECT_EQ(video_format("b.gif"), VideoFormat::gif);
+  EXPECT_EQ(video_format("b.apng"), VideoFormat::apng);
+  for (const char* const other : {"b.avi", "b", ".mp4", "gif", ""})
+    EXPECT_FALSE(video_format(other)) << other;
+  const TemporaryDirectory directory;
+  EXPECT_EQ(error_of([&] { VideoWriter video(directory / "v.avi", kWidth, kHeight, 30); }),
+            "cannot write the video " + directory.string() +
+                "/v.avi: give a file name that ends in .mp4, .webm, .gif or .apng");
+  EXPECT_TRUE(directory.entries().empty());
 }
 
 TEST_F(VideoWithFfmpeg, TellsWhenTheDirectoryIsMissing) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -14,6 +15,7 @@
 #include "command_line/help_texts.h"
 #include "support/run_command.h"
 #include "support/scratch_folder.h"
+#include "verb/progress_bar.h"
 
 namespace softcell::tests {
 namespace {
@@ -214,6 +216,19 @@ TEST(Quiet, PrintsNothing) {
   const CommandResult run = run_softcell("demo 3d --headless --scene drop --size 64x48 --frames 2 --quiet");
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.output, "");
+}
+
+TEST(ProgressBar, SaysHowMuchTimeIsLeft) {
+  using std::chrono::seconds;
+  EXPECT_EQ(progress_line("demo 2d", 0, 10, seconds(0)), "demo 2d [" + std::string(40, ' ') + "]   0%");
+  EXPECT_EQ(progress_line("x", 10, 40, seconds(0)),
+            "x [" + std::string(10, '=') + std::string(30, ' ') + "]  25%")
+      << "the first second says too little";
+  EXPECT_TRUE(progress_line("x", 10, 40, seconds(20)).ends_with("]  25%  1:00 left"));
+  EXPECT_TRUE(progress_line("x", 20, 40, seconds(9)).ends_with("]  50%  0:09 left"));
+  EXPECT_TRUE(progress_line("x", 1, 1000, seconds(11)).ends_with("]   0%  3:03:09 left"));
+  EXPECT_TRUE(progress_line("x", 40, 40, seconds(80)).ends_with("] 100%"));
+  EXPECT_TRUE(progress_line("x", 0, 0, seconds(1)).ends_with("] 100%"));
 }
 
 }  // namespace

@@ -875,6 +875,10 @@ TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
   write_file(folder / "nan.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n");
   write_file(folder / "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
   write_file(folder / "file", "not a folder");
+  render::Image picture(4, 4);
+  render::write_png(folder / "clear.png", picture);
+  std::fill(picture.rgba.begin(), picture.rgba.end(), std::uint8_t{255});
+  render::write_png(folder / "cat.png", picture);
   std::string arguments = GetParam().arguments;
   for (std::size_t at; (at = arguments.find("%s")) != std::string::npos;)
     arguments.replace(at, 2, folder.path().string());
@@ -955,7 +959,16 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"demo 3d --headless --frames -3", 2, "--frames"},
         Refusal{"demo 3d --headless --frames 0", 2, "--frames"},
         Refusal{"demo 3d --frames 1 --out %s/f", 2, "--headless"},
-        Refusal{SC_DEMO "--video %s/v.webm", 2, "v.webm: give a file name that ends in .mp4"},
+        Refusal{SC_DEMO "--video %s/v.avi", 2,
+                "v.avi: give a file name that ends in .mp4, .webm, .gif or .apng"},
+        Refusal{SC_DEMO "--video %s/v.gif --fps 60", 2, "--fps 60: .gif shows at most 50 frames a second"},
+        Refusal{SC_DEMO "--video %s/v.mp4 --fps 61", 2, "--fps 61: give a whole number from 1 to 60"},
+        Refusal{SC_DEMO "--fps 30", 2, "--video"},
+        Refusal{SC_DEMO "--supersample 9", 2, "--supersample 9: give a whole number from 1 to 8"},
+        Refusal{SC_DEMO "--supersample 4 --size 8192x16", 2, "more than 16384 pixels a side"},
+        Refusal{"demo 2d --supersample 2", 2, "--headless"},
+        Refusal{"demo 2d --headless --cells 4", 2, "--image"},
+        Refusal{"demo 2d --headless --scene man --image %s/cat.png", 2, "it has no body with own_image_side"},
         Refusal{SC_DEMO "--video ''", 2, "--video needs a value"},
         Refusal{"demo 2d --statistics", 2, "--headless"},
         Refusal{"demo 2d --headless --replay %s/cube.obj", 1, "line 1"},
@@ -986,6 +999,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"spu budget %s/cube.obj", 1, "cube.obj"},
         Refusal{"spu budget --checked job_loop", 1, "has no checked flavour"},
         Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is not a regular file"},
+        Refusal{"demo 2d --headless --image %s/none.png", 1, "none.png"},
+        Refusal{"demo 2d --headless --image /dev/zero", 1, "/dev/zero: it is not a regular file"},
+        Refusal{"demo 2d --headless --image %s/cube.obj", 1, "cube.obj"},
+        Refusal{"demo 2d --headless --image %s/clear.png", 1, "the picture is transparent"},
         Refusal{SC_DEMO "--mesh %s/none.obj", 1, "none.obj"}, Refusal{SC_DEMO "--mesh %s", 1, "softcell_"},
         Refusal{SC_DEMO "--mesh %s/empty.obj", 1, "empty.obj"},
         Refusal{SC_DEMO "--mesh %s/truncated.ply", 1, "truncated.ply"},

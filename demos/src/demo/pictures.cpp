@@ -7,17 +7,27 @@
 #include <numbers>
 #include <regex>
 #include <stdexcept>
+#include <string>
 
 #include "softcell/base/assert.h"
 #include "softcell/render/offscreen_context.h"
-#include "softcell/render/png_io.h"
 
 namespace softcell::demos {
-namespace {
 
-constexpr int kFramesPerSecond = 60;
+FilmRate::FilmRate(int per_second) : per_second_(per_second) {
+  SC_ASSERT(per_second >= 1 && per_second <= kFramesPerSecond, "{} frames a second of {}", per_second,
+            kFramesPerSecond);
+}
 
-}  // namespace
+FilmRate FilmRate::usual(const std::filesystem::path& video) {
+  constexpr int kOfGif = 20;
+  return FilmRate(render::video_format(video) == render::VideoFormat::gif ? kOfGif : kFramesPerSecond);
+}
+
+bool FilmRate::shows(int frame) const {
+  SC_ASSERT(frame >= 0, "frame {}", frame);
+  return std::int64_t{frame} * per_second_ % kFramesPerSecond < per_second_;
+}
 
 void make_picture_folders(const PictureOptions& options) {
   std::error_code error;
@@ -43,25 +53,37 @@ FrameFolder::FrameFolder(std::filesystem::path folder) : folder_(std::move(folde
   }
 }
 
-void FrameFolder::write(int frame, const render::Image& image) const {
+void FrameFolder::write(int frame, const render::Image& image, std::span<const render::PngText> texts) const {
   SC_ASSERT(frame >= 0, "the picture of frame {} has no name", frame);
-  render::write_png(folder_ / fmt::format("frame_{:05}.png", frame), image, render::PngEffort::fast);
+  std::vector<render::PngText> all(texts.begin(), texts.end());
+  all.push_back({"Frame", std::to_string(frame)});
+  render::write_png(folder_ / fmt::format("frame_{:05}.png", frame), image, render::PngEffort::fast, all);
 }
 
-Pictures::Pictures(const PictureOptions& options, Demo& demo) : demo_(demo), turntable_(options.turntable) {
+Pictures::Pictures(const PictureOptions& options, Demo& demo)
+    : demo_(demo),
+      turntable_(options.turntable),
+      supersample_(options.supersample),
+      texts_(options.texts),
+      film_rate_(options.fps     ? FilmRate(*options.fps)
+                 : options.video ? FilmRate::usual(*options.video)
+                                 : FilmRate(FilmRate::kFramesPerSecond)) {
   SC_ASSERT(!turntable_ || *turntable_ > 0, "a camera that turns in {} s", turntable_.value_or(0));
+  SC_ASSERT(supersample_ > 0, "pictures drawn {} times as large", supersample_);
   SC_ASSERT(options.size.width > 0 && options.size.height > 0, "pictures of {} by {} pixels",
             options.size.width, options.size.height);
   if (options.out) folder_.emplace(*options.out);
   if (options.video) {
     video_ = std::make_unique<render::VideoWriter>(*options.video, options.size.width, options.size.height,
-                                                   kFramesPerSecond);
+                                                   film_rate_.per_second());
   }
   context_ = render::create_offscreen_context();
   renderer_ = std::make_unique<render::Renderer>(
-      *context_, render::RendererSettings{.width = options.size.width, .height = options.size.height});
+      *context_, render::RendererSettings{.width = supersample_ * options.size.width,
+                                          .height = supersample_ * options.size.height});
   demo_.make_view(*renderer_);
-  if (options.statistics) statistics_ = std::make_unique<Statistics>();
+  if (options.statistics)
+    statistics_ = std::make_unique<Statistics>(kTextScale * static_cast<float>(supersample_));
 }
 
 void Pictures::follow(const FrameTimes& times) {
@@ -70,20 +92,26 @@ void Pictures::follow(const FrameTimes& times) {
 }
 
 const render::Image& Pictures::draw(int frame) {
-  const double turns = turntable_ ? frame / (kFramesPerSecond * *turntable_) : 0;
-  const render::Image& image =
-      demo_.draw(static_cast<float>(2 * std::numbers::pi * (turns - std::floor(turns))));
-  if (!statistics_) return image;
-  draw_statistics(statistics_->page, kTextScale, statistics_->overlay, *renderer_);
-  return renderer_->pixels();
+  const double turns = turntable_ ? frame / (FilmRate::kFramesPerSecond * *turntable_) : 0;
+  const render::Image* image =
+      &demo_.draw(static_cast<float>(2 * std::numbers::pi * (turns - std::floor(turns))));
+  if (statistics_) {
+    draw_statistics(statistics_->page, statistics_->scale, statistics_->overlay, *renderer_);
+    image = &renderer_->pixels();
+  }
+  if (supersample_ == 1) return *image;
+  render::make_smaller(*image, supersample_, smaller_);
+  return smaller_;
 }
 
 void Pictures::add(int frame) {
   SC_ASSERT(frame >= 0, "a picture of frame {}", frame);
+  const bool in_video = video_ && film_rate_.shows(frame);
+  if (video_ && !in_video && !folder_) return;
   const auto begin = std::chrono::steady_clock::now();
   const render::Image& image = draw(frame);
-  if (folder_) folder_->write(frame, image);
-  if (video_) video_->add_frame(image);
+  if (folder_) folder_->write(frame, image, texts_);
+  if (in_video) video_->add_frame(image);
   hash_ = render::image_hash(image);
   milliseconds_.push_back(
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "demo.h"
 #include "page.h"
 #include "softcell/render/gl_context.h"
+#include "softcell/render/png_io.h"
 #include "softcell/render/renderer.h"
 #include "softcell/render/video.h"
 
@@ -24,10 +26,30 @@ struct PictureSize {
 struct PictureOptions {
   std::optional<std::filesystem::path> out;  ///< folder for numbered frames
   std::optional<std::filesystem::path> video;
+  std::optional<int> fps;  ///< frames a second of the video, 1..60; none: as many as the format shows well
   PictureSize size;
+  int supersample = 1;      ///< drawn so many times as large in both directions, and made smaller; above 0
   bool statistics = false;  ///< of each frame, over its picture
   /// In three dimensions, seconds in which the camera goes about the scene once; none: it stays.
   std::optional<double> turntable = {};
+  std::vector<render::PngText> texts = {};  ///< written into each numbered frame: how it was made
+};
+
+/// Frames of 1/60 s that a video has.
+class FilmRate {
+ public:
+  static constexpr int kFramesPerSecond = 60;
+  /// @param per_second  1..60
+  explicit FilmRate(int per_second);
+  /// Sixty, or for a GIF twenty, of which all have the same time.
+  static FilmRate usual(const std::filesystem::path& video);
+
+  int per_second() const { return per_second_; }
+  /// Whether the video shows the frame: the first, and then so many in each second.
+  bool shows(int frame) const;
+
+ private:
+  int per_second_;
 };
 
 /// Makes the folders that pictures and videos go to. @throws std::runtime_error  --out is no folder and
@@ -40,7 +62,8 @@ class FrameFolder {
   /// @pre the folder is there
   explicit FrameFolder(std::filesystem::path folder);
 
-  void write(int frame, const render::Image& image) const;
+  /// @param texts  to which the frame's number is added
+  void write(int frame, const render::Image& image, std::span<const render::PngText> texts) const;
 
  private:
   std::filesystem::path folder_;
@@ -57,6 +80,7 @@ class Pictures {
   /// Call it after each frame: updates the statistics that stand over the pictures.
   void follow(const FrameTimes& times);
 
+  /// Draws the frame, unless it is only for a video that does not show it.
   void add(int frame);
   /// Completes the video.
   void finish();
@@ -68,7 +92,9 @@ class Pictures {
  private:
   /// Figures over the pictures.
   struct Statistics {
-    render::Overlay overlay{kTextScale};
+    explicit Statistics(float text_scale) : scale(text_scale), overlay(text_scale) {}
+    float scale;
+    render::Overlay overlay;
     DemoPages pages;
     Page page;
   };
@@ -77,11 +103,15 @@ class Pictures {
 
   Demo& demo_;
   std::optional<double> turntable_;
+  int supersample_;
+  std::vector<render::PngText> texts_;
+  FilmRate film_rate_;
   std::optional<FrameFolder> folder_;
   std::unique_ptr<render::VideoWriter> video_;
   std::unique_ptr<render::GlContext> context_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<Statistics> statistics_;  // where they are asked for
+  render::Image smaller_;
   std::uint64_t hash_ = 0;
   std::vector<double> milliseconds_;
 };

@@ -3,15 +3,37 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "scripted_input.h"
 #include "softcell/render/frame.h"
+#include "softcell/render/image.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
+
+/// Cells of a soft body that have a colour of their own.
+struct ColouredCells2d {
+  Eigen::Vector2i low{0, 0}, high{0, 0};  ///< grid indices of the first and the last, both included
+  render::Colour colour{0.8f, 0.8f, 0.8f};
+};
+
+/// Eyes and a mouth, drawn on a soft body's cells.
+struct Face2d {
+  Eigen::Vector2f centre{0, 0};  ///< grid coordinates
+  float size = 4;                ///< cells
+};
+
+/// A picture that a soft body was made from, and is drawn with.
+struct Picture2d {
+  std::shared_ptr<const render::Image> image;
+  Eigen::Vector2f low{0, 0};  ///< grid coordinates of its lower left corner
+  float cell_pixels = 1;      ///< edge of a cell, in its pixels
+};
 
 struct SoftBody2dPlacement {
   std::string name;
@@ -20,6 +42,9 @@ struct SoftBody2dPlacement {
   Eigen::Vector2f position{0, 0};      ///< of the middle of the cells' box
   float contact_radius = ppu::SoftBodyModel<2>::kContactRadiusInCells;  ///< cells
   render::Colour colour{0.8f, 0.8f, 0.8f};
+  std::vector<ColouredCells2d> coloured_cells = {};  ///< of several with a cell the last counts
+  std::optional<Face2d> face = {};
+  std::shared_ptr<const Picture2d> picture = {};  ///< none: it is drawn in its colours
 
   /// The lattice, the middle of its box at 0. @throws std::runtime_error  as lattice_from_cells().
   ppu::Lattice<2> lattice() const;

@@ -93,7 +93,8 @@ class Hash {
     add(amplitude_x, amplitude_z, period_x, period_z, begin);
   }
   void add(const SoftBody2dPlacement& body) {
-    const auto& [name, cells, settings, position, contact_radius, colour] = body;
+    const auto& [name, cells, settings, position, contact_radius, colour, coloured_cells, face, picture] =
+        body;
     add(cells, settings, position, contact_radius);
   }
   void add(const Box2dShape& box) { add(box.size); }

@@ -1,15 +1,19 @@
 #include "read_lattice_2d.h"
 
 #include <array>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include "documents.h"
 #include "lua_sandbox.h"
+#include "picture_cells.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/lattice.h"
 
@@ -143,16 +147,58 @@ const Cells& LatticeFiles::cells(const std::string& file, const Place& place) {
   return known_.emplace(file, read_lattice_file(source_.text(file, place), place)).first->second;
 }
 
-Cells read_lattice_2d(FieldReader& body, LatticeFiles& files) {
-  const auto rows = body.items("rows", static_cast<std::size_t>(kMaxCells));
-  const Value* shape = body.field("shape");
-  std::string file;
-  body.text("lattice", file).finish();
-  const int given = (rows.empty() ? 0 : 1) + (shape != nullptr ? 1 : 0) + (body.has("lattice") ? 1 : 0);
-  if (given != 1) throw SceneError(body.place(), body.what() + " needs one of rows, shape and lattice");
-  if (shape != nullptr) return read_shape(*shape, body.what());
-  if (!rows.empty()) return read_rows(rows, body.what());
-  return files.cells(file, body.place("lattice"));
+std::shared_ptr<const render::Image> LatticeFiles::picture(const std::string& file, const Place& place) {
+  if (const auto found = pictures_.find(file); found != pictures_.end()) return found->second;
+  constexpr std::size_t kMaxPictureFiles = 32;
+  if (pictures_.size() == kMaxPictureFiles)
+    throw SceneError(place, fmt::format("the scene names more than {} pictures", kMaxPictureFiles));
+  const std::filesystem::path path = source_.picture(file, place);
+  try {
+    return pictures_.emplace(file, load_picture(path)).first->second;
+  } catch (const std::runtime_error& error) {
+    throw SceneError(place, error.what());
+  }
+}
+
+void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPicturePlace& own,
+                     SoftBody2dPlacement& body) {
+  constexpr float kCellsAlong = 20;  // a picture, unless a cell size is stated
+  const auto rows = fields.items("rows", static_cast<std::size_t>(kMaxCells));
+  const Value* shape = fields.field("shape");
+  std::string file, image;
+  std::optional<float> longest_side;
+  fields.text("lattice", file).text("image", image).number("longest_side", longest_side, kLength).finish();
+  const int given = (rows.empty() ? 0 : 1) + (shape != nullptr ? 1 : 0) + (fields.has("lattice") ? 1 : 0) +
+                    (fields.has("image") ? 1 : 0);
+  if (given != 1)
+    throw SceneError(fields.place(), fields.what() + " needs one of rows, shape, lattice and image");
+  if (longest_side && !fields.has("image"))
+    throw SceneError(fields.place("longest_side"), fields.what() + " has longest_side, which is of an image");
+  const auto from_picture = [&](std::shared_ptr<const render::Image> picture, float side, double cells,
+                                const Place& place) {
+    try {
+      PictureCells made = cells_of_picture(std::move(picture), cells);
+      body.cells = std::move(made.cells);
+      body.picture = std::make_shared<const Picture2d>(std::move(made.picture));
+      body.settings.cell_size = static_cast<float>(side / cells);
+    } catch (const std::runtime_error& error) {
+      throw SceneError(place, fmt::format("{}: {}", fields.what(), error.what()));
+    }
+  };
+  if (own.picture != nullptr) {
+    from_picture(own.picture->image, own.longest_side, own.picture->cells, fields.place());
+  } else if (fields.has("image")) {
+    const Place& place = fields.place("image");
+    const float side = longest_side.value_or(2), stated = body.settings.cell_size;
+    from_picture(files.picture(image, place), side, stated > 0 ? double{side} / stated : double{kCellsAlong},
+                 place);
+  } else if (shape != nullptr) {
+    body.cells = read_shape(*shape, fields.what());
+  } else if (!rows.empty()) {
+    body.cells = read_rows(rows, fields.what());
+  } else {
+    body.cells = files.cells(file, fields.place("lattice"));
+  }
 }
 
 }  // namespace softcell::demos

@@ -15,7 +15,8 @@ namespace softcell::demos {
 /// @throws SceneError  @throws NoPlaceForModel
 Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::optional<OwnModel>& model);
 
-/// A 2D scene. @throws SceneError
-Scene2d read_scene_2d(FieldReader& root, const SceneSource& source);
+/// A 2D scene. @param picture  takes the place of the body that states `own_image_side`.
+/// @throws SceneError  @throws NoPlaceForModel
+Scene2d read_scene_2d(FieldReader& root, const SceneSource& source, const std::optional<OwnPicture>& picture);
 
 }  // namespace softcell::demos

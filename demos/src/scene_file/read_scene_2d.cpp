@@ -1,9 +1,11 @@
 #include "read_scene.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ppu/numbers/deterministic_math.h"
@@ -24,6 +26,7 @@ constexpr Range kRigidLength{.low = kSmallest, .high = kFar};
 /// Of a polygon's length, how far a corner lies off the other sides at least: in floats, Box2D's, a thinner
 /// one loses its corners.
 constexpr double kThinnest = 0.001;
+constexpr int kMaxCellIndex = 1'000'000;
 
 /// Four walls around the middle of the world; width and height are those of the room within.
 void read_framework(const Value& value, Scene2d& scene) {
@@ -155,28 +158,99 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
   }
 }
 
-void read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices, const Materials& materials,
-                    Scene2d& scene) {
+Eigen::Vector2i read_cell(FieldReader& fields, std::string_view key) {
+  const auto numbers = fields.items(key, 2);
+  const std::string name = fmt::format("{} of {}", key, fields.what());
+  if (numbers.size() != 2) throw SceneError(fields.place(key), name + " must be an array of 2 whole numbers");
+  const auto number = [&](std::size_t i) {
+    return read_integer(numbers[i], (i == 0 ? "x of " : "y of ") + name, -kMaxCellIndex, kMaxCellIndex);
+  };
+  return {number(0), number(1)};
+}
+
+void read_cell_colours(FieldReader& body, SoftBody2dPlacement& placement) {
+  constexpr std::size_t kMaxColours = 64;
+  const auto items = body.items("cell_colours", kMaxColours);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    FieldReader fields(items[i], fmt::format("{} of {}", item_name("colour", i), body.what()));
+    ColouredCells2d& cells = placement.coloured_cells.emplace_back();
+    cells.low = read_cell(fields, "low");
+    cells.high = read_cell(fields, "high");
+    fields.colour("colour", cells.colour).finish();
+  }
+}
+
+std::optional<Face2d> read_face(FieldReader& body) {
+  const Value* value = body.field("face");
+  if (value == nullptr) return std::nullopt;
+  constexpr Range kIndex{.low = -kMaxCellIndex, .high = kMaxCellIndex}, kSize{.low = 0.5, .high = 256};
+  Face2d face;
+  FieldReader(*value, "the face of " + body.what())
+      .vector<2>("centre", face.centre, kIndex, Need::kRequired)
+      .number("size", face.size, kSize)
+      .finish();
+  return face;
+}
+
+/// A face lies on cells: what is far from all of them would swing about.
+void check_face(const FieldReader& fields, const SoftBody2dPlacement& body) {
+  if (!body.face) return;
+  const bool on_cell = std::ranges::any_of(body.cells, [&](const Eigen::Vector2i& cell) {
+    const Vector2f from = body.face->centre - cell.cast<float>();
+    return from.minCoeff() >= 0 && from.maxCoeff() <= 1;
+  });
+  if (!on_cell)
+    throw SceneError(fields.place("face"),
+                     fmt::format("the face of {} has its centre on none of its cells", fields.what()));
+}
+
+/// @param picture  the user's own; null: there is none, or another body has taken it
+/// @return  whether it takes this body's place
+bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattices, const Materials& materials,
+                    const OwnPicture* picture, Scene2d& scene) {
   constexpr Range kContactRadius{.low = 0.01, .high = 1};
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
   SoftBody2dPlacement& body = scene.soft_bodies.emplace_back();
+  std::optional<float> own_image_side;
   body.name = "body " + std::to_string(index + 1);
   fields.text("name", body.name)
       .colour("colour", body.colour)
       .vector<2>("position", body.position, kCoordinate)
-      .number("contact_radius", body.contact_radius, kContactRadius);
+      .number("contact_radius", body.contact_radius, kContactRadius)
+      .number("own_image_side", own_image_side, kLength);
+  read_cell_colours(fields, body);
+  body.face = read_face(fields);
   check_name(fields, scene);
-  const Material material = materials.read(fields, Need::kRequired);
-  body.cells = read_lattice_2d(fields, lattices);
+  const bool replaced = picture != nullptr && own_image_side;
+  Material material =
+      materials.read(fields, replaced || fields.has("image") ? Need::kOptional : Need::kRequired);
+  body.settings.cell_size = material.settings.cell_size;
+  read_lattice_2d(fields, lattices,
+                  {.picture = replaced ? picture : nullptr, .longest_side = own_image_side.value_or(0)},
+                  body);
+  material.settings.cell_size = body.settings.cell_size;
+  if (body.settings.cell_size < static_cast<float>(kLeastCellSize)) {
+    throw SceneError(fields.place("longest_side"),
+                     fmt::format("the cells of {} would be {:.3g} m large; they may be no smaller than {}",
+                                 fields.what(), body.settings.cell_size, kLeastCellSize));
+  }
   body.settings = material.settings_for(step_of(scene));
+  if (replaced) {
+    body.face.reset();
+    body.coloured_cells.clear();
+  }
+  check_face(fields, body);
+  return replaced;
 }
 
 void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
-                      Scene2d& scene) {
+                      const std::optional<OwnPicture>& picture, Scene2d& scene) {
   LatticeFiles lattices(source);
   std::size_t particles = 0;
+  bool place_taken = false;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    read_soft_body(items[i], i, lattices, materials, scene);
+    const OwnPicture* own = picture && !place_taken ? &*picture : nullptr;
+    place_taken = read_soft_body(items[i], i, lattices, materials, own, scene) || place_taken;
     try {
       particles += scene.soft_bodies.back().lattice().particles.size();
     } catch (const std::runtime_error& error) {
@@ -188,11 +262,16 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
                                    kMaxParticlesOfScene));
     }
   }
+  if (picture && !place_taken) {
+    throw NoPlaceForModel("--image cannot be used with scene " + scene.name +
+                          ": it has no body with own_image_side");
+  }
 }
 
 }  // namespace
 
-Scene2d read_scene_2d(FieldReader& root, const SceneSource& source) {
+Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,
+                      const std::optional<OwnPicture>& picture) {
   Scene2d scene;
   scene.name = source.name();
   read_world(root, scene);
@@ -201,7 +280,7 @@ Scene2d read_scene_2d(FieldReader& root, const SceneSource& source) {
   const Materials materials(root.field("materials"));
   if (framework != nullptr) read_framework(*framework, scene);
   read_rigid_bodies(root, scene);
-  read_soft_bodies(root.items("soft_body", kMaxSoftBodies), source, materials, scene);
+  read_soft_bodies(root.items("soft_body", kMaxSoftBodies), source, materials, picture, scene);
   read_script<2>(root, scene);
   if (camera != nullptr) {
     FieldReader(*camera, "camera")

@@ -25,11 +25,12 @@ Value read_document(const SourceText& text) {
 }
 
 std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
-                                        const std::optional<OwnModel>& model = std::nullopt) {
+                                        const std::optional<OwnModel>& model = std::nullopt,
+                                        const std::optional<OwnPicture>& picture = std::nullopt) {
   const Value document = read_document(source.main());
   FieldReader root(document, "a scene");
   if (read_dimension(root) == 2) {
-    Scene2d scene = read_scene_2d(root, source);
+    Scene2d scene = read_scene_2d(root, source, picture);
     scene.files = source.files();
     return scene;
   }
@@ -87,8 +88,8 @@ Scene load_scene_3d(std::string_view name_or_file, const std::optional<OwnModel>
       fmt::format("scene {} has two dimensions; it is for softcell demo 2d", name_or_file));
 }
 
-Scene2d load_scene_2d(std::string_view name_or_file) {
-  auto scene = load_scene(name_or_file);
+Scene2d load_scene_2d(std::string_view name_or_file, const std::optional<OwnPicture>& picture) {
+  auto scene = read_scene(SceneSource::find(name_or_file), std::nullopt, picture);
   if (auto* found = std::get_if<Scene2d>(&scene)) return std::move(*found);
   throw std::runtime_error(
       fmt::format("scene {} has three dimensions; it is for softcell demo 3d", name_or_file));

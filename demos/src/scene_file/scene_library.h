@@ -4,6 +4,7 @@
 // A scene or lattice in Lua runs in a child process, made by fork(): load scenes before threads are started.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -33,7 +34,13 @@ struct OwnModel {
   std::vector<std::filesystem::path> files = {};  ///< that it was read from
 };
 
-/// The user gives a model, and no body of the scene can be replaced by it.
+/// The user's own picture. It replaces the body of the 2D scene that has the field `own_image_side`.
+struct OwnPicture {
+  std::shared_ptr<const render::Image> image;
+  int cells = 20;  ///< along the longest side of its silhouette
+};
+
+/// The user gives a model or a picture, and no body of the scene can be replaced by it.
 class NoPlaceForModel : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -52,6 +59,6 @@ std::variant<Scene, Scene2d> parse_scene(const std::string& text, const std::str
 /// As load_scene(), for one dimension; a scene of the other is refused.
 /// @throws NoPlaceForModel  also.
 Scene load_scene_3d(std::string_view name_or_file, const std::optional<OwnModel>& model = std::nullopt);
-Scene2d load_scene_2d(std::string_view name_or_file);
+Scene2d load_scene_2d(std::string_view name_or_file, const std::optional<OwnPicture>& picture = std::nullopt);
 
 }  // namespace softcell::demos

@@ -124,4 +124,12 @@ void SceneSource::add_files(std::span<const fs::path> files) const {
   files_.insert(files_.end(), files.begin(), files.end());
 }
 
+fs::path SceneSource::picture(const std::string& file, const Place& place) const {
+  fs::path path = locate(file, place);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    throw SceneError(place, fmt::format("there is no picture file '{}'", file));
+  return path;
+}
+
 }  // namespace softcell::demos

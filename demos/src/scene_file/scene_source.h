@@ -52,6 +52,7 @@ class SceneSource {
   const base::EmbeddedFile* embedded_mesh(const std::string& file) const;
   /// More files that belong to the scene: those that its meshes name.
   void add_files(std::span<const std::filesystem::path> files) const;
+  std::filesystem::path picture(const std::string& file, const Place& place) const;
 
  private:
   std::filesystem::path locate(const std::string& file, const Place& place) const;

@@ -26,30 +26,18 @@ void extend(Moved2d::Box& box, const Eigen::Vector2f& centre, float radius) {
 
 }  // namespace
 
-Moved2d::Moved2d(const Scene2d& scene, std::vector<float> margins)
-    : margins_(std::move(margins)), poses_(scene.rigid_bodies.size()) {
-  SC_ASSERT(margins_.size() == scene.soft_bodies.size(), "margins for {} bodies of {}", margins_.size(),
-            scene.soft_bodies.size());
+Moved2d::Moved2d(const Scene2d& scene) : poses_(scene.rigid_bodies.size()) {
   for (const RigidBody2d& body : scene.rigid_bodies) radii_.push_back(std::visit(RadiusOf{}, body.shape));
 }
 
-Moved2d::Box Moved2d::restless(const Shown2d& now) const {
-  Box box;
-  for (std::size_t b = 0; b < now.particles.size(); ++b) {
-    for (const Eigen::Vector2f& particle : now.particles[b]) extend(box, particle, margins_[b]);
-  }
+Moved2d::Box Moved2d::since_last(const Shown2d& now, const Box& soft_bodies) {
+  SC_ASSERT(now.rigid_poses.size() == poses_.size(), "{} rigid bodies of another scene than {}",
+            now.rigid_poses.size(), poses_.size());
+  Box restless_now = soft_bodies;
   for (const auto& [particle, hand] : now.hands) {
-    box.extend(particle);
-    box.extend(hand);
+    restless_now.extend(particle);
+    restless_now.extend(hand);
   }
-  return box;
-}
-
-Moved2d::Box Moved2d::since_last(const Shown2d& now) {
-  SC_ASSERT(now.rigid_poses.size() == poses_.size() && now.particles.size() == margins_.size(),
-            "{} rigid and {} soft bodies of another scene than {} and {}", now.rigid_poses.size(),
-            now.particles.size(), poses_.size(), margins_.size());
-  const Box restless_now = restless(now);
   Box moved = restless_.merged(restless_now);
   restless_ = restless_now;
   for (std::size_t i = 0; i < poses_.size(); ++i) {

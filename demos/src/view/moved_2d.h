@@ -14,19 +14,16 @@ class Moved2d {
  public:
   using Box = Eigen::AlignedBox2f;
 
-  /// @param scene  whose moments since_last() is given  @param margins  of soft bodies: how far what is drawn
-  /// of each reaches beyond its particles' centres, metres
-  Moved2d(const Scene2d& scene, std::vector<float> margins);
+  /// @param scene  whose moments since_last() is given
+  explicit Moved2d(const Scene2d& scene);
 
   /// A box around everything that has moved since the last call, at its old and at its new place; empty if nothing
   /// has. Soft bodies and hands always count as moving. Before the first call, everything is at the world's
   /// origin.
-  Box since_last(const Shown2d& now);
+  /// @param soft_bodies  a box around all soft bodies as they are drawn now; empty: there are none
+  Box since_last(const Shown2d& now, const Box& soft_bodies);
 
  private:
-  Box restless(const Shown2d& now) const;
-
-  std::vector<float> margins_;
   std::vector<float> radii_;  // of rigid bodies, about their positions
   std::vector<Pose2d> poses_;
   Box restless_;

@@ -1,9 +1,15 @@
 // softcell demo 2d: soft bodies in a Box2D world.
 
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include "demo/scene_demo.h"
 #include "demo_verbs.h"
 #include "run_demo.h"
+#include "scene_file/picture_cells.h"
 #include "simulation/simulation_2d.h"
+#include "verb/exit_status.h"
 #include "view/scene_view_2d.h"
 
 namespace softcell::tool {
@@ -39,15 +45,29 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
   ppu::ContactMethod contacts() const override { return ppu::ContactMethod::kSpheres; }
 };
 
+demos::Scene2d load_with_picture(const std::string& name, const std::optional<demos::OwnPicture>& picture) {
+  try {
+    return demos::load_scene_2d(name, picture);
+  } catch (const demos::NoPlaceForModel& error) {
+    throw UsageError(error.what());
+  }
+}
+
 }  // namespace
 
 int run_demo_2d(const Demo2dOptions& options) {
+  check_kept({{"--image", options.image}}, written_files(options));
   return run_demo(options, "demo 2d", [&](bool all) {
+    std::optional<demos::OwnPicture> picture;
+    if (options.image) picture = {.image = demos::load_picture(*options.image), .cells = options.cells};
     demos::InputLog<2> log(options);
-    demos::Scene2d scene = demos::load_scene_2d(options.scene.value_or(log.scene_name().value_or("man")));
+    const std::string usual = picture ? "picture" : "man";
+    demos::Scene2d scene =
+        load_with_picture(options.scene.value_or(log.scene_name().value_or(usual)), picture);
     check_scene_kept(scene.files, options);
     log.begin(scene);
-    return demos_of<Demo2d>(options, log, scene, all, demos::load_scene_2d);
+    return demos_of<Demo2d>(options, log, scene, all,
+                            [](std::string_view name) { return demos::load_scene_2d(name); });
   });
 }
 

@@ -28,7 +28,8 @@ struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
   std::optional<std::filesystem::path> trace;
-  bool quiet = false;  ///< nothing but what goes wrong, not even progress on a terminal
+  std::string view_name = {};  ///< what --view says
+  bool quiet = false;          ///< nothing but what goes wrong, not even progress on a terminal
 };
 
 /// The scene's default: arena, or drop when a mesh is given.
@@ -38,8 +39,10 @@ struct Demo3dOptions : DemoOptions {
   demos::Skin skin = demos::Skin::kSpe;
 };
 
-/// The scene's default: man.
+/// The scene's default: man, or picture when a picture is given.
 struct Demo2dOptions : DemoOptions {
+  std::optional<std::filesystem::path> image;  ///< the user's own picture
+  int cells = 20;                              ///< along its silhouette's longest side
   demos::View2d view = demos::View2d::kFilled;
 };
 

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kMaxFrames = 1'000'000;
 constexpr int kMinPixels = 16, kMaxPixels = 8192;
+constexpr int kMaxSupersample = 8;
 
 demos::PictureSize parse_size(const std::string& text) {
   static const std::regex pattern("([0-9]{1,5})x([0-9]{1,5})");
@@ -87,12 +88,22 @@ class DemoVerbs final : public Verb {
   void add_2d(CLI::App& demo, Call& chosen) {
     CLI::App* d = demo.add_subcommand("2d", "Soft bodies in a Box2D world, stepped on six emulated SPEs");
     add_demo_options(*d, demo_2d_, "man");
+    d->add_option("--image", demo_2d_.image,
+                  "Put what is painted in this PNG picture into the scene, cut out (default: picture)")
+        ->type_name("FILE");
+    accept_whole_number(
+        d->add_option("--cells", demo_2d_.cells,
+                      "Lattice cells along the longest side of what is painted (default: 20)"),
+        2, ppu::kMaxLatticeCellsPerAxis)
+        ->needs("--image")
+        ->type_name("CELLS");
     d->add_option("--view", view_, "What is drawn of soft bodies (default: filled)")
         ->type_name("dots|lattice|filled");
     d->callback([&] {
       chosen = [this] {
         parse_texts(demo_2d_);
         demo_2d_.view = parse_view(view_);
+        demo_2d_.view_name = view_;
         return run_demo_2d(demo_2d_);
       };
     });
@@ -137,6 +148,7 @@ class DemoVerbs final : public Verb {
         demo_3d_.model.z_up = parse_up(up_);
         if (contacts_) demo_3d_.contacts = parse_contacts(*contacts_);
         demo_3d_.view = parse_view_3d(view_3d_);
+        demo_3d_.view_name = view_3d_;
         return run_demo_3d(demo_3d_);
       };
     });
@@ -160,11 +172,23 @@ class DemoVerbs final : public Verb {
          "--out", options.out,
          "Folder for numbered PNG frames (with --headless); those of an earlier run in it are removed")
         ->type_name("DIR");
-    d.add_option(
-         "--video", options.video,
-         "Write a video to this file, which ends in .mp4 (with --headless; needs ffmpeg); of a run that "
-         "is interrupted it has the frames so far")
+    d.add_option("--video", options.video,
+                 "Write a video to this file, which ends in .mp4, .webm, .gif or .apng (with --headless; "
+                 "needs ffmpeg); "
+                 "of a run that is interrupted it has the frames so far")
         ->type_name("FILE");
+    accept_whole_number(
+        d.add_option("--fps", options.fps, "Frames a second of the video (default: 60, in a .gif 20)"), 1,
+        demos::FilmRate::kFramesPerSecond)
+        ->needs("--video")
+        ->type_name("FPS");
+    accept_whole_number(
+        d.add_option(
+            "--supersample", options.supersample,
+            "Draw pictures so many times as large and make them smaller, for finer edges (with --headless; "
+            "default: 1)"),
+        1, kMaxSupersample)
+        ->type_name("FACTOR");
     d.add_flag("--statistics", options.statistics,
                "Draw each frame's figures over its picture (with --headless; in a window S does)");
     d.add_option("--size", size_, "Size of pictures in pixels, or of the window (default: 1280x720)")

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "demo/pictures.h"
 #include "demo/run_record.h"
@@ -18,6 +19,8 @@
 #include "softcell/base/text.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/render/offscreen_context.h"
+#include "softcell/render/png_io.h"
+#include "softcell/render/video.h"
 #include "spu/kernel_report.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"
@@ -44,6 +47,23 @@ void print_interrupted(const DemoOptions& options, const demos::RunRecord& recor
              options.trace || options.json ? "; only a run to its end leaves a trace or statistics" : "");
 }
 
+/// How pictures are made, for their files. Folders and files of this computer are nobody else's business.
+std::vector<render::PngText> picture_texts(const DemoOptions& options, std::string_view verb,
+                                           const std::string& scene) {
+  std::string how = fmt::format(
+      "softcell {} --headless --scene {} --size {}x{} --spes {} --dma {} --engine {}", verb, scene,
+      options.size.width, options.size.height, options.spes, dma::to_string(options.schedule),
+      options.solver == demos::Solver::kReference ? "reference"
+      : options.machine == ls_sim::Machine::kSpu  ? "interpreter"
+                                                  : "native");
+  if (!options.view_name.empty()) how += " --view " + options.view_name;
+  if (options.supersample > 1) how += fmt::format(" --supersample {}", options.supersample);
+  if (options.statistics) how += " --statistics";
+  if (options.checked) how += " --checked";
+  if (options.replay) how += " --replay";
+  return {{"Software", "softcell " SOFTCELL_VERSION}, {"Scene", scene}, {"Command", how}};
+}
+
 demos::Run run_headless(const DemoOptions& options, std::string_view verb, const demos::MakeDemo& make,
                         const demos::SimulationOptions& how, const InterruptGuard& guard) {
   render::pin_software_rasterizer();
@@ -57,7 +77,9 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
   record.asked_frames = frames;
 
   const auto begin = std::chrono::steady_clock::now();
-  demos::Pictures pictures(options, demo);
+  demos::PictureOptions how_drawn = options;
+  how_drawn.texts = picture_texts(options, verb, demo.scene_name());
+  demos::Pictures pictures(how_drawn, demo);
   demos::run_recorded(demo, [&] {
     ProgressBar bar(std::string(verb), static_cast<std::size_t>(frames), options.quiet);
     for (int frame = 0; frame < frames && !guard.interrupted(); ++frame) {
@@ -81,9 +103,29 @@ demos::Run run_headless(const DemoOptions& options, std::string_view verb, const
   return run;
 }
 
-bool is_mp4(const std::filesystem::path& file) {
-  const std::filesystem::path ending = file.extension();
-  return ending == ".mp4" || ending == ".MP4";
+/// What can be said of a film and its pictures before they are made.
+void check_pictures(const DemoOptions& options) {
+  if (options.supersample > 1) {
+    if (!options.headless)
+      throw UsageError("--supersample is for pictures without a window: give --headless too");
+    constexpr int kMaxDrawn = 16384;  // pixels a side, as llvmpipe draws them
+    if (options.supersample * std::max(options.size.width, options.size.height) > kMaxDrawn) {
+      throw UsageError(
+          fmt::format("--supersample {}: pictures of {}x{} would be drawn with more than {} pixels a side",
+                      options.supersample, options.size.width, options.size.height, kMaxDrawn));
+    }
+  }
+  if (!options.video) return;
+  const std::optional<render::VideoFormat> format = render::video_format(*options.video);
+  if (!format) {
+    throw UsageError(fmt::format("--video {}: give a file name that ends in {}", options.video->string(),
+                                 render::kVideoEndings));
+  }
+  const int highest = render::highest_frame_rate(*format);
+  if (options.fps && *options.fps > highest) {
+    throw UsageError(fmt::format("--fps {}: {} shows at most {} frames a second", *options.fps,
+                                 options.video->extension().string(), highest));
+  }
 }
 
 /// No output takes another's place or that of what the demo reads.
@@ -120,8 +162,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (!options.headless && options.statistics)
     throw UsageError(
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
-  if (options.video && !is_mp4(*options.video))
-    throw UsageError("--video " + options.video->string() + ": give a file name that ends in .mp4");
+  check_pictures(options);
   check_files(options);
   OutputFiles files(written_files(options));
   const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any

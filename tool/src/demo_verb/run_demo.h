@@ -34,7 +34,7 @@ using LoadScenes = std::function<std::vector<demos::NamedDemo>(bool all)>;
 /// Runs a demo, in a window or without; steps it, writes its pictures, reports what it cost.
 /// @param verb  "demo 3d"   @param load  is called once, before threads are started: scenes in Lua fork
 /// @return the exit status: 0, 3 when checked kernels have findings, or 130 when interrupted.
-/// @throws UsageError  files are asked for that a window does not write, a video that is no MP4, or a file in
+/// @throws UsageError  files are asked for that a window does not write, a video of no known format, or a file in
 ///                     the place of another that is written or read.
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load);
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <utility>
 
 #include "softcell/base/assert.h"
 
@@ -14,22 +16,41 @@ constexpr std::size_t kWidth = 40;
 
 }  // namespace
 
+std::string progress_line(std::string_view label, std::size_t done, std::size_t total,
+                          std::chrono::seconds elapsed) {
+  SC_ASSERT(done <= total && elapsed.count() >= 0, "{}: {} of {} done in {} s", label, done, total,
+            elapsed.count());
+  const std::size_t percent = total == 0 ? 100 : 100 * done / total, filled = kWidth * percent / 100;
+  std::string line = fmt::format("{} [{:=<{}}{:{}}] {:3}%", label, "", filled, "", kWidth - filled, percent);
+  // The first second says too little.
+  if (done == 0 || done == total || elapsed.count() == 0) return line;
+  const auto seconds = static_cast<std::uint64_t>(
+      static_cast<double>(elapsed.count()) * static_cast<double>(total - done) / static_cast<double>(done) +
+      0.5);
+  const std::uint64_t minutes = seconds / 60;
+  line += minutes < 60 ? fmt::format("  {}:{:02} left", minutes, seconds % 60)
+                       : fmt::format("  {}:{:02}:{:02} left", minutes / 60, minutes % 60, seconds % 60);
+  return line;
+}
+
 ProgressBar::ProgressBar(std::string label, std::size_t total, bool quiet)
     : label_(std::move(label)), total_(total), enabled_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
 ProgressBar::~ProgressBar() {
-  if (enabled_ && percent_ >= 0) fmt::print(stderr, "\r{:{}}\r", "", label_.size() + kWidth + 10);
+  if (enabled_ && !line_.empty()) fmt::print(stderr, "\r{:{}}\r", "", line_.size());
 }
 
 void ProgressBar::show(std::size_t done) {
   SC_ASSERT(done <= total_, "{}: {} of {} done", label_, done, total_);
-  const int percent = total_ == 0 ? 100 : static_cast<int>(100 * done / total_);
-  if (!enabled_ || percent == percent_) return;
-  SC_ASSERT(percent >= 0 && percent <= 100, "{}: {} % of {} done", label_, percent, total_);
-  percent_ = percent;
-  const std::size_t filled = kWidth * static_cast<std::size_t>(percent) / 100;
-  fmt::print(stderr, "\r{} [{:=<{}}{:{}}] {:3}%", label_, "", filled, "", kWidth - filled, percent);
+  if (!enabled_) return;
+  const auto elapsed =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begin_);
+  std::string line = progress_line(label_, done, total_, elapsed);
+  if (line == line_) return;
+  // A shorter one covers what was there.
+  fmt::print(stderr, "\r{:{}}", line, line_.size());
   std::fflush(stderr);
+  line_ = std::move(line);
 }
 
 }  // namespace softcell::tool

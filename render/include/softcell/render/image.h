@@ -40,6 +40,11 @@ struct Image {
   }
 };
 
+/// Makes a picture smaller by a whole factor: the mean of squares of factor x factor pixels, in linear light. Any thread.
+/// @param result  its width and height are the picture's divided by the factor; overwritten
+/// @pre  the picture is whole, and its sides are multiples of the factor, which is above 0
+void make_smaller(const Image& image, int factor, Image& result);
+
 /// XXH3 (64 bits) of the pixels, seeded with width and height: equal pictures, equal hashes, on every host.
 std::uint64_t image_hash(const Image& image);
 

@@ -1,16 +1,34 @@
 #pragma once
 // Video files, made by an `ffmpeg` child process when it is installed.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "softcell/render/image.h"
 
 namespace softcell::render {
 
-/// Encodes frames as they are added (H.264 in yuv420p, which every player plays). With the same ffmpeg, the
+enum class VideoFormat : std::uint8_t {
+  mp4,   ///< H.264 in yuv420p, which every player plays
+  webm,  ///< VP9 in yuv420p
+  gif,   ///< 256 colours a frame, each frame a whole number of hundredths of a second
+  apng,  ///< a moving PNG: every colour, large
+};
+
+/// The format by the file's ending, in small or capital letters; none: the ending is another one.
+std::optional<VideoFormat> video_format(const std::filesystem::path& path);
+
+/// The endings of all formats, for sentences: ".mp4, .webm, .gif or .apng".
+inline constexpr const char* kVideoEndings = ".mp4, .webm, .gif or .apng";
+
+/// The highest frame rate that players show as it is.
+int highest_frame_rate(VideoFormat format);
+
+/// Encodes frames as they are added, in the format that the file's ending names. With the same ffmpeg, the
 /// same frames give the same file. The file is an atomic one (see base/whole_file.h): it appears when
-/// finish() succeeds. Odd sizes get one more black row or column.
+/// finish() succeeds. In MP4 and WebM, odd sizes get one more black row or column.
 ///
 ///     VideoWriter video("demo3d.mp4", 960, 540, 60);
 ///     while (...) video.add_frame(renderer.pixels());
@@ -20,7 +38,8 @@ namespace softcell::render {
 /// keep.
 class VideoWriter {
  public:
-  /// @throws std::runtime_error  ffmpeg is not installed, or the size or rate is not positive.
+  /// @throws std::runtime_error  ffmpeg is not installed, the ending is of no format, or the size or rate is not
+  /// positive.
   VideoWriter(const std::filesystem::path& path, int width, int height, int frames_per_second);
   /// Without finish(): stops the child and removes the partial file.
   ~VideoWriter();

@@ -1,0 +1,112 @@
+#pragma once
+// How a soft body in two dimensions is drawn: its skin in the colours of its cells or with its picture, outlines,
+// and its face.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "scene/scene_2d.h"
+#include "softcell/render/renderer.h"
+#include "softcell/soft_bodies/skin_2d.h"
+#include "softcell/soft_bodies/soft_body_model.h"
+#include "sticker.h"
+
+namespace softcell::demos {
+
+/// What a picture is composed of. What it refers to belongs to the bodies.
+struct Drawing2d {
+  std::vector<render::Line2d> lines_below;
+  std::vector<render::Shape2d> shapes;
+  std::vector<render::Links2d> links;
+  std::vector<render::Line2d> lines;
+  std::vector<render::Dots2d> dots;
+
+  void clear();
+};
+
+/// The stickers of a scene: bodies with one picture and one border share one.
+class Stickers {
+ public:
+  struct Entry {
+    Sticker sticker;
+    render::TextureId texture;
+  };
+  /// @param border  in the picture's pixels  @return  valid as long as this
+  const Entry& get(const std::shared_ptr<const render::Image>& picture, float border,
+                   render::Renderer& renderer);
+
+ private:
+  std::map<std::pair<std::shared_ptr<const render::Image>, float>, Entry> made_;
+};
+
+/// One body's shape. Used by one thread, with the renderer that it was made with.
+class SoftShape2d {
+ public:
+  using Box = Eigen::AlignedBox2f;
+
+  /// @param body, model  must outlive it
+  SoftShape2d(const SoftBody2dPlacement& body, const ppu::SoftBodyModel<2>& model, render::Renderer& renderer,
+              Stickers& stickers);
+
+  /// Deforms it with its particles.
+  void place(std::span<const Eigen::Vector2f> particles);
+
+  /// Adds it to a drawing, as it was placed last.
+  /// @param line_width  metres  @param opacity  of the body, 0..1; a pale one has no face
+  void draw(Drawing2d& drawing, float line_width, float opacity) const;
+
+  /// Around all that draw() draws, line widths aside.
+  const Box& box() const { return box_; }
+
+ private:
+  struct Part {
+    render::Shape2dId shape;
+    render::Colour colour;
+  };
+  struct Outline {
+    std::vector<std::uint32_t> vertices;
+    std::vector<Eigen::Vector2f> points, normals;
+  };
+  /// Dots of one size on the body.
+  struct Spots {
+    std::vector<ppu::CellPoint2d> places;
+    std::vector<Eigen::Vector2f>
+        aside;     ///< of each, metres: where the light is, whichever way the body turns
+    float radius;  ///< metres
+    render::Colour colour;
+    float opacity = 1;
+    std::vector<Eigen::Vector2f> centres = {};
+  };
+  struct Stroke {
+    std::vector<ppu::CellPoint2d> places;
+    std::vector<Eigen::Vector2f> points;
+    float width;  ///< metres
+    render::Colour colour;
+  };
+
+  void add_parts(render::Renderer& renderer);
+  void add_picture(render::Renderer& renderer, Stickers& stickers);
+  void add_face(const Face2d& face);
+
+  const SoftBody2dPlacement& body_;
+  const ppu::SoftBodyModel<2>& model_;
+  ppu::Skin2d skin_;
+  std::vector<Part> parts_;
+  std::optional<render::TextureId> texture_;
+  std::vector<Outline> outlines_;
+  std::vector<Spots> spots_;
+  std::vector<Stroke> strokes_;
+
+  std::vector<Eigen::Vector2f> positions_, slopes_;
+  std::vector<render::Vertex2d> vertices_;
+  Box box_;
+};
+
+}  // namespace softcell::demos
