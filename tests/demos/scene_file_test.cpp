@@ -301,6 +301,45 @@ TEST_F(SceneFile, RandomNumbersOfLuaAreTheSameInEveryRun) {
   EXPECT_EQ(load_scene_3d(file).gravity, load_scene_3d(file).gravity);
 }
 
+TEST_F(SceneFile, AttachmentsAreReadAndCheckedByName) {
+  const std::string bodies =
+      "[[box]]\nsize = [1, 1, 1]\n[[soft_body]]\nname = \"a\"\ncell_size = 0.3\nshape = { kind = \"box\" }\n"
+      "[[soft_body]]\nname = \"b\"\ncell_size = 0.3\nshape = { kind = \"box\" }\nposition = [1.1, 0, "
+      "0]\n[[attach]]\n";
+  const Scene scene = load_scene_3d(write(
+      "good.toml",
+      bodies +
+          "body = \"b\"\nto = \"a\"\nkind = \"hinge\"\nat = [0.5, 0, 0]\nradius = 0.4\nbreak_force = 9\n"));
+  ASSERT_EQ(scene.attachments.size(), 1u);
+  EXPECT_EQ(scene.attachments[0].body, 1u);
+  EXPECT_EQ(scene.attachments[0].other, std::size_t{0});
+  EXPECT_EQ(scene.attachments[0].other_radius, 0.4f);
+  EXPECT_EQ(scene.attachments[0].settings.kind, ppu::AttachmentKind::kHinge);
+  EXPECT_EQ(scene.attachments[0].settings.break_force, 9);
+  const auto refusal = [&](const std::string& fields) -> std::string {
+    try {
+      load_scene_3d(write("bad.toml", bodies + "at = [0, 0, 0]\nradius = 1\n" + fields));
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto says = [&](const std::string& fields, const std::string& sentence) {
+    const std::string said = refusal(fields);
+    EXPECT_NE(said.find(sentence), std::string::npos) << "'" << said << "' in place of '" << sentence << "'";
+  };
+  says("body = \"c\"\n", "there is no soft body 'c'");
+  says("body = \"a\"\nto = \"c\"\n", "there is no soft body 'c'");
+  says("body = \"a\"\nto = \"a\"\n", "attach 1 attaches 'a' to itself");
+  says("body = \"a\"\nto = \"b\"\nbox = 1\n", "attach 1 has both to and box; it may have one of them");
+  says("body = \"a\"\nbox = 2\n", "box of attach 1 is 2; it must be a whole number from 1 to 1");
+  says("body = \"a\"\nkind = \"glue\"\n", "it must be one of weld, hinge, rope");
+  says("body = \"a\"\nkind = \"rope\"\n",
+       "attach 1 is a rope to the world; it needs the point of its other end");
+  says("body = \"a\"\nlength = 2\n", "attach 1: an attachment has a length and is no rope");
+  says("body = \"a\"\nbreak_force = 0\n", "break_force of attach 1 is 0");
+}
+
 struct BadToml {
   const char* text;
   const char* sentence;
