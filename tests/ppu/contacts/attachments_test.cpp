@@ -558,7 +558,7 @@ TEST(Attachments, SurviveRandomLives) {
   }
 }
 
-/// What is attached costs this much more a substep. (Measured: docs/notes/performance.md; here only that it is no multiple.)
+/// What is attached costs this much more a substep. (docs/guide/soft-bodies.md has figures; here only that it is no multiple.)
 TEST(Attachments, APatchOfTwentyParticlesCostsMicroseconds) {
   if (kTakesMinutes) GTEST_SKIP() << "with sanitizers";
   const auto model = make_soft_body_model(block({0.4f, 0.4f, 0.4f}), settings_of(kCell));
