@@ -172,7 +172,8 @@ TEST_F(VideoWithFfmpeg, AGifKeepsWhatStandsStill) {
   double squares = 0;
   for (std::size_t i = 3 * kRgbBytes; i < 4 * kRgbBytes; ++i) {
     const std::size_t at = i - 3 * kRgbBytes;
-    const double difference = static_cast<std::uint8_t>(frames[i]) - double{last.rgba[at / 3 * 4 + at % 3]};
+    const double difference = static_cast<double>(static_cast<std::uint8_t>(frames[i])) -
+                              static_cast<double>(last.rgba[at / 3 * 4 + at % 3]);
     squares += difference * difference;
   }
   EXPECT_LT(std::sqrt(squares / static_cast<double>(kRgbBytes)), 12) << "root mean square of the last frame";

@@ -965,7 +965,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{SC_DEMO "--video %s/v.mp4 --fps 61", 2, "--fps 61: give a whole number from 1 to 60"},
         Refusal{SC_DEMO "--fps 30", 2, "--video"},
         Refusal{SC_DEMO "--supersample 9", 2, "--supersample 9: give a whole number from 1 to 8"},
-        Refusal{SC_DEMO "--supersample 4 --size 8192x16", 2, "more than 16384 pixels a side"},
+        Refusal{"demo 3d --headless --supersample 4 --size 8192x16", 2, "more than 16384 pixels a side"},
         Refusal{"demo 2d --supersample 2", 2, "--headless"},
         Refusal{"demo 2d --headless --cells 4", 2, "--image"},
         Refusal{"demo 2d --headless --scene man --image %s/cat.png", 2, "it has no body with own_image_side"},
