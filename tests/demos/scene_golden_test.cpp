@@ -137,7 +137,8 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden2d,
                                          Moment2d{"man", 45, View2d::kDots, "man_45_dots"},
                                          Moment2d{"man", 45, View2d::kLattice, "man_45_lattice"},
                                          Moment2d{"stack", 60, View2d::kFilled, "stack_60"},
-                                         Moment2d{"two_way", 50, View2d::kFilled, "two_way_50"}));
+                                         Moment2d{"two_way", 50, View2d::kFilled, "two_way_50"},
+                                         Moment2d{"picture", 40, View2d::kFilled, "picture_40"}));
 
 class SceneGoldenReplay : public testing::TestWithParam<const char*> {};
 
