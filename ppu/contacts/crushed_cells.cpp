@@ -13,8 +13,9 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kIterations = 3;
-// In a substep so much of the volume that is missing comes back, and no more than kMostBack of the volume at rest.
-constexpr float kShareBack = 0.3f, kMostBack = 0.1f;
+// In a substep so much of the volume that is missing comes back, and no more than kMostBack of the volume at rest:
+// with more, pushes enter what the body lies on.
+constexpr float kShareBack = 0.15f, kMostBack = 0.04f;
 // Of cells without any extent a small change of volume would be a large motion: their mobility counts as this much
 // at least, in 1 / (mass of the cell), of a cell with edges of 1.
 constexpr float kLeastMobility = 0.05f;
