@@ -22,7 +22,7 @@ std::shared_ptr<const SoftBodyModel<3>> penguin() {
   TriangleMesh mesh = make_penguin(1);
   for (const Vector3f& p : mesh.positions) mesh.texture_coordinates.emplace_back(p.x(), p.y());
   mesh.parts = {{.object = "penguin",
-                 .material = "",
+                 .material = {},
                  .first_triangle = 0,
                  .triangle_count = static_cast<std::uint32_t>(mesh.triangles.size())}};
   return make_soft_body_model(mesh, {.cell_size = 0.15f});
