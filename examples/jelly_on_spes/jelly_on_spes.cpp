@@ -31,8 +31,7 @@ int main(int argc, char** argv) try {
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-  world.addRigidBody(&floor);
-  world.addRigidBody(&box);
+  for (btRigidBody* const body : {&floor, &box}) world.addRigidBody(body);
 
   // The soft body. Six SPEs step and skin it.
   const ppu::TriangleMesh mesh = ppu::import_mesh(argv[1]);
@@ -59,8 +58,7 @@ int main(int argc, char** argv) try {
   };
   render::StaticDraw rigid[] = {add(ppu::make_box({12, 0.001f, 12}, 12)),
                                 add(ppu::make_box({0.5f, 0.5f, 0.5f}, 1))};
-  rigid[1].colour = render::srgb(0x4A7FB5);
-  rigid[0].pattern = render::Pattern::tiles;
+  rigid[1].colour = render::srgb(0x4A7FB5), rigid[0].pattern = render::Pattern::tiles;
   for (int frame = 0; frame < 75; ++frame) {
     world.stepSimulation(1 / 60.0f, 2, 1 / 120.0f);
     skinner.begin_frame();  // a game draws skinner.vertices(jelly) here: those of the frame before

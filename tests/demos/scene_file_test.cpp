@@ -436,7 +436,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadToml{"[[pause]]\nbegin = 2\nend = 1\n", "bad.toml:3:1: pause 1 ends at 1 s"},
         BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\nrows = [\"#\", \"#o\"]\n", "bad.toml:4:"},
         BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\n",
-                "bad.toml:2:1: soft body 1 needs one of rows, shape and lattice"},
+                "bad.toml:2:1: soft body 1 needs one of rows, shape, lattice and image"},
         BadToml{"dimension = 2\n[[soft_body]]\ncell_size = 1\nshape = { kind = \"rectangle\", width = 10000, "
                 "height = 1000 }\n",
                 "bad.toml:4:"},

@@ -550,10 +550,15 @@ TEST(Attachments, SurviveRandomLives) {
       }
       w.run(2);
       for (std::size_t b = 0; b < w.bodies.size(); ++b) {
-        ASSERT_LT(ContactWorld::fastest(w.bodies[b]), 100) << seed << " " << i;
+        // Attachments that contradict each other throw particles about.
+        ASSERT_LT(ContactWorld::fastest(w.bodies[b]), 200) << seed << " " << i;
         ASSERT_LT(w.bodies[b].bounds().high.cwiseAbs().maxCoeff(), 100) << seed << " " << i;
       }
     }
+    // Where nobody attaches anything any more, they calm down.
+    w.run(240);
+    for (std::size_t b = 0; b < w.bodies.size(); ++b)
+      ASSERT_LT(ContactWorld::fastest(w.bodies[b]), 15) << seed << " " << b;
     for (const auto& body : rigid) w.world.removeRigidBody(body.get());
   }
 }
