@@ -37,8 +37,12 @@ namespace {
 
 enum Tag : uint32_t { kTagTask = 0, kTagIn = 1, kTagOut = 2 };
 
+#ifdef SOFTCELL_CHECKED  // its code is twice as large
+constexpr uint32_t kBatch = 8, kInverses = 32;
+#else
 constexpr uint32_t kBatch = 16;     // tasks that are fetched together
 constexpr uint32_t kInverses = 64;  // that are kept
+#endif
 constexpr uint16_t kNoCell = 0xFFFF;
 constexpr uint32_t kGroups = 4;  // of a FindCandidate
 /// Something that is in the local store already.

@@ -14,7 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int kIterations = 40;  // over the contacts of one substep that bounce: few bodies bounce at a time
+constexpr int kBounceIterations = 40;  // over the contacts of one substep that bounce: few bodies bounce at a time
 // Bodies that gravity makes this many times as fast in one substep rest on each other, they do not hit.
 constexpr double kRestingSteps = 2;
 // In cells: what is no farther apart when a body first touches something touches, too.
@@ -226,7 +226,7 @@ void Bounces::solve(std::span<ContactBody> bodies, std::span<ContactRigid> rigid
   SC_ASSERT(step > 0, "a substep of {} s", step);
   choose(bodies, rigids, settings, step);
   if (bounces_.empty()) return changed_.clear();
-  for (int i = 0; i < kIterations; ++i) iterate();
+  for (int i = 0; i < kBounceIterations; ++i) iterate();
   apply(bodies, rigids, step);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < changed_.size(); ++i)
