@@ -31,7 +31,7 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
 # Loaded at run time, or run: invisible to dpkg-shlibdeps.
 set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "libosmesa6")
-set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "fonts-dejavu-core, libegl1, libgl1-mesa-dri")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg, libsoftcell-dev, softcell-doc")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsoftcell-dev)

@@ -136,12 +136,17 @@ void Box2dBody::place_particles() {
     if (position != particles_[i]->GetPosition()) particles_[i]->SetTransform(position, 0);
     particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
   }
-  if (particles_.empty() || particles_.front()->GetFixtureList()->GetFriction() == soft_.settings().friction)
+  if (particles_.empty()) return;
+  const b2Fixture& now = *particles_.front()->GetFixtureList();
+  if (now.GetFriction() == soft_.settings().friction && now.GetRestitution() == soft_.settings().restitution)
     return;
   for (b2Body* const particle : particles_) {
     particle->GetFixtureList()->SetFriction(soft_.settings().friction);
-    for (b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next)
-      edge->contact->ResetFriction();  // contacts keep the friction with which they began
+    particle->GetFixtureList()->SetRestitution(soft_.settings().restitution);
+    for (b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next) {
+      edge->contact->ResetFriction();  // contacts keep what they began with
+      edge->contact->ResetRestitution();
+    }
   }
 }
 

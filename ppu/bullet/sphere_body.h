@@ -39,7 +39,10 @@ class SphereBody final : public CoupledBody {
     if (was_changed()) {
       rouse();
       place_particles();
-      for (btRigidBody& particle : particles_) particle.setFriction(soft_.settings().friction);
+      for (btRigidBody& particle : particles_) {
+        particle.setFriction(soft_.settings().friction);
+        particle.setRestitution(soft_.settings().restitution);
+      }
     } else if (!soft_.asleep()) {
       gather();
     }

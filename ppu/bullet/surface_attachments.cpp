@@ -295,6 +295,7 @@ void SurfaceAttachments::end(float step) {
 }
 
 void SurfaceAttachments::let_sleep(const SleepSettings& sleep) {
+  end_gone();  // the program's callbacks may have removed some in this substep
   for (const Island& island : islands_) {
     const bool rest =
         std::all_of(

@@ -143,6 +143,7 @@ void SurfaceContacts::watch(bool events) {
 void SurfaceContacts::forget(const SoftBody<3>& body) {
   for (auto& [key, touch] : touches_)
     if (touch.event.body == &body || touch.event.other == &body) touch.is_over = true;
+  stage_.forget_who_presses();
 }
 
 std::vector<ContactEvent> SurfaceContacts::take_events() {

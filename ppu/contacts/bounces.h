@@ -3,7 +3,8 @@
 //
 // Shape matching carries an impulse from the surface to the rest of a body one substep later, so a restitution of the
 // surface alone is lost inside the body. Bounces therefore change the rigid motion of whole bodies: six numbers
-// each. They come before the other contacts, which then find the bodies on their way back.
+// each. They come before the other contacts, which then find the bodies on their way back. A soft body that sleeps is a
+// wall in the substep in which it is hit.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -17,8 +18,8 @@ namespace softcell::ppu {
 
 struct BounceSettings {
   float least_speed = 0.2f;  ///< m/s: what hits more slowly does not bounce, so that it comes to rest
-  Eigen::Vector3f gravity{0, 0,
-                          0};  ///< m/s^2, of bodies and of rigid ones that move; velocities hold it already
+  /// m/s^2, of bodies and of rigid ones that move; velocities hold it already.
+  Eigen::Vector3f gravity{0, 0, 0};
 };
 
 /// A contact that bounces if it is fast enough.

@@ -67,6 +67,12 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     }
     for (std::size_t p = 0; p < body.ends.size(); ++p)
       body.ends[p] = body.positions[p] + step * body.velocities[p];
+    if (!body.asleep) {  // crushed cells may have changed velocities
+      for (const Vector3f& end : body.ends) {
+        body.box.low = body.box.low.cwiseMin(end);
+        body.box.high = body.box.high.cwiseMax(end);
+      }
+    }
     check_finite(body);
     cells_[i].begin(body);
   }
@@ -237,8 +243,8 @@ void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
     const auto remember = [&](std::size_t c, float impulse) {
       if (!(impulse > 0)) return;
       const std::uint32_t other = group.with_rigid ? rigids[group.contacts[c].rigid].number : group.b;
-      if (pressed_.empty() || pressed_.back()[0] != group.a || pressed_.back()[1] != other)
-        pressed_.push_back({group.a, other, group.with_rigid});
+      const std::array<std::uint32_t, 3> pair{group.a, other, group.with_rigid};
+      if (pressed_.empty() || pressed_.back() != pair) pressed_.push_back(pair);
     };
     for (std::size_t c = 0; c < group.size(); ++c)
       remember(c, group.by_worker ? group.solved.contacts[c].impulse : group.contacts[c].impulse);

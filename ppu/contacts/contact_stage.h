@@ -68,6 +68,8 @@ class ContactStage {
   void append_contacts(std::vector<PressingContact>& contacts) const;
   /// Whether a body that slept was touched by one that moves in the last step.
   bool was_woken(std::size_t body) const { return woken_[body]; }
+  /// Bodies have other numbers from now on.
+  void forget_who_presses() { pressed_.clear(); }
 
   /// Of the last step, of all bodies that are awake.
   CrushedCellCount crushed_cells() const { return crushed_; }

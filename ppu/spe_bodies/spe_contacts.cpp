@@ -102,10 +102,10 @@ void SpeContacts::begin(std::span<const ContactBody> bodies, float step) {
   end_boxes_.resize(bodies.size());
   std::size_t state = 0, velocities = 0;
   const bool same = find_places(state, velocities);
+  if (!same) pairs_.clear(bodies.size());  // before anything may throw
   started_.clear();
   make_room(memory_, "bodies in contact", state_, state);
   make_room(memory_, "velocities in contact", velocities_, velocities);
-  if (!same) pairs_.clear(bodies.size());
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (!holds(i)) continue;
     write_particles(i, same);

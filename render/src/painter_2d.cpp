@@ -17,8 +17,9 @@ namespace {
 using Eigen::Vector2f;
 
 constexpr int kHalf = 2, kQuarter = 4;  // the picture's pixels in a texel
-constexpr int kMaxTaps = 23;            // of the blur, on either side: the shader has one weight more
-constexpr float kSmooth = 1;            // pixels around a line that its smooth edge needs
+// Of the blur, on either side, enough for a height of 16,384 pixels: the shader has one weight more.
+constexpr int kMaxTaps = 91;
+constexpr float kSmooth = 1;  // pixels around a line that its smooth edge needs
 
 // The API takes offsets into the bound buffer as pointers.
 // NOLINTNEXTLINE(performance-no-int-to-ptr)
@@ -73,7 +74,8 @@ Painter2d::Painter2d(const GladGLContext& gl)
       textured_mask_(gl, kShape2dVertex, kTexturedMask2dFragment, {"centre", "to_clip"}),
       blur_(gl, kWholePicture2d, kBlur2d, {"texels_per_pixel", "step_in_texels", "taps", "weights"}),
       paper_(gl, kWholePicture2d, kPaper2d,
-             {"shadow_size", "middle", "centre", "pixel", "squares", "paper", "line_colour", "strength"}),
+             {"shadow_size", "middle", "centre", "pixel", "squares", "paper", "line_colour", "strength",
+              "line_width"}),
       stroke_(gl, kStroke2dVertex, kStroke2dFragment, {"centre", "to_clip"}),
       shape_layout_(make_vertex_array(gl)),
       shape_vertices_(make_buffer(gl)),
@@ -279,6 +281,7 @@ void Painter2d::draw_paper(const Frame2d& frame, const Canvas2d& canvas) {
   gl_.Uniform3f(paper_.places[5], colour.x(), colour.y(), colour.z());
   gl_.Uniform3f(paper_.places[6], line.x(), line.y(), line.z());
   gl_.Uniform1f(paper_.places[7], frame.shadow.strength);
+  gl_.Uniform1f(paper_.places[8], std::max(height / 720, 1.0f));  // as wide to the eye in larger pictures
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 

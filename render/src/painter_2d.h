@@ -1,8 +1,12 @@
 #pragma once
 // Draws frames in two dimensions. Used by Renderer.
 
+#include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -57,10 +61,6 @@ class Painter2d {
     Eigen::Vector2f position, across;
     float radius;
     std::uint32_t rgba;
-  };
-  /// World to clip space.
-  struct Projection {
-    Eigen::Vector2f centre, to_clip;
   };
 
   void make_targets(int width, int height);

@@ -161,7 +161,7 @@ struct Renderer::State {
   const GlObject& texture(TextureId id) const;
 
   void check(const FrameDescription& frame) const;
-  PixelRect part_to_draw(const std::optional<PixelRect>& changes) const;
+  PixelRect part_to_draw(const std::optional<PixelRect>& changes, bool is_kept) const;
   void upload_frame(const FrameDescription& frame);
   void upload_lattice(const LatticeDraw& lattice);
   void draw_shadow_map(const FrameDescription& frame);
@@ -451,8 +451,8 @@ void Renderer::State::check(const FrameDescription& frame) const {
   }
 }
 
-PixelRect Renderer::State::part_to_draw(const std::optional<PixelRect>& changes) const {
-  if (!changes || !has_picture) return {0, 0, width, height};
+PixelRect Renderer::State::part_to_draw(const std::optional<PixelRect>& changes, bool is_kept) const {
+  if (!changes || !is_kept) return {0, 0, width, height};
   return {std::max(changes->left, 0), std::max(changes->top, 0), std::min(changes->right, width),
           std::min(changes->bottom, height)};
 }
@@ -826,7 +826,7 @@ void Renderer::render(const FrameDescription& frame) {
   state.upload_frame(frame);
   gl.Enable(GL_DEPTH_TEST);
   gl.BindTexture(GL_TEXTURE_2D, state.shadow_map.name());
-  const PixelRect part = state.part_to_draw(frame.changes);
+  const PixelRect part = state.part_to_draw(frame.changes, state.has_picture);
   if (part.left < part.right && part.top < part.bottom) {
     state.draw_shadow_map(frame);
     gl.Enable(GL_SCISSOR_TEST);
@@ -856,11 +856,11 @@ void Renderer::render(const Frame2d& frame) {
   for (const Shape2d& shape : frame.shapes) {
     if (shape.texture) state.texture(*shape.texture);
   }
-  const PixelRect part = state.part_to_draw(state.has_picture_2d ? frame.changes : std::nullopt);
+  const PixelRect part = state.part_to_draw(frame.changes, state.has_picture_2d);
   if (part.left < part.right && part.top < part.bottom) {
     state.painter_2d->draw(frame, {.width = state.width, .height = state.height, .part = part},
                            [&](TextureId id) { return state.texture(id).name(); });
-    state.has_picture = state.has_picture_2d = true;
+    state.has_picture_2d = true;
   }
   state.resolve(state.painter_2d->framebuffer());
 }

@@ -17,7 +17,7 @@ uniform sampler2D source;
 uniform vec2 texels_per_pixel;  // of the source, for a pixel of the result
 uniform vec2 step_in_texels;    // along the axis
 uniform int taps;               // on either side
-uniform float weights[24];
+uniform float weights[92];
 out vec4 result;
 void main() {
   vec2 size = vec2(textureSize(source, 0));
@@ -41,20 +41,21 @@ uniform float squares;       // metres
 uniform vec3 paper;
 uniform vec3 line_colour;
 uniform float strength;      // of the shadow
+uniform float line_width;    // pixels
 out vec4 result;
 
 // Share of the pixel that is covered by lines of `width` pixels, `apart` metres from each other.
 float lines(vec2 world, float apart, float width) {
   vec2 away = abs(fract(world / apart + 0.5) - 0.5) * apart / pixel;
   vec2 covered = clamp(0.5 * width + 0.5 - away, 0.0, 1.0);
-  float fade = clamp(apart / pixel / 8.0 - 0.25, 0.0, 1.0);  // too narrow to be squares
+  float fade = clamp(apart / pixel / width / 8.0 - 0.25, 0.0, 1.0);  // too narrow to be squares
   return fade * max(covered.x, covered.y);
 }
 
 void main() {
   vec2 world = centre + (gl_FragCoord.xy - middle) * pixel;
-  float fine = 0.28 * lines(world, squares, 1.0);
-  float strong = 0.50 * lines(world, 4.0 * squares, 1.0);
+  float fine = 0.28 * lines(world, squares, line_width);
+  float strong = 0.50 * lines(world, 4.0 * squares, line_width);
   vec3 colour = mix(paper, line_colour, max(fine, strong));
   float shade = strength * texture(shadow, gl_FragCoord.xy / shadow_size).r;
   result = vec4(colour * (1.0 - shade * vec3(1.0, 0.94, 0.84)), 1.0);  // what light there is, is a blue sky's

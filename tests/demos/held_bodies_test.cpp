@@ -304,7 +304,7 @@ TEST(HeldBodies, AHandThatIsSentOutOfTheWorldBreaksNothing) {
   Simulation3d simulation(scene, {.spes = 1});
   constexpr float kFar = std::numeric_limits<float>::max();
   InputEvent<3> hold = users(Action::kHold, {kFar, -kFar, kFar}),
-                rigid = users(Action::kHoldRigid, {0, 0.4f, 0});
+                rigid = users(Action::kHoldRigid, {kFar, -kFar, kFar});
   rigid.hand = 3;
   rigid.body = 1;
   simulation.step({&hold, 1});

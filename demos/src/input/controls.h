@@ -36,10 +36,12 @@ class Controls {
           break;
         case Action::kHold:
           hands_.release(event.hand);
+          world.release(event.hand);
           if constexpr (Dimension == 3) world.hold(event);
           break;
         case Action::kHoldRigid:
           hands_.release(event.hand);
+          world.release(event.hand);
           world.hold_rigid(event);
           break;
         case Action::kMoveHand:

@@ -1,10 +1,12 @@
 #include "user_input.h"
-#include "softcell/base/assert.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "softcell/base/assert.h"
+
 namespace softcell::demos {
+
 bool WindowInput::handle_command(Command command) {
   switch (command) {
     case Command::kNextView:

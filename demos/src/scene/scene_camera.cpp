@@ -113,7 +113,10 @@ void frame_bodies(Scene& scene) {
     add_with_fall(box.low + body.position, box.high + body.position);
   }
   for (const RigidBox& box : scene.boxes)
-    if (box.mass > 0) add_with_fall(box.position - 0.5f * box.size, box.position + 0.5f * box.size);
+    if (box.mass > 0) {
+      const Vector3f half = 0.5f * (box.rotation.toRotationMatrix().cwiseAbs() * box.size);
+      add_with_fall(box.position - half, box.position + half);
+    }
   if (!all) return;
   constexpr float kMargin = 1.1f;
   render::Camera& camera = scene.camera;

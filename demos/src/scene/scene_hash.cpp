@@ -117,7 +117,7 @@ std::uint64_t scene_hash(const Scene& scene) {
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
-  if (!attachments.empty()) hash.add("attach"[0], attachments);
+  if (!attachments.empty()) hash.add('a', attachments);  // unlike a scene that has none
   return hash.value();
 }
 

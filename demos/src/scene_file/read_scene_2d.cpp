@@ -176,6 +176,8 @@ void read_cell_colours(FieldReader& body, SoftBody2dPlacement& placement) {
     ColouredCells2d& cells = placement.coloured_cells.emplace_back();
     cells.low = read_cell(fields, "low");
     cells.high = read_cell(fields, "high");
+    if ((cells.high.array() < cells.low.array()).any())
+      throw SceneError(fields.place("high"), fields.what() + " ends before it begins: high is below low");
     fields.colour("colour", cells.colour).finish();
   }
 }
@@ -235,6 +237,9 @@ bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
                                  fields.what(), body.settings.cell_size, kLeastCellSize));
   }
   body.settings = material.settings_for(step_of(scene));
+  if (!replaced && body.picture && !body.coloured_cells.empty())
+    throw SceneError(fields.place("cell_colours"),
+                     fields.what() + " has an image and cell_colours; give one of them");
   if (replaced) {
     body.face.reset();
     body.coloured_cells.clear();

@@ -14,8 +14,20 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
+namespace {
+
+/// A recording may name any point: no hand holds a body beside it.
+Vector3f near_body(const btRigidBody& body, const Vector3f& point) {
+  btVector3 low, high;
+  body.getAabb(low, high);
+  return point.cwiseMax(ppu::to_eigen(low)).cwiseMin(ppu::to_eigen(high));
+}
+
+}  // namespace
+
 RigidGrip::RigidGrip(btRigidBody& body, const Vector3f& point)
-    : body_(body), place_(ppu::to_eigen(body.getWorldTransform().inverse() * ppu::to_bullet(point))) {
+    : body_(body),
+      place_(ppu::to_eigen(body.getWorldTransform().inverse() * ppu::to_bullet(near_body(body, point)))) {
   SC_ASSERT(point.allFinite() && body.getInvMass() > 0,
             "a body with an inverse mass of {} is held at ({}, {}, {})", body.getInvMass(), point.x(),
             point.y(), point.z());

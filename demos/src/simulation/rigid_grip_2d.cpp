@@ -1,7 +1,9 @@
 #include "rigid_grip_2d.h"
 
 #include <box2d/b2_body.h>
+#include <box2d/b2_fixture.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "softcell/base/assert.h"
@@ -17,10 +19,20 @@ Vector2d cross(double omega, const Vector2d& r) { return omega * Vector2d(-r.y()
 b2Vec2 to_box2d_vector(const Vector2f& v) { return {v.x(), v.y()}; }
 Vector2f from_box2d(const b2Vec2& v) { return {v.x, v.y}; }
 
+/// A recording may name any point: no hand holds a body beside it.
+Vector2f near_body_2d(const b2Body& body, const Vector2f& point) {
+  Eigen::AlignedBox2f box;
+  for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext()) {
+    box.extend(from_box2d(fixture->GetAABB(0).lowerBound));
+    box.extend(from_box2d(fixture->GetAABB(0).upperBound));
+  }
+  return point.cwiseMax(box.min()).cwiseMin(box.max());
+}
+
 }  // namespace
 
 RigidGrip2d::RigidGrip2d(b2Body& body, const Vector2f& point)
-    : body_(body), place_(from_box2d(body.GetLocalPoint(to_box2d_vector(point)))) {
+    : body_(body), place_(from_box2d(body.GetLocalPoint(to_box2d_vector(near_body_2d(body, point))))) {
   SC_ASSERT(point.allFinite() && body.GetMass() > 0 && body.GetInertia() > 0,
             "a body of {} kg and {} kg m^2 is held at ({}, {})", body.GetMass(), body.GetInertia(), point.x(),
             point.y());

@@ -64,19 +64,21 @@ bool PanelInput::handle(const SDL_Event& event, float density, const Panel& pane
   switch (event.type) {
     case SDL_MOUSEMOTION:
       moved_to(event.motion.x, event.motion.y);
-      return pressed_ || (event.motion.state == 0 && panel.contains(x_, y_));
+      return pressed_ != 0 || (event.motion.state == 0 && panel.contains(x_, y_));
     case SDL_MOUSEBUTTONDOWN:
     case SDL_MOUSEBUTTONUP: {
       moved_to(event.button.x, event.button.y);
-      const bool down = event.type == SDL_MOUSEBUTTONDOWN, was_pressed = pressed_;
-      pressed_ = down ? panel.contains(x_, y_) : false;
+      const bool down = event.type == SDL_MOUSEBUTTONDOWN;
+      const auto mask = static_cast<Uint32>(SDL_BUTTON(event.button.button));
+      const bool ours = down ? panel.contains(x_, y_) : (pressed_ & mask) != 0;
+      pressed_ = down && ours ? pressed_ | mask : pressed_ & ~mask;
       if (const auto button = button_of(event.button.button)) {
         Change& change = coming_.emplace_back();
         change.kind = Change::Kind::kButton;
         change.which = *button;
         change.down = down;
       }
-      return down ? pressed_ : was_pressed;
+      return ours;
     }
     case SDL_MOUSEWHEEL: {
       Change& change = coming_.emplace_back();

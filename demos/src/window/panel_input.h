@@ -42,7 +42,7 @@ class PanelInput {
 
   std::deque<Change> coming_;
   float x_ = -1, y_ = -1;  // the mouse, pixels
-  bool pressed_ = false;   // a button went down on the panel, and has not come up
+  Uint32 pressed_ = 0;     // buttons that went down on the panel, and have not come up
 };
 
 }  // namespace softcell::demos

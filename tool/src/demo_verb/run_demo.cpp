@@ -58,6 +58,9 @@ std::vector<render::PngText> picture_texts(const DemoOptions& options, std::stri
                                                   : "native");
   if (!options.view_name.empty()) how += " --view " + options.view_name;
   if (options.supersample > 1) how += fmt::format(" --supersample {}", options.supersample);
+  if (options.turntable) how += fmt::format(" --turntable {}", *options.turntable);
+  if (options.contacts)
+    how += *options.contacts == ppu::ContactMethod::kSpheres ? " --contacts spheres" : " --contacts surface";
   if (options.statistics) how += " --statistics";
   if (options.checked) how += " --checked";
   if (options.replay) how += " --replay";
