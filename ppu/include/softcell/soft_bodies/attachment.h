@@ -4,7 +4,7 @@
 //     const AttachmentId tyre = soft_bodies.attach(ring, Patch<3>::of_surface(hub, 0.4f), rim);
 //     soft_bodies.attach(lamp, Patch<3>::of_surface(top, 0.1f), {.kind = AttachmentKind::kRope, .point = hook});
 //
-// A coupling holds them (BulletSoftBodies, Box2dSoftBodies) and solves them with the contacts of each substep.
+// BulletSoftBodies holds them and solves them with the contacts of each substep.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -65,8 +65,8 @@ enum class AttachmentId : std::uint32_t {};
 template <int kDimension>
 struct AttachmentState {
   Eigen::Vector<float, kDimension> force = Eigen::Vector<float, kDimension>::Zero();  ///< N, on the patch
-  float gap =
-      0;  ///< metres between the middle of the patch and where it is held; of a rope, to its other end
+  /// Metres between the middle of the patch and where it is held; of a rope, to its other end.
+  float gap = 0;
 };
 
 /// An attachment that is there no longer.

@@ -99,7 +99,7 @@ class SoftBody {
   // For the user, between time steps. Each of these functions increments revision(), by which a coupling
   // notices the change. Those after which the rotations of the last step are useless increment resets(), too.
 
-  /// Changes stiffness, damping and friction; the next time step has them.
+  /// Changes stiffness, damping, friction and restitution; the next time step has them.
   /// @throws std::runtime_error  as validate(); nothing has changed then
   /// @pre cell_size, half_width, density and contacts are the model's
   void set_material(const SoftBodySettings& settings);
