@@ -14,7 +14,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int kBounceIterations = 40;  // over the contacts of one substep that bounce: few bodies bounce at a time
+constexpr int kBounceIterations =
+    40;  // over the contacts of one substep that bounce: few bodies bounce at a time
 // Bodies that gravity makes this many times as fast in one substep rest on each other, they do not hit.
 constexpr double kRestingSteps = 2;
 // In cells: what is no farther apart when a body first touches something touches, too.

@@ -33,8 +33,11 @@ struct Patch {
   /// Metres: all of the drawn surface that is not farther from the centre. The corners of its cells are held. In two dimensions all particles.
   float radius = 0;
 
+  /// The particles with these numbers.
   static Patch of_particles(std::vector<std::uint32_t> numbers) { return {.particles = std::move(numbers)}; }
+  /// The cells with these numbers, with all their corners.
   static Patch of_cells(std::vector<std::uint32_t> numbers) { return {.cells = std::move(numbers)}; }
+  /// What of the drawn surface is within `radius` metres of `centre`.
   static Patch of_surface(const Vector& centre, float radius) { return {.centre = centre, .radius = radius}; }
 };
 
@@ -71,6 +74,7 @@ struct AttachmentState {
 
 /// An attachment that is there no longer.
 struct EndedAttachment {
+  /// Why it ended.
   enum class Reason : std::uint8_t {
     kBroken,  ///< it would have had to carry more than its break force
     kGone     ///< one of its bodies was removed

@@ -24,6 +24,7 @@ struct CellPoint2d {
   std::array<std::uint32_t, 4> corner{};  ///< particle numbers, in the order of Lattice<2>::corners
   std::array<float, 4> share{};
 
+  /// Where the point is. @param particles  positions of all particles of the body, metres
   Eigen::Vector2f at(std::span<const Eigen::Vector2f> particles) const {
     return share[0] * particles[corner[0]] + share[1] * particles[corner[1]] +
            share[2] * particles[corner[2]] + share[3] * particles[corner[3]];

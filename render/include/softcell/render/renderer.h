@@ -84,11 +84,13 @@ class Renderer {
   /// left corner, (1, 1) the upper right one.
   /// @throws std::invalid_argument  too few, or no such mesh.
   void set_texture_coordinates(MeshId mesh, std::span<const Eigen::Vector2f> coordinates);
+  /// The same of a mesh that does not change.
   void set_texture_coordinates(StaticMeshId mesh, std::span<const Eigen::Vector2f> coordinates);
 
   /// The colours of a mesh's vertices, in their order: red, green, blue in linear light, and alpha, each 0..1. They
   /// stay likewise. @throws std::invalid_argument  too few, or no such mesh.
   void set_vertex_colours(MeshId mesh, std::span<const Eigen::Vector4f> colours);
+  /// The same of a mesh that does not change.
   void set_vertex_colours(StaticMeshId mesh, std::span<const Eigen::Vector4f> colours);
 
   /// A picture to draw meshes with. The pixels are copied before it returns.
