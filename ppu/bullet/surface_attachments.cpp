@@ -65,8 +65,7 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, b
                   .rigid_number = number,
                   .touch = touches(full),
                   .rows = AttachmentRows<3>(full, particles, frame),
-                  .frame = frame,
-                  .goal_position = frame.position});
+                  .hold = {.frame = frame, .goal_position = frame.position}});
 }
 
 AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, SurfaceBody& other,
@@ -77,7 +76,8 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, S
                   .b = &other,
                   .touch = touches(settings),
                   .rows = AttachmentRows<3>(settings, particles_of(patch, body.soft(), body.contact()),
-                                            particles_of(other_patch, other.soft(), other.contact()))});
+                                            particles_of(other_patch, other.soft(), other.contact())),
+                  .hold = {}});
 }
 
 AttachmentId SurfaceAttachments::add(Link link) {
@@ -116,10 +116,10 @@ void SurfaceAttachments::move(AttachmentId id, const Eigen::Vector3f& position,
   if (!(seconds >= 0) || !std::isfinite(seconds))
     throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
                                 " s; it must be 0 or above, and finite");
-  link.goal_position = position;
-  link.goal_rotation = rotation.normalized();
-  link.seconds = seconds;
-  link.moves = true;
+  link.hold.goal_position = position;
+  link.hold.goal_rotation = rotation.normalized();
+  link.hold.seconds = seconds;
+  link.hold.moves = true;
   rouse(link);
 }
 
@@ -253,14 +253,14 @@ void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody
   };
   for (const auto& link : links_) {
     AttachmentInStep<3> in_step{
-        .rows = &link->rows, .a = number_of(link->a), .frame = link->frame, .touch = link->touch};
+        .rows = &link->rows, .a = number_of(link->a), .frame = link->hold.frame, .touch = link->touch};
     if (link->b != nullptr) {
       in_step.b = number_of(link->b);
     } else if (link->rigid != nullptr) {
       in_step.rigid = obstacles.rigid_of(*link->rigid);
       in_step.frame = frame_of(*link->rigid);
-    } else if (link->moves) {
-      Link moved = *link;
+    } else if (link->hold.moves) {
+      Hold moved = link->hold;
       moved.advance(step);
       in_step.frame.end_position = moved.frame.position;
       in_step.frame.end_rotation = moved.frame.rotation;
@@ -270,7 +270,7 @@ void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody
 }
 
 /// Evenly, and in the last step to its goal exactly.
-void SurfaceAttachments::Link::advance(float step) {
+void SurfaceAttachments::Hold::advance(float step) {
   const bool arrives = !(step < seconds);
   const float share = arrives ? 1.0f : step / seconds;
   frame.position =
@@ -288,7 +288,7 @@ void SurfaceAttachments::Link::advance(float step) {
 void SurfaceAttachments::end(float step) {
   std::vector<bool> broken;
   for (const auto& link : links_) {
-    if (link->moves) link->advance(step);
+    if (link->hold.moves) link->hold.advance(step);
     broken.push_back(link->rows.broke());
   }
   end_links(EndedAttachment::Reason::kBroken, broken);
@@ -297,17 +297,18 @@ void SurfaceAttachments::end(float step) {
 void SurfaceAttachments::let_sleep(const SleepSettings& sleep) {
   end_gone();  // the program's callbacks may have removed some in this substep
   for (const Island& island : islands_) {
-    const bool rest =
-        std::all_of(
-            island.bodies.begin(), island.bodies.end(),
-            [&](const auto* body) { return body->soft().asleep() || body->may_fall_asleep(sleep); }) &&
-        std::all_of(
-            island.rigids.begin(), island.rigids.end(),
-            [&](const auto* rigid) {
-              return is_slow(*rigid, sleep.speed) &&
-                     (!is_moved_by_bullet(*rigid) || rigid->getActivationState() != DISABLE_DEACTIVATION);
-            }) &&
-        std::none_of(island.links.begin(), island.links.end(), [](const Link* link) { return link->moves; });
+    const bool rest = std::all_of(island.bodies.begin(), island.bodies.end(),
+                                  [&](const auto* body) {
+                                    return body->soft().asleep() || body->may_fall_asleep(sleep);
+                                  }) &&
+                      std::all_of(island.rigids.begin(), island.rigids.end(),
+                                  [&](const auto* rigid) {
+                                    return is_slow(*rigid, sleep.speed) &&
+                                           (!is_moved_by_bullet(*rigid) ||
+                                            rigid->getActivationState() != DISABLE_DEACTIVATION);
+                                  }) &&
+                      std::none_of(island.links.begin(), island.links.end(),
+                                   [](const Link* link) { return link->hold.moves; });
     if (!rest) continue;
     for (SurfaceBody* const body : island.bodies)
       if (!body->soft().asleep()) body->fall_asleep_with_others();

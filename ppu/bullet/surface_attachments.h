@@ -57,6 +57,16 @@ class SurfaceAttachments {
   void let_sleep(const SleepSettings& sleep);
 
  private:
+  /// Where the world holds a link, and where the program moves that to.
+  struct Hold {
+    AttachmentFrame<3> frame{};  // at the substep's beginning
+    Eigen::Vector3f goal_position{0, 0, 0};
+    Eigen::Quaternionf rotation{1, 0, 0, 0}, goal_rotation{1, 0, 0, 0};
+    float seconds = 0;   // until it is there
+    bool moves = false;  // it is not there yet
+
+    void advance(float step);
+  };
   struct Link {
     AttachmentId id{};
     SurfaceBody* a = nullptr;
@@ -65,14 +75,7 @@ class SurfaceAttachments {
     int rigid_number = 0;          // another for a body that is added later, even at the same address
     bool touch = false;
     AttachmentRows<3> rows;
-    AttachmentFrame<3> frame{};  // of the world, at the substep's beginning
-    // Where the program moves it:
-    Eigen::Vector3f goal_position{0, 0, 0};
-    Eigen::Quaternionf rotation{1, 0, 0, 0}, goal_rotation{1, 0, 0, 0};
-    float seconds = 0;   // until it is there
-    bool moves = false;  // it is not there yet
-
-    void advance(float step);
+    Hold hold;
   };
   /// What is attached to each other, directly or not.
   struct Island {

@@ -59,15 +59,16 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
     body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())
                                       : body.model->inverse_masses;
     is_crushed_[i] = false;
+    bool velocities_changed = false;
     if (!body.asleep) {
-      crushed_cells_.hold(body, step);
+      velocities_changed = crushed_cells_.hold(body, step);
       crushed_.crushed += crushed_cells_.count();
       crushed_.inside_out += crushed_cells_.inside_out();
       is_crushed_[i] = crushed_cells_.count() > 0;
     }
     for (std::size_t p = 0; p < body.ends.size(); ++p)
       body.ends[p] = body.positions[p] + step * body.velocities[p];
-    if (!body.asleep) {  // crushed cells may have changed velocities
+    if (velocities_changed) {  // since the box was made
       for (const Vector3f& end : body.ends) {
         body.box.low = body.box.low.cwiseMin(end);
         body.box.high = body.box.high.cwiseMax(end);

@@ -1,7 +1,7 @@
 #include "scene_view_2d.h"
 
 #include <algorithm>
-#include <map>
+#include <set>
 #include <span>
 #include <variant>
 
@@ -26,7 +26,6 @@ constexpr float kPale = 0.28f;      // opacity of bodies under their particles
 constexpr float kReach = 16;
 
 render::Colour darker(const render::Colour& colour) { return 0.45f * colour; }
-render::Colour ink(const render::Colour& colour) { return 0.22f * colour; }
 
 /// Of the paper: small enough to show sizes, and a whole number of metres or a binary fraction of one.
 float squares_for(float height) {
@@ -76,14 +75,14 @@ void SceneView2d::add_soft_body(const SoftBody2dPlacement& body, const ppu::Soft
                                          .outer = std::vector<Vector2f>(model.outer().size()),
                                          .inner = std::vector<Vector2f>(model.inner().size()),
                                          .edges = {}});
-  std::map<Link, bool> edges;
+  std::set<Link> edges;
   for (const auto& corners : model.lattice().corners) {
     // Corner k is at (k & 1, k >> 1).
     const auto [a, b, c, d] = corners;
     for (const auto& [from, to] : {Link{a, b}, Link{c, d}, Link{a, c}, Link{b, d}})
-      edges[{std::min(from, to), std::max(from, to)}] = true;
+      edges.insert({std::min(from, to), std::max(from, to)});
   }
-  for (const auto& [edge, is_there] : edges) added.edges.push_back(edge);
+  added.edges.assign(edges.begin(), edges.end());
 }
 
 float SceneView2d::line_width() const {
@@ -111,7 +110,7 @@ void SceneView2d::draw_rigid_body(std::size_t index, const Pose2d& pose) {
   lines.push_back({.points = body.outline,
                    .closed = true,
                    .width = (body.firm ? 2 : 1) * line_width(),
-                   .colour = ink(colour)});
+                   .colour = ink_of(colour)});
   if (!body.mark_radius) return;
   body.mark = {pose.position + turned({kMarkDistance * *body.mark_radius, 0})};
   drawing_.dots.push_back({.centres = body.mark,

@@ -12,9 +12,6 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector2i;
 
-/// What lines around a colour are drawn in: the colour as ink.
-render::Colour ink_of(const render::Colour& colour) { return 0.22f * colour; }
-
 float margin_of(const SoftBody2dPlacement& body) {
   return std::min(body.contact_radius, ppu::kMaxSkinMargin);
 }

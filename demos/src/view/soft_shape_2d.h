@@ -20,6 +20,9 @@
 
 namespace softcell::demos {
 
+/// What lines around a colour are drawn in: the colour as ink.
+inline render::Colour ink_of(const render::Colour& colour) { return 0.22f * colour; }
+
 /// What a picture is composed of. What it refers to belongs to the bodies.
 struct Drawing2d {
   std::vector<render::Line2d> lines_below;
