@@ -10,6 +10,7 @@
 #include "shift_semantics.h"
 #include "shuffle_semantics.h"
 #include "single_semantics.h"
+#include "softcell/dma/sanitizers.h"
 #include "spu_state.h"
 
 namespace softcell::ls_sim::interpreter {
@@ -72,6 +73,21 @@ template <class Observer>
                                            Observer& observer);
 
 namespace detail {
+
+// What instructions compute is part of each loop. Under the address sanitizer, which needs minutes to compile a
+// function of so many temporaries, each is a function that all loops share.
+#if SC_ADDRESS_SANITIZER
+#define SC_PART_OF_THE_LOOP [[gnu::noinline]]
+#else
+#define SC_PART_OF_THE_LOOP [[gnu::always_inline]]
+#endif
+
+/// What `kSemantics` computes from the operands.
+template <auto kSemantics, class... More>
+SC_PART_OF_THE_LOOP inline auto computed(const Core& core, const Operation& op, More&... more) {
+  return kSemantics(core.operands(op), more...);
+}
+#undef SC_PART_OF_THE_LOOP
 
 /// Branches with their D or E bit set change whether interrupts are enabled, when they are taken.
 inline void change_interrupts(SpuState& state, const Operation& op) {
@@ -143,23 +159,25 @@ inline Flow stop(Core& core, std::uint32_t code, std::uint32_t& pc) {
 }  // namespace detail
 
 // One of these for each kind.
-#define SC_PERFORM_Compute(id) return core.set(op, semantics::id(core.operands(op)));
+#define SC_PERFORM_Compute(id) return core.set(op, detail::computed<semantics::id>(core, op));
 #define SC_PERFORM_EnhancedDouble(id)                                     \
   if (!core.state.has_enhanced_double) return core.end(Ending::kInvalid); \
-  return core.set(op, semantics::id(core.operands(op)));
-#define SC_PERFORM_Float(id) return core.set(op, semantics::id(core.operands(op), core.state.fpscr));
-#define SC_PERFORM_ControlFloat(id)                   \
-  semantics::id(core.operands(op), core.state.fpscr); \
+  return core.set(op, detail::computed<semantics::id>(core, op));
+#define SC_PERFORM_Float(id) return core.set(op, detail::computed<semantics::id>(core, op, core.state.fpscr));
+#define SC_PERFORM_ControlFloat(id)                            \
+  detail::computed<semantics::id>(core, op, core.state.fpscr); \
   return Flow::kNext;
-#define SC_PERFORM_Load(id) return detail::load(core, op, semantics::id(core.operands(op), pc), pc, observer);
+#define SC_PERFORM_Load(id) \
+  return detail::load(core, op, detail::computed<semantics::id>(core, op, pc), pc, observer);
 #define SC_PERFORM_Store(id) \
-  return detail::store(core, op, semantics::id(core.operands(op), pc), pc, observer);
+  return detail::store(core, op, detail::computed<semantics::id>(core, op, pc), pc, observer);
 #define SC_PERFORM_Jump(id) \
-  return detail::finish_jump<Mnemonic::id>(core, op, semantics::id(core.operands(op), pc), pc);
+  return detail::finish_jump<Mnemonic::id>(core, op, detail::computed<semantics::id>(core, op, pc), pc);
 #define SC_PERFORM_InterruptReturn(id) \
   return detail::finish_jump<Mnemonic::id>(core, op, semantics::jump_if(true, core.state.srr0), pc);
 #define SC_PERFORM_EventJump(id) return detail::jump_if_event(core, op, pc);
-#define SC_PERFORM_Halt(id) return semantics::id(core.operands(op)) ? core.end(Ending::kHalt) : Flow::kNext;
+#define SC_PERFORM_Halt(id) \
+  return detail::computed<semantics::id>(core, op) ? core.end(Ending::kHalt) : Flow::kNext;
 #define SC_PERFORM_Stop(id) return detail::stop(core, static_cast<std::uint32_t>(op.imm), pc);
 #define SC_PERFORM_Breakpoint(id) return detail::stop(core, kBreakpointCode, pc);
 #define SC_PERFORM_ReadChannel(id) return detail::read_channel(core, op, pc);
