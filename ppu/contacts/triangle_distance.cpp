@@ -38,8 +38,12 @@ TriangleGrid::TriangleGrid(const TriangleMesh& mesh, float cube_edge) : edge_(cu
             mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
     const std::array<Vector3f, 3> corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-    if ((corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() > 0)
-      triangles_.push_back(corners);
+    if ((corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() == 0) continue;
+    triangles_.push_back(corners);
+    const Vector3f middle = (corners[0] + corners[1] + corners[2]) / 3;
+    float squared = 0;
+    for (const Vector3f& corner : corners) squared = std::max(squared, (corner - middle).squaredNorm());
+    spheres_.push_back({middle.x(), middle.y(), middle.z(), std::sqrt(squared)});
   }
   const Bounds<3> box = bounds(mesh);
   low_ = box.low;
@@ -73,6 +77,8 @@ Vector3i TriangleGrid::cube_of(const Vector3f& point) const {
 struct TriangleGrid::Nearest {
   float squared = std::numeric_limits<float>::max();
   float facing = 0;  // of the point and the triangle: cosine, above 0 in front
+  float beyond = std::numeric_limits<
+      float>::max();  // what is farther away than this is not as near, however it is rounded
 };
 
 void TriangleGrid::look_at_cube(const Vector3i& cube, const Vector3f& point, Nearest& nearest) const {
@@ -80,6 +86,10 @@ void TriangleGrid::look_at_cube(const Vector3i& cube, const Vector3f& point, Nea
   constexpr float kEquallyNear = 1.0001f;
   const auto index = static_cast<std::size_t>((cube.z() * counts_.y() + cube.y()) * counts_.x() + cube.x());
   for (std::uint32_t i = begin_[index]; i < begin_[index + 1]; ++i) {
+    const Sphere& sphere = spheres_[items_[i]];
+    const float dx = point.x() - sphere.x, dy = point.y() - sphere.y, dz = point.z() - sphere.z;
+    const float far = nearest.beyond + sphere.radius;
+    if (dx * dx + dy * dy + dz * dz > far * far) continue;
     const auto& triangle = triangles_[items_[i]];
     const Vector3f away = point - nearest_point(triangle, point);
     const float squared = away.squaredNorm();
@@ -88,7 +98,10 @@ void TriangleGrid::look_at_cube(const Vector3i& cube, const Vector3f& point, Nea
     const float facing = squared > 0 ? away.dot(normal) / std::sqrt(squared) : 1;
     if (squared * kEquallyNear < nearest.squared || std::abs(facing) > std::abs(nearest.facing))
       nearest.facing = facing;
-    nearest.squared = std::min(nearest.squared, squared);
+    if (squared < nearest.squared) {
+      nearest.squared = squared;
+      nearest.beyond = 1.001f * std::sqrt(squared) + 1e-5f * edge_;
+    }
   }
 }
 

@@ -29,7 +29,12 @@ class TriangleGrid {
   void look_at_cube(const Eigen::Vector3i& cube, const Eigen::Vector3f& point, Nearest& nearest) const;
   Eigen::Vector3i cube_of(const Eigen::Vector3f& point) const;
 
+  /// Around a triangle: most triangles are farther away than the nearest one by more than its radius.
+  struct Sphere {
+    float x, y, z, radius;
+  };
   std::vector<std::array<Eigen::Vector3f, 3>> triangles_;
+  std::vector<Sphere> spheres_;  // of each triangle
   float edge_;
   Eigen::Vector3f low_;
   Eigen::Vector3i counts_;
