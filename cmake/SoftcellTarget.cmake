@@ -7,8 +7,7 @@ target_compile_options(softcell_options INTERFACE
   # A contracted multiply-add rounds once where the source rounds twice: results would depend on the compiler.
   -ffp-contract=off)
 if(SOFTCELL_SANITIZE)
-  target_compile_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_compile_options(softcell_options INTERFACE
+  target_compile_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
     $<$<CXX_COMPILER_ID:Clang>:-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignorelist.txt>)
   # Instrumented code confuses GCC's flow analysis: it warns of std::regex's own members.
   target_compile_options(softcell_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -38,12 +38,13 @@ TriangleGrid::TriangleGrid(const TriangleMesh& mesh, float cube_edge) : edge_(cu
             mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
     const std::array<Vector3f, 3> corners{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-    if ((corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() == 0) continue;
+    if (!((corners[1] - corners[0]).cross(corners[2] - corners[0]).squaredNorm() > 0)) continue;
     triangles_.push_back(corners);
     const Vector3f middle = (corners[0] + corners[1] + corners[2]) / 3;
     float squared = 0;
     for (const Vector3f& corner : corners) squared = std::max(squared, (corner - middle).squaredNorm());
-    spheres_.push_back({middle.x(), middle.y(), middle.z(), std::sqrt(squared)});
+    constexpr float kRoundedUp = 1.0001f;
+    spheres_.push_back({middle.x(), middle.y(), middle.z(), kRoundedUp * std::sqrt(squared)});
   }
   const Bounds<3> box = bounds(mesh);
   low_ = box.low;
@@ -77,8 +78,8 @@ Vector3i TriangleGrid::cube_of(const Vector3f& point) const {
 struct TriangleGrid::Nearest {
   float squared = std::numeric_limits<float>::max();
   float facing = 0;  // of the point and the triangle: cosine, above 0 in front
-  float beyond = std::numeric_limits<
-      float>::max();  // what is farther away than this is not as near, however it is rounded
+  // What is farther away than this is not as near, however distances are rounded.
+  float beyond = std::numeric_limits<float>::max();
 };
 
 void TriangleGrid::look_at_cube(const Vector3i& cube, const Vector3f& point, Nearest& nearest) const {

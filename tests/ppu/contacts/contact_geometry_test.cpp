@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -96,6 +98,33 @@ TEST(TriangleGrid, AgreesWithASphere) {
     if (std::abs(distance) < 0.5f) {
       EXPECT_NEAR(grid.signed_distance(p, 0.6f), distance, 0.01f);
     }
+  }
+}
+
+/// Triangles of every size, from a thousandth of a cube to ten cubes, thin ones and specks: none that is nearest is left out.
+TEST(TriangleGrid, FindsTheNearestOfAllTriangles) {
+  RandomPoints random;
+  TriangleMesh mesh;
+  for (std::uint32_t t = 0; t < 300; ++t) {
+    const Vector3f corner = random.in_cube(1);
+    const float size = std::pow(10.0f, static_cast<float>(t % 5) - 4);
+    for (const Vector3f& p : {corner, Vector3f(corner + random.in_cube(size)),
+                              Vector3f(corner + random.in_cube(t % 2 == 0 ? size : 0.01f * size))})
+      mesh.positions.push_back(p);
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  const TriangleGrid grid(mesh, 0.1f);
+  for (int i = 0; i < 1000; ++i) {
+    // In space, and on the triangles, where the nearest one is at no distance.
+    const auto at = static_cast<std::size_t>(i) % mesh.positions.size();
+    const Vector3f p = i % 2 == 0 ? random.in_cube(1.5f) : mesh.positions[at];
+    float nearest = 1;
+    for (const auto& t : mesh.triangles) {
+      const Vector3f found =
+          nearest_point({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]}, p);
+      nearest = std::min(nearest, (p - found).norm());
+    }
+    EXPECT_FLOAT_EQ(std::abs(grid.signed_distance(p, 1)), nearest) << p.transpose();
   }
 }
 
