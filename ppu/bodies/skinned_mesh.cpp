@@ -10,8 +10,11 @@
 
 namespace softcell::ppu {
 
-void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals) {
-  const Embedding& embedding = body.model().embedding();
+namespace {
+
+/// @param particles  where they are
+void skin(const Embedding& embedding, std::span<const Eigen::Vector3f> particles,
+          std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals) {
   const std::size_t vertices = embedding.slot_of_vertex.size();
   if (positions.size() != vertices || normals.size() != vertices) {
     throw std::invalid_argument("a mesh of " + std::to_string(vertices) +
@@ -20,7 +23,6 @@ void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::sp
   }
   SC_ASSERT(embedding.vertex_of_slot.size() == 4 * embedding.groups.size(), "{} slots in {} groups of four",
             embedding.vertex_of_slot.size(), embedding.groups.size());
-  const std::span<const Eigen::Vector3f> particles = body.positions();
   for (const SkinPart& part : embedding.parts) {
     for_each_slot(
         embedding, part, [&](std::uint32_t particle) { return particles[particle]; },
@@ -30,6 +32,22 @@ void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::sp
           normals[vertex] = point.normal;
         });
   }
+}
+
+}  // namespace
+
+void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals) {
+  skin(body.model().embedding(), body.positions(), positions, normals);
+}
+
+TriangleMesh rest_mesh(const SoftBody<3>& body) {
+  TriangleMesh mesh = body.model().mesh();
+  const std::vector<Eigen::Vector3f> rest = body.rest_positions();
+  // A mesh may come without normals.
+  std::vector<Eigen::Vector3f> normals(mesh.positions.size());
+  skin(body.model().embedding(), rest, mesh.positions, normals);
+  if (!mesh.normals.empty()) mesh.normals = std::move(normals);
+  return mesh;
 }
 
 SkinnedMesh::SkinnedMesh(std::shared_ptr<const SoftBodyModel<3>> model)

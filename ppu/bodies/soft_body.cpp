@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
+#include "ppu/matching/plastic_flow.h"
 #include "ppu/matching/rotation.h"
+#include "ppu/matching/stiffness.h"
 #include "ppu/reference/shape_matching.h"
 #include "softcell/base/assert.h"
 
@@ -101,7 +104,8 @@ Motion<kDimension> motion_of(const SoftBody<kDimension>& body) {
 template <int kDimension>
 typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& body,
                                                    const typename Motion<kDimension>::Vector& centre) {
-  const auto rest = body.model().plan()->particle_constants();
+  const auto plan = body.plan();
+  const auto rest = plan->particle_constants();
   SC_ASSERT(rest.size() == body.positions().size(), "{} particles at rest, {} in the body", rest.size(),
             body.positions().size());
   typename Motion<kDimension>::Matrix correlation = Motion<kDimension>::Matrix::Zero();
@@ -114,6 +118,28 @@ typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& b
 }
 
 }  // namespace
+
+/// What a plastic body has in addition. `plan` is null until it has yielded.
+template <int kDimension>
+struct SoftBody<kDimension>::RestShape {
+  using Exact = Eigen::Matrix<double, kDimension, 1>;
+
+  explicit RestShape(const SoftBodyModel<kDimension>& model)
+      : flow(model.rest_lattice(), positions_of(model)) {}
+  RestShape(const RestShape& other)
+      : flow(other.flow),
+        plan(other.plan ? std::make_shared<MatchingPlan<float, kDimension>>(*other.plan) : nullptr) {}
+
+  static std::vector<Exact> positions_of(const SoftBodyModel<kDimension>& model) {
+    std::vector<Exact> positions;
+    for (std::size_t i = 0; i < model.particles(); ++i)
+      positions.push_back(model.lattice().rest_position(i).template cast<double>());
+    return positions;
+  }
+
+  PlasticFlow<kDimension> flow;
+  std::shared_ptr<MatchingPlan<float, kDimension>> plan;  // this body's alone
+};
 
 template <int kDimension>
 SoftBody<kDimension>::SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model, const Vector& position)
@@ -134,9 +160,13 @@ SoftBody<kDimension>::SoftBody(const SoftBody& other)
       v_(other.v_),
       padded_(other.padded_),
       matcher_(std::make_unique<ShapeMatcher<float, kDimension>>(*other.matcher_)),
+      steps_since_look_(other.steps_since_look_),
       revision_(other.revision_),
       resets_(other.resets_),
-      asleep_(other.asleep_) {}
+      rest_revision_(other.rest_revision_),
+      asleep_(other.asleep_) {
+  if (other.rest_) set_rest(std::make_unique<RestShape>(*other.rest_));
+}
 
 template <int kDimension>
 SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
@@ -146,6 +176,8 @@ SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
   v_ = other.v_;
   padded_ = other.padded_;
   *matcher_ = *other.matcher_;
+  set_rest(other.rest_ ? std::make_unique<RestShape>(*other.rest_) : nullptr);
+  steps_since_look_ = other.steps_since_look_;
   asleep_ = other.asleep_;
   // A change by the user: couplings must notice, whatever the other's counts are.
   ++revision_;
@@ -166,6 +198,72 @@ template <int kDimension>
 void SoftBody<kDimension>::forget_rotations() {
   matcher_->reset();
   ++resets_;
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::set_rest(std::unique_ptr<RestShape> rest) {
+  const bool had_own = has_own_rest();
+  steps_since_look_ = 0;
+  rest_ = std::move(rest);
+  if (had_own || has_own_rest()) matcher_->set_plan(plan()), ++rest_revision_;
+}
+
+/// The constants of shape matching follow the rest shape.
+template <int kDimension>
+void SoftBody<kDimension>::take_rest() {
+  SC_ASSERT(rest_ != nullptr, "a body of {} particles has no rest shape of its own", x_.size());
+  if (!rest_->plan) {
+    rest_->plan = std::make_shared<MatchingPlan<float, kDimension>>(*model_->plan());
+    matcher_->set_plan(rest_->plan);
+  }
+  rest_->plan->set_rest(rest_->flow.rest());
+  ++rest_revision_;
+}
+
+template <int kDimension>
+bool SoftBody<kDimension>::has_own_rest() const {
+  return rest_ != nullptr && rest_->plan != nullptr;
+}
+
+template <int kDimension>
+auto SoftBody<kDimension>::plan() const -> std::shared_ptr<const MatchingPlan<float, kDimension>> {
+  if (has_own_rest()) return rest_->plan;
+  return model_->plan();
+}
+
+template <int kDimension>
+auto SoftBody<kDimension>::rest_positions() const -> std::vector<Vector> {
+  const auto now = plan();
+  std::vector<Vector> rest;
+  for (const auto& particle : now->particle_constants()) rest.push_back(now->rest_centre() + particle.x0);
+  return rest;
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
+  SC_ASSERT(rest.size() == x_.size(), "{} positions at rest of {} particles", rest.size(), x_.size());
+  std::vector<Eigen::Matrix<double, kDimension, 1>> exact;
+  for (const Vector& position : rest) {
+    if (!position.allFinite()) throw std::runtime_error("a soft body's rest shape is not finite");
+    exact.push_back(position.template cast<double>());
+  }
+  if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
+  rest_->flow.set_rest(exact);
+  take_rest();
+  ++revision_;
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::flow(float step) {
+  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
+  if (!settings_.plasticity || ++steps_since_look_ < kPlasticSteps) return;
+  steps_since_look_ = 0;
+  const Plasticity& plasticity = *settings_.plasticity;
+  if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
+  if (!rest_->flow.may_yield(x_, plasticity.yield)) return;
+  const double share = damping_from_time_constant(1 / static_cast<double>(plasticity.creep),
+                                                  kPlasticSteps * static_cast<double>(step));
+  if (rest_->flow.flow(x_, plan()->sums(), plasticity, share)) take_rest();
 }
 
 template <int kDimension>
@@ -222,6 +320,7 @@ void SoftBody<kDimension>::set_material(const SoftBodySettings& settings) {
             settings.cell_size, settings.half_width, settings.density, of_model.cell_size,
             of_model.half_width, of_model.density);
   validate(settings);
+  if (settings.plasticity) model_->rest_lattice();
   settings_ = settings;
   ++revision_;
 }
@@ -236,6 +335,7 @@ void SoftBody<kDimension>::translate(const Vector& by) {
 template <int kDimension>
 void SoftBody<kDimension>::reset(const Vector& position) {
   SC_ASSERT(position.allFinite(), "a body of {} particles is moved to infinity or NaN", x_.size());
+  set_rest(nullptr);
   place_at_rest(position);
   forget_rotations();
   ++revision_;
@@ -261,6 +361,7 @@ template <int kDimension>
 void SoftBody<kDimension>::reset_deformation() {
   const Motion<kDimension> motion = motion_of(*this);
   const typename Motion<kDimension>::Matrix turn = orientation_of(*this, motion.centre);
+  set_rest(nullptr);
   const auto rest = model_->plan()->particle_constants();
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const typename Motion<kDimension>::Vector x = motion.centre + turn * rest[i].x0.template cast<double>();
@@ -326,7 +427,8 @@ template <int kDimension>
 float SoftBody<kDimension>::deformation() const {
   const typename Motion<kDimension>::Vector centre = motion_of(*this).centre;
   const typename Motion<kDimension>::Matrix turn = orientation_of(*this, centre);
-  const auto rest = model_->plan()->particle_constants();
+  const auto now = plan();
+  const auto rest = now->particle_constants();
   double longest = 0;
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const typename Motion<kDimension>::Vector rigid = centre + turn * rest[i].x0.template cast<double>();

@@ -7,6 +7,7 @@
 
 #include "ppu/lattice/embedding.h"
 #include "ppu/matching/matching_plan.h"
+#include "ppu/matching/rest_lattice.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -55,6 +56,19 @@ SoftBodyModel<kDimension>::SoftBodyModel(Lattice<kDimension> lattice,
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
   SC_ASSERT(outer_.size() + inner_.size() == lattice_.particles.size(),
             "{} outer and {} inner particles of {}", outer_.size(), inner_.size(), lattice_.particles.size());
+  if (settings.plasticity) rest_lattice();
+}
+
+template <int kDimension>
+const std::shared_ptr<const RestLattice<kDimension>>& SoftBodyModel<kDimension>::rest_lattice() const {
+  if (particles() > kMaxPlasticParticles) {
+    throw std::runtime_error("a plastic soft body has at most " + std::to_string(kMaxPlasticParticles) +
+                             " particles; this one has " + std::to_string(particles()) +
+                             ": give it larger cells");
+  }
+  std::call_once(rest_lattice_made_,
+                 [this] { rest_lattice_ = std::make_shared<const RestLattice<kDimension>>(lattice_); });
+  return rest_lattice_;
 }
 
 template <int kDimension>

@@ -34,6 +34,12 @@ void validate(const SoftBodySettings& s) {
   if (s.frequency) require(*s.frequency >= 0, "frequency", *s.frequency, "in hertz and 0 or above");
   if (s.damping_time)
     require(*s.damping_time >= 0, "damping_time", *s.damping_time, "in seconds and 0 or above");
+  if (s.plasticity) {
+    const auto& [yield, creep, limit] = *s.plasticity;
+    require(yield > 0 && yield <= 1, "yield", yield, "a strain above 0 and at most 1");
+    require(creep > 0, "creep", creep, "in 1/s and above 0");
+    require(limit > 0, "limit", limit, "a strain above 0");
+  }
 }
 
 float SoftBodySettings::alpha_of_step(float step) const {

@@ -18,12 +18,20 @@ std::uint64_t hash_of(std::span<const Position> positions, std::span<const Veloc
 
 }  // namespace
 
+/// Of bodies that have yielded only: all others have the hash of an elastic body.
+template <int kDimension>
+std::uint64_t with_rest_shape(const SoftBody<kDimension>& body, std::uint64_t hash) {
+  if (!body.has_own_rest()) return hash;
+  const auto rest = body.rest_positions();
+  return XXH3_64bits_withSeed(rest.data(), rest.size() * sizeof(rest[0]), hash);
+}
+
 // Vectors have no padding, or a fourth float that is always 0.
 std::uint64_t state_hash(const SoftBody<3>& body, std::uint64_t before) {
-  return hash_of(body.padded_positions(), body.velocities(), before);
+  return with_rest_shape(body, hash_of(body.padded_positions(), body.velocities(), before));
 }
 std::uint64_t state_hash(const SoftBody<2>& body, std::uint64_t before) {
-  return hash_of(body.positions(), body.velocities(), before);
+  return with_rest_shape(body, hash_of(body.positions(), body.velocities(), before));
 }
 
 std::uint64_t state_hash(std::span<const SoftBody<3>* const> bodies) {

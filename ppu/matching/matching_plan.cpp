@@ -37,7 +37,7 @@ void check_masses(std::span<const float> masses, std::size_t particles) {
 template <typename Real, int kDimension>
 MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice, int half_width,
                                              std::span<const float> masses)
-    : sums_(sums_of(lattice, half_width)),
+    : sums_(std::make_shared<const SumPlan>(sums_of(lattice, half_width))),
       half_width_(half_width),
       spacing_(static_cast<Real>(lattice.spacing)) {
   using Exact = Eigen::Matrix<double, kDimension, 1>;
@@ -48,8 +48,8 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
            static_cast<double>(lattice.spacing) * lattice.particles[i].template cast<double>();
   };
   SC_ASSERT(lattice.spacing > 0, "cells of {} m", lattice.spacing);
-  SC_ASSERT(sums_.particles() == masses.size() && sums_.region_of().size() == masses.size(),
-            "sums of {} particles, and {} masses", sums_.particles(), masses.size());
+  SC_ASSERT(sums_->particles() == masses.size() && sums_->region_of().size() == masses.size(),
+            "sums of {} particles, and {} masses", sums_->particles(), masses.size());
   double body_mass = 0;
   Exact weighted = Exact::Zero();
   for (std::size_t i = 0; i < masses.size(); ++i) {
@@ -60,13 +60,14 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
   rest_centre_ = centre.template cast<Real>();
 
   std::vector<double> sizes;  // of each region
-  for (std::size_t r = 0; r < sums_.regions(); ++r)
-    sizes.push_back(static_cast<double>(sums_.members(r).size()));
+  for (std::size_t r = 0; r < sums_->regions(); ++r)
+    sizes.push_back(static_cast<double>(sums_->members(r).size()));
 
   Real farthest = 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double mass = static_cast<double>(masses[i]);
-    const double region_count = sizes[sums_.region_of()[i]];  // membership is symmetric: |R_i| = |r| of r = i
+    const double region_count =
+        sizes[sums_->region_of()[i]];  // membership is symmetric: |R_i| = |r| of r = i
     const Vector x0 = (rest(i) - centre).template cast<Real>();
     particles_.push_back({x0, static_cast<Real>(mass / region_count), static_cast<Real>(1 / region_count),
                           static_cast<Real>(mass)});
@@ -75,10 +76,10 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
   noise_floor_ = 4 * std::numeric_limits<Real>::epsilon() * farthest * farthest;
 
   // Summed from the rounded constants, so that a body at rest has its centres exactly where they belong.
-  for (std::size_t r = 0; r < sums_.regions(); ++r) {
+  for (std::size_t r = 0; r < sums_->regions(); ++r) {
     double mass = 0;
     Exact moment = Exact::Zero();
-    for (const std::uint32_t i : sums_.members(r)) {
+    for (const std::uint32_t i : sums_->members(r)) {
       const double modified = static_cast<double>(particles_[i].modified_mass);
       mass += modified;
       moment += modified * particles_[i].x0.template cast<double>();
@@ -87,6 +88,29 @@ MatchingPlan<Real, kDimension>::MatchingPlan(const Lattice<kDimension>& lattice,
     regions_.push_back(
         {(moment / mass).template cast<Real>(), static_cast<Real>(mass), static_cast<Real>(1 / mass)});
   }
+}
+
+template <typename Real, int kDimension>
+void MatchingPlan<Real, kDimension>::set_rest(std::span<const Eigen::Matrix<double, kDimension, 1>> rest) {
+  using Exact = Eigen::Matrix<double, kDimension, 1>;
+  SC_ASSERT(rest.size() == particles_.size(), "{} positions of {} particles", rest.size(), particles_.size());
+  double mass = 0;
+  Exact centre = Exact::Zero();
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    mass += static_cast<double>(particles_[i].mass);
+    centre += static_cast<double>(particles_[i].mass) * rest[i];
+  }
+  centre /= mass;
+  for (std::size_t i = 0; i < rest.size(); ++i) particles_[i].x0 = (rest[i] - centre).template cast<Real>();
+
+  // From the rounded constants, as above; with sums that regions share.
+  std::vector<Exact> moments(rest.size()), of_regions(regions_.size());
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    moments[i] = static_cast<double>(particles_[i].modified_mass) * particles_[i].x0.template cast<double>();
+  SumScratch<Exact> scratch(*sums_);
+  sum_up<Exact>(*sums_, moments, scratch, of_regions);
+  for (std::size_t r = 0; r < regions_.size(); ++r)
+    regions_[r].c0 = (of_regions[r] / static_cast<double>(regions_[r].mass)).template cast<Real>();
 }
 
 template class MatchingPlan<float, 2>;

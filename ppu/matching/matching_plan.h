@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,8 @@
 
 namespace softcell::ppu {
 
-/// What all bodies of one model share: constants of particles and regions at rest. Immutable.
+/// Constants of particles and regions at rest: of all bodies of one model, or a copy, of a plastic body with another rest
+/// shape. Copies share what does not depend on it.
 /// @tparam kDimension  2 or 3
 template <typename Real, int kDimension>
 class MatchingPlan {
@@ -29,7 +31,7 @@ class MatchingPlan {
   std::size_t regions() const { return regions_.size(); }  ///< distinct ones; see SumPlan
   int half_width() const { return half_width_; }
   Real spacing() const { return spacing_; }  ///< metres
-  const SumPlan& sums() const { return sums_; }
+  const SumPlan& sums() const { return *sums_; }
   /// Centre of mass at rest, in the lattice's frame.
   const Vector& rest_centre() const { return rest_centre_; }
 
@@ -47,12 +49,16 @@ class MatchingPlan {
   std::span<const Particle> particle_constants() const { return particles_; }
   std::span<const Region> region_constants() const { return regions_; }
 
+  /// Another rest shape for the same particles: x0 and c0 change.
+  /// @param rest  finite positions, metres, in any frame
+  void set_rest(std::span<const Eigen::Matrix<double, kDimension, 1>> rest);
+
   /// Below this times M_r, what a region's rotation is found from is rounding noise: all its particles sit on
   /// one point. Square metres.
   Real noise_floor() const { return noise_floor_; }
 
  private:
-  SumPlan sums_;
+  std::shared_ptr<const SumPlan> sums_;
   int half_width_;
   Real spacing_;
   Vector rest_centre_;

@@ -36,6 +36,13 @@ std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<floa
   return samples;
 }
 
+void set_centre(spu::MatchRegions& group, std::uint32_t lane, const MatchingPlan<float, 3>::Region& region) {
+  SC_ASSERT(lane < 4, "lane {} of four", lane);
+  group.centre_x[lane] = region.c0.x();
+  group.centre_y[lane] = region.c0.y();
+  group.centre_z[lane] = region.c0.z();
+}
+
 std::array<float, 4> rest_moment(const MatchingPlan<float, 3>::Particle& particle) {
   const float m = particle.modified_mass;
   return {m * particle.x0.x(), m * particle.x0.y(), m * particle.x0.z(), m};

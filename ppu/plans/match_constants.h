@@ -15,6 +15,9 @@ spu::MatchHold hold_of(const Lattice<3>& lattice, const MatchingPlan<float, 3>& 
 /// Particles all over the body.
 std::array<std::uint32_t, spu::kMatchSamples> samples_of(const MatchingPlan<float, 3>& matching);
 
+/// The rest centre of one of four regions.
+void set_centre(spu::MatchRegions& group, std::uint32_t lane, const MatchingPlan<float, 3>::Region& region);
+
 /// m~ (x0 y0 z0 1) of a particle.
 std::array<float, 4> rest_moment(const MatchingPlan<float, 3>::Particle& particle);
 

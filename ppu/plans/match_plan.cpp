@@ -36,9 +36,7 @@ spu::MatchRegions regions_at(const MatchingPlan<float, 3>& matching, std::size_t
   spu::MatchRegions group{};
   for (std::size_t lane = 0; lane < 4 && first + lane < order.regions.size(); ++lane) {
     const auto& region = matching.region_constants()[order.region_at_slot[first + lane + 1]];
-    group.centre_x[lane] = region.c0.x();
-    group.centre_y[lane] = region.c0.y();
-    group.centre_z[lane] = region.c0.z();
+    set_centre(group, static_cast<std::uint32_t>(lane), region);
     group.inverse_mass[lane] = region.inverse_mass;
   }
   return group;

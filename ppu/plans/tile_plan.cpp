@@ -105,13 +105,14 @@ TilePlan::TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matc
     weights_[group].inverse_mass[lane] = 1 / particle.mass;
     weights_[group].mass[lane] = particle.mass;
   }
+  SC_ASSERT(regions.all_places().size() == sums.regions(), "places for {} regions of {}",
+            regions.all_places().size(), sums.regions());
+  place_of_region_.assign(regions.all_places().begin(), regions.all_places().end());
   regions_.resize(regions.size() / 4);
   for (std::uint32_t r = 0; r < sums.regions(); ++r) {
     const auto& region = matching.region_constants()[r];
     const std::uint32_t group = regions.place_of(r) / 4, lane = regions.place_of(r) % 4;
-    regions_[group].centre_x[lane] = region.c0.x();
-    regions_[group].centre_y[lane] = region.c0.y();
-    regions_[group].centre_z[lane] = region.c0.z();
+    set_centre(regions_[group], lane, region);
     regions_[group].inverse_mass[lane] = region.inverse_mass;
   }
 }

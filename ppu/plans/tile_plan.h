@@ -48,6 +48,8 @@ class TilePlan {
 
   /// The place of each particle in positions and velocities. Ascending; the places between are padding.
   std::span<const std::uint32_t> place_of() const { return place_of_; }
+  /// The place of each region, as SumPlan numbers them.
+  std::span<const std::uint32_t> place_of_region() const { return place_of_region_; }
   std::size_t places() const { return 4 * rest_.size(); }            ///< of particles, padding included
   std::size_t region_places() const { return 4 * regions_.size(); }  ///< likewise
 
@@ -62,7 +64,7 @@ class TilePlan {
  private:
   spu::TiledBody body_{};
   std::vector<Tile> tiles_;
-  std::vector<std::uint32_t> place_of_;
+  std::vector<std::uint32_t> place_of_, place_of_region_;
   std::vector<std::uint32_t> lists_;
   std::vector<dma::ElementRun> record_of_lists_;
   std::vector<spu::TileRest> rest_;

@@ -33,6 +33,13 @@ void ShapeMatcher<Real, kDimension>::reset() {
 }
 
 template <typename Real, int kDimension>
+void ShapeMatcher<Real, kDimension>::set_plan(std::shared_ptr<const MatchingPlan<Real, kDimension>> plan) {
+  SC_ASSERT(plan != nullptr && plan->particles() == x_.size() && plan->regions() == rotations_.size(),
+            "not a plan of {} particles and {} regions", x_.size(), rotations_.size());
+  plan_ = std::move(plan);
+}
+
+template <typename Real, int kDimension>
 void ShapeMatcher<Real, kDimension>::goals(std::span<const Vector> x, std::span<Vector> g) {
   check_sizes(plan_->particles(), x.size(), g.size());
   match(x);

@@ -74,6 +74,10 @@ class ShapeMatcher {
 
   const MatchingPlan<Real, kDimension>& plan() const { return *plan_; }
 
+  /// From the next step on with the constants of another rest shape. Rotations stay.
+  /// @pre of as many particles and regions
+  void set_plan(std::shared_ptr<const MatchingPlan<Real, kDimension>> plan);
+
  private:
   using Rigid = RigidMotion<Real, kDimension>;
   using Moments = typename Rigid::Moments;

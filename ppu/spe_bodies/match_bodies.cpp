@@ -33,6 +33,7 @@ template <int kDimension>
 MatchBodies<kDimension>::MatchBodies(dma::AddressSpace& memory, const typename Kernel::Plan& plan,
                                      std::size_t bodies)
     : header_(plan.header()),
+      region_of_(plan.region_of().begin(), plan.region_of().end()),
       plan_(memory, name_of<kDimension>("plan"), header_.bytes, of_record(plan.record(), kSpesOnlyRead)),
       positions_(memory, name_of<kDimension>("positions"), bodies * Kernel::positions_stride(header_),
                  of_floats(kSpesOnlyRead)),
@@ -43,6 +44,22 @@ MatchBodies<kDimension>::MatchBodies(dma::AddressSpace& memory, const typename K
                    of_record(Kernel::kJobRecord, kSpesOnlyRead)) {
   std::memcpy(plan_.data(), plan.bytes().data(), header_.bytes);
   for (std::size_t b = 0; b < bodies; ++b) reset(b);
+}
+
+template <int kDimension>
+void MatchBodies<kDimension>::set_rest(const MatchingPlan<float, kDimension>& matching) {
+  SC_ASSERT(matching.particles() == header_.particles && matching.regions() == header_.regions,
+            "a rest shape of {} particles and {} regions in a plan of {} and {}", matching.particles(),
+            matching.regions(), header_.particles, header_.regions);
+  auto* const particles =
+      reinterpret_cast<typename Kernel::Particles*>(plan_.data() + header_.particle_constants);
+  auto* const regions = reinterpret_cast<typename Kernel::Regions*>(plan_.data() + header_.region_constants);
+  for (std::uint32_t i = 0; i < header_.particles; ++i) {
+    Kernel::set_rest(particles[i / 4], i % 4, matching.particle_constants()[i]);
+    const std::uint32_t place = region_of_[i];
+    Kernel::set_rest(regions[place / 4], place % 4,
+                     matching.region_constants()[matching.sums().region_of()[i]]);
+  }
 }
 
 template <int kDimension>

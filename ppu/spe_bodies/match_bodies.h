@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "ppu/matching/matching_plan.h"
 #include "ppu/spe_bodies/match_kernel.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
@@ -50,6 +51,10 @@ class MatchBodies {
     if constexpr (kDimension == 3) return std::sqrt(result(body).residual_square);
     return 0;
   }
+
+  /// The constants of another rest shape, for all of these bodies.
+  /// @pre of a body with the same lattice and regions as the plan's; no jobs are under way
+  void set_rest(const MatchingPlan<float, kDimension>& matching);
 
   /// Forgets a body's rotations: its next step starts cold. That is also how a body begins.
   void reset(std::size_t body);
@@ -99,6 +104,7 @@ class MatchBodies {
   std::span<Rotations> rotations(std::size_t body);
 
   Header header_;
+  std::vector<std::uint32_t> region_of_;  // the plan's
   dma::Buffer<std::byte> plan_, positions_, states_;
   dma::Buffer<spu::MatchBody> places_;  // of the bodies to be stepped; in two dimensions unused
   dma::Buffer<typename Kernel::Job> descriptors_;

@@ -2,12 +2,15 @@
 // The kernels that step a body as a whole, `match_2d` in two dimensions and `match` in three, behind one set
 // of names: what MatchBodies needs to know of them.
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
 
 #include <Eigen/Core>
 
 #include "match_2d_job.h"
 #include "match_job.h"
+#include "ppu/plans/match_constants.h"
 #include "ppu/plans/match_plan.h"
 #include "ppu/plans/match_plan_2d.h"
 #include "ppu/spe_bodies/job_records.h"
@@ -25,7 +28,9 @@ struct MatchKernel<2> {
   using Plan = MatchPlan2d;
   using Header = spu::MatchPlanHeader2d;
   using Vector = spu::MatchVector2d;
-  using Rotations = spu::MatchDirections;  // of four regions
+  using Rotations = spu::MatchDirections;   // of four regions
+  using Particles = spu::MatchParticles2d;  // of four, and so the regions
+  using Regions = spu::MatchRegions2d;
   using Result = spu::MatchResult2d;
   using Job = spu::MatchJob2d;
 
@@ -35,6 +40,15 @@ struct MatchKernel<2> {
   static std::uint32_t rotations_at(const Header& plan) { return spu::match_2d_directions_at(plan); }
   static Vector written(const Eigen::Vector2f& v) { return {v.x(), v.y()}; }
   static Eigen::Vector2f read(const Vector& v) { return {v.x, v.y}; }
+  static void set_rest(Particles& group, std::uint32_t lane,
+                       const MatchingPlan<float, 2>::Particle& particle) {
+    group.rest_x[lane] = particle.x0.x();
+    group.rest_y[lane] = particle.x0.y();
+  }
+  static void set_rest(Regions& group, std::uint32_t lane, const MatchingPlan<float, 2>::Region& region) {
+    group.centre_x[lane] = region.c0.x();
+    group.centre_y[lane] = region.c0.y();
+  }
 };
 
 template <>
@@ -45,6 +59,8 @@ struct MatchKernel<3> {
   using Header = spu::MatchPlanHeader;
   using Vector = spu::SkinCorner;  // x y z 0
   using Rotations = spu::MatchRotations;
+  using Particles = spu::MatchParticles;
+  using Regions = spu::MatchRegions;
   using Result = spu::MatchResult;
   using Job = spu::MatchJob;
 
@@ -54,6 +70,13 @@ struct MatchKernel<3> {
   static std::uint32_t rotations_at(const Header& plan) { return spu::match_rotations_at(plan); }
   static Vector written(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z(), 0}; }
   static Eigen::Vector3f read(const Vector& v) { return {v.x, v.y, v.z}; }
+  static void set_rest(Particles& group, std::uint32_t lane,
+                       const MatchingPlan<float, 3>::Particle& particle) {
+    std::ranges::copy(rest_moment(particle), group.rest_moment[lane]);
+  }
+  static void set_rest(Regions& group, std::uint32_t lane, const MatchingPlan<float, 3>::Region& region) {
+    set_centre(group, lane, region);
+  }
 };
 
 }  // namespace softcell::ppu

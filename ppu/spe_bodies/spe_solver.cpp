@@ -31,6 +31,12 @@ MatchSettings settings_of(const SoftBody<kDimension>& body, float step) {
   return {.pull = settings.alpha_of_step(step) / step, .damping = settings.damping_of_step(step)};
 }
 
+/// Whether the body needs a plan of its own.
+template <int kDimension>
+bool needs_own_plan(const SoftBody<kDimension>& body) {
+  return body.settings().plasticity.has_value() || body.has_own_rest();
+}
+
 const ls_sim::KernelImage& whole(const MatchKernels<2>& kernels) { return kernels.match_2d; }
 const ls_sim::KernelImage& whole(const MatchKernels<3>& kernels) { return kernels.match; }
 JobImage place_tiles(JobSystem&, const MatchKernels<2>&) { return {}; }
@@ -54,10 +60,13 @@ MatchPlan plan_of(const SoftBodyModel<3>& model, bool checked) {
 
 }  // namespace
 
-/// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither.
+/// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither. A body that may have a rest
+/// shape of its own is a group by itself: the plan has the rest shape.
 template <int kDimension>
 struct SpeSolver<kDimension>::Group {
   std::shared_ptr<const SoftBodyModel<kDimension>> model;
+  bool own_plan = false;
+  std::shared_ptr<const typename MatchKernel<kDimension>::Plan> plan;  // kept where others may need the same
   std::optional<MatchBodies<kDimension>> bodies;
   std::shared_ptr<const TilePlan> tiles;  // in three dimensions only
   std::size_t count = 0;
@@ -72,6 +81,7 @@ struct SpeSolver<kDimension>::Member {
   std::size_t number = 0;              ///< in the group
   std::unique_ptr<TiledMemory> tiled;  ///< of a group in tiles
   bool stepped = false;                ///< by the jobs under way
+  std::uint32_t seen_rest = 0;         ///< SoftBody::rest_revision() of the plan's rest shape; 0: the model's
 
   bool fits_spes() const { return group->bodies || tiled; }
 };
@@ -94,13 +104,14 @@ template <int kDimension>
 bool SpeSolver<kDimension>::knows(std::span<Body* const> bodies) const {
   return std::equal(members_.begin(), members_.end(), bodies.begin(), bodies.end(),
                     [](const Member& member, const Body* body) {
-                      return member.body == body && member.group->model == body->shared_model();
+                      return member.body == body && member.group->model == body->shared_model() &&
+                             member.group->own_plan == needs_own_plan(*body);
                     });
 }
 
 /// Whole where they fit, else in tiles, else by the PPU.
 template <int kDimension>
-void SpeSolver<kDimension>::find_place(Group& group) {
+void SpeSolver<kDimension>::find_place(Group& group, std::span<const std::unique_ptr<Group>> others) {
   SC_ASSERT(group.model != nullptr && group.count > 0, "a group of {} bodies {} a model", group.count,
             group.model ? "with" : "without");
   // Plans of tiles take a while: a model's is made once.
@@ -112,7 +123,21 @@ void SpeSolver<kDimension>::find_place(Group& group) {
     return;
   }
   try {
-    group.bodies.emplace(memory_, plan_of(*group.model, checked_), group.count);
+    if (!group.own_plan) {
+      group.bodies.emplace(memory_, plan_of(*group.model, checked_), group.count);
+      return;
+    }
+    const auto has_plan = [&](const auto& other) {
+      return other->model == group.model && other->plan != nullptr;
+    };
+    for (const auto& of : {std::span<const std::unique_ptr<Group>>(groups_), others}) {
+      const auto found = std::ranges::find_if(of, has_plan);
+      if (found != of.end()) group.plan = (*found)->plan;
+    }
+    if (!group.plan)
+      group.plan =
+          std::make_shared<const typename MatchKernel<kDimension>::Plan>(plan_of(*group.model, checked_));
+    group.bodies.emplace(memory_, *group.plan, group.count);
   } catch (const BodyTooLarge&) {
     find_tiles(group);
   }
@@ -140,7 +165,20 @@ void SpeSolver<kDimension>::take_over(Member& member, Member& old) {
   if (member.group->bodies)
     member.group->bodies->take_rotations(member.number, *old.group->bodies, old.number);
   else
-    member.tiled = std::move(old.tiled);
+    member.tiled = std::move(old.tiled), member.seen_rest = old.seen_rest;
+}
+
+/// The plan gets the rest shape that the body has now.
+template <int kDimension>
+void SpeSolver<kDimension>::follow_rest(Member& member) {
+  const Body& body = *member.body;
+  if (member.seen_rest == body.rest_revision() || !member.fits_spes()) return;
+  member.seen_rest = body.rest_revision();
+  if (member.group->bodies) {
+    member.group->bodies->set_rest(*body.plan());
+    return;
+  }
+  if constexpr (kDimension == 3) member.tiled->set_rest(*member.group->tiles, *body.plan());
 }
 
 /// Bodies have come or gone: memory is laid out anew, and those that stay take their rotations along.
@@ -150,18 +188,21 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   std::vector<Member> members;
   for (Body* const body : bodies) {
     SC_ASSERT(std::ranges::count(bodies, body) == 1, "one of {} bodies is there twice", bodies.size());
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const auto& g) { return g->model == body->shared_model(); });
+    const bool own_plan = needs_own_plan(*body);
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
+      return !own_plan && !g->own_plan && g->model == body->shared_model();
+    });
     if (group == groups.end()) {
       group = groups.insert(group, std::make_unique<Group>());
       (*group)->model = body->shared_model();
+      (*group)->own_plan = own_plan;
     }
     Member& member = members.emplace_back();
     member.body = body;
     member.group = group->get();
     member.number = (*group)->count++;
   }
-  for (const auto& group : groups) find_place(*group);
+  for (const auto& group : groups) find_place(*group, groups);
 
   // All that may fail comes before anything is taken from what there is.
   std::size_t jobs = 0;
@@ -233,6 +274,7 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
     member.stepped = false;
     if (member.body->asleep()) continue;
     member.stepped = member.fits_spes();
+    if (member.group->own_plan || member.tiled) follow_rest(member);
     if (member.stepped)
       hand_over(member);
     else
@@ -273,7 +315,7 @@ template <int kDimension>
 void SpeSolver<kDimension>::finish() {
   is_stepping_ = false;  // also if something throws
   try {
-    for (Body* const body : left_to_ppu_) body->pull(step_);
+    for (Body* const body : left_to_ppu_) body->pull(step_), body->flow(step_);
   } catch (...) {
     chain_->wait();  // its jobs work on what the next kick() changes
     throw;
@@ -287,8 +329,11 @@ void SpeSolver<kDimension>::finish() {
   }
   for (const Member& member : members_)
     if (member.stepped && member.tiled) member.tiled->end_step();
-  for (const Member& member : members_)
-    if (member.stepped) take_back(member);
+  for (const Member& member : members_) {
+    if (!member.stepped) continue;
+    take_back(member);
+    member.body->flow(step_);
+  }
 }
 
 template <int kDimension>

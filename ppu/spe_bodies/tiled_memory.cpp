@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/plans/match_constants.h"
 #include "ppu/spe_bodies/job_records.h"
 #include "ppu/spe_bodies/match_orchestration.h"
 #include "softcell/base/assert.h"
@@ -115,6 +116,21 @@ void TiledMemory::reset() {
   std::ranges::fill(rotations_.span(),
                     spu::MatchRotations{{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 1}});
   body_[0].cold = 1;
+}
+
+void TiledMemory::set_rest(const TilePlan& plan, const MatchingPlan<float, 3>& matching) {
+  SC_ASSERT(
+      plan.place_of().size() == matching.particles() && plan.place_of_region().size() == matching.regions(),
+      "a rest shape of {} particles and {} regions in a plan of {} and {}", matching.particles(),
+      matching.regions(), plan.place_of().size(), plan.place_of_region().size());
+  for (std::size_t i = 0; i < matching.particles(); ++i) {
+    const std::uint32_t place = plan.place_of()[i];
+    std::ranges::copy(rest_moment(matching.particle_constants()[i]), rest_[place / 4].rest_moment[place % 4]);
+  }
+  for (std::size_t r = 0; r < matching.regions(); ++r) {
+    const std::uint32_t place = plan.place_of_region()[r];
+    set_centre(regions_[place / 4], place % 4, matching.region_constants()[r]);
+  }
 }
 
 void TiledMemory::begin_step(const MatchSettings& settings) {

@@ -44,6 +44,9 @@ class TiledMemory {
   std::span<Vector> positions() { return positions_.span(); }    ///< metres; a step does not change them
   std::span<Vector> velocities() { return velocities_.span(); }  ///< m/s
 
+  /// The constants of another rest shape. @param plan  the one that the body was made from
+  void set_rest(const TilePlan& plan, const MatchingPlan<float, 3>& matching);
+
   /// Before the jobs run. @throws std::invalid_argument  settings out of their ranges.
   void begin_step(const MatchSettings& settings);
 

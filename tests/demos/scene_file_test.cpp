@@ -97,6 +97,7 @@ frequency = 4
 damping_time = 0.5
 friction = 0.1
 restitution = 0.5
+plasticity = { yield = 0.25, limit = 2 }
 [[box]]
 size = [1, 2, 3]
 mass = 4
@@ -174,6 +175,7 @@ begin = 2
   EXPECT_EQ(body.settings.damping_time, 0.5f);
   EXPECT_EQ(body.settings.friction, 0.1f);
   EXPECT_EQ(body.settings.restitution, 0.5f);
+  EXPECT_EQ(body.settings.plasticity, (ppu::Plasticity{.yield = 0.25f, .creep = 10, .limit = 2}));
   EXPECT_EQ(body.position, Eigen::Vector3f(3, 2.5f, 4));
   ASSERT_EQ(scene.script.impulses.size(), 1u);
   EXPECT_EQ(scene.script.impulses[0].velocity, Eigen::Vector3f(1, 2, 3));
@@ -377,6 +379,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadToml{"[[box]]\nsize = [1, 1e-60, 1]\n", "bad.toml:2:12: number 2 in size of box 1 is 1e-60"},
         BadToml{"[[box]]\nsize = [1, 1, 1]\ncolour = \"red\"\n",
                 "bad.toml:3:1: colour of box 1 is 'red'; it must be a colour"},
+        BadToml{"[materials.tin]\nplasticity = { yield = 0 }\n",
+                "bad.toml:2:16: yield of the plasticity of material 'tin' is 0; it must be a number above 0"},
+        BadToml{
+            "[materials.tin]\nplasticity = { yeild = 0.1 }\n",
+            "bad.toml:2:16: the plasticity of material 'tin' has no field 'yeild'; did you mean 'yield'?"},
         BadToml{"dimension = 4\n", "bad.toml:1:1: dimension of a scene is 4"},
         BadToml{"title = 1979-05-27\n", "bad.toml:1:9: a scene has no dates or times"},
         BadToml{"[materials.a]\nalpha = 1\nmodulus = 3\n",

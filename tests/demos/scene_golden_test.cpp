@@ -57,7 +57,8 @@ INSTANTIATE_TEST_SUITE_P(Figures, SceneGolden,
 INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
                          testing::Values(Moment{"touch", 180}, Moment{"gap", 150}, Moment{"pile", 90},
                                          Moment{"knot", 40}, Moment{"torus_fold", 40}, Moment{"bridge", 70},
-                                         Moment{"bridge", 120}));
+                                         Moment{"bridge", 120}, Moment{"car_crash", 30},
+                                         Moment{"car_crash", 160}));
 
 INSTANTIATE_TEST_SUITE_P(Materials, SceneGolden,
                          testing::Values(Moment{"painted", 1}, Moment{"painted", 55}));

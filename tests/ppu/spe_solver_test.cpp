@@ -416,5 +416,113 @@ TEST(SpeSolver, ASleepingBodyWakesWhenGravityTurns) {
   EXPECT_GT(fastest(body), 0.1f);
 }
 
+/// A car's worth of particles, plastic.
+SoftBodySettings tin() {
+  SoftBodySettings settings = rubber();
+  settings.plasticity = Plasticity{.yield = 0.03f, .creep = 30};
+  return settings;
+}
+
+// Plastic bodies: whole (480 particles), in tiles (1,452), and elastic ones between them, thrown at the floor.
+std::uint64_t hash_of_a_crash(const ls_sim::SpeOptions& options) {
+  SpeWorld world(options);
+  world.add_floor();
+  const auto small = block_model({7, 5, 9}, tin()), large = block_model({10, 10, 11}, tin());
+  const auto elastic = block_model({3, 3, 3}, rubber());
+  std::vector<SoftBody<3>*> bodies;
+  for (int i = 0; i < 4; ++i) {
+    const float x = 4.0f * static_cast<float>(i);
+    const auto& model = i == 1 ? large : i == 2 ? elastic : small;
+    bodies.push_back(&world.soft.add(model, {x, 0.3f, 0}));
+    bodies.back()->add_velocity({0, -8, 0});
+    bodies.back()->add_angular_velocity({0.5f, 0, 1});
+  }
+  world.run(40);
+  EXPECT_EQ(world.solver.bodies_on_ppu(), 0u);
+  EXPECT_TRUE(bodies[0]->has_own_rest());
+  EXPECT_TRUE(bodies[1]->has_own_rest());
+  EXPECT_FALSE(bodies[2]->has_own_rest());
+  EXPECT_NE(state_hash(*bodies[0]), state_hash(*bodies[3]));
+  std::uint64_t hash = 0;
+  for (const SoftBody<3>* body : bodies) hash = state_hash(*body, hash);
+  return hash;
+}
+
+TEST(SpeSolver, PlasticBodiesAreTheSameForAnyNumberOfSpesAndSchedule) {
+  const std::uint64_t hash = hash_of_a_crash({.spes = 1});
+  for (const char* schedule : {"eager", "lazy", "random:1"})
+    for (const int spes : {2, 6})
+      EXPECT_EQ(hash_of_a_crash({.spes = spes, .schedule = dma::parse_schedule(schedule)}), hash)
+          << schedule << ", " << spes << " SPEs";
+}
+
+TEST(SpeSolver, StepsAPlasticBodyAsThePpuDoes) {
+  // Whole, and in tiles.
+  for (const Eigen::Vector3i& cells : {Eigen::Vector3i(7, 5, 9), Eigen::Vector3i(10, 10, 11)}) {
+    const auto model = block_model(cells, tin());
+    SpeWorld world;
+    SoftBody<3> on_spe(model), on_ppu(model);
+    PpuSolver<3> ppu;
+    SoftBody<3>* const one[] = {&on_spe};
+    SoftBody<3>* const other[] = {&on_ppu};
+    bend(on_spe), bend(on_ppu);
+    constexpr float kStep = 1.0f / 120;
+    const auto advance = [&](SoftBody<3>& body) {
+      for (std::size_t i = 0; i < body.positions().size(); ++i)
+        body.set_particle(i, body.position(i) + kStep * body.velocities()[i], body.velocities()[i]);
+    };
+    for (int i = 0; i < 30; ++i) {
+      world.solver.kick(one, kStep);
+      world.solver.finish();
+      ppu.kick(other, kStep);
+      ppu.finish();
+      advance(on_spe), advance(on_ppu);
+    }
+    ASSERT_TRUE(on_spe.has_own_rest());
+    const auto rest = on_spe.rest_positions(), rest_of_ppu = on_ppu.rest_positions();
+    float moved = 0;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      ASSERT_LT((on_spe.position(i) - on_ppu.position(i)).norm(), 2e-3f * 0.2f) << "particle " << i;
+      ASSERT_LT((rest[i] - rest_of_ppu[i]).norm(), 2e-3f * 0.2f) << "particle " << i;
+      moved = std::max(moved, (rest[i] - model->lattice().rest_position(i)).norm());
+    }
+    EXPECT_GT(moved, 0.1f * 0.2f);
+    // Straightened: the SPEs' plan has the model's rest shape again.
+    on_spe.reset_deformation();
+    world.solver.forget(on_spe);
+    const Vector3f before = on_spe.velocities()[0];
+    world.solver.kick(one, kStep);
+    world.solver.finish();
+    EXPECT_LT((on_spe.velocities()[0] - before).norm(), 1e-3f * before.norm() + 1e-3f);
+  }
+}
+
+TEST(SpeSolver, ABodyThatBecomesPlasticGetsAPlanOfItsOwn) {
+  const auto model = block_model({5, 4, 3}, rubber());
+  SpeWorld world;
+  SoftBody<3> a(model), b(model), reference(model);
+  SoftBody<3>* const both[] = {&a, &b};
+  SoftBody<3>* const one[] = {&reference};
+  constexpr float kStep = 1.0f / 120;
+  bend(a), bend(b), bend(reference);
+  a.set_material(tin());
+  SpeWorld other;
+  for (int i = 0; i < 20; ++i) {
+    world.solver.kick(both, kStep);
+    world.solver.finish();
+    other.solver.kick(one, kStep);
+    other.solver.finish();
+    for (SoftBody<3>* const body : {&a, &b, &reference})
+      for (std::size_t p = 0; p < body->positions().size(); ++p)
+        body->set_particle(p, body->position(p) + kStep * body->velocities()[p], body->velocities()[p]);
+  }
+  EXPECT_TRUE(a.has_own_rest());
+  EXPECT_EQ(state_hash(b), state_hash(reference)) << "another body of the model is as it was";
+  a.set_material(rubber());  // elastic again: it keeps its dents
+  world.solver.kick(both, kStep);
+  world.solver.finish();
+  EXPECT_TRUE(a.has_own_rest());
+}
+
 }  // namespace
 }  // namespace softcell::ppu

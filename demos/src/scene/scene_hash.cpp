@@ -63,10 +63,11 @@ class Hash {
   }
   void add(const ppu::SoftBodySettings& settings) {
     const auto& [cell_size, half_width, density, alpha, damping, friction, restitution, contacts, frequency,
-                 damping_time] = settings;
+                 damping_time, plasticity] = settings;
     add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
     add_unless(restitution, 0.0f);
     add_unless(contacts, true);
+    if (plasticity) add('p', plasticity->yield, plasticity->creep, plasticity->limit);
   }
   void add(const SoftBodyPlacement& body) {
     const auto& [name, mesh, settings, position, twist, colour, own_materials] = body;

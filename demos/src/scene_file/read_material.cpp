@@ -21,6 +21,9 @@ constexpr Range kFriction{.low = 0, .high = 100};
 constexpr Range kFrequency{.low = 0, .high = 1e6};
 constexpr Range kModulus{.low = 0, .high = 1e9, .low_excluded = true};
 constexpr Range kDampingTime{.low = 0, .high = 1e6};
+constexpr Range kYield{.low = 0, .high = 1, .low_excluded = true};
+constexpr Range kCreep{.low = 0, .high = 1e6, .low_excluded = true};
+constexpr Range kPlasticLimit{.low = 0, .high = 10, .low_excluded = true};
 
 /// At most one of the names may be given. @return whether one is.
 bool one_of(const FieldReader& fields, std::initializer_list<std::string_view> names) {
@@ -52,6 +55,15 @@ void read_fields(FieldReader& fields, Material& material, Need cell_size) {
       .number("damping_time", s.damping_time, kDampingTime)
       .number("friction", s.friction, kFriction)
       .number("restitution", s.restitution, kShare);
+  if (const Value* const value = fields.field("plasticity")) {
+    ppu::Plasticity plasticity;
+    FieldReader of_plasticity(*value, "the plasticity of " + fields.what());
+    of_plasticity.number("yield", plasticity.yield, kYield)
+        .number("creep", plasticity.creep, kCreep)
+        .number("limit", plasticity.limit, kPlasticLimit)
+        .finish();
+    s.plasticity = plasticity;
+  }
 }
 
 }  // namespace

@@ -33,6 +33,10 @@ namespace softcell::ppu {
 /// Any thread, while nobody changes the body.
 void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals);
 
+/// The mesh of body.model() in the body's rest shape, with all its attributes: what a plastic body would be without loads. A model that
+/// is made of it begins dented. @pre the model has a mesh
+TriangleMesh rest_mesh(const SoftBody<3>& body);
+
 /// A deformed mesh with memory of its own. Used by one thread at a time.
 class SkinnedMesh {
  public:

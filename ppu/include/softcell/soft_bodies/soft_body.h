@@ -36,7 +36,7 @@ struct Turning<3> {
 };
 
 /// Positions and velocities of one body's particles. One thread at a time uses it. It allocates nothing after
-/// construction. Copy a SoftBody to save its state, and assign the copy to restore it: that is a change by its
+/// construction, except when it yields (soft_body_settings.h, Plasticity). Copy a SoftBody to save its state, and assign the copy to restore it: that is a change by its
 /// user, as those below.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
@@ -89,6 +89,11 @@ class SoftBody {
     if constexpr (kDimension == 3) padded_[particle] = {position.x(), position.y(), position.z(), 0};
   }
 
+  /// The plastic flow of a time step, behind its shape matching: changes the rest shape of a plastic body. It looks at the body
+  /// in every kPlasticSteps-th step only. Allocates when the body yields.
+  void flow(float step);
+  static constexpr int kPlasticSteps = 4;
+
   /// Sets a velocity that a solver has computed.
   void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
 
@@ -104,16 +109,26 @@ class SoftBody {
   /// @pre cell_size, half_width, density and contacts are the model's
   void set_material(const SoftBodySettings& settings);
   void translate(const Vector& by);  ///< metres; finite
-  /// Back to the undeformed shape at rest, the model's own origin at `position`.
+  /// Back to the model's shape at rest, the model's own origin at `position`.
   void reset(const Vector& position);
   /// Teleports: turns the body about its centre of mass, then moves it. Velocities turn with the body.
   void move_without_force(const Rotation& rotation, const Vector& translation);
-  /// Back to the undeformed shape, centre, mean orientation and both momenta kept.
+  /// Back to the model's shape, centre, mean orientation and both momenta kept: a plastic body is straightened.
   void reset_deformation();
+  /// Another rest shape, as of a saved body: positions in metres, in any frame, of each particle.
+  /// @throws std::runtime_error  a position is not finite, or the model has too many particles for plastic bodies
+  void set_rest_positions(std::span<const Vector> rest);
   void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s
   /// Adds a turn about the centre of mass, in rad/s, to every particle's velocity.
   void add_angular_velocity(const AxialVector& dw);
+  /// Whether the body has a rest shape of its own: whether it has yielded.
+  bool has_own_rest() const;
+  /// The rest shape: metres, of each particle; its centre of mass is that of the model at rest.
+  std::vector<Vector> rest_positions() const;
+  std::uint32_t rest_revision() const { return rest_revision_; }  ///< how often the rest shape has changed
+  /// For solvers: the constants of the rest shape, the model's or the body's own.
+  std::shared_ptr<const MatchingPlan<float, kDimension>> plan() const;
   std::uint32_t revision() const { return revision_; }  ///< how often its user has changed the body
   std::uint32_t resets() const { return resets_; }  ///< how often it was teleported or put back into shape
 
@@ -121,20 +136,25 @@ class SoftBody {
   Vector linear_momentum() const;        ///< kg m/s
   AxialVector angular_momentum() const;  ///< kg m^2/s, about the centre of mass
   Bounds<kDimension> bounds() const;     ///< of the particles' centres, metres
-  /// The longest distance of a particle from where the body's best rigid motion would have it, in metres.
+  /// The longest distance of a particle from where the best rigid motion of the rest shape would have it, in metres.
   float deformation() const;
 
  private:
   void set_position(std::size_t particle, const Vector& position);
   void place_at_rest(const Vector& position);
   void forget_rotations();
+  struct RestShape;
+  void set_rest(std::unique_ptr<RestShape> rest);
+  void take_rest();
 
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
   SoftBodySettings settings_;
   std::vector<Vector> x_, v_;
   std::vector<Eigen::Vector4f> padded_;  // x_ again, in three dimensions
   std::unique_ptr<ShapeMatcher<float, kDimension>> matcher_;
-  std::uint32_t revision_ = 0, resets_ = 0;
+  std::unique_ptr<RestShape> rest_;  // null: the body is elastic, or was never looked at
+  int steps_since_look_ = 0;
+  std::uint32_t revision_ = 0, resets_ = 0, rest_revision_ = 0;
   bool asleep_ = false;
 };
 

@@ -5,6 +5,18 @@
 
 namespace softcell::ppu {
 
+/// What a body keeps of deformations. Its rest shape flows towards the shape that it has, where the strain is above the
+/// yield: the elongation of a bar that is pulled, half the thickness times the curvature of one that is bent. The volume at
+/// rest stays.
+struct Plasticity {
+  float yield = 0.1f;  ///< above 0, at most 1: the strain below which a deformation is elastic and goes back
+  float creep = 10;    ///< 1/s, above 0: what is above the yield falls to 1/e in 1 / creep seconds
+  float limit =
+      1;  ///< above 0: at rest no edge of a cell gets longer than 1 + limit cells, or shorter than 1 / (1 + limit)
+
+  bool operator==(const Plasticity&) const = default;
+};
+
 /// Detail, material and contacts of a soft body. Only `cell_size` has no default.
 ///
 /// `alpha` and `damping` act per time step, so the same numbers make a stiffer and calmer body with shorter
@@ -21,7 +33,8 @@ struct SoftBodySettings {
                          ///< engine combines it with the other body's: Bullet by product, Box2D by maximum
   bool contacts = true;  ///< false: nothing touches the body, whose particles then are all inner ones
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
-  std::optional<float> damping_time = {};  ///< s, in place of damping: deviations fall to 1/e in this time
+  std::optional<float> damping_time = {};     ///< s, in place of damping: deviations fall to 1/e in this time
+  std::optional<Plasticity> plasticity = {};  ///< none: the body is elastic. Up to 4,096 particles
 
   /// alpha of a time step of `step` seconds, above 0: `alpha`, or computed from `frequency`.
   float alpha_of_step(float step) const;

@@ -21,7 +21,7 @@ class SoftBodySolver {
   /// @pre no step is under way. @throws std::runtime_error  as the solver says.
   virtual void kick(std::span<SoftBody<kDimension>* const> bodies, float step) = 0;
 
-  /// Waits for the step that kick() has begun and changes the bodies' velocities.
+  /// Waits for the step that kick() has begun and changes the bodies' velocities, and the rest shapes of those that yield.
   /// @throws std::runtime_error  a particle is NaN or infinite, or an SPE failed.
   virtual void finish() = 0;
 
@@ -35,7 +35,7 @@ class SoftBodySolver {
   virtual void forget(const SoftBody<kDimension>& body) = 0;
 };
 
-/// The reference: steps the bodies one after the other by SoftBody::pull(), in finish().
+/// The reference: steps the bodies one after the other by SoftBody::pull() and flow(), in finish().
 template <int kDimension>
 class PpuSolver final : public SoftBodySolver<kDimension> {
  public:
@@ -45,7 +45,7 @@ class PpuSolver final : public SoftBodySolver<kDimension> {
   }
   void finish() override {
     for (SoftBody<kDimension>* const body : bodies_)
-      if (!body->asleep()) body->pull(step_);
+      if (!body->asleep()) body->pull(step_), body->flow(step_);
     bodies_.clear();
   }
   void drop() override { bodies_.clear(); }

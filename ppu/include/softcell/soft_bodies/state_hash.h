@@ -8,7 +8,7 @@
 
 namespace softcell::ppu {
 
-/// Hash over the positions and velocities of a body's particles. For several bodies, pass on the hash of
+/// Hash over the positions and velocities of a body's particles, and its rest shape if it has yielded. For several bodies, pass on the hash of
 /// those before: state_hash(b, state_hash(a)). The order counts.
 /// @source  XXH3, the 64-bit variant; `before` is its seed
 std::uint64_t state_hash(const SoftBody<2>& body, std::uint64_t before = 0);

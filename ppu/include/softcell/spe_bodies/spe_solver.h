@@ -36,6 +36,9 @@ struct MatchKernels<3> {
 /// The result is the same bits for any number of SPEs. The rotations of regions live in main memory, not in
 /// the bodies: a body restored from a copy starts without any.
 ///
+/// The rest shapes of plastic bodies flow on the PPU, in finish(). A body with a plasticity has a plan of its own in main memory, which
+/// its SPE fetches for it alone.
+///
 /// A body that fits a local store is stepped whole by one SPE, with others of its model. A larger one is
 /// stepped in three dimensions in tiles, by all SPEs. What no SPE can step, the PPU steps while the SPEs step
 /// the others: in two dimensions bodies that do not fit a local store, in three those that do not even fit in
@@ -66,11 +69,12 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
 
   bool knows(std::span<Body* const> bodies) const;
   void regroup(std::span<Body* const> bodies);
-  void find_place(Group& group);
+  void find_place(Group& group, std::span<const std::unique_ptr<Group>> others);
   void find_tiles(Group& group);
   Member* known_as(const Member& member);
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
+  void follow_rest(Member& member);
   void take_back(const Member& member);
 
   dma::AddressSpace& memory_;

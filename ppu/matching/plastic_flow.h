@@ -1,0 +1,108 @@
+#pragma once
+// Plastic flow: a body that was deformed past its yield keeps a part of the deformation, as another rest shape.
+//
+// With x the positions, y the rest shape, d = y_b - y_a an edge along a lattice axis at rest and D = x_b - x_a the same
+// edge now:
+//
+//     R_i                                 rotation of sum D d^T over the edges of particle i
+//     eps = R^T D - d                     what is not rotation, seen in the rest shape's frame; R halfway between the ends' R
+//     w   = axis * angle of R_a^T R_b     how much the body is bent along the edge
+//     eta = eps - tr / n  d               without the change of volume; tr is the sum of relative elongations over the n axes:
+//                                         its own, and the means over its cells' edges along the others
+//     e   = |eta| / |d| * n / (n - 1)     the strain. In a bar that is pulled, the elongation
+//     g   = share (1 - yield / e)         0 below the yield. share = 1 - exp(-creep h)
+//
+// An edge flows by g eta, and turns by the mean of g over the regions of its ends, weighted by e^2, which is that
+// of the elastic energy. The rest shape's new edges are Q (d + g eta), less what would change the volume of cells, Q the turn. No
+// shape has exactly these edges; the one whose edges come nearest in least squares follows from two systems of equations:
+//
+//     omega_b - omega_a = g w            for every edge: the turn of each particle
+//     u_b - u_a = Q (d + g eta) - d      for every edge: the displacement, y += u
+//
+// Both have the Laplacian of the edges, which never changes. So a dent is local, and what lies behind a bend turns with it
+// as a whole. Velocities and positions stay as they are; shape matching keeps both momenta for any rest shape.
+//
+// Why the rest shape as a whole, and not an affine deformation of each region (Mueller et al. 2005): bending is no affine
+// deformation of a region. Of the energy that regions of 5 x 5 x 5 resist the bending of a plate of 5 particles with, affine parts
+// are a quarter; three quarters would spring back, in thin plates all of it.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ppu/matching/rest_lattice.h"
+#include "ppu/matching/summation.h"
+#include "softcell/soft_bodies/soft_body_settings.h"
+
+namespace softcell::ppu {
+
+/// The rest shape of one body. One thread at a time.
+template <int kDimension>
+class PlasticFlow {
+ public:
+  using Exact = Eigen::Matrix<double, kDimension, 1>;
+  using Vector = Eigen::Matrix<float, kDimension, 1>;
+
+  /// @param rest  positions, metres, in any frame
+  PlasticFlow(std::shared_ptr<const RestLattice<kDimension>> lattice, std::span<const Exact> rest);
+
+  std::span<const Exact> rest() const { return rest_; }  ///< metres
+  void set_rest(std::span<const Exact> rest);
+
+  /// A quick look at the lengths of edges and diagonals. @return false: no strain is above `yield`
+  bool may_yield(std::span<const Vector> x, float yield);
+
+  /// Moves the rest shape towards the shape that the body has, where it has yielded. The volume of the whole stays as it
+  /// is, and no cell of the rest shape gets less than kLeastRestVolume.
+  /// @param x        positions, metres
+  /// @param sums     of the body's regions
+  /// @param share    0..1: of what is above the yield
+  /// @return         whether the rest shape has changed
+  bool flow(std::span<const Vector> x, const SumPlan& sums, const Plasticity& plasticity, double share);
+
+  /// The largest strain e of the last flow(), before it flowed.
+  double largest_strain() const { return largest_strain_; }
+
+  /// Of a cell of the rest shape, in spacing^n: the volume that its mean edges span. A cell counts as crushed
+  /// below 0.5 (contacts/crushed_cells.h).
+  static constexpr double kLeastRestVolume = 0.7;
+
+ private:
+  using Matrix = Eigen::Matrix<double, kDimension, kDimension>;
+  static constexpr int kSpins = kDimension == 2 ? 1 : 3;  // numbers of an angle, or of axis times angle
+  using Spin = Eigen::Matrix<double, kSpins, 1>;
+
+  template <typename Visit>
+  void each_length(const Visit& visit) const;
+  void find_inverse_squares();
+  void find_rotations(std::span<const Vector> x);
+  void find_strains(std::span<const Vector> x);
+  /// The relative elongation of a cell along each axis, for edges that get longer by `of_edge`.
+  Exact elongations(const typename RestLattice<kDimension>::EdgesOfCell& edges,
+                    const std::vector<Exact>& of_edge) const;
+  void find_flow(const SumPlan& sums, const Plasticity& plasticity, double share);
+  void keep_volume();
+  std::vector<Exact> new_shape() const;
+  bool stop_bad_cells(std::span<const Exact> shape);
+
+  std::shared_ptr<const RestLattice<kDimension>> lattice_;
+  std::vector<Exact> rest_;
+  std::vector<float> inverse_squares_;         // of lengths at rest, as each_length() visits them
+  std::vector<Eigen::Quaterniond> rotations_;  // of each particle; in two dimensions about z
+  // Of each edge.
+  std::vector<Exact> d_, eta_, flow_;
+  std::vector<Spin> bend_;
+  std::vector<double> strain_, rate_, turn_;
+  double largest_strain_ = 0;
+  // How much lengths differed at the last quick look; up to which difference a body that did not yield is not looked
+  // at closely again, until it is much less.
+  float stretch_ = 0, calm_ = 0;
+  static constexpr float kForget = 0.8f;
+};
+
+extern template class PlasticFlow<2>;
+extern template class PlasticFlow<3>;
+
+}  // namespace softcell::ppu

@@ -1,0 +1,66 @@
+#pragma once
+// What plastic bodies of one lattice share: its edges along the axes, and the equations from which a rest shape follows.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// The most particles of a plastic body: solving for a rest shape of so many takes some 4 ms.
+inline constexpr std::uint32_t kMaxPlasticParticles = 4096;
+
+/// Immutable; any thread may read it.
+/// @tparam kDimension  2 or 3
+template <int kDimension>
+class RestLattice {
+ public:
+  /// Edges of a cell along one axis.
+  static constexpr std::size_t kEdgesPerAxis = std::size_t{1} << (kDimension - 1);
+  /// An edge of one or more cells. In the lattice, `to` is one step further along `axis` than `from`.
+  struct Edge {
+    std::uint32_t from, to;
+    std::uint32_t axis;
+  };
+  using EdgesOfCell = std::array<std::array<std::uint32_t, kEdgesPerAxis>, kDimension>;  ///< by axis
+
+  /// @pre at most kMaxPlasticParticles particles
+  explicit RestLattice(const Lattice<kDimension>& lattice);
+  ~RestLattice();
+
+  std::span<const Edge> edges() const { return edges_; }
+  std::span<const EdgesOfCell> edges_of_cell() const { return edges_of_cell_; }
+  /// 1 / how many cells have the edge as an edge.
+  std::span<const double> inverse_cells() const { return inverse_cells_; }
+  std::size_t particles() const { return particles_; }
+  double spacing() const { return spacing_; }  ///< metres
+  const std::vector<std::array<std::uint32_t, Lattice<kDimension>::kCorners>>& corners() const {
+    return corners_;
+  }
+
+  /// The values of the particles whose differences along the edges come nearest to what is wanted: least squares of
+  /// u_to - u_from - wanted. Of all such values those whose mean is 0 in each connected part.
+  /// @param wanted  a row for each edge    @return a row for each particle
+  Eigen::MatrixXd integrate(const Eigen::MatrixXd& wanted) const;
+
+ private:
+  struct Factor;
+
+  std::size_t particles_;
+  double spacing_;
+  std::vector<Edge> edges_;
+  std::vector<EdgesOfCell> edges_of_cell_;
+  std::vector<double> inverse_cells_;
+  std::vector<std::array<std::uint32_t, Lattice<kDimension>::kCorners>> corners_;
+  std::unique_ptr<const Factor> factor_;
+};
+
+extern template class RestLattice<2>;
+extern template class RestLattice<3>;
+
+}  // namespace softcell::ppu

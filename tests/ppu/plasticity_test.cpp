@@ -1,0 +1,422 @@
+// Plastic bodies: what they keep, what they give back, and what no flow changes.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lattices.h"
+#include "ppu/matching/plastic_flow.h"
+#include "ppu/reference/shape_matching.h"
+#include "soft_body_scenes.h"
+#include "softcell/soft_bodies/shapes.h"
+#include "softcell/soft_bodies/skinned_mesh.h"
+#include "softcell/soft_bodies/soft_body_solver.h"
+#include "softcell/soft_bodies/state_hash.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+constexpr float kStep = 1.0f / 120;
+constexpr float kCell = 0.1f;
+constexpr float kDrag = 0.2f;
+
+SoftBodySettings metal(float yield, float creep = 20) {
+  return {.cell_size = kCell,
+          .half_width = 1,
+          .density = 500,
+          .alpha = 0.6f,
+          .damping = 0.1f,
+          .plasticity = Plasticity{.yield = yield, .creep = creep}};
+}
+
+/// A bar along x, its lowest particles at y = 0.
+std::shared_ptr<const SoftBodyModel<3>> bar(int length, int thickness, const SoftBodySettings& settings) {
+  return block_model({length, thickness, thickness}, settings);
+}
+
+/// Where a point of a straight bar is when the bar is bent about z to a circle of this curvature (1/m) and of the length that
+/// it had.
+Vector3f bent(const Vector3f& x, float curvature, float half_height) {
+  const float angle = curvature * x.x(), radius = 1 / curvature, y = x.y() - half_height;
+  return {(radius - y) * std::sin(angle), radius - (radius - y) * std::cos(angle), x.z()};
+}
+
+/// The angle between the ends of a bar that lies along x at rest, in the plane of x and y: of the cells at its ends.
+float angle_between_ends(const SoftBodyModel<3>& model, std::span<const Vector3f> x) {
+  const auto direction = [&](std::uint32_t cell) {
+    const auto& corners = model.lattice().corners[cell];
+    Vector3f along = Vector3f::Zero();
+    for (unsigned k = 0; k < 8; k += 2) along += x[corners[k + 1]] - x[corners[k]];
+    return std::atan2(along.y(), along.x());
+  };
+  const auto& cells = model.lattice().cells;
+  const auto end = [&](bool last) {
+    float sum = 0;
+    int count = 0;
+    const int at = last ? cells.back().x() : cells.front().x();
+    for (std::uint32_t c = 0; c < cells.size(); ++c)
+      if (cells[c].x() == at) sum += direction(c), ++count;
+    return sum / static_cast<float>(count);
+  };
+  return end(true) - end(false);
+}
+
+/// Of all cells, by their mean edges, in spacing^3.
+struct Volumes {
+  double sum = 0, least = std::numeric_limits<double>::max();
+};
+Volumes volumes(const SoftBodyModel<3>& model, std::span<const Vector3f> x) {
+  Volumes volumes;
+  const double whole = std::pow(double{model.lattice().spacing}, 3);
+  for (const auto& corners : model.lattice().corners) {
+    Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
+    for (unsigned k = 0; k < 8; ++k)
+      for (unsigned axis = 0; axis < 3; ++axis)
+        edges.col(axis) += ((k >> axis & 1u) != 0 ? 0.25 : -0.25) * x[corners[k]].cast<double>();
+    const double volume = edges.determinant() / whole;
+    volumes.sum += volume;
+    volumes.least = std::min(volumes.least, volume);
+  }
+  return volumes;
+}
+
+/// One step without an engine: solver, then positions.
+/// @param drag  share of its velocity that each particle loses: with much of it, loads come and go slowly
+void advance(SoftBody<3>& body, float drag = 0) {
+  SoftBody<3>* const one[] = {&body};
+  PpuSolver<3> solver;
+  solver.kick(one, kStep);
+  solver.finish();
+  for (std::size_t i = 0; i < body.positions().size(); ++i)
+    body.set_particle(i, body.position(i) + kStep * body.velocities()[i], (1 - drag) * body.velocities()[i]);
+}
+
+void settle(SoftBody<3>& body, float seconds) {
+  for (int i = 0; i < static_cast<int>(seconds / kStep); ++i) advance(body, kDrag);
+}
+
+/// Sets a bar's particles on a circle.
+void bend(SoftBody<3>& body, float curvature, float half_height) {
+  for (std::size_t i = 0; i < body.positions().size(); ++i)
+    body.set_particle(i, bent(body.model().lattice().rest_position(i), curvature, half_height),
+                      Vector3f::Zero());
+}
+
+/// Holds the bar on the circle for a while as a pure moment does: each cross-section stays plane and keeps its angle, and
+/// is free to change its shape.
+void hold(SoftBody<3>& body, float curvature, float seconds) {
+  const Vector3f centre(0, 1 / curvature, 0);
+  for (int n = 0; n < static_cast<int>(seconds / kStep); ++n) {
+    advance(body, kDrag);
+    for (std::size_t i = 0; i < body.positions().size(); ++i) {
+      const float angle = curvature * body.model().lattice().rest_position(i).x();
+      const Vector3f out(std::sin(angle), -std::cos(angle), 0), along(std::cos(angle), std::sin(angle), 0);
+      const Vector3f from = body.position(i) - centre, v = body.velocities()[i];
+      body.set_particle(i, centre + from.dot(out) * out + Vector3f(0, 0, from.z()), v - v.dot(along) * along);
+    }
+  }
+}
+
+// The strain of the surface is the elastic part of the curvature times half the thickness, measured against the rest shape,
+// whose fibres on the inside are shorter: (k - k_rest) h / 2 = yield (1 - k_rest h / 2).
+TEST(Plasticity, ABarThatIsHeldBentKeepsTheAngleOfTheLaw) {
+  constexpr float kYield = 0.02f;
+  for (const int thickness : {1, 2, 4}) {
+    const int length = 16 + 4 * thickness;
+    SoftBody<3> body(bar(length, thickness, metal(kYield)));
+    const float half_height = kCell * static_cast<float>(thickness) / 2;
+    const float strain = 3 * kYield, curvature = strain / half_height;
+    bend(body, curvature, half_height);
+    const float held = angle_between_ends(body.model(), body.positions());
+    hold(body, curvature, 3);
+    constexpr int kSteps = 50;  // let go slowly
+    for (int i = 0; i < kSteps; ++i)
+      hold(body, curvature - static_cast<float>(i) / kSteps * kYield / half_height, 0.05f);
+    settle(body, 10);
+    const float kept = angle_between_ends(body.model(), body.positions());
+    const float law = held * (strain - kYield) / (1 - kYield) / strain;
+    EXPECT_NEAR(kept, law, 0.05f * law) << thickness << " cells thick";
+    EXPECT_NEAR(angle_between_ends(body.model(), body.rest_positions()), kept, 0.01f * law);
+    const Volumes now = volumes(body.model(), body.positions());
+    const auto cells = static_cast<double>(body.model().lattice().cells.size());
+    EXPECT_NEAR(now.sum / cells, 1, 0.01);
+    EXPECT_NEAR(volumes(body.model(), body.rest_positions()).sum / cells, 1, 1e-5) << "at rest it is exact";
+  }
+}
+
+TEST(Plasticity, BelowTheYieldABarGoesBack) {
+  SoftBody<3> body(bar(16, 2, metal(0.2f)));
+  constexpr float kCurvature = 1.5f;  // the surface is stretched by 0.15
+  bend(body, kCurvature, kCell);
+  hold(body, kCurvature, 1);
+  settle(body, 20);
+  EXPECT_FALSE(body.has_own_rest());
+  EXPECT_LT(std::abs(angle_between_ends(body.model(), body.positions())), 0.001f * 16 * kCell * kCurvature);
+}
+
+TEST(Plasticity, ThousandBumpsTurnNoCellInsideOut) {
+  test::Random random(7);
+  SoftBody<3> body(block_model({5, 4, 3}, metal(0.05f)));
+  const auto particles = body.positions().size();
+  double least = 1;
+  for (int bump = 0; bump < 1000; ++bump) {
+    const auto hit = static_cast<std::size_t>((random.next() + 1) / 2 * static_cast<double>(particles - 1));
+    const Vector3f at = body.position(hit), blow = 20 * random.vector().cast<float>();
+    for (std::size_t i = 0; i < particles; ++i)
+      if ((body.position(i) - at).norm() < 1.5f * kCell) body.add_particle_velocity(i, blow);
+    settle(body, 0.1f);
+    least = std::min(least, volumes(body.model(), body.rest_positions()).least);
+    ASSERT_GE(least, PlasticFlow<3>::kLeastRestVolume - 1e-4) << "bump " << bump;
+  }
+  EXPECT_TRUE(body.has_own_rest());
+  settle(body, 20);
+  const Volumes now = volumes(body.model(), body.positions());
+  EXPECT_GT(now.least, 0.5) << "no cell stays crushed";
+  EXPECT_NEAR(now.sum / static_cast<double>(body.model().lattice().cells.size()), 1, 0.01);
+  EXPECT_LT(body.deformation(), 0.01f * kCell) << "it is in its rest shape";
+}
+
+/// A body that turns and is bent.
+SoftBody<3> tumbling_body(const SoftBodySettings& settings) {
+  SoftBody<3> body(block_model({8, 3, 2}, settings));
+  body.add_velocity({0.05f, -0.1f, 0.025f});
+  body.add_angular_velocity({1, 2, -1.5f});
+  for (std::size_t i = 0; i < body.positions().size(); ++i) {
+    const Vector3f x = body.position(i);
+    body.set_particle(i, x + Vector3f(0, 1.5f * x.x() * x.x(), 0.8f * x.x() * x.y()),
+                      body.velocities()[i] + Vector3f(0, 0, 4 * x.x() * x.x()));
+  }
+  return body;
+}
+
+TEST(Plasticity, BothMomentaSurviveAThousandSteps) {
+  // In double precision, so that rounding does not hide what the flow does.
+  const SoftBody<3> start = tumbling_body(metal(0.03f));
+  const SoftBodyModel<3>& model = start.model();
+  std::vector<Eigen::Vector3d> x, v, rest;
+  std::vector<Vector3f> shown(model.particles());
+  for (std::size_t i = 0; i < model.particles(); ++i) {
+    x.push_back(start.position(i).cast<double>());
+    v.push_back(start.velocities()[i].cast<double>());
+    rest.push_back(model.lattice().rest_position(i).cast<double>());
+  }
+  const auto plan = std::make_shared<MatchingPlan<double, 3>>(model.lattice(), 1, model.masses());
+  ShapeMatcher<double, 3> matcher(plan);
+  PlasticFlow<3> flow(model.rest_lattice(), rest);
+  const auto momenta = [&] {
+    Eigen::Matrix<double, 6, 1> sums = Eigen::Matrix<double, 6, 1>::Zero();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      sums.head<3>() += double{model.masses()[i]} * v[i];
+      sums.tail<3>() += double{model.masses()[i]} * x[i].cross(v[i]);
+    }
+    return sums;
+  };
+  const auto before = momenta();
+  int flows = 0;
+  for (int n = 0; n < 1000; ++n) {
+    matcher.step_velocities(x, v, 0.6, double{kStep}, 0.1);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += double{kStep} * v[i];
+    std::ranges::transform(x, shown.begin(),
+                           [](const auto& at) -> Vector3f { return at.template cast<float>(); });
+    if (flow.flow(shown, plan->sums(), {.yield = 0.03f}, 0.3)) plan->set_rest(flow.rest()), ++flows;
+  }
+  EXPECT_GT(flows, 10);
+  const Eigen::Matrix<double, 6, 1> change = momenta() - before;
+  EXPECT_LT(change.head<3>().norm(), 1e-10 * before.head<3>().norm());
+  EXPECT_LT(change.tail<3>().norm(), 1e-10 * before.tail<3>().norm());
+}
+
+TEST(Plasticity, InSinglePrecisionMomentaAreKeptAsWellAsThoseOfAnElasticBody) {
+  const auto drift_of = [](SoftBody<3> body) {
+    const Vector3f l = body.angular_momentum();
+    for (int i = 0; i < 1000; ++i) advance(body);
+    return (body.angular_momentum() - l).norm() / l.norm();
+  };
+  SoftBodySettings elastic = metal(0.03f);
+  elastic.plasticity.reset();
+  const float drift = drift_of(tumbling_body(elastic));
+  EXPECT_LT(drift_of(tumbling_body(metal(0.03f))), 1.5f * drift);
+}
+
+TEST(Plasticity, IsOffWithoutASetting) {
+  SoftBodySettings elastic = metal(0.03f);
+  elastic.plasticity.reset();
+  SoftBody<3> body = tumbling_body(elastic), tough = tumbling_body(metal(1));
+  for (int i = 0; i < 50; ++i) advance(body), advance(tough);
+  EXPECT_FALSE(body.has_own_rest());
+  EXPECT_EQ(state_hash(body), state_hash(tough)) << "below the yield there is no difference either";
+}
+
+TEST(Plasticity, ABodyIsStraightened) {
+  SoftBody<3> body = tumbling_body(metal(0.03f));
+  settle(body, 2);
+  ASSERT_TRUE(body.has_own_rest());
+  const Vector3f p = body.linear_momentum(), l = body.angular_momentum();
+  const auto revision = body.rest_revision();
+  body.reset_deformation();
+  EXPECT_FALSE(body.has_own_rest());
+  EXPECT_NE(body.rest_revision(), revision);
+  EXPECT_TRUE(body.linear_momentum().isApprox(p, 1e-4f));
+  EXPECT_TRUE(body.angular_momentum().isApprox(l, 1e-3f));
+  EXPECT_LT(body.deformation(), 1e-5f);
+  const auto rest = body.rest_positions();
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    ASSERT_LT((rest[i] - body.model().lattice().rest_position(i)).norm(), 1e-6f);
+  const Vector3f before = body.velocities()[0];
+  body.pull(kStep);
+  EXPECT_LT((body.velocities()[0] - before).norm(), 1e-3f) << "nothing pulls it back to its dents";
+}
+
+TEST(Plasticity, ACopyIsASavedState) {
+  SoftBody<3> body = tumbling_body(metal(0.03f));
+  settle(body, 1);
+  SoftBody<3> copy(body), assigned = tumbling_body(metal(0.03f));
+  assigned = body;
+  settle(body, 1);
+  settle(copy, 1);
+  settle(assigned, 1);
+  EXPECT_EQ(state_hash(copy), state_hash(body));
+  EXPECT_EQ(state_hash(assigned), state_hash(body));
+  // The rest shape is part of the state.
+  SoftBody<3> straight(copy);
+  straight.set_rest_positions(tumbling_body(metal(0.03f)).rest_positions());
+  EXPECT_NE(state_hash(straight), state_hash(copy));
+}
+
+TEST(Plasticity, ARestShapeIsRestored) {
+  SoftBody<3> body = tumbling_body(metal(0.03f));
+  settle(body, 2);
+  SoftBody<3> other(body.shared_model());
+  other.set_rest_positions(body.rest_positions());
+  for (std::size_t i = 0; i < other.positions().size(); ++i)
+    other.set_particle(i, body.position(i), body.velocities()[i]);
+  settle(body, 0.1f), settle(other, 0.1f);
+  for (std::size_t i = 0; i < other.positions().size(); ++i)
+    ASSERT_LT((body.position(i) - other.position(i)).norm(), 1e-4f * kCell);
+  auto rest = body.rest_positions();
+  rest[3].y() = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(other.set_rest_positions(rest), std::runtime_error);
+}
+
+TEST(Plasticity, RefusesWhatIsOutOfRange) {
+  const auto sentence = [](const Plasticity& plasticity) -> std::string {
+    SoftBodySettings settings = metal(0.1f);
+    settings.plasticity = plasticity;
+    try {
+      validate(settings);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(sentence({}), "accepted");
+  EXPECT_EQ(sentence({.yield = 0}), "a soft body's yield is 0; it must be a strain above 0 and at most 1");
+  EXPECT_EQ(sentence({.yield = 2}), "a soft body's yield is 2; it must be a strain above 0 and at most 1");
+  EXPECT_EQ(sentence({.creep = -1}), "a soft body's creep is -1; it must be in 1/s and above 0");
+  EXPECT_EQ(sentence({.limit = 0}), "a soft body's limit is 0; it must be a strain above 0");
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(sentence({.limit = nan}), "accepted");
+}
+
+TEST(Plasticity, RefusesABodyOfTooManyParticles) {
+  SoftBodySettings settings = metal(0.1f);
+  try {
+    block_model({16, 16, 16}, settings);
+    FAIL() << "4,913 particles";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "a plastic soft body has at most 4096 particles; this one has 4913: give it larger cells");
+  }
+  settings.plasticity.reset();
+  SoftBody<3> body(block_model({16, 16, 16}, settings));
+  EXPECT_THROW(body.set_material(metal(0.1f)), std::runtime_error) << "nor later";
+  EXPECT_FALSE(body.settings().plasticity);
+}
+
+TEST(Plasticity, ALimitKeepsEdgesFromGrowing) {
+  SoftBodySettings settings = metal(0.02f, 100);
+  settings.plasticity->limit = 0.25f;
+  SoftBody<3> body(bar(8, 2, settings));
+  for (int n = 0; n < 300; ++n) {
+    for (std::size_t i = 0; i < body.positions().size(); ++i) {
+      Vector3f x = body.model().lattice().rest_position(i);
+      x.x() *= 2;
+      body.set_particle(i, x, Vector3f::Zero());
+    }
+    body.flow(kStep);
+  }
+  float longest = 0;
+  const auto rest = body.rest_positions();
+  for (const auto& edge : body.model().rest_lattice()->edges())
+    longest = std::max(longest, (rest[edge.to] - rest[edge.from]).norm());
+  EXPECT_GT(longest, 1.2f * kCell);
+  EXPECT_LT(longest, 1.3f * kCell);
+}
+
+TEST(Plasticity, TheRestShapeBecomesAModel) {
+  const auto model = make_soft_body_model(make_box({1.2f, 0.2f, 0.2f}, 0.05f), metal(0.02f));
+  SoftBody<3> body(model);
+  bend(body, 1.0f, 0);
+  for (int n = 0; n < 200; ++n) body.flow(kStep);
+  ASSERT_TRUE(body.has_own_rest());
+  const TriangleMesh mesh = rest_mesh(body);
+  ASSERT_EQ(mesh.positions.size(), model->mesh().positions.size());
+  EXPECT_EQ(mesh.triangles.size(), model->mesh().triangles.size());
+  float low = 0, high = 0;
+  for (const Vector3f& position : mesh.positions)
+    low = std::min(low, position.y()), high = std::max(high, position.y());
+  EXPECT_GT(high - low, 0.28f) << "it is bent";
+  for (const Vector3f& normal : mesh.normals) ASSERT_NEAR(normal.norm(), 1, 1e-4f);
+  const auto dented = make_soft_body_model(mesh, metal(0.02f));
+  EXPECT_NEAR(dented->mass(), model->mass(), 0.25f * model->mass());
+  const SoftBody<3> begins(dented);
+  EXPECT_GT(begins.bounds().high.y() - begins.bounds().low.y(), 0.28f);
+  // An undeformed body's rest shape is its mesh.
+  const TriangleMesh same = rest_mesh(SoftBody<3>(model));
+  for (std::size_t i = 0; i < same.positions.size(); ++i)
+    ASSERT_LT((same.positions[i] - model->mesh().positions[i]).norm(), 1e-6f);
+}
+
+// In two dimensions a bar of one cell keeps what the same law says.
+TEST(Plasticity, InTwoDimensionsABentBarStaysBent) {
+  std::vector<Eigen::Vector2i> cells;
+  for (int x = 0; x < 24; ++x) cells.push_back({x, 0}), cells.push_back({x, 1});
+  constexpr float kYield = 0.02f, kStrain = 3 * kYield, kCurvature = kStrain / kCell;
+  const auto model = make_soft_body_model(lattice_from_cells(cells, kCell), metal(kYield));
+  SoftBody<2> body(model);
+  const auto place = [&](std::size_t i) {
+    const Eigen::Vector2f x = model->lattice().rest_position(i);
+    const Vector3f on_circle = bent({x.x(), x.y(), 0}, kCurvature, kCell);
+    return Eigen::Vector2f(on_circle.head<2>());
+  };
+  for (int n = 0; n < 400; ++n) {
+    for (std::size_t i = 0; i < model->particles(); ++i) body.set_particle(i, place(i), {0, 0});
+    body.flow(kStep);
+  }
+  ASSERT_TRUE(body.has_own_rest());
+  const auto rest = body.rest_positions();
+  const auto direction = [&](std::uint32_t cell) {
+    const auto& c = model->lattice().corners[cell];
+    const Eigen::Vector2f along = rest[c[1]] - rest[c[0]] + rest[c[3]] - rest[c[2]];
+    return std::atan2(along.y(), along.x());
+  };
+  const float kept = direction(static_cast<std::uint32_t>(model->lattice().cells.size() - 1)) - direction(0);
+  const float held = 23 * kCell * kCurvature;
+  // All particles are held, so that the sides cannot follow: what the sides would give stays elastic.
+  EXPECT_GT(kept, 0.3f * held);
+  EXPECT_LT(kept, held * (kStrain - kYield) / kStrain * 1.05f);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
