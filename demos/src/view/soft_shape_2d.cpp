@@ -79,7 +79,8 @@ void SoftShape2d::add_parts(render::Renderer& renderer) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = std::minmax(corners[k], corners[(k + 1) % 3]);
       const auto [first, is_new] = first_colours.try_emplace({a, b}, colour);
-      if (!is_new && first->second != colour) seams[std::minmax(first->second, colour)].push_back({a, b});
+      if (!is_new && part_colour(first->second) != part_colour(colour))
+        seams[std::minmax(first->second, colour)].push_back({a, b});
     }
   }
   for (const auto& [colour, list] : triangles)
