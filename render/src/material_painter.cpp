@@ -31,7 +31,7 @@ void main() {
   normal = normalize(normal_matrix * vertex_normal);
   texture_position = vertex_texture;
   tint = vertex_colour;
-  vec3 lifted = position + normal * (2.0 * shadow_texel.y);  // as in kSurfaceVertex
+  vec3 lifted = position + normal * shadow_texel.y;  // as in kSurfaceVertex
   shadow_position = 0.5 * (light_projection * vec4(lifted, 1.0)).xyz + 0.5;
   gl_Position = view_projection * world;
 }
@@ -75,7 +75,7 @@ vec3 mapped_normal(vec3 n) {
 
 vec3 environment(vec3 toward, float roughness) {
   vec3 matte = mix(ground.rgb, sky.rgb, 0.5 * toward.y + 0.5);
-  vec3 above = mix(background_bottom.rgb, background_top.rgb, max(toward.y, 0.0));
+  vec3 above = background(max(toward.y, 0.0));
   float horizon = clamp(0.5 + toward.y * (8.0 - 7.0 * roughness), 0.0, 1.0);
   return mix(mix(ground.rgb, above, horizon), matte, roughness);
 }

@@ -14,6 +14,7 @@
 #include "material_painter.h"
 #include "overlay_painter.h"
 #include "painter_2d.h"
+#include "post_process.h"
 #include "shaders.h"
 #include "softcell/base/assert.h"
 
@@ -29,6 +30,7 @@ constexpr GLuint kColourAttribute = 3;
 constexpr GLenum kPictureUnit = GL_TEXTURE1;  // the shadow map has unit 0
 constexpr GLint kPictureUnitNumber = 1;
 constexpr GLuint kFrameBinding = 0;
+constexpr float kOcclusionShare = 0.06f;  // of the shadow radius: how far a surface keeps ambient light off
 
 /// The uniform block `Frame` of shaders.h, std140. Eigen would align matrices to what the widest registers
 /// of the build want.
@@ -46,8 +48,13 @@ struct FrameBlock {
   Eigen::Vector4f background_bottom;
   Eigen::Vector4f shadow_texel;
   Eigen::Vector4f pixels_per_tangent;
+  Eigen::Vector4f picture_size;
+  Eigen::Vector4f view_plane;
+  Eigen::Vector4f inverse_depth;
+  Eigen::Vector4f occlusion;
+  Eigen::Vector4f upwards;
 };
-static_assert(sizeof(FrameBlock) == 3 * 64 + 9 * 16, "std140 has no padding here");
+static_assert(sizeof(FrameBlock) == 3 * 64 + 14 * 16, "std140 has no padding here");
 
 Eigen::Vector4f vec4(const Eigen::Vector3f& v, float w = 0) { return {v.x(), v.y(), v.z(), w}; }
 
@@ -74,10 +81,10 @@ struct Program {
   GLint radius;
 };
 
-/// What a picture is drawn in, and what its samples are resolved to.
+/// What a picture is drawn in, and what is shown: the finished picture under an overlay.
 struct PictureBuffers {
-  GlObject sampled_framebuffer, sampled_colour, sampled_depth;
-  GlObject resolved_framebuffer, resolved_colour;
+  std::unique_ptr<PostProcess> frame;
+  GlObject shown_framebuffer, shown_colour;
 };
 
 /// Triangles on the GPU.
@@ -177,7 +184,7 @@ struct Renderer::State {
   void set_attribute(MeshBuffers& buffers, std::optional<GlObject>& buffer, GLuint attribute,
                      std::span<const Value> values, const char* what) const;
   void cull_back_faces(bool cull) const;
-  void resolve(GLuint framebuffer) const;
+  void show(GLuint framebuffer) const;
   void draw_surface(const SkinnedDraw& item) const;
   void draw_surface(const StaticDraw& item) const;
   void draw_surface(const Program& program, const MeshBuffers& buffers, const Eigen::Matrix4f& pose,
@@ -189,8 +196,10 @@ struct Renderer::State {
   int width;
   int height;
   int shadow_map_size;
+  float shadow_reach;    ///< texels that a lit fragment looks around itself
   int largest_side = 0;  ///< of a picture or texture, in pixels
   int samples = 1;
+  int occlusion_pixels;
   std::string description;
   bool has_picture = false;     ///< of the last frame, before it is resolved
   bool has_picture_2d = false;  ///< likewise, of a frame in two dimensions
@@ -198,9 +207,12 @@ struct Renderer::State {
   struct Programs {
     /// @param sun  one of the two ways in which shaders.h has sunlight
     Programs(const GladGLContext& gl, const char* sun)
-        : surface(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, sun, kShaderLighting, kSurfaceFragment}),
+        : rigid(gl, {kShaderFrame, kSurfaceVertex},
+                {kShaderFrame, sun, kShaderLighting, kRigid, kSurfaceFragment}),
+          soft(gl, {kShaderFrame, kSurfaceVertex},
+               {kShaderFrame, sun, kShaderLighting, kSoft, kSurfaceFragment}),
           textured(gl, {kShaderFrame, kSurfaceVertex},
-                   {kShaderFrame, sun, kShaderLighting, kTexturedFragment}),
+                   {kShaderFrame, sun, kShaderLighting, kSoft, kTexturedFragment}),
           tiles(gl, {kShaderFrame, kSurfaceVertex}, {kShaderFrame, sun, kShaderLighting, kTilesFragment}),
           shadow(gl, {kShaderFrame, kShadowVertex}, {kShaderFrame, kShadowFragment}),
           particle(gl, {kShaderFrame, kParticleVertex},
@@ -209,7 +221,7 @@ struct Renderer::State {
           link(gl, {kShaderFrame, kLinkVertex}, {kShaderFrame, sun, kShaderLighting, kLinkFragment}),
           background(gl, {kShaderFrame, kBackgroundVertex},
                      {kShaderFrame, sun, kShaderLighting, kBackgroundFragment}) {}
-    Program surface, textured, tiles, shadow, particle, particle_shadow, link, background;
+    Program rigid, soft, textured, tiles, shadow, particle, particle_shadow, link, background;
   };
 
   // The framebuffer with its samples, the one they are resolved into, and the shadow map.
@@ -234,7 +246,10 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
     : context(gl_context),
       width(settings.width),
       height(settings.height),
-      shadow_map_size(settings.shadow_map_size) {
+      shadow_map_size(settings.shadow_map_size),
+      shadow_reach(settings.soft_shadows ? kSoftReach : kQuickReach),
+      occlusion_pixels(settings.occlusion_pixels) {
+  SC_ASSERT(occlusion_pixels >= 0, "ambient occlusion for {} pixels at a time", occlusion_pixels);
   context.make_current();
   const auto load = [](void* user, const char* name) {
     return static_cast<GlContext*>(user)->function(name);
@@ -249,7 +264,9 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
   };
   largest_side = std::min(limit(GL_MAX_RENDERBUFFER_SIZE), limit(GL_MAX_TEXTURE_SIZE));
   for (const int side : {width, height, shadow_map_size}) require_drawable(side);
-  samples = std::clamp(settings.samples, 1, std::max(limit(GL_MAX_SAMPLES), 1));
+  const int most_samples = std::min(
+      {limit(GL_MAX_SAMPLES), limit(GL_MAX_COLOR_TEXTURE_SAMPLES), limit(GL_MAX_DEPTH_TEXTURE_SAMPLES)});
+  samples = std::clamp(settings.samples, 1, std::max(most_samples, 1));
   description = context.backend_name() + ", " + reinterpret_cast<const char*>(gl.GetString(GL_RENDERER)) +
                 ", " + std::to_string(samples) + " samples";
 
@@ -273,7 +290,7 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
   gl.VertexAttribPointer(kPositionAttribute, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f), nullptr);
 
   gl.Enable(GL_PROGRAM_POINT_SIZE);
-  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a picture has no holes
 }
 
 void Renderer::State::require_drawable(int side) const {
@@ -284,38 +301,29 @@ void Renderer::State::require_drawable(int side) const {
 
 /// Where it throws, all stays as it was.
 void Renderer::State::make_picture_buffers(int new_width, int new_height) {
-  const auto refuse = [&](const char* what) {
-    throw std::runtime_error(description + ": no " + what + " of " + std::to_string(new_width) + " by " +
+  const auto refuse = [&](const std::string& what) {
+    throw std::runtime_error(description + ": " + what + " of " + std::to_string(new_width) + " by " +
                              std::to_string(new_height) + " pixels");
-  };
-  const auto storage = [&](const GlObject& buffer, int count, GLenum format) {
-    gl.BindRenderbuffer(GL_RENDERBUFFER, buffer.name());
-    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, new_width, new_height);
-  };
-  const auto require_complete = [&] {
-    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) refuse("framebuffer");
   };
   gl.GetError();  // of a size that was refused before, which a framebuffer's status had told first
   PictureBuffers made;
-  made.sampled_framebuffer = make_framebuffer(gl);
-  made.sampled_colour = make_renderbuffer(gl);
-  made.sampled_depth = make_renderbuffer(gl);
-  storage(made.sampled_colour, samples > 1 ? samples : 0, GL_RGBA8);
-  storage(made.sampled_depth, samples > 1 ? samples : 0, GL_DEPTH_COMPONENT24);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, made.sampled_framebuffer.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                             made.sampled_colour.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made.sampled_depth.name());
-  require_complete();
-
-  made.resolved_framebuffer = make_framebuffer(gl);
-  made.resolved_colour = make_renderbuffer(gl);
-  storage(made.resolved_colour, 0, GL_RGBA8);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, made.resolved_framebuffer.name());
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                             made.resolved_colour.name());
-  require_complete();
-  if (gl.GetError() != GL_NO_ERROR) refuse("memory for a picture");
+  try {
+    made.frame = std::make_unique<PostProcess>(gl, PostProcessSettings{.width = new_width,
+                                                                       .height = new_height,
+                                                                       .samples = samples,
+                                                                       .occlusion_pixels = occlusion_pixels,
+                                                                       .frame_binding = kFrameBinding});
+  } catch (const std::runtime_error& error) {
+    refuse(error.what());
+  }
+  made.shown_framebuffer = make_framebuffer(gl);
+  made.shown_colour = make_renderbuffer(gl);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, made.shown_colour.name());
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, new_width, new_height);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, made.shown_framebuffer.name());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, made.shown_colour.name());
+  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) refuse("no framebuffer");
+  if (gl.GetError() != GL_NO_ERROR) refuse("no memory");
 
   picture = Image(new_width, new_height);
   picture_buffers = std::move(made);
@@ -475,9 +483,17 @@ void Renderer::State::upload_frame(const FrameDescription& frame) {
   block.background_top = vec4(frame.background_top);
   block.background_bottom = vec4(frame.background_bottom);
   const float texels = static_cast<float>(shadow_map_size);
-  block.shadow_texel = Eigen::Vector4f(1 / texels, 2 * light.shadow_radius / texels, 0, 0);
+  block.shadow_texel = Eigen::Vector4f(1 / texels, shadow_reach * 2 * light.shadow_radius / texels, 0, 0);
   block.pixels_per_tangent = Eigen::Vector4f(static_cast<float>(height) / (2 * camera.tan_half_fov_y),
                                              texels / (2 * light.shadow_radius), 0, 0);
+  const auto w = static_cast<float>(width), h = static_cast<float>(height);
+  block.picture_size = Eigen::Vector4f(w, h, 1 / w, 1 / h);
+  block.view_plane = Eigen::Vector4f(camera.tan_half_fov_y * w / h, camera.tan_half_fov_y, 0, 0);
+  block.inverse_depth =
+      Eigen::Vector4f(1 / camera.near_plane, 1 / camera.near_plane - 1 / camera.far_plane, 0, 0);
+  block.occlusion = Eigen::Vector4f(kOcclusionShare * light.shadow_radius, light.occlusion,
+                                    PostProcess::max_reach(height), 0.99f * camera.far_plane);
+  block.upwards = vec4(camera.up.normalized());
   gl.BindBufferBase(GL_UNIFORM_BUFFER, kFrameBinding, frame_buffer.name());
   gl.BufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
 }
@@ -539,7 +555,7 @@ void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
     draw_shadow(mesh(item.mesh), translation(item.origin));
   }
   for (const StaticDraw& item : frame.statics) {
-    if (item.opacity < 1) continue;
+    if (item.opacity < 1 && !item.always_shadow) continue;
     cull_back_faces(!any_two_sided(item.parts));
     draw_shadow(mesh(item.mesh), item.pose);
   }
@@ -575,19 +591,19 @@ void Renderer::State::draw_surface(const SkinnedDraw& item) const {
     gl.BindTexture(GL_TEXTURE_2D, texture(*item.texture).name());
     gl.ActiveTexture(GL_TEXTURE0);
   }
-  draw_surface(item.texture ? programs->textured : programs->surface, mesh(item.mesh),
-               translation(item.origin), item.colour, item.opacity);
+  draw_surface(item.texture ? programs->textured : programs->soft, mesh(item.mesh), translation(item.origin),
+               item.colour, item.opacity);
 }
 
 void Renderer::State::draw_surface(const StaticDraw& item) const {
   if (!item.parts.empty()) return draw_parts(mesh(item.mesh), item.parts, item.pose, item.opacity, false);
   cull_back_faces(true);
-  const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->surface;
+  const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->rigid;
   draw_surface(program, mesh(item.mesh), item.pose, item.colour, item.opacity);
 }
 
 void Renderer::State::draw_opaque(const FrameDescription& frame) {
-  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_buffers.sampled_framebuffer.name());
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_buffers.frame->drawn());
   gl.Viewport(0, 0, width, height);
   gl.Clear(GL_DEPTH_BUFFER_BIT);  // the background covers what nothing else does
   for (const SkinnedDraw& item : frame.skinned) {
@@ -616,9 +632,9 @@ void Renderer::State::draw_lattice(const LatticeDraw& lattice) {
   gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 
-void Renderer::State::resolve(GLuint framebuffer) const {
+void Renderer::State::show(GLuint framebuffer) const {
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture_buffers.resolved_framebuffer.name());
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture_buffers.shown_framebuffer.name());
   gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
@@ -835,10 +851,11 @@ void Renderer::render(const FrameDescription& frame) {
     state.draw_background();
     state.draw_translucent(frame);
     gl.Disable(GL_SCISSOR_TEST);
+    state.picture_buffers.frame->run(part, frame.light.occlusion > 0);
     state.has_picture = true;
   }
 
-  state.resolve(state.picture_buffers.sampled_framebuffer.name());
+  state.show(state.picture_buffers.frame->picture());
 }
 
 Shape2dId Renderer::add_shape(std::span<const Triangle> triangles) {
@@ -862,13 +879,13 @@ void Renderer::render(const Frame2d& frame) {
                            [&](TextureId id) { return state.texture(id).name(); });
     state.has_picture_2d = true;
   }
-  state.resolve(state.painter_2d->framebuffer());
+  state.show(state.painter_2d->framebuffer());
 }
 
 const Image& Renderer::pixels() {
   State& state = *state_;
   state.context.make_current();
-  state.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
+  state.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
   state.gl.ReadPixels(0, 0, state.width, state.height, GL_RGBA, GL_UNSIGNED_BYTE, state.picture.rgba.data());
   // OpenGL counts rows from the bottom.
   const std::ptrdiff_t row_bytes = std::ptrdiff_t{4} * state.width;
@@ -883,7 +900,7 @@ void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh) {
   State& state = *state_;
   state.context.make_current();
   if (state.overlay == nullptr) state.overlay = std::make_unique<OverlayPainter>(state.gl);
-  state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
+  state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
   state.overlay->draw(font, mesh, state.width, state.height);
 }
 
@@ -892,7 +909,7 @@ void Renderer::present(int width, int height) {
   State& state = *state_;
   state.context.make_current();
   const GladGLContext& gl = state.gl;
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.resolved_framebuffer.name());
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   const bool same = width == state.width && height == state.height;
   gl.BlitFramebuffer(0, 0, state.width, state.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,

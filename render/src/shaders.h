@@ -18,23 +18,32 @@ layout(std140) uniform Frame {
   vec4 ground;
   vec4 background_top;
   vec4 background_bottom;
-  vec4 shadow_texel;       // x: one texel in shadow map coordinates, y: in metres
+  vec4 shadow_texel;       // x: one texel in shadow map coordinates, y: metres to compare off a surface
   vec4 pixels_per_tangent; // x: picture, y: pixels per metre in the shadow map
+  vec4 picture_size;       // pixels, and one over them
+  vec4 view_plane;         // xy: half the picture's width and height at a distance of 1
+  vec4 inverse_depth;      // x: one over the distance of the near plane, y: that less one over the far plane's
+  vec4 occlusion;          // x: radius in metres, y: strength, z: radius in pixels at most, w: metres beyond which there is none
+  vec4 upwards;            // unit length
 };
 )glsl";
 
-/// Share of the sun that arrives, one of the two for every lit fragment. Four taps, each an interpolation of
-/// 2 x 2 comparisons, spread to cover 3.5 x 3.5 texels; or one, which costs a quarter: without a GPU, that is
-/// half of what lighting a pixel costs.
+/// Share of the sun that arrives, one of the two for every lit fragment. Eight taps, each an interpolation of
+/// 2 x 2 comparisons, on a square and a rhombus around it, which together fall off evenly over 6 texels; or one. A
+/// surface is compared so far off itself, along its normal, that no tap sees it: kSoftReach and kQuickReach texels.
 inline constexpr char kSoftSunlight[] = R"glsl(
 uniform sampler2DShadow shadow_map;
 float sunlight(vec3 at) {
   at.z = min(at.z, 1.0);  // behind the map's depth the sun shines, as it does beside it
-  float d = 0.75 * shadow_texel.x;
-  return 0.25 * (texture(shadow_map, at + vec3(-d, -d, 0.0)) + texture(shadow_map, at + vec3(d, -d, 0.0)) +
-                 texture(shadow_map, at + vec3(-d, d, 0.0)) + texture(shadow_map, at + vec3(d, d, 0.0)));
+  float near = 0.9 * shadow_texel.x, far = 2.1 * shadow_texel.x;
+  float inner = texture(shadow_map, at + vec3(-near, -near, 0.0)) + texture(shadow_map, at + vec3(near, -near, 0.0)) +
+                texture(shadow_map, at + vec3(-near, near, 0.0)) + texture(shadow_map, at + vec3(near, near, 0.0));
+  float outer = texture(shadow_map, at + vec3(-far, 0.0, 0.0)) + texture(shadow_map, at + vec3(far, 0.0, 0.0)) +
+                texture(shadow_map, at + vec3(0.0, -far, 0.0)) + texture(shadow_map, at + vec3(0.0, far, 0.0));
+  return 0.16 * inner + 0.09 * outer;
 }
 )glsl";
+inline constexpr float kSoftReach = 3.1f, kQuickReach = 2;
 inline constexpr char kQuickSunlight[] = R"glsl(
 uniform sampler2DShadow shadow_map;
 float sunlight(vec3 at) { return texture(shadow_map, vec3(at.xy, min(at.z, 1.0))); }
@@ -56,7 +65,14 @@ vec3 tone(vec3 x) {
   return min(x, 0.65) + above / (1.0 + above / 0.35);
 }
 
-vec3 shade(vec3 position, vec3 normal, vec3 shadow_position, vec3 albedo) {
+// What is behind everything, seen `upward` of the horizon: the sine of the angle. Haze lies on the horizon.
+vec3 background(float upward) {
+  float away = 1.0 - abs(upward);
+  vec3 far = upward > 0.0 ? background_top.rgb : mix(background_bottom.rgb, background_top.rgb, 0.6);
+  return mix(far, background_bottom.rgb, away * away * away);
+}
+
+vec3 shade(vec3 position, vec3 normal, vec3 shadow_position, vec3 albedo, float softness) {
   vec3 toward_eye = normalize(eye.xyz - position);
   vec3 half_way = normalize(toward_eye + toward_light.xyz);
   float facing = dot(normal, toward_light.xyz);
@@ -76,7 +92,9 @@ vec3 shade(vec3 position, vec3 normal, vec3 shadow_position, vec3 albedo) {
 
   vec3 ambient = mix(ground.rgb, sky.rgb, 0.5 * normal.y + 0.5);
   vec3 light = albedo * (ambient + sun * light_colour.rgb);
-  light += (0.35 * sun * shine) * light_colour.rgb + (0.25 * grazing) * sky.rgb;
+  // Light that has entered a soft body leaves it about where the sun grazes it, in a deeper colour.
+  light += (softness * max(1.0 - abs(facing + 0.15), 0.0)) * albedo * albedo * light_colour.rgb;
+  light += ((0.3 * shine + softness * shine * shine * shine * shine) * sun) * light_colour.rgb + (0.25 * grazing) * sky.rgb;
   return encode(tone(light));
 }
 )glsl";
@@ -100,11 +118,15 @@ void main() {
   texture_position = vertex_texture;
   // Compared a little off the surface, along the normal: a surface must not shadow itself (acne), and an offset along
   // the light would part shadows from the feet that cast them.
-  vec3 lifted = position + normal * (2.0 * shadow_texel.y);
+  vec3 lifted = position + normal * shadow_texel.y;
   shadow_position = 0.5 * (light_projection * vec4(lifted, 1.0)).xyz + 0.5;
   gl_Position = view_projection * world;
 }
 )glsl";
+
+/// How much light goes through a surface, one of the two for kSurfaceFragment and kTexturedFragment.
+inline constexpr char kRigid[] = "const float softness = 0.0;\n";
+inline constexpr char kSoft[] = "const float softness = 0.22;\n";
 
 inline constexpr char kSurfaceFragment[] = R"glsl(
 in vec3 position;
@@ -114,7 +136,7 @@ uniform vec4 colour;
 out vec4 result;
 void main() {
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
-  result = vec4(shade(position, n, shadow_position, colour.rgb), colour.a);
+  result = vec4(shade(position, n, shadow_position, colour.rgb, softness), colour.a);
 }
 )glsl";
 
@@ -129,7 +151,7 @@ out vec4 result;
 void main() {
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
   vec3 albedo = colour.rgb * texture(picture, texture_position).rgb;
-  result = vec4(shade(position, n, shadow_position, albedo), colour.a);
+  result = vec4(shade(position, n, shadow_position, albedo, softness), colour.a);
 }
 )glsl";
 
@@ -159,7 +181,7 @@ void main() {
   vec2 footprint = max(fwidth(pattern_position), 1e-4);
   vec3 albedo = colour.rgb * (1.0 - 0.16 * checker(pattern_position, footprint)) * (1.0 - 0.35 * lines(pattern_position, footprint));
   vec3 n = normalize(gl_FrontFacing ? normal : -normal);
-  result = vec4(shade(position, n, shadow_position, albedo), colour.a);
+  result = vec4(shade(position, n, shadow_position, albedo, 0.0), colour.a);
 }
 )glsl";
 
@@ -202,7 +224,7 @@ void main() {
   float coverage = clamp((1.0 - distance) / max(fwidth(distance), 1e-4) + 0.5, 0.0, 1.0);
   if (coverage == 0.0) discard;  // a single sample a pixel has no coverage to take it from
   vec3 n = mat3(view_to_world) * vec3(at, sqrt(max(1.0 - squared, 0.0)));
-  result = vec4(shade(centre + radius * n, n, shadow_position, colour.rgb), coverage);
+  result = vec4(shade(centre + radius * n, n, shadow_position, colour.rgb, 0.0), coverage);
 }
 )glsl";
 
@@ -235,18 +257,19 @@ void main() { result = vec4(encode(tone(colour.rgb)), 1.0); }
 
 /// A triangle that covers the picture at the far plane.
 inline constexpr char kBackgroundVertex[] = R"glsl(
-out float height;
+out vec3 ray;  // x, y: across the line of sight, z: upwards
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  height = 0.5 * corner.y + 0.5;
+  vec2 across = corner * view_plane.xy;
+  ray = vec3(across, dot(mat3(view_to_world) * vec3(across, -1.0), upwards.xyz));
   gl_Position = vec4(corner, 1.0, 1.0);
 }
 )glsl";
 
 inline constexpr char kBackgroundFragment[] = R"glsl(
-in float height;
+in vec3 ray;
 out vec4 result;
-void main() { result = vec4(encode(mix(background_bottom.rgb, background_top.rgb, height)), 1.0); }
+void main() { result = vec4(encode(background(ray.z / sqrt(1.0 + dot(ray.xy, ray.xy)))), 1.0); }
 )glsl";
 
 }  // namespace softcell::render

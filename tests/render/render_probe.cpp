@@ -3,7 +3,7 @@
 // hand.
 //
 //     render_probe osmesa|egl [--width N] [--height N] [--detail N] [--frames N] [--shadow N] [--samples N]
-//     [--native] [--out FILE.png]
+//     [--occlusion PIXELS] [--quick] [--native] [--out FILE.png]
 
 #include <chrono>
 #include <cstdio>
@@ -35,6 +35,8 @@ Options parse(int argc, char** argv) {
     const std::string word = argv[i];
     const auto number = [&] { return i + 1 < argc ? std::atoi(argv[++i]) : 0; };
     if (word == "egl") options.backend = Backend::egl;
+    if (word == "--occlusion") options.renderer.occlusion_pixels = number();
+    if (word == "--quick") options.renderer.soft_shadows = false;
     if (word == "--native") options.pinned = false;
     if (word == "--width") options.renderer.width = number();
     if (word == "--height") options.renderer.height = number();

@@ -156,6 +156,7 @@ TEST_F(RendererTest, ShowsNewVerticesFromTheNextFrameOn) {
 TEST_F(RendererTest, DrawsOnlyWhereThePictureChanges) {
   SkinnedDraw item = add(ground_triangle());
   FrameDescription frame = view_from_above();
+  frame.light.occlusion = 0;                // it would reach over the edge of the part
   frame.changes = PixelRect{0, 0, 10, 10};  // there is no last frame: everything is drawn
   frame.skinned = std::span(&item, 1);
   const Image first = draw(frame);
@@ -412,12 +413,119 @@ TEST_F(RendererTest, DrawsTheSameFrameInTheSameBits) {
   EXPECT_EQ(other.pixels(), first);
 }
 
-TEST_F(RendererTest, PutsTheTopRowFirst) {
+TEST_F(RendererTest, PutsTheTopRowFirstAndHazeOnTheHorizon) {
   FrameDescription frame = view_from_above();
+  frame.camera = {.eye = {0, 1, 0}, .target = {0, 1, -1}, .tan_half_fov_y = 3};
   frame.background_top = srgb(0xFFFFFF);
   const Image& image = draw(frame);
   EXPECT_GT(image.pixel(0, 0)[0], 240);
-  EXPECT_LT(image.pixel(0, kSide - 1)[0], 30);
+  EXPECT_LT(image.pixel(kSide / 2, kSide / 2)[0], 60);
+  EXPECT_LT(image.pixel(0, kSide - 1)[0], image.pixel(0, 0)[0] - 20);
+  frame.camera.up = {1, 0, 0};  // the horizon stands upright
+  draw(frame);
+  EXPECT_GT(image.pixel(kSide / 2, 0)[0], 230);
+  EXPECT_LT(image.pixel(kSide / 2, kSide / 2)[0], 60);
+}
+
+/// Rises from the floor at 60 degrees, from x = -0.5 towards -x.
+Eigen::Matrix4f steep_slope() {
+  Eigen::Matrix4f pose = test::box_pose({-1.366f, -0.5f, 0}, {2, 2, 20});
+  pose.topLeftCorner<2, 2>() << 1.732f, -1, 1, 1.732f;
+  return pose;
+}
+
+TEST_F(RendererTest, NothingOccludesWhereNothingIsNear) {
+  // A floor alone, and a slope across it: along the crease, and nowhere else, it is darker.
+  std::array<StaticDraw, 2> items;
+  items[0].mesh = items[1].mesh = test::add_unit_box(renderer_);
+  items[0].pose = test::box_pose({0, -0.5f, 0}, {20, 1, 20});
+  items[1].pose = steep_slope();
+  FrameDescription frame = view_from_above();
+  frame.light.toward = {1, 1, 0};
+  frame.light.shadow_radius = 4;  // occlusion reaches 0.24 m
+  for (const std::size_t drawn : {std::size_t{1}, std::size_t{2}}) {
+    frame.statics = std::span(items).first(drawn);
+    frame.light.occlusion = 0;
+    const Image without = draw(frame);
+    frame.light.occlusion = 1;
+    const Image& with = draw(frame);
+    for (const float z : {-1.0f, 0.0f, 1.0f}) {
+      for (const float x : {0.0f, 0.5f, 1.0f, -1.2f})
+        EXPECT_NEAR(brightness(pixel_at(with, x, z)), brightness(pixel_at(without, x, z)), 3)
+            << x << ' ' << z;
+      const int bright = brightness(pixel_at(without, -0.46f, z)),
+                dark = brightness(pixel_at(with, -0.46f, z));
+      if (drawn == 1) {
+        EXPECT_NEAR(dark, bright, 3);
+      } else {
+        EXPECT_LT(dark, bright * 94 / 100) << z;
+        EXPECT_GT(dark, bright * 40 / 100) << z;
+      }
+    }
+  }
+}
+
+TEST_F(RendererTest, OcclusionIsSmoothAndStaysWhereItIsWhenTheCameraMoves) {
+  std::array<StaticDraw, 2> items;
+  items[0].mesh = items[1].mesh = test::add_unit_box(renderer_);
+  items[0].pose = test::box_pose({0, -0.5f, 0}, {20, 1, 20});
+  items[1].pose = steep_slope();
+  FrameDescription frame = view_from_above();
+  frame.light.toward = {1, 1, 0};
+  frame.light.shadow_radius = 4;
+  frame.statics = items;
+  int least = 1000, most = 0;
+  for (int shift = 0; shift < 4; ++shift) {
+    // By less than a pixel along the crease: what is seen is the same.
+    const Eigen::Vector3f moved(0, 0, 0.003f * static_cast<float>(shift));
+    frame.camera.eye = Eigen::Vector3f(0, 4, 0) + moved;
+    frame.camera.target = moved;
+    const Image& image = draw(frame);
+    for (int y = 20; y < kSide - 20; ++y) {
+      const int value = brightness(image.pixel(kSide / 2 - 23, y));  // x = -0.46
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+  }
+  EXPECT_LT(most - least, most / 20) << least << " to " << most;
+}
+
+TEST_F(RendererTest, SmoothsEdgesOfASingleSample) {
+  for (const int occlusion_pixels : {0, 4}) {
+    Renderer single(pinned_context(),
+                    {.width = kSide, .height = kSide, .samples = 1, .occlusion_pixels = occlusion_pixels});
+    const test::SkinnedMesh mesh = ground_triangle();
+    SkinnedDraw item;
+    item.mesh = single.add_mesh(mesh.indices);
+    single.update_mesh(item.mesh, mesh.bytes());
+    FrameDescription frame = view_from_above();
+    frame.skinned = std::span(&item, 1);
+    single.render(frame);
+    const Image& image = single.pixels();
+    const int inside = brightness(pixel_at(image, 0.2f, 0.2f));
+    EXPECT_GT(inside, 300);
+    int between = 0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const int value = brightness(image.pixel(i % kSide, i / kSide));
+      between += value > inside / 8 && value < inside * 7 / 8;
+    }
+    EXPECT_GT(between, 20) << "along the hypotenuse, occlusion " << occlusion_pixels;
+    EXPECT_LT(between, 6 * kSide) << "and nowhere else";
+  }
+}
+
+TEST_F(RendererTest, APictureHasNoHoles) {
+  StaticDraw wall;
+  wall.mesh = test::add_unit_box(renderer_);
+  wall.opacity = 0.3f;
+  FrameDescription frame = view_from_above();
+  frame.statics = std::span(&wall, 1);
+  Renderer single(pinned_context(), {.width = kSide, .height = kSide, .samples = 1});
+  test::add_unit_box(single);
+  single.render(frame);
+  for (const Image* const image : {&draw(frame), &single.pixels()}) {
+    for (int i = 0; i < kSide * kSide; ++i) ASSERT_EQ(image->pixel(i % kSide, i / kSide)[3], 255) << i;
+  }
 }
 
 TEST_F(RendererTest, RefusesWhatWouldReadPastItsBuffers) {

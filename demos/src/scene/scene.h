@@ -40,6 +40,7 @@ struct RigidBox {
   render::Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;
   render::Pattern pattern = render::Pattern::plain;
+  bool wall = false;  ///< one of the framework's: glass where it stands between the camera and the scene
 };
 
 /// A patch of a soft body is held to another one, to a box or to the world.

@@ -75,7 +75,7 @@ class Hash {
     add_unless(twist, 0.0f);
   }
   void add(const RigidBox& box) {
-    const auto& [size, mass, position, rotation, colour, opacity, pattern] = box;
+    const auto& [size, mass, position, rotation, colour, opacity, pattern, wall] = box;
     add(size, mass, position);
     add_unless(Eigen::Vector4f(rotation.coeffs()), Eigen::Vector4f(0, 0, 0, 1));
   }

@@ -46,11 +46,13 @@ void read_framework(const Value& value, Scene& scene) {
   for (const float side : {-1.0f, 1.0f}) {
     scene.boxes.push_back({.size = {thickness, height, outer},
                            .position = {side * middle, height / 2, 0},
-                           .colour = wall_colour});
+                           .colour = wall_colour,
+                           .wall = true});
     scene.boxes.push_back({.size = {2 * half_width, height, thickness},
                            .position = {0, height / 2, side * middle},
                            .colour = wall_colour,
-                           .opacity = side > 0 ? front_opacity : 1.0f});
+                           .opacity = side > 0 ? front_opacity : 1.0f,
+                           .wall = true});
   }
 }
 

@@ -1,5 +1,6 @@
 #include "scene_view.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "softcell/base/assert.h"
@@ -9,6 +10,7 @@ namespace softcell::demos {
 namespace {
 
 constexpr float kVeil = 0.3f;     // opacity of what marks must be seen through
+constexpr float kGlass = 0.15f;   // opacity of a wall that hides the scene
 constexpr float kBoxFaces = 100;  // metres: larger than any box, so that each face is one square
 
 std::vector<std::array<std::uint32_t, 2>> links_of(const ppu::Lattice<3>& lattice) {
@@ -42,6 +44,18 @@ std::vector<render::CellVertex> cell_vertices(const ppu::Embedding& embedding) {
   return vertices;
 }
 
+/// Of a wall that the eye looks through from outside, so that it does not hide what is behind it.
+float wall_opacity(const RigidBox& wall, const Eigen::Matrix4f& pose, const Eigen::Vector3f& eye) {
+  // Outside is away from the middle of the framework, across the wall's thickness.
+  const int across = wall.size.x() < wall.size.z() ? 0 : 2;
+  const Eigen::Vector3f centre = pose.block<3, 1>(0, 3);
+  Eigen::Vector3f outwards = pose.block<3, 1>(0, across);
+  if (wall.position[across] < 0) outwards = -outwards;
+  const float outside = (eye - centre).dot(outwards) / wall.size[across];  // in thicknesses
+  const float clear = std::clamp(outside, 0.0f, 1.0f);
+  return std::min(wall.opacity, 1 + clear * (kGlass - 1));
+}
+
 }  // namespace
 
 SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer,
@@ -53,13 +67,16 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
       looks_(renderer),
       hands_(renderer) {
   const auto add_static = [&](const ppu::TriangleMesh& mesh) {
+    Moved3d::Box& box = static_boxes_.emplace_back();
+    for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
     return renderer_.add_static_mesh(mesh.positions, mesh.normals, mesh.triangles);
   };
   for (const RigidBox& box : scene_.boxes) {
     statics_.push_back({.mesh = add_static(ppu::make_box(box.size, kBoxFaces)),
                         .colour = box.colour,
                         .opacity = box.opacity,
-                        .pattern = box.pattern});
+                        .pattern = box.pattern,
+                        .always_shadow = box.opacity >= 1});
   }
   for (const Obstacle& obstacle : scene_.obstacles) {
     render::StaticDraw draw{.mesh = add_static(obstacle.mesh), .colour = obstacle.colour};
@@ -158,8 +175,22 @@ void SceneView::draw_contacts(const Shown3d& shown) {
   frame_.lattices = marks_;
 }
 
+std::optional<render::PixelRect> SceneView::changes(const Shown3d& shown) {
+  soft_boxes_.clear();
+  for (const Shown3d::Body& body : shown.bodies) {
+    Moved3d::Box& box = soft_boxes_.emplace_back();
+    for (const Eigen::Vector4f& particle : body.particles) box.extend(particle.head<3>());
+  }
+  return moved_.since_last(frame_, {.soft_bodies = soft_boxes_,
+                                    .static_meshes = static_boxes_,
+                                    .picture_width = renderer_.width(),
+                                    .picture_height = renderer_.height()});
+}
+
 void SceneView::draw_hands(const Shown3d& shown) {
   if (shown.hands.empty()) return;
+  frame_.changes.reset();
+  moved_.forget();
   with_hands_ = statics_;
   marks_with_hands_.assign(frame_.lattices.begin(), frame_.lattices.end());
   hands_.append(shown.hands, frame_.camera, with_hands_, marks_with_hands_);
@@ -194,7 +225,11 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
 void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camera) {
   SC_ASSERT(shown.box_poses.size() <= statics_.size(), "{} boxes among {} rigid bodies",
             shown.box_poses.size(), statics_.size());
-  for (std::size_t i = 0; i < shown.box_poses.size(); ++i) statics_[i].pose = shown.box_poses[i];
+  for (std::size_t i = 0; i < shown.box_poses.size(); ++i) {
+    statics_[i].pose = shown.box_poses[i];
+    if (scene_.boxes[i].wall)
+      statics_[i].opacity = wall_opacity(scene_.boxes[i], shown.box_poses[i], camera.eye);
+  }
 
   frame_ = {};
   frame_.camera = camera;
@@ -214,6 +249,11 @@ void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camer
     case View::kContacts:
       draw_contacts(shown);
       break;
+  }
+  if (static_cast<View>(view) == View::kMesh) {
+    frame_.changes = changes(shown);
+  } else {
+    moved_.forget();
   }
   draw_hands(shown);
   renderer_.render(frame_);

@@ -4,11 +4,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "hand_drawing.h"
 #include "mesh_looks.h"
+#include "moved_3d.h"
 #include "rotation_axes.h"
 #include "scene/look.h"
 #include "scene/scene.h"
@@ -43,6 +45,7 @@ class SceneView {
   void draw_rotations(const Shown3d& shown);
   void draw_contacts(const Shown3d& shown);
   void draw_hands(const Shown3d& shown);
+  std::optional<render::PixelRect> changes(const Shown3d& shown);
 
   const Scene& scene_;
   const Simulation3d& simulation_;
@@ -56,6 +59,8 @@ class SceneView {
       parts_;  // of what is drawn with materials of its own; stays as it is
   std::vector<render::SkinnedDraw> skinned_;
   std::vector<render::StaticDraw> statics_;  // boxes, then obstacles
+  Moved3d moved_;
+  std::vector<Moved3d::Box> static_boxes_, soft_boxes_;  // around statics_ in their own frames, and skinned_
   HandDrawing hands_;
   std::vector<render::StaticDraw> with_hands_;  // statics_, and hands
   struct LatticeBuffers {

@@ -12,6 +12,8 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector2i;
 
+constexpr float kSeam = 0.6f;  // of the light of two colours that meet
+
 float margin_of(const SoftBody2dPlacement& body) {
   return std::min(body.contact_radius, ppu::kMaxSkinMargin);
 }
@@ -67,11 +69,30 @@ void SoftShape2d::add_parts(render::Renderer& renderer) {
     return std::size_t{0};
   };
   std::map<std::size_t, std::vector<render::Triangle>> triangles;
-  for (std::size_t t = 0; t < skin_.triangles.size(); ++t)
-    triangles[colour_of(skin_.cells[t])].push_back(skin_.triangles[t]);
+  using Edge = std::array<std::uint32_t, 2>;
+  std::map<Edge, std::size_t> first_colours;  // of the first triangle at each edge
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<Edge>> seams;
+  for (std::size_t t = 0; t < skin_.triangles.size(); ++t) {
+    const std::size_t colour = colour_of(skin_.cells[t]);
+    const auto& corners = skin_.triangles[t];
+    triangles[colour].push_back(corners);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(corners[k], corners[(k + 1) % 3]);
+      const auto [first, is_new] = first_colours.try_emplace({a, b}, colour);
+      if (!is_new && part_colour(first->second) != part_colour(colour))
+        seams[std::minmax(first->second, colour)].push_back({a, b});
+    }
+  }
   for (const auto& [colour, list] : triangles)
-    parts_.push_back({.shape = renderer.add_shape(list),
-                      .colour = colour == 0 ? body_.colour : body_.coloured_cells[colour - 1].colour});
+    parts_.push_back({.shape = renderer.add_shape(list), .colour = part_colour(colour)});
+  for (auto& [colours, edges] : seams)
+    seams_.push_back({.edges = std::move(edges),
+                      .colour = kSeam * (part_colour(colours.first) + part_colour(colours.second)) / 2});
+}
+
+/// @param part  0: the body's own colour, or 1 and the number of its coloured cells
+render::Colour SoftShape2d::part_colour(std::size_t part) const {
+  return part == 0 ? body_.colour : body_.coloured_cells[part - 1].colour;
 }
 
 void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers) {
@@ -171,6 +192,11 @@ void SoftShape2d::draw(Drawing2d& drawing, float line_width, float opacity) cons
                               .colour = part.colour,
                               .opacity = opacity,
                               .texture = texture_});
+  if (opacity >= 1) {
+    for (const Seam& seam : seams_)
+      drawing.links.push_back(
+          {.points = positions_, .links = seam.edges, .width = 0.7f * line_width, .colour = seam.colour});
+  }
   for (const Outline& outline : outlines_)
     drawing.lines.push_back({.points = outline.points,
                              .normals = outline.normals,

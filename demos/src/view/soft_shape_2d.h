@@ -73,6 +73,11 @@ class SoftShape2d {
     render::Shape2dId shape;
     render::Colour colour;
   };
+  /// Where two colours meet. Its line has smooth edges, which triangles have not.
+  struct Seam {
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< indices of vertices
+    render::Colour colour;
+  };
   struct Outline {
     std::vector<std::uint32_t> vertices;
     std::vector<Eigen::Vector2f> points, normals;
@@ -95,6 +100,7 @@ class SoftShape2d {
   };
 
   void add_parts(render::Renderer& renderer);
+  render::Colour part_colour(std::size_t part) const;
   void add_picture(render::Renderer& renderer, Stickers& stickers);
   void add_face(const Face2d& face);
 
@@ -102,6 +108,7 @@ class SoftShape2d {
   const ppu::SoftBodyModel<2>& model_;
   ppu::Skin2d skin_;
   std::vector<Part> parts_;
+  std::vector<Seam> seams_;
   std::optional<render::TextureId> texture_;
   std::vector<Outline> outlines_;
   std::vector<Spots> spots_;

@@ -81,6 +81,7 @@ void DrawingThread::run(std::promise<void> ready) {
     std::optional<render::Renderer> renderer(std::in_place, context, settings);
     if (draws_in_software(*renderer)) {
       settings.samples = 1;
+      settings.occlusion_pixels = 4;
       settings.shadow_map_size /= 2;
       settings.soft_shadows = false;
       renderer.emplace(context, settings);

@@ -58,8 +58,9 @@ struct StaticDraw {
   StaticMeshId mesh = {};
   Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();  ///< affine, determinant above 0
   Colour colour{0.8f, 0.8f, 0.8f};
-  float opacity = 1;  ///< 0..1; below 1 front sides are blended over what is behind them, without shadow
+  float opacity = 1;  ///< 0..1; below 1 front sides are blended over what is behind them
   Pattern pattern = Pattern::plain;
+  bool always_shadow = false;            ///< it casts a shadow with an opacity below 1, too
   std::span<const PartDraw> parts = {};  ///< as SkinnedDraw has them, in place of `colour` and `pattern`
 };
 
@@ -81,6 +82,8 @@ struct Light {
   Colour ground{0.17f, 0.15f, 0.13f};  ///< ambient light from below
   Eigen::Vector3f shadow_centre{0, 0, 0};
   float shadow_radius = 10;  ///< above 0
+  /// 0 or above: how much of the light surfaces within 6 % of the shadow radius keep off each other. 0: none.
+  float occlusion = 1;
 };
 
 /// Pixels, counted from the upper left corner of the picture; `right` and `bottom` are the first outside.
@@ -95,8 +98,8 @@ struct FrameDescription {
   std::span<const SkinnedDraw> skinned = {};
   std::span<const StaticDraw> statics = {};
   std::span<const LatticeDraw> lattices = {};
-  Colour background_top = srgb(0x5B7FA6);
-  Colour background_bottom = srgb(0xDCE6EE);
+  Colour background_top = srgb(0x5B7FA6);     ///< of the sky far above the horizon
+  Colour background_bottom = srgb(0xDCE6EE);  ///< of the haze on the horizon; `camera.up` is upwards
   /// The caller states that outside of this rectangle the picture, shadows included, is the same as in the
   /// renderer's last frame, so that only the rectangle must be drawn. Pixels at its edge may be drawn or not.
   /// None: everything may differ.

@@ -39,11 +39,12 @@ struct RendererSettings {
   int height = 540;
   int samples = 4;             ///< of multisampling, limited to what the context can do; 1 is none
   int shadow_map_size = 1536;  ///< texels a side
+  int occlusion_pixels = 2;    ///< a side, for which ambient occlusion is computed together; 0: not at all
   bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice the time
 };
 
-/// One sun with soft-edged shadows, light from sky and ground, tone mapping and sRGB encoding, four samples a
-/// pixel. Draws into its own framebuffer and has no global state. Use it on the context's thread; the context
+/// One sun with soft-edged shadows, light from sky and ground that surfaces nearby keep off, tone mapping and sRGB
+/// encoding, four samples a pixel; with one sample, edges are smoothed in the finished picture. Draws into its own framebuffer and has no global state. Use it on the context's thread; the context
 /// must outlive it. After the first frames, render() and pixels() allocate no memory themselves (the GL
 /// library may).
 class Renderer {
