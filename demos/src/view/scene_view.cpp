@@ -51,7 +51,8 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
       renderer_(renderer),
       view_(view),
       looks_(renderer),
-      hands_(renderer) {
+      hands_(renderer),
+      ropes_(renderer) {
   const auto add_static = [&](const ppu::TriangleMesh& mesh) {
     return renderer_.add_static_mesh(mesh.positions, mesh.normals, mesh.triangles);
   };
@@ -70,6 +71,7 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
     }
     statics_.push_back(draw);
   }
+  rigid_parts_ = add_parts(scene_.rigid_bodies, renderer_, statics_);
 
   SC_ASSERT(simulation_.soft_bodies() == scene_.soft_bodies.size(), "a simulation of {} bodies of {}",
             simulation_.soft_bodies(), scene_.soft_bodies.size());
@@ -158,13 +160,16 @@ void SceneView::draw_contacts(const Shown3d& shown) {
   frame_.lattices = marks_;
 }
 
-void SceneView::draw_hands(const Shown3d& shown) {
-  if (shown.hands.empty()) return;
-  with_hands_ = statics_;
-  marks_with_hands_.assign(frame_.lattices.begin(), frame_.lattices.end());
-  hands_.append(shown.hands, frame_.camera, with_hands_, marks_with_hands_);
-  frame_.statics = with_hands_;
-  frame_.lattices = marks_with_hands_;
+void SceneView::draw_ropes_and_hands(const Shown3d& shown) {
+  if (shown.hands.empty() && shown.ropes.empty()) return;
+  with_more_ = statics_;
+  ropes_.append(shown.ropes, -shown.tilt.transpose().col(1), with_more_);
+  if (!shown.hands.empty()) {
+    marks_with_hands_.assign(frame_.lattices.begin(), frame_.lattices.end());
+    hands_.append(shown.hands, frame_.camera, with_more_, marks_with_hands_);
+    frame_.lattices = marks_with_hands_;
+  }
+  frame_.statics = with_more_;
 }
 
 const render::Image& SceneView::draw() { return draw(0); }
@@ -192,9 +197,12 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
 }
 
 void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camera) {
-  SC_ASSERT(shown.box_poses.size() <= statics_.size(), "{} boxes among {} rigid bodies",
-            shown.box_poses.size(), statics_.size());
-  for (std::size_t i = 0; i < shown.box_poses.size(); ++i) statics_[i].pose = shown.box_poses[i];
+  const std::size_t boxes = scene_.boxes.size();
+  SC_ASSERT(shown.box_poses.size() == boxes + scene_.rigid_bodies.size(),
+            "{} poses of {} boxes and {} bodies", shown.box_poses.size(), boxes, scene_.rigid_bodies.size());
+  for (std::size_t i = 0; i < boxes; ++i) statics_[i].pose = shown.box_poses[i];
+  for (const DrawnPart& part : rigid_parts_)
+    statics_[part.draw].pose = shown.box_poses[boxes + part.body] * part.place;
 
   frame_ = {};
   frame_.camera = camera;
@@ -215,7 +223,7 @@ void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camer
       draw_contacts(shown);
       break;
   }
-  draw_hands(shown);
+  draw_ropes_and_hands(shown);
   renderer_.render(frame_);
 }
 

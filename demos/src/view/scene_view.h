@@ -9,6 +9,8 @@
 
 #include "hand_drawing.h"
 #include "mesh_looks.h"
+#include "rigid_drawing.h"
+#include "rope_drawing.h"
 #include "rotation_axes.h"
 #include "scene/look.h"
 #include "scene/scene.h"
@@ -42,7 +44,7 @@ class SceneView {
   void draw_lattice(const Shown3d& shown);
   void draw_rotations(const Shown3d& shown);
   void draw_contacts(const Shown3d& shown);
-  void draw_hands(const Shown3d& shown);
+  void draw_ropes_and_hands(const Shown3d& shown);
 
   const Scene& scene_;
   const Simulation3d& simulation_;
@@ -55,9 +57,11 @@ class SceneView {
   std::vector<std::vector<render::PartDraw>>
       parts_;  // of what is drawn with materials of its own; stays as it is
   std::vector<render::SkinnedDraw> skinned_;
-  std::vector<render::StaticDraw> statics_;  // boxes, then obstacles
+  std::vector<render::StaticDraw> statics_;  // boxes, obstacles, parts of rigid bodies
+  std::vector<DrawnPart> rigid_parts_;
   HandDrawing hands_;
-  std::vector<render::StaticDraw> with_hands_;  // statics_, and hands
+  RopeDrawing ropes_;
+  std::vector<render::StaticDraw> with_more_;  // statics_, ropes and hands
   struct LatticeBuffers {
     std::vector<Eigen::Vector3f> particles;
     std::vector<std::array<std::uint32_t, 2>> links;

@@ -1,0 +1,23 @@
+#pragma once
+// The shapes of rigid bodies as the renderer draws them.
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "scene/rigid_body.h"
+#include "softcell/render/renderer.h"
+
+namespace softcell::demos {
+
+/// A part of a rigid body among what is drawn.
+struct DrawnPart {
+  std::size_t body = 0, draw = 0;                       ///< their numbers
+  Eigen::Matrix4f place = Eigen::Matrix4f::Identity();  ///< from the part's frame to the body's
+};
+
+/// Appends the parts of all bodies to what is drawn.
+std::vector<DrawnPart> add_parts(std::span<const RigidBody> bodies, render::Renderer& renderer,
+                                 std::vector<render::StaticDraw>& statics);
+
+}  // namespace softcell::demos
