@@ -30,7 +30,7 @@ return {
   world = { frames = 420, substeps = 4 },
   framework = { half_width = 2.6, height = 0.2, thickness = 0.15, front_opacity = 0.2 },
   light = { shadow_radius = 5 },
-  camera = { eye = { 1.6, 2.6, 5.2 }, target = { 0, 1.1, 0 }, near = 0.5, far = 40 },
+  camera = { eye = { 1.5, 2.5, 4.8 }, target = { 0, 0.95, 0 }, near = 0.5, far = 40 },
   materials = {
     cloth = { cell_size = 0.14, half_width = 1, density = 120, alpha = 0.9, damping_time = 3, friction = 1 },
     jelly = { cell_size = 0.1, half_width = 2, density = 120, frequency = 16, damping_time = 0.8, friction = 1 },

@@ -48,7 +48,7 @@ return {
   world = { frames = 360, substeps = 4, friction = 1 },
   framework = { half_width = 3.7, height = 0.5, thickness = 0.2, front_opacity = 0.2 },
   light = { shadow_radius = 6 },
-  camera = { eye = { 1.2, 2.2, 7.2 }, target = { 0.1, 0.4, 0 }, tan_half_fov_y = 0.34, near = 0.5, far = 40 },
+  camera = { eye = { 1.0, 2.0, 6.6 }, target = { 0.05, 0.4, 0 }, tan_half_fov_y = 0.31, near = 0.5, far = 40 },
   materials = { rubber = rubber },
   rigid_body = bodies, joint = joints, soft_body = tyres, attach = welds,
 }
