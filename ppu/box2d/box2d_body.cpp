@@ -18,6 +18,7 @@ Box2dBody::Box2dBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> mod
                      std::int16_t group)
     : world_(world), soft_(std::move(model), position), group_(group) {
   SC_ASSERT(group < 0, "the particles of a body have group {}, and would touch each other", group);
+  of_number_.resize(soft_.model().particles());
   for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
 }
 
@@ -46,6 +47,7 @@ void Box2dBody::add_particle(std::uint32_t number) {
   const b2MassData mass{.mass = soft_.model().masses()[number], .center = {0, 0}, .I = 0};
   particle->SetMassData(&mass);
   particles_.push_back(particle);
+  of_number_[number] = particle;
 }
 
 /// Box2D has woken a particle because something that moves touches it, or what it touched is gone.
@@ -72,6 +74,14 @@ void Box2dBody::begin_step() {
   } else if (!soft_.asleep()) {
     gather();
   }
+}
+
+void Box2dBody::move_particle(std::size_t particle, const Vector2f& way) {
+  SC_ASSERT(particle < of_number_.size() && way.allFinite(), "particle {} of {} is moved by ({}, {}) m",
+            particle, of_number_.size(), way.x(), way.y());
+  const Vector2f position = soft_.position(particle) + way;
+  soft_.set_particle(particle, position, soft_.velocities()[particle]);
+  if (b2Body* const outer = of_number_[particle]) outer->SetTransform(to_box2d(position), 0);
 }
 
 void Box2dBody::hand_over(float step) {

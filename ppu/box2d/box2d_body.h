@@ -37,6 +37,8 @@ class Box2dBody {
 
   /// Before the solver: what the body's user may have done to it, or to its particles in Box2D.
   void begin_step();
+  /// Moves a particle without a velocity. @param particle  its number in the body  @param way  metres
+  void move_particle(std::size_t particle, const Eigen::Vector2f& way);
   /// Behind the solver: Box2D integrates with the new velocities.
   void hand_over(float step);
   /// After Box2D's step: outer particles are taken over, inner ones follow.
@@ -59,6 +61,7 @@ class Box2dBody {
   SoftBody<2> soft_;
   std::int16_t group_;
   std::vector<b2Body*> particles_;
+  std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner one
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
   float still_for_ = 0;
   b2Vec2 gravity_asleep_{0, 0};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ppu/bodies/step_ahead.h"
+#include "ppu/box2d/box2d_attachments.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/rest.h"
 #include "softcell/base/assert.h"
@@ -23,6 +24,7 @@ struct Box2dSoftBodies::Impl {
   Impl(b2World& w, Solver&& solver)
       : world(w),
         rest(w, [this](const b2Body& body) { return soft_body_of(body); }),
+        attachments(w, [this](const b2Body& body) { return soft_body_of(body); }),
         solve(std::forward<Solver>(solver)) {}
 
   template <typename Work>
@@ -45,6 +47,7 @@ struct Box2dSoftBodies::Impl {
       }
     }
     waited += solve.finish(step);
+    attachments.solve(bodies, step);
     for (const auto& body : bodies) body->hand_over(step);
   }
 
@@ -54,7 +57,7 @@ struct Box2dSoftBodies::Impl {
     for (const auto& body : bodies) body->end_step(step);
     if (!sleep) return;
     for (const auto& body : bodies)
-      if (!body->soft().asleep()) body->count_stillness(step, sleep->speed);
+      if (!body->soft().asleep() && !attachments.holds(*body)) body->count_stillness(step, sleep->speed);
     for (const auto& body : bodies)
       if (!body->soft().asleep()) rest.settle(*body, *sleep);
   }
@@ -63,6 +66,15 @@ struct Box2dSoftBodies::Impl {
   Box2dBody* soft_body_of(const b2Body& body) const {
     const auto found = particles.find(&body);
     return found == particles.end() ? nullptr : found->second.body;
+  }
+
+  /// @throws std::invalid_argument
+  Box2dBody& find(const SoftBody<2>& body) {
+    const auto found =
+        std::ranges::find_if(bodies, [&](const auto& coupled) { return &coupled->soft() == &body; });
+    if (found == bodies.end())
+      throw std::invalid_argument("the soft body to be attached is not in this world");
+    return **found;
   }
 
   /// The negative group nearest to 0 that no body has. @throws std::runtime_error  32,768 bodies are too
@@ -88,6 +100,7 @@ struct Box2dSoftBodies::Impl {
   std::vector<std::unique_ptr<Box2dBody>> bodies;
   std::unordered_map<const b2Body*, OneParticle> particles;
   Rest rest;
+  Box2dAttachments attachments;
   std::optional<SleepSettings> sleep;
   std::chrono::nanoseconds spent{0}, waited{0};
   StepAhead<2> solve;  // of `bodies`
@@ -123,8 +136,35 @@ void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   SC_ASSERT(!impl_->world.IsLocked(), "remove() of one of {} bodies within a step of Box2D",
             impl_->bodies.size());
   impl_->solve.remove(body);
+  impl_->attachments.forget(**found);
   for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
   impl_->bodies.erase(found);
+}
+
+AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch,
+                                     const AttachmentSettings<2>& settings) {
+  return impl_->attachments.add(impl_->find(body), patch, nullptr, settings);
+}
+AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch, b2Body& rigid,
+                                     const AttachmentSettings<2>& settings) {
+  return impl_->attachments.add(impl_->find(body), patch, &rigid, settings);
+}
+AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch, const SoftBody<2>& other,
+                                     const Patch<2>& other_patch, const AttachmentSettings<2>& settings) {
+  return impl_->attachments.add(impl_->find(body), patch, impl_->find(other), other_patch, settings);
+}
+void Box2dSoftBodies::detach(AttachmentId id) { impl_->attachments.remove(id); }
+void Box2dSoftBodies::move_attachment(AttachmentId id, const Vector2f& position, float angle, float seconds) {
+  impl_->attachments.move(id, position, angle, seconds);
+}
+std::optional<AttachmentState<2>> Box2dSoftBodies::attachment(AttachmentId id) const {
+  return impl_->attachments.state(id);
+}
+std::optional<AttachmentEnds<2>> Box2dSoftBodies::attachment_ends(AttachmentId id) const {
+  return impl_->attachments.ends(id);
+}
+std::vector<EndedAttachment> Box2dSoftBodies::take_ended_attachments() {
+  return impl_->attachments.take_ended();
 }
 
 void Box2dSoftBodies::step(float step, int velocity_iterations, int position_iterations) {

@@ -242,8 +242,13 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
   switch (shape.getShapeType()) {
     case COMPOUND_SHAPE_PROXYTYPE: {
       const auto& compound = static_cast<const btCompoundShape&>(shape);
-      for (int i = 0; i < compound.getNumChildShapes(); ++i)
-        add_shape(*compound.getChildShape(i), pose * compound.getChildTransform(i), rigid, box, indices);
+      for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+        const btTransform place = pose * compound.getChildTransform(i);
+        btVector3 low, high;
+        compound.getChildShape(i)->getAabb(place, low, high);
+        if (overlap({to_eigen(low), to_eigen(high)}, box))
+          add_shape(*compound.getChildShape(i), place, rigid, box, indices);
+      }
       return;
     }
     case STATIC_PLANE_PROXYTYPE: {

@@ -204,6 +204,9 @@ void BulletSoftBodies::move_attachment(AttachmentId id, const Eigen::Vector3f& p
 std::optional<AttachmentState<3>> BulletSoftBodies::attachment(AttachmentId id) const {
   return impl_->surfaces ? impl_->surfaces->attachments().state(id) : std::nullopt;
 }
+std::optional<AttachmentEnds<3>> BulletSoftBodies::attachment_ends(AttachmentId id) const {
+  return impl_->surfaces ? impl_->surfaces->attachments().ends(id) : std::nullopt;
+}
 std::vector<EndedAttachment> BulletSoftBodies::take_ended_attachments() {
   return impl_->surfaces ? impl_->surfaces->attachments().take_ended() : std::vector<EndedAttachment>();
 }

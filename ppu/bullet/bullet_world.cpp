@@ -17,10 +17,33 @@ namespace softcell::ppu {
 namespace {
 
 struct RigidBody {
+  std::vector<std::unique_ptr<btCollisionShape>> parts;  // of a compound
   std::unique_ptr<btCollisionShape> shape;
   std::unique_ptr<btRigidBody> body;
   btTransform start;
+  // From the frame of its caller's shapes to Bullet's, which has the centre of mass in its origin and the principal axes.
+  btTransform inner = btTransform::getIdentity();
+  bool is_moved = false;  // by move_to()
+  btTransform end;        // of such a one: where it is at the next substep's end
 };
+
+struct Motor {
+  btHingeConstraint* hinge = nullptr;
+  float torque = 0;  // N m
+};
+
+/// A transform is exact where nothing is turned.
+btTransform transform_of(const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation) {
+  btTransform transform(btQuaternion(rotation.x(), rotation.y(), rotation.z(), rotation.w()),
+                        to_bullet(position));
+  if (rotation.coeffs() == Eigen::Quaternionf::Identity().coeffs()) transform.getBasis().setIdentity();
+  return transform;
+}
+
+void require_rotation(const Eigen::Quaternionf& rotation) {
+  if (!(std::abs(rotation.norm() - 1) < 1e-3f))
+    throw std::invalid_argument("a rigid body needs a rotation of unit length");
+}
 
 double milliseconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double, std::milli>(time).count();
@@ -41,13 +64,16 @@ struct BulletWorld::Impl {
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
   std::vector<RigidBody> bodies;
+  std::vector<std::unique_ptr<btHingeConstraint>> hinges;
+  std::vector<Motor> motors;
 
   ~Impl() {
+    for (const auto& hinge : hinges) world.removeConstraint(hinge.get());
     for (RigidBody& rigid : bodies) world.removeRigidBody(rigid.body.get());
   }
 
   std::size_t add(std::unique_ptr<btCollisionShape> shape, float mass, const btTransform& start,
-                  float friction, float restitution) {
+                  float friction, float restitution, bool is_moved = false) {
     SC_ASSERT(shape != nullptr && mass >= 0 && friction >= 0 && restitution >= 0,
               "rigid body {} has a mass of {} kg, friction {} and restitution {}", bodies.size(), mass,
               friction, restitution);
@@ -58,10 +84,35 @@ struct BulletWorld::Impl {
     info.m_friction = friction;
     info.m_restitution = restitution;
     auto body = std::make_unique<btRigidBody>(info);
-    if (mass > 0) body->setActivationState(DISABLE_DEACTIVATION);
+    if (is_moved)
+      body->setCollisionFlags((body->getCollisionFlags() & ~btCollisionObject::CF_STATIC_OBJECT) |
+                              btCollisionObject::CF_KINEMATIC_OBJECT);
+    if (mass > 0 || is_moved) body->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(body.get());
-    bodies.push_back({std::move(shape), std::move(body), start});
+    RigidBody& rigid = bodies.emplace_back();
+    rigid.shape = std::move(shape);
+    rigid.body = std::move(body);
+    rigid.start = rigid.end = start;
+    rigid.is_moved = is_moved;
     return bodies.size() - 1;
+  }
+
+  /// Bullet takes the velocity of what the program moves from where it was and where it is: these are put so that it is the substep's.
+  void begin_moves() {
+    for (RigidBody& rigid : bodies) {
+      if (!rigid.is_moved) continue;
+      const btTransform now = rigid.body->getWorldTransform();
+      const btMatrix3x3 turn = rigid.end.getBasis() * now.getBasis().transpose();
+      rigid.body->setInterpolationWorldTransform(btTransform(
+          turn.transpose() * now.getBasis(), now.getOrigin() - (rigid.end.getOrigin() - now.getOrigin())));
+    }
+  }
+  void end_moves() {
+    for (RigidBody& rigid : bodies) {
+      if (!rigid.is_moved) continue;
+      rigid.body->setWorldTransform(rigid.end);
+      rigid.body->setInterpolationWorldTransform(rigid.end);
+    }
   }
 };
 
@@ -83,12 +134,87 @@ std::size_t BulletWorld::add_box(const Eigen::Vector3f& size, float mass, const 
   }
   if (!(restitution >= 0 && restitution <= 1))
     throw std::invalid_argument("a box needs a restitution from 0 to 1");
-  if (!(std::abs(rotation.norm() - 1) < 1e-3f))
-    throw std::invalid_argument("a box needs a rotation of unit length");
-  btTransform start(btQuaternion(rotation.x(), rotation.y(), rotation.z(), rotation.w()),
-                    to_bullet(position));
-  if (rotation.coeffs() == Eigen::Quaternionf::Identity().coeffs()) start.getBasis().setIdentity();
-  return impl_->add(std::make_unique<btBoxShape>(to_bullet(size / 2)), mass, start, friction, restitution);
+  require_rotation(rotation);
+  return impl_->add(std::make_unique<btBoxShape>(to_bullet(size / 2)), mass, transform_of(position, rotation),
+                    friction, restitution);
+}
+
+std::size_t BulletWorld::add_body(std::span<const RigidShape> shapes, const RigidBodySettings& settings) {
+  const float mass = settings.mass;
+  if (shapes.empty()) throw std::invalid_argument("a rigid body needs a shape");
+  if (!(mass >= 0) || !(settings.friction >= 0) ||
+      !(settings.restitution >= 0 && settings.restitution <= 1)) {
+    throw std::invalid_argument(
+        "a rigid body needs a mass and friction of 0 or above, and a restitution from 0 to 1");
+  }
+  if (settings.is_moved && mass > 0)
+    throw std::invalid_argument("a rigid body that the program moves has no mass");
+  require_rotation(settings.rotation);
+  const btTransform start = transform_of(settings.position, settings.rotation);
+  if (shapes.size() == 1 && is_in_the_middle(shapes[0]))
+    return impl_->add(make_bullet_shape(shapes[0]), mass, start, settings.friction, settings.restitution,
+                      settings.is_moved);
+  std::vector<std::unique_ptr<btCollisionShape>> parts;
+  std::vector<btScalar> masses;
+  float volume = 0;
+  for (const RigidShape& shape : shapes) volume += volume_of(shape);
+  btCompoundShape together;
+  for (const RigidShape& shape : shapes) {
+    parts.push_back(make_bullet_shape(shape));
+    together.addChildShape(transform_of(shape.position, shape.rotation), parts.back().get());
+    masses.push_back((mass > 0 ? mass : 1) * volume_of(shape) / volume);
+  }
+  btTransform inner = btTransform::getIdentity();
+  btVector3 inertia(0, 0, 0);
+  if (mass > 0) together.calculatePrincipalAxisTransform(masses.data(), inner, inertia);
+  auto compound = std::make_unique<btCompoundShape>();
+  for (int i = 0; i < together.getNumChildShapes(); ++i)
+    compound->addChildShape(inner.inverse() * together.getChildTransform(i), together.getChildShape(i));
+  const std::size_t body = impl_->add(std::move(compound), mass, start * inner, settings.friction,
+                                      settings.restitution, settings.is_moved);
+  RigidBody& rigid = impl_->bodies[body];
+  rigid.parts = std::move(parts);
+  rigid.inner = inner;
+  if (mass > 0) {  // Bullet's own is that of a box around it
+    rigid.body->setMassProps(mass, inertia);
+    rigid.body->updateInertiaTensor();
+  }
+  return body;
+}
+
+void BulletWorld::move_to(std::size_t body, const Eigen::Vector3f& position,
+                          const Eigen::Quaternionf& rotation) {
+  RigidBody& rigid = impl_->bodies.at(body);
+  SC_ASSERT(rigid.is_moved, "body {}, which the program does not move, is moved", body);
+  SC_ASSERT(position.allFinite() && std::abs(rotation.norm() - 1) < 1e-3f,
+            "body {} is moved to ({}, {}, {}), turned by a quaternion {} long", body, position.x(),
+            position.y(), position.z(), rotation.norm());
+  rigid.end = transform_of(position, rotation) * rigid.inner;
+}
+
+void BulletWorld::add_hinge(const Hinge& hinge) {
+  SC_ASSERT(hinge.a != hinge.b && hinge.a < impl_->bodies.size() && hinge.b < impl_->bodies.size(),
+            "a hinge of bodies {} and {} of {}", hinge.a, hinge.b, impl_->bodies.size());
+  SC_ASSERT(std::abs(hinge.axis.norm() - 1) < 1e-3f && hinge.torque >= 0,
+            "a hinge with an axis {} long and a torque of {} N m", hinge.axis.norm(), hinge.torque);
+  btRigidBody& a = *impl_->bodies[hinge.a].body;
+  btRigidBody& b = *impl_->bodies[hinge.b].body;
+  SC_ASSERT(a.getInvMass() > 0 || b.getInvMass() > 0, "a hinge of bodies {} and {}, neither of which moves",
+            hinge.a, hinge.b);
+  const auto place = [&](const btRigidBody& body) {
+    return body.getWorldTransform().inverse() * to_bullet(hinge.point);
+  };
+  const auto direction = [&](const btRigidBody& body) {
+    return body.getWorldTransform().getBasis().transpose() * to_bullet(hinge.axis);
+  };
+  // Bullet's motor turns its first body against its second one.
+  auto joint = std::make_unique<btHingeConstraint>(b, a, place(b), place(a), direction(b), direction(a));
+  impl_->world.addConstraint(joint.get(), true);
+  if (hinge.torque > 0) {
+    joint->enableAngularMotor(true, hinge.speed, 0);
+    impl_->motors.push_back({joint.get(), hinge.torque});
+  }
+  impl_->hinges.push_back(std::move(joint));
 }
 
 std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction,
@@ -110,14 +236,20 @@ void BulletWorld::reset() {
     body.setLinearVelocity({0, 0, 0});
     body.setAngularVelocity({0, 0, 0});
     body.clearForces();
+    rigid.end = rigid.start;
     impl_->world.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseProxy(),
                                                                                  &impl_->dispatcher);
   }
 }
 
 Eigen::Matrix4f BulletWorld::pose(std::size_t body) const {
-  Eigen::Matrix4f pose;
-  impl_->bodies.at(body).body->getWorldTransform().getOpenGLMatrix(pose.data());  // by columns, like Eigen's
+  const RigidBody& rigid = impl_->bodies.at(body);
+  const btTransform& own = rigid.body->getWorldTransform();
+  Eigen::Matrix4f pose;  // by columns, like Bullet's
+  if (rigid.parts.empty())
+    own.getOpenGLMatrix(pose.data());
+  else
+    (own * rigid.inner.inverse()).getOpenGLMatrix(pose.data());
   return pose;
 }
 
@@ -154,7 +286,12 @@ StepTimes BulletWorld::step(float seconds, int substeps) {
   const auto soft_begin = BulletSoftBodies::time_spent(impl_->world);
   const float substep = seconds / static_cast<float>(substeps);
   // One call for each: with maxSubSteps = 0 Bullet takes the step as it is, and keeps no remainder.
-  for (int i = 0; i < substeps; ++i) impl_->world.stepSimulation(substep, 0);
+  for (const Motor& motor : impl_->motors) motor.hinge->setMaxMotorImpulse(motor.torque * substep);
+  for (int i = 0; i < substeps; ++i) {
+    impl_->begin_moves();
+    impl_->world.stepSimulation(substep, 0);
+    impl_->end_moves();
+  }
   const auto soft = BulletSoftBodies::time_spent(impl_->world) - soft_begin;
   const auto all = std::chrono::steady_clock::now() - begin;
   return {.physics_ms = milliseconds(all - soft), .soft_body_ms = milliseconds(soft)};

@@ -5,8 +5,10 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "ppu/bullet/rigid_shape.h"
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/mesh.h"
 
@@ -47,6 +49,24 @@ class BulletWorld {
   /// @throws std::invalid_argument  the mesh has no positions.
   std::size_t add_convex(const TriangleMesh& mesh, const Eigen::Vector3f& position, float friction,
                          float restitution = 0);
+
+  /// A body of one or several shapes of the same density, which may overlap.
+  /// @throws std::invalid_argument  as add_box() and make_bullet_shape(); no shapes, or both a mass and is_moved.
+  std::size_t add_body(std::span<const RigidShape> shapes, const RigidBodySettings& settings);
+
+  /// Has a body that is moved be there at the end of the next substep. It moves evenly and carries along what it touches; nothing stops it.
+  /// @param rotation  of unit length  @pre it was added with is_moved; all numbers are finite
+  void move_to(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
+
+  /// Two bodies that turn against each other about an axis only, and do not touch each other.
+  struct Hinge {
+    std::size_t a = 0, b = 0;
+    Eigen::Vector3f point{0, 0, 0}, axis{1, 0, 0};  ///< in the world, now; the axis of unit length
+    float speed = 0;                                ///< rad/s, of b against a: what a motor wants
+    float torque = 0;                               ///< N m, at most; 0: there is no motor
+  };
+  /// @pre the two differ, and one of them has a mass; torque 0 or above
+  void add_hinge(const Hinge& hinge);
 
   /// Puts all rigid bodies back to where they were added, at rest, and forgets contacts.
   void reset();

@@ -129,6 +129,18 @@ std::optional<AttachmentState<3>> SurfaceAttachments::state(AttachmentId id) con
   return std::nullopt;
 }
 
+std::optional<AttachmentEnds<3>> SurfaceAttachments::ends(AttachmentId id) const {
+  for (const auto& link : links_) {
+    if (link->id != id) continue;
+    if (link->rigid != nullptr && !is_there(*link)) return std::nullopt;
+    return link->rows.ends(
+        link->a->soft().positions(),
+        link->b != nullptr ? link->b->soft().positions() : std::span<const Eigen::Vector3f>(),
+        link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
+  }
+  return std::nullopt;
+}
+
 std::vector<EndedAttachment> SurfaceAttachments::take_ended() { return std::exchange(ended_, {}); }
 
 void SurfaceAttachments::forget(const SurfaceBody& body) {

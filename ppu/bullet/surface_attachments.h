@@ -37,6 +37,7 @@ class SurfaceAttachments {
   void move(AttachmentId id, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation,
             float seconds);
   std::optional<AttachmentState<3>> state(AttachmentId id) const;
+  std::optional<AttachmentEnds<3>> ends(AttachmentId id) const;
   std::vector<EndedAttachment> take_ended();
   /// A soft body goes, and its attachments with it.
   void forget(const SurfaceBody& body);

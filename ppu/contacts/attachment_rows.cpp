@@ -256,6 +256,21 @@ void AttachmentRows<kDimension>::apply(const Row& row, const Vector& impulse) {
     AttachedRigid<kDimension>::apply(*sides_.rigid, row.point, -impulse);
 }
 
+template <int kDimension>
+void AttachmentRows<kDimension>::Side::forget_pushes() {
+  pushed.assign(particle.size(), Vector::Zero());
+}
+
+template <int kDimension>
+void AttachmentRows<kDimension>::Side::push(const Place& place, const AttachedBody<kDimension>& body,
+                                            const Vector& impulse) {
+  for (std::uint32_t i = place.first; i < place.first + place.count; ++i) {
+    const Vector change = share[i] * body.inverse_masses[particle[i]] * impulse;
+    body.pushes[particle[i]] += change;
+    pushed[number_of(place, i)] += change;
+  }
+}
+
 /// Soft bodies only: a rigid one is moved by its engine.
 template <int kDimension>
 auto AttachmentRows<kDimension>::relative_push(const Row& row) const -> Vector {
@@ -265,8 +280,8 @@ auto AttachmentRows<kDimension>::relative_push(const Row& row) const -> Vector {
 
 template <int kDimension>
 void AttachmentRows<kDimension>::apply_push(const Row& row, const Vector& impulse) {
-  a_.add(row.a, sides_.a, sides_.a.pushes, impulse);
-  if (sides_.b != nullptr) b_.add(row.b, *sides_.b, sides_.b->pushes, -impulse);
+  a_.push(row.a, sides_.a, impulse);
+  if (sides_.b != nullptr) b_.push(row.b, *sides_.b, -impulse);
 }
 
 template <int kDimension>
@@ -300,12 +315,19 @@ auto AttachmentRows<kDimension>::begin_row(Row& row) -> Vector {
   if (!with_rigid_at_once_)
     row.inverse_mobility =
         sides_.rigid != nullptr ? Matrix(mobility.inverse()) : Matrix(Matrix::Identity() / mobility(0, 0));
-  const float most = kMostPushInCells * sides_.a.spacing / h, speed = row.error.norm();
-  if (softness_ == 0) {
-    if (speed > most) row.error *= most / speed;
-    pushes_ = pushes_ || speed > 0;
-  }
+  const float most = most_of_error(mobility.trace() / kDimension), speed = row.error.norm();
+  if (speed > most) row.error *= most / speed;
+  pushes_ = pushes_ || (softness_ == 0 && speed > 0);
   return apart;
+}
+
+/// m/s: the most that an error of position may ask of a row. A compliant row gives way, and makes only the rigid share of it a velocity.
+/// @param mobility  of the row, softness included
+template <int kDimension>
+float AttachmentRows<kDimension>::most_of_error(float mobility) const {
+  SC_ASSERT(mobility >= softness_, "a row with a mobility of {} is softer, {}", mobility, softness_);
+  const float most = kMostPushInCells * sides_.a.spacing / step_, rigid = mobility - softness_;
+  return rigid > 0 ? most * mobility / rigid : most;
 }
 
 /// The places of a side have the same particles in the same order.
@@ -362,7 +384,8 @@ void AttachmentRows<kDimension>::begin_rope(Row& row, const Vector& apart) {
   const float across = (v - row.along.dot(v) * row.along).squaredNorm() * h * h;
   const float reach = std::sqrt(std::max(length * length - across, 0.25f * length * length));
   const float excess = std::max(distance - length, 0.0f);
-  row.most = (reach - (softness_ > 0 ? distance : std::min(distance, length))) / h;
+  row.most = (reach - std::min(distance, length)) / h;
+  if (softness_ > 0) row.most -= std::min(excess / h, most_of_error(row.mobility));
   row.push_most = softness_ > 0 ? 0 : -std::min(excess, kMostPushInCells * sides_.a.spacing) / h;
   row.push = 0;
   pushes_ = pushes_ || row.push_most < 0;
@@ -386,6 +409,8 @@ void AttachmentRows<kDimension>::begin(const Sides& sides, float step) {
   places_at_once_ = settings_.kind != AttachmentKind::kRope && !is_weld_to_frame &&
                     (sides.b != nullptr || sides.rigid == nullptr || sides.rigid->inverse_mass == 0);
   is_direct_ = is_direct_ || places_at_once_;
+  a_.forget_pushes();
+  b_.forget_pushes();
   Vector apart = Vector::Zero();
   for (Row& row : rows_) {
     row.impulse.setZero();
@@ -525,15 +550,15 @@ float AttachmentRows<kDimension>::iterate() {
   return largest;
 }
 
-/// Attachments that contradict each other push further and further.
+/// Attachments that contradict each other push further and further. What contacts and other attachments push stays.
 template <int kDimension>
 void AttachmentRows<kDimension>::limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const {
   if (!pushes_) return;
   const float most = kMostPushInCells * body.spacing / step_;
-  for (const std::uint32_t particle : side.particle) {
-    Vector& push = body.pushes[particle];
-    const float speed = push.norm();
-    if (speed > most) push *= most / speed;
+  for (std::size_t i = 0; i < side.pushed.size(); ++i) {
+    const Vector& pushed = side.pushed[i];
+    const float speed = pushed.norm();
+    if (speed > most) body.pushes[side.particle[i]] -= (1 - most / speed) * pushed;
   }
 }
 
@@ -542,6 +567,20 @@ void AttachmentRows<kDimension>::finish() {
   state_.force = carried_impulse() / step_;
   limit_pushes(a_, sides_.a);
   if (sides_.b != nullptr) limit_pushes(b_, *sides_.b);
+}
+
+template <int kDimension>
+AttachmentEnds<kDimension> AttachmentRows<kDimension>::ends(std::span<const Vector> a,
+                                                            std::span<const Vector> b,
+                                                            const AttachmentFrame<kDimension>& frame) const {
+  AttachmentEnds<kDimension> ends{.length = length_};
+  for (const Row& row : rows_) {
+    ends.patch += a_.of(row.a, a);
+    ends.other += b.empty() ? frame.to_world(row.own) : b_.of(row.b, b);
+  }
+  ends.patch /= static_cast<float>(rows_.size());
+  ends.other /= static_cast<float>(rows_.size());
+  return ends;
 }
 
 template struct PatchParticles<2>;

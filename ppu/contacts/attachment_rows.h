@@ -100,6 +100,9 @@ class AttachmentRows {
   /// Whether the last iteration of the last substep would have passed the break force.
   bool broke() const { return broke_; }
   const AttachmentState<kDimension>& state() const { return state_; }
+  /// @param a, b  where the particles of the bodies are  @param frame  of what is not soft, where b is empty
+  AttachmentEnds<kDimension> ends(std::span<const Vector> a, std::span<const Vector> b,
+                                  const AttachmentFrame<kDimension>& frame) const;
 
  private:
   /// Particles and their shares in a place, which sum to 1.
@@ -109,7 +112,15 @@ class AttachmentRows {
   struct Side {
     std::vector<std::uint32_t> particle;
     std::vector<float> share;
+    std::vector<Vector> pushed =
+        {};  // m/s, of this substep: what each particle was given by these rows, by number_of()
 
+    /// Of the particle of an entry among those that differ: places of several particles all have the same, in the same order.
+    static std::size_t number_of(const Place& place, std::uint32_t entry) {
+      return place.count == 1 ? entry : entry - place.first;
+    }
+    void forget_pushes();
+    void push(const Place& place, const AttachedBody<kDimension>& body, const Vector& impulse);
     Vector of(const Place& place, std::span<const Vector> values) const;
     void add(const Place& place, const AttachedBody<kDimension>& body, std::span<Vector> values,
              const Vector& impulse) const;
@@ -147,6 +158,7 @@ class AttachmentRows {
   Vector begin_row(Row& row);
   void begin_weld_to_rigid();
   void begin_rope(Row& row, const Vector& apart);
+  float most_of_error(float mobility) const;
   Vector relative_velocity(const Row& row) const;
   Vector relative_push(const Row& row) const;
   void apply(const Row& row, const Vector& impulse);

@@ -404,6 +404,31 @@ TriangleMesh make_cylinder(float radius, float height, int segments) {
   return smooth_mesh(revolve(profile, segments));
 }
 
+TriangleMesh make_rounded_box(const Eigen::Vector3f& size, int subdivisions) {
+  for (const float edge : {size.x(), size.y(), size.z()}) require_length(edge, "a rounded box's edge");
+  require_count(subdivisions, 1, 512, "a rounded box's subdivisions");
+  return smooth_mesh(rounded_box(0.5 * size.cast<double>(), subdivisions));
+}
+
+TriangleMesh make_capsule(float radius, float height, int segments) {
+  require_length(radius, "a capsule's radius");
+  require_length(height, "a capsule's height");
+  require_count(segments, 3, 2048, "a capsule's segments");
+  if (!(height > 2 * radius)) {
+    throw std::invalid_argument("a capsule's height is " + std::to_string(height) +
+                                "; it must be more than twice its radius, " + std::to_string(radius));
+  }
+  const double r = static_cast<double>(radius), middle = 0.5 * static_cast<double>(height) - r;
+  const int rings = std::max(2, segments / 4);  // of half a sphere
+  std::vector<ProfilePoint> profile{{0, -middle - r}};
+  for (int i = 1; i <= rings; ++i)
+    profile.push_back({r * sine(kPi / 2 * i / rings), -middle - r * cosine(kPi / 2 * i / rings)});
+  for (int i = rings; i >= 1; --i)
+    profile.push_back({r * sine(kPi / 2 * i / rings), middle + r * cosine(kPi / 2 * i / rings)});
+  profile.push_back({0, middle + r});
+  return smooth_mesh(revolve(profile, segments));
+}
+
 TriangleMesh make_wedge(const Eigen::Vector3f& size) {
   for (const float edge : {size.x(), size.y(), size.z()}) require_length(edge, "a wedge's edge");
   Surface wedge;

@@ -33,7 +33,7 @@ TEST(SceneDocs, EveryExampleLoads) {
     std::ofstream(folder / name) << (*match)[3].str();
     files.push_back(name);
   }
-  ASSERT_EQ(files.size(), 5u);
+  ASSERT_EQ(files.size(), 6u);
   for (const std::string& name : files) {
     if (name == "comb.lua") continue;  // a lattice: comb.toml loads it
     const auto scene = load_scene(folder / name);
@@ -63,17 +63,21 @@ TEST_P(SceneDocsFields, AreAllInTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(
     Tables, SceneDocsFields,
-    testing::Values("QQQQQQQQQ = 1", "dimension = 2\nQQQQQQQQQ = 1", "[world]\nQQQQQQQQQ = 1",
-                    "[framework]\nQQQQQQQQQ = 1", "dimension = 2\n[framework]\nQQQQQQQQQ = 1",
-                    "[materials.a]\nQQQQQQQQQ = 1", "[camera]\nQQQQQQQQQ = 1",
-                    "dimension = 2\n[camera]\nQQQQQQQQQ = 1", "[light]\nQQQQQQQQQ = 1",
-                    "[tilt]\nQQQQQQQQQ = 1", "[[box]]\nQQQQQQQQQ = 1",
-                    "dimension = 2\n[[box]]\nQQQQQQQQQ = 1", "[[obstacle]]\nQQQQQQQQQ = 1",
-                    "dimension = 2\n[[circle]]\nQQQQQQQQQ = 1", "dimension = 2\n[[polygon]]\nQQQQQQQQQ = 1",
-                    "[[soft_body]]\nQQQQQQQQQ = 1", "dimension = 2\n[[soft_body]]\nQQQQQQQQQ = 1",
-                    "[[impulse]]\nQQQQQQQQQ = 1", "[[drag]]\nQQQQQQQQQ = 1", "[[gravity]]\nQQQQQQQQQ = 1",
-                    "[[pause]]\nQQQQQQQQQ = 1", "[[reset]]\nQQQQQQQQQ = 1",
-                    "[[box]]\nrotation = { QQQQQQQQQ = 1 }"));
+    testing::Values(
+        "QQQQQQQQQ = 1", "dimension = 2\nQQQQQQQQQ = 1", "[world]\nQQQQQQQQQ = 1",
+        "[framework]\nQQQQQQQQQ = 1", "dimension = 2\n[framework]\nQQQQQQQQQ = 1",
+        "[materials.a]\nQQQQQQQQQ = 1", "[camera]\nQQQQQQQQQ = 1", "dimension = 2\n[camera]\nQQQQQQQQQ = 1",
+        "[light]\nQQQQQQQQQ = 1", "[tilt]\nQQQQQQQQQ = 1", "[[box]]\nQQQQQQQQQ = 1",
+        "dimension = 2\n[[box]]\nQQQQQQQQQ = 1", "[[obstacle]]\nQQQQQQQQQ = 1",
+        "dimension = 2\n[[circle]]\nQQQQQQQQQ = 1", "dimension = 2\n[[polygon]]\nQQQQQQQQQ = 1",
+        "[[soft_body]]\nQQQQQQQQQ = 1", "dimension = 2\n[[soft_body]]\nQQQQQQQQQ = 1",
+        "[[impulse]]\nQQQQQQQQQ = 1", "[[drag]]\nQQQQQQQQQ = 1", "[[gravity]]\nQQQQQQQQQ = 1",
+        "[[pause]]\nQQQQQQQQQ = 1", "[[reset]]\nQQQQQQQQQ = 1", "[[box]]\nrotation = { QQQQQQQQQ = 1 }",
+        "[[rigid_body]]\nQQQQQQQQQ = 1", "[[rigid_body]]\nparts = [{ kind = \"box\", QQQQQQQQQ = 1 }]",
+        "[[rigid_body]]\nshape = { kind = \"cone\", QQQQQQQQQ = 1 }",
+        "[[rigid_body]]\nshape = { kind = \"box\" }\nmotion = { QQQQQQQQQ = 1 }",
+        "[[rigid_body]]\nshape = { kind = \"box\" }\nmotion = { stops = [{ QQQQQQQQQ = 1 }] }",
+        "[[joint]]\nQQQQQQQQQ = 1", "dimension = 2\n[[attach]]\nQQQQQQQQQ = 1", "[[attach]]\nQQQQQQQQQ = 1"));
 
 }  // namespace
 }  // namespace softcell::demos

@@ -333,7 +333,8 @@ TEST_F(SceneFile, AttachmentsAreReadAndCheckedByName) {
   says("body = \"c\"\n", "there is no soft body 'c'");
   says("body = \"a\"\nto = \"c\"\n", "there is no soft body 'c'");
   says("body = \"a\"\nto = \"a\"\n", "attach 1 attaches 'a' to itself");
-  says("body = \"a\"\nto = \"b\"\nbox = 1\n", "attach 1 has both to and box; it may have one of them");
+  says("body = \"a\"\nto = \"b\"\nbox = 1\n",
+       "attach 1 has several of to, box and rigid; it may have one of them");
   says("body = \"a\"\nbox = 2\n", "box of attach 1 is 2; it must be a whole number from 1 to 1");
   says("body = \"a\"\nkind = \"glue\"\n", "it must be one of weld, hinge, rope");
   says("body = \"a\"\nkind = \"rope\"\n",
@@ -408,7 +409,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadToml{"[[soft_body]]\ncel_size = 0.2\nshape = { kind = \"sphere\" }\n",
                 "bad.toml:2:1: soft body 1 has no field 'cel_size'; did you mean 'cell_size'?"},
         BadToml{"[[soft_body]]\ncell_size = 0.2\nshape = { kind = \"ball\" }\n",
-                "bad.toml:3:11: kind of the shape of soft body 1 is 'ball'; it must be one of box, car,"},
+                "bad.toml:3:11: kind of the shape of soft body 1 is 'ball'; it must be one of box, capsule, "
+                "car,"},
         BadToml{"[[soft_body]]\ncell_size = 0.2\nmesh = \"none.obj\"\n",
                 "bad.toml:3:1: there is no mesh file 'none.obj'"},
         BadToml{"[[soft_body]]\ncell_size = 0.004\nshape = { kind = \"box\", size = [1, 1, 1] }\n",

@@ -60,6 +60,11 @@ INSTANTIATE_TEST_SUITE_P(Contacts, SceneGolden,
                                          Moment{"bridge", 120}, Moment{"car_crash", 30},
                                          Moment{"car_crash", 160}));
 
+INSTANTIATE_TEST_SUITE_P(ScenesToShow, SceneGolden,
+                         testing::Values(Moment{"claw", 200}, Moment{"hang", 90}, Moment{"jellies", 120},
+                                         Moment{"pillows", 46}, Moment{"ragdoll", 60}, Moment{"rollers", 75},
+                                         Moment{"trampoline", 60}, Moment{"tyres", 140}));
+
 INSTANTIATE_TEST_SUITE_P(Materials, SceneGolden,
                          testing::Values(Moment{"painted", 1}, Moment{"painted", 55}));
 
@@ -139,7 +144,8 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden2d,
                                          Moment2d{"man", 45, View2d::kLattice, "man_45_lattice"},
                                          Moment2d{"stack", 60, View2d::kFilled, "stack_60"},
                                          Moment2d{"two_way", 50, View2d::kFilled, "two_way_50"},
-                                         Moment2d{"picture", 40, View2d::kFilled, "picture_40"}));
+                                         Moment2d{"picture", 40, View2d::kFilled, "picture_40"},
+                                         Moment2d{"rings", 120, View2d::kFilled, "rings_120"}));
 
 class SceneGoldenReplay : public testing::TestWithParam<const char*> {};
 

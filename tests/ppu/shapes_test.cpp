@@ -33,6 +33,14 @@ const Shape kShapes[] = {
     {"penguin", [] { return make_penguin(1); }, {0.71f, 1, 0.56f}, 0.5, 0x8ec7071c36589cfcu},
     {"cone", [] { return make_cone(0.5f, 2, 32); }, {1, 2, 1}, 0.9, 0x9b404c04d2d715b6u},
     {"cylinder", [] { return make_cylinder(0.5f, 2, 32); }, {1, 2, 1}, 0.99, 0xbd8067e22e45e33fu},
+    {"capsule", [] { return make_capsule(0.5f, 2, 32); }, {1, 2, 1}, 0.97, 0x5b94c86763d70d41u},
+    {"rounded_box",
+     [] {
+       return make_rounded_box({1, 0.5f, 2}, 12);
+     },
+     {1, 0.5f, 2},
+     0.9,
+     0x61901c6689dd6d48u},
     {"marked_cells",
      [] {
        return make_marked_cells(0.5f, {0.2f, 0.7f, 0.5f});
@@ -103,6 +111,7 @@ TEST(Volumes, ApproachTheirFormulas) {
   EXPECT_NEAR(volume(make_torus(2, 0.5f, 200, 100)), 2 * kPi * 2 * kPi * 0.25, 0.01);
   EXPECT_NEAR(volume(make_box({1, 2, 3}, 0.3f)), 6.0, 1e-5);
   EXPECT_NEAR(volume(make_cone(1, 3, 200)), kPi, 0.01);
+  EXPECT_NEAR(volume(make_capsule(1, 3, 200)), 4.0 / 3 * kPi + kPi, 0.01);
   EXPECT_NEAR(volume(make_wedge({1, 2, 3})), 3.0, 1e-6);
 }
 
@@ -138,6 +147,8 @@ TEST(Shapes, RefuseSizesThatMakeNoShape) {
   EXPECT_THROW(make_box({1, 1, 1}, 1e-9f), std::invalid_argument);
   EXPECT_THROW(make_car(INFINITY), std::invalid_argument);
   EXPECT_THROW(make_cone(1, 1, 2), std::invalid_argument);
+  EXPECT_THROW(make_capsule(0.5f, 1, 16), std::invalid_argument);
+  EXPECT_THROW(make_rounded_box({1, 0, 1}, 16), std::invalid_argument);
   EXPECT_THROW(make_penguin(0), std::invalid_argument);
   EXPECT_THROW(make_marked_cells(0, {0.5f, 0.5f, 0.5f}), std::invalid_argument);
   EXPECT_THROW(make_marked_cells(1, {0.5f, 0.5f, 0.95f}), std::invalid_argument);

@@ -11,10 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include "attachment_placement.h"
+#include "rigid_body.h"
 #include "scripted_input.h"
 #include "softcell/render/camera.h"
 #include "softcell/render/frame.h"
-#include "softcell/soft_bodies/attachment.h"
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/mesh.h"
 #include "softcell/soft_bodies/soft_body.h"
@@ -43,20 +44,6 @@ struct RigidBox {
   bool wall = false;  ///< one of the framework's: glass where it stands between the camera and the scene
 };
 
-/// A patch of a soft body is held to another one, to a box or to the world.
-struct AttachmentPlacement {
-  std::size_t body = 0;               ///< number of the soft body
-  std::optional<std::size_t> other;   ///< of another one
-  std::optional<std::size_t> box;     ///< or of one of Scene::boxes
-  Eigen::Vector3f at{0, 0, 0};        ///< the middle of the patch
-  float radius = 0;                   ///< of the patch
-  Eigen::Vector3f other_at{0, 0, 0};  ///< of the patch of the other soft body
-  float other_radius = 0;
-  ppu::AttachmentSettings<3> settings;
-};
-/// Names of ppu::AttachmentKind in scene files, in the enum's order.
-inline constexpr std::array<std::string_view, 3> kAttachmentKinds{"weld", "hinge", "rope"};
-
 /// A convex shape that does not move.
 struct Obstacle {
   ppu::TriangleMesh mesh;
@@ -82,7 +69,9 @@ struct Scene {
   std::vector<SoftBodyPlacement> soft_bodies;
   std::vector<RigidBox> boxes;  ///< the framework's floor and walls first
   std::vector<Obstacle> obstacles;
-  std::vector<AttachmentPlacement> attachments;
+  std::vector<RigidBody> rigid_bodies;
+  std::vector<Joint> joints;
+  std::vector<AttachmentPlacement<3>> attachments;
   TiltScript tilt;
   float gravity = 9.81f;  ///< m/s^2
   float friction = 0.6f;

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "attachment_placement.h"
 #include "scripted_input.h"
 #include "softcell/render/frame.h"
 #include "softcell/render/image.h"
@@ -62,6 +63,7 @@ struct PolygonShape {
 };
 
 struct RigidBody2d {
+  std::string name;  ///< none: "", which several may have
   std::variant<Box2dShape, CircleShape, PolygonShape> shape;
   float mass = 0;  ///< kg; 0: does not move
   Eigen::Vector2f position{0, 0};
@@ -82,7 +84,8 @@ struct Scene2d {
   std::string name, title;
   std::vector<SoftBody2dPlacement> soft_bodies;
   std::vector<RigidBody2d> rigid_bodies;  ///< the framework's walls first: left, right, bottom, top
-  float gravity = 9.81f;                  ///< m/s^2, downwards
+  std::vector<AttachmentPlacement<2>> attachments;
+  float gravity = 9.81f;  ///< m/s^2, downwards
   float friction = 0.6f;
   float restitution = 0;  ///< 0..1, of rigid bodies
   int substeps = 2;       ///< of a frame of 1/60 s

@@ -117,6 +117,22 @@ void frame_bodies(Scene& scene) {
       const Vector3f half = 0.5f * (box.rotation.toRotationMatrix().cwiseAbs() * box.size);
       add_with_fall(box.position - half, box.position + half);
     }
+  for (const RigidBody& body : scene.rigid_bodies) {
+    if (body.mass == 0 && !body.motion) continue;
+    for (const RigidPart& part : body.parts) {
+      const ppu::RigidShape& shape = part.shape;
+      const Vector3f extent = shape.kind == ppu::RigidShapeKind::kBox ? shape.size
+                              : shape.kind == ppu::RigidShapeKind::kSphere
+                                  ? Vector3f(Vector3f::Constant(2 * shape.radius))
+                                  : Vector3f(2 * shape.radius, shape.height, 2 * shape.radius);
+      const Vector3f half = 0.5f * ((body.rotation * shape.rotation).toRotationMatrix().cwiseAbs() * extent);
+      const Vector3f middle = body.position + body.rotation * shape.position;
+      if (body.mass > 0)
+        add_with_fall(middle - half, middle + half);
+      else
+        add(middle - half, middle + half);
+    }
+  }
   if (!all) return;
   constexpr float kMargin = 1.1f;
   render::Camera& camera = scene.camera;

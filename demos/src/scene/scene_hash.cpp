@@ -83,11 +83,35 @@ class Hash {
     const auto& [mesh, position, colour, own_materials] = obstacle;
     add(mesh, position);
   }
-  void add(const AttachmentPlacement& attachment) {
-    const auto& [body, other, box, at, radius, other_at, other_radius, settings] = attachment;
+  void add(const ppu::RigidShape& shape) {
+    const auto& [kind, size, radius, height, position, rotation] = shape;
+    add(static_cast<int>(kind), size, radius, height, position, Eigen::Vector4f(rotation.coeffs()));
+  }
+  void add(const Motion::Stop& stop) {
+    const auto& [time, offset, angle] = stop;
+    add(time, offset, angle);
+  }
+  void add(const Motion& motion) {
+    const auto& [axis, spin, swing, period, stops] = motion;
+    add(axis, spin, swing, period, stops);
+  }
+  void add(const RigidPart& part) { add(part.shape); }
+  void add(const RigidBody& rigid) {
+    const auto& [name, parts, mass, position, rotation, friction, opacity, motion] = rigid;
+    add(parts, mass, position, Eigen::Vector4f(rotation.coeffs()), friction, motion);
+  }
+  void add(const Joint& joint) {
+    const auto& [a, b, point, axis, speed, torque] = joint;
+    add(a, b, point, axis, speed, torque);
+  }
+  template <int kDimension>
+  void add(const AttachmentPlacement<kDimension>& attachment) {
+    const auto& [body, other, box, rigid, at, radius, other_at, other_radius, settings, thickness, colour] =
+        attachment;
     const auto& [kind, point, axis, length, compliance, break_force, touch] = settings;
     add(body, other, box, at, radius, other_at, other_radius);
     add(static_cast<int>(kind), point, axis, length, compliance, break_force, touch);
+    add_unless(rigid, std::optional<std::size_t>());
   }
   void add(const TiltScript& tilt) {
     const auto& [amplitude_x, amplitude_z, period_x, period_z, begin] = tilt;
@@ -102,7 +126,7 @@ class Hash {
   void add(const CircleShape& circle) { add(circle.radius); }
   void add(const PolygonShape& polygon) { add(polygon.corners); }
   void add(const RigidBody2d& body) {
-    const auto& [shape, mass, position, angle, colour] = body;
+    const auto& [name, shape, mass, position, angle, colour] = body;
     add(shape, mass, position, angle);
   }
 
@@ -112,22 +136,26 @@ class Hash {
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
-  const auto& [name, title, soft_bodies, boxes, obstacles, attachments, tilt, gravity, friction, restitution,
-               substeps, contacts, frames, camera, light, script, pictures, files, notes] = scene;
+  const auto& [name, title, soft_bodies, boxes, obstacles, rigid_bodies, joints, attachments, tilt, gravity,
+               friction, restitution, substeps, contacts, frames, camera, light, script, pictures, files,
+               notes] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
   if (!attachments.empty()) hash.add('a', attachments);  // unlike a scene that has none
+  if (!rigid_bodies.empty()) hash.add('r', rigid_bodies);
+  if (!joints.empty()) hash.add('j', joints);
   return hash.value();
 }
 
 std::uint64_t scene_hash(const Scene2d& scene) {
-  const auto& [name, title, soft_bodies, rigid_bodies, gravity, friction, restitution, substeps, frames,
-               camera, script, pictures, files] = scene;
+  const auto& [name, title, soft_bodies, rigid_bodies, attachments, gravity, friction, restitution, substeps,
+               frames, camera, script, pictures, files] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
+  if (!attachments.empty()) hash.add('a', attachments);
   return hash.value();
 }
 

@@ -49,6 +49,13 @@ ppu::TriangleMesh box(FieldReader& fields) {
   return ppu::make_box(size, step);
 }
 
+ppu::TriangleMesh rounded_box(FieldReader& fields) {
+  Eigen::Vector3f size{1, 1, 1};
+  int subdivisions = 16;
+  fields.vector("size", size, kLength).integer("subdivisions", subdivisions, 1, kMaxSubdivisions).finish();
+  return ppu::make_rounded_box(size, subdivisions);
+}
+
 ppu::TriangleMesh car(FieldReader& fields) {
   float length = 1.7f;
   fields.number("length", length, kLength).finish();
@@ -63,7 +70,7 @@ ppu::TriangleMesh penguin(FieldReader& fields) {
 
 template <ppu::TriangleMesh (*make)(float, float, int)>
 ppu::TriangleMesh round(FieldReader& fields) {
-  float radius = 0.5f, height = 1;
+  float radius = make == ppu::make_capsule ? 0.25f : 0.5f, height = 1;
   int segments = 48;
   fields.number("radius", radius, kLength)
       .number("height", height, kLength)
@@ -86,10 +93,20 @@ ppu::TriangleMesh marked_cells(FieldReader& fields) {
 }
 
 constexpr std::array<std::string_view, 2> kAxes{"y", "z"};
-constexpr std::array<std::string_view, 9> kMeshKinds{"box",     "car",    "cone",  "cylinder", "marked_cells",
-                                                     "penguin", "sphere", "torus", "wedge"};
-constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 9> kMeshMakers{
-    box, car, round<ppu::make_cone>, round<ppu::make_cylinder>, marked_cells, penguin, sphere, torus, wedge};
+constexpr std::array<std::string_view, 11> kMeshKinds{"box",      "capsule",      "car",     "cone",
+                                                      "cylinder", "marked_cells", "penguin", "rounded_box",
+                                                      "sphere",   "torus",        "wedge"};
+constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 11> kMeshMakers{box,
+                                                                          round<ppu::make_capsule>,
+                                                                          car,
+                                                                          round<ppu::make_cone>,
+                                                                          round<ppu::make_cylinder>,
+                                                                          marked_cells,
+                                                                          penguin,
+                                                                          rounded_box,
+                                                                          sphere,
+                                                                          torus,
+                                                                          wedge};
 
 ppu::TriangleMesh primitive(const Value& value, const std::string& owner) {
   FieldReader fields(value, "the shape of " + owner);

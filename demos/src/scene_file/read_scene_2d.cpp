@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "ppu/numbers/deterministic_math.h"
+#include "read_attachment.h"
 #include "read_common.h"
 #include "read_lattice_2d.h"
 #include "read_material.h"
+#include "read_rigid_body.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {
@@ -42,7 +44,10 @@ void read_framework(const Value& value, Scene2d& scene) {
   const Vector2f middle = (room + Vector2f(thickness, thickness)) / 2;
   const Vector2f upright{thickness, room.y() + 2 * thickness}, lying{room.x() + 2 * thickness, thickness};
   const auto add = [&](const Vector2f& size, const Vector2f& position) {
-    scene.rigid_bodies.push_back({.shape = Box2dShape{size}, .position = position, .colour = colour});
+    RigidBody2d& wall = scene.rigid_bodies.emplace_back();
+    wall.shape = Box2dShape{size};
+    wall.position = position;
+    wall.colour = colour;
   };
   add(upright, {-middle.x(), 0});
   add(upright, {middle.x(), 0});
@@ -51,13 +56,20 @@ void read_framework(const Value& value, Scene2d& scene) {
 }
 
 /// The fields that rigid bodies of all shapes have.
-RigidBody2d read_rigid_body(FieldReader& fields) {
+RigidBody2d read_rigid_body(FieldReader& fields, const Scene2d& scene) {
   constexpr Range kAngle{.low = -100, .high = 100};
   RigidBody2d body;
   read_mass(fields, body.mass);
-  fields.vector<2>("position", body.position, kCoordinate)
+  fields.text("name", body.name)
+      .vector<2>("position", body.position, kCoordinate)
       .number("angle", body.angle, kAngle)
       .colour("colour", body.colour);
+  if (!body.name.empty() &&
+      std::ranges::any_of(scene.rigid_bodies, [&](const auto& other) { return other.name == body.name; })) {
+    throw SceneError(fields.place("name"),
+                     fmt::format("{} has the name of another rigid body, '{}'; give one of them another",
+                                 fields.what(), body.name));
+  }
   return body;
 }
 
@@ -125,7 +137,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     FieldReader fields(boxes[i], item_name("box", i));
     Box2dShape shape;
-    RigidBody2d body = read_rigid_body(fields);
+    RigidBody2d body = read_rigid_body(fields, scene);
     fields.vector<2>("size", shape.size, kRigidLength, Need::kRequired).finish();
     body.shape = shape;
     scene.rigid_bodies.push_back(body);
@@ -134,7 +146,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
   for (std::size_t i = 0; i < circles.size(); ++i) {
     FieldReader fields(circles[i], item_name("circle", i));
     CircleShape shape;
-    RigidBody2d body = read_rigid_body(fields);
+    RigidBody2d body = read_rigid_body(fields, scene);
     fields.number("radius", shape.radius, kRigidLength, Need::kRequired).finish();
     body.shape = shape;
     scene.rigid_bodies.push_back(body);
@@ -142,7 +154,7 @@ void read_rigid_bodies(FieldReader& root, Scene2d& scene) {
   const auto polygons = root.items("polygon", kMaxRigidBodies);
   for (std::size_t i = 0; i < polygons.size(); ++i) {
     FieldReader fields(polygons[i], item_name("polygon", i));
-    RigidBody2d body = read_rigid_body(fields);
+    RigidBody2d body = read_rigid_body(fields, scene);
     PolygonShape shape{read_corners(fields)};
     fields.finish();
     if (!is_convex(shape.corners)) {
@@ -273,6 +285,17 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
   }
 }
 
+void read_attachments(std::span<const Value> items, Scene2d& scene) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    FieldReader fields(items[i], item_name("attach", i));
+    AttachmentPlacement<2>& attachment = scene.attachments.emplace_back();
+    std::string rigid;
+    fields.text("rigid", rigid);
+    if (fields.has("rigid")) attachment.rigid = find_rigid_body(rigid, fields.place("rigid"), scene);
+    read_attachment(fields, scene, attachment);
+  }
+}
+
 }  // namespace
 
 Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,
@@ -286,6 +309,7 @@ Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,
   if (framework != nullptr) read_framework(*framework, scene);
   read_rigid_bodies(root, scene);
   read_soft_bodies(root.items("soft_body", kMaxSoftBodies), source, materials, picture, scene);
+  read_attachments(root.items("attach", kMaxAttachments), scene);
   read_script<2>(root, scene);
   if (camera != nullptr) {
     FieldReader(*camera, "camera")

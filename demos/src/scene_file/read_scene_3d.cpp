@@ -8,9 +8,11 @@
 #include <string>
 #include <string_view>
 
+#include "read_attachment.h"
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"
+#include "read_rigid_body.h"
 #include "scene/scene_camera.h"
 #include "softcell/base/assert.h"
 
@@ -179,56 +181,20 @@ void read_soft_bodies(std::span<const Value> items, MeshFiles& files, const Mate
 
 /// @param first_box  where the scene's own boxes begin among all
 void read_attachments(std::span<const Value> items, std::size_t first_box, Scene& scene) {
-  constexpr Range kCompliance{.low = 0, .high = 1e6};
-  constexpr Range kForce{.low = 0, .high = 1e12, .low_excluded = true};
   for (std::size_t i = 0; i < items.size(); ++i) {
     FieldReader fields(items[i], item_name("attach", i));
-    AttachmentPlacement& attachment = scene.attachments.emplace_back();
-    ppu::AttachmentSettings<3>& settings = attachment.settings;
-    attachment.body = read_body(fields, scene);
-    std::string other;
-    std::size_t kind = 0;
+    AttachmentPlacement<3>& attachment = scene.attachments.emplace_back();
+    std::string rigid;
     int box = 0;
-    Vector3f point{0, 0, 0};
-    bool touch = false;
-    fields.text("to", other)
-        .integer("box", box, 1, static_cast<int>(std::max<std::size_t>(scene.boxes.size() - first_box, 1)))
-        .choice("kind", kind, kAttachmentKinds)
-        .vector<3>("at", attachment.at, kCoordinate, Need::kRequired)
-        .number("radius", attachment.radius, kLength, Need::kRequired);
-    attachment.other_at = attachment.at;
-    attachment.other_radius = attachment.radius;
-    fields.vector<3>("other_at", attachment.other_at, kCoordinate)
-        .number("other_radius", attachment.other_radius, kLength)
-        .vector<3>("point", point, kCoordinate)
-        .vector<3>("axis", settings.axis, kCoordinate)
-        .number("length", settings.length, kLength)
-        .number("compliance", settings.compliance, kCompliance)
-        .number("break_force", settings.break_force, kForce)
-        .flag("touch", touch)
-        .finish();
-    settings.kind = static_cast<ppu::AttachmentKind>(kind);
-    if (fields.has("point")) settings.point = point;
-    if (fields.has("touch")) settings.touch = touch;
-    if (fields.has("to") && fields.has("box"))
-      throw SceneError(fields.place("box"), fields.what() + " has both to and box; it may have one of them");
+    fields.text("rigid", rigid)
+        .integer("box", box, 1, static_cast<int>(std::max<std::size_t>(scene.boxes.size() - first_box, 1)));
+    if (fields.has("rigid")) attachment.rigid = find_rigid_body(rigid, fields.place("rigid"), scene);
     if (fields.has("box")) {
       if (first_box == scene.boxes.size())
         throw SceneError(fields.place("box"), fields.what() + " names a box; the scene has none");
       attachment.box = first_box + static_cast<std::size_t>(box) - 1;
     }
-    if (fields.has("to")) attachment.other = find_body(other, fields.place("to"), scene);
-    if (attachment.other == attachment.body)
-      throw SceneError(fields.place("to"), fields.what() + " attaches '" + other + "' to itself");
-    try {
-      ppu::validate(settings);
-    } catch (const std::invalid_argument& error) {
-      throw SceneError(fields.place(), fields.what() + ": " + error.what());
-    }
-    if (settings.kind == ppu::AttachmentKind::kRope && !settings.point && !attachment.box &&
-        !attachment.other)
-      throw SceneError(fields.place(),
-                       fields.what() + " is a rope to the world; it needs the point of its other end");
+    read_attachment(fields, scene, attachment);
   }
 }
 
@@ -290,9 +256,13 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   const auto obstacles = root.items("obstacle", kMaxRigidBodies);
   const auto soft_bodies = root.items("soft_body", kMaxSoftBodies);
   const auto attachments = root.items("attach", kMaxAttachments);
+  const auto rigid_bodies = root.items("rigid_body", kMaxRigidBodies);
+  const auto joints = root.items("joint", kMaxRigidBodies);
   if (framework != nullptr) read_framework(*framework, scene);
   const std::size_t first_box = scene.boxes.size();
   for (std::size_t i = 0; i < boxes.size(); ++i) scene.boxes.push_back(read_box(boxes[i], i));
+  read_rigid_bodies(rigid_bodies, scene);
+  read_joints(joints, scene);
   VertexCount vertices;
   MeshFiles files(source);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {

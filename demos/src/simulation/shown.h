@@ -19,11 +19,21 @@ struct Pose2d {
   bool operator==(const Pose2d&) const = default;
 };
 
+/// A rope that holds.
+template <int kDimension>
+struct ShownRope {
+  std::array<Eigen::Vector<float, kDimension>, 2> ends;  ///< metres
+  float length = 0;                                      ///< metres: it is slack when its ends are nearer
+  float thickness = 0;                                   ///< metres
+  Eigen::Vector3f colour{0, 0, 0};                       ///< linear
+};
+
 /// Metres.
 struct Shown2d {
   std::vector<std::vector<Eigen::Vector2f>> particles;  ///< of each soft body
   std::vector<Pose2d> rigid_poses;                      ///< of Scene2d::rigid_bodies, in order
-  std::vector<std::array<Eigen::Vector2f, 2>> hands;    ///< the point that is held, and the hand
+  std::vector<ShownRope<2>> ropes = {};
+  std::vector<std::array<Eigen::Vector2f, 2>> hands;  ///< the point that is held, and the hand
 };
 
 struct Shown3d {
@@ -33,7 +43,8 @@ struct Shown3d {
     std::vector<Eigen::Vector4f> particles;  ///< x y z 0
   };
   std::vector<Body> bodies;
-  std::vector<Eigen::Matrix4f> box_poses;              ///< of Scene::boxes, in order
+  std::vector<Eigen::Matrix4f> box_poses;  ///< of Scene::boxes, then of Scene::rigid_bodies
+  std::vector<ShownRope<3>> ropes;
   std::vector<ppu::Contact> contacts;                  ///< if they are noted
   std::vector<std::array<Eigen::Vector3f, 2>> hands;   ///< the point that is held, and the hand
   Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();  ///< from the ground's frame to the observer's

@@ -10,6 +10,8 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <variant>
 
 #include "changed_material.h"
@@ -100,11 +102,34 @@ struct World {
     for (const RigidBody2d& body : scene.rigid_bodies)
       rigid_bodies.push_back(add_rigid_body(world, body, scene.friction, scene.restitution));
     for (std::size_t i = 0; i < models.size(); ++i) soft_bodies.add(models[i], scene.soft_bodies[i].position);
+    attach(scene);
+  }
+
+  void attach(const Scene2d& scene) {
+    for (const AttachmentPlacement<2>& placement : scene.attachments) {
+      const ppu::SoftBody<2>& body = soft_bodies[placement.body];
+      const auto patch = ppu::Patch<2>::of_surface(placement.at, placement.radius);
+      try {
+        if (placement.other)
+          attachments.push_back(soft_bodies.attach(
+              body, patch, soft_bodies[*placement.other],
+              ppu::Patch<2>::of_surface(placement.other_at, placement.other_radius), placement.settings));
+        else if (placement.rigid)
+          attachments.push_back(
+              soft_bodies.attach(body, patch, *rigid_bodies[*placement.rigid], placement.settings));
+        else
+          attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
+      } catch (const std::invalid_argument& error) {
+        throw std::runtime_error("attach " + std::to_string(attachments.size() + 1) + " of scene " +
+                                 scene.name + ": " + error.what());
+      }
+    }
   }
 
   b2World world{{0, 0}};
   std::vector<b2Body*> rigid_bodies;
   ppu::Box2dSoftBodies soft_bodies;
+  std::vector<ppu::AttachmentId> attachments;  // of the scene, in order
 };
 
 /// The SPEs, and the solver that works on them.
@@ -306,6 +331,16 @@ void Simulation2d::show(Shown2d& shown) const {
   shown.rigid_poses.clear();
   for (std::size_t i = 0; i < state_->scene.rigid_bodies.size(); ++i)
     shown.rigid_poses.push_back(rigid_pose(i));
+  shown.ropes.clear();
+  for (std::size_t i = 0; i < state_->scene.attachments.size(); ++i) {
+    const AttachmentPlacement<2>& placement = state_->scene.attachments[i];
+    if (placement.settings.kind != ppu::AttachmentKind::kRope) continue;
+    if (const auto ends = state_->world->soft_bodies.attachment_ends(state_->world->attachments[i]))
+      shown.ropes.push_back({.ends = {ends->patch, ends->other},
+                             .length = ends->length,
+                             .thickness = placement.thickness,
+                             .colour = placement.colour});
+  }
   shown.hands.clear();
   for (const Hands<2>::Held& held : held()) {
     SC_ASSERT(held.body < soft_bodies(), "hand {} holds body {} of {}", held.hand, held.body, soft_bodies());

@@ -101,6 +101,7 @@ struct Simulation3d::State {
     std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
     std::vector<ppu::Contact> contacts;
     std::vector<std::array<Eigen::Vector3f, 2>> hands;
+    std::vector<ShownRope<3>> ropes;
     Eigen::Matrix3f tilt = Eigen::Matrix3f::Identity();
   };
 
@@ -124,6 +125,15 @@ struct Simulation3d::State {
     for (const RigidBox& box : scene.boxes) {
       boxes.push_back(
           world.add_box(box.size, box.mass, box.position, scene.friction, scene.restitution, box.rotation));
+    }
+    for (const RigidBody& body : scene.rigid_bodies) add_rigid(body);
+    for (const Joint& joint : scene.joints) {
+      world.add_hinge({.a = boxes[scene.boxes.size() + joint.a],
+                       .b = boxes[scene.boxes.size() + joint.b],
+                       .point = joint.point,
+                       .axis = joint.axis,
+                       .speed = joint.speed,
+                       .torque = joint.torque});
     }
     for (const Obstacle& obstacle : scene.obstacles)
       world.add_convex(obstacle.mesh, obstacle.position, scene.friction, scene.restitution);
@@ -165,10 +175,48 @@ struct Simulation3d::State {
     return made;
   }
 
+  void add_rigid(const RigidBody& body) {
+    std::vector<ppu::RigidShape> shapes;
+    for (const RigidPart& part : body.parts) shapes.push_back(part.shape);
+    const Placement start =
+        body.motion ? placement_at(body, 0) : Placement{.position = body.position, .rotation = body.rotation};
+    boxes.push_back(world.add_body(shapes, {.mass = body.mass,
+                                            .position = start.position,
+                                            .rotation = start.rotation,
+                                            .friction = body.friction.value_or(scene.friction),
+                                            .restitution = scene.restitution,
+                                            .is_moved = body.motion.has_value()}));
+  }
+
+  /// Puts what the scene moves where it is at a time. @param time  seconds, at a substep's end
+  void move_rigids(double time) {
+    for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
+      if (!scene.rigid_bodies[i].motion) continue;
+      const Placement place = placement_at(scene.rigid_bodies[i], time);
+      world.move_to(boxes[scene.boxes.size() + i], place.position, place.rotation);
+    }
+  }
+
+  /// Of one of `boxes`. kg
+  float mass_of(std::size_t box) const {
+    return box < scene.boxes.size() ? scene.boxes[box].mass
+                                    : scene.rigid_bodies[box - scene.boxes.size()].mass;
+  }
+  float opacity_of(std::size_t box) const {
+    return box < scene.boxes.size() ? scene.boxes[box].opacity
+                                    : scene.rigid_bodies[box - scene.boxes.size()].opacity;
+  }
+
+  /// What a soft body is attached to, if it is a rigid one: one of `boxes`.
+  std::optional<std::size_t> rigid_of(const AttachmentPlacement<3>& placement) const {
+    if (placement.rigid) return scene.boxes.size() + *placement.rigid;
+    return placement.box;
+  }
+
   /// As the scene says, also those that have broken.
   void attach() {
     attachments.clear();
-    for (const AttachmentPlacement& placement : scene.attachments) {
+    for (const AttachmentPlacement<3>& placement : scene.attachments) {
       const ppu::SoftBody<3>& body = soft_bodies[placement.body];
       const auto patch = ppu::Patch<3>::of_surface(placement.at, placement.radius);
       try {
@@ -176,9 +224,9 @@ struct Simulation3d::State {
           attachments.push_back(soft_bodies.attach(
               body, patch, soft_bodies[*placement.other],
               ppu::Patch<3>::of_surface(placement.other_at, placement.other_radius), placement.settings));
-        else if (placement.box)
+        else if (const auto rigid = rigid_of(placement))
           attachments.push_back(
-              soft_bodies.attach(body, patch, world.rigid_body(boxes[*placement.box]), placement.settings));
+              soft_bodies.attach(body, patch, world.rigid_body(boxes[*rigid]), placement.settings));
         else
           attachments.push_back(soft_bodies.attach(body, patch, placement.settings));
       } catch (const std::invalid_argument& error) {
@@ -200,6 +248,7 @@ struct Simulation3d::State {
     snapshot.tilt = tilt;
     copy_contacts(snapshot);
     copy_hands(snapshot);
+    copy_ropes(snapshot);
     if (orchestrator) {
       copy_particles(snapshot);
       const auto before = ppu::processor_time();
@@ -238,6 +287,19 @@ struct Simulation3d::State {
     held.append(snapshot.hands);
   }
 
+  void copy_ropes(Snapshot& snapshot) const {
+    snapshot.ropes.clear();
+    for (std::size_t i = 0; i < attachments.size(); ++i) {
+      const AttachmentPlacement<3>& placement = scene.attachments[i];
+      if (placement.settings.kind != ppu::AttachmentKind::kRope) continue;
+      if (const auto ends = soft_bodies.attachment_ends(attachments[i]))
+        snapshot.ropes.push_back({.ends = {ends->patch, ends->other},
+                                  .length = ends->length,
+                                  .thickness = placement.thickness,
+                                  .colour = placement.colour});
+    }
+  }
+
   /// Waits for the SPEs; what was handed over is shown from now on.
   void take_over() {
     if (!handed_over) return;
@@ -252,7 +314,7 @@ struct Simulation3d::State {
       held.hold(event.hand, std::make_unique<SurfaceGrip>(soft_bodies[nearest->body], event.value));
   }
   void hold_rigid(const InputEvent<3>& event) {
-    if (event.body < boxes.size() && scene.boxes[event.body].mass > 0)
+    if (event.body < boxes.size() && mass_of(event.body) > 0)
       held.hold(event.hand, std::make_unique<RigidGrip>(world.rigid_body(boxes[event.body]), event.value));
   }
   void set_material(const InputEvent<3>& event, std::size_t body) {
@@ -272,6 +334,7 @@ struct Simulation3d::State {
     held.begin_frame(static_cast<float>(substeps) * step);
     ppu::StepTimes times;
     for (int number = 0; number < substeps; ++number) {
+      move_rigids(frame / 60 - double{step} * (substeps - number - 1));
       held.pull(number, substeps, gravity, step);
       const ppu::StepTimes of_substep = world.step(step, 1);
       times.physics_ms += of_substep.physics_ms;
@@ -411,8 +474,10 @@ std::size_t Simulation3d::vertices() const { return state_->vertices; }
 Skin Simulation3d::skin() const { return state_->orchestrator ? Skin::kSpe : Skin::kGpu; }
 
 std::size_t Simulation3d::rigid_bodies() const {
-  return static_cast<std::size_t>(std::count_if(state_->scene.boxes.begin(), state_->scene.boxes.end(),
-                                                [](const RigidBox& box) { return box.mass > 0; }));
+  std::size_t count = 0;
+  for (std::size_t box = 0; box < state_->boxes.size(); ++box)
+    if (state_->mass_of(box) > 0) ++count;
+  return count;
 }
 
 const ppu::SoftBodyModel<3>& Simulation3d::model(std::size_t body) const {
@@ -458,6 +523,7 @@ void Simulation3d::show(Shown3d& to) const {
   to.box_poses.assign(shown_box_poses().begin(), shown_box_poses().end());
   to.contacts.assign(shown_contacts().begin(), shown_contacts().end());
   to.hands = state_->shown().hands;
+  to.ropes = state_->shown().ropes;
   to.tilt = shown_tilt();
 }
 
@@ -477,9 +543,9 @@ std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
     if (hit.share >= share) break;
     const auto box =
         static_cast<std::uint32_t>(std::ranges::find(state_->boxes, hit.body) - state_->boxes.begin());
-    if (box < state_->boxes.size() && state_->scene.boxes[box].mass > 0)
+    if (box < state_->boxes.size() && state_->mass_of(box) > 0)
       return InputEvent<3>{.action = Action::kHoldRigid, .body = box, .value = hit.position};
-    if (box == state_->boxes.size() || state_->scene.boxes[box].opacity >= kOpaque) return std::nullopt;
+    if (box == state_->boxes.size() || state_->opacity_of(box) >= kOpaque) return std::nullopt;
   }
   return touched;
 }

@@ -62,7 +62,7 @@ class Simulation3d {
   // The shown frame, all of one moment. Before the first step it is the beginning.
   ppu::SkinnedBody shown(std::size_t body) const;  ///< without vertices when the GPU makes them
   std::span<const Eigen::Vector4f> shown_particles(std::size_t body) const;
-  std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, in order
+  std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, then of Scene::rigid_bodies
   const Eigen::Matrix3f& shown_tilt() const;                 ///< from the ground's frame to the observer's
 
   /// Contacts of the shown frame, if record_contacts() was on when it was simulated. Empty in a pause after a

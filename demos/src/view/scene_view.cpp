@@ -56,6 +56,8 @@ float wall_opacity(const RigidBox& wall, const Eigen::Matrix4f& pose, const Eige
   return std::min(wall.opacity, 1 + clear * (kGlass - 1));
 }
 
+Eigen::Vector3f down(const Shown3d& shown) { return -shown.tilt.transpose().col(1); }
+
 }  // namespace
 
 SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render::Renderer& renderer,
@@ -65,7 +67,8 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
       renderer_(renderer),
       view_(view),
       looks_(renderer),
-      hands_(renderer) {
+      hands_(renderer),
+      ropes_(renderer) {
   const auto add_static = [&](const ppu::TriangleMesh& mesh) {
     Moved3d::Box& box = static_boxes_.emplace_back();
     for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
@@ -87,6 +90,7 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
     }
     statics_.push_back(draw);
   }
+  rigid_parts_ = add_parts(scene_.rigid_bodies, add_static, statics_);
 
   SC_ASSERT(simulation_.soft_bodies() == scene_.soft_bodies.size(), "a simulation of {} bodies of {}",
             simulation_.soft_bodies(), scene_.soft_bodies.size());
@@ -176,26 +180,30 @@ void SceneView::draw_contacts(const Shown3d& shown) {
 }
 
 std::optional<render::PixelRect> SceneView::changes(const Shown3d& shown) {
-  soft_boxes_.clear();
+  restless_.clear();
   for (const Shown3d::Body& body : shown.bodies) {
-    Moved3d::Box& box = soft_boxes_.emplace_back();
+    Moved3d::Box& box = restless_.emplace_back();
     for (const Eigen::Vector4f& particle : body.particles) box.extend(particle.head<3>());
   }
-  return moved_.since_last(frame_, {.soft_bodies = soft_boxes_,
+  for (const ShownRope<3>& rope : shown.ropes) restless_.push_back(around_rope(rope, down(shown)));
+  return moved_.since_last(frame_, {.soft_bodies = restless_,
                                     .static_meshes = static_boxes_,
                                     .picture_width = renderer_.width(),
                                     .picture_height = renderer_.height()});
 }
 
-void SceneView::draw_hands(const Shown3d& shown) {
-  if (shown.hands.empty()) return;
-  frame_.changes.reset();
-  moved_.forget();
-  with_hands_ = statics_;
-  marks_with_hands_.assign(frame_.lattices.begin(), frame_.lattices.end());
-  hands_.append(shown.hands, frame_.camera, with_hands_, marks_with_hands_);
-  frame_.statics = with_hands_;
-  frame_.lattices = marks_with_hands_;
+void SceneView::draw_ropes_and_hands(const Shown3d& shown) {
+  if (shown.hands.empty() && shown.ropes.empty()) return;
+  with_more_ = statics_;
+  ropes_.append(shown.ropes, down(shown), with_more_);
+  if (!shown.hands.empty()) {
+    frame_.changes.reset();
+    moved_.forget();
+    marks_with_hands_.assign(frame_.lattices.begin(), frame_.lattices.end());
+    hands_.append(shown.hands, frame_.camera, with_more_, marks_with_hands_);
+    frame_.lattices = marks_with_hands_;
+  }
+  frame_.statics = with_more_;
 }
 
 const render::Image& SceneView::draw() { return draw(0); }
@@ -223,13 +231,16 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
 }
 
 void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camera) {
-  SC_ASSERT(shown.box_poses.size() <= statics_.size(), "{} boxes among {} rigid bodies",
-            shown.box_poses.size(), statics_.size());
-  for (std::size_t i = 0; i < shown.box_poses.size(); ++i) {
+  const std::size_t boxes = scene_.boxes.size();
+  SC_ASSERT(shown.box_poses.size() == boxes + scene_.rigid_bodies.size(),
+            "{} poses of {} boxes and {} bodies", shown.box_poses.size(), boxes, scene_.rigid_bodies.size());
+  for (std::size_t i = 0; i < boxes; ++i) {
     statics_[i].pose = shown.box_poses[i];
     if (scene_.boxes[i].wall)
       statics_[i].opacity = wall_opacity(scene_.boxes[i], shown.box_poses[i], camera.eye);
   }
+  for (const DrawnPart& part : rigid_parts_)
+    statics_[part.draw].pose = shown.box_poses[boxes + part.body] * part.place;
 
   frame_ = {};
   frame_.camera = camera;
@@ -255,7 +266,7 @@ void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camer
   } else {
     moved_.forget();
   }
-  draw_hands(shown);
+  draw_ropes_and_hands(shown);
   renderer_.render(frame_);
 }
 

@@ -11,6 +11,8 @@
 #include "hand_drawing.h"
 #include "mesh_looks.h"
 #include "moved_3d.h"
+#include "rigid_drawing.h"
+#include "rope_drawing.h"
 #include "rotation_axes.h"
 #include "scene/look.h"
 #include "scene/scene.h"
@@ -44,8 +46,9 @@ class SceneView {
   void draw_lattice(const Shown3d& shown);
   void draw_rotations(const Shown3d& shown);
   void draw_contacts(const Shown3d& shown);
-  void draw_hands(const Shown3d& shown);
+  /// Where this picture can differ from the last one.
   std::optional<render::PixelRect> changes(const Shown3d& shown);
+  void draw_ropes_and_hands(const Shown3d& shown);
 
   const Scene& scene_;
   const Simulation3d& simulation_;
@@ -58,11 +61,14 @@ class SceneView {
   std::vector<std::vector<render::PartDraw>>
       parts_;  // of what is drawn with materials of its own; stays as it is
   std::vector<render::SkinnedDraw> skinned_;
-  std::vector<render::StaticDraw> statics_;  // boxes, then obstacles
+  std::vector<render::StaticDraw> statics_;  // boxes, obstacles, parts of rigid bodies
+  std::vector<DrawnPart> rigid_parts_;
   Moved3d moved_;
-  std::vector<Moved3d::Box> static_boxes_, soft_boxes_;  // around statics_ in their own frames, and skinned_
+  std::vector<Moved3d::Box> static_boxes_;  // around statics_ in their own frames
+  std::vector<Moved3d::Box> restless_;      // around soft bodies and ropes as they are drawn
   HandDrawing hands_;
-  std::vector<render::StaticDraw> with_hands_;  // statics_, and hands
+  RopeDrawing ropes_;
+  std::vector<render::StaticDraw> with_more_;  // statics_, ropes and hands
   struct LatticeBuffers {
     std::vector<Eigen::Vector3f> particles;
     std::vector<std::array<std::uint32_t, 2>> links;

@@ -5,6 +5,7 @@
 #include <span>
 #include <variant>
 
+#include "rope_drawing.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {
@@ -143,6 +144,26 @@ void SceneView2d::draw_soft_body(std::size_t index, View2d view) {
   }
 }
 
+/// Straight when it is taut, else a parabola.
+void SceneView2d::draw_ropes(const Shown2d& shown) {
+  constexpr int kSegments2d = 24;
+  ropes_.resize(shown.ropes.size());
+  for (std::size_t i = 0; i < shown.ropes.size(); ++i) {
+    const ShownRope<2>& rope = shown.ropes[i];
+    const Vector2f way = rope.ends[1] - rope.ends[0];
+    const float sag = rope_sag(way.norm(), rope.length);
+    ropes_[i].clear();
+    for (int k = 0; k <= kSegments2d; ++k) {
+      const float share = static_cast<float>(k) / kSegments2d;
+      ropes_[i].push_back(rope.ends[0] + share * way - Vector2f(0, 4 * sag * share * (1 - share)));
+    }
+    const std::span<const Vector2f> points(ropes_[i]);
+    drawing_.lines.push_back({.points = points, .width = rope.thickness, .colour = rope.colour});
+    for (const auto& end : {points.first(1), points.last(1)})
+      drawing_.dots.push_back({.centres = end, .radius = rope.thickness, .colour = rope.colour});
+  }
+}
+
 void SceneView2d::draw_hands(const Shown2d& shown) {
   hands_.assign(shown.hands.begin(), shown.hands.end());
   const float radius = kHandRadius * scene_.camera.height;
@@ -166,6 +187,12 @@ std::optional<render::PixelRect> SceneView2d::changes(const Shown2d& shown, View
       soft.extend(particle - radius);
       soft.extend(particle + radius);
     }
+  }
+  for (const auto& rope : ropes_)
+    for (const Vector2f& point : rope) soft.extend(point);
+  for (const ShownRope<2>& rope : shown.ropes) {
+    soft.extend(Vector2f(rope.ends[0] + Vector2f::Constant(2 * rope.thickness)));
+    soft.extend(Vector2f(rope.ends[0] - Vector2f::Constant(2 * rope.thickness)));
   }
   const Moved2d::Box moved = moved_.since_last(shown, soft);
   if (drawn_view_ != view) {
@@ -218,6 +245,7 @@ void SceneView2d::draw(const Shown2d& shown, const Look& look) {
     soft_bodies_[b].shape.place(shown.particles[b]);
     draw_soft_body(b, view);
   }
+  draw_ropes(shown);
   draw_hands(shown);
   renderer_.render({.centre = scene_.camera.centre,
                     .height = scene_.camera.height,

@@ -55,6 +55,7 @@ class SceneView2d {
   void add_soft_body(const SoftBody2dPlacement& body, const ppu::SoftBodyModel<2>& model);
   void draw_rigid_body(std::size_t index, const Pose2d& pose);
   void draw_soft_body(std::size_t index, View2d view);
+  void draw_ropes(const Shown2d& shown);
   void draw_hands(const Shown2d& shown);
   std::optional<render::PixelRect> changes(const Shown2d& shown, View2d view);
   float line_width() const;
@@ -68,6 +69,7 @@ class SceneView2d {
   Stickers stickers_;
   std::vector<RigidBody> rigid_bodies_;
   std::vector<SoftBody> soft_bodies_;
+  std::vector<std::vector<Eigen::Vector2f>> ropes_;    // the points of each, as they are drawn
   std::vector<std::array<Eigen::Vector2f, 2>> hands_;  // the particle, the hand
 
   Moved2d moved_;

@@ -19,7 +19,9 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "softcell/soft_bodies/attachment.h"
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
@@ -54,6 +56,37 @@ class Box2dSoftBodies {
 
   /// @throws std::invalid_argument  the body is not one of these.
   void remove(const SoftBody<2>& body);
+
+  /// Holds a patch of a body to the world: to the place where it is now, which move_attachment() may move.
+  ///
+  /// Attachments are solved in begin_step(), behind the shape matching; Box2D's contacts come after them. The bodies wake, and do not sleep
+  /// while they are attached. What is attached and does not touch needs a contact filter: the world's own is asked first, and is put back
+  /// at the end; one that the caller installs later must call the one it replaces (b2ContactManager::m_contactFilter).
+  /// @throws std::invalid_argument  a body is not one of these; a setting is out of its range; the patch is empty, or too small for what
+  ///         is asked of it. The sentence says what was found and what was expected.
+  AttachmentId attach(const SoftBody<2>& body, const Patch<2>& patch,
+                      const AttachmentSettings<2>& settings = {});
+  /// To a rigid body. @throws as above; it is not in the world, or a particle of a soft body.
+  /// When it is destroyed, the attachment ends with the next step. Detach it first if another b2Body is created before that step: Box2D may
+  /// give that one the same address.
+  AttachmentId attach(const SoftBody<2>& body, const Patch<2>& patch, b2Body& rigid,
+                      const AttachmentSettings<2>& settings = {});
+  /// To a patch of another soft body of these. @throws as above; it is the same body.
+  AttachmentId attach(const SoftBody<2>& body, const Patch<2>& patch, const SoftBody<2>& other,
+                      const Patch<2>& other_patch, const AttachmentSettings<2>& settings = {});
+  /// @throws std::invalid_argument  there is no such attachment: it may have ended.
+  void detach(AttachmentId id);
+  /// Moves the place in the world to which something is attached: of a hinge or rope its point, of a weld the middle of its patch when it
+  /// was attached. It moves evenly and is there after `seconds` of simulated time, at the earliest at the next step's end.
+  /// @param angle  radians, counter-clockwise, from how it was when it was attached
+  /// @throws std::invalid_argument  there is no such attachment, or it is to a body; a value is not finite; seconds below 0.
+  void move_attachment(AttachmentId id, const Eigen::Vector2f& position, float angle = 0, float seconds = 0);
+  /// What it did in the last step; nothing when it has ended.
+  std::optional<AttachmentState<2>> attachment(AttachmentId id) const;
+  /// Where it holds now; nothing when it has ended.
+  std::optional<AttachmentEnds<2>> attachment_ends(AttachmentId id) const;
+  /// Those that have broken, or lost a body, since the last call. Those that were detached are none of them.
+  std::vector<EndedAttachment> take_ended_attachments();
 
   /// One step of the world and its soft bodies. @param step  seconds, above 0.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);

@@ -152,6 +152,8 @@ class BulletSoftBodies {
                        float seconds = 0);
   /// What it did in the last substep; nothing when it has ended.
   std::optional<AttachmentState<3>> attachment(AttachmentId id) const;
+  /// Where it holds now; nothing when it has ended.
+  std::optional<AttachmentEnds<3>> attachment_ends(AttachmentId id) const;
   /// Those that have broken, or lost a body, since the last call. Those that were detached are none of them.
   std::vector<EndedAttachment> take_ended_attachments();
 

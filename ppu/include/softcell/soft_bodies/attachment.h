@@ -72,6 +72,16 @@ struct AttachmentState {
   float gap = 0;
 };
 
+/// Where an attachment holds, as things are now. Metres.
+/// @tparam kDimension  2 or 3
+template <int kDimension>
+struct AttachmentEnds {
+  Eigen::Vector<float, kDimension> patch =
+      Eigen::Vector<float, kDimension>::Zero();  ///< the middle of what is held
+  Eigen::Vector<float, kDimension> other = Eigen::Vector<float, kDimension>::Zero();  ///< where it is held
+  float length = 0;                                                                   ///< of a rope
+};
+
 /// An attachment that is there no longer.
 struct EndedAttachment {
   /// Why it ended.

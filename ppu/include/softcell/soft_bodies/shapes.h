@@ -34,6 +34,14 @@ TriangleMesh make_cone(float radius, float height, int segments);
 /// A post: a cylinder about the y axis; `segments` 3..2048.
 TriangleMesh make_cylinder(float radius, float height, int segments);
 
+/// A box with round edges and corners, a cushion: |x/a|^4 + |y/b|^4 + |z/c|^4 = 1 with half the edge lengths a, b, c;
+/// `subdivisions` (1..512) squares along an edge.
+TriangleMesh make_rounded_box(const Eigen::Vector3f& size, int subdivisions);
+
+/// A capsule about the y axis: a cylinder of `radius` with half a sphere on each end, `height` metres in all, more than twice the
+/// radius; `segments` around the axis 3..2048.
+TriangleMesh make_capsule(float radius, float height, int segments);
+
 /// A ramp: a box without the half above its diagonal; it rises along x, from nothing at -x to the full height
 /// at +x.
 TriangleMesh make_wedge(const Eigen::Vector3f& size);

@@ -1,0 +1,36 @@
+#pragma once
+// What soft bodies of a scene hold on to, in two dimensions and three.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "softcell/render/frame.h"
+#include "softcell/soft_bodies/attachment.h"
+
+namespace softcell::demos {
+
+/// A patch of a soft body is held to another one, to a rigid body or to the world.
+template <int kDimension>
+struct AttachmentPlacement {
+  using Vector = Eigen::Vector<float, kDimension>;
+
+  std::size_t body = 0;              ///< number of the soft body
+  std::optional<std::size_t> other;  ///< of another one
+  std::optional<std::size_t> box;    ///< or of one of Scene::boxes, in three dimensions
+  std::optional<std::size_t> rigid;  ///< or of one of the scene's rigid_bodies
+  Vector at = Vector::Zero();        ///< the middle of the patch
+  float radius = 0;                  ///< of the patch
+  Vector other_at = Vector::Zero();  ///< of the patch of the other soft body
+  float other_radius = 0;
+  ppu::AttachmentSettings<kDimension> settings;
+  // How a rope is drawn:
+  float thickness = 0.03f;  ///< metres
+  render::Colour colour{0.32f, 0.22f, 0.12f};
+};
+/// Names of ppu::AttachmentKind in scene files, in the enum's order.
+inline constexpr std::array<std::string_view, 3> kAttachmentKinds{"weld", "hinge", "rope"};
+
+}  // namespace softcell::demos

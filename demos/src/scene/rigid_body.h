@@ -1,0 +1,65 @@
+#pragma once
+// Rigid bodies of several shapes, hinges between them, and bodies that the scene moves.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ppu/bullet/rigid_shape.h"
+#include "softcell/render/frame.h"
+
+namespace softcell::demos {
+
+/// How the scene moves a rigid body that nothing else moves, from where it is at the beginning.
+struct Motion {
+  /// A moment at which the body is somewhere. It goes from one to the next smoothly, at rest at both.
+  struct Stop {
+    float time = 0;                   ///< seconds, ascending
+    Eigen::Vector3f offset{0, 0, 0};  ///< metres, from where it is at the beginning
+    float angle = 0;                  ///< radians about `axis`, from how it is at the beginning
+  };
+  Eigen::Vector3f axis{0, 1, 0};   ///< of unit length, through the body's position
+  float spin = 0;                  ///< rad/s about the axis, all the time
+  Eigen::Vector3f swing{0, 0, 0};  ///< metres: it goes to and fro, as far as this to either side
+  float period = 1;                ///< seconds, of the swing
+  std::vector<Stop> stops;         ///< the first is at the beginning if no other is
+};
+
+struct RigidPart {
+  ppu::RigidShape shape;
+  render::Colour colour{0.8f, 0.8f, 0.8f};
+};
+
+struct RigidBody {
+  std::string name;
+  std::vector<RigidPart> parts;
+  float mass = 0;  ///< kg; 0: only `motion` moves it
+  Eigen::Vector3f position{0, 0, 0};
+  Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
+  std::optional<float> friction;  ///< none: the scene's
+  float opacity = 1;
+  std::optional<Motion> motion;
+};
+
+/// Two rigid bodies turn about an axis against each other. Of Scene::rigid_bodies, by their numbers.
+struct Joint {
+  std::size_t a = 0, b = 0;
+  Eigen::Vector3f point{0, 0, 0};  ///< metres, at the beginning
+  Eigen::Vector3f axis{1, 0, 0};   ///< of unit length
+  float speed = 0;                 ///< rad/s, of b against a: what its motor wants
+  float torque = 0;                ///< N m, of its motor; 0: it has none
+};
+
+/// Where a body is.
+struct Placement {
+  Eigen::Vector3f position{0, 0, 0};
+  Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
+};
+
+/// Where the scene moves a body, with the same bits on every host. @param time  seconds since the beginning  @pre body.motion
+Placement placement_at(const RigidBody& body, double time);
+
+}  // namespace softcell::demos

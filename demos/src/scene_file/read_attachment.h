@@ -1,0 +1,63 @@
+#pragma once
+// The items of `attach`, in two dimensions and three.
+
+#include <stdexcept>
+#include <string>
+
+#include "field_reader.h"
+#include "read_common.h"
+#include "scene/attachment_placement.h"
+
+namespace softcell::demos {
+
+/// Reads all fields but those that say what rigid body it is to, which have been read.
+/// @throws SceneError
+template <int kDimension, class SceneOf>
+void read_attachment(FieldReader& fields, const SceneOf& scene, AttachmentPlacement<kDimension>& attachment) {
+  constexpr Range kCompliance{.low = 0, .high = 1e6};
+  constexpr Range kForce{.low = 0, .high = 1e12, .low_excluded = true};
+  ppu::AttachmentSettings<kDimension>& settings = attachment.settings;
+  attachment.body = read_body(fields, scene);
+  std::string other;
+  std::size_t kind = 0;
+  Eigen::Vector<float, kDimension> point = Eigen::Vector<float, kDimension>::Zero();
+  bool touch = false;
+  fields.text("to", other)
+      .choice("kind", kind, kAttachmentKinds)
+      .template vector<kDimension>("at", attachment.at, kCoordinate, Need::kRequired)
+      .number("radius", attachment.radius, kLength, Need::kRequired);
+  attachment.other_at = attachment.at;
+  attachment.other_radius = attachment.radius;
+  if constexpr (kDimension == 3) fields.template vector<3>("axis", settings.axis, kCoordinate);
+  fields.template vector<kDimension>("other_at", attachment.other_at, kCoordinate)
+      .number("other_radius", attachment.other_radius, kLength)
+      .template vector<kDimension>("point", point, kCoordinate)
+      .number("length", settings.length, kLength)
+      .number("compliance", settings.compliance, kCompliance)
+      .number("break_force", settings.break_force, kForce)
+      .flag("touch", touch)
+      .number("thickness", attachment.thickness, kLength)
+      .colour("colour", attachment.colour)
+      .finish();
+  settings.kind = static_cast<ppu::AttachmentKind>(kind);
+  if (fields.has("point")) settings.point = point;
+  if (fields.has("touch")) settings.touch = touch;
+  if (fields.has("to") + fields.has("box") + fields.has("rigid") > 1) {
+    throw SceneError(fields.place(), fmt::format("{} has several of to{} rigid; it may have one of them",
+                                                 fields.what(), kDimension == 3 ? ", box and" : " and"));
+  }
+  if (fields.has("to")) attachment.other = find_body(other, fields.place("to"), scene);
+  if (attachment.other == attachment.body)
+    throw SceneError(fields.place("to"), fields.what() + " attaches '" + other + "' to itself");
+  try {
+    ppu::validate(settings);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(fields.place(), fields.what() + ": " + error.what());
+  }
+  if (settings.kind == ppu::AttachmentKind::kRope && !settings.point && !attachment.box &&
+      !attachment.rigid && !attachment.other)
+    throw SceneError(fields.place(),
+                     fields.what() + " is a rope to the world; it needs the point of its other end");
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,332 @@
+#include "ppu/box2d/box2d_attachments.h"
+
+#include <box2d/b2_contact_manager.h>
+#include <box2d/b2_fixture.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "ppu/contacts/attachment_patch.h"
+#include "ppu/numbers/deterministic_math.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector2f;
+
+constexpr int kIterations = 20;  // of attachments that share bodies
+
+Eigen::Matrix2f rotation_of(float angle) {
+  const auto s = static_cast<float>(sine(double{angle})), c = static_cast<float>(cosine(double{angle}));
+  Eigen::Matrix2f rotation;
+  rotation << c, -s, s, c;
+  return rotation;
+}
+
+AttachmentFrame<2> frame_of(const b2Body& rigid) {
+  const b2Transform& pose = rigid.GetTransform();
+  AttachmentFrame<2> frame;
+  frame.position = frame.end_position = to_eigen(pose.p);
+  frame.rotation << pose.q.c, -pose.q.s, pose.q.s, pose.q.c;
+  frame.end_rotation = frame.rotation;
+  return frame;
+}
+
+bool touches(const AttachmentSettings<2>& settings) {
+  return settings.touch.value_or(settings.kind == AttachmentKind::kRope);
+}
+
+}  // namespace
+
+Box2dAttachments::~Box2dAttachments() {
+  if (filter_before_ != nullptr && world_.GetContactManager().m_contactFilter == this)
+    world_.SetContactFilter(filter_before_);
+}
+
+/// Asked by Box2D about two that are new to each other.
+bool Box2dAttachments::ShouldCollide(b2Fixture* a, b2Fixture* b) {
+  if (!filter_before_->ShouldCollide(a, b)) return false;
+  const Box2dBody* const soft_a = soft_body_of_(*a->GetBody());
+  const Box2dBody* const soft_b = soft_body_of_(*b->GetBody());
+  const auto is = [](const Link& link, const Box2dBody* soft, const Box2dBody* other, const b2Body* rigid) {
+    return soft != nullptr && link.a == soft &&
+           (other != nullptr ? link.b == other : link.rigid != nullptr && link.rigid == rigid);
+  };
+  return std::none_of(links_.begin(), links_.end(), [&](const auto& link) {
+    return !link->touch &&
+           (is(*link, soft_a, soft_b, b->GetBody()) || is(*link, soft_b, soft_a, a->GetBody()));
+  });
+}
+
+/// Box2D asks the filter again about all that touches the bodies of a link.
+void Box2dAttachments::refilter(const Link& link) {
+  if (link.touch) return;
+  if (filter_before_ == nullptr) {
+    filter_before_ = world_.GetContactManager().m_contactFilter;
+    world_.SetContactFilter(this);
+  }
+  for (b2Body* const particle : link.a->particles())
+    for (b2Fixture* fixture = particle->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
+      fixture->Refilter();
+}
+
+void Box2dAttachments::wake(const Link& link) {
+  for (Box2dBody* const body : {link.a, link.b})
+    if (body != nullptr && body->soft().asleep()) body->wake();
+  if (link.rigid != nullptr) link.rigid->SetAwake(true);
+}
+
+AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, b2Body* rigid,
+                                   const AttachmentSettings<2>& settings) {
+  validate(settings);
+  AttachmentSettings<2> full = settings;
+  const PatchParticles<2> particles = particles_of(patch, body.soft());
+  AttachmentFrame<2> frame;
+  if (rigid != nullptr) {
+    if (!is_there(*rigid))
+      throw std::invalid_argument("the rigid body of an attachment is not in this world");
+    if (soft_body_of_(*rigid) != nullptr)
+      throw std::invalid_argument("the rigid body of an attachment is a particle of a soft one");
+    frame = frame_of(*rigid);
+    if (settings.kind == AttachmentKind::kRope && !full.point) full.point = to_eigen(rigid->GetWorldCenter());
+  } else {
+    if (settings.kind == AttachmentKind::kRope && !full.point)
+      throw std::invalid_argument("a rope to the world has no point; it needs the place of its other end");
+    frame.position = frame.end_position = full.point.value_or(particles.middle());
+  }
+  return add(Link{.a = &body,
+                  .rigid = rigid,
+                  .touch = touches(full),
+                  .rows = AttachmentRows<2>(full, particles, frame),
+                  .hold = {.frame = frame, .goal = frame.position}});
+}
+
+AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, Box2dBody& other,
+                                   const Patch<2>& other_patch, const AttachmentSettings<2>& settings) {
+  validate(settings);
+  if (&body == &other) throw std::invalid_argument("a soft body cannot be attached to itself");
+  return add(Link{.a = &body,
+                  .b = &other,
+                  .touch = touches(settings),
+                  .rows = AttachmentRows<2>(settings, particles_of(patch, body.soft()),
+                                            particles_of(other_patch, other.soft())),
+                  .hold = {}});
+}
+
+AttachmentId Box2dAttachments::add(Link link) {
+  SC_ASSERT(!world_.IsLocked(), "attachment {} is made within a step of Box2D", next_);
+  end_gone();
+  link.id = AttachmentId{next_++};
+  links_.push_back(std::make_unique<Link>(std::move(link)));
+  wake(*links_.back());
+  refilter(*links_.back());
+  return links_.back()->id;
+}
+
+Box2dAttachments::Link& Box2dAttachments::find(AttachmentId id) {
+  const auto found = std::ranges::find_if(links_, [&](const auto& link) { return link->id == id; });
+  if (found == links_.end())
+    throw std::invalid_argument("there is no attachment " + std::to_string(static_cast<std::uint32_t>(id)));
+  return **found;
+}
+
+void Box2dAttachments::end_links(EndedAttachment::Reason reason, const std::vector<bool>& which) {
+  if (std::ranges::find(which, true) == which.end()) return;
+  std::vector<std::unique_ptr<Link>> left, gone;
+  for (std::size_t i = 0; i < links_.size(); ++i) (which[i] ? gone : left).push_back(std::move(links_[i]));
+  links_ = std::move(left);
+  for (const auto& link : gone) {
+    ended_.push_back({link->id, reason});
+    wake(*link);
+    refilter(*link);
+  }
+}
+
+void Box2dAttachments::remove(AttachmentId id) {
+  end_gone();
+  const Link& removed = find(id);
+  const auto found = std::ranges::find_if(links_, [&](const auto& link) { return link.get() == &removed; });
+  const std::unique_ptr<Link> link = std::move(*found);
+  links_.erase(found);
+  wake(*link);
+  refilter(*link);
+}
+
+void Box2dAttachments::move(AttachmentId id, const Vector2f& position, float angle, float seconds) {
+  Link& link = find(id);
+  if (link.b != nullptr || link.rigid != nullptr)
+    throw std::invalid_argument("an attachment to another body cannot be moved; only those to the world can");
+  if (!position.allFinite() || !std::isfinite(angle))
+    throw std::invalid_argument(
+        "an attachment is moved to a place, or turned by an angle, that is not finite");
+  if (!(seconds >= 0) || !std::isfinite(seconds))
+    throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
+                                " s; it must be 0 or above, and finite");
+  link.hold.goal = position;
+  link.hold.goal_angle = angle;
+  link.hold.seconds = seconds;
+  link.hold.moves = true;
+  wake(link);
+}
+
+std::optional<AttachmentState<2>> Box2dAttachments::state(AttachmentId id) const {
+  for (const auto& link : links_)
+    if (link->id == id) return link->rows.state();
+  return std::nullopt;
+}
+
+std::optional<AttachmentEnds<2>> Box2dAttachments::ends(AttachmentId id) const {
+  for (const auto& link : links_) {
+    if (link->id != id) continue;
+    if (link->rigid != nullptr && !is_there(*link->rigid)) return std::nullopt;
+    return link->rows.ends(link->a->soft().positions(),
+                           link->b != nullptr ? link->b->soft().positions() : std::span<const Vector2f>(),
+                           link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
+  }
+  return std::nullopt;
+}
+
+std::vector<EndedAttachment> Box2dAttachments::take_ended() { return std::exchange(ended_, {}); }
+
+void Box2dAttachments::forget(const Box2dBody& body) {
+  end_gone();
+  std::vector<bool> which;
+  for (const auto& link : links_) which.push_back(link->a == &body || link->b == &body);
+  end_links(EndedAttachment::Reason::kGone, which);
+}
+
+bool Box2dAttachments::holds(const Box2dBody& body) const {
+  return std::ranges::any_of(links_, [&](const auto& link) { return link->a == &body || link->b == &body; });
+}
+
+/// Without a look at the body, which may be no more.
+bool Box2dAttachments::is_there(const b2Body& rigid) const {
+  for (const b2Body* body = world_.GetBodyList(); body != nullptr; body = body->GetNext())
+    if (body == &rigid) return true;
+  return false;
+}
+
+void Box2dAttachments::end_gone() {
+  std::vector<bool> gone;
+  for (const auto& link : links_) {
+    gone.push_back(link->rigid != nullptr && !is_there(*link->rigid));
+    if (gone.back()) link->rigid = nullptr;
+  }
+  end_links(EndedAttachment::Reason::kGone, gone);
+}
+
+void Box2dAttachments::begin(const Box2dBody& body, InStep& in_step, float step) const {
+  const SoftBody<2>& soft = body.soft();
+  const Vector2f fall = step * to_eigen(world_.GetGravity());
+  in_step.velocities.assign(soft.velocities().begin(), soft.velocities().end());
+  for (Vector2f& v : in_step.velocities) v += fall;
+  in_step.pushes.assign(in_step.velocities.size(), Vector2f::Zero());
+  in_step.inverse_masses.clear();
+  for (const float mass : soft.model().masses())
+    in_step.inverse_masses.push_back(soft.asleep() ? 0 : 1 / mass);
+}
+
+void Box2dAttachments::finish(Box2dBody& body, const InStep& in_step, float step) const {
+  if (body.soft().asleep()) return;
+  const Vector2f fall = step * to_eigen(world_.GetGravity());
+  for (std::size_t i = 0; i < in_step.velocities.size(); ++i)
+    body.soft().set_velocity(i, in_step.velocities[i] - fall);
+  for (std::size_t i = 0; i < in_step.pushes.size(); ++i)
+    if (!in_step.pushes[i].isZero(0)) body.move_particle(i, step * in_step.pushes[i]);
+}
+
+/// Of a rigid body among those of the step.
+std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
+  const auto known = std::ranges::find(rigid_bodies_, &rigid);
+  if (known != rigid_bodies_.end()) return static_cast<std::uint32_t>(known - rigid_bodies_.begin());
+  AttachedRigid2d& added = rigids_.emplace_back();
+  added.centre = to_eigen(rigid.GetWorldCenter());
+  added.velocity = to_eigen(rigid.GetLinearVelocity());
+  added.spin = rigid.GetAngularVelocity();
+  if (rigid.GetType() == b2_dynamicBody) {
+    added.velocity += step * rigid.GetGravityScale() * to_eigen(world_.GetGravity());
+    added.inverse_mass = 1 / rigid.GetMass();
+    const float inertia = rigid.GetInertia() - rigid.GetMass() * rigid.GetLocalCenter().LengthSquared();
+    added.inverse_inertia = !rigid.IsFixedRotation() && inertia > 0 ? 1 / inertia : 0;
+  }
+  rigid_bodies_.push_back(&rigid);
+  return static_cast<std::uint32_t>(rigids_.size() - 1);
+}
+
+void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step) {
+  end_gone();
+  if (links_.empty()) return;
+  SC_ASSERT(step > 0, "a time step of {} s", step);
+  in_step_.resize(bodies.size());
+  bodies_.assign(bodies.size(), {});
+  std::vector<bool> held(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    held[i] = holds(*bodies[i]);
+    if (!held[i]) continue;
+    begin(*bodies[i], in_step_[i], step);
+    const SoftBody<2>& soft = bodies[i]->soft();
+    bodies_[i] = {soft.positions(),           in_step_[i].velocities,         in_step_[i].pushes,
+                  in_step_[i].inverse_masses, soft.model().lattice().spacing, soft.asleep()};
+  }
+  const auto number = [&](const Box2dBody* body) {
+    const auto found = std::ranges::find_if(bodies, [&](const auto& other) { return other.get() == body; });
+    SC_ASSERT(found != bodies.end(), "an attached body is none of {}", bodies.size());
+    return static_cast<std::uint32_t>(found - bodies.begin());
+  };
+  rigids_.clear();
+  rigid_bodies_.clear();
+  attachments_.clear();
+  for (const auto& link : links_) {
+    if (link->hold.moves) link->hold.begin(step);
+    AttachmentInStep<2> in_step{
+        .rows = &link->rows, .a = number(link->a), .frame = link->hold.frame, .touch = link->touch};
+    if (link->b != nullptr) {
+      in_step.b = number(link->b);
+    } else if (link->rigid != nullptr) {
+      in_step.rigid = number_of(*link->rigid, step);
+      in_step.frame = frame_of(*link->rigid);
+    }
+    attachments_.add(in_step);
+  }
+  attachments_.begin(bodies_, rigids_, step);
+  attachments_.iterate(kIterations);
+  attachments_.finish();
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (held[i]) finish(*bodies[i], in_step_[i], step);
+  for (std::size_t i = 0; i < rigids_.size(); ++i) {
+    b2Body& rigid = *rigid_bodies_[i];
+    if (rigid.GetType() != b2_dynamicBody) continue;
+    rigid.SetLinearVelocity(
+        to_box2d(rigids_[i].velocity - step * rigid.GetGravityScale() * to_eigen(world_.GetGravity())));
+    rigid.SetAngularVelocity(rigids_[i].spin);
+  }
+  std::vector<bool> broken;
+  for (const auto& link : links_) {
+    if (link->hold.moves) link->hold.end();
+    broken.push_back(link->rows.broke());
+  }
+  end_links(EndedAttachment::Reason::kBroken, broken);
+}
+
+/// Evenly, and in the last step to its goal exactly.
+void Box2dAttachments::Hold::begin(float step) {
+  const bool arrives = !(step < seconds);
+  const float share = arrives ? 1.0f : step / seconds;
+  frame.end_position = arrives ? goal : Vector2f(frame.position + share * (goal - frame.position));
+  angle = arrives ? goal_angle : angle + share * (goal_angle - angle);
+  frame.end_rotation = rotation_of(angle);
+  seconds -= step;
+  moves = true;
+}
+
+void Box2dAttachments::Hold::end() {
+  frame.position = frame.end_position;
+  frame.rotation = frame.end_rotation;
+  moves = seconds > 0;
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,105 @@
+#pragma once
+// The attachments of soft bodies in a Box2D world: they change velocities behind the solver and before Box2D's step, whose contacts
+// come after them.
+
+#include <box2d/b2_body.h>
+#include <box2d/b2_world.h>
+#include <box2d/b2_world_callbacks.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ppu/box2d/box2d_body.h"
+#include "ppu/contacts/attachments.h"
+#include "softcell/soft_bodies/attachment.h"
+
+namespace softcell::ppu {
+
+/// Used by the thread that steps the world.
+class Box2dAttachments final : private b2ContactFilter {
+ public:
+  /// @param soft_body_of  the soft body that a b2Body is a particle of; null: none
+  Box2dAttachments(b2World& world, std::function<Box2dBody*(const b2Body&)> soft_body_of)
+      : world_(world), soft_body_of_(std::move(soft_body_of)) {}
+  ~Box2dAttachments() override;
+  Box2dAttachments(const Box2dAttachments&) = delete;
+  Box2dAttachments& operator=(const Box2dAttachments&) = delete;
+
+  /// To the world, or to a rigid body of it. @throws std::invalid_argument  as Box2dSoftBodies::attach().
+  AttachmentId add(Box2dBody& body, const Patch<2>& patch, b2Body* rigid,
+                   const AttachmentSettings<2>& settings);
+  /// To another soft body. @throws as above.
+  AttachmentId add(Box2dBody& body, const Patch<2>& patch, Box2dBody& other, const Patch<2>& other_patch,
+                   const AttachmentSettings<2>& settings);
+  void remove(AttachmentId id);  ///< @throws std::invalid_argument  there is none of that number.
+  /// @throws std::invalid_argument  there is none of that number, or it is none to the world.
+  void move(AttachmentId id, const Eigen::Vector2f& position, float angle, float seconds);
+  std::optional<AttachmentState<2>> state(AttachmentId id) const;
+  std::optional<AttachmentEnds<2>> ends(AttachmentId id) const;
+  std::vector<EndedAttachment> take_ended();
+  /// A soft body goes, and its attachments with it.
+  void forget(const Box2dBody& body);
+  bool holds(const Box2dBody& body) const;
+
+  /// Behind the solver of a step: changes velocities, and moves particles by what is left of errors of position.
+  void solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step);
+
+ private:
+  /// Where the world holds a link, and where the program moves that to.
+  struct Hold {
+    AttachmentFrame<2> frame{};
+    Eigen::Vector2f goal{0, 0};
+    float angle = 0, goal_angle = 0;  // radians
+    float seconds = 0;                // until it is there
+    bool moves = false;
+
+    void begin(float step);  ///< where it will be at the step's end
+    void end();
+  };
+  struct Link {
+    AttachmentId id{};
+    Box2dBody* a = nullptr;
+    Box2dBody* b = nullptr;   // null: a rigid body or the world
+    b2Body* rigid = nullptr;  // null: the world
+    bool touch = false;
+    AttachmentRows<2> rows;
+    Hold hold;
+  };
+  /// A soft body in one step.
+  struct InStep {
+    std::vector<Eigen::Vector2f> velocities, pushes;  // m/s; velocities with this step's gravity
+    std::vector<float> inverse_masses;
+  };
+
+  bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
+  AttachmentId add(Link link);
+  Link& find(AttachmentId id);
+  bool is_there(const b2Body& rigid) const;
+  void end_gone();
+  void end_links(EndedAttachment::Reason reason, const std::vector<bool>& which);
+  void refilter(const Link& link);
+  static void wake(const Link& link);
+  void begin(const Box2dBody& body, InStep& in_step, float step) const;
+  void finish(Box2dBody& body, const InStep& in_step, float step) const;
+  std::uint32_t number_of(b2Body& rigid, float step);
+
+  b2World& world_;
+  std::function<Box2dBody*(const b2Body&)> soft_body_of_;
+  b2ContactFilter* filter_before_ = nullptr;  // the world's, once this one is in its place
+  std::vector<std::unique_ptr<Link>> links_;
+  std::vector<EndedAttachment> ended_;
+  std::uint32_t next_ = 0;
+  // Of a step:
+  Attachments<2> attachments_;
+  std::vector<InStep> in_step_;
+  std::vector<AttachedBody<2>> bodies_;
+  std::vector<AttachedRigid2d> rigids_;
+  std::vector<b2Body*> rigid_bodies_;
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,222 @@
+// What must be true of attachments in a Box2D world.
+
+#include <gtest/gtest.h>
+
+#include <box2d/b2_circle_shape.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "soft_body_2d_scenes.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector2f;
+
+constexpr float kCellOf2d = 0.1f, kStepOf2d = 1.0f / 120;
+
+SoftBodySettings firm() {
+  SoftBodySettings settings;
+  settings.cell_size = kCellOf2d;
+  settings.half_width = 2;
+  settings.density = 100;
+  settings.alpha = 0.6f;
+  settings.damping = 0.4f;
+  return settings;
+}
+
+Vector2f middle_of(const SoftBody<2>& body) { return body.centre_of_mass(); }
+
+float mass_of_body(const SoftBody<2>& body) {
+  float sum = 0;
+  for (const float mass : body.model().masses()) sum += mass;
+  return sum;
+}
+
+Eigen::Vector2d momentum_of_all(const Box2dSoftBodies& bodies) {
+  Eigen::Vector2d sum(0, 0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (std::size_t i = 0; i < bodies[b].model().particles(); ++i) {
+      sum += double{bodies[b].model().masses()[i]} * bodies[b].velocities()[i].cast<double>();
+    }
+  }
+  return sum;
+}
+
+/// A hung body with another standing on it carries both, and no rope is longer than its length by more than 1 %.
+TEST(Box2dAttachments, AHungBodyCarriesOneThatStandsOnIt) {
+  World2d w;
+  const SoftBody<2>& plank = w.soft.add(rectangle_model({12, 2}, firm()), {0, 1});
+  const SoftBody<2>& load = w.soft.add(rectangle_model({4, 4}, firm()), {0, 1.35f});
+  std::vector<AttachmentId> ropes;
+  for (const float x : {-0.55f, 0.55f})
+    ropes.push_back(w.soft.attach(plank, Patch<2>::of_surface({x, 1.2f}, 0.12f),
+                                  {.kind = AttachmentKind::kRope, .point = Vector2f(x, 3)}));
+  float longest = 0;
+  for (int i = 0; i < 1200; ++i) {
+    w.soft.step(kStepOf2d);
+    for (const AttachmentId rope : ropes) {
+      const auto ends = w.soft.attachment_ends(rope);
+      ASSERT_TRUE(ends);
+      longest = std::max(longest, (ends->patch - ends->other).norm() / ends->length);
+    }
+  }
+  EXPECT_LT(longest, 1.01f);
+  EXPECT_GT(middle_of(load).y(), middle_of(plank).y() + 0.2f);
+  float carried = 0;
+  constexpr int kSteps = 480;  // of some bounces
+  for (int i = 0; i < kSteps; ++i) {
+    w.soft.step(kStepOf2d);
+    for (const AttachmentId rope : ropes) carried += w.soft.attachment(rope)->force.y() / kSteps;
+  }
+  EXPECT_NEAR(carried, 9.81f * (mass_of_body(plank) + mass_of_body(load)), 0.03f * carried);
+}
+
+TEST(Box2dAttachments, TwoFreeBodiesKeepTheirMomentum) {
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
+    World2d w(0);
+    SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
+    SoftBody<2>& b = w.soft.add(rectangle_model({4, 4}, firm()), {0.6f, 0.05f});
+    w.soft.attach(a, Patch<2>::of_surface({0.2f, 0.2f}, 0.17f), b, Patch<2>::of_surface({0.4f, 0.2f}, 0.17f),
+                  {.kind = kind});
+    a.add_velocity({1, 2});
+    b.add_velocity({3, -1});
+    b.add_angular_velocity(4);
+    const Eigen::Vector2d before = momentum_of_all(w.soft);
+    const double size = double{mass_of_body(a)} * std::sqrt(5.0) + double{mass_of_body(b)} * std::sqrt(10.0);
+    w.run(500 * kStepOf2d);
+    const Eigen::Vector2d after = momentum_of_all(w.soft);
+    EXPECT_LT((after - before).norm(), 1e-5 * size);
+    EXPECT_LT((middle_of(a) - middle_of(b)).norm(), 1.2f) << "they are attached";
+    EXPECT_LT(a.deformation(), kCellOf2d);
+  }
+}
+
+TEST(Box2dAttachments, AHingeToARigidBodyCarriesIt) {
+  World2d w;
+  const SoftBody<2>& top = w.soft.add(rectangle_model({6, 2}, firm()), {0, 2});
+  w.soft.attach(top, Patch<2>::of_surface({0, 2.2f}, 0.15f));
+  b2Body* const bar = w.add_box({0, 1.5f}, {0.05f, 0.45f}, 20);
+  const AttachmentId hinge = w.soft.attach(top, Patch<2>::of_surface({0, 2.0f}, 0.12f), *bar,
+                                           {.kind = AttachmentKind::kHinge, .point = Vector2f(0, 1.95f)});
+  bar->ApplyLinearImpulseToCenter({0.5f * bar->GetMass(), 0}, true);
+  float farthest = 0;
+  for (int i = 0; i < 240; ++i) {
+    w.soft.step(kStepOf2d);
+    farthest = std::max(farthest, std::abs(bar->GetAngle()));
+    ASSERT_LT(w.soft.attachment(hinge)->gap, 0.02f) << i;
+  }
+  EXPECT_GT(farthest, 0.1f) << "it swings";
+  EXPECT_GT(bar->GetPosition().y, 1.4f) << "and does not fall";
+}
+
+TEST(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
+  for (const float share : {0.9f, 3.0f}) {  // it falls into the rope, and swings up and down in it
+    World2d w;
+    const SoftBody<2>& lamp = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
+    const float weight = 9.81f * mass_of_body(lamp);
+    const AttachmentId id = w.soft.attach(lamp, Patch<2>::of_surface({0, 0.4f}, 0.12f),
+                                          {.kind = AttachmentKind::kRope,
+                                           .point = Vector2f(0, 1.5f),
+                                           .compliance = 1e-4f,
+                                           .break_force = 10 * weight});
+    w.run(3);
+    ASSERT_TRUE(w.soft.attachment(id)) << "it hangs still";
+    w.soft.detach(id);
+    w.soft[0].reset({0, 0});
+    const AttachmentId weak = w.soft.attach(
+        lamp, Patch<2>::of_surface({0, 0.4f}, 0.12f),
+        {.kind = AttachmentKind::kRope, .point = Vector2f(0, 1.5f), .break_force = share * weight});
+    w.run(1);
+    EXPECT_EQ(w.soft.attachment(weak).has_value(), share > 1) << share;
+    const auto ended = w.soft.take_ended_attachments();
+    EXPECT_EQ(ended.size(), share > 1 ? 0u : 1u);
+    for (const EndedAttachment& one : ended) EXPECT_EQ(one.reason, EndedAttachment::Reason::kBroken);
+  }
+}
+
+TEST(Box2dAttachments, FollowAPointThatTheProgramMoves) {
+  World2d w(0);
+  const SoftBody<2>& body = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
+  const AttachmentId id = w.soft.attach(body, Patch<2>::of_surface({0, 0.2f}, 0.2f));
+  const Vector2f from = middle_of(body);
+  w.soft.move_attachment(id, from + Vector2f(1, 0.5f), 1.5707963f, 1);
+  w.run(2);
+  EXPECT_LT((middle_of(body) - from - Vector2f(1, 0.5f)).norm(), 0.02f);
+  const Vector2f across = body.position(body.model().particles() - 1) - body.position(0);
+  EXPECT_LT(std::abs(std::atan2(across.y(), across.x()) - std::atan2(1.0f, 1.0f) - 1.5707963f), 0.05f);
+}
+
+/// Two that are welded overlap where they lie, and do not push each other apart; when they are free they do.
+TEST(Box2dAttachments, WhatIsWeldedDoesNotTouchEachOther) {
+  World2d w(0);
+  const SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
+  const SoftBody<2>& b = w.soft.add(rectangle_model({4, 4}, firm()), {0.45f, 0});
+  const AttachmentId id = w.soft.attach(a, Patch<2>::of_surface({0.15f, 0.2f}, 0.2f), b,
+                                        Patch<2>::of_surface({0.15f, 0.2f}, 0.2f));
+  w.run(1);
+  EXPECT_NEAR((middle_of(a) - middle_of(b)).norm(), 0.45f, 0.01f);
+  w.soft.detach(id);
+  w.run(1);
+  EXPECT_GT((middle_of(a) - middle_of(b)).norm(), 0.48f);
+}
+
+TEST(Box2dAttachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
+  World2d w;
+  SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 1});
+  SoftBody<2>& b = w.soft.add(rectangle_model({4, 4}, firm()), {0.6f, 1});
+  b2Body* const bar = w.add_box({0, 3}, {0.1f, 0.1f}, 5);
+  const auto patch = [](const SoftBody<2>& body) {
+    return Patch<2>::of_surface(body.centre_of_mass(), 0.2f);
+  };
+  const AttachmentId to_bar = w.soft.attach(a, patch(a), *bar);
+  const AttachmentId to_b = w.soft.attach(a, patch(a), b, patch(b));
+  w.run(0.1f);
+  w.box2d.DestroyBody(bar);
+  w.soft.step(kStepOf2d);
+  EXPECT_FALSE(w.soft.attachment(to_bar));
+  w.soft.remove(b);
+  EXPECT_FALSE(w.soft.attachment(to_b));
+  const auto ended = w.soft.take_ended_attachments();
+  ASSERT_EQ(ended.size(), 2u);
+  for (const EndedAttachment& one : ended) EXPECT_EQ(one.reason, EndedAttachment::Reason::kGone);
+  w.run(0.1f);
+}
+
+TEST(Box2dAttachments, SayWhatIsOutOfRange) {
+  World2d w, other;
+  SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 1});
+  SoftBody<2>& stranger = other.soft.add(rectangle_model({4, 4}, firm()), {0, 1});
+  b2Body* const elsewhere = other.add_box({0, 0}, {1, 1});
+  const auto patch = Patch<2>::of_surface(a.centre_of_mass(), 0.2f);
+  EXPECT_THROW(w.soft.attach(stranger, patch), std::invalid_argument);
+  EXPECT_THROW(w.soft.attach(a, patch, a, patch), std::invalid_argument);
+  EXPECT_THROW(w.soft.attach(a, patch, *elsewhere), std::invalid_argument);
+  EXPECT_THROW(w.soft.attach(a, patch, *w.box2d.GetBodyList()), std::invalid_argument) << "a particle";
+  EXPECT_THROW(w.soft.attach(a, Patch<2>::of_surface({9, 9}, 0.2f)), std::invalid_argument);
+  EXPECT_THROW(w.soft.attach(a, patch, {.kind = AttachmentKind::kRope}), std::invalid_argument);
+  EXPECT_THROW(w.soft.detach(AttachmentId{7}), std::invalid_argument);
+  const AttachmentId id = w.soft.attach(a, patch);
+  EXPECT_THROW(w.soft.move_attachment(id, {NAN, 0}), std::invalid_argument);
+  EXPECT_THROW(w.soft.move_attachment(id, {0, 0}, 0, -1), std::invalid_argument);
+}
+
+/// A world without attachments has its own filter, and gets it back.
+TEST(Box2dAttachments, LeaveTheWorldsFilterAsItWas) {
+  b2World world({0, 0});
+  b2ContactFilter* const before = world.GetContactManager().m_contactFilter;
+  {
+    Box2dSoftBodies soft(world);
+    const SoftBody<2>& a = soft.add(rectangle_model({4, 4}, firm()), {0, 0});
+    EXPECT_EQ(world.GetContactManager().m_contactFilter, before);
+    soft.attach(a, Patch<2>::of_surface({0, 0.2f}, 0.2f));
+  }
+  EXPECT_EQ(world.GetContactManager().m_contactFilter, before);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
