@@ -104,6 +104,21 @@ class Hash {
     const auto& [shape, mass, position, angle, colour] = body;
     add(shape, mass, position, angle);
   }
+  template <int Dimension>
+  void add(const Beginning<Dimension>& begin) {
+    const auto& [gravity, tilt, time_scale, frames, seconds, soft_bodies, rigid_bodies, ended_attachments] =
+        begin;
+    add(gravity, tilt, time_scale, frames, seconds, ended_attachments);
+    for (const auto& [positions, velocities] : soft_bodies) add(positions, velocities);
+    for (const auto& [body, position, rotation, velocity, angular_velocity] : rigid_bodies) {
+      add(body, position, velocity, angular_velocity);
+      if constexpr (Dimension == 3) {
+        add(Eigen::Vector4f(rotation.coeffs()));
+      } else {
+        add(rotation);
+      }
+    }
+  }
 
   std::uint64_t value_ = 0;
 };
@@ -112,21 +127,24 @@ class Hash {
 
 std::uint64_t scene_hash(const Scene& scene) {
   const auto& [name, title, soft_bodies, boxes, obstacles, attachments, tilt, gravity, friction, restitution,
-               substeps, contacts, frames, camera, light, script, pictures, files, notes] = scene;
+               substeps, contacts, frames, camera, light, script, pictures, files, notes, begin, document] =
+      scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
   if (!attachments.empty()) hash.add('a', attachments);  // unlike a scene that has none
+  if (begin) hash.add('b', *begin);
   return hash.value();
 }
 
 std::uint64_t scene_hash(const Scene2d& scene) {
   const auto& [name, title, soft_bodies, rigid_bodies, gravity, friction, restitution, substeps, frames,
-               camera, script, pictures, files] = scene;
+               camera, script, pictures, files, begin, document] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
+  if (begin) hash.add('b', *begin);
   return hash.value();
 }
 
