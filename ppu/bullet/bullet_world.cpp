@@ -114,6 +114,16 @@ struct BulletWorld::Impl {
       rigid.body->setInterpolationWorldTransform(rigid.end);
     }
   }
+
+  void put(btRigidBody& body, const btTransform& pose, const btVector3& velocity, const btVector3& turn) {
+    body.setWorldTransform(pose);
+    body.setInterpolationWorldTransform(pose);
+    body.setLinearVelocity(velocity);
+    body.setAngularVelocity(turn);
+    body.clearForces();
+    world.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseProxy(),
+                                                                          &dispatcher);
+  }
 };
 
 BulletWorld::BulletWorld() : impl_(std::make_unique<Impl>()) {
@@ -230,16 +240,29 @@ std::size_t BulletWorld::add_convex(const TriangleMesh& mesh, const Eigen::Vecto
 
 void BulletWorld::reset() {
   for (RigidBody& rigid : impl_->bodies) {
-    btRigidBody& body = *rigid.body;
-    body.setWorldTransform(rigid.start);
-    body.setInterpolationWorldTransform(rigid.start);
-    body.setLinearVelocity({0, 0, 0});
-    body.setAngularVelocity({0, 0, 0});
-    body.clearForces();
+    impl_->put(*rigid.body, rigid.start, {0, 0, 0}, {0, 0, 0});
     rigid.end = rigid.start;
-    impl_->world.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseProxy(),
-                                                                                 &impl_->dispatcher);
   }
+}
+
+bool BulletWorld::moves(std::size_t body) const { return impl_->bodies.at(body).body->getInvMass() > 0; }
+
+BulletWorld::Motion BulletWorld::motion(std::size_t body) const {
+  const btRigidBody& rigid = *impl_->bodies.at(body).body;
+  const btTransform& pose = rigid.getWorldTransform();
+  return {.position = to_eigen(pose.getOrigin()),
+          .rotation = Eigen::Quaternionf(to_eigen(pose.getBasis())).normalized(),
+          .velocity = to_eigen(rigid.getLinearVelocity()),
+          .angular_velocity = to_eigen(rigid.getAngularVelocity())};
+}
+
+void BulletWorld::put(std::size_t body, const Motion& motion) {
+  SC_ASSERT(moves(body), "rigid body {} does not move, and is put elsewhere", body);
+  const Eigen::Quaternionf& q = motion.rotation;
+  SC_ASSERT(std::abs(q.norm() - 1) < 1e-3f, "a rotation of rigid body {} has the length {}", body, q.norm());
+  impl_->put(*impl_->bodies.at(body).body,
+             btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(motion.position)),
+             to_bullet(motion.velocity), to_bullet(motion.angular_velocity));
 }
 
 Eigen::Matrix4f BulletWorld::pose(std::size_t body) const {

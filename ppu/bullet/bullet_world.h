@@ -72,7 +72,19 @@ class BulletWorld {
   void reset();
 
   Eigen::Matrix4f pose(std::size_t body) const;  ///< from the body's frame to the world's
-  btRigidBody& rigid_body(std::size_t body);     ///< for what is not offered here
+
+  /// Where a body is and how it moves: metres, m/s, rad/s.
+  struct Motion {
+    Eigen::Vector3f position{0, 0, 0};  ///< of its centre
+    Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();
+    Eigen::Vector3f velocity{0, 0, 0}, angular_velocity{0, 0, 0};
+  };
+  bool moves(std::size_t body) const;  ///< has a mass above 0
+  Motion motion(std::size_t body) const;
+  /// Puts a body elsewhere, moving as stated. Its contacts are found anew. @pre moves(body); of unit length
+  void put(std::size_t body, const Motion& motion);
+
+  btRigidBody& rigid_body(std::size_t body);  ///< for what is not offered here
   std::size_t rigid_bodies() const;
 
   void set_gravity(const Eigen::Vector3f& gravity);  ///< m/s^2

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # The demos' windows under a virtual X server, with a real mouse and keys: what the user does is in the recording, and the replay
 # ends in the same state, in a window and without. Without a display they say so in one sentence.
-#   play_test.sh SOFTCELL [FOLDER FOR SCREENSHOTS]
+#   play_test.sh SOFTCELL DROP_FILE [FOLDER FOR SCREENSHOTS]
 set -euo pipefail
 source "$(dirname "$0")/../../ci/virtual-display"
-softcell=$1
+softcell=$(realpath "$1")
+drop_file=$(realpath "$2")
 folder=$(mktemp -d)
-shots=${2:-$folder}
+shots=$(realpath "${3:-$folder}")
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
 fail() { echo "play_test: $*" >&2; sed 's/^/softcell: /' "$folder"/log >&2 || true; exit 1; }
 
@@ -77,7 +78,7 @@ xdotool key v key F1
 sleep 0.5
 shot demo2d_help
 finish
-for event in 'grab user all' 'move user' 'release user' 'gravity 0 9' 'gravity 0 10' 'push all 0 5'; do recorded "$event" play; done
+for event in 'hold user 0' 'move user' 'release user' 'gravity 0 9' 'gravity 0 10' 'push all 0 5'; do recorded "$event" play; done
 same_again 2d play
 
 # Three dimensions: tilt, jump, look from elsewhere, back to the beginning.
@@ -127,6 +128,91 @@ for event in pause 'time_scale 0' 'gravity 0 -'; do recorded "$event" menu; done
 ! grep -q 'hold\|tilt' "$folder/menu.rec" || fail "keys and mouse on the menu act on the scene: $(cat "$folder/menu.rec")"
 same_again 3d menu
 
+# Dense displays: text and menu grow with the scale; the bar over the menu ends where its width says.
+for scale in 1 1.5 2; do
+  start 3d --scene drop --ui-scale $scale
+  xdotool key m
+  sleep 0.7
+  shot "demo3d_scale_$scale"
+  blue_at() { convert "$shots/demo3d_scale_$scale.png" -format "%[fx:100*p{int($1*$scale),int(20*$scale)}.b>100*p{int($1*$scale),int(20*$scale)}.r+20&&p{int($1*$scale),int(20*$scale)}.r<0.25?1:0]" info:; }
+  [ "$(blue_at 300)" = 1 ] && [ "$(blue_at 412)" = 0 ] || fail "the menu is not as wide as scale $scale makes it"
+  xdotool key m
+  finish
+done
+
+# F5 saves what there is; the saved scene opens with a body as high as it was.
+cd "$folder"
+start 3d --scene drop
+shot demo3d_drop_before
+sleep 1
+xdotool key p
+sleep 0.3
+xdotool key F5
+sleep 0.7
+shot demo3d_saved
+[ -s drop_1.toml ] && [ -s drop_1.state ] || fail "F5 saves no scene"
+finish
+"$softcell" demo 3d --headless --scene drop_1.toml --frames 1 --quiet || fail "the saved scene cannot be played"
+grep -q '^gravity' drop_1.toml || fail "the saved scene has no gravity: $(cat drop_1.toml)"
+
+# A model that is dropped onto the window becomes a soft body there; what is none is refused in a sentence, and the scene goes on; a scene is
+# opened. Delete removes the body that was held last.
+cat >tetrahedron.obj <<'OBJ'
+v 0 0 0
+v 2 0 0
+v 0 3 0
+v 0 0 2
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+OBJ
+echo rubbish >rubbish.ply
+printf '[framework]\n[[soft_body]]\ncell_size = 0.25\nshape = { kind = "sphere" }\nposition = [0, 1, 0]\n' >mine.toml
+drop() { "$drop_file" "$window" "$@" || fail "the window does not take $3"; }
+start 3d --scene drop --json "$folder/drop.json"
+shot demo3d_before_drop
+drop 640 300 "$folder/tetrahedron.obj"
+sleep 1.5
+shot demo3d_dropped
+drop 640 300 "$folder/rubbish.ply"
+sleep 0.7
+shot demo3d_dropped_rubbish
+finish
+grep -q '"bodies": 2' drop.json || fail "the dropped model is no second body: $(grep bodies drop.json)"
+start 3d --scene drop --json "$folder/drop.json"
+shot demo3d_before_drop
+drop 640 300 "$folder/mine.toml"
+sleep 1.5
+xdotool mousemove --window "$window" 640 400 mousedown 1
+sleep 0.3
+xdotool mouseup 1 key Delete
+sleep 1
+shot demo3d_deleted
+finish
+grep -q '"scene": "mine"' drop.json || fail "the dropped scene is not opened: $(grep scene drop.json)"
+grep -q '"bodies": 0' drop.json || fail "Delete does not remove the body that was held: $(grep bodies drop.json)"
+
+# In two dimensions a picture does.
+convert -size 120x100 xc:none -fill red -draw 'circle 60,50 60,90' cat.png
+start 2d --json "$folder/drop.json"
+shot demo2d_before_drop
+drop 300 200 "$folder/cat.png"
+sleep 1
+shot demo2d_dropped
+finish
+grep -q '"bodies": 2' drop.json || fail "the dropped picture is no second body: $(grep bodies drop.json)"
+
+# A recording belongs to one scene.
+start 2d --record "$folder/one.rec" --json "$folder/drop.json"
+shot demo2d_before_drop
+drop 300 200 "$folder/cat.png"
+sleep 0.7
+shot demo2d_drop_refused
+finish
+grep -q '"bodies": 1' drop.json || fail "a drop changes a scene that is recorded"
+same_again 2d one
+
 # On to the next scene, in a window of another size.
 start 3d --size 400x300
 xdotool key n
@@ -144,7 +230,7 @@ kill -INT "$pid"
 status=0
 wait "$pid" || status=$?
 [ "$status" = 130 ] || fail "ends with status $status when it is interrupted"
-sentence='softcell: interrupted after [0-9]+ frames; only a run to its end leaves a trace or statistics'
+sentence='softcell: interrupted after [0-9]+ frames; only a run to its end leaves a trace, statistics or a saved scene'
 grep -Eqx "$sentence" "$folder/log" && [ "$(wc -l <"$folder/log")" = 1 ] || fail "does not say how far it came"
 ls "$folder" | grep -q '^[ts]\.json' && fail "an interrupted run leaves files"
 

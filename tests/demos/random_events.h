@@ -19,7 +19,7 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
   Event event;
   do {
     event.action = static_cast<Action>(below(kActions));
-  } while (Dimension == 2 && (event.action == Action::kTilt || event.action == Action::kHold));
+  } while (Dimension == 2 && event.action == Action::kTilt);
   const auto use_hand = [&] { event.hand = below(3) == 0 ? below(4) : kUsersHand; };
   const auto use_body = [&] { event.body = below(3) == 0 ? below(6) : kEveryBody; };
   const auto use_value = [&](float size) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "random_play.h"
@@ -55,6 +56,21 @@ TEST_P(DraggedIntoACorner, TheManReturnsToHisShape) {
     ASSERT_LE(outside(simulation, scene), 0) << "frame " << frame;
   }
   EXPECT_GT(most, 0.5f) << "metres: he was dragged hard";
+  expect_return_to_shape(simulation, scene);
+}
+
+/// As a user's hand holds him now: by a patch.
+TEST_P(DraggedIntoACorner, TheManThatIsHeldByAPatchReturnsToHisShape) {
+  const Scene2d scene = load_scene_2d("man");
+  Simulation2d simulation(scene);
+  simulation.step(std::vector<Event>{{.action = Action::kGravity, .value = {0, -GetParam()}},
+                                     hand(Action::kHold, {0, 2}),
+                                     hand(Action::kMoveHand, {6, -5})});
+  for (int frame = 1; frame < kTenSeconds; ++frame) {
+    const float shake = frame / 30 % 2 == 0 ? 1.0f : 0.0f;
+    simulation.step(std::vector<Event>{hand(Action::kMoveHand, Vector2f(6 - 4 * shake, -5 + 2 * shake))});
+    ASSERT_LE(outside(simulation, scene), 0) << "frame " << frame;
+  }
   expect_return_to_shape(simulation, scene);
 }
 
@@ -197,7 +213,62 @@ TEST(Simulation2d, AHandLiftsARigidBodyAndThrowsIt) {
   EXPECT_NEAR((position() - before).x() * 60, -2, 0.4f);
   const auto particle = simulation.touch(simulation.soft_body(0).position(0));
   ASSERT_TRUE(particle);
-  EXPECT_EQ(particle->action, Action::kGrab) << "where no rigid body is";
+  EXPECT_EQ(particle->action, Action::kHold) << "where no rigid body is";
+  EXPECT_EQ(particle->body, 0u);
+}
+
+/// Discs of 4 to 40 cells, 16 to 1,300 particles: a hand lifts, carries and throws each, and pulls no nipple out of it.
+class HeldDisc : public testing::TestWithParam<int> {};
+
+TEST_P(HeldDisc, IsLiftedCarriedAndThrown) {
+  const Scene2d scene = std::get<Scene2d>(parse_scene(
+      fmt::format(
+          "dimension = 2\n[framework]\nwidth = 20\nheight = 12\n[[soft_body]]\ncell_size = {}\nalpha = 0.6\n"
+          "shape = {{ kind = \"disc\", diameter = {} }}\nposition = [0, -4.9]\n",
+          2.0 / GetParam(), GetParam()),
+      "s.toml"));
+  Simulation2d simulation(scene);
+  run(simulation, 60);
+  const ppu::SoftBody<2>& body = simulation.soft_body(0);
+  const auto middle = [&] { return simulation.soft_body(0).centre_of_mass(); };
+  const Vector2f lay = middle();
+  Vector2f at = body.bounds().high;
+  at.x() = lay.x();  // its top
+  auto taken = simulation.touch(at);
+  ASSERT_TRUE(taken);
+  ASSERT_EQ(taken->action, Action::kHold);
+  taken->hand = kUsersHand;
+  simulation.step(std::vector<Event>{*taken});
+  const auto move = [&](const Vector2f& velocity, int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      at += velocity / 60;
+      auto event = hand(Action::kMoveHand, at);
+      event.hand = kUsersHand;
+      simulation.step(std::vector<Event>{event});
+    }
+  };
+  move({0, 2}, 60);
+  EXPECT_GT(middle().y(), lay.y() + 1.5f) << "it is lifted";
+  EXPECT_LT(body.deformation(), 0.35f) << "of a disc of 2 m";
+  move({0, 0}, 90);
+  EXPECT_LT((body.linear_momentum() / body.model().mass()).norm(), 0.3f) << "it hangs still";
+  move({3, 0}, 30);
+  auto release = hand(Action::kRelease);
+  release.hand = kUsersHand;
+  simulation.step(std::vector<Event>{release});
+  EXPECT_NEAR((simulation.soft_body(0).linear_momentum() / body.model().mass()).x(), 3, 0.6f)
+      << "the hand's speed";
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, HeldDisc, testing::Values(4, 8, 20, 40));
+
+TEST(Simulation2d, KnowsWhereThereIsRoom) {
+  const Scene2d scene = load_scene_2d("man");  // a room of 8 by 6 m, in its middle the man
+  const Simulation2d simulation(scene);
+  EXPECT_TRUE(simulation.is_free({-3, 2}, 1));
+  EXPECT_FALSE(simulation.is_free({-3.8f, 2}, 1)) << "in the wall";
+  EXPECT_FALSE(simulation.is_free(simulation.soft_body(0).centre_of_mass(), 1)) << "in the man";
+  EXPECT_TRUE(simulation.is_free({-100, 2}, 1)) << "outside";
 }
 
 TEST(Simulation2d, APauseHoldsAndASingleStepIsOneFrame) {

@@ -655,6 +655,36 @@ TEST(Command, RefusesToReplaceWhatItReads) {
   EXPECT_EQ(named.status, 0) << named.output;
 }
 
+TEST(Command, SavesASceneThatBeginsWithWhatThereIs) {
+  const ScratchFolder folder;
+  const auto run = [&](const std::string& arguments) {
+    return run_shell("cd " + folder.path().string() +
+                     " && timeout 60 " SOFTCELL_COMMAND " demo 3d --headless --size 32x32 --quiet " +
+                     arguments);
+  };
+  EXPECT_EQ(run("--scene drop --frames 30 --save-scene s.toml").status, 0);
+  EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"s.toml", "s.state"}));
+  const CommandResult again = run("--scene s.toml --frames 1 --json -");
+  EXPECT_EQ(again.status, 0) << again.output;
+  const auto before = files_in(folder.path());
+  const auto refusal = [&](const std::string& arguments, int status) {
+    const CommandResult refused = run(arguments);
+    EXPECT_EQ(refused.status, status) << arguments << ": " << refused.output;
+    EXPECT_EQ(files_in(folder.path()), before) << arguments;
+    return refused.output;
+  };
+  EXPECT_NE(refusal("--frames 1 --save-scene s.lua", 2).find("give a file name that ends in .toml"),
+            std::string::npos);
+  EXPECT_NE(refusal("--frames 1 --save-scene -", 2).find("cannot write to standard output"),
+            std::string::npos);
+  EXPECT_NE(refusal("--frames 1 --scene s.toml --save-scene s.toml", 2).find("and --save-scene are one file"),
+            std::string::npos);
+  EXPECT_NE(refusal("--frames 1 --save-scene x.toml --json x.state", 2).find("the state of --save-scene"),
+            std::string::npos);
+  EXPECT_NE(refusal("--frames 1000 --save-scene none/x.toml", 1).find("none/x.toml"), std::string::npos);
+  EXPECT_NE(refusal("--ui-scale 9", 2).find("--ui-scale 9: give a number from 0.5 to 4"), std::string::npos);
+}
+
 // The folder above the one that a link stands for is not the folder that the link is in.
 TEST(Command, KnowsOneFileThroughALinkedFolder) {
   const ScratchFolder folder;
@@ -703,7 +733,7 @@ TEST(Command, SaysHowFarItCameWhenInterrupted) {
       run.output,
       std::regex(
           "softcell: interrupted after [0-9]+ of 100000 frames; every frame that was written is whole; "
-          "only a run to its end leaves a trace or statistics\n")))
+          "only a run to its end leaves a trace, statistics or a saved scene\n")))
       << run.output;
   EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"frames"});
 }

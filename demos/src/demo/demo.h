@@ -2,13 +2,18 @@
 // The interface of the demos in two and three dimensions, for headless runs and for windows.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/look.h"
 #include "simulation/body_material.h"
+#include "simulation/picked.h"
 #include "simulation/simulation_options.h"
 #include "softcell/ls_sim/statistics.h"
 #include "softcell/render/renderer.h"
@@ -30,6 +35,23 @@ struct DemoCounts {
 };
 
 class WindowInput;
+
+/// What a user adds to a scene, or takes away.
+struct SceneChange {
+  enum class Kind {
+    kFile,    ///< adds a soft body made of `file`, at (x, y)
+    kShape,   ///< adds one of `name`, a shape of change_scene.h, at (x, y)
+    kRemove,  ///< removes soft body `body`
+    kDensity  ///< gives soft body `body`, or with kEveryBody all, the density `number`
+  };
+  Kind kind = Kind::kFile;
+  std::filesystem::path file = {};
+  std::string name = {};
+  std::uint32_t body = 0;
+  float number = 0;           ///< a density, or of a new body alpha
+  int x = 0, y = 0;           ///< a point of the window, in the units of SDL's mouse
+  int width = 1, height = 1;  ///< of the window, in the same units
+};
 
 /// A scene, its simulation and its view. One thread uses it, except where stated.
 class Demo {
@@ -56,6 +78,12 @@ class Demo {
   /// @throws std::runtime_error  a replay has not ended in the state that was recorded.
   virtual void check_replay() const = 0;
 
+  /// Writes a scene file that begins with what there is now, and the state beside it.
+  /// @param file  ends in .toml; none: a free name beside the scene, or in the present folder
+  /// @return its path
+  /// @throws std::runtime_error  it cannot be saved there; nothing is written then.
+  virtual std::filesystem::path save_scene(const std::optional<std::filesystem::path>& file) const = 0;
+
   /// Before the first drawing. The renderer must outlive the last one.
   virtual void make_view(render::Renderer& renderer) = 0;
   /// The frame that is shown, in three dimensions with the camera turned about what it looks at. @pre make_view()
@@ -71,6 +99,16 @@ class Demo {
   virtual bool replays() const = 0;
   virtual DemoSettings settings() const = 0;
   virtual std::vector<BodyMaterial> materials() const = 0;  ///< of the soft bodies, in order
+  /// The particle nearest to where the user took hold of a soft body last, as it is now. None: of none yet.
+  virtual std::optional<PickedParticle> picked() const = 0;
+  /// The shapes that a user may add.
+  virtual std::span<const std::string_view> shapes() const = 0;
+  /// The same scene with a change, at the same moment. This demo stays as it is.
+  /// @throws std::runtime_error  it cannot be changed so; one sentence.
+  virtual std::unique_ptr<Demo> changed(const SceneChange& change, const SimulationOptions& how) const = 0;
+  /// A scene of the user's. @throws std::runtime_error  it cannot be opened; one sentence.
+  virtual std::unique_ptr<Demo> opened(const std::filesystem::path& scene_file,
+                                       const SimulationOptions& how) const = 0;
   /// Copies the present frame, for draw_published().
   virtual void publish() = 0;
   /// Draws the newest published frame. A second thread may call it while the first one steps the demo. That

@@ -107,6 +107,15 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
   if (page.look.statistics && !page.look.help && !page.look.menu)
     draw_statistics_box(page, scale, shown_per_second);
+  if (!page.notice.empty()) {
+    // Beside the menu, if that is open.
+    const float left = page.look.menu ? kMenuWidth * scale : 0;
+    draw_box("notice", {(left + width) / 2, height - margin}, {0.5f, 1}, [&] {
+      ImGui::PushTextWrapPos(std::max(0.8f * (width - left) - 2 * margin, 20 * margin));
+      ImGui::TextUnformatted(page.notice.c_str());
+      ImGui::PopTextWrapPos();
+    });
+  }
   if (page.look.help) {
     draw_box("help", {width / 2, height / 2}, {0.5f, 0.5f}, [&] { draw_help(page.dimension); });
   } else {

@@ -24,8 +24,10 @@ struct Page {
   double spe_ms = 0;                     ///< of the busiest SPE, in the frame before
   std::vector<double> each_spe_ms = {};  ///< of each
   std::uint64_t dma_bytes = 0;           ///< in the frame before
+  std::string notice = {};               ///< a sentence for the user; empty: none
 };
 
+inline constexpr float kMenuWidth = 310;   ///< of the menu with its margin, at scale 1, pixels
 inline constexpr float kTextScale = 1.3f;  ///< of a page's text on displays of usual density
 
 /// In a window: the figures, and help or how to get it. Calls Dear ImGui between begin() and end() of an

@@ -4,6 +4,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <span>
+#include <string>
+#include <string_view>
 
 #include "softcell/base/assert.h"
 
@@ -56,7 +59,8 @@ void Panel::draw(const Demo& demo, float scale, int height, WindowInput& input) 
   }
   const float margin = 10 * scale;
   ImGui::SetNextWindowPos({margin, margin}, ImGuiCond_Always);
-  ImGui::SetNextWindowSize({300 * scale, std::max(static_cast<float>(height) - 2 * margin, 1.0f)});
+  ImGui::SetNextWindowSize(
+      {kMenuWidth * scale - margin, std::max(static_cast<float>(height) - 2 * margin, 1.0f)});
   if (opens) ImGui::SetNextWindowFocus();
   bool open = true;
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
@@ -68,6 +72,7 @@ void Panel::draw(const Demo& demo, float scale, int height, WindowInput& input) 
     if (!scenes_.empty()) draw_scenes(demo.scene_name());
     draw_time(demo, input);
     draw_material(demo, input);
+    draw_bodies(demo);
     draw_graph(scale);
     ImGui::PopItemWidth();
   }
@@ -100,6 +105,8 @@ void Panel::draw_time(const Demo& demo, WindowInput& input) const {
   }
   ImGui::SameLine();
   if (ImGui::Button("Reset")) input.do_now(Command::kReset);
+  ImGui::SameLine();
+  if (ImGui::Button("Save scene")) input.do_now(Command::kSaveScene);
   const DemoSettings settings = demo.settings();
   float time_scale = settings.time_scale, gravity = settings.gravity;
   int substeps = settings.substeps;
@@ -144,6 +151,55 @@ void Panel::draw_material(const Demo& demo, WindowInput& input) {
   float damping = shown.damping, friction = shown.friction;
   if (slider("damping", damping, 0, 1, "%.3f")) input.change(Action::kDamping, changed, damping);
   if (slider("friction", friction, 0, 2, "%.2f")) input.change(Action::kFriction, changed, friction);
+  draw_density(shown, changed, demo.dimension());
+}
+
+void Panel::draw_density(const BodyMaterial& shown, std::uint32_t changed, int dimension) {
+  // Another density makes another model: once, when the slider is let go.
+  float density = density_.value_or(shown.density);
+  if (slider("density", density, 1, 5000, dimension == 3 ? "%.0f kg/m\xC2\xB3" : "%.0f kg/m\xC2\xB2", true))
+    density_ = density;
+  if (!ImGui::IsItemDeactivatedAfterEdit()) return;
+  change_ = {.kind = SceneChange::Kind::kDensity, .body = changed, .number = density};
+  density_.reset();
+}
+
+void Panel::draw_bodies(const Demo& demo) {
+  if (!ImGui::CollapsingHeader("Bodies", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  const std::span<const std::string_view> shapes = demo.shapes();
+  if (shapes.empty()) return;
+  shape_ = std::min(shape_, static_cast<int>(shapes.size()) - 1);
+  const std::string shown(shapes[static_cast<std::size_t>(shape_)]);
+  if (ImGui::BeginCombo("shape", shown.c_str())) {
+    for (int i = 0; i < static_cast<int>(shapes.size()); ++i) {
+      const std::string name(shapes[static_cast<std::size_t>(i)]);
+      if (ImGui::Selectable(name.c_str(), shape_ == i)) shape_ = i;
+    }
+    ImGui::EndCombo();
+  }
+  slider("its alpha", alpha_, 0, 1, "%.2f");
+  if (ImGui::Button("Add")) change_ = {.kind = SceneChange::Kind::kShape, .name = shown, .number = alpha_};
+  const std::optional<PickedParticle> picked = demo.picked();
+  if (!picked) {
+    ImGui::TextWrapped("Take hold of a soft body to see a particle's values.");
+    return;
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Remove")) change_ = {.kind = SceneChange::Kind::kRemove, .body = picked->body};
+  const auto vector = [&](const char* name, const Eigen::Vector3f& v) {
+    if (demo.dimension() == 3) {
+      ImGui::Text("%s %.3f %.3f %.3f", name, double{v.x()}, double{v.y()}, double{v.z()});
+    } else {
+      ImGui::Text("%s %.3f %.3f", name, double{v.x()}, double{v.y()});
+    }
+  };
+  const std::vector<BodyMaterial> bodies = demo.materials();
+  ImGui::Text("%s, particle %u, %.4g kg", bodies[picked->body].name.c_str(), picked->particle,
+              double{picked->mass});
+  vector("at, m:", picked->position);
+  vector("speed, m/s:", picked->velocity);
+  ImGui::Text("region: %zu particles, %.4g kg", picked->region, double{picked->region_mass});
+  vector("speed, m/s:", picked->region_velocity);
 }
 
 void Panel::draw_graph(float scale) const {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "demo.h"
@@ -38,6 +39,9 @@ class Panel {
   /// The number of the scene that the user has chosen; asking forgets it.
   std::optional<std::size_t> take_choice() { return std::exchange(choice_, std::nullopt); }
 
+  /// What the user wants added, removed or made heavier, without its point of the window; asking forgets it.
+  std::optional<SceneChange> take_change() { return std::exchange(change_, std::nullopt); }
+
  private:
   static constexpr std::size_t kFrames = 180;  // of the graph
   static constexpr std::size_t kParts = 5;
@@ -45,10 +49,16 @@ class Panel {
   void draw_scenes(const std::string& current);
   void draw_time(const Demo& demo, WindowInput& input) const;
   void draw_material(const Demo& demo, WindowInput& input);
+  void draw_density(const BodyMaterial& shown, std::uint32_t changed, int dimension);
+  void draw_bodies(const Demo& demo);
   void draw_graph(float scale) const;
 
   std::vector<SceneTitle> scenes_;
   std::optional<std::size_t> choice_;
+  std::optional<SceneChange> change_;
+  std::optional<float> density_;  // while its slider is dragged
+  int shape_ = 0;                 // of a body to be added
+  float alpha_ = 0.5f;            // likewise
   bool was_open_ = false;
   std::array<float, 4> area_{};  // left, top, right, bottom
   int body_ = -1;                // whose material is shown; -1: all bodies'

@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "demo.h"
+#include "input/hands.h"
 #include "input/input_log.h"
 #include "input/user_input.h"
 #include "latest.h"
@@ -46,7 +48,13 @@ class SceneDemo : public Demo {
     const auto from_user = input_.next_frame();
     const FrameTimes times = step_simulation(log_.replays() ? log_.events_at(frame_) : from_user);
     input_.follow(simulation_.gravity(), simulation_.paused());
+    follow_hand();
     return times;
+  }
+  std::optional<PickedParticle> picked() const override {
+    if (!picked_) return std::nullopt;
+    return picked_particle(simulation_.soft_body(picked_->body), static_cast<std::uint32_t>(picked_->body),
+                           static_cast<std::uint32_t>(picked_->particle));
   }
   void stop() override { simulation_.stop(); }
   std::uint64_t state_hash() const override { return simulation_.state_hash(); }
@@ -91,10 +99,41 @@ class SceneDemo : public Demo {
 
  protected:
   const Scene& scene() const { return scene_; }
+  const Look& look() const { return input_.look(); }
   const typename Types::Simulation& simulation() const { return simulation_; }
   typename Types::Simulation& simulation() { return simulation_; }
 
+  /// The materials as they are now, which may be others than those of the scene.
+  std::vector<ppu::SoftBodySettings> settings_of_bodies() const {
+    std::vector<ppu::SoftBodySettings> all;
+    for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b)
+      all.push_back(simulation_.soft_body(b).settings());
+    return all;
+  }
+
+  /// @throws std::runtime_error  the scene stays what it is
+  void require_changeable() const {
+    if (log_.records() || log_.replays())
+      throw std::runtime_error(
+          "a recording belongs to one scene: during --record and --replay no body can be added, "
+          "removed or made of another density, and no other scene opened");
+  }
+
  private:
+  struct Bodies {
+    const typename Types::Simulation& simulation;
+    std::size_t size() const { return simulation.soft_bodies(); }
+    const ppu::SoftBody<kDimension>& operator[](std::size_t i) const { return simulation.soft_body(i); }
+  };
+  void follow_hand() {
+    for (const InputEvent<kDimension>& event : simulation_.last_events()) {
+      const bool takes = event.action == Action::kGrab || event.action == Action::kHold;
+      if (!takes || event.hand != kUsersHand) continue;
+      if (const auto nearest = Hands<kDimension>::nearest_particle(event, Bodies{simulation_}))
+        picked_ = nearest;
+    }
+  }
+
   /// Records a frame that fails, too, so that a replay fails in it.
   FrameTimes step_simulation(std::span<const InputEvent<kDimension>> events) {
     FrameTimes times;
@@ -117,6 +156,7 @@ class SceneDemo : public Demo {
   UserInput<kDimension> input_;
   Latest<typename Types::Shown> shown_;
   std::optional<typename Types::SceneView> view_;
+  std::optional<typename Hands<kDimension>::Particle> picked_;
 };
 
 }  // namespace softcell::demos

@@ -18,7 +18,14 @@ class Controls {
   using Event = InputEvent<Dimension>;
   using Vector = typename Event::Vector;
 
-  explicit Controls(const Vector& gravity) : initial_gravity_(gravity), gravity_(gravity) {}
+  /// What a reset brings back, too.
+  struct Initial {
+    Vector gravity = Vector::Zero();  ///< m/s^2
+    std::optional<Vector> tilt = {};  ///< as tilt()
+    float time_scale = 1;
+  };
+  explicit Controls(const Initial& initial)
+      : initial_(initial), gravity_(initial.gravity), tilt_(initial.tilt), time_scale_(initial.time_scale) {}
 
   /// Applies events in their order.
   /// @param bodies  the soft bodies: see Hands
@@ -37,7 +44,7 @@ class Controls {
         case Action::kHold:
           hands_.release(event.hand);
           world.release(event.hand);
-          if constexpr (Dimension == 3) world.hold(event);
+          world.hold(event);
           break;
         case Action::kHoldRigid:
           hands_.release(event.hand);
@@ -60,9 +67,9 @@ class Controls {
           break;
         case Action::kReset:
           hands_.release_all();
-          gravity_ = initial_gravity_;
-          tilt_.reset();
-          time_scale_ = 1;
+          gravity_ = initial_.gravity;
+          tilt_ = initial_.tilt;
+          time_scale_ = initial_.time_scale;
           due_ = 0;
           substeps_.reset();
           world.reset();
@@ -133,11 +140,12 @@ class Controls {
   }
 
   Hands<Dimension> hands_;
-  Vector initial_gravity_, gravity_;
+  Initial initial_;
+  Vector gravity_;
   std::optional<Vector> tilt_;
   bool paused_ = false, single_step_ = false;
-  float time_scale_ = 1, due_ = 0;  // of a substep, what is due
-  std::optional<int> substeps_;     // none: as the scene has it
+  float time_scale_, due_ = 0;   // of a substep, what is due
+  std::optional<int> substeps_;  // none: as the scene has it
 };
 
 }  // namespace softcell::demos

@@ -22,7 +22,7 @@ enum class Action : std::uint8_t {
   kSingleStep,  ///< during a pause: one frame
   kHome,        ///< `body` is where it was at the beginning, at rest and in its own shape
   kTilt,        ///< in 3D: the ground is tilted by `value` (radians) about x, then z, from now on; its y is 0
-  kHold,  ///< in 3D: hand: holds soft body `body` at `value` (m), a point of its surface; lets go of another
+  kHold,  ///< hand: holds soft body `body` at `value` (m), in 3D a point of its surface; lets go of another
   kHoldRigid,  ///< hand: holds rigid body `body` of the scene at `value` (m), if it moves; lets go of another
   // With a number, which is the first of `value`; what the number means is in kNumbers:
   kTimeScale,  ///< how much time passes: 1 as on the clock, less is slow motion

@@ -58,6 +58,7 @@ class InputLog {
   }
 
   bool replays() const { return replay_.has_value(); }
+  bool records() const { return path_.has_value(); }
   /// Frames of the recording. @pre replays()
   std::int64_t frames() const {
     SC_ASSERT(replay_, "frames() of a run in scene '{}', which is no replay", record_.scene);

@@ -27,6 +27,8 @@ enum class Command : std::uint8_t {
   kMenu,
   kScenesCamera,
   kFollow,
+  kSaveScene,
+  kRemove,
   kStatistics,
   kHelp,
   kQuit,

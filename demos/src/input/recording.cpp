@@ -47,7 +47,7 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "single_step"},
     {.name = "home", .body = true},
     {.name = "tilt", .value = true, .lowest_dimension = 3},
-    {.name = "hold", .hand = true, .body = true, .value = true, .lowest_dimension = 3},
+    {.name = "hold", .hand = true, .body = true, .value = true},
     {.name = "hold_rigid", .hand = true, .body = true, .value = true},
     {.name = "time_scale"},
     {.name = "substeps"},

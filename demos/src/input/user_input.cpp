@@ -31,6 +31,12 @@ bool WindowInput::handle_command(Command command) {
     case Command::kFollow:
       look_.follows = !look_.follows;
       return true;
+    case Command::kSaveScene:
+      save_ = true;
+      return true;
+    case Command::kRemove:
+      remove_ = true;
+      return true;
     case Command::kQuit:
       quit_ = true;
       return true;

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "camera_control.h"
@@ -43,6 +44,10 @@ class WindowInput {
   }
   bool wants_to_quit() const { return quit_; }
   bool wants_next_scene() const { return next_scene_; }
+  /// Whether the scene is to be saved; asking forgets it.
+  bool take_save() { return std::exchange(save_, false); }
+  /// Whether the body that was held last is to be removed; asking forgets it.
+  bool take_remove() { return std::exchange(remove_, false); }
 
  protected:
   /// Handles a command that concerns the window. @return  whether it did.
@@ -52,7 +57,7 @@ class WindowInput {
 
  private:
   int views_;
-  bool quit_ = false, next_scene_ = false;
+  bool quit_ = false, next_scene_ = false, save_ = false, remove_ = false;
 };
 
 /// The pointing devices: the mouse, which is a hand in both dimensions, and in three what tilts the ground. In

@@ -6,12 +6,14 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "attachment_placement.h"
+#include "beginning.h"
 #include "rigid_body.h"
 #include "scripted_input.h"
 #include "softcell/render/camera.h"
@@ -64,6 +66,8 @@ struct TiltScript {
 /// Names of ppu::ContactMethod in scene files, on the command line and in statistics, in the enum's order.
 inline constexpr std::array<std::string_view, 2> kContactMethods{"spheres", "surface"};
 
+struct SceneDocument;  // of the room scene_file
+
 struct Scene {
   std::string name, title;
   std::vector<SoftBodyPlacement> soft_bodies;
@@ -85,6 +89,8 @@ struct Scene {
   std::vector<int> pictures;                 ///< frames worth a picture, ascending
   std::vector<std::filesystem::path> files;  ///< that it was read from: nothing may be written there
   std::vector<std::string> notes;  ///< for the user, a sentence each: what of its meshes was not read
+  std::shared_ptr<const Beginning<3>> begin;      ///< null: bodies begin at rest in their own shape
+  std::shared_ptr<const SceneDocument> document;  ///< that it was read from, to be saved again; null: none
 };
 
 }  // namespace softcell::demos

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "attachment_placement.h"
+#include "beginning.h"
 #include "scripted_input.h"
 #include "softcell/render/frame.h"
 #include "softcell/render/image.h"
@@ -80,6 +81,8 @@ struct Camera2d {
   Eigen::Vector2f point_at(int x, int y, int picture_width, int picture_height) const;
 };
 
+struct SceneDocument;  // of the room scene_file
+
 struct Scene2d {
   std::string name, title;
   std::vector<SoftBody2dPlacement> soft_bodies;
@@ -92,8 +95,10 @@ struct Scene2d {
   int frames = 300;       ///< how long the scene is worth watching without a user
   Camera2d camera;
   ScriptedInput<2> script;
-  std::vector<int> pictures;                 ///< frames worth a picture, ascending
-  std::vector<std::filesystem::path> files;  ///< that it was read from: nothing may be written there
+  std::vector<int> pictures;                      ///< frames worth a picture, ascending
+  std::vector<std::filesystem::path> files;       ///< that it was read from: nothing may be written there
+  std::shared_ptr<const Beginning<2>> begin;      ///< null: bodies begin at rest in their own shape
+  std::shared_ptr<const SceneDocument> document;  ///< that it was read from, to be saved again; null: none
 };
 
 }  // namespace softcell::demos

@@ -129,6 +129,21 @@ class Hash {
     const auto& [name, shape, mass, position, angle, colour] = body;
     add(shape, mass, position, angle);
   }
+  template <int Dimension>
+  void add(const Beginning<Dimension>& begin) {
+    const auto& [gravity, tilt, time_scale, frames, seconds, soft_bodies, rigid_bodies, ended_attachments] =
+        begin;
+    add(gravity, tilt, time_scale, frames, seconds, ended_attachments);
+    for (const auto& [positions, velocities] : soft_bodies) add(positions, velocities);
+    for (const auto& [body, position, rotation, velocity, angular_velocity] : rigid_bodies) {
+      add(body, position, velocity, angular_velocity);
+      if constexpr (Dimension == 3) {
+        add(Eigen::Vector4f(rotation.coeffs()));
+      } else {
+        add(rotation);
+      }
+    }
+  }
 
   std::uint64_t value_ = 0;
 };
@@ -138,7 +153,7 @@ class Hash {
 std::uint64_t scene_hash(const Scene& scene) {
   const auto& [name, title, soft_bodies, boxes, obstacles, rigid_bodies, joints, attachments, tilt, gravity,
                friction, restitution, substeps, contacts, frames, camera, light, script, pictures, files,
-               notes] = scene;
+               notes, begin, document] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
@@ -146,16 +161,18 @@ std::uint64_t scene_hash(const Scene& scene) {
   if (!attachments.empty()) hash.add('a', attachments);  // unlike a scene that has none
   if (!rigid_bodies.empty()) hash.add('r', rigid_bodies);
   if (!joints.empty()) hash.add('j', joints);
+  if (begin) hash.add('b', *begin);
   return hash.value();
 }
 
 std::uint64_t scene_hash(const Scene2d& scene) {
   const auto& [name, title, soft_bodies, rigid_bodies, attachments, gravity, friction, restitution, substeps,
-               frames, camera, script, pictures, files] = scene;
+               frames, camera, script, pictures, files, begin, document] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   if (!attachments.empty()) hash.add('a', attachments);
+  if (begin) hash.add('b', *begin);
   return hash.value();
 }
 

@@ -67,6 +67,8 @@ std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
   ppu::ImportReport report;
   OwnModel model{.mesh = ppu::import_mesh(*options.mesh, &report)};
   model.files = report.files;
+  model.file = *options.mesh;
+  model.z_up = options.z_up;
   if (!report.not_read.empty()) model.notes = {not_read_of(options.mesh->string(), report)};
   if (options.z_up) ppu::turn_z_up(model.mesh);
   const ppu::Bounds<3> box = ppu::bounds(model.mesh);

@@ -1,6 +1,7 @@
 #include "read_lattice_2d.h"
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -125,6 +126,12 @@ Cells read_lattice_file(const SourceText& file, const Place& place) {
   return rows.empty() ? read_cells(cells, "a lattice") : read_rows(rows, "a lattice");
 }
 
+/// A quotient that is a rounding of floats off a whole number is that: the picture is cut into the same cells.
+double cells_along(float side, float cell_size) {
+  const double cells = double{side} / double{cell_size}, whole = std::round(cells);
+  return std::abs(cells - whole) < 1e-6 * whole ? whole : cells;
+}
+
 /// Processor time of the child processes that have ended.
 double childrens_seconds() {
   rusage usage{};
@@ -190,8 +197,8 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
   } else if (fields.has("image")) {
     const Place& place = fields.place("image");
     const float side = longest_side.value_or(2), stated = body.settings.cell_size;
-    from_picture(files.picture(image, place), side, stated > 0 ? double{side} / stated : double{kCellsAlong},
-                 place);
+    from_picture(files.picture(image, place), side,
+                 stated > 0 ? cells_along(side, stated) : double{kCellsAlong}, place);
   } else if (shape != nullptr) {
     body.cells = read_shape(*shape, fields.what());
   } else if (!rows.empty()) {

@@ -19,4 +19,8 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
 /// @throws SceneError  @throws NoPlaceForModel
 Scene2d read_scene_2d(FieldReader& root, const SceneSource& source, const std::optional<OwnPicture>& picture);
 
+/// One more soft body, behind those that the scene has. @throws SceneError  the scene is of no use then
+void read_another_body(const Value& item, const SceneSource& source, Scene& scene);
+void read_another_body(const Value& item, const SceneSource& source, Scene2d& scene);
+
 }  // namespace softcell::demos

@@ -10,6 +10,7 @@
 
 #include "ppu/numbers/deterministic_math.h"
 #include "read_attachment.h"
+#include "read_begin.h"
 #include "read_common.h"
 #include "read_lattice_2d.h"
 #include "read_material.h"
@@ -260,16 +261,20 @@ bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
   return replaced;
 }
 
-void read_soft_bodies(std::span<const Value> items, const SceneSource& source, const Materials& materials,
-                      const std::optional<OwnPicture>& picture, Scene2d& scene) {
+/// @return the number of particles of each
+std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, const SceneSource& source,
+                                          const Materials& materials,
+                                          const std::optional<OwnPicture>& picture, Scene2d& scene) {
   LatticeFiles lattices(source);
+  std::vector<std::size_t> of_each;
   std::size_t particles = 0;
   bool place_taken = false;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const OwnPicture* own = picture && !place_taken ? &*picture : nullptr;
     place_taken = read_soft_body(items[i], i, lattices, materials, own, scene) || place_taken;
     try {
-      particles += scene.soft_bodies.back().lattice().particles.size();
+      of_each.push_back(scene.soft_bodies.back().lattice().particles.size());
+      particles += of_each.back();
     } catch (const std::runtime_error& error) {
       throw SceneError(items[i].place, error.what());
     }
@@ -283,6 +288,7 @@ void read_soft_bodies(std::span<const Value> items, const SceneSource& source, c
     throw NoPlaceForModel("--image cannot be used with scene " + scene.name +
                           ": it has no body with own_image_side");
   }
+  return of_each;
 }
 
 void read_attachments(std::span<const Value> items, Scene2d& scene) {
@@ -298,6 +304,16 @@ void read_attachments(std::span<const Value> items, Scene2d& scene) {
 
 }  // namespace
 
+void read_another_body(const Value& item, const SceneSource& source, Scene2d& scene) {
+  LatticeFiles lattices(source);
+  read_soft_body(item, scene.soft_bodies.size(), lattices, Materials(nullptr), nullptr, scene);
+  std::size_t particles = 0;
+  for (const SoftBody2dPlacement& body : scene.soft_bodies) particles += body.lattice().particles.size();
+  if (particles > kMaxParticlesOfScene)
+    throw SceneError(item.place, fmt::format("the scene would have {} particles; it may have at most {}",
+                                             particles, kMaxParticlesOfScene));
+}
+
 Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,
                       const std::optional<OwnPicture>& picture) {
   Scene2d scene;
@@ -305,11 +321,14 @@ Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,
   read_world(root, scene);
   const Value* framework = root.field("framework");
   const Value* camera = root.field("camera");
+  const Value* begin = root.field("begin");
   const Materials materials(root.field("materials"));
   if (framework != nullptr) read_framework(*framework, scene);
   read_rigid_bodies(root, scene);
-  read_soft_bodies(root.items("soft_body", kMaxSoftBodies), source, materials, picture, scene);
+  const std::vector<std::size_t> particles =
+      read_soft_bodies(root.items("soft_body", kMaxSoftBodies), source, materials, picture, scene);
   read_attachments(root.items("attach", kMaxAttachments), scene);
+  scene.begin = read_begin<2>(begin, source, particles, scene);
   read_script<2>(root, scene);
   if (camera != nullptr) {
     FieldReader(*camera, "camera")

@@ -7,8 +7,10 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "read_attachment.h"
+#include "read_begin.h"
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"
@@ -156,17 +158,21 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   return replaced;
 }
 
-void read_soft_bodies(std::span<const Value> items, MeshFiles& files, const Materials& materials,
-                      const std::optional<OwnModel>& model, VertexCount& vertices, Scene& scene) {
+/// @return the number of particles of each
+std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, MeshFiles& files,
+                                          const Materials& materials, const std::optional<OwnModel>& model,
+                                          VertexCount& vertices, Scene& scene) {
   bool place_taken = false;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const OwnModel* own = model && !place_taken ? &*model : nullptr;
     place_taken = read_soft_body(items[i], i, files, materials, own, scene) || place_taken;
     vertices.add(scene.soft_bodies.back().mesh, items[i].place);
   }
+  std::vector<std::size_t> of_each;
   std::size_t particles = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    particles += count_particles(scene.soft_bodies[i], items[i].place);
+    of_each.push_back(count_particles(scene.soft_bodies[i], items[i].place));
+    particles += of_each.back();
     if (particles > kMaxParticlesOfScene) {
       throw SceneError(items[i].place,
                        fmt::format("the scene has {} particles or more; it may have at most {}", particles,
@@ -177,6 +183,7 @@ void read_soft_bodies(std::span<const Value> items, MeshFiles& files, const Mate
     throw NoPlaceForModel("--mesh cannot be used with scene " + scene.name +
                           ": it has no body with own_model_side");
   }
+  return of_each;
 }
 
 /// @param first_box  where the scene's own boxes begin among all
@@ -243,6 +250,23 @@ void read_tilt(const Value& value, TiltScript& tilt) {
 
 }  // namespace
 
+void read_another_body(const Value& item, const SceneSource& source, Scene& scene) {
+  VertexCount vertices;
+  std::size_t particles = 0;
+  for (const SoftBodyPlacement& body : scene.soft_bodies) {
+    vertices.add(body.mesh, item.place);
+    particles += count_particles(body, item.place);
+  }
+  MeshFiles files(source);
+  read_soft_body(item, scene.soft_bodies.size(), files, Materials(nullptr), nullptr, scene);
+  vertices.add(scene.soft_bodies.back().mesh, item.place);
+  particles += count_particles(scene.soft_bodies.back(), item.place);
+  if (particles > kMaxParticlesOfScene)
+    throw SceneError(item.place, fmt::format("the scene would have {} particles; it may have at most {}",
+                                             particles, kMaxParticlesOfScene));
+  scene.notes.insert(scene.notes.end(), files.notes().begin(), files.notes().end());
+}
+
 Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::optional<OwnModel>& model) {
   Scene scene;
   scene.name = source.name();
@@ -251,6 +275,7 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   const Value* camera = root.field("camera");
   const Value* light = root.field("light");
   const Value* tilt = root.field("tilt");
+  const Value* begin = root.field("begin");
   const Materials materials(root.field("materials"));
   const auto boxes = root.items("box", kMaxRigidBodies);
   const auto obstacles = root.items("obstacle", kMaxRigidBodies);
@@ -269,7 +294,9 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
     scene.obstacles.push_back(read_obstacle(obstacles[i], i, files));
     vertices.add(scene.obstacles.back().mesh, obstacles[i].place);
   }
-  read_soft_bodies(soft_bodies, files, materials, model, vertices, scene);
+  const std::vector<std::size_t> particles =
+      read_soft_bodies(soft_bodies, files, materials, model, vertices, scene);
+  scene.begin = read_begin<3>(begin, source, particles, scene);
   scene.notes = files.notes();
   read_attachments(attachments, first_box, scene);
   read_script<3>(root, scene);

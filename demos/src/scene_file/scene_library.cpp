@@ -9,6 +9,7 @@
 #include "documents.h"
 #include "field_reader.h"
 #include "read_scene.h"
+#include "scene_document.h"
 #include "scene_source.h"
 
 namespace softcell::demos {
@@ -27,15 +28,21 @@ Value read_document(const SourceText& text) {
 std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
                                         const std::optional<OwnModel>& model = std::nullopt,
                                         const std::optional<OwnPicture>& picture = std::nullopt) {
-  const Value document = read_document(source.main());
-  FieldReader root(document, "a scene");
+  auto document = std::make_shared<SceneDocument>();
+  document->root = read_document(source.main());
+  document->folder = source.folder();
+  FieldReader root(document->root, "a scene");
   if (read_dimension(root) == 2) {
     Scene2d scene = read_scene_2d(root, source, picture);
     scene.files = source.files();
+    if (picture) document->own = OwnFile{.file = picture->file};
+    scene.document = std::move(document);
     return scene;
   }
   Scene scene = read_scene_3d(root, source, model);
   scene.files = source.files();
+  if (model) document->own = OwnFile{.file = model->file, .z_up = model->z_up};
+  scene.document = std::move(document);
   return scene;
 }
 

@@ -32,12 +32,15 @@ struct OwnModel {
   float cell_size = 0;                            ///< in the mesh's units
   std::vector<std::string> notes = {};            ///< as Scene::notes
   std::vector<std::filesystem::path> files = {};  ///< that it was read from
+  std::filesystem::path file = {};                ///< the first of them, as scenes name it
+  bool z_up = false;                              ///< turned from there
 };
 
 /// The user's own picture. It replaces the body of the 2D scene that has the field `own_image_side`.
 struct OwnPicture {
   std::shared_ptr<const render::Image> image;
-  int cells = 20;  ///< along the longest side of its silhouette
+  int cells = 20;                   ///< along the longest side of its silhouette
+  std::filesystem::path file = {};  ///< that it was read from
 };
 
 /// The user gives a model or a picture, and no body of the scene can be replaced by it.

@@ -9,6 +9,7 @@
 #include "scene_library.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"
+#include "state_file.h"
 
 namespace softcell::demos {
 namespace {
@@ -70,6 +71,12 @@ SceneSource SceneSource::in_memory(std::string text, const std::string& name) {
   return source;
 }
 
+SceneSource SceneSource::of_user(std::vector<fs::path> files) {
+  SceneSource source = in_memory({}, "file");
+  source.of_user_ = std::move(files);
+  return source;
+}
+
 std::string SceneSource::name() const { return fs::path(*main_.name).stem().string(); }
 
 fs::path SceneSource::locate(const std::string& file, const Place& place) const {
@@ -81,7 +88,8 @@ fs::path SceneSource::locate(const std::string& file, const Place& place) const 
     throw SceneError(place, fmt::format("there is no built-in file '{}'", file));
   std::error_code error;
   const fs::path found = fs::weakly_canonical(named.is_absolute() ? named : *folder_ / named, error);
-  const bool allowed = !error && (is_below(found, kSystemData) ||
+  const bool of_user = std::ranges::find(of_user_, named) != of_user_.end();
+  const bool allowed = !error && (of_user || is_below(found, kSystemData) ||
                                   (folder_ && !named.is_absolute() && is_below(found, *folder_)));
   if (!allowed) {
     throw SceneError(
@@ -130,6 +138,16 @@ fs::path SceneSource::picture(const std::string& file, const Place& place) const
   if (!fs::is_regular_file(path, error))
     throw SceneError(place, fmt::format("there is no picture file '{}'", file));
   return path;
+}
+
+std::string SceneSource::state(const std::string& file, const Place& place) const {
+  const fs::path path = locate(file, place);
+  try {
+    const auto bytes = base::read_file(path, kMaxStateBytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  } catch (const std::runtime_error& error) {
+    throw SceneError(place, error.what());
+  }
 }
 
 }  // namespace softcell::demos

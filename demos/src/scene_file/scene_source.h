@@ -40,6 +40,9 @@ class SceneSource {
   /// @param name  as errors call it, "NAME.toml" or "NAME.lua".
   static SceneSource in_memory(std::string text, const std::string& name);
 
+  /// No scene, but files that the user has chosen: these may be named, by their absolute paths, and no others.
+  static SceneSource of_user(std::vector<std::filesystem::path> files);
+
   const SourceText& main() const { return main_; }
   std::string name() const;  ///< without folder and ending
   /// The files of the user that the scene has named so far, itself included, whether or not they exist.
@@ -53,12 +56,18 @@ class SceneSource {
   /// More files that belong to the scene: those that its meshes name.
   void add_files(std::span<const std::filesystem::path> files) const;
   std::filesystem::path picture(const std::string& file, const Place& place) const;
+  /// The text of a saved state (state_file.h). @throws SceneError
+  std::string state(const std::string& file, const Place& place) const;
+
+  /// The folder of the scene file; none: the scene is built in, or in memory.
+  const std::optional<std::filesystem::path>& folder() const { return folder_; }
 
  private:
   std::filesystem::path locate(const std::string& file, const Place& place) const;
 
   SourceText main_;
   std::optional<std::filesystem::path> folder_;       // none: built in
+  std::vector<std::filesystem::path> of_user_;        // may be named, too
   mutable std::vector<std::filesystem::path> files_;  // grows as the scene is read
 };
 

@@ -18,6 +18,7 @@ struct BodyMaterial {
   float most_modulus = 0;          ///< m^2/s^2, of alpha 1
   float damping = 0;               ///< 0..1
   float friction = 0;
+  float density = 0;  ///< kg/m^3; in 2D kg/m^2
 };
 
 /// @param step  seconds of a substep
@@ -31,7 +32,8 @@ inline BodyMaterial material_of(std::string name, const ppu::SoftBodySettings& s
           .modulus = alpha * most,
           .most_modulus = most,
           .damping = settings.damping_of_step(step),
-          .friction = settings.friction};
+          .friction = settings.friction,
+          .density = settings.density};
 }
 
 }  // namespace softcell::demos

@@ -5,6 +5,7 @@
 #include <box2d/b2_fixture.h>
 #include <box2d/b2_polygon_shape.h>
 #include <box2d/b2_world.h>
+#include <box2d/b2_world_callbacks.h>
 
 #include <algorithm>
 #include <array>
@@ -14,12 +15,16 @@
 #include <string>
 #include <variant>
 
+#include <fmt/format.h>
+
+#include "beginning_of.h"
 #include "changed_material.h"
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
 #include "rigid_grip_2d.h"
 #include "scene/shared_models.h"
+#include "soft_grip_2d.h"
 #include "softcell/base/assert.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
 #include "softcell/jobs/job_system.h"
@@ -103,6 +108,7 @@ struct World {
       rigid_bodies.push_back(add_rigid_body(world, body, scene.friction, scene.restitution));
     for (std::size_t i = 0; i < models.size(); ++i) soft_bodies.add(models[i], scene.soft_bodies[i].position);
     attach(scene);
+    if (scene.begin) begin(scene);
   }
 
   void attach(const Scene2d& scene) {
@@ -125,11 +131,28 @@ struct World {
       }
     }
   }
+}
 
-  b2World world{{0, 0}};
-  std::vector<b2Body*> rigid_bodies;
-  ppu::Box2dSoftBodies soft_bodies;
-  std::vector<ppu::AttachmentId> attachments;  // of the scene, in order
+  /// The scene begins with a moment of a run.
+  void begin(const Scene2d& scene) {
+  put_soft_bodies<2>(scene, soft_bodies);
+  const auto moves = [](const b2Body* body) { return body->GetType() == b2_dynamicBody; };
+  check_moving_bodies(scene, static_cast<std::size_t>(std::ranges::count_if(rigid_bodies, moves)));
+  for (const Beginning<2>::RigidBody& rigid : scene.begin->rigid_bodies) {
+    if (rigid.body >= rigid_bodies.size() || !moves(rigid_bodies[rigid.body]))
+      throw std::runtime_error(fmt::format("rigid body {} of the saved state does not move in the scene {}",
+                                           rigid.body, scene.name));
+    b2Body& body = *rigid_bodies[rigid.body];
+    body.SetTransform(to_box2d(rigid.position), rigid.rotation);
+    body.SetLinearVelocity(to_box2d(rigid.velocity));
+    body.SetAngularVelocity(rigid.angular_velocity);
+  }
+}
+
+b2World world{{0, 0}};
+std::vector<b2Body*> rigid_bodies;
+ppu::Box2dSoftBodies soft_bodies;
+std::vector<ppu::AttachmentId> attachments;  // of the scene, in order
 };
 
 /// The SPEs, and the solver that works on them.
@@ -164,7 +187,7 @@ struct Simulation2d::State {
   State(const Scene2d& scene_description, const SimulationOptions& options)
       : scene(scene_description),
         script(scene.script),
-        controls({0, -scene.gravity}),
+        controls(initial_controls<2>(scene)),
         timing(options.timing) {
     SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     if (options.solver == Solver::kSpe) {
@@ -172,10 +195,16 @@ struct Simulation2d::State {
       solver = &spes->solver;
     }
     models = models_of(scene.soft_bodies);
+    if (scene.begin) frame = scene.begin->frames;
     reset();
   }
 
   // For Controls:
+  void hold(const InputEvent<2>& event) {
+    if (const auto nearest = Hands<2>::nearest_particle(event, bodies))
+      held.hold(event.hand, std::make_unique<SoftGrip2d>(bodies[nearest->body],
+                                                         static_cast<std::uint32_t>(nearest->particle)));
+  }
   void hold_rigid(const InputEvent<2>& event) {
     if (event.body < scene.rigid_bodies.size() && scene.rigid_bodies[event.body].mass > 0)
       held.hold(event.hand, std::make_unique<RigidGrip2d>(*world->rigid_bodies[event.body], event.value));
@@ -220,7 +249,7 @@ struct Simulation2d::State {
   ppu::SoftBodySolver<2>* solver = &on_this_thread;
   std::optional<World> world;
   Bodies bodies{world};
-  HeldBodies<2> held;                 // rigid ones, of `world`
+  HeldBodies<2> held;                 // of `world`
   std::vector<InputEvent<2>> events;  // of the last step
   std::int64_t frame = 0;             // of the script: counts without a break
 };
@@ -312,8 +341,27 @@ std::optional<InputEvent<2>> Simulation2d::touch(const Vector2f& point) const {
         return InputEvent<2>{.action = Action::kHoldRigid, .body = i, .value = point};
     }
   }
-  if (soft_bodies() == 0) return std::nullopt;
-  return InputEvent<2>{.action = Action::kGrab, .body = kEveryBody, .value = point};
+  const InputEvent<2> hold{.action = Action::kHold, .body = kEveryBody, .value = point};
+  const auto nearest = Hands<2>::nearest_particle(hold, state_->bodies);
+  if (!nearest) return std::nullopt;
+  return InputEvent<2>{
+      .action = Action::kHold, .body = static_cast<std::uint32_t>(nearest->body), .value = point};
+}
+
+bool Simulation2d::is_free(const Vector2f& middle, float side) const {
+  SC_ASSERT(middle.allFinite() && side > 0, "a square of {} m at ({}, {})", side, middle.x(), middle.y());
+  struct Anything : b2QueryCallback {
+    bool found = false;
+    bool ReportFixture(b2Fixture* /*fixture*/) override {
+      found = true;
+      return false;  // that is enough
+    }
+  } anything;
+  b2AABB box;
+  box.lowerBound = to_box2d(middle - Vector2f::Constant(side / 2));
+  box.upperBound = to_box2d(middle + Vector2f::Constant(side / 2));
+  state_->world->world.QueryAABB(&anything, box);
+  return !anything.found;
 }
 
 float Simulation2d::time_scale() const { return state_->controls.time_scale(); }
@@ -349,6 +397,29 @@ void Simulation2d::show(Shown2d& shown) const {
     shown.hands.push_back({shown.particles[held.body][held.particle], held.target});
   }
   state_->held.append(shown.hands);
+}
+
+Beginning<2> Simulation2d::moment() const {
+  const State& s = *state_;
+  Beginning<2> now{.gravity = s.controls.gravity(),
+                   .tilt = {},
+                   .time_scale = s.controls.time_scale(),
+                   .frames = s.frame,
+                   .seconds = 0,
+                   .soft_bodies = {},
+                   .rigid_bodies = {},
+                   .ended_attachments = {}};
+  for (std::size_t b = 0; b < soft_bodies(); ++b) now.soft_bodies.push_back(state_of(soft_body(b)));
+  for (std::uint32_t i = 0; i < s.world->rigid_bodies.size(); ++i) {
+    const b2Body& body = *s.world->rigid_bodies[i];
+    if (body.GetType() != b2_dynamicBody) continue;
+    now.rigid_bodies.push_back({.body = i,
+                                .position = {body.GetPosition().x, body.GetPosition().y},
+                                .rotation = body.GetAngle(),
+                                .velocity = {body.GetLinearVelocity().x, body.GetLinearVelocity().y},
+                                .angular_velocity = body.GetAngularVelocity()});
+  }
+  return now;
 }
 
 std::uint64_t Simulation2d::state_hash() const {

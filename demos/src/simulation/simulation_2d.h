@@ -45,9 +45,11 @@ class Simulation2d {
   /// Valid until the next step(), which may reset the world.
   const ppu::SoftBody<2>& soft_body(std::size_t body) const;
   Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
-  /// What a hand at a point takes: Action::kHoldRigid of a rigid body that moves and is there, else Action::kGrab of the
-  /// nearest particle. None: there is no soft body.
+  /// What a hand at a point takes: Action::kHoldRigid of a rigid body that moves and is there, else Action::kHold of the
+  /// soft body with the nearest particle. None: there is no soft body.
   std::optional<InputEvent<2>> touch(const Eigen::Vector2f& point) const;
+  /// Whether nothing is in a square, or near it: no rigid body's box and no particle. @param side  metres, above 0
+  bool is_free(const Eigen::Vector2f& middle, float side) const;
   bool paused() const;
   float time_scale() const;
   int substeps() const;  ///< of a frame of 1/60 s
@@ -56,6 +58,9 @@ class Simulation2d {
 
   /// Copies what a picture shows, as it is now.
   void show(Shown2d& shown) const;
+
+  /// Everything as it is now, for a scene that begins with it. Hands hold nothing in it, and a pause has ended.
+  Beginning<2> moment() const;
 
   /// 64-bit hash over positions and velocities of all particles.
   std::uint64_t state_hash() const;

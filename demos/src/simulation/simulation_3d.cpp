@@ -8,6 +8,9 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "beginning_of.h"
 #include "changed_material.h"
 #include "held_bodies.h"
 #include "input/controls.h"
@@ -29,6 +32,7 @@ namespace {
 
 constexpr double kTiltGrowsFor = 3;  // seconds
 constexpr float kOpaque = 0.5f;      // opacity of walls that hide what is behind them
+constexpr float kReach = 1000;       // metres: beyond any scene
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -108,7 +112,7 @@ struct Simulation3d::State {
   State(const Scene& scene_description, const SimulationOptions& options)
       : scene(scene_description),
         script(scene.script),
-        controls({0, -scene.gravity, 0}),
+        controls(initial_controls<3>(scene)),
         timing(options.timing),
         job_loop(options.job_loop()),
         match(options.kernel("match")),
@@ -150,6 +154,7 @@ struct Simulation3d::State {
       vertices += model->embedding().slot_of_vertex.size();
     }
     attach();
+    begin();
     for (Snapshot& snapshot : snapshots) {
       snapshot.box_poses.resize(boxes.size());
       for (const auto& body : positions)
@@ -234,6 +239,66 @@ struct Simulation3d::State {
                                  scene.name + ": " + error.what());
       }
     }
+  }
+
+  Eigen::Matrix3f present_tilt() const {
+    const auto& stated = controls.tilt();
+    return stated ? tilted_by(double{stated->x()}, double{stated->z()}) : tilt_at(scene.tilt, frame / 60);
+  }
+
+  /// As the scene begins, if that is a moment of a run: behind attach(), which holds what it holds where bodies are at rest.
+  void begin() {
+    script_frame = scene.begin ? scene.begin->frames : 0;
+    begin_again();
+  }
+  /// The same at a reset, at which the script goes on.
+  void begin_again() {
+    frame = scene.begin ? 60 * scene.begin->seconds : 0;
+    if (!scene.begin) return;
+    tilt = present_tilt();
+    put_soft_bodies<3>(scene, soft_bodies);
+    std::size_t moving = 0;
+    for (std::size_t i = 0; i < world.rigid_bodies(); ++i) moving += world.moves(i) ? 1 : 0;
+    check_moving_bodies(scene, moving);
+    for (const Beginning<3>::RigidBody& rigid : scene.begin->rigid_bodies) {
+      if (rigid.body >= world.rigid_bodies() || !world.moves(rigid.body))
+        throw std::runtime_error(fmt::format("rigid body {} of the saved state does not move in the scene {}",
+                                             rigid.body, scene.name));
+      world.put(rigid.body, {.position = rigid.position,
+                             .rotation = rigid.rotation,
+                             .velocity = rigid.velocity,
+                             .angular_velocity = rigid.angular_velocity});
+    }
+    for (const std::uint32_t number : scene.begin->ended_attachments) {
+      if (number >= attachments.size())
+        throw std::runtime_error(
+            fmt::format("attachment {} of the saved state is none of the {} of the scene {}", number,
+                        attachments.size(), scene.name));
+      soft_bodies.detach(attachments[number]);
+    }
+  }
+  Beginning<3> moment() const {
+    Beginning<3> now{.gravity = controls.gravity(),
+                     .tilt = controls.tilt(),
+                     .time_scale = controls.time_scale(),
+                     .frames = script_frame,
+                     .seconds = frame / 60,
+                     .soft_bodies = {},
+                     .rigid_bodies = {},
+                     .ended_attachments = {}};
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b) now.soft_bodies.push_back(state_of(soft_bodies[b]));
+    for (std::uint32_t i = 0; i < world.rigid_bodies(); ++i) {
+      if (!world.moves(i)) continue;
+      const ppu::BulletWorld::Motion motion = world.motion(i);
+      now.rigid_bodies.push_back({.body = i,
+                                  .position = motion.position,
+                                  .rotation = motion.rotation,
+                                  .velocity = motion.velocity,
+                                  .angular_velocity = motion.angular_velocity});
+    }
+    for (std::uint32_t i = 0; i < attachments.size(); ++i)
+      if (!soft_bodies.attachment(attachments[i])) now.ended_attachments.push_back(i);
+    return now;
   }
 
   /// Copies what a picture needs and starts the SPEs: with the next step's dynamics, which go first, and the
@@ -353,7 +418,7 @@ struct Simulation3d::State {
       if (soft_bodies.attachment(id)) soft_bodies.detach(id);
     attach();
     tilt.setIdentity();
-    frame = 0;
+    begin_again();
   }
   void home(std::size_t body) {
     SC_ASSERT(body < scene.soft_bodies.size(), "body {} of {}", body, scene.soft_bodies.size());
@@ -420,8 +485,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
     s.copy_contacts(s.snapshots[static_cast<std::size_t>(s.newest)]);  // the world stands as it is shown
     return times;
   }
-  const auto& tilt = s.controls.tilt();
-  s.tilt = tilt ? tilted_by(double{tilt->x()}, double{tilt->z()}) : tilt_at(s.scene.tilt, s.frame / 60);
+  s.tilt = s.present_tilt();
   s.frame += static_cast<double>(substeps) / s.substeps_of_frame();
   s.world.set_gravity(s.tilt.transpose() * s.controls.gravity());
   s.controls.hands().pull(s.soft_bodies);
@@ -486,6 +550,8 @@ const ppu::SoftBodyModel<3>& Simulation3d::model(std::size_t body) const {
 }
 const ppu::SoftBody<3>& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
 
+Beginning<3> Simulation3d::moment() const { return state_->moment(); }
+
 std::uint64_t Simulation3d::state_hash() const {
   std::uint64_t hash = 0;
   for (std::size_t b = 0; b < soft_bodies(); ++b) hash = ppu::state_hash(soft_body(b), hash);
@@ -529,7 +595,6 @@ void Simulation3d::show(Shown3d& to) const {
 
 std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
   SC_ASSERT(std::abs(ray.along.norm() - 1) < 1e-3f, "a ray along a direction {} long", ray.along.norm());
-  constexpr float kReach = 1000;  // metres: beyond any scene
   const Eigen::Vector3f end = ray.from + kReach * ray.along;
   std::optional<InputEvent<3>> touched;
   float share = 1;
@@ -548,6 +613,21 @@ std::optional<InputEvent<3>> Simulation3d::touch(const Ray& ray) const {
     if (box == state_->boxes.size() || state_->opacity_of(box) >= kOpaque) return std::nullopt;
   }
   return touched;
+}
+
+std::optional<Eigen::Vector3f> Simulation3d::seen_along(const Ray& ray) const {
+  const Eigen::Vector3f end = ray.from + kReach * ray.along;
+  std::optional<Eigen::Vector3f> seen;
+  float share = 1;
+  if (const auto soft = state_->soft_bodies.cast_ray(ray.from, end))
+    seen = soft->hit.position, share = soft->hit.share;
+  for (const ppu::BulletWorld::RayHit& hit : state_->world.cast_ray(ray.from, end)) {
+    if (hit.share >= share) break;
+    const auto box =
+        static_cast<std::size_t>(std::ranges::find(state_->boxes, hit.body) - state_->boxes.begin());
+    if (box == state_->boxes.size() || state_->scene.boxes[box].opacity >= kOpaque) return hit.position;
+  }
+  return seen;
 }
 
 bool Simulation3d::paused() const { return state_->controls.paused(); }

@@ -23,7 +23,8 @@ namespace softcell::demos {
 /// One thread uses it. After the first frames, step() allocates nothing outside Bullet.
 class Simulation3d {
  public:
-  /// @throws std::runtime_error  a body cannot be made, main memory is full, the host cannot run kernels.
+  /// @throws std::runtime_error  a body cannot be made, main memory is full, the host cannot run kernels; the scene begins
+  ///                             with the state of another.
   Simulation3d(const Scene& scene, const SimulationOptions& options);
   ~Simulation3d();
   Simulation3d(const Simulation3d&) = delete;
@@ -42,6 +43,9 @@ class Simulation3d {
   /// one that moves, whichever the ray meets first. None: it meets neither, or an opaque thing that does not move before.
   std::optional<InputEvent<3>> touch(const Ray& ray) const;
 
+  /// The first point of a ray on a soft body, or on a rigid one that is not transparent. None: it meets nothing.
+  std::optional<Eigen::Vector3f> seen_along(const Ray& ray) const;
+
   /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<3>> last_events() const;
 
@@ -55,6 +59,9 @@ class Simulation3d {
   Skin skin() const;  ///< who makes the vertices
   const ppu::SoftBodyModel<3>& model(std::size_t body) const;
   const ppu::SoftBody<3>& soft_body(std::size_t body) const;
+
+  /// Everything as it is now, for a scene that begins with it. Hands hold nothing in it, and a pause has ended.
+  Beginning<3> moment() const;
 
   /// 64-bit hash over positions and velocities of all particles as they are now.
   std::uint64_t state_hash() const;

@@ -5,15 +5,14 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "grip.h"
+#include "hand_patch.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
 
-/// A point of one body's surface that a hand holds, and the patch of the body around it. The patch has a tenth of the
-/// body's mass whatever the lattice, so that it is as large to the eye on a lattice of 100 particles as on one of 20,000.
+/// A point of one body's surface that a hand holds, and the patch of the body around it (hand_patch.h).
 ///
 /// The impulse J that moves the point as the hand wants is limited by the body's mass. It reaches the body in two ways:
 ///
@@ -34,20 +33,22 @@ class SurfaceGrip final : public Grip<3> {
   void pull(const HandMotion<3>& hand, const Eigen::Vector3f& gravity, float step) override;
   void let_go(const Eigen::Vector3f& velocity) override;
 
-  float patch_radius() const { return radius_; }  ///< metres, along the body
+  float patch_radius() const { return patch_.radius; }  ///< metres, along the body
 
  private:
-  void find_place(const Eigen::Vector3f& point);
-  void find_patch();
+  /// Of a point in a cell.
+  struct Place {
+    std::array<std::uint32_t, 8> corners{};  ///< of the cell
+    std::array<float, 8> shares{};           ///< their sum 1
+    std::uint32_t nearest() const;           ///< the corner that has the largest share
+  };
+  static Place place_of(const ppu::SoftBody<3>& body, const Eigen::Vector3f& point);
 
   ppu::SoftBody<3>& body_;
-  std::array<std::uint32_t, 8> corners_{};  // of the cell that holds the point
-  std::array<float, 8> shares_{};           // of the point's place, their sum 1
-  std::vector<float> weights_;              // of each particle: 1 at the point, 0 outside the patch
-  float radius_ = 0;
-  double patch_mass_ = 0;      // sum m w
+  Place place_;
+  HandPatch<3> patch_;
   double patch_response_ = 0;  // change of the point's velocity when the patch gets dv = w
-  Eigen::Vector3d point_at_rest_{0, 0, 0}, centre_at_rest_{0, 0, 0};
+  Eigen::Vector3d point_at_rest_{0, 0, 0};
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();  // of the body as a whole, for a warm start
 };
 

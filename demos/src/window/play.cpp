@@ -3,9 +3,13 @@
 #include <SDL.h>
 #include <imgui.h>
 
+#include <Eigen/Core>
 #include <chrono>
+#include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +20,10 @@
 #include "demo/panel.h"
 #include "drawing_thread.h"
 #include "input/user_input.h"
+#include "notice.h"
 #include "panel_input.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 #include "softcell/render/overlay.h"
 
 namespace softcell::demos {
@@ -25,7 +31,8 @@ namespace {
 
 /// What stands over all scenes of a window.
 struct Overlays {
-  Overlays(float scale, std::vector<SceneTitle> scenes) : overlay(scale), panel(std::move(scenes)) {}
+  Overlays(float text_scale, std::vector<SceneTitle> scenes)
+      : scale(text_scale), overlay(text_scale), panel(std::move(scenes)) {}
 
   /// @return true: the event is the panel's
   bool take(const SDL_Event& event, float density, WindowInput& scene) {
@@ -39,13 +46,31 @@ struct Overlays {
       scene.do_now(Command::kMenu);
       return true;
     }
+    if (event.type == SDL_KEYDOWN && event.key.repeat == 0 && event.key.keysym.sym == SDLK_F5) {
+      scene.do_now(Command::kSaveScene);
+      return true;
+    }
     return input.handle(event, density, panel);
   }
 
+  float scale;  // of text and sizes
   render::Overlay overlay;
   PanelInput input;  // of the overlay's context, which is current
   Panel panel;
+  Notice notice;
 };
+
+bool is_scene_file(const std::filesystem::path& file) {
+  return file.extension() == ".toml" || file.extension() == ".lua";
+}
+
+/// The file that was dropped onto the window. None: the event is another one
+std::optional<std::filesystem::path> dropped_file(const SDL_Event& event) {
+  if (event.type != SDL_DROPFILE && event.type != SDL_DROPTEXT) return std::nullopt;
+  const std::unique_ptr<char, decltype(&SDL_free)> name(event.drop.file, SDL_free);
+  if (event.type == SDL_DROPTEXT || !name) return std::nullopt;
+  return std::filesystem::path(name.get());
+}
 
 /// One scene in the window.
 class PlayedScene {
@@ -56,6 +81,14 @@ class PlayedScene {
     SC_ASSERT(!frames || *frames >= 0, "{} frames are to be played", frames.value_or(0));
     record_.asked_frames = frames;
     if (!frames && demo.replays()) record_.asked_frames = demo.frames();
+    // The user may have changed the window's size since it was opened.
+    const Eigen::Vector2i size = window_size();
+    SDL_Event resized{};
+    resized.type = SDL_WINDOWEVENT;
+    resized.window.event = SDL_WINDOWEVENT_SIZE_CHANGED;
+    resized.window.data1 = size.x();
+    resized.window.data2 = size.y();
+    demo.input().handle(resized);
   }
 
   void handle(const SDL_Event& event) {
@@ -63,16 +96,27 @@ class PlayedScene {
   }
 
   void step() {
+    if (demo_.input().take_save()) save();
     const FrameTimes times = demo_.step();
     record_.add(times);
     demo_.publish();
-    draw_overlay(pages_.next(demo_, times, demo_.input().look(), window_.width(), window_.height()));
+    Page page = pages_.next(demo_, times, demo_.input().look(), window_.width(), window_.height());
+    page.notice = overlays_.notice.next_frame();
+    draw_overlay(page);
     drawing_.show();
+  }
+
+  void save() {
+    try {
+      overlays_.notice.show("saved as " + base::one_line(demo_.save_scene(std::nullopt).string()));
+    } catch (const std::runtime_error& error) {
+      overlays_.notice.show(base::one_line(error.what()));
+    }
   }
 
   /// Here and not where pictures are drawn, however few these are: no click is lost.
   void draw_overlay(const Page& page) {
-    const float scale = kTextScale * window_.density();
+    const float scale = overlays_.scale;
     overlays_.panel.follow(page);
     overlays_.overlay.make_current();
     overlays_.input.begin_frame();
@@ -84,6 +128,26 @@ class PlayedScene {
     next.look = page.look;
     next.width = page.width;
     next.height = page.height;
+  }
+
+  // What takes the place of this scene. Null: nothing does; if it cannot be, the window says why.
+
+  /// A scene file, or this scene with a body made of a model or a picture where the mouse is.
+  std::unique_ptr<Demo> with_file(const std::filesystem::path& file, const SimulationOptions& how) {
+    if (is_scene_file(file)) return made([&] { return demo_.opened(file, how); });
+    return changed({.kind = SceneChange::Kind::kFile, .file = file}, mouse(), how);
+  }
+  /// This scene with what the user wants of it in the menu or by keys.
+  std::unique_ptr<Demo> with_change(const SimulationOptions& how) {
+    std::optional<SceneChange> change = overlays_.panel.take_change();
+    if (demo_.input().take_remove()) {
+      const auto picked = demo_.picked();
+      if (!picked) overlays_.notice.show("take hold of the soft body that is to be removed");
+      if (picked) change = {.kind = SceneChange::Kind::kRemove, .body = picked->body};
+    }
+    if (!change) return nullptr;
+    const Eigen::Vector2i size = window_size();
+    return changed(*change, size / 2, how);
   }
 
   bool ends() const {
@@ -101,6 +165,34 @@ class PlayedScene {
   }
 
  private:
+  Eigen::Vector2i window_size() const {
+    Eigen::Vector2i size;
+    SDL_GetWindowSize(window_.sdl(), &size.x(), &size.y());
+    return size.cwiseMax(1);
+  }
+  /// Of the window, also while something is dragged from another one, of which SDL reports no motion.
+  Eigen::Vector2i mouse() const {
+    Eigen::Vector2i at, window;
+    SDL_GetGlobalMouseState(&at.x(), &at.y());
+    SDL_GetWindowPosition(window_.sdl(), &window.x(), &window.y());
+    return (at - window).cwiseMax(0).cwiseMin(window_size());
+  }
+  std::unique_ptr<Demo> changed(SceneChange change, const Eigen::Vector2i& at, const SimulationOptions& how) {
+    const Eigen::Vector2i size = window_size();
+    change.x = at.x(), change.y = at.y();
+    change.width = size.x(), change.height = size.y();
+    return made([&] { return demo_.changed(change, how); });
+  }
+  template <class Make>
+  std::unique_ptr<Demo> made(const Make& make) {
+    try {
+      return make();
+    } catch (const std::exception& error) {
+      overlays_.notice.show(base::one_line(error.what()));
+      return nullptr;
+    }
+  }
+
   render::Window& window_;
   Demo& demo_;
   Overlays& overlays_;
@@ -119,29 +211,38 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
             options.title);
   SC_ASSERT(options.width > 0 && options.height > 0, "a window of {} by {} pixels", options.width,
             options.height);
+  SC_ASSERT(options.ui_scale.value_or(1) > 0, "menus scaled by {}", options.ui_scale.value_or(1));
   render::Window window({.title = options.title, .width = options.width, .height = options.height});
   std::vector<SceneTitle> titles;
   for (const NamedDemo& scene : scenes) titles.push_back({scene.name, scene.title});
   if (titles.size() == 1) titles.clear();
-  Overlays overlays(kTextScale * window.density(), std::move(titles));
+  Overlays overlays(kTextScale * options.ui_scale.value_or(window.density()), std::move(titles));
   Controllers controllers;
   FrameClock clock;
   std::optional<Look> look;
+  std::unique_ptr<Demo> other;  // to go on with, which is none of `scenes`
+  bool begins_paused = false;
   for (std::size_t number = 0;;) {
-    Run run{.demo = scenes[number].make(how), .record = {}};
+    Run run{.demo = other ? std::exchange(other, nullptr) : scenes[number].make(how), .record = {}};
     run.record.interrupted = interrupted();
     if (run.record.interrupted) return run;
     if (look) run.demo->input().set_look(*look);
+    if (std::exchange(begins_paused, false)) run.demo->input().do_now(Command::kPause);
     PlayedScene scene(window, *run.demo, options.frames, overlays);
-    bool next = false;
+    bool next = false, same_scene = false;
     std::size_t chosen = (number + 1) % scenes.size();
     run_recorded(*run.demo, [&] {
-      while (!next && !scene.ends() && !interrupted()) {
+      while (!next && !other && !scene.ends() && !interrupted()) {
         clock.wait();
         SDL_Event event;
-        while (SDL_PollEvent(&event) != 0) {
+        while (!other && SDL_PollEvent(&event) != 0) {
           controllers.handle(event);
-          scene.handle(event);
+          if (const auto file = dropped_file(event)) {
+            same_scene = !is_scene_file(*file);
+            other = scene.with_file(*file, how);
+          } else {
+            scene.handle(event);
+          }
         }
         scene.step();
         next = run.demo->input().wants_next_scene() && scenes.size() > 1;
@@ -149,13 +250,25 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
           next = true;
           chosen = *choice;
         }
+        if (!next && !other) {
+          other = scene.with_change(how);
+          same_scene = true;
+        }
       }
       run.record = scene.finish();
     });
     run.record.interrupted = interrupted();
-    if (!next) return run;
-    number = chosen;
-    look = run.demo->input().look().with_scenes_camera();
+    if (!next && !other) return run;
+    look = run.demo->input().look();
+    if (other && same_scene) {
+      begins_paused = run.demo->paused();
+    } else {
+      look = look->with_scenes_camera();
+    }
+    if (next) {
+      number = chosen;
+      other.reset();
+    }
   }
 }
 

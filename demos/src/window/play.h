@@ -13,6 +13,7 @@ struct WindowOptions {
   std::string title;
   int width = 1280, height = 720;  ///< pixels
   std::optional<int> frames;       ///< to be played
+  std::optional<float> ui_scale;   ///< of text and menus; none: as dense as the display is
 };
 
 /// Opens a window and plays in it, at 60 frames a second, until the user closes it, the options' number of frames

@@ -1,13 +1,19 @@
 // softcell demo 2d: soft bodies in a Box2D world.
 
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "changed_scene.h"
 #include "demo/scene_demo.h"
 #include "demo_verbs.h"
 #include "run_demo.h"
+#include "scene_file/change_scene.h"
 #include "scene_file/picture_cells.h"
+#include "scene_file/save_scene.h"
 #include "simulation/simulation_2d.h"
 #include "verb/exit_status.h"
 #include "view/scene_view_2d.h"
@@ -33,7 +39,8 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
             scene, log, how, options.view,
             {demos::MouseHand(
                 scene.camera, [this](const Eigen::Vector2f& point) { return simulation().touch(point); },
-                options.size.width, options.size.height)}) {}
+                options.size.width, options.size.height)}),
+        options_(options) {}
 
   demos::DemoCounts counts() const override {
     return {.soft_bodies = simulation().soft_bodies(),
@@ -43,6 +50,56 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
             .bodies_on_ppu = simulation().bodies_on_ppu()};
   }
   ppu::ContactMethod contacts() const override { return ppu::ContactMethod::kSpheres; }
+  std::filesystem::path save_scene(const std::optional<std::filesystem::path>& file) const override {
+    return write_scene(scene(), file, [&](const std::filesystem::path& path) {
+      return demos::saved_scene(scene(), present(), path);
+    });
+  }
+
+  std::span<const std::string_view> shapes() const override { return demos::spawned_shapes(2); }
+  std::unique_ptr<demos::Demo> changed(const demos::SceneChange& change,
+                                       const demos::SimulationOptions& how) const override {
+    require_changeable();
+    return made(changed_scene<2>(scene(), present(), change, [&] { return new_body(change); }), how);
+  }
+  std::unique_ptr<demos::Demo> opened(const std::filesystem::path& scene_file,
+                                      const demos::SimulationOptions& how) const override {
+    require_changeable();
+    refuse_lua(scene_file);
+    return made(demos::load_scene_2d(scene_file.string()), how);
+  }
+
+ private:
+  std::unique_ptr<demos::Demo> made(demos::Scene2d scene, const demos::SimulationOptions& how) const {
+    Log log{demos::RecordingFiles{}};
+    log.begin(scene);
+    return std::make_unique<Demo2d>(scene, log, how, options_);
+  }
+  demos::PresentScene<2> present() const {
+    return {simulation().moment(), settings_of_bodies(), simulation().substeps()};
+  }
+
+  /// At the point of the window, a quarter of the picture's height; where that is in a wall or another body, as near as it is free
+  /// on the way to the picture's middle.
+  demos::NewBody<2> new_body(const demos::SceneChange& change) const {
+    constexpr float kShareOfHeight = 0.25f;
+    demos::NewBody<2> body;
+    const Eigen::Vector2f at = scene().camera.point_at(change.x, change.y, change.width, change.height);
+    body.middle = at;
+    body.longest_side = kShareOfHeight * scene().camera.height;
+    constexpr int kTries = 24;
+    for (int i = 0; i <= kTries; ++i) {
+      const float share = static_cast<float>(i) / kTries;
+      const Eigen::Vector2f middle = at + share * (scene().camera.centre - at);
+      if (!simulation().is_free(middle, 1.15f * body.longest_side)) continue;
+      body.middle = middle;
+      break;
+    }
+    if (change.kind == demos::SceneChange::Kind::kShape) body.alpha = change.number;
+    return body;
+  }
+
+  const Demo2dOptions& options_;
 };
 
 demos::Scene2d load_with_picture(const std::string& name, const std::optional<demos::OwnPicture>& picture) {
@@ -59,7 +116,9 @@ int run_demo_2d(const Demo2dOptions& options) {
   check_kept({{"--image", options.image}}, written_files(options));
   return run_demo(options, "demo 2d", [&](bool all) {
     std::optional<demos::OwnPicture> picture;
-    if (options.image) picture = {.image = demos::load_picture(*options.image), .cells = options.cells};
+    if (options.image)
+      picture = {
+          .image = demos::load_picture(*options.image), .cells = options.cells, .file = *options.image};
     demos::InputLog<2> log(options);
     const std::string usual = picture ? "picture" : "man";
     demos::Scene2d scene =

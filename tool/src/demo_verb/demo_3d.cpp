@@ -2,18 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "changed_scene.h"
 #include "demo/scene_demo.h"
 #include "demo_verbs.h"
 #include "run_demo.h"
 #include "scene/scene_camera.h"
+#include "scene_file/change_scene.h"
 #include "scene_file/own_model.h"
+#include "scene_file/save_scene.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/base/text.h"
 #include "verb/exit_status.h"
@@ -47,7 +54,8 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
              .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
                                        [this](const demos::Ray& ray) { return simulation().touch(ray); },
                                        options.size.width, options.size.height),
-             .camera = demos::CameraControl(scene.camera, options.size.height)}) {}
+             .camera = demos::CameraControl(scene.camera, options.size.height)}),
+        options_(options) {}
 
   demos::FrameTimes step() override {
     simulation().record_contacts(static_cast<demos::View>(input().look().view) == demos::View::kContacts);
@@ -63,8 +71,58 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
             .bodies_on_ppu = simulation().bodies_on_ppu()};
   }
   ppu::ContactMethod contacts() const override { return simulation().contacts(); }
+  std::filesystem::path save_scene(const std::optional<std::filesystem::path>& file) const override {
+    return write_scene(scene(), file, [&](const std::filesystem::path& path) {
+      return demos::saved_scene(scene(), present(), demos::moved_by(scene().camera, look()),
+                                simulation().contacts(), path);
+    });
+  }
+
+  std::span<const std::string_view> shapes() const override { return demos::spawned_shapes(3); }
+  std::unique_ptr<demos::Demo> changed(const demos::SceneChange& change,
+                                       const demos::SimulationOptions& how) const override {
+    require_changeable();
+    return made(changed_scene<3>(scene(), present(), change, [&] { return new_body(change); }), how);
+  }
+  std::unique_ptr<demos::Demo> opened(const std::filesystem::path& scene_file,
+                                      const demos::SimulationOptions& how) const override {
+    require_changeable();
+    refuse_lua(scene_file);
+    return made(demos::load_scene_3d(scene_file.string()), how);
+  }
 
  private:
+  std::unique_ptr<demos::Demo> made(demos::Scene scene, const demos::SimulationOptions& how) const {
+    Log log{demos::RecordingFiles{}};
+    log.begin(scene);
+    return std::make_unique<Demo3d>(scene, log, how, options_);
+  }
+  demos::PresentScene<3> present() const {
+    return {simulation().moment(), settings_of_bodies(), simulation().substeps()};
+  }
+
+  /// In front of what one sees at the point of the window, and above it; a quarter of the picture's height.
+  demos::NewBody<3> new_body(const demos::SceneChange& change) const {
+    constexpr float kShareOfHeight = 0.25f, kLeastSide = 0.02f;
+    const render::Camera camera = eye(look());
+    const demos::Ray ray = demos::ray_through(camera, change.x, change.y, change.width, change.height);
+    const auto seen = simulation().seen_along(ray);
+    const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
+    const Eigen::Vector3f at = seen ? *seen
+                                    : Eigen::Vector3f(ray.from + (camera.target - camera.eye).norm() /
+                                                                     ray.along.dot(forward) * ray.along);
+    const float depth = std::max((at - camera.eye).dot(forward), camera.near_plane);
+    demos::NewBody<3> body;
+    body.longest_side = std::max(kShareOfHeight * 2 * camera.tan_half_fov_y * depth, kLeastSide);
+    body.middle = at;
+    if (seen) {
+      body.middle -= 0.5f * body.longest_side * ray.along;
+      body.middle.y() = std::max(body.middle.y(), at.y() + 0.6f * body.longest_side);
+    }
+    if (change.kind == demos::SceneChange::Kind::kShape) body.alpha = change.number;
+    return body;
+  }
+
   render::Camera eye(const demos::Look& look) const {
     std::vector<ppu::Bounds<3>> boxes;
     for (std::size_t b = 0; b < simulation().soft_bodies(); ++b)
@@ -84,6 +142,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
     input().follow_body(simulation().shown_tilt() * (0.5f * (now.low + now.high) - begin));
   }
 
+  const Demo3dOptions& options_;
   std::size_t followed_ = 0;  // number of a soft body
 };
 

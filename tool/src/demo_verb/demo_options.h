@@ -21,6 +21,7 @@ struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
   std::optional<std::string> scene;  ///< name or file
   std::optional<int> frames;         ///< default: the scene's
   std::optional<std::filesystem::path> json;
+  std::optional<std::filesystem::path> save_scene = {};  ///< at the end of the run
   demos::Solver solver = demos::Solver::kSpe;
   ls_sim::Machine machine = ls_sim::Machine::kHost;
   std::optional<ppu::ContactMethod> contacts = {};  ///< in three dimensions; none: the scene's
@@ -28,8 +29,9 @@ struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels
   std::optional<std::filesystem::path> trace;
-  std::string view_name = {};  ///< what --view says
-  bool quiet = false;          ///< nothing but what goes wrong, not even progress on a terminal
+  std::string view_name = {};          ///< what --view says
+  std::optional<float> ui_scale = {};  ///< of text and menus in a window
+  bool quiet = false;                  ///< nothing but what goes wrong, not even progress on a terminal
 };
 
 /// The scene's default: arena, or drop when a mesh is given.

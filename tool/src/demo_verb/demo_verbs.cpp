@@ -193,6 +193,9 @@ class DemoVerbs final : public Verb {
                "Draw each frame's figures over its picture (with --headless; in a window S does)");
     d.add_option("--size", size_, "Size of pictures in pixels, or of the window (default: 1280x720)")
         ->type_name("WIDTHxHEIGHT");
+    d.add_option("--ui-scale", options.ui_scale,
+                 "Size of text and menus in a window, 0.5 to 4 (default: as dense as the display is)")
+        ->type_name("FACTOR");
     accept_whole_number(d.add_option("--spes", options.spes, "SPEs at work, 1 to 6 (default: 6)"), 1,
                         dma::kSpeCount)
         ->type_name("SPES");
@@ -209,6 +212,10 @@ class DemoVerbs final : public Verb {
     d.add_option(
          "--replay", options.replay,
          "Replay what --record wrote, in place of the scene's script (default scene: the recorded one)")
+        ->type_name("FILE");
+    d.add_option("--save-scene", options.save_scene,
+                 "At the end, save the scene as it is then: a scene file, which ends in .toml, and its state "
+                 "beside it")
         ->type_name("FILE");
     add_trace_option(d, options.trace);
     add_json_option(d, options.json, "statistics");

@@ -44,7 +44,9 @@ void print_interrupted(const DemoOptions& options, const demos::RunRecord& recor
              base::counted(static_cast<std::uint64_t>(all), "frame"),
              options.out ? "; every frame that was written is whole" : "",
              options.video ? "; the video has them" : "", options.record ? "; the recording has them" : "",
-             options.trace || options.json ? "; only a run to its end leaves a trace or statistics" : "");
+             options.trace || options.json || options.save_scene
+                 ? "; only a run to its end leaves a trace, statistics or a saved scene"
+                 : "");
 }
 
 /// How pictures are made, for their files. Folders and files of this computer are nobody else's business.
@@ -144,13 +146,28 @@ void check_files(const DemoOptions& options) {
   check_kept({{"--replay", options.replay}}, written);
 }
 
+/// The file beside a saved scene.
+std::optional<std::filesystem::path> state_of(std::optional<std::filesystem::path> scene) {
+  if (scene) scene->replace_extension(".state");
+  return scene;
+}
+
+/// A scene that cannot be written is no surprise at the end of a long run.
+void check_saved_scene(const DemoOptions& options) {
+  if (!options.save_scene) return;
+  refuse_standard_output({"--save-scene", options.save_scene});
+  if (options.save_scene->extension() != ".toml")
+    throw UsageError(
+        fmt::format("--save-scene {}: give a file name that ends in .toml", options.save_scene->string()));
+  const base::WholeFile scene(*options.save_scene), state(*state_of(options.save_scene));
+}
+
 }  // namespace
 
 std::vector<NamedFile> written_files(const DemoOptions& options) {
-  return {{"--video", options.video},
-          {"--record", options.record},
-          {"--trace", options.trace},
-          {"--json", options.json}};
+  return {{"--video", options.video},           {"--record", options.record},
+          {"--trace", options.trace},           {"--json", options.json},
+          {"--save-scene", options.save_scene}, {"the state of --save-scene", state_of(options.save_scene)}};
 }
 
 void check_scene_kept(const std::vector<std::filesystem::path>& scene, const DemoOptions& options) {
@@ -165,9 +182,12 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   if (!options.headless && options.statistics)
     throw UsageError(
         "--statistics is for pictures without a window: give --headless too; in a window S shows them");
+  if (options.ui_scale && !(*options.ui_scale >= 0.5f && *options.ui_scale <= 4))
+    throw UsageError(fmt::format("--ui-scale {}: give a number from 0.5 to 4", *options.ui_scale));
   check_pictures(options);
   check_files(options);
   OutputFiles files(written_files(options));
+  check_saved_scene(options);
   const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any
   demos::make_picture_folders(options);  // where other outputs may be wanted, too
   // A recording and a trace are of one scene.
@@ -199,7 +219,8 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
                                           : demos::play({.title = "softcell " + std::string(verb),
                                                          .width = options.size.width,
                                                          .height = options.size.height,
-                                                         .frames = options.frames},
+                                                         .frames = options.frames,
+                                                         .ui_scale = options.ui_scale},
                                                         scenes, how, [&] { return guard.interrupted(); });
   if (run.record.interrupted) {
     print_interrupted(options, run.record);
@@ -212,6 +233,7 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
   const DemoFigures figures = demo_figures(options, *run.demo, run.record, timing ? &*timing : nullptr);
   const std::vector<ls_sim::Finding> found = findings.list();
   print_findings(found);  // before a file that cannot be written ends the run
+  if (options.save_scene) run.demo->save_scene(options.save_scene);
   if (trace) trace->write(*trace_file);
   if (json_file != nullptr) {
     auto document = to_json(figures);

@@ -7,12 +7,14 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "demo/demo.h"
 #include "demo_options.h"
+#include "scene_file/save_scene.h"
 #include "scene_file/scene_library.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
@@ -37,6 +39,16 @@ using LoadScenes = std::function<std::vector<demos::NamedDemo>(bool all)>;
 /// @throws UsageError  files are asked for that a window does not write, a video of no known format, or a file in
 ///                     the place of another that is written or read.
 int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes& load);
+
+/// Writes what `saved` returns for the path. @param file  none: a free name  @return the path
+/// @throws std::runtime_error  as saved(), or the files cannot be written
+template <class SceneOf, class Saved>
+std::filesystem::path write_scene(const SceneOf& scene, const std::optional<std::filesystem::path>& file,
+                                  const Saved& saved) {
+  const std::filesystem::path path = file ? *file : demos::free_scene_file(scene.document.get(), scene.name);
+  demos::write_scene_files(saved(path));
+  return path;
+}
 
 /// @param log    has begun `first`.
 /// @param first  the scene to begin with; with `all` those of its dimension that come with softcell follow.

@@ -1,0 +1,278 @@
+#include "save_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <initializer_list>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "scene_source.h"
+#include "softcell/base/assert.h"
+#include "softcell/base/whole_file.h"
+#include "state_file.h"
+#include "table_edit.h"
+#include "write_toml.h"
+
+namespace softcell::demos {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kStateEnding = ".state";
+
+std::vector<Value*> soft_bodies_in(Table& root) {
+  std::vector<Value*> bodies;
+  if (Array* const items = items_in(root, "soft_body"))
+    for (Value& item : *items) bodies.push_back(&item);
+  return bodies;
+}
+
+/// One scene on its way to a file.
+class SavedScene {
+ public:
+  /// @param root  of the document, as it is now
+  SavedScene(const SceneDocument& document, Table root, const fs::path& scene_file)
+      : document_(document),
+        root_(std::move(root)),
+        file_(scene_file),
+        folder_(fs::weakly_canonical(fs::absolute(scene_file)).parent_path()) {}
+
+  Table& root() { return root_; }
+  std::vector<Value*> soft_bodies() { return soft_bodies_in(root_); }
+
+  /// The file of the command line as a scene there names it.
+  std::string own_file() const { return relative(document_.own->file); }
+
+  /// A file that a body names, which the saved scene must find, too.
+  void keep_file(Table& item, const std::string& field) {
+    Value* const value = find_field(item, field);
+    if (value == nullptr) return;
+    const auto& name = std::get<std::string>(value->data);
+    if (name.starts_with("/usr/share/")) return;  // installed
+    if (fs::path(name).is_absolute()) {           // dropped onto the window
+      *value = text_value(relative(name));
+      return;
+    }
+    if (document_.folder) {
+      *value = text_value(relative(*document_.folder / name));
+      return;
+    }
+    const base::EmbeddedFile* const embedded = base::find_embedded(embedded_scenes(), name);
+    SC_ASSERT(embedded != nullptr, "the built-in scene names the file '{}', which is none", name);
+    const fs::path copy = fs::path(file_).replace_extension().string() + "_" + name;
+    if (std::ranges::find(copies_, copy, &SceneFile::path) == copies_.end())
+      copies_.push_back({copy, std::string(embedded->text)});
+    *value = text_value(copy.filename().string());
+  }
+
+  template <int Dimension>
+  std::vector<SceneFile> files(const Beginning<Dimension>& moment, const std::string& scene_name) {
+    const fs::path state = fs::path(file_).replace_extension(kStateEnding);
+    set_field(table_in(root_, "begin"), "state", text_value(state.filename().string()));
+    std::vector<SceneFile> all{{file_, fmt::format("# The scene {} after {} frames, as softcell saved it.\n",
+                                                   printable(scene_name), moment.frames) +
+                                           write_toml({.data = root_, .place = {}})},
+                               {state, state_to_text(moment)}};
+    std::ranges::move(copies_, std::back_inserter(all));
+    return all;
+  }
+
+ private:
+  static std::string printable(std::string name) {
+    std::ranges::replace_if(
+        name, [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; }, '?');
+    return name;
+  }
+
+  std::string relative(const fs::path& file) const {
+    const fs::path place = fs::weakly_canonical(fs::absolute(file));
+    const fs::path way = place.lexically_relative(folder_);
+    if (way.empty() || *way.begin() == "..")
+      throw std::runtime_error(
+          fmt::format("the scene cannot be saved as {}: it uses {}, and a scene names files below its own "
+                      "folder only; save it "
+                      "in {}",
+                      file_.string(), file.string(), place.parent_path().string()));
+    return way.generic_string();
+  }
+
+  const SceneDocument& document_;
+  Table root_;
+  fs::path file_, folder_;
+  std::vector<SceneFile> copies_;
+};
+
+/// What sliders have changed of a body's material, in place of what its material says.
+void save_material(Table& body, const ppu::SoftBodySettings& was, const ppu::SoftBodySettings& now,
+                   bool other_substeps) {
+  if (now.alpha != was.alpha || now.frequency != was.frequency || (other_substeps && !now.frequency)) {
+    erase_fields(body, {"alpha", "frequency", "modulus"});
+    set_field(body, now.frequency ? "frequency" : "alpha", number_value(now.frequency.value_or(now.alpha)));
+  }
+  if (now.damping != was.damping || now.damping_time != was.damping_time) {
+    erase_fields(body, {"damping", "damping_time"});
+    set_field(body, now.damping_time ? "damping_time" : "damping",
+              number_value(now.damping_time.value_or(now.damping)));
+  }
+  if (now.friction != was.friction) set_field(body, "friction", number_value(now.friction));
+  if (now.density != was.density) set_field(body, "density", number_value(now.density));
+  ppu::SoftBodySettings rest = now;
+  rest.alpha = was.alpha, rest.frequency = was.frequency;
+  rest.damping = was.damping, rest.damping_time = was.damping_time;
+  rest.friction = was.friction, rest.density = was.density;
+  SC_ASSERT(rest == was, "a soft body of cells of {} m has changed in what no scene file would say",
+            was.cell_size);
+}
+
+/// The first body that lets a file of the command line take its place. Null: none does.
+Table* replaced_body(SavedScene& saved, std::string_view field) {
+  for (Value* const body : saved.soft_bodies()) {
+    auto& table = std::get<Table>(body->data);
+    if (find_field(table, field) != nullptr) return &table;
+  }
+  return nullptr;
+}
+
+template <class Vector>
+bool is_downwards(const Vector& gravity) {
+  Vector sideways = gravity;
+  sideways.y() = 0;
+  return sideways.isZero(0);
+}
+
+void require_document(const std::shared_ptr<const SceneDocument>& document, const std::string& name) {
+  if (!document)
+    throw std::runtime_error(fmt::format("the scene {} cannot be saved: a program has made it", name));
+}
+
+template <int Dimension, class SceneOf>
+Table root_now(const SceneOf& scene, const PresentScene<Dimension>& now) {
+  require_document(scene.document, scene.name);
+  Table root = std::get<Table>(scene.document->root.data);
+  erase_fields(root, {"pictures", "begin"});  // they are of other frames
+  Table& world = table_in(root, "world");
+  SC_ASSERT(now.moment.gravity, "a moment of scene '{}' without gravity", scene.name);
+  if (is_downwards(*now.moment.gravity))
+    set_field(world, "gravity", number_value(0 - now.moment.gravity->y()));
+  set_field(world, "substeps", integer_value(now.substeps));
+  const std::vector<Value*> bodies = soft_bodies_in(root);
+  SC_ASSERT(bodies.size() == scene.soft_bodies.size() && bodies.size() == now.materials.size(),
+            "{} soft bodies in the document of scene '{}', {} in the scene and {} in the run", bodies.size(),
+            scene.name, scene.soft_bodies.size(), now.materials.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    save_material(std::get<Table>(bodies[b]->data), scene.soft_bodies[b].settings, now.materials[b],
+                  now.substeps != scene.substeps);
+  return root;
+}
+
+template <int Dimension>
+void save_moment(Table& root, const Beginning<Dimension>& moment) {
+  Table& begin = table_in(root, "begin");
+  if (!is_downwards(*moment.gravity)) set_field(begin, "gravity", vector_value(*moment.gravity));
+  if (moment.time_scale != 1) set_field(begin, "time_scale", number_value(moment.time_scale));
+  set_field(begin, "frames", integer_value(moment.frames));
+}
+
+void save_camera(Table& root, const render::Camera& camera) {
+  Table& table = table_in(root, "camera");
+  set_field(table, "eye", vector_value(camera.eye));
+  set_field(table, "target", vector_value(camera.target));
+  set_field(table, "up", vector_value(camera.up));
+  set_field(table, "tan_half_fov_y", number_value(camera.tan_half_fov_y));
+  set_field(table, "near", number_value(camera.near_plane));
+  set_field(table, "far", number_value(camera.far_plane));
+}
+
+}  // namespace
+
+Table present_root(const Scene& scene, const PresentScene<3>& now) { return root_now<3>(scene, now); }
+Table present_root(const Scene2d& scene, const PresentScene<2>& now) { return root_now<2>(scene, now); }
+
+std::vector<SceneFile> saved_scene(const Scene& scene, const PresentScene<3>& now,
+                                   const render::Camera& camera, ppu::ContactMethod contacts,
+                                   const fs::path& scene_file) {
+  Table now_root = present_root(scene, now);
+  SavedScene saved(*scene.document, std::move(now_root), scene_file);
+  save_moment(saved.root(), now.moment);
+  Table& root = saved.root();
+  if (contacts != scene.contacts)
+    set_field(table_in(root, "world"), "contacts",
+              text_value(kContactMethods.at(static_cast<std::size_t>(contacts))));
+  if (now.moment.tilt) set_field(table_in(root, "begin"), "tilt", vector_value(*now.moment.tilt));
+  if (now.moment.seconds > 0)
+    set_field(table_in(root, "begin"), "seconds", number_value(static_cast<float>(now.moment.seconds)));
+  save_camera(root, camera);
+  Table* const replaced = scene.document->own ? replaced_body(saved, "own_model_side") : nullptr;
+  if (replaced != nullptr) {
+    const Value side = *find_field(*replaced, "own_model_side");
+    erase_fields(*replaced, {"own_model_side", "shape", "mesh", "scale", "up", "colour"});
+    set_field(*replaced, "longest_side", side);
+  }
+  std::size_t number = 0;
+  for (Value* const body : saved.soft_bodies()) {
+    auto& table = std::get<Table>(body->data);
+    if (&table == replaced) {
+      set_field(table, "mesh", text_value(saved.own_file()));
+      if (scene.document->own->z_up) set_field(table, "up", text_value("z"));
+      set_field(table, "cell_size", number_value(scene.soft_bodies[number].settings.cell_size));
+    } else {
+      saved.keep_file(table, "mesh");
+    }
+    ++number;
+  }
+  if (Array* const obstacles = items_in(root, "obstacle"))
+    for (Value& obstacle : *obstacles) saved.keep_file(std::get<Table>(obstacle.data), "mesh");
+  return saved.files(now.moment, scene.name);
+}
+
+std::vector<SceneFile> saved_scene(const Scene2d& scene, const PresentScene<2>& now,
+                                   const fs::path& scene_file) {
+  Table now_root = present_root(scene, now);
+  SavedScene saved(*scene.document, std::move(now_root), scene_file);
+  save_moment(saved.root(), now.moment);
+  Table* const replaced = scene.document->own ? replaced_body(saved, "own_image_side") : nullptr;
+  if (replaced != nullptr) {
+    const Value side = *find_field(*replaced, "own_image_side");
+    erase_fields(*replaced, {"own_image_side", "shape", "rows", "lattice", "image", "face", "cell_colours"});
+    set_field(*replaced, "longest_side", side);
+  }
+  std::size_t number = 0;
+  for (Value* const body : saved.soft_bodies()) {
+    auto& table = std::get<Table>(body->data);
+    if (&table == replaced) {
+      set_field(table, "image", text_value(saved.own_file()));
+      set_field(table, "cell_size", number_value(scene.soft_bodies[number].settings.cell_size));
+    } else {
+      saved.keep_file(table, "lattice");
+      saved.keep_file(table, "image");
+    }
+    ++number;
+  }
+  return saved.files(now.moment, scene.name);
+}
+
+void write_scene_files(std::span<const SceneFile> files) {
+  base::WholeFiles written;
+  for (const SceneFile& file : files) written.open(file.path).write(file.bytes);
+  written.commit();
+}
+
+fs::path free_scene_file(const SceneDocument* document, const std::string& scene_name) {
+  fs::path folder;
+  if (document != nullptr && document->own) {
+    folder = document->own->file.parent_path();
+  } else if (document != nullptr && document->folder) {
+    folder = *document->folder;
+  }
+  for (int number = 1;; ++number) {
+    fs::path path = folder / fmt::format("{}_{}.toml", scene_name, number);
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(path, error))) return path;
+  }
+}
+
+}  // namespace softcell::demos

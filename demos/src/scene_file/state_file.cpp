@@ -1,0 +1,246 @@
+#include "state_file.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <stdexcept>
+
+#include "field_reader.h"
+#include "read_common.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::demos {
+namespace {
+
+constexpr std::string_view kStateTitle = "softcell state 1";
+// A body that is thrown through a whole scene in a frame has no use for more.
+constexpr double kMaxStateSpeed = 1e5;  // m/s, and rad/s
+
+/// Positions and velocities of a particle, or all of a rigid body, as one row of numbers.
+template <int Dimension>
+constexpr std::size_t kParticleNumbers = 2 * static_cast<std::size_t>(Dimension);
+template <int Dimension>
+constexpr std::size_t kRigidNumbers = Dimension == 3 ? 13 : 6;
+
+void append_numbers(std::string& text, std::span<const float> numbers) {
+  // The shortest text that reads back as the same number.
+  for (const float number : numbers) fmt::format_to(std::back_inserter(text), " {}", number);
+  text += '\n';
+}
+
+void check_range(std::span<const float> numbers, double most, const std::string& what,
+                 std::string_view unit) {
+  for (const float number : numbers) {
+    if (!(std::abs(double{number}) <= most))
+      throw std::runtime_error(
+          fmt::format("{} cannot be saved: it has the value {} {}, and a scene has none beyond {}", what,
+                      number, unit, most));
+  }
+}
+
+template <int Dimension>
+std::array<float, kRigidNumbers<Dimension>> numbers_of(const typename Beginning<Dimension>::RigidBody& body) {
+  if constexpr (Dimension == 3) {
+    const auto& [number, p, q, v, w] = body;
+    return {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
+  } else {
+    const auto& [number, p, angle, v, w] = body;
+    return {p.x(), p.y(), angle, v.x(), v.y(), w};
+  }
+}
+
+/// Takes the text apart: lines, and in a line words with one space between them.
+class StateReader {
+ public:
+  explicit StateReader(std::string_view text) : text_(text) {}
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw std::runtime_error(fmt::format("line {}: {}", number_, what));
+  }
+  /// The next line becomes the one that is read. @return false: there is none
+  bool next_line() {
+    if (at_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    line_ = text_.substr(at_, end - at_);
+    line_begin_ = at_;
+    at_ = end + 1;
+    ++number_;
+    return true;
+  }
+  void require_line(const char* expected) {
+    if (!next_line()) {
+      ++number_;
+      refuse(fmt::format("the file ends here; expected {}", expected));
+    }
+  }
+  std::string_view word() {
+    const std::size_t end = std::min(line_.find(' '), line_.size());
+    const std::string_view word = line_.substr(0, end);
+    line_.remove_prefix(std::min(end + 1, line_.size()));
+    return word;
+  }
+  std::uint32_t whole(std::string_view name, std::uint32_t most) {
+    const std::string_view text = word();
+    std::uint32_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value > most)
+      refuse(fmt::format("{} must be a whole number from 0 to {}", name, most));
+    return value;
+  }
+  float number(double most) {
+    const std::string_view text = word();
+    float value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(std::abs(double{value}) <= most))
+      refuse(fmt::format("expected a number from {} to {}", -most, most));
+    return value;
+  }
+  void end_line() const {
+    if (!line_.empty()) refuse("the line has more than it should");
+  }
+  bool is_last() const { return at_ >= text_.size(); }
+  std::string_view rest() const { return line_; }
+  std::string_view before_line() const { return text_.substr(0, line_begin_); }
+
+ private:
+  std::string_view text_, line_;
+  std::size_t at_ = 0, line_begin_ = 0;
+  int number_ = 0;
+};
+
+template <int Dimension>
+typename Beginning<Dimension>::SoftBody read_particles(StateReader& reader, std::uint32_t count) {
+  typename Beginning<Dimension>::SoftBody body;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    reader.require_line("a particle");
+    auto& x = body.positions.emplace_back();
+    auto& v = body.velocities.emplace_back();
+    for (int axis = 0; axis < Dimension; ++axis) x[axis] = reader.number(kFar);
+    for (int axis = 0; axis < Dimension; ++axis) v[axis] = reader.number(kMaxStateSpeed);
+    reader.end_line();
+  }
+  return body;
+}
+
+template <int Dimension>
+typename Beginning<Dimension>::RigidBody read_rigid(StateReader& reader) {
+  typename Beginning<Dimension>::RigidBody body;
+  body.body = reader.whole("the number of a rigid body", static_cast<std::uint32_t>(4 * kMaxRigidBodies));
+  for (int axis = 0; axis < Dimension; ++axis) body.position[axis] = reader.number(kFar);
+  if constexpr (Dimension == 3) {
+    const float w = reader.number(1.01), x = reader.number(1.01), y = reader.number(1.01),
+                z = reader.number(1.01);
+    body.rotation = Eigen::Quaternionf(w, x, y, z);
+    if (!(std::abs(body.rotation.norm() - 1) < 1e-3f))
+      reader.refuse("a rotation must be a quaternion of length 1");
+  } else {
+    body.rotation = reader.number(kMaxStateSpeed);
+  }
+  for (int axis = 0; axis < Dimension; ++axis) body.velocity[axis] = reader.number(kMaxStateSpeed);
+  if constexpr (Dimension == 3) {
+    for (int axis = 0; axis < 3; ++axis) body.angular_velocity[axis] = reader.number(kMaxStateSpeed);
+  } else {
+    body.angular_velocity = reader.number(kMaxStateSpeed);
+  }
+  reader.end_line();
+  return body;
+}
+
+}  // namespace
+
+std::uint64_t state_checksum(std::string_view lines) { return XXH3_64bits(lines.data(), lines.size()); }
+
+template <int Dimension>
+std::string state_to_text(const Beginning<Dimension>& moment) {
+  std::string text = fmt::format("{}\ndimension {}\n", kStateTitle, Dimension);
+  for (std::size_t b = 0; b < moment.soft_bodies.size(); ++b) {
+    const auto& [positions, velocities] = moment.soft_bodies[b];
+    SC_ASSERT(positions.size() == velocities.size(), "{} positions and {} velocities", positions.size(),
+              velocities.size());
+    const std::string what = fmt::format("soft body {}", b + 1);
+    fmt::format_to(std::back_inserter(text), "soft_body {}", positions.size());
+    text += '\n';
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const auto& x = positions[i];
+      const auto& v = velocities[i];
+      check_range({x.data(), static_cast<std::size_t>(Dimension)}, kFar, what, "m");
+      check_range({v.data(), static_cast<std::size_t>(Dimension)}, kMaxStateSpeed, what, "m/s");
+      std::array<float, kParticleNumbers<Dimension>> numbers;
+      for (int axis = 0; axis < Dimension; ++axis) {
+        numbers[static_cast<std::size_t>(axis)] = x[axis];
+        numbers[static_cast<std::size_t>(Dimension + axis)] = v[axis];
+      }
+      std::string line;
+      append_numbers(line, numbers);
+      text += std::string_view(line).substr(1);
+    }
+  }
+  for (const auto& body : moment.rigid_bodies) {
+    const auto numbers = numbers_of<Dimension>(body);
+    const std::string what = fmt::format("rigid body {}", body.body);
+    check_range({body.position.data(), static_cast<std::size_t>(Dimension)}, kFar, what, "m");
+    check_range(numbers, kMaxStateSpeed, what, "m/s or rad/s");
+    fmt::format_to(std::back_inserter(text), "rigid_body {}", body.body);
+    append_numbers(text, numbers);
+  }
+  for (const std::uint32_t number : moment.ended_attachments)
+    fmt::format_to(std::back_inserter(text), "ended_attachment {}\n", number);
+  fmt::format_to(std::back_inserter(text), "end {:016x}\n", state_checksum(text));
+  return text;
+}
+
+template <int Dimension>
+Beginning<Dimension> parse_state(std::string_view text) {
+  StateReader reader(text);
+  reader.require_line("'softcell state 1'");
+  if (reader.rest() != kStateTitle)
+    reader.refuse("no saved state: a file that begins with 'softcell state 1' is expected");
+  reader.require_line("the dimension");
+  if (reader.rest() != fmt::format("dimension {}", Dimension))
+    reader.refuse(fmt::format("expected 'dimension {}'", Dimension));
+  Beginning<Dimension> moment;
+  std::uint32_t particles = 0;
+  for (;;) {
+    reader.require_line("'end' and the checksum");
+    const std::string_view kind = reader.word();
+    if (kind == "soft_body") {
+      if (moment.soft_bodies.size() == kMaxSoftBodies)
+        reader.refuse(fmt::format("more than {} soft bodies", kMaxSoftBodies));
+      const std::uint32_t count = reader.whole("the number of particles", kMaxParticlesOfScene - particles);
+      reader.end_line();
+      particles += count;
+      moment.soft_bodies.push_back(read_particles<Dimension>(reader, count));
+    } else if (kind == "rigid_body") {
+      auto body = read_rigid<Dimension>(reader);
+      if (!moment.rigid_bodies.empty() && body.body <= moment.rigid_bodies.back().body)
+        reader.refuse("rigid bodies must be in ascending order");
+      moment.rigid_bodies.push_back(body);
+    } else if (kind == "ended_attachment") {
+      const std::uint32_t number =
+          reader.whole("the number of an attachment", static_cast<std::uint32_t>(kMaxAttachments));
+      reader.end_line();
+      if (!moment.ended_attachments.empty() && number <= moment.ended_attachments.back())
+        reader.refuse("attachments must be in ascending order");
+      moment.ended_attachments.push_back(number);
+    } else if (kind == "end") {
+      if (!reader.is_last()) reader.refuse("expected nothing behind the line 'end'");
+      if (reader.rest() != fmt::format("{:016x}", state_checksum(reader.before_line())))
+        reader.refuse("the checksum is another: the file was changed, or a part of it is missing");
+      return moment;
+    } else {
+      reader.refuse("expected soft_body, rigid_body, ended_attachment or end");
+    }
+  }
+}
+
+template std::string state_to_text(const Beginning<2>&);
+template std::string state_to_text(const Beginning<3>&);
+template Beginning<2> parse_state(std::string_view);
+template Beginning<3> parse_state(std::string_view);
+
+}  // namespace softcell::demos

@@ -1,0 +1,56 @@
+#pragma once
+// Changes of tables of a scene's document.
+
+#include <algorithm>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "value.h"
+#include "write_toml.h"
+
+namespace softcell::demos {
+
+/// Null: there is no such field.
+inline Value* find_field(Table& table, std::string_view name) {
+  const auto found = std::ranges::find(table, name, &Field::name);
+  return found == table.end() ? nullptr : &found->value;
+}
+
+inline void set_field(Table& table, const std::string& name, Value value) {
+  if (Value* const known = find_field(table, name)) {
+    *known = std::move(value);
+  } else {
+    table.push_back({name, std::move(value)});
+  }
+}
+
+inline void erase_fields(Table& table, std::initializer_list<std::string_view> names) {
+  std::erase_if(table,
+                [&](const Field& field) { return std::ranges::find(names, field.name) != names.end(); });
+}
+
+/// The table in the field, which is made if there is none.
+inline Table& table_in(Table& table, const std::string& name) {
+  if (find_field(table, name) == nullptr) set_field(table, name, {.data = Table{}, .place = {}});
+  return std::get<Table>(find_field(table, name)->data);
+}
+
+/// The items of the field's array; null: there are none, or it is an empty table, which is an empty array in Lua.
+inline Array* items_in(Table& table, std::string_view name) {
+  Value* const value = find_field(table, name);
+  return value == nullptr ? nullptr : std::get_if<Array>(&value->data);
+}
+
+inline Value integer_value(std::int64_t number) { return {.data = number, .place = {}}; }
+inline Value text_value(std::string_view text) { return {.data = std::string(text), .place = {}}; }
+template <class Vector>
+Value vector_value(const Vector& vector) {
+  Array numbers;
+  for (int i = 0; i < vector.size(); ++i) numbers.push_back(number_value(vector[i]));
+  return {.data = std::move(numbers), .place = {}};
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,70 @@
+#pragma once
+// What of a scene's beginning, or of a moment of its run, is the same in both dimensions.
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "input/controls.h"
+#include "scene/beginning.h"
+#include "softcell/base/assert.h"
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::demos {
+
+/// Gravity, tilt and time scale at a scene's beginning.
+template <int Dimension, class SceneOf>
+typename Controls<Dimension>::Initial initial_controls(const SceneOf& scene) {
+  typename Controls<Dimension>::Initial initial;
+  initial.gravity.y() = -scene.gravity;
+  if (!scene.begin) return initial;
+  if (scene.begin->gravity) initial.gravity = *scene.begin->gravity;
+  initial.tilt = scene.begin->tilt;
+  initial.time_scale = scene.begin->time_scale;
+  return initial;
+}
+
+/// Puts the particles where the scene begins with them.
+/// @throws std::runtime_error  the state is of another body
+template <int Dimension>
+void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::SoftBody& state,
+         const std::string& name) {
+  SC_ASSERT(state.positions.size() == state.velocities.size(), "{} positions and {} velocities of body '{}'",
+            state.positions.size(), state.velocities.size(), name);
+  if (state.positions.size() != body.positions().size())
+    throw std::runtime_error(fmt::format("soft body '{}' has {} particles, and its saved state has {}", name,
+                                         body.positions().size(), state.positions.size()));
+  ppu::SoftBody<Dimension> moved = body;
+  for (std::size_t i = 0; i < state.positions.size(); ++i)
+    moved.set_particle(i, state.positions[i], state.velocities[i]);
+  body = moved;
+}
+
+/// The same for all soft bodies of a scene, but for those that were added at this moment: they are where they are placed.
+template <int Dimension, class SceneOf, class Bodies>
+void put_soft_bodies(const SceneOf& scene, Bodies& bodies) {
+  const Beginning<Dimension>& begin = *scene.begin;
+  if (begin.soft_bodies.size() > scene.soft_bodies.size())
+    throw std::runtime_error(fmt::format("the scene {} has {} soft bodies, and its saved state has {}",
+                                         scene.name, scene.soft_bodies.size(), begin.soft_bodies.size()));
+  for (std::size_t b = 0; b < begin.soft_bodies.size(); ++b)
+    put<Dimension>(bodies[b], begin.soft_bodies[b], scene.soft_bodies[b].name);
+}
+
+/// @throws std::runtime_error  the saved state of a scene's rigid bodies is not of `moving` of them
+template <class SceneOf>
+void check_moving_bodies(const SceneOf& scene, std::size_t moving) {
+  if (scene.begin->rigid_bodies.size() == moving) return;
+  throw std::runtime_error(
+      fmt::format("the scene {} has {} rigid bodies that move, and its saved state has {}", scene.name,
+                  moving, scene.begin->rigid_bodies.size()));
+}
+
+template <int Dimension>
+typename Beginning<Dimension>::SoftBody state_of(const ppu::SoftBody<Dimension>& body) {
+  const auto x = body.positions(), v = body.velocities();
+  return {.positions = {x.begin(), x.end()}, .velocities = {v.begin(), v.end()}};
+}
+
+}  // namespace softcell::demos

@@ -1,0 +1,99 @@
+#pragma once
+// The part of a soft body by which a hand holds it, in either dimension.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "softcell/base/assert.h"
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::demos {
+
+/// The particles around one of a body, with a tenth of the body's mass together, weighted: a patch is as large to the eye on a lattice of 100
+/// particles as on one of 20,000.
+template <int Dimension>
+struct HandPatch {
+  static constexpr double kMassShare = 0.1;  // of the body's, weighted
+  static constexpr double kLeastRadiusInCells = 1.5;
+
+  std::vector<float> weights;  ///< of each particle: 1 at the middle, 0 from the radius on, smooth
+  float radius = 0;            ///< metres, along the body
+  double mass = 0;             ///< kg: sum m w
+  Eigen::Vector<double, Dimension> centre_at_rest =
+      Eigen::Vector<double, Dimension>::Zero();  ///< of the whole body's mass
+
+  /// @param middle  a particle  @pre the body has it
+  HandPatch(const ppu::SoftBodyModel<Dimension>& model, std::uint32_t middle) {
+    const ppu::Lattice<Dimension>& lattice = model.lattice();
+    const auto masses = model.masses();
+    const std::vector<double> distances = distances_through(lattice, middle);
+    double whole = 0;
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      whole += double{masses[i]};
+      centre_at_rest += double{masses[i]} * lattice.rest_position(i).template cast<double>();
+    }
+    centre_at_rest /= whole;
+    const auto weighted_mass = [&](double at) {
+      double sum = 0;
+      for (std::size_t i = 0; i < masses.size(); ++i) sum += double{masses[i]} * weight_at(distances[i], at);
+      return sum;
+    };
+    // A lattice may be in pieces.
+    double reached = 0;
+    for (std::size_t i = 0; i < masses.size(); ++i)
+      if (std::isfinite(distances[i])) reached += double{masses[i]};
+    const double wanted = std::min(kMassShare * whole, reached / 2);
+    double low = kLeastRadiusInCells * double{lattice.spacing}, high = low;
+    while (weighted_mass(high) < wanted) high *= 2;
+    for (int halving = 0; halving < 20; ++halving) {
+      const double half = (low + high) / 2;
+      (weighted_mass(half) < wanted ? low : high) = half;
+    }
+    radius = static_cast<float>(high);
+    weights.resize(masses.size());
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      weights[i] = static_cast<float>(weight_at(distances[i], high));
+      mass += double{masses[i]} * double{weights[i]};
+    }
+  }
+
+ private:
+  /// 1 at the point, 0 from the radius on, smooth.
+  static double weight_at(double distance, double radius) {
+    const double rest = std::max(0.0, 1 - distance * distance / (radius * radius));
+    return rest * rest;
+  }
+
+  /// From one particle to all others along links, at rest: what is near in space only, such as the other leg, is far.
+  static std::vector<double> distances_through(const ppu::Lattice<Dimension>& lattice, std::uint32_t from) {
+    std::vector<double> distances(lattice.particles.size(), std::numeric_limits<double>::infinity());
+    SC_ASSERT(from < distances.size(), "a hand holds particle {} of {}", from, distances.size());
+    using Entry = std::pair<double, std::uint32_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    distances[from] = 0;
+    open.emplace(0.0, from);
+    while (!open.empty()) {
+      const auto [distance, a] = open.top();
+      open.pop();
+      if (distance > distances[a]) continue;
+      for (const std::uint32_t b : lattice.neighbours[a]) {
+        const double length =
+            (lattice.rest_position(a) - lattice.rest_position(b)).template cast<double>().norm();
+        if (distance + length >= distances[b]) continue;
+        distances[b] = distance + length;
+        open.emplace(distances[b], b);
+      }
+    }
+    return distances;
+  }
+};
+
+}  // namespace softcell::demos

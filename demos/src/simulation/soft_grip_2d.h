@@ -1,0 +1,35 @@
+#pragma once
+// How a hand holds a soft body in two dimensions: as in three (surface_grip.h), by a patch that gives.
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "grip.h"
+#include "hand_patch.h"
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::demos {
+
+/// A particle that a hand holds, and the patch of the body around it. The impulse and how it reaches patch and body are those of
+/// SurfaceGrip.
+///
+/// One thread uses it. Allocates in the constructor only. Deterministic: double precision, sums in the order of particles.
+class SoftGrip2d final : public Grip<2> {
+ public:
+  /// @param body  outlives this  @pre it has the particle
+  SoftGrip2d(ppu::SoftBody<2>& body, std::uint32_t particle);
+
+  Eigen::Vector2f point() const override { return body_.position(particle_); }
+  void pull(const HandMotion<2>& hand, const Eigen::Vector2f& gravity, float step) override;
+  void let_go(const Eigen::Vector2f& velocity) override;
+
+  float patch_radius() const { return patch_.radius; }  ///< metres, along the body
+
+ private:
+  ppu::SoftBody<2>& body_;
+  std::uint32_t particle_;
+  HandPatch<2> patch_;
+  Eigen::Vector2d arm_at_rest_;  // from the body's centre to the particle
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,50 @@
+#pragma once
+// What a user makes of a scene in a window, in either dimension.
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "demo/demo.h"
+#include "input/input_event.h"
+#include "scene_file/change_scene.h"
+
+namespace softcell::tool {
+
+/// @param new_body  () -> where a body comes that is added
+/// @throws std::runtime_error  one sentence
+template <int Dimension, class SceneOf, class Place>
+SceneOf changed_scene(const SceneOf& scene, const demos::PresentScene<Dimension>& now,
+                      const demos::SceneChange& change, const Place& new_body) {
+  using Kind = demos::SceneChange::Kind;
+  SceneOf changed = demos::scene_now(scene, now);
+  switch (change.kind) {
+    case Kind::kFile:
+      demos::add_file(changed, change.file, new_body());
+      break;
+    case Kind::kShape:
+      demos::add_shape(changed, change.name, new_body());
+      break;
+    case Kind::kRemove:
+      if (change.body >= changed.soft_bodies.size()) throw std::runtime_error("there is no such soft body");
+      demos::remove_body(changed, change.body);
+      break;
+    case Kind::kDensity:
+      for (std::size_t b = 0; b < changed.soft_bodies.size(); ++b)
+        if (change.body == demos::kEveryBody || change.body == b)
+          demos::set_density(changed, b, change.number);
+      break;
+  }
+  return changed;
+}
+
+/// A script would be run in a child process, which a program with threads cannot have.
+/// @throws std::runtime_error  the file is in Lua
+inline void refuse_lua(const std::filesystem::path& scene_file) {
+  if (scene_file.extension() == ".lua")
+    throw std::runtime_error(
+        scene_file.string() +
+        ": a scene in Lua cannot be opened while another one runs; give it with --scene");
+}
+
+}  // namespace softcell::tool
