@@ -131,28 +131,27 @@ struct World {
       }
     }
   }
-}
 
   /// The scene begins with a moment of a run.
   void begin(const Scene2d& scene) {
-  put_soft_bodies<2>(scene, soft_bodies);
-  const auto moves = [](const b2Body* body) { return body->GetType() == b2_dynamicBody; };
-  check_moving_bodies(scene, static_cast<std::size_t>(std::ranges::count_if(rigid_bodies, moves)));
-  for (const Beginning<2>::RigidBody& rigid : scene.begin->rigid_bodies) {
-    if (rigid.body >= rigid_bodies.size() || !moves(rigid_bodies[rigid.body]))
-      throw std::runtime_error(fmt::format("rigid body {} of the saved state does not move in the scene {}",
-                                           rigid.body, scene.name));
-    b2Body& body = *rigid_bodies[rigid.body];
-    body.SetTransform(to_box2d(rigid.position), rigid.rotation);
-    body.SetLinearVelocity(to_box2d(rigid.velocity));
-    body.SetAngularVelocity(rigid.angular_velocity);
+    put_soft_bodies<2>(scene, soft_bodies);
+    const auto moves = [](const b2Body* body) { return body->GetType() == b2_dynamicBody; };
+    check_moving_bodies(scene, static_cast<std::size_t>(std::ranges::count_if(rigid_bodies, moves)));
+    for (const Beginning<2>::RigidBody& rigid : scene.begin->rigid_bodies) {
+      if (rigid.body >= rigid_bodies.size() || !moves(rigid_bodies[rigid.body]))
+        throw std::runtime_error(fmt::format("rigid body {} of the saved state does not move in the scene {}",
+                                             rigid.body, scene.name));
+      b2Body& body = *rigid_bodies[rigid.body];
+      body.SetTransform(to_box2d(rigid.position), rigid.rotation);
+      body.SetLinearVelocity(to_box2d(rigid.velocity));
+      body.SetAngularVelocity(rigid.angular_velocity);
+    }
   }
-}
 
-b2World world{{0, 0}};
-std::vector<b2Body*> rigid_bodies;
-ppu::Box2dSoftBodies soft_bodies;
-std::vector<ppu::AttachmentId> attachments;  // of the scene, in order
+  b2World world{{0, 0}};
+  std::vector<b2Body*> rigid_bodies;
+  ppu::Box2dSoftBodies soft_bodies;
+  std::vector<ppu::AttachmentId> attachments;  // of the scene, in order
 };
 
 /// The SPEs, and the solver that works on them.
