@@ -202,6 +202,12 @@ void BulletWorld::move_to(std::size_t body, const Eigen::Vector3f& position,
   rigid.end = transform_of(position, rotation) * rigid.inner;
 }
 
+void BulletWorld::put(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation) {
+  move_to(body, position, rotation);
+  RigidBody& rigid = impl_->bodies.at(body);
+  impl_->put(*rigid.body, rigid.end, {0, 0, 0}, {0, 0, 0});
+}
+
 void BulletWorld::add_hinge(const Hinge& hinge) {
   SC_ASSERT(hinge.a != hinge.b && hinge.a < impl_->bodies.size() && hinge.b < impl_->bodies.size(),
             "a hinge of bodies {} and {} of {}", hinge.a, hinge.b, impl_->bodies.size());

@@ -57,6 +57,8 @@ class BulletWorld {
   /// Has a body that is moved be there at the end of the next substep. It moves evenly and carries along what it touches; nothing stops it.
   /// @param rotation  of unit length  @pre it was added with is_moved; all numbers are finite
   void move_to(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
+  /// Has it be there now, without a way that it moved. @pre as above
+  void put(std::size_t body, const Eigen::Vector3f& position, const Eigen::Quaternionf& rotation);
 
   /// Two bodies that turn against each other about an axis only, and do not touch each other.
   struct Hinge {

@@ -177,9 +177,9 @@ TEST_F(ChangeScene, RemovesABodyWithWhatIsAttachedToIt) {
   ASSERT_EQ(less.soft_bodies.size(), scene.soft_bodies.size() - 1);
   std::size_t kept = 0, kept_broken = 0;
   for (std::uint32_t i = 0; i < scene.attachments.size(); ++i) {
-    const AttachmentPlacement& attachment = scene.attachments[i];
+    const AttachmentPlacement<3>& attachment = scene.attachments[i];
     if (attachment.body == kSecond || attachment.other == kSecond) continue;
-    const AttachmentPlacement& same = less.attachments.at(kept++);
+    const AttachmentPlacement<3>& same = less.attachments.at(kept++);
     EXPECT_EQ(less.soft_bodies[same.body].name, scene.soft_bodies[attachment.body].name);
     ASSERT_EQ(same.other.has_value(), attachment.other.has_value());
     if (attachment.other) {

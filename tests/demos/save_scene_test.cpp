@@ -91,6 +91,7 @@ void expect_same_moment(const Beginning<Dimension>& a, const Beginning<Dimension
   for (std::size_t i = 0; i < a.soft_bodies.size(); ++i) {
     EXPECT_EQ(a.soft_bodies[i].positions, b.soft_bodies[i].positions) << i;
     EXPECT_EQ(a.soft_bodies[i].velocities, b.soft_bodies[i].velocities) << i;
+    EXPECT_EQ(a.soft_bodies[i].rest, b.soft_bodies[i].rest) << i;
   }
   ASSERT_EQ(a.rigid_bodies.size(), b.rigid_bodies.size());
   for (std::size_t i = 0; i < a.rigid_bodies.size(); ++i) {
@@ -279,6 +280,60 @@ TEST_F(SaveScene, KeepsWhatHasBroken) {
   step(run, 20), step(again, 20);
   for (std::size_t b = 0; b < run.soft_bodies(); ++b)
     EXPECT_LT((run.soft_body(b).centre_of_mass() - again.soft_body(b).centre_of_mass()).norm(), 0.05f) << b;
+}
+
+/// A car's dents are in its rest shape, and stay.
+TEST_F(SaveScene, KeepsWhatIsBentForGood) {
+  const Scene scene = load_scene_3d("car_crash");
+  Simulation3d run(scene, {.spes = 2});
+  step(run, 120);
+  const Beginning<3> moment = run.moment();
+  ASSERT_TRUE(std::ranges::any_of(moment.soft_bodies, [](const auto& body) { return !body.rest.empty(); }));
+  ASSERT_TRUE(std::ranges::any_of(moment.soft_bodies, [](const auto& body) { return body.rest.empty(); }));
+  const Scene loaded = saved_and_loaded(scene, run, file());
+  Simulation3d again(loaded, {.spes = 2});
+  const Beginning<3> read = again.moment();
+  for (std::size_t b = 0; b < moment.soft_bodies.size(); ++b) {
+    ASSERT_EQ(read.soft_bodies[b].rest.size(), moment.soft_bodies[b].rest.size());
+    for (std::size_t i = 0; i < moment.soft_bodies[b].rest.size(); ++i)
+      EXPECT_LT((read.soft_bodies[b].rest[i] - moment.soft_bodies[b].rest[i]).norm(), 1e-5f);
+    EXPECT_NEAR(again.soft_body(b).deformation(), run.soft_body(b).deformation(), 1e-3f);
+  }
+  step(run, 20), step(again, 20);
+  for (std::size_t b = 0; b < run.soft_bodies(); ++b)
+    EXPECT_LT((run.soft_body(b).centre_of_mass() - again.soft_body(b).centre_of_mass()).norm(), 0.02f) << b;
+}
+
+/// The claw is where its motion has it at that time, and holds what it held.
+TEST_F(SaveScene, KeepsRigidBodiesThatTheSceneMoves) {
+  const Scene scene = load_scene_3d("claw");
+  Simulation3d run(scene, {.spes = 2});
+  step(run, 300);
+  const Scene loaded = saved_and_loaded(scene, run, file());
+  Simulation3d again(loaded, {.spes = 2});
+  Shown3d then, now;
+  run.show(then), again.show(now);
+  step(run, 2), step(again, 2);
+  run.show(then), again.show(now);
+  ASSERT_EQ(then.box_poses.size(), now.box_poses.size());
+  for (std::size_t i = 0; i < then.box_poses.size(); ++i)
+    EXPECT_LT((then.box_poses[i] - now.box_poses[i]).lpNorm<Eigen::Infinity>(), 1e-3f) << i;
+  step(run, 20), step(again, 20);
+  for (std::size_t b = 0; b < run.soft_bodies(); ++b)
+    EXPECT_LT((run.soft_body(b).centre_of_mass() - again.soft_body(b).centre_of_mass()).norm(), 0.02f) << b;
+}
+
+TEST_F(SaveScene, KeepsAttachmentsOfTwoDimensions) {
+  const Scene2d scene = load_scene_2d("rings");
+  Simulation2d run(scene);
+  step(run, 60);
+  const Scene2d loaded = saved_and_loaded(scene, run, file());
+  ASSERT_EQ(loaded.attachments.size(), scene.attachments.size());
+  Simulation2d again(loaded);
+  expect_same_moment(again.moment(), run.moment());
+  step(run, 20), step(again, 20);
+  for (std::size_t b = 0; b < run.soft_bodies(); ++b)
+    EXPECT_LT((run.soft_body(b).centre_of_mass() - again.soft_body(b).centre_of_mass()).norm(), 0.02f) << b;
 }
 
 /// A body that lies upside down stays as it lies: its regions find their rotations from the identity.
@@ -471,7 +526,9 @@ TEST_F(SaveScene, BeginsWithAnyState) {
 
 TEST(StateFile, ReadsBackWhatItWrote) {
   Beginning<3> moment;
-  moment.soft_bodies = {{{{1, 2, 3}, {0.1f, -1e-45f, 1e4f}}, {{0, 0, 0}, {-1e5f, 0.3f, 7}}}, {}};
+  moment.soft_bodies = {{{{1, 2, 3}, {0.1f, -1e-45f, 1e4f}}, {{0, 0, 0}, {-1e5f, 0.3f, 7}}, {}},
+                        {},
+                        {{{1, 2, 3}}, {{0, 0, 0}}, {{4, 5, 0.1f}}}};
   moment.rigid_bodies = {{.body = 7,
                           .position = {1, 2, 3},
                           .rotation = Eigen::Quaternionf(0.6f, 0, -0.8f, 0),
@@ -515,6 +572,11 @@ TEST(StateFile, RefusesWithTheLine) {
            {head + "soft_body 4000000000\n", "line 3: the number of particles must be a whole number"},
            {head + "rigid_body 3 1 2 3 4 5 6\nrigid_body 3 1 2 3 4 5 6\n",
             "line 4: rigid bodies must be in ascending"},
+           {head + "rest_shape\n1 2\n", "line 3: a rest shape must follow"},
+           {head + "soft_body 1\n1 2 3 4\nrest_shape\n1 2\nrest_shape\n1 2\n",
+            "line 7: a rest shape must follow"},
+           {head + "soft_body 1\n1 2 3 4\nrest_shape\n1\n", "line 6: expected a number"},
+           {head + "soft_body 1\n1 2 3 4\nrest_shape\n1 2 3\n", "line 6: the line has more"},
            {head + "ended_attachment 3\nended_attachment 2\n", "line 4: attachments must be in ascending"},
            {head + "else\n", "line 3: expected soft_body, rigid_body"}}) {
     EXPECT_EQ(refused(lines).rfind(expected, 0), 0u) << refused(lines) << "\n" << expected;

@@ -33,6 +33,7 @@ struct Beginning {
 
   struct SoftBody {
     std::vector<Vector> positions, velocities;  ///< of its particles, in the lattice's order
+    std::vector<Vector> rest;  ///< their positions in the body's own rest shape; empty: it has the model's
   };
   struct RigidBody {
     std::uint32_t body = 0;  ///< its number in the world, those that do not move included

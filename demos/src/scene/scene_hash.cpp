@@ -134,7 +134,7 @@ class Hash {
     const auto& [gravity, tilt, time_scale, frames, seconds, soft_bodies, rigid_bodies, ended_attachments] =
         begin;
     add(gravity, tilt, time_scale, frames, seconds, ended_attachments);
-    for (const auto& [positions, velocities] : soft_bodies) add(positions, velocities);
+    for (const auto& [positions, velocities, rest] : soft_bodies) add(positions, velocities, rest);
     for (const auto& [body, position, rotation, velocity, angular_velocity] : rigid_bodies) {
       add(body, position, velocity, angular_velocity);
       if constexpr (Dimension == 3) {

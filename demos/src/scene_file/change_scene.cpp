@@ -134,6 +134,30 @@ void erase_of_body(Items& items, std::size_t body) {
     if (item.body > body) --item.body;
 }
 
+/// Removes what is attached to the body, counts those behind it down, and the attachments that have ended with them.
+template <int Dimension>
+void erase_attachments(std::vector<AttachmentPlacement<Dimension>>& attachments, std::size_t body,
+                       std::vector<std::uint32_t>* ended) {
+  const auto of_body = [&](const AttachmentPlacement<Dimension>& attachment) {
+    return attachment.body == body || attachment.other == body;
+  };
+  if (ended != nullptr) {
+    std::vector<std::uint32_t> still_ended;
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < attachments.size(); ++i) {
+      if (of_body(attachments[i])) continue;
+      if (std::ranges::binary_search(*ended, i)) still_ended.push_back(kept);
+      ++kept;
+    }
+    *ended = std::move(still_ended);
+  }
+  std::erase_if(attachments, of_body);
+  for (AttachmentPlacement<Dimension>& attachment : attachments) {
+    if (attachment.body > body) --attachment.body;
+    if (attachment.other && *attachment.other > body) --*attachment.other;
+  }
+}
+
 template <int Dimension, class SceneOf>
 void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   SC_ASSERT(body < scene.soft_bodies.size(), "body {} of {}", body, scene.soft_bodies.size());
@@ -157,12 +181,11 @@ void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   scene.soft_bodies.erase(scene.soft_bodies.begin() + static_cast<std::ptrdiff_t>(body));
   erase_of_body(scene.script.impulses, body);
   erase_of_body(scene.script.drags, body);
-  if (scene.begin) {
-    auto begin = std::make_shared<Beginning<Dimension>>(*scene.begin);
-    if (body < begin->soft_bodies.size())
-      begin->soft_bodies.erase(begin->soft_bodies.begin() + static_cast<std::ptrdiff_t>(body));
-    scene.begin = std::move(begin);
-  }
+  auto begin = scene.begin ? std::make_shared<Beginning<Dimension>>(*scene.begin) : nullptr;
+  erase_attachments<Dimension>(scene.attachments, body, begin ? &begin->ended_attachments : nullptr);
+  if (begin && body < begin->soft_bodies.size())
+    begin->soft_bodies.erase(begin->soft_bodies.begin() + static_cast<std::ptrdiff_t>(body));
+  scene.begin = std::move(begin);
 }
 
 template <class SceneOf>
@@ -237,29 +260,7 @@ void add_shape(Scene2d& scene, std::string_view shape, const NewBody<2>& body) {
   add_item(scene, std::move(item), {});
 }
 
-void remove_body(Scene& scene, std::size_t body) {
-  remove_from<3>(scene, body, "own_model_side");
-  const auto of_body = [&](const AttachmentPlacement& attachment) {
-    return attachment.body == body || attachment.other == body;
-  };
-  std::vector<std::uint32_t> ended;
-  std::uint32_t kept = 0;
-  for (std::uint32_t i = 0; i < scene.attachments.size(); ++i) {
-    if (of_body(scene.attachments[i])) continue;
-    if (scene.begin && std::ranges::binary_search(scene.begin->ended_attachments, i)) ended.push_back(kept);
-    ++kept;
-  }
-  std::erase_if(scene.attachments, of_body);
-  for (AttachmentPlacement& attachment : scene.attachments) {
-    if (attachment.body > body) --attachment.body;
-    if (attachment.other && *attachment.other > body) --*attachment.other;
-  }
-  if (!scene.begin) return;
-  auto begin = std::make_shared<Beginning<3>>(*scene.begin);
-  begin->ended_attachments = std::move(ended);
-  scene.begin = std::move(begin);
-}
-
+void remove_body(Scene& scene, std::size_t body) { remove_from<3>(scene, body, "own_model_side"); }
 void remove_body(Scene2d& scene, std::size_t body) { remove_from<2>(scene, body, "own_image_side"); }
 
 void set_density(Scene& scene, std::size_t body, float density) { set_density_of(scene, body, density); }

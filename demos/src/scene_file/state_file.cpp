@@ -1,6 +1,7 @@
 #include "state_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <xxhash.h>
 
 #include <array>
@@ -27,10 +28,9 @@ constexpr std::size_t kParticleNumbers = 2 * static_cast<std::size_t>(Dimension)
 template <int Dimension>
 constexpr std::size_t kRigidNumbers = Dimension == 3 ? 13 : 6;
 
+/// The shortest text that reads back as the same numbers.
 void append_numbers(std::string& text, std::span<const float> numbers) {
-  // The shortest text that reads back as the same number.
-  for (const float number : numbers) fmt::format_to(std::back_inserter(text), " {}", number);
-  text += '\n';
+  fmt::format_to(std::back_inserter(text), "{}\n", fmt::join(numbers, " "));
 }
 
 void check_range(std::span<const float> numbers, double most, const std::string& what,
@@ -128,6 +128,16 @@ typename Beginning<Dimension>::SoftBody read_particles(StateReader& reader, std:
 }
 
 template <int Dimension>
+void read_rest(StateReader& reader, typename Beginning<Dimension>::SoftBody& body) {
+  for (std::size_t i = 0; i < body.positions.size(); ++i) {
+    reader.require_line("a particle's position at rest");
+    auto& x = body.rest.emplace_back();
+    for (int axis = 0; axis < Dimension; ++axis) x[axis] = reader.number(kFar);
+    reader.end_line();
+  }
+}
+
+template <int Dimension>
 typename Beginning<Dimension>::RigidBody read_rigid(StateReader& reader) {
   typename Beginning<Dimension>::RigidBody body;
   body.body = reader.whole("the number of a rigid body", static_cast<std::uint32_t>(4 * kMaxRigidBodies));
@@ -159,9 +169,9 @@ template <int Dimension>
 std::string state_to_text(const Beginning<Dimension>& moment) {
   std::string text = fmt::format("{}\ndimension {}\n", kStateTitle, Dimension);
   for (std::size_t b = 0; b < moment.soft_bodies.size(); ++b) {
-    const auto& [positions, velocities] = moment.soft_bodies[b];
-    SC_ASSERT(positions.size() == velocities.size(), "{} positions and {} velocities", positions.size(),
-              velocities.size());
+    const auto& [positions, velocities, rest] = moment.soft_bodies[b];
+    SC_ASSERT(positions.size() == velocities.size() && (rest.empty() || rest.size() == positions.size()),
+              "{} positions, {} velocities and {} at rest", positions.size(), velocities.size(), rest.size());
     const std::string what = fmt::format("soft body {}", b + 1);
     fmt::format_to(std::back_inserter(text), "soft_body {}", positions.size());
     text += '\n';
@@ -175,9 +185,13 @@ std::string state_to_text(const Beginning<Dimension>& moment) {
         numbers[static_cast<std::size_t>(axis)] = x[axis];
         numbers[static_cast<std::size_t>(Dimension + axis)] = v[axis];
       }
-      std::string line;
-      append_numbers(line, numbers);
-      text += std::string_view(line).substr(1);
+      append_numbers(text, numbers);
+    }
+    if (rest.empty()) continue;
+    text += "rest_shape\n";
+    for (const auto& x : rest) {
+      check_range({x.data(), static_cast<std::size_t>(Dimension)}, kFar, what, "m");
+      append_numbers(text, {x.data(), static_cast<std::size_t>(Dimension)});
     }
   }
   for (const auto& body : moment.rigid_bodies) {
@@ -185,7 +199,7 @@ std::string state_to_text(const Beginning<Dimension>& moment) {
     const std::string what = fmt::format("rigid body {}", body.body);
     check_range({body.position.data(), static_cast<std::size_t>(Dimension)}, kFar, what, "m");
     check_range(numbers, kMaxStateSpeed, what, "m/s or rad/s");
-    fmt::format_to(std::back_inserter(text), "rigid_body {}", body.body);
+    fmt::format_to(std::back_inserter(text), "rigid_body {} ", body.body);
     append_numbers(text, numbers);
   }
   for (const std::uint32_t number : moment.ended_attachments)
@@ -215,6 +229,11 @@ Beginning<Dimension> parse_state(std::string_view text) {
       reader.end_line();
       particles += count;
       moment.soft_bodies.push_back(read_particles<Dimension>(reader, count));
+    } else if (kind == "rest_shape") {
+      reader.end_line();
+      if (moment.soft_bodies.empty() || !moment.soft_bodies.back().rest.empty())
+        reader.refuse("a rest shape must follow a soft body's particles");
+      read_rest<Dimension>(reader, moment.soft_bodies.back());
     } else if (kind == "rigid_body") {
       auto body = read_rigid<Dimension>(reader);
       if (!moment.rigid_bodies.empty() && body.body <= moment.rigid_bodies.back().body)
@@ -233,7 +252,7 @@ Beginning<Dimension> parse_state(std::string_view text) {
         reader.refuse("the checksum is another: the file was changed, or a part of it is missing");
       return moment;
     } else {
-      reader.refuse("expected soft_body, rigid_body, ended_attachment or end");
+      reader.refuse("expected soft_body, rest_shape, rigid_body, ended_attachment or end");
     }
   }
 }

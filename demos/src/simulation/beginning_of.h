@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "input/controls.h"
 #include "scene/beginning.h"
 #include "softcell/base/assert.h"
+#include "softcell/soft_bodies/attachment.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
@@ -32,12 +35,15 @@ void put(ppu::SoftBody<Dimension>& body, const typename Beginning<Dimension>::So
          const std::string& name) {
   SC_ASSERT(state.positions.size() == state.velocities.size(), "{} positions and {} velocities of body '{}'",
             state.positions.size(), state.velocities.size(), name);
+  SC_ASSERT(state.rest.empty() || state.rest.size() == state.positions.size(),
+            "{} positions and {} at rest of body '{}'", state.positions.size(), state.rest.size(), name);
   if (state.positions.size() != body.positions().size())
     throw std::runtime_error(fmt::format("soft body '{}' has {} particles, and its saved state has {}", name,
                                          body.positions().size(), state.positions.size()));
   ppu::SoftBody<Dimension> moved = body;
   for (std::size_t i = 0; i < state.positions.size(); ++i)
     moved.set_particle(i, state.positions[i], state.velocities[i]);
+  if (!state.rest.empty()) moved.set_rest_positions(state.rest);
   body = moved;
 }
 
@@ -61,10 +67,36 @@ void check_moving_bodies(const SceneOf& scene, std::size_t moving) {
                   moving, scene.begin->rigid_bodies.size()));
 }
 
+/// Ends the attachments that have ended before the scene begins. @param attachments  of the scene, in order
+/// @throws std::runtime_error  the scene has fewer
+template <class SceneOf, class Bodies>
+void end_attachments(const SceneOf& scene, const std::vector<ppu::AttachmentId>& attachments,
+                     Bodies& bodies) {
+  for (const std::uint32_t number : scene.begin->ended_attachments) {
+    if (number >= attachments.size())
+      throw std::runtime_error(
+          fmt::format("attachment {} of the saved state is none of the {} of the scene {}", number,
+                      attachments.size(), scene.name));
+    bodies.detach(attachments[number]);
+  }
+}
+
+template <class Bodies>
+std::vector<std::uint32_t> ended_attachments(const std::vector<ppu::AttachmentId>& attachments,
+                                             const Bodies& bodies) {
+  std::vector<std::uint32_t> ended;
+  for (std::uint32_t i = 0; i < attachments.size(); ++i)
+    if (!bodies.attachment(attachments[i])) ended.push_back(i);
+  return ended;
+}
+
 template <int Dimension>
 typename Beginning<Dimension>::SoftBody state_of(const ppu::SoftBody<Dimension>& body) {
   const auto x = body.positions(), v = body.velocities();
-  return {.positions = {x.begin(), x.end()}, .velocities = {v.begin(), v.end()}};
+  typename Beginning<Dimension>::SoftBody state{
+      .positions = {x.begin(), x.end()}, .velocities = {v.begin(), v.end()}, .rest = {}};
+  if (body.has_own_rest()) state.rest = body.rest_positions();
+  return state;
 }
 
 }  // namespace softcell::demos

@@ -146,6 +146,7 @@ struct World {
       body.SetLinearVelocity(to_box2d(rigid.velocity));
       body.SetAngularVelocity(rigid.angular_velocity);
     }
+    end_attachments(scene, attachments, soft_bodies);
   }
 
   b2World world{{0, 0}};
@@ -407,7 +408,7 @@ Beginning<2> Simulation2d::moment() const {
                    .seconds = 0,
                    .soft_bodies = {},
                    .rigid_bodies = {},
-                   .ended_attachments = {}};
+                   .ended_attachments = ended_attachments(s.world->attachments, s.world->soft_bodies)};
   for (std::size_t b = 0; b < soft_bodies(); ++b) now.soft_bodies.push_back(state_of(soft_body(b)));
   for (std::uint32_t i = 0; i < s.world->rigid_bodies.size(); ++i) {
     const b2Body& body = *s.world->rigid_bodies[i];

@@ -202,6 +202,14 @@ struct Simulation3d::State {
     }
   }
 
+  void put_rigids(double time) {
+    for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
+      if (!scene.rigid_bodies[i].motion) continue;
+      const Placement place = placement_at(scene.rigid_bodies[i], time);
+      world.put(boxes[scene.boxes.size() + i], place.position, place.rotation);
+    }
+  }
+
   /// Of one of `boxes`. kg
   float mass_of(std::size_t box) const {
     return box < scene.boxes.size() ? scene.boxes[box].mass
@@ -256,6 +264,7 @@ struct Simulation3d::State {
     frame = scene.begin ? 60 * scene.begin->seconds : 0;
     if (!scene.begin) return;
     tilt = present_tilt();
+    put_rigids(scene.begin->seconds);
     put_soft_bodies<3>(scene, soft_bodies);
     std::size_t moving = 0;
     for (std::size_t i = 0; i < world.rigid_bodies(); ++i) moving += world.moves(i) ? 1 : 0;
@@ -269,13 +278,7 @@ struct Simulation3d::State {
                              .velocity = rigid.velocity,
                              .angular_velocity = rigid.angular_velocity});
     }
-    for (const std::uint32_t number : scene.begin->ended_attachments) {
-      if (number >= attachments.size())
-        throw std::runtime_error(
-            fmt::format("attachment {} of the saved state is none of the {} of the scene {}", number,
-                        attachments.size(), scene.name));
-      soft_bodies.detach(attachments[number]);
-    }
+    end_attachments(scene, attachments, soft_bodies);
   }
   Beginning<3> moment() const {
     Beginning<3> now{.gravity = controls.gravity(),
@@ -285,7 +288,7 @@ struct Simulation3d::State {
                      .seconds = frame / 60,
                      .soft_bodies = {},
                      .rigid_bodies = {},
-                     .ended_attachments = {}};
+                     .ended_attachments = ended_attachments(attachments, soft_bodies)};
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) now.soft_bodies.push_back(state_of(soft_bodies[b]));
     for (std::uint32_t i = 0; i < world.rigid_bodies(); ++i) {
       if (!world.moves(i)) continue;
@@ -296,8 +299,6 @@ struct Simulation3d::State {
                                   .velocity = motion.velocity,
                                   .angular_velocity = motion.angular_velocity});
     }
-    for (std::uint32_t i = 0; i < attachments.size(); ++i)
-      if (!soft_bodies.attachment(attachments[i])) now.ended_attachments.push_back(i);
     return now;
   }
 
