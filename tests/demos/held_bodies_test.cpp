@@ -16,6 +16,7 @@
 
 #include "input/recording.h"
 #include "scene_file/scene_library.h"
+#include "simulation/hand_patch.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/soft_bodies/shapes.h"
 
@@ -284,6 +285,30 @@ TEST(HeldBodies, ARayTakesTheFirstThatMovesUnlessAWallHidesIt) {
     EXPECT_FALSE(simulation.touch({.from = {3, 5, 0}, .along = -Vector3f::UnitY()}))
         << "the floor does not move";
   }
+}
+
+/// What is bent for good hangs from the hand as it is bent.
+TEST(HeldBodies, AHandKnowsTheShapeOfWhatHasYielded) {
+  ppu::SoftBody<3> body(ppu::make_soft_body_model(ppu::make_box({1, 0.4f, 0.4f}, 0.1f),
+                                                  {.cell_size = 0.1f, .plasticity = ppu::Plasticity{}}));
+  HeldRest<3> rest(body);
+  const std::vector<Vector3f> straight = rest.positions;
+  std::vector<Vector3f> bent = straight;
+  for (Vector3f& x : bent) x.y() += 0.3f * x.x() * x.x();
+  body.set_rest_positions(bent);
+  EXPECT_EQ(rest.positions, straight);
+  rest.renew(body);
+  EXPECT_EQ(rest.positions, body.rest_positions());
+  EXPECT_GT((rest.positions.front() - straight.front() -
+             (rest.positions[straight.size() / 2] - straight[straight.size() / 2]))
+                .norm(),
+            0.03f);
+  Eigen::Vector3d centre(0, 0, 0);
+  for (const Vector3f& x : rest.positions) centre += x.cast<double>();
+  EXPECT_LT((rest.centre - centre / static_cast<double>(straight.size())).norm(), 0.05);
+  body.reset_deformation();
+  rest.renew(body);
+  EXPECT_EQ(rest.positions, straight);
 }
 
 TEST(HeldBodies, NoHandHoldsWhatIsNotThere) {

@@ -578,7 +578,7 @@ TEST(StateFile, RefusesWithTheLine) {
            {head + "soft_body 1\n1 2 3 4\nrest_shape\n1\n", "line 6: expected a number"},
            {head + "soft_body 1\n1 2 3 4\nrest_shape\n1 2 3\n", "line 6: the line has more"},
            {head + "ended_attachment 3\nended_attachment 2\n", "line 4: attachments must be in ascending"},
-           {head + "else\n", "line 3: expected soft_body, rigid_body"}}) {
+           {head + "else\n", "line 3: expected soft_body, rest_shape, rigid_body"}}) {
     EXPECT_EQ(refused(lines).rfind(expected, 0), 0u) << refused(lines) << "\n" << expected;
   }
   const auto plain = [](const std::string& text) -> std::string {

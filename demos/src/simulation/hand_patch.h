@@ -27,8 +27,6 @@ struct HandPatch {
   std::vector<float> weights;  ///< of each particle: 1 at the middle, 0 from the radius on, smooth
   float radius = 0;            ///< metres, along the body
   double mass = 0;             ///< kg: sum m w
-  Eigen::Vector<double, Dimension> centre_at_rest =
-      Eigen::Vector<double, Dimension>::Zero();  ///< of the whole body's mass
 
   /// @param middle  a particle  @pre the body has it
   HandPatch(const ppu::SoftBodyModel<Dimension>& model, std::uint32_t middle) {
@@ -36,11 +34,7 @@ struct HandPatch {
     const auto masses = model.masses();
     const std::vector<double> distances = distances_through(lattice, middle);
     double whole = 0;
-    for (std::size_t i = 0; i < masses.size(); ++i) {
-      whole += double{masses[i]};
-      centre_at_rest += double{masses[i]} * lattice.rest_position(i).template cast<double>();
-    }
-    centre_at_rest /= whole;
+    for (const float m : masses) whole += double{m};
     const auto weighted_mass = [&](double at) {
       double sum = 0;
       for (std::size_t i = 0; i < masses.size(); ++i) sum += double{masses[i]} * weight_at(distances[i], at);
@@ -94,6 +88,40 @@ struct HandPatch {
     }
     return distances;
   }
+};
+
+/// The shape to which a held body would return: that of its model, or its own one if it has yielded (ppu::Plasticity).
+template <int Dimension>
+struct HeldRest {
+  std::vector<Eigen::Matrix<float, Dimension, 1>> positions;  ///< of its particles, metres
+  Eigen::Vector<double, Dimension> centre = Eigen::Vector<double, Dimension>::Zero();  ///< of its mass
+
+  explicit HeldRest(const ppu::SoftBody<Dimension>& body) { take(body); }
+  /// Looks whether the body has yielded since. Allocates if it has.
+  void renew(const ppu::SoftBody<Dimension>& body) {
+    if (body.rest_revision() != revision_) take(body);
+  }
+
+ private:
+  void take(const ppu::SoftBody<Dimension>& body) {
+    revision_ = body.rest_revision();
+    const auto masses = body.model().masses();
+    if (body.has_own_rest()) {
+      positions = body.rest_positions();
+    } else {
+      positions.resize(masses.size());
+      for (std::size_t i = 0; i < masses.size(); ++i) positions[i] = body.model().lattice().rest_position(i);
+    }
+    double whole = 0;
+    centre.setZero();
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      whole += double{masses[i]};
+      centre += double{masses[i]} * positions[i].template cast<double>();
+    }
+    centre /= whole;
+  }
+
+  std::uint32_t revision_ = 0;
 };
 
 }  // namespace softcell::demos

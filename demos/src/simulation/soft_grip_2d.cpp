@@ -27,7 +27,7 @@ struct WholeBody2d {
   Vector2d turned{0,
                   0};  // sums of m r . x0 and of m x0 x r: cosine and sine of the body's turn, times a length
 
-  explicit WholeBody2d(const ppu::SoftBody<2>& body) {
+  WholeBody2d(const ppu::SoftBody<2>& body, const HeldRest<2>& held) {
     const auto masses = body.model().masses();
     const auto x = body.positions(), v = body.velocities();
     for (std::size_t i = 0; i < masses.size(); ++i) {
@@ -42,7 +42,7 @@ struct WholeBody2d {
     for (std::size_t i = 0; i < masses.size(); ++i) {
       const double m = double{masses[i]};
       const Vector2d r = x[i].cast<double>() - centre;
-      const Vector2d rest = body.model().lattice().rest_position(i).cast<double>();
+      const Vector2d rest = held.positions[i].cast<double>();
       inertia += m * r.squaredNorm();
       angular_momentum += m * across(r).dot(v[i].cast<double>());
       turned += m * Vector2d(rest.dot(r), across(rest).dot(r));
@@ -65,17 +65,15 @@ struct WholeBody2d {
 }  // namespace
 
 SoftGrip2d::SoftGrip2d(ppu::SoftBody<2>& body, std::uint32_t particle)
-    : body_(body),
-      particle_(particle),
-      patch_(body.model(), particle),
-      arm_at_rest_(body.model().lattice().rest_position(particle).cast<double>() - patch_.centre_at_rest) {}
+    : body_(body), particle_(particle), patch_(body.model(), particle), rest_(body) {}
 
 void SoftGrip2d::pull(const HandMotion<2>& hand, const Vector2f& gravity, float step) {
   SC_ASSERT(step > 0, "a substep of {} s", step);
   using Strength = HandStrength<2>;
   const double h = double{step}, most = h * Strength::most_acceleration(gravity),
                damped = Strength::damped_share(h);
-  const WholeBody2d whole(body_);
+  rest_.renew(body_);
+  const WholeBody2d whole(body_, rest_);
   const Vector2d point = this->point().cast<double>(), arm = point - whole.centre;
 
   // What is left of its swinging about the hand.
@@ -83,8 +81,8 @@ void SoftGrip2d::pull(const HandMotion<2>& hand, const Vector2f& gravity, float 
   const double slow_down = -damped * whole.angular_momentum / whole.inertia;
   const Vector2d velocity = body_.velocities()[particle_].cast<double>() + drag + slow_down * across(arm);
 
-  const double pulled_out =
-      (arm - whole.turn(arm_at_rest_)).norm() / (kMostPullOut2d * double{patch_.radius});
+  const Vector2d arm_at_rest = rest_.positions[particle_].cast<double>() - rest_.centre;
+  const double pulled_out = (arm - whole.turn(arm_at_rest)).norm() / (kMostPullOut2d * double{patch_.radius});
   double rigid = std::min(1.0, kLeastRigidShare2d + (1 - kLeastRigidShare2d) * pulled_out * pulled_out);
   const Vector2d change = Strength::wanted_velocity(hand, point) - velocity - h * gravity.cast<double>();
   const Matrix2d of_whole =
@@ -109,7 +107,7 @@ void SoftGrip2d::pull(const HandMotion<2>& hand, const Vector2f& gravity, float 
 
 void SoftGrip2d::let_go(const Vector2f& velocity) {
   body_.add_velocity(
-      HandStrength<2>::throw_aid(velocity.cast<double>(), WholeBody2d(body_).velocity).cast<float>());
+      HandStrength<2>::throw_aid(velocity.cast<double>(), WholeBody2d(body_, rest_).velocity).cast<float>());
 }
 
 }  // namespace softcell::demos

@@ -13,7 +13,7 @@ namespace softcell::demos {
 /// A particle that a hand holds, and the patch of the body around it. The impulse and how it reaches patch and body are those of
 /// SurfaceGrip.
 ///
-/// One thread uses it. Allocates in the constructor only. Deterministic: double precision, sums in the order of particles.
+/// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic: double precision, sums in the order of particles.
 class SoftGrip2d final : public Grip<2> {
  public:
   /// @param body  outlives this  @pre it has the particle
@@ -29,7 +29,7 @@ class SoftGrip2d final : public Grip<2> {
   ppu::SoftBody<2>& body_;
   std::uint32_t particle_;
   HandPatch<2> patch_;
-  Eigen::Vector2d arm_at_rest_;  // from the body's centre to the particle
+  HeldRest<2> rest_;
 };
 
 }  // namespace softcell::demos

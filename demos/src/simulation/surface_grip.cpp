@@ -35,7 +35,7 @@ struct WholeBody {
   Matrix3d inverse_inertia = Matrix3d::Zero();
   Matrix3d correlation = Matrix3d::Zero();  // sum m (x - c) x0^T
 
-  explicit WholeBody(const ppu::SoftBody<3>& body) {
+  WholeBody(const ppu::SoftBody<3>& body, const HeldRest<3>& rest) {
     const auto masses = body.model().masses();
     const auto x = body.positions(), v = body.velocities();
     for (std::size_t i = 0; i < masses.size(); ++i) {
@@ -53,7 +53,7 @@ struct WholeBody {
       const Vector3d r = x[i].cast<double>() - centre;
       spin += m * r.cross(Vector3d(v[i].cast<double>()));
       second += m * r * r.transpose();
-      correlation += m * r * body.model().lattice().rest_position(i).cast<double>().transpose();
+      correlation += m * r * rest.positions[i].cast<double>().transpose();
     }
     // A body that is flat or on a line turns about all axes all the same.
     constexpr double kThickness = 1e-3;
@@ -72,11 +72,10 @@ struct WholeBody {
 }  // namespace
 
 SurfaceGrip::SurfaceGrip(ppu::SoftBody<3>& body, const Vector3f& point)
-    : body_(body), place_(place_of(body, point)), patch_(body.model(), place_.nearest()) {
+    : body_(body), place_(place_of(body, point)), patch_(body.model(), place_.nearest()), rest_(body) {
   for (std::size_t k = 0; k < place_.corners.size(); ++k) {
     const std::uint32_t corner = place_.corners[k];
     patch_response_ += double{place_.shares[k]} * double{patch_.weights[corner]};
-    point_at_rest_ += double{place_.shares[k]} * body.model().lattice().rest_position(corner).cast<double>();
   }
 }
 
@@ -118,11 +117,15 @@ void SurfaceGrip::pull(const HandMotion<3>& hand, const Vector3f& gravity, float
   SC_ASSERT(step > 0, "a substep of {} s", step);
   using Strength = HandStrength<3>;
   const double h = double{step};
-  const WholeBody whole(body_);
+  rest_.renew(body_);
+  const WholeBody whole(body_, rest_);
   const Vector3d point = this->point().cast<double>(), arm = point - whole.centre;
-  Vector3d velocity(0, 0, 0);  // of the point
-  for (std::size_t k = 0; k < place_.corners.size(); ++k)
-    velocity += double{place_.shares[k]} * body_.velocities()[place_.corners[k]].cast<double>();
+  Vector3d velocity(0, 0, 0), point_at_rest(0, 0, 0);
+  for (std::size_t k = 0; k < place_.corners.size(); ++k) {
+    const double share = double{place_.shares[k]};
+    velocity += share * body_.velocities()[place_.corners[k]].cast<double>();
+    point_at_rest += share * rest_.positions[place_.corners[k]].cast<double>();
+  }
 
   // What is left of its swinging about the hand.
   const double most = h * Strength::most_acceleration(gravity), damped = Strength::damped_share(h);
@@ -131,8 +134,8 @@ void SurfaceGrip::pull(const HandMotion<3>& hand, const Vector3f& gravity, float
   velocity += drag + slow_down.cross(arm);
 
   const Matrix3d rotation = ppu::update_rotation(whole.correlation, rotation_);
-  const double pulled_out = (arm - rotation * (point_at_rest_ - patch_.centre_at_rest)).norm() /
-                            (kMostPullOut * double{patch_.radius});
+  const double pulled_out =
+      (arm - rotation * (point_at_rest - rest_.centre)).norm() / (kMostPullOut * double{patch_.radius});
   double rigid = std::min(1.0, kLeastRigidShare + (1 - kLeastRigidShare) * pulled_out * pulled_out);
   const Vector3d change = Strength::wanted_velocity(hand, point) - velocity - h * gravity.cast<double>();
   const Matrix3d response =
@@ -155,7 +158,7 @@ void SurfaceGrip::pull(const HandMotion<3>& hand, const Vector3f& gravity, float
 }
 
 void SurfaceGrip::let_go(const Vector3f& velocity) {
-  const Vector3d aid = HandStrength<3>::throw_aid(velocity.cast<double>(), WholeBody(body_).velocity);
+  const Vector3d aid = HandStrength<3>::throw_aid(velocity.cast<double>(), WholeBody(body_, rest_).velocity);
   body_.add_velocity(aid.cast<float>());
 }
 

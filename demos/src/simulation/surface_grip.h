@@ -21,7 +21,7 @@ namespace softcell::demos {
 ///
 /// The share s grows to 1 as the point comes out of its place in the body: the patch is pulled out so far and no farther.
 ///
-/// One thread uses it. Allocates in the constructor only. Deterministic: double precision, sums in the order of particles.
+/// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic: double precision, sums in the order of particles.
 class SurfaceGrip final : public Grip<3> {
  public:
   /// @param body   outlives this
@@ -47,8 +47,8 @@ class SurfaceGrip final : public Grip<3> {
   ppu::SoftBody<3>& body_;
   Place place_;
   HandPatch<3> patch_;
+  HeldRest<3> rest_;
   double patch_response_ = 0;  // change of the point's velocity when the patch gets dv = w
-  Eigen::Vector3d point_at_rest_{0, 0, 0};
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();  // of the body as a whole, for a warm start
 };
 
