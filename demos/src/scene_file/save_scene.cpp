@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <initializer_list>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
