@@ -8,7 +8,10 @@ target_compile_options(softcell_options INTERFACE
   -ffp-contract=off)
 if(SOFTCELL_SANITIZE)
   target_compile_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    $<$<CXX_COMPILER_ID:Clang>:-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignorelist.txt>)
+    $<$<CXX_COMPILER_ID:Clang>:-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignorelist.txt>
+    # Checks at each load and store of a pointer are half of what these sanitizers add, and the address sanitizer and the processor find
+    # most of the same mistakes. The libraries that take addresses apart (softcell_add_library()) keep them.
+    $<$<AND:$<CXX_COMPILER_ID:Clang>,$<NOT:$<BOOL:$<TARGET_PROPERTY:SOFTCELL_EVERY_CHECK>>>>:-fno-sanitize=null,vptr,object-size,pointer-overflow,alignment>)
   # Instrumented code confuses GCC's flow analysis: it warns of std::regex's own members.
   target_compile_options(softcell_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE})
@@ -81,7 +84,15 @@ function(softcell_add_library folder)
   endif()
   # How we compile is not how users of the installed libraries have to.
   target_link_libraries(softcell_${folder} PRIVATE $<BUILD_INTERFACE:softcell_options>)
-  if(SOFTCELL_PRECOMPILED_HEADERS AND NOT folder MATCHES "^(base|dma)$")  # these two include less than it takes to read the others
+  set(own_headers)
+  if(folder MATCHES "^(base|dma)$")  # these two include less than it takes to read the others
+    set(own_headers ON)
+  endif()
+  if(SOFTCELL_SANITIZE AND folder MATCHES "^(base|dma|ls_sim)$")
+    set_target_properties(softcell_${folder} PROPERTIES SOFTCELL_EVERY_CHECK ON)
+    set(own_headers ON)  # precompiled ones have other options
+  endif()
+  if(SOFTCELL_PRECOMPILED_HEADERS AND NOT own_headers)
     target_precompile_headers(softcell_${folder} REUSE_FROM softcell_library_headers)
   endif()
 endfunction()

@@ -1,10 +1,9 @@
-# cmake -DCOMPILE="<launcher>;<compiler>;<option>..." -DSOURCES="<file>;..." -DSCRATCH=<folder> -P compile_each.cmake
-# Compiles each source on its own; all that fail are shown. Objects are made so that ccache can keep what has not changed.
-file(MAKE_DIRECTORY ${SCRATCH})
+# cmake -DCOMPILE="<compiler>;<option>..." -DSOURCES="<file>;..." -P compile_each.cmake
+# Reads each source on its own, without making code; all that do not compile are shown.
 set(failed)
 foreach(source IN LISTS SOURCES)
   cmake_path(GET source STEM stem)
-  execute_process(COMMAND ${COMPILE} -c ${source} -o ${SCRATCH}/${stem}.o RESULT_VARIABLE status ERROR_VARIABLE text)
+  execute_process(COMMAND ${COMPILE} -fsyntax-only ${source} RESULT_VARIABLE status ERROR_VARIABLE text)
   if(NOT status EQUAL 0)
     list(APPEND failed ${stem})
     message("${text}")
