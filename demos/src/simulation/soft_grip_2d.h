@@ -5,13 +5,12 @@
 #include <cstdint>
 
 #include "grip.h"
-#include "hand_patch.h"
+#include "patch_grip.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
 
-/// A particle that a hand holds, and the patch of the body around it. The impulse and how it reaches patch and body are those of
-/// SurfaceGrip.
+/// A particle that a hand holds, and the patch of the body around it (patch_grip.h).
 ///
 /// One thread uses it. Allocates in the constructor, and when the body yields. Deterministic: double precision, sums in the order of particles.
 class SoftGrip2d final : public Grip<2> {
@@ -23,13 +22,12 @@ class SoftGrip2d final : public Grip<2> {
   void pull(const HandMotion<2>& hand, const Eigen::Vector2f& gravity, float step) override;
   void let_go(const Eigen::Vector2f& velocity) override;
 
-  float patch_radius() const { return patch_.radius; }  ///< metres, along the body
+  float patch_radius() const { return grip_.patch().radius; }  ///< metres, along the body
 
  private:
   ppu::SoftBody<2>& body_;
   std::uint32_t particle_;
-  HandPatch<2> patch_;
-  HeldRest<2> rest_;
+  PatchGrip<2> grip_;
 };
 
 }  // namespace softcell::demos
