@@ -33,8 +33,8 @@ class Rate {
   double rate_ = 0;
 };
 
-/// Without a GPU, several samples a pixel and fine shadows take more than half of a picture's time: in a
-/// window that time is better spent on more pictures.
+/// Without a GPU, several samples a pixel, fine shadows and triangles of a pixel or two take more than half of a picture's time: in
+/// a window that time is better spent on more pictures.
 bool draws_in_software(const render::Renderer& renderer) {
   const std::string_view description = renderer.description();
   return description.find("llvmpipe") != std::string_view::npos ||
@@ -84,6 +84,7 @@ void DrawingThread::run(std::promise<void> ready) {
       settings.occlusion_pixels = 4;
       settings.shadow_map_size /= 2;
       settings.soft_shadows = false;
+      settings.coarse_pixels = 12;
       renderer.emplace(context, settings);
     }
     demo_.make_view(*renderer);

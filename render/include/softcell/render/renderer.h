@@ -41,6 +41,9 @@ struct RendererSettings {
   int shadow_map_size = 1536;  ///< texels a side
   int occlusion_pixels = 2;    ///< a side, for which ambient occlusion is computed together; 0: not at all
   bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice the time
+  /// Where a mesh is small or far off, it is drawn with fewer triangles: those of vertices that are moved by this many pixels at
+  /// most, nearly all of it along the surface; in the shadow map by as many texels. 12 can hardly be seen. 0: all triangles.
+  float coarse_pixels = 0;
 };
 
 /// One sun with soft-edged shadows, light from sky and ground that surfaces nearby keep off, tone mapping and sRGB
@@ -97,6 +100,12 @@ class Renderer {
   /// A picture to draw meshes with. The pixels are copied before it returns.
   /// @throws std::invalid_argument  a picture without pixels, or larger than the context takes.
   TextureId add_texture(const Image& picture, const TextureSettings& settings = {});
+
+  /// The shape of a mesh whose vertices change: what RendererSettings::coarse_pixels needs to leave out triangles of it.
+  /// @param positions,normals  of the vertices in any one shape, metres; one of each for each vertex that the indices speak of, or more
+  /// @throws std::invalid_argument  too few, or no such mesh.
+  void set_rest_shape(MeshId mesh, std::span<const Eigen::Vector3f> positions,
+                      std::span<const Eigen::Vector3f> normals);
 
   /// Bytes uploaded by update_mesh() and update_corners() since construction.
   std::uint64_t uploaded_bytes() const;
