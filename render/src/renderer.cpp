@@ -996,12 +996,12 @@ const Image& Renderer::pixels() {
   return state.picture;
 }
 
-void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh) {
+void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh, const Image* sheet) {
   State& state = *state_;
   state.context.make_current();
   if (state.overlay == nullptr) state.overlay = std::make_unique<OverlayPainter>(state.gl);
   state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
-  state.overlay->draw(font, mesh, state.width, state.height);
+  state.overlay->draw(font, sheet, mesh, state.width, state.height);
 }
 
 void Renderer::present(int width, int height) {

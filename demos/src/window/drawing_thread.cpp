@@ -43,8 +43,9 @@ bool draws_in_software(const render::Renderer& renderer) {
 
 }  // namespace
 
-DrawingThread::DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font)
-    : window_(window), demo_(demo), font_(font) {
+DrawingThread::DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font,
+                             const render::Image& sheet)
+    : window_(window), demo_(demo), font_(font), sheet_(sheet) {
   pages_.next().width = window.width();
   pages_.next().height = window.height();
   window_.release();
@@ -110,7 +111,7 @@ void DrawingThread::draw_all(render::Renderer& renderer) {
     if (page.width != renderer.width() || page.height != renderer.height())
       renderer.resize(std::max(page.width, 1), std::max(page.height, 1));
     demo_.draw_published(page.look);
-    renderer.draw_overlay(font_, page.overlay);
+    renderer.draw_overlay(font_, page.overlay, &sheet_);
     window_.show(renderer);
     const auto end = Clock::now();
     rate.count(end);

@@ -133,7 +133,9 @@ class Renderer {
   void render(const Frame2d& frame);
 
   /// Draws text and widgets over the last frame.
-  void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh);
+  /// @param sheet  the picture that Overlay::sheet() stands for; it must live and stay as it is as long as the renderer. Null: none is
+  ///               shown.
+  void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh, const Image* sheet = nullptr);
 
   /// Copies the last frame to the context's own framebuffer, which a window shows. Stretches it to width by
   /// height pixels, which are not negative.
