@@ -22,11 +22,15 @@ void main() {
 )glsl";
 
 constexpr char kFragment[] = R"glsl(#version 330 core
-uniform sampler2D font;
+uniform sampler2D picture;  // the font's, or the sheet
+uniform bool of_sheet;
 in vec2 texel;
 in vec4 colour;
 out vec4 result;
-void main() { result = vec4(colour.rgb, colour.a * texture(font, texel).r); }
+void main() {
+  vec4 seen = texture(picture, texel);
+  result = of_sheet ? colour * seen : vec4(colour.rgb, colour.a * seen.r);
+}
 )glsl";
 
 // NOLINTNEXTLINE(performance-no-int-to-ptr)
@@ -41,7 +45,9 @@ OverlayPainter::OverlayPainter(const GladGLContext& gl)
       vertices_(make_buffer(gl)),
       indices_(make_buffer(gl)),
       texture_(make_texture(gl)),
-      to_clip_(gl.GetUniformLocation(program_.name(), "to_clip")) {
+      sheet_texture_(make_texture(gl)),
+      to_clip_(gl.GetUniformLocation(program_.name(), "to_clip")),
+      of_sheet_(gl.GetUniformLocation(program_.name(), "of_sheet")) {
   gl_.BindVertexArray(layout_.name());
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.name());
   gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_.name());
@@ -66,7 +72,23 @@ void OverlayPainter::upload_font(const OverlayFont& font) {
   uploaded_ = font.coverage.data();
 }
 
-void OverlayPainter::draw(const OverlayFont& font, const OverlayMesh& mesh, int width, int height) {
+void OverlayPainter::upload_sheet(const Image& sheet) {
+  if (uploaded_sheet_ == sheet.rgba.data()) return;
+  SC_ASSERT(sheet.is_whole(), "{} bytes for a sheet of {} by {} pixels", sheet.rgba.size(), sheet.width,
+            sheet.height);
+  gl_.BindTexture(GL_TEXTURE_2D, sheet_texture_.name());
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, sheet.width, sheet.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 sheet.rgba.data());
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  uploaded_sheet_ = sheet.rgba.data();
+}
+
+void OverlayPainter::draw(const OverlayFont& font, const Image* sheet, const OverlayMesh& mesh, int width,
+                          int height) {
+  if (sheet != nullptr) upload_sheet(*sheet);
   upload_font(font);
   gl_.Viewport(0, 0, width, height);
   gl_.UseProgram(program_.name());
@@ -84,6 +106,9 @@ void OverlayPainter::draw(const OverlayFont& font, const OverlayMesh& mesh, int 
   gl_.Enable(GL_SCISSOR_TEST);
   for (const OverlayCommand& command : mesh.commands) {
     if (command.right <= command.left || command.bottom <= command.top) continue;
+    if (command.of_sheet && sheet == nullptr) continue;
+    gl_.BindTexture(GL_TEXTURE_2D, command.of_sheet ? sheet_texture_.name() : texture_.name());
+    gl_.Uniform1i(of_sheet_, command.of_sheet ? 1 : 0);
     SC_ASSERT(std::size_t{command.first_index} + command.index_count <= mesh.indices.size(),
               "indices {} and {} more of {}", command.first_index, command.index_count, mesh.indices.size());
     gl_.Scissor(command.left, height - command.bottom, command.right - command.left,

@@ -12,6 +12,7 @@
 #include "cell_skinner.h"
 #include "gl_objects.h"
 #include "material_painter.h"
+#include "mesh_levels.h"
 #include "overlay_painter.h"
 #include "painter_2d.h"
 #include "post_process.h"
@@ -30,6 +31,7 @@ constexpr GLuint kColourAttribute = 3;
 constexpr GLenum kPictureUnit = GL_TEXTURE1;  // the shadow map has unit 0
 constexpr GLint kPictureUnitNumber = 1;
 constexpr GLuint kFrameBinding = 0;
+constexpr float kAwayShare = 1.0f / 48;   // of RendererSettings::coarse_pixels, for MeshLevel::error
 constexpr float kOcclusionShare = 0.06f;  // of the shadow radius: how far a surface keeps ambient light off
 
 /// The uniform block `Frame` of shaders.h, std140. Eigen would align matrices to what the widest registers
@@ -87,6 +89,12 @@ struct PictureBuffers {
   GlObject shown_framebuffer, shown_colour;
 };
 
+/// Some of the triangles of a mesh.
+struct TriangleRange {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
 /// Triangles on the GPU.
 struct MeshBuffers {
   explicit MeshBuffers(const GladGLContext& gl)
@@ -95,13 +103,28 @@ struct MeshBuffers {
   GlObject layout;
   GlObject vertices;
   GlObject indices;
-  GLsizei index_count = 0;
+  std::size_t triangle_count = 0;  ///< of the whole mesh; in `indices` coarser ones follow
+  struct Level {
+    float spacing = 0, error = 0;  ///< as MeshLevel
+    TriangleRange triangles;
+  };
+  std::vector<Level> levels;        ///< coarser and coarser
+  Eigen::Vector3f centre{0, 0, 0};  ///< of a sphere around a mesh that does not change
+  float radius = 0;                 ///< likewise, metres
   std::size_t vertices_needed = 0;  ///< the largest index and one
   bool filled = false;              ///< the vertices have been given
   std::optional<GlObject> texture_coordinates;
   std::optional<GlObject> colours;
   std::optional<CellMesh> cells;  ///< what the vertices are made from, unless they are given
 };
+
+/// What to draw of a mesh where vertices may be moved by `most` metres.
+TriangleRange triangles_of(const MeshBuffers& buffers, float most) {
+  TriangleRange range{0, buffers.triangle_count};
+  for (const MeshBuffers::Level& level : buffers.levels)
+    if (level.spacing <= most && level.error <= kAwayShare * most) range = level.triangles;
+  return range;
+}
 
 std::size_t bytes_of(std::size_t count, std::size_t size) { return count * size; }
 
@@ -161,6 +184,11 @@ struct Renderer::State {
   void make_shadow_map();
   MeshBuffers make_mesh(const void* indices, std::size_t index_count) const;
   MeshBuffers make_skinned_mesh(std::span<const std::uint32_t> indices) const;
+  void add_levels(MeshBuffers& buffers, std::span<const Eigen::Vector3f> positions,
+                  std::span<const Eigen::Vector3f> normals) const;
+  float metres_to_move(float distance) const;
+  TriangleRange triangles_to_draw(const SkinnedDraw& item) const;
+  TriangleRange triangles_to_draw(const StaticDraw& item) const;
   MeshId add(MeshBuffers buffers);
   void filled(MeshId id, std::size_t bytes);
   const MeshBuffers& mesh(MeshId id) const;
@@ -177,7 +205,7 @@ struct Renderer::State {
   void draw_background();
   void draw_translucent(const FrameDescription& frame);
   void check_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts) const;
-  void draw(const MeshBuffers& buffers) const;
+  void draw(const MeshBuffers& buffers, const TriangleRange& triangles) const;
   void draw_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts, const Eigen::Matrix4f& pose,
                   float opacity, bool two_sided) const;
   template <class Value>
@@ -187,9 +215,9 @@ struct Renderer::State {
   void show(GLuint framebuffer) const;
   void draw_surface(const SkinnedDraw& item) const;
   void draw_surface(const StaticDraw& item) const;
-  void draw_surface(const Program& program, const MeshBuffers& buffers, const Eigen::Matrix4f& pose,
-                    const Colour& colour, float opacity) const;
-  void draw_shadow(const MeshBuffers& buffers, const Eigen::Matrix4f& pose) const;
+  void draw_surface(const Program& program, const MeshBuffers& buffers, const TriangleRange& triangles,
+                    const Eigen::Matrix4f& pose, const Colour& colour, float opacity) const;
+  void draw_shadow(const MeshBuffers& buffers, const Eigen::Matrix4f& pose, float texel) const;
 
   GlContext& context;
   GladGLContext gl;
@@ -200,6 +228,9 @@ struct Renderer::State {
   int largest_side = 0;  ///< of a picture or texture, in pixels
   int samples = 1;
   int occlusion_pixels;
+  float coarse_pixels;
+  Eigen::Vector3f eye{0, 0, 0};  ///< of the frame that is drawn
+  float pixels_per_tangent = 1;  ///< likewise
   std::string description;
   bool has_picture = false;     ///< of the last frame, before it is resolved
   bool has_picture_2d = false;  ///< likewise, of a frame in two dimensions
@@ -248,8 +279,10 @@ Renderer::State::State(GlContext& gl_context, const RendererSettings& settings)
       height(settings.height),
       shadow_map_size(settings.shadow_map_size),
       shadow_reach(settings.soft_shadows ? kSoftReach : kQuickReach),
-      occlusion_pixels(settings.occlusion_pixels) {
+      occlusion_pixels(settings.occlusion_pixels),
+      coarse_pixels(settings.coarse_pixels) {
   SC_ASSERT(occlusion_pixels >= 0, "ambient occlusion for {} pixels at a time", occlusion_pixels);
+  SC_ASSERT(coarse_pixels >= 0, "vertices moved by {} pixels", coarse_pixels);
   context.make_current();
   const auto load = [](void* user, const char* name) {
     return static_cast<GlContext*>(user)->function(name);
@@ -363,7 +396,7 @@ MeshBuffers Renderer::State::make_mesh(const void* indices, std::size_t index_co
   SC_ASSERT(
       index_count % 3 == 0 && index_count <= static_cast<std::size_t>(std::numeric_limits<GLsizei>::max()),
       "{} indices", index_count);
-  buffers.index_count = static_cast<GLsizei>(index_count);
+  buffers.triangle_count = index_count / 3;
   gl.BindVertexArray(buffers.layout.name());
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices.name());
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
@@ -387,6 +420,46 @@ MeshBuffers Renderer::State::make_skinned_mesh(std::span<const std::uint32_t> in
                          buffer_offset(0));
   gl.VertexAttribPointer(kNormalAttribute, 3, GL_HALF_FLOAT, GL_FALSE, kSkinnedVertexBytes, buffer_offset(8));
   return buffers;
+}
+
+void Renderer::State::add_levels(MeshBuffers& buffers, std::span<const Eigen::Vector3f> positions,
+                                 std::span<const Eigen::Vector3f> normals) const {
+  if (coarse_pixels == 0 || buffers.triangle_count == 0) return;
+  buffers.levels.clear();
+  gl.BindVertexArray(buffers.layout.name());
+  std::vector<Triangle> triangles(buffers.triangle_count);
+  gl.GetBufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0,
+                      static_cast<GLsizeiptr>(bytes_of(triangles.size(), sizeof(Triangle))),
+                      triangles.data());
+  const std::vector<MeshLevel> levels = coarser_levels(positions, normals, triangles);
+  for (const MeshLevel& level : levels) {
+    buffers.levels.push_back({.spacing = level.spacing,
+                              .error = level.error,
+                              .triangles = {triangles.size(), level.triangles.size()}});
+    triangles.insert(triangles.end(), level.triangles.begin(), level.triangles.end());
+  }
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                static_cast<GLsizeiptr>(bytes_of(triangles.size(), sizeof(Triangle))), triangles.data(),
+                GL_STATIC_DRAW);
+}
+
+/// How far vertices may be moved that are `distance` metres from the eye, metres.
+float Renderer::State::metres_to_move(float distance) const {
+  return coarse_pixels * std::max(distance, 0.0f) / pixels_per_tangent;
+}
+
+TriangleRange Renderer::State::triangles_to_draw(const SkinnedDraw& item) const {
+  if (item.texture)
+    return {0, mesh(item.mesh).triangle_count};  // coarser ones do not know where pictures end
+  return triangles_of(mesh(item.mesh), item.box ? metres_to_move(item.box->exteriorDistance(eye)) : 0);
+}
+
+TriangleRange Renderer::State::triangles_to_draw(const StaticDraw& item) const {
+  const MeshBuffers& buffers = mesh(item.mesh);
+  const Eigen::Matrix3f stretch = item.pose.topLeftCorner<3, 3>();
+  const float scale = stretch.colwise().norm().maxCoeff();
+  const Eigen::Vector3f centre = (item.pose * buffers.centre.homogeneous()).head<3>();
+  return triangles_of(buffers, metres_to_move((centre - eye).norm() - scale * buffers.radius) / scale);
 }
 
 MeshId Renderer::State::add(MeshBuffers buffers) {
@@ -416,7 +489,7 @@ const GlObject& Renderer::State::texture(TextureId id) const {
 }
 
 void Renderer::State::check_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts) const {
-  const std::uint64_t triangles = static_cast<std::uint64_t>(buffers.index_count) / 3;
+  const std::uint64_t triangles = buffers.triangle_count;
   for (const PartDraw& part : parts) {
     if (std::uint64_t{part.first_triangle} + part.triangle_count > triangles) {
       throw std::invalid_argument("a part of " + std::to_string(part.triangle_count) + " triangles from " +
@@ -471,6 +544,8 @@ void Renderer::State::upload_frame(const FrameDescription& frame) {
   SC_ASSERT(light.toward.squaredNorm() > 0, "light from nowhere: toward is ({} {} {})", light.toward.x(),
             light.toward.y(), light.toward.z());
   SC_ASSERT(light.shadow_radius > 0, "a shadow radius of {} m", light.shadow_radius);
+  eye = camera.eye;
+  pixels_per_tangent = static_cast<float>(height) / (2 * camera.tan_half_fov_y);
   FrameBlock block;
   block.view_projection = view_projection(camera, static_cast<float>(width) / static_cast<float>(height));
   block.light_projection = light_projection(light);
@@ -484,8 +559,7 @@ void Renderer::State::upload_frame(const FrameDescription& frame) {
   block.background_bottom = vec4(frame.background_bottom);
   const float texels = static_cast<float>(shadow_map_size);
   block.shadow_texel = Eigen::Vector4f(1 / texels, shadow_reach * 2 * light.shadow_radius / texels, 0, 0);
-  block.pixels_per_tangent = Eigen::Vector4f(static_cast<float>(height) / (2 * camera.tan_half_fov_y),
-                                             texels / (2 * light.shadow_radius), 0, 0);
+  block.pixels_per_tangent = Eigen::Vector4f(pixels_per_tangent, texels / (2 * light.shadow_radius), 0, 0);
   const auto w = static_cast<float>(width), h = static_cast<float>(height);
   block.picture_size = Eigen::Vector4f(w, h, 1 / w, 1 / h);
   block.view_plane = Eigen::Vector4f(camera.tan_half_fov_y * w / h, camera.tan_half_fov_y, 0, 0);
@@ -509,10 +583,11 @@ void Renderer::State::upload_lattice(const LatticeDraw& lattice) {
                 lattice.links.data(), GL_STREAM_DRAW);
 }
 
-void Renderer::State::draw(const MeshBuffers& buffers) const {
+void Renderer::State::draw(const MeshBuffers& buffers, const TriangleRange& triangles) const {
   if (!buffers.filled) return;
   gl.BindVertexArray(buffers.layout.name());
-  gl.DrawElements(GL_TRIANGLES, buffers.index_count, GL_UNSIGNED_INT, nullptr);
+  gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles.count), GL_UNSIGNED_INT,
+                  buffer_offset(bytes_of(triangles.first, sizeof(Triangle))));
 }
 
 void Renderer::State::draw_parts(const MeshBuffers& buffers, std::span<const PartDraw> parts,
@@ -539,9 +614,12 @@ void Renderer::State::cull_back_faces(bool cull) const {
   }
 }
 
-void Renderer::State::draw_shadow(const MeshBuffers& buffers, const Eigen::Matrix4f& pose) const {
+/// @param texel  of the shadow map, metres
+void Renderer::State::draw_shadow(const MeshBuffers& buffers, const Eigen::Matrix4f& pose,
+                                  float texel) const {
   gl.UniformMatrix4fv(programs->shadow.model, 1, GL_FALSE, pose.data());
-  draw(buffers);
+  const float scale = pose.topLeftCorner<3, 3>().colwise().norm().maxCoeff();
+  draw(buffers, triangles_of(buffers, coarse_pixels * texel / scale));
 }
 
 void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
@@ -549,15 +627,16 @@ void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
   gl.Viewport(0, 0, shadow_map_size, shadow_map_size);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   gl.UseProgram(programs->shadow.object.name());
+  const float texel = 2 * frame.light.shadow_radius / static_cast<float>(shadow_map_size);
   for (const SkinnedDraw& item : frame.skinned) {
     if (item.opacity < 1) continue;
     cull_back_faces(!item.two_sided && !any_two_sided(item.parts));
-    draw_shadow(mesh(item.mesh), translation(item.origin));
+    draw_shadow(mesh(item.mesh), translation(item.origin), texel);
   }
   for (const StaticDraw& item : frame.statics) {
     if (item.opacity < 1 && !item.always_shadow) continue;
     cull_back_faces(!any_two_sided(item.parts));
-    draw_shadow(mesh(item.mesh), item.pose);
+    draw_shadow(mesh(item.mesh), item.pose, texel);
   }
   cull_back_faces(true);
   gl.UseProgram(programs->particle_shadow.object.name());
@@ -569,7 +648,8 @@ void Renderer::State::draw_shadow_map(const FrameDescription& frame) {
 }
 
 void Renderer::State::draw_surface(const Program& program, const MeshBuffers& buffers,
-                                   const Eigen::Matrix4f& pose, const Colour& colour, float opacity) const {
+                                   const TriangleRange& triangles, const Eigen::Matrix4f& pose,
+                                   const Colour& colour, float opacity) const {
   SC_ASSERT(opacity >= 0 && opacity <= 1, "an opacity of {}", opacity);
   const float determinant = pose.topLeftCorner(3, 3).determinant();
   SC_ASSERT(determinant > 0, "a pose with determinant {} turns its mesh inside out or flattens it",
@@ -578,7 +658,7 @@ void Renderer::State::draw_surface(const Program& program, const MeshBuffers& bu
   gl.UniformMatrix4fv(program.model, 1, GL_FALSE, pose.data());
   gl.UniformMatrix3fv(program.normal_matrix, 1, GL_FALSE, normal_matrix(pose).eval().data());
   gl.Uniform4f(program.colour, colour.x(), colour.y(), colour.z(), opacity);
-  draw(buffers);
+  draw(buffers, triangles);
 }
 
 void Renderer::State::draw_surface(const SkinnedDraw& item) const {
@@ -591,15 +671,15 @@ void Renderer::State::draw_surface(const SkinnedDraw& item) const {
     gl.BindTexture(GL_TEXTURE_2D, texture(*item.texture).name());
     gl.ActiveTexture(GL_TEXTURE0);
   }
-  draw_surface(item.texture ? programs->textured : programs->soft, mesh(item.mesh), translation(item.origin),
-               item.colour, item.opacity);
+  draw_surface(item.texture ? programs->textured : programs->soft, mesh(item.mesh), triangles_to_draw(item),
+               translation(item.origin), item.colour, item.opacity);
 }
 
 void Renderer::State::draw_surface(const StaticDraw& item) const {
   if (!item.parts.empty()) return draw_parts(mesh(item.mesh), item.parts, item.pose, item.opacity, false);
   cull_back_faces(true);
   const Program& program = item.pattern == Pattern::tiles ? programs->tiles : programs->rigid;
-  draw_surface(program, mesh(item.mesh), item.pose, item.colour, item.opacity);
+  draw_surface(program, mesh(item.mesh), triangles_to_draw(item), item.pose, item.colour, item.opacity);
 }
 
 void Renderer::State::draw_opaque(const FrameDescription& frame) {
@@ -798,6 +878,19 @@ TextureId Renderer::add_texture(const Image& picture, const TextureSettings& set
   return {static_cast<std::uint32_t>(state.textures.size() - 1)};
 }
 
+void Renderer::set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> positions,
+                              std::span<const Eigen::Vector3f> normals) {
+  State& state = *state_;
+  const std::size_t needed = state.mesh(id).vertices_needed;
+  if (positions.size() < needed || normals.size() != positions.size()) {
+    throw std::invalid_argument("a shape of " + std::to_string(positions.size()) + " positions and " +
+                                std::to_string(normals.size()) + " normals for a mesh of " +
+                                std::to_string(needed) + " vertices");
+  }
+  state.context.make_current();
+  state.add_levels(state.skinned[id.value], positions, normals);
+}
+
 std::uint64_t Renderer::uploaded_bytes() const { return state_->uploaded_bytes; }
 
 StaticMeshId Renderer::add_static_mesh(std::span<const Eigen::Vector3f> positions,
@@ -830,6 +923,13 @@ StaticMeshId Renderer::add_static_mesh(std::span<const Eigen::Vector3f> position
                          buffer_offset(positions.size_bytes()));
   buffers.vertices_needed = positions.size();
   buffers.filled = true;
+  if (!positions.empty()) {
+    Eigen::AlignedBox3f box;
+    for (const Eigen::Vector3f& position : positions) box.extend(position);
+    buffers.centre = box.center();
+    buffers.radius = 0.5f * box.diagonal().norm();
+    state.add_levels(buffers, positions, normals);
+  }
   state.statics.push_back(std::move(buffers));
   return {static_cast<std::uint32_t>(state.statics.size() - 1)};
 }
@@ -896,12 +996,12 @@ const Image& Renderer::pixels() {
   return state.picture;
 }
 
-void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh) {
+void Renderer::draw_overlay(const OverlayFont& font, const OverlayMesh& mesh, const Image* sheet) {
   State& state = *state_;
   state.context.make_current();
   if (state.overlay == nullptr) state.overlay = std::make_unique<OverlayPainter>(state.gl);
   state.gl.BindFramebuffer(GL_FRAMEBUFFER, state.picture_buffers.shown_framebuffer.name());
-  state.overlay->draw(font, mesh, state.width, state.height);
+  state.overlay->draw(font, sheet, mesh, state.width, state.height);
 }
 
 void Renderer::present(int width, int height) {

@@ -56,7 +56,8 @@ class OneButton : public testing::Test {
 
   render::Overlay overlay_;
   PanelInput input_;
-  Panel panel_{{}};
+  ScenePictures pictures_;
+  Panel panel_{{}, pictures_};
   float density_ = 1;
   int clicks_ = 0, presses_ = 0;
 };

@@ -128,6 +128,27 @@ for event in pause 'time_scale 0' 'gravity 0 -'; do recorded "$event" menu; done
 ! grep -q 'hold\|tilt' "$folder/menu.rec" || fail "keys and mouse on the menu act on the scene: $(cat "$folder/menu.rec")"
 same_again 3d menu
 
+# The list of scenes has a picture of each; the arrow keys and Space play one, also a scene file of the present folder.
+mkdir "$folder/own"
+cd "$folder/own"
+printf 'title = "one ball"\n[framework]\n[[soft_body]]\ncell_size = 0.25\nshape = { kind = "sphere" }\nposition = [0, 1, 0]\n' >my_ball.toml
+for downs in 1 4; do  # from the heading to my_ball; past it, drop and arena to big
+  start 3d --scene drop --json "$folder/chosen.json"
+  xdotool key m
+  sleep 0.7
+  shot "demo3d_scenes_$downs"
+  for _ in $(seq "$downs"); do xdotool key Down; sleep 0.2; done
+  xdotool key space
+  sleep 2.5
+  shot "demo3d_chosen_$downs"
+  xdotool key Escape
+  sleep 0.3
+  finish
+  expected=$([ "$downs" = 1 ] && echo my_ball || echo big)
+  grep -q "\"scene\": \"$expected\"" "$folder/chosen.json" || fail "the keys choose $(grep '"scene"' "$folder/chosen.json"), not $expected"
+done
+cd "$folder"
+
 # Dense displays: text and menu grow with the scale; the bar over the menu ends where its width says.
 for scale in 1 1.5 2; do
   start 3d --scene drop --ui-scale $scale

@@ -7,14 +7,17 @@
 #include <sys/stat.h>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "demo/scene_pictures.h"
 #include "scene_file/documents.h"
 #include "scene_file/value.h"
 #include "softcell/base/nearest_name.h"
@@ -252,6 +255,50 @@ TEST_F(SceneFile, APolygonStandsAtItsCentroidAndWhereItsCornersAre) {
   EXPECT_LT((body.position - Eigen::Vector2f(0, 9)).norm(), 1e-5f) << "(7, 1), turned, from (1, 2)";
   const auto& corners = std::get<PolygonShape>(body.shape).corners;
   EXPECT_EQ(corners, (std::vector<Eigen::Vector2f>{{-1, -1}, {2, -1}, {-1, 2}}));
+}
+
+TEST_F(SceneFile, ThoseOfAFolderAreListedByDimensionAndOthersLeftOut) {
+  const std::string body = "[[soft_body]]\nshape = { kind = \"sphere\" }\n";
+  write("b.toml", "title = \"second\"\n" + body);
+  write("a.toml", "title = \"first\"\n[framework]\n");
+  write("flat.toml", "title = \"flat\"\ndimension = 2\n" + body);
+  write("untitled.toml", body);
+  write("project.toml", "title = \"no scene\"\n[package]\nname = \"x\"\n");
+  write("rubbish.toml", "][");
+  write("wrong.toml", "dimension = \"three\"\n" + body);
+  write("large.toml", body + "# " + std::string(1 << 20, 'x'));
+  write("script.lua", "return { dimension = 3 }");
+  write("folder.toml/c.toml", body);
+  const auto listed = [&](int dimension) {
+    std::string all;
+    for (const SceneFileListing& scene : scene_files(folder_.path(), dimension))
+      all += scene.file.filename().string() + ":" + scene.title + " ";
+    return all;
+  };
+  EXPECT_EQ(listed(3), "a.toml:first b.toml:second untitled.toml: ");
+  EXPECT_EQ(listed(2), "flat.toml:flat ");
+  EXPECT_TRUE(scene_files(folder_ / "nowhere", 3).empty());
+}
+
+TEST(ScenePictures, EachSceneHasOneAndAllAreSmall) {
+  const ScenePictures pictures;
+  std::set<float> tops;
+  for (const SceneListing& scene : list_scenes()) {
+    const auto place = pictures.place(scene.name);
+    ASSERT_TRUE(place) << scene.name << " has no picture: ci/figures makes it";
+    tops.insert((*place)[1]);
+    const auto row = static_cast<int>((*place)[1] * static_cast<float>(pictures.sheet().height));
+    std::set<std::array<std::uint8_t, 3>> colours;
+    for (int x = 0; x < ScenePictures::kWidth; ++x) {
+      const std::uint8_t* const p = pictures.sheet().pixel(x, row + ScenePictures::kHeight / 2);
+      colours.insert({p[0], p[1], p[2]});
+    }
+    EXPECT_GT(colours.size(), 10u) << scene.name << " shows nothing";
+  }
+  EXPECT_EQ(tops.size(), list_scenes().size());
+  EXPECT_EQ(pictures.sheet().height, ScenePictures::kHeight * static_cast<int>(list_scenes().size()))
+      << "a picture of no scene";
+  EXPECT_FALSE(pictures.place("no such scene"));
 }
 
 TEST(Scenes, AreListedWithDimensionAndTitleAndAllLoad) {

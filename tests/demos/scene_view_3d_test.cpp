@@ -24,8 +24,12 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr render::RendererSettings kManySamples{.width = 240, .height = 135};
-constexpr render::RendererSettings kOneSample{
-    .width = 240, .height = 135, .samples = 1, .occlusion_pixels = 4, .soft_shadows = false};
+constexpr render::RendererSettings kOneSample{.width = 240,
+                                              .height = 135,
+                                              .samples = 1,
+                                              .occlusion_pixels = 4,
+                                              .soft_shadows = false,
+                                              .coarse_pixels = 12};
 
 struct Drawn {
   const char* scene;

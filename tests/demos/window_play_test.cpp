@@ -61,6 +61,7 @@ class SlowDemo final : public SceneDemo<SlowTypes> {
   std::unique_ptr<Demo> changed(const SceneChange&, const SimulationOptions&) const override {
     throw std::runtime_error("not in this test");
   }
+  std::vector<OwnScene> own_scenes() const override { return {}; }
   std::unique_ptr<Demo> opened(const std::filesystem::path&, const SimulationOptions&) const override {
     throw std::runtime_error("not in this test");
   }

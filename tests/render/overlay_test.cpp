@@ -54,6 +54,41 @@ TEST(Overlay, LeavesTheNextFrameAsItWouldBeWithoutIt) {
   EXPECT_EQ(renderer.pixels().rgba, before.rgba);
 }
 
+TEST(Overlay, ShowsPartsOfTheSheetOfPictures) {
+  Renderer renderer(test::pinned_context(), {.width = 64, .height = 64});
+  const test::TestScene scene(renderer, 1);
+  Image sheet(2, 4);  // red above green
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 2; ++x) {
+      sheet.pixel(x, y)[y < 2 ? 0 : 1] = 200;
+      sheet.pixel(x, y)[3] = 255;
+    }
+  }
+  Overlay overlay;
+  overlay.begin(64, 64, 0.1f);
+  ImGui::GetForegroundDrawList()->AddImage(Overlay::sheet(), {8, 8}, {24, 24}, {0, 0}, {1, 0.5f});
+  ImGui::GetForegroundDrawList()->AddText({8, 30}, IM_COL32_WHITE, "x");
+  ImGui::GetForegroundDrawList()->AddImage(Overlay::sheet(), {40, 8}, {56, 24}, {0, 0.6f}, {1, 1});
+  const OverlayMesh& mesh = overlay.end();
+  renderer.render(scene.frame());
+  const Image before = renderer.pixels();
+  renderer.draw_overlay(overlay.font(), mesh, &sheet);
+  const Image with = renderer.pixels();
+  const auto is = [](const std::uint8_t* p, int red, int green) {
+    return p[0] == red && p[1] == green && p[2] == 0;
+  };
+  EXPECT_TRUE(is(with.pixel(16, 12), 200, 0));
+  EXPECT_TRUE(is(with.pixel(48, 20), 0, 200));
+  EXPECT_NE(with.rgba, before.rgba);
+  renderer.render(scene.frame());
+  renderer.draw_overlay(overlay.font(), mesh);
+  const Image without = renderer.pixels();
+  for (const int x : {16, 48}) {
+    for (int c = 0; c < 4; ++c)
+      EXPECT_EQ(without.pixel(x, 16)[c], before.pixel(x, 16)[c]) << "no sheet, no picture";
+  }
+}
+
 TEST(Overlay, DrawsNothingWithoutWidgets) {
   Renderer renderer(test::pinned_context(), {.width = 64, .height = 64});
   const test::TestScene scene(renderer, 1);

@@ -528,6 +528,63 @@ TEST_F(RendererTest, APictureHasNoHoles) {
   }
 }
 
+/// A mesh of half floats as floats.
+std::pair<std::vector<Eigen::Vector3f>, std::vector<Eigen::Vector3f>> shape_of(
+    const test::SkinnedMesh& mesh) {
+  std::pair<std::vector<Eigen::Vector3f>, std::vector<Eigen::Vector3f>> shape;
+  for (std::size_t v = 0; v < mesh.vertices.size(); v += 8) {
+    const auto at = [&](std::size_t i) {
+      return static_cast<float>(Eigen::numext::bit_cast<Eigen::half>(mesh.vertices[v + i]));
+    };
+    shape.first.emplace_back(at(0), at(1), at(2));
+    shape.second.emplace_back(at(4), at(5), at(6));
+  }
+  return shape;
+}
+
+TEST_F(RendererTest, FewerTrianglesOfASmallMeshLookTheSameAndALargeOneHasThemAll) {
+  const test::SkinnedMesh torus = test::make_torus(160, 80);
+  const auto [positions, normals] = shape_of(torus);
+  Renderer coarse(pinned_context(), {.width = kSide, .height = kSide, .coarse_pixels = 12});
+  const auto add_to = [&](Renderer& renderer, bool with_box) {
+    SkinnedDraw item;
+    item.mesh = renderer.add_mesh(torus.indices);
+    item.colour = srgb(0xC05020);
+    renderer.update_mesh(item.mesh, torus.bytes());
+    renderer.set_rest_shape(item.mesh, positions, normals);
+    if (with_box)
+      item.box.emplace(Eigen::Vector3f(-0.85f, -0.25f, -0.85f), Eigen::Vector3f(0.85f, 0.25f, 0.85f));
+    return item;
+  };
+  const auto pictures = [&](float height, bool with_box) {
+    FrameDescription frame = view_from_above();
+    frame.camera.eye.y() = height;
+    const SkinnedDraw exact = add_to(renderer_, true), fewer = add_to(coarse, with_box);
+    frame.skinned = std::span(&exact, 1);
+    const Image expected = draw(frame);
+    frame.skinned = std::span(&fewer, 1);
+    coarse.render(frame);
+    return compare(coarse.pixels(), expected);
+  };
+  const ImageDifference far = pictures(5, true);
+  EXPECT_GT(far.over_0, 100u) << "it has as many triangles as ever";
+  EXPECT_LT(far.rmse, 2) << describe(far);
+  EXPECT_LT(far.over_8, 300u) << describe(far);  // of some 4,000 that show it
+  const ImageDifference near = pictures(0.45f, true);
+  EXPECT_EQ(near.over_8, 0u) << describe(near);  // only the shadow has fewer triangles
+  EXPECT_EQ(pictures(5, false).over_8, 0u) << "nobody has said where it is";
+}
+
+TEST_F(RendererTest, RefusesRestShapesThatDoNotFit) {
+  const test::SkinnedMesh torus = test::make_torus(8, 6);
+  const auto [positions, normals] = shape_of(torus);
+  const MeshId id = renderer_.add_mesh(torus.indices);
+  EXPECT_THROW(renderer_.set_rest_shape(id, std::span(positions).first(47), std::span(normals).first(47)),
+               std::invalid_argument);
+  EXPECT_THROW(renderer_.set_rest_shape(id, positions, std::span(normals).first(47)), std::invalid_argument);
+  EXPECT_THROW(renderer_.set_rest_shape({77}, positions, normals), std::invalid_argument);
+}
+
 TEST_F(RendererTest, RefusesWhatWouldReadPastItsBuffers) {
   const test::SkinnedMesh mesh = ground_triangle();
   const MeshId id = renderer_.add_mesh(mesh.indices);

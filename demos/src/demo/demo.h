@@ -34,6 +34,12 @@ struct DemoCounts {
   std::size_t bodies_on_ppu = 0;  ///< soft bodies that the PPU steps
 };
 
+/// A scene file of the user's.
+struct OwnScene {
+  std::filesystem::path file;
+  std::string title;
+};
+
 class WindowInput;
 
 /// What a user adds to a scene, or takes away.
@@ -109,6 +115,8 @@ class Demo {
   /// A scene of the user's. @throws std::runtime_error  it cannot be opened; one sentence.
   virtual std::unique_ptr<Demo> opened(const std::filesystem::path& scene_file,
                                        const SimulationOptions& how) const = 0;
+  /// The scene files of this dimension in the present folder, sorted by name; those in Lua are left out, which cannot be opened.
+  virtual std::vector<OwnScene> own_scenes() const = 0;
   /// Copies the present frame, for draw_published().
   virtual void publish() = 0;
   /// Draws the newest published frame. A second thread may call it while the first one steps the demo. That

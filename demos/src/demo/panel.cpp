@@ -9,10 +9,13 @@
 #include <string_view>
 
 #include "softcell/base/assert.h"
+#include "softcell/render/overlay.h"
 
 namespace softcell::demos {
 namespace {
 
+constexpr float kPictureHeight = 50;  // of a scene in the list, at scale 1, pixels
+constexpr float kSceneRows = 3.5f;    // that are seen at a time
 constexpr float kFrameMs = 1000.0f / 60;
 constexpr float kGraphMs = 2 * kFrameMs;  // the height of the graph
 
@@ -69,7 +72,7 @@ void Panel::draw(const Demo& demo, float scale, int height, WindowInput& input) 
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     area_ = {at.x, at.y, at.x + size.x, at.y + size.y};
     ImGui::PushItemWidth(130 * scale);
-    if (!scenes_.empty()) draw_scenes(demo.scene_name());
+    if (!scenes_.empty()) draw_scenes(demo, scale, opens);
     draw_time(demo, input);
     draw_material(demo, input);
     draw_bodies(demo);
@@ -84,15 +87,48 @@ bool Panel::contains(float x, float y) const {
   return x >= area_[0] && y >= area_[1] && x < area_[2] && y < area_[3];
 }
 
-void Panel::draw_scenes(const std::string& current) {
+void Panel::draw_scenes(const Demo& demo, float scale, bool opens) {
+  if (opens) own_scenes_ = demo.own_scenes();
   if (!ImGui::CollapsingHeader("Scenes", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  if (ImGui::BeginListBox("##scenes", {-1, 7.5f * ImGui::GetTextLineHeightWithSpacing()})) {
+  // Flattened: the arrow keys go on from the widgets around it.
+  const float row = kPictureHeight * scale + ImGui::GetStyle().ItemSpacing.y;
+  if (ImGui::BeginChild("scenes", {0, kSceneRows * row}, true, ImGuiWindowFlags_NavFlattened)) {
+    if (!own_scenes_.empty()) ImGui::TextUnformatted("Scene files here");
+    for (const OwnScene& own : own_scenes_)
+      if (draw_scene({own.file.filename().string(), own.title}, false, scale)) file_ = own.file;
+    if (!own_scenes_.empty()) ImGui::TextUnformatted("Scenes of softcell");
     for (std::size_t i = 0; i < scenes_.size(); ++i) {
-      if (ImGui::Selectable(scenes_[i].name.c_str(), scenes_[i].name == current)) choice_ = i;
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", scenes_[i].title.c_str());
+      const bool is_current = scenes_[i].name == demo.scene_name();
+      if (draw_scene(scenes_[i], is_current, scale)) choice_ = i;
+      if (is_current && opens && own_scenes_.empty()) ImGui::SetScrollHereY(0);
     }
-    ImGui::EndListBox();
   }
+  ImGui::EndChild();
+}
+
+/// A row with the scene's picture, name and title. @return  the user chooses it
+bool Panel::draw_scene(const SceneTitle& scene, bool is_current, float scale) const {
+  const ImVec2 picture{kPictureHeight * scale * ScenePictures::kWidth / ScenePictures::kHeight,
+                       kPictureHeight * scale};
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const bool chosen = ImGui::Selectable(("##" + scene.name).c_str(), is_current, 0, {0, picture.y});
+  if (!ImGui::IsItemVisible()) return chosen;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 end{at.x + picture.x, at.y + picture.y};
+  if (const auto place = pictures_.place(scene.name)) {
+    const auto& [left, top, right, bottom] = *place;
+    list.AddImage(render::Overlay::sheet(), at, end, {left, top}, {right, bottom});
+  } else {
+    list.AddRectFilled(at, end, IM_COL32(40, 48, 58, 255));
+  }
+  const float gap = ImGui::GetStyle().ItemSpacing.x, size = ImGui::GetFontSize();
+  const ImVec2 text{end.x + gap, at.y};
+  const ImVec4 clip{text.x, at.y, at.x + width, end.y};
+  list.AddText(nullptr, size, text, ImGui::GetColorU32(ImGuiCol_Text), scene.name.c_str(), nullptr, 0, &clip);
+  list.AddText(nullptr, 0.8f * size, {text.x, text.y + 1.1f * size}, ImGui::GetColorU32(ImGuiCol_Text, 0.7f),
+               scene.title.c_str(), nullptr, std::max(clip.z - text.x, 1.0f), &clip);
+  return chosen;
 }
 
 void Panel::draw_time(const Demo& demo, WindowInput& input) const {

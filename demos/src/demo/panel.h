@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "demo.h"
 #include "input/user_input.h"
 #include "page.h"
+#include "scene_pictures.h"
 
 namespace softcell::demos {
 
@@ -23,8 +25,9 @@ struct SceneTitle {
 /// Used by one thread. What the user does there becomes commands and events of the input.
 class Panel {
  public:
-  /// @param scenes  none: this run has one scene
-  explicit Panel(std::vector<SceneTitle> scenes) : scenes_(std::move(scenes)) {}
+  /// @param scenes    none: this run has one scene  @param pictures  of them; outlive this
+  Panel(std::vector<SceneTitle> scenes, const ScenePictures& pictures)
+      : scenes_(std::move(scenes)), pictures_(pictures) {}
 
   /// Call it once for each frame, drawn or not: the graph shows all of them.
   void follow(const Page& page);
@@ -39,6 +42,9 @@ class Panel {
   /// The number of the scene that the user has chosen; asking forgets it.
   std::optional<std::size_t> take_choice() { return std::exchange(choice_, std::nullopt); }
 
+  /// The scene file of the user's that is chosen; asking forgets it.
+  std::optional<std::filesystem::path> take_file() { return std::exchange(file_, std::nullopt); }
+
   /// What the user wants added, removed or made heavier, without its point of the window; asking forgets it.
   std::optional<SceneChange> take_change() { return std::exchange(change_, std::nullopt); }
 
@@ -46,7 +52,8 @@ class Panel {
   static constexpr std::size_t kFrames = 180;  // of the graph
   static constexpr std::size_t kParts = 5;
 
-  void draw_scenes(const std::string& current);
+  void draw_scenes(const Demo& demo, float scale, bool opens);
+  bool draw_scene(const SceneTitle& scene, bool is_current, float scale) const;
   void draw_time(const Demo& demo, WindowInput& input) const;
   void draw_material(const Demo& demo, WindowInput& input);
   void draw_density(const BodyMaterial& shown, std::uint32_t changed, int dimension);
@@ -54,7 +61,10 @@ class Panel {
   void draw_graph(float scale) const;
 
   std::vector<SceneTitle> scenes_;
+  const ScenePictures& pictures_;
+  std::vector<OwnScene> own_scenes_;  // as they were when the menu was opened
   std::optional<std::size_t> choice_;
+  std::optional<std::filesystem::path> file_;
   std::optional<SceneChange> change_;
   std::optional<float> density_;  // while its slider is dragged
   int shape_ = 0;                 // of a body to be added

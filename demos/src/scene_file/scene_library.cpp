@@ -3,14 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "documents.h"
 #include "field_reader.h"
 #include "read_scene.h"
 #include "scene_document.h"
 #include "scene_source.h"
+#include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::demos {
 namespace {
@@ -73,6 +84,48 @@ const std::vector<SceneListing>& list_scenes() {
     return found;
   }();
   return scenes;
+}
+
+namespace {
+
+/// None: it is no scene of that dimension.
+std::optional<std::string> title_of(const std::filesystem::path& file, int dimension) {
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 20;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) > kMostBytes)
+    return std::nullopt;
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  try {
+    const Value document = parse_toml(text.view(), std::make_shared<const std::string>(file.string()));
+    FieldReader root(document, "a scene");
+    constexpr std::array kParts{"soft_body", "rigid_body", "framework", "box", "obstacle"};
+    if (std::ranges::none_of(kParts, [&](const char* part) { return root.has(part); })) return std::nullopt;
+    if (read_dimension(root) != dimension) return std::nullopt;
+    std::string title;
+    root.text("title", title);
+    return base::one_line(title);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<SceneFileListing> scene_files(const std::filesystem::path& folder, int dimension) {
+  SC_ASSERT(dimension == 2 || dimension == 3, "scenes of {} dimensions", dimension);
+  constexpr std::size_t kMost = 200;
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    if (entry->path().extension() == ".toml") files.push_back(entry->path());
+  std::ranges::sort(files);
+  if (files.size() > kMost) files.resize(kMost);
+  std::vector<SceneFileListing> found;
+  for (const std::filesystem::path& file : files)
+    if (auto title = title_of(file, dimension)) found.push_back({file, *std::move(title)});
+  return found;
 }
 
 bool is_scene_file(std::string_view name_or_file) {

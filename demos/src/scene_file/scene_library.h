@@ -26,6 +26,16 @@ struct SceneListing {
 /// The scenes that are part of the command, sorted by name. Reads all of them, once.
 const std::vector<SceneListing>& list_scenes();
 
+/// A scene file that is not part of the command.
+struct SceneFileListing {
+  std::filesystem::path file;
+  std::string title;  ///< one line; may be empty
+};
+
+/// The scenes of one dimension in TOML in a folder, sorted by name; at most 200. Files that are not TOML, larger than a megabyte or
+/// without anything of a scene are left out: nothing else is checked. A folder that cannot be read has none.
+std::vector<SceneFileListing> scene_files(const std::filesystem::path& folder, int dimension);
+
 /// The user's own model. It replaces the body of the scene that has the field `own_model_side`.
 struct OwnModel {
   ppu::TriangleMesh mesh;

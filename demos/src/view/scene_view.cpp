@@ -114,8 +114,17 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
 
 render::MeshId SceneView::add_skinned_mesh(const ppu::SoftBodyModel<3>& model) {
   const ppu::Embedding& embedding = model.embedding();
-  if (simulation_.skin() == Skin::kSpe) return renderer_.add_mesh(embedding.indices);
-  return renderer_.add_cell_mesh(embedding.indices, cell_vertices(embedding), model.particles());
+  const render::MeshId mesh =
+      simulation_.skin() == Skin::kSpe
+          ? renderer_.add_mesh(embedding.indices)
+          : renderer_.add_cell_mesh(embedding.indices, cell_vertices(embedding), model.particles());
+  std::vector<Eigen::Vector3f> positions, normals;
+  for (const std::uint32_t vertex : embedding.vertex_of_slot) {
+    positions.push_back(model.mesh().positions[vertex]);
+    normals.push_back(model.mesh().normals[vertex]);
+  }
+  renderer_.set_rest_shape(mesh, positions, normals);
+  return mesh;
 }
 
 void SceneView::update_meshes(const Shown3d& shown) {
@@ -129,6 +138,9 @@ void SceneView::update_meshes(const Shown3d& shown) {
       renderer_.update_corners(skinned_[b].mesh, std::as_bytes(std::span(body.particles)), body.origin);
     }
     skinned_[b].origin = body.origin;
+    Moved3d::Box box;
+    for (const Eigen::Vector4f& particle : body.particles) box.extend(particle.head<3>());
+    skinned_[b].box = box;
   }
 }
 
@@ -181,10 +193,7 @@ void SceneView::draw_contacts(const Shown3d& shown) {
 
 std::optional<render::PixelRect> SceneView::changes(const Shown3d& shown) {
   restless_.clear();
-  for (const Shown3d::Body& body : shown.bodies) {
-    Moved3d::Box& box = restless_.emplace_back();
-    for (const Eigen::Vector4f& particle : body.particles) box.extend(particle.head<3>());
-  }
+  for (const render::SkinnedDraw& item : skinned_) restless_.push_back(*item.box);
   for (const ShownRope<3>& rope : shown.ropes) restless_.push_back(around_rope(rope, down(shown)));
   return moved_.since_last(frame_, {.soft_bodies = restless_,
                                     .static_meshes = static_boxes_,

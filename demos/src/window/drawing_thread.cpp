@@ -33,8 +33,8 @@ class Rate {
   double rate_ = 0;
 };
 
-/// Without a GPU, several samples a pixel and fine shadows take more than half of a picture's time: in a
-/// window that time is better spent on more pictures.
+/// Without a GPU, several samples a pixel, fine shadows and triangles of a pixel or two take more than half of a picture's time: in
+/// a window that time is better spent on more pictures.
 bool draws_in_software(const render::Renderer& renderer) {
   const std::string_view description = renderer.description();
   return description.find("llvmpipe") != std::string_view::npos ||
@@ -43,8 +43,9 @@ bool draws_in_software(const render::Renderer& renderer) {
 
 }  // namespace
 
-DrawingThread::DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font)
-    : window_(window), demo_(demo), font_(font) {
+DrawingThread::DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font,
+                             const render::Image& sheet)
+    : window_(window), demo_(demo), font_(font), sheet_(sheet) {
   pages_.next().width = window.width();
   pages_.next().height = window.height();
   window_.release();
@@ -84,6 +85,7 @@ void DrawingThread::run(std::promise<void> ready) {
       settings.occlusion_pixels = 4;
       settings.shadow_map_size /= 2;
       settings.soft_shadows = false;
+      settings.coarse_pixels = 12;
       renderer.emplace(context, settings);
     }
     demo_.make_view(*renderer);
@@ -109,7 +111,7 @@ void DrawingThread::draw_all(render::Renderer& renderer) {
     if (page.width != renderer.width() || page.height != renderer.height())
       renderer.resize(std::max(page.width, 1), std::max(page.height, 1));
     demo_.draw_published(page.look);
-    renderer.draw_overlay(font_, page.overlay);
+    renderer.draw_overlay(font_, page.overlay, &sheet_);
     window_.show(renderer);
     const auto end = Clock::now();
     rate.count(end);

@@ -36,8 +36,9 @@ class DrawingThread {
  public:
   /// Waits until the demo's view is made.
   /// @throws std::runtime_error  the window cannot draw.
-  /// @param font  of the overlays; outlives this
-  DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font);
+  /// @param font,sheet  of the overlays; outlive this
+  DrawingThread(render::Window& window, Demo& demo, const render::OverlayFont& font,
+                const render::Image& sheet);
   /// Finishes the picture that is being drawn.
   ~DrawingThread();
   DrawingThread(const DrawingThread&) = delete;
@@ -62,6 +63,7 @@ class DrawingThread {
   render::Window& window_;
   Demo& demo_;
   render::OverlayFont font_;
+  const render::Image& sheet_;
   Latest<WindowPage> pages_;
   std::atomic<double> shown_per_second_ = 0;
   std::atomic<bool> failed_ = false;

@@ -18,6 +18,7 @@
 #include "demo/frame_clock.h"
 #include "demo/page.h"
 #include "demo/panel.h"
+#include "demo/scene_pictures.h"
 #include "drawing_thread.h"
 #include "input/user_input.h"
 #include "notice.h"
@@ -32,7 +33,7 @@ namespace {
 /// What stands over all scenes of a window.
 struct Overlays {
   Overlays(float text_scale, std::vector<SceneTitle> scenes)
-      : scale(text_scale), overlay(text_scale), panel(std::move(scenes)) {}
+      : scale(text_scale), overlay(text_scale), panel(std::move(scenes), pictures) {}
 
   /// @return true: the event is the panel's
   bool take(const SDL_Event& event, float density, WindowInput& scene) {
@@ -56,6 +57,7 @@ struct Overlays {
   float scale;  // of text and sizes
   render::Overlay overlay;
   PanelInput input;  // of the overlay's context, which is current
+  ScenePictures pictures;
   Panel panel;
   Notice notice;
 };
@@ -77,7 +79,10 @@ class PlayedScene {
  public:
   /// @param frames  to be played; without, a replay's, or until the user ends it
   PlayedScene(render::Window& window, Demo& demo, const std::optional<int>& frames, Overlays& overlays)
-      : window_(window), demo_(demo), overlays_(overlays), drawing_(window, demo, overlays.overlay.font()) {
+      : window_(window),
+        demo_(demo),
+        overlays_(overlays),
+        drawing_(window, demo, overlays.overlay.font(), overlays.pictures.sheet()) {
     SC_ASSERT(!frames || *frames >= 0, "{} frames are to be played", frames.value_or(0));
     record_.asked_frames = frames;
     if (!frames && demo.replays()) record_.asked_frames = demo.frames();
@@ -249,6 +254,10 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
         if (const auto choice = overlays.panel.take_choice()) {
           next = true;
           chosen = *choice;
+        }
+        if (const auto file = overlays.panel.take_file(); file && !next && !other) {
+          other = scene.with_file(*file, how);
+          same_scene = false;
         }
         if (!next && !other) {
           other = scene.with_change(how);

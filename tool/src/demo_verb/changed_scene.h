@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <vector>
 
 #include "demo/demo.h"
 #include "input/input_event.h"
 #include "scene_file/change_scene.h"
+#include "scene_file/scene_library.h"
 
 namespace softcell::tool {
 
@@ -36,6 +38,14 @@ SceneOf changed_scene(const SceneOf& scene, const demos::PresentScene<Dimension>
       break;
   }
   return changed;
+}
+
+/// The user's scene files in the present folder.
+inline std::vector<demos::OwnScene> scene_files_here(int dimension) {
+  std::vector<demos::OwnScene> own;
+  for (const demos::SceneFileListing& listing : demos::scene_files(".", dimension))
+    own.push_back({listing.file.lexically_normal(), listing.title});
+  return own;
 }
 
 /// A script would be run in a child process, which a program with threads cannot have.

@@ -84,6 +84,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
     require_changeable();
     return made(changed_scene<3>(scene(), present(), change, [&] { return new_body(change); }), how);
   }
+  std::vector<demos::OwnScene> own_scenes() const override { return scene_files_here(3); }
   std::unique_ptr<demos::Demo> opened(const std::filesystem::path& scene_file,
                                       const demos::SimulationOptions& how) const override {
     require_changeable();

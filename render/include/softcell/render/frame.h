@@ -3,6 +3,7 @@
 // render() returns.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -47,6 +48,8 @@ struct SkinnedDraw {
   Colour colour{0.8f, 0.8f, 0.8f};
   float opacity = 1;       ///< 0..1; below 1 the mesh is blended over what is behind it and casts no shadow
   bool two_sided = false;  ///< draw inner sides, too, for meshes with holes; takes about 1.6 times as long
+  /// Around the mesh as it is drawn, metres. None: all its triangles are drawn, however small.
+  std::optional<Eigen::AlignedBox3f> box = {};
   std::optional<TextureId> texture = {};  ///< its colours are multiplied with `colour`; none: `colour` alone
   /// Parts with materials of their own, in place of `colour` and `texture`; triangles of no part are not drawn. None: the
   /// whole mesh has one colour.

@@ -31,6 +31,9 @@ class Overlay {
   /// The mesh stays valid until the next begin().
   const OverlayMesh& end();
 
+  /// The texture for ImGui::Image() and the like that shows a part of the sheet of pictures; see Renderer::draw_overlay().
+  static void* sheet();
+
   /// Makes this Dear ImGui's current context, so that ImGui's input functions concern it.
   void make_current();
 

@@ -19,9 +19,10 @@ struct OverlayCommand {
   int left, top, right, bottom;  ///< pixels
   std::uint32_t first_index;
   std::uint32_t index_count;
+  bool of_sheet = false;  ///< its texels are those of the sheet of pictures, not of the font
 };
 
-/// One frame's overlay: triangles over the font's picture, in order.
+/// One frame's overlay: triangles over the font's picture or a sheet of pictures, in order.
 struct OverlayMesh {
   std::vector<OverlayVertex> vertices;
   std::vector<std::uint32_t> indices;

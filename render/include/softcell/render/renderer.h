@@ -41,6 +41,9 @@ struct RendererSettings {
   int shadow_map_size = 1536;  ///< texels a side
   int occlusion_pixels = 2;    ///< a side, for which ambient occlusion is computed together; 0: not at all
   bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice the time
+  /// Where a mesh is small or far off, it is drawn with fewer triangles: those of vertices that are moved by this many pixels at
+  /// most, nearly all of it along the surface; in the shadow map by as many texels. 12 can hardly be seen. 0: all triangles.
+  float coarse_pixels = 0;
 };
 
 /// One sun with soft-edged shadows, light from sky and ground that surfaces nearby keep off, tone mapping and sRGB
@@ -98,6 +101,12 @@ class Renderer {
   /// @throws std::invalid_argument  a picture without pixels, or larger than the context takes.
   TextureId add_texture(const Image& picture, const TextureSettings& settings = {});
 
+  /// The shape of a mesh whose vertices change: what RendererSettings::coarse_pixels needs to leave out triangles of it.
+  /// @param positions,normals  of the vertices in any one shape, metres; one of each for each vertex that the indices speak of, or more
+  /// @throws std::invalid_argument  too few, or no such mesh.
+  void set_rest_shape(MeshId mesh, std::span<const Eigen::Vector3f> positions,
+                      std::span<const Eigen::Vector3f> normals);
+
   /// Bytes uploaded by update_mesh() and update_corners() since construction.
   std::uint64_t uploaded_bytes() const;
 
@@ -124,7 +133,9 @@ class Renderer {
   void render(const Frame2d& frame);
 
   /// Draws text and widgets over the last frame.
-  void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh);
+  /// @param sheet  the picture that Overlay::sheet() stands for; it must live and stay as it is as long as the renderer. Null: none is
+  ///               shown.
+  void draw_overlay(const OverlayFont& font, const OverlayMesh& mesh, const Image* sheet = nullptr);
 
   /// Copies the last frame to the context's own framebuffer, which a window shows. Stretches it to width by
   /// height pixels, which are not negative.
