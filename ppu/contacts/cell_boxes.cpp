@@ -26,7 +26,7 @@ void CellBoxes::place(const Lattice<3>& lattice, std::span<const Eigen::Vector3f
       low = low.min(least_[corners[k]]);
       high = high.max(most_[corners[k]]);
     }
-    Four& four = fours_[c / 4];
+    FourBoxes& four = fours_[c / 4];
     const auto lane = static_cast<Eigen::Index>(c % 4);
     for (int d = 0; d < 3; ++d) four.low[d][lane] = low[d], four.high[d][lane] = high[d];
   }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "ppu/contacts/four_boxes.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
@@ -33,23 +34,12 @@ class CellBoxes {
 
   bool any_meets(const Bounds<3>& box) const {
     return std::any_of(fours_.begin(), fours_.end(),
-                       [&](const Four& four) { return four.apart_from(box).minCoeff() <= 0; });
+                       [&](const FourBoxes& four) { return four.apart_from(box).minCoeff() <= 0; });
   }
 
  private:
-  /// Of four cells; the last one again where there are fewer.
-  struct Four {
-    Eigen::Array4f low[3], high[3];
-
-    /// Metres between the boxes along one axis; 0 or less where they have a point in common.
-    Eigen::Array4f apart_from(const Bounds<3>& box) const {
-      Eigen::Array4f most = (low[0] - box.high.x()).max(box.low.x() - high[0]);
-      for (int d = 1; d < 3; ++d) most = most.max(low[d] - box.high[d]).max(box.low[d] - high[d]);
-      return most;
-    }
-  };
   std::size_t cells_ = 0;
-  std::vector<Four> fours_;
+  std::vector<FourBoxes> fours_;              // the last cell again where there are fewer
   std::vector<Eigen::Array4f> least_, most_;  // of each particle's two places
 };
 

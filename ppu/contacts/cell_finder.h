@@ -27,49 +27,40 @@ class CellFinder {
   /// out hold nothing.
   template <typename Wanted>
   std::optional<DeformedPlace> find(const Eigen::Vector3f& point, const Wanted& wanted) const {
-    const Eigen::Vector3f place = (point - low_) * per_cube_;
-    if (!((place.array() >= 0).all() && (place.array() < counts_.cast<float>().array()).all())) return {};
-    const Eigen::Vector3i cube = place.cast<int>();
-    const auto index = static_cast<std::size_t>((cube.z() * counts_.y() + cube.y()) * counts_.x() + cube.x());
-    for (std::uint32_t i = begin_[index]; i < begin_[index + 1]; ++i) {
-      const Box& box = boxes_[cells_[i]];
-      if ((point.array() < box.low.array()).any() || (point.array() > box.high.array()).any()) continue;
-      if (!wanted(cells_[i])) continue;
-      if (auto found = place_in(cells_[i], point)) return found;
-    }
-    return {};
+    std::optional<DeformedPlace> found;
+    for_each_box_around(point, [&](std::uint32_t cell) {
+      if (wanted(cell)) found = place_in(cell, point);
+      return found.has_value();
+    });
+    return found;
   }
 
-  /// Calls work(cell) for each cell whose box has a point in common with `box`: for some of them several times.
-  template <typename Work>
-  void for_each_cell_near(const Bounds<3>& box, const Work& work) const {
-    const auto cube_of = [&](const Eigen::Vector3f& point) -> Eigen::Vector3i {
-      const Eigen::Vector3f last = (counts_.array() - 1).matrix().cast<float>();
-      return ((point - low_) * per_cube_)
-          .cwiseMax(-1.0f)
-          .cwiseMin(last + Eigen::Vector3f::Ones())
-          .array()
-          .floor()
-          .cast<int>();
-    };
-    const Eigen::Vector3i first = cube_of(box.low).cwiseMax(0);
-    const Eigen::Vector3i last = cube_of(box.high).cwiseMin((counts_.array() - 1).matrix());
-    for (int z = first.z(); z <= last.z(); ++z)
-      for (int y = first.y(); y <= last.y(); ++y)
-        for (int x = first.x(); x <= last.x(); ++x) {
-          const auto index = static_cast<std::size_t>((z * counts_.y() + y) * counts_.x() + x);
-          for (std::uint32_t i = begin_[index]; i < begin_[index + 1]; ++i) {
-            const Box& cell = boxes_[cells_[i]];
-            if ((box.low.array() <= cell.high.array()).all() && (cell.low.array() <= box.high.array()).all())
-              work(cells_[i]);
-          }
-        }
+  /// Whether the box of any cell holds the point: if not, no cell does.
+  bool may_find(const Eigen::Vector3f& point) const {
+    bool is_in_box = false;
+    for_each_box_around(point, [&](std::uint32_t) { return is_in_box = true; });
+    return is_in_box;
   }
 
  private:
   struct Box {
     Eigen::Vector3f low, high;
   };
+
+  /// Calls work(cell) for cells whose boxes hold the point, ascending, until it returns true.
+  template <typename Work>
+  void for_each_box_around(const Eigen::Vector3f& point, const Work& work) const {
+    const Eigen::Vector3f place = (point - low_) * per_cube_;
+    if (!((place.array() >= 0).all() && (place.array() < counts_.cast<float>().array()).all())) return;
+    const Eigen::Vector3i cube = place.cast<int>();
+    const auto index = static_cast<std::size_t>((cube.z() * counts_.y() + cube.y()) * counts_.x() + cube.x());
+    for (std::uint32_t i = begin_[index]; i < begin_[index + 1]; ++i) {
+      const Box& box = boxes_[cells_[i]];
+      if ((point.array() < box.low.array()).any() || (point.array() > box.high.array()).any()) continue;
+      if (work(cells_[i])) return;
+    }
+  }
+
   std::optional<DeformedPlace> place_in(std::uint32_t cell, const Eigen::Vector3f& point) const;
 
   const Lattice<3>* lattice_ = nullptr;

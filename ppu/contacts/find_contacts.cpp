@@ -47,6 +47,12 @@ std::optional<Hit> meet_triangle(const std::array<Vector3f, 3>& triangle, float 
   const float share =
       from - to > 0 ? std::clamp((from - rounding) / (from - rounding - to), 0.0f, 1.0f) : 0.0f;
   const Vector3f at = way.from + share * (way.to - way.from);
+  // Most triangles are beside the point by more than what it is above or below them: no need for the nearest place.
+  const float farthest = 1.01f * (near + std::abs(normal.dot(at - triangle[0])));
+  for (int d = 0; d < 3; ++d) {
+    const auto [low, high] = std::minmax({triangle[0][d], triangle[1][d], triangle[2][d]});
+    if (at[d] < low - farthest || at[d] > high + farthest) return {};
+  }
   const Vector3f beside = at - nearest_point(triangle, at);
   if ((beside - normal * normal.dot(beside)).squaredNorm() > near * near) return {};
   return Hit{normal, to};
@@ -96,13 +102,13 @@ class ObstacleContacts {
         contacts_(contacts) {}
 
   void find() {
+    const bool triangles = obstacle_.kind == ObstacleKind::kTriangles;
+    if (triangles) cells_.triangles.place(obstacle_.triangles);
+    const Bounds<3> box = triangles ? bounds_of_triangles() : bounds(obstacle_);
     const float reach =
-        kNear * body_.spacing() + step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * radius());
-    const Vector3f margin = Vector3f::Constant(reach);
-    const Bounds<3> box = bounds(obstacle_);
-    const Vector3f low = box.low - margin, high = box.high + margin;
-    near_ = {low, high};
-    if (obstacle_.kind == ObstacleKind::kTriangles) return find_with_triangles(reach);
+        kNear * body_.spacing() + step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * radius(box));
+    near_ = widened(box, reach);
+    if (triangles) return find_with_triangles(reach);
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
       for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (const auto hit = meet(obstacle_, way_of(from, to), point.allowance, body_.spacing()))
@@ -113,10 +119,18 @@ class ObstacleContacts {
   }
 
  private:
+  static Bounds<3> widened(const Bounds<3>& box, float by) {
+    return {box.low - Vector3f::Constant(by), box.high + Vector3f::Constant(by)};
+  }
+
+  /// As bounds(), but quicker.
+  Bounds<3> bounds_of_triangles() const {
+    return widened(to_world(obstacle_, cells_.triangles.bounds()), obstacle_.rounding);
+  }
+
   /// The farthest that a point of the obstacle may be from what it turns about.
-  float radius() const {
+  float radius(const Bounds<3>& box) const {
     if (rigid_.spin.isZero(0)) return 0;
-    const Bounds<3> box = bounds(obstacle_);
     return (box.low - rigid_.centre).cwiseAbs().cwiseMax((box.high - rigid_.centre).cwiseAbs()).norm();
   }
 
@@ -139,67 +153,51 @@ class ObstacleContacts {
     return {obstacle_.to_own(from), obstacle_.to_own(to - carried)};
   }
 
-  /// Points meet the triangles near their cell only.
+  /// Points meet the triangles near their way only.
   void find_with_triangles(float reach) {
-    find_triangles_near_cells(reach);
-    const std::vector<CellAndTriangle>& near = cells_.triangles;
-    for (std::size_t i = 0, end; i < near.size(); i = end) {
-      const std::uint32_t cell = near[i].cell;
-      for (end = i; end < near.size() && near[end].cell == cell;) ++end;
+    const TriangleBoxes& boxes = cells_.triangles;
+    const float near = kNear * body_.spacing(), pressed_through = kPressedThrough * body_.spacing();
+    // What has been pressed through a triangle may be so far behind it, and still meets it.
+    const Vector3f margin = Vector3f::Constant(near + pressed_through + obstacle_.rounding);
+    cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
       for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (point.allowance > 0) return;  // it may be on either side
-        for (std::size_t t = i; t < end; ++t)
+        const Way way = way_of(from, to);
+        const Bounds<3> box{way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin};
+        boxes.for_each_meeting(box, [&](std::uint32_t t) {
           if (const auto hit =
-                  meet_triangle(obstacle_.triangles[near[t].triangle], obstacle_.rounding, way_of(from, to),
-                                kNear * body_.spacing(), kPressedThrough * body_.spacing()))
+                  meet_triangle(obstacle_.triangles[t], obstacle_.rounding, way, near, pressed_through))
             add(point.anchor, to, *hit);
+        });
       });
-    }
+    });
     try_edges_of_triangles(reach);
   }
 
-  /// Of triangles near cells. The ends of short edges belong to many of them: each is looked up once.
+  /// The ends of short edges belong to many triangles: each is looked up once.
   void try_edges_of_triangles(float reach) {
-    cells_.corners.clear();
-    for (const std::uint32_t triangle : cells_.triangles_near_any) {
-      for (const ObstacleEdge& edge : obstacle_.edges.subspan(3 * std::size_t{triangle}, 3)) {
-        if ((edge.to - edge.from).norm() > kEdgeSpacing * body_.spacing()) {
+    PointSet& corners = cells_.corners;
+    corners.begin(obstacle_.edges.size());
+    const float longest = kEdgeSpacing * body_.spacing();
+    cells_.triangles.for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
+      if (!cells_.boxes().any_meets(widened(to_world(obstacle_, box), 2 * reach))) return;
+      for (const ObstacleEdge& edge : obstacle_.edges.subspan(3 * first, 3 * (end - first))) {
+        if ((edge.to - edge.from).squaredNorm() > longest * longest)
           try_edge(edge, reach);
-          continue;
-        }
-        // Where it ends the next edge of the triangle begins.
-        cells_.corners.push_back({edge.from.x(), edge.from.y(), edge.from.z()});
+        else  // where it ends the next edge of the triangle begins
+          corners.add(edge.from);
       }
-    }
-    std::sort(cells_.corners.begin(), cells_.corners.end());
-    const auto last = std::unique(cells_.corners.begin(), cells_.corners.end());
-    for (auto corner = cells_.corners.begin(); corner != last; ++corner)
-      try_corner(obstacle_.to_world({(*corner)[0], (*corner)[1], (*corner)[2]}));
-  }
-
-  /// To cells_.triangles, ascending by cells, then by triangles.
-  void find_triangles_near_cells(float reach) {
-    cells_.triangles.clear();
-    cells_.triangles_near_any.clear();
-    // Triangles are held against cells at the substep's end, so they have to be as much larger as anything moves until then.
-    Eigen::Array3f farthest = Eigen::Array3f::Zero();
-    for (std::size_t i = 0; i < body_.ends.size(); ++i)
-      farthest = farthest.max((body_.ends[i] - body_.positions[i]).array().abs());
-    const Vector3f margin = farthest.matrix() + Vector3f::Constant(reach + obstacle_.rounding);
-    for (std::uint32_t t = 0; t < obstacle_.triangles.size(); ++t) {
-      const auto& own = obstacle_.triangles[t];
-      const Vector3f a = obstacle_.to_world(own[0]), b = obstacle_.to_world(own[1]),
-                     c = obstacle_.to_world(own[2]);
-      const Bounds<3> box{a.cwiseMin(b).cwiseMin(c) - margin, a.cwiseMax(b).cwiseMax(c) + margin};
-      const std::size_t before = cells_.triangles.size();
-      cells_.finder().for_each_cell_near(box, [&](std::uint32_t cell) {
-        cells_.triangles.push_back({cell, t});
-      });
-      if (cells_.triangles.size() != before) cells_.triangles_near_any.push_back(t);
-    }
-    std::sort(cells_.triangles.begin(), cells_.triangles.end());
-    cells_.triangles.erase(std::unique(cells_.triangles.begin(), cells_.triangles.end()),
-                           cells_.triangles.end());
+    });
+    const auto in_world = [&](const PointSet::Point& corner) {
+      return obstacle_.to_world({corner[0], corner[1], corner[2]});
+    };
+    // In an order that does not depend on where the list of triangles begins.
+    std::vector<PointSet::Point>& near = cells_.near_corners;
+    near.clear();
+    for (const PointSet::Point& corner : corners.points())
+      if (may_be_in_body(in_world(corner))) near.push_back(corner);
+    std::sort(near.begin(), near.end());
+    for (const PointSet::Point& corner : near) try_corner(in_world(corner));
   }
 
   void add(const Anchor& anchor, const Vector3f& point, const Hit& hit) {
@@ -224,10 +222,17 @@ class ObstacleContacts {
                            [&](const Vector3f& point) { try_corner(point); });
   }
 
-  void try_corner(const Vector3f& point) {
-    if (!contains(body_.box, point)) return;
-    const Vector3f moved = point + step_ * rigid_.velocity_at(point);
-    const auto place = cells_.finder().find(moved, [](std::uint32_t) { return true; });
+  Vector3f moved(const Vector3f& point) const { return point + step_ * rigid_.velocity_at(point); }
+
+  /// What cannot be costs no more than a look at a few boxes.
+  bool may_be_in_body(const Vector3f& point) const {
+    return contains(body_.box, point) && cells_.finder().may_find(moved(point));
+  }
+
+  void try_corner(const Vector3f& corner) {
+    if (!contains(body_.box, corner)) return;
+    const Vector3f point = moved(corner);
+    const auto place = cells_.finder().find(point, [](std::uint32_t) { return true; });
     if (!place) return;
     const FieldValue field = body_.model->surface.field(place->cell, place->xi);
     const Vector3f outwards = place->jacobian.inverse().transpose() * field.gradient;
@@ -236,9 +241,9 @@ class ObstacleContacts {
     SoftContact& contact = contacts_.emplace_back();
     contact.a = anchor_in_cell(body_.lattice(), place->cell, place->xi);
     contact.rigid = obstacle_.rigid;
-    contact.point = moved;
+    contact.point = point;
     contact.normal = -outwards / steep;
-    const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(moved);
+    const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
     complete(contact, field.distance / steep - obstacle_.rounding, contact.normal.dot(v), friction_, step_);
   }
 

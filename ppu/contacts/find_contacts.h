@@ -1,23 +1,16 @@
 #pragma once
 // Where bodies would enter something in the coming substep.
 
-#include <array>
-#include <compare>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "ppu/contacts/cell_boxes.h"
 #include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_group.h"
+#include "ppu/contacts/point_set.h"
+#include "ppu/contacts/triangle_boxes.h"
 
 namespace softcell::ppu {
-
-/// A triangle of an obstacle that is near a cell.
-struct CellAndTriangle {
-  std::uint32_t cell = 0, triangle = 0;
-  auto operator<=>(const CellAndTriangle&) const = default;
-};
 
 /// The cells of where a body will be, placed when somebody asks: most bodies need none.
 class EndCells {
@@ -35,9 +28,9 @@ class EndCells {
     return boxes_;
   }
   // For those who look for contacts with triangles, again and again without allocating.
-  std::vector<CellAndTriangle> triangles;
-  std::vector<std::uint32_t> triangles_near_any;
-  std::vector<std::array<float, 3>> corners;
+  TriangleBoxes triangles;
+  PointSet corners;
+  std::vector<PointSet::Point> near_corners;
 
  private:
   const ContactBody* body_ = nullptr;

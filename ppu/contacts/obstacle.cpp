@@ -104,6 +104,20 @@ Separation from_core(const Obstacle& obstacle, const Vector3f& p) {
 
 }  // namespace
 
+/// By its corners: rounding keeps the order of numbers, and so that of places between them.
+Bounds<3> to_world(const Obstacle& obstacle, const Bounds<3>& box) {
+  Bounds<3> result{obstacle.to_world(box.low), obstacle.to_world(box.low)};
+  for (unsigned k = 1; k < 8; ++k) {
+    const Vector3f corner((k & 1u) != 0 ? box.high.x() : box.low.x(),
+                          (k & 2u) != 0 ? box.high.y() : box.low.y(),
+                          (k & 4u) != 0 ? box.high.z() : box.low.z());
+    const Vector3f there = obstacle.to_world(corner);
+    result.low = result.low.cwiseMin(there);
+    result.high = result.high.cwiseMax(there);
+  }
+  return result;
+}
+
 Bounds<3> bounds(const Obstacle& obstacle) {
   if (obstacle.kind == ObstacleKind::kPlane) {
     const Vector3f endless = Vector3f::Constant(std::numeric_limits<float>::max());

@@ -73,6 +73,9 @@ inline bool overlap(const Bounds<3>& a, const Bounds<3>& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
+/// Around a box in an obstacle's frame, in the world: a point in the one is in the other, however places are rounded.
+Bounds<3> to_world(const Obstacle& obstacle, const Bounds<3>& box);
+
 /// A box around it, in the world; endless around a plane.
 Bounds<3> bounds(const Obstacle& obstacle);
 

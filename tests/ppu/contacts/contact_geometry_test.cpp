@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -13,6 +14,8 @@
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/contact_surface.h"
 #include "ppu/contacts/obstacle.h"
+#include "ppu/contacts/point_set.h"
+#include "ppu/contacts/triangle_boxes.h"
 #include "ppu/contacts/triangle_distance.h"
 #include "softcell/soft_bodies/shapes.h"
 
@@ -84,6 +87,82 @@ TEST(Obstacle, NormalsLeadToTheSurface) {
       if (s.distance > 0) {
         EXPECT_NEAR(separation(obstacle, p - s.distance * s.normal).distance, 0, 1e-4f);
       }
+    }
+  }
+}
+
+/// However many triangles there are: a search finds those whose boxes meet, in their order.
+TEST(TriangleBoxes, FindsWhatAPlainLoopFinds) {
+  RandomPoints random;
+  TriangleBoxes boxes;
+  for (const std::size_t count : {1u, 3u, 4u, 15u, 16u, 17u, 64u, 65u, 300u, 50u}) {
+    std::vector<std::array<Vector3f, 3>> triangles;
+    for (std::size_t t = 0; t < count; ++t) {
+      const Vector3f corner = random.in_cube(1);
+      triangles.push_back({corner, corner + random.in_cube(0.2f), corner + random.in_cube(0.2f)});
+    }
+    boxes.place(triangles);
+    const auto meets = [&](std::size_t t, const Bounds<3>& box) {
+      const auto& [a, b, c] = triangles[t];
+      return overlap({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}, box);
+    };
+    for (int i = 0; i < 100; ++i) {
+      const Vector3f at = random.in_cube(1), half = random.in_cube(0.2f).cwiseAbs();
+      const Bounds<3> box{at - half, at + half};
+      std::vector<std::uint32_t> found, expected;
+      boxes.for_each_meeting(box, [&](std::uint32_t t) { found.push_back(t); });
+      for (std::uint32_t t = 0; t < count; ++t)
+        if (meets(t, box)) expected.push_back(t);
+      EXPECT_EQ(found, expected) << count;
+    }
+    std::size_t next = 0;
+    boxes.for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
+      EXPECT_EQ(first, next);
+      EXPECT_LE(end, first + 16);
+      for (std::size_t t = first; t < end; ++t) {
+        for (const Vector3f& corner : triangles[t]) {
+          EXPECT_TRUE(overlap(box, {corner, corner}));
+          EXPECT_TRUE(overlap(boxes.bounds(), {corner, corner}));
+        }
+      }
+      next = end;
+    });
+    EXPECT_EQ(next, count);
+  }
+}
+
+TEST(PointSet, HasEachPointOnceInTheOrderInWhichTheyCame) {
+  RandomPoints random;
+  PointSet set;
+  for (const std::size_t count : {1000u, 1u, 0u, 37u}) {
+    set.begin(3 * count);
+    std::vector<PointSet::Point> expected;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector3f p = random.in_cube(1);
+      expected.push_back({p.x(), p.y(), p.z()});
+      for (const std::size_t other : {i, i / 2, i}) {
+        const auto& [x, y, z] = expected[other];
+        set.add({x, y, z});
+      }
+    }
+    EXPECT_TRUE(std::ranges::equal(set.points(), expected)) << count;
+  }
+}
+
+TEST(Obstacle, ABoxAroundItsPartsIsAroundThemInTheWorld) {
+  RandomPoints random;
+  for (int i = 0; i < 1000; ++i) {
+    Obstacle obstacle;
+    obstacle.position = 100 * random.in_cube(1);
+    obstacle.rotation =
+        Eigen::Quaternionf::FromTwoVectors(random.in_cube(1), random.in_cube(1)).toRotationMatrix();
+    const Vector3f a = random.in_cube(1), b = random.in_cube(1);
+    const Bounds<3> own{a.cwiseMin(b), a.cwiseMax(b)}, box = to_world(obstacle, own);
+    const Vector3f inside = (random.in_cube(0.5f).array() + 0.5f).matrix();
+    const Vector3f point = (own.low + inside.cwiseProduct(own.high - own.low)).cwiseMin(own.high);
+    for (const Vector3f& p : {point, a, b, own.low, own.high}) {
+      const Vector3f there = obstacle.to_world(p);
+      EXPECT_TRUE(overlap(box, {there, there})) << i;
     }
   }
 }

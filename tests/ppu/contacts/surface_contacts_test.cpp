@@ -199,6 +199,16 @@ TEST(SurfaceContacts, KindsOfShapesHoldABody) {
   std::vector<std::pair<const char*, std::unique_ptr<btCollisionShape>>> shapes;
   shapes.emplace_back("plane", std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), 0));
   shapes.emplace_back("triangles", std::make_unique<btBvhTriangleMeshShape>(&ground, true));
+  btTriangleMesh fine;
+  for (int x = -20; x < 20; ++x) {
+    for (int z = -20; z < 20; ++z) {
+      const auto at = [](int i, int j) {
+        return btVector3(0.05f * static_cast<float>(i), 0, 0.05f * static_cast<float>(j));
+      };
+      mesh({at(x, z), at(x, z + 1), at(x + 1, z + 1), at(x + 1, z)}, fine);
+    }
+  }
+  shapes.emplace_back("fine triangles", std::make_unique<btBvhTriangleMeshShape>(&fine, true));
   auto hull = std::make_unique<btConvexHullShape>();
   for (int i = 0; i < 8; ++i)
     hull->addPoint(
