@@ -16,13 +16,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <functional>
-#include <memory>
 #include <vector>
 
-#include "softcell/soft_bodies/mesh.h"
 #include "softcell/soft_bodies/soft_body.h"
-#include "softcell/soft_bodies/soft_body_model.h"
 
 namespace softcell::ppu {
 
@@ -43,9 +39,9 @@ struct Cut {
 
 /// What a break has left of a body, as BulletSoftBodies::take_broken() returns it.
 struct BrokenSoftBody {
-  const SoftBody<3>* body = nullptr;       ///< what is left of it: its largest piece
-  std::vector<const SoftBody<3>*> pieces;  ///< new bodies; none: it is cracked and hangs together
-  std::size_t faces = 0;                   ///< that broke
+  SoftBody<3>* body = nullptr;       ///< what is left of it: its largest piece
+  std::vector<SoftBody<3>*> pieces;  ///< new bodies; none: it is cracked and hangs together
+  std::size_t faces = 0;             ///< that broke
 };
 
 // Without an engine. For a body that BulletSoftBodies has, use its own functions.
