@@ -1,10 +1,12 @@
 #include "softcell/soft_bodies/soft_body_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "ppu/bodies/piece_model.h"
 #include "ppu/lattice/embedding.h"
 #include "ppu/matching/matching_plan.h"
 #include "ppu/matching/rest_lattice.h"
@@ -38,13 +40,16 @@ void check_cell_size(const SoftBodySettings& settings, float spacing) {
 template <int kDimension>
 SoftBodyModel<kDimension>::SoftBodyModel(Lattice<kDimension> lattice,
                                          std::shared_ptr<const Embedding> embedding,
-                                         const SoftBodySettings& settings, float contact_radius_in_cells)
+                                         const SoftBodySettings& settings, float contact_radius_in_cells,
+                                         std::shared_ptr<const MatchingPlan<float, kDimension>> plan)
     : settings_(settings),
       lattice_(std::move(lattice)),
       embedding_(std::move(embedding)),
       masses_(particle_masses(lattice_, settings.density)),
       contact_radius_in_cells_(contact_radius_in_cells),
-      plan_(std::make_shared<MatchingPlan<float, kDimension>>(lattice_, settings.half_width, masses_)) {
+      plan_(plan != nullptr
+                ? std::move(plan)
+                : std::make_shared<MatchingPlan<float, kDimension>>(lattice_, settings.half_width, masses_)) {
   double mass = 0;
   for (const float m : masses_) mass += m;
   mass_ = static_cast<float>(mass);
@@ -77,15 +82,45 @@ const TriangleMesh& SoftBodyModel<kDimension>::mesh() const requires(kDimension 
   return embedding_->mesh;
 }
 
+template <int kDimension>
+const Cracks& SoftBodyModel<kDimension>::cracks() const requires(kDimension == 3) {
+  std::call_once(cracks_made_, [this] {
+    if (!cracks_)
+      cracks_ = std::make_shared<const Cracks>(
+          no_cracks(embedding_ ? &embedding_->mesh : nullptr, lattice_, strengths_));
+  });
+  return *cracks_;
+}
+
 template class SoftBodyModel<2>;
 template class SoftBodyModel<3>;
 
 struct SoftBodyModelMaker {
   static std::shared_ptr<const SoftBodyModel<3>> make(Lattice<3> lattice, Embedding embedding,
-                                                      const SoftBodySettings& settings) {
-    return std::shared_ptr<const SoftBodyModel<3>>(
+                                                      const SoftBodySettings& settings,
+                                                      std::vector<float> strengths = {}) {
+    std::shared_ptr<SoftBodyModel<3>> model(
         new SoftBodyModel<3>(std::move(lattice), std::make_shared<const Embedding>(std::move(embedding)),
                              settings, SoftBodyModel<3>::kContactRadiusInCells));
+    model->strengths_ = std::move(strengths);
+    if (settings.fracture) model->cracks();
+    return model;
+  }
+  static std::shared_ptr<const SoftBodyModel<3>> make(const SoftBodyModel<3>& whole, CrackedPiece piece) {
+    Lattice<3>& lattice = piece.part.lattice;
+    // With as many particles and cells nothing has come apart.
+    const bool same =
+        lattice.particles.size() == whole.particles() && lattice.cells.size() == whole.lattice().cells.size();
+    std::shared_ptr<const Embedding> embedding = whole.embedding_;
+    if (!same)
+      embedding = std::make_shared<const Embedding>(
+          piece.cracks.whole ? embed(piece.mesh.mesh, piece.mesh.places, lattice) : Embedding());
+    std::shared_ptr<SoftBodyModel<3>> model(
+        new SoftBodyModel<3>(std::move(lattice), std::move(embedding), whole.settings(),
+                             SoftBodyModel<3>::kContactRadiusInCells, same ? whole.plan() : nullptr));
+    model->is_piece_ = true;
+    model->cracks_ = std::make_shared<const Cracks>(std::move(piece.cracks));
+    return model;
   }
   static std::shared_ptr<const SoftBodyModel<2>> make(Lattice<2> lattice, const SoftBodySettings& settings,
                                                       float contact_radius_in_cells) {
@@ -94,13 +129,32 @@ struct SoftBodyModelMaker {
   }
 };
 
+std::shared_ptr<const SoftBodyModel<3>> make_piece_model(const SoftBodyModel<3>& whole, CrackedPiece piece) {
+  return SoftBodyModelMaker::make(whole, std::move(piece));
+}
+
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings) {
+  return make_soft_body_model(mesh, settings, StrengthField());
+}
+
+std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
+                                                             const SoftBodySettings& settings,
+                                                             const StrengthField& strength) {
   validate(settings);
   validate(mesh);
   Lattice<3> lattice = voxelize(mesh, settings.cell_size);
   Embedding embedding = embed(mesh, lattice);
-  return SoftBodyModelMaker::make(std::move(lattice), std::move(embedding), settings);
+  std::vector<float> strengths;
+  for (std::size_t c = 0; strength && c < lattice.cells.size(); ++c) {
+    const Eigen::Vector3f middle =
+        lattice.origin + lattice.spacing * (lattice.cells[c].cast<float>().array() + 0.5f).matrix();
+    strengths.push_back(strength(middle));
+    if (!(strengths.back() >= 0) || !std::isfinite(strengths.back()))
+      throw std::runtime_error("the strength of a soft body at a place is " +
+                               std::to_string(strengths.back()) + "; it must be 0 or above, and finite");
+  }
+  return SoftBodyModelMaker::make(std::move(lattice), std::move(embedding), settings, std::move(strengths));
 }
 
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
@@ -115,6 +169,9 @@ std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(Lattice<2> lattice,
                                                              float contact_radius_in_cells) {
   validate(settings);
   check_cell_size(settings, lattice.spacing);
+  if (settings.fracture)
+    throw std::runtime_error(
+        "a soft body of two dimensions has a fracture; only those of three dimensions break");
   if (!(contact_radius_in_cells > 0 && contact_radius_in_cells <= 1)) {
     throw std::runtime_error("a soft body's contact radius is " + std::to_string(contact_radius_in_cells) +
                              " cells; it must be above 0 and at most 1");

@@ -40,6 +40,14 @@ void validate(const SoftBodySettings& s) {
     require(creep > 0, "creep", creep, "in 1/s and above 0");
     require(limit > 0, "limit", limit, "a strain above 0");
   }
+  if (s.fracture) {
+    const auto& [stretch, turn] = *s.fracture;
+    if (stretch) require(*stretch > 0, "fracture.stretch", *stretch, "a share above 0");
+    constexpr float kHalfTurn = 3.1415927f;
+    if (turn)
+      require(*turn > 0 && *turn <= kHalfTurn, "fracture.turn", *turn,
+              "an angle in radians above 0 and at most pi");
+  }
 }
 
 float SoftBodySettings::alpha_of_step(float step) const {

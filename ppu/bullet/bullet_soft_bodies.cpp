@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/bodies/break_body.h"
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/bullet/bullet_hook.h"
 #include "ppu/bullet/contact_sphere.h"
@@ -59,7 +60,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
         solve.drop();
         for (const auto& body : bodies) {
           if (body->was_reset()) solve.forget(body->soft());
-          if (body->was_changed()) tell_others(*body);
+          if (body->was_changed()) tell_others(*body), follow_model(*body);
           body->begin_substep();
         }
       }
@@ -77,11 +78,55 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     const auto begin = std::chrono::steady_clock::now();
     timed(times.gather, [&] {
       for (const auto& body : bodies) body->end_substep(step, sleep);
+      break_strained();
       if (sleep && surfaces) surfaces->attachments().let_sleep(*sleep);
     });
     BulletHook::find(world)->add_time(std::chrono::steady_clock::now() - begin);
   }
   void debugDraw(btIDebugDraw*) override {}
+
+  /// An assignment may have made it a body of another model.
+  void follow_model(const CoupledBody& body) {
+    for (SurfaceBody* const with_surface : with_surfaces)
+      if (with_surface == &body && with_surface->contact().model != body.soft().shared_model())
+        with_surface->set_contact(surfaces->contact_model(body.soft().shared_model()));
+  }
+
+  /// Pieces are tested from the next substep on.
+  void break_strained() {
+    for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {
+      const SoftBody<3>& soft = bodies[i]->soft();
+      if (!soft.settings().fracture || soft.asleep() || !bodies[i]->can_break()) continue;
+      if (const auto faces = strained_faces(soft, break_test); !faces.empty()) break_body(*bodies[i], faces);
+    }
+  }
+
+  /// @return what is left beside the body itself
+  std::vector<SoftBody<3>*> break_body(CoupledBody& body, std::span<const std::uint32_t> faces) {
+    const std::vector<BodyPiece> pieces = pieces_of(body.soft(), faces);
+    body.soft() = pieces.front().body;
+    follow_model(body);
+    std::vector<SoftBody<3>*> others;
+    std::vector<SurfaceAttachments::Piece> with_attachments;
+    const auto append = [&](const CoupledBody& coupled, const BodyPiece& piece) {
+      for (SurfaceBody* const with_surface : with_surfaces)
+        if (with_surface == &coupled) with_attachments.push_back({with_surface, piece.particle_of});
+    };
+    append(body, pieces.front());
+    for (std::size_t i = 1; i < pieces.size(); ++i) {
+      SoftBody<3>& own = add(pieces[i].body.shared_model(), Eigen::Vector3f::Zero());
+      own = pieces[i].body;
+      bodies.back()->set_filter(body.filter());
+      append(*bodies.back(), pieces[i]);
+      others.push_back(&own);
+    }
+    if (!with_attachments.empty()) {
+      surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments);
+      surfaces->forget_pieces(with_surfaces);
+    }
+    broken.push_back({&body.soft(), others, faces.size()});
+    return others;
+  }
 
   SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position) {
     std::unique_ptr<CoupledBody> body;
@@ -140,6 +185,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   std::vector<SurfaceBody*> with_surfaces;  // of `bodies`
   std::uint32_t next_number = 0;
   StepAhead<3> solve;  // of `bodies`
+  BreakTest break_test;
+  std::vector<BrokenSoftBody> broken;  // since they were asked for
   std::optional<SleepSettings> sleep;
   SoftBodyTimes times;
 };
@@ -160,6 +207,9 @@ SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model
                                    const Eigen::Vector3f& position) {
   SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {}, {})",
             model ? "with" : "without", position.x(), position.y(), position.z());
+  if (model->settings().fracture && model->settings().contacts && !impl_->surfaces)
+    throw std::invalid_argument(
+        "a soft body with a fracture touches with spheres; only bodies that touch with their surfaces break");
   impl_->solve.drop();
   return impl_->add(std::move(model), position);
 }
@@ -175,8 +225,24 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
     if (with_surface == found->get()) impl_->surfaces->attachments().forget(*with_surface);
   std::erase_if(impl_->with_surfaces,
                 [&](const SurfaceBody* with_surface) { return with_surface == found->get(); });
+  for (BrokenSoftBody& broken : impl_->broken) std::erase(broken.pieces, &body);
+  std::erase_if(impl_->broken, [&](const BrokenSoftBody& broken) { return broken.body == &body; });
   impl_->bodies.erase(found);
+  if (impl_->surfaces) impl_->surfaces->forget_pieces(impl_->with_surfaces);
 }
+
+std::vector<SoftBody<3>*> BulletSoftBodies::cut(const SoftBody<3>& body, const Cut& where) {
+  CoupledBody& coupled = **impl_->find(body, "to be cut");
+  if (!coupled.can_break())
+    throw std::invalid_argument(
+        "the soft body to be cut touches with spheres; only bodies that touch with their surfaces break");
+  const std::vector<std::uint32_t> faces = faces_across(body, where);
+  if (faces.empty()) return {};
+  impl_->solve.drop();
+  return impl_->break_body(coupled, faces);
+}
+
+std::vector<BrokenSoftBody> BulletSoftBodies::take_broken() { return std::exchange(impl_->broken, {}); }
 
 AttachmentId BulletSoftBodies::attach(const SoftBody<3>& body, const Patch<3>& patch,
                                       const AttachmentSettings<3>& settings) {

@@ -50,6 +50,9 @@ class CoupledBody {
 
   virtual bool can_be_touched() const = 0;
 
+  /// Whether it may become another body, with other particles.
+  virtual bool can_break() const = 0;
+
   /// The box around what can be touched. @pre can_be_touched()
   virtual Bounds<3> box() const = 0;
   virtual float reach() const = 0;  ///< metres, beyond that box, at which other soft bodies touch it

@@ -39,6 +39,7 @@ class FreeBody final : public CoupledBody {
   }
 
   bool can_be_touched() const override { return false; }
+  bool can_break() const override { return true; }
   Bounds<3> box() const override { return soft_.bounds(); }
   float reach() const override { return 0; }
 

@@ -58,6 +58,7 @@ class SphereBody final : public CoupledBody {
   }
 
   /// Of its particles as Bullet knows them.
+  bool can_break() const override { return false; }
   Bounds<3> box() const override {
     SC_ASSERT(!particles_.empty(), "a body without contacts has no box in Bullet");
     Bounds<3> box{to_eigen(particles_[0].getWorldTransform().getOrigin()), {}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -148,6 +149,40 @@ void SurfaceAttachments::forget(const SurfaceBody& body) {
   std::vector<bool> which;
   for (const auto& link : links_) which.push_back(link->a == &body || link->b == &body);
   end_links(EndedAttachment::Reason::kGone, which);
+}
+
+void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces) {
+  if (links_.empty()) return;
+  std::vector<std::map<std::uint32_t, std::uint32_t>> number_of(
+      pieces.size());  // by particles of the whole that a piece has once
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    std::vector<std::uint32_t> twice;
+    for (std::uint32_t i = 0; i < pieces[p].particle_of.size(); ++i)
+      if (!number_of[p].try_emplace(pieces[p].particle_of[i], i).second)
+        twice.push_back(pieces[p].particle_of[i]);
+    for (const std::uint32_t particle : twice) number_of[p].erase(particle);
+  }
+  const auto follow = [&](SurfaceBody*& side, AttachmentRows<3>& rows, bool of_b) {
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+      std::vector<std::uint32_t> numbers;
+      for (const std::uint32_t particle : rows.particles(of_b)) {
+        const auto found = number_of[p].find(particle);
+        if (found == number_of[p].end()) break;
+        numbers.push_back(found->second);
+      }
+      if (numbers.size() != rows.particles(of_b).size()) continue;
+      rows.renumber(of_b, std::move(numbers));
+      side = pieces[p].body;
+      return true;
+    }
+    return false;
+  };
+  std::vector<bool> torn;
+  for (const auto& link : links_)
+    torn.push_back((link->a == &body && !follow(link->a, link->rows, false)) ||
+                   (link->b == &body && !follow(link->b, link->rows, true)));
+  end_links(EndedAttachment::Reason::kBroken, torn);
+  find_islands();
 }
 
 void SurfaceAttachments::end_links(EndedAttachment::Reason reason, const std::vector<bool>& which) {

@@ -19,10 +19,16 @@ class SurfaceBody final : public CoupledBody {
   /// @param number  of no other body of the world
   SurfaceBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
               const Eigen::Vector3f& position, const ContactModel& contact, std::uint32_t number)
-      : CoupledBody(world, std::move(model), position), contact_(contact), number_(number) {}
+      : CoupledBody(world, std::move(model), position), contact_(&contact), number_(number) {}
 
   std::uint32_t number() const { return number_; }
-  const ContactModel& contact() const { return contact_; }
+  const ContactModel& contact() const { return *contact_; }
+  /// The body has another model than before. @param contact  of that; outlives this
+  void set_contact(const ContactModel& contact) {
+    SC_ASSERT(contact.model == soft_.shared_model(), "a body of {} particles touches as one of {}",
+              soft_.model().particles(), contact.model->particles());
+    contact_ = &contact;
+  }
 
   void begin_substep() override {
     if (!was_changed()) return;
@@ -63,13 +69,14 @@ class SurfaceBody final : public CoupledBody {
   void set_holds_a_moving_body(bool holds) { holds_a_moving_body_ = holds; }
 
   bool can_be_touched() const override { return true; }
+  bool can_break() const override { return true; }
   Bounds<3> box() const override { return soft_.bounds(); }
   float reach() const override { return 0.1f * soft_.model().lattice().spacing; }
 
  private:
   void fall_asleep() override {}
 
-  const ContactModel& contact_;
+  const ContactModel* contact_;
   std::uint32_t number_;
   bool holds_a_moving_body_ = false;
   bool is_attached_ = false;

@@ -31,6 +31,18 @@ const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const S
   return *known;
 }
 
+void SurfaceContacts::forget_pieces(std::span<SurfaceBody* const> bodies) {
+  std::erase_if(models_, [&](const auto& known) {
+    const auto& [model, contact] = known;
+    if (!model->is_piece() || std::any_of(bodies.begin(), bodies.end(), [&](const SurfaceBody* body) {
+          return &body->contact() == contact.get();
+        }))
+      return false;
+    if (worker_) worker_->forget(*contact);
+    return true;
+  });
+}
+
 template <typename Is>
 bool SurfaceContacts::any_near(const BodyInStage& body, const Is& is) const {
   return std::any_of(body.obstacles.begin(), body.obstacles.end(), [&](std::uint32_t obstacle) {

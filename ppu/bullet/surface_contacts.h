@@ -28,8 +28,10 @@ class SurfaceContacts {
     stage_.attachments = &in_step_;
   }
 
-  /// What bodies of one model share, made at the first call. Good as long as this.
+  /// What bodies of one model share, made at the first call. Good as long as this; of a piece of a broken body until forget_pieces().
   const ContactModel& contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model);
+  /// Frees what is kept of pieces that none of these bodies is any longer. @pre between substeps
+  void forget_pieces(std::span<SurfaceBody* const> bodies);
 
   /// Finds and solves the contacts of the substep that begins, moves all particles of bodies that are awake,
   /// and gives rigid bodies their impulses. Bodies that are touched wake.

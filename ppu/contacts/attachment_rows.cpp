@@ -392,6 +392,14 @@ void AttachmentRows<kDimension>::begin_rope(Row& row, const Vector& apart) {
 }
 
 template <int kDimension>
+void AttachmentRows<kDimension>::renumber(bool of_b, std::vector<std::uint32_t> numbers) {
+  Side& side = of_b ? b_ : a_;
+  SC_ASSERT(numbers.size() == side.particle.size(), "{} new numbers of {} particles", numbers.size(),
+            side.particle.size());
+  side.particle = std::move(numbers);
+}
+
+template <int kDimension>
 void AttachmentRows<kDimension>::begin(const Sides& sides, float step) {
   SC_ASSERT(step > 0 && (sides.b != nullptr || sides.frame != nullptr), "a substep of {} s, of {} rows", step,
             rows_.size());

@@ -82,6 +82,12 @@ class AttachmentRows {
   AttachmentRows(const AttachmentSettings<kDimension>& settings, const PatchParticles<kDimension>& a,
                  const AttachmentFrame<kDimension>& frame);
 
+  /// The particles of a patch. @param of_b  of the second body's
+  std::span<const std::uint32_t> particles(bool of_b) const { return of_b ? b_.particle : a_.particle; }
+  /// A body has become another one in which the particles of its patch have other numbers. Nothing else of the attachment changes.
+  /// @param numbers  one for each of particles()
+  void renumber(bool of_b, std::vector<std::uint32_t> numbers);
+
   /// The two sides in a substep; b is null where rows are of a frame, rigid where nothing moves it but the program.
   struct Sides {
     AttachedBody<kDimension> a;

@@ -50,6 +50,9 @@ class ContactWorker {
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   virtual ~ContactWorker() = default;
 
+  /// Forgets a model that is about to be destroyed. @pre no find() or solve() is under way
+  virtual void forget(const ContactModel& model) = 0;
+
   /// @param bodies  stay as they are, but for velocities and pushes, until the last call of this substep
   /// @throws std::runtime_error  the worker's memory is full.
   virtual void begin(std::span<const ContactBody> bodies, float step) = 0;

@@ -143,9 +143,13 @@ void set_lane(spu::SkinGroup& group, std::size_t lane, const Vector3d& xi, const
 }  // namespace
 
 Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice) {
-  SC_ASSERT(mesh.normals.size() == mesh.positions.size(), "{} positions with {} normals",
-            mesh.positions.size(), mesh.normals.size());
-  const std::vector<PlaceInCell> places = locate_all(mesh, lattice);
+  return embed(mesh, locate_all(mesh, lattice), lattice);
+}
+
+Embedding embed(const TriangleMesh& mesh, std::span<const PlaceInCell> places, const Lattice<3>& lattice) {
+  SC_ASSERT(mesh.normals.size() == mesh.positions.size() && places.size() == mesh.positions.size(),
+            "{} positions with {} normals and {} places", mesh.positions.size(), mesh.normals.size(),
+            places.size());
   std::vector<std::uint32_t> order(places.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),

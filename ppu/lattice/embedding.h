@@ -1,8 +1,10 @@
 #pragma once
 // Embeds a mesh in a lattice: finds the cell of each vertex and the vertex's place in it, packed for the kernel skin.
 
+#include <span>
 #include <vector>
 
+#include "ppu/lattice/locate.h"
 #include "skin_job.h"
 #include "softcell/soft_bodies/lattice.h"
 
@@ -46,5 +48,7 @@ struct Embedding {
 /// @throws std::runtime_error  when a vertex lies in no cell, or one layer of the lattice cannot be cut into
 /// jobs.
 Embedding embed(const TriangleMesh& mesh, const Lattice<3>& lattice);
+/// The same with a place for each vertex: in a lattice with cracks, the place in space does not say the cell.
+Embedding embed(const TriangleMesh& mesh, std::span<const PlaceInCell> places, const Lattice<3>& lattice);
 
 }  // namespace softcell::ppu

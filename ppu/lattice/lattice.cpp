@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "ppu/lattice/links.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -81,23 +82,6 @@ Csr cells_of_particles(const Lattice<kDimension>& lattice) {
 }
 
 template <int kDimension>
-Csr find_neighbours(const Lattice<kDimension>& lattice) {
-  const Csr around = cells_of_particles(lattice);
-  Csr neighbours;
-  std::vector<std::uint32_t> list;
-  for (std::uint32_t particle = 0; particle < lattice.particles.size(); ++particle) {
-    list.clear();
-    for (const std::uint32_t cell : around[particle])
-      for (const std::uint32_t other : lattice.corners[cell])
-        if (other != particle) list.push_back(other);
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    neighbours.push(list);
-  }
-  return neighbours;
-}
-
-template <int kDimension>
 Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, float spacing,
                                  const typename Lattice<kDimension>::Position& origin) {
   if (!(spacing > 0) || !std::isfinite(spacing))
@@ -132,6 +116,23 @@ Lattice<kDimension> make_lattice(std::span<const GridIndex<kDimension>> cells, f
 }
 
 }  // namespace
+
+template <int kDimension>
+Csr find_neighbours(const Lattice<kDimension>& lattice) {
+  const Csr around = cells_of_particles(lattice);
+  Csr neighbours;
+  std::vector<std::uint32_t> list;
+  for (std::uint32_t particle = 0; particle < lattice.particles.size(); ++particle) {
+    list.clear();
+    for (const std::uint32_t cell : around[particle])
+      for (const std::uint32_t other : lattice.corners[cell])
+        if (other != particle) list.push_back(other);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    neighbours.push(list);
+  }
+  return neighbours;
+}
 
 Lattice<3> lattice_from_cells(std::span<const Eigen::Vector3i> cells, float spacing,
                               const Eigen::Vector3f& origin) {
@@ -186,6 +187,8 @@ std::vector<bool> outer_particles(const Lattice<kDimension>& lattice) {
   return outer;
 }
 
+template Csr find_neighbours(const Lattice<2>&);
+template Csr find_neighbours(const Lattice<3>&);
 template std::vector<float> particle_masses(const Lattice<2>&, float);
 template std::vector<float> particle_masses(const Lattice<3>&, float);
 template std::vector<bool> outer_particles(const Lattice<2>&);

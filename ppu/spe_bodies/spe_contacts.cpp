@@ -77,6 +77,11 @@ const SpeContacts::Model* SpeContacts::model_of(const ContactModel& contact) {
   return model.get();
 }
 
+/// Another model may get the same address: nothing that is known of places goes on.
+void SpeContacts::forget(const ContactModel& model) {
+  if (models_.erase(&model) > 0) places_.clear();
+}
+
 /// Of all bodies. @return  whether they are the same bodies as before, as far as memory is concerned
 bool SpeContacts::find_places(std::size_t& state, std::size_t& velocities) {
   bool same = places_.size() == bodies_.size();

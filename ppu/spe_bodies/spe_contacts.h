@@ -30,6 +30,7 @@ class SpeContacts final : public ContactWorker {
               const ls_sim::KernelImage& contact_solve);
   ~SpeContacts() override;
 
+  void forget(const ContactModel& model) override;
   void begin(std::span<const ContactBody> bodies, float step) override;
   bool holds(std::uint32_t body) const override { return places_[body].model != nullptr; }
   void find(std::span<const Pair> pairs) override;

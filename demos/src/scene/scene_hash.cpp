@@ -63,11 +63,12 @@ class Hash {
   }
   void add(const ppu::SoftBodySettings& settings) {
     const auto& [cell_size, half_width, density, alpha, damping, friction, restitution, contacts, frequency,
-                 damping_time, plasticity] = settings;
+                 damping_time, plasticity, fracture] = settings;
     add(cell_size, half_width, density, alpha, damping, friction, frequency, damping_time);
     add_unless(restitution, 0.0f);
     add_unless(contacts, true);
     if (plasticity) add('p', plasticity->yield, plasticity->creep, plasticity->limit);
+    if (fracture) add('b', fracture->stretch, fracture->turn);
   }
   void add(const SoftBodyPlacement& body) {
     const auto& [name, mesh, settings, position, twist, colour, own_materials] = body;

@@ -37,6 +37,7 @@
 
 #include "softcell/soft_bodies/attachment.h"
 #include "softcell/soft_bodies/contact.h"
+#include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
 #include "softcell/soft_bodies/surface_query.h"
@@ -92,7 +93,7 @@ struct SoftRayHit {
 /// out before the last of these goes: what it calls is no more then.
 ///
 /// Used by the thread that steps the world. In stepSimulation() it allocates nothing but
-/// room for more contacts or obstacles than ever before; Bullet may.
+/// room for more contacts or obstacles than ever before, and what bodies that break need; Bullet may.
 /// A NaN in a particle, whoever put it there, throws std::runtime_error out of stepSimulation().
 class BulletSoftBodies {
  public:
@@ -120,6 +121,7 @@ class BulletSoftBodies {
   BulletSoftBodies& operator=(const BulletSoftBodies&) = delete;
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
+  /// @throws std::invalid_argument  the model's bodies break (SoftBodySettings::fracture), and these touch with spheres.
   /// @pre the model is not null; the position is finite
   /// Between steps the body may be changed through its own functions; Bullet is told at the next substep.
   SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position);
@@ -156,6 +158,17 @@ class BulletSoftBodies {
   std::optional<AttachmentEnds<3>> attachment_ends(AttachmentId id) const;
   /// Those that have broken, or lost a body, since the last call. Those that were detached are none of them.
   std::vector<EndedAttachment> take_ended_attachments();
+
+  /// Cuts a body as it is now, whatever its settings (soft_bodies/fracture.h). It becomes its largest piece and wakes.
+  ///
+  /// What is attached to it goes on with the piece that has all particles of the patch, each of them once; where none has, the attachment
+  /// breaks. New bodies have the filter of the body, and come behind all others in operator[].
+  /// @return the other pieces; good until remove()
+  /// @throws std::invalid_argument  the body is not one of these, or touches with spheres; the cut is not finite or has no area.
+  std::vector<SoftBody<3>*> cut(const SoftBody<3>& body, const Cut& where);
+  /// What has broken or was cut since the last call, in this order. A body with a SoftBodySettings::fracture is tested at the end of each
+  /// substep in which it is awake, and breaks there as by cut(). Bodies that were removed since then are not named.
+  std::vector<BrokenSoftBody> take_broken();
 
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
   /// else. When bodies are changed after all, or the substep has another length, that work is dropped and

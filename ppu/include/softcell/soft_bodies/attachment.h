@@ -86,7 +86,7 @@ struct AttachmentEnds {
 struct EndedAttachment {
   /// Why it ended.
   enum class Reason : std::uint8_t {
-    kBroken,  ///< it would have had to carry more than its break force
+    kBroken,  ///< it would have had to carry more than its break force, or its patch was torn
     kGone     ///< one of its bodies was removed
   };
   AttachmentId id{};

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -14,6 +15,7 @@
 
 namespace softcell::ppu {
 
+struct Cracks;
 struct Embedding;
 template <typename Real, int kDimension>
 class MatchingPlan;
@@ -76,11 +78,17 @@ class SoftBodyModel {
   /// settings have a plasticity at once.
   /// @throws std::runtime_error  it has too many particles for plastic bodies; the sentence says how many may be.
   const std::shared_ptr<const RestLattice<kDimension>>& rest_lattice() const;
+  /// Where its bodies can break, and where they are broken. Made when it is asked for the first time, which takes some milliseconds; of a
+  /// model whose settings have a fracture at once.
+  const Cracks& cracks() const requires(kDimension == 3);
+  /// Whether it is of a body that was broken (fracture.h).
+  bool is_piece() const { return is_piece_; }
 
  private:
   friend struct SoftBodyModelMaker;
   SoftBodyModel(Lattice<kDimension> lattice, std::shared_ptr<const Embedding> embedding,
-                const SoftBodySettings& settings, float contact_radius_in_cells);
+                const SoftBodySettings& settings, float contact_radius_in_cells,
+                std::shared_ptr<const MatchingPlan<float, kDimension>> plan = nullptr);
 
   SoftBodySettings settings_;
   Lattice<kDimension> lattice_;
@@ -92,6 +100,10 @@ class SoftBodyModel {
   std::shared_ptr<const MatchingPlan<float, kDimension>> plan_;
   mutable std::once_flag rest_lattice_made_;
   mutable std::shared_ptr<const RestLattice<kDimension>> rest_lattice_;
+  std::vector<float> strengths_;  // of each cell; empty: 1
+  bool is_piece_ = false;
+  mutable std::once_flag cracks_made_;
+  mutable std::shared_ptr<const Cracks> cracks_;
 };
 
 extern template class SoftBodyModel<2>;
@@ -103,6 +115,16 @@ extern template class SoftBodyModel<3>;
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
                                                              const SoftBodySettings& settings);
 
+/// How strong the material is at a place of the mesh at rest (metres): the limits of SoftBodySettings::fracture times this. 0 or above, and
+/// finite.
+using StrengthField = std::function<float(const Eigen::Vector3f&)>;
+
+/// The same for a body that breaks more easily in some places: the strength of a cell is that of its middle.
+/// @throws std::runtime_error  as above; a strength out of range.
+std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,
+                                                             const SoftBodySettings& settings,
+                                                             const StrengthField& strength);
+
 /// A model without a mesh.
 /// @throws std::runtime_error  as validate() and find_regions(); a cell size that is not the lattice's
 ///         spacing.
@@ -110,7 +132,7 @@ std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
                                                              const SoftBodySettings& settings);
 
 /// @param contact_radius_in_cells  above 0 and at most 1.
-/// @throws std::runtime_error  as above; a contact radius out of range.
+/// @throws std::runtime_error  as above; a contact radius out of range; settings with a fracture: bodies break in three dimensions.
 std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(
     Lattice<2> lattice, const SoftBodySettings& settings,
     float contact_radius_in_cells = SoftBodyModel<2>::kContactRadiusInCells);

@@ -17,6 +17,17 @@ struct Plasticity {
   bool operator==(const Plasticity&) const = default;
 };
 
+/// When a body breaks, along the faces between its cells (fracture.h). A face breaks by whichever measure passes its limit first; one
+/// without a value never does. A model may be weaker or stronger in some of its cells: the limits are for a strength of 1.
+struct Fracture {
+  std::optional<float> stretch =
+      {};  ///< above 0: by what share of a cell the middles of two cells move apart
+  std::optional<float> turn =
+      {};  ///< radians, above 0, up to pi: by how much neighbouring cells turn against each other
+
+  bool operator==(const Fracture&) const = default;
+};
+
 /// Detail, material and contacts of a soft body. Only `cell_size` has no default.
 ///
 /// `alpha` and `damping` act per time step, so the same numbers make a stiffer and calmer body with shorter
@@ -35,6 +46,8 @@ struct SoftBodySettings {
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
   std::optional<float> damping_time = {};     ///< s, in place of damping: deviations fall to 1/e in this time
   std::optional<Plasticity> plasticity = {};  ///< none: the body is elastic. Up to 4,096 particles
+  std::optional<Fracture> fracture =
+      {};  ///< none: it breaks only where a program cuts it. In three dimensions
 
   /// alpha of a time step of `step` seconds, above 0: `alpha`, or computed from `frequency`.
   float alpha_of_step(float step) const;

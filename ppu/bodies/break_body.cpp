@@ -1,0 +1,78 @@
+#include "ppu/bodies/break_body.h"
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+#include <utility>
+
+#include "ppu/bodies/piece_model.h"
+#include "ppu/matching/matching_plan.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+
+std::span<const std::uint32_t> strained_faces(const SoftBody<3>& body, BreakTest& test) {
+  SC_ASSERT(body.settings().fracture.has_value(), "a body of {} particles that does not break is tested",
+            body.positions().size());
+  const std::vector<Eigen::Vector3f> rest =
+      body.has_own_rest() ? body.rest_positions() : std::vector<Eigen::Vector3f>();
+  return test.find(body.model().lattice(), body.model().cracks(), body.positions(), rest,
+                   *body.settings().fracture);
+}
+
+std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut) {
+  if (!cut.corner.allFinite() || !cut.along.allFinite() || !cut.across.allFinite() ||
+      !(cut.along.cast<double>().cross(cut.across.cast<double>()).norm() > 0))
+    throw std::invalid_argument("a soft body is cut along a parallelogram that is not finite or has no area");
+  return faces_across(body.model().lattice(), body.model().cracks(), body.positions(), cut.corner, cut.along,
+                      cut.across, !cut.has_end);
+}
+
+std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces) {
+  const std::vector<Eigen::Vector3f> rest =
+      body.has_own_rest() ? body.rest_positions() : std::vector<Eigen::Vector3f>();
+  std::vector<BodyPiece> pieces;
+  for (CrackedPiece& piece : break_faces(body.model().lattice(), body.model().cracks(), faces)) {
+    std::vector<std::uint32_t> particle_of = std::move(piece.part.particle_of);
+    SoftBody<3> own(make_piece_model(body.model(), std::move(piece)));
+    own.set_material(body.settings());
+    for (std::size_t i = 0; i < particle_of.size(); ++i)
+      own.set_particle(i, body.position(particle_of[i]), body.velocities()[particle_of[i]]);
+    if (!rest.empty()) {
+      std::vector<Eigen::Vector3f> own_rest;
+      for (const std::uint32_t particle : particle_of) own_rest.push_back(rest[particle]);
+      own.set_rest_positions(own_rest);
+    }
+    pieces.push_back({std::move(own), std::move(particle_of)});
+  }
+  return pieces;
+}
+
+namespace {
+
+std::vector<SoftBody<3>> break_into_pieces(SoftBody<3>& body, std::span<const std::uint32_t> faces) {
+  std::vector<SoftBody<3>> others;
+  if (faces.empty()) return others;
+  std::vector<BodyPiece> pieces = pieces_of(body, faces);
+  for (std::size_t i = 1; i < pieces.size(); ++i) others.push_back(std::move(pieces[i].body));
+  body = pieces.front().body;
+  return others;
+}
+
+}  // namespace
+
+Cut Cut::plane(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
+  const Eigen::Vector3f along = normal.unitOrthogonal();
+  return {.corner = point, .along = along, .across = normal.cross(along), .has_end = false};
+}
+
+std::vector<SoftBody<3>> break_where_strained(SoftBody<3>& body) {
+  if (!body.settings().fracture) return {};
+  BreakTest test;
+  return break_into_pieces(body, strained_faces(body, test));
+}
+
+std::vector<SoftBody<3>> cut(SoftBody<3>& body, const Cut& where) {
+  return break_into_pieces(body, faces_across(body, where));
+}
+
+}  // namespace softcell::ppu

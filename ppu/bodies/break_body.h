@@ -1,0 +1,27 @@
+#pragma once
+// A body and its pieces.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ppu/fracture/break_test.h"
+#include "softcell/soft_bodies/fracture.h"
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::ppu {
+
+struct BodyPiece {
+  SoftBody<3> body;
+  std::vector<std::uint32_t> particle_of;  ///< of each particle: which one of the whole it was
+};
+
+/// The numbers of faces that are strained beyond the limits of the body's settings. Good until the next call.
+std::span<const std::uint32_t> strained_faces(const SoftBody<3>& body, BreakTest& test);
+/// @throws std::invalid_argument  the cut is not finite, or has no area
+std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut);
+
+/// What is left of a body when faces break; the largest piece first. The body stays as it is.
+std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces);
+
+}  // namespace softcell::ppu

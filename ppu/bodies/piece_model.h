@@ -1,0 +1,14 @@
+#pragma once
+// The model of a piece of a broken body.
+
+#include <memory>
+
+#include "ppu/fracture/cracks.h"
+#include "softcell/soft_bodies/soft_body_model.h"
+
+namespace softcell::ppu {
+
+/// With the settings of the whole. What has not changed, because no crack has opened, is shared with it.
+std::shared_ptr<const SoftBodyModel<3>> make_piece_model(const SoftBodyModel<3>& whole, CrackedPiece piece);
+
+}  // namespace softcell::ppu

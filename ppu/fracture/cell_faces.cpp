@@ -1,0 +1,144 @@
+#include "ppu/fracture/cell_faces.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "ppu/lattice/links.h"
+#include "ppu/lattice/locate.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+constexpr std::uint32_t kNone = ~0u;
+
+/// Sets of numbers. The first number of a set stands for it.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) {
+    a = find(a), b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// The corners of a face in the low cell; in the high one they are without the bit of the axis.
+template <class Work>
+void for_each_corner(const CellFace& face, const Work& work) {
+  const unsigned bit = 1u << face.axis;
+  for (unsigned k = 0; k < 8; ++k)
+    if ((k & bit) != 0) work(k, k & ~bit);
+}
+
+/// Of each corner of each cell, 8 cell + corner: the set of those that are one particle.
+Sets corners_that_hold(const Lattice<3>& lattice, std::span<const CellFace> faces,
+                       const std::vector<bool>& broken) {
+  Sets corners(8 * lattice.cells.size());
+  std::vector<bool> is_touched(lattice.particles.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!broken[f]) continue;
+    for_each_corner(faces[f], [&](unsigned low, unsigned high) {
+      is_touched[lattice.corners[faces[f].low][low]] = is_touched[lattice.corners[faces[f].high][high]] =
+          true;
+    });
+  }
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (broken[f]) continue;
+    for_each_corner(faces[f], [&](unsigned low, unsigned high) {
+      corners.unite(8 * faces[f].low + low, 8 * faces[f].high + high);
+    });
+  }
+  std::vector<std::uint32_t> first(lattice.particles.size(), kNone);
+  for (std::uint32_t c = 0; c < lattice.cells.size(); ++c)
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      const std::uint32_t particle = lattice.corners[c][k];
+      if (is_touched[particle]) continue;
+      if (first[particle] == kNone) first[particle] = 8 * c + k;
+      corners.unite(first[particle], 8 * c + k);
+    }
+  return corners;
+}
+
+/// The cells of each piece, ascending.
+std::vector<std::vector<std::uint32_t>> cells_of_pieces(const Lattice<3>& lattice, Sets& corners) {
+  const auto count = static_cast<std::uint32_t>(lattice.cells.size());
+  Sets cells(count);
+  for (std::uint32_t i = 0; i < 8 * count; ++i) cells.unite(i / 8, corners.find(i) / 8);
+  std::vector<std::vector<std::uint32_t>> pieces;
+  std::vector<std::uint32_t> piece_of(count, kNone);
+  for (std::uint32_t c = 0; c < count; ++c) {
+    std::uint32_t& piece = piece_of[cells.find(c)];
+    if (piece == kNone) {
+      piece = static_cast<std::uint32_t>(pieces.size());
+      pieces.emplace_back();
+    }
+    pieces[piece].push_back(c);
+  }
+  const auto largest = std::max_element(pieces.begin(), pieces.end(),
+                                        [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  std::rotate(pieces.begin(), largest, largest + 1);
+  return pieces;
+}
+
+}  // namespace
+
+std::vector<CellFace> faces_of(const Lattice<3>& lattice) {
+  std::vector<CellFace> faces;
+  for (std::uint32_t c = 0; c < lattice.cells.size(); ++c)
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+      if (const auto next =
+              find_cell(lattice, lattice.cells[c] + Eigen::Vector3i(Eigen::Vector3i::Unit(axis))))
+        faces.push_back({c, *next, axis});
+  return faces;
+}
+
+std::vector<LatticePiece> split(const Lattice<3>& lattice, std::span<const CellFace> faces,
+                                const std::vector<bool>& broken) {
+  SC_ASSERT(broken.size() == faces.size(), "{} of {} faces are broken or not", broken.size(), faces.size());
+  Sets corners = corners_that_hold(lattice, faces, broken);
+  std::vector<LatticePiece> pieces;
+  for (std::vector<std::uint32_t>& cells : cells_of_pieces(lattice, corners)) {
+    LatticePiece& piece = pieces.emplace_back();
+    piece.lattice.spacing = lattice.spacing;
+    piece.lattice.origin = lattice.origin;
+    // Particles in the order of the whole's, copies in that of the cells that have them.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>>
+        particles;  // of the whole; the corner that stands for it
+    for (const std::uint32_t c : cells)
+      for (std::uint32_t k = 0; k < 8; ++k)
+        if (const std::uint32_t corner = 8 * c + k; corners.find(corner) == corner)
+          particles.emplace_back(lattice.corners[c][k], corner);
+    std::sort(particles.begin(), particles.end());
+    std::vector<std::uint32_t> corner_of;
+    for (const auto& [particle, corner] : particles) {
+      piece.lattice.particles.push_back(lattice.particles[particle]);
+      piece.particle_of.push_back(particle);
+    }
+    const auto number_of = [&](std::uint32_t c, std::uint32_t k) {
+      const std::pair<std::uint32_t, std::uint32_t> wanted(lattice.corners[c][k], corners.find(8 * c + k));
+      const auto found = std::lower_bound(particles.begin(), particles.end(), wanted);
+      SC_ASSERT(found != particles.end() && *found == wanted, "corner {} of cell {} is no particle", k, c);
+      return static_cast<std::uint32_t>(found - particles.begin());
+    };
+    for (const std::uint32_t c : cells) {
+      piece.lattice.cells.push_back(lattice.cells[c]);
+      piece.lattice.fill.push_back(lattice.fill[c]);
+      auto& own = piece.lattice.corners.emplace_back();
+      for (std::uint32_t k = 0; k < 8; ++k) own[k] = number_of(c, k);
+    }
+    piece.lattice.neighbours = find_neighbours(piece.lattice);
+    piece.cell_of = std::move(cells);
+  }
+  return pieces;
+}
+
+}  // namespace softcell::ppu

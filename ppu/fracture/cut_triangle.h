@@ -1,0 +1,49 @@
+#pragma once
+// Cuts a triangle at all planes of a lattice, exactly.
+//
+// Coordinates are integers, kUnitsPerCell to a cell. Corners have odd ones and planes lie at even ones, so no corner is on a plane; and
+// planes are moved by e_x, e_y and e_z, which are smaller than anything, each much smaller than the one before it, so no line of the
+// lattice meets an edge of a triangle. So there are no special cases, and what neighbouring triangles and cells find always fits together,
+// although what a corner or a crossing is rounded to does not matter here.
+// @source  [EM90] for the tiny displacements that decide ties.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace softcell::ppu {
+
+inline constexpr std::int64_t kUnitsPerCell = std::int64_t{1} << 17;
+inline constexpr std::int64_t kMaxUnits = kUnitsPerCell * 256;
+
+using UnitPoint = std::array<std::int64_t, 3>;  ///< odd, 0..kMaxUnits
+
+/// A corner of what is left of a triangle in a cell: a corner of the triangle (on no plane), where a side of the triangle meets a plane
+/// (on one), or where a line of the lattice meets the triangle (on two).
+struct CutVertex {
+  std::uint8_t planes = 0;  ///< how many it is on
+  std::uint8_t of =
+      0;  ///< on none: number of the corner; on one: of the side, from corner `of` to the next one
+  std::array<std::uint8_t, 2> axis{};  ///< of the planes, ascending
+  std::array<int, 2> plane{};          ///< multiples of kUnitsPerCell
+
+  bool operator==(const CutVertex&) const = default;
+};
+
+/// What of a triangle lies in one cell.
+struct CutPolygon {
+  static constexpr std::uint8_t kOnPlane = 3;  ///< and the axis
+  std::array<int, 3> cell{};                   ///< grid index
+  std::vector<CutVertex> vertices;             ///< in the triangle's own direction
+  /// Of the side from each vertex to the next one: the triangle's side on which it lies, or kOnPlane + the axis of its plane.
+  std::vector<std::uint8_t> sides;
+  std::vector<int> planes;  ///< of the sides that lie on one
+};
+
+/// @return convex polygons, in ascending order of x, then y, then z of their cells
+std::vector<CutPolygon> cut_triangle(const std::array<UnitPoint, 3>& corners);
+
+/// The normal of a triangle, not of unit length.
+UnitPoint normal_of(const std::array<UnitPoint, 3>& corners);
+
+}  // namespace softcell::ppu

@@ -1,0 +1,30 @@
+#pragma once
+// The mesh of a piece: what of the whole's mesh lies in its cells, closed where the piece ends or is open.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ppu/fracture/cell_faces.h"
+#include "ppu/fracture/cell_mesh.h"
+#include "ppu/lattice/locate.h"
+
+namespace softcell::ppu {
+
+/// The name of the mesh material with which cuts are drawn. A mesh may have one of this name; else its pieces get one without looks.
+inline constexpr const char* kCutMaterial = "cut";
+
+struct PieceMesh {
+  TriangleMesh mesh;
+  std::vector<PlaceInCell> places;  ///< of each vertex, in the piece's lattice: which side of a cut it is on
+};
+
+/// A face is open where one of its corners is no longer the same particle in both cells. Faces that are broken and not open yet are not
+/// drawn.
+/// @param piece          cells as in the whole, particles of its own
+/// @param cell_of_whole  of each cell of the piece
+/// @param faces          of the piece
+PieceMesh mesh_of_piece(const CellMesh& whole, const Lattice<3>& piece,
+                        std::span<const std::uint32_t> cell_of_whole, std::span<const CellFace> faces);
+
+}  // namespace softcell::ppu

@@ -1,0 +1,324 @@
+// Bodies that break in a Bullet world.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "../contacts/contact_world.h"
+#include "fracture_checks.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_runtime.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kStep = 1.0f / 120;
+
+void run(ContactWorld& world, int substeps) {
+  for (int i = 0; i < substeps; ++i) world.world.stepSimulation(kStep, 0);
+}
+
+SoftBodySettings brittle(float cell_size, float stretch) {
+  SoftBodySettings settings{.cell_size = cell_size, .half_width = 2, .alpha = 0.5f, .damping = 0.1f};
+  settings.fracture = Fracture{.stretch = stretch};
+  return settings;
+}
+
+std::shared_ptr<const SoftBodyModel<3>> brittle_ball(float stretch, std::optional<float> turn = {}) {
+  SoftBodySettings settings = brittle(0.125f, stretch);
+  settings.fracture->turn = turn;
+  return make_soft_body_model(make_sphere(0.5f, 3), settings);
+}
+
+std::uint64_t hash_of(const BulletSoftBodies& bodies) {
+  std::uint64_t hash = bodies.size();
+  for (std::size_t b = 0; b < bodies.size(); ++b) hash = state_hash(bodies[b], hash);
+  return hash;
+}
+
+Momenta momenta_of(const BulletSoftBodies& bodies) {
+  Momenta sum;
+  for (std::size_t b = 0; b < bodies.size(); ++b) sum.add(bodies[b]);
+  return sum;
+}
+
+/// A bar of 12 cells along x, from its weak middle on, that a weld at each end pulls apart.
+TEST(BulletFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
+  constexpr float kStretch = 0.1f, kWeak = 0.5f, kCell = 0.1f;
+  ContactWorld world({0, 0, 0});
+  SoftBodySettings settings = brittle(kCell, kStretch);
+  settings.half_width = 1;
+  const auto model = make_soft_body_model(
+      make_box({1.2f, 0.2f, 0.2f}, 0.1f), settings,
+      [](const Vector3f& at) { return std::abs(at.x() - 0.15f) < 0.06f ? kWeak : 1.0f; });
+  SoftBody<3>& bar = world.bodies.add(model, {0, 0, 0});
+  const auto& lattice = model->lattice();
+  std::vector<std::uint32_t> left, right;
+  for (std::uint32_t i = 0; i < lattice.particles.size(); ++i) {
+    if (lattice.particles[i].x() <= 1) left.push_back(i);
+    if (lattice.particles[i].x() >= 11) right.push_back(i);
+  }
+  const AttachmentId wall = world.bodies.attach(bar, Patch<3>::of_particles(left));
+  const AttachmentId hand = world.bodies.attach(bar, Patch<3>::of_particles(right));
+  const Vector3f from(0.55f, 0, 0);
+  world.bodies.move_attachment(hand, from + Vector3f(0.3f, 0, 0), Eigen::Quaternionf::Identity(), 15);
+  /// The mean of the links between the cells whose low corners are at x and x + 1.
+  const auto elongation = [&](int x) {
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < bar.model().lattice().particles.size(); ++i) {
+      const int at = bar.model().lattice().particles[i].x();
+      const double share = at == x ? -0.5 : at == x + 2 ? 0.5 : 0;
+      sum += share * double{bar.position(i).x()};
+      count += at == x ? 1 : 0;
+    }
+    return sum / count / double{kCell} - 1;
+  };
+  double before = 0;
+  for (int i = 0; i < 15 * 120 && world.bodies.size() == 1; ++i) {
+    before = elongation(7);
+    run(world, 1);
+  }
+  ASSERT_EQ(world.bodies.size(), 2u);
+  // Weak are the cells that begin at x = 7 (from 0.1 to 0.2 m): the faces on either side of them break, one of them first.
+  EXPECT_NEAR(before, double{kStretch * kWeak}, 0.05 * double{kStretch * kWeak});
+  const auto cells = [&](std::size_t b) { return world.bodies[b].model().lattice().cells.size() / 4; };
+  EXPECT_TRUE((cells(0) == 7 && cells(1) == 5) || (cells(0) == 8 && cells(1) == 4))
+      << cells(0) << " and " << cells(1);
+  // Both ends still hold.
+  EXPECT_TRUE(world.bodies.attachment(wall) && world.bodies.attachment(hand));
+  EXPECT_TRUE(world.bodies.take_ended_attachments().empty());
+  const auto broken = world.bodies.take_broken();
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0].body, &world.bodies[0]);
+  ASSERT_EQ(broken[0].pieces.size(), 1u);
+  EXPECT_EQ(broken[0].pieces[0], &world.bodies[1]);
+  EXPECT_GE(broken[0].faces, 4u);
+  EXPECT_TRUE(world.bodies.take_broken().empty());
+  // The piece that is pulled follows the hand, the other one stays with the wall.
+  run(world, 600);
+  EXPECT_EQ(world.bodies.size(), 2u);
+  float gap = 0;
+  for (std::size_t b = 0; b < 2; ++b)
+    gap = std::max(gap, world.bodies[b].bounds().low.x() - world.bodies[1 - b].bounds().high.x());
+  EXPECT_GT(gap, 0.02f);
+}
+
+TEST(BulletFracture, ABentBarBreaksByItsTurn) {
+  for (const float turn : {0.1f, 3.0f}) {
+    ContactWorld world({0, -9.81f, 0});
+    SoftBodySettings settings{.cell_size = 0.1f, .half_width = 1, .alpha = 0.2f, .damping = 0.2f};
+    settings.fracture = Fracture{.turn = turn};
+    const auto model = make_soft_body_model(make_box({1.6f, 0.1f, 0.1f}, 0.1f), settings);
+    SoftBody<3>& bar = world.bodies.add(model, {0, 2, 0});
+    world.bodies.attach(bar, Patch<3>::of_surface({-0.75f, 2, 0}, 0.1f));
+    run(world, 240);
+    if (turn < 1)
+      EXPECT_GT(world.bodies.size(), 1u);
+    else
+      EXPECT_EQ(world.bodies.size(), 1u);
+  }
+}
+
+TEST(BulletFracture, ABallThatFallsBreaksIntoValidPiecesAndKeepsItsMass) {
+  ContactWorld world;
+  world.add(std::make_unique<btBoxShape>(btVector3(10, 0.5f, 10)), 0, {0, -0.5f, 0});
+  const SoftBody<3>& ball = world.bodies.add(brittle_ball(0.05f), {0, 3, 0});
+  const double mass = double{ball.model().mass()};
+  run(world, 240);
+  EXPECT_GT(world.bodies.size(), 3u);
+  double sum = 0, drawn = 0;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const SoftBody<3>& piece = world.bodies[b];
+    sum += double{piece.model().mass()};
+    drawn += volume(piece.model().mesh());
+    EXPECT_EQ(unmet_sides(piece.model().mesh()), 0u);
+    for (const Vector3f& x : piece.positions()) EXPECT_TRUE(x.allFinite());
+    EXPECT_GT(ContactWorld::lowest_drawn(piece), -0.03f);
+  }
+  EXPECT_NEAR(sum, mass, 1e-5 * mass);
+  EXPECT_NEAR(drawn, volume(make_sphere(0.5f, 3)), 1e-4);
+}
+
+/// Two brittle balls meet in the air, without gravity.
+TEST(BulletFracture, KeepsBothMomentaForAThousandSteps) {
+  ContactWorld world({0, 0, 0});
+  const auto model = brittle_ball(0.04f, 0.2f);
+  world.bodies.add(model, {-0.8f, 0.1f, 0}).add_velocity({4, 0, 0});
+  world.bodies.add(model, {0.8f, -0.1f, 0.05f}).add_velocity({-4, 0, 0});
+  const Momenta before = momenta_of(world.bodies);
+  const double scale = before.mass * 4;
+  std::size_t most = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Momenta earlier = momenta_of(world.bodies);
+    const std::size_t pieces = world.bodies.size();
+    run(world, 1);
+    most = std::max(most, world.bodies.size());
+    if (world.bodies.size() == pieces) continue;
+    const Momenta now = momenta_of(world.bodies);
+    EXPECT_NEAR(now.mass, earlier.mass, 1e-6 * earlier.mass);
+  }
+  EXPECT_GT(most, 4u);
+  const Momenta after = momenta_of(world.bodies);
+  // To what contacts keep of them; pieces are up to 30 m away by then.
+  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-4 * scale);
+  EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 2e-4 * scale * 30);
+}
+
+/// Nothing but the breaking itself: two ends that fly apart.
+TEST(BulletFracture, ATornBodyKeepsBothMomentaForAThousandSteps) {
+  ContactWorld world({0, 0, 0});
+  SoftBody<3>& ball = world.bodies.add(brittle_ball(0.03f), {0, 0, 0});
+  std::mt19937 random(5);
+  for (std::size_t i = 0; i < ball.positions().size(); ++i) {
+    const Vector3f x = ball.position(i);
+    ball.add_particle_velocity(
+        i, (x.x() > 0.1f ? 3.0f : -1.0f) * Vector3f(1, 0.2f, 0) + Vector3f(0, 2, 1).cross(x));
+  }
+  const Momenta before = momenta_of(world.bodies);
+  run(world, 1000);
+  EXPECT_GT(world.bodies.size(), 1u);
+  const Momenta after = momenta_of(world.bodies);
+  EXPECT_NEAR(after.mass, before.mass, 1e-6 * before.mass);
+  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-5 * before.mass * 3);
+  // Pieces are up to 25 m from the origin by then, where a float is 2e-6 m.
+  EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 1e-5 * before.mass * 3 * 25);
+}
+
+TEST(BulletFracture, HasTheSameBitsForAnyNumberOfSpesAndSchedule) {
+  const auto fall = [](SolverFactory& spes) {
+    ContactWorld world({0, -9.81f, 0}, &spes);
+    world.add(std::make_unique<btBoxShape>(btVector3(10, 0.5f, 10)), 0, {0, -0.5f, 0});
+    const auto model = brittle_ball(0.06f, 0.5f);
+    world.bodies.add(model, {0, 2, 0});
+    world.bodies.add(model, {0.3f, 3.5f, 0.1f});
+    run(world, 100);
+    EXPECT_GT(world.bodies.size(), 3u);
+    return hash_of(world.bodies);
+  };
+  SpeRuntime one({.spes = 1}), four({.spes = 4}), lazy({.spes = 6, .schedule = dma::parse_schedule("lazy")});
+  const std::uint64_t expected = fall(one);
+  EXPECT_EQ(fall(four), expected);
+  EXPECT_EQ(fall(lazy), expected);
+  EXPECT_EQ(fall(one), expected);
+}
+
+TEST(BulletFracture, RandomCutsOfAWorldThatGoesOnLeaveItValid) {
+  SpeRuntime spes({.spes = 2});
+  ContactWorld world({0, -9.81f, 0}, &spes);
+  world.add(std::make_unique<btBoxShape>(btVector3(10, 0.5f, 10)), 0, {0, -0.5f, 0});
+  world.bodies.let_sleep(SleepSettings{});
+  SoftBodySettings jelly{.cell_size = 0.15f, .half_width = 1};
+  const auto model = make_soft_body_model(make_torus(0.5f, 0.25f, 24, 12), jelly);
+  world.bodies.add(model, {0, 0.6f, 0});
+  world.bodies.add(model, {0.2f, 1.4f, 0.1f});
+  const double mass = 2 * double{model->mass()};
+  std::mt19937 random(17);
+  std::uniform_real_distribution<float> number(-1, 1);
+  const auto vector = [&] { return Vector3f(number(random), number(random), number(random)); };
+  for (int i = 0; i < 60; ++i) {
+    run(world, 4);
+    const SoftBody<3>& body = world.bodies[random() % world.bodies.size()];
+    world.bodies.cut(body, Cut::plane(body.centre_of_mass() + 0.1f * vector(), vector()));
+    if (i % 7 == 3) world.bodies.begin_ahead(kStep);
+    if (i % 5 == 4) world.bodies.take_broken();
+  }
+  run(world, 60);
+  double sum = 0;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    sum += double{world.bodies[b].model().mass()};
+    for (const Vector3f& x : world.bodies[b].positions()) ASSERT_TRUE(x.allFinite());
+  }
+  EXPECT_NEAR(sum, mass, 1e-5 * mass);
+  EXPECT_GT(world.bodies.size(), 20u);
+}
+
+TEST(BulletFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
+  ContactWorld world({0, -9.81f, 0});
+  SoftBodySettings settings{.cell_size = 0.1f, .half_width = 1};
+  SoftBody<3>& bar =
+      world.bodies.add(make_soft_body_model(make_box({1, 0.1f, 0.1f}, 0.1f), settings), {0, 2, 0});
+  const AttachmentId left = world.bodies.attach(bar, Patch<3>::of_surface({-0.45f, 2, 0}, 0.08f));
+  const AttachmentId middle = world.bodies.attach(bar, Patch<3>::of_surface({0.1f, 2, 0}, 0.08f));
+  const AttachmentId right = world.bodies.attach(bar, Patch<3>::of_surface({0.45f, 2, 0}, 0.08f));
+  const auto pieces = world.bodies.cut(bar, Cut::plane({0.101f, 2, 0}, {1, 0, 0}));
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_TRUE(world.bodies.attachment(left));
+  EXPECT_FALSE(world.bodies.attachment(middle));
+  EXPECT_TRUE(world.bodies.attachment(right));
+  const auto ended = world.bodies.take_ended_attachments();
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_EQ(ended[0].id, middle);
+  EXPECT_EQ(ended[0].reason, EndedAttachment::Reason::kBroken);
+  run(world, 240);
+  // Both hang, and their ends are where they were.
+  EXPECT_NEAR(world.bodies.attachment_ends(right)->patch.y(), 2, 0.01f);
+  EXPECT_NEAR(world.bodies.attachment_ends(left)->patch.y(), 2, 0.01f);
+  world.bodies.remove(*pieces[0]);
+  EXPECT_FALSE(world.bodies.attachment(right));
+  run(world, 10);
+}
+
+TEST(BulletFracture, WhatIsRemovedIsNotNamed) {
+  ContactWorld world({0, 0, 0});
+  SoftBodySettings settings{.cell_size = 0.1f, .half_width = 1};
+  SoftBody<3>& bar =
+      world.bodies.add(make_soft_body_model(make_box({1, 0.1f, 0.1f}, 0.1f), settings), {0, 2, 0});
+  const auto first = world.bodies.cut(bar, Cut::plane({0.101f, 2, 0}, {1, 0, 0}));
+  const auto second = world.bodies.cut(*first[0], Cut::plane({0.301f, 2, 0}, {1, 0, 0}));
+  ASSERT_EQ(second.size(), 1u);
+  world.bodies.remove(*first[0]);
+  const auto broken = world.bodies.take_broken();
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0].body, &bar);
+  EXPECT_TRUE(broken[0].pieces.empty());
+  EXPECT_EQ(world.bodies.size(), 2u);
+  EXPECT_THROW(world.bodies.cut(*first[0], Cut::plane({0, 0, 0}, {1, 0, 0})), std::invalid_argument);
+}
+
+TEST(BulletFracture, ACopyBringsAWholeBodyBack) {
+  ContactWorld world({0, -9.81f, 0});
+  world.add(std::make_unique<btBoxShape>(btVector3(10, 0.5f, 10)), 0, {0, -0.5f, 0});
+  SoftBody<3>& ball = world.bodies.add(brittle_ball(0.05f), {0, 2, 0});
+  const SoftBody<3> saved = ball;
+  run(world, 120);
+  ASSERT_GT(world.bodies.size(), 1u);
+  const std::size_t pieces = world.bodies.size();
+  while (world.bodies.size() > 1) world.bodies.remove(world.bodies[world.bodies.size() - 1]);
+  ball = saved;
+  run(world, 120);
+  EXPECT_EQ(world.bodies.size(), pieces);
+}
+
+TEST(BulletFracture, BodiesThatTouchWithSpheresDoNotBreak) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  BulletSoftBodies bodies(world, ContactMethod::kSpheres);
+  EXPECT_THROW(bodies.add(brittle_ball(0.1f), {0, 0, 0}), std::invalid_argument);
+  const SoftBody<3>& whole =
+      bodies.add(make_soft_body_model(make_sphere(0.5f, 2), {.cell_size = 0.2f}), {0, 0, 0});
+  EXPECT_THROW(bodies.cut(whole, Cut::plane({0, 0, 0}, {1, 0, 0})), std::invalid_argument);
+}
+
+TEST(FractureSettings, OutOfRangeAreRefused) {
+  SoftBodySettings settings{.cell_size = 0.1f};
+  settings.fracture = Fracture{.stretch = 0.0f};
+  EXPECT_THROW(validate(settings), std::runtime_error);
+  settings.fracture = Fracture{.turn = 4.0f};
+  EXPECT_THROW(validate(settings), std::runtime_error);
+  settings.fracture = Fracture{};
+  EXPECT_NO_THROW(validate(settings));
+  EXPECT_THROW(
+      make_soft_body_model(make_sphere(0.5f, 2), {.cell_size = 0.2f}, [](const Vector3f&) { return -1.0f; }),
+      std::runtime_error);
+  const std::vector<Eigen::Vector2i> cells{{0, 0}, {1, 0}};
+  EXPECT_THROW(make_soft_body_model(lattice_from_cells(cells, 0.1f), settings), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
