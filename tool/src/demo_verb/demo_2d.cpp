@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "changed_scene.h"
 #include "demo/scene_demo.h"
