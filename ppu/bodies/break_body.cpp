@@ -9,13 +9,20 @@
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
+namespace {
+
+/// Empty: the body has the rest shape of its model.
+std::vector<Eigen::Vector3f> own_rest_of(const SoftBody<3>& body) {
+  if (!body.has_own_rest()) return {};
+  return body.rest_positions();
+}
+
+}  // namespace
 
 std::span<const std::uint32_t> strained_faces(const SoftBody<3>& body, BreakTest& test) {
   SC_ASSERT(body.settings().fracture.has_value(), "a body of {} particles that does not break is tested",
             body.positions().size());
-  const std::vector<Eigen::Vector3f> rest =
-      body.has_own_rest() ? body.rest_positions() : std::vector<Eigen::Vector3f>();
-  return test.find(body.model().lattice(), body.model().cracks(), body.positions(), rest,
+  return test.find(body.model().lattice(), body.model().cracks(), body.positions(), own_rest_of(body),
                    *body.settings().fracture);
 }
 
@@ -28,8 +35,7 @@ std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut)
 }
 
 std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces) {
-  const std::vector<Eigen::Vector3f> rest =
-      body.has_own_rest() ? body.rest_positions() : std::vector<Eigen::Vector3f>();
+  const std::vector<Eigen::Vector3f> rest = own_rest_of(body);
   std::vector<BodyPiece> pieces;
   for (CrackedPiece& piece : break_faces(body.model().lattice(), body.model().cracks(), faces)) {
     std::vector<std::uint32_t> particle_of = std::move(piece.part.particle_of);

@@ -36,10 +36,6 @@ AttachmentFrame<2> frame_of(const b2Body& rigid) {
   return frame;
 }
 
-bool touches(const AttachmentSettings<2>& settings) {
-  return settings.touch.value_or(settings.kind == AttachmentKind::kRope);
-}
-
 }  // namespace
 
 Box2dAttachments::~Box2dAttachments() {
@@ -94,9 +90,7 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, b2Bod
     frame = frame_of(*rigid);
     if (settings.kind == AttachmentKind::kRope && !full.point) full.point = to_eigen(rigid->GetWorldCenter());
   } else {
-    if (settings.kind == AttachmentKind::kRope && !full.point)
-      throw std::invalid_argument("a rope to the world has no point; it needs the place of its other end");
-    frame.position = frame.end_position = full.point.value_or(particles.middle());
+    frame = frame_in_world(full, particles);
   }
   return add(Link{.a = &body,
                   .rigid = rigid,
@@ -118,28 +112,18 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, Box2d
 }
 
 AttachmentId Box2dAttachments::add(Link link) {
-  SC_ASSERT(!world_.IsLocked(), "attachment {} is made within a step of Box2D", next_);
+  SC_ASSERT(!world_.IsLocked(), "an attachment of {} particles is made within a step of Box2D",
+            link.a->particles().size());
   end_gone();
-  link.id = AttachmentId{next_++};
-  links_.push_back(std::make_unique<Link>(std::move(link)));
-  wake(*links_.back());
-  refilter(*links_.back());
-  return links_.back()->id;
+  const Link& added = links_.add(std::move(link));
+  wake(added);
+  refilter(added);
+  return added.id;
 }
 
-Box2dAttachments::Link& Box2dAttachments::find(AttachmentId id) {
-  const auto found = std::ranges::find_if(links_, [&](const auto& link) { return link->id == id; });
-  if (found == links_.end())
-    throw std::invalid_argument("there is no attachment " + std::to_string(static_cast<std::uint32_t>(id)));
-  return **found;
-}
-
-void Box2dAttachments::end_links(EndedAttachment::Reason reason, const std::vector<bool>& which) {
-  if (std::ranges::find(which, true) == which.end()) return;
-  std::vector<std::unique_ptr<Link>> left, gone;
-  for (std::size_t i = 0; i < links_.size(); ++i) (which[i] ? gone : left).push_back(std::move(links_[i]));
-  links_ = std::move(left);
-  for (const auto& link : gone) {
+template <class Which>
+void Box2dAttachments::end_links(EndedAttachment::Reason reason, const Which& which) {
+  for (const auto& link : links_.take(which)) {
     ended_.push_back({link->id, reason});
     wake(*link);
     refilter(*link);
@@ -148,24 +132,21 @@ void Box2dAttachments::end_links(EndedAttachment::Reason reason, const std::vect
 
 void Box2dAttachments::remove(AttachmentId id) {
   end_gone();
-  const Link& removed = find(id);
-  const auto found = std::ranges::find_if(links_, [&](const auto& link) { return link.get() == &removed; });
-  const std::unique_ptr<Link> link = std::move(*found);
-  links_.erase(found);
-  wake(*link);
-  refilter(*link);
+  links_.at(id);  // or throws
+  for (const auto& link : links_.take([&](const Link& other) { return other.id == id; })) {
+    wake(*link);
+    refilter(*link);
+  }
 }
 
 void Box2dAttachments::move(AttachmentId id, const Vector2f& position, float angle, float seconds) {
-  Link& link = find(id);
+  Link& link = links_.at(id);
   if (link.b != nullptr || link.rigid != nullptr)
     throw std::invalid_argument("an attachment to another body cannot be moved; only those to the world can");
   if (!position.allFinite() || !std::isfinite(angle))
     throw std::invalid_argument(
         "an attachment is moved to a place, or turned by an angle, that is not finite");
-  if (!(seconds >= 0) || !std::isfinite(seconds))
-    throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
-                                " s; it must be 0 or above, and finite");
+  check_seconds_of_move(seconds);
   link.hold.goal = position;
   link.hold.goal_angle = angle;
   link.hold.seconds = seconds;
@@ -174,29 +155,24 @@ void Box2dAttachments::move(AttachmentId id, const Vector2f& position, float ang
 }
 
 std::optional<AttachmentState<2>> Box2dAttachments::state(AttachmentId id) const {
-  for (const auto& link : links_)
-    if (link->id == id) return link->rows.state();
+  if (const Link* const link = links_.find(id)) return link->rows.state();
   return std::nullopt;
 }
 
 std::optional<AttachmentEnds<2>> Box2dAttachments::ends(AttachmentId id) const {
-  for (const auto& link : links_) {
-    if (link->id != id) continue;
-    if (link->rigid != nullptr && !is_there(*link->rigid)) return std::nullopt;
-    return link->rows.ends(link->a->soft().positions(),
-                           link->b != nullptr ? link->b->soft().positions() : std::span<const Vector2f>(),
-                           link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
-  }
-  return std::nullopt;
+  const Link* const link = links_.find(id);
+  if (link == nullptr || (link->rigid != nullptr && !is_there(*link->rigid))) return std::nullopt;
+  return link->rows.ends(link->a->soft().positions(),
+                         link->b != nullptr ? link->b->soft().positions() : std::span<const Vector2f>(),
+                         link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
 }
 
 std::vector<EndedAttachment> Box2dAttachments::take_ended() { return std::exchange(ended_, {}); }
 
 void Box2dAttachments::forget(const Box2dBody& body) {
   end_gone();
-  std::vector<bool> which;
-  for (const auto& link : links_) which.push_back(link->a == &body || link->b == &body);
-  end_links(EndedAttachment::Reason::kGone, which);
+  end_links(EndedAttachment::Reason::kGone,
+            [&](const Link& link) { return link.a == &body || link.b == &body; });
 }
 
 bool Box2dAttachments::holds(const Box2dBody& body) const {
@@ -211,12 +187,11 @@ bool Box2dAttachments::is_there(const b2Body& rigid) const {
 }
 
 void Box2dAttachments::end_gone() {
-  std::vector<bool> gone;
-  for (const auto& link : links_) {
-    gone.push_back(link->rigid != nullptr && !is_there(*link->rigid));
-    if (gone.back()) link->rigid = nullptr;
-  }
-  end_links(EndedAttachment::Reason::kGone, gone);
+  end_links(EndedAttachment::Reason::kGone, [&](Link& link) {
+    if (link.rigid == nullptr || is_there(*link.rigid)) return false;
+    link.rigid = nullptr;
+    return true;
+  });
 }
 
 void Box2dAttachments::begin(const Box2dBody& body, InStep& in_step, float step) const {
@@ -304,12 +279,9 @@ void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies,
         to_box2d(rigids_[i].velocity - step * rigid.GetGravityScale() * to_eigen(world_.GetGravity())));
     rigid.SetAngularVelocity(rigids_[i].spin);
   }
-  std::vector<bool> broken;
-  for (const auto& link : links_) {
+  for (const auto& link : links_)
     if (link->hold.moves) link->hold.end();
-    broken.push_back(link->rows.broke());
-  }
-  end_links(EndedAttachment::Reason::kBroken, broken);
+  end_links(EndedAttachment::Reason::kBroken, [](const Link& link) { return link.rows.broke(); });
 }
 
 /// Evenly, and in the last step to its goal exactly.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ppu/box2d/box2d_body.h"
+#include "ppu/contacts/attachment_links.h"
 #include "ppu/contacts/attachments.h"
 #include "softcell/soft_bodies/attachment.h"
 
@@ -78,10 +79,10 @@ class Box2dAttachments final : private b2ContactFilter {
 
   bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
   AttachmentId add(Link link);
-  Link& find(AttachmentId id);
   bool is_there(const b2Body& rigid) const;
   void end_gone();
-  void end_links(EndedAttachment::Reason reason, const std::vector<bool>& which);
+  template <class Which>
+  void end_links(EndedAttachment::Reason reason, const Which& which);
   void refilter(const Link& link);
   static void wake(const Link& link);
   void begin(const Box2dBody& body, InStep& in_step, float step) const;
@@ -91,9 +92,8 @@ class Box2dAttachments final : private b2ContactFilter {
   b2World& world_;
   std::function<Box2dBody*(const b2Body&)> soft_body_of_;
   b2ContactFilter* filter_before_ = nullptr;  // the world's, once this one is in its place
-  std::vector<std::unique_ptr<Link>> links_;
+  AttachmentLinks<Link> links_;
   std::vector<EndedAttachment> ended_;
-  std::uint32_t next_ = 0;
   // Of a step:
   Attachments<2> attachments_;
   std::vector<InStep> in_step_;

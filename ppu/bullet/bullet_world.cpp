@@ -266,9 +266,8 @@ void BulletWorld::put(std::size_t body, const Motion& motion) {
   SC_ASSERT(moves(body), "rigid body {} does not move, and is put elsewhere", body);
   const Eigen::Quaternionf& q = motion.rotation;
   SC_ASSERT(std::abs(q.norm() - 1) < 1e-3f, "a rotation of rigid body {} has the length {}", body, q.norm());
-  impl_->put(*impl_->bodies.at(body).body,
-             btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(motion.position)),
-             to_bullet(motion.velocity), to_bullet(motion.angular_velocity));
+  impl_->put(*impl_->bodies.at(body).body, transform_of(motion.position, q), to_bullet(motion.velocity),
+             to_bullet(motion.angular_velocity));
 }
 
 Eigen::Matrix4f BulletWorld::pose(std::size_t body) const {

@@ -15,10 +15,6 @@ namespace {
 
 constexpr float kMovesFrom = 0.05f;  // m/s and rad/s, of kinematic bodies
 
-bool touches(const AttachmentSettings<3>& settings) {
-  return settings.touch.value_or(settings.kind == AttachmentKind::kRope);
-}
-
 /// Where a rigid body is.
 AttachmentFrame<3> frame_of(const btRigidBody& rigid) {
   AttachmentFrame<3> frame;
@@ -42,6 +38,16 @@ bool contains(const std::vector<T*>& list, const void* item) {
 
 }  // namespace
 
+template <class Which>
+void SurfaceAttachments::end_links(EndedAttachment::Reason reason, const Which& which) {
+  const auto gone = links_.take(which);
+  for (const auto& link : gone) {
+    ended_.push_back({link->id, reason});
+    rouse(*link);
+  }
+  if (!gone.empty()) find_islands();
+}
+
 AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, btRigidBody* rigid,
                                      const AttachmentSettings<3>& settings) {
   validate(settings);
@@ -57,9 +63,7 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, b
     frame = frame_of(*rigid);
     if (settings.kind == AttachmentKind::kRope && !full.point) full.point = frame.position;
   } else {
-    if (settings.kind == AttachmentKind::kRope && !full.point)
-      throw std::invalid_argument("a rope to the world has no point; it needs the place of its other end");
-    frame.position = frame.end_position = full.point.value_or(particles.middle());
+    frame = frame_in_world(full, particles);
   }
   return add(Link{.a = &body,
                   .rigid = rigid,
@@ -83,40 +87,28 @@ AttachmentId SurfaceAttachments::add(SurfaceBody& body, const Patch<3>& patch, S
 
 AttachmentId SurfaceAttachments::add(Link link) {
   end_gone();
-  link.id = AttachmentId{next_++};
-  links_.push_back(std::make_unique<Link>(std::move(link)));
-  rouse(*links_.back());
+  const Link& added = links_.add(std::move(link));
+  rouse(added);
   find_islands();
-  return links_.back()->id;
-}
-
-SurfaceAttachments::Link& SurfaceAttachments::find(AttachmentId id) {
-  const auto found =
-      std::find_if(links_.begin(), links_.end(), [&](const auto& link) { return link->id == id; });
-  if (found == links_.end())
-    throw std::invalid_argument("there is no attachment " + std::to_string(static_cast<std::uint32_t>(id)));
-  return **found;
+  return added.id;
 }
 
 void SurfaceAttachments::remove(AttachmentId id) {
   end_gone();
-  const Link& link = find(id);
-  rouse(link);
-  std::erase_if(links_, [&](const auto& other) { return other.get() == &link; });
+  rouse(links_.at(id));
+  links_.take([&](const Link& link) { return link.id == id; });
   find_islands();
 }
 
 void SurfaceAttachments::move(AttachmentId id, const Eigen::Vector3f& position,
                               const Eigen::Quaternionf& rotation, float seconds) {
-  Link& link = find(id);
+  Link& link = links_.at(id);
   if (link.b != nullptr || link.rigid != nullptr)
     throw std::invalid_argument("an attachment to another body cannot be moved; only those to the world can");
   if (!position.allFinite() || !rotation.coeffs().allFinite() || !(rotation.norm() > 0))
     throw std::invalid_argument(
         "an attachment is moved to a place that is not finite, or turned by a rotation of length 0");
-  if (!(seconds >= 0) || !std::isfinite(seconds))
-    throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
-                                " s; it must be 0 or above, and finite");
+  check_seconds_of_move(seconds);
   link.hold.goal_position = position;
   link.hold.goal_rotation = rotation.normalized();
   link.hold.seconds = seconds;
@@ -125,30 +117,25 @@ void SurfaceAttachments::move(AttachmentId id, const Eigen::Vector3f& position,
 }
 
 std::optional<AttachmentState<3>> SurfaceAttachments::state(AttachmentId id) const {
-  for (const auto& link : links_)
-    if (link->id == id) return link->rows.state();
+  if (const Link* const link = links_.find(id)) return link->rows.state();
   return std::nullopt;
 }
 
 std::optional<AttachmentEnds<3>> SurfaceAttachments::ends(AttachmentId id) const {
-  for (const auto& link : links_) {
-    if (link->id != id) continue;
-    if (link->rigid != nullptr && !is_there(*link)) return std::nullopt;
-    return link->rows.ends(
-        link->a->soft().positions(),
-        link->b != nullptr ? link->b->soft().positions() : std::span<const Eigen::Vector3f>(),
-        link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
-  }
-  return std::nullopt;
+  const Link* const link = links_.find(id);
+  if (link == nullptr || (link->rigid != nullptr && !is_there(*link))) return std::nullopt;
+  return link->rows.ends(
+      link->a->soft().positions(),
+      link->b != nullptr ? link->b->soft().positions() : std::span<const Eigen::Vector3f>(),
+      link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
 }
 
 std::vector<EndedAttachment> SurfaceAttachments::take_ended() { return std::exchange(ended_, {}); }
 
 void SurfaceAttachments::forget(const SurfaceBody& body) {
   end_gone();
-  std::vector<bool> which;
-  for (const auto& link : links_) which.push_back(link->a == &body || link->b == &body);
-  end_links(EndedAttachment::Reason::kGone, which);
+  end_links(EndedAttachment::Reason::kGone,
+            [&](const Link& link) { return link.a == &body || link.b == &body; });
 }
 
 void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces) {
@@ -177,26 +164,10 @@ void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const 
     }
     return false;
   };
-  std::vector<bool> torn;
-  for (const auto& link : links_)
-    torn.push_back((link->a == &body && !follow(link->a, link->rows, false)) ||
-                   (link->b == &body && !follow(link->b, link->rows, true)));
-  end_links(EndedAttachment::Reason::kBroken, torn);
-  find_islands();
-}
-
-void SurfaceAttachments::end_links(EndedAttachment::Reason reason, const std::vector<bool>& which) {
-  if (std::find(which.begin(), which.end(), true) == which.end()) return;
-  std::vector<std::unique_ptr<Link>> left;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (!which[i]) {
-      left.push_back(std::move(links_[i]));
-      continue;
-    }
-    ended_.push_back({links_[i]->id, reason});
-    rouse(*links_[i]);
-  }
-  links_ = std::move(left);
+  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) {
+    return (link.a == &body && !follow(link.a, link.rows, false)) ||
+           (link.b == &body && !follow(link.b, link.rows, true));
+  });
   find_islands();
 }
 
@@ -216,12 +187,11 @@ bool SurfaceAttachments::is_there(const Link& link) const {
 
 /// Nothing else looks at the rigid bodies of attachments before it has been called.
 void SurfaceAttachments::end_gone() {
-  std::vector<bool> gone;
-  for (const auto& link : links_) {
-    gone.push_back(link->rigid != nullptr && !is_there(*link));
-    if (gone.back()) link->rigid = nullptr;
-  }
-  end_links(EndedAttachment::Reason::kGone, gone);
+  end_links(EndedAttachment::Reason::kGone, [&](Link& link) {
+    if (link.rigid == nullptr || is_there(link)) return false;
+    link.rigid = nullptr;
+    return true;
+  });
 }
 
 /// What only bodies that nothing moves have in common is not attached to each other.
@@ -333,12 +303,9 @@ void SurfaceAttachments::Hold::advance(float step) {
 }
 
 void SurfaceAttachments::end(float step) {
-  std::vector<bool> broken;
-  for (const auto& link : links_) {
+  for (const auto& link : links_)
     if (link->hold.moves) link->hold.advance(step);
-    broken.push_back(link->rows.broke());
-  }
-  end_links(EndedAttachment::Reason::kBroken, broken);
+  end_links(EndedAttachment::Reason::kBroken, [](const Link& link) { return link.rows.broke(); });
 }
 
 void SurfaceAttachments::let_sleep(const SleepSettings& sleep) {

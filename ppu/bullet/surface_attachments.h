@@ -14,6 +14,7 @@
 
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_body.h"
+#include "ppu/contacts/attachment_links.h"
 #include "ppu/contacts/attachments.h"
 #include "ppu/contacts/contact_stage.h"
 #include "softcell/soft_bodies/attachment.h"
@@ -94,18 +95,17 @@ class SurfaceAttachments {
   };
 
   AttachmentId add(Link link);
-  void end_links(EndedAttachment::Reason reason, const std::vector<bool>& which);
-  Link& find(AttachmentId id);
+  template <class Which>
+  void end_links(EndedAttachment::Reason reason, const Which& which);
   void find_islands();
   static void rouse(const Link& link);
   bool is_there(const Link& link) const;
   void end_gone();
 
   const btDiscreteDynamicsWorld& world_;
-  std::vector<std::unique_ptr<Link>> links_;
+  AttachmentLinks<Link> links_;
   std::vector<Island> islands_;
   std::vector<EndedAttachment> ended_;
-  std::uint32_t next_ = 0;
 };
 
 }  // namespace softcell::ppu

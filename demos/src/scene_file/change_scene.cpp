@@ -22,24 +22,25 @@ namespace fs = std::filesystem;
 
 constexpr int kCellsAlong = 8, kCellsAlongPicture = 20;  // as --mesh and --image have them
 
+/// The scene's document, to be changed: nobody else has it from now on.
+template <class SceneOf>
+SceneDocument& own_document(SceneOf& scene) {
+  auto own = std::make_shared<SceneDocument>(*scene.document);
+  SceneDocument& document = *own;
+  scene.document = std::move(own);
+  return document;
+}
+
+Table& root_of(SceneDocument& document) { return std::get<Table>(document.root.data); }
+
 template <int Dimension, class SceneOf>
 SceneOf changed_by_run(const SceneOf& scene, const PresentScene<Dimension>& now) {
   SceneOf changed = scene;
-  auto document = std::make_shared<SceneDocument>(*scene.document);
-  document->root.data = present_root(scene, now);
-  changed.document = std::move(document);
+  root_of(own_document(changed)) = present_root(scene, now);
   changed.begin = std::make_shared<const Beginning<Dimension>>(now.moment);
   changed.substeps = now.substeps;
   for (std::size_t b = 0; b < now.materials.size(); ++b) changed.soft_bodies[b].settings = now.materials[b];
   return changed;
-}
-
-/// The document's root, to be changed. Nobody else has this document.
-Table& root_of(std::shared_ptr<const SceneDocument>& document) {
-  auto own = std::make_shared<SceneDocument>(*document);
-  Table& root = std::get<Table>(own->root.data);
-  document = std::move(own);
-  return root;
 }
 
 /// "cat", or where a body has that name "cat 2".
@@ -95,11 +96,23 @@ void add_item(SceneOf& scene, Table item, const std::vector<fs::path>& files) {
     const std::string sentence = error.what(), place = to_string(value.place) + ": ";
     throw std::runtime_error(sentence.starts_with(place) ? sentence.substr(place.size()) : sentence);
   }
-  Table& root = root_of(changed.document);
+  Table& root = root_of(own_document(changed));
   if (items_in(root, "soft_body") == nullptr) set_field(root, "soft_body", {.data = Array{}, .place = {}});
   items_in(root, "soft_body")->push_back(value);
   changed.files.insert(changed.files.end(), files.begin(), files.end());
   scene = std::move(changed);
+}
+
+/// @param field  that names the file
+template <int Dimension, class SceneOf>
+void add_file_as(const std::string& field, int cells_along, SceneOf& scene, const fs::path& file,
+                 const NewBody<Dimension>& body) {
+  const fs::path path = fs::absolute(file);
+  Table item =
+      new_item(scene, printable_stem(file), body, body.longest_side / static_cast<float>(cells_along));
+  set_field(item, field, text_value(path.string()));
+  set_field(item, "longest_side", number_value(body.longest_side));
+  add_item(scene, std::move(item), {path});
 }
 
 Value shape_value(std::string_view kind, std::initializer_list<std::pair<std::string, Value>> fields) {
@@ -163,13 +176,13 @@ template <int Dimension, class SceneOf>
 void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   SC_ASSERT(body < scene.soft_bodies.size(), "body {} of {}", body, scene.soft_bodies.size());
   const std::string name = scene.soft_bodies[body].name;
-  auto document = std::make_shared<SceneDocument>(*scene.document);
-  Table& root = std::get<Table>(document->root.data);
+  SceneDocument& document = own_document(scene);
+  Table& root = root_of(document);
   Array& items = *items_in(root, "soft_body");
   // The model of the command line is in place of the first that lets it be.
   const auto lets = [&](Value& item) { return find_field(std::get<Table>(item.data), own_side) != nullptr; };
   const auto first = std::ranges::find_if(items, lets);
-  if (first != items.end() && static_cast<std::size_t>(first - items.begin()) == body) document->own.reset();
+  if (first != items.end() && static_cast<std::size_t>(first - items.begin()) == body) document.own.reset();
   // Names that bodies have by their number stay what they are.
   for (std::size_t b = 0; b < items.size(); ++b)
     set_field(std::get<Table>(items[b].data), "name", text_value(scene.soft_bodies[b].name));
@@ -178,7 +191,6 @@ void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   erase_naming(root, "attach", {"body", "to"}, name);
   erase_naming(root, "impulse", {"body"}, name);
   erase_naming(root, "drag", {"body"}, name);
-  scene.document = std::move(document);
   scene.soft_bodies.erase(scene.soft_bodies.begin() + static_cast<std::ptrdiff_t>(body));
   erase_of_body(scene.script.impulses, body);
   erase_of_body(scene.script.drags, body);
@@ -194,7 +206,7 @@ void set_density_of(SceneOf& scene, std::size_t body, float density) {
   SC_ASSERT(body < scene.soft_bodies.size() && density > 0, "body {} of {} gets a density of {}", body,
             scene.soft_bodies.size(), density);
   scene.soft_bodies[body].settings.density = density;
-  Array& items = *items_in(root_of(scene.document), "soft_body");
+  Array& items = *items_in(root_of(own_document(scene)), "soft_body");
   set_field(std::get<Table>(items.at(body).data), "density", number_value(density));
 }
 
@@ -209,19 +221,10 @@ std::span<const std::string_view> spawned_shapes(int dimension) {
 }
 
 void add_file(Scene& scene, const fs::path& file, const NewBody<3>& body) {
-  const fs::path path = fs::absolute(file);
-  Table item = new_item(scene, printable_stem(file), body, body.longest_side / kCellsAlong);
-  set_field(item, "mesh", text_value(path.string()));
-  set_field(item, "longest_side", number_value(body.longest_side));
-  add_item(scene, std::move(item), {path});
+  add_file_as("mesh", kCellsAlong, scene, file, body);
 }
-
 void add_file(Scene2d& scene, const fs::path& file, const NewBody<2>& body) {
-  const fs::path path = fs::absolute(file);
-  Table item = new_item(scene, printable_stem(file), body, body.longest_side / kCellsAlongPicture);
-  set_field(item, "image", text_value(path.string()));
-  set_field(item, "longest_side", number_value(body.longest_side));
-  add_item(scene, std::move(item), {path});
+  add_file_as("image", kCellsAlongPicture, scene, file, body);
 }
 
 void add_shape(Scene& scene, std::string_view shape, const NewBody<3>& body) {

@@ -18,6 +18,18 @@ namespace softcell::demos {
 inline constexpr std::size_t kMaxSoftBodies = 256, kMaxRigidBodies = 1000, kMaxEvents = 1000,
                              kMaxPictures = 1000, kMaxAttachments = 1000;
 inline constexpr std::uint32_t kMaxParticlesOfScene = 300'000;
+/// While the bodies of a scene are read. @throws SceneError  there are too many particles so far
+inline void check_particles(std::size_t particles, const Place& place) {
+  if (particles > kMaxParticlesOfScene)
+    throw SceneError(place, fmt::format("the scene has {} particles or more; it may have at most {}",
+                                        particles, kMaxParticlesOfScene));
+}
+/// With a body that is added to a scene. @throws SceneError  there would be too many particles
+inline void check_added_particles(std::size_t particles, const Place& place) {
+  if (particles > kMaxParticlesOfScene)
+    throw SceneError(place, fmt::format("the scene would have {} particles; it may have at most {}",
+                                        particles, kMaxParticlesOfScene));
+}
 inline constexpr std::size_t kMaxVerticesOfScene = 2'000'000;
 inline constexpr int kMaxFrames = 1'000'000;
 inline constexpr int kMaxSubsteps = 64;

@@ -278,11 +278,7 @@ std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, const Sc
     } catch (const std::runtime_error& error) {
       throw SceneError(items[i].place, error.what());
     }
-    if (particles > kMaxParticlesOfScene) {
-      throw SceneError(items[i].place,
-                       fmt::format("the scene has {} particles or more; it may have at most {}", particles,
-                                   kMaxParticlesOfScene));
-    }
+    check_particles(particles, items[i].place);
   }
   if (picture && !place_taken) {
     throw NoPlaceForModel("--image cannot be used with scene " + scene.name +
@@ -309,9 +305,7 @@ void read_another_body(const Value& item, const SceneSource& source, Scene2d& sc
   read_soft_body(item, scene.soft_bodies.size(), lattices, Materials(nullptr), nullptr, scene);
   std::size_t particles = 0;
   for (const SoftBody2dPlacement& body : scene.soft_bodies) particles += body.lattice().particles.size();
-  if (particles > kMaxParticlesOfScene)
-    throw SceneError(item.place, fmt::format("the scene would have {} particles; it may have at most {}",
-                                             particles, kMaxParticlesOfScene));
+  check_added_particles(particles, item.place);
 }
 
 Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,

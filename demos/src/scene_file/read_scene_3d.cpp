@@ -173,11 +173,7 @@ std::vector<std::size_t> read_soft_bodies(std::span<const Value> items, MeshFile
   for (std::size_t i = 0; i < items.size(); ++i) {
     of_each.push_back(count_particles(scene.soft_bodies[i], items[i].place));
     particles += of_each.back();
-    if (particles > kMaxParticlesOfScene) {
-      throw SceneError(items[i].place,
-                       fmt::format("the scene has {} particles or more; it may have at most {}", particles,
-                                   kMaxParticlesOfScene));
-    }
+    check_particles(particles, items[i].place);
   }
   if (model && !place_taken) {
     throw NoPlaceForModel("--mesh cannot be used with scene " + scene.name +
@@ -261,9 +257,7 @@ void read_another_body(const Value& item, const SceneSource& source, Scene& scen
   read_soft_body(item, scene.soft_bodies.size(), files, Materials(nullptr), nullptr, scene);
   vertices.add(scene.soft_bodies.back().mesh, item.place);
   particles += count_particles(scene.soft_bodies.back(), item.place);
-  if (particles > kMaxParticlesOfScene)
-    throw SceneError(item.place, fmt::format("the scene would have {} particles; it may have at most {}",
-                                             particles, kMaxParticlesOfScene));
+  check_added_particles(particles, item.place);
   scene.notes.insert(scene.notes.end(), files.notes().begin(), files.notes().end());
 }
 

@@ -49,7 +49,7 @@ class SavedScene {
   std::string own_file() const { return relative(document_.own->file); }
 
   /// A file that a body names, which the saved scene must find, too.
-  void keep_file(Table& item, const std::string& field) {
+  void keep_file(Table& item, std::string_view field) {
     Value* const value = find_field(item, field);
     if (value == nullptr) return;
     const auto& name = std::get<std::string>(value->data);
@@ -129,13 +129,34 @@ void save_material(Table& body, const ppu::SoftBodySettings& was, const ppu::Sof
             was.cell_size);
 }
 
-/// The first body that lets a file of the command line take its place. Null: none does.
-Table* replaced_body(SavedScene& saved, std::string_view field) {
+/// Names the file of the command line in the first body that lets one take its place, and which other files the bodies need.
+/// @param side      the field of a body that lets a file take its place: how long that is
+/// @param own       the field that names the file
+/// @param replaced  fields that the file is in place of
+/// @param others    fields of the other bodies that name files
+template <class SceneOf>
+void save_files_of_bodies(const SceneOf& scene, SavedScene& saved, std::string_view side,
+                          const std::string& own, std::initializer_list<std::string_view> replaced,
+                          std::initializer_list<std::string_view> others) {
+  bool is_named = !scene.document->own;
+  std::size_t number = 0;
   for (Value* const body : saved.soft_bodies()) {
     auto& table = std::get<Table>(body->data);
-    if (find_field(table, field) != nullptr) return &table;
+    const float cell_size = scene.soft_bodies[number++].settings.cell_size;
+    const Value* const length = is_named ? nullptr : find_field(table, side);
+    if (length == nullptr) {
+      for (const std::string_view field : others) saved.keep_file(table, field);
+      continue;
+    }
+    is_named = true;
+    const Value longest = *length;
+    erase_fields(table, {side});
+    erase_fields(table, replaced);
+    set_field(table, "longest_side", longest);
+    set_field(table, own, text_value(saved.own_file()));
+    if (scene.document->own->z_up) set_field(table, "up", text_value("z"));
+    set_field(table, "cell_size", number_value(cell_size));
   }
-  return nullptr;
 }
 
 template <class Vector>
@@ -207,24 +228,8 @@ std::vector<SceneFile> saved_scene(const Scene& scene, const PresentScene<3>& no
   if (now.moment.seconds > 0)
     set_field(table_in(root, "begin"), "seconds", number_value(static_cast<float>(now.moment.seconds)));
   save_camera(root, camera);
-  Table* const replaced = scene.document->own ? replaced_body(saved, "own_model_side") : nullptr;
-  if (replaced != nullptr) {
-    const Value side = *find_field(*replaced, "own_model_side");
-    erase_fields(*replaced, {"own_model_side", "shape", "mesh", "scale", "up", "colour"});
-    set_field(*replaced, "longest_side", side);
-  }
-  std::size_t number = 0;
-  for (Value* const body : saved.soft_bodies()) {
-    auto& table = std::get<Table>(body->data);
-    if (&table == replaced) {
-      set_field(table, "mesh", text_value(saved.own_file()));
-      if (scene.document->own->z_up) set_field(table, "up", text_value("z"));
-      set_field(table, "cell_size", number_value(scene.soft_bodies[number].settings.cell_size));
-    } else {
-      saved.keep_file(table, "mesh");
-    }
-    ++number;
-  }
+  save_files_of_bodies(scene, saved, "own_model_side", "mesh", {"shape", "mesh", "scale", "up", "colour"},
+                       {"mesh"});
   if (Array* const obstacles = items_in(root, "obstacle"))
     for (Value& obstacle : *obstacles) saved.keep_file(std::get<Table>(obstacle.data), "mesh");
   return saved.files(now.moment, scene.name);
@@ -235,24 +240,8 @@ std::vector<SceneFile> saved_scene(const Scene2d& scene, const PresentScene<2>& 
   Table now_root = present_root(scene, now);
   SavedScene saved(*scene.document, std::move(now_root), scene_file);
   save_moment(saved.root(), now.moment);
-  Table* const replaced = scene.document->own ? replaced_body(saved, "own_image_side") : nullptr;
-  if (replaced != nullptr) {
-    const Value side = *find_field(*replaced, "own_image_side");
-    erase_fields(*replaced, {"own_image_side", "shape", "rows", "lattice", "image", "face", "cell_colours"});
-    set_field(*replaced, "longest_side", side);
-  }
-  std::size_t number = 0;
-  for (Value* const body : saved.soft_bodies()) {
-    auto& table = std::get<Table>(body->data);
-    if (&table == replaced) {
-      set_field(table, "image", text_value(saved.own_file()));
-      set_field(table, "cell_size", number_value(scene.soft_bodies[number].settings.cell_size));
-    } else {
-      saved.keep_file(table, "lattice");
-      saved.keep_file(table, "image");
-    }
-    ++number;
-  }
+  save_files_of_bodies(scene, saved, "own_image_side", "image",
+                       {"shape", "rows", "lattice", "image", "face", "cell_colours"}, {"lattice", "image"});
   return saved.files(now.moment, scene.name);
 }
 

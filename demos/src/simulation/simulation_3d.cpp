@@ -193,20 +193,13 @@ struct Simulation3d::State {
                                             .is_moved = body.motion.has_value()}));
   }
 
-  /// Puts what the scene moves where it is at a time. @param time  seconds, at a substep's end
-  void move_rigids(double time) {
+  /// Calls `place(its number in the world, position, rotation)` for what the scene moves. @param time  seconds
+  template <class Place>
+  void for_each_moved(double time, const Place& place) const {
     for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
       if (!scene.rigid_bodies[i].motion) continue;
-      const Placement place = placement_at(scene.rigid_bodies[i], time);
-      world.move_to(boxes[scene.boxes.size() + i], place.position, place.rotation);
-    }
-  }
-
-  void put_rigids(double time) {
-    for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
-      if (!scene.rigid_bodies[i].motion) continue;
-      const Placement place = placement_at(scene.rigid_bodies[i], time);
-      world.put(boxes[scene.boxes.size() + i], place.position, place.rotation);
+      const Placement at = placement_at(scene.rigid_bodies[i], time);
+      place(boxes[scene.boxes.size() + i], at.position, at.rotation);
     }
   }
 
@@ -264,7 +257,9 @@ struct Simulation3d::State {
     frame = scene.begin ? 60 * scene.begin->seconds : 0;
     if (!scene.begin) return;
     tilt = present_tilt();
-    put_rigids(scene.begin->seconds);
+    for_each_moved(scene.begin->seconds, [&](auto body, const auto& position, const auto& rotation) {
+      world.put(body, position, rotation);
+    });
     put_soft_bodies<3>(scene, soft_bodies);
     std::size_t moving = 0;
     for (std::size_t i = 0; i < world.rigid_bodies(); ++i) moving += world.moves(i) ? 1 : 0;
@@ -400,7 +395,10 @@ struct Simulation3d::State {
     held.begin_frame(static_cast<float>(substeps) * step);
     ppu::StepTimes times;
     for (int number = 0; number < substeps; ++number) {
-      move_rigids(frame / 60 - double{step} * (substeps - number - 1));
+      const double end_of_substep = frame / 60 - double{step} * (substeps - number - 1);
+      for_each_moved(end_of_substep, [&](auto body, const auto& position, const auto& rotation) {
+        world.move_to(body, position, rotation);
+      });
       held.pull(number, substeps, gravity, step);
       const ppu::StepTimes of_substep = world.step(step, 1);
       times.physics_ms += of_substep.physics_ms;

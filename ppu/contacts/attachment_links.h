@@ -1,0 +1,86 @@
+#pragma once
+// What attachments in Bullet and in Box2D have in common: links by their numbers, of which each knows its rows (attachment_rows.h).
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ppu/contacts/attachment_rows.h"
+#include "softcell/soft_bodies/attachment.h"
+
+namespace softcell::ppu {
+
+/// Whether what is attached touches what it is attached to.
+template <int kDimension>
+bool touches(const AttachmentSettings<kDimension>& settings) {
+  return settings.touch.value_or(settings.kind == AttachmentKind::kRope);
+}
+
+/// Where the world holds a patch. @throws std::invalid_argument  a rope has no point
+template <int kDimension>
+AttachmentFrame<kDimension> frame_in_world(const AttachmentSettings<kDimension>& settings,
+                                           const PatchParticles<kDimension>& particles) {
+  if (settings.kind == AttachmentKind::kRope && !settings.point)
+    throw std::invalid_argument("a rope to the world has no point; it needs the place of its other end");
+  AttachmentFrame<kDimension> frame;
+  frame.position = frame.end_position = settings.point.value_or(particles.middle());
+  return frame;
+}
+
+/// @throws std::invalid_argument  not the seconds in which an attachment can be moved
+inline void check_seconds_of_move(float seconds) {
+  if (!(seconds >= 0) || !std::isfinite(seconds))
+    throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
+                                " s; it must be 0 or above, and finite");
+}
+
+/// The attachments that there are, in the order in which they were made.
+/// @tparam Link  has `id`, `rows`, and soft bodies `a` and `b`
+template <class Link>
+class AttachmentLinks {
+ public:
+  using Pointers = std::vector<std::unique_ptr<Link>>;
+
+  bool empty() const { return links_.empty(); }
+  auto begin() const { return links_.begin(); }
+  auto end() const { return links_.end(); }
+
+  /// Gives it its number.
+  Link& add(Link link) {
+    link.id = AttachmentId{next_++};
+    return *links_.emplace_back(std::make_unique<Link>(std::move(link)));
+  }
+  /// Null: there is none of that number.
+  Link* find(AttachmentId id) const {
+    const auto found = std::ranges::find_if(links_, [&](const auto& link) { return link->id == id; });
+    return found == links_.end() ? nullptr : found->get();
+  }
+  /// @throws std::invalid_argument  there is none of that number
+  Link& at(AttachmentId id) const {
+    if (Link* const link = find(id)) return *link;
+    throw std::invalid_argument("there is no attachment " + std::to_string(static_cast<std::uint32_t>(id)));
+  }
+  /// Takes out those of which `which(link)` is true; it is asked once for each. Without any, nothing is allocated. @return them, in order
+  template <class Which>
+  Pointers take(const Which& which) {
+    Pointers taken;
+    std::erase_if(links_, [&](auto& link) {
+      if (!which(*link)) return false;
+      taken.push_back(std::move(link));
+      return true;
+    });
+    return taken;
+  }
+
+ private:
+  Pointers links_;
+  std::uint32_t next_ = 0;
+};
+
+}  // namespace softcell::ppu
