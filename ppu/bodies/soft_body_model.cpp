@@ -84,11 +84,13 @@ const TriangleMesh& SoftBodyModel<kDimension>::mesh() const requires(kDimension 
 
 template <int kDimension>
 const Cracks& SoftBodyModel<kDimension>::cracks() const requires(kDimension == 3) {
-  std::call_once(cracks_made_, [this] {
-    if (!cracks_)
-      cracks_ = std::make_shared<const Cracks>(
-          no_cracks(embedding_ ? &embedding_->mesh : nullptr, lattice_, strengths_));
-  });
+  if constexpr (kDimension == 3) {  // Clang 14 makes it for two dimensions, too
+    std::call_once(cracks_made_, [this] {
+      if (!cracks_)
+        cracks_ = std::make_shared<const Cracks>(
+            no_cracks(embedding_ ? &embedding_->mesh : nullptr, lattice_, strengths_));
+    });
+  }
   return *cracks_;
 }
 

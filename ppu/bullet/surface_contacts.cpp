@@ -33,12 +33,10 @@ const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const S
 
 void SurfaceContacts::forget_pieces(std::span<SurfaceBody* const> bodies) {
   std::erase_if(models_, [&](const auto& known) {
-    const auto& [model, contact] = known;
-    if (!model->is_piece() || std::any_of(bodies.begin(), bodies.end(), [&](const SurfaceBody* body) {
-          return &body->contact() == contact.get();
-        }))
-      return false;
-    if (worker_) worker_->forget(*contact);
+    const ContactModel& contact = *known.second;
+    const auto is_of = [&](const SurfaceBody* body) { return &body->contact() == &contact; };
+    if (!known.first->is_piece() || std::ranges::any_of(bodies, is_of)) return false;
+    if (worker_) worker_->forget(contact);
     return true;
   });
 }

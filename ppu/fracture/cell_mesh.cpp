@@ -252,7 +252,9 @@ class CellMesh::Maker {
         lines;  // of y and z: by which number the winding grows behind x
     for (const auto& [key, crossings] : made_.crossings_) {
       if (key % 3 != 0) continue;
-      const auto part = [&](int shift) { return static_cast<int>(key / 3 >> shift & 0xfffffu) - (1 << 19); };
+      const auto part = [corner = key / 3](int shift) {
+        return static_cast<int>(corner >> shift & 0xfffffu) - (1 << 19);
+      };
       int& change = lines[{part(20), part(0)}][part(40)];
       for (const Crossing& crossing : crossings) change += crossing.enters;
     }
@@ -288,9 +290,8 @@ bool CellMesh::is_empty(std::uint32_t cell) const {
 }
 
 std::span<const CellMesh::Segment> CellMesh::segments_of(std::uint32_t face) const {
-  const auto [first, last] =
-      std::ranges::equal_range(segments_, face, {}, [](const Segment& segment) { return segment.face; });
-  return {first, last};
+  return {std::ranges::lower_bound(segments_, face, {}, &Segment::face),
+          std::ranges::upper_bound(segments_, face, {}, &Segment::face)};
 }
 
 std::span<const CellMesh::Crossing> CellMesh::crossings_of(const Corner& corner, std::uint32_t axis) const {

@@ -544,14 +544,14 @@ std::pair<std::vector<Eigen::Vector3f>, std::vector<Eigen::Vector3f>> shape_of(
 
 TEST_F(RendererTest, FewerTrianglesOfASmallMeshLookTheSameAndALargeOneHasThemAll) {
   const test::SkinnedMesh torus = test::make_torus(160, 80);
-  const auto [positions, normals] = shape_of(torus);
+  const auto shape = shape_of(torus);
   Renderer coarse(pinned_context(), {.width = kSide, .height = kSide, .coarse_pixels = 12});
   const auto add_to = [&](Renderer& renderer, bool with_box) {
     SkinnedDraw item;
     item.mesh = renderer.add_mesh(torus.indices);
     item.colour = srgb(0xC05020);
     renderer.update_mesh(item.mesh, torus.bytes());
-    renderer.set_rest_shape(item.mesh, positions, normals);
+    renderer.set_rest_shape(item.mesh, shape.first, shape.second);
     if (with_box)
       item.box.emplace(Eigen::Vector3f(-0.85f, -0.25f, -0.85f), Eigen::Vector3f(0.85f, 0.25f, 0.85f));
     return item;
