@@ -9,17 +9,17 @@
 //   ends      in         FindEnd, 16 bytes           of two bodies     16
 //   begins    in         FindBegin, 16 bytes         of two bodies     16
 //   candid.   in, out    FindCandidate, 8 bytes      <= 448 of a task  16
-//   contacts  out        SolveContact, 176 bytes     <= 192 of a task  16
+//   contacts  out        SolveContact, 176 bytes     <= 256 of a task  16
 //   results   out        FindResult, 16 bytes        1 of a task       16
 //
-// Candidates: cells of the two bodies are held against each other by their boxes, four at a time; then points, four at a time, against
-// parallelepipeds and a plane below the distance field. All of these bounds are widened by a margin, so that candidates serve for the
-// next steps, too. Contacts: the points of candidates against the same bounds without the margin; what is left is found by Newton's
-// iteration, four points at a time. Few points come so far.
+// Cells of the two bodies are held against each other by their boxes, four at a time; then points, four at a time, against
+// parallelepipeds and a plane below the distance field. What is near by these bounds widened by a margin is a candidate, which serves
+// for the next steps, too. What is near without the margin is looked for in the cell by Newton's iteration, four points at a time. Few
+// points come so far. Where candidates are known from a step before, the search begins with them.
 //
 // Contacts do not depend on the margin: a point that is in a cell is its candidate with any.
 //
-// Budget: 244 KB. 128 KB of bodies and their models, 33 KB of contacts, 40 KB of cells that are near, their bounds and candidates;
+// Budget: 244 KB. 148 KB of bodies and their models, 11 KB of contacts, 44 KB of cells that are near, their bounds and candidates;
 // the rest for code and 6.5 KB of stack.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
@@ -38,10 +38,11 @@ namespace {
 enum Tag : uint32_t { kTagTask = 0, kTagIn = 1, kTagOut = 2 };
 
 #ifdef SOFTCELL_CHECKED  // its code is twice as large
-constexpr uint32_t kBatch = 1, kInverses = 8;
+constexpr uint32_t kBatch = 1, kInverses = 8, kContactBatch = 8;
 #else
-constexpr uint32_t kBatch = 16;     // tasks that are fetched together
-constexpr uint32_t kInverses = 64;  // that are kept
+constexpr uint32_t kBatch = 16;         // tasks that are fetched together
+constexpr uint32_t kInverses = 64;      // that are kept
+constexpr uint32_t kContactBatch = 64;  // contacts that go to main memory together
 #endif
 constexpr uint16_t kNoCell = 0xFFFF;
 constexpr uint32_t kGroups = 4;  // of a FindCandidate
@@ -55,8 +56,11 @@ struct Part {
 struct NearCells {
   uint32_t count;
   alignas(16) float box[6][kFindMaxNear + 4];
+  vec_float4 block[kFindMaxNear / 16]
+                  [6];  // of 16 cells: lane i is around the cells i, i + 4, i + 8 and i + 12
   uint16_t cell[kFindMaxNear];
 };
+static_assert(kFindMaxNear % 16 == 0, "whole blocks");
 
 /// Of near cells, as RoughInverse, a cell to a lane: what is no farther from the three pairs of planes than a distance, and from the
 /// plane below the surface, may be in the cell.
@@ -82,16 +86,18 @@ struct alignas(128) LocalStoreMap {
   FindResult result;
   alignas(128) char bytes[kFindMaxBytes];  // model and state of a, then those of b
   Part model[2], state[2];
-  alignas(128) SolvedContact contacts[kFindMaxContacts];
-  NearCells near[2];                // of a, of b
-  RoughInverse inverse[kInverses];  // of a cell at its number modulo kInverses
-  uint16_t inverse_of[kInverses];   // whose it is
+  alignas(128) SolvedContact contacts[kContactBatch];  // found last
+  uint32_t contacts_sent;                              // before them
+  uint64_t contacts_ea;                                // of the task
+  NearCells near[2];                                   // of a, of b
+  uint16_t inverse_of[kInverses];                      // whose it is
   uint16_t meets[kFindMaxNear];
   alignas(128) FindCandidate candidates[kFindMaxCandidates];
   uint32_t candidate_count;
   union {
     alignas(16) float along[2][kFindMaxParticles];  // places of particles between the two bodies
     NearBounds bounds;                              // behind that
+    RoughInverse inverse[kInverses];  // where candidates are known: of a cell at its number modulo kInverses
   };
   uint32_t under_way;  // tag groups with transfers
 };
@@ -142,6 +148,26 @@ inline uint32_t bytes_of_candidates(uint32_t count) {
 void wait_for_all() {
   if (ls.under_way != 0) wait_for_tags(ls.under_way);
   ls.under_way = 0;
+}
+
+/// The contacts in the local store to main memory.
+void send_contacts() {
+  const uint32_t count = ls.result.count - ls.contacts_sent;
+  if (count == 0) return;
+  constexpr uint32_t kBytes = sizeof(SolvedContact);
+  static_assert(kContactBatch * kBytes <= 16384, "one command");
+  mfc_put(ls.contacts, ls.contacts_ea + ls.contacts_sent * kBytes, count * kBytes, kTagOut, 0, 0);
+  ls.under_way |= 1u << kTagOut;
+  ls.contacts_sent = ls.result.count;
+}
+
+/// Where the next contact goes.
+SolvedContact& room_for_contact() {
+  if (ls.result.count - ls.contacts_sent == kContactBatch) {
+    send_contacts();
+    wait_for_all();
+  }
+  return ls.contacts[ls.result.count - ls.contacts_sent];
 }
 
 /// A box in all lanes.
@@ -288,18 +314,42 @@ inline Bounds4 bounds_at(const At& at) {
           three(B::kLength), three(B::kSlope), at(B::kLimit),       at(B::kSteep)};
 }
 
+/// Points as a cell sees them.
+struct RoughPlaces {
+  Vector3x4 s;       // where they would be in the cell if it were a parallelepiped
+  vec_float4 above;  // what the lower plane's function says
+};
+
+inline RoughPlaces rough_places(const Bounds4& cell, const Vector3x4& point) {
+  const Vector3x4 d = difference(point, cell.middle);
+  return {{dot(cell.row1, d), dot(cell.row2, d), dot(cell.row3, d)}, dot(cell.slope, d)};
+}
+
 /// Words whose top bit is set where points cannot be in a cell and near its surface.
 /// @param distance  metres: of all that may be there from the points
-inline vec_uint4 surely_far(const Bounds4& cell, const Vector3x4& point, vec_float4 distance) {
-  const Vector3x4 d = difference(point, cell.middle);
-  const auto beyond = [&](const Vector3x4& row, vec_float4 reach, vec_float4 length)
-      __attribute__((always_inline)) {
-    return less(spu_madd(length, distance, reach), absolute(dot(row, d)));
+inline vec_uint4 surely_far(const Bounds4& cell, const RoughPlaces& places, vec_float4 distance) {
+  const auto beyond = [&](vec_float4 s, vec_float4 reach, vec_float4 length) __attribute__((always_inline)) {
+    return less(spu_madd(length, distance, reach), absolute(s));
   };
-  return spu_or(
-      spu_or(beyond(cell.row1, cell.reach.x, cell.length.x), beyond(cell.row2, cell.reach.y, cell.length.y)),
-      spu_or(beyond(cell.row3, cell.reach.z, cell.length.z),
-             less(spu_madd(cell.steep, distance, cell.limit), dot(cell.slope, d))));
+  return spu_or(spu_or(beyond(places.s.x, cell.reach.x, cell.length.x),
+                       beyond(places.s.y, cell.reach.y, cell.length.y)),
+                spu_or(beyond(places.s.z, cell.reach.z, cell.length.z),
+                       less(spu_madd(cell.steep, distance, cell.limit), places.above)));
+}
+
+/// The boxes of blocks.
+void bound_blocks(NearCells& near) {
+  for (uint32_t first = 0; first < near.count; first += 16) {
+    const uint32_t end = first + 16 < near.count ? first + 16 : near.count;
+    for (uint32_t k = 0; k < 6; ++k) {
+      vec_float4 around = *reinterpret_cast<const vec_float4*>(near.box[k] + first);
+      for (uint32_t i = first + 4; i < end; i += 4) {
+        const vec_float4 four = *reinterpret_cast<const vec_float4*>(near.box[k] + i);
+        around = k < 3 ? smaller(around, four) : larger(around, four);
+      }
+      near.block[first / 16][k] = around;
+    }
+  }
 }
 
 /// Those near cells that may hold a point of a region, ascending, to ls.meets.
@@ -307,17 +357,24 @@ inline vec_uint4 surely_far(const Bounds4& cell, const Vector3x4& point, vec_flo
 uint32_t gather_meeting(const Region& region, vec_float4 margin, const NearCells& near) {
   const vec_float4 distance = spu_add(region.radius, margin);
   uint32_t count = 0;
-  for (uint32_t i = 0; i < near.count; i += 4) {
-    const auto at = [&](uint32_t k) __attribute__((always_inline)) {
-      return *reinterpret_cast<const vec_float4*>(near.box[k] + i);
-    };
-    const vec_uint4 far = apart(region.box, at(0), at(1), at(2), at(3), at(4), at(5));
-    if (lanes_left(far) == 0) continue;
-    const Bounds4 cells = bounds_at([&](uint32_t k) __attribute__((always_inline)) {
-      return *reinterpret_cast<const vec_float4*>(ls.bounds.row[k] + i);
-    });
-    uint32_t left = lanes_left(spu_or(far, surely_far(cells, region.middle, distance)));
-    while (left != 0) ls.meets[count++] = static_cast<uint16_t>(i + take_lane(left));
+  for (uint32_t first = 0; first < near.count; first += 16) {
+    const vec_float4* const block = near.block[first / 16];
+    if (lanes_left(apart(region.box, block[0], block[1], block[2], block[3], block[4], block[5])) == 0)
+      continue;
+    const uint32_t end = first + 16 < near.count ? first + 16 : near.count;
+    for (uint32_t i = first; i < end; i += 4) {
+      const auto at = [&](uint32_t k) __attribute__((always_inline)) {
+        return *reinterpret_cast<const vec_float4*>(near.box[k] + i);
+      };
+      const vec_uint4 far = apart(region.box, at(0), at(1), at(2), at(3), at(4), at(5));
+      if (lanes_left(far) == 0) continue;
+      const Bounds4 cells = bounds_at([&](uint32_t k) __attribute__((always_inline)) {
+        return *reinterpret_cast<const vec_float4*>(ls.bounds.row[k] + i);
+      });
+      uint32_t left =
+          lanes_left(spu_or(far, surely_far(cells, rough_places(cells, region.middle), distance)));
+      while (left != 0) ls.meets[count++] = static_cast<uint16_t>(i + take_lane(left));
+    }
   }
   return count;
 }
@@ -372,6 +429,7 @@ struct FourPoints {
   Vector3x4 s, end;
   vec_float4 allowance;  // metres
   vec_float4 allowance_in_cells;
+  vec_uint4 none;  // top bit set: no point
   vec_uint4 done;  // top bit set: found in a cell, or no point
 };
 
@@ -381,17 +439,17 @@ inline void place_points(const Sides& sides, const CellMap& map, uint32_t number
   four.end = map_points(map, four.s).position;
   four.allowance = group[3];
   four.allowance_in_cells = spu_mul(group[3], sides.per_spacing);
-  four.done = less(spu_splats(0.5f * kFindNoPoint), group[3]);
+  four.none = four.done = less(spu_splats(0.5f * kFindNoPoint), group[3]);
 }
 
-/// Contacts of candidates.
+/// Contacts of points, to ls.contacts.
 class Contacts {
  public:
   Contacts(const BodyInStore& a, const BodyInStore& b, const TaskTerms& terms)
       : a_in_b_(a, b, false), b_in_a_(b, a, true), terms_(terms) {}
 
-  /// Those in ls.candidates. @return  false: there is no room
-  bool find() {
+  /// Of the candidates in ls.candidates. @return  false: there is no room
+  bool find_among_candidates() {
     const Sides* now = nullptr;  // whose inverses are there
     for (uint32_t i = 0; i < ls.candidate_count;) {
       const bool of_b = (ls.candidates[i].of_groups & kFindOfB) != 0;
@@ -399,6 +457,42 @@ class Contacts {
       if (now != &sides) forget_inverses();
       now = &sides;
       if (!find_of_cell(sides, i)) return false;
+    }
+    return true;
+  }
+
+  /// Of four points of a cell with another body's cell. @param rough  where they are in it, about
+  /// @param elsewhere  words whose top bit is set where nobody asks
+  /// @return  false: there is no room
+  __attribute__((noinline)) bool find_in_cell(const Sides& sides, uint32_t cell, uint32_t there,
+                                              FourPoints& four, const Vector3x4& rough, vec_uint4 elsewhere) {
+    const BodyInStore& other = sides.other;
+    const CellAtRest& at_rest = other.cells[there];
+    const CellMap map = in_all_lanes(deformed_cell(at_rest.corner, other.ends));
+    const FoundPlaces places = find_places(map, at_rest.least, four.end, rough, four.allowance_in_cells,
+                                           elsewhere, sides.least_volume);
+    const uint32_t left = lanes_left(places.elsewhere);
+    if (left == 0) return true;
+    four.done = spu_or(four.done, spu_andc(spu_splats(0x80000000u), places.elsewhere));
+    const vec_float4 zero = spu_splats(0.0f);
+    const auto rows = [&](const Vector3x4& v) __attribute__((always_inline)) {
+      return transpose(Rows4{v.x, v.y, v.z, zero});
+    };
+    const Rows4 own = rows(four.s), ends = rows(four.end), at = rows(places.s);
+    const Rows4 f1 = rows(places.map.f1), f2 = rows(places.map.f2), f3 = rows(places.map.f3);
+    const vec_float4 *const p_own = &own.a, *const p_end = &ends.a, *const p_at = &at.a;
+    const vec_float4 *const p1 = &f1.a, *const p2 = &f2.a, *const p3 = &f3.a;
+    for (uint32_t lane = 0; lane < 4; ++lane) {
+      if ((left & 8u >> lane) == 0) continue;
+      if (ls.result.count == kFindMaxContacts) return false;
+      const PointInCell point = {
+          cell,       there,       p_own[lane],
+          p_at[lane], p1[lane],    p2[lane],
+          p3[lane],   p_end[lane], spu_extract(four.allowance, static_cast<int>(lane))};
+      SolvedContact& contact = room_for_contact();
+      if (!make_contact(sides.mine, other, point, sides.swap, terms_, contact)) continue;
+      ++ls.result.count;
+      if (spu_extract(contact.terms, 2) > 0.0f) ls.result.pushes = 1;
     }
     return true;
   }
@@ -422,42 +516,10 @@ class Contacts {
         const Vector3x4 rough = rough_place(inverse, four.end);
         const vec_uint4 elsewhere =
             spu_or(four.done, surely_elsewhere(inverse, rough, four.allowance_in_cells));
-        if (lanes_left(elsewhere) != 0 && !find_in_cell(sides, candidate, inverse, four, rough, elsewhere))
+        if (lanes_left(elsewhere) != 0 &&
+            !find_in_cell(sides, candidate.cell, candidate.other, four, rough, elsewhere))
           return false;
       }
-    }
-    return true;
-  }
-
-  __attribute__((noinline)) bool find_in_cell(const Sides& sides, const FindCandidate& candidate,
-                                              const RoughInverse4& inverse, FourPoints& four,
-                                              const Vector3x4& rough, vec_uint4 elsewhere) {
-    const BodyInStore& other = sides.other;
-    const CellMap map = in_all_lanes(deformed_cell(other.cells[candidate.other].corner, other.ends));
-    const FoundPlaces places =
-        find_places(map, inverse, four.end, rough, four.allowance_in_cells, elsewhere, sides.least_volume);
-    const uint32_t left = lanes_left(places.elsewhere);
-    if (left == 0) return true;
-    four.done = spu_or(four.done, spu_andc(spu_splats(0x80000000u), places.elsewhere));
-    const vec_float4 zero = spu_splats(0.0f);
-    const auto rows = [&](const Vector3x4& v) __attribute__((always_inline)) {
-      return transpose(Rows4{v.x, v.y, v.z, zero});
-    };
-    const Rows4 own = rows(four.s), ends = rows(four.end), at = rows(places.s);
-    const Rows4 f1 = rows(places.map.f1), f2 = rows(places.map.f2), f3 = rows(places.map.f3);
-    const vec_float4 *const p_own = &own.a, *const p_end = &ends.a, *const p_at = &at.a;
-    const vec_float4 *const p1 = &f1.a, *const p2 = &f2.a, *const p3 = &f3.a;
-    for (uint32_t lane = 0; lane < 4; ++lane) {
-      if ((left & 8u >> lane) == 0) continue;
-      if (ls.result.count == kFindMaxContacts) return false;
-      const PointInCell point = {
-          candidate.cell, candidate.other, p_own[lane],
-          p_at[lane],     p1[lane],        p2[lane],
-          p3[lane],       p_end[lane],     spu_extract(four.allowance, static_cast<int>(lane))};
-      SolvedContact& contact = ls.contacts[ls.result.count];
-      if (!make_contact(sides.mine, other, point, sides.swap, terms_, contact)) continue;
-      ++ls.result.count;
-      if (spu_extract(contact.terms, 2) > 0.0f) ls.result.pushes = 1;
     }
     return true;
   }
@@ -466,8 +528,8 @@ class Contacts {
   const TaskTerms& terms_;
 };
 
-/// What is known of candidates: all are in ls.candidates, or some have made room already.
-enum class Candidates { kThere, kUsed, kTooMany };
+/// What is known of candidates: all are in ls.candidates; nobody wants them, or they do not fit; there was no room to look for them.
+enum class Candidates { kThere, kNotKept, kTooMany };
 
 /// Of four near cells to ls.bounds.
 void bound_four(const Sides& sides, const NearCells& near, uint32_t first) {
@@ -513,22 +575,24 @@ void bound_four(const Sides& sides, const NearCells& near, uint32_t first) {
   *reinterpret_cast<vec_float4*>(ls.bounds.row[B::kSteep] + first) = rows.d;
 }
 
-/// Candidates of one body's points in the other body.
+/// One body's points in the other body: candidates and contacts.
 class Direction {
  public:
-  /// @param contacts  finds contacts of those that make room
-  Direction(const Sides& sides, const NearCells& near_mine, const NearCells& near_other, float margin,
+  /// @param margin  metres, of candidates
+  Direction(const Sides& sides, const NearCells& near_mine, NearCells& near_other, float margin,
             Contacts& contacts, Candidates& candidates)
       : sides_(sides),
         near_mine_(near_mine),
         near_other_(near_other),
         // Rounding must not make a difference.
-        margin_(spu_splats(margin + 0x1.a36e2ep-14f * sides.other.spacing)),  // 1e-4
+        rounding_(spu_splats(0x1.a36e2ep-14f * sides.other.spacing)),  // 1e-4
+        margin_(spu_add(spu_splats(margin), rounding_)),
         contacts_(contacts),
         candidates_(candidates) {}
 
   /// @return  false: there is no room for contacts
   bool find() {
+    bound_blocks(near_other_);
     for (uint32_t i = 0; i < near_other_.count; i += 4) bound_four(sides_, near_other_, i);
     for (uint32_t i = 0; i < near_mine_.count; ++i)
       if (!try_cell(near_mine_.cell[i])) return false;
@@ -547,12 +611,9 @@ class Direction {
       const uint32_t count = end - first < kGroups ? end - first : kGroups;
       for (uint32_t i = 0; i < count; ++i) place_points(sides_, map, first + i, points[i]);
       const uint32_t meets = gather_meeting(region_of(points, count), margin_, near_other_);
-      if (ls.candidate_count + meets > kFindMaxCandidates) {
-        candidates_ = Candidates::kUsed;
-        if (!contacts_.find()) return false;
-        ls.candidate_count = 0;
-      }
-      for (uint32_t i = 0; i < meets; ++i) try_points(cell, ls.meets[i], first, points, count);
+      if (ls.candidate_count + meets > kFindMaxCandidates) candidates_ = Candidates::kNotKept;
+      for (uint32_t i = 0; i < meets; ++i)
+        if (!try_points(cell, ls.meets[i], first, points, count)) return false;
     }
     return true;
   }
@@ -578,50 +639,57 @@ class Direction {
     return region;
   }
 
-  void try_points(uint32_t cell, uint32_t near_index, uint32_t first, const FourPoints* points,
-                  uint32_t count) {
+  bool try_points(uint32_t cell, uint32_t near_index, uint32_t first, FourPoints* points, uint32_t count) {
     const BodyInStore &mine = sides_.mine, &other = sides_.other;
     const uint32_t there = near_other_.cell[near_index];
-    if (&mine == &other && belong_together(mine.cells[cell], other.cells[there])) return;
+    if (&mine == &other && belong_together(mine.cells[cell], other.cells[there])) return true;
     const Bounds4 bounds = bounds_at([&](uint32_t k) __attribute__((always_inline)) {
       return spu_splats(ls.bounds.row[k][near_index]);
     });
     const vec_float4 half = spu_splats(0.5f);
     uint32_t of_groups = 0;
     for (uint32_t i = 0; i < count; ++i) {
-      const FourPoints& four = points[i];
-      Bounds4 allowing = bounds;
-      allowing.limit = spu_nmsub(four.allowance_in_cells, half, bounds.limit);
-      const vec_uint4 far = spu_or(four.done, surely_far(allowing, four.end, margin_));
-      if (lanes_left(far) != 0) of_groups |= 1u << i;
+      FourPoints& four = points[i];
+      RoughPlaces places = rough_places(bounds, four.end);
+      places.above = spu_madd(four.allowance_in_cells, half, places.above);
+      if (lanes_left(spu_or(four.none, surely_far(bounds, places, margin_))) == 0) continue;
+      of_groups |= 1u << i;
+      const vec_uint4 elsewhere = spu_or(four.done, surely_far(bounds, places, rounding_));
+      if (lanes_left(elsewhere) != 0 &&
+          !contacts_.find_in_cell(sides_, cell, there, four, places.s, elsewhere))
+        return false;
     }
-    if (of_groups == 0) return;
+    if (of_groups == 0 || candidates_ != Candidates::kThere) return true;
     ls.candidates[ls.candidate_count++] = {
         static_cast<uint16_t>(cell), static_cast<uint16_t>(there), static_cast<uint16_t>(first),
         static_cast<uint16_t>(sides_.swap ? of_groups | kFindOfB : of_groups)};
+    return true;
   }
 
   const Sides& sides_;
-  const NearCells &near_mine_, &near_other_;
-  vec_float4 margin_;  // metres
+  const NearCells& near_mine_;
+  NearCells& near_other_;
+  vec_float4 rounding_, margin_;  // metres
   Contacts& contacts_;
   Candidates& candidates_;
 };
 
-/// To ls.candidates; contacts of those that do not fit to ls.contacts.
+/// Contacts to ls.contacts, candidates to ls.candidates.
 /// @return  false: there is no room for contacts
-bool find_candidates(const BodyInStore& a, const BodyInStore& b, const FindTask& task, float margin,
-                     Contacts& contacts, Candidates& candidates) {
+bool find_anew(const BodyInStore& a, const BodyInStore& b, const FindTask& task, float margin,
+               Contacts& contacts, Candidates& candidates) {
   const vec_float4 wide = only_xyz(spu_splats(margin));
   const vec_float4 low = spu_sub(*reinterpret_cast<const vec_float4*>(task.low), wide);
   const vec_float4 high = spu_add(*reinterpret_cast<const vec_float4*>(task.high), wide);
   const BoxInAllLanes box = {in_all_lanes(low), in_all_lanes(high)};
   NearCells &near_a = ls.near[0], &near_b = ls.near[1];
   BoxInAllLanes around_a, around_b;
+  const Candidates kept = margin > 0.0f ? Candidates::kThere : Candidates::kNotKept;
   candidates = Candidates::kTooMany;
+  ls.candidate_count = 0;
   if (task.itself != 0) {
     if (!gather_near(a, {box, nullptr, 0, 0}, near_a, around_a)) return true;
-    candidates = Candidates::kThere;
+    candidates = kept;
     const Sides itself(a, a, false);
     return Direction(itself, near_a, near_a, margin, contacts, candidates).find();
   }
@@ -642,7 +710,7 @@ bool find_candidates(const BodyInStore& a, const BodyInStore& b, const FindTask&
                      near_b, around_b))
       return true;
   }
-  candidates = Candidates::kThere;
+  candidates = kept;
   if (near_a.count == 0) return true;
   const Sides a_in_b(a, b, false), b_in_a(b, a, true);
   return Direction(a_in_b, near_a, near_b, margin, contacts, candidates).find() &&
@@ -656,25 +724,23 @@ bool find_between(const BodyInStore& a, const BodyInStore& b, const FindTask& ta
   ls.result.candidate_count = task.candidate_count;
   if (task.candidate_count != kFindUnknown) {
     ls.candidate_count = task.candidate_count;
-    return contacts.find();
+    return contacts.find_among_candidates();
   }
   Candidates candidates;
-  bool is_wanted = task.candidates_ea != 0;
-  ls.candidate_count = 0;
-  if (!find_candidates(a, b, task, task.margin, contacts, candidates)) return false;
-  if (candidates == Candidates::kTooMany && task.margin > 0.0f) {
-    is_wanted = false;
-    if (!find_candidates(a, b, task, 0.0f, contacts, candidates)) return false;
-  }
+  if (!find_anew(a, b, task, task.candidates_ea != 0 ? task.margin : 0.0f, contacts, candidates))
+    return false;
+  if (candidates == Candidates::kTooMany && task.margin > 0.0f &&
+      !find_anew(a, b, task, 0.0f, contacts, candidates))
+    return false;
   if (candidates == Candidates::kTooMany) return false;
-  if (candidates == Candidates::kThere && is_wanted) {
+  if (candidates == Candidates::kThere) {
     ls.result.candidate_count = ls.candidate_count;
     if (ls.candidate_count != 0) {
       put_large(ls.candidates, task.candidates_ea, bytes_of_candidates(ls.candidate_count), kTagOut);
       ls.under_way |= 1u << kTagOut;
     }
   }
-  return contacts.find();
+  return true;
 }
 
 bool do_task(const FindTask& task) {
@@ -706,11 +772,12 @@ bool do_task(const FindTask& task) {
   const BodyInStore b = itself ? a : body_in_store(one_model ? 0 : model_b, state_b, task.b);
   const TaskTerms terms = {task.step, task.inverse_step, task.friction, task.a.spacing};
   ls.result = {0, 0, 0, kFindUnknown};
-  if (!find_between(a, b, task, terms)) ls.result = {0, 0, 1, kFindUnknown};
-  if (ls.result.count == 0) return true;
-  put_large(ls.contacts, task.contacts_ea, ls.result.count * static_cast<uint32_t>(sizeof(SolvedContact)),
-            kTagOut);
-  ls.under_way |= 1u << kTagOut;
+  ls.contacts_ea = task.contacts_ea;
+  ls.contacts_sent = 0;
+  if (find_between(a, b, task, terms))
+    send_contacts();
+  else
+    ls.result = {0, 0, 1, kFindUnknown};
   return true;
 }
 

@@ -96,11 +96,11 @@ struct alignas(16) FindResult {
 };
 constexpr uint32_t kFindUnknown = 0xFFFFFFFFu;
 
-constexpr uint32_t kFindMaxContacts = 192;  ///< of a task
+constexpr uint32_t kFindMaxContacts = 256;  ///< of a task
 /// Most bytes of a task: of its two models, or one, and of its bodies.
-constexpr uint32_t kFindMaxBytes = 131072;
+constexpr uint32_t kFindMaxBytes = 151552;
 constexpr uint32_t kFindMaxParticles = 1024;
-constexpr uint32_t kFindMaxNear = 192;  ///< cells of one body that are near another body
+constexpr uint32_t kFindMaxNear = 240;  ///< cells of one body that are near another body
 constexpr uint32_t kFindMaxCandidates = 448;
 
 /// Bytes of FindBody::state_ea.

@@ -161,19 +161,21 @@ struct FoundPlaces {
 /// What is near in cells of any shape; exact distances are taken later.
 constexpr float kNearInField = 0x1.99999ap-5f;  // 0.05
 
+/// @param least      of the cell, as FindCell
 /// @param elsewhere  words whose top bit is set where nobody asks
-inline FoundPlaces find_places(const CellMap& cell, const RoughInverse4& inverse, const Vector3x4& point,
-                               Vector3x4 s, vec_float4 allowance_in_cells, vec_uint4 elsewhere,
-                               float least_volume) {
+inline FoundPlaces find_places(const CellMap& cell, vec_float4 least, const Vector3x4& point, Vector3x4 s,
+                               vec_float4 allowance_in_cells, vec_uint4 elsewhere, float least_volume) {
   constexpr int kIterations = 3;
-  const vec_float4 least = spu_splats(least_volume), near = spu_splats(kNearInField);
+  const vec_float4 flattest = spu_splats(least_volume), near = spu_splats(kNearInField);
+  const Vector3x4 slope = in_all_lanes(least);
+  const vec_float4 at_middle = splat_lane<3>(least);
   MappedPoints map;
   for (int i = 0; i < kIterations; ++i) {
     map = map_points(cell, s);
     const Vector3x4 c1 = cross(map.f2, map.f3);
     const vec_float4 volume = dot(map.f1, c1);
-    elsewhere = spu_or(elsewhere, less(volume, least));
-    const vec_float4 by = reciprocal(larger(volume, least));
+    elsewhere = spu_or(elsewhere, less(volume, flattest));
+    const vec_float4 by = reciprocal(larger(volume, flattest));
     const Vector3x4 d = difference(point, map.position);
     s.x = spu_madd(dot(c1, d), by, s.x);
     s.y = spu_madd(dot(cross(map.f3, map.f1), d), by, s.y);
@@ -181,10 +183,9 @@ inline FoundPlaces find_places(const CellMap& cell, const RoughInverse4& inverse
     // One step is right to the square of the bend. Many points need no other.
     const vec_float4 reach = spu_splats(i == 0 ? 0x1.333334p-1f : 0.501f);               // 0.6
     const vec_float4 limit = i == 0 ? spu_add(near, spu_splats(0x1.99999ap-5f)) : near;  // 0.05
-    elsewhere = spu_or(
-        spu_or(elsewhere, less(reach, absolute(s.x))),
-        spu_or(spu_or(less(reach, absolute(s.y)), less(reach, absolute(s.z))),
-               less(limit, least_field(inverse.least, inverse.least_at_middle, s, allowance_in_cells))));
+    elsewhere = spu_or(spu_or(elsewhere, less(reach, absolute(s.x))),
+                       spu_or(spu_or(less(reach, absolute(s.y)), less(reach, absolute(s.z))),
+                              less(limit, least_field(slope, at_middle, s, allowance_in_cells))));
     if (spu_extract(spu_gather(spu_rlmask(elsewhere, -31)), 0) == 15u) break;
   }
   return {s, map, elsewhere};
