@@ -177,6 +177,7 @@ void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   erase_naming(root, "attach", {"body", "to"}, name);
   erase_naming(root, "impulse", {"body"}, name);
   erase_naming(root, "drag", {"body"}, name);
+  erase_naming(root, "cut", {"body"}, name);
   scene.document = std::move(document);
   scene.soft_bodies.erase(scene.soft_bodies.begin() + static_cast<std::ptrdiff_t>(body));
   erase_of_body(scene.script.impulses, body);

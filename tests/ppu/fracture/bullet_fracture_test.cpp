@@ -3,6 +3,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <vector>
 
 #include "../contacts/contact_world.h"
 #include "fracture_checks.h"

@@ -1,9 +1,14 @@
 // Bodies that fall into pieces: what hangs together, what is drawn, and what is kept.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <random>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "fracture_checks.h"
 #include "ppu/bodies/break_body.h"
