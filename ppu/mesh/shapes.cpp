@@ -149,8 +149,8 @@ struct ProfilePoint {
   double radius, height;
 };
 
-/// A closed surface of revolution about the y axis. The profile runs upwards; its first and last radius are
-/// 0.
+/// A closed surface of revolution about the y axis. The profile has the solid on its left, and begins and ends on the axis, with a
+/// radius of 0.
 Surface revolve(std::span<const ProfilePoint> profile, int segments) {
   Surface surface;
   const std::size_t rings = profile.size() - 2;
@@ -426,6 +426,34 @@ TriangleMesh make_capsule(float radius, float height, int segments) {
   for (int i = rings; i >= 1; --i)
     profile.push_back({r * sine(kPi / 2 * i / rings), middle + r * cosine(kPi / 2 * i / rings)});
   profile.push_back({0, middle + r});
+  return smooth_mesh(revolve(profile, segments));
+}
+
+TriangleMesh make_vase(float height, int segments) {
+  require_length(height, "a vase's height");
+  require_count(segments, 3, 2048, "a vase's segments");
+  // Radius and height in shares of the height: up the outside, over the rim and down the inside.
+  constexpr std::array<std::array<double, 2>, 18> kProfile{{{0, -0.5},
+                                                            {0.15, -0.5},
+                                                            {0.165, -0.47},
+                                                            {0.21, -0.36},
+                                                            {0.25, -0.22},
+                                                            {0.262, -0.08},
+                                                            {0.24, 0.08},
+                                                            {0.185, 0.22},
+                                                            {0.145, 0.34},
+                                                            {0.15, 0.43},
+                                                            {0.19, 0.49},
+                                                            {0.18, 0.5},
+                                                            {0.105, 0.43},
+                                                            {0.085, 0.32},
+                                                            {0.13, 0.17},
+                                                            {0.178, -0.06},
+                                                            {0.14, -0.36},
+                                                            {0, -0.4}}};
+  std::vector<ProfilePoint> profile;
+  for (const auto& [radius, at] : kProfile)
+    profile.push_back({radius * static_cast<double>(height), at * static_cast<double>(height)});
   return smooth_mesh(revolve(profile, segments));
 }
 

@@ -68,7 +68,8 @@ SkinOrchestrator::~SkinOrchestrator() {
   frame_.reset();  // which waits, while the bodies' memory is still there
 }
 
-std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
+auto SkinOrchestrator::make_body(std::shared_ptr<const Embedding> embedding, std::size_t particles)
+    -> std::unique_ptr<Body> {
   SC_ASSERT(embedding != nullptr && particles > 0, "a body of {} particles {} an embedding", particles,
             embedding ? "with" : "without");
   SC_ASSERT(!embedding->groups.empty(), "a body of {} particles without a mesh", particles);
@@ -83,8 +84,6 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
     known = models_.insert(models_.end(), std::move(model));
   }
   const Embedding& shared = *(*known)->embedding;
-  drain();
-  frame_.reset();
   auto body = std::make_unique<Body>();
   body->model = known->get();
   for (Body::Half& half : body->half) {
@@ -94,9 +93,32 @@ std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, st
     half.vertices =
         dma::Buffer<SkinnedVertex>(memory_, "skinned vertices", 4 * shared.groups.size(), kOutput);
   }
-  bodies_.push_back(std::move(body));
-  jobs_per_frame_ += shared.parts.size();
+  return body;
+}
+
+std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
+  drain();
+  frame_.reset();
+  bodies_.push_back(make_body(std::move(embedding), particles));
+  jobs_per_frame_ += bodies_.back()->model->embedding->parts.size();
   return bodies_.size() - 1;
+}
+
+void SkinOrchestrator::replace(std::size_t body, std::shared_ptr<const Embedding> embedding,
+                               std::size_t particles) {
+  SC_ASSERT(body < bodies_.size(), "body {} of {}", body, bodies_.size());
+  drain();
+  frame_.reset();
+  std::unique_ptr<Body> other = make_body(std::move(embedding), particles);
+  bodies_[body].swap(other);
+  jobs_per_frame_ += bodies_[body]->model->embedding->parts.size();
+  jobs_per_frame_ -= other->model->embedding->parts.size();
+  forget_unused(*other->model);
+}
+
+void SkinOrchestrator::forget_unused(const Model& model) {
+  if (std::none_of(bodies_.begin(), bodies_.end(), [&](const auto& body) { return body->model == &model; }))
+    std::erase_if(models_, [&](const auto& known) { return known.get() == &model; });
 }
 
 void SkinOrchestrator::remove(std::size_t body) {
@@ -113,8 +135,7 @@ void SkinOrchestrator::remove(std::size_t body) {
   jobs_per_frame_ -= bodies_[body]->model->embedding->parts.size();
   const Model* const model = bodies_[body]->model;
   bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(body));
-  if (std::none_of(bodies_.begin(), bodies_.end(), [&](const auto& other) { return other->model == model; }))
-    std::erase_if(models_, [&](const auto& known) { return known.get() == model; });
+  forget_unused(*model);
   if (failure) std::rethrow_exception(failure);
 }
 

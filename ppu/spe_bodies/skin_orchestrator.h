@@ -45,6 +45,10 @@ class SkinOrchestrator {
   /// bodies that share the embedding. @throws std::runtime_error  when main memory is full.
   std::size_t add(std::shared_ptr<const Embedding> embedding, std::size_t particles);
 
+  /// Waits for the frame under way and gives a body, which has broken, another embedding. It has no vertices before its next frame.
+  /// @pre the body was added. @throws std::runtime_error  as add() and kick()
+  void replace(std::size_t body, std::shared_ptr<const Embedding> embedding, std::size_t particles);
+
   /// Waits for the frame under way and takes a body out; those behind it count one less from now on.
   /// @pre the body was added. @throws std::runtime_error  as kick(); the body is taken out all the same.
   void remove(std::size_t body);
@@ -68,6 +72,8 @@ class SkinOrchestrator {
   struct Body;   // a body's two halves
   struct Frame;  // a chain for each half
 
+  std::unique_ptr<Body> make_body(std::shared_ptr<const Embedding> embedding, std::size_t particles);
+  void forget_unused(const Model& model);
   void make_frame();
   JobChain* chain_under_way();
   bool collect();

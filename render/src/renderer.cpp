@@ -263,10 +263,11 @@ struct Renderer::State {
   GlObject empty_layout;  ///< for the background, which has no vertices
   std::unique_ptr<Programs> programs;
   std::unique_ptr<MaterialPainter> materials;
-  std::unique_ptr<OverlayPainter> overlay;  ///< made when it is first asked for
-  std::unique_ptr<CellSkinner> skinner;     ///< likewise
-  std::unique_ptr<Painter2d> painter_2d;    ///< likewise
-  std::vector<MeshBuffers> skinned;
+  std::unique_ptr<OverlayPainter> overlay;          ///< made when it is first asked for
+  std::unique_ptr<CellSkinner> skinner;             ///< likewise
+  std::unique_ptr<Painter2d> painter_2d;            ///< likewise
+  std::vector<std::optional<MeshBuffers>> skinned;  // none: removed
+  std::vector<std::uint32_t> removed;               // numbers in it
   std::uint64_t uploaded_bytes = 0;
   std::vector<MeshBuffers> statics;
   std::vector<GlObject> textures;
@@ -463,19 +464,26 @@ TriangleRange Renderer::State::triangles_to_draw(const StaticDraw& item) const {
 }
 
 MeshId Renderer::State::add(MeshBuffers buffers) {
-  skinned.push_back(std::move(buffers));
+  if (!removed.empty()) {
+    const std::uint32_t number = removed.back();
+    removed.pop_back();
+    skinned[number].emplace(std::move(buffers));
+    return {number};
+  }
+  skinned.emplace_back(std::move(buffers));
   return {static_cast<std::uint32_t>(skinned.size() - 1)};
 }
 
 void Renderer::State::filled(MeshId id, std::size_t bytes) {
-  SC_ASSERT(id.value < skinned.size(), "mesh {} of {}", id, skinned.size());
-  skinned[id.value].filled = true;
+  SC_ASSERT(id.value < skinned.size() && skinned[id.value], "mesh {} of {}", id, skinned.size());
+  skinned[id.value]->filled = true;
   uploaded_bytes += bytes;
 }
 
 const MeshBuffers& Renderer::State::mesh(MeshId id) const {
-  if (id.value >= skinned.size()) throw std::invalid_argument("no mesh " + std::to_string(id.value));
-  return skinned[id.value];
+  if (id.value >= skinned.size() || !skinned[id.value])
+    throw std::invalid_argument("no mesh " + std::to_string(id.value));
+  return *skinned[id.value];
 }
 
 const MeshBuffers& Renderer::State::mesh(StaticMeshId id) const {
@@ -750,6 +758,14 @@ MeshId Renderer::add_mesh(std::span<const std::uint32_t> indices) {
   return state.add(state.make_skinned_mesh(indices));
 }
 
+void Renderer::remove_mesh(MeshId id) {
+  State& state = *state_;
+  state.mesh(id);
+  state.context.make_current();
+  state.skinned[id.value].reset();
+  state.removed.push_back(id.value);
+}
+
 void Renderer::update_mesh(MeshId id, std::span<const std::byte> vertices) {
   State& state = *state_;
   const MeshBuffers& buffers = state.mesh(id);
@@ -824,7 +840,7 @@ constexpr char kCoordinates[] = "texture coordinates", kVertexColours[] = "verte
 
 void Renderer::set_texture_coordinates(MeshId id, std::span<const Eigen::Vector2f> coordinates) {
   state_->mesh(id);
-  MeshBuffers& buffers = state_->skinned[id.value];
+  MeshBuffers& buffers = *state_->skinned[id.value];
   state_->set_attribute(buffers, buffers.texture_coordinates, kTextureAttribute, coordinates, kCoordinates);
 }
 
@@ -836,7 +852,7 @@ void Renderer::set_texture_coordinates(StaticMeshId id, std::span<const Eigen::V
 
 void Renderer::set_vertex_colours(MeshId id, std::span<const Eigen::Vector4f> colours) {
   state_->mesh(id);
-  MeshBuffers& buffers = state_->skinned[id.value];
+  MeshBuffers& buffers = *state_->skinned[id.value];
   state_->set_attribute(buffers, buffers.colours, kColourAttribute, colours, kVertexColours);
 }
 
@@ -888,7 +904,7 @@ void Renderer::set_rest_shape(MeshId id, std::span<const Eigen::Vector3f> positi
                                 std::to_string(needed) + " vertices");
   }
   state.context.make_current();
-  state.add_levels(state.skinned[id.value], positions, normals);
+  state.add_levels(*state.skinned[id.value], positions, normals);
 }
 
 std::uint64_t Renderer::uploaded_bytes() const { return state_->uploaded_bytes; }

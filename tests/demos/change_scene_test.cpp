@@ -205,19 +205,24 @@ TEST_F(ChangeScene, RemovesWhatTheScriptDoesToABody) {
             "shape = { kind = \"box\" }\nposition = [3, 0, 0]\n"
             "[[impulse]]\ntime = 9\nbody = \"body 1\"\nvelocity = [1, 0, 0]\n"
             "[[impulse]]\ntime = 1\nbody = \"body 2\"\nvelocity = [0, 0, 2]\n"
-            "[[drag]]\nbegin = 1\nend = 2\nbody = \"body 1\"\nfrom = [0, 0, 0]\nto = [1, 1, 1]\n"));
+            "[[drag]]\nbegin = 1\nend = 2\nbody = \"body 1\"\nfrom = [0, 0, 0]\nto = [1, 1, 1]\n"
+            "[[cut]]\ntime = 1\nbody = \"body 1\"\npoint = [0, 0, 0]\nnormal = [1, 0, 0]\n"
+            "[[cut]]\ntime = 8\nbody = \"body 2\"\npoint = [3, 0, 0]\nnormal = [1, 0, 0]\n"));
   const Simulation3d run(scene, {.spes = 1});
   Scene less = scene_now(scene, present(run));
   remove_body(less, 0);
   ASSERT_EQ(less.script.impulses.size(), 1u);
   EXPECT_EQ(less.script.impulses[0].body, 0u);
   EXPECT_TRUE(less.script.drags.empty());
+  ASSERT_EQ(less.cuts.size(), 1u);
+  EXPECT_EQ(less.cuts[0].body, 0u);
   EXPECT_EQ(less.soft_bodies[0].name, "body 2");
   const Simulation3d again(less, {.spes = 1});
   write_scene_files(saved_scene(less, present(again), less.camera, again.contacts(), folder_ / "saved.toml"));
   const Scene loaded = load_scene_3d(folder_ / "saved.toml");
   EXPECT_EQ(loaded.soft_bodies.at(0).name, "body 2");
   EXPECT_EQ(loaded.script.impulses.size(), 1u);
+  EXPECT_EQ(loaded.cuts.size(), 1u);
 }
 
 TEST_F(ChangeScene, CanBeSaved) {

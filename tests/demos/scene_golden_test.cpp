@@ -65,6 +65,10 @@ INSTANTIATE_TEST_SUITE_P(ScenesToShow, SceneGolden,
                                          Moment{"pillows", 46}, Moment{"ragdoll", 60}, Moment{"rollers", 75},
                                          Moment{"trampoline", 60}, Moment{"tyres", 140}));
 
+INSTANTIATE_TEST_SUITE_P(Fracture, SceneGolden,
+                         testing::Values(Moment{"break", 42}, Moment{"break", 100}, Moment{"cut", 75},
+                                         Moment{"cut", 230}));
+
 INSTANTIATE_TEST_SUITE_P(Materials, SceneGolden,
                          testing::Values(Moment{"painted", 1}, Moment{"painted", 55}));
 

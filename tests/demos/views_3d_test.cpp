@@ -185,7 +185,7 @@ TEST(RotationAxes, AreThoseOfTheBodyThatWasTurned) {
     bodies[0].particles.push_back({x.x(), x.y(), x.z(), 0});
   }
   RotationAxes rotations;
-  rotations.add_body(model->plan());
+  rotations.set_bodies({model->plan()});
   for (int again = 0; again < 2; ++again) {  // the second time instead of the first, not after it
     rotations.update(bodies);
     for (int axis = 0; axis < 3; ++axis) {

@@ -52,7 +52,10 @@ class SceneDemo : public Demo {
     return times;
   }
   std::optional<PickedParticle> picked() const override {
-    if (!picked_) return std::nullopt;
+    // What it was of may have broken.
+    if (!picked_ || picked_->body >= simulation_.soft_bodies() ||
+        picked_->particle >= simulation_.soft_body(picked_->body).positions().size())
+      return std::nullopt;
     return picked_particle(simulation_.soft_body(picked_->body), static_cast<std::uint32_t>(picked_->body),
                            static_cast<std::uint32_t>(picked_->particle));
   }
@@ -81,7 +84,7 @@ class SceneDemo : public Demo {
   }
   std::vector<BodyMaterial> materials() const override {
     std::vector<BodyMaterial> materials;
-    for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b)
+    for (std::size_t b = 0; b < scene_.soft_bodies.size(); ++b)
       materials.push_back(
           material_of(scene_.soft_bodies[b].name, simulation_.soft_body(b).settings(), settings().substep));
     return materials;
@@ -106,7 +109,7 @@ class SceneDemo : public Demo {
   /// The materials as they are now, which may be others than those of the scene.
   std::vector<ppu::SoftBodySettings> settings_of_bodies() const {
     std::vector<ppu::SoftBodySettings> all;
-    for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b)
+    for (std::size_t b = 0; b < scene_.soft_bodies.size(); ++b)
       all.push_back(simulation_.soft_body(b).settings());
     return all;
   }

@@ -124,6 +124,7 @@ class Controls {
   const Vector& gravity() const { return gravity_; }           ///< m/s^2
   const std::optional<Vector>& tilt() const { return tilt_; }  ///< radians; none: as the scene has it
   const Hands<Dimension>& hands() const { return hands_; }
+  void forget_body(std::size_t body) { hands_.forget_body(body); }  ///< as Hands
   bool paused() const { return paused_; }
 
  private:

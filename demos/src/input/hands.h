@@ -56,6 +56,10 @@ class Hands {
     std::erase_if(held_, [hand](const Held& held) { return held.hand == hand; });
   }
   void release_all() { held_.clear(); }
+  /// The body has broken, or is gone: its particles are others.
+  void forget_body(std::size_t body) {
+    std::erase_if(held_, [body](const Held& held) { return held.body == body; });
+  }
 
   /// A particle that is held, and `target`, where the hand is.
   struct Held {

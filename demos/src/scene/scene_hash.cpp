@@ -71,9 +71,13 @@ class Hash {
     if (fracture) add('b', fracture->stretch, fracture->turn);
   }
   void add(const SoftBodyPlacement& body) {
-    const auto& [name, mesh, settings, position, twist, colour, own_materials] = body;
+    const auto& [name, mesh, settings, position, twist, colour, own_materials, strengths] = body;
     add(mesh, settings, position);
     add_unless(twist, 0.0f);
+    for (const StrengthSlab& slab : strengths) {
+      const auto& [point, normal, thickness, strength] = slab;
+      add('s', point, normal, thickness, strength);
+    }
   }
   void add(const RigidBox& box) {
     const auto& [size, mass, position, rotation, colour, opacity, pattern, wall] = box;
@@ -153,8 +157,8 @@ class Hash {
 
 std::uint64_t scene_hash(const Scene& scene) {
   const auto& [name, title, soft_bodies, boxes, obstacles, rigid_bodies, joints, attachments, tilt, gravity,
-               friction, restitution, substeps, contacts, frames, camera, light, script, pictures, files,
-               notes, begin, document] = scene;
+               friction, restitution, substeps, contacts, frames, camera, light, script, cuts, pictures,
+               files, notes, begin, document] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
@@ -163,6 +167,8 @@ std::uint64_t scene_hash(const Scene& scene) {
   if (!rigid_bodies.empty()) hash.add('r', rigid_bodies);
   if (!joints.empty()) hash.add('j', joints);
   if (begin) hash.add('b', *begin);
+  for (const ScriptedCut& cut : cuts)
+    hash.add('c', cut.time, cut.body, cut.where.corner, cut.where.along, cut.where.across, cut.where.has_end);
   return hash.value();
 }
 

@@ -149,16 +149,28 @@ FieldReader& FieldReader::text(std::string_view key, std::string& out, Need need
   return *this;
 }
 
-FieldReader& FieldReader::colour(std::string_view key, render::Colour& out) {
+std::optional<std::uint32_t> FieldReader::read_colour(std::string_view key) {
   const Value* value = field(key);
-  if (value == nullptr) return *this;
+  if (value == nullptr) return std::nullopt;
   const auto* given = std::get_if<std::string>(&value->data);
   const auto is_hex = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
   if (given == nullptr || given->size() != 7 || given->front() != '#' ||
       !std::all_of(given->begin() + 1, given->end(), is_hex)) {
     refuse(key, *value, "a colour, such as \"#D26A35\"");
   }
-  out = render::srgb(static_cast<std::uint32_t>(std::stoul(given->substr(1), nullptr, 16)));
+  return static_cast<std::uint32_t>(std::stoul(given->substr(1), nullptr, 16));
+}
+
+FieldReader& FieldReader::colour(std::string_view key, render::Colour& out) {
+  if (const auto rrggbb = read_colour(key)) out = render::srgb(*rrggbb);
+  return *this;
+}
+
+FieldReader& FieldReader::painted_colour(std::string_view key, std::optional<Eigen::Vector3f>& out) {
+  const auto rrggbb = read_colour(key);
+  if (!rrggbb) return *this;
+  out.emplace();
+  for (int i = 0; i < 3; ++i) (*out)[i] = static_cast<float>(*rrggbb >> (16 - 8 * i) & 0xFFu) / 255.0f;
   return *this;
 }
 

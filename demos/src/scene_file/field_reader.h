@@ -48,6 +48,8 @@ class FieldReader {
   FieldReader& flag(std::string_view key, bool& out);
   FieldReader& text(std::string_view key, std::string& out, Need need = Need::kOptional);
   FieldReader& colour(std::string_view key, render::Colour& out);  ///< "#RRGGBB" as painting programs have it
+  /// The same, as painting programs have it: not in linear light.
+  FieldReader& painted_colour(std::string_view key, std::optional<Eigen::Vector3f>& out);
 
   template <int N>
   FieldReader& vector(std::string_view key, Eigen::Matrix<float, N, 1>& out, Range range,
@@ -78,6 +80,7 @@ class FieldReader {
 
  private:
   const Value* find(std::string_view key) const;
+  std::optional<std::uint32_t> read_colour(std::string_view key);  ///< 0xRRGGBB
   bool read_numbers(std::string_view key, std::span<float> out, Range range, Need need);
   [[noreturn]] void refuse(std::string_view key, const Value& value, const std::string& expected) const;
 

@@ -8,6 +8,7 @@
 
 #include "ppu/matching/regions.h"
 #include "ppu/matching/stiffness.h"
+#include "ppu/numbers/deterministic_math.h"
 #include "read_common.h"
 #include "softcell/base/nearest_name.h"
 
@@ -23,6 +24,8 @@ constexpr Range kModulus{.low = 0, .high = 1e9, .low_excluded = true};
 constexpr Range kDampingTime{.low = 0, .high = 1e6};
 constexpr Range kYield{.low = 0, .high = 1, .low_excluded = true};
 constexpr Range kCreep{.low = 0, .high = 1e6, .low_excluded = true};
+constexpr Range kStretch{.low = 0, .high = 10, .low_excluded = true};
+constexpr Range kTurn{.low = 0, .high = 180, .low_excluded = true};  // degrees
 constexpr Range kPlasticLimit{.low = 0, .high = 10, .low_excluded = true};
 
 /// At most one of the names may be given. @return whether one is.
@@ -63,6 +66,14 @@ void read_fields(FieldReader& fields, Material& material, Need cell_size) {
         .number("limit", plasticity.limit, kPlasticLimit)
         .finish();
     s.plasticity = plasticity;
+  }
+  if (const Value* const value = fields.field("fracture")) {
+    ppu::Fracture fracture;
+    std::optional<float> degrees;
+    FieldReader of_fracture(*value, "the fracture of " + fields.what());
+    of_fracture.number("stretch", fracture.stretch, kStretch).number("turn", degrees, kTurn).finish();
+    if (degrees) fracture.turn = *degrees * (static_cast<float>(ppu::kPi) / 180);
+    s.fracture = fracture;
   }
 }
 

@@ -79,6 +79,13 @@ ppu::TriangleMesh round(FieldReader& fields) {
   return make(radius, height, segments);
 }
 
+ppu::TriangleMesh vase(FieldReader& fields) {
+  float height = 1;
+  int segments = 48;
+  fields.number("height", height, kLength).integer("segments", segments, 3, kMaxSegments).finish();
+  return ppu::make_vase(height, segments);
+}
+
 ppu::TriangleMesh wedge(FieldReader& fields) {
   Eigen::Vector3f size{1, 1, 1};
   fields.vector("size", size, kLength).finish();
@@ -93,10 +100,10 @@ ppu::TriangleMesh marked_cells(FieldReader& fields) {
 }
 
 constexpr std::array<std::string_view, 2> kAxes{"y", "z"};
-constexpr std::array<std::string_view, 11> kMeshKinds{"box",      "capsule",      "car",     "cone",
+constexpr std::array<std::string_view, 12> kMeshKinds{"box",      "capsule",      "car",     "cone",
                                                       "cylinder", "marked_cells", "penguin", "rounded_box",
-                                                      "sphere",   "torus",        "wedge"};
-constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 11> kMeshMakers{box,
+                                                      "sphere",   "torus",        "vase",    "wedge"};
+constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 12> kMeshMakers{box,
                                                                           round<ppu::make_capsule>,
                                                                           car,
                                                                           round<ppu::make_cone>,
@@ -106,6 +113,7 @@ constexpr std::array<ppu::TriangleMesh (*)(FieldReader&), 11> kMeshMakers{box,
                                                                           rounded_box,
                                                                           sphere,
                                                                           torus,
+                                                                          vase,
                                                                           wedge};
 
 ppu::TriangleMesh primitive(const Value& value, const std::string& owner) {

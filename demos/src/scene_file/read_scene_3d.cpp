@@ -126,21 +126,54 @@ std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
   }
 }
 
+/// Where the body is weaker or stronger than its material.
+void read_strengths(FieldReader& fields, SoftBodyPlacement& body) {
+  constexpr std::size_t kMaxSlabs = 64;
+  constexpr Range kStrength{.low = 0, .high = 1000};
+  const auto slabs = fields.items("strength", kMaxSlabs);
+  for (std::size_t i = 0; i < slabs.size(); ++i) {
+    StrengthSlab& slab = body.strengths.emplace_back();
+    FieldReader of_slab(slabs[i], fmt::format("strength {} of {}", i + 1, fields.what()));
+    of_slab.vector<3>("point", slab.point, kCoordinate)
+        .vector<3>("normal", slab.normal, kCoordinate)
+        .number("thickness", slab.thickness, kLength, Need::kRequired)
+        .number("factor", slab.strength, kStrength, Need::kRequired)
+        .finish();
+    if (slab.normal.norm() < 1e-4f)
+      throw SceneError(of_slab.place("normal"), "normal of " + of_slab.what() + " must not be 0");
+  }
+}
+
+/// The material with which pieces of the mesh draw what was inside. A body of one colour stays so elsewhere.
+void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
+  ppu::TriangleMesh& mesh = body.mesh;
+  if (!body.own_materials) {
+    mesh.materials.clear(), mesh.parts.clear(), mesh.colours.clear(), mesh.texture_coordinates.clear();
+    body.own_materials = true;
+  }
+  ppu::MeshMaterial& cut = mesh.materials.emplace_back();
+  cut.name = "cut";
+  cut.base_colour = Eigen::Vector4f(colour.x(), colour.y(), colour.z(), 1);
+}
+
 /// @return whether the model has taken the body's place.
 bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, const Materials& materials,
                     const OwnModel* model, Scene& scene) {
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
   SoftBodyPlacement& body = scene.soft_bodies.emplace_back();
   std::optional<float> own_model_side, above;
+  std::optional<Vector3f> cut_colour;
   bool contacts = true;
   body.name = "body " + std::to_string(index + 1);
   fields.text("name", body.name)
       .colour("colour", body.colour)
+      .painted_colour("cut_colour", cut_colour)
       .vector<3>("position", body.position, kCoordinate)
       .number("above", above, kCoordinate)
       .number("own_model_side", own_model_side, kOwnModelSide)
       .number("twist", body.twist, kTwist)
       .flag("contacts", contacts);
+  read_strengths(fields, body);
   check_name(fields, scene);
   const bool replaced = model != nullptr && own_model_side;
   Material material = materials.read(fields, replaced ? Need::kOptional : Need::kRequired);
@@ -152,6 +185,7 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
     material.settings.cell_size = body.settings.cell_size;
   }
   rotate(body.mesh, rotation);
+  if (cut_colour) add_cut_material(*cut_colour, body);
   body.settings = material.settings_for(step_of(scene));
   body.settings.contacts = contacts;
   if (above) body.position.y() = *above - ppu::bounds(body.mesh).low.y();
@@ -198,6 +232,30 @@ void read_attachments(std::span<const Value> items, std::size_t first_box, Scene
       attachment.box = first_box + static_cast<std::size_t>(box) - 1;
     }
     read_attachment(fields, scene, attachment);
+  }
+}
+
+/// Planes and strokes that cut bodies, after the soft bodies.
+void read_cuts(std::span<const Value> items, Scene& scene) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    FieldReader fields(items[i], item_name("cut", i));
+    ScriptedCut& cut = scene.cuts.emplace_back();
+    Vector3f point{0, 0, 0}, normal{1, 0, 0}, edge{0, 0, 0}, way{0, 0, 0};
+    cut.body = read_body(fields, scene);
+    fields.number("time", cut.time, kTime, Need::kRequired)
+        .vector<3>("point", point, kCoordinate, Need::kRequired)
+        .vector<3>("normal", normal, kCoordinate)
+        .vector<3>("edge", edge, kCoordinate)
+        .vector<3>("way", way, kCoordinate)
+        .finish();
+    if (fields.has("edge") != fields.has("way") || fields.has("edge") == fields.has("normal"))
+      throw SceneError(items[i].place, fields.what() + " needs a normal, or an edge and a way");
+    const bool plane = fields.has("normal");
+    if ((plane ? normal.norm() : edge.cross(way).norm()) < 1e-6f)
+      throw SceneError(items[i].place,
+                       plane ? "normal of " + fields.what() + " must not be 0"
+                             : fields.what() + " has no area: its edge and way are along one line");
+    cut.where = plane ? ppu::Cut::plane(point, normal) : ppu::Cut::stroke(point, edge, way);
   }
 }
 
@@ -275,6 +333,7 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   const auto obstacles = root.items("obstacle", kMaxRigidBodies);
   const auto soft_bodies = root.items("soft_body", kMaxSoftBodies);
   const auto attachments = root.items("attach", kMaxAttachments);
+  const auto cuts = root.items("cut", kMaxEvents);
   const auto rigid_bodies = root.items("rigid_body", kMaxRigidBodies);
   const auto joints = root.items("joint", kMaxRigidBodies);
   if (framework != nullptr) read_framework(*framework, scene);
@@ -294,6 +353,7 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   scene.notes = files.notes();
   read_attachments(attachments, first_box, scene);
   read_script<3>(root, scene);
+  read_cuts(cuts, scene);
   if (camera != nullptr) read_camera(*camera, scene.camera);
   if (camera == nullptr) scene.camera.eye = {1.9f, 2.2f, 4.2f};  // from where frame_bodies() looks
   if (camera == nullptr || model) frame_bodies(scene);

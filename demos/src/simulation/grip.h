@@ -31,6 +31,9 @@ class Grip {
   /// @param gravity  m/s^2, that the substep will add  @pre step > 0
   virtual void pull(const HandMotion<Dimension>& hand, const Vector& gravity, float step) = 0;
 
+  /// Whether it holds this soft body of three dimensions, which may break. @param body  its address
+  virtual bool holds(const void* /*body*/) const { return false; }
+
   /// Changes the body's velocities as it is thrown: see HandStrength::throw_aid(). @param velocity  the hand's, m/s
   virtual void let_go(const Vector& velocity) = 0;
 };

@@ -39,6 +39,10 @@ class HeldBodies {
     }
     std::erase_if(hands_, [hand](const Hand& held) { return held.number == hand; });
   }
+  /// The body has broken, or is gone. @param body  its address
+  void forget(const void* body) {
+    std::erase_if(hands_, [body](const Hand& held) { return held.grip->holds(body); });
+  }
   /// What was held stays as it is.
   void release_all() { hands_.clear(); }
   bool empty() const { return hands_.empty(); }

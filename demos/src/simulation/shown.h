@@ -4,10 +4,13 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "ppu/bullet/bullet_world.h"
 #include "skin_job.h"
+#include "softcell/soft_bodies/soft_body_model.h"
 
 namespace softcell::demos {
 
@@ -38,6 +41,8 @@ struct Shown2d {
 
 struct Shown3d {
   struct Body {
+    std::shared_ptr<const ppu::SoftBodyModel<3>> model;  ///< another one when the body has broken
+    std::size_t source = 0;                              ///< Simulation3d::source()
     std::vector<spu::SkinnedVertex> vertices;  ///< relative to `origin`; none when the GPU makes them
     Eigen::Vector3f origin{0, 0, 0};
     std::vector<Eigen::Vector4f> particles;  ///< x y z 0

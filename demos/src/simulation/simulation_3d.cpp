@@ -85,14 +85,32 @@ bool puts_elsewhere(std::span<const InputEvent<3>> events) {
   });
 }
 
+float strength_at(const std::vector<StrengthSlab>& slabs, const Eigen::Vector3f& at) {
+  float least = 1;
+  bool in_one = false;
+  for (const StrengthSlab& slab : slabs) {
+    if (std::abs((at - slab.point).dot(slab.normal)) > 0.5f * slab.thickness * slab.normal.norm()) continue;
+    least = in_one ? std::min(least, slab.strength) : slab.strength;
+    in_one = true;
+  }
+  return least;
+}
+
 std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models_of(
     const std::vector<SoftBodyPlacement>& bodies) {
   return shared_models(
       bodies.size(),
       [&](std::size_t i, std::size_t j) {
-        return bodies[i].settings == bodies[j].settings && bodies[i].mesh == bodies[j].mesh;
+        return bodies[i].settings == bodies[j].settings && bodies[i].strengths == bodies[j].strengths &&
+               bodies[i].mesh == bodies[j].mesh;
       },
-      [&](std::size_t i) { return ppu::make_soft_body_model(bodies[i].mesh, bodies[i].settings); });
+      [&](std::size_t i) {
+        const std::vector<StrengthSlab>& strengths = bodies[i].strengths;
+        if (strengths.empty()) return ppu::make_soft_body_model(bodies[i].mesh, bodies[i].settings);
+        return ppu::make_soft_body_model(
+            bodies[i].mesh, bodies[i].settings,
+            [&strengths](const Eigen::Vector3f& at) { return strength_at(strengths, at); });
+      });
 }
 
 }  // namespace
@@ -101,8 +119,10 @@ struct Simulation3d::State {
   /// What a picture needs beside the vertices, of the moment at which these were handed to the SPEs.
   struct Snapshot {
     std::vector<Eigen::Matrix4f> box_poses;
-    std::vector<std::vector<Eigen::Vector4f>> particles;
-    std::vector<Eigen::Vector3f> origins;  // of vertices made by the GPU
+    std::vector<std::vector<Eigen::Vector4f>> particles;               // of each soft body
+    std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models;  // likewise
+    std::vector<std::size_t> sources;                                  // likewise
+    std::vector<Eigen::Vector3f> origins;                              // of vertices made by the GPU
     std::vector<ppu::Contact> contacts;
     std::vector<std::array<Eigen::Vector3f, 2>> hands;
     std::vector<ShownRope<3>> ropes;
@@ -141,26 +161,17 @@ struct Simulation3d::State {
     }
     for (const Obstacle& obstacle : scene.obstacles)
       world.add_convex(obstacle.mesh, obstacle.position, scene.friction, scene.restitution);
-    const auto models = models_of(scene.soft_bodies);
-    for (std::size_t i = 0; i < models.size(); ++i) {
+    whole = models_of(scene.soft_bodies);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
       const SoftBodyPlacement& placement = scene.soft_bodies[i];
-      const auto& model = models[i];
-      ppu::SoftBody<3>& body = soft_bodies.add(model, placement.position);
+      ppu::SoftBody<3>& body = soft_bodies.add(whole[i], placement.position);
       twist(body, placement.twist);
-      if (orchestrator)
-        orchestrator->add(std::shared_ptr<const ppu::Embedding>(model, &model->embedding()),
-                          model->particles());
-      positions.push_back(body.padded_positions());
-      vertices += model->embedding().slot_of_vertex.size();
+      sources.push_back(i);
     }
     attach();
     begin();
-    for (Snapshot& snapshot : snapshots) {
-      snapshot.box_poses.resize(boxes.size());
-      for (const auto& body : positions)
-        snapshot.particles.emplace_back(body.size(), Eigen::Vector4f::Zero());
-      snapshot.origins.resize(positions.size());
-    }
+    for (Snapshot& snapshot : snapshots) snapshot.box_poses.resize(boxes.size());
+    follow_bodies();
     hand_over();
     take_over();
   }
@@ -276,6 +287,13 @@ struct Simulation3d::State {
     end_attachments(scene, attachments, soft_bodies);
   }
   Beginning<3> moment() const {
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b)
+      if (soft_bodies[b].shared_model() != whole[sources[b]])
+        throw std::runtime_error(
+            fmt::format("the scene {} cannot be saved or changed: '{}' has broken, and a scene file has "
+                        "whole bodies only; "
+                        "reset the scene first",
+                        scene.name, scene.soft_bodies[sources[b]].name));
     Beginning<3> now{.gravity = controls.gravity(),
                      .tilt = controls.tilt(),
                      .time_scale = controls.time_scale(),
@@ -303,9 +321,6 @@ struct Simulation3d::State {
     SC_ASSERT(!handed_over, "frame {} is handed over before the one before is taken", frame);
     Snapshot& snapshot = snapshots[static_cast<std::size_t>(1 - newest)];
     for (std::size_t i = 0; i < boxes.size(); ++i) snapshot.box_poses[i] = world.pose(boxes[i]);
-    SC_ASSERT(snapshot.box_poses.size() == boxes.size() && snapshot.particles.size() == positions.size(),
-              "a snapshot of {} boxes and {} bodies, of {} and {}", snapshot.box_poses.size(),
-              snapshot.particles.size(), boxes.size(), positions.size());
     snapshot.tilt = tilt;
     copy_contacts(snapshot);
     copy_hands(snapshot);
@@ -326,8 +341,80 @@ struct Simulation3d::State {
   }
 
   void copy_particles(Snapshot& snapshot) const {
+    snapshot.particles.resize(positions.size());
     for (std::size_t b = 0; b < positions.size(); ++b)
-      std::copy(positions[b].begin(), positions[b].end(), snapshot.particles[b].begin());
+      snapshot.particles[b].assign(positions[b].begin(), positions[b].end());
+    snapshot.models = drawn;
+    snapshot.sources = sources;
+    snapshot.origins.resize(positions.size());
+  }
+
+  /// After a substep or a cut: pieces come behind all other bodies, and hands let go of what has broken.
+  void note_broken() {
+    for (const ppu::BrokenSoftBody& broken : soft_bodies.take_broken()) {
+      std::size_t body = 0;
+      while (&soft_bodies[body] != broken.body) ++body;
+      sources.insert(sources.end(), broken.pieces.size(), sources[body]);
+      let_go(body);
+    }
+    SC_ASSERT(sources.size() == soft_bodies.size(), "the sources of {} soft bodies of {}", sources.size(),
+              soft_bodies.size());
+  }
+  void let_go(std::size_t body) {
+    controls.forget_body(body);
+    held.forget(&soft_bodies[body]);
+  }
+
+  /// Has what is drawn follow what bodies there are, and of which models. @return whether it did not
+  bool follow_bodies() {
+    const std::size_t before = drawn.size();
+    bool changed = before != soft_bodies.size();
+    drawn.resize(soft_bodies.size());
+    positions.resize(soft_bodies.size());
+    vertices = 0;
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b) {
+      const auto& model = soft_bodies[b].shared_model();
+      positions[b] = soft_bodies[b].padded_positions();
+      vertices += model->embedding().slot_of_vertex.size();
+      if (drawn[b] == model) continue;
+      changed = true;
+      drawn[b] = model;
+      if (!orchestrator) continue;
+      const std::shared_ptr<const ppu::Embedding> embedding(model, &model->embedding());
+      if (b < before)
+        orchestrator->replace(b, embedding, model->particles());
+      else
+        orchestrator->add(embedding, model->particles());
+    }
+    return changed;
+  }
+
+  /// A body is whole again: its pieces go.
+  void make_whole(std::size_t body) {
+    SC_ASSERT(body < whole.size(), "body {} of {} is made whole", body, whole.size());
+    for (std::size_t b = soft_bodies.size(); b-- > whole.size();) {
+      if (sources[b] != body) continue;
+      let_go(b);
+      for (std::size_t after = b + 1; after < soft_bodies.size(); ++after)
+        let_go(after);  // they get other numbers
+      soft_bodies.remove(soft_bodies[b]);
+      sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(b));
+      drawn.erase(drawn.begin() + static_cast<std::ptrdiff_t>(b));
+      if (orchestrator) orchestrator->remove(b);
+    }
+    if (soft_bodies[body].shared_model() == whole[body]) return;
+    let_go(body);
+    soft_bodies[body] = ppu::SoftBody<3>(whole[body]);
+  }
+
+  /// What the scene cuts at the beginning of a frame.
+  void cut(std::int64_t at_frame) {
+    for (const ScriptedCut& planned : scene.cuts) {
+      if (std::llround(double{planned.time} * 60) != at_frame) continue;
+      for (std::size_t b = 0, count = soft_bodies.size(); b < count; ++b)
+        if (sources[b] == planned.body) soft_bodies.cut(soft_bodies[b], planned.where);
+      note_broken();
+    }
   }
 
   void copy_contacts(Snapshot& snapshot) const {
@@ -378,8 +465,12 @@ struct Simulation3d::State {
     if (event.body < boxes.size() && mass_of(event.body) > 0)
       held.hold(event.hand, std::make_unique<RigidGrip>(world.rigid_body(boxes[event.body]), event.value));
   }
+  /// Of a body and of all of its pieces, once.
   void set_material(const InputEvent<3>& event, std::size_t body) {
-    soft_bodies[body].set_material(changed_material(soft_bodies[body].settings(), event, substep()));
+    if (event.body != kEveryBody && body >= whole.size()) return;
+    for (std::size_t b = 0; b < soft_bodies.size(); ++b)
+      if (event.body == kEveryBody ? b == body : sources[b] == body)
+        soft_bodies[b].set_material(changed_material(soft_bodies[b].settings(), event, substep()));
   }
   void move_hand(const InputEvent<3>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
@@ -403,6 +494,7 @@ struct Simulation3d::State {
       const ppu::StepTimes of_substep = world.step(step, 1);
       times.physics_ms += of_substep.physics_ms;
       times.soft_body_ms += of_substep.soft_body_ms;
+      note_broken();
     }
     return times;
   }
@@ -410,7 +502,7 @@ struct Simulation3d::State {
   void reset() {
     held.release_all();
     world.reset();
-    for (std::size_t b = 0; b < soft_bodies.size(); ++b) home(b);
+    for (std::size_t b = 0; b < whole.size(); ++b) home(b);
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
       soft_bodies[b].set_material(soft_bodies[b].model().settings());
     for (const ppu::AttachmentId id : attachments)
@@ -420,7 +512,9 @@ struct Simulation3d::State {
     begin_again();
   }
   void home(std::size_t body) {
-    SC_ASSERT(body < scene.soft_bodies.size(), "body {} of {}", body, scene.soft_bodies.size());
+    SC_ASSERT(body < soft_bodies.size(), "body {} of {}", body, soft_bodies.size());
+    body = sources[body];
+    make_whole(body);
     soft_bodies[body].reset(scene.soft_bodies[body].position);
     twist(soft_bodies[body], scene.soft_bodies[body].twist);
   }
@@ -445,6 +539,11 @@ struct Simulation3d::State {
   ppu::BulletSoftBodies soft_bodies;
   std::vector<ppu::AttachmentId> attachments;         // of the scene, in order
   std::optional<ppu::SkinOrchestrator> orchestrator;  // likewise
+  std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>>
+      whole;  // of the scene's soft bodies before they break
+  // Of each soft body; the pieces of those that have broken come behind the scene's:
+  std::vector<std::size_t> sources;  // the number of the scene's body that it is, or is a piece of
+  std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> drawn;
   std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
   HeldBodies<3> held;  // of `soft_bodies` and `world`
@@ -469,14 +568,16 @@ Simulation3d::~Simulation3d() = default;
 FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   State& s = *state_;
   FrameTimes times;
-  const auto scripted = s.script.events_at(s.script_frame++);
+  const std::int64_t at_frame = s.script_frame++;
+  const auto scripted = s.script.events_at(at_frame);
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
   s.controls.apply(s.events, s.soft_bodies, s);
+  s.cut(at_frame);
   const int substeps = s.controls.due_substeps(s.substeps_of_frame());
   if (substeps == 0) {
     finish();
-    if (puts_elsewhere(s.events)) {
+    if (s.follow_bodies() || puts_elsewhere(s.events)) {
       s.contacts_stand = false;
       s.hand_over();
       finish();
@@ -497,7 +598,10 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   finish();
   times.skin_wait_ms = milliseconds_since(waiting);
 
+  // Pieces have nothing to show of the frame before: this one is shown at once.
+  const bool is_broken = s.follow_bodies();
   s.hand_over();
+  if (is_broken) finish();
   const ppu::SoftBodyTimes end = s.soft_bodies.times();
   times.physics_ms = step.physics_ms;
   times.gather_ms = milliseconds(end.gather - begin.gather);
@@ -547,6 +651,7 @@ const ppu::SoftBodyModel<3>& Simulation3d::model(std::size_t body) const {
   SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
   return state_->soft_bodies[body].model();
 }
+std::size_t Simulation3d::source(std::size_t body) const { return state_->sources.at(body); }
 const ppu::SoftBody<3>& Simulation3d::soft_body(std::size_t body) const { return state_->soft_bodies[body]; }
 
 Beginning<3> Simulation3d::moment() const { return state_->moment(); }
@@ -557,14 +662,16 @@ std::uint64_t Simulation3d::state_hash() const {
   return hash;
 }
 
+std::size_t Simulation3d::shown_bodies() const { return state_->shown().particles.size(); }
+
 ppu::SkinnedBody Simulation3d::shown(std::size_t body) const {
-  SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
+  SC_ASSERT(body < shown_bodies(), "body {} of {}", body, shown_bodies());
   if (state_->orchestrator) return state_->orchestrator->shown(body);
   return {.vertices = {}, .origin = state_->shown().origins[body]};
 }
 
 std::span<const Eigen::Vector4f> Simulation3d::shown_particles(std::size_t body) const {
-  SC_ASSERT(body < soft_bodies(), "body {} of {}", body, soft_bodies());
+  SC_ASSERT(body < shown_bodies(), "body {} of {}", body, shown_bodies());
   return state_->shown().particles[body];
 }
 
@@ -577,8 +684,10 @@ void Simulation3d::record_contacts(bool on) { state_->records_contacts = on; }
 const Eigen::Matrix3f& Simulation3d::shown_tilt() const { return state_->shown().tilt; }
 
 void Simulation3d::show(Shown3d& to) const {
-  to.bodies.resize(soft_bodies());
-  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+  to.bodies.resize(shown_bodies());
+  for (std::size_t b = 0; b < shown_bodies(); ++b) {
+    to.bodies[b].model = state_->shown().models[b];
+    to.bodies[b].source = state_->shown().sources[b];
     const ppu::SkinnedBody skinned = shown(b);
     const auto particles = shown_particles(b);
     to.bodies[b].vertices.assign(skinned.vertices.begin(), skinned.vertices.end());

@@ -49,7 +49,10 @@ class Simulation3d {
   /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<3>> last_events() const;
 
+  /// The scene's soft bodies and, behind them, the pieces of those that have broken.
   std::size_t soft_bodies() const;
+  /// The number of the scene's soft body that a body is, or is a piece of.
+  std::size_t source(std::size_t body) const;
   /// How many of them the PPU steps: all with Solver::kReference, else those that fit no local store.
   std::size_t bodies_on_ppu() const;
   ppu::ContactMethod contacts() const;  ///< what the soft bodies touch with
@@ -61,12 +64,14 @@ class Simulation3d {
   const ppu::SoftBody<3>& soft_body(std::size_t body) const;
 
   /// Everything as it is now, for a scene that begins with it. Hands hold nothing in it, and a pause has ended.
+  /// @throws std::runtime_error  a soft body has broken
   Beginning<3> moment() const;
 
   /// 64-bit hash over positions and velocities of all particles as they are now.
   std::uint64_t state_hash() const;
 
   // The shown frame, all of one moment. Before the first step it is the beginning.
+  std::size_t shown_bodies() const;                ///< of soft_bodies(), those that there were
   ppu::SkinnedBody shown(std::size_t body) const;  ///< without vertices when the GPU makes them
   std::span<const Eigen::Vector4f> shown_particles(std::size_t body) const;
   std::span<const Eigen::Matrix4f> shown_box_poses() const;  ///< of Scene::boxes, then of Scene::rigid_bodies

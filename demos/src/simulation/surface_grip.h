@@ -21,6 +21,7 @@ class SurfaceGrip final : public Grip<3> {
   SurfaceGrip(ppu::SoftBody<3>& body, const Eigen::Vector3f& point);
 
   const ppu::SoftBody<3>& body() const { return body_; }
+  bool holds(const void* body) const override { return &body_ == body; }
   Eigen::Vector3f point() const override;
   void pull(const HandMotion<3>& hand, const Eigen::Vector3f& gravity, float step) override;
   void let_go(const Eigen::Vector3f& velocity) override;

@@ -25,11 +25,13 @@ struct Lines {
 /// shown, so that the lines do not depend on the solver and on where it keeps its rotations.
 class RotationAxes {
  public:
-  void add_body(std::shared_ptr<const ppu::MatchingPlan<float, 3>> plan) {
-    plans_.push_back(std::move(plan));
+  /// Of all bodies that there are, in place of those of before.
+  void set_bodies(std::vector<std::shared_ptr<const ppu::MatchingPlan<float, 3>>> plans) {
+    plans_ = std::move(plans);
+    matchers_.clear();
   }
 
-  /// @param bodies  at least as many as were added, in the same order
+  /// @param bodies  at least as many, in the same order
   void update(const std::vector<Shown3d::Body>& bodies);
 
   /// The x, y and z axes.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/shapes.h"
@@ -91,25 +92,44 @@ SceneView::SceneView(const Scene& scene, const Simulation3d& simulation, render:
     statics_.push_back(draw);
   }
   rigid_parts_ = add_parts(scene_.rigid_bodies, add_static, statics_);
+}
 
-  SC_ASSERT(simulation_.soft_bodies() == scene_.soft_bodies.size(), "a simulation of {} bodies of {}",
-            simulation_.soft_bodies(), scene_.soft_bodies.size());
-  lattice_buffers_.resize(simulation_.soft_bodies());
-  for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b) {
-    const ppu::SoftBodyModel<3>& model = simulation_.model(b);
-    const auto& colour = scene_.soft_bodies[b].colour;
-    skinned_.push_back({.mesh = add_skinned_mesh(model), .colour = colour});
-    if (scene_.soft_bodies[b].own_materials && MeshLooks::has_looks(model.mesh())) {
-      parts_.push_back(
-          looks_.upload(model.mesh(), model.embedding().vertex_of_slot, colour, skinned_.back().mesh));
-      skinned_.back().parts = parts_.back();
-    }
-    rotations_.add_body(model.plan());
+/// Meshes of bodies that are new, or that have broken since they were drawn last.
+void SceneView::follow_bodies(const Shown3d& shown) {
+  const std::size_t before = lattice_buffers_.size(), count = shown.bodies.size();
+  bool changed = before != count;
+  for (std::size_t b = count; b < before; ++b) renderer_.remove_mesh(skinned_[b].mesh);
+  lattice_buffers_.resize(count);
+  skinned_.resize(count);
+  skinned_parts_.resize(count);
+  lattices_.resize(count);
+  for (std::size_t b = 0; b < count; ++b) {
     LatticeBuffers& buffers = lattice_buffers_[b];
+    if (buffers.model == shown.bodies[b].model) continue;
+    changed = true;
+    buffers.model = shown.bodies[b].model;
+    const ppu::SoftBodyModel<3>& model = *buffers.model;
+    const SoftBodyPlacement& placement = scene_.soft_bodies[shown.bodies[b].source];
+    if (b < before) renderer_.remove_mesh(skinned_[b].mesh);
+    skinned_[b] = {.mesh = add_skinned_mesh(model), .colour = placement.colour};
+    skinned_parts_[b].clear();
+    if (placement.own_materials && MeshLooks::has_looks(model.mesh()))
+      skinned_parts_[b] =
+          looks_.upload(model.mesh(), model.embedding().vertex_of_slot, placement.colour, skinned_[b].mesh);
     buffers.particles.resize(model.lattice().particles.size());
     buffers.links = links_of(model.lattice());
-    lattices_.push_back({buffers.particles, buffers.links, model.lattice().spacing * 0.12f, colour});
   }
+  if (!changed) return;
+  std::vector<std::shared_ptr<const ppu::MatchingPlan<float, 3>>> plans;
+  for (std::size_t b = 0; b < count; ++b) {
+    const LatticeBuffers& buffers = lattice_buffers_[b];
+    skinned_[b].parts = skinned_parts_[b];
+    lattices_[b] = {buffers.particles, buffers.links, buffers.model->lattice().spacing * 0.12f,
+                    skinned_[b].colour};
+    plans.push_back(buffers.model->plan());
+  }
+  rotations_.set_bodies(std::move(plans));
+  moved_.forget();
 }
 
 render::MeshId SceneView::add_skinned_mesh(const ppu::SoftBodyModel<3>& model) {
@@ -240,6 +260,7 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
 }
 
 void SceneView::draw(const Shown3d& shown, int view, const render::Camera& camera) {
+  follow_bodies(shown);
   const std::size_t boxes = scene_.boxes.size();
   SC_ASSERT(shown.box_poses.size() == boxes + scene_.rigid_bodies.size(),
             "{} poses of {} boxes and {} bodies", shown.box_poses.size(), boxes, scene_.rigid_bodies.size());

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,6 +41,7 @@ class SceneView {
  private:
   void draw(const Shown3d& shown, int view, const render::Camera& camera);
   render::MeshId add_skinned_mesh(const ppu::SoftBodyModel<3>& model);
+  void follow_bodies(const Shown3d& shown);
   void update_meshes(const Shown3d& shown);
   void update_lattices(const Shown3d& shown);
   void draw_mesh(const Shown3d& shown, float opacity);
@@ -59,9 +61,10 @@ class SceneView {
 
   MeshLooks looks_;
   std::vector<std::vector<render::PartDraw>>
-      parts_;  // of what is drawn with materials of its own; stays as it is
+      parts_;  // of what is drawn with materials of its own and does not change; stays as it is
   std::vector<render::SkinnedDraw> skinned_;
-  std::vector<render::StaticDraw> statics_;  // boxes, obstacles, parts of rigid bodies
+  std::vector<std::vector<render::PartDraw>> skinned_parts_;  // of these
+  std::vector<render::StaticDraw> statics_;                   // boxes, obstacles, parts of rigid bodies
   std::vector<DrawnPart> rigid_parts_;
   Moved3d moved_;
   std::vector<Moved3d::Box> static_boxes_;  // around statics_ in their own frames
@@ -70,6 +73,7 @@ class SceneView {
   RopeDrawing ropes_;
   std::vector<render::StaticDraw> with_more_;  // statics_, ropes and hands
   struct LatticeBuffers {
+    std::shared_ptr<const ppu::SoftBodyModel<3>> model;  // whose mesh and links are drawn
     std::vector<Eigen::Vector3f> particles;
     std::vector<std::array<std::uint32_t, 2>> links;
   };

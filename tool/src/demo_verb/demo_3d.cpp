@@ -137,9 +137,11 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
       if (event.action == demos::Action::kHold && event.body < simulation().soft_bodies())
         followed_ = event.body;
     if (!input().look().follows || simulation().soft_bodies() == 0) return;
+    if (followed_ >= simulation().soft_bodies()) followed_ = 0;  // it was a piece, and the scene was reset
     const auto& body = simulation().soft_body(followed_);
-    const ppu::Bounds<3> rest = ppu::bounds(scene().soft_bodies[followed_].mesh), now = body.bounds();
-    const Eigen::Vector3f begin = scene().soft_bodies[followed_].position + 0.5f * (rest.low + rest.high);
+    const demos::SoftBodyPlacement& placement = scene().soft_bodies[simulation().source(followed_)];
+    const ppu::Bounds<3> rest = ppu::bounds(placement.mesh), now = body.bounds();
+    const Eigen::Vector3f begin = placement.position + 0.5f * (rest.low + rest.high);
     input().follow_body(simulation().shown_tilt() * (0.5f * (now.low + now.high) - begin));
   }
 

@@ -42,6 +42,9 @@ TriangleMesh make_rounded_box(const Eigen::Vector3f& size, int subdivisions);
 /// radius; `segments` around the axis 3..2048.
 TriangleMesh make_capsule(float radius, float height, int segments);
 
+/// A vase about the y axis with a wall a twelfth of its `height` (metres) thick, half as wide as high; `segments` 3..2048.
+TriangleMesh make_vase(float height, int segments);
+
 /// A ramp: a box without the half above its diagonal; it rises along x, from nothing at -x to the full height
 /// at +x.
 TriangleMesh make_wedge(const Eigen::Vector3f& size);

@@ -63,6 +63,10 @@ class Renderer {
   /// @throws std::invalid_argument  the number of indices is not a multiple of three.
   MeshId add_mesh(std::span<const std::uint32_t> indices);
 
+  /// Frees the memory of a mesh of add_mesh() or add_cell_mesh(). The next one that is added may get its handle.
+  /// @throws std::invalid_argument  no such mesh.
+  void remove_mesh(MeshId mesh);
+
   /// Replaces the vertices of a mesh.
   /// @param vertices  kSkinnedVertexBytes each, in the host's byte order; copied.
   /// @throws std::invalid_argument  an index has no vertex, the last vertex is incomplete, there is no such
