@@ -6,6 +6,7 @@
 #include "simulation/simulation_3d.h"
 #include "softcell/render/image_compare.h"
 #include "softcell/render/offscreen_context.h"
+#include "support/slow_build.h"
 #include "view/scene_view.h"
 
 namespace softcell::demos {
@@ -36,6 +37,7 @@ TEST_P(GpuSkin, GivesThePicturesOfTheSpes) {
   constexpr int kPictures = 6, kFramesBetween = 15;
   constexpr std::size_t kOutlinePixels = 12;
   const Scene scene = load_scene_3d(GetParam());
+  if (kSlowBuild && scene.name != "arena") GTEST_SKIP() << "with sanitizers, which have arena";
   const auto context = render::create_offscreen_context();
   Skinned spe(scene, Skin::kSpe, *context), gpu(scene, Skin::kGpu, *context);
   int within = 0;

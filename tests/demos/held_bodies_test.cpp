@@ -19,6 +19,7 @@
 #include "simulation/hand_patch.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/soft_bodies/shapes.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 namespace {
@@ -128,6 +129,7 @@ Scene standing(const Held& held) {
 class HeldBody : public testing::TestWithParam<Held> {};
 
 TEST_P(HeldBody, IsLiftedCarriedAndThrownAndNotTorn) {
+  if (kSlowBuild && GetParam().cells > 14) GTEST_SKIP() << "with sanitizers, which have the small ones";
   const Scene scene = standing(GetParam());
   Simulation3d simulation(scene, {.spes = 2});
   const ppu::SoftBody<3>& body = simulation.soft_body(0);

@@ -30,6 +30,7 @@
 #include "simulation/simulation_3d.h"
 #include "softcell/render/png_io.h"
 #include "support/scratch_folder.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 namespace {
@@ -311,7 +312,7 @@ TEST_F(SaveScene, KeepsWhatIsBentForGood) {
 TEST_F(SaveScene, KeepsRigidBodiesThatTheSceneMoves) {
   const Scene scene = load_scene_3d("claw");
   Simulation3d run(scene, {.spes = 2});
-  step(run, 300);
+  step(run, kSlowBuild ? 100 : 300);
   const Scene loaded = saved_and_loaded(scene, run, file());
   Simulation3d again(loaded, {.spes = 2});
   Shown3d then, now;

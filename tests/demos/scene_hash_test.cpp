@@ -15,7 +15,7 @@
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
-#include "softcell/dma/sanitizers.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 
@@ -23,8 +23,6 @@ namespace softcell::demos {
 void PrintTo(const SceneListing& scene, std::ostream* out) { *out << scene.dimension << "d"; }
 
 namespace {
-
-constexpr bool kSlow = SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER;
 
 constexpr const char* kHowToRenew =
     "If the change of bits is intended, write tests/demos/scene_hashes.txt anew with "
@@ -74,12 +72,18 @@ TEST_P(SceneHash, IsTheStoredOne) {
 TEST_P(SceneHash, IsTheStoredOneByInterpretedKernels) {
   const SimulationOptions interpreted{.machine = ls_sim::Machine::kSpu};
   if (GetParam().name == "big") GTEST_SKIP() << "half a minute; both_builds_tests have tiles";
-  // Nothing that a sanitizer finds depends on the scene, so long as all kernels of bodies, contacts and tiles run.
-  if (kSlow && GetParam().dimension == 3 && GetParam().name != "arena" && GetParam().name != "pile")
-    GTEST_SKIP() << "minutes; arena and pile have all kernels";
+  // Nothing that a sanitizer finds depends on the scene, so long as all kernels of bodies and contacts run.
+  if (kSlowBuild && GetParam().dimension == 3 && GetParam().name != "arena")
+    GTEST_SKIP() << "minutes; arena has these kernels";
   // Those whose rows would take many seconds: as many frames as show all kernels.
-  const std::map<std::string, int> shorter{{"claw", 12},    {"jellies", 12}, {"penguins", 1}, {"pile", 30},
-                                           {"pillows", 20}, {"ragdoll", 30}, {"tyres", 20}};
+  const std::map<std::string, int> shorter{{"arena", kSlowBuild ? 10 : 60},
+                                           {"claw", 12},
+                                           {"jellies", 12},
+                                           {"penguins", 1},
+                                           {"pile", 30},
+                                           {"pillows", 20},
+                                           {"ragdoll", 30},
+                                           {"tyres", 20}};
   if (const auto few = shorter.find(GetParam().name); few != shorter.end()) {
     const int frames = few->second;
     EXPECT_EQ(hash_after(GetParam(), frames, interpreted), hash_after(GetParam(), frames));

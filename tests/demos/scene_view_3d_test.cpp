@@ -15,6 +15,7 @@
 #include "simulation/simulation_3d.h"
 #include "softcell/render/image_compare.h"
 #include "softcell/render/offscreen_context.h"
+#include "support/slow_build.h"
 #include "view/moved_3d.h"
 #include "view/scene_view.h"
 
@@ -41,6 +42,7 @@ void PrintTo(const Drawn& d, std::ostream* out) { *out << d.scene << ' ' << d.se
 class ScenesIn3d : public testing::TestWithParam<Drawn> {};
 
 TEST_P(ScenesIn3d, LookAsIfAllWereDrawn) {
+  if (kSlowBuild && GetParam().first > 10) GTEST_SKIP() << "with sanitizers, which have the early ones";
   const Scene scene = load_scene_3d(GetParam().scene);
   Simulation3d simulation(scene, {});
   for (int frame = 0; frame < GetParam().first; ++frame) simulation.step();

@@ -20,22 +20,21 @@
 
 #include "kernels/stress_code.h"
 #include "softcell/dma/buffer.h"
-#include "softcell/dma/sanitizers.h"
 #include "softcell/ls_sim/spe_group.h"
+#include "support/slow_build.h"
 #include "test_images.h"
 
 namespace softcell::ls_sim {
 namespace {
 
 constexpr int kSpes = 6;
-constexpr bool kSlow = SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER;
 
 /// In each way, by all SPEs together.
 std::uint32_t changes(std::uint32_t usual) {
   if (const char* const asked = std::getenv("SOFTCELL_STRESS_CHANGES")) {
     return static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10));
   }
-  return kSlow ? usual / 20 : usual;
+  return kSlowBuild ? usual / 20 : usual;
 }
 
 /// Moves all threads of the process from processor to processor for as long as it lives.

@@ -14,14 +14,14 @@
 #include <string_view>
 #include <vector>
 
-#include "softcell/dma/sanitizers.h"
 #include "spu_model/operands.h"
 #include "spu_model/twins.h"
+#include "support/slow_build.h"
 
 namespace softcell::spu_model {
 namespace {
 
-constexpr std::uint64_t kLess = SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER ? 10 : 1;  // where all is slow
+constexpr std::uint64_t kLess = kSlowBuild ? 10 : 1;  // where all is slow
 constexpr std::uint64_t kUsualTriples = 100000 / kLess;
 /// Of an instruction that is none of floating point: four words each.
 constexpr std::uint64_t kUsualQuadwords = 20000 / kLess;

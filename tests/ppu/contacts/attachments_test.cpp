@@ -75,7 +75,7 @@ SoftBodySettings stiff() {
 
 /// A hundred times the weight of the patch hangs from it: most of it is a rigid body that is welded to the soft one's lower end.
 TEST(Attachments, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   ContactWorld w;
   SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), stiff(), {0, 2, 0});
   const auto top = top_of(body);
@@ -247,7 +247,7 @@ TEST(Attachments, AHingeTurnsAboutItsAxisOnly) {
 }
 
 TEST(Attachments, AHungBodyCarriesOneThatStandsOnIt) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const bool on_spes : {false, true}) {
     std::unique_ptr<SpeRuntime> spes =
         on_spes ? std::make_unique<SpeRuntime>(SpeRuntimeOptions{.spes = 2}) : nullptr;
@@ -606,7 +606,7 @@ TEST(Attachments, LimitTheirOwnPushesOnly) {
 
 /// What is attached costs this much more a substep. (docs/guide/soft-bodies.md has figures; here only that it is no multiple.)
 TEST(Attachments, APatchOfTwentyParticlesCostsMicroseconds) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers";
   const auto model = make_soft_body_model(block({0.4f, 0.4f, 0.4f}), settings_of(kCell));
   SoftBody<3> body(model);
   PatchParticles<3> patch;

@@ -123,7 +123,7 @@ class RandomScene {
 
 /// SOFTCELL_RANDOM_SCENES: how many.
 TEST(Conservation, RandomScenesHaveNoEnergyFromNothing) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   const char* const text = std::getenv("SOFTCELL_RANDOM_SCENES");
   const unsigned count = text != nullptr ? static_cast<unsigned>(std::atoi(text)) : 15;
   for (unsigned seed = 1; seed <= count; ++seed) RandomScene(seed).expect_sane(seed);

@@ -12,14 +12,11 @@
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/contacts/triangle_distance.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
-#include "softcell/dma/sanitizers.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/skinned_mesh.h"
+#include "support/slow_build.h"
 
 namespace softcell::ppu {
-
-/// Of tests that simulate many seconds.
-inline constexpr bool kTakesMinutes = SC_ADDRESS_SANITIZER || SC_THREAD_SANITIZER;
 
 class ContactWorld {
  public:

@@ -22,7 +22,7 @@ int seconds_at_rest() {
 }
 
 TEST(HeavyBody, OfTenTimesItsMassRestsOnASoftOneForGood) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float alpha : {0.5f, 1.0f}) {
     ContactWorld w;
     w.add_floor();

@@ -19,7 +19,7 @@ using Eigen::Vector3f;
 TriangleMesh cube(float edge, float cell) { return make_box({edge, edge, edge}, cell); }
 
 TEST(SurfaceContacts, WhatIsDrawnRestsOnWhatIsBelow) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   constexpr float kCell = 0.1f;
   const TriangleMesh meshes[] = {cube(8 * kCell, kCell), cube(7.3f * kCell, kCell),
                                  make_sphere(3.4f * kCell, 12), make_penguin(0.9f)};
@@ -94,7 +94,7 @@ TEST(SurfaceContacts, TwoBodiesKeepTheirMomenta) {
 }
 
 TEST(SurfaceContacts, AHeavyBoxRestsOnASoftOne) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   constexpr float kCell = 0.15f;
   ContactWorld w;
   w.add_floor();
@@ -123,7 +123,7 @@ TEST(SurfaceContacts, ABoxThrownAtABodyKeepsTheirMomentum) {
 }
 
 TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   constexpr float kCell = 0.1f;
   struct Thing {
     const char* name;
@@ -153,7 +153,7 @@ TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
 }
 
 TEST(SurfaceContacts, WhatRestsSleepsAndWakesWhereItIsTouched) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   ContactWorld w;
   w.add_floor();
   w.bodies.let_sleep(SleepSettings{.speed = 0.1f, .seconds = 0.5f});
@@ -189,7 +189,7 @@ TEST(SurfaceContacts, SleepersOfAllSizesHoldWhatTouchesThem) {
 }
 
 TEST(SurfaceContacts, KindsOfShapesHoldABody) {
-  if (kTakesMinutes) GTEST_SKIP() << "with sanitizers, which have the others";
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   const auto mesh = [](std::vector<btVector3> corners, btTriangleMesh& triangles) {
     triangles.addTriangle(corners[0], corners[1], corners[2]);
     triangles.addTriangle(corners[0], corners[2], corners[3]);
