@@ -10,15 +10,12 @@
 #include "scene_file/save_scene.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
+#include "simulation_runs.h"
 #include "softcell/render/offscreen_context.h"
 #include "view/scene_view.h"
 
 namespace softcell::demos {
 namespace {
-
-void step(Simulation3d& simulation, int frames) {
-  for (int i = 0; i < frames; ++i) simulation.step();
-}
 
 TEST(BrokenBodies, AVaseBreaksTheSameWayAgainAfterAReset) {
   const Scene scene = load_scene_3d("break");

@@ -19,6 +19,7 @@
 #include "simulation/picked.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
+#include "simulation_runs.h"
 #include "softcell/render/png_io.h"
 #include "support/scratch_folder.h"
 
@@ -28,20 +29,6 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 namespace fs = std::filesystem;
-
-template <class Simulation>
-auto present(const Simulation& simulation) {
-  constexpr int kDimension = std::is_same_v<Simulation, Simulation3d> ? 3 : 2;
-  std::vector<ppu::SoftBodySettings> materials;
-  for (std::size_t b = 0; b < simulation.soft_bodies(); ++b)
-    materials.push_back(simulation.soft_body(b).settings());
-  return PresentScene<kDimension>{simulation.moment(), materials, simulation.substeps()};
-}
-
-template <class Simulation>
-void step(Simulation& simulation, int frames) {
-  for (int frame = 0; frame < frames; ++frame) simulation.step();
-}
 
 template <class Simulation>
 std::vector<std::remove_cvref_t<decltype(std::declval<Simulation>().soft_body(0).position(0))>> positions(

@@ -1,5 +1,5 @@
 // Hands that hold bodies in three dimensions: they lift, carry and throw whatever they touch, and tear nothing.
-// SOFTCELL_RANDOM_DRAGS=1000 build/release/held_bodies_tests --gtest_filter=*Drags* drags more often.
+// SOFTCELL_RANDOM_DRAGS=1000 build/release/simulation_tests --gtest_filter=*Drags* drags more often.
 
 #include <gtest/gtest.h>
 

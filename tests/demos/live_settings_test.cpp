@@ -12,27 +12,14 @@
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
+#include "simulation_runs.h"
 
 namespace softcell::demos {
 namespace {
 
-template <int Dimension>
-InputEvent<Dimension> change(Action action, float value, std::uint32_t body = kEveryBody) {
-  InputEvent<Dimension> event;
-  event.action = action;
-  event.body = body;
-  event.value[0] = value;
-  return event;
-}
-
 template <class Simulation, class Event>
 void step_with(Simulation& simulation, const Event& event) {
   simulation.step({&event, 1});
-}
-
-template <class Simulation>
-void run(Simulation& simulation, int frames) {
-  for (int frame = 0; frame < frames; ++frame) simulation.step();
 }
 
 struct Change {
@@ -52,7 +39,7 @@ template <int Dimension, class Simulation, class Scene>
 void expect_in_the_next_step(const Scene& scene) {
   for (const auto& [action, value] : changes()) {
     Simulation changed(scene, {.spes = 2}), unchanged(scene, {.spes = 2});
-    run(changed, kToTheFloor), run(unchanged, kToTheFloor);
+    step(changed, kToTheFloor), step(unchanged, kToTheFloor);
     InputEvent<Dimension> slide;
     slide.action = Action::kPush;
     slide.body = kEveryBody;
@@ -103,12 +90,12 @@ TEST(LiveSettings, SetWhatTheySay) {
 TEST(LiveSettings, AResetIsTheBeginningInAllBits) {
   const Scene scene = load_scene_3d("drop");
   Simulation3d simulation(scene, {.spes = 2});
-  run(simulation, 30);
+  step(simulation, 30);
   const std::uint64_t hash = simulation.state_hash();
   for (const auto& [action, value] : changes()) step_with(simulation, change<3>(action, value));
-  run(simulation, 7);
+  step(simulation, 7);
   step_with(simulation, change<3>(Action::kReset, 0));  // and the first frame
-  run(simulation, 29);
+  step(simulation, 29);
   EXPECT_EQ(simulation.state_hash(), hash);
 }
 
@@ -123,10 +110,10 @@ TEST(LiveSettings, OneBodyOfAModelIsChangedAndTheOthersAreNot) {
   std::vector<std::uint64_t> hashes;
   for (const int spes : {1, 2, 6}) {
     Simulation3d changed(scene, {.spes = spes}), unchanged(scene, {.spes = spes});
-    run(changed, 20), run(unchanged, 20);
+    step(changed, 20), step(unchanged, 20);
     step_with(changed, change<3>(Action::kAlpha, 0.9f, 2));
     unchanged.step();
-    run(changed, 20), run(unchanged, 20);
+    step(changed, 20), step(unchanged, 20);
     for (std::size_t b = 0; b < 4; ++b) {
       const auto x = changed.soft_body(b).positions(), y = unchanged.soft_body(b).positions();
       EXPECT_EQ(std::equal(x.begin(), x.end(), y.begin()), b != 2)
@@ -144,7 +131,7 @@ TEST(LiveSettings, StifferBodiesAreDeformedLess) {
   for (const float modulus : {60.0f, 300.0f, 1500.0f}) {
     Simulation3d simulation(scene, {.spes = 2});
     step_with(simulation, change<3>(Action::kModulus, modulus));
-    run(simulation, 240);
+    step(simulation, 240);
     deformations.push_back(simulation.soft_body(0).deformation());
   }
   EXPECT_GT(deformations[0], 1.5f * deformations[1]);
@@ -156,13 +143,13 @@ TEST(LiveSettings, SlowMotionIsTheSameMotion) {
   Simulation3d slow(scene, {.spes = 2}), usual(scene, {.spes = 2}), fast(scene, {.spes = 2});
   const Scene2d scene_2d = load_scene_2d("stack");
   Simulation2d slow_2d(scene_2d), usual_2d(scene_2d);
-  step_with(slow, change<3>(Action::kTimeScale, 0.25f)), run(slow, 159);
-  run(usual, 40);
-  step_with(fast, change<3>(Action::kTimeScale, 2)), run(fast, 19);
+  step_with(slow, change<3>(Action::kTimeScale, 0.25f)), step(slow, 159);
+  step(usual, 40);
+  step_with(fast, change<3>(Action::kTimeScale, 2)), step(fast, 19);
   EXPECT_EQ(slow.state_hash(), usual.state_hash());
   EXPECT_EQ(fast.state_hash(), usual.state_hash());
-  step_with(slow_2d, change<2>(Action::kTimeScale, 0.25f)), run(slow_2d, 159);
-  run(usual_2d, 40);
+  step_with(slow_2d, change<2>(Action::kTimeScale, 0.25f)), step(slow_2d, 159);
+  step(usual_2d, 40);
   EXPECT_EQ(slow_2d.state_hash(), usual_2d.state_hash());
 }
 

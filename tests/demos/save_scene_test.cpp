@@ -28,6 +28,7 @@
 #include "scene_file/write_toml.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
+#include "simulation_runs.h"
 #include "softcell/render/png_io.h"
 #include "support/scratch_folder.h"
 #include "support/slow_build.h"
@@ -37,14 +38,6 @@ namespace {
 
 using Eigen::Vector3f;
 namespace fs = std::filesystem;
-
-template <class Simulation>
-auto settings_of(const Simulation& simulation) {
-  std::vector<ppu::SoftBodySettings> all;
-  for (std::size_t b = 0; b < simulation.soft_bodies(); ++b)
-    all.push_back(simulation.soft_body(b).settings());
-  return all;
-}
 
 /// Without what has no effect: alpha beside a frequency, damping beside a damping time.
 std::vector<ppu::SoftBodySettings> in_effect(std::vector<ppu::SoftBodySettings> all) {
@@ -56,31 +49,16 @@ std::vector<ppu::SoftBodySettings> in_effect(std::vector<ppu::SoftBodySettings> 
 }
 
 std::vector<SceneFile> files_of(const Scene& scene, const Simulation3d& simulation, const fs::path& file) {
-  return saved_scene(scene, {simulation.moment(), settings_of(simulation), simulation.substeps()},
-                     scene.camera, simulation.contacts(), file);
+  return saved_scene(scene, present(simulation), scene.camera, simulation.contacts(), file);
 }
 std::vector<SceneFile> files_of(const Scene2d& scene, const Simulation2d& simulation, const fs::path& file) {
-  return saved_scene(scene, {simulation.moment(), settings_of(simulation), simulation.substeps()}, file);
+  return saved_scene(scene, present(simulation), file);
 }
 
 template <class SceneOf, class Simulation>
 SceneOf saved_and_loaded(const SceneOf& scene, const Simulation& simulation, const fs::path& file) {
   write_scene_files(files_of(scene, simulation, file));
   return std::get<SceneOf>(load_scene(file.string()));
-}
-
-template <class Simulation>
-void step(Simulation& simulation, int frames) {
-  for (int frame = 0; frame < frames; ++frame) simulation.step();
-}
-
-template <int Dimension>
-InputEvent<Dimension> change(Action action, float value, std::uint32_t body = kEveryBody) {
-  InputEvent<Dimension> event;
-  event.action = action;
-  event.body = body;
-  event.value[0] = value;
-  return event;
 }
 
 template <int Dimension>

@@ -71,7 +71,7 @@ TEST_P(SceneHash, IsTheStoredOne) {
 /// Kernels as a compiler for the SPU has made them, each instruction interpreted: the same bits.
 TEST_P(SceneHash, IsTheStoredOneByInterpretedKernels) {
   const SimulationOptions interpreted{.machine = ls_sim::Machine::kSpu};
-  if (GetParam().name == "big") GTEST_SKIP() << "half a minute; both_builds_tests have tiles";
+  if (GetParam().name == "big") GTEST_SKIP() << "half a minute; BothBuilds has tiles";
   // Nothing that a sanitizer finds depends on the scene, so long as all kernels of bodies and contacts run.
   if (kSlowBuild && GetParam().dimension == 3 && GetParam().name != "arena")
     GTEST_SKIP() << "minutes; arena has these kernels";

@@ -17,7 +17,7 @@ namespace {
 
 using test::Random;
 
-constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.2f;
+constexpr float kAlpha = 0.5f, kSeconds = 1.0f / 60, kDamping = 0.2f;
 
 /// Steps from the same shaken state, in both.
 template <int Dimension>
@@ -35,11 +35,11 @@ void expect_the_same_steps(const Lattice<Dimension>& lattice, int half_width) {
   }
   std::vector<Vector> mine(x.size(), Vector::Zero()), expected = mine;
   for (int step = 0; step < 3; ++step) {
-    solver.step(x, mine, kAlpha, kStep, kDamping);
-    matcher.step_velocities(x, expected, kAlpha, kStep, kDamping);
+    solver.step(x, mine, kAlpha, kSeconds, kDamping);
+    matcher.step_velocities(x, expected, kAlpha, kSeconds, kDamping);
     EXPECT_GT(test::largest_difference(expected, std::vector<Vector>(x.size(), Vector::Zero())), 0.01);
     EXPECT_LT(test::largest_difference(mine, expected), 2e-4) << "m/s, step " << step;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += kStep * expected[i];
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += kSeconds * expected[i];
   }
 }
 

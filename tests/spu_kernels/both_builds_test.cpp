@@ -105,7 +105,7 @@ class Rig {
 };
 
 constexpr ppu::MatchSettings kSettings{.pull = 30, .damping = 0.1f};
-constexpr int kSteps = 4;
+constexpr int kStepsOfBoth = 4;
 
 Outcome match(Machine machine) {
   Outcome outcome;
@@ -116,7 +116,7 @@ Outcome match(Machine machine) {
     test::SteppedBodies<3> bodies(rig.memory(), rig.jobs(), rig.kernel("match"), plan, 2);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(-0.2f, 0.2f);
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kStepsOfBoth; ++step) {
       for (std::size_t b = 0; b < 2; ++b) {
         for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
           const Eigen::Vector3f x = lattice.rest_position(i);
@@ -145,7 +145,7 @@ Outcome match_2d(Machine machine) {
     test::SteppedBodies<2> bodies(rig.memory(), rig.jobs(), rig.kernel("match_2d"), plan, 3);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(-0.2f, 0.2f);
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kStepsOfBoth; ++step) {
       for (std::size_t b = 0; b < 3; ++b) {
         for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
           const Eigen::Vector2f x = lattice.rest_position(i);
@@ -173,7 +173,7 @@ Outcome match_tiles(Machine machine) {
     test::SteppedTiles body(rig.memory(), rig.jobs(), rig.kernel("match_tiles"), plan);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(-0.2f, 0.2f);
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kStepsOfBoth; ++step) {
       for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
         const Eigen::Vector3f x = lattice.rest_position(i);
         body.positions()[plan.place_of()[i]] = {x.x() + uniform(random), x.y() + uniform(random),
@@ -198,7 +198,7 @@ Outcome skin(Machine machine) {
     orchestrator.add(embedding, lattice.particles.size());
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(-0.05f, 0.05f);
-    for (int frame = 0; frame < kSteps; ++frame) {
+    for (int frame = 0; frame < kStepsOfBoth; ++frame) {
       std::vector<Eigen::Vector4f> corners;
       for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
         const Eigen::Vector3f x = lattice.rest_position(i);

@@ -17,15 +17,15 @@ namespace softcell {
 namespace {
 
 // The widths of the contract's numbers.
-constexpr dma::BufferOptions kFloats{.element_bytes = sizeof(float)};
+constexpr dma::BufferOptions kOfFloats{.element_bytes = sizeof(float)};
 constexpr dma::ElementRun kJobRecord[] = {{24, 8}, {104, 4}};
 
 /// One SPE and one job.
 struct RotationsRig {
   explicit RotationsRig(std::size_t groups)
-      : matrices(memory, "matrices", groups, kFloats),
-        starts(memory, "starts", groups, kFloats),
-        found(memory, "found", groups, kFloats) {
+      : matrices(memory, "matrices", groups, kOfFloats),
+        starts(memory, "starts", groups, kOfFloats),
+        found(memory, "found", groups, kOfFloats) {
     job[0] = {matrices.ea().value,
               starts.ea().value,
               found.ea().value,
