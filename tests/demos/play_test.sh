@@ -143,6 +143,33 @@ sleep 0.3
 finish
 ! grep -q cut "$folder/no_cut.rec" || fail "the knife cuts bodies that touch with spheres"
 
+# In the view of contacts a click on a point takes nothing, and the menu has the contact's values.
+start 3d --scene drop --view contacts --record "$folder/contact.rec"
+shot demo3d_contacts
+sleep 2
+xdotool key p
+sleep 0.5
+# The points are red, some pixels wide: the middle of one.
+import -window "$window" -depth 8 "txt:$folder/contacts"
+at=$(sed -n 's/^\([0-9]*\),\([0-9]*\): .*srgb(\([0-9]*\),\([0-9]*\),\([0-9]*\))/\1 \2 \3 \4 \5/p' "$folder/contacts" |
+  awk '$3 > 150 && $4 < 60 && $5 < 60 { run = $2 == y && $1 == x + 1 ? run + 1 : 1; x = $1; y = $2; if (run > best) { best = run; bx = x - int(run / 2); by = y } }
+       END { if (best >= 5) print bx, by }')
+[ -n "$at" ] || fail "no contact is seen"
+xdotool mousemove --window "$window" $at mousedown 1 mouseup 1
+sleep 0.3
+xdotool key m
+sleep 0.7
+xdotool mousemove --window "$window" 200 500
+for _ in 1 2 3 4 5 6; do xdotool click 5; sleep 0.1; done
+sleep 0.5
+shot demo3d_contact_picked
+convert "$shots/demo3d_contact_picked.png" -depth 8 txt:- | sed -n 's/^\([0-9]*\),[0-9]*: .*srgb(\([0-9]*\),\([0-9]*\),\([0-9]*\))/\1 \2 \3 \4/p' |
+  awk '$1 > 410 && $2 > 170 && $3 > 110 && $4 < 80 { ++yellow } END { exit yellow > 20 ? 0 : 1 }' ||
+  fail "the contact that was clicked is not marked"
+xdotool key m
+finish
+! grep -q hold "$folder/contact.rec" || fail "a click on a contact takes a body"
+
 # The menu: by keyboard alone, a pause and slow motion; with the mouse, another gravity, which the scene under it does not notice.
 start 3d --scene drop --record "$folder/menu.rec"
 xdotool key m
@@ -183,6 +210,13 @@ cd "$folder"
 # Dense displays: text and menu grow with the scale; the bar over the menu ends where its width says.
 for scale in 1 1.5 2; do
   start 3d --scene drop --ui-scale $scale
+  xdotool key F1
+  sleep 0.7
+  shot "demo3d_help_$scale"
+  xdotool key F1 key k key Delete  # which nothing was held for: the window says so
+  sleep 0.5
+  shot "demo3d_knife_$scale"
+  xdotool key k
   xdotool key m
   sleep 0.7
   shot "demo3d_scale_$scale"

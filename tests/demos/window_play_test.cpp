@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -83,15 +84,19 @@ struct WindowSize {
   int width = 320, height = 240;
 };
 
-/// What of the page and the menu does not fit into the window. Empty: everything does.
+/// What of the page and the menu does not fit into the window, or lies on something else. Empty: everything fits.
 std::string overflow(const WindowSize& size) {
   std::string found;
+  std::vector<ImRect> seen;
   for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
     if (!window->WasActive || window->Hidden || window->ParentWindow != nullptr || window->IsFallbackWindow)
       continue;
     const ImRect at = window->Rect();
     const bool fits = at.Min.x >= 0 && at.Min.y >= 0 && at.Max.x <= static_cast<float>(size.width) &&
                       at.Max.y <= static_cast<float>(size.height);
+    if (std::ranges::any_of(seen, [&](const ImRect& other) { return other.Overlaps(at); }))
+      found += fmt::format("{} lies on something; ", window->Name);
+    seen.push_back(at);
     const bool cut_off = window->ContentSize.x > window->InnerRect.GetWidth() + 1;
     if (!fits || cut_off)
       found += fmt::format("{} from ({}, {}) to ({}, {}), {} wide inside; ", window->Name, at.Min.x, at.Min.y,
@@ -170,7 +175,7 @@ void press_key(SDL_Keycode code) {
   push_key(SDL_KEYUP, code);
 }
 
-/// On displays of every density, in windows of every size: statistics, help, menu.
+/// On displays of every density, in windows of every size: statistics, help, menu, and what the window says.
 TEST(Play, PagesAndMenuFitIntoTheWindow) {
   use_no_display();
   for (const WindowSize size : {WindowSize{1280, 720}, WindowSize{640, 360}, WindowSize{400, 600}}) {
@@ -180,12 +185,16 @@ TEST(Play, PagesAndMenuFitIntoTheWindow) {
             << what << " in " << size.width << " x " << size.height << " at scale " << scale;
       };
       int frame = 0;
-      play({.title = "test", .width = size.width, .height = size.height, .frames = 40, .ui_scale = scale},
+      play({.title = "test", .width = size.width, .height = size.height, .frames = 60, .ui_scale = scale},
            {{"man", "", &make_man}}, {.spes = 1}, [&] {
              ++frame;
              if (frame == 10) check("statistics"), press_key(SDLK_F1);
              if (frame == 20) check("help"), press_key(SDLK_F1), press_key(SDLK_m);
-             if (frame == 30) check("menu");
+             if (frame == 30) check("menu"), press_key(SDLK_m);
+             if (frame == 35) press_key(SDLK_DELETE);  // of nothing: the window says so
+             if (frame == 45 && static_cast<float>(size.height) / scale > 300) check("statistics and notice");
+             if (frame == 45) press_key(SDLK_m);
+             if (frame == 55 && size.width > 1000) check("menu and notice");
              return false;
            });
     }

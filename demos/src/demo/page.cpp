@@ -29,6 +29,7 @@ class Rows {
   /// @param room  of the box that it fills, pixels
   void draw(const char* id, const ImVec2& room) const {
     const ImGuiStyle& style = ImGui::GetStyle();
+    ImGui::SetWindowFontScale(1);  // of the frame before
     float names = 0, texts = 0;
     for (const auto& [name, text] : rows_) {
       names = std::max(names, ImGui::CalcTextSize(name.c_str()).x);
@@ -125,7 +126,8 @@ ImVec2 room_in(float width, float height, float scale) {
 /// @param width, height  of the picture, pixels
 void draw_statistics_box(const Page& page, float scale, const std::optional<double>& shown_per_second,
                          int width, int height) {
-  const ImVec2 room = room_in(static_cast<float>(width), static_cast<float>(height), scale);
+  constexpr float kShareOfHeight = 0.6f;  // below are the hint and what the window says
+  const ImVec2 room = room_in(static_cast<float>(width), kShareOfHeight * static_cast<float>(height), scale);
   draw_box("statistics", {kMargin * scale, kMargin * scale}, {0, 0},
            [&] { figures(page, shown_per_second).draw("figures", room); });
 }
@@ -150,10 +152,14 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
   if (page.look.statistics && !page.look.help && !page.look.menu)
     draw_statistics_box(page, scale, shown_per_second, page.width, page.height);
+  const bool knife = page.look.knife && page.dimension == 3, hint = !page.look.help && !page.look.menu;
   if (!page.notice.empty()) {
-    // Beside the menu, if that is open.
-    const float left = page.look.menu ? std::min(kMenuWidth * scale, width / 2) : 0;
-    draw_box("notice", {(left + width) / 2, height - margin}, {0.5f, 1}, [&] {
+    // Beside the menu, if that is open, and above the hint.
+    const float left = page.look.menu ? std::min(kMenuWidth * scale, 0.7f * width) : 0;
+    const float above =
+        hint ? (knife ? 2 : 1) * ImGui::GetTextLineHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y
+             : 0;
+    draw_box("notice", {(left + width) / 2, height - margin - above}, {0.5f, 1}, [&] {
       ImGui::PushTextWrapPos(std::max(0.8f * (width - left) - 2 * margin, 4 * margin));
       ImGui::TextUnformatted(page.notice.c_str());
       ImGui::PopTextWrapPos();
@@ -162,13 +168,12 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
   if (page.look.help) {
     draw_box("help", {width / 2, height / 2}, {0.5f, 0.5f},
              [&] { help(page.dimension).draw("help", room_in(width, height, scale)); });
-  } else {
-    if (!page.look.menu)
-      draw_box("hint", {margin, height - margin}, {0, 1}, [&] {
-        if (page.look.knife && page.dimension == 3)
-          ImGui::TextUnformatted("Knife: draw a line over what to cut   K: hand again");
-        ImGui::TextUnformatted("M: menu   F1: help");
-      });
+  }
+  if (hint) {
+    draw_box("hint", {margin, height - margin}, {0, 1}, [&] {
+      if (knife) ImGui::TextUnformatted("Knife: draw a line over what to cut   K: hand again");
+      ImGui::TextUnformatted("M: menu   F1: help");
+    });
   }
   if (page.look.stroke) draw_stroke(page, scale);
 }

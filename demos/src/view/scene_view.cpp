@@ -208,7 +208,7 @@ void SceneView::draw_contacts(const Shown3d& shown) {
   }
   marks_ = {{points_, {}, kRadius, render::srgb(0xC02018)},
             {normals_.ends, normals_.links, 0, render::srgb(0xC02018)}};
-  if (!marked_.empty()) marks_.push_back({marked_, {}, 1.6f * kRadius, render::srgb(0xFFC800)});
+  if (!marked_.empty()) marks_.push_back({marked_, {}, 2.2f * kRadius, render::srgb(0xFFC800)});
   frame_.lattices = marks_;
 }
 
