@@ -18,14 +18,14 @@
 #include <variant>
 #include <vector>
 
+#include "document/documents.h"
+#include "document/write_toml.h"
 #include "ppu/gltf_builder.h"
 #include "scene/scene_hash.h"
-#include "scene_file/documents.h"
 #include "scene_file/own_model.h"
 #include "scene_file/picture_cells.h"
 #include "scene_file/scene_library.h"
 #include "scene_file/state_file.h"
-#include "scene_file/write_toml.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/render/png_io.h"

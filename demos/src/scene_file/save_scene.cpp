@@ -12,12 +12,12 @@
 #include <string_view>
 #include <utility>
 
+#include "document/table_edit.h"
+#include "document/write_toml.h"
 #include "scene_source.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
 #include "state_file.h"
-#include "table_edit.h"
-#include "write_toml.h"
 
 namespace softcell::demos {
 namespace {
