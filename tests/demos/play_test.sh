@@ -279,6 +279,22 @@ finish
 grep -q '"scene": "mine"' drop.json || fail "the dropped scene is not opened: $(grep scene drop.json)"
 grep -q '"bodies": 0' drop.json || fail "Delete does not remove the body that was held: $(grep bodies drop.json)"
 
+# Two models that are dropped in the same place during a pause are above each other, by at least a quarter of their size.
+start 3d --scene drop --json "$folder/drop.json"
+shot demo3d_before_drop
+sleep 1
+xdotool key p
+sleep 0.3
+for _ in 1 2; do drop 640 440 "$folder/tetrahedron.obj"; sleep 1; done
+shot demo3d_dropped_twice
+rm -f drop_*.toml drop_*.state
+xdotool key F5
+sleep 0.7
+finish
+grep -q '"bodies": 3' drop.json || fail "two models are dropped, and there are $(grep bodies drop.json)"
+sed -n 's/^position = \[\(.*\)\]/\1/p' drop_1.toml | tail -2 | tr -d , | awk '{ y[NR] = $2 } END { exit NR == 2 && y[2] - y[1] > 0.1 ? 0 : 1 }' ||
+  fail "a dropped model begins inside another: $(grep position drop_1.toml)"
+
 # In two dimensions a picture does.
 convert -size 120x100 xc:none -fill red -draw 'circle 60,50 60,90' cat.png
 start 2d --json "$folder/drop.json"
