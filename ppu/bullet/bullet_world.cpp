@@ -304,6 +304,26 @@ std::vector<BulletWorld::RayHit> BulletWorld::cast_ray(const Eigen::Vector3f& fr
   return hits;
 }
 
+bool BulletWorld::is_free(const Eigen::Vector3f& low, const Eigen::Vector3f& high) const {
+  SC_ASSERT(low.allFinite() && high.allFinite() && (low.array() < high.array()).all(),
+            "a box from ({}, {}, {}) to ({}, {}, {})", low.x(), low.y(), low.z(), high.x(), high.y(),
+            high.z());
+  struct Anything : btCollisionWorld::ContactResultCallback {
+    bool found = false;
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* /*a*/, int, int,
+                             const btCollisionObjectWrapper* /*b*/, int, int) override {
+      found = found || point.getDistance() <= 0;
+      return 0;
+    }
+  } anything;
+  btBoxShape shape(to_bullet(0.5f * (high - low)));
+  btCollisionObject box;
+  box.setCollisionShape(&shape);
+  box.setWorldTransform(btTransform(btQuaternion::getIdentity(), to_bullet(0.5f * (low + high))));
+  impl_->world.contactTest(&box, anything);
+  return !anything.found;
+}
+
 void BulletWorld::set_gravity(const Eigen::Vector3f& gravity) { impl_->world.setGravity(to_bullet(gravity)); }
 
 StepTimes BulletWorld::step(float seconds, int substeps) {
@@ -327,13 +347,21 @@ StepTimes BulletWorld::step(float seconds, int substeps) {
 
 void BulletWorld::contacts(std::vector<Contact>& contacts) const {
   contacts.clear();
+  const auto side = [](const btCollisionObject* object) -> Contact::Body {
+    const SoftBody<3>* const soft = BulletSoftBodies::particle_of(*object).body;
+    return soft != nullptr ? Contact::Body{.soft = soft} : Contact::Body{.object = object};
+  };
   const btDispatcher& dispatcher = impl_->dispatcher;
   for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
     const btPersistentManifold& manifold = *impl_->dispatcher.getManifoldByIndexInternal(m);
     for (int p = 0; p < manifold.getNumContacts(); ++p) {
       const btManifoldPoint& point = manifold.getContactPoint(p);
       if (point.getAppliedImpulse() <= 0) continue;
-      contacts.push_back({to_eigen(point.getPositionWorldOnB()), to_eigen(point.m_normalWorldOnB)});
+      contacts.push_back({.position = to_eigen(point.getPositionWorldOnB()),
+                          .normal = to_eigen(point.m_normalWorldOnB),
+                          .impulse = point.getAppliedImpulse(),
+                          .first = side(manifold.getBody0()),
+                          .second = side(manifold.getBody1())});
     }
   }
 }

@@ -109,6 +109,9 @@ class BulletWorld {
   /// Where a ray enters the rigid bodies on its way, the nearest first. @pre from and to are finite, metres, and differ
   std::vector<RayHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
+  /// Whether a box with edges along the axes, metres, meets no rigid body and no sphere of a soft one. @pre low < high, finite
+  bool is_free(const Eigen::Vector3f& low, const Eigen::Vector3f& high) const;
+
   /// For BulletSoftBodies, and for whatever is not offered here.
   btDiscreteDynamicsWorld& world();
   const btDiscreteDynamicsWorld& world() const;

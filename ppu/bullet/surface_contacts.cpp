@@ -142,7 +142,17 @@ void SurfaceContacts::note_triggers(std::span<SurfaceBody* const> bodies, float 
 void SurfaceContacts::append_contacts(std::vector<Contact>& contacts) const {
   std::vector<PressingContact> pressing;
   stage_.append_contacts(pressing);
-  for (const PressingContact& contact : pressing) contacts.push_back({contact.point, contact.normal});
+  for (const PressingContact& contact : pressing) {
+    Contact& appended = contacts.emplace_back();
+    appended.position = contact.point;
+    appended.normal = contact.normal;
+    appended.impulse = contact.impulse;
+    appended.first.soft = in_stage_[contact.a].body;
+    if (contact.with_rigid)
+      appended.second.object = obstacles_.objects()[contact.rigid];
+    else
+      appended.second.soft = in_stage_[contact.b].body;
+  }
 }
 
 void SurfaceContacts::watch(bool events) {

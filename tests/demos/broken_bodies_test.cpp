@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "input/recording.h"
 #include "scene_file/save_scene.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
@@ -121,6 +122,110 @@ TEST(BrokenBodies, AreNotSaved) {
   const InputEvent<3> reset{.action = Action::kReset};
   run.step({&reset, 1});
   EXPECT_EQ(run.moment().soft_bodies.size(), 1u);
+}
+
+/// Downwards through x = `x`, from the user's eye at z = 10, over the whole height of what one sees.
+InputEvent<3> stroke_at(float x, float half_height = 5) {
+  const Eigen::Vector3f eye(x, 1, 10);
+  return {.action = Action::kCut,
+          .body = kEveryBody,
+          .value = eye,
+          .edge = Eigen::Vector3f(0, half_height, -10) * 10,
+          .way = Eigen::Vector3f(0, -half_height, -10) * 10};
+}
+
+ppu::Bounds<3> bounds_of(const Simulation3d& run, std::size_t body) { return run.soft_body(body).bounds(); }
+
+TEST(TheUsersKnife, CutsWhatIsUnderItAlsoWhatIsNotBrittle) {
+  const Scene scene = load_scene_3d("drop");
+  Simulation3d run(scene, {});
+  ASSERT_FALSE(run.soft_body(0).settings().fracture);
+  run.step();
+  const float middle = 0.5f * (bounds_of(run, 0).low + bounds_of(run, 0).high).x();
+  const InputEvent<3> beside = stroke_at(bounds_of(run, 0).high.x() + 1);
+  run.step({&beside, 1});
+  EXPECT_EQ(run.soft_bodies(), 1u) << "a stroke beside the body";
+  const InputEvent<3> through = stroke_at(middle);
+  run.step({&through, 1});
+  ASSERT_EQ(run.soft_bodies(), 2u);
+  const float cell = run.soft_body(0).settings().cell_size;
+  for (std::size_t b = 0; b < 2; ++b)
+    EXPECT_TRUE(bounds_of(run, b).low.x() > middle - cell || bounds_of(run, b).high.x() < middle + cell)
+        << "piece " << b << " lies on both sides";
+  EXPECT_EQ(run.source(1), 0u);
+  step(run, 60);
+  EXPECT_TRUE(bounds_of(run, 1).high.allFinite());
+  const InputEvent<3> home{.action = Action::kHome, .body = kEveryBody};
+  run.step({&home, 1});
+  EXPECT_EQ(run.soft_bodies(), 1u) << "whole again";
+}
+
+TEST(TheUsersKnife, CutsAtOnceInAPause) {
+  const Scene scene = load_scene_3d("drop");
+  Simulation3d run(scene, {});
+  run.step();
+  const float middle = 0.5f * (bounds_of(run, 0).low + bounds_of(run, 0).high).x();
+  const std::vector<InputEvent<3>> events{{.action = Action::kPause}, stroke_at(middle)};
+  run.step(events);
+  Shown3d shown;
+  run.show(shown);
+  EXPECT_EQ(shown.bodies.size(), 2u);
+}
+
+TEST(TheUsersKnife, CutsNothingWithoutAnAreaOrWhereBodiesTouchWithSpheres) {
+  const Scene scene = load_scene_3d("drop");
+  Simulation3d run(scene, {}), spheres(scene, {.contacts = ppu::ContactMethod::kSpheres});
+  run.step(), spheres.step();
+  const float middle = 0.5f * (bounds_of(run, 0).low + bounds_of(run, 0).high).x();
+  InputEvent<3> flat = stroke_at(middle), none = flat;
+  flat.way = 2 * flat.edge;
+  none.edge.setZero();
+  const std::vector<InputEvent<3>> events{flat, none};
+  run.step(events);
+  EXPECT_EQ(run.soft_bodies(), 1u);
+  const InputEvent<3> through = stroke_at(middle);
+  spheres.step({&through, 1});
+  EXPECT_EQ(spheres.soft_bodies(), 1u);
+}
+
+/// By way of the text of a recording.
+TEST(TheUsersKnife, IsReplayedToTheSameBitsOnAnyNumberOfSpes) {
+  const Scene scene = load_scene_3d("drop");
+  Recording<3> recording{.scene = "drop", .frames = 60};
+  std::set<std::uint64_t> hashes;
+  std::size_t pieces = 0;
+  {
+    Simulation3d run(scene, {.spes = 2});
+    for (int frame = 0; frame < 60; ++frame) {
+      std::vector<InputEvent<3>> events;
+      if (frame == 10 || frame == 30) {
+        const ppu::Bounds<3> box = bounds_of(run, 0);
+        events.push_back(
+            stroke_at(box.low.x() + 0.37f * (box.high.x() - box.low.x()), frame == 10 ? 5.0f : 0.7f));
+        events.back().way.x() += 1.0f / 3;
+        recording.events.push_back({frame, events[0]});
+      }
+      run.step(events);
+    }
+    hashes.insert(run.state_hash());
+    pieces = run.soft_bodies();
+  }
+  EXPECT_GE(pieces, 2u);
+  const Recording<3> again = parse_recording<3>(to_text(recording));
+  EXPECT_EQ(again, recording);
+  for (const int spes : {1, 6}) {
+    Simulation3d run(scene, {.spes = spes, .schedule = dma::parse_schedule(spes == 1 ? "lazy" : "random:3")});
+    std::size_t next = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+      std::vector<InputEvent<3>> events;
+      while (next < again.events.size() && again.events[next].frame == frame)
+        events.push_back(again.events[next++].event);
+      run.step(events);
+    }
+    hashes.insert(run.state_hash());
+    EXPECT_EQ(run.soft_bodies(), pieces);
+  }
+  EXPECT_EQ(hashes.size(), 1u);
 }
 
 /// The view follows bodies that come, change and go.

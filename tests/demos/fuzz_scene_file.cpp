@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <variant>
 
+#include "document/value.h"
 #include "scene_file/scene_library.h"
-#include "scene_file/value.h"
 
 namespace {
 

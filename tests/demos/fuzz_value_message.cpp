@@ -1,6 +1,6 @@
 // Any bytes as the message of the process that runs Lua: it belongs to somebody else's program.
 
-#include "scene_file/value_message.h"
+#include "document/value_message.h"
 
 #include <memory>
 #include <string>

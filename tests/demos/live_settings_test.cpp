@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -97,6 +98,61 @@ TEST(LiveSettings, AResetIsTheBeginningInAllBits) {
   step_with(simulation, change<3>(Action::kReset, 0));  // and the first frame
   step(simulation, 29);
   EXPECT_EQ(simulation.state_hash(), hash);
+}
+
+/// By how much longer along x the rest shape of a body is after two hands have pulled it apart for a second, metres.
+float longer_after_a_pull(float yield) {
+  Scene scene = load_scene_3d("drop");
+  scene.gravity = 0;
+  Simulation3d simulation(scene, {.spes = 2});
+  step_with(simulation, change<3>(Action::kYield, yield));
+  step_with(simulation, change<3>(Action::kCreep, 40));
+  std::vector<InputEvent<3>> hands;
+  const ppu::SoftBody<3>& body = simulation.soft_body(0);
+  const ppu::Bounds<3> box = body.bounds();
+  const Eigen::Vector3f middle = 0.5f * (box.low + box.high), half = 0.5f * (box.high - box.low);
+  for (std::uint32_t hand = 0; hand < 2; ++hand) {
+    const Eigen::Vector3f side = (hand == 0 ? 1.0f : -1.0f) * half.x() * Eigen::Vector3f::UnitX();
+    hands.push_back({.action = Action::kHold, .hand = hand, .body = 0, .value = middle + side});
+    hands.push_back({.action = Action::kMoveHand, .hand = hand, .body = 0, .value = middle + 2 * side});
+  }
+  simulation.step(hands);
+  run(simulation, 60);
+  if (!body.has_own_rest()) return 0;
+  const std::vector<Eigen::Vector3f> rest = body.rest_positions();
+  const auto [low, high] = std::ranges::minmax(rest, {}, [](const Eigen::Vector3f& x) { return x.x(); });
+  return high.x() - low.x() - 2 * half.x();
+}
+
+TEST(LiveSettings, APlasticBodyKeepsWhatAnElasticOneDoesNot) {
+  EXPECT_GT(longer_after_a_pull(0.05f), 0.1f);
+  EXPECT_EQ(longer_after_a_pull(0), 0);
+}
+
+TEST(LiveSettings, YieldAndCreepSetWhatTheySay) {
+  const Scene scene = load_scene_3d("drop");
+  Simulation3d run(scene, {.spes = 1});
+  const auto plasticity = [&] { return run.soft_body(0).settings().plasticity; };
+  step_with(run, change<3>(Action::kCreep, 30));
+  EXPECT_FALSE(plasticity()) << "creep alone makes nothing plastic";
+  step_with(run, change<3>(Action::kYield, 0.2f));
+  EXPECT_EQ(plasticity(), (ppu::Plasticity{.yield = 0.2f}));
+  step_with(run, change<3>(Action::kCreep, 30));
+  EXPECT_EQ(plasticity(), (ppu::Plasticity{.yield = 0.2f, .creep = 30}));
+  step_with(run, change<3>(Action::kYield, 0));
+  EXPECT_FALSE(plasticity());
+  step_with(run, change<3>(Action::kYield, 1));
+  step_with(run, change<3>(Action::kReset, 0));
+  EXPECT_FALSE(plasticity()) << "as the scene has it";
+}
+
+TEST(LiveSettings, ABodyOfTooManyParticlesStaysElastic) {
+  const Scene scene = load_scene_3d("big");
+  Simulation3d run(scene, {.spes = 2});
+  ASSERT_GT(run.particles(), 4096u);
+  step_with(run, change<3>(Action::kYield, 0.2f));
+  for (std::size_t b = 0; b < run.soft_bodies(); ++b)
+    EXPECT_EQ(run.soft_body(b).settings().plasticity.has_value(), run.model(b).particles() <= 4096) << b;
 }
 
 /// Bodies of one model are stepped by common jobs, as long as they are of one material.

@@ -19,13 +19,16 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
   Event event;
   do {
     event.action = static_cast<Action>(below(kActions));
-  } while (Dimension == 2 && event.action == Action::kTilt);
+  } while (Dimension == 2 && (event.action == Action::kTilt || event.action == Action::kCut));
   const auto use_hand = [&] { event.hand = below(3) == 0 ? below(4) : kUsersHand; };
   const auto use_body = [&] { event.body = below(3) == 0 ? below(6) : kEveryBody; };
-  const auto use_value = [&](float size) {
+  const auto random_vector = [&](float size) {
+    typename Event::Vector vector;
     for (int i = 0; i < Dimension; ++i)
-      event.value[i] = size * (static_cast<float>(random()) / static_cast<float>(random.max()) * 2 - 1);
+      vector[i] = size * (static_cast<float>(random()) / static_cast<float>(random.max()) * 2 - 1);
+    return vector;
   };
+  const auto use_value = [&](float size) { event.value = random_vector(size); };
   switch (event.action) {
     case Action::kGrab:
     case Action::kHold:
@@ -61,7 +64,9 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
     case Action::kFrequency:
     case Action::kModulus:
     case Action::kDamping:
-    case Action::kFriction: {
+    case Action::kFriction:
+    case Action::kYield:
+    case Action::kCreep: {
       const NumberRange& range = *number_of(event.action);
       if (event.action != Action::kTimeScale && event.action != Action::kSubsteps) use_body();
       event.value[0] = range.whole
@@ -70,6 +75,12 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
                                              static_cast<float>(random()) / static_cast<float>(random.max());
       break;
     }
+    case Action::kCut:
+      use_body();
+      use_value(2);
+      event.edge = random_vector(3);
+      event.way = random_vector(3);
+      break;
     case Action::kReset:
     case Action::kPause:
     case Action::kResume:

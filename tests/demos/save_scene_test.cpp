@@ -18,14 +18,14 @@
 #include <variant>
 #include <vector>
 
+#include "document/documents.h"
+#include "document/write_toml.h"
 #include "ppu/gltf_builder.h"
 #include "scene/scene_hash.h"
-#include "scene_file/documents.h"
 #include "scene_file/own_model.h"
 #include "scene_file/picture_cells.h"
 #include "scene_file/scene_library.h"
 #include "scene_file/state_file.h"
-#include "scene_file/write_toml.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
 #include "simulation_runs.h"
@@ -284,6 +284,30 @@ TEST_F(SaveScene, KeepsWhatIsBentForGood) {
   step(run, 20), step(again, 20);
   for (std::size_t b = 0; b < run.soft_bodies(); ++b)
     EXPECT_LT((run.soft_body(b).centre_of_mass() - again.soft_body(b).centre_of_mass()).norm(), 0.02f) << b;
+}
+
+/// Plasticity that a slider has given, changed or taken away, also where the body's material has it.
+TEST_F(SaveScene, KeepsWhetherBodiesArePlastic) {
+  const std::string text =
+      "[framework]\n[materials.tin]\ncell_size = 0.25\nfrequency = 4\nfriction = 0.3\ndamping = 0.2\n"
+      "plasticity = { yield = 0.05, limit = 0.5 }\n"
+      "[[soft_body]]\nmaterial = \"tin\"\nalpha = 0.4\nshape = { kind = \"sphere\" }\nposition = [0, 1, 0]\n"
+      "[[soft_body]]\nmaterial = \"tin\"\nshape = { kind = \"sphere\" }\nposition = [2, 1, 0]\n"
+      "[[soft_body]]\ncell_size = 0.25\nshape = { kind = \"sphere\" }\nposition = [-2, 1, 0]\n";
+  const Scene scene = load_scene_3d(write("tin.toml", text));
+  Simulation3d run(scene, {.spes = 2});
+  const std::vector<InputEvent<3>> events{change<3>(Action::kYield, 0, 0), change<3>(Action::kCreep, 25, 1),
+                                          change<3>(Action::kYield, 0.2f, 2)};
+  run.step(events);
+  const Scene loaded = saved_and_loaded(scene, run, file());
+  ASSERT_EQ(loaded.soft_bodies.size(), 3u);
+  for (std::size_t b = 0; b < 3; ++b)
+    EXPECT_EQ(loaded.soft_bodies[b].settings, run.soft_body(b).settings()) << b;
+  EXPECT_FALSE(loaded.soft_bodies[0].settings.plasticity);
+  EXPECT_EQ(loaded.soft_bodies[0].settings.alpha, 0.4f);
+  EXPECT_EQ(loaded.soft_bodies[1].settings.plasticity,
+            (ppu::Plasticity{.yield = 0.05f, .creep = 25, .limit = 0.5f}));
+  EXPECT_EQ(loaded.soft_bodies[2].settings.plasticity, (ppu::Plasticity{.yield = 0.2f}));
 }
 
 /// The claw is where its motion has it at that time, and holds what it held.

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "demo/scene_pictures.h"
-#include "scene_file/documents.h"
-#include "scene_file/value.h"
+#include "document/documents.h"
+#include "document/value.h"
 #include "softcell/base/nearest_name.h"
 #include "support/scratch_folder.h"
 

@@ -277,6 +277,57 @@ TEST(UserInput, TheMouseMovesTheCameraIn3d) {
   EXPECT_EQ(input.look().turn, before.turn) << "no button is held";
 }
 
+/// The input of a picture of 800 x 600 that looks from (0, 0, 10) at the origin.
+UserInput<3> input_3d() {
+  const auto eye = [](const Look&) {
+    return render::Camera{.eye = {0, 0, 10}, .target = {0, 0, 0}, .tan_half_fov_y = 0.5f, .far_plane = 100};
+  };
+  const auto pick = [](const Ray&) -> std::optional<InputEvent<3>> {
+    return InputEvent<3>{.action = Action::kHold, .value = {0, 0, 0}};
+  };
+  return {kViews,
+          {.tilt = {},
+           .knife = Knife(eye, 800, 600),
+           .hand = MouseReach(eye, pick, 800, 600),
+           .camera = CameraControl(eye({}), 600)}};
+}
+
+TEST(UserInput, TheMouseCutsAlongALineWhileItIsAKnife) {
+  UserInput<3> input = input_3d();
+  EXPECT_TRUE(frame_of(input, {press(SDLK_k), mouse_button(SDL_MOUSEBUTTONDOWN, 400, 0), mouse_to(400, 200)})
+                  .empty());
+  ASSERT_TRUE(input.look().stroke);
+  EXPECT_LT(((*input.look().stroke)[0] - Vector2f(0.5f, 0)).norm(), 1e-6f);
+  EXPECT_LT(((*input.look().stroke)[1] - Vector2f(0.5f, 1.0f / 3)).norm(), 1e-6f);
+  const auto cut = frame_of(input, {mouse_button(SDL_MOUSEBUTTONUP, 400, 600)});
+  EXPECT_FALSE(input.look().stroke);
+  ASSERT_EQ(cut.size(), 1u) << "no hand takes anything";
+  EXPECT_EQ(cut[0].action, Action::kCut);
+  EXPECT_EQ(cut[0].body, kEveryBody);
+  EXPECT_EQ(cut[0].value, Vector3f(0, 0, 10));
+  // From the upper to the lower edge of the picture, as far as one sees: half as high as the way is long.
+  const Vector3f upper = Vector3f(0, 0.5f, -1).normalized() * 100,
+                 lower = Vector3f(0, -0.5f, -1).normalized() * 100;
+  EXPECT_LT((cut[0].edge - upper).norm(), 1e-3f) << cut[0].edge.transpose();
+  EXPECT_LT((cut[0].way - lower).norm(), 1e-3f) << cut[0].way.transpose();
+  EXPECT_EQ(input.look().turn, 0) << "the camera stays";
+}
+
+TEST(UserInput, AKnifeThatIsClickedOrPutAwayCutsNothing) {
+  UserInput<3> input = input_3d();
+  EXPECT_TRUE(frame_of(input, {press(SDLK_k), mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300), mouse_to(402, 302),
+                               mouse_button(SDL_MOUSEBUTTONUP, 402, 302)})
+                  .empty());
+  EXPECT_TRUE(frame_of(input, {mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300), mouse_to(100, 100), press(SDLK_k),
+                               mouse_button(SDL_MOUSEBUTTONUP, 100, 100)})
+                  .empty());
+  EXPECT_FALSE(input.look().stroke);
+  EXPECT_FALSE(input.look().knife);
+  const auto hold = frame_of(input, {mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300)});
+  ASSERT_EQ(hold.size(), 1u) << "a hand again";
+  EXPECT_EQ(hold[0].action, Action::kHold);
+}
+
 TEST(UserInput, AControllerThatIsPulledOutTiltsNoMore) {
   SDL_Event stick{};
   stick.caxis.type = SDL_CONTROLLERAXISMOTION;
@@ -441,7 +492,7 @@ MouseReach reach_from_above() {
 }
 
 TEST(UserInput3d, TheMouseTakesABodyAndMovesItInThePlaneThatFacesTheEye) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
+  UserInput<3> input(kViews, {.tilt = {}, .knife = {}, .hand = reach_from_above(), .camera = {}});
   input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 510, 390));
   auto events = input.next_frame();
   ASSERT_EQ(events.size(), 1u);
@@ -471,7 +522,7 @@ TEST(UserInput3d, TheMouseTakesABodyAndMovesItInThePlaneThatFacesTheEye) {
 }
 
 TEST(UserInput3d, TheWheelMovesWhatIsHeldAndElseTheCamera) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
+  UserInput<3> input(kViews, {.tilt = {}, .knife = {}, .hand = reach_from_above(), .camera = {}});
   SDL_Event wheel{};
   wheel.wheel.type = SDL_MOUSEWHEEL;
   wheel.wheel.preciseY = 1;
@@ -498,7 +549,7 @@ TEST(UserInput3d, TheWheelMovesWhatIsHeldAndElseTheCamera) {
 }
 
 TEST(UserInput3d, WhereThereIsNothingToTakeTheMouseTurnsTheCamera) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
+  UserInput<3> input(kViews, {.tilt = {}, .knife = {}, .hand = reach_from_above(), .camera = {}});
   input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 100, 100));
   SDL_Event motion = mouse_to(150, 100);
   motion.motion.state = SDL_BUTTON_LMASK;
@@ -512,7 +563,7 @@ TEST(UserInput3d, WhereThereIsNothingToTakeTheMouseTurnsTheCamera) {
 }
 
 TEST(UserInput3d, TheMouseKnowsTheWindowsSize) {
-  UserInput<3> input(kViews, {.tilt = {}, .hand = reach_from_above(), .camera = {}});
+  UserInput<3> input(kViews, {.tilt = {}, .knife = {}, .hand = reach_from_above(), .camera = {}});
   SDL_Event resized{};
   resized.type = SDL_WINDOWEVENT;
   resized.window.event = SDL_WINDOWEVENT_SIZE_CHANGED;

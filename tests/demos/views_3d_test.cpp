@@ -1,5 +1,6 @@
 // What the views in three dimensions show beside meshes, and what lies under the mouse.
 
+#include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -251,11 +252,56 @@ TEST(Contacts, OfABoxOnTheFloorPointUpwards) {
   for (int frame = 0; frame < 120; ++frame) world.step(1.0f / 60, 1);
   world.contacts(contacts);
   ASSERT_GE(contacts.size(), 3u);
+  float impulse = 0;
   for (const ppu::Contact& contact : contacts) {
+    impulse += contact.impulse;
+    EXPECT_EQ(std::minmax(contact.first.object, contact.second.object),
+              (std::minmax<const btCollisionObject*>(&world.rigid_body(0), &world.rigid_body(1))));
     EXPECT_NEAR(std::abs(contact.normal.y()), 1, 1e-3f);
     EXPECT_NEAR(contact.position.y(), 0, 0.1f);
     EXPECT_LT(std::max(std::abs(contact.position.x()), std::abs(contact.position.z())), 0.6f);
   }
+  EXPECT_NEAR(impulse, 5 * 9.81f / 60, 0.05f) << "they carry the box";
+}
+
+TEST(Contacts, OfASoftBodyAtRestCarryItAndNameWhatItLiesOn) {
+  for (const ppu::ContactMethod method : {ppu::ContactMethod::kSurface, ppu::ContactMethod::kSpheres}) {
+    const Scene scene = load_scene_3d("drop");
+    Simulation3d run(scene, {.contacts = method, .spes = 2});
+    run.record_contacts(true);
+    float impulse = 0, weight = 0;
+    constexpr int kFrames = 400, kCounted = 60;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      run.step();
+      run.finish();
+      if (frame < kFrames - kCounted) continue;
+      for (const ppu::Contact& contact : run.shown_contacts()) {
+        impulse += contact.impulse * contact.normal.y() * (contact.first.soft != nullptr ? 1.0f : -1.0f);
+        const std::set<std::string> names{run.name_of(contact.first), run.name_of(contact.second)};
+        ASSERT_EQ(names, (std::set<std::string>{scene.soft_bodies[0].name, "box 1"}));
+        ASSERT_GT(contact.impulse, 0);
+      }
+    }
+    for (const float mass : run.model(0).masses()) weight += 9.81f * mass;
+    const float per_substep = weight / 60 / static_cast<float>(scene.substeps);
+    EXPECT_NEAR(impulse / kCounted / per_substep, 1, 0.1f) << "method " << static_cast<int>(method);
+  }
+}
+
+TEST(RoomForABody, IsWhereNothingIs) {
+  const Scene scene = load_scene_3d("drop");
+  Simulation3d run(scene, {.spes = 1});
+  const auto cube = [](const Eigen::Vector3f& middle, float side) {
+    const Eigen::Vector3f half = Eigen::Vector3f::Constant(side / 2);
+    return ppu::Bounds<3>{middle - half, middle + half};
+  };
+  const ppu::Bounds<3> body = run.soft_body(0).bounds();
+  const Eigen::Vector3f middle = 0.5f * (body.low + body.high);
+  EXPECT_FALSE(run.is_free(cube(middle, 0.3f)));
+  EXPECT_FALSE(run.is_free(cube({middle.x(), 0, middle.z()}, 0.3f))) << "in the floor";
+  EXPECT_FALSE(run.is_free(cube({middle.x(), body.high.y() + 0.1f, middle.z()}, 0.3f)))
+      << "partly in the body";
+  EXPECT_TRUE(run.is_free(cube({middle.x(), body.high.y() + 1, middle.z()}, 0.5f)));
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 // pretends is heard.
 
 #include <SDL.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <imgui_internal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -12,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -67,14 +71,45 @@ class SlowDemo final : public SceneDemo<SlowTypes> {
   }
 };
 
+std::unique_ptr<SlowDemo> make_man(const SimulationOptions& how) {
+  return std::make_unique<SlowDemo>(load_scene_2d("man"), how);
+}
+
+void use_no_display() {
+  setenv("SDL_VIDEODRIVER", "dummy", 1);
+  setenv("SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", "1", 1);  // such a window never has the focus
+}
+
+struct WindowSize {
+  int width = 320, height = 240;
+};
+
+/// What of the page and the menu does not fit into the window, or lies on something else. Empty: everything fits.
+std::string overflow(const WindowSize& size) {
+  std::string found;
+  std::vector<ImRect> seen;
+  for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
+    if (!window->WasActive || window->Hidden || window->ParentWindow != nullptr || window->IsFallbackWindow)
+      continue;
+    const ImRect at = window->Rect();
+    const bool fits = at.Min.x >= 0 && at.Min.y >= 0 && at.Max.x <= static_cast<float>(size.width) &&
+                      at.Max.y <= static_cast<float>(size.height);
+    if (std::ranges::any_of(seen, [&](const ImRect& other) { return other.Overlaps(at); }))
+      found += fmt::format("{} lies on something; ", window->Name);
+    seen.push_back(at);
+    const bool cut_off = window->ContentSize.x > window->InnerRect.GetWidth() + 1;
+    if (!fits || cut_off)
+      found += fmt::format("{} from ({}, {}) to ({}, {}), {} wide inside; ", window->Name, at.Min.x, at.Min.y,
+                           at.Max.x, at.Max.y, window->ContentSize.x);
+  }
+  return found;
+}
+
 /// @param each_frame  called before each frame, with its number
 Run play_man(
     int frames, const std::function<void(int)>& each_frame = [](int) {}) {
-  setenv("SDL_VIDEODRIVER", "dummy", 1);
-  setenv("SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", "1", 1);  // such a window never has the focus
-  const std::vector<NamedDemo> scenes{{"man", "", [](const SimulationOptions& how) -> std::unique_ptr<Demo> {
-                                         return std::make_unique<SlowDemo>(load_scene_2d("man"), how);
-                                       }}};
+  use_no_display();
+  const std::vector<NamedDemo> scenes{{"man", "", &make_man}};
   int frame = 0;
   return play({.title = "test", .width = 320, .height = 240, .frames = frames, .ui_scale = {}}, scenes,
               {.spes = 1}, [&] {
@@ -126,6 +161,97 @@ TEST(Play, AControllerIsHeardWhenItIsPluggedIn) {
   EXPECT_NEAR(run.demo->settings().gravity, 10.81f, 1e-4f) << "the right shoulder is more gravity";
   const Beginning<2> moment = demo.now();
   EXPECT_NEAR(moment.gravity->x(), -10.81f, 1e-4f) << "the directional pad turns it";
+}
+
+void push_key(Uint32 type, SDL_Keycode code) {
+  SDL_Event event{};
+  event.key.type = type;
+  event.key.keysym.sym = code;
+  event.key.keysym.scancode = SDL_GetScancodeFromKey(code);
+  ASSERT_EQ(SDL_PushEvent(&event), 1) << SDL_GetError();
+}
+void press_key(SDL_Keycode code) {
+  push_key(SDL_KEYDOWN, code);
+  push_key(SDL_KEYUP, code);
+}
+
+/// On displays of every density, in windows of every size: statistics, help, menu, and what the window says.
+TEST(Play, PagesAndMenuFitIntoTheWindow) {
+  use_no_display();
+  for (const WindowSize size : {WindowSize{1280, 720}, WindowSize{640, 360}, WindowSize{400, 600}}) {
+    for (const float scale : {1.0f, 1.5f, 2.0f}) {
+      const auto check = [&](const char* what) {
+        EXPECT_EQ(overflow(size), "")
+            << what << " in " << size.width << " x " << size.height << " at scale " << scale;
+      };
+      int frame = 0;
+      play({.title = "test", .width = size.width, .height = size.height, .frames = 60, .ui_scale = scale},
+           {{"man", "", &make_man}}, {.spes = 1}, [&] {
+             ++frame;
+             if (frame == 10) check("statistics"), press_key(SDLK_F1);
+             if (frame == 20) check("help"), press_key(SDLK_F1), press_key(SDLK_m);
+             if (frame == 30) check("menu"), press_key(SDLK_m);
+             if (frame == 35) press_key(SDLK_DELETE);  // of nothing: the window says so
+             if (frame == 45 && static_cast<float>(size.height) / scale > 300) check("statistics and notice");
+             if (frame == 45) press_key(SDLK_m);
+             if (frame == 55 && size.width > 1000) check("menu and notice");
+             return false;
+           });
+    }
+  }
+}
+
+TEST(Play, EscapesThatArePressedWhileAChosenSceneLoadsAreHeard) {
+  use_no_display();
+  int made = 0;
+  const MakeDemo make = [&](const SimulationOptions& how) -> std::unique_ptr<Demo> {
+    if (++made == 2) {  // what the user does meanwhile: one press for the menu, one for the window
+      push_key(SDL_KEYUP, SDLK_SPACE);
+      press_key(SDLK_ESCAPE);
+      press_key(SDLK_ESCAPE);
+    }
+    return make_man(how);
+  };
+  int frame = 0;
+  const auto run = play({.title = "test", .width = 320, .height = 240, .frames = 300, .ui_scale = {}},
+                        {{"man", "", make}, {"stack", "", make}}, {.spes = 1}, [&] {
+                          ++frame;
+                          if (frame == 10) press_key(SDLK_m);
+                          if (frame == 20) press_key(SDLK_DOWN);
+                          if (frame == 30) press_key(SDLK_DOWN);
+                          if (frame == 40) push_key(SDL_KEYDOWN, SDLK_SPACE);
+                          if (frame == 45 && made < 2) push_key(SDL_KEYUP, SDLK_SPACE);
+                          return false;
+                        });
+  ASSERT_EQ(made, 2) << "the keys choose no scene";
+  EXPECT_LT(run.record.frames, 10) << "an Escape was lost";
+}
+
+TEST(Play, EscapeEndsTheChangeOfASliderBeforeItClosesTheMenu) {
+  use_no_display();
+  Demo* demo = nullptr;
+  const MakeDemo make = [&](const SimulationOptions& how) -> std::unique_ptr<Demo> {
+    auto man = make_man(how);
+    demo = man.get();
+    return man;
+  };
+  int frame = 0;
+  std::vector<bool> open;
+  const auto run = play({.title = "test", .width = 320, .height = 240, .frames = 300, .ui_scale = {}},
+                        {{"man", "", make}}, {.spes = 1}, [&] {
+                          ++frame;
+                          if (frame == 10) press_key(SDLK_m);
+                          if (frame == 20 || frame == 30)
+                            press_key(SDLK_DOWN);  // from the heading to the first slider
+                          if (frame == 40) push_key(SDL_KEYDOWN, SDLK_SPACE);
+                          if (frame == 42) push_key(SDL_KEYUP, SDLK_SPACE);
+                          if (frame == 50 || frame == 60 || frame == 70) press_key(SDLK_ESCAPE);
+                          if (frame == 49 || frame == 59 || frame == 69)
+                            open.push_back(demo->input().look().menu);
+                          return false;
+                        });
+  EXPECT_EQ(open, (std::vector{true, true, false}));
+  EXPECT_LT(run.record.frames, 80);
 }
 
 }  // namespace

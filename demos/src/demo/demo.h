@@ -107,6 +107,8 @@ class Demo {
   virtual std::vector<BodyMaterial> materials() const = 0;  ///< of the soft bodies, in order
   /// The particle nearest to where the user took hold of a soft body last, as it is now. None: of none yet.
   virtual std::optional<PickedParticle> picked() const = 0;
+  /// The contact that the user clicked last, while contacts are shown: as it is now. None: of none.
+  virtual std::optional<PickedContact> picked_contact() const { return std::nullopt; }
   /// The shapes that a user may add.
   virtual std::span<const std::string_view> shapes() const = 0;
   /// The same scene with a change, at the same moment. This demo stays as it is.

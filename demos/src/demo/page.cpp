@@ -1,12 +1,14 @@
 #include "page.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdarg>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "frame_clock.h"
 #include "input/key_bindings.h"
@@ -19,57 +21,80 @@ constexpr ImGuiWindowFlags kPlain = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_NoNav;
 
-/// @param format  as printf's
-IM_FMTARGS(2) void row(const char* name, const char* format, ...) {
-  ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(name);
-  ImGui::TableNextColumn();
-  std::va_list values;
-  va_start(values, format);
-  ImGui::TextV(format, values);
-  va_end(values);
-}
+/// Rows of a name and what belongs to it, in letters that are smaller where a box would not fit into the window otherwise.
+class Rows {
+ public:
+  void add(std::string name, std::string text) { rows_.emplace_back(std::move(name), std::move(text)); }
+
+  /// @param room  of the box that it fills, pixels
+  void draw(const char* id, const ImVec2& room) const {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    ImGui::SetWindowFontScale(1);  // of the frame before
+    float names = 0, texts = 0;
+    for (const auto& [name, text] : rows_) {
+      names = std::max(names, ImGui::CalcTextSize(name.c_str()).x);
+      texts = std::max(texts, ImGui::CalcTextSize(text.c_str()).x);
+    }
+    const float across = room.x - 2 * style.WindowPadding.x - 6 * style.CellPadding.x;
+    const float row = (room.y - 2 * style.WindowPadding.y) / static_cast<float>(rows_.size());
+    const float size = std::min(
+        {1.0f, across / (names + texts), (row - 2 * style.CellPadding.y) / ImGui::GetTextLineHeight()});
+    ImGui::SetWindowFontScale(std::max(size, kSmallest));
+    if (!ImGui::BeginTable(id, 2)) return;
+    for (const auto& [name, text] : rows_) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(name.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(text.c_str());
+    }
+    ImGui::EndTable();
+  }
+
+ private:
+  static constexpr float kSmallest = 0.2f;  // nobody reads what is smaller
+
+  std::vector<std::pair<std::string, std::string>> rows_;
+};
 
 /// @param shown_per_second  none: no window shows it
-void draw_figures(const Page& page, const std::optional<double>& shown_per_second) {
+Rows figures(const Page& page, const std::optional<double>& shown_per_second) {
   const double frame_ms = std::chrono::duration<double, std::milli>(FrameClock::kFrame).count();
   const double used_ms = page.times.physics_ms + page.times.ppu_ms;
-  if (!ImGui::BeginTable("figures", 2)) return;
-  row("scene", "%s%s", page.scene.c_str(), page.paused ? ", paused" : page.replays ? ", a replay" : "");
-  row("particles", "%zu in %zu %s", page.counts.particles, page.counts.soft_bodies,
-      page.counts.soft_bodies == 1 ? "body" : "bodies");
-  row("PPU", "%.2f ms", page.times.ppu_ms);
-  row("physics", "%.2f ms", page.times.physics_ms);
-  row("of a frame", "%.1f %%", 100 * used_ms / frame_ms);
+  Rows rows;
+  rows.add("scene", page.scene + (page.paused ? ", paused" : page.replays ? ", a replay" : ""));
+  rows.add("particles", fmt::format("{} in {} {}", page.counts.particles, page.counts.soft_bodies,
+                                    page.counts.soft_bodies == 1 ? "body" : "bodies"));
+  rows.add("PPU", fmt::format("{:.2f} ms", page.times.ppu_ms));
+  rows.add("physics", fmt::format("{:.2f} ms", page.times.physics_ms));
+  rows.add("of a frame", fmt::format("{:.1f} %", 100 * used_ms / frame_ms));
   if (page.spes > 0) {
-    row("busiest SPE", "%.2f ms", page.spe_ms);
-    row("DMA", "%.1f KB a frame", static_cast<double>(page.dma_bytes) / 1000);
+    rows.add("busiest SPE", fmt::format("{:.2f} ms", page.spe_ms));
+    rows.add("DMA", fmt::format("{:.1f} KB a frame", static_cast<double>(page.dma_bytes) / 1000));
   }
-  if (shown_per_second) row("shown", "%.0f pictures a second", *shown_per_second);
-  ImGui::EndTable();
+  if (shown_per_second) rows.add("shown", fmt::format("{:.0f} pictures a second", *shown_per_second));
+  return rows;
 }
 
-void draw_help(int dimension) {
-  if (!ImGui::BeginTable("help", 2)) return;
+Rows help(int dimension) {
+  Rows rows;
   for (const KeyBinding& binding : key_bindings()) {
     if ((binding.only_in_2d && dimension != 2) || (binding.only_in_3d && dimension != 3)) continue;
     const char* const button = button_name(binding.button);
-    if (button != nullptr) {
-      row(binding.key_name, "%s (controller: %s)", binding.does, button);
-    } else {
-      row(binding.key_name, "%s", binding.does);
-    }
+    rows.add(binding.key_name, button != nullptr ? fmt::format("{} (controller: {})", binding.does, button)
+                                                 : std::string(binding.does));
   }
   if (dimension == 2) {
-    row("mouse", "drag a body, and throw it");
+    rows.add("mouse", "drag a body, and throw it");
   } else {
-    row("mouse", "drag a body, and throw it; wheel meanwhile: farther, nearer");
-    row("", "drag anything else: camera about the scene; middle button, or Shift: sideways; wheel: nearer");
-    row("right button", "look around; with W A S D Q E: fly");
-    row("arrows", "tilt the ground (controller: left stick, motion sensor)");
+    rows.add("mouse",
+             "drag a body, and throw it; wheel meanwhile: farther, nearer; as a knife: cut along a line");
+    rows.add("",
+             "drag anything else: camera about the scene; middle button, or Shift: sideways; wheel: nearer");
+    rows.add("right button", "look around; with W A S D Q E: fly");
+    rows.add("arrows", "tilt the ground (controller: left stick, motion sensor)");
   }
-  ImGui::EndTable();
+  return rows;
 }
 
 constexpr float kMargin = 10;  // at scale 1, pixels
@@ -82,9 +107,29 @@ void draw_box(const char* name, const ImVec2& position, const ImVec2& pivot, con
   ImGui::End();
 }
 
-void draw_statistics_box(const Page& page, float scale, const std::optional<double>& shown_per_second) {
+/// What the knife is about to cut.
+void draw_stroke(const Page& page, float scale) {
+  const auto at = [&](const Eigen::Vector2f& share) {
+    return ImVec2(share.x() * static_cast<float>(page.width), share.y() * static_cast<float>(page.height));
+  };
+  const ImVec2 from = at((*page.look.stroke)[0]), to = at((*page.look.stroke)[1]);
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  list.AddLine(from, to, IM_COL32(0, 0, 0, 140), 4 * scale);
+  list.AddLine(from, to, IM_COL32(255, 255, 255, 255), 2 * scale);
+}
+
+/// Inside a margin.
+ImVec2 room_in(float width, float height, float scale) {
+  return {width - 2 * kMargin * scale, height - 2 * kMargin * scale};
+}
+
+/// @param width, height  of the picture, pixels
+void draw_statistics_box(const Page& page, float scale, const std::optional<double>& shown_per_second,
+                         int width, int height) {
+  constexpr float kShareOfHeight = 0.6f;  // below are the hint and what the window says
+  const ImVec2 room = room_in(static_cast<float>(width), kShareOfHeight * static_cast<float>(height), scale);
   draw_box("statistics", {kMargin * scale, kMargin * scale}, {0, 0},
-           [&] { draw_figures(page, shown_per_second); });
+           [&] { figures(page, shown_per_second).draw("figures", room); });
 }
 
 }  // namespace
@@ -94,7 +139,7 @@ void draw_statistics(const Page& page, float scale, render::Overlay& overlay, re
   // Dear ImGui makes a box as large as what was in it the time before, and hides it the first time.
   for (const bool for_size : {true, false}) {
     overlay.begin(renderer.width(), renderer.height(), 1.0f / 60);
-    draw_statistics_box(page, scale, std::nullopt);
+    draw_statistics_box(page, scale, std::nullopt, renderer.width(), renderer.height());
     const render::OverlayMesh& mesh = overlay.end();
     if (!for_size) renderer.draw_overlay(overlay.font(), mesh);
   }
@@ -106,23 +151,31 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
   const float margin = kMargin * scale;
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
   if (page.look.statistics && !page.look.help && !page.look.menu)
-    draw_statistics_box(page, scale, shown_per_second);
+    draw_statistics_box(page, scale, shown_per_second, page.width, page.height);
+  const bool knife = page.look.knife && page.dimension == 3, hint = !page.look.help && !page.look.menu;
   if (!page.notice.empty()) {
-    // Beside the menu, if that is open.
-    const float left = page.look.menu ? kMenuWidth * scale : 0;
-    draw_box("notice", {(left + width) / 2, height - margin}, {0.5f, 1}, [&] {
-      ImGui::PushTextWrapPos(std::max(0.8f * (width - left) - 2 * margin, 20 * margin));
+    // Beside the menu, if that is open, and above the hint.
+    const float left = page.look.menu ? std::min(kMenuWidth * scale, 0.7f * width) : 0;
+    const float above =
+        hint ? (knife ? 2 : 1) * ImGui::GetTextLineHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y
+             : 0;
+    draw_box("notice", {(left + width) / 2, height - margin - above}, {0.5f, 1}, [&] {
+      ImGui::PushTextWrapPos(std::max(0.8f * (width - left) - 2 * margin, 4 * margin));
       ImGui::TextUnformatted(page.notice.c_str());
       ImGui::PopTextWrapPos();
     });
   }
   if (page.look.help) {
-    draw_box("help", {width / 2, height / 2}, {0.5f, 0.5f}, [&] { draw_help(page.dimension); });
-  } else {
-    if (!page.look.menu)
-      draw_box("hint", {margin, height - margin}, {0, 1},
-               [] { ImGui::TextUnformatted("M: menu   F1: help"); });
+    draw_box("help", {width / 2, height / 2}, {0.5f, 0.5f},
+             [&] { help(page.dimension).draw("help", room_in(width, height, scale)); });
   }
+  if (hint) {
+    draw_box("hint", {margin, height - margin}, {0, 1}, [&] {
+      if (knife) ImGui::TextUnformatted("Knife: draw a line over what to cut   K: hand again");
+      ImGui::TextUnformatted("M: menu   F1: help");
+    });
+  }
+  if (page.look.stroke) draw_stroke(page, scale);
 }
 
 Page DemoPages::next(const Demo& demo, const FrameTimes& times, const Look& look, int width, int height) {

@@ -30,14 +30,6 @@ constexpr std::array<Part, 5> kDrawnParts{{{"rigid bodies", IM_COL32(230, 150, 6
                                            {"copying, skinning", IM_COL32(120, 200, 120, 255)},
                                            {"waiting for SPEs", IM_COL32(150, 150, 160, 255)}}};
 
-/// A slider of a value that an event changes.
-/// @param format  as printf's
-bool slider(const char* name, float& value, float low, float high, const char* format,
-            bool logarithmic = false) {
-  return ImGui::SliderFloat(name, &value, low, high, format,
-                            ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
-}
-
 }  // namespace
 
 void Panel::follow(const Page& page) {
@@ -52,18 +44,21 @@ void Panel::follow(const Page& page) {
   spe_ms_ = page.each_spe_ms;
 }
 
-void Panel::draw(const Demo& demo, float scale, int height, WindowInput& input) {
+void Panel::draw(const Demo& demo, float scale, int width, int height, WindowInput& input) {
   SC_ASSERT(scale > 0, "a panel scaled by {}", scale);
   const bool opens = input.look().menu && !was_open_;
   was_open_ = input.look().menu;
+  edits_ = false;
   if (!was_open_) {
     area_ = {};
     return;
   }
-  const float margin = 10 * scale;
+  const float margin = 10 * scale, wanted = kMenuWidth * scale - margin;
+  const float given = std::clamp(static_cast<float>(width) - 2 * margin, 1.0f, wanted);
   ImGui::SetNextWindowPos({margin, margin}, ImGuiCond_Always);
-  ImGui::SetNextWindowSize(
-      {kMenuWidth * scale - margin, std::max(static_cast<float>(height) - 2 * margin, 1.0f)});
+  ImGui::SetNextWindowSize({given, std::max(static_cast<float>(height) - 2 * margin, 1.0f)});
+  // In a window that is too narrow letters are smaller; what is between them is not.
+  const float smaller = given < wanted ? std::max(0.85f * given / wanted, 0.2f) : 1;
   if (opens) ImGui::SetNextWindowFocus();
   bool open = true;
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
@@ -71,13 +66,15 @@ void Panel::draw(const Demo& demo, float scale, int height, WindowInput& input) 
   if (ImGui::Begin("Menu (M)", &open, kFixed)) {
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     area_ = {at.x, at.y, at.x + size.x, at.y + size.y};
-    ImGui::PushItemWidth(130 * scale);
-    if (!scenes_.empty()) draw_scenes(demo, scale, opens);
+    ImGui::SetWindowFontScale(smaller);
+    ImGui::PushItemWidth(130 * scale * smaller);
+    if (!scenes_.empty()) draw_scenes(demo, scale * smaller, opens);
     draw_time(demo, input);
     draw_material(demo, input);
-    draw_bodies(demo);
-    draw_graph(scale);
+    draw_bodies(demo, input);
+    draw_graph(scale * smaller);
     ImGui::PopItemWidth();
+    edits_ = edits_ || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
   }
   ImGui::End();
   if (!open) input.do_now(Command::kMenu);
@@ -85,6 +82,15 @@ void Panel::draw(const Demo& demo, float scale, int height, WindowInput& input) 
 
 bool Panel::contains(float x, float y) const {
   return x >= area_[0] && y >= area_[1] && x < area_[2] && y < area_[3];
+}
+
+bool Panel::slider(const char* name, float& value, float low, float high, const char* format,
+                   bool logarithmic) {
+  const bool changed =
+      ImGui::SliderFloat(name, &value, low, high, format,
+                         ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+  edits_ = edits_ || ImGui::IsItemActive();
+  return changed;
 }
 
 void Panel::draw_scenes(const Demo& demo, float scale, bool opens) {
@@ -131,7 +137,7 @@ bool Panel::draw_scene(const SceneTitle& scene, bool is_current, float scale) co
   return chosen;
 }
 
-void Panel::draw_time(const Demo& demo, WindowInput& input) const {
+void Panel::draw_time(const Demo& demo, WindowInput& input) {
   if (!ImGui::CollapsingHeader("Time and gravity", ImGuiTreeNodeFlags_DefaultOpen)) return;
   if (ImGui::Button(demo.paused() ? "Continue" : "Pause")) input.do_now(Command::kPause);
   ImGui::SameLine();
@@ -150,6 +156,7 @@ void Panel::draw_time(const Demo& demo, WindowInput& input) const {
     input.change(Action::kTimeScale, 0, time_scale);
   if (ImGui::SliderInt("substeps", &substeps, 1, 10, "%d", ImGuiSliderFlags_AlwaysClamp))
     input.change(Action::kSubsteps, 0, static_cast<float>(substeps));
+  edits_ = edits_ || ImGui::IsItemActive();
   if (slider("gravity", gravity, 0, 30, "%.1f m/s\xC2\xB2")) input.set_strength_of_gravity(gravity);
 }
 
@@ -188,6 +195,17 @@ void Panel::draw_material(const Demo& demo, WindowInput& input) {
   if (slider("damping", damping, 0, 1, "%.3f")) input.change(Action::kDamping, changed, damping);
   if (slider("friction", friction, 0, 2, "%.2f")) input.change(Action::kFriction, changed, friction);
   draw_density(shown, changed, demo.dimension());
+  if (shown.can_be_plastic) draw_plasticity(shown, changed, input);
+}
+
+void Panel::draw_plasticity(const BodyMaterial& shown, std::uint32_t changed, WindowInput& input) {
+  bool plastic = shown.plasticity.has_value();
+  if (ImGui::Checkbox("plastic", &plastic))
+    input.change(Action::kYield, changed, plastic ? ppu::Plasticity{}.yield : 0);
+  if (!shown.plasticity) return;
+  float yield = shown.plasticity->yield, creep = shown.plasticity->creep;
+  if (slider("yield", yield, 0.001f, 1, "%.3f", true)) input.change(Action::kYield, changed, yield);
+  if (slider("creep", creep, 0.1f, 1000, "%.1f 1/s", true)) input.change(Action::kCreep, changed, creep);
 }
 
 void Panel::draw_density(const BodyMaterial& shown, std::uint32_t changed, int dimension) {
@@ -200,8 +218,12 @@ void Panel::draw_density(const BodyMaterial& shown, std::uint32_t changed, int d
   density_.reset();
 }
 
-void Panel::draw_bodies(const Demo& demo) {
+void Panel::draw_bodies(const Demo& demo, WindowInput& input) {
   if (!ImGui::CollapsingHeader("Bodies", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  if (demo.dimension() == 3) {
+    bool knife = input.look().knife;
+    if (ImGui::Checkbox("the mouse is a knife (K)", &knife)) input.do_now(Command::kKnife);
+  }
   const std::span<const std::string_view> shapes = demo.shapes();
   if (shapes.empty()) return;
   shape_ = std::min(shape_, static_cast<int>(shapes.size()) - 1);
@@ -216,12 +238,14 @@ void Panel::draw_bodies(const Demo& demo) {
   slider("its alpha", alpha_, 0, 1, "%.2f");
   if (ImGui::Button("Add")) change_ = {.kind = SceneChange::Kind::kShape, .name = shown, .number = alpha_};
   const std::optional<PickedParticle> picked = demo.picked();
-  if (!picked) {
-    ImGui::TextWrapped("Take hold of a soft body to see a particle's values.");
-    return;
+  if (picked) {
+    ImGui::SameLine();
+    if (ImGui::Button("Remove")) change_ = {.kind = SceneChange::Kind::kRemove, .body = picked->body};
   }
-  ImGui::SameLine();
-  if (ImGui::Button("Remove")) change_ = {.kind = SceneChange::Kind::kRemove, .body = picked->body};
+  draw_picked(demo);
+}
+
+void Panel::draw_picked(const Demo& demo) {
   const auto vector = [&](const char* name, const Eigen::Vector3f& v) {
     if (demo.dimension() == 3) {
       ImGui::Text("%s %.3f %.3f %.3f", name, double{v.x()}, double{v.y()}, double{v.z()});
@@ -229,6 +253,21 @@ void Panel::draw_bodies(const Demo& demo) {
       ImGui::Text("%s %.3f %.3f", name, double{v.x()}, double{v.y()});
     }
   };
+  if (const std::optional<PickedContact> contact = demo.picked_contact()) {
+    ImGui::TextWrapped("contact of %s with %s", contact->first.c_str(), contact->second.c_str());
+    vector("at, m:", contact->position);
+    vector("normal:", contact->normal);
+    if (contact->impulse > 0)
+      ImGui::Text("%.4g kg m/s a substep, %.4g N", double{contact->impulse}, double{contact->force});
+    else
+      ImGui::TextUnformatted("they do not press on each other now");
+    return;
+  }
+  const std::optional<PickedParticle> picked = demo.picked();
+  if (!picked) {
+    ImGui::TextWrapped("Take hold of a soft body to see a particle's values.");
+    return;
+  }
   const std::vector<BodyMaterial> bodies = demo.materials();
   ImGui::Text("%s, particle %u, %.4g kg", bodies[picked->body].name.c_str(), picked->particle,
               double{picked->mass});

@@ -33,11 +33,14 @@ class Panel {
   void follow(const Page& page);
 
   /// Between begin() and end() of an overlay. Draws nothing while Look::menu is off.
-  /// @param scale  of text and sizes
-  void draw(const Demo& demo, float scale, int height, WindowInput& input);
+  /// @param scale  of text and sizes  @param width,height  of the window, pixels
+  void draw(const Demo& demo, float scale, int width, int height, WindowInput& input);
 
   /// A point of the window, pixels, is on the panel as it was drawn last.
   bool contains(float x, float y) const;
+
+  /// Whether Escape ends something on the panel, as it was drawn last: a slider that is being changed, or an open list.
+  bool edits() const { return edits_; }
 
   /// The number of the scene that the user has chosen; asking forgets it.
   std::optional<std::size_t> take_choice() { return std::exchange(choice_, std::nullopt); }
@@ -52,12 +55,17 @@ class Panel {
   static constexpr std::size_t kFrames = 180;  // of the graph
   static constexpr std::size_t kParts = 5;
 
+  /// Of a value that an event changes. @param format  as printf's
+  bool slider(const char* name, float& value, float low, float high, const char* format,
+              bool logarithmic = false);
   void draw_scenes(const Demo& demo, float scale, bool opens);
   bool draw_scene(const SceneTitle& scene, bool is_current, float scale) const;
-  void draw_time(const Demo& demo, WindowInput& input) const;
+  void draw_time(const Demo& demo, WindowInput& input);
   void draw_material(const Demo& demo, WindowInput& input);
   void draw_density(const BodyMaterial& shown, std::uint32_t changed, int dimension);
-  void draw_bodies(const Demo& demo);
+  void draw_plasticity(const BodyMaterial& shown, std::uint32_t changed, WindowInput& input);
+  void draw_bodies(const Demo& demo, WindowInput& input);
+  void draw_picked(const Demo& demo);
   void draw_graph(float scale) const;
 
   std::vector<SceneTitle> scenes_;
@@ -69,7 +77,7 @@ class Panel {
   std::optional<float> density_;  // while its slider is dragged
   int shape_ = 0;                 // of a body to be added
   float alpha_ = 0.5f;            // likewise
-  bool was_open_ = false;
+  bool was_open_ = false, edits_ = false;
   std::array<float, 4> area_{};  // left, top, right, bottom
   int body_ = -1;                // whose material is shown; -1: all bodies'
   int stiffness_by_ = 0;         // alpha, frequency, modulus

@@ -86,7 +86,7 @@ class SceneDemo : public Demo {
     std::vector<BodyMaterial> materials;
     for (std::size_t b = 0; b < scene_.soft_bodies.size(); ++b)
       materials.push_back(
-          material_of(scene_.soft_bodies[b].name, simulation_.soft_body(b).settings(), settings().substep));
+          material_of(scene_.soft_bodies[b].name, simulation_.soft_body(b), settings().substep));
     return materials;
   }
   void publish() override {

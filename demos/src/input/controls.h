@@ -31,8 +31,8 @@ class Controls {
   /// @param bodies  the soft bodies: see Hands
   /// @param world   has reset(), which restores bodies and world as they were at the beginning, home(i), which does so
   ///                with soft body i, and hold(event), hold_rigid(event), move_hand(event) and release(hand) of hands
-  ///                that hold more than a particle, and set_material(event, i)
-  ///                of soft body i
+  ///                that hold more than a particle, set_material(event, i)
+  ///                of soft body i, and in 3D cut(event)
   template <class Bodies, class World>
   void apply(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
@@ -100,7 +100,12 @@ class Controls {
         case Action::kModulus:
         case Action::kDamping:
         case Action::kFriction:
+        case Action::kYield:
+        case Action::kCreep:
           for_each(event.body, bodies, [&](std::size_t b) { world.set_material(event, b); });
+          break;
+        case Action::kCut:
+          if constexpr (Dimension == 3) world.cut(event);
           break;
       }
     }

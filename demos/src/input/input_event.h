@@ -27,13 +27,16 @@ enum class Action : std::uint8_t {
   // With a number, which is the first of `value`; what the number means is in kNumbers:
   kTimeScale,  ///< how much time passes: 1 as on the clock, less is slow motion
   kSubsteps,   ///< of a frame, from now on
-  kAlpha,      ///< of `body`: see ppu::SoftBodySettings, for this and the next four
+  kAlpha,      ///< of `body`: see ppu::SoftBodySettings, for this and the next six
   kFrequency,
   kModulus,  ///< sets alpha
   kDamping,
   kFriction,
+  kYield,  ///< makes the body plastic, if it has few enough particles; 0: elastic
+  kCreep,  ///< of a plastic body
+  kCut,  ///< in 3D: a blade that reaches from `value` (m) along `edge` (m) moves by `way` (m) and cuts `body` and its pieces
 };
-inline constexpr int kActions = 20;
+inline constexpr int kActions = 23;
 
 /// What the number of an action may be.
 struct NumberRange {
@@ -41,13 +44,15 @@ struct NumberRange {
   float low, high;
   bool whole = false;
 };
-inline constexpr std::array<NumberRange, 7> kNumbers{{{Action::kTimeScale, 0.02f, 4},
+inline constexpr std::array<NumberRange, 9> kNumbers{{{Action::kTimeScale, 0.02f, 4},
                                                       {Action::kSubsteps, 1, 32, true},
                                                       {Action::kAlpha, 0, 1},
                                                       {Action::kFrequency, 0, 1000},
                                                       {Action::kModulus, 0, 1e9f},
                                                       {Action::kDamping, 0, 1},
-                                                      {Action::kFriction, 0, 100}}};
+                                                      {Action::kFriction, 0, 100},
+                                                      {Action::kYield, 0, 1},
+                                                      {Action::kCreep, 0.001f, 1e6f}}};
 /// Null: the action has no number.
 inline const NumberRange* number_of(Action action) {
   const auto* const found = std::ranges::find(kNumbers, action, &NumberRange::action);
@@ -68,6 +73,7 @@ struct InputEvent {
   std::uint32_t hand = 0;
   std::uint32_t body = 0;
   Vector value = Vector::Zero();
+  Vector edge = Vector::Zero(), way = Vector::Zero();
 
   bool operator==(const InputEvent&) const = default;
 };

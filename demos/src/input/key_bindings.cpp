@@ -37,6 +37,8 @@ constexpr std::array kBindings{
     KeyBinding{Command::kFollow, SDLK_f, kNoButton, "F", "camera follows the body that was held last, or not",
                false, false, true},
     KeyBinding{Command::kRemove, SDLK_DELETE, kNoButton, "Delete", "remove the soft body that was held last"},
+    KeyBinding{Command::kKnife, SDLK_k, kNoButton, "K", "the mouse is a knife, or a hand again", false, false,
+               true},
     KeyBinding{Command::kSaveScene, SDLK_F5, kNoButton, "F5", "save the scene as it is"},
     KeyBinding{Command::kStatistics, SDLK_s, SDL_CONTROLLER_BUTTON_LEFTSTICK, "S", "statistics"},
     KeyBinding{Command::kHelp, SDLK_F1, SDL_CONTROLLER_BUTTON_RIGHTSTICK, "F1", "this help"},

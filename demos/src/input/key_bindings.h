@@ -29,6 +29,7 @@ enum class Command : std::uint8_t {
   kFollow,
   kSaveScene,
   kRemove,
+  kKnife,
   kStatistics,
   kHelp,
   kQuit,

@@ -23,14 +23,14 @@ namespace {
 constexpr int kVersion = 1;
 constexpr std::string_view kTitle = "softcell recording";
 constexpr std::size_t kMaxSceneName = 255;
-// A line is a frame, a name, two numbers of 32 bits and three floats.
-constexpr std::size_t kMaxLine = 120;
+// A line is a frame, a name, two numbers of 32 bits and nine floats.
+constexpr std::size_t kMaxLine = 220;
 constexpr std::size_t kMaxFile = kMaxRecordedEvents * kMaxLine + 4096;
 
 /// How an action is written: its name, then what it uses.
 struct ActionSyntax {
   std::string_view name;
-  bool hand = false, body = false, value = false;
+  bool hand = false, body = false, value = false, blade = false;
   int lowest_dimension = 2;
 };
 
@@ -56,6 +56,9 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "modulus", .body = true},
     {.name = "damping", .body = true},
     {.name = "friction", .body = true},
+    {.name = "yield", .body = true},
+    {.name = "creep", .body = true},
+    {.name = "cut", .body = true, .value = true, .blade = true, .lowest_dimension = 3},
 }};
 
 /// A number of 32 bits that has a name when it is the largest: kUsersHand, kEveryBody.
@@ -80,8 +83,11 @@ void append_line(std::string& text, const RecordedEvent<Dimension>& recorded) {
   if (syntax.hand) append_number(text, event.hand, kUserName);
   if (syntax.body) append_number(text, event.body, kEveryBodyName);
   // The shortest text that reads back as the same number.
-  for (int i = 0; syntax.value && i < Dimension; ++i)
-    fmt::format_to(std::back_inserter(text), " {}", event.value[i]);
+  const auto append_vector = [&](const auto& vector) {
+    for (int i = 0; i < Dimension; ++i) fmt::format_to(std::back_inserter(text), " {}", vector[i]);
+  };
+  if (syntax.value) append_vector(event.value);
+  if (syntax.blade) append_vector(event.edge), append_vector(event.way);
   if (number_of(event.action) != nullptr) fmt::format_to(std::back_inserter(text), " {}", event.value[0]);
   text += '\n';
 }
@@ -217,7 +223,11 @@ InputEvent<Dimension> read_event(Reader& reader) {
   event.action = static_cast<Action>(found - kSyntax.begin());
   if (found->hand) event.hand = reader.named_number("a hand", kUserName);
   if (found->body) event.body = reader.named_number("a body", kEveryBodyName);
-  for (int i = 0; found->value && i < Dimension; ++i) event.value[i] = reader.coordinate();
+  const auto read_vector = [&](auto& vector) {
+    for (int i = 0; i < Dimension; ++i) vector[i] = reader.coordinate();
+  };
+  if (found->value) read_vector(event.value);
+  if (found->blade) read_vector(event.edge), read_vector(event.way);
   if (const NumberRange* const number = number_of(event.action)) {
     const float value = event.value[0] = reader.coordinate();
     if (value < number->low || value > number->high || (number->whole && value != std::floor(value))) {

@@ -31,6 +31,9 @@ bool WindowInput::handle_command(Command command) {
     case Command::kFollow:
       look_.follows = !look_.follows;
       return true;
+    case Command::kKnife:
+      look_.knife = !look_.knife;
+      return true;
     case Command::kSaveScene:
       save_ = true;
       return true;
@@ -55,7 +58,9 @@ void UserInput<Dimension>::follow(const Vector& gravity, bool paused) {
 template <int Dimension>
 void UserInput<Dimension>::handle(const SDL_Event& event) {
   if constexpr (Dimension == 3) {
-    if (pointing_.hand.handle(event, look_, coming_) || pointing_.camera.handle(event, look_)) return;
+    if (pointing_.knife.handle(event, look_, coming_) || pointing_.hand.handle(event, look_, coming_) ||
+        pointing_.camera.handle(event, look_))
+      return;
     pointing_.tilt.handle(event);
   } else {
     pointing_.hand.handle(event, coming_);

@@ -13,6 +13,7 @@
 #include "ground_tilt.h"
 #include "input_event.h"
 #include "key_bindings.h"
+#include "knife.h"
 #include "mouse_hand.h"
 #include "mouse_reach.h"
 #include "scene/look.h"
@@ -61,7 +62,7 @@ class WindowInput {
 };
 
 /// The pointing devices: the mouse, which is a hand in both dimensions, and in three what tilts the ground. In
-/// three dimensions a mouse that holds nothing moves the camera.
+/// three dimensions the mouse may also be a knife, and one that holds nothing moves the camera.
 template <int Dimension>
 struct Pointing;
 template <>
@@ -71,6 +72,7 @@ struct Pointing<2> {
 template <>
 struct Pointing<3> {
   GroundTilt tilt;
+  Knife knife;
   MouseReach hand;
   CameraControl camera;
 };

@@ -2,7 +2,9 @@
 // What a picture shows of a scene, and from where; none of it reaches the simulation.
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <optional>
 
 namespace softcell::demos {
 
@@ -32,14 +34,18 @@ struct Look {
   // Of the camera in three dimensions, against the scene's own:
   float turn = 0, rise = 0;  ///< radians about what it looks at, counter-clockwise from above and upwards
   float distance = 1;        ///< from what it looks at, as a factor
-  Eigen::Vector3f moved{0, 0, 0};     ///< metres, with what it looks at: by the user
-  Eigen::Vector3f followed{0, 0, 0};  ///< likewise, behind a body
-  bool looks_around = false;          ///< it may look upwards, too
-  bool follows = false;               ///< it goes where a body goes
+  Eigen::Vector3f moved{0, 0, 0};              ///< metres, with what it looks at: by the user
+  Eigen::Vector3f followed{0, 0, 0};           ///< likewise, behind a body
+  bool looks_around = false;                   ///< it may look upwards, too
+  bool follows = false;                        ///< it goes where a body goes
+  bool knife = false;                          ///< the left button of the mouse cuts
+  std::optional<Eigen::Vector3f> marked = {};  ///< metres: the contact whose values the menu shows
+  /// Where the knife began and where it is, as shares of the window from its upper left corner. None: it cuts nothing now.
+  std::optional<std::array<Eigen::Vector2f, 2>> stroke = {};
 
   /// The same with the scene's own camera.
   Look with_scenes_camera() const {
-    return {.view = view, .statistics = statistics, .help = help, .menu = menu};
+    return {.view = view, .statistics = statistics, .help = help, .menu = menu, .knife = knife};
   }
 };
 

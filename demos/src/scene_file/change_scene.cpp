@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "document/table_edit.h"
 #include "read_common.h"
 #include "read_scene.h"
 #include "scene_document.h"
 #include "softcell/base/assert.h"
-#include "table_edit.h"
 
 namespace softcell::demos {
 namespace {

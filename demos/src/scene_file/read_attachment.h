@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "read_common.h"
 #include "scene/attachment_placement.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "read_common.h"
 #include "scene/beginning.h"
 #include "scene_source.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "scene/scene.h"
 #include "scene/scripted_input.h"
 #include "softcell/base/assert.h"

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "documents.h"
-#include "lua_sandbox.h"
+#include "document/documents.h"
+#include "document/lua_sandbox.h"
 #include "picture_cells.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/lattice.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "scene/scene_2d.h"
 #include "scene_library.h"
 #include "scene_source.h"

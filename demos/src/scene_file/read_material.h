@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "mesh_files.h"
 #include "softcell/soft_bodies/mesh.h"
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "document/value.h"
 #include "scene/scene.h"
 #include "softcell/base/nearest_name.h"
-#include "value.h"
 
 namespace softcell::demos {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "scene/scene.h"
 #include "scene/scene_2d.h"
 #include "scene_library.h"

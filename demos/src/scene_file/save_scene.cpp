@@ -7,16 +7,17 @@
 #include <cctype>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "document/table_edit.h"
+#include "document/write_toml.h"
 #include "scene_source.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/whole_file.h"
 #include "state_file.h"
-#include "table_edit.h"
-#include "write_toml.h"
 
 namespace softcell::demos {
 namespace {
@@ -107,9 +108,46 @@ class SavedScene {
   std::vector<SceneFile> copies_;
 };
 
+/// The body has the fields of its material itself, so that it can leave some out.
+void copy_material_into(Table& body, Table& root) {
+  const Value* const name = find_field(body, "material");
+  if (name == nullptr) return;
+  Table& materials = table_in(root, "materials");
+  const Value* const material = find_field(materials, std::get<std::string>(name->data));
+  SC_ASSERT(material != nullptr, "a soft body of a material '{}' that its scene lacks",
+            std::get<std::string>(name->data));
+  // Fields that say the same in different ways: with one of them the body has no use for the others.
+  static constexpr std::array<std::array<std::string_view, 3>, 2> kAlternatives{
+      {{"alpha", "frequency", "modulus"}, {"damping", "damping_time", ""}}};
+  const auto says = [&body](std::string_view field) {
+    for (const auto& names : kAlternatives)
+      if (std::ranges::find(names, field) != names.end())
+        return std::ranges::any_of(names,
+                                   [&body](std::string_view n) { return find_field(body, n) != nullptr; });
+    return find_field(body, field) != nullptr;
+  };
+  Table missing;
+  for (const Field& field : std::get<Table>(material->data))
+    if (!says(field.name)) missing.push_back(field);
+  erase_fields(body, {"material"});
+  body.insert(body.end(), missing.begin(), missing.end());
+}
+
+void save_plasticity(Table& body, const std::optional<ppu::Plasticity>& plasticity, Table& root) {
+  if (!plasticity) {
+    copy_material_into(body, root);
+    erase_fields(body, {"plasticity"});
+    return;
+  }
+  Table& table = table_in(body, "plasticity");
+  set_field(table, "yield", number_value(plasticity->yield));
+  set_field(table, "creep", number_value(plasticity->creep));
+  set_field(table, "limit", number_value(plasticity->limit));
+}
+
 /// What sliders have changed of a body's material, in place of what its material says.
-void save_material(Table& body, const ppu::SoftBodySettings& was, const ppu::SoftBodySettings& now,
-                   bool other_substeps) {
+void save_material(Table& body, Table& root, const ppu::SoftBodySettings& was,
+                   const ppu::SoftBodySettings& now, bool other_substeps) {
   if (now.alpha != was.alpha || now.frequency != was.frequency || (other_substeps && !now.frequency)) {
     erase_fields(body, {"alpha", "frequency", "modulus"});
     set_field(body, now.frequency ? "frequency" : "alpha", number_value(now.frequency.value_or(now.alpha)));
@@ -121,10 +159,12 @@ void save_material(Table& body, const ppu::SoftBodySettings& was, const ppu::Sof
   }
   if (now.friction != was.friction) set_field(body, "friction", number_value(now.friction));
   if (now.density != was.density) set_field(body, "density", number_value(now.density));
+  if (now.plasticity != was.plasticity) save_plasticity(body, now.plasticity, root);
   ppu::SoftBodySettings rest = now;
   rest.alpha = was.alpha, rest.frequency = was.frequency;
   rest.damping = was.damping, rest.damping_time = was.damping_time;
   rest.friction = was.friction, rest.density = was.density;
+  rest.plasticity = was.plasticity;
   SC_ASSERT(rest == was, "a soft body of cells of {} m has changed in what no scene file would say",
             was.cell_size);
 }
@@ -186,7 +226,7 @@ Table root_now(const SceneOf& scene, const PresentScene<Dimension>& now) {
             "{} soft bodies in the document of scene '{}', {} in the scene and {} in the run", bodies.size(),
             scene.name, scene.soft_bodies.size(), now.materials.size());
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    save_material(std::get<Table>(bodies[b]->data), scene.soft_bodies[b].settings, now.materials[b],
+    save_material(std::get<Table>(bodies[b]->data), root, scene.soft_bodies[b].settings, now.materials[b],
                   now.substeps != scene.substeps);
   return root;
 }

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "value.h"
+#include "document/value.h"
 
 namespace softcell::demos {
 

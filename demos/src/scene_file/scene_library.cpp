@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "documents.h"
-#include "field_reader.h"
+#include "document/documents.h"
+#include "document/field_reader.h"
 #include "read_scene.h"
 #include "scene_document.h"
 #include "scene_source.h"

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "document/value.h"
 #include "softcell/base/embedded_file.h"
-#include "value.h"
 
 namespace softcell::demos {
 

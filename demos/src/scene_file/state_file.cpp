@@ -11,7 +11,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "field_reader.h"
+#include "document/field_reader.h"
 #include "read_common.h"
 #include "softcell/base/assert.h"
 

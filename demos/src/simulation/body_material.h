@@ -4,8 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "ppu/matching/rest_lattice.h"
 #include "ppu/matching/stiffness.h"
-#include "softcell/soft_bodies/soft_body_settings.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
 
@@ -18,11 +19,15 @@ struct BodyMaterial {
   float most_modulus = 0;          ///< m^2/s^2, of alpha 1
   float damping = 0;               ///< 0..1
   float friction = 0;
-  float density = 0;  ///< kg/m^3; in 2D kg/m^2
+  float density = 0;                          ///< kg/m^3; in 2D kg/m^2
+  std::optional<ppu::Plasticity> plasticity;  ///< none: it is elastic
+  bool can_be_plastic = false;                ///< it has few enough particles
 };
 
 /// @param step  seconds of a substep
-inline BodyMaterial material_of(std::string name, const ppu::SoftBodySettings& settings, float step) {
+template <int Dimension>
+BodyMaterial material_of(std::string name, const ppu::SoftBody<Dimension>& body, float step) {
+  const ppu::SoftBodySettings& settings = body.settings();
   const float alpha = settings.alpha_of_step(step);
   const auto most = static_cast<float>(
       ppu::specific_modulus(double{settings.cell_size}, double{step}, 1, settings.half_width));
@@ -33,7 +38,9 @@ inline BodyMaterial material_of(std::string name, const ppu::SoftBodySettings& s
           .most_modulus = most,
           .damping = settings.damping_of_step(step),
           .friction = settings.friction,
-          .density = settings.density};
+          .density = settings.density,
+          .plasticity = settings.plasticity,
+          .can_be_plastic = body.model().particles() <= ppu::kMaxPlasticParticles};
 }
 
 }  // namespace softcell::demos

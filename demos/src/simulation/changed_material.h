@@ -4,16 +4,18 @@
 #include <algorithm>
 
 #include "input/input_event.h"
+#include "ppu/matching/rest_lattice.h"
 #include "ppu/matching/stiffness.h"
 #include "softcell/base/assert.h"
-#include "softcell/soft_bodies/soft_body_settings.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
 
-/// @param event  of Action::kAlpha, kFrequency, kModulus, kDamping or kFriction  @param step  seconds of a substep
+/// @param event  of Action::kAlpha, kFrequency, kModulus, kDamping, kFriction, kYield or kCreep  @param step  seconds of a substep
 template <int Dimension>
-ppu::SoftBodySettings changed_material(ppu::SoftBodySettings settings, const InputEvent<Dimension>& event,
-                                       float step) {
+ppu::SoftBodySettings changed_material(const ppu::SoftBody<Dimension>& body,
+                                       const InputEvent<Dimension>& event, float step) {
+  ppu::SoftBodySettings settings = body.settings();
   const NumberRange* const range = number_of(event.action);
   SC_ASSERT(range != nullptr && step > 0, "action {} with substeps of {} s sets no material",
             static_cast<int>(event.action), step);
@@ -39,6 +41,17 @@ ppu::SoftBodySettings changed_material(ppu::SoftBodySettings settings, const Inp
       break;
     case Action::kFriction:
       settings.friction = value;
+      break;
+    case Action::kYield:
+      if (value == 0) {
+        settings.plasticity.reset();
+      } else if (body.model().particles() <= ppu::kMaxPlasticParticles) {
+        if (!settings.plasticity) settings.plasticity.emplace();
+        settings.plasticity->yield = value;
+      }
+      break;
+    case Action::kCreep:
+      if (settings.plasticity) settings.plasticity->creep = value;
       break;
     default:
       break;

@@ -1,10 +1,11 @@
 #pragma once
-// What a user sees of a particle that a hand has taken hold of, and of its region.
+// What a user sees of a particle that a hand has taken hold of, and of its region, or of a contact.
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "softcell/base/assert.h"
@@ -20,6 +21,16 @@ struct PickedParticle {
   std::size_t region = 0;                                ///< particles of its region
   float region_mass = 0;                                 ///< kg, of them together
   Eigen::Vector3f region_velocity{0, 0, 0};              ///< m/s, of their centre of mass
+};
+
+/// A contact that the user has clicked, in three dimensions.
+struct PickedContact {
+  std::string first, second;  ///< what the two bodies are called
+  Eigen::Vector3f position{0, 0, 0};
+  Eigen::Vector3f normal{0, 1, 0};  ///< unit length, from the second body to the first
+  float impulse =
+      0;            ///< kg m/s along the normal, in the last substep; 0: they do not press on each other now
+  float force = 0;  ///< N: the impulse over the substep
 };
 
 /// @pre  the body has the particle

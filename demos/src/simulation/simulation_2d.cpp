@@ -211,7 +211,7 @@ struct Simulation2d::State {
   }
   void set_material(const InputEvent<2>& event, std::size_t body) {
     ppu::SoftBody<2>& soft = world->soft_bodies[body];
-    soft.set_material(changed_material(soft.settings(), event, substep()));
+    soft.set_material(changed_material(soft, event, substep()));
   }
   int substeps_of_frame() const { return controls.substeps(scene.substeps); }
   /// Seconds of one.

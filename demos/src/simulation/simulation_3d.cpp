@@ -1,5 +1,7 @@
 #include "simulation_3d.h"
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +25,7 @@
 #include "scene/shared_models.h"
 #include "softcell/base/assert.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
+#include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_solver.h"
 #include "surface_grip.h"
@@ -219,6 +222,16 @@ struct Simulation3d::State {
     return box < scene.boxes.size() ? scene.boxes[box].mass
                                     : scene.rigid_bodies[box - scene.boxes.size()].mass;
   }
+  /// @param number  in the world
+  std::string name_of_rigid(std::size_t number) const {
+    const auto box = static_cast<std::size_t>(std::ranges::find(boxes, number) - boxes.begin());
+    const auto walls = std::ranges::count_if(scene.boxes, &RigidBox::wall);
+    const std::size_t of_framework = walls > 0 ? static_cast<std::size_t>(walls) + 1 : 0;
+    if (box < of_framework) return scene.boxes[box].wall ? "a wall" : "the floor";
+    if (box < scene.boxes.size()) return fmt::format("box {}", box - of_framework + 1);
+    if (box < boxes.size()) return scene.rigid_bodies[box - scene.boxes.size()].name;
+    return "an obstacle";
+  }
   float opacity_of(std::size_t box) const {
     return box < scene.boxes.size() ? scene.boxes[box].opacity
                                     : scene.rigid_bodies[box - scene.boxes.size()].opacity;
@@ -408,13 +421,15 @@ struct Simulation3d::State {
   }
 
   /// What the scene cuts at the beginning of a frame.
-  void cut(std::int64_t at_frame) {
-    for (const ScriptedCut& planned : scene.cuts) {
-      if (std::llround(double{planned.time} * 60) != at_frame) continue;
-      for (std::size_t b = 0, count = soft_bodies.size(); b < count; ++b)
-        if (sources[b] == planned.body) soft_bodies.cut(soft_bodies[b], planned.where);
-      note_broken();
-    }
+  void cut_as_planned(std::int64_t at_frame) {
+    for (const ScriptedCut& planned : scene.cuts)
+      if (std::llround(double{planned.time} * 60) == at_frame) cut(planned.where, planned.body);
+  }
+  /// @param source  the scene's body whose pieces are cut; none: all bodies are
+  void cut(const ppu::Cut& where, std::optional<std::size_t> source) {
+    for (std::size_t b = 0, count = soft_bodies.size(); b < count; ++b)
+      if (!source || sources[b] == *source) soft_bodies.cut(soft_bodies[b], where);
+    note_broken();
   }
 
   void copy_contacts(Snapshot& snapshot) const {
@@ -470,7 +485,14 @@ struct Simulation3d::State {
     if (event.body != kEveryBody && body >= whole.size()) return;
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
       if (event.body == kEveryBody ? b == body : sources[b] == body)
-        soft_bodies[b].set_material(changed_material(soft_bodies[b].settings(), event, substep()));
+        soft_bodies[b].set_material(changed_material(soft_bodies[b], event, substep()));
+  }
+  /// What a user or a recording cuts. No effect: a blade without area, and bodies that touch with spheres, which cannot be cut.
+  void cut(const InputEvent<3>& event) {
+    const bool has_area = event.edge.cast<double>().cross(event.way.cast<double>()).norm() > 0;
+    if (!has_area || contacts == ppu::ContactMethod::kSpheres) return;
+    cut(ppu::Cut::stroke(event.value, event.edge, event.way),
+        event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
   }
   void move_hand(const InputEvent<3>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
@@ -573,7 +595,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
   s.controls.apply(s.events, s.soft_bodies, s);
-  s.cut(at_frame);
+  s.cut_as_planned(at_frame);
   const int substeps = s.controls.due_substeps(s.substeps_of_frame());
   if (substeps == 0) {
     finish();
@@ -736,6 +758,31 @@ std::optional<Eigen::Vector3f> Simulation3d::seen_along(const Ray& ray) const {
     if (box == state_->boxes.size() || state_->scene.boxes[box].opacity >= kOpaque) return hit.position;
   }
   return seen;
+}
+
+bool Simulation3d::is_free(const ppu::Bounds<3>& box) const {
+  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+    const ppu::SoftBody<3>& body = soft_body(b);
+    const Eigen::Array3f low = box.low.array() - body.settings().cell_size;
+    const Eigen::Array3f high = box.high.array() + body.settings().cell_size;
+    if (std::ranges::any_of(body.positions(), [&](const Eigen::Vector3f& x) {
+          return (x.array() > low).all() && (x.array() < high).all();
+        }))
+      return false;
+  }
+  return state_->world.is_free(box.low, box.high);
+}
+
+std::string Simulation3d::name_of(const ppu::Contact::Body& body) const {
+  State& s = *state_;
+  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+    if (&soft_body(b) != body.soft) continue;
+    const std::string& name = s.scene.soft_bodies[source(b)].name;
+    return soft_body(b).model().is_piece() ? "a piece of " + name : name;
+  }
+  for (std::size_t i = 0; i < s.world.rigid_bodies(); ++i)
+    if (&s.world.rigid_body(i) == body.object) return s.name_of_rigid(i);
+  return "a body that is gone";
 }
 
 bool Simulation3d::paused() const { return state_->controls.paused(); }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "input/input_event.h"
@@ -46,6 +47,9 @@ class Simulation3d {
   /// The first point of a ray on a soft body, or on a rigid one that is not transparent. None: it meets nothing.
   std::optional<Eigen::Vector3f> seen_along(const Ray& ray) const;
 
+  /// Whether no body is in a box, metres, or nearer to it than one of its cells. @pre low < high, finite
+  bool is_free(const ppu::Bounds<3>& box) const;
+
   /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<3>> last_events() const;
 
@@ -80,6 +84,8 @@ class Simulation3d {
   /// Contacts of the shown frame, if record_contacts() was on when it was simulated. Empty in a pause after a
   /// body was put elsewhere, because Bullet finds contacts only when it steps.
   std::span<const ppu::Contact> shown_contacts() const;
+  /// What a user calls one of the bodies of a contact: as the scene names it, "a piece of" that, or "the floor".
+  std::string name_of(const ppu::Contact::Body& body) const;
   /// Whether contacts are copied from the next step() on; off at first.
   void record_contacts(bool on);
 

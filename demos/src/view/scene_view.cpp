@@ -208,6 +208,7 @@ void SceneView::draw_contacts(const Shown3d& shown) {
   }
   marks_ = {{points_, {}, kRadius, render::srgb(0xC02018)},
             {normals_.ends, normals_.links, 0, render::srgb(0xC02018)}};
+  if (!marked_.empty()) marks_.push_back({marked_, {}, 2.2f * kRadius, render::srgb(0xFFC800)});
   frame_.lattices = marks_;
 }
 
@@ -256,6 +257,8 @@ void SceneView::draw(const Shown3d& shown, const Look& look) {
       box.high = box.high.cwiseMax(particle.head<3>());
     }
   }
+  marked_.clear();
+  if (look.marked) marked_.push_back(*look.marked);
   draw(shown, look.view, kept_outside(seen_from(scene_, look, shown.tilt), boxes_));
 }
 

@@ -82,6 +82,7 @@ class SceneView {
   RotationAxes rotations_;
   std::vector<Eigen::Vector3f> points_;  // contacts
   Lines normals_;                        // at contacts
+  std::vector<Eigen::Vector3f> marked_;  // one of them, or none
   std::vector<render::LatticeDraw> marks_, marks_with_hands_;
   render::FrameDescription frame_;  // the one in making
 };

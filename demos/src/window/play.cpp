@@ -41,7 +41,7 @@ struct Overlays {
       if (event.type == SDL_KEYUP || event.type == SDL_MOUSEBUTTONUP) input.handle(event, density, panel);
       return false;
     }
-    const bool closes = event.type == SDL_KEYDOWN && event.key.repeat == 0 && !ImGui::IsAnyItemActive() &&
+    const bool closes = event.type == SDL_KEYDOWN && event.key.repeat == 0 && !panel.edits() &&
                         (event.key.keysym.sym == SDLK_ESCAPE || event.key.keysym.sym == SDLK_m);
     if (closes) {
       scene.do_now(Command::kMenu);
@@ -102,6 +102,11 @@ class PlayedScene {
 
   void step() {
     if (demo_.input().take_save()) save();
+    if (demo_.input().look().knife && demo_.dimension() == 3 &&
+        demo_.contacts() == ppu::ContactMethod::kSpheres) {
+      demo_.input().do_now(Command::kKnife);
+      overlays_.notice.show("bodies that touch with spheres cannot be cut; start with --contacts surface");
+    }
     const FrameTimes times = demo_.step();
     record_.add(times);
     demo_.publish();
@@ -127,7 +132,7 @@ class PlayedScene {
     overlays_.input.begin_frame();
     overlays_.overlay.begin(page.width, page.height, 1.0f / 60);
     draw_page(page, scale, drawing_.shown_per_second());
-    overlays_.panel.draw(demo_, scale, page.height, demo_.input());
+    overlays_.panel.draw(demo_, scale, page.width, page.height, demo_.input());
     WindowPage& next = drawing_.next_page();
     next.overlay = overlays_.overlay.end();
     next.look = page.look;

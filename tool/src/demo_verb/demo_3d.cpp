@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,20 +49,31 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
  public:
   Demo3d(const demos::Scene& scene, const Log& log, const demos::SimulationOptions& how,
          const Demo3dOptions& options)
-      : SceneDemo(
-            scene, log, skinned_by(options.skin, how), options.view,
-            {.tilt = {},
-             .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
-                                       [this](const demos::Ray& ray) { return simulation().touch(ray); },
-                                       options.size.width, options.size.height),
-             .camera = demos::CameraControl(scene.camera, options.size.height)}),
+      : SceneDemo(scene, log, skinned_by(options.skin, how), options.view,
+                  {.tilt = {},
+                   .knife = demos::Knife([this](const demos::Look& look) { return eye(look); },
+                                         options.size.width, options.size.height),
+                   .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
+                                             [this](const demos::Ray& ray) { return take(ray); },
+                                             options.size.width, options.size.height),
+                   .camera = demos::CameraControl(scene.camera, options.size.height)}),
         options_(options) {}
 
   demos::FrameTimes step() override {
-    simulation().record_contacts(static_cast<demos::View>(input().look().view) == demos::View::kContacts);
+    simulation().record_contacts(shows_contacts());
     const demos::FrameTimes times = SceneDemo::step();
     follow_body();
+    follow_contact();
     return times;
+  }
+  std::optional<demos::PickedContact> picked_contact() const override {
+    if (!contact_ || !shows_contacts()) return std::nullopt;
+    return demos::PickedContact{.first = simulation().name_of(contact_->first),
+                                .second = simulation().name_of(contact_->second),
+                                .position = contact_->position,
+                                .normal = contact_->normal,
+                                .impulse = contact_->impulse,
+                                .force = contact_->impulse / settings().substep};
   }
   demos::DemoCounts counts() const override {
     return {.soft_bodies = simulation().soft_bodies(),
@@ -120,8 +132,57 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
       body.middle -= 0.5f * body.longest_side * ray.along;
       body.middle.y() = std::max(body.middle.y(), at.y() + 0.6f * body.longest_side);
     }
+    rise_to_room(body);
     if (change.kind == demos::SceneChange::Kind::kShape) body.alpha = change.number;
     return body;
+  }
+
+  /// Upwards until there is nothing where the body begins; as it is if there is no such place.
+  void rise_to_room(demos::NewBody<3>& body) const {
+    constexpr int kTries = 64;
+    constexpr float kStep = 0.25f;  // of the body's side
+    const Eigen::Vector3f half = Eigen::Vector3f::Constant(0.5f * body.longest_side);
+    Eigen::Vector3f middle = body.middle;
+    for (int i = 0; i < kTries; ++i, middle.y() += kStep * body.longest_side) {
+      if (!simulation().is_free({middle - half, middle + half})) continue;
+      body.middle = middle;
+      return;
+    }
+  }
+
+  bool shows_contacts() const { return static_cast<demos::View>(look().view) == demos::View::kContacts; }
+
+  /// What the mouse takes along a ray. The point of a contact, where these are shown, is looked at and not taken.
+  std::optional<demos::InputEvent<3>> take(const demos::Ray& ray) {
+    contact_ = shows_contacts() ? contact_at(ray) : std::nullopt;
+    return contact_ ? std::nullopt : simulation().touch(ray);
+  }
+  std::optional<ppu::Contact> contact_at(const demos::Ray& ray) const {
+    constexpr float kShareOfHeight = 0.012f;  // of the picture: so near to its point the mouse must be
+    float least = kShareOfHeight * 2 * scene().camera.tan_half_fov_y;
+    std::optional<ppu::Contact> nearest;
+    for (const ppu::Contact& contact : simulation().shown_contacts()) {
+      const Eigen::Vector3f way = contact.position - ray.from;
+      const float depth = way.dot(ray.along), beside = (way - depth * ray.along).norm();
+      if (depth > 0 && beside < least * depth) nearest = contact, least = beside / depth;
+    }
+    return nearest;
+  }
+  /// The contact of the same two bodies that is nearest to where it was; without one, it presses no longer.
+  void follow_contact() {
+    if (contact_) {
+      const ppu::Contact before = *contact_;
+      contact_->impulse = 0;
+      float least = std::numeric_limits<float>::infinity();
+      for (const ppu::Contact& contact : simulation().shown_contacts()) {
+        if (contact.first != before.first || contact.second != before.second) continue;
+        const float distance = (contact.position - before.position).norm();
+        if (distance < least) contact_ = contact, least = distance;
+      }
+    }
+    demos::Look look = input().look();
+    look.marked = contact_ ? std::optional(contact_->position) : std::nullopt;
+    input().set_look(look);
   }
 
   render::Camera eye(const demos::Look& look) const {
@@ -146,7 +207,8 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
   }
 
   const Demo3dOptions& options_;
-  std::size_t followed_ = 0;  // number of a soft body
+  std::size_t followed_ = 0;             // number of a soft body
+  std::optional<ppu::Contact> contact_;  // that the user has clicked
 };
 
 /// What of the models is not shown; it does not keep the demo from running.

@@ -4,7 +4,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 
+class btCollisionObject;
+
 namespace softcell::ppu {
+
+template <int kDimension>
+class SoftBody;
 
 /// What soft bodies touch with.
 enum class ContactMethod {
@@ -40,6 +45,17 @@ struct CrushedCellCount {
 struct Contact {
   Eigen::Vector3f position{0, 0, 0};  ///< metres, in the world
   Eigen::Vector3f normal{0, 1, 0};    ///< unit length, from the second body to the first
+  float impulse = 0;                  ///< kg m/s along the normal, in the last substep; above 0
+
+  /// One of the two: a soft body, or something that the engine knows; the other pointer is null. Of a body that was removed since that
+  /// substep the address is only a name.
+  struct Body {
+    const SoftBody<3>* soft = nullptr;
+    const btCollisionObject* object = nullptr;
+
+    bool operator==(const Body&) const = default;
+  };
+  Body first = {}, second = {};
 };
 
 }  // namespace softcell::ppu

@@ -31,16 +31,19 @@ struct Library {
   std::span<const char* const> allowed;
 };
 
-constexpr const char* kBase[] = {"assert", "error", "ipairs", "select", "tonumber", "tostring", "type"};
-constexpr const char* kMath[] = {"abs",  "acos",       "asin",      "atan", "ceil", "cos",    "deg",
-                                 "exp",  "floor",      "fmod",      "huge", "log",  "max",    "maxinteger",
-                                 "min",  "mininteger", "modf",      "pi",   "rad",  "random", "sin",
-                                 "sqrt", "tan",        "tointeger", "type", "ult"};
-constexpr const char* kString[] = {"byte", "char", "format", "len", "lower", "reverse", "sub", "upper"};
-constexpr const char* kTable[] = {"concat", "pack", "sort", "unpack"};
-constexpr Library kBaseLibrary{"_G", luaopen_base, kBase};
-constexpr Library kLibraries[] = {
-    {"math", luaopen_math, kMath}, {"string", luaopen_string, kString}, {"table", luaopen_table, kTable}};
+constexpr const char* kBaseFunctions[] = {"assert",   "error",    "ipairs", "select",
+                                          "tonumber", "tostring", "type"};
+constexpr const char* kMathFunctions[] = {
+    "abs",  "acos",   "asin", "atan", "ceil",       "cos",       "deg",        "exp",  "floor",
+    "fmod", "huge",   "log",  "max",  "maxinteger", "min",       "mininteger", "modf", "pi",
+    "rad",  "random", "sin",  "sqrt", "tan",        "tointeger", "type",       "ult"};
+constexpr const char* kStringFunctions[] = {"byte",  "char",    "format", "len",
+                                            "lower", "reverse", "sub",    "upper"};
+constexpr const char* kTableFunctions[] = {"concat", "pack", "sort", "unpack"};
+constexpr Library kBaseLibrary{"_G", luaopen_base, kBaseFunctions};
+constexpr Library kLibraries[] = {{"math", luaopen_math, kMathFunctions},
+                                  {"string", luaopen_string, kStringFunctions},
+                                  {"table", luaopen_table, kTableFunctions}};
 
 double seconds(clockid_t clock) {
   timespec now{};
@@ -222,7 +225,7 @@ class Sandbox {
       for (const char* name : all) add(name);
     };
     if (is_global) {
-      add_all(kBase);
+      add_all(kBaseFunctions);
       for (const Library& each : kLibraries) add(each.name);
     } else {
       for (const Library& each : kLibraries)
