@@ -39,7 +39,7 @@ std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::u
   std::vector<BodyPiece> pieces;
   for (CrackedPiece& piece : break_faces(body.model().lattice(), body.model().cracks(), faces)) {
     std::vector<std::uint32_t> particle_of = std::move(piece.part.particle_of);
-    SoftBody<3> own(make_piece_model(body.model(), std::move(piece)));
+    SoftBody<3> own(make_piece_model(body.shared_model(), std::move(piece)));
     own.set_material(body.settings());
     for (std::size_t i = 0; i < particle_of.size(); ++i)
       own.set_particle(i, body.position(particle_of[i]), body.velocities()[particle_of[i]]);

@@ -27,7 +27,11 @@ bool moves(const btCollisionObject& object) {
 
 const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model) {
   std::unique_ptr<ContactModel>& known = models_[model.get()];
-  if (!known) known = std::make_unique<ContactModel>(model);
+  if (known) return *known;
+  // Without a mesh the surface is the lattice's own boundary, which is measured at once.
+  known = model->is_piece() && !model->mesh().triangles.empty()
+              ? std::make_unique<ContactModel>(model, contact_model(model->whole()))
+              : std::make_unique<ContactModel>(model);
   return *known;
 }
 
