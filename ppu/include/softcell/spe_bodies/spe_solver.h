@@ -66,12 +66,12 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
  private:
   struct Group;   // the bodies of one model
   struct Member;  // where a body is
+  struct Known;   // the layout before
 
   bool knows(std::span<Body* const> bodies) const;
   void regroup(std::span<Body* const> bodies);
-  void find_place(Group& group, std::span<const std::unique_ptr<Group>> others);
+  void find_place(Group& group, Known& known);
   void find_tiles(Group& group);
-  Member* known_as(const Member& member);
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
   void follow_rest(Member& member);
