@@ -6,6 +6,7 @@
 
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/contacts/overlap.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -33,6 +34,12 @@ const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const S
               ? std::make_unique<ContactModel>(model, contact_model(model->whole()))
               : std::make_unique<ContactModel>(model);
   return *known;
+}
+
+void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) {
+  SC_ASSERT(contact != nullptr, "no contact model is kept beside {}", models_.size());
+  const SoftBodyModel<3>* const model = contact->model.get();
+  models_.try_emplace(model, std::move(contact));
 }
 
 void SurfaceContacts::forget_pieces(std::span<SurfaceBody* const> bodies) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "ppu/spe_bodies/match_bodies.h"
@@ -58,20 +59,38 @@ MatchPlan plan_of(const SoftBodyModel<3>& model, bool checked) {
   return {model.lattice(), *model.plan(), checked ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes};
 }
 
+/// Null: a body of the model is too large for tiles, too. There is no kernel for tiles in two dimensions.
+std::shared_ptr<const TilePlan> tiles_of(const SoftBodyModel<2>& /*model*/, bool /*checked*/) {
+  return nullptr;
+}
+std::shared_ptr<const TilePlan> tiles_of(const SoftBodyModel<3>& model, bool checked) {
+  const std::uint32_t arena_bytes = checked ? spu::kTileCheckedArenaBytes : spu::kTileArenaBytes;
+  try {
+    return std::make_shared<const TilePlan>(model.lattice(), *model.plan(), TileShape{}, arena_bytes);
+  } catch (const BodyTooLarge&) {
+    return nullptr;
+  }
+}
+
 }  // namespace
+
+/// What bodies of a model are stepped by: the one, or the other, or neither. (In tiles in three dimensions only.)
+template <int kDimension>
+struct SpeSolver<kDimension>::Plans {
+  std::shared_ptr<const SoftBodyModel<kDimension>> model;
+  std::shared_ptr<const typename MatchKernel<kDimension>::Plan> whole;
+  std::shared_ptr<const TilePlan> tiles;
+};
 
 /// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither. A body that may have a rest
 /// shape of its own is a group by itself: the plan has the rest shape.
 template <int kDimension>
 struct SpeSolver<kDimension>::Group {
-  using Plan = typename MatchKernel<kDimension>::Plan;
-
   std::shared_ptr<const SoftBodyModel<kDimension>> model;
   bool own_plan = false;
   std::vector<Body*> members;
-  std::shared_ptr<const Plan> plan;  // of the model, as it was made
+  std::shared_ptr<const Plans> plans;
   std::shared_ptr<MatchBodies<kDimension>> bodies;
-  std::shared_ptr<const TilePlan> tiles;  // in three dimensions only
   std::vector<std::size_t> awake;
   std::vector<MatchSettings> settings;  // of these
 };
@@ -94,9 +113,7 @@ struct SpeSolver<kDimension>::Known {
   using Model = SoftBodyModel<kDimension>;
 
   std::unordered_map<const Body*, Member*> members;
-  std::unordered_map<const Model*, const Group*> groups;  // one of each model
-  std::unordered_map<const Model*, std::shared_ptr<const typename Group::Plan>>
-      plans;  // those just made, too
+  std::unordered_map<const Model*, std::shared_ptr<const Plans>> plans;  // and those made since
 
   /// The same body in it, or null.
   Member* find(const Member& member) const {
@@ -128,45 +145,55 @@ bool SpeSolver<kDimension>::knows(std::span<Body* const> bodies) const {
                     });
 }
 
-/// Whole where they fit, else in tiles, else by the PPU. Plans take a while: a model's is made once.
+/// Plans take a while: a model's are made once.
 template <int kDimension>
 void SpeSolver<kDimension>::find_place(Group& group, Known& known) {
   SC_ASSERT(group.model != nullptr && !group.members.empty(), "a group of {} bodies {} a model",
             group.members.size(), group.model ? "with" : "without");
+  std::shared_ptr<const Plans>& plans = known.plans[group.model.get()];
+  if (!plans) plans = std::make_shared<const Plans>(plans_of(group.model));
+  group.plans = plans;
+  if (!plans->whole) return;
   if (const auto old = known.members.find(group.members.front()); old != known.members.end()) {
     const Group& same = *old->second->group;
     if (same.model == group.model && same.own_plan == group.own_plan && same.members == group.members) {
-      group.plan = same.plan, group.bodies = same.bodies, group.tiles = same.tiles;
+      group.bodies = same.bodies;
       return;
     }
   }
-  if (const auto old = known.groups.find(group.model.get());
-      old != known.groups.end() && !old->second->bodies) {
-    group.tiles = old->second->tiles;  // or by the PPU, too
-    return;
-  }
+  group.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plans->whole, group.members.size());
+}
+
+/// Whole where they fit, else in tiles, else by the PPU.
+template <int kDimension>
+auto SpeSolver<kDimension>::plans_of(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) const
+    -> Plans {
   try {
-    std::shared_ptr<const typename Group::Plan>& plan = known.plans[group.model.get()];
-    if (!plan) plan = std::make_shared<const typename Group::Plan>(plan_of(*group.model, checked_));
-    group.plan = plan;
-    group.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plan, group.members.size());
+    return {model, std::make_shared<const typename MatchKernel<kDimension>::Plan>(plan_of(*model, checked_)),
+            nullptr};
   } catch (const BodyTooLarge&) {
-    find_tiles(group);
+    return {model, nullptr, tiles_of(*model, checked_)};
   }
 }
 
-/// There is no kernel for tiles in two dimensions.
-template <>
-void SpeSolver<2>::find_tiles(Group&) {}
+template <int kDimension>
+void SpeSolver<kDimension>::prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) {
+  auto plans = std::make_shared<const Plans>(plans_of(model));
+  const std::lock_guard lock(preparing_);
+  prepared_.push_back(std::move(plans));
+}
 
-template <>
-void SpeSolver<3>::find_tiles(Group& group) {
-  const SoftBodyModel<3>& model = *group.model;
-  const std::uint32_t arena_bytes = checked_ ? spu::kTileCheckedArenaBytes : spu::kTileArenaBytes;
-  try {
-    group.tiles = std::make_shared<const TilePlan>(model.lattice(), *model.plan(), TileShape{}, arena_bytes);
-  } catch (const BodyTooLarge&) {  // then by the PPU
-  }
+/// Those that nobody can have bodies of any longer go.
+template <int kDimension>
+void SpeSolver<kDimension>::take_prepared(Known& known, std::span<Body* const> bodies) {
+  std::unordered_set<const SoftBodyModel<kDimension>*> models;
+  for (const Body* const body : bodies) models.insert(body->shared_model().get());
+  const std::lock_guard lock(preparing_);
+  std::erase_if(prepared_, [&](const std::shared_ptr<const Plans>& plans) {
+    if (!models.contains(plans->model.get())) return plans->model.use_count() == 1;
+    known.plans.emplace(plans->model.get(), plans);
+    return true;
+  });
 }
 
 /// Rotations from one layout of memory to the next.
@@ -191,7 +218,7 @@ void SpeSolver<kDimension>::follow_rest(Member& member) {
     member.group->bodies->set_rest(*body.plan());
     return;
   }
-  if constexpr (kDimension == 3) member.tiled->set_rest(*member.group->tiles, *body.plan());
+  if constexpr (kDimension == 3) member.tiled->set_rest(*member.group->plans->tiles, *body.plan());
 }
 
 /// Bodies have come or gone: memory is laid out anew for those models whose bodies are others than before, and those that stay take their
@@ -200,10 +227,8 @@ template <int kDimension>
 void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   Known known;
   for (Member& member : members_) known.members.emplace(member.body, &member);
-  for (const auto& group : groups_) {
-    known.groups.emplace(group->model.get(), group.get());
-    if (group->plan) known.plans.emplace(group->model.get(), group->plan);
-  }
+  for (const auto& group : groups_) known.plans.emplace(group->model.get(), group->plans);
+  take_prepared(known, bodies);
   std::vector<std::unique_ptr<Group>> groups;
   std::vector<Member> members;
   std::unordered_map<const SoftBodyModel<kDimension>*, Group*> with_models_plan;
@@ -230,7 +255,8 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   for (Member& member : members) {
     const Member* const old = known.find(member);
     const Group& group = *member.group;
-    if (group.tiles && old == nullptr) member.tiled = std::make_unique<TiledMemory>(memory_, *group.tiles);
+    if (group.plans->tiles && old == nullptr)
+      member.tiled = std::make_unique<TiledMemory>(memory_, *group.plans->tiles);
     const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
     jobs += tiled != nullptr ? tiled->most_jobs() : 1;
   }
@@ -262,7 +288,7 @@ void SpeSolver<kDimension>::hand_over(Member& member) {
     return;
   }
   if constexpr (kDimension == 3) {
-    const std::span<const std::uint32_t> place_of = group.tiles->place_of();
+    const std::span<const std::uint32_t> place_of = group.plans->tiles->place_of();
     for (std::size_t i = 0; i < place_of.size(); ++i) {
       member.tiled->positions()[place_of[i]] = Kernel::written(body.positions()[i]);
       member.tiled->velocities()[place_of[i]] = Kernel::written(body.velocities()[i]);
@@ -317,7 +343,7 @@ void SpeSolver<kDimension>::take_back(const Member& member) {
     return;
   }
   if constexpr (kDimension == 3) {
-    const std::span<const std::uint32_t> place_of = member.group->tiles->place_of();
+    const std::span<const std::uint32_t> place_of = member.group->plans->tiles->place_of();
     for (std::size_t i = 0; i < place_of.size(); ++i)
       body.set_velocity(i, Kernel::read(member.tiled->velocities()[place_of[i]]));
   }
