@@ -34,22 +34,38 @@ std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut)
                       cut.across, !cut.has_end);
 }
 
-std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces) {
-  const std::vector<Eigen::Vector3f> rest = own_rest_of(body);
-  std::vector<BodyPiece> pieces;
-  for (CrackedPiece& piece : break_faces(body.model().lattice(), body.model().cracks(), faces)) {
+std::vector<PlannedPiece> plan_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
+                                      std::span<const std::uint32_t> faces) {
+  SC_ASSERT(model != nullptr, "{} faces of no body break", faces.size());
+  std::vector<PlannedPiece> planned;
+  for (CrackedPiece& piece : break_faces(model->lattice(), model->cracks(), faces)) {
     std::vector<std::uint32_t> particle_of = std::move(piece.part.particle_of);
-    SoftBody<3> own(make_piece_model(body.model(), std::move(piece)));
-    own.set_material(body.settings());
-    for (std::size_t i = 0; i < particle_of.size(); ++i)
-      own.set_particle(i, body.position(particle_of[i]), body.velocities()[particle_of[i]]);
-    if (!rest.empty()) {
-      std::vector<Eigen::Vector3f> own_rest;
-      for (const std::uint32_t particle : particle_of) own_rest.push_back(rest[particle]);
-      own.set_rest_positions(own_rest);
-    }
-    pieces.push_back({std::move(own), std::move(particle_of)});
+    planned.push_back({make_piece_model(model, std::move(piece)), std::move(particle_of)});
   }
+  return planned;
+}
+
+BodyPiece piece_of(const SoftBody<3>& whole, PlannedPiece piece) {
+  const std::vector<std::uint32_t>& particle_of = piece.particle_of;
+  SC_ASSERT(piece.model->particles() == particle_of.size(), "{} particles of a piece of {}",
+            particle_of.size(), piece.model->particles());
+  SoftBody<3> own(piece.model);
+  own.set_material(whole.settings());
+  for (std::size_t i = 0; i < particle_of.size(); ++i)
+    own.set_particle(i, whole.position(particle_of[i]), whole.velocities()[particle_of[i]]);
+  if (whole.has_own_rest()) {
+    const std::vector<Eigen::Vector3f> rest = whole.rest_positions();
+    std::vector<Eigen::Vector3f> own_rest;
+    for (const std::uint32_t particle : particle_of) own_rest.push_back(rest[particle]);
+    own.set_rest_positions(own_rest);
+  }
+  return {std::move(own), std::move(piece.particle_of)};
+}
+
+std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces) {
+  std::vector<BodyPiece> pieces;
+  for (PlannedPiece& piece : plan_pieces(body.shared_model(), faces))
+    pieces.push_back(piece_of(body, std::move(piece)));
   return pieces;
 }
 

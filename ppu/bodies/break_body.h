@@ -2,6 +2,7 @@
 // A body and its pieces.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,19 @@ struct BodyPiece {
 std::span<const std::uint32_t> strained_faces(const SoftBody<3>& body, BreakTest& test);
 /// @throws std::invalid_argument  the cut is not finite, or has no area
 std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut);
+
+/// A piece of which there is no body yet.
+struct PlannedPiece {
+  std::shared_ptr<const SoftBodyModel<3>> model;
+  std::vector<std::uint32_t> particle_of;  ///< as in BodyPiece
+};
+
+/// What is left of bodies of a model when faces break; the largest piece first. This is what takes long of pieces_of(), and any thread may
+/// do it.
+std::vector<PlannedPiece> plan_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
+                                      std::span<const std::uint32_t> faces);
+/// As the whole is now. @param whole  of the model that was planned for
+BodyPiece piece_of(const SoftBody<3>& whole, PlannedPiece piece);
 
 /// What is left of a body when faces break; the largest piece first. The body stays as it is.
 std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces);

@@ -8,7 +8,9 @@
 
 namespace softcell::ppu {
 
-/// With the settings of the whole. What has not changed, because no crack has opened, is shared with it.
-std::shared_ptr<const SoftBodyModel<3>> make_piece_model(const SoftBodyModel<3>& whole, CrackedPiece piece);
+/// With the settings of the body that breaks. What has not changed, because no crack has opened, is shared with it.
+/// @param broken  whole, or a piece itself
+std::shared_ptr<const SoftBodyModel<3>> make_piece_model(
+    const std::shared_ptr<const SoftBodyModel<3>>& broken, CrackedPiece piece);
 
 }  // namespace softcell::ppu

@@ -108,19 +108,20 @@ struct SoftBodyModelMaker {
     if (settings.fracture) model->cracks();
     return model;
   }
-  static std::shared_ptr<const SoftBodyModel<3>> make(const SoftBodyModel<3>& whole, CrackedPiece piece) {
+  static std::shared_ptr<const SoftBodyModel<3>> make(const std::shared_ptr<const SoftBodyModel<3>>& broken,
+                                                      CrackedPiece piece) {
     Lattice<3>& lattice = piece.part.lattice;
     // With as many particles and cells nothing has come apart.
-    const bool same =
-        lattice.particles.size() == whole.particles() && lattice.cells.size() == whole.lattice().cells.size();
-    std::shared_ptr<const Embedding> embedding = whole.embedding_;
+    const bool same = lattice.particles.size() == broken->particles() &&
+                      lattice.cells.size() == broken->lattice().cells.size();
+    std::shared_ptr<const Embedding> embedding = broken->embedding_;
     if (!same)
       embedding = std::make_shared<const Embedding>(
           piece.cracks.whole ? embed(piece.mesh.mesh, piece.mesh.places, lattice) : Embedding());
     std::shared_ptr<SoftBodyModel<3>> model(
-        new SoftBodyModel<3>(std::move(lattice), std::move(embedding), whole.settings(),
-                             SoftBodyModel<3>::kContactRadiusInCells, same ? whole.plan() : nullptr));
-    model->is_piece_ = true;
+        new SoftBodyModel<3>(std::move(lattice), std::move(embedding), broken->settings(),
+                             SoftBodyModel<3>::kContactRadiusInCells, same ? broken->plan() : nullptr));
+    model->whole_ = broken->is_piece() ? broken->whole() : broken;
     model->cracks_ = std::make_shared<const Cracks>(std::move(piece.cracks));
     return model;
   }
@@ -131,8 +132,10 @@ struct SoftBodyModelMaker {
   }
 };
 
-std::shared_ptr<const SoftBodyModel<3>> make_piece_model(const SoftBodyModel<3>& whole, CrackedPiece piece) {
-  return SoftBodyModelMaker::make(whole, std::move(piece));
+std::shared_ptr<const SoftBodyModel<3>> make_piece_model(
+    const std::shared_ptr<const SoftBodyModel<3>>& broken, CrackedPiece piece) {
+  SC_ASSERT(broken != nullptr, "a piece of {} cells of no body", piece.part.lattice.cells.size());
+  return SoftBodyModelMaker::make(broken, std::move(piece));
 }
 
 std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(const TriangleMesh& mesh,

@@ -57,6 +57,9 @@ class StepAhead {
     solver_.forget(body);
   }
 
+  /// Of any thread.
+  void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) { solver_.prepare(model); }
+
   /// Begins a step of `step` seconds, in place of one that was begun before.
   void begin(float step) {
     SC_ASSERT(step > 0, "a time step of {} s", step);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <future>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 #include "ppu/bullet/bullet_hook.h"
 #include "ppu/bullet/contact_sphere.h"
 #include "ppu/bullet/free_body.h"
+#include "ppu/bullet/piece_workshop.h"
 #include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
@@ -23,6 +25,13 @@
 
 namespace softcell::ppu {
 namespace {
+
+/// How many substeps pass from a break to its pieces, which are made in the meantime by another thread. A number that depends on the body
+/// alone: with as many results are the same, however fast that thread is. One core makes the pieces of 1,000 particles in some 8 ms.
+int substeps_until_pieces(std::size_t particles) {
+  constexpr std::size_t kAtOnce = 100;  // takes less than handing over
+  return particles <= kAtOnce ? 0 : 2 + static_cast<int>(particles / 1000);
+}
 
 /// Adds the processor time of a piece of work.
 template <typename Work>
@@ -45,6 +54,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     world.addAction(this);
   }
   ~Impl() override {
+    workshop.reset();  // it works with what follows
     solve.clear();
     bodies.clear();
     world.removeAction(this);
@@ -93,18 +103,92 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
         with_surface->set_contact(surfaces->contact_model(body.soft().shared_model()));
   }
 
-  /// Pieces are tested from the next substep on.
+  /// A body that breaks, and stays whole until its pieces are made.
+  struct Break {
+    CoupledBody* body = nullptr;
+    std::shared_ptr<const SoftBodyModel<3>> model;
+    std::uint32_t resets = 0;  ///< SoftBody::resets() when it began
+    std::size_t faces = 0;
+    int substeps = 0;  ///< until it has pieces
+    std::future<std::vector<PreparedPiece>> pieces;
+
+    /// The body was assigned, teleported or straightened since: it is not the one that was strained.
+    bool is_void() const { return body->soft().shared_model() != model || body->soft().resets() != resets; }
+  };
+
+  bool is_breaking(const CoupledBody& body) const {
+    return std::any_of(breaks.begin(), breaks.end(), [&](const Break& b) { return b.body == &body; });
+  }
+
+  /// Pieces are tested from the next substep on, bodies that are breaking not any more.
   void break_strained() {
     for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {
       const SoftBody<3>& soft = bodies[i]->soft();
       if (!soft.settings().fracture || soft.asleep() || !bodies[i]->can_break()) continue;
-      if (const auto faces = strained_faces(soft, break_test); !faces.empty()) break_body(*bodies[i], faces);
+      if (is_breaking(*bodies[i])) continue;
+      if (const auto faces = strained_faces(soft, break_test); !faces.empty()) begin_break(*bodies[i], faces);
     }
+    std::vector<Break> due;
+    for (Break& one : breaks)
+      if (one.substeps-- <= 0 && !one.is_void()) due.push_back(std::move(one));
+    std::erase_if(breaks, [](const Break& one) { return one.substeps < 0 || one.is_void(); });
+    for (Break& one : due) finish_break(one);
+  }
+
+  /// Null: pieces of the body have no contact model that is made ahead.
+  const ContactModel* contact_of_whole(const CoupledBody& body) {
+    const std::shared_ptr<const SoftBodyModel<3>>& model = body.soft().shared_model();
+    if (!surfaces || !body.can_be_touched() || model->mesh().triangles.empty()) return nullptr;
+    return &surfaces->contact_model(model->is_piece() ? model->whole() : model);
+  }
+
+  void begin_break(CoupledBody& body, std::span<const std::uint32_t> faces) {
+    const std::shared_ptr<const SoftBodyModel<3>>& model = body.soft().shared_model();
+    const int substeps = substeps_until_pieces(model->particles());
+    if (substeps == 0) {
+      break_body(body, faces);
+      return;
+    }
+    if (!workshop) make_workshop();
+    breaks.push_back({&body, model, body.soft().resets(), faces.size(), substeps,
+                      workshop->begin(model, faces, contact_of_whole(body))});
+  }
+
+  void make_workshop() {
+    workshop.emplace([this](const std::shared_ptr<const SoftBodyModel<3>>& model) { solve.prepare(model); });
+  }
+
+  void finish_break(Break& one) { put_pieces(*one.body, one.pieces.get(), one.faces); }
+
+  /// Now, if it is breaking.
+  void finish_breaks_of(const CoupledBody& body) {
+    const auto found =
+        std::find_if(breaks.begin(), breaks.end(), [&](const Break& one) { return one.body == &body; });
+    if (found == breaks.end()) return;
+    Break one = std::move(*found);
+    breaks.erase(found);
+    if (!one.is_void()) finish_break(one);
+  }
+
+  void forget_breaks_of(const CoupledBody& body) {
+    std::erase_if(breaks, [&](const Break& one) { return one.body == &body; });
   }
 
   /// @return what is left beside the body itself
   std::vector<SoftBody<3>*> break_body(CoupledBody& body, std::span<const std::uint32_t> faces) {
-    const std::vector<BodyPiece> pieces = pieces_of(body.soft(), faces);
+    if (!workshop) make_workshop();
+    return put_pieces(body, workshop->make(body.soft().shared_model(), faces, contact_of_whole(body)),
+                      faces.size());
+  }
+
+  /// @param faces  that broke   @return what is left beside the body itself
+  std::vector<SoftBody<3>*> put_pieces(CoupledBody& body, std::vector<PreparedPiece> prepared,
+                                       std::size_t faces) {
+    std::vector<BodyPiece> pieces;
+    for (PreparedPiece& piece : prepared) {
+      if (piece.contact) surfaces->adopt(std::move(piece.contact));
+      pieces.push_back(piece_of(body.soft(), std::move(piece.piece)));
+    }
     body.soft() = pieces.front().body;
     follow_model(body);
     std::vector<SoftBody<3>*> others;
@@ -125,7 +209,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments);
       surfaces->forget_pieces(with_surfaces);
     }
-    broken.push_back({&body.soft(), others, faces.size()});
+    broken.push_back({&body.soft(), others, faces});
     return others;
   }
 
@@ -187,7 +271,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   std::uint32_t next_number = 0;
   StepAhead<3> solve;  // of `bodies`
   BreakTest break_test;
-  std::vector<BrokenSoftBody> broken;  // since they were asked for
+  std::vector<Break> breaks;              // of `bodies`, in the order in which they began
+  std::optional<PieceWorkshop> workshop;  // from the first break on
+  std::vector<BrokenSoftBody> broken;     // since they were asked for
   std::optional<SleepSettings> sleep;
   SoftBodyTimes times;
 };
@@ -218,6 +304,7 @@ SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model
 void BulletSoftBodies::remove(const SoftBody<3>& body) {
   const auto found = impl_->find(body, "to be removed");
   impl_->solve.remove(body);
+  impl_->forget_breaks_of(**found);
   impl_->tell_others(**found);
   SC_ASSERT((*found)->soft().model().particles() > 0, "a body without particles, one of {}, is removed",
             impl_->bodies.size());
@@ -237,10 +324,15 @@ std::vector<SoftBody<3>*> BulletSoftBodies::cut(const SoftBody<3>& body, const C
   if (!coupled.can_break())
     throw std::invalid_argument(
         "the soft body to be cut touches with spheres; only bodies that touch with their surfaces break");
+  impl_->finish_breaks_of(coupled);
   const std::vector<std::uint32_t> faces = faces_across(body, where);
   if (faces.empty()) return {};
   impl_->solve.drop();
   return impl_->break_body(coupled, faces);
+}
+
+bool BulletSoftBodies::is_breaking(const SoftBody<3>& body) const {
+  return impl_->is_breaking(**impl_->find(body, "that may be breaking"));
 }
 
 std::vector<BrokenSoftBody> BulletSoftBodies::take_broken() { return std::exchange(impl_->broken, {}); }

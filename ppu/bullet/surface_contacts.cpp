@@ -6,6 +6,7 @@
 
 #include "ppu/bullet/bullet_vector.h"
 #include "ppu/contacts/overlap.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -27,8 +28,18 @@ bool moves(const btCollisionObject& object) {
 
 const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model) {
   std::unique_ptr<ContactModel>& known = models_[model.get()];
-  if (!known) known = std::make_unique<ContactModel>(model);
+  if (known) return *known;
+  // Without a mesh the surface is the lattice's own boundary, which is measured at once.
+  known = model->is_piece() && !model->mesh().triangles.empty()
+              ? std::make_unique<ContactModel>(model, contact_model(model->whole()))
+              : std::make_unique<ContactModel>(model);
   return *known;
+}
+
+void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) {
+  SC_ASSERT(contact != nullptr, "no contact model is kept beside {}", models_.size());
+  const SoftBodyModel<3>* const model = contact->model.get();
+  models_.try_emplace(model, std::move(contact));
 }
 
 void SurfaceContacts::forget_pieces(std::span<SurfaceBody* const> bodies) {

@@ -30,6 +30,8 @@ class SurfaceContacts {
 
   /// What bodies of one model share, made at the first call. Good as long as this; of a piece of a broken body until forget_pieces().
   const ContactModel& contact_model(const std::shared_ptr<const SoftBodyModel<3>>& model);
+  /// Keeps what was made elsewhere, as from contact_model().
+  void adopt(std::unique_ptr<ContactModel> contact);
   /// Frees what is kept of pieces that none of these bodies is any longer. @pre between substeps
   void forget_pieces(std::span<SurfaceBody* const> bodies);
 

@@ -24,19 +24,33 @@ std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> homes_of_particles(const 
 ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> shared)
     : model((SC_ASSERT(shared != nullptr, "contacts of a body without a model"), std::move(shared))),
       surface(model->mesh(), model->lattice()) {
+  place_touch_points();
+}
+
+ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const ContactModel& whole)
+    : model(std::move(piece)), surface(whole.surface, model->lattice(), model->mesh(), model->cracks()) {
+  SC_ASSERT(model->whole() == whole.model, "a piece of {} particles of another body of {}",
+            model->particles(), whole.model->particles());
+  place_touch_points();
+}
+
+/// In each cell points of the surface come first.
+void ContactModel::place_touch_points() {
   const Lattice<3>& lattice = model->lattice();
-  for (const SurfacePointAtRest& point : surface.points())
-    touch_points.push_back({anchor_in_cell(lattice, point.cell, point.xi), point.xi, 0});
   const auto homes = homes_of_particles(lattice);
+  first_of_cell.assign(lattice.cells.size() + 1, 0);
+  for (const SurfacePointAtRest& point : surface.points()) ++first_of_cell[point.cell + 1];
+  for (const auto& [cell, xi] : homes) ++first_of_cell[cell + 1];
+  for (std::size_t i = 1; i < first_of_cell.size(); ++i) first_of_cell[i] += first_of_cell[i - 1];
+  touch_points.resize(first_of_cell.back());
+  std::vector<std::uint32_t> next(first_of_cell.begin(), first_of_cell.end() - 1);
+  for (const SurfacePointAtRest& point : surface.points())
+    touch_points[next[point.cell]++] = {anchor_in_cell(lattice, point.cell, point.xi), point.xi, 0};
   for (const TouchingParticle& touching : surface.particles()) {
     const auto& [cell, xi] = homes[touching.particle];
-    touch_points.push_back({anchor_in_cell(lattice, cell, xi), xi, touching.allowance * lattice.spacing});
+    touch_points[next[cell]++] = {anchor_in_cell(lattice, cell, xi), xi,
+                                  touching.allowance * lattice.spacing};
   }
-  std::stable_sort(touch_points.begin(), touch_points.end(),
-                   [](const auto& a, const auto& b) { return a.anchor.cell < b.anchor.cell; });
-  first_of_cell.assign(lattice.cells.size() + 1, 0);
-  for (const TouchPoint& point : touch_points) ++first_of_cell[point.anchor.cell + 1];
-  for (std::size_t i = 1; i < first_of_cell.size(); ++i) first_of_cell[i] += first_of_cell[i - 1];
   for (const float mass : model->masses()) inverse_masses.push_back(1 / mass);
 }
 

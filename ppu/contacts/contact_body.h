@@ -52,12 +52,18 @@ struct TouchPoint {
 /// Of a model: its surface and what a particle weighs. Immutable.
 struct ContactModel {
   explicit ContactModel(std::shared_ptr<const SoftBodyModel<3>> model);
+  /// Of a piece of a broken body, which takes a fraction of the time.
+  /// @param whole  of the model's whole()
+  ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const ContactModel& whole);
 
   std::shared_ptr<const SoftBodyModel<3>> model;
   ContactSurface surface;
   std::vector<TouchPoint> touch_points;      ///< ascending by cell
   std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
   std::vector<float> inverse_masses;         ///< 1/kg, of each particle
+
+ private:
+  void place_touch_points();
 };
 
 struct ContactBody;

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "ppu/contacts/point_chooser.h"
 #include "ppu/contacts/triangle_distance.h"
 #include "ppu/lattice/locate.h"
 #include "softcell/base/assert.h"
@@ -19,49 +20,8 @@ using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 // All in cells.
-constexpr float kPointSpacing = 0.45f;     // between points of a smooth surface
-constexpr float kSamePoint = 0.1f;         // nearer than this two points are one, whatever their normals
 constexpr float kCandidateSpacing = 0.2f;  // of what points are chosen from
-constexpr float kReach = 2;                // of exact distances; deeper inside they are counted in steps
-
-/// A grid index as one number, for tables.
-std::uint64_t key_of(const Vector3i& index) {
-  constexpr int kOffset = 1 << 20;
-  const auto part = [](int i) { return static_cast<std::uint64_t>(i + kOffset); };
-  return part(index.x()) << 42 | part(index.y()) << 21 | part(index.z());
-}
-
-/// Chooses points that keep their distance from each other.
-class PointChooser {
- public:
-  explicit PointChooser(float spacing) : spacing_(spacing) {}
-
-  /// @return  whether the point is far enough from all that were chosen before
-  bool choose(const Vector3f& point, const Vector3f& normal) {
-    const Vector3i cube = (point / (kPointSpacing * spacing_)).array().floor().cast<int>();
-    for (int i = 0; i < 27; ++i) {
-      const auto found = chosen_.find(key_of(cube + Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
-      if (found == chosen_.end()) continue;
-      for (const Chosen& other : found->second)
-        if (is_near(other, point, normal)) return false;
-    }
-    chosen_[key_of(cube)].push_back({point, normal});
-    return true;
-  }
-
- private:
-  struct Chosen {
-    Vector3f point, normal;
-  };
-  bool is_near(const Chosen& other, const Vector3f& point, const Vector3f& normal) const {
-    constexpr float kOneSurface = 0.5f;  // cosine
-    const float apart = (other.point - point).norm() / spacing_;
-    return apart < kSamePoint || (apart < kPointSpacing && other.normal.dot(normal) > kOneSurface);
-  }
-
-  float spacing_;
-  std::unordered_map<std::uint64_t, std::vector<Chosen>> chosen_;
-};
+constexpr float kReach = ContactSurface::kReach;
 
 float volume_of(const TriangleMesh& mesh) {
   float volume = 0;
@@ -184,15 +144,22 @@ void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice
     if (found.empty()) break;  // no triangle is anywhere near
     unknown = std::move(later);
   }
-  constexpr float kSlack = 0.1f;
-  for (std::uint32_t i = 0; i < lattice.particles.size(); ++i) {
-    const float outside = distances.at(key_of(kPerCell * lattice.particles[i]));
-    particles_.push_back({i, outside > 0 ? outside + kSlack : 0});
-  }
   fields_.resize(lattice.cells.size());
   for (std::size_t c = 0; c < lattice.cells.size(); ++c)
     for_each_node(c,
                   [&](std::size_t n, const Vector3i& node) { fields_[c][n] = distances.at(key_of(node)); });
+  allow_particles(lattice);
+}
+
+void ContactSurface::allow_particles(const Lattice<3>& lattice) {
+  constexpr float kSlack = 0.1f;
+  particles_.resize(lattice.particles.size());
+  for (std::size_t c = 0; c < lattice.cells.size(); ++c)
+    for (std::size_t k = 0; k < 8; ++k) {
+      const float outside = fields_[c][node_of_corner(k)];
+      const std::uint32_t i = lattice.corners[c][k];
+      particles_[i] = {i, outside > 0 ? outside + kSlack : 0};
+    }
 }
 
 FieldValue ContactSurface::field(std::uint32_t cell, const Vector3f& xi) const {

@@ -16,6 +16,8 @@
 
 namespace softcell::ppu {
 
+struct Cracks;
+
 /// A point of the surface and where it lies in its cell.
 struct SurfacePointAtRest {
   std::uint32_t cell = 0;
@@ -44,9 +46,19 @@ class ContactSurface {
   static constexpr int kNodesPerEdge = 3;
   static constexpr std::size_t kNodes = 27;
   using CellField = std::array<float, kNodes>;
+  /// Of exact distances, in cells; deeper inside they are counted in steps.
+  static constexpr float kReach = 2;
+  /// The node of a cell at its corner k = bx + 2 by + 4 bz.
+  static constexpr std::size_t node_of_corner(std::size_t k) {
+    return 2 * ((k >> 2) * kNodesPerEdge * kNodesPerEdge + (k >> 1 & 1u) * kNodesPerEdge + (k & 1u));
+  }
 
   /// @param mesh  closed, or nearly so; none: the lattice's own boundary
   ContactSurface(const TriangleMesh& mesh, const Lattice<3>& lattice);
+  /// Of a piece of a body with a mesh: what it is in the whole, but where the piece is open. In proportion to the piece (piece_surface.cpp).
+  /// @param mesh    of the piece   @param cracks  of the piece
+  ContactSurface(const ContactSurface& whole, const Lattice<3>& piece, const TriangleMesh& mesh,
+                 const Cracks& cracks);
 
   /// Ascending by cell. Nearer to each other than half a cell where the surface is smooth; at each corner and
   /// along each sharp edge of the mesh.
@@ -62,6 +74,7 @@ class ContactSurface {
  private:
   void sample(const TriangleMesh& mesh, const Lattice<3>& lattice);
   void measure(const TriangleMesh& mesh, const Lattice<3>& lattice);
+  void allow_particles(const Lattice<3>& lattice);
 
   std::vector<SurfacePointAtRest> points_;
   std::vector<TouchingParticle> particles_;

@@ -77,8 +77,12 @@ std::vector<CrackedPiece> break_faces(const Lattice<3>& lattice, const Cracks& c
     // With as many cells and particles as before nothing has come apart, and nothing else is drawn.
     const bool opens = part.lattice.cells.size() != lattice.cells.size() ||
                        part.lattice.particles.size() != lattice.particles.size();
-    if (cracks.whole && opens)
+    if (cracks.whole && opens) {
       piece.mesh = mesh_of_piece(*cracks.whole, part.lattice, piece.cracks.cell_of_whole, piece.cracks.faces);
+      piece.cracks.open = std::move(piece.mesh.open);
+    } else {
+      piece.cracks.open = cracks.open;
+    }
     piece.part = std::move(part);
   }
   return pieces;

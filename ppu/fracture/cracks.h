@@ -21,6 +21,7 @@ struct Cracks {
   /// Of each face: by which it is stronger than the settings say. Infinite of those by which cells in which nothing of the body lies hang
   /// on a neighbour: these never break.
   std::vector<float> strength;
+  std::vector<OpenFace> open;  ///< ascending by cell; none where the model has no mesh
 };
 
 /// Of a model that was never broken.
@@ -32,7 +33,8 @@ Cracks no_cracks(const TriangleMesh* mesh, const Lattice<3>& lattice, std::span<
 struct CrackedPiece {
   LatticePiece part;
   Cracks cracks;
-  PieceMesh mesh;  ///< empty where the whole has none, and where no crack has opened
+  PieceMesh
+      mesh;  ///< without what `cracks` has; empty where the whole has none, and where no crack has opened
 };
 
 /// What is left when some faces break, in the order of split(). Those that never break do not.

@@ -120,6 +120,8 @@ class PieceMaker {
         result_.mesh.texture_coordinates.push_back({cells[(axis + 1) % 3], cells[(axis + 2) % 3]});
       if (!whole_.mesh().colours.empty()) result_.mesh.colours.push_back(Eigen::Vector4f::Ones());
     }
+    result_.open.push_back({cell, axis, outwards, static_cast<std::uint32_t>(caps_.size()),
+                            static_cast<std::uint32_t>(cap.triangles.size())});
     for (std::array<std::uint32_t, 3> triangle : cap.triangles) {
       for (std::uint32_t& vertex : triangle) vertex += first;
       if (!outwards) std::swap(triangle[1], triangle[2]);
@@ -140,6 +142,8 @@ class PieceMaker {
     };
     for (std::size_t p = 0; p < triangles_of_part_.size(); ++p)
       append(of.parts.empty() ? MeshPart() : of.parts[p], triangles_of_part_[p]);
+    for (OpenFace& face : result_.open)
+      face.first_triangle += static_cast<std::uint32_t>(mesh.triangles.size());
     if (caps_.empty()) return;
     auto cut = std::find_if(mesh.materials.begin(), mesh.materials.end(),
                             [](const MeshMaterial& material) { return material.name == kCutMaterial; });

@@ -14,9 +14,18 @@ namespace softcell::ppu {
 /// The name of the mesh material with which cuts are drawn. A mesh may have one of this name; else its pieces get one without looks.
 inline constexpr const char* kCutMaterial = "cut";
 
+/// A face of a piece's cell at which the piece ends, or is parted from itself: behind it lay another cell of the whole.
+struct OpenFace {
+  std::uint32_t cell = 0;  ///< of the piece
+  std::uint32_t axis = 0;
+  bool is_high = false;                                  ///< it is the cell's high face along the axis
+  std::uint32_t first_triangle = 0, triangle_count = 0;  ///< of the piece's mesh: what closes it there
+};
+
 struct PieceMesh {
   TriangleMesh mesh;
   std::vector<PlaceInCell> places;  ///< of each vertex, in the piece's lattice: which side of a cut it is on
+  std::vector<OpenFace> open;       ///< ascending by cell
 };
 
 /// A face is open where one of its corners is no longer the same particle in both cells. Faces that are broken and not open yet are not

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <span>
 #include <stdexcept>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "ppu/spe_bodies/match_bodies.h"
@@ -58,7 +59,28 @@ MatchPlan plan_of(const SoftBodyModel<3>& model, bool checked) {
   return {model.lattice(), *model.plan(), checked ? spu::kMatchCheckedArenaBytes : spu::kMatchArenaBytes};
 }
 
+/// Null: a body of the model is too large for tiles, too. There is no kernel for tiles in two dimensions.
+std::shared_ptr<const TilePlan> tiles_of(const SoftBodyModel<2>& /*model*/, bool /*checked*/) {
+  return nullptr;
+}
+std::shared_ptr<const TilePlan> tiles_of(const SoftBodyModel<3>& model, bool checked) {
+  const std::uint32_t arena_bytes = checked ? spu::kTileCheckedArenaBytes : spu::kTileArenaBytes;
+  try {
+    return std::make_shared<const TilePlan>(model.lattice(), *model.plan(), TileShape{}, arena_bytes);
+  } catch (const BodyTooLarge&) {
+    return nullptr;
+  }
+}
+
 }  // namespace
+
+/// What bodies of a model are stepped by: the one, or the other, or neither. (In tiles in three dimensions only.)
+template <int kDimension>
+struct SpeSolver<kDimension>::Plans {
+  std::shared_ptr<const SoftBodyModel<kDimension>> model;
+  std::shared_ptr<const typename MatchKernel<kDimension>::Plan> whole;
+  std::shared_ptr<const TilePlan> tiles;
+};
 
 /// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither. A body that may have a rest
 /// shape of its own is a group by itself: the plan has the rest shape.
@@ -66,10 +88,9 @@ template <int kDimension>
 struct SpeSolver<kDimension>::Group {
   std::shared_ptr<const SoftBodyModel<kDimension>> model;
   bool own_plan = false;
-  std::shared_ptr<const typename MatchKernel<kDimension>::Plan> plan;  // kept where others may need the same
-  std::optional<MatchBodies<kDimension>> bodies;
-  std::shared_ptr<const TilePlan> tiles;  // in three dimensions only
-  std::size_t count = 0;
+  std::vector<Body*> members;
+  std::shared_ptr<const Plans> plans;
+  std::shared_ptr<MatchBodies<kDimension>> bodies;
   std::vector<std::size_t> awake;
   std::vector<MatchSettings> settings;  // of these
 };
@@ -84,6 +105,21 @@ struct SpeSolver<kDimension>::Member {
   std::uint32_t seen_rest = 0;         ///< SoftBody::rest_revision() of the plan's rest shape; 0: the model's
 
   bool fits_spes() const { return group->bodies || tiled; }
+};
+
+/// The layout of memory before the one that is made.
+template <int kDimension>
+struct SpeSolver<kDimension>::Known {
+  using Model = SoftBodyModel<kDimension>;
+
+  std::unordered_map<const Body*, Member*> members;
+  std::unordered_map<const Model*, std::shared_ptr<const Plans>> plans;  // and those made since
+
+  /// The same body in it, or null.
+  Member* find(const Member& member) const {
+    const auto old = members.find(member.body);
+    return old != members.end() && old->second->group->model == member.group->model ? old->second : nullptr;
+  }
 };
 
 template <int kDimension>
@@ -109,52 +145,55 @@ bool SpeSolver<kDimension>::knows(std::span<Body* const> bodies) const {
                     });
 }
 
-/// Whole where they fit, else in tiles, else by the PPU.
+/// Plans take a while: a model's are made once.
 template <int kDimension>
-void SpeSolver<kDimension>::find_place(Group& group, std::span<const std::unique_ptr<Group>> others) {
-  SC_ASSERT(group.model != nullptr && group.count > 0, "a group of {} bodies {} a model", group.count,
-            group.model ? "with" : "without");
-  // Plans of tiles take a while: a model's is made once.
-  const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const auto& old) {
-    return old->model == group.model && old->tiles != nullptr;
-  });
-  if (known != groups_.end()) {
-    group.tiles = (*known)->tiles;
-    return;
-  }
-  try {
-    if (!group.own_plan) {
-      group.bodies.emplace(memory_, plan_of(*group.model, checked_), group.count);
+void SpeSolver<kDimension>::find_place(Group& group, Known& known) {
+  SC_ASSERT(group.model != nullptr && !group.members.empty(), "a group of {} bodies {} a model",
+            group.members.size(), group.model ? "with" : "without");
+  std::shared_ptr<const Plans>& plans = known.plans[group.model.get()];
+  if (!plans) plans = std::make_shared<const Plans>(plans_of(group.model));
+  group.plans = plans;
+  if (!plans->whole) return;
+  if (const auto old = known.members.find(group.members.front()); old != known.members.end()) {
+    const Group& same = *old->second->group;
+    if (same.model == group.model && same.own_plan == group.own_plan && same.members == group.members) {
+      group.bodies = same.bodies;
       return;
     }
-    const auto has_plan = [&](const auto& other) {
-      return other->model == group.model && other->plan != nullptr;
-    };
-    for (const auto& of : {std::span<const std::unique_ptr<Group>>(groups_), others}) {
-      const auto found = std::ranges::find_if(of, has_plan);
-      if (found != of.end()) group.plan = (*found)->plan;
-    }
-    if (!group.plan)
-      group.plan =
-          std::make_shared<const typename MatchKernel<kDimension>::Plan>(plan_of(*group.model, checked_));
-    group.bodies.emplace(memory_, *group.plan, group.count);
+  }
+  group.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plans->whole, group.members.size());
+}
+
+/// Whole where they fit, else in tiles, else by the PPU.
+template <int kDimension>
+auto SpeSolver<kDimension>::plans_of(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) const
+    -> Plans {
+  try {
+    return {model, std::make_shared<const typename MatchKernel<kDimension>::Plan>(plan_of(*model, checked_)),
+            nullptr};
   } catch (const BodyTooLarge&) {
-    find_tiles(group);
+    return {model, nullptr, tiles_of(*model, checked_)};
   }
 }
 
-/// There is no kernel for tiles in two dimensions.
-template <>
-void SpeSolver<2>::find_tiles(Group&) {}
+template <int kDimension>
+void SpeSolver<kDimension>::prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) {
+  auto plans = std::make_shared<const Plans>(plans_of(model));
+  const std::lock_guard lock(preparing_);
+  prepared_.push_back(std::move(plans));
+}
 
-template <>
-void SpeSolver<3>::find_tiles(Group& group) {
-  const SoftBodyModel<3>& model = *group.model;
-  const std::uint32_t arena_bytes = checked_ ? spu::kTileCheckedArenaBytes : spu::kTileArenaBytes;
-  try {
-    group.tiles = std::make_shared<const TilePlan>(model.lattice(), *model.plan(), TileShape{}, arena_bytes);
-  } catch (const BodyTooLarge&) {  // then by the PPU
-  }
+/// Those that nobody can have bodies of any longer go.
+template <int kDimension>
+void SpeSolver<kDimension>::take_prepared(Known& known, std::span<Body* const> bodies) {
+  std::unordered_set<const SoftBodyModel<kDimension>*> models;
+  for (const Body* const body : bodies) models.insert(body->shared_model().get());
+  const std::lock_guard lock(preparing_);
+  std::erase_if(prepared_, [&](const std::shared_ptr<const Plans>& plans) {
+    if (!models.contains(plans->model.get())) return plans->model.use_count() == 1;
+    known.plans.emplace(plans->model.get(), plans);
+    return true;
+  });
 }
 
 /// Rotations from one layout of memory to the next.
@@ -162,10 +201,11 @@ template <int kDimension>
 void SpeSolver<kDimension>::take_over(Member& member, Member& old) {
   SC_ASSERT(member.group->model == old.group->model, "a body of {} particles has changed its model",
             member.group->model->particles());
-  if (member.group->bodies)
-    member.group->bodies->take_rotations(member.number, *old.group->bodies, old.number);
-  else
+  const auto& bodies = member.group->bodies;
+  if (!bodies || bodies == old.group->bodies)
     member.tiled = std::move(old.tiled), member.seen_rest = old.seen_rest;
+  else
+    bodies->take_rotations(member.number, *old.group->bodies, old.number);
 }
 
 /// The plan gets the rest shape that the body has now.
@@ -178,56 +218,54 @@ void SpeSolver<kDimension>::follow_rest(Member& member) {
     member.group->bodies->set_rest(*body.plan());
     return;
   }
-  if constexpr (kDimension == 3) member.tiled->set_rest(*member.group->tiles, *body.plan());
+  if constexpr (kDimension == 3) member.tiled->set_rest(*member.group->plans->tiles, *body.plan());
 }
 
-/// Bodies have come or gone: memory is laid out anew, and those that stay take their rotations along.
+/// Bodies have come or gone: memory is laid out anew for those models whose bodies are others than before, and those that stay take their
+/// rotations along.
 template <int kDimension>
 void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
+  Known known;
+  for (Member& member : members_) known.members.emplace(member.body, &member);
+  for (const auto& group : groups_) known.plans.emplace(group->model.get(), group->plans);
+  take_prepared(known, bodies);
   std::vector<std::unique_ptr<Group>> groups;
   std::vector<Member> members;
+  std::unordered_map<const SoftBodyModel<kDimension>*, Group*> with_models_plan;
   for (Body* const body : bodies) {
     SC_ASSERT(std::ranges::count(bodies, body) == 1, "one of {} bodies is there twice", bodies.size());
     const bool own_plan = needs_own_plan(*body);
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) {
-      return !own_plan && !g->own_plan && g->model == body->shared_model();
-    });
-    if (group == groups.end()) {
-      group = groups.insert(group, std::make_unique<Group>());
-      (*group)->model = body->shared_model();
-      (*group)->own_plan = own_plan;
+    Group* group = own_plan ? nullptr : with_models_plan[body->shared_model().get()];
+    if (group == nullptr) {
+      group = groups.emplace_back(std::make_unique<Group>()).get();
+      group->model = body->shared_model();
+      group->own_plan = own_plan;
+      if (!own_plan) with_models_plan[group->model.get()] = group;
     }
     Member& member = members.emplace_back();
     member.body = body;
-    member.group = group->get();
-    member.number = (*group)->count++;
+    member.group = group;
+    member.number = group->members.size();
+    group->members.push_back(body);
   }
-  for (const auto& group : groups) find_place(*group, groups);
+  for (const auto& group : groups) find_place(*group, known);
 
   // All that may fail comes before anything is taken from what there is.
   std::size_t jobs = 0;
   for (Member& member : members) {
-    const Member* const old = known_as(member);
+    const Member* const old = known.find(member);
     const Group& group = *member.group;
-    if (group.tiles && old == nullptr) member.tiled = std::make_unique<TiledMemory>(memory_, *group.tiles);
+    if (group.plans->tiles && old == nullptr)
+      member.tiled = std::make_unique<TiledMemory>(memory_, *group.plans->tiles);
     const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
     jobs += tiled != nullptr ? tiled->most_jobs() : 1;
   }
   auto chain = std::make_unique<JobChain>(jobs_, "soft bodies", jobs);
   for (Member& member : members)
-    if (Member* const old = known_as(member)) take_over(member, *old);
+    if (Member* const old = known.find(member)) take_over(member, *old);
   chain_ = std::move(chain);
   groups_ = std::move(groups);
   members_ = std::move(members);
-}
-
-/// The same body in the layout of before, or null.
-template <int kDimension>
-auto SpeSolver<kDimension>::known_as(const Member& member) -> Member* {
-  const auto old = std::find_if(members_.begin(), members_.end(), [&](const Member& known) {
-    return known.body == member.body && known.group->model == member.group->model;
-  });
-  return old == members_.end() ? nullptr : &*old;
 }
 
 /// Positions and velocities to main memory.
@@ -250,7 +288,7 @@ void SpeSolver<kDimension>::hand_over(Member& member) {
     return;
   }
   if constexpr (kDimension == 3) {
-    const std::span<const std::uint32_t> place_of = group.tiles->place_of();
+    const std::span<const std::uint32_t> place_of = group.plans->tiles->place_of();
     for (std::size_t i = 0; i < place_of.size(); ++i) {
       member.tiled->positions()[place_of[i]] = Kernel::written(body.positions()[i]);
       member.tiled->velocities()[place_of[i]] = Kernel::written(body.velocities()[i]);
@@ -305,7 +343,7 @@ void SpeSolver<kDimension>::take_back(const Member& member) {
     return;
   }
   if constexpr (kDimension == 3) {
-    const std::span<const std::uint32_t> place_of = member.group->tiles->place_of();
+    const std::span<const std::uint32_t> place_of = member.group->plans->tiles->place_of();
     for (std::size_t i = 0; i < place_of.size(); ++i)
       body.set_velocity(i, Kernel::read(member.tiled->velocities()[place_of[i]]));
   }

@@ -117,7 +117,7 @@ float longer_after_a_pull(float yield) {
     hands.push_back({.action = Action::kMoveHand, .hand = hand, .body = 0, .value = middle + 2 * side});
   }
   simulation.step(hands);
-  run(simulation, 60);
+  step(simulation, 60);
   if (!body.has_own_rest()) return 0;
   const std::vector<Eigen::Vector3f> rest = body.rest_positions();
   const auto [low, high] = std::ranges::minmax(rest, {}, [](const Eigen::Vector3f& x) { return x.x(); });

@@ -6,7 +6,7 @@ set(build ${SCRATCH}/build)
 file(REMOVE_RECURSE ${SCRATCH})
 set(text "cmake_minimum_required(VERSION 3.25)\nproject(around LANGUAGES CXX ASM)\nenable_testing()\n"
   "add_subdirectory(${SOURCE} softcell EXCLUDE_FROM_ALL)\n")
-foreach(example hello_kernel saxpy ping_pong jelly_3d tyre_3d jelly_2d jelly_on_spes)
+foreach(example hello_kernel saxpy ping_pong jelly_3d tyre_3d vase_3d jelly_2d jelly_on_spes)
   file(COPY ${SOURCE}/examples/${example} DESTINATION ${project})
   list(APPEND text "add_subdirectory(${example})\n")
 endforeach()

@@ -301,7 +301,7 @@ struct Simulation3d::State {
   }
   Beginning<3> moment() const {
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
-      if (soft_bodies[b].shared_model() != whole[sources[b]])
+      if (soft_bodies[b].shared_model() != whole[sources[b]] || soft_bodies.is_breaking(soft_bodies[b]))
         throw std::runtime_error(
             fmt::format("the scene {} cannot be saved or changed: '{}' has broken, and a scene file has "
                         "whole bodies only; "

@@ -167,8 +167,12 @@ class BulletSoftBodies {
   /// @throws std::invalid_argument  the body is not one of these, or touches with spheres; the cut is not finite or has no area.
   std::vector<SoftBody<3>*> cut(const SoftBody<3>& body, const Cut& where);
   /// What has broken or was cut since the last call, in this order. A body with a SoftBodySettings::fracture is tested at the end of each
-  /// substep in which it is awake, and breaks there as by cut(). Bodies that were removed since then are not named.
+  /// substep in which it is awake. One of up to 100 particles has pieces at once; a larger one stays whole for 2 more substeps, and one for each
+  /// 1,000 particles, while another thread makes its pieces. Bodies that were removed since then are not named.
   std::vector<BrokenSoftBody> take_broken();
+  /// Whether it is still whole and will have pieces. An assignment, or a reset of its shape, prevents it.
+  /// @throws std::invalid_argument  the body is not one of these
+  bool is_breaking(const SoftBody<3>& body) const;
 
   /// Has the solver begin the next substep's work now, of `step` seconds, while the caller does something
   /// else. When bodies are changed after all, or the substep has another length, that work is dropped and

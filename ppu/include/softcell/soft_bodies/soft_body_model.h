@@ -82,7 +82,9 @@ class SoftBodyModel {
   /// model whose settings have a fracture at once.
   const Cracks& cracks() const requires(kDimension == 3);
   /// Whether it is of a body that was broken (fracture.h).
-  bool is_piece() const { return is_piece_; }
+  bool is_piece() const { return whole_ != nullptr; }
+  /// Of a piece: the model of the body that was never broken. Else null.
+  const std::shared_ptr<const SoftBodyModel>& whole() const { return whole_; }
 
  private:
   friend struct SoftBodyModelMaker;
@@ -101,7 +103,7 @@ class SoftBodyModel {
   mutable std::once_flag rest_lattice_made_;
   mutable std::shared_ptr<const RestLattice<kDimension>> rest_lattice_;
   std::vector<float> strengths_;  // of each cell; empty: 1
-  bool is_piece_ = false;
+  std::shared_ptr<const SoftBodyModel> whole_;
   mutable std::once_flag cracks_made_;
   mutable std::shared_ptr<const Cracks> cracks_;
 };

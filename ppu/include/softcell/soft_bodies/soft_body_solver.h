@@ -2,6 +2,7 @@
 // Solvers: they do the shape matching and damping of many bodies in a time step. PpuSolver works on the calling
 // thread, SpeSolver (spe_bodies/spe_solver.h) on SPEs.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,10 @@ class SoftBodySolver {
   /// Discards what the solver knows of the body from earlier steps. Call it when a body was teleported, and
   /// before it is destroyed. @pre no step is under way.
   virtual void forget(const SoftBody<kDimension>& body) = 0;
+
+  /// Makes what takes long to make for bodies of a model, when there will be some soon. Any thread may call it at any time, and it changes
+  /// no result.
+  virtual void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& /*model*/) {}
 };
 
 /// The reference: steps the bodies one after the other by SoftBody::pull() and flow(), in finish().

@@ -9,6 +9,7 @@
 //     finish():  velocities <-- main memory               when the last job has ended
 
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -58,6 +59,7 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   void finish() override;
   void drop() override;
   void forget(const Body& body) override;
+  void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) override;
 
   /// How many bodies of the last kick(), awake or asleep, fit no local store in any way: the PPU steps them.
   /// Checked kernels need part of the local store for their checks, so with them it may be more.
@@ -66,12 +68,14 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
  private:
   struct Group;   // the bodies of one model
   struct Member;  // where a body is
+  struct Known;   // the layout before
+  struct Plans;   // of one model
 
   bool knows(std::span<Body* const> bodies) const;
   void regroup(std::span<Body* const> bodies);
-  void find_place(Group& group, std::span<const std::unique_ptr<Group>> others);
-  void find_tiles(Group& group);
-  Member* known_as(const Member& member);
+  void find_place(Group& group, Known& known);
+  Plans plans_of(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) const;
+  void take_prepared(Known& known, std::span<Body* const> bodies);
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
   void follow_rest(Member& member);
@@ -84,6 +88,8 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<Member> members_;  // in the order of kick()
   std::vector<Body*> left_to_ppu_;
+  std::mutex preparing_;                                // guards prepared_
+  std::vector<std::shared_ptr<const Plans>> prepared_;  // that no group has taken yet
   float step_ = 0;
   bool is_stepping_ = false;         // between kick() and finish() or drop()
   std::unique_ptr<JobChain> chain_;  // last, so that it has ended before what its jobs work on goes
