@@ -146,6 +146,15 @@ TEST(LiveSettings, YieldAndCreepSetWhatTheySay) {
   EXPECT_FALSE(plasticity()) << "as the scene has it";
 }
 
+TEST(LiveSettings, YieldAndCreepSetWhatTheySayIn2d) {
+  const Scene2d scene = load_scene_2d("stack");
+  Simulation2d simulation(scene, {.spes = 1});
+  step_with(simulation, change<2>(Action::kYield, 0.2f, 1));
+  step_with(simulation, change<2>(Action::kCreep, 30));
+  EXPECT_EQ(simulation.soft_body(1).settings().plasticity, (ppu::Plasticity{.yield = 0.2f, .creep = 30}));
+  EXPECT_FALSE(simulation.soft_body(0).settings().plasticity) << "creep alone makes nothing plastic";
+}
+
 TEST(LiveSettings, ABodyOfTooManyParticlesStaysElastic) {
   const Scene scene = load_scene_3d("big");
   Simulation3d run(scene, {.spes = 2});

@@ -274,6 +274,7 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
     run.record.interrupted = interrupted();
     if (!next && !other) return run;
     look = run.demo->input().look();
+    look->stroke.reset();  // the next scene's knife has not begun it
     if (other && same_scene) {
       begins_paused = run.demo->paused();
     } else {
