@@ -412,7 +412,7 @@ struct Simulation3d::State {
     for (const ScriptedCut& planned : scene.cuts) {
       if (std::llround(double{planned.time} * 60) != at_frame) continue;
       for (std::size_t b = 0, count = soft_bodies.size(); b < count; ++b)
-        if (sources[b] == planned.body) soft_bodies.cut(soft_bodies[b], planned.where);
+        if (sources[b] == planned.body) soft_bodies.begin_cut(soft_bodies[b], planned.where);
       note_broken();
     }
   }
