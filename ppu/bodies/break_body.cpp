@@ -45,27 +45,26 @@ std::vector<PlannedPiece> plan_pieces(const std::shared_ptr<const SoftBodyModel<
   return planned;
 }
 
-BodyPiece piece_of(const SoftBody<3>& whole, PlannedPiece piece) {
-  const std::vector<std::uint32_t>& particle_of = piece.particle_of;
-  SC_ASSERT(piece.model->particles() == particle_of.size(), "{} particles of a piece of {}",
-            particle_of.size(), piece.model->particles());
-  SoftBody<3> own(piece.model);
-  own.set_material(whole.settings());
+void take_part(SoftBody<3>& piece, const SoftBody<3>& whole, std::span<const std::uint32_t> particle_of) {
+  SC_ASSERT(piece.positions().size() == particle_of.size(), "{} particles of a piece of {}",
+            particle_of.size(), piece.positions().size());
+  piece.set_material(whole.settings());
   for (std::size_t i = 0; i < particle_of.size(); ++i)
-    own.set_particle(i, whole.position(particle_of[i]), whole.velocities()[particle_of[i]]);
-  if (whole.has_own_rest()) {
-    const std::vector<Eigen::Vector3f> rest = whole.rest_positions();
-    std::vector<Eigen::Vector3f> own_rest;
-    for (const std::uint32_t particle : particle_of) own_rest.push_back(rest[particle]);
-    own.set_rest_positions(own_rest);
-  }
-  return {std::move(own), std::move(piece.particle_of)};
+    piece.set_particle(i, whole.position(particle_of[i]), whole.velocities()[particle_of[i]]);
+  if (!whole.has_own_rest()) return;
+  const std::vector<Eigen::Vector3f> rest = whole.rest_positions();
+  std::vector<Eigen::Vector3f> own_rest;
+  for (const std::uint32_t particle : particle_of) own_rest.push_back(rest[particle]);
+  piece.set_rest_positions(own_rest);
 }
 
 std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces) {
   std::vector<BodyPiece> pieces;
-  for (PlannedPiece& piece : plan_pieces(body.shared_model(), faces))
-    pieces.push_back(piece_of(body, std::move(piece)));
+  for (PlannedPiece& planned : plan_pieces(body.shared_model(), faces)) {
+    pieces.push_back({SoftBody<3>(planned.model), std::move(planned.particle_of)});
+    BodyPiece& piece = pieces.back();
+    take_part(piece.body, body, piece.particle_of);
+  }
   return pieces;
 }
 

@@ -184,27 +184,29 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   /// @param faces  that broke   @return what is left beside the body itself
   std::vector<SoftBody<3>*> put_pieces(CoupledBody& body, std::vector<PreparedPiece> prepared,
                                        std::size_t faces) {
-    std::vector<BodyPiece> pieces;
-    for (PreparedPiece& piece : prepared) {
-      if (piece.contact) surfaces->adopt(std::move(piece.contact));
-      pieces.push_back(piece_of(body.soft(), std::move(piece.piece)));
-    }
-    body.soft() = pieces.front().body;
-    follow_model(body);
     std::vector<SoftBody<3>*> others;
     std::vector<SurfaceAttachments::Piece> with_attachments;
-    const auto append = [&](const CoupledBody& coupled, const BodyPiece& piece) {
+    const auto append = [&](const CoupledBody& coupled, std::vector<std::uint32_t> particle_of) {
       for (SurfaceBody* const with_surface : with_surfaces)
-        if (with_surface == &coupled) with_attachments.push_back({with_surface, piece.particle_of});
+        if (with_surface == &coupled) with_attachments.push_back({with_surface, std::move(particle_of)});
     };
-    append(body, pieces.front());
-    for (std::size_t i = 1; i < pieces.size(); ++i) {
-      SoftBody<3>& own = add(pieces[i].body.shared_model(), Eigen::Vector3f::Zero());
-      own = pieces[i].body;
+    for (PreparedPiece& piece : prepared)
+      if (piece.contact) surfaces->adopt(std::move(piece.contact));
+    // Bodies are large, and not copied where that can be helped.
+    PlannedPiece& first = prepared.front().piece;
+    SoftBody<3> largest(first.model);
+    take_part(largest, body.soft(), first.particle_of);
+    append(body, std::move(first.particle_of));
+    for (std::size_t i = 1; i < prepared.size(); ++i) {
+      PlannedPiece& piece = prepared[i].piece;
+      SoftBody<3>& own = add(piece.model, Eigen::Vector3f::Zero());
+      take_part(own, body.soft(), piece.particle_of);
       bodies.back()->set_filter(body.filter());
-      append(*bodies.back(), pieces[i]);
+      append(*bodies.back(), std::move(piece.particle_of));
       others.push_back(&own);
     }
+    body.soft() = largest;
+    follow_model(body);
     if (!with_attachments.empty()) {
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments);
       surfaces->forget_pieces(with_surfaces);
@@ -238,6 +240,17 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (found == bodies.end())
       throw std::invalid_argument(std::string("the soft body ") + purpose + " is not in this world");
     return found;
+  }
+
+  /// Not breaking any more.
+  /// @throws std::invalid_argument  as find(); it touches with spheres
+  CoupledBody& find_breakable(const SoftBody<3>& body) {
+    CoupledBody& coupled = **find(body, "to be cut");
+    if (!coupled.can_break())
+      throw std::invalid_argument(
+          "the soft body to be cut touches with spheres; only bodies that touch with their surfaces break");
+    finish_breaks_of(coupled);
+    return coupled;
   }
 
   /// @throws std::invalid_argument  as find(); it does not touch with its surface
@@ -320,15 +333,21 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
 }
 
 std::vector<SoftBody<3>*> BulletSoftBodies::cut(const SoftBody<3>& body, const Cut& where) {
-  CoupledBody& coupled = **impl_->find(body, "to be cut");
-  if (!coupled.can_break())
-    throw std::invalid_argument(
-        "the soft body to be cut touches with spheres; only bodies that touch with their surfaces break");
-  impl_->finish_breaks_of(coupled);
+  CoupledBody& coupled = impl_->find_breakable(body);
   const std::vector<std::uint32_t> faces = faces_across(body, where);
   if (faces.empty()) return {};
   impl_->solve.drop();
   return impl_->break_body(coupled, faces);
+}
+
+bool BulletSoftBodies::begin_cut(const SoftBody<3>& body, const Cut& where) {
+  CoupledBody& coupled = impl_->find_breakable(body);
+  const std::vector<std::uint32_t> faces = faces_across(body, where);
+  if (faces.empty()) return false;
+  impl_->solve.drop();
+  coupled.rouse();
+  impl_->begin_break(coupled, faces);
+  return true;
 }
 
 bool BulletSoftBodies::is_breaking(const SoftBody<3>& body) const {

@@ -21,7 +21,6 @@ using Eigen::Vector3i;
 
 // All in cells.
 constexpr float kCandidateSpacing = 0.2f;  // of what points are chosen from
-constexpr float kReach = ContactSurface::kReach;
 
 float volume_of(const TriangleMesh& mesh) {
   float volume = 0;

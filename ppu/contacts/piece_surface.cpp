@@ -35,7 +35,6 @@ using Eigen::Vector3i;
 
 constexpr int kNodesPerCell = ContactSurface::kNodesPerEdge - 1;  // from cell to cell
 constexpr int kReachInNodes = static_cast<int>(ContactSurface::kReach) * kNodesPerCell;
-constexpr std::uint8_t kBeyond = 255;
 
 /// Its node 0..26 of a cell, x fastest.
 Vector3i step_of(std::size_t node) {
@@ -67,11 +66,6 @@ class SquareField {
   SquareField(const Vector3i& low, const Vector3i& high)
       : low_(low), counts_(high - low + Vector3i::Ones()), squares_(index_of(high) + 1, kUnset) {}
 
-  const Vector3i& low() const { return low_; }
-  Vector3i high() const { return low_ + counts_ - Vector3i::Ones(); }
-  bool holds(const Vector3i& node) const {
-    return ((node - low_).array() >= 0).all() && ((node - low_).array() < counts_.array()).all();
-  }
   std::uint8_t& at(const Vector3i& node) { return squares_[index_of(node)]; }
 
   /// From 0 at the faces' nodes to all others, axis by axis: squares along axes add up.

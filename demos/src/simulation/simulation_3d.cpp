@@ -425,10 +425,16 @@ struct Simulation3d::State {
     for (const ScriptedCut& planned : scene.cuts)
       if (std::llround(double{planned.time} * 60) == at_frame) cut(planned.where, planned.body);
   }
+  /// Pieces come some substeps later, or at once in a pause, in which there are none.
   /// @param source  the scene's body whose pieces are cut; none: all bodies are
   void cut(const ppu::Cut& where, std::optional<std::size_t> source) {
-    for (std::size_t b = 0, count = soft_bodies.size(); b < count; ++b)
-      if (!source || sources[b] == *source) soft_bodies.cut(soft_bodies[b], where);
+    for (std::size_t b = 0, count = soft_bodies.size(); b < count; ++b) {
+      if (source && sources[b] != *source) continue;
+      if (controls.paused())
+        soft_bodies.cut(soft_bodies[b], where);
+      else
+        soft_bodies.begin_cut(soft_bodies[b], where);
+    }
     note_broken();
   }
 

@@ -259,6 +259,29 @@ TEST(BulletFracture, ABodyStaysWholeUntilItsPiecesAreDue) {
   EXPECT_EQ(tear(std::chrono::milliseconds(0)), tear(std::chrono::milliseconds(30)));
 }
 
+TEST(BulletFracture, ACutThatBeginsHasItsPiecesLater) {
+  ContactWorld world({0, 0, 0});
+  SoftBodySettings jelly{.cell_size = 0.125f, .half_width = 1};
+  SoftBody<3>& ball = world.bodies.add(make_soft_body_model(make_sphere(0.5f, 3), jelly), {0, 0, 0});
+  const Cut half = Cut::plane({0.01f, 0, 0}, {1, 0, 0});
+  EXPECT_FALSE(world.bodies.begin_cut(ball, Cut::plane({2, 0, 0}, {1, 0, 0})));
+  EXPECT_TRUE(world.bodies.begin_cut(ball, half));
+  EXPECT_TRUE(world.bodies.is_breaking(ball));
+  EXPECT_TRUE(world.bodies.take_broken().empty());
+  run(world, 3);
+  EXPECT_FALSE(world.bodies.is_breaking(ball));
+  const auto broken = world.bodies.take_broken();
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0].body, &ball);
+  ASSERT_EQ(broken[0].pieces.size(), 1u);
+  // The same pieces as at once.
+  ContactWorld other({0, 0, 0});
+  SoftBody<3>& whole = other.bodies.add(make_soft_body_model(make_sphere(0.5f, 3), jelly), {0, 0, 0});
+  ASSERT_EQ(other.bodies.cut(whole, half).size(), 1u);
+  for (std::size_t b = 0; b < 2; ++b)
+    EXPECT_EQ(world.bodies[b].positions().size(), other.bodies[b].positions().size());
+}
+
 /// A body that is about to break is assigned, cut or removed.
 TEST(BulletFracture, WhatHappensToABodyThatIsBreakingIsKept) {
   const auto with_breaking_ball = [](const auto& work) {
@@ -293,7 +316,9 @@ TEST(BulletFracture, WhatHappensToABodyThatIsBreakingIsKept) {
     EXPECT_TRUE(world.bodies.take_broken().empty());
   });
   // The world goes while a break is under way.
-  with_breaking_ball([](ContactWorld&, SoftBody<3>&, const SoftBody<3>&) {});
+  ContactWorld world({0, 0, 0});
+  SoftBody<3>& ball = world.bodies.add(brittle_ball(0.03f), {0, 0, 0});
+  EXPECT_TRUE(world.bodies.begin_cut(ball, Cut::plane({0, 0, 0}, {1, 0, 0})));
 }
 
 TEST(BulletFracture, RandomCutsOfAWorldThatGoesOnLeaveItValid) {

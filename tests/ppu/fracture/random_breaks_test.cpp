@@ -84,7 +84,7 @@ TEST(RandomBreaks, LeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
           world.bodies.cut(body, Cut::plane(at, random.vector(1)));
           break;
         case 2:
-          world.bodies.cut(body, Cut::stroke(at, random.vector(0.3f), random.vector(0.3f)));
+          world.bodies.begin_cut(body, Cut::stroke(at, random.vector(0.3f), random.vector(0.3f)));
           break;
         case 3:
           attachments.push_back(world.bodies.attach(body, Patch<3>::of_surface(at, 0.35f)));

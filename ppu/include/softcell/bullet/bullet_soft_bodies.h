@@ -166,6 +166,10 @@ class BulletSoftBodies {
   /// @return the other pieces; good until remove()
   /// @throws std::invalid_argument  the body is not one of these, or touches with spheres; the cut is not finite or has no area.
   std::vector<SoftBody<3>*> cut(const SoftBody<3>& body, const Cut& where);
+  /// The same without a stall: the body stays whole for some substeps, as one that breaks (below), and take_broken() names its pieces. One that
+  /// is breaking gets the pieces of that first.
+  /// @return whether the cut meets the body   @throws std::invalid_argument  as cut()
+  bool begin_cut(const SoftBody<3>& body, const Cut& where);
   /// What has broken or was cut since the last call, in this order. A body with a SoftBodySettings::fracture is tested at the end of each
   /// substep in which it is awake. One of up to 100 particles has pieces at once; a larger one stays whole for 2 more substeps, and one for each
   /// 1,000 particles, while another thread makes its pieces. Bodies that were removed since then are not named.
