@@ -323,7 +323,8 @@ class CutSampler {
           add(face.cell, step.cast<float>() / kNodesPerCell);
       });
       if (!is_rim) continue;
-      if (last_rim != std::exchange(last_rim, face.cell)) avoid_known(face.cell);
+      if (face.cell != last_rim) avoid_known(face.cell);
+      last_rim = face.cell;
       sample_rim(face);
     }
     return std::move(points_);
