@@ -13,7 +13,7 @@ if(SOFTCELL_SANITIZE)
     # most of the same mistakes. The libraries that take addresses apart (softcell_add_library()) keep them.
     $<$<AND:$<CXX_COMPILER_ID:Clang>,$<NOT:$<BOOL:$<TARGET_PROPERTY:SOFTCELL_EVERY_CHECK>>>>:-fno-sanitize=null,vptr,object-size,pointer-overflow,alignment>)
   # Instrumented code confuses GCC's flow analysis: it warns of std::regex's own members.
-  target_compile_options(softcell_options INTERFACE "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-stringop-overflow>")
+  target_compile_options(softcell_options INTERFACE "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-array-bounds;-Wno-stringop-overflow>")
   target_link_options(softcell_options INTERFACE -fsanitize=${SOFTCELL_SANITIZE})
 endif()
 

@@ -312,8 +312,10 @@ CellMesh::Cap CellMesh::cap(std::uint32_t cell, std::uint32_t axis) const {
     if (is_new) cap.positions.push_back(points_[point].position);
     return number->second;
   };
-  for (const Segment& segment : segments_of(3 * cell + axis))
-    sides.emplace_back(number_of(segment.from), number_of(segment.to));
+  for (const Segment& segment : segments_of(3 * cell + axis)) {
+    const std::uint32_t from = number_of(segment.from);  // first, with every compiler
+    sides.emplace_back(from, number_of(segment.to));
+  }
 
   // Around the face, counter-clockwise seen from outside.
   const std::uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
