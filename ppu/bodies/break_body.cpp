@@ -9,15 +9,11 @@
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
-namespace {
 
-/// Empty: the body has the rest shape of its model.
 std::vector<Eigen::Vector3f> own_rest_of(const SoftBody<3>& body) {
   if (!body.has_own_rest()) return {};
   return body.rest_positions();
 }
-
-}  // namespace
 
 std::span<const std::uint32_t> strained_faces(const SoftBody<3>& body, BreakTest& test) {
   SC_ASSERT(body.settings().fracture.has_value(), "a body of {} particles that does not break is tested",
@@ -45,14 +41,14 @@ std::vector<PlannedPiece> plan_pieces(const std::shared_ptr<const SoftBodyModel<
   return planned;
 }
 
-void take_part(SoftBody<3>& piece, const SoftBody<3>& whole, std::span<const std::uint32_t> particle_of) {
+void take_part(SoftBody<3>& piece, const SoftBody<3>& whole, std::span<const Eigen::Vector3f> rest,
+               std::span<const std::uint32_t> particle_of) {
   SC_ASSERT(piece.positions().size() == particle_of.size(), "{} particles of a piece of {}",
             particle_of.size(), piece.positions().size());
   piece.set_material(whole.settings());
   for (std::size_t i = 0; i < particle_of.size(); ++i)
     piece.set_particle(i, whole.position(particle_of[i]), whole.velocities()[particle_of[i]]);
-  if (!whole.has_own_rest()) return;
-  const std::vector<Eigen::Vector3f> rest = whole.rest_positions();
+  if (rest.empty()) return;
   std::vector<Eigen::Vector3f> own_rest;
   for (const std::uint32_t particle : particle_of) own_rest.push_back(rest[particle]);
   piece.set_rest_positions(own_rest);
@@ -60,10 +56,11 @@ void take_part(SoftBody<3>& piece, const SoftBody<3>& whole, std::span<const std
 
 std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces) {
   std::vector<BodyPiece> pieces;
+  const std::vector<Eigen::Vector3f> rest = own_rest_of(body);
   for (PlannedPiece& planned : plan_pieces(body.shared_model(), faces)) {
     pieces.push_back({SoftBody<3>(planned.model), std::move(planned.particle_of)});
     BodyPiece& piece = pieces.back();
-    take_part(piece.body, body, piece.particle_of);
+    take_part(piece.body, body, rest, piece.particle_of);
   }
   return pieces;
 }

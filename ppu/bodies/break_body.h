@@ -32,9 +32,12 @@ struct PlannedPiece {
 /// do it.
 std::vector<PlannedPiece> plan_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
                                       std::span<const std::uint32_t> faces);
+/// The positions at rest of a body that has yielded, metres; empty: it has the rest shape of its model.
+std::vector<Eigen::Vector3f> own_rest_of(const SoftBody<3>& body);
 /// Makes a body that is such a piece what it was of the whole as this is now.
-/// @param whole  of the model that was planned for   @param particle_of  as in PlannedPiece
-void take_part(SoftBody<3>& piece, const SoftBody<3>& whole, std::span<const std::uint32_t> particle_of);
+/// @param whole  of the model that was planned for   @param rest  own_rest_of(whole)   @param particle_of  as in PlannedPiece
+void take_part(SoftBody<3>& piece, const SoftBody<3>& whole, std::span<const Eigen::Vector3f> rest,
+               std::span<const std::uint32_t> particle_of);
 
 /// What is left of a body when faces break; the largest piece first. The body stays as it is.
 std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces);

@@ -149,13 +149,15 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       break_body(body, faces);
       return;
     }
-    if (!workshop) make_workshop();
     breaks.push_back({&body, model, body.soft().resets(), faces.size(), substeps,
-                      workshop->begin(model, faces, contact_of_whole(body))});
+                      open_workshop().begin(model, faces, contact_of_whole(body))});
   }
 
-  void make_workshop() {
-    workshop.emplace([this](const std::shared_ptr<const SoftBodyModel<3>>& model) { solve.prepare(model); });
+  PieceWorkshop& open_workshop() {
+    if (!workshop)
+      workshop.emplace(
+          [this](const std::shared_ptr<const SoftBodyModel<3>>& model) { solve.prepare(model); });
+    return *workshop;
   }
 
   void finish_break(Break& one) { put_pieces(*one.body, one.pieces.get(), one.faces); }
@@ -176,8 +178,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 
   /// @return what is left beside the body itself
   std::vector<SoftBody<3>*> break_body(CoupledBody& body, std::span<const std::uint32_t> faces) {
-    if (!workshop) make_workshop();
-    return put_pieces(body, workshop->make(body.soft().shared_model(), faces, contact_of_whole(body)),
+    return put_pieces(body, open_workshop().make(body.soft().shared_model(), faces, contact_of_whole(body)),
                       faces.size());
   }
 
@@ -194,13 +195,14 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       if (piece.contact) surfaces->adopt(std::move(piece.contact));
     // Bodies are large, and not copied where that can be helped.
     PlannedPiece& first = prepared.front().piece;
+    const std::vector<Eigen::Vector3f> rest = own_rest_of(body.soft());
     SoftBody<3> largest(first.model);
-    take_part(largest, body.soft(), first.particle_of);
+    take_part(largest, body.soft(), rest, first.particle_of);
     append(body, std::move(first.particle_of));
     for (std::size_t i = 1; i < prepared.size(); ++i) {
       PlannedPiece& piece = prepared[i].piece;
       SoftBody<3>& own = add(piece.model, Eigen::Vector3f::Zero());
-      take_part(own, body.soft(), piece.particle_of);
+      take_part(own, body.soft(), rest, piece.particle_of);
       bodies.back()->set_filter(body.filter());
       append(*bodies.back(), std::move(piece.particle_of));
       others.push_back(&own);

@@ -22,6 +22,7 @@
 #include "document/value.h"
 #include "softcell/base/nearest_name.h"
 #include "support/scratch_folder.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 namespace {
@@ -57,7 +58,7 @@ class SceneFile : public testing::Test {
     } catch (const std::runtime_error& error) {
       sentence = error.what();
     }
-    EXPECT_LT(processor_seconds() - begin, SOFTCELL_SLOW_BUILD ? 10 : 2) << sentence;
+    EXPECT_LT(processor_seconds() - begin, kSlowBuild ? 10 : 2) << sentence;
     EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
     const std::string prefix = folder_.path().string() + "/";
     return sentence.starts_with(prefix) ? sentence.substr(prefix.size()) : sentence;

@@ -10,6 +10,7 @@
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
+#include "simulation_runs.h"
 
 namespace softcell::demos {
 
@@ -27,17 +28,13 @@ Scene floating_cube(const std::string& script) {
                   "s.toml"));
 }
 
-void run(Simulation3d& simulation, int frames) {
-  for (int i = 0; i < frames; ++i) simulation.step();
-}
-
 TEST(Script, AnImpulseIsGivenOnceAndAtItsTime) {
   const Scene scene = floating_cube("[[impulse]]\ntime = 0.5\nbody = \"cube\"\nvelocity = [1, 2, 3]\n");
   Simulation3d simulation(scene, {});
-  run(simulation, 30);
+  step(simulation, 30);
   const float mass = simulation.model(0).mass();
   EXPECT_LT((simulation.soft_body(0).linear_momentum() / mass).norm(), 2e-7f);  // m/s: units of MatchHold
-  run(simulation, 30);
+  step(simulation, 30);
   EXPECT_LT((simulation.soft_body(0).linear_momentum() / mass - Eigen::Vector3f(1, 2, 3)).norm(), 0.01f);
 }
 
@@ -45,7 +42,7 @@ TEST(Script, GravityChangesAtItsTime) {
   const Scene scene =
       floating_cube("[[gravity]]\ntime = 0\nvalue = -6\n[[gravity]]\ntime = 0.5\nvalue = 0\n");
   Simulation3d simulation(scene, {});
-  run(simulation, 60);
+  step(simulation, 60);
   const Eigen::Vector3f velocity = simulation.soft_body(0).linear_momentum() / simulation.model(0).mass();
   EXPECT_NEAR(velocity.y(), 3, 0.05f) << "half a second upwards";
 }
@@ -55,10 +52,10 @@ TEST(Script, AHandTakesABodyAlongAndLetsGo) {
       "[[drag]]\nbody = \"cube\"\nbegin = 0\nend = 2\n"
       "from = [0.25, 0, 0]\nto = [3.25, 0, 0]\n");
   Simulation3d simulation(scene, {});
-  run(simulation, 120);
+  step(simulation, 120);
   EXPECT_NEAR(simulation.soft_body(0).centre_of_mass().x(), 3, 0.5f);
   const Eigen::Vector3f before = simulation.soft_body(0).linear_momentum();
-  run(simulation, 30);
+  step(simulation, 30);
   EXPECT_LT((simulation.soft_body(0).linear_momentum() - before).norm(), 0.01f * before.norm());
 }
 
@@ -123,18 +120,18 @@ TEST(Script, AResetIn3dBeginsAnew) {
   const Scene again = scene_with("[[reset]]\ntime = 1\n[[pause]]\nbegin = 1\nend = 1.5\n");
   Simulation3d first(once, {}), second(again, {});
   const std::uint64_t at_the_beginning = first.state_hash();
-  run(first, 20);
-  run(second, 60);
+  step(first, 20);
+  step(second, 60);
   EXPECT_NE(second.state_hash(), at_the_beginning);
-  run(second, 1);
+  step(second, 1);
   EXPECT_EQ(second.state_hash(), at_the_beginning);
-  run(second, 29 + 20);
+  step(second, 29 + 20);
   first.finish();
   second.finish();
   EXPECT_EQ(first.state_hash(), second.state_hash()) << "before anything touches anything";
   EXPECT_EQ(first.shown_box_poses().back(), second.shown_box_poses().back());
-  run(first, 20);
-  run(second, 20);
+  step(first, 20);
+  step(second, 20);
   const Eigen::Vector3f difference =
       first.soft_body(0).centre_of_mass() - second.soft_body(0).centre_of_mass();
   EXPECT_LT(difference.norm(), 0.05f) << "Bullet does not sort contacts; they are in another order";
@@ -163,19 +160,19 @@ TEST_P(ShownDuringAPause, IsWhatHomeAndResetPutElsewhere) {
     EXPECT_EQ(simulation.shown(0).origin, origin) << after;
   };
   using Events = std::vector<InputEvent<3>>;
-  run(simulation, 30);
+  step(simulation, 30);
   simulation.step(Events{{.action = Action::kPause}});
   EXPECT_NE(points(simulation.shown_particles(0)), at_the_beginning);
   simulation.step(Events{{.action = Action::kHome, .body = kEveryBody}});
   expect_the_beginning("home");
   EXPECT_NE(simulation.shown_box_poses().back(), box) << "the box falls on from where it is";
   simulation.step(Events{{.action = Action::kResume}});
-  run(simulation, 30);
+  step(simulation, 30);
   simulation.step(Events{{.action = Action::kReset}, {.action = Action::kPause}});
   expect_the_beginning("reset");
   EXPECT_EQ(simulation.shown_box_poses().back(), box);
   EXPECT_EQ(simulation.shown_tilt(), Eigen::Matrix3f::Identity());
-  run(simulation, 1);
+  step(simulation, 1);
   expect_the_beginning("a frame later");
   simulation.step(Events{{.action = Action::kResume}});
   simulation.finish();

@@ -12,6 +12,7 @@
 #include "random_play.h"
 #include "replayed.h"
 #include "scene_file/scene_library.h"
+#include "simulation_runs.h"
 
 namespace softcell::demos {
 namespace {
@@ -24,18 +25,14 @@ using test::outside;
 
 Event hand(Action action, const Vector2f& at = {0, 0}) { return test::users_hand(action, at); }
 
-void run(Simulation2d& simulation, int frames) {
-  for (int i = 0; i < frames; ++i) simulation.step();
-}
-
 /// Lets go of the man.
 void expect_return_to_shape(Simulation2d& simulation, const Scene2d& scene) {
   simulation.step(
       std::vector<Event>{hand(Action::kRelease), {.action = Action::kGravity, .value = {0, -scene.gravity}}});
-  run(simulation, kTenSeconds);
+  step(simulation, kTenSeconds);
   // Without gravity nothing presses him, and he has his very shape again.
   simulation.step(std::vector<Event>{{.action = Action::kGravity}});
-  run(simulation, 2 * kTenSeconds);
+  step(simulation, 2 * kTenSeconds);
   EXPECT_LT(simulation.soft_body(0).deformation(), 0.5f * scene.soft_bodies[0].settings.cell_size);
 }
 
@@ -120,9 +117,9 @@ TEST(Simulation2d, TheSameEventsGiveTheSameState) {
   const auto play = [&] {
     Simulation2d simulation(scene);
     simulation.step(std::vector<Event>{hand(Action::kGrab, {1, 1}), hand(Action::kMoveHand, {3, 2})});
-    run(simulation, 100);
+    step(simulation, 100);
     simulation.step(std::vector<Event>{hand(Action::kRelease)});
-    run(simulation, 100);
+    step(simulation, 100);
     return simulation.state_hash();
   };
   EXPECT_EQ(play(), play());
@@ -133,7 +130,7 @@ TEST(Simulation2d, TheNumberOfSpesAndTheOrderOfTransfersDoNotMatter) {
   const auto play = [&](const SimulationOptions& options) {
     Simulation2d simulation(scene, options);
     simulation.step(std::vector<Event>{hand(Action::kGrab, {0, 0}), hand(Action::kMoveHand, {3, 2})});
-    run(simulation, 60);
+    step(simulation, 60);
     return simulation.state_hash();
   };
   const std::uint64_t with_six = play({});
@@ -145,8 +142,8 @@ TEST(Simulation2d, TheNumberOfSpesAndTheOrderOfTransfersDoNotMatter) {
 TEST(Simulation2d, TheReferenceIsCloseToTheSpes) {
   const Scene2d scene = load_scene_2d("man");
   Simulation2d spes(scene), reference(scene, {.solver = Solver::kReference});
-  run(spes, 30);
-  run(reference, 30);
+  step(spes, 30);
+  step(reference, 30);
   EXPECT_NE(spes.state_hash(), reference.state_hash()) << "the SPU rounds towards zero";
   for (std::size_t i = 0; i < spes.particles(); ++i) {
     EXPECT_LT((spes.soft_body(0).positions()[i] - reference.soft_body(0).positions()[i]).norm(), 1e-4f);
@@ -164,9 +161,9 @@ TEST(Simulation2d, AnInputIsSeenInTheVeryNextStep) {
 TEST(Simulation2d, AHandCarriesTheManAndThrowsHim) {
   const Scene2d scene = load_scene_2d("man");
   Simulation2d simulation(scene);
-  run(simulation, 120);
+  step(simulation, 120);
   simulation.step(std::vector<Event>{hand(Action::kGrab, {0, 0}), hand(Action::kMoveHand, {0, 2.4f})});
-  run(simulation, 120);
+  step(simulation, 120);
   EXPECT_GT(simulation.soft_body(0).centre_of_mass().y(), -0.5f) << "he hangs in the air";
   ASSERT_EQ(simulation.held().size(), 1u);
   EXPECT_EQ(simulation.held()[0].target, Vector2f(0, 2.4f));
@@ -228,7 +225,7 @@ TEST_P(HeldDisc, IsLiftedCarriedAndThrown) {
           2.0 / GetParam(), GetParam()),
       "s.toml"));
   Simulation2d simulation(scene);
-  run(simulation, 60);
+  step(simulation, 60);
   const ppu::SoftBody<2>& body = simulation.soft_body(0);
   const auto middle = [&] { return simulation.soft_body(0).centre_of_mass(); };
   const Vector2f lay = middle();
@@ -279,11 +276,11 @@ TEST(Simulation2d, APauseHoldsAndASingleStepIsOneFrame) {
   simulation.step(std::vector<Event>{{.action = Action::kPause}});
   const std::uint64_t paused = simulation.state_hash();
   EXPECT_TRUE(simulation.paused());
-  run(simulation, 10);
+  step(simulation, 10);
   EXPECT_EQ(simulation.state_hash(), paused);
   simulation.step(std::vector<Event>{{.action = Action::kSingleStep}});
   EXPECT_EQ(simulation.state_hash(), after_one);
-  run(simulation, 10);
+  step(simulation, 10);
   EXPECT_EQ(simulation.state_hash(), after_one);
 }
 
@@ -293,11 +290,11 @@ TEST(Simulation2d, AResetIsTheBeginningInAllBits) {
   used.step(std::vector<Event>{hand(Action::kGrab, {1, 1}),
                                hand(Action::kMoveHand, {3, 2}),
                                {.action = Action::kGravity, .value = {50, 0}}});
-  run(used, 200);
+  step(used, 200);
   used.step(std::vector<Event>{{.action = Action::kReset}});
   fresh.step();
-  run(used, 200);
-  run(fresh, 200);
+  step(used, 200);
+  step(fresh, 200);
   EXPECT_EQ(used.state_hash(), fresh.state_hash());
 }
 
@@ -320,7 +317,7 @@ TEST(Simulation2d, RigidBodiesOfAnySizeAndPlaceMove) {
   add("circle", "radius = 10000");
   const Scene2d scene = std::get<Scene2d>(parse_scene(text, "s.toml"));
   Simulation2d simulation(scene, {.solver = Solver::kReference});
-  run(simulation, 3);
+  step(simulation, 3);
   for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i)
     EXPECT_TRUE(simulation.rigid_pose(i).position.allFinite()) << i;
 }
@@ -331,7 +328,7 @@ TEST(Simulation2d, TheLightestAndSmallestMaterialMoves) {
                   "shape = { kind = \"disc\" }\n[[box]]\nsize = [0.1, 0.01]\nposition = [0, -0.02]\n",
                   "s.toml"));
   Simulation2d simulation(scene);
-  run(simulation, 60);
+  step(simulation, 60);
   EXPECT_GT(simulation.soft_body(0).centre_of_mass().y(), -0.015f) << "it lies on the box";
   EXPECT_LT(simulation.soft_body(0).centre_of_mass().y(), -0.005f) << "it has fallen";
 }

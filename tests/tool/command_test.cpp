@@ -25,6 +25,7 @@
 #include "support/files_in.h"
 #include "support/run_command.h"
 #include "support/scratch_folder.h"
+#include "support/slow_build.h"
 #include "support/text_file.h"
 
 namespace softcell::tests {
@@ -263,7 +264,7 @@ TEST(Command, ThePpuStepsBodiesInTwoDimensionsThatNoLocalStoreHolds) {
                "dimension = 2\n[[soft_body]]\ncell_size = 0.05\nshape = { kind = \"rectangle\", width = " +
                    side + ", height = " + side + " }\n");
     const CommandResult run =
-        run_softcell("demo 2d --headless --quiet --frames " + std::string(SOFTCELL_SLOW_BUILD ? "5" : "30") +
+        run_softcell("demo 2d --headless --quiet --frames " + std::string(kSlowBuild ? "5" : "30") +
                      " --size 32x32 --scene " + scene + " --json " + json + options);
     EXPECT_EQ(run.status, 0) << run.output;
     return read_json(json).at("state_hash").get<std::string>();
@@ -406,7 +407,7 @@ std::vector<std::string> row_of_scene(const std::string& scene, const std::strin
 
 /// The figures are the same in every run and on every host.
 TEST(Command, SaysWhatTheWorkOfTheSpesTakesOnAPs3) {
-  if (SOFTCELL_SLOW_BUILD)
+  if (kSlowBuild)
     GTEST_SKIP() << "a sanitizer takes a minute for it; SpeRuntime.CountsTheCyclesOfAPs3 runs there";
   const ScratchFolder folder;
   for (const auto& [scene, dimension, contacts] :
@@ -511,12 +512,12 @@ std::pair<int, std::chrono::steady_clock::duration> interrupt_demo(const Scratch
 
 TEST(Command, StopsWithinASecondOfASignalAndKeepsWholeWhatItHasSoFar) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    if (SOFTCELL_SLOW_BUILD && signal != SIGTERM) continue;
+    if (kSlowBuild && signal != SIGTERM) continue;
     SCOPED_TRACE(strsignal(signal));
     const ScratchFolder folder;
     const auto [status, took] = interrupt_demo(folder, signal);
     EXPECT_EQ(status, 130);
-    EXPECT_LT(took, std::chrono::seconds(SOFTCELL_SLOW_BUILD ? 10 : 1));
+    EXPECT_LT(took, std::chrono::seconds(kSlowBuild ? 10 : 1));
     EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"out", "r.rec", "v.mp4"}))
         << "no part of a file is left";
     const std::set<std::string> frames = files_in(folder / "out");
@@ -729,7 +730,7 @@ TEST(Command, SaysHowFarItCameWhenInterrupted) {
   const ScratchFolder folder;
   const CommandResult run = run_shell(
       "cd " + folder.path().string() + " && timeout --preserve-status --signal=INT " +
-      std::to_string(SOFTCELL_SLOW_BUILD ? 8 : 3) +
+      std::to_string(kSlowBuild ? 8 : 3) +
       " " SOFTCELL_COMMAND " demo 2d --headless --frames 100000 --size 32x32 --out frames --json j");
   EXPECT_EQ(run.status, 130);
   EXPECT_TRUE(std::regex_match(
@@ -902,7 +903,7 @@ class CommandRefuses : public testing::TestWithParam<Refusal> {};
 
 TEST_P(CommandRefuses, WithOneSentenceAndItsStatus) {
   const std::string_view wanted = GetParam().arguments;
-  if (SOFTCELL_SLOW_BUILD && (wanted.ends_with("--cell 0.005") || wanted.ends_with("--cells 200")))
+  if (kSlowBuild && (wanted.ends_with("--cell 0.005") || wanted.ends_with("--cells 200")))
     GTEST_SKIP() << "half a minute with sanitizers, which have --cell 0.01";
   const ScratchFolder folder;
   write_file(folder / "cube.obj", kCube);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "document/table_edit.h"
+#include "picture_cells.h"
 #include "read_common.h"
 #include "read_scene.h"
 #include "scene_document.h"
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCellsAlong = 8, kCellsAlongPicture = 20;  // as --mesh and --image have them
+constexpr int kCellsAlong = 8;  // as --mesh has them
 
 /// The scene's document, to be changed: nobody else has it from now on.
 template <class SceneOf>

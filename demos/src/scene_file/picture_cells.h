@@ -14,6 +14,9 @@ namespace softcell::demos {
 /// A picture as it is kept: longer ones are made smaller.
 inline constexpr int kMaxKeptSide = 1024;  // pixels
 
+/// Cells along the longest side of a picture's silhouette, where nobody says how many or how large.
+inline constexpr int kCellsAlongPicture = 20;
+
 /// Reads a PNG file. @throws std::runtime_error  as render::read_picture()
 std::shared_ptr<const render::Image> load_picture(const std::filesystem::path& path);
 

@@ -169,7 +169,6 @@ std::shared_ptr<const render::Image> LatticeFiles::picture(const std::string& fi
 
 void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPicturePlace& own,
                      SoftBody2dPlacement& body) {
-  constexpr float kUsualCells = 20;  // a picture, unless a cell size is stated
   const auto rows = fields.items("rows", static_cast<std::size_t>(kMaxCells));
   const Value* shape = fields.field("shape");
   std::string file, image;
@@ -198,7 +197,7 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
     const Place& place = fields.place("image");
     const float side = longest_side.value_or(2), stated = body.settings.cell_size;
     from_picture(files.picture(image, place), side,
-                 stated > 0 ? cells_along(side, stated) : double{kUsualCells}, place);
+                 stated > 0 ? cells_along(side, stated) : double{kCellsAlongPicture}, place);
   } else if (shape != nullptr) {
     body.cells = read_shape(*shape, fields.what());
   } else if (!rows.empty()) {

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "picture_cells.h"
 #include "scene/scene.h"
 #include "scene/scene_2d.h"
 
@@ -49,7 +50,7 @@ struct OwnModel {
 /// The user's own picture. It replaces the body of the 2D scene that has the field `own_image_side`.
 struct OwnPicture {
   std::shared_ptr<const render::Image> image;
-  int cells = 20;                   ///< along the longest side of its silhouette
+  int cells = kCellsAlongPicture;   ///< along the longest side of its silhouette
   std::filesystem::path file = {};  ///< that it was read from
 };
 

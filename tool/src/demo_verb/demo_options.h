@@ -9,6 +9,7 @@
 #include "input/input_log.h"
 #include "scene/look.h"
 #include "scene_file/own_model.h"
+#include "scene_file/picture_cells.h"
 #include "simulation/simulation_options.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/schedule.h"
@@ -44,7 +45,7 @@ struct Demo3dOptions : DemoOptions {
 /// The scene's default: man, or picture when a picture is given.
 struct Demo2dOptions : DemoOptions {
   std::optional<std::filesystem::path> image;  ///< the user's own picture
-  int cells = 20;                              ///< along its silhouette's longest side
+  int cells = demos::kCellsAlongPicture;       ///< along its silhouette's longest side
   demos::View2d view = demos::View2d::kFilled;
 };
 
