@@ -22,7 +22,7 @@ end
 return {
   title = "20 soft bodies rest on each other",
   pictures = { 1, 90, 240 },
-  world = { frames = 360, contacts = "surface" },
+  world = { frames = 360, contacts = "surface", sleep = true },
   framework = { half_width = 1.1, height = 1.5, thickness = 0.12, front_opacity = 0.12 },
   camera = { eye = { 0.5, 2.9, 4.3 }, target = { 0, 0.65, 0 }, near = 0.4, far = 40 },
   light = { shadow_radius = 4 },

@@ -400,6 +400,16 @@ auto SoftBody<kDimension>::centre_of_mass() const -> Vector {
 }
 
 template <int kDimension>
+float SoftBody<kDimension>::mean_speed() const {
+  double mass = 0, twice_energy = 0;
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    mass += double{model_->masses()[i]};
+    twice_energy += double{model_->masses()[i]} * double{v_[i].squaredNorm()};
+  }
+  return static_cast<float>(std::sqrt(twice_energy / mass));
+}
+
+template <int kDimension>
 auto SoftBody<kDimension>::linear_momentum() const -> Vector {
   typename Motion<kDimension>::Vector momentum = Motion<kDimension>::Vector::Zero();
   for (std::size_t i = 0; i < v_.size(); ++i)

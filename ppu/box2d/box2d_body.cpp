@@ -106,14 +106,12 @@ void Box2dBody::end_step(float step) {
 }
 
 void Box2dBody::count_stillness(float step, float speed) {
-  const bool still = std::ranges::all_of(soft_.velocities(),
-                                         [&](const Vector2f& v) { return v.squaredNorm() < speed * speed; });
-  SC_ASSERT(step > 0 && speed >= 0, "a body slower than {} m/s is still for {} s", speed, step);
-  still_for_ = still ? still_for_ + step : 0;
+  stillness_.count(step, soft_.mean_speed(), speed);
 }
 
 void Box2dBody::fall_asleep() {
-  SC_ASSERT(!soft_.asleep(), "a body falls asleep that has been still for {} s and sleeps", still_for_);
+  SC_ASSERT(!soft_.asleep(), "a body falls asleep that has been still for {} s and sleeps",
+            stillness_.seconds());
   for (std::size_t i = 0; i < soft_.velocities().size(); ++i) soft_.set_velocity(i, Vector2f::Zero());
   for (b2Body* particle : particles_) particle->SetAwake(false);  // Box2D stops it, too
   gravity_asleep_ = world_.GetGravity();
@@ -121,7 +119,7 @@ void Box2dBody::fall_asleep() {
 }
 
 void Box2dBody::wake() {
-  still_for_ = 0;
+  stillness_.begin();
   soft_.set_asleep(false);
   for (b2Body* particle : particles_) particle->SetAwake(true);
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "ppu/bodies/stillness.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {
@@ -44,9 +45,9 @@ class Box2dBody {
   /// After Box2D's step: outer particles are taken over, inner ones follow.
   void end_step(float step);
 
-  /// Adds a step to the time for which no particle was faster than `speed` (m/s).
+  /// Adds a step to the time for which the body was slower than `speed` (m/s).
   void count_stillness(float step, float speed);
-  float still_for() const { return still_for_; }  ///< seconds
+  float still_for() const { return stillness_.seconds(); }  ///< seconds
   void fall_asleep();
   /// It sleeps again when it has been still for as long again.
   void wake();
@@ -63,7 +64,7 @@ class Box2dBody {
   std::vector<b2Body*> particles_;
   std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner one
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
-  float still_for_ = 0;
+  Stillness stillness_;
   b2Vec2 gravity_asleep_{0, 0};
 };
 

@@ -90,7 +90,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     timed(times.gather, [&] {
       for (const auto& body : bodies) body->end_substep(step, sleep);
       break_strained();
-      if (sleep && surfaces) surfaces->attachments().let_sleep(*sleep);
+      if (sleep && surfaces) surfaces->let_sleep(with_surfaces, *sleep);
     });
     BulletHook::find(world)->add_time(std::chrono::steady_clock::now() - begin);
   }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "ppu/bodies/stillness.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body.h"
@@ -45,8 +46,8 @@ class CoupledBody {
   /// After Bullet has integrated.
   virtual void end_substep(float step, const std::optional<SleepSettings>& sleep) = 0;
 
-  /// Whether it was too fast to fall asleep at the end of the last substep.
-  bool moves() const { return still_for_ == 0; }
+  /// Whether it was too fast to fall asleep at the end of the last substep. One that was woken moves when it has begun to.
+  bool moves() const { return stillness_.moves(); }
 
   virtual bool can_be_touched() const = 0;
 
@@ -75,7 +76,7 @@ class CoupledBody {
 
   /// Wakes the body. It sleeps again when it has been still for as long as others.
   void rouse() {
-    still_for_ = 0;
+    stillness_.begin();
     wake();
   }
 
@@ -90,20 +91,14 @@ class CoupledBody {
 
   bool falls_another_way() const { return world_.getGravity() != gravity_asleep_; }
 
-  /// A body that was woken by a touch does not count anew: still slow, it falls asleep again at once.
   void fall_asleep_when_still(float step, const SleepSettings& settings) {
     count_stillness(step, settings);
-    if (still_for_ >= settings.seconds) fall_asleep_now();
+    if (stillness_.seconds() >= settings.seconds) fall_asleep_now();
   }
 
   void count_stillness(float step, const SleepSettings& settings) {
-    SC_ASSERT(!soft_.asleep() && step > 0,
-              "a body that has been still for {} s falls asleep after {} s more, or sleeps", still_for_,
-              step);
-    bool still = true;
-    for (const Eigen::Vector3f& v : soft_.velocities())
-      still = still && v.squaredNorm() < settings.speed * settings.speed;
-    still_for_ = still ? still_for_ + step : 0;
+    SC_ASSERT(!soft_.asleep(), "a body that has been still for {} s sleeps", stillness_.seconds());
+    stillness_.count(step, soft_.mean_speed(), settings.speed);
   }
 
   void fall_asleep_now() {
@@ -117,7 +112,7 @@ class CoupledBody {
   btDiscreteDynamicsWorld& world_;
   SoftBody<3> soft_;
   CollisionFilter filter_;
-  float still_for_ = 0;  // seconds
+  Stillness stillness_;
 
  private:
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;

@@ -104,7 +104,7 @@ class SphereBody final : public CoupledBody {
   void end_substep(float step, const std::optional<SleepSettings>& sleep) override {
     if (soft_.asleep()) {
       if (sleep && !falls_another_way() && !was_touched()) return;
-      if (falls_another_way()) still_for_ = 0;
+      if (falls_another_way()) stillness_.begin();
       wake();
     }
     gather();

@@ -51,19 +51,22 @@ class SurfaceBody final : public CoupledBody {
       if (sleep && !falls_another_way()) return;
       rouse();
     }
-    if (!sleep) return;
-    if (is_attached_)
-      count_stillness(step, *sleep);
-    else if (!holds_a_moving_body_)
-      fall_asleep_when_still(step, *sleep);
+    if (sleep) count_stillness(step, *sleep);
   }
 
-  /// An attached body sleeps with what it is attached to.
-  void set_attached(bool attached) { is_attached_ = attached; }
+  /// It sleeps with what it touches (surface_contacts.h) or, when it is attached, with what it is attached to.
   bool may_fall_asleep(const SleepSettings& sleep) const {
-    return still_for_ >= sleep.seconds && !holds_a_moving_body_;
+    return stillness_.seconds() >= sleep.seconds && !holds_a_moving_body_;
   }
   void fall_asleep_with_others() { fall_asleep_now(); }
+
+  void set_attached(bool attached) { is_attached_ = attached; }
+  bool is_attached() const { return is_attached_; }
+
+  /// Bodies that touched each other in the last substep, directly or through others, have the same number. None: it touched nothing
+  /// soft yet.
+  void set_island(std::uint32_t island) { island_ = island; }
+  std::optional<std::uint32_t> island() const { return island_; }
 
   /// Whether a rigid body that is awake lies on it: then it must go on holding it.
   void set_holds_a_moving_body(bool holds) { holds_a_moving_body_ = holds; }
@@ -80,6 +83,7 @@ class SurfaceBody final : public CoupledBody {
   std::uint32_t number_;
   bool holds_a_moving_body_ = false;
   bool is_attached_ = false;
+  std::optional<std::uint32_t> island_;
 };
 
 }  // namespace softcell::ppu

@@ -72,18 +72,17 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
                         in_stage.obstacles);
     if (!attachments_.empty()) attachments_.part(*bodies[i], obstacles_, in_stage.obstacles);
     if (bodies[i]->soft().asleep() && any_near(in_stage, moves)) bodies[i]->rouse();
-    in_stage.asleep = bodies[i]->soft().asleep();
-    in_stage.moves = bodies[i]->moves();
     in_stage.filter = bodies[i]->filter();
-    if (in_stage.asleep) in_stage.obstacles.clear();
   }
+  wake_those_in_the_way(bodies);
   stage_.settings.bounces = {world_.getSolverInfo().m_restitutionVelocityThreshold,
                              to_eigen(world_.getGravity())};
   in_step_.clear();
   if (!attachments_.empty()) attachments_.fill(in_step_, bodies, obstacles_, step);
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
+  stage_.find_islands(islands_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (stage_.was_woken(i)) bodies[i]->rouse();
+    bodies[i]->set_island(islands_[i]);
     bodies[i]->set_holds_a_moving_body(any_near(in_stage_[i], [&](const btCollisionObject& object) {
       return is_awake(object) && !attachments_.joins(*bodies[i], object);
     }));
@@ -94,6 +93,39 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     note_triggers(bodies, step);
   }
   obstacles_.apply();
+}
+
+/// Before anything is solved: what sleeps would stop like a wall whatever hits it, and take its momentum away.
+void SurfaceContacts::wake_those_in_the_way(std::span<SurfaceBody* const> bodies) {
+  const auto sleeps = [&](const SurfaceBody* body) { return body->soft().asleep(); };
+  moving_.clear();
+  if (std::any_of(bodies.begin(), bodies.end(), sleeps)) {
+    for (std::uint32_t i = 0; i < bodies.size(); ++i)
+      if (!sleeps(bodies[i]) && bodies[i]->moves()) moving_.push_back(i);
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    BodyInStage& sleeper = in_stage_[i];
+    const auto is_in_the_way_of = [&](std::uint32_t other) {
+      return overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.lets(in_stage_[other].filter);
+    };
+    if (sleeps(bodies[i]) && std::any_of(moving_.begin(), moving_.end(), is_in_the_way_of))
+      bodies[i]->rouse();
+    sleeper.asleep = sleeps(bodies[i]);
+    if (sleeper.asleep) sleeper.obstacles.clear();
+  }
+}
+
+/// A body that has come to the world since then has no island and waits. Attached bodies fall asleep with what they are
+/// attached to, but may keep their island awake.
+void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const SleepSettings& sleep) {
+  is_restless_.assign(islands_.size(), false);
+  for (const SurfaceBody* const body : bodies)
+    if (body->island() && !body->soft().asleep() && !body->may_fall_asleep(sleep))
+      is_restless_[*body->island()] = true;
+  for (SurfaceBody* const body : bodies)
+    if (body->island() && !body->soft().asleep() && !body->is_attached() && !is_restless_[*body->island()])
+      body->fall_asleep_with_others();
+  attachments_.let_sleep(sleep);
 }
 
 void SurfaceContacts::Touch::add(float impulse, float its_weight, const Eigen::Vector3f& point,

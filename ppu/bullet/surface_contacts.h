@@ -43,6 +43,9 @@ class SurfaceContacts {
   SurfaceAttachments& attachments() { return attachments_; }
   const SurfaceAttachments& attachments() const { return attachments_; }
 
+  /// Bodies that have rested fall asleep, if all have that they touch.
+  void let_sleep(std::span<SurfaceBody* const> bodies, const SleepSettings& sleep);
+
   /// Appends the contacts of the last substep that press.
   void append_contacts(std::vector<Contact>& contacts) const;
 
@@ -70,6 +73,7 @@ class SurfaceContacts {
   /// A soft body's number, whether the other one is a collision object, and that one's number: in an order that does not depend on addresses.
   using TouchKey = std::tuple<std::uint32_t, bool, int>;
 
+  void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
   Touch& touch_of(const SurfaceBody& body, const SurfaceBody* other, const btCollisionObject* object);
@@ -84,6 +88,9 @@ class SurfaceContacts {
   Attachments<3> in_step_;
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
+  std::vector<std::uint32_t> moving_;   // bodies that wake those in their way
+  std::vector<std::uint32_t> islands_;  // of each body in the last substep
+  std::vector<bool> is_restless_;       // of each island
   bool watches_ = false;
   std::map<TouchKey, Touch> touches_;
   // While events are kept, in each substep:

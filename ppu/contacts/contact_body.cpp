@@ -51,7 +51,10 @@ void ContactModel::place_touch_points() {
     touch_points[next[cell]++] = {anchor_in_cell(lattice, cell, xi), xi,
                                   touching.allowance * lattice.spacing};
   }
-  for (const float mass : model->masses()) inverse_masses.push_back(1 / mass);
+  for (const float mass : model->masses()) {
+    inverse_masses.push_back(1 / mass);
+    root_masses.push_back(std::sqrt(mass));
+  }
 }
 
 Anchor anchor_in_cell(const Lattice<3>& lattice, std::uint32_t cell, const Eigen::Vector3f& xi) {
@@ -114,9 +117,12 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
     spin += masses[k] / mass * r.cross(body.velocities[k]);
     inertia += masses[k] / mass * (r.squaredNorm() * Eigen::Matrix3f::Identity() - r * r.transpose());
   }
-  // A cell that is pressed to a line cannot turn about it.
-  inertia.diagonal().array() += 1e-3f;
-  const Vector3f omega = inertia.inverse() * spin;
+  // A cell that is pressed to a line cannot turn about it: a little is added to its inertia. What that takes of the turn is given
+  // back, so that the spin that is left out is of second order.
+  constexpr float kLittle = 0x1.0p-13f;
+  inertia.diagonal().array() += kLittle;
+  const Eigen::Matrix3f inverse = inertia.inverse();
+  const Vector3f omega = inverse * (spin + kLittle * (inverse * spin));
   for (const std::uint32_t k : corners) {
     body.velocities[k] += share * (velocity + omega.cross(arm(k)) - body.velocities[k]);
   }

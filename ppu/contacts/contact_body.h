@@ -61,6 +61,7 @@ struct ContactModel {
   std::vector<TouchPoint> touch_points;      ///< ascending by cell
   std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
   std::vector<float> inverse_masses;         ///< 1/kg, of each particle
+  std::vector<float> root_masses;            ///< sqrt(kg), of each particle
 
  private:
   void place_touch_points();

@@ -24,6 +24,24 @@ void check_finite(const ContactBody& body) {
         "a soft body has positions or velocities that are not finite numbers, or passes 1e15 m");
 }
 
+/// From a point to where an anchor is before the step.
+Vector3f arm_of(const Anchor& anchor, const ContactBody& body, const Vector3f& point) {
+  Vector3f arm = Vector3f::Zero();
+  for (std::size_t k = 0; k < 8; ++k) arm += anchor.share[k] * (body.positions[anchor.particle[k]] - point);
+  return arm;
+}
+
+/// Its weights are shares times roots of inverse masses.
+Vector3f arm_of(const spu::SolveAnchor& anchor, const ContactBody& body, const Vector3f& point) {
+  Vector3f arm = Vector3f::Zero();
+  for (std::size_t k = 0; k < 8; ++k) {
+    const std::size_t particle = anchor.particle[k];
+    if (particle >= body.positions.size()) continue;  // the slot of zeros
+    arm += anchor.weight[k] * body.model->root_masses[particle] * (body.positions[particle] - point);
+  }
+  return arm;
+}
+
 }  // namespace
 
 Bounds<3> box_of_step(const SoftBody<3>& body, float step) {
@@ -247,8 +265,7 @@ void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
       const std::array<std::uint32_t, 3> pair{group.a, other, group.with_rigid};
       if (pressed_.empty() || pressed_.back() != pair) pressed_.push_back(pair);
     };
-    for (std::size_t c = 0; c < group.size(); ++c)
-      remember(c, group.by_worker ? group.solved.contacts[c].impulse : group.contacts[c].impulse);
+    for (std::size_t c = 0; c < group.size(); ++c) remember(c, group.impulse(c));
   }
   std::sort(pressed_.begin(), pressed_.end());
 }
@@ -301,9 +318,9 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
       solve_with_worker(rigids, step);
     else
       solve_here(rigids, step);
+    take_back_lost_spin();
   }
   remember_who_presses(rigids);
-  find_woken(bodies);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].asleep) continue;
     const ContactBody& body = bodies_[i];
@@ -349,7 +366,7 @@ void ContactStage::solve_attachments(std::span<ContactRigid> rigids, float step,
           {body.positions, body.velocities, body.pushes, body.inverse_masses, body.spacing(), body.asleep});
     attachments->begin(attached_, rigids, step);
   }
-  attachments->iterate(2 * settings.iterations);
+  attachments->iterate(settings.attachment_iterations);
 }
 
 /// Rigid bodies that move before those that nothing moves.
@@ -459,19 +476,55 @@ void ContactStage::take_from_worker() {
     if (!touched_[i].empty() && worker->holds(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
+/// Of pairs of soft bodies. What rigid bodies and sleepers get is not counted here.
+void ContactStage::take_back_lost_spin() {
+  using Eigen::Vector3d;
+  lost_spin_.begin(bodies_.size());
+  for (std::size_t g = 0; g < pair_groups_; ++g) {
+    const Group& group = groups_[g];
+    const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
+    if (a.asleep || b.asleep) continue;
+    Vector3d given = Vector3d::Zero();
+    const auto add = [&](const auto& anchor_a, const auto& anchor_b, const Vector3f& point,
+                         const Vector3f& impulse) {
+      if (impulse.isZero(0)) return;
+      const Vector3f apart = arm_of(anchor_a, a, point) - arm_of(anchor_b, b, point);
+      given += apart.cast<double>().cross(impulse.cast<double>());
+    };
+    if (group.by_worker) {
+      for (const spu::SolveContact& contact : group.solved.contacts)
+        add(contact.a, contact.b, Vector3f(contact.point),
+            contact.impulse * Vector3f(contact.normal) + Vector3f(contact.friction_impulse));
+    } else {
+      for (const SoftContact& contact : group.contacts)
+        add(contact.a, contact.b, contact.point, contact.impulse * contact.normal + contact.friction_impulse);
+    }
+    lost_spin_.add(bodies_, group.a, group.b, given);
+  }
+  lost_spin_.take_back(bodies_);
+}
+
 void ContactStage::give_to_worker() {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
     if (!touched_[i].empty() && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
-void ContactStage::find_woken(std::span<const BodyInStage> bodies) {
-  woken_.assign(bodies.size(), false);
-  for (std::size_t i = 0; i < group_count_; ++i) {
-    const Group& group = groups_[i];
-    if (group.with_rigid || bodies[group.a].asleep == bodies[group.b].asleep) continue;
-    const std::size_t sleeper = bodies[group.a].asleep ? group.a : group.b;
-    if (bodies[group.a + group.b - sleeper].moves) woken_[sleeper] = true;
+void ContactStage::find_islands(std::vector<std::uint32_t>& islands) const {
+  islands.resize(bodies_.size());
+  std::iota(islands.begin(), islands.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (islands[i] != i) i = islands[i] = islands[islands[i]];
+    return i;
+  };
+  for (std::size_t g = 0; g < pair_groups_; ++g) {
+    const Group& group = groups_[g];
+    bool presses = false;
+    for (std::size_t c = 0; c < group.size() && !presses; ++c) presses = group.impulse(c) > 0;
+    if (!presses) continue;
+    const std::uint32_t a = root(group.a), b = root(group.b);
+    islands[std::max(a, b)] = std::min(a, b);
   }
+  for (std::uint32_t i = 0; i < islands.size(); ++i) islands[i] = root(i);
 }
 
 void ContactStage::append_contacts(std::vector<PressingContact>& contacts) const {

@@ -17,6 +17,7 @@
 #include "ppu/contacts/contact_worker.h"
 #include "ppu/contacts/crushed_cells.h"
 #include "ppu/contacts/find_contacts.h"
+#include "ppu/contacts/lost_spin.h"
 #include "ppu/contacts/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
 
@@ -29,7 +30,6 @@ struct BodyInStage {
   Bounds<3> box = {};                         ///< box_of_step()
   std::vector<std::uint32_t> obstacles = {};  ///< indices of those that it may meet
   bool asleep = false;                        ///< nothing moves it
-  bool moves = true;                          ///< wakes those that sleep and touch it
   CollisionFilter filter = {};                ///< of other soft bodies
 };
 
@@ -43,11 +43,15 @@ struct PressingContact {
   float impulse = 0;                ///< kg m/s along the normal, above 0
 };
 
+/// Few iterations of each group in several rounds: what a group does to another is heard soon. With two rounds of four, and
+/// a stiffening of a half, heaps never came to rest (docs/notes/performance.md).
 struct ContactSettings {
-  int rounds = 2;             ///< over all groups
-  int iterations = 4;         ///< in a group, in a round
-  int heavy_iterations = 16;  ///< likewise, of a body with a rigid one that outweighs it
-  float stiffening = 0.5f;    ///< 0..1: share of what corners of touched cells do against each other
+  int rounds = 4;                 ///< over all groups
+  int iterations = 3;             ///< in a group, in a round
+  int heavy_iterations = 8;       ///< likewise, of a body with a rigid one that outweighs it
+  int attachment_iterations = 4;  ///< over all attachments, in a round
+  float stiffening =
+      0.35f;  ///< 0..1: share of what corners of touched cells do against each other, after each round but the last
   BounceSettings bounces = {};
 };
 
@@ -66,8 +70,9 @@ class ContactStage {
 
   /// Appends those of the last step that press, in the order of bodies.
   void append_contacts(std::vector<PressingContact>& contacts) const;
-  /// Whether a body that slept was touched by one that moves in the last step.
-  bool was_woken(std::size_t body) const { return woken_[body]; }
+  /// Of each body, a number that those have in common which pressed on each other in the last step, directly or through
+  /// others: the lowest body's. What presses on a rigid body only is alone.
+  void find_islands(std::vector<std::uint32_t>& islands) const;
   /// Bodies have other numbers from now on.
   void forget_who_presses() { pressed_.clear(); }
 
@@ -91,6 +96,9 @@ class ContactStage {
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
     std::size_t size() const { return by_worker ? solved.contacts.size() : contacts.size(); }
+    float impulse(std::size_t contact) const {
+      return by_worker ? solved.contacts[contact].impulse : contacts[contact].impulse;
+    }
   };
   using Pair = ContactOrder::Pair;
 
@@ -118,8 +126,8 @@ class ContactStage {
   void add_pairs_to(SolveStages& stages);
   void add_bodies_to(SolveStages& stages, float stiffening);
   void take_from_worker();
+  void take_back_lost_spin();
   void give_to_worker();
-  void find_woken(std::span<const BodyInStage> bodies);
 
   std::vector<ContactBody> bodies_;
   std::vector<float> nothing_moves_;  // inverse masses of bodies that sleep
@@ -138,11 +146,11 @@ class ContactStage {
   Bounces bounces_;
   // In the last substep: a, b or a rigid one's number, and which.
   std::vector<std::array<std::uint32_t, 3>> pressed_;
-  std::vector<Group*> here_;               // solved here, among what the worker solves
-  std::size_t here_that_move_ = 0;         // of them, the first ones
+  std::vector<Group*> here_;        // solved here, among what the worker solves
+  std::size_t here_that_move_ = 0;  // of them, the first ones
+  LostSpin lost_spin_;
   std::vector<AttachedBody<3>> attached_;  // bodies_, as attachments see them
   SolveStages stages_;
-  std::vector<bool> woken_;
 };
 
 }  // namespace softcell::ppu

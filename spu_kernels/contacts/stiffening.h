@@ -48,9 +48,9 @@ inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* s
     mixed = spu_madd(weighted, turned_left(r), mixed);
     spin = spu_madd(spu_mul(root[k], by_mass), cross_of(r, now[k]), spin);
   }
-  // A cell that is pressed to a line cannot turn about it.
-  const vec_float4 diagonal =
-      spu_add(spu_sub(sum_of_lanes(squares), squares), spu_splats(0x1.0624dep-10f));  // 1e-3
+  // A cell that is pressed to a line cannot turn about it: a little is added to its inertia.
+  const vec_float4 little = spu_splats(0x1.0p-13f);
+  const vec_float4 diagonal = spu_add(spu_sub(sum_of_lanes(squares), squares), little);
   const vec_float4 off = spu_sub(zero, mixed);  // of rows and columns x y, y z, z x
   // off: xy yz zx.
   const vec_uchar16 first_row = {0, 1, 2, 3, 16, 17, 18, 19, 24, 25, 26, 27, 28, 29, 30, 31};
@@ -60,9 +60,14 @@ inline void stiffen(vec_ushort8 corner, vec_float4* changes, const vec_float4* s
   const vec_float4 row_y = spu_shuffle(diagonal, off, second_row);
   const vec_float4 row_z = spu_shuffle(diagonal, off, third_row);
   const vec_float4 c1 = cross_of(row_y, row_z), c2 = cross_of(row_z, row_x), c3 = cross_of(row_x, row_y);
-  const vec_float4 omega = spu_mul(
-      spu_madd(splat_lane<0>(spin), c1, spu_madd(splat_lane<1>(spin), c2, spu_mul(splat_lane<2>(spin), c3))),
-      reciprocal(dot_in_all_lanes(row_x, c1)));
+  const vec_float4 by_determinant = reciprocal(dot_in_all_lanes(row_x, c1));
+  const auto turn_of = [&](vec_float4 s) __attribute__((always_inline)) {
+    return spu_mul(
+        spu_madd(splat_lane<0>(s), c1, spu_madd(splat_lane<1>(s), c2, spu_mul(splat_lane<2>(s), c3))),
+        by_determinant);
+  };
+  // What the little has taken of the turn is given back: the spin that is left out is of second order.
+  const vec_float4 omega = turn_of(spu_madd(little, turn_of(spin), spin));
 
   const vec_float4 part = spu_splats(share);
   for (int k = 0; k < 8; ++k) {

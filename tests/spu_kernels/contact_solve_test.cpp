@@ -161,13 +161,17 @@ class Twin {
       spin = V::of([&](Axis d) { return madd(root_by_mass, turn.*d, spin.*d); });
     }
     const float all = sum_of_three(squares);
-    const V diagonal = V::of([&](Axis d) { return (all - squares.*d) + 1e-3f; });
+    const float little = 0x1.0p-13f;
+    const V diagonal = V::of([&](Axis d) { return (all - squares.*d) + little; });
     const V off = V::of([&](Axis d) { return 0.0f - mixed.*d; });  // x y, y z, z x
     const V row_x{diagonal.x, off.x, off.z}, row_y{off.x, diagonal.y, off.y}, row_z{off.z, off.y, diagonal.z};
     const V c1 = cross(row_y, row_z), c2 = cross(row_z, row_x), c3 = cross(row_x, row_y);
     const float by = reciprocal(dot(row_x, c1));
-    const V omega =
-        V::of([&](Axis d) { return madd(spin.x, c1.*d, madd(spin.y, c2.*d, spin.z * c3.*d)) * by; });
+    const auto turn_of = [&](const V& s) {
+      return V::of([&](Axis d) { return madd(s.x, c1.*d, madd(s.y, c2.*d, s.z * c3.*d)) * by; });
+    };
+    const V about = turn_of(spin);
+    const V omega = turn_of(V::of([&](Axis d) { return madd(little, about.*d, spin.*d); }));
     for (std::size_t k = 0; k < 8; ++k) {
       V& v = vector_of(changes[cell.particle[k]]);
       const V turn = cross(omega, arm[k]);

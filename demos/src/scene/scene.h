@@ -101,7 +101,8 @@ struct Scene {
   float restitution = 0;                                       ///< 0..1, of rigid bodies
   int substeps = 2;                                            ///< of a frame of 1/60 s
   ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;  ///< unless the user wants another
-  int frames = 300;  ///< how long the scene is worth watching without a user
+  bool sleep = false;  ///< soft bodies fall asleep when they have come to rest
+  int frames = 300;    ///< how long the scene is worth watching without a user
   render::Camera camera;
   render::Light light;
   ScriptedInput<3> script;

@@ -157,8 +157,8 @@ class Hash {
 
 std::uint64_t scene_hash(const Scene& scene) {
   const auto& [name, title, soft_bodies, boxes, obstacles, rigid_bodies, joints, attachments, tilt, gravity,
-               friction, restitution, substeps, contacts, frames, camera, light, script, cuts, pictures,
-               files, notes, begin, document] = scene;
+               friction, restitution, substeps, contacts, sleep, frames, camera, light, script, cuts,
+               pictures, files, notes, begin, document] = scene;
   Hash hash;
   hash.add(3, soft_bodies, boxes, obstacles, tilt, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
@@ -166,6 +166,7 @@ std::uint64_t scene_hash(const Scene& scene) {
   if (!attachments.empty()) hash.add('a', attachments);  // unlike a scene that has none
   if (!rigid_bodies.empty()) hash.add('r', rigid_bodies);
   if (!joints.empty()) hash.add('j', joints);
+  hash.add_unless(static_cast<int>(sleep), 0);
   if (begin) hash.add('b', *begin);
   for (const ScriptedCut& cut : cuts)
     hash.add('c', cut.time, cut.body, cut.where.corner, cut.where.along, cut.where.across, cut.where.has_end);

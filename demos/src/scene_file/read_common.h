@@ -79,6 +79,7 @@ void read_world(FieldReader& fields, SceneOf& scene) {
       reader.choice("contacts", contacts, kContactMethods);
       scene.contacts = static_cast<ppu::ContactMethod>(contacts);
     }
+    if constexpr (requires { scene.sleep; }) reader.flag("sleep", scene.sleep);
     reader.finish();
   }
   for (std::size_t i = 0; i < pictures.size(); ++i) {

@@ -144,6 +144,7 @@ struct Simulation3d::State {
         solver(make_solver(options.solver)),
         contacts(options.contacts.value_or(scene.contacts)),
         soft_bodies(world.world(), *solver, contacts, make_contact_worker(options)) {
+    if (scene.sleep) soft_bodies.let_sleep(ppu::SleepSettings{});
     if (options.skin == Skin::kSpe) {
       skin = options.kernel("skin");
       orchestrator.emplace(memory, jobs, *skin);

@@ -59,7 +59,7 @@ struct SoftBodySettings {
 
 /// When bodies fall asleep. A sleeping body costs its solver nothing, and its coupling next to nothing.
 struct SleepSettings {
-  float speed = 0.05f;  ///< m/s: a body rests while all its particles are slower than this
+  float speed = 0.05f;  ///< m/s: a body rests while its mean_speed() is below this
   float seconds = 1;    ///< a body that has rested for so long falls asleep
 };
 

@@ -1,0 +1,45 @@
+#pragma once
+// Angular momentum that contacts take or give, and its return.
+//
+// A contact's two impulses are equal and opposite. They act on two points, one of each body, which meet where the bodies would be at the
+// step's end. Where the bodies are, the points are apart:
+//
+//     a  --o--->         lost = (x_a - x_b) x J
+//           \  gap
+//     b  <---o--
+//
+// Both bodies of a pair get the same small turn about their centres of mass, so that nothing is lost. At rest nothing is.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ppu/contacts/contact_body.h"
+
+namespace softcell::ppu {
+
+/// Used by one thread. Allocates when there are more bodies than ever before.
+class LostSpin {
+ public:
+  void begin(std::size_t bodies);
+
+  /// What the contacts of a pair have given both bodies together. @param b  may be a
+  void add(std::span<const ContactBody> bodies, std::uint32_t a, std::uint32_t b,
+           const Eigen::Vector3d& given);
+
+  /// Takes it away again, from the velocities of all bodies of such pairs.
+  void take_back(std::span<ContactBody> bodies) const;
+
+ private:
+  struct Spinning {
+    bool is_known = false;
+    Eigen::Vector3d centre{0, 0, 0}, turn{0, 0, 0};  // metres; rad/s
+    Eigen::Matrix3d inertia;                         // kg m^2, about the centre
+  };
+  Spinning& spinning(std::span<const ContactBody> bodies, std::uint32_t body);
+
+  std::vector<Spinning> of_bodies_;
+};
+
+}  // namespace softcell::ppu
