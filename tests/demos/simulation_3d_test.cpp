@@ -1,13 +1,16 @@
-// What a frame in three dimensions is said to have cost.
+// What a frame in three dimensions is said to have cost, and heaps that come to rest.
 
 #include "simulation/simulation_3d.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 
 #include "ppu/bullet/processor_time.h"
 #include "scene_file/scene_library.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 
@@ -36,6 +39,30 @@ TEST_P(FrameTimesOf, ThePpuAreTheSumOfItsPartsAndNoMoreThanTheThreadHasUsed) {
         << times.apply_ms << ", contacts " << times.contacts_ms << ", skin " << times.skin_ms;
     EXPECT_LE(times.ppu_ms, used.count()) << "frame " << frame;
   }
+}
+
+/// 20 bodies of five shapes on each other. Before they sleep, gravity and contacts alone bring them to rest.
+TEST(Simulation3d, APileComesToRestAndSleeps) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the first 240 frames of it";
+  Simulation3d simulation(load_scene_3d("pile"), {.spes = 2});
+  const auto asleep = [&] {
+    std::size_t bodies = 0;
+    for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) bodies += simulation.soft_body(b).asleep();
+    return bodies;
+  };
+  float fastest = 0;  // of all bodies, in the mean of its particles, a second before they sleep
+  int frame = 0;
+  for (; frame < 1800 && asleep() < simulation.soft_bodies(); ++frame) {
+    fastest = 0;
+    for (std::size_t b = 0; b < simulation.soft_bodies(); ++b)
+      fastest = std::max(fastest, simulation.soft_body(b).mean_speed());
+    simulation.step();
+  }
+  EXPECT_LT(frame, 1800) << "30 s";
+  EXPECT_LT(fastest, 0.15f);
+  const std::uint64_t state = simulation.state_hash();
+  for (int i = 0; i < 30; ++i) simulation.step();
+  EXPECT_EQ(simulation.state_hash(), state);
 }
 
 INSTANTIATE_TEST_SUITE_P(Skins, FrameTimesOf, testing::Values(Skin::kSpe, Skin::kGpu));
