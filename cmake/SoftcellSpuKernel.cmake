@@ -44,7 +44,8 @@ function(softcell_compile_spu_sources target)
   target_include_directories(${target} PRIVATE ${SOFTCELL_SDK_DIR}/host ${SOFTCELL_SDK_DIR}/.. ${arg_INCLUDES})
   if(SOFTCELL_PRECOMPILED_HEADERS AND arg_HEADERS)
     target_precompile_headers(${target} REUSE_FROM ${arg_HEADERS})
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+    # No compiler cache: it takes as long to find such a kernel as the compiler to make it.
+    set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER "")
   endif()
 endfunction()
 

@@ -36,13 +36,15 @@ endif()
 
 # Several sources of a target compiled as one: what they share is read and compiled once, which halves the time of a whole build. A source
 # that changes takes its neighbours with it, and what one source includes the next one sees: a build without shows what was forgotten.
-option(SOFTCELL_UNITY_BUILD "Compile the sources of a target in groups of six" OFF)
+option(SOFTCELL_UNITY_BUILD "Compile the sources of a target in groups of twelve" OFF)
 if(SOFTCELL_UNITY_BUILD)
+  # GCC collects garbage from 128 MB on, which takes a tenth of its time here, and still needs 1.2 GB for the largest group: 1.5 GB without.
+  target_compile_options(softcell_options INTERFACE "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=1048576>")
   # Types of unnamed namespaces in private structures, which GCC takes for a header's because a file includes their source.
   target_compile_options(softcell_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 function(softcell_group_sources target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTCELL_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTCELL_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 12)
 endfunction()
 
 # softcell_add_precompiled_headers(<target> <header>...): for `target_precompile_headers(... REUSE_FROM <target>)`.

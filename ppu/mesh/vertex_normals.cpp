@@ -13,7 +13,7 @@
 namespace softcell::ppu {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
 /// The squares of the components of shorter vectors lose bits to underflow, and with them the length.
 constexpr double kLeastLength = 1e-140;
@@ -103,14 +103,14 @@ TriangleMesh with_smooth_normals(std::span<const Eigen::Vector3f> positions,
 
   TriangleMesh mesh;
   mesh.triangles.resize(triangles.size());
-  std::vector<std::uint32_t> vertex_of_group(3 * triangles.size(), kNone);
+  std::vector<std::uint32_t> vertex_of_group(3 * triangles.size(), kNoVertex);
   std::vector<Eigen::Vector3d> sums;
   std::vector<std::uint32_t> some_triangle;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t position = triangles[t][k];
       std::uint32_t& vertex = vertex_of_group[groups.find(3 * t + k)];
-      if (vertex == kNone) {
+      if (vertex == kNoVertex) {
         vertex = static_cast<std::uint32_t>(mesh.positions.size());
         mesh.positions.push_back(positions[position]);
         sums.emplace_back(0, 0, 0);

@@ -63,9 +63,6 @@ void main() {
 }
 )glsl";
 
-// NOLINTNEXTLINE(performance-no-int-to-ptr)
-const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
-
 void check_corners(std::span<const CellVertex> vertices, std::size_t corner_count) {
   for (const CellVertex& vertex : vertices) {
     for (const std::uint32_t corner : vertex.corner) {
@@ -98,11 +95,11 @@ CellMesh::CellMesh(const GladGLContext& gl, std::span<const CellVertex> cell_ver
                 GL_STATIC_DRAW);
   for (const GLuint attribute : {0u, 1u, 2u, 3u}) gl.EnableVertexAttribArray(attribute);
   constexpr GLsizei kStride = sizeof(CellVertex);
-  gl.VertexAttribIPointer(0, 4, GL_UNSIGNED_INT, kStride, offset(offsetof(CellVertex, corner)));
+  gl.VertexAttribIPointer(0, 4, GL_UNSIGNED_INT, kStride, buffer_offset(offsetof(CellVertex, corner)));
   gl.VertexAttribIPointer(1, 4, GL_UNSIGNED_INT, kStride,
-                          offset(offsetof(CellVertex, corner) + 4 * sizeof(std::uint32_t)));
-  gl.VertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(CellVertex, place)));
-  gl.VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(CellVertex, normal)));
+                          buffer_offset(offsetof(CellVertex, corner) + 4 * sizeof(std::uint32_t)));
+  gl.VertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, buffer_offset(offsetof(CellVertex, place)));
+  gl.VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, kStride, buffer_offset(offsetof(CellVertex, normal)));
 
   gl.BindBuffer(GL_TEXTURE_BUFFER, corners.name());
   gl.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(count * kCellCornerBytes), nullptr,

@@ -3,12 +3,17 @@
 
 #include <glad/gl.h>
 
+#include <cstddef>
 #include <initializer_list>
 #include <utility>
 
 #include "softcell/base/assert.h"
 
 namespace softcell::render {
+
+/// A place in the buffer that is bound, as OpenGL takes it.
+// NOLINTNEXTLINE(performance-no-int-to-ptr)
+inline const void* buffer_offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
 /// Owns one GL name. Destroyed with its context current.
 class GlObject {

@@ -7,7 +7,7 @@
 namespace softcell::render {
 namespace {
 
-constexpr char kVertex[] = R"glsl(#version 330 core
+constexpr char kOverlayVertex[] = R"glsl(#version 330 core
 layout(location = 0) in vec2 vertex_position;
 layout(location = 1) in vec2 vertex_texel;
 layout(location = 2) in vec4 vertex_colour;
@@ -21,7 +21,7 @@ void main() {
 }
 )glsl";
 
-constexpr char kFragment[] = R"glsl(#version 330 core
+constexpr char kOverlayFragment[] = R"glsl(#version 330 core
 uniform sampler2D picture;  // the font's, or the sheet
 uniform bool of_sheet;
 in vec2 texel;
@@ -33,14 +33,11 @@ void main() {
 }
 )glsl";
 
-// NOLINTNEXTLINE(performance-no-int-to-ptr)
-const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
-
 }  // namespace
 
 OverlayPainter::OverlayPainter(const GladGLContext& gl)
     : gl_(gl),
-      program_(make_program(gl, {kVertex}, {kFragment})),
+      program_(make_program(gl, {kOverlayVertex}, {kOverlayFragment})),
       layout_(make_vertex_array(gl)),
       vertices_(make_buffer(gl)),
       indices_(make_buffer(gl)),
@@ -53,9 +50,10 @@ OverlayPainter::OverlayPainter(const GladGLContext& gl)
   gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_.name());
   for (const GLuint attribute : {0u, 1u, 2u}) gl_.EnableVertexAttribArray(attribute);
   constexpr GLsizei kStride = sizeof(OverlayVertex);
-  gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, x)));
-  gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, offset(offsetof(OverlayVertex, u)));
-  gl_.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride, offset(offsetof(OverlayVertex, rgba)));
+  gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, buffer_offset(offsetof(OverlayVertex, x)));
+  gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, buffer_offset(offsetof(OverlayVertex, u)));
+  gl_.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride,
+                          buffer_offset(offsetof(OverlayVertex, rgba)));
 }
 
 void OverlayPainter::upload_font(const OverlayFont& font) {
@@ -114,7 +112,7 @@ void OverlayPainter::draw(const OverlayFont& font, const Image* sheet, const Ove
     gl_.Scissor(command.left, height - command.bottom, command.right - command.left,
                 command.bottom - command.top);
     gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.index_count), GL_UNSIGNED_INT,
-                     offset(std::size_t{command.first_index} * sizeof(std::uint32_t)));
+                     buffer_offset(std::size_t{command.first_index} * sizeof(std::uint32_t)));
   }
   gl_.Disable(GL_SCISSOR_TEST);
   gl_.Disable(GL_BLEND);

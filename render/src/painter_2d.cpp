@@ -21,10 +21,6 @@ constexpr int kHalf = 2, kQuarter = 4;  // the picture's pixels in a texel
 constexpr int kMaxTaps = 91;
 constexpr float kSmooth = 1;  // pixels around a line that its smooth edge needs
 
-// The API takes offsets into the bound buffer as pointers.
-// NOLINTNEXTLINE(performance-no-int-to-ptr)
-const void* at_offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
-
 /// Linear light to sRGB, as in shaders.h.
 Colour encoded(const Colour& linear) {
   Colour result;
@@ -88,7 +84,7 @@ Painter2d::Painter2d(const GladGLContext& gl)
   for (const GLuint attribute : {0u, 1u, 2u}) {
     gl_.EnableVertexAttribArray(attribute);
     gl_.VertexAttribPointer(attribute, 2, GL_FLOAT, GL_FALSE, sizeof(Vertex2d),
-                            at_offset(attribute * sizeof(Vector2f)));
+                            buffer_offset(attribute * sizeof(Vector2f)));
   }
   gl_.BindVertexArray(stroke_layout_.name());
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, stroke_indices_.name());
@@ -96,10 +92,11 @@ Painter2d::Painter2d(const GladGLContext& gl)
   constexpr GLsizei kStride = sizeof(StrokeVertex);
   static_assert(kStride == 24);
   for (const GLuint attribute : {0u, 1u, 2u, 3u}) gl_.EnableVertexAttribArray(attribute);
-  gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, at_offset(offsetof(StrokeVertex, position)));
-  gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, at_offset(offsetof(StrokeVertex, across)));
-  gl_.VertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, kStride, at_offset(offsetof(StrokeVertex, radius)));
-  gl_.VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride, at_offset(offsetof(StrokeVertex, rgba)));
+  gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, buffer_offset(offsetof(StrokeVertex, position)));
+  gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, buffer_offset(offsetof(StrokeVertex, across)));
+  gl_.VertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, kStride, buffer_offset(offsetof(StrokeVertex, radius)));
+  gl_.VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride,
+                          buffer_offset(offsetof(StrokeVertex, rgba)));
 }
 
 Shape2dId Painter2d::add_shape(std::span<const std::array<std::uint32_t, 3>> triangles) {

@@ -60,10 +60,6 @@ static_assert(sizeof(FrameBlock) == 3 * 64 + 14 * 16, "std140 has no padding her
 
 Eigen::Vector4f vec4(const Eigen::Vector3f& v, float w = 0) { return {v.x(), v.y(), v.z(), w}; }
 
-// The API takes offsets into the bound buffer as pointers.
-// NOLINTNEXTLINE(performance-no-int-to-ptr)
-const void* buffer_offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
-
 /// A program and where its uniforms are; one that a program lacks is -1, which GL ignores.
 struct Program {
   Program(const GladGLContext& gl, std::initializer_list<const char*> vertex_parts,

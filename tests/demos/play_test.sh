@@ -31,9 +31,10 @@ grep -q '5 frames' "$folder/log" || fail "does not end after --frames"
 
 start_virtual_display "$folder" 1400x800 || fail "Xvfb did not start"
 
-# start VERB OPTIONS...: runs softcell and waits for its window.
+# start VERB OPTIONS...: runs softcell and waits for its window. It is small, as the processor draws its pixels; `size=1280x720 start` has a
+# larger one.
 start() {
-  "$softcell" demo "$@" >"$folder/log" 2>&1 &
+  "$softcell" demo "$1" --size "${size:-640x360}" "${@:2}" >"$folder/log" 2>&1 &
   pid=$!
   window=$(timeout 60 xdotool search --sync --onlyvisible --name "softcell demo $1" | head -1) || fail "no window"
   xdotool windowfocus --sync "$window"
@@ -74,8 +75,8 @@ shot() {
 
 # Two dimensions: grab the man, drag him, throw him; gravity; views; help.
 start 2d --record "$folder/play.rec"
-xdotool mousemove --window "$window" 640 360 mousedown 1
-for x in 700 760 820 880; do xdotool mousemove --window "$window" $x 200; sleep 0.1; done
+xdotool mousemove --window "$window" 320 180 mousedown 1
+for x in 350 380 410 440; do xdotool mousemove --window "$window" $x 100; sleep 0.1; done
 shot demo2d_dragged
 xdotool mouseup 1 key Up key plus key space
 sleep 0.3
@@ -92,7 +93,7 @@ shot demo3d_begin  # a key that is released before the first frame tilts nothing
 xdotool keydown Right
 sleep 2  # the tilt grows to its limit in a fifth of it, on a machine that keeps up
 xdotool keyup Right key space
-xdotool mousemove --window "$window" 640 360 mousedown 1 mousemove --window "$window" 800 330 mouseup 1
+xdotool mousemove --window "$window" 320 180 mousedown 1 mousemove --window "$window" 400 165 mouseup 1
 sleep 0.7
 shot demo3d_tilted
 xdotool key BackSpace key p
@@ -104,12 +105,12 @@ same_again 3d play3
 start 3d --scene drop --record "$folder/hold.rec"
 shot demo3d_drop
 sleep 1
-xdotool mousemove --window "$window" 640 420 mousedown 1
-for y in 380 330 280 240; do xdotool mousemove --window "$window" 640 $y; sleep 0.1; done
+xdotool mousemove --window "$window" 320 210 mousedown 1
+for y in 190 165 140 120; do xdotool mousemove --window "$window" 320 $y; sleep 0.1; done
 xdotool click 4
 sleep 0.5
 shot demo3d_held
-xdotool mousemove --window "$window" 500 200 mouseup 1
+xdotool mousemove --window "$window" 250 100 mouseup 1
 sleep 0.2
 finish
 for event in 'hold user 0' 'move user' 'release user'; do recorded "$event" hold; done
@@ -120,11 +121,11 @@ start 3d --scene drop --record "$folder/cut.rec" --json "$folder/cut.json"
 shot demo3d_before_cut
 sleep 1
 xdotool key k
-xdotool mousemove --window "$window" 640 60 mousedown 1
-for y in 200 400 600; do xdotool mousemove --window "$window" 640 $y; sleep 0.1; done
+xdotool mousemove --window "$window" 320 30 mousedown 1
+for y in 100 200 300; do xdotool mousemove --window "$window" 320 $y; sleep 0.1; done
 sleep 0.3
 shot demo3d_stroke
-xdotool mousemove --window "$window" 640 700 mouseup 1
+xdotool mousemove --window "$window" 320 350 mouseup 1
 sleep 0.7
 shot demo3d_cut
 finish
@@ -138,13 +139,13 @@ start 3d --scene drop --contacts spheres --record "$folder/no_cut.rec"
 xdotool key k
 sleep 0.5
 shot demo3d_no_knife
-xdotool mousemove --window "$window" 640 60 mousedown 1 mousemove --window "$window" 640 600 mouseup 1
+xdotool mousemove --window "$window" 320 30 mousedown 1 mousemove --window "$window" 320 300 mouseup 1
 sleep 0.3
 finish
 ! grep -q cut "$folder/no_cut.rec" || fail "the knife cuts bodies that touch with spheres"
 
 # In the view of contacts a click on a point takes nothing, and the menu has the contact's values.
-start 3d --scene drop --view contacts --record "$folder/contact.rec"
+size=1280x720 start 3d --scene drop --view contacts --record "$folder/contact.rec"
 shot demo3d_contacts
 sleep 2
 xdotool key p
@@ -171,7 +172,7 @@ finish
 ! grep -q hold "$folder/contact.rec" || fail "a click on a contact takes a body"
 
 # The menu: by keyboard alone, a pause and slow motion; with the mouse, another gravity, which the scene under it does not notice.
-start 3d --scene drop --record "$folder/menu.rec"
+size=1280x720 start 3d --scene drop --record "$folder/menu.rec"
 xdotool key m
 sleep 0.5
 shot demo3d_menu
@@ -209,7 +210,7 @@ cd "$folder"
 
 # Dense displays: text and menu grow with the scale; the bar over the menu ends where its width says.
 for scale in 1 1.5 2; do
-  start 3d --scene drop --ui-scale $scale
+  size=1280x720 start 3d --scene drop --ui-scale $scale
   xdotool key F1
   sleep 0.7
   shot "demo3d_help_$scale"
@@ -258,19 +259,19 @@ printf '[framework]\n[[soft_body]]\ncell_size = 0.25\nshape = { kind = "sphere" 
 drop() { "$drop_file" "$window" "$@" || fail "the window does not take $3"; }
 start 3d --scene drop --json "$folder/drop.json"
 shot demo3d_before_drop
-drop 640 300 "$folder/tetrahedron.obj"
+drop 320 150 "$folder/tetrahedron.obj"
 sleep 1.5
 shot demo3d_dropped
-drop 640 300 "$folder/rubbish.ply"
+drop 320 150 "$folder/rubbish.ply"
 sleep 0.7
 shot demo3d_dropped_rubbish
 finish
 grep -q '"bodies": 2' drop.json || fail "the dropped model is no second body: $(grep bodies drop.json)"
 start 3d --scene drop --json "$folder/drop.json"
 shot demo3d_before_drop
-drop 640 300 "$folder/mine.toml"
+drop 320 150 "$folder/mine.toml"
 sleep 1.5
-xdotool mousemove --window "$window" 640 400 mousedown 1
+xdotool mousemove --window "$window" 320 200 mousedown 1
 sleep 0.3
 xdotool mouseup 1 key Delete
 sleep 1
@@ -285,7 +286,7 @@ shot demo3d_before_drop
 sleep 1
 xdotool key p
 sleep 0.3
-for _ in 1 2; do drop 640 440 "$folder/tetrahedron.obj"; sleep 1; done
+for _ in 1 2; do drop 320 220 "$folder/tetrahedron.obj"; sleep 1; done
 shot demo3d_dropped_twice
 rm -f drop_*.toml drop_*.state
 xdotool key F5
@@ -299,7 +300,7 @@ sed -n 's/^position = \[\(.*\)\]/\1/p' drop_1.toml | tail -2 | tr -d , | awk '{ 
 convert -size 120x100 xc:none -fill red -draw 'circle 60,50 60,90' cat.png
 start 2d --json "$folder/drop.json"
 shot demo2d_before_drop
-drop 300 200 "$folder/cat.png"
+drop 150 100 "$folder/cat.png"
 sleep 1
 shot demo2d_dropped
 finish
@@ -308,7 +309,7 @@ grep -q '"bodies": 2' drop.json || fail "the dropped picture is no second body: 
 # A recording belongs to one scene.
 start 2d --record "$folder/one.rec" --json "$folder/drop.json"
 shot demo2d_before_drop
-drop 300 200 "$folder/cat.png"
+drop 150 100 "$folder/cat.png"
 sleep 0.7
 shot demo2d_drop_refused
 finish
@@ -316,7 +317,7 @@ grep -q '"bodies": 1' drop.json || fail "a drop changes a scene that is recorded
 same_again 2d one
 
 # On to the next scene, in a window of another size.
-start 3d --size 400x300
+size=400x300 start 3d
 xdotool key n
 sleep 1.5
 xdotool windowsize "$window" 500 400

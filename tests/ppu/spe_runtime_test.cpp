@@ -50,8 +50,9 @@ TEST(SpeRuntime, StepsBodiesAsAnSpeSolverDoesThatWasPutTogetherByHand) {
     }
     std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override { return nullptr; }
     dma::AddressSpace memory;
-    ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match = test::kernel_image("match"),
-                        match_tiles = test::kernel_image("match_tiles");
+    ls_sim::KernelImage job_loop = softcell::test::kernel_image("job_loop"),
+                        match = softcell::test::kernel_image("match"),
+                        match_tiles = softcell::test::kernel_image("match_tiles");
     JobSystem jobs{memory, {.spes = 3}, job_loop};
   } by_hand;
   SpeRuntime runtime({.spes = 2});

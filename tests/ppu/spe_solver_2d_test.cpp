@@ -24,11 +24,11 @@ namespace {
 
 using Eigen::Vector2f;
 
-SoftBodySettings rubber() {
+SoftBodySettings rubber_sheet() {
   return {.cell_size = 0.1f, .half_width = 2, .density = 5, .alpha = 0.5f, .damping = 0.1f};
 }
 
-std::shared_ptr<const SoftBodyModel<2>> man() { return make_soft_body_model(test::man132(), rubber()); }
+std::shared_ptr<const SoftBodyModel<2>> man() { return make_soft_body_model(test::man132(), rubber_sheet()); }
 
 /// Bent, and moving in a way that no rigid body does.
 void bend(SoftBody<2>& body) {
@@ -65,7 +65,7 @@ struct Pile {
     box2d.CreateBody(&fixed)->CreateFixture(&floor, 0);
     const auto model = man();
     soft.add(model, {0, 0.1f});
-    soft.add(rectangle_model({5, 4}, rubber()), {0.6f, 2.2f});
+    soft.add(rectangle_model({5, 4}, rubber_sheet()), {0.6f, 2.2f});
     soft.add(model, {0.3f, 3});
   }
   void run(int steps) {
@@ -122,7 +122,7 @@ TEST(SpeSolver2d, BodiesComeAndGo) {
   soft.step(0.01f);  // nobody
   SoftBody<2>& first = soft.add(man(), {0, 0});
   soft.step(0.01f);
-  SoftBody<2>& second = soft.add(rectangle_model({3, 3}, rubber()), {5, 0});
+  SoftBody<2>& second = soft.add(rectangle_model({3, 3}, rubber_sheet()), {5, 0});
   for (int i = 0; i < 50; ++i) soft.step(0.01f);
   EXPECT_NEAR(first.velocities()[0].y(), -9.81f * 0.51f, 1e-3f);
   EXPECT_NEAR(second.velocities()[0].y(), -9.81f * 0.50f, 1e-3f);
@@ -143,7 +143,7 @@ TEST(SpeSolver2d, ABodyThatIsNoNumberStopsTheStep) {
 
 TEST(SpeSolver2d, ABodyTooLargeForAnSpeIsSteppedByThePpu) {
   Spes spes;
-  const auto large = rectangle_model({45, 45}, rubber()), small = man();
+  const auto large = rectangle_model({45, 45}, rubber_sheet()), small = man();
   ASSERT_THROW(MatchPlan2d(large->lattice(), *large->plan()), BodyTooLarge);
   SoftBody<2> with_spes(large), on_ppu(large), beside(small), alone(small);
   for (SoftBody<2>* const body : {&with_spes, &on_ppu, &beside, &alone}) bend(*body);
@@ -241,7 +241,7 @@ TEST(SpeSolver2d, SleepingBodiesHaveNoJob) {
   world.CreateBody(&fixed)->CreateFixture(&floor, 0);
   Box2dSoftBodies soft(world, spes.solver);
   soft.let_sleep(SleepSettings{});
-  SoftBodySettings calm = rubber();
+  SoftBodySettings calm = rubber_sheet();
   calm.damping = 0.3f;
   const auto model = rectangle_model({5, 4}, calm);
   SoftBody<2>& low = soft.add(model, {0, 0.1f});
@@ -268,7 +268,7 @@ TEST(SpeSolver2d, ANanThatThePpuFindsLeavesNoJobUnderWay) {
   Spes spes;
   b2World world({0, 0});
   Box2dSoftBodies soft(world, spes.solver);
-  SoftBody<2>& large = soft.add(rectangle_model({45, 45}, rubber()), {0, 0});
+  SoftBody<2>& large = soft.add(rectangle_model({45, 45}, rubber_sheet()), {0, 0});
   SoftBody<2>& small = soft.add(man(), {20, 0});
   large.add_particle_velocity(7, {std::nanf(""), 0});
   EXPECT_THROW(soft.step(0.01f), std::runtime_error);

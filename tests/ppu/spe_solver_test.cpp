@@ -34,8 +34,8 @@ SoftBodySettings rubber() {
 struct SpeWorld {
   /// The kernels are instrumented when there are findings to report to.
   explicit SpeWorld(const ls_sim::SpeOptions& options = {.spes = 2})
-      : match(test::kernel_image("match", options.findings != nullptr)),
-        match_tiles(test::kernel_image("match_tiles", options.findings != nullptr)),
+      : match(softcell::test::kernel_image("match", options.findings != nullptr)),
+        match_tiles(softcell::test::kernel_image("match_tiles", options.findings != nullptr)),
         jobs(memory, options, job_loop),
         solver(memory, jobs, {match, match_tiles}),
         soft(bullet.world(), solver) {}
@@ -51,7 +51,7 @@ struct SpeWorld {
   }
 
   dma::AddressSpace memory;
-  ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), match, match_tiles;
+  ls_sim::KernelImage job_loop = softcell::test::kernel_image("job_loop"), match, match_tiles;
   JobSystem jobs;
   SpeSolver<3> solver;
   BulletWorld bullet;
@@ -111,7 +111,7 @@ std::uint64_t hash_of_a_run(const ls_sim::SpeOptions& options, bool ahead) {
 
 TEST(SpeSolver, TheCheckedKernelFindsNothingAndGivesTheSameBytes) {
   const std::uint64_t expected = hash_of_a_run({.spes = 1}, true);
-  test::expect_no_findings(
+  softcell::test::expect_no_findings(
       [&](const ls_sim::SpeOptions& options) { EXPECT_EQ(hash_of_a_run(options, true), expected); });
 }
 
@@ -274,15 +274,16 @@ TEST(SpeSolver, ALargeBodyGivesTheSameBytesOnAnySpesUnderEverySchedule) {
     for (int spes = 1; spes <= 6; ++spes) {
       std::uint64_t hash = 0;
       ASSERT_NO_THROW(hash = hash_of_a_large_run({.spes = spes, .schedule = dma::parse_schedule(schedule)}))
-          << schedule << ", " << spes << " SPEs" << test::kDependsOnTheSchedule;
-      EXPECT_EQ(hash, expected) << schedule << ", " << spes << " SPEs" << test::kDependsOnTheSchedule;
+          << schedule << ", " << spes << " SPEs" << softcell::test::kDependsOnTheSchedule;
+      EXPECT_EQ(hash, expected) << schedule << ", " << spes << " SPEs"
+                                << softcell::test::kDependsOnTheSchedule;
     }
   }
 }
 
 TEST(SpeSolver, TheCheckedKernelFindsNothingInALargeBodyAndGivesTheSameBytes) {
   const std::uint64_t expected = hash_of_a_large_run({.spes = 1});
-  test::expect_no_findings(
+  softcell::test::expect_no_findings(
       [&](const ls_sim::SpeOptions& options) { EXPECT_EQ(hash_of_a_large_run(options), expected); });
 }
 

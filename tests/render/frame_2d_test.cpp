@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2f;
 using test::pinned_context;
 
-constexpr int kSide = 200;
+constexpr int kSideOf2d = 200;
 const Colour kRed = srgb(0xFF0000);
 
 /// 4 m by 4 m: 50 pixels a metre. Plain white paper without shadows.
@@ -33,7 +33,7 @@ class Frames2d : public testing::TestWithParam<int> {
  protected:
   /// @param x,y  metres
   const std::uint8_t* pixel(float x, float y) {
-    return image_.pixel(static_cast<int>(kSide / 2 + 50 * x), static_cast<int>(kSide / 2 - 50 * y));
+    return image_.pixel(static_cast<int>(kSideOf2d / 2 + 50 * x), static_cast<int>(kSideOf2d / 2 - 50 * y));
   }
   int brightness(float x, float y) { return pixel(x, y)[0] + pixel(x, y)[1] + pixel(x, y)[2]; }
   void draw(const Frame2d& frame) {
@@ -42,7 +42,7 @@ class Frames2d : public testing::TestWithParam<int> {
   }
   std::array<int, 3> rgb(float x, float y) { return {pixel(x, y)[0], pixel(x, y)[1], pixel(x, y)[2]}; }
 
-  Renderer renderer_{pinned_context(), {.width = kSide, .height = kSide, .samples = GetParam()}};
+  Renderer renderer_{pinned_context(), {.width = kSideOf2d, .height = kSideOf2d, .samples = GetParam()}};
   Image image_;
   const std::vector<Vertex2d> square_{
       {.position = {-1, -1}}, {.position = {0, -1}}, {.position = {0, 0}}, {.position = {-1, 0}}};
@@ -73,8 +73,8 @@ TEST_P(Frames2d, DotsAndLinesAreAsLargeAsTheySayWithSmoothEdges) {
   draw(frame);
   double dark = 0;
   int between = 0;
-  for (int y = 0; y < kSide / 2; ++y) {
-    for (int x = 0; x < kSide; ++x) {
+  for (int y = 0; y < kSideOf2d / 2; ++y) {
+    for (int x = 0; x < kSideOf2d; ++x) {
       dark += 1 - image_.pixel(x, y)[0] / 255.0;
       between += image_.pixel(x, y)[0] > 0 && image_.pixel(x, y)[0] < 255 ? 1 : 0;
       EXPECT_EQ(image_.pixel(x, y)[3], 255);
@@ -83,8 +83,8 @@ TEST_P(Frames2d, DotsAndLinesAreAsLargeAsTheySayWithSmoothEdges) {
   EXPECT_NEAR(dark, 3.14159 * 20 * 20, 15) << "pixels of the disc";
   EXPECT_GT(between, 60) << "at its edge";
   dark = 0;
-  for (int y = kSide / 2; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) dark += 1 - image_.pixel(x, y)[0] / 255.0;
+  for (int y = kSideOf2d / 2; y < kSideOf2d; ++y) {
+    for (int x = 0; x < kSideOf2d; ++x) dark += 1 - image_.pixel(x, y)[0] / 255.0;
   }
   EXPECT_NEAR(dark, 150 * 10 + 3.14159 * 5 * 5, 15) << "a line and its round ends";
 }
@@ -156,7 +156,7 @@ TEST_P(Frames2d, OnlyTheChangedPartIsDrawnAnew) {
   frame.shapes = shapes;
   draw(frame);
   shapes[0].colour = srgb(0x0000FF);
-  frame.changes = PixelRect{.left = 0, .top = 0, .right = 75, .bottom = kSide};  // up to x = -0.5
+  frame.changes = PixelRect{.left = 0, .top = 0, .right = 75, .bottom = kSideOf2d};  // up to x = -0.5
   draw(frame);
   EXPECT_EQ(rgb(-0.8f, -0.5f), (std::array{0, 0, 255}));
   EXPECT_EQ(rgb(-0.2f, -0.5f), (std::array{255, 0, 0}));

@@ -9,7 +9,8 @@ softcell_add_test(spu_intrinsics_tests SOURCES
   intrinsics_integer_test.cpp
   intrinsics_logic_test.cpp
   intrinsics_single_test.cpp
-  intrinsics_specific_test.cpp)
+  intrinsics_specific_test.cpp
+  SHORT_CASES)
 target_include_directories(spu_intrinsics_tests PRIVATE ${SOFTCELL_SDK_DIR}/host)
 target_compile_options(spu_intrinsics_tests PRIVATE -mavx2 -mfma -frounding-math)
 set_target_properties(spu_intrinsics_tests PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # they are compiled with other options

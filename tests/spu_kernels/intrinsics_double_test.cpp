@@ -9,52 +9,53 @@ namespace {
 
 class IntrinsicsDouble : public SpuArithmetic {};
 
-using Bits = std::uint64_t;
-constexpr Bits kNan = 0x7FF8000000000000, kSign = 0x8000000000000000;
+using DoubleBits = std::uint64_t;
+constexpr DoubleBits kNan = 0x7FF8000000000000, kSign = 0x8000000000000000;
 
-bool is_nan(Bits b) { return (b & ~kSign) > 0x7FF0000000000000; }
+bool is_nan(DoubleBits b) { return (b & ~kSign) > 0x7FF0000000000000; }
 /// Denormal operands are zeros of their sign.
-double operand(Bits b) { return from_bits<double>((b & 0x7FF0000000000000) == 0 ? b & kSign : b); }
+double operand(DoubleBits b) { return from_bits<double>((b & 0x7FF0000000000000) == 0 ? b & kSign : b); }
 
 /// The host's own arithmetic for the time of one computation; volatile values stay between the switches.
 template <class F>
-Bits nearest(F f, Bits a, Bits b, Bits c = 0) {
+DoubleBits nearest(F f, DoubleBits a, DoubleBits b, DoubleBits c = 0) {
   volatile double x = operand(a), y = operand(b), z = operand(c);
   const unsigned int mode = _mm_getcsr();
   _mm_setcsr(_MM_MASK_MASK);
   volatile double result = f(x, y, z);
   _mm_setcsr(mode);
-  const Bits bits = bits_of(double{result});
+  const DoubleBits bits = bits_of(double{result});
   return is_nan(bits) ? kNan : bits;
 }
-Bits negated(Bits b) { return b == kNan ? b : b ^ kSign; }
+DoubleBits negated(DoubleBits b) { return b == kNan ? b : b ^ kSign; }
 
 /// Random bits, or numbers near each other, or special ones.
-Bits value(Operands& operands) {
+DoubleBits value(Operands& operands) {
   switch (operands.count(0, 7)) {
     case 0: {
-      const Bits special[] = {0,
-                              kSign,
-                              1,
-                              kSign | 1,
-                              0x000FFFFFFFFFFFFF,
-                              0x0010000000000000,
-                              0x7FEFFFFFFFFFFFFF,
-                              0x7FF0000000000000,
-                              0xFFF0000000000000,
-                              kNan,
-                              0xFFF8000000000001,
-                              0x7FF0000000000001,
-                              0x3FF0000000000000};
+      const DoubleBits special[] = {0,
+                                    kSign,
+                                    1,
+                                    kSign | 1,
+                                    0x000FFFFFFFFFFFFF,
+                                    0x0010000000000000,
+                                    0x7FEFFFFFFFFFFFFF,
+                                    0x7FF0000000000000,
+                                    0xFFF0000000000000,
+                                    kNan,
+                                    0xFFF8000000000001,
+                                    0x7FF0000000000001,
+                                    0x3FF0000000000000};
       return special[operands.count(0, 12)];
     }
     case 1:
       return operands.bits();
     case 2:
-      return (operands.bits() & 0x800FFFFFFFFFFFFF) | static_cast<Bits>(operands.count(500, 520))
+      return (operands.bits() & 0x800FFFFFFFFFFFFF) | static_cast<DoubleBits>(operands.count(500, 520))
                                                           << 52;  // products denormal
     default:
-      return (operands.bits() & 0x800FFFFFFFFFFFFF) | static_cast<Bits>(operands.count(995, 1050)) << 52;
+      return (operands.bits() & 0x800FFFFFFFFFFFFF) | static_cast<DoubleBits>(operands.count(995, 1050))
+                                                          << 52;
   }
 }
 
@@ -80,37 +81,49 @@ TEST_F(IntrinsicsDouble, ArithmeticRoundsToNearest) {
   const auto fms = [](double x, double y, double z) { return std::fma(x, y, -z); };
   check(
       "spu_add", [](auto a, auto b, auto) { return spu_add(a, b); },
-      [](Bits a, Bits b, Bits) { return nearest([](double x, double y, double) { return x + y; }, a, b); });
+      [](DoubleBits a, DoubleBits b, DoubleBits) {
+        return nearest([](double x, double y, double) { return x + y; }, a, b);
+      });
   check(
       "spu_sub", [](auto a, auto b, auto) { return spu_sub(a, b); },
-      [](Bits a, Bits b, Bits) { return nearest([](double x, double y, double) { return x - y; }, a, b); });
+      [](DoubleBits a, DoubleBits b, DoubleBits) {
+        return nearest([](double x, double y, double) { return x - y; }, a, b);
+      });
   check(
       "spu_mul", [](auto a, auto b, auto) { return spu_mul(a, b); },
-      [](Bits a, Bits b, Bits) { return nearest([](double x, double y, double) { return x * y; }, a, b); });
-  check("spu_madd", SC_CALL(spu_madd), [&](Bits a, Bits b, Bits c) { return nearest(fma, a, b, c); });
-  check("spu_msub", SC_CALL(spu_msub), [&](Bits a, Bits b, Bits c) { return nearest(fms, a, b, c); });
+      [](DoubleBits a, DoubleBits b, DoubleBits) {
+        return nearest([](double x, double y, double) { return x * y; }, a, b);
+      });
+  check("spu_madd", SC_CALL(spu_madd),
+        [&](DoubleBits a, DoubleBits b, DoubleBits c) { return nearest(fma, a, b, c); });
+  check("spu_msub", SC_CALL(spu_msub),
+        [&](DoubleBits a, DoubleBits b, DoubleBits c) { return nearest(fms, a, b, c); });
   check("spu_nmsub", SC_CALL(spu_nmsub),
-        [&](Bits a, Bits b, Bits c) { return negated(nearest(fms, a, b, c)); });
+        [&](DoubleBits a, DoubleBits b, DoubleBits c) { return negated(nearest(fms, a, b, c)); });
   check("spu_nmadd", SC_CALL(spu_nmadd),
-        [&](Bits a, Bits b, Bits c) { return negated(nearest(fma, a, b, c)); });
+        [&](DoubleBits a, DoubleBits b, DoubleBits c) { return negated(nearest(fma, a, b, c)); });
 }
 
 TEST_F(IntrinsicsDouble, Compares) {
-  const auto mask = [](bool holds) { return holds ? ~Bits{0} : Bits{0}; };
+  const auto mask = [](bool holds) { return holds ? ~DoubleBits{0} : DoubleBits{0}; };
   check(
       "spu_cmpeq", [](auto a, auto b, auto) { return spu_cmpeq(a, b); },
-      [&](Bits a, Bits b, Bits) { return mask(!is_nan(a) && !is_nan(b) && operand(a) == operand(b)); });
+      [&](DoubleBits a, DoubleBits b, DoubleBits) {
+        return mask(!is_nan(a) && !is_nan(b) && operand(a) == operand(b));
+      });
   check(
       "spu_cmpgt", [](auto a, auto b, auto) { return spu_cmpgt(a, b); },
-      [&](Bits a, Bits b, Bits) { return mask(!is_nan(a) && !is_nan(b) && operand(a) > operand(b)); });
+      [&](DoubleBits a, DoubleBits b, DoubleBits) {
+        return mask(!is_nan(a) && !is_nan(b) && operand(a) > operand(b));
+      });
   check(
       "spu_cmpabseq", [](auto a, auto b, auto) { return spu_cmpabseq(a, b); },
-      [&](Bits a, Bits b, Bits) {
+      [&](DoubleBits a, DoubleBits b, DoubleBits) {
         return mask(!is_nan(a) && !is_nan(b) && std::fabs(operand(a)) == std::fabs(operand(b)));
       });
   check(
       "spu_cmpabsgt", [](auto a, auto b, auto) { return spu_cmpabsgt(a, b); },
-      [&](Bits a, Bits b, Bits) {
+      [&](DoubleBits a, DoubleBits b, DoubleBits) {
         return mask(!is_nan(a) && !is_nan(b) && std::fabs(operand(a)) > std::fabs(operand(b)));
       });
   // Equal operands are rare among random ones.
@@ -121,7 +134,7 @@ TEST_F(IntrinsicsDouble, Compares) {
 
 TEST_F(IntrinsicsDouble, SpecialValues) {
   const struct {
-    Bits bits;
+    DoubleBits bits;
     int kind;
   } values[] = {{1, SPU_SV_POS_DENORM},
                 {kSign | 0x000FFFFFFFFFFFFF, SPU_SV_NEG_DENORM},
@@ -137,7 +150,7 @@ TEST_F(IntrinsicsDouble, SpecialValues) {
   for (const auto& v : values) {
     const vec_double2 a(spu_splats(v.bits));
     const auto expect = [&](vec_ullong2 got, int kinds) {
-      EXPECT_EQ(spu_extract(got, 1), (v.kind & kinds) != 0 ? ~Bits{0} : 0)
+      EXPECT_EQ(spu_extract(got, 1), (v.kind & kinds) != 0 ? ~DoubleBits{0} : 0)
           << std::hex << v.bits << " tested for " << kinds;
     };
     expect(spu_testsv(a, SPU_SV_NEG_DENORM), SPU_SV_NEG_DENORM);
@@ -159,7 +172,8 @@ TEST_F(IntrinsicsDouble, ExtendReadsWordsZeroAndTwo) {
     LanesOf<vec_ullong2> expected;
     for (std::size_t i = 0; i < 2; ++i) {
       const std::uint32_t f = bits_of(lanes(a)[2 * i]);
-      const Bits sign = Bits{f & 0x80000000} << 32, exponent = f >> 23 & 0xFF, fraction = f & 0x7FFFFF;
+      const DoubleBits sign = DoubleBits{f & 0x80000000} << 32, exponent = f >> 23 & 0xFF,
+                       fraction = f & 0x7FFFFF;
       expected[i] = exponent == 0    ? sign
                     : exponent < 255 ? sign | (exponent + 896) << 52 | fraction << 29
                     : fraction == 0  ? sign | 0x7FF0000000000000
@@ -178,7 +192,8 @@ TEST_F(IntrinsicsDouble, RoundToSingleIsToNearest) {
       lane = value(operands);
       if (round % 3 == 0) lane = (lane & ~0x1FFFFFFFull) | 0x10000000;  // halfway between two floats
       if (round % 5 == 0)
-        lane = (lane & 0x800FFFFFFFFFFFFF) | static_cast<Bits>(operands.count(870, 900)) << 52;  // denormal
+        lane = (lane & 0x800FFFFFFFFFFFFF) | static_cast<DoubleBits>(operands.count(870, 900))
+                                                 << 52;  // denormal
     }
     LanesOf<vec_uint4> expected{};
     for (std::size_t i = 0; i < 2; ++i) {

@@ -275,7 +275,7 @@ TEST_F(IntrinsicsSpecific, ElementShifts) {
 
 /// The register as one number, moved by bits to the left (negative: to the right); what leaves is lost, or
 /// comes back.
-R moved(const R& a, int shift, bool rotated = false) {
+R moved_whole(const R& a, int shift, bool rotated = false) {
   R r;
   for (int i = 0; i < 128; ++i) {
     const int from = rotated ? (i + shift) & 127 : i + shift;
@@ -289,21 +289,21 @@ R moved(const R& a, int shift, bool rotated = false) {
 
 TEST_F(IntrinsicsSpecific, QuadwordShifts) {
   run({
-    SC_WHOLE2(si_shlqbi, { return moved(a, static_cast<int>(b.w(0) & 7)); }),
-        SC_WHOLE2(si_shlqby, { return moved(a, static_cast<int>(8 * (b.w(0) & 31))); }),
-        SC_WHOLE2(si_shlqbybi, { return moved(a, static_cast<int>(8 * (b.w(0) >> 3 & 31))); }),
-        SC_WHOLE2(si_rotqbi, { return moved(a, static_cast<int>(b.w(0) & 7), true); }),
-        SC_WHOLE2(si_rotqby, { return moved(a, static_cast<int>(8 * (b.w(0) & 15)), true); }),
-        SC_WHOLE2(si_rotqbybi, { return moved(a, static_cast<int>(8 * (b.w(0) >> 3 & 15)), true); }),
-        SC_WHOLE2(si_rotqmbi, { return moved(a, -(minus(b.w(0)) & 7)); }),
-        SC_WHOLE2(si_rotqmby, { return moved(a, -8 * (minus(b.w(0)) & 31)); }),
-        SC_WHOLE2(si_rotqmbybi, { return moved(a, -8 * (minus(b.w(0) >> 3) & 31)); }),
-        SC_WHOLES7(si_shlqbii, return moved(a, i & 7);),
-        SC_WHOLES7(si_shlqbyi, return moved(a, 8 * (i & 31));),
-        SC_WHOLES7(si_rotqbii, return moved(a, i & 7, true);),
-        SC_WHOLES7(si_rotqbyi, return moved(a, 8 * (i & 15), true);),
-        SC_WHOLES7(si_rotqmbii, return moved(a, -(-i & 7));),
-        SC_WHOLES7(si_rotqmbyi, return moved(a, -8 * (-i & 31));),
+    SC_WHOLE2(si_shlqbi, { return moved_whole(a, static_cast<int>(b.w(0) & 7)); }),
+        SC_WHOLE2(si_shlqby, { return moved_whole(a, static_cast<int>(8 * (b.w(0) & 31))); }),
+        SC_WHOLE2(si_shlqbybi, { return moved_whole(a, static_cast<int>(8 * (b.w(0) >> 3 & 31))); }),
+        SC_WHOLE2(si_rotqbi, { return moved_whole(a, static_cast<int>(b.w(0) & 7), true); }),
+        SC_WHOLE2(si_rotqby, { return moved_whole(a, static_cast<int>(8 * (b.w(0) & 15)), true); }),
+        SC_WHOLE2(si_rotqbybi, { return moved_whole(a, static_cast<int>(8 * (b.w(0) >> 3 & 15)), true); }),
+        SC_WHOLE2(si_rotqmbi, { return moved_whole(a, -(minus(b.w(0)) & 7)); }),
+        SC_WHOLE2(si_rotqmby, { return moved_whole(a, -8 * (minus(b.w(0)) & 31)); }),
+        SC_WHOLE2(si_rotqmbybi, { return moved_whole(a, -8 * (minus(b.w(0) >> 3) & 31)); }),
+        SC_WHOLES7(si_shlqbii, return moved_whole(a, i & 7);),
+        SC_WHOLES7(si_shlqbyi, return moved_whole(a, 8 * (i & 31));),
+        SC_WHOLES7(si_rotqbii, return moved_whole(a, i & 7, true);),
+        SC_WHOLES7(si_rotqbyi, return moved_whole(a, 8 * (i & 15), true);),
+        SC_WHOLES7(si_rotqmbii, return moved_whole(a, -(-i & 7));),
+        SC_WHOLES7(si_rotqmbyi, return moved_whole(a, -8 * (-i & 31));),
   });
 }
 

@@ -40,8 +40,8 @@ class WindowInput {
   void set_look(const Look& look) { look_ = look; }
   /// Has a camera that follows a body come nearer to where it should be. @param wanted  metres, of Look::followed
   void follow_body(const Eigen::Vector3f& wanted) {
-    constexpr float kShare = 0.12f;  // in a frame: what shakes the body does not shake the picture
-    look_.followed += kShare * (wanted - look_.followed);
+    constexpr float kPartOfWay = 0.12f;  // in a frame: what shakes the body does not shake the picture
+    look_.followed += kPartOfWay * (wanted - look_.followed);
   }
   bool wants_to_quit() const { return quit_; }
   bool wants_next_scene() const { return next_scene_; }

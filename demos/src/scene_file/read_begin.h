@@ -33,7 +33,7 @@ std::shared_ptr<const Beginning<Dimension>> read_begin(const Value* value, const
   float time_scale = 1, seconds = 0;
   int frames = 0;
   fields.text("state", file, Need::kRequired)
-      .template vector<Dimension>("gravity", gravity, kGravity)
+      .template vector<Dimension>("gravity", gravity, kGravityOfScene)
       .number("time_scale", time_scale, kTimeScale)
       .integer("frames", frames, 0, std::numeric_limits<int>::max());
   if constexpr (Dimension == 3) fields.vector<3>("tilt", tilt, kTilt).number("seconds", seconds, kSeconds);

@@ -39,7 +39,7 @@ inline constexpr double kLeastMass = 1e-6;   // kg; of what moves: floats have i
 inline constexpr double kLeastCellSize = 0.001;  // metres; likewise
 inline constexpr double kMaxTime = 1e5;          // seconds
 inline constexpr double kMaxSpeed = 1000;        // m/s
-inline constexpr Range kGravity{.low = -kMaxGravity, .high = kMaxGravity};
+inline constexpr Range kGravityOfScene{.low = -kMaxGravity, .high = kMaxGravity};
 inline constexpr Range kMass{.low = 0, .high = kMaxMass};
 inline constexpr Range kTime{.low = 0, .high = kMaxTime};
 inline constexpr Range kVelocity{.low = -kMaxSpeed, .high = kMaxSpeed};
@@ -69,7 +69,7 @@ void read_world(FieldReader& fields, SceneOf& scene) {
   const std::span<const Value> pictures = fields.items("pictures", kMaxPictures);
   if (const Value* world = fields.field("world")) {
     FieldReader reader(*world, "world");
-    reader.number("gravity", scene.gravity, kGravity)
+    reader.number("gravity", scene.gravity, kGravityOfScene)
         .number("friction", scene.friction, kAnyFriction)
         .number("restitution", scene.restitution, kShare)
         .integer("substeps", scene.substeps, 1, kMaxSubsteps)
@@ -179,7 +179,7 @@ void read_script(FieldReader& fields, SceneOf& scene) {
     GravityChange& change = scene.script.gravity.emplace_back();
     FieldReader(changes[i], item_name("gravity", i))
         .number("time", change.time, kTime, Need::kRequired)
-        .number("value", change.gravity, kGravity, Need::kRequired)
+        .number("value", change.gravity, kGravityOfScene, Need::kRequired)
         .finish();
   }
   const auto pauses = fields.items("pause", kMaxEvents);

@@ -25,7 +25,7 @@ constexpr Range kDampingTime{.low = 0, .high = 1e6};
 constexpr Range kYield{.low = 0, .high = 1, .low_excluded = true};
 constexpr Range kCreep{.low = 0, .high = 1e6, .low_excluded = true};
 constexpr Range kStretch{.low = 0, .high = 10, .low_excluded = true};
-constexpr Range kTurn{.low = 0, .high = 180, .low_excluded = true};  // degrees
+constexpr Range kBreakingTurn{.low = 0, .high = 180, .low_excluded = true};  // degrees
 constexpr Range kPlasticLimit{.low = 0, .high = 10, .low_excluded = true};
 
 /// At most one of the names may be given. @return whether one is.
@@ -71,7 +71,7 @@ void read_fields(FieldReader& fields, Material& material, Need cell_size) {
     ppu::Fracture fracture;
     std::optional<float> degrees;
     FieldReader of_fracture(*value, "the fracture of " + fields.what());
-    of_fracture.number("stretch", fracture.stretch, kStretch).number("turn", degrees, kTurn).finish();
+    of_fracture.number("stretch", fracture.stretch, kStretch).number("turn", degrees, kBreakingTurn).finish();
     if (degrees) fracture.turn = *degrees * (static_cast<float>(ppu::kPi) / 180);
     s.fracture = fracture;
   }

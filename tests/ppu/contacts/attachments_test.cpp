@@ -23,7 +23,6 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kCell = 0.1f;
-constexpr float kStep = 1.0f / 120;
 
 TriangleMesh block(const Vector3f& size) { return make_box(size, kCell); }
 

@@ -93,7 +93,6 @@ TEST(CandidatePairs, ForgetPairsThatAreNotAskedForAndReuseTheirPlace) {
 
 /// Two bodies slide along each other, one turns: a worker that has known them for a while finds what a fresh one finds, bit for bit.
 TEST(CandidatePairs, ContactsDoNotDependOnWhenTheirCandidatesWereFound) {
-  constexpr float kStep = 1.0f / 120;
   const ContactModel penguin(make_soft_body_model(make_penguin(0.9f), settings_of(0.15f)));
   SpeRuntime spes({.spes = 1});
   SpeContacts used(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));

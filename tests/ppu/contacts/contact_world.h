@@ -18,6 +18,8 @@
 
 namespace softcell::ppu {
 
+inline constexpr float kStep = 1.0f / 120;  ///< a substep in seconds
+
 class ContactWorld {
  public:
   /// @param solvers  who steps the bodies and has their contacts; null: the thread that steps the world

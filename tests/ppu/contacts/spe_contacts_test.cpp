@@ -20,8 +20,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kStep = 1.0f / 120;
-
 /// A body somewhere, turned and bent, that moves.
 struct PlacedBody {
   PlacedBody(const ContactModel& model, const Vector3f& position, const Vector3f& velocity, float bend) {

@@ -20,8 +20,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kStep = 1.0f / 120;
-
 void run(ContactWorld& world, int substeps) {
   for (int i = 0; i < substeps; ++i) world.world.stepSimulation(kStep, 0);
 }

@@ -139,7 +139,7 @@ ordered_json json_of(const ListedInstruction& line, bool with_schedule, const ls
     row["latency"] = line.issue.latency;
     row["dual"] = mark(line.issue.dual);
   }
-  if (timing != nullptr) row["run"] = to_json(counts_at(*timing, line.address));
+  if (timing != nullptr) row["run"] = tool::to_json(counts_at(*timing, line.address));
   return row;
 }
 
