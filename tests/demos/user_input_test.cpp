@@ -287,7 +287,7 @@ UserInput<3> input_3d() {
   };
   return {kViews,
           {.tilt = {},
-           .knife = Knife(eye, 800, 600),
+           .knife = knife_3d(eye, 800, 600),
            .hand = MouseReach(eye, pick, 800, 600),
            .camera = CameraControl(eye({}), 600)}};
 }

@@ -11,6 +11,7 @@
 
 #include "read_attachment.h"
 #include "read_begin.h"
+#include "read_breaking.h"
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"
@@ -126,24 +127,6 @@ std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
   }
 }
 
-/// Where the body is weaker or stronger than its material.
-void read_strengths(FieldReader& fields, SoftBodyPlacement& body) {
-  constexpr std::size_t kMaxSlabs = 64;
-  constexpr Range kStrength{.low = 0, .high = 1000};
-  const auto slabs = fields.items("strength", kMaxSlabs);
-  for (std::size_t i = 0; i < slabs.size(); ++i) {
-    StrengthSlab& slab = body.strengths.emplace_back();
-    FieldReader of_slab(slabs[i], fmt::format("strength {} of {}", i + 1, fields.what()));
-    of_slab.vector<3>("point", slab.point, kCoordinate)
-        .vector<3>("normal", slab.normal, kCoordinate)
-        .number("thickness", slab.thickness, kLength, Need::kRequired)
-        .number("factor", slab.strength, kStrength, Need::kRequired)
-        .finish();
-    if (slab.normal.norm() < 1e-4f)
-      throw SceneError(of_slab.place("normal"), "normal of " + of_slab.what() + " must not be 0");
-  }
-}
-
 /// The material with which pieces of the mesh draw what was inside. A body of one colour stays so elsewhere.
 void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
   ppu::TriangleMesh& mesh = body.mesh;
@@ -173,7 +156,7 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
       .number("own_model_side", own_model_side, kOwnModelSide)
       .number("twist", body.twist, kTwist)
       .flag("contacts", contacts);
-  read_strengths(fields, body);
+  read_strengths<3>(fields, body.strengths);
   check_name(fields, scene);
   const bool replaced = model != nullptr && own_model_side;
   Material material = materials.read(fields, replaced ? Need::kOptional : Need::kRequired);
@@ -232,30 +215,6 @@ void read_attachments(std::span<const Value> items, std::size_t first_box, Scene
       attachment.box = first_box + static_cast<std::size_t>(box) - 1;
     }
     read_attachment(fields, scene, attachment);
-  }
-}
-
-/// Planes and strokes that cut bodies, after the soft bodies.
-void read_cuts(std::span<const Value> items, Scene& scene) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    FieldReader fields(items[i], item_name("cut", i));
-    ScriptedCut& cut = scene.cuts.emplace_back();
-    Vector3f point{0, 0, 0}, normal{1, 0, 0}, edge{0, 0, 0}, way{0, 0, 0};
-    cut.body = read_body(fields, scene);
-    fields.number("time", cut.time, kTime, Need::kRequired)
-        .vector<3>("point", point, kCoordinate, Need::kRequired)
-        .vector<3>("normal", normal, kCoordinate)
-        .vector<3>("edge", edge, kCoordinate)
-        .vector<3>("way", way, kCoordinate)
-        .finish();
-    if (fields.has("edge") != fields.has("way") || fields.has("edge") == fields.has("normal"))
-      throw SceneError(items[i].place, fields.what() + " needs a normal, or an edge and a way");
-    const bool plane = fields.has("normal");
-    if ((plane ? normal.norm() : edge.cross(way).norm()) < 1e-6f)
-      throw SceneError(items[i].place,
-                       plane ? "normal of " + fields.what() + " must not be 0"
-                             : fields.what() + " has no area: its edge and way are along one line");
-    cut.where = plane ? ppu::Cut::plane(point, normal) : ppu::Cut::stroke(point, edge, way);
   }
 }
 
@@ -353,7 +312,7 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   scene.notes = files.notes();
   read_attachments(attachments, first_box, scene);
   read_script<3>(root, scene);
-  read_cuts(cuts, scene);
+  read_cuts<3>(cuts, scene);
   if (camera != nullptr) read_camera(*camera, scene.camera);
   if (camera == nullptr) scene.camera.eye = {1.9f, 2.2f, 4.2f};  // from where frame_bodies() looks
   if (camera == nullptr || model) frame_bodies(scene);
