@@ -116,13 +116,13 @@ std::vector<SoftBody<2>> cut(SoftBody<2>& body, const Cut2d& where) {
   return break_into_pieces(body, faces_across(body, where));
 }
 
-#define SOFTCELL_INSTANTIATE(D)                                                                                 \
-  template std::vector<Eigen::Vector<float, D>> own_rest_of(const SoftBody<D>&);                                \
-  template std::span<const std::uint32_t> strained_faces(const SoftBody<D>&, BreakTest<D>&);                    \
-  template std::vector<PlannedPiece<D>> plan_pieces(const std::shared_ptr<const SoftBodyModel<D>>&,             \
-                                                    std::span<const std::uint32_t>);                            \
-  template void take_part(SoftBody<D>&, const SoftBody<D>&, const std::vector<Eigen::Vector<float, D>>&,        \
-                          std::span<const std::uint32_t>);                                                      \
+#define SOFTCELL_INSTANTIATE(D)                                                                          \
+  template std::vector<Eigen::Vector<float, D>> own_rest_of(const SoftBody<D>&);                         \
+  template std::span<const std::uint32_t> strained_faces(const SoftBody<D>&, BreakTest<D>&);             \
+  template std::vector<PlannedPiece<D>> plan_pieces(const std::shared_ptr<const SoftBodyModel<D>>&,      \
+                                                    std::span<const std::uint32_t>);                     \
+  template void take_part(SoftBody<D>&, const SoftBody<D>&, const std::vector<Eigen::Vector<float, D>>&, \
+                          std::span<const std::uint32_t>);                                               \
   template std::vector<BodyPiece<D>> pieces_of(const SoftBody<D>&, std::span<const std::uint32_t>)
 SOFTCELL_INSTANTIATE(2);
 SOFTCELL_INSTANTIATE(3);

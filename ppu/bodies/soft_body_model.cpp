@@ -101,8 +101,8 @@ SoftBodyModel<kDimension>::SoftBodyModel(Lattice<kDimension> lattice,
   SC_ASSERT(masses_.size() == lattice_.particles.size() && mass > 0,
             "{} masses for {} particles, {} kg in all", masses_.size(), lattice_.particles.size(), mass);
 
-  const std::vector<bool> is_outer =
-      settings.contacts ? colliding_particles(lattice_, at_cut_) : std::vector<bool>(lattice_.particles.size());
+  const std::vector<bool> is_outer = settings.contacts ? colliding_particles(lattice_, at_cut_)
+                                                       : std::vector<bool>(lattice_.particles.size());
   for (std::uint32_t i = 0; i < is_outer.size(); ++i) (is_outer[i] ? outer_ : inner_).push_back(i);
   SC_ASSERT(outer_.size() + inner_.size() == lattice_.particles.size(),
             "{} outer and {} inner particles of {}", outer_.size(), inner_.size(), lattice_.particles.size());
@@ -196,10 +196,9 @@ struct SoftBodyModelMaker {
     const bool same = is_same(*broken, lattice);
     const SoftBodyModel<2>& whole = broken->is_piece() ? *broken->whole() : *broken;
     std::vector<bool> at_cut = particles_at_cuts(lattice, whole.lattice());
-    std::shared_ptr<SoftBodyModel<2>> model(
-        new SoftBodyModel<2>(std::move(lattice), nullptr, broken->settings(),
-                             broken->contact_radius_in_cells_, same ? broken->plan() : nullptr,
-                             std::move(at_cut)));
+    std::shared_ptr<SoftBodyModel<2>> model(new SoftBodyModel<2>(
+        std::move(lattice), nullptr, broken->settings(), broken->contact_radius_in_cells_,
+        same ? broken->plan() : nullptr, std::move(at_cut)));
     follow(broken, std::move(piece), *model);
     return model;
   }

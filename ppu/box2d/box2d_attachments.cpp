@@ -46,8 +46,7 @@ bool Box2dAttachments::lets(const b2Body& a, const b2Body& b) const {
            (other != nullptr ? link.b == other : link.rigid != nullptr && link.rigid == rigid);
   };
   return std::none_of(links_.begin(), links_.end(), [&](const auto& link) {
-    return !link->touch &&
-           (is(*link, soft_a, soft_b, &b) || is(*link, soft_b, soft_a, &a));
+    return !link->touch && (is(*link, soft_a, soft_b, &b) || is(*link, soft_b, soft_a, &a));
   });
 }
 

@@ -14,8 +14,8 @@ namespace softcell::ppu {
 
 using Eigen::Vector2f;
 
-Box2dBody::Box2dBody(b2World& world, SoftBody<2> soft, std::int16_t group)
-    : world_(world), soft_(std::move(soft)), group_(group) {
+Box2dBody::Box2dBody(b2World& world, const SoftBody<2>& soft, std::int16_t group)
+    : world_(world), soft_(soft), group_(group) {
   SC_ASSERT(group < 0, "the particles of a body have group {}, and would touch each other", group);
   add_particles();
 }
@@ -82,8 +82,10 @@ bool Box2dBody::was_pushed() const {
 
 void Box2dBody::begin_step() {
   if (soft_.asleep() && (was_changed() || was_disturbed())) wake();
-  if (was_changed()) place_particles();
-  else take_over_particles();
+  if (was_changed())
+    place_particles();
+  else
+    take_over_particles();
 }
 
 void Box2dBody::take_over_particles() {

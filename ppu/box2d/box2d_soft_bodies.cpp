@@ -99,8 +99,7 @@ struct Box2dSoftBodies::Impl {
   Box2dBody& find_breakable(const SoftBody<2>& body) {
     Box2dBody& coupled = **find(body, "to be cut");
     SC_ASSERT(!world.IsLocked(), "one of {} bodies is cut within a step of Box2D", bodies.size());
-    if (std::optional<Break> one = breaks.take(coupled))
-      put_pieces(coupled, one->pieces.get(), one->faces);
+    if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
     coupled.take_over_particles();
     return coupled;
   }
@@ -122,10 +121,9 @@ struct Box2dSoftBodies::Impl {
   }
 
   /// @throws std::runtime_error  there are too many bodies
-  Box2dBody& add(SoftBody<2> body) {
+  Box2dBody& add(const SoftBody<2>& body) {
     require_groups(1);
-    Box2dBody& added =
-        *bodies.emplace_back(std::make_unique<Box2dBody>(world, std::move(body), free_group()));
+    Box2dBody& added = *bodies.emplace_back(std::make_unique<Box2dBody>(world, body, free_group()));
     know_particles(added);
     solve.add(added.soft());
     return added;
@@ -197,7 +195,7 @@ struct Box2dSoftBodies::Impl {
     for (std::size_t i = 1; i < planned.size(); ++i) {
       SoftBody<2> piece(planned[i].model);
       take_part(piece, body.soft(), rest_of_whole, planned[i].particle_of);
-      pieces.push_back(&add(std::move(piece)));
+      pieces.push_back(&add(piece));
     }
     SoftBody<2> largest(planned.front().model);
     take_part(largest, body.soft(), rest_of_whole, planned.front().particle_of);
@@ -304,7 +302,8 @@ AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& pa
 }
 AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch, const SoftBody<2>& other,
                                      const Patch<2>& other_patch, const AttachmentSettings<2>& settings) {
-  return impl_->attachments.add(impl_->find_attachable(body), patch, impl_->find_attachable(other), other_patch, settings);
+  return impl_->attachments.add(impl_->find_attachable(body), patch, impl_->find_attachable(other),
+                                other_patch, settings);
 }
 void Box2dSoftBodies::detach(AttachmentId id) { impl_->attachments.remove(id); }
 void Box2dSoftBodies::move_attachment(AttachmentId id, const Vector2f& position, float angle, float seconds) {

@@ -125,9 +125,10 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       break_body(body, faces);
       return;
     }
-    breaks.begin(body, faces.size(), substeps,
-                 workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
-                                 whole = contact_of_whole(body)] { return make_pieces(model, own, whole); }));
+    breaks.begin(
+        body, faces.size(), substeps,
+        workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
+                         whole = contact_of_whole(body)] { return make_pieces(model, own, whole); }));
   }
 
   /// Of any thread.
@@ -213,8 +214,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!coupled.can_break())
       throw std::invalid_argument(
           "the soft body to be cut touches with spheres; only bodies that touch with their surfaces break");
-    if (std::optional<Break> one = breaks.take(coupled))
-      put_pieces(coupled, one->pieces.get(), one->faces);
+    if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
     return coupled;
   }
 

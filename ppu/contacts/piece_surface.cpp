@@ -115,7 +115,8 @@ struct NodeOutside {
 /// Changes distances of a piece that are still those of the whole.
 class FieldCutter {
  public:
-  FieldCutter(const Lattice<3>& piece, const Cracks<3>& cracks, std::vector<ContactSurface::CellField>& fields)
+  FieldCutter(const Lattice<3>& piece, const Cracks<3>& cracks,
+              std::vector<ContactSurface::CellField>& fields)
       : piece_(piece),
         cracks_(cracks),
         fields_(fields),

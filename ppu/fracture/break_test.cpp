@@ -35,8 +35,7 @@ Eigen::Vector<double, kDimension> middle_of(const Corners<kDimension>& corners,
 template <int kDimension>
 Eigen::Matrix<double, kDimension, kDimension> edges_of(const Corners<kDimension>& corners,
                                                        Positions<kDimension> positions) {
-  Eigen::Matrix<double, kDimension, kDimension> edges =
-      Eigen::Matrix<double, kDimension, kDimension>::Zero();
+  Eigen::Matrix<double, kDimension, kDimension> edges = Eigen::Matrix<double, kDimension, kDimension>::Zero();
   const double share = 2.0 / static_cast<double>(corners.size());
   for (unsigned k = 0; k < corners.size(); ++k)
     for (unsigned axis = 0; axis < kDimension; ++axis)

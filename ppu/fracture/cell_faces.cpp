@@ -132,7 +132,8 @@ std::vector<LatticePiece<kDimension>> split(const Lattice<kDimension>& lattice,
       piece.particle_of.push_back(particle);
     }
     const auto number_of = [&](std::uint32_t c, std::uint32_t k) {
-      const std::pair<std::uint32_t, std::uint32_t> wanted(lattice.corners[c][k], corners.find(kCorners * c + k));
+      const std::pair<std::uint32_t, std::uint32_t> wanted(lattice.corners[c][k],
+                                                           corners.find(kCorners * c + k));
       const auto found = std::lower_bound(particles.begin(), particles.end(), wanted);
       SC_ASSERT(found != particles.end() && *found == wanted, "corner {} of cell {} is no particle", k, c);
       return static_cast<std::uint32_t>(found - particles.begin());

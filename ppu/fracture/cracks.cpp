@@ -65,8 +65,8 @@ void take_faces_of_piece(const LatticePiece<kDimension>& part, const BreakableFa
 void draw_piece(const Lattice<3>& lattice, const Cracks<3>& cracks, CrackedPiece<3>& piece) {
   piece.cracks.whole = cracks.whole;
   const Lattice<3>& own = piece.part.lattice;
-  if (cracks.whole && (own.cells.size() != lattice.cells.size() ||
-                       own.particles.size() != lattice.particles.size())) {
+  if (cracks.whole &&
+      (own.cells.size() != lattice.cells.size() || own.particles.size() != lattice.particles.size())) {
     piece.mesh = mesh_of_piece(*cracks.whole, own, piece.cracks.cell_of_whole, piece.cracks.faces);
     piece.cracks.open = std::move(piece.mesh.open);
   } else {

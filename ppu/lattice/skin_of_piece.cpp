@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "ppu/lattice/locate.h"
 #include "softcell/base/assert.h"
@@ -24,7 +25,10 @@ constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 class PieceSkinMaker {
  public:
   PieceSkinMaker(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece)
-      : whole_(whole), lattice_(lattice), piece_(piece), cell_of_low_corner_(lattice.particles.size(), kNowhere) {
+      : whole_(whole),
+        lattice_(lattice),
+        piece_(piece),
+        cell_of_low_corner_(lattice.particles.size(), kNowhere) {
     for (std::uint32_t c = 0; c < lattice.cells.size(); ++c) {
       cell_of_low_corner_[lattice.corners[c][0]] = c;
       cells_.push_back(find_cell<2>(piece, lattice.cells[c]).value_or(kNowhere));
@@ -75,7 +79,8 @@ class PieceSkinMaker {
       begins.emplace(std::array{vertex_of(corner), vertex_of(next(corner))}, corner);
     for (const auto& [side, corner] : begins) {
       const auto other = begins.find({side[1], side[0]});
-      if (side[0] > side[1] || other == begins.end() || !hold(cell_of(corner), cell_of(other->second))) continue;
+      if (side[0] > side[1] || other == begins.end() || !hold(cell_of(corner), cell_of(other->second)))
+        continue;
       unite(corner, next(other->second));
       unite(next(corner), other->second);
     }
@@ -143,8 +148,8 @@ class PieceSkinMaker {
   const Lattice<2>& lattice_;
   const Lattice<2>& piece_;
   std::vector<std::uint32_t> cell_of_low_corner_;  // of each particle of the whole
-  std::vector<std::uint32_t> cells_;               // of each of the whole: its number in the piece, or kNowhere
-  std::vector<std::uint32_t> taken_;               // triangles of the whole
+  std::vector<std::uint32_t> cells_;  // of each of the whole: its number in the piece, or kNowhere
+  std::vector<std::uint32_t> taken_;  // triangles of the whole
   // Of each corner of these, 3 triangle + corner: one that is the same vertex. The first one of a vertex stands for it.
   std::vector<std::uint32_t> corner_;
   Skin2d skin_;

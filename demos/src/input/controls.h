@@ -131,7 +131,9 @@ class Controls {
   const Hands<Dimension>& hands() const { return hands_; }
   void forget_body(std::size_t body) { hands_.forget_body(body); }  ///< as Hands
   template <class Follow>
-  void follow_particles(const Follow& follow) { hands_.follow_particles(follow); }  ///< as Hands
+  void follow_particles(const Follow& follow) {
+    hands_.follow_particles(follow);
+  }  ///< as Hands
   bool paused() const { return paused_; }
 
  private:

@@ -93,8 +93,7 @@ Knife<2> knife_2d(const Camera2d& camera, int width, int height) {
   return {[camera](const Look&, const Knife<2>::Stroke& stroke) {
             InputEvent<2> event;
             event.value = camera.point_at(stroke.from.x, stroke.from.y, stroke.width, stroke.height);
-            event.way =
-                camera.point_at(stroke.to.x, stroke.to.y, stroke.width, stroke.height) - event.value;
+            event.way = camera.point_at(stroke.to.x, stroke.to.y, stroke.width, stroke.height) - event.value;
             return event;
           },
           width, height};

@@ -16,17 +16,19 @@ namespace softcell::demos {
 template <int Dimension>
 struct StrengthSlab {
   using Vector = Eigen::Vector<float, Dimension>;
-  Vector point = Vector::Zero();     ///< metres, as the body's mesh has it; in two dimensions from the middle of its cells
-  Vector normal = Vector::Unit(1);   ///< of any length but 0
-  float thickness = 0;               ///< metres
-  float strength = 1;                ///< by which the limits of its fracture are multiplied, 0 or above
+  Vector point =
+      Vector::Zero();  ///< metres, as the body's mesh has it; in two dimensions from the middle of its cells
+  Vector normal = Vector::Unit(1);  ///< of any length but 0
+  float thickness = 0;              ///< metres
+  float strength = 1;               ///< by which the limits of its fracture are multiplied, 0 or above
 
   bool operator==(const StrengthSlab&) const = default;
 };
 
 /// Of several slabs the weakest counts; 1 where there is none. @param at  metres
 template <int Dimension>
-float strength_at(const std::vector<StrengthSlab<Dimension>>& slabs, const Eigen::Vector<float, Dimension>& at) {
+float strength_at(const std::vector<StrengthSlab<Dimension>>& slabs,
+                  const Eigen::Vector<float, Dimension>& at) {
   float least = 1;
   bool in_one = false;
   for (const StrengthSlab<Dimension>& slab : slabs) {

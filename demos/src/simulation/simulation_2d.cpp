@@ -290,7 +290,8 @@ struct Simulation2d::State {
     for (std::size_t b = bodies.size(); b-- > models.size();) {
       if (sources[b] != body) continue;
       let_go(b);
-      for (std::size_t after = b + 1; after < bodies.size(); ++after) let_go(after);  // they get other numbers
+      for (std::size_t after = b + 1; after < bodies.size(); ++after)
+        let_go(after);  // they get other numbers
       world->soft_bodies.remove(bodies[b]);
       sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(b));
     }

@@ -1,5 +1,8 @@
 #include "soft_grip_2d.h"
 
+#include <memory>
+#include <span>
+
 #include "followed_particle.h"
 
 namespace softcell::demos {

@@ -91,15 +91,14 @@ std::unique_ptr<SceneView2d::SoftBody> SceneView2d::make_soft_body(
       edges.insert({std::min(from, to), std::max(from, to)});
   }
   const ppu::SoftBodyModel<2>& of = *model;
-  return std::make_unique<SoftBody>(
-      SoftBody{.model = std::move(model),
-               .colour = body.colour,
-               .shape = SoftShape2d(body, of, renderer_, stickers_, wholes_),
-               .particles = {},
-               .outer = {},
-               .at_cut = {},
-               .inner = {},
-               .edges = std::vector<Link>(edges.begin(), edges.end())});
+  return std::make_unique<SoftBody>(SoftBody{.model = std::move(model),
+                                             .colour = body.colour,
+                                             .shape = SoftShape2d(body, of, renderer_, stickers_, wholes_),
+                                             .particles = {},
+                                             .outer = {},
+                                             .at_cut = {},
+                                             .inner = {},
+                                             .edges = std::vector<Link>(edges.begin(), edges.end())});
 }
 
 float SceneView2d::line_width() const {

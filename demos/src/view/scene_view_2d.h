@@ -39,9 +39,10 @@ class SceneView2d {
     std::shared_ptr<const ppu::SoftBodyModel<2>> model;
     render::Colour colour;
     SoftShape2d shape;
-    std::vector<Eigen::Vector2f> particles;             // all, in order
-    std::vector<Eigen::Vector2f> outer, at_cut, inner;  // those at a cut are outer ones, too, with a smaller circle
-    std::vector<Link> edges;                            // of all cells
+    std::vector<Eigen::Vector2f> particles;  // all, in order
+    std::vector<Eigen::Vector2f> outer, at_cut,
+        inner;                // those at a cut are outer ones, too, with a smaller circle
+    std::vector<Link> edges;  // of all cells
   };
   struct RigidBody {
     RigidShape2d shape;  // about the body's position

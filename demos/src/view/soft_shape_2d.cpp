@@ -44,9 +44,8 @@ SoftShape2d::SoftShape2d(const SoftBody2dPlacement& body, const ppu::SoftBodyMod
   if (body.picture) {
     add_picture(renderer, stickers, wholes);
   } else {
-    skin_ = own_skin(wholes, [&](const ppu::Lattice<2>& lattice) {
-      return ppu::make_skin_2d(lattice, margin_of(body));
-    });
+    skin_ = own_skin(
+        wholes, [&](const ppu::Lattice<2>& lattice) { return ppu::make_skin_2d(lattice, margin_of(body)); });
     vertices_.resize(skin_.vertices.size());
     add_parts(renderer);
   }
@@ -80,7 +79,8 @@ bool SoftShape2d::has_face() const {
     const Vector2f in = body_.face->centre - cell.cast<float>();
     return in.minCoeff() >= 0 && in.maxCoeff() <= 1;
   });
-  return middle != cells.end() && std::ranges::find(model_.lattice().cells, *middle) != model_.lattice().cells.end();
+  return middle != cells.end() &&
+         std::ranges::find(model_.lattice().cells, *middle) != model_.lattice().cells.end();
 }
 
 /// One shape for each colour, in the order in which the scene has them.
@@ -135,9 +135,8 @@ void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers, Wh
     return sheet.has_something((at.cast<float>() - low) * cell,
                                (at.cast<float>() + Vector2f::Ones() - low) * cell);
   };
-  skin_ = own_skin(wholes, [&](const ppu::Lattice<2>& lattice) {
-    return ppu::make_cover_2d(lattice, has_something);
-  });
+  skin_ = own_skin(
+      wholes, [&](const ppu::Lattice<2>& lattice) { return ppu::make_cover_2d(lattice, has_something); });
   vertices_.resize(skin_.vertices.size());
   for (std::size_t i = 0; i < skin_.vertices.size(); ++i)
     vertices_[i].texture = (skin_.rest[i] - low).cwiseQuotient(size);

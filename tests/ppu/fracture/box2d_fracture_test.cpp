@@ -80,10 +80,9 @@ TEST(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
   std::vector<Eigen::Vector2i> cells;
   for (int x = 0; x < 12; ++x)
     for (int y = 0; y < 2; ++y) cells.push_back({x, y});
-  const auto model =
-      make_soft_body_model(lattice_from_cells(cells, kCell, {-0.6f, 0}), settings, 0.5f, [](const Vector2f& at) {
-        return std::abs(at.x() - 0.15f) < 0.06f ? kWeak : 1.0f;
-      });
+  const auto model = make_soft_body_model(
+      lattice_from_cells(cells, kCell, {-0.6f, 0}), settings, 0.5f,
+      [](const Vector2f& at) { return std::abs(at.x() - 0.15f) < 0.06f ? kWeak : 1.0f; });
   SoftBody<2>& bar = w.soft.add(model, {0, 0});
   std::vector<std::uint32_t> left, right;
   for (std::uint32_t i = 0; i < model->particles(); ++i) {
@@ -93,16 +92,17 @@ TEST(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
   const AttachmentId wall = w.soft.attach(bar, Patch<2>::of_particles(left));
   const AttachmentId hand = w.soft.attach(bar, Patch<2>::of_particles(right));
   w.soft.move_attachment(hand, {0.55f + 0.3f, 0.1f}, 0, 15);
-  const auto elongation = [&](int x) {  // the mean of the links between the cells whose low corners are at x and x + 1
-    double sum = 0;
-    int count = 0;
-    for (std::size_t i = 0; i < bar.model().lattice().particles.size(); ++i) {
-      const int at = bar.model().lattice().particles[i].x();
-      sum += (at == x ? -0.5 : at == x + 2 ? 0.5 : 0) * double{bar.position(i).x()};
-      count += at == x ? 1 : 0;
-    }
-    return sum / count / double{kCell} - 1;
-  };
+  const auto elongation =
+      [&](int x) {  // the mean of the links between the cells whose low corners are at x and x + 1
+        double sum = 0;
+        int count = 0;
+        for (std::size_t i = 0; i < bar.model().lattice().particles.size(); ++i) {
+          const int at = bar.model().lattice().particles[i].x();
+          sum += (at == x ? -0.5 : at == x + 2 ? 0.5 : 0) * double{bar.position(i).x()};
+          count += at == x ? 1 : 0;
+        }
+        return sum / count / double{kCell} - 1;
+      };
   double before = 0;
   for (int i = 0; i < 15 * 120 && w.soft.size() == 1; ++i) {
     before = elongation(7);
@@ -125,7 +125,8 @@ TEST(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
     const SoftBody<2>& piece = w.soft[p];
     ASSERT_EQ(broken[0].particles_before[p].size(), piece.positions().size());
     for (std::size_t i = 0; i < piece.positions().size(); ++i)
-      EXPECT_EQ(piece.model().lattice().particles[i], model->lattice().particles[broken[0].particles_before[p][i]]);
+      EXPECT_EQ(piece.model().lattice().particles[i],
+                model->lattice().particles[broken[0].particles_before[p][i]]);
   }
   EXPECT_GE(broken[0].faces, 2u);
   EXPECT_TRUE(w.soft.take_broken().empty());
@@ -172,7 +173,8 @@ TEST(Box2dFracture, ADiscThatFallsBreaksAndItsPiecesLieOnTheFloor) {
     const auto particle = w.soft.particle_of(*body);
     if (particle.body == nullptr) continue;
     ++particles;
-    EXPECT_EQ(Vector2f(body->GetPosition().x, body->GetPosition().y), particle.body->position(particle.number));
+    EXPECT_EQ(Vector2f(body->GetPosition().x, body->GetPosition().y),
+              particle.body->position(particle.number));
     EXPECT_NEAR(body->GetMass(), particle.body->model().masses()[particle.number], 1e-6f);
     const auto& circle = static_cast<const b2CircleShape&>(*body->GetFixtureList()->GetShape());
     EXPECT_EQ(circle.m_radius, particle.body->model().contact_radius(particle.number));
@@ -209,7 +211,8 @@ TEST(Box2dFracture, PiecesAreNotPushedApartAndCarryEachOther) {
 /// What flies apart and meets again touches.
 TEST(Box2dFracture, PiecesThatHaveBeenApartTouch) {
   World2d w(0);
-  SoftBodySettings settings{.cell_size = 0.1f, .half_width = 2, .density = 100, .alpha = 0.9f, .damping = 0.2f};
+  SoftBodySettings settings{
+      .cell_size = 0.1f, .half_width = 2, .density = 100, .alpha = 0.9f, .damping = 0.2f};
   SoftBody<2>& block = w.soft.add(rectangle_model({8, 4}, settings), {0, 0});
   const auto pieces = w.soft.cut(block, Cut2d::line({0.001f, 0}, {1, 0}));
   ASSERT_EQ(pieces.size(), 1u);
@@ -521,7 +524,8 @@ TEST(Box2dFracture, ABodyBrokenToSingleCellsIsStillASetOfBodies) {
     for (const bool upright : {true, false}) {
       const float at = 0.1f * static_cast<float>(i) + 0.001f;
       for (std::size_t b = 0, count = w.soft.size(); b < count; ++b)
-        w.soft.cut(w.soft[b], upright ? Cut2d::line({at - 0.4f, 0}, {1, 0}) : Cut2d::line({0, at + 0.2f}, {0, 1}));
+        w.soft.cut(w.soft[b],
+                   upright ? Cut2d::line({at - 0.4f, 0}, {1, 0}) : Cut2d::line({0, at + 0.2f}, {0, 1}));
     }
   EXPECT_EQ(w.soft.size(), 64u);
   w.run(3);

@@ -65,7 +65,8 @@ std::vector<std::uint32_t> all_faces_2d(const SoftBodyModel<2>& model) {
 double area_of(const Skin2d& skin) {
   double area = 0;
   for (const auto& [a, b, c] : skin.triangles)
-    area += cross((skin.rest[b] - skin.rest[a]).cast<double>(), (skin.rest[c] - skin.rest[a]).cast<double>()) / 2;
+    area +=
+        cross((skin.rest[b] - skin.rest[a]).cast<double>(), (skin.rest[c] - skin.rest[a]).cast<double>()) / 2;
   return area;
 }
 

@@ -52,7 +52,7 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
       : SceneDemo(scene, log, skinned_by(options.skin, how), options.view,
                   {.tilt = {},
                    .knife = demos::knife_3d([this](const demos::Look& look) { return eye(look); },
-                                         options.size.width, options.size.height),
+                                            options.size.width, options.size.height),
                    .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
                                              [this](const demos::Ray& ray) { return take(ray); },
                                              options.size.width, options.size.height),

@@ -54,14 +54,12 @@ class SoftBodyModel {
   /// touch each other: nothing gets between the particles of a body, and things meet it half a cell before
   /// they meet what is drawn. Smaller ones let small things in.
   float contact_radius() const { return contact_radius_in_cells_ * lattice_.spacing; }
-  /// The same of one particle. Those at a cut of a piece have half of it, as no material reaches beyond a cut.
-  float contact_radius(std::size_t particle) const requires(kDimension == 2) {
+  /// The same of one particle. In two dimensions those at a cut of a piece have half of it, as no material reaches beyond a cut.
+  float contact_radius(std::size_t particle) const {
     return is_at_cut(particle) ? contact_radius() / 2 : contact_radius();
   }
-  /// Whether a particle of a piece lies at a cut: fewer cells hold on to it than in the whole.
-  bool is_at_cut(std::size_t particle) const requires(kDimension == 2) {
-    return !at_cut_.empty() && at_cut_[particle];
-  }
+  /// Whether a particle of a piece in two dimensions lies at a cut: fewer cells have it than in the whole.
+  bool is_at_cut(std::size_t particle) const { return !at_cut_.empty() && at_cut_[particle]; }
   static constexpr float kContactRadiusInCells = kDimension == 2 ? 0.5f : 0.15f;
 
   /// The same towards particles of other soft bodies. A particle has to meet a lattice of equal cells
