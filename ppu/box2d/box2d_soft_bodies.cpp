@@ -94,11 +94,16 @@ struct Box2dSoftBodies::Impl {
       throw std::invalid_argument(std::string("the soft body ") + purpose + " is not in this world");
     return found;
   }
-  Box2dBody& find_attachable(const SoftBody<2>& body) { return **find(body, "to be attached"); }
+  Box2dBody& find_attachable(const SoftBody<2>& body) {
+    Box2dBody& coupled = **find(body, "to be attached");
+    if (coupled.is_of_other_model()) take_other_model(coupled);
+    return coupled;
+  }
   /// Not breaking any more, and its particles as Box2D has them. @throws as above
   Box2dBody& find_breakable(const SoftBody<2>& body) {
     Box2dBody& coupled = **find(body, "to be cut");
     SC_ASSERT(!world.IsLocked(), "one of {} bodies is cut within a step of Box2D", bodies.size());
+    if (coupled.is_of_other_model()) take_other_model(coupled);
     if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
     coupled.take_over_particles();
     return coupled;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "own_model.h"
 #include "read_attachment.h"
 #include "read_begin.h"
 #include "read_breaking.h"
@@ -18,6 +19,7 @@
 #include "read_rigid_body.h"
 #include "scene/scene_camera.h"
 #include "softcell/base/assert.h"
+#include "softcell/soft_bodies/tessellate.h"
 
 namespace softcell::demos {
 namespace {
@@ -25,6 +27,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::array<std::string_view, 2> kPatterns{"plain", "tiles"};
+constexpr Range kTessellation{.low = double{kLeastTessellation}, .high = double{kMostTessellation}};
 constexpr Range kTwist{.low = -1000, .high = 1000};  // rad/s
 constexpr Range kOwnModelSide{.low = kLeastCellSize * ppu::kMaxLatticeCellsPerAxis, .high = kFar};
 
@@ -139,12 +142,21 @@ void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
   cut.base_colour = Eigen::Vector4f(colour.x(), colour.y(), colour.z(), 1);
 }
 
+/// Has the mesh bend with the lattice. @param longest_edge  metres
+void tessellate_mesh(float longest_edge, const Place& place, ppu::TriangleMesh& mesh) {
+  try {
+    mesh = ppu::tessellate(mesh, longest_edge);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(place, error.what());
+  }
+}
+
 /// @return whether the model has taken the body's place.
 bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, const Materials& materials,
                     const OwnModel* model, Scene& scene) {
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
   SoftBodyPlacement& body = scene.soft_bodies.emplace_back();
-  std::optional<float> own_model_side, above;
+  std::optional<float> own_model_side, above, tessellation;
   std::optional<Vector3f> cut_colour;
   bool contacts = true;
   body.name = "body " + std::to_string(index + 1);
@@ -155,6 +167,7 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
       .number("above", above, kCoordinate)
       .number("own_model_side", own_model_side, kOwnModelSide)
       .number("twist", body.twist, kTwist)
+      .number("tessellate", tessellation, kTessellation)
       .flag("contacts", contacts);
   read_strengths<3>(fields, body.strengths);
   check_name(fields, scene);
@@ -166,8 +179,10 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   if (replaced) {
     take_place(body, *model, *own_model_side);
     material.settings.cell_size = body.settings.cell_size;
+    tessellation = model->tessellation;
   }
   rotate(body.mesh, rotation);
+  if (tessellation) tessellate_mesh(*tessellation * material.settings.cell_size, value.place, body.mesh);
   if (cut_colour) add_cut_material(*cut_colour, body);
   body.settings = material.settings_for(step_of(scene));
   body.settings.contacts = contacts;

@@ -422,8 +422,12 @@ TEST(Box2dFracture, ACopyBringsAWholeBodyBack) {
   while (w.soft.size() > 1) w.soft.remove(w.soft[w.soft.size() - 1]);
   const AttachmentId held = w.soft.attach(disc, Patch<2>::of_surface(disc.centre_of_mass(), 1));
   disc = saved;
+  // What is attached from now on is the new body, and stays.
+  const AttachmentId again = w.soft.attach(disc, Patch<2>::of_surface(disc.centre_of_mass(), 1));
   w.soft.step(kStep2d);
   EXPECT_FALSE(w.soft.attachment(held));
+  EXPECT_TRUE(w.soft.attachment(again));
+  w.soft.detach(again);
   EXPECT_EQ(disc.model().particles(), saved.model().particles());
   w.run(2);
   EXPECT_GT(w.soft.size(), 1u);
