@@ -12,34 +12,45 @@
 
 namespace softcell::ppu {
 
+template <int kDimension>
 struct BodyPiece {
-  SoftBody<3> body;
+  SoftBody<kDimension> body;
   std::vector<std::uint32_t> particle_of;  ///< of each particle: which one of the whole it was
 };
 
 /// The numbers of faces that are strained beyond the limits of the body's settings. Good until the next call.
-std::span<const std::uint32_t> strained_faces(const SoftBody<3>& body, BreakTest& test);
+template <int kDimension>
+std::span<const std::uint32_t> strained_faces(const SoftBody<kDimension>& body, BreakTest<kDimension>& test);
 /// @throws std::invalid_argument  the cut is not finite, or has no area
 std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut);
+/// @throws std::invalid_argument  the cut is not finite, or has no length
+std::vector<std::uint32_t> faces_across(const SoftBody<2>& body, const Cut2d& cut);
 
 /// A piece of which there is no body yet.
+template <int kDimension>
 struct PlannedPiece {
-  std::shared_ptr<const SoftBodyModel<3>> model;
+  std::shared_ptr<const SoftBodyModel<kDimension>> model;
   std::vector<std::uint32_t> particle_of;  ///< as in BodyPiece
 };
 
 /// What is left of bodies of a model when faces break; the largest piece first. This is what takes long of pieces_of(), and any thread may
 /// do it.
-std::vector<PlannedPiece> plan_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
-                                      std::span<const std::uint32_t> faces);
+template <int kDimension>
+std::vector<PlannedPiece<kDimension>> plan_pieces(
+    const std::shared_ptr<const SoftBodyModel<kDimension>>& model, std::span<const std::uint32_t> faces);
 /// The positions at rest of a body that has yielded, metres; empty: it has the rest shape of its model.
-std::vector<Eigen::Vector3f> own_rest_of(const SoftBody<3>& body);
+template <int kDimension>
+std::vector<Eigen::Vector<float, kDimension>> own_rest_of(const SoftBody<kDimension>& body);
 /// Makes a body that is such a piece what it was of the whole as this is now.
 /// @param whole  of the model that was planned for   @param rest  own_rest_of(whole)   @param particle_of  as in PlannedPiece
-void take_part(SoftBody<3>& piece, const SoftBody<3>& whole, std::span<const Eigen::Vector3f> rest,
+template <int kDimension>
+void take_part(SoftBody<kDimension>& piece, const SoftBody<kDimension>& whole,
+               const std::vector<Eigen::Vector<float, kDimension>>& rest,
                std::span<const std::uint32_t> particle_of);
 
 /// What is left of a body when faces break; the largest piece first. The body stays as it is.
-std::vector<BodyPiece> pieces_of(const SoftBody<3>& body, std::span<const std::uint32_t> faces);
+template <int kDimension>
+std::vector<BodyPiece<kDimension>> pieces_of(const SoftBody<kDimension>& body,
+                                             std::span<const std::uint32_t> faces);
 
 }  // namespace softcell::ppu

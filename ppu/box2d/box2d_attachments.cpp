@@ -1,6 +1,5 @@
 #include "ppu/box2d/box2d_attachments.h"
 
-#include <box2d/b2_contact_manager.h>
 #include <box2d/b2_fixture.h>
 
 #include <algorithm>
@@ -38,33 +37,23 @@ AttachmentFrame<2> frame_of(const b2Body& rigid) {
 
 }  // namespace
 
-Box2dAttachments::~Box2dAttachments() {
-  if (filter_before_ != nullptr && world_.GetContactManager().m_contactFilter == this)
-    world_.SetContactFilter(filter_before_);
-}
-
-/// Asked by Box2D about two that are new to each other.
-bool Box2dAttachments::ShouldCollide(b2Fixture* a, b2Fixture* b) {
-  if (!filter_before_->ShouldCollide(a, b)) return false;
-  const Box2dBody* const soft_a = soft_body_of_(*a->GetBody());
-  const Box2dBody* const soft_b = soft_body_of_(*b->GetBody());
+bool Box2dAttachments::lets(const b2Body& a, const b2Body& b) const {
+  if (links_.empty()) return true;
+  const Box2dBody* const soft_a = soft_body_of_(a);
+  const Box2dBody* const soft_b = soft_body_of_(b);
   const auto is = [](const Link& link, const Box2dBody* soft, const Box2dBody* other, const b2Body* rigid) {
     return soft != nullptr && link.a == soft &&
            (other != nullptr ? link.b == other : link.rigid != nullptr && link.rigid == rigid);
   };
   return std::none_of(links_.begin(), links_.end(), [&](const auto& link) {
-    return !link->touch &&
-           (is(*link, soft_a, soft_b, b->GetBody()) || is(*link, soft_b, soft_a, a->GetBody()));
+    return !link->touch && (is(*link, soft_a, soft_b, &b) || is(*link, soft_b, soft_a, &a));
   });
 }
 
 /// Box2D asks the filter again about all that touches the bodies of a link.
 void Box2dAttachments::refilter(const Link& link) {
   if (link.touch) return;
-  if (filter_before_ == nullptr) {
-    filter_before_ = world_.GetContactManager().m_contactFilter;
-    world_.SetContactFilter(this);
-  }
+  filter_.install();
   for (b2Body* const particle : link.a->particles())
     for (b2Fixture* fixture = particle->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
       fixture->Refilter();
@@ -173,6 +162,23 @@ void Box2dAttachments::forget(const Box2dBody& body) {
   end_gone();
   end_links(EndedAttachment::Reason::kGone,
             [&](const Link& link) { return link.a == &body || link.b == &body; });
+}
+
+void Box2dAttachments::follow_pieces(const Box2dBody& body, std::span<const Piece> pieces) {
+  if (links_.empty()) return;
+  PieceOfPatch piece_of_patch;
+  for (const Piece& piece : pieces) piece_of_patch.add(piece.particle_of);
+  const auto follow = [&](Box2dBody*& side, AttachmentRows<2>& rows, bool of_b) {
+    auto found = piece_of_patch.find(rows.particles(of_b));
+    if (!found) return false;
+    rows.renumber(of_b, std::move(found->numbers));
+    side = pieces[found->piece].body;
+    return true;
+  };
+  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) {
+    return (link.a == &body && !follow(link.a, link.rows, false)) ||
+           (link.b == &body && !follow(link.b, link.rows, true));
+  });
 }
 
 bool Box2dAttachments::holds(const Box2dBody& body) const {

@@ -4,7 +4,6 @@
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_world.h>
-#include <box2d/b2_world_callbacks.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "ppu/box2d/box2d_body.h"
+#include "ppu/box2d/box2d_filter.h"
 #include "ppu/contacts/attachment_links.h"
 #include "ppu/contacts/attachments.h"
 #include "softcell/soft_bodies/attachment.h"
@@ -22,12 +22,12 @@
 namespace softcell::ppu {
 
 /// Used by the thread that steps the world.
-class Box2dAttachments final : private b2ContactFilter {
+class Box2dAttachments {
  public:
   /// @param soft_body_of  the soft body that a b2Body is a particle of; null: none
-  Box2dAttachments(b2World& world, std::function<Box2dBody*(const b2Body&)> soft_body_of)
-      : world_(world), soft_body_of_(std::move(soft_body_of)) {}
-  ~Box2dAttachments() override;
+  /// @param filter        asks lets(); outlives this
+  Box2dAttachments(b2World& world, std::function<Box2dBody*(const b2Body&)> soft_body_of, Box2dFilter& filter)
+      : world_(world), soft_body_of_(std::move(soft_body_of)), filter_(filter) {}
   Box2dAttachments(const Box2dAttachments&) = delete;
   Box2dAttachments& operator=(const Box2dAttachments&) = delete;
 
@@ -43,6 +43,16 @@ class Box2dAttachments final : private b2ContactFilter {
   std::optional<AttachmentState<2>> state(AttachmentId id) const;
   std::optional<AttachmentEnds<2>> ends(AttachmentId id) const;
   std::vector<EndedAttachment> take_ended();
+  /// Whether no attachment keeps two from touching.
+  bool lets(const b2Body& a, const b2Body& b) const;
+  /// A piece of a broken body, and which particle of the whole each of its particles was.
+  struct Piece {
+    Box2dBody* body;
+    std::span<const std::uint32_t> particle_of;
+  };
+  /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
+  /// each of them once; where none has, the patch was torn, and they break.
+  void follow_pieces(const Box2dBody& body, std::span<const Piece> pieces);
   /// A soft body goes, and its attachments with it.
   void forget(const Box2dBody& body);
   bool holds(const Box2dBody& body) const;
@@ -77,7 +87,6 @@ class Box2dAttachments final : private b2ContactFilter {
     std::vector<float> inverse_masses;
   };
 
-  bool ShouldCollide(b2Fixture* a, b2Fixture* b) override;
   AttachmentId add(Link link);
   bool is_there(const b2Body& rigid) const;
   void end_gone();
@@ -91,7 +100,7 @@ class Box2dAttachments final : private b2ContactFilter {
 
   b2World& world_;
   std::function<Box2dBody*(const b2Body&)> soft_body_of_;
-  b2ContactFilter* filter_before_ = nullptr;  // the world's, once this one is in its place
+  Box2dFilter& filter_;
   AttachmentLinks<Link> links_;
   std::vector<EndedAttachment> ended_;
   // Of a step:

@@ -14,28 +14,41 @@ namespace softcell::ppu {
 
 using Eigen::Vector2f;
 
-Box2dBody::Box2dBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position,
-                     std::int16_t group)
-    : world_(world), soft_(std::move(model), position), group_(group) {
+Box2dBody::Box2dBody(b2World& world, const SoftBody<2>& soft, std::int16_t group)
+    : world_(world), soft_(soft), group_(group) {
   SC_ASSERT(group < 0, "the particles of a body have group {}, and would touch each other", group);
-  of_number_.resize(soft_.model().particles());
-  for (const std::uint32_t particle : soft_.model().outer()) add_particle(particle);
+  add_particles();
 }
 
 Box2dBody::~Box2dBody() {
   for (b2Body* particle : particles_) world_.DestroyBody(particle);
 }
 
+void Box2dBody::add_particles() {
+  model_ = soft_.shared_model();
+  of_number_.assign(model_->particles(), nullptr);
+  for (const std::uint32_t particle : model_->outer()) add_particle(particle);
+}
+
+void Box2dBody::follow_model() {
+  if (!is_of_other_model()) return;
+  SC_ASSERT(!world_.IsLocked(), "{} particles are exchanged within a step of Box2D", particles_.size());
+  for (b2Body* const particle : particles_) world_.DestroyBody(particle);
+  particles_.clear();
+  add_particles();
+}
+
 void Box2dBody::add_particle(std::uint32_t number) {
   b2BodyDef definition;
   definition.type = b2_dynamicBody;
   definition.position = to_box2d(soft_.position(number));
+  definition.linearVelocity = to_box2d(soft_.velocities()[number]);
   definition.fixedRotation = true;
   // A particle alone never sleeps: its neighbours would be pulled towards one that hangs still.
   definition.allowSleep = false;
   b2Body* const particle = world_.CreateBody(&definition);
   b2CircleShape circle;
-  circle.m_radius = soft_.model().contact_radius();
+  circle.m_radius = soft_.model().contact_radius(number);
   b2FixtureDef fixture;
   fixture.shape = &circle;
   fixture.density = 1;
@@ -69,11 +82,14 @@ bool Box2dBody::was_pushed() const {
 
 void Box2dBody::begin_step() {
   if (soft_.asleep() && (was_changed() || was_disturbed())) wake();
-  if (was_changed()) {
+  if (was_changed())
     place_particles();
-  } else if (!soft_.asleep()) {
-    gather();
-  }
+  else
+    take_over_particles();
+}
+
+void Box2dBody::take_over_particles() {
+  if (!was_changed() && !soft_.asleep()) gather();
 }
 
 void Box2dBody::move_particle(std::size_t particle, const Vector2f& way) {

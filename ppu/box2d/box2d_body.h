@@ -18,8 +18,7 @@ namespace softcell::ppu {
 class Box2dBody {
  public:
   /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
-  Box2dBody(b2World& world, std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position,
-            std::int16_t group);
+  Box2dBody(b2World& world, const SoftBody<2>& soft, std::int16_t group);
   ~Box2dBody();
   Box2dBody(const Box2dBody&) = delete;
   Box2dBody& operator=(const Box2dBody&) = delete;
@@ -28,6 +27,12 @@ class Box2dBody {
   const SoftBody<2>& soft() const { return soft_; }
   std::int16_t group() const { return group_; }
   std::span<b2Body* const> particles() const { return particles_; }
+  b2Body* particle(std::uint32_t number) const { return of_number_[number]; }  ///< null: an inner one
+
+  /// Whether it has become a body of another model, by a break or an assignment: the particles are not its own.
+  bool is_of_other_model() const { return model_ != soft_.shared_model(); }
+  /// Gives it those of its model, where it is. @pre no step of Box2D is under way
+  void follow_model();
 
   /// Whether the body's user has changed it since the last step.
   bool was_changed() const { return soft_.revision() != seen_revision_; }
@@ -38,6 +43,8 @@ class Box2dBody {
 
   /// Before the solver: what the body's user may have done to it, or to its particles in Box2D.
   void begin_step();
+  /// Between steps: particles that their user has moved or pushed in Box2D, as begin_step() takes them.
+  void take_over_particles();
   /// Moves a particle without a velocity. @param particle  its number in the body  @param way  metres
   void move_particle(std::size_t particle, const Eigen::Vector2f& way);
   /// Behind the solver: Box2D integrates with the new velocities.
@@ -53,6 +60,7 @@ class Box2dBody {
   void wake();
 
  private:
+  void add_particles();
   void add_particle(std::uint32_t number);
   void gather();
   void place_particles();
@@ -60,6 +68,7 @@ class Box2dBody {
 
   b2World& world_;
   SoftBody<2> soft_;
+  std::shared_ptr<const SoftBodyModel<2>> model_;  // of `particles_`
   std::int16_t group_;
   std::vector<b2Body*> particles_;
   std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner one

@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "ppu/bodies/break_body.h"
+#include "ppu/bodies/breaks.h"
+#include "ppu/bodies/piece_workshop.h"
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/box2d/box2d_attachments.h"
 #include "ppu/box2d/box2d_body.h"
+#include "ppu/box2d/box2d_filter.h"
+#include "ppu/box2d/parting_pieces.h"
 #include "ppu/box2d/rest.h"
 #include "softcell/base/assert.h"
 
@@ -24,8 +31,16 @@ struct Box2dSoftBodies::Impl {
   Impl(b2World& w, Solver&& solver)
       : world(w),
         rest(w, [this](const b2Body& body) { return soft_body_of(body); }),
-        attachments(w, [this](const b2Body& body) { return soft_body_of(body); }),
-        solve(std::forward<Solver>(solver)) {}
+        filter(w,
+               [this](const b2Fixture& a, const b2Fixture& b) {
+                 return attachments.lets(*a.GetBody(), *b.GetBody()) &&
+                        parting.lets(*a.GetBody(), *b.GetBody());
+               }),
+        attachments(
+            w, [this](const b2Body& body) { return soft_body_of(body); }, filter),
+        solve(std::forward<Solver>(solver)),
+        workshop(std::in_place) {}
+  ~Impl() { workshop.reset(); }  // it works with all of this
 
   template <typename Work>
   void timed(const Work& work) {
@@ -43,6 +58,7 @@ struct Box2dSoftBodies::Impl {
       solve.drop();
       for (const auto& body : bodies) {
         if (body->was_reset()) solve.forget(body->soft());
+        if (body->is_of_other_model()) take_other_model(*body);
         body->begin_step();
       }
     }
@@ -55,6 +71,8 @@ struct Box2dSoftBodies::Impl {
     SC_ASSERT(step > 0 && !world.IsLocked(), "the end of a step of {} s within a step of Box2D, or of none",
               step);
     for (const auto& body : bodies) body->end_step(step);
+    parting.update();
+    break_strained();
     if (!sleep) return;
     for (const auto& body : bodies)
       if (!body->soft().asleep() && !attachments.holds(*body)) body->count_stillness(step, sleep->speed);
@@ -69,25 +87,140 @@ struct Box2dSoftBodies::Impl {
   }
 
   /// @throws std::invalid_argument
-  Box2dBody& find(const SoftBody<2>& body) {
+  auto find(const SoftBody<2>& body, const char* purpose) {
     const auto found =
         std::ranges::find_if(bodies, [&](const auto& coupled) { return &coupled->soft() == &body; });
     if (found == bodies.end())
-      throw std::invalid_argument("the soft body to be attached is not in this world");
-    return **found;
+      throw std::invalid_argument(std::string("the soft body ") + purpose + " is not in this world");
+    return found;
+  }
+  Box2dBody& find_attachable(const SoftBody<2>& body) {
+    Box2dBody& coupled = **find(body, "to be attached");
+    if (coupled.is_of_other_model()) take_other_model(coupled);
+    return coupled;
+  }
+  /// Not breaking any more, and its particles as Box2D has them. @throws as above
+  Box2dBody& find_breakable(const SoftBody<2>& body) {
+    Box2dBody& coupled = **find(body, "to be cut");
+    SC_ASSERT(!world.IsLocked(), "one of {} bodies is cut within a step of Box2D", bodies.size());
+    if (coupled.is_of_other_model()) take_other_model(coupled);
+    if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
+    coupled.take_over_particles();
+    return coupled;
   }
 
-  /// The negative group nearest to 0 that no body has. @throws std::runtime_error  32,768 bodies are too
-  /// many.
+  static constexpr std::size_t kMostBodies = 32768;  // one for each negative group
+  /// @throws std::runtime_error  there would be too many bodies
+  void require_groups(std::size_t more) const {
+    if (bodies.size() + more > kMostBodies)
+      throw std::runtime_error(
+          "a Box2D world has at most 32768 soft bodies: there are no more collision groups");
+  }
+  /// The negative group nearest to 0 that no body has.
   std::int16_t free_group() const {
-    for (int group = -1; group >= std::numeric_limits<std::int16_t>::min(); --group) {
-      if (std::none_of(bodies.begin(), bodies.end(),
-                       [&](const auto& body) { return body->group() == group; })) {
-        return static_cast<std::int16_t>(group);
-      }
+    std::vector<bool> used(kMostBodies + 1);
+    for (const auto& body : bodies) used[static_cast<std::size_t>(-body->group())] = true;
+    const auto free = std::find(used.begin() + 1, used.end(), false);
+    SC_ASSERT(free != used.end(), "{} bodies have all groups", bodies.size());
+    return static_cast<std::int16_t>(-(free - used.begin()));
+  }
+
+  /// @throws std::runtime_error  there are too many bodies
+  Box2dBody& add(const SoftBody<2>& body) {
+    require_groups(1);
+    Box2dBody& added = *bodies.emplace_back(std::make_unique<Box2dBody>(world, body, free_group()));
+    know_particles(added);
+    solve.add(added.soft());
+    return added;
+  }
+  void know_particles(Box2dBody& body) {
+    const auto outer = body.soft().model().outer();
+    for (std::size_t i = 0; i < outer.size(); ++i) particles[body.particles()[i]] = {&body, outer[i]};
+  }
+  void forget_particles(const Box2dBody& body) {
+    for (const b2Body* const particle : body.particles()) particles.erase(particle);
+  }
+  /// Gives a body the particles of its model. @return what those before did not touch
+  std::vector<PartingPieces::Kept> follow_model(Box2dBody& body) {
+    std::vector<PartingPieces::Kept> kept = parting.take(body);
+    forget_particles(body);
+    body.follow_model();
+    know_particles(body);
+    return kept;
+  }
+  /// By an assignment.
+  void take_other_model(Box2dBody& body) {
+    attachments.forget(body);
+    follow_model(body);
+  }
+
+  using Pieces = std::vector<PlannedPiece<2>>;
+  using BreaksOfBodies = Breaks<2, Box2dBody, Pieces>;
+  using Break = BreaksOfBodies::Break;
+
+  /// Pieces are tested from the next step on, bodies that are breaking not any more.
+  void break_strained() {
+    for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {
+      const SoftBody<2>& soft = bodies[i]->soft();
+      if (!soft.settings().fracture || soft.asleep() || breaks.has(*bodies[i])) continue;
+      if (const auto faces = strained_faces(soft, break_test); !faces.empty()) begin_break(*bodies[i], faces);
     }
-    throw std::runtime_error(
-        "a Box2D world has at most 32768 soft bodies: there are no more collision groups");
+    for (Break& one : breaks.take_due()) put_pieces(*one.body, one.pieces.get(), one.faces);
+  }
+
+  void begin_break(Box2dBody& body, std::span<const std::uint32_t> faces) {
+    const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
+    const int steps = substeps_until_pieces(model->particles());
+    if (steps == 0) {
+      put_pieces(body, make_pieces(model, faces), faces.size());
+      return;
+    }
+    breaks.begin(body, faces.size(), steps,
+                 workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end())] {
+                   return make_pieces(model, own);
+                 }));
+  }
+
+  /// Of any thread.
+  Pieces make_pieces(const std::shared_ptr<const SoftBodyModel<2>>& model,
+                     std::span<const std::uint32_t> faces) {
+    Pieces pieces = plan_pieces(model, faces);
+    for (const PlannedPiece<2>& piece : pieces) solve.prepare(piece.model);
+    return pieces;
+  }
+
+  /// @param faces  that broke   @return what is left beside the body itself
+  /// @throws std::runtime_error  there are too many pieces; nothing has changed then
+  std::vector<SoftBody<2>*> put_pieces(Box2dBody& body, Pieces planned, std::size_t faces) {
+    require_groups(planned.size() - 1);
+    solve.drop();
+    if (body.soft().asleep()) body.wake();
+    const std::vector<Vector2f> rest_of_whole = own_rest_of(body.soft());
+    std::vector<Box2dBody*> pieces{&body};
+    for (std::size_t i = 1; i < planned.size(); ++i) {
+      SoftBody<2> piece(planned[i].model);
+      take_part(piece, body.soft(), rest_of_whole, planned[i].particle_of);
+      pieces.push_back(&add(piece));
+    }
+    SoftBody<2> largest(planned.front().model);
+    take_part(largest, body.soft(), rest_of_whole, planned.front().particle_of);
+    body.soft() = largest;
+    const std::vector<PartingPieces::Kept> kept = follow_model(body);
+
+    BrokenSoftBody2d& event = broken.emplace_back();
+    event.body = &body.soft();
+    event.faces = faces;
+    std::vector<Box2dAttachments::Piece> with_attachments;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      parting.keep(kept, *pieces[i], planned[i].particle_of);
+      with_attachments.push_back({pieces[i], planned[i].particle_of});
+      if (i > 0) event.pieces.push_back(&pieces[i]->soft());
+    }
+    parting.add(pieces);
+    if (!parting.empty()) filter.install();
+    attachments.follow_pieces(body, with_attachments);
+    for (PlannedPiece<2>& piece : planned) event.particles_before.push_back(std::move(piece.particle_of));
+    return event.pieces;
   }
 
   /// What a b2Body stands for.
@@ -100,10 +233,16 @@ struct Box2dSoftBodies::Impl {
   std::vector<std::unique_ptr<Box2dBody>> bodies;
   std::unordered_map<const b2Body*, OneParticle> particles;
   Rest rest;
+  Box2dFilter filter;
   Box2dAttachments attachments;
+  PartingPieces parting;
   std::optional<SleepSettings> sleep;
   std::chrono::nanoseconds spent{0}, waited{0};
   StepAhead<2> solve;  // of `bodies`
+  BreakTest<2> break_test;
+  BreaksOfBodies breaks;                  // of `bodies`
+  std::vector<BrokenSoftBody2d> broken;   // since they were asked for
+  std::optional<PieceWorkshop> workshop;  // until the end of what it works with
 };
 
 Box2dSoftBodies::Box2dSoftBodies(b2World& world)
@@ -119,39 +258,57 @@ SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model,
             model ? "with" : "without", position.x(), position.y());
   SC_ASSERT(!impl_->world.IsLocked(), "add() of body {} within a step of Box2D", impl_->bodies.size());
   impl_->solve.drop();
-  Box2dBody& added = *impl_->bodies.emplace_back(
-      std::make_unique<Box2dBody>(impl_->world, std::move(model), position, impl_->free_group()));
-  const auto outer = added.soft().model().outer();
-  for (std::size_t i = 0; i < outer.size(); ++i) impl_->particles[added.particles()[i]] = {&added, outer[i]};
-  impl_->solve.add(added.soft());
-  return added.soft();
+  return impl_->add(SoftBody<2>(std::move(model), position)).soft();
 }
 
 void Box2dSoftBodies::remove(const SoftBody<2>& body) {
-  const auto found = std::find_if(impl_->bodies.begin(), impl_->bodies.end(),
-                                  [&](const auto& coupled) { return &coupled->soft() == &body; });
-  if (found == impl_->bodies.end()) {
-    throw std::invalid_argument("the soft body to be removed is not in this world");
-  }
+  const auto found = impl_->find(body, "to be removed");
   SC_ASSERT(!impl_->world.IsLocked(), "remove() of one of {} bodies within a step of Box2D",
             impl_->bodies.size());
   impl_->solve.remove(body);
+  impl_->breaks.forget(**found);
+  impl_->parting.take(**found);
   impl_->attachments.forget(**found);
-  for (const b2Body* particle : (*found)->particles()) impl_->particles.erase(particle);
+  impl_->forget_particles(**found);
+  forget_removed(body, impl_->broken);
   impl_->bodies.erase(found);
 }
 
+std::vector<SoftBody<2>*> Box2dSoftBodies::cut(const SoftBody<2>& body, const Cut2d& where) {
+  Box2dBody& coupled = impl_->find_breakable(body);
+  const std::vector<std::uint32_t> faces = faces_across(body, where);
+  if (faces.empty()) return {};
+  return impl_->put_pieces(coupled, impl_->make_pieces(body.shared_model(), faces), faces.size());
+}
+
+bool Box2dSoftBodies::begin_cut(const SoftBody<2>& body, const Cut2d& where) {
+  Box2dBody& coupled = impl_->find_breakable(body);
+  const std::vector<std::uint32_t> faces = faces_across(body, where);
+  if (faces.empty()) return false;
+  impl_->solve.drop();
+  if (coupled.soft().asleep()) coupled.wake();
+  impl_->begin_break(coupled, faces);
+  return true;
+}
+
+bool Box2dSoftBodies::is_breaking(const SoftBody<2>& body) const {
+  return impl_->breaks.has(**impl_->find(body, "that may be breaking"));
+}
+
+std::vector<BrokenSoftBody2d> Box2dSoftBodies::take_broken() { return std::exchange(impl_->broken, {}); }
+
 AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch,
                                      const AttachmentSettings<2>& settings) {
-  return impl_->attachments.add(impl_->find(body), patch, nullptr, settings);
+  return impl_->attachments.add(impl_->find_attachable(body), patch, nullptr, settings);
 }
 AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch, b2Body& rigid,
                                      const AttachmentSettings<2>& settings) {
-  return impl_->attachments.add(impl_->find(body), patch, &rigid, settings);
+  return impl_->attachments.add(impl_->find_attachable(body), patch, &rigid, settings);
 }
 AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch, const SoftBody<2>& other,
                                      const Patch<2>& other_patch, const AttachmentSettings<2>& settings) {
-  return impl_->attachments.add(impl_->find(body), patch, impl_->find(other), other_patch, settings);
+  return impl_->attachments.add(impl_->find_attachable(body), patch, impl_->find_attachable(other),
+                                other_patch, settings);
 }
 void Box2dSoftBodies::detach(AttachmentId id) { impl_->attachments.remove(id); }
 void Box2dSoftBodies::move_attachment(AttachmentId id, const Vector2f& position, float angle, float seconds) {

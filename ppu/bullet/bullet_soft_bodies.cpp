@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <future>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -13,11 +12,13 @@
 #include <vector>
 
 #include "ppu/bodies/break_body.h"
+#include "ppu/bodies/breaks.h"
+#include "ppu/bodies/piece_workshop.h"
 #include "ppu/bodies/step_ahead.h"
 #include "ppu/bullet/bullet_hook.h"
 #include "ppu/bullet/contact_sphere.h"
 #include "ppu/bullet/free_body.h"
-#include "ppu/bullet/piece_workshop.h"
+#include "ppu/bullet/prepared_piece.h"
 #include "ppu/bullet/processor_time.h"
 #include "ppu/bullet/sphere_body.h"
 #include "ppu/bullet/surface_contacts.h"
@@ -25,13 +26,6 @@
 
 namespace softcell::ppu {
 namespace {
-
-/// How many substeps pass from a break to its pieces, which are made in the meantime by another thread. A number that depends on the body
-/// alone: with as many results are the same, however fast that thread is. One core makes the pieces of 1,000 particles in some 8 ms.
-int substeps_until_pieces(std::size_t particles) {
-  constexpr std::size_t kAtOnce = 100;  // takes less than handing over
-  return particles <= kAtOnce ? 0 : 2 + static_cast<int>(particles / 1000);
-}
 
 /// Adds the processor time of a piece of work.
 template <typename Work>
@@ -48,7 +42,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   template <typename Solver>
   Impl(btDiscreteDynamicsWorld& w, Solver&& solver, ContactMethod contacts,
        std::shared_ptr<ContactWorker> worker = nullptr)
-      : world(w), solve(std::forward<Solver>(solver)) {
+      : world(w), solve(std::forward<Solver>(solver)), workshop(std::in_place) {
     if (contacts == ContactMethod::kSurface) surfaces.emplace(world, std::move(worker));
     BulletHook::attach(world, *this);
     world.addAction(this);
@@ -103,36 +97,18 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
         with_surface->set_contact(surfaces->contact_model(body.soft().shared_model()));
   }
 
-  /// A body that breaks, and stays whole until its pieces are made.
-  struct Break {
-    CoupledBody* body = nullptr;
-    std::shared_ptr<const SoftBodyModel<3>> model;
-    std::uint32_t resets = 0;  ///< SoftBody::resets() when it began
-    std::size_t faces = 0;
-    int substeps = 0;  ///< until it has pieces
-    std::future<std::vector<PreparedPiece>> pieces;
-
-    /// The body was assigned, teleported or straightened since: it is not the one that was strained.
-    bool is_void() const { return body->soft().shared_model() != model || body->soft().resets() != resets; }
-  };
-
-  bool is_breaking(const CoupledBody& body) const {
-    return std::any_of(breaks.begin(), breaks.end(), [&](const Break& b) { return b.body == &body; });
-  }
+  using BreaksOfBodies = Breaks<3, CoupledBody, std::vector<PreparedPiece>>;
+  using Break = BreaksOfBodies::Break;
 
   /// Pieces are tested from the next substep on, bodies that are breaking not any more.
   void break_strained() {
     for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {
       const SoftBody<3>& soft = bodies[i]->soft();
       if (!soft.settings().fracture || soft.asleep() || !bodies[i]->can_break()) continue;
-      if (is_breaking(*bodies[i])) continue;
+      if (breaks.has(*bodies[i])) continue;
       if (const auto faces = strained_faces(soft, break_test); !faces.empty()) begin_break(*bodies[i], faces);
     }
-    std::vector<Break> due;
-    for (Break& one : breaks)
-      if (one.substeps-- <= 0 && !one.is_void()) due.push_back(std::move(one));
-    std::erase_if(breaks, [](const Break& one) { return one.substeps < 0 || one.is_void(); });
-    for (Break& one : due) finish_break(one);
+    for (Break& one : breaks.take_due()) put_pieces(*one.body, one.pieces.get(), one.faces);
   }
 
   /// Null: pieces of the body have no contact model that is made ahead.
@@ -149,36 +125,21 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       break_body(body, faces);
       return;
     }
-    breaks.push_back({&body, model, body.soft().resets(), faces.size(), substeps,
-                      open_workshop().begin(model, faces, contact_of_whole(body))});
+    breaks.begin(
+        body, faces.size(), substeps,
+        workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
+                         whole = contact_of_whole(body)] { return make_pieces(model, own, whole); }));
   }
 
-  PieceWorkshop& open_workshop() {
-    if (!workshop)
-      workshop.emplace(
-          [this](const std::shared_ptr<const SoftBodyModel<3>>& model) { solve.prepare(model); });
-    return *workshop;
-  }
-
-  void finish_break(Break& one) { put_pieces(*one.body, one.pieces.get(), one.faces); }
-
-  /// Now, if it is breaking.
-  void finish_breaks_of(const CoupledBody& body) {
-    const auto found =
-        std::find_if(breaks.begin(), breaks.end(), [&](const Break& one) { return one.body == &body; });
-    if (found == breaks.end()) return;
-    Break one = std::move(*found);
-    breaks.erase(found);
-    if (!one.is_void()) finish_break(one);
-  }
-
-  void forget_breaks_of(const CoupledBody& body) {
-    std::erase_if(breaks, [&](const Break& one) { return one.body == &body; });
+  /// Of any thread.
+  std::vector<PreparedPiece> make_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
+                                         std::span<const std::uint32_t> faces, const ContactModel* whole) {
+    return prepare_pieces(model, faces, whole, [this](const auto& of_piece) { solve.prepare(of_piece); });
   }
 
   /// @return what is left beside the body itself
   std::vector<SoftBody<3>*> break_body(CoupledBody& body, std::span<const std::uint32_t> faces) {
-    return put_pieces(body, open_workshop().make(body.soft().shared_model(), faces, contact_of_whole(body)),
+    return put_pieces(body, make_pieces(body.soft().shared_model(), faces, contact_of_whole(body)),
                       faces.size());
   }
 
@@ -187,20 +148,22 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
                                        std::size_t faces) {
     std::vector<SoftBody<3>*> others;
     std::vector<SurfaceAttachments::Piece> with_attachments;
+    std::vector<std::vector<std::uint32_t>> particles_before;
     const auto append = [&](const CoupledBody& coupled, std::vector<std::uint32_t> particle_of) {
       for (SurfaceBody* const with_surface : with_surfaces)
-        if (with_surface == &coupled) with_attachments.push_back({with_surface, std::move(particle_of)});
+        if (with_surface == &coupled) with_attachments.push_back({with_surface, particle_of});
+      particles_before.push_back(std::move(particle_of));
     };
     for (PreparedPiece& piece : prepared)
       if (piece.contact) surfaces->adopt(std::move(piece.contact));
     // Bodies are large, and not copied where that can be helped.
-    PlannedPiece& first = prepared.front().piece;
+    PlannedPiece<3>& first = prepared.front().piece;
     const std::vector<Eigen::Vector3f> rest = own_rest_of(body.soft());
     SoftBody<3> largest(first.model);
     take_part(largest, body.soft(), rest, first.particle_of);
     append(body, std::move(first.particle_of));
     for (std::size_t i = 1; i < prepared.size(); ++i) {
-      PlannedPiece& piece = prepared[i].piece;
+      PlannedPiece<3>& piece = prepared[i].piece;
       SoftBody<3>& own = add(piece.model, Eigen::Vector3f::Zero());
       take_part(own, body.soft(), rest, piece.particle_of);
       bodies.back()->set_filter(body.filter());
@@ -213,7 +176,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments);
       surfaces->forget_pieces(with_surfaces);
     }
-    broken.push_back({&body.soft(), others, faces});
+    broken.push_back({&body.soft(), others, faces, std::move(particles_before)});
     return others;
   }
 
@@ -251,7 +214,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!coupled.can_break())
       throw std::invalid_argument(
           "the soft body to be cut touches with spheres; only bodies that touch with their surfaces break");
-    finish_breaks_of(coupled);
+    if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
     return coupled;
   }
 
@@ -285,9 +248,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   std::vector<SurfaceBody*> with_surfaces;  // of `bodies`
   std::uint32_t next_number = 0;
   StepAhead<3> solve;  // of `bodies`
-  BreakTest break_test;
-  std::vector<Break> breaks;              // of `bodies`, in the order in which they began
-  std::optional<PieceWorkshop> workshop;  // from the first break on
+  BreakTest<3> break_test;
+  BreaksOfBodies breaks;                  // of `bodies`
+  std::optional<PieceWorkshop> workshop;  // until the end of what it works with
   std::vector<BrokenSoftBody> broken;     // since they were asked for
   std::optional<SleepSettings> sleep;
   SoftBodyTimes times;
@@ -319,7 +282,7 @@ SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model
 void BulletSoftBodies::remove(const SoftBody<3>& body) {
   const auto found = impl_->find(body, "to be removed");
   impl_->solve.remove(body);
-  impl_->forget_breaks_of(**found);
+  impl_->breaks.forget(**found);
   impl_->tell_others(**found);
   SC_ASSERT((*found)->soft().model().particles() > 0, "a body without particles, one of {}, is removed",
             impl_->bodies.size());
@@ -328,8 +291,7 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
     if (with_surface == found->get()) impl_->surfaces->attachments().forget(*with_surface);
   std::erase_if(impl_->with_surfaces,
                 [&](const SurfaceBody* with_surface) { return with_surface == found->get(); });
-  for (BrokenSoftBody& broken : impl_->broken) std::erase(broken.pieces, &body);
-  std::erase_if(impl_->broken, [&](const BrokenSoftBody& broken) { return broken.body == &body; });
+  forget_removed(body, impl_->broken);
   impl_->bodies.erase(found);
   if (impl_->surfaces) impl_->surfaces->forget_pieces(impl_->with_surfaces);
 }
@@ -353,7 +315,7 @@ bool BulletSoftBodies::begin_cut(const SoftBody<3>& body, const Cut& where) {
 }
 
 bool BulletSoftBodies::is_breaking(const SoftBody<3>& body) const {
-  return impl_->is_breaking(**impl_->find(body, "that may be breaking"));
+  return impl_->breaks.has(**impl_->find(body, "that may be breaking"));
 }
 
 std::vector<BrokenSoftBody> BulletSoftBodies::take_broken() { return std::exchange(impl_->broken, {}); }

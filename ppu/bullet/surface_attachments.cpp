@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -140,29 +139,14 @@ void SurfaceAttachments::forget(const SurfaceBody& body) {
 
 void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces) {
   if (links_.empty()) return;
-  std::vector<std::map<std::uint32_t, std::uint32_t>> number_of(
-      pieces.size());  // by particles of the whole that a piece has once
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    std::vector<std::uint32_t> twice;
-    for (std::uint32_t i = 0; i < pieces[p].particle_of.size(); ++i)
-      if (!number_of[p].try_emplace(pieces[p].particle_of[i], i).second)
-        twice.push_back(pieces[p].particle_of[i]);
-    for (const std::uint32_t particle : twice) number_of[p].erase(particle);
-  }
+  PieceOfPatch piece_of_patch;
+  for (const Piece& piece : pieces) piece_of_patch.add(piece.particle_of);
   const auto follow = [&](SurfaceBody*& side, AttachmentRows<3>& rows, bool of_b) {
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-      std::vector<std::uint32_t> numbers;
-      for (const std::uint32_t particle : rows.particles(of_b)) {
-        const auto found = number_of[p].find(particle);
-        if (found == number_of[p].end()) break;
-        numbers.push_back(found->second);
-      }
-      if (numbers.size() != rows.particles(of_b).size()) continue;
-      rows.renumber(of_b, std::move(numbers));
-      side = pieces[p].body;
-      return true;
-    }
-    return false;
+    auto found = piece_of_patch.find(rows.particles(of_b));
+    if (!found) return false;
+    rows.renumber(of_b, std::move(found->numbers));
+    side = pieces[found->piece].body;
+    return true;
   };
   end_links(EndedAttachment::Reason::kBroken, [&](Link& link) {
     return (link.a == &body && !follow(link.a, link.rows, false)) ||

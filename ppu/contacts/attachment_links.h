@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -39,6 +41,40 @@ inline void check_seconds_of_move(float seconds) {
     throw std::invalid_argument("an attachment is moved within " + std::to_string(seconds) +
                                 " s; it must be 0 or above, and finite");
 }
+
+/// Finds the piece of a broken body that has all particles of a patch, each of them once.
+class PieceOfPatch {
+ public:
+  struct Found {
+    std::size_t piece = 0;
+    std::vector<std::uint32_t> numbers;  ///< of the patch's particles in the piece
+  };
+
+  /// Which particle of the whole each particle of the next piece was.
+  void add(std::span<const std::uint32_t> particle_of) {
+    std::map<std::uint32_t, std::uint32_t>& numbers = number_of_.emplace_back();
+    std::vector<std::uint32_t> twice;
+    for (std::uint32_t i = 0; i < particle_of.size(); ++i)
+      if (!numbers.try_emplace(particle_of[i], i).second) twice.push_back(particle_of[i]);
+    for (const std::uint32_t particle : twice) numbers.erase(particle);
+  }
+  /// None: the patch was torn. @param patch  particles of the whole
+  std::optional<Found> find(std::span<const std::uint32_t> patch) const {
+    for (std::size_t piece = 0; piece < number_of_.size(); ++piece) {
+      std::vector<std::uint32_t> numbers;
+      for (const std::uint32_t particle : patch) {
+        const auto found = number_of_[piece].find(particle);
+        if (found == number_of_[piece].end()) break;
+        numbers.push_back(found->second);
+      }
+      if (numbers.size() == patch.size()) return Found{piece, std::move(numbers)};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<std::map<std::uint32_t, std::uint32_t>> number_of_;  // of particles that a piece has once
+};
 
 /// The attachments that there are, in the order in which they were made.
 /// @tparam Link  has `id`, `rows`, and soft bodies `a` and `b`

@@ -16,6 +16,7 @@
 
 namespace softcell::ppu {
 
+template <int kDimension>
 struct Cracks;
 
 /// A point of the surface and where it lies in its cell.
@@ -58,7 +59,7 @@ class ContactSurface {
   /// Of a piece of a body with a mesh: what it is in the whole, but where the piece is open. In proportion to the piece (piece_surface.cpp).
   /// @param mesh    of the piece   @param cracks  of the piece
   ContactSurface(const ContactSurface& whole, const Lattice<3>& piece, const TriangleMesh& mesh,
-                 const Cracks& cracks);
+                 const Cracks<3>& cracks);
 
   /// Ascending by cell. Nearer to each other than half a cell where the surface is smooth; at each corner and
   /// along each sharp edge of the mesh.

@@ -115,7 +115,8 @@ struct NodeOutside {
 /// Changes distances of a piece that are still those of the whole.
 class FieldCutter {
  public:
-  FieldCutter(const Lattice<3>& piece, const Cracks& cracks, std::vector<ContactSurface::CellField>& fields)
+  FieldCutter(const Lattice<3>& piece, const Cracks<3>& cracks,
+              std::vector<ContactSurface::CellField>& fields)
       : piece_(piece),
         cracks_(cracks),
         fields_(fields),
@@ -242,7 +243,7 @@ class FieldCutter {
   static constexpr std::uint32_t kNone = ~0u;
 
   const Lattice<3>& piece_;
-  const Cracks& cracks_;
+  const Cracks<3>& cracks_;
   std::vector<ContactSurface::CellField>& fields_;
   Vector3i low_, high_;
   std::vector<float> depths_;  // of each particle: cells from the nearest open face
@@ -308,7 +309,7 @@ class CutSampler {
  public:
   /// @param known  points of the piece that are the whole's, ascending by cell
   CutSampler(const ContactSurface& whole, const Lattice<3>& piece, const TriangleMesh& mesh,
-             const Cracks& cracks, std::span<const SurfacePointAtRest> known)
+             const Cracks<3>& cracks, std::span<const SurfacePointAtRest> known)
       : whole_(whole), piece_(piece), mesh_(mesh), cracks_(cracks), known_(known), rim_(piece.spacing) {}
 
   std::vector<SurfacePointAtRest> sample() {
@@ -357,7 +358,7 @@ class CutSampler {
   const ContactSurface& whole_;
   const Lattice<3>& piece_;
   const TriangleMesh& mesh_;
-  const Cracks& cracks_;
+  const Cracks<3>& cracks_;
   std::span<const SurfacePointAtRest> known_;
   PointChooser rim_;
   std::unordered_set<std::uint64_t> is_taken_;  // nodes
@@ -369,7 +370,7 @@ bool is_before(const SurfacePointAtRest& a, const SurfacePointAtRest& b) { retur
 }  // namespace
 
 ContactSurface::ContactSurface(const ContactSurface& whole, const Lattice<3>& piece, const TriangleMesh& mesh,
-                               const Cracks& cracks) {
+                               const Cracks<3>& cracks) {
   SC_ASSERT(cracks.whole != nullptr && cracks.cell_of_whole.size() == piece.cells.size(),
             "{} cells of a piece of {}", cracks.cell_of_whole.size(), piece.cells.size());
   fields_.reserve(piece.cells.size());

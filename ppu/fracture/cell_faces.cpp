@@ -32,47 +32,51 @@ class Sets {
 };
 
 /// The corners of a face in the low cell; in the high one they are without the bit of the axis.
-template <class Work>
+template <int kDimension, class Work>
 void for_each_corner(const CellFace& face, const Work& work) {
   const unsigned bit = 1u << face.axis;
-  for (unsigned k = 0; k < 8; ++k)
+  for (unsigned k = 0; k < Lattice<kDimension>::kCorners; ++k)
     if ((k & bit) != 0) work(k, k & ~bit);
 }
 
-/// Of each corner of each cell, 8 cell + corner: the set of those that are one particle.
-Sets corners_that_hold(const Lattice<3>& lattice, std::span<const CellFace> faces,
+/// Of each corner of each cell, kCorners cell + corner: the set of those that are one particle.
+template <int kDimension>
+Sets corners_that_hold(const Lattice<kDimension>& lattice, std::span<const CellFace> faces,
                        const std::vector<bool>& broken) {
-  Sets corners(8 * lattice.cells.size());
+  constexpr auto kCorners = static_cast<std::uint32_t>(Lattice<kDimension>::kCorners);
+  Sets corners(kCorners * lattice.cells.size());
   std::vector<bool> is_touched(lattice.particles.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (!broken[f]) continue;
-    for_each_corner(faces[f], [&](unsigned low, unsigned high) {
+    for_each_corner<kDimension>(faces[f], [&](unsigned low, unsigned high) {
       is_touched[lattice.corners[faces[f].low][low]] = is_touched[lattice.corners[faces[f].high][high]] =
           true;
     });
   }
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (broken[f]) continue;
-    for_each_corner(faces[f], [&](unsigned low, unsigned high) {
-      corners.unite(8 * faces[f].low + low, 8 * faces[f].high + high);
+    for_each_corner<kDimension>(faces[f], [&](unsigned low, unsigned high) {
+      corners.unite(kCorners * faces[f].low + low, kCorners * faces[f].high + high);
     });
   }
   std::vector<std::uint32_t> first(lattice.particles.size(), kNone);
   for (std::uint32_t c = 0; c < lattice.cells.size(); ++c)
-    for (std::uint32_t k = 0; k < 8; ++k) {
+    for (std::uint32_t k = 0; k < kCorners; ++k) {
       const std::uint32_t particle = lattice.corners[c][k];
       if (is_touched[particle]) continue;
-      if (first[particle] == kNone) first[particle] = 8 * c + k;
-      corners.unite(first[particle], 8 * c + k);
+      if (first[particle] == kNone) first[particle] = kCorners * c + k;
+      corners.unite(first[particle], kCorners * c + k);
     }
   return corners;
 }
 
 /// The cells of each piece, ascending.
-std::vector<std::vector<std::uint32_t>> cells_of_pieces(const Lattice<3>& lattice, Sets& corners) {
+template <int kDimension>
+std::vector<std::vector<std::uint32_t>> cells_of_pieces(const Lattice<kDimension>& lattice, Sets& corners) {
+  constexpr auto kCorners = static_cast<std::uint32_t>(Lattice<kDimension>::kCorners);
   const auto count = static_cast<std::uint32_t>(lattice.cells.size());
   Sets cells(count);
-  for (std::uint32_t i = 0; i < 8 * count; ++i) cells.unite(i / 8, corners.find(i) / 8);
+  for (std::uint32_t i = 0; i < kCorners * count; ++i) cells.unite(i / kCorners, corners.find(i) / kCorners);
   std::vector<std::vector<std::uint32_t>> pieces;
   std::vector<std::uint32_t> piece_of(count, kNone);
   for (std::uint32_t c = 0; c < count; ++c) {
@@ -91,40 +95,45 @@ std::vector<std::vector<std::uint32_t>> cells_of_pieces(const Lattice<3>& lattic
 
 }  // namespace
 
-std::vector<CellFace> faces_of(const Lattice<3>& lattice) {
+template <int kDimension>
+std::vector<CellFace> faces_of(const Lattice<kDimension>& lattice) {
+  using GridIndex = typename Lattice<kDimension>::GridIndex;
   std::vector<CellFace> faces;
   for (std::uint32_t c = 0; c < lattice.cells.size(); ++c)
-    for (std::uint32_t axis = 0; axis < 3; ++axis)
+    for (std::uint32_t axis = 0; axis < kDimension; ++axis)
       if (const auto next =
-              find_cell(lattice, lattice.cells[c] + Eigen::Vector3i(Eigen::Vector3i::Unit(axis))))
+              find_cell<kDimension>(lattice, lattice.cells[c] + GridIndex(GridIndex::Unit(axis))))
         faces.push_back({c, *next, axis});
   return faces;
 }
 
-std::vector<LatticePiece> split(const Lattice<3>& lattice, std::span<const CellFace> faces,
-                                const std::vector<bool>& broken) {
+template <int kDimension>
+std::vector<LatticePiece<kDimension>> split(const Lattice<kDimension>& lattice,
+                                            std::span<const CellFace> faces,
+                                            const std::vector<bool>& broken) {
+  constexpr auto kCorners = static_cast<std::uint32_t>(Lattice<kDimension>::kCorners);
   SC_ASSERT(broken.size() == faces.size(), "{} of {} faces are broken or not", broken.size(), faces.size());
   Sets corners = corners_that_hold(lattice, faces, broken);
-  std::vector<LatticePiece> pieces;
+  std::vector<LatticePiece<kDimension>> pieces;
   for (std::vector<std::uint32_t>& cells : cells_of_pieces(lattice, corners)) {
-    LatticePiece& piece = pieces.emplace_back();
+    LatticePiece<kDimension>& piece = pieces.emplace_back();
     piece.lattice.spacing = lattice.spacing;
     piece.lattice.origin = lattice.origin;
     // Particles in the order of the whole's, copies in that of the cells that have them.
     std::vector<std::pair<std::uint32_t, std::uint32_t>>
         particles;  // of the whole; the corner that stands for it
     for (const std::uint32_t c : cells)
-      for (std::uint32_t k = 0; k < 8; ++k)
-        if (const std::uint32_t corner = 8 * c + k; corners.find(corner) == corner)
+      for (std::uint32_t k = 0; k < kCorners; ++k)
+        if (const std::uint32_t corner = kCorners * c + k; corners.find(corner) == corner)
           particles.emplace_back(lattice.corners[c][k], corner);
     std::sort(particles.begin(), particles.end());
-    std::vector<std::uint32_t> corner_of;
     for (const auto& [particle, corner] : particles) {
       piece.lattice.particles.push_back(lattice.particles[particle]);
       piece.particle_of.push_back(particle);
     }
     const auto number_of = [&](std::uint32_t c, std::uint32_t k) {
-      const std::pair<std::uint32_t, std::uint32_t> wanted(lattice.corners[c][k], corners.find(8 * c + k));
+      const std::pair<std::uint32_t, std::uint32_t> wanted(lattice.corners[c][k],
+                                                           corners.find(kCorners * c + k));
       const auto found = std::lower_bound(particles.begin(), particles.end(), wanted);
       SC_ASSERT(found != particles.end() && *found == wanted, "corner {} of cell {} is no particle", k, c);
       return static_cast<std::uint32_t>(found - particles.begin());
@@ -133,12 +142,19 @@ std::vector<LatticePiece> split(const Lattice<3>& lattice, std::span<const CellF
       piece.lattice.cells.push_back(lattice.cells[c]);
       piece.lattice.fill.push_back(lattice.fill[c]);
       auto& own = piece.lattice.corners.emplace_back();
-      for (std::uint32_t k = 0; k < 8; ++k) own[k] = number_of(c, k);
+      for (std::uint32_t k = 0; k < kCorners; ++k) own[k] = number_of(c, k);
     }
     piece.lattice.neighbours = find_neighbours(piece.lattice);
     piece.cell_of = std::move(cells);
   }
   return pieces;
 }
+
+template std::vector<CellFace> faces_of(const Lattice<2>&);
+template std::vector<CellFace> faces_of(const Lattice<3>&);
+template std::vector<LatticePiece<2>> split(const Lattice<2>&, std::span<const CellFace>,
+                                            const std::vector<bool>&);
+template std::vector<LatticePiece<3>> split(const Lattice<3>&, std::span<const CellFace>,
+                                            const std::vector<bool>&);
 
 }  // namespace softcell::ppu

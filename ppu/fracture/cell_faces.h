@@ -9,7 +9,7 @@
 
 namespace softcell::ppu {
 
-/// What two cells have in common: `high` is the next one of `low` along `axis`.
+/// What two cells have in common, in two dimensions an edge of both: `high` is the next one of `low` along `axis`.
 struct CellFace {
   std::uint32_t low = 0, high = 0;  ///< numbers of cells
   std::uint32_t axis = 0;
@@ -18,11 +18,13 @@ struct CellFace {
 };
 
 /// Ascending by the low cell, then by axis.
-std::vector<CellFace> faces_of(const Lattice<3>& lattice);
+template <int kDimension>
+std::vector<CellFace> faces_of(const Lattice<kDimension>& lattice);
 
 /// A part of a lattice that hangs together.
+template <int kDimension>
 struct LatticePiece {
-  Lattice<3> lattice;
+  Lattice<kDimension> lattice;
   std::vector<std::uint32_t> cell_of;  ///< of each cell: which one of the whole it is
   std::vector<std::uint32_t>
       particle_of;  ///< of each particle: which one of the whole it is, or is a copy of
@@ -36,7 +38,8 @@ struct LatticePiece {
 /// @param faces   of the lattice
 /// @param broken  of each face
 /// @return the piece with the most cells first, of equals that with the first cell; then the others in the order of their first cells
-std::vector<LatticePiece> split(const Lattice<3>& lattice, std::span<const CellFace> faces,
-                                const std::vector<bool>& broken);
+template <int kDimension>
+std::vector<LatticePiece<kDimension>> split(const Lattice<kDimension>& lattice,
+                                            std::span<const CellFace> faces, const std::vector<bool>& broken);
 
 }  // namespace softcell::ppu

@@ -12,7 +12,7 @@ namespace {
 
 /// Each cell in which nothing of the body lies goes with the neighbour from which it is reached first, beginning with cells in which
 /// something does: no piece is without anything to be seen.
-void hold_empty_cells(const CellMesh& whole, Cracks& cracks) {
+void hold_empty_cells(const CellMesh& whole, BreakableFaces& cracks) {
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> neighbours(cracks.cell_of_whole.size());
   for (std::uint32_t f = 0; f < cracks.faces.size(); ++f) {
     neighbours[cracks.faces[f].low].emplace_back(cracks.faces[f].high, f);
@@ -34,58 +34,89 @@ void hold_empty_cells(const CellMesh& whole, Cracks& cracks) {
     }
 }
 
-}  // namespace
-
-Cracks no_cracks(const TriangleMesh* mesh, const Lattice<3>& lattice, std::span<const float> strengths) {
+template <int kDimension>
+void take_all_faces(const Lattice<kDimension>& lattice, std::span<const float> strengths,
+                    BreakableFaces& cracks) {
   SC_ASSERT(strengths.empty() || strengths.size() == lattice.cells.size(), "{} strengths of {} cells",
             strengths.size(), lattice.cells.size());
-  Cracks cracks;
-  if (mesh != nullptr && !mesh->triangles.empty())
-    cracks.whole = std::make_shared<const CellMesh>(*mesh, lattice);
   for (std::uint32_t c = 0; c < lattice.cells.size(); ++c) cracks.cell_of_whole.push_back(c);
   cracks.faces = faces_of(lattice);
   cracks.is_broken.resize(cracks.faces.size());
   for (const CellFace& face : cracks.faces)
     cracks.strength.push_back(strengths.empty() ? 1 : std::min(strengths[face.low], strengths[face.high]));
-  if (cracks.whole) hold_empty_cells(*cracks.whole, cracks);
+}
+
+/// What the faces of a piece were in the body that it comes from.
+/// @param broken  of each face of that
+template <int kDimension>
+void take_faces_of_piece(const LatticePiece<kDimension>& part, const BreakableFaces& of,
+                         const std::vector<bool>& broken, std::span<const std::uint32_t> face_at,
+                         BreakableFaces& cracks) {
+  for (const std::uint32_t cell : part.cell_of) cracks.cell_of_whole.push_back(of.cell_of_whole[cell]);
+  cracks.faces = faces_of(part.lattice);
+  for (const CellFace& face : cracks.faces) {
+    const std::uint32_t old = face_at[kDimension * part.cell_of[face.low] + face.axis];
+    cracks.is_broken.push_back(broken[old]);
+    cracks.strength.push_back(of.strength[old]);
+  }
+}
+
+/// Of a piece with as many cells and particles as before nothing has come apart, and nothing else is drawn.
+void draw_piece(const Lattice<3>& lattice, const Cracks<3>& cracks, CrackedPiece<3>& piece) {
+  piece.cracks.whole = cracks.whole;
+  const Lattice<3>& own = piece.part.lattice;
+  if (cracks.whole &&
+      (own.cells.size() != lattice.cells.size() || own.particles.size() != lattice.particles.size())) {
+    piece.mesh = mesh_of_piece(*cracks.whole, own, piece.cracks.cell_of_whole, piece.cracks.faces);
+    piece.cracks.open = std::move(piece.mesh.open);
+  } else {
+    piece.cracks.open = cracks.open;
+  }
+}
+
+}  // namespace
+
+Cracks<3> no_cracks(const TriangleMesh* mesh, const Lattice<3>& lattice, std::span<const float> strengths) {
+  Cracks<3> cracks;
+  take_all_faces(lattice, strengths, cracks);
+  if (mesh == nullptr || mesh->triangles.empty()) return cracks;
+  cracks.whole = std::make_shared<const CellMesh>(*mesh, lattice);
+  hold_empty_cells(*cracks.whole, cracks);
   return cracks;
 }
 
-std::vector<CrackedPiece> break_faces(const Lattice<3>& lattice, const Cracks& cracks,
-                                      std::span<const std::uint32_t> faces) {
+Cracks<2> no_cracks(const Lattice<2>& lattice, std::span<const float> strengths) {
+  Cracks<2> cracks;
+  take_all_faces(lattice, strengths, cracks);
+  return cracks;
+}
+
+template <int kDimension>
+std::vector<CrackedPiece<kDimension>> break_faces(const Lattice<kDimension>& lattice,
+                                                  const Cracks<kDimension>& cracks,
+                                                  std::span<const std::uint32_t> faces) {
   std::vector<bool> broken = cracks.is_broken;
   for (const std::uint32_t face : faces) {
     SC_ASSERT(face < broken.size(), "face {} of {} breaks", face, broken.size());
     if (std::isfinite(cracks.strength[face])) broken[face] = true;
   }
-  std::vector<std::uint32_t> face_at(3 * lattice.cells.size());  // of 3 low cell + axis
+  std::vector<std::uint32_t> face_at(kDimension * lattice.cells.size());  // of kDimension low cell + axis
   for (std::uint32_t f = 0; f < cracks.faces.size(); ++f)
-    face_at[3 * cracks.faces[f].low + cracks.faces[f].axis] = f;
+    face_at[kDimension * cracks.faces[f].low + cracks.faces[f].axis] = f;
 
-  std::vector<CrackedPiece> pieces;
-  for (LatticePiece& part : split(lattice, cracks.faces, broken)) {
-    CrackedPiece& piece = pieces.emplace_back();
-    piece.cracks.whole = cracks.whole;
-    for (const std::uint32_t cell : part.cell_of)
-      piece.cracks.cell_of_whole.push_back(cracks.cell_of_whole[cell]);
-    piece.cracks.faces = faces_of(part.lattice);
-    for (const CellFace& face : piece.cracks.faces) {
-      const std::uint32_t old = face_at[3 * part.cell_of[face.low] + face.axis];
-      piece.cracks.is_broken.push_back(broken[old]);
-      piece.cracks.strength.push_back(cracks.strength[old]);
-    }
-    // With as many cells and particles as before nothing has come apart, and nothing else is drawn.
-    const bool opens = part.lattice.cells.size() != lattice.cells.size() ||
-                       part.lattice.particles.size() != lattice.particles.size();
-    if (cracks.whole && opens) {
-      piece.mesh = mesh_of_piece(*cracks.whole, part.lattice, piece.cracks.cell_of_whole, piece.cracks.faces);
-      piece.cracks.open = std::move(piece.mesh.open);
-    } else {
-      piece.cracks.open = cracks.open;
-    }
+  std::vector<CrackedPiece<kDimension>> pieces;
+  for (LatticePiece<kDimension>& part : split<kDimension>(lattice, cracks.faces, broken)) {
+    CrackedPiece<kDimension>& piece = pieces.emplace_back();
+    take_faces_of_piece(part, cracks, broken, face_at, piece.cracks);
     piece.part = std::move(part);
+    if constexpr (kDimension == 3) draw_piece(lattice, cracks, piece);
   }
   return pieces;
 }
+
+template std::vector<CrackedPiece<2>> break_faces(const Lattice<2>&, const Cracks<2>&,
+                                                  std::span<const std::uint32_t>);
+template std::vector<CrackedPiece<3>> break_faces(const Lattice<3>&, const Cracks<3>&,
+                                                  std::span<const std::uint32_t>);
 
 }  // namespace softcell::ppu

@@ -12,33 +12,53 @@
 
 namespace softcell::ppu {
 
-/// Of one model. Immutable.
-struct Cracks {
-  std::shared_ptr<const CellMesh> whole;  ///< of the body that the model is a piece of; null: it has no mesh
-  std::vector<std::uint32_t> cell_of_whole;  ///< of each cell
+/// What both dimensions have: the faces of one model.
+struct BreakableFaces {
+  std::vector<std::uint32_t> cell_of_whole;  ///< of each cell: in the body that the model is a piece of
   std::vector<CellFace> faces;               ///< of the model's lattice
   std::vector<bool> is_broken;               ///< of each face
   /// Of each face: by which it is stronger than the settings say. Infinite of those by which cells in which nothing of the body lies hang
   /// on a neighbour: these never break.
   std::vector<float> strength;
-  std::vector<OpenFace> open;  ///< ascending by cell; none where the model has no mesh
+};
+
+/// Of one model. Immutable.
+template <int kDimension>
+struct Cracks;
+template <>
+struct Cracks<2> : BreakableFaces {};
+template <>
+struct Cracks<3> : BreakableFaces {
+  std::shared_ptr<const CellMesh> whole;  ///< of the body that the model is a piece of; null: it has no mesh
+  std::vector<OpenFace> open;             ///< ascending by cell; none where the model has no mesh
 };
 
 /// Of a model that was never broken.
 /// @param mesh       null: it has none; of a whole lattice
 /// @param strengths  of each cell; a face has that of the weaker one of its cells. Empty: all are 1
-Cracks no_cracks(const TriangleMesh* mesh, const Lattice<3>& lattice, std::span<const float> strengths);
+Cracks<3> no_cracks(const TriangleMesh* mesh, const Lattice<3>& lattice, std::span<const float> strengths);
+Cracks<2> no_cracks(const Lattice<2>& lattice, std::span<const float> strengths);
 
 /// A piece with all that a model of it is made of.
-struct CrackedPiece {
-  LatticePiece part;
-  Cracks cracks;
+template <int kDimension>
+struct CrackedPiece;
+template <>
+struct CrackedPiece<2> {
+  LatticePiece<2> part;
+  Cracks<2> cracks;
+};
+template <>
+struct CrackedPiece<3> {
+  LatticePiece<3> part;
+  Cracks<3> cracks;
   PieceMesh
       mesh;  ///< without what `cracks` has; empty where the whole has none, and where no crack has opened
 };
 
 /// What is left when some faces break, in the order of split(). Those that never break do not.
-std::vector<CrackedPiece> break_faces(const Lattice<3>& lattice, const Cracks& cracks,
-                                      std::span<const std::uint32_t> faces);
+template <int kDimension>
+std::vector<CrackedPiece<kDimension>> break_faces(const Lattice<kDimension>& lattice,
+                                                  const Cracks<kDimension>& cracks,
+                                                  std::span<const std::uint32_t> faces);
 
 }  // namespace softcell::ppu

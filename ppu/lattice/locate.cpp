@@ -2,7 +2,6 @@
 #include "softcell/base/assert.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace softcell::ppu {
 namespace {
@@ -16,14 +15,19 @@ constexpr double kFaceTolerance = 1e-4;
 
 }  // namespace
 
-std::optional<std::uint32_t> find_cell(const Lattice<3>& lattice, const Vector3i& index) {
-  const auto before = [](const Vector3i& a, const Vector3i& b) {
-    return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
+template <int kDimension>
+std::optional<std::uint32_t> find_cell(const Lattice<kDimension>& lattice,
+                                       const typename Lattice<kDimension>::GridIndex& index) {
+  const auto before = [](const auto& a, const auto& b) {
+    return std::lexicographical_compare(a.data(), a.data() + kDimension, b.data(), b.data() + kDimension);
   };
   const auto found = std::lower_bound(lattice.cells.begin(), lattice.cells.end(), index, before);
   if (found == lattice.cells.end() || *found != index) return std::nullopt;
   return static_cast<std::uint32_t>(found - lattice.cells.begin());
 }
+
+template std::optional<std::uint32_t> find_cell(const Lattice<2>&, const Eigen::Vector2i&);
+template std::optional<std::uint32_t> find_cell(const Lattice<3>&, const Eigen::Vector3i&);
 
 std::optional<PlaceInCell> locate(const Lattice<3>& lattice, const Eigen::Vector3f& position) {
   SC_ASSERT(lattice.spacing > 0, "cells of {} m", lattice.spacing);

@@ -15,7 +15,9 @@ struct PlaceInCell {
 };
 
 /// The cell with this low corner.
-std::optional<std::uint32_t> find_cell(const Lattice<3>& lattice, const Eigen::Vector3i& index);
+template <int kDimension>
+std::optional<std::uint32_t> find_cell(const Lattice<kDimension>& lattice,
+                                       const typename Lattice<kDimension>::GridIndex& index);
 
 /// The cell whose half-open box [low, low + 1) holds the point, else, for a point on a face, the first
 /// occupied cell beyond that face (x before y before z).

@@ -111,15 +111,31 @@ Shape2dId Painter2d::add_shape(std::span<const std::array<std::uint32_t, 3>> tri
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, shape.indices.name());
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
                  GL_STATIC_DRAW);
-  shapes_.push_back(std::move(shape));
-  return {static_cast<std::uint32_t>(shapes_.size() - 1)};
+  if (removed_.empty()) {
+    shapes_.emplace_back(std::move(shape));
+    return {static_cast<std::uint32_t>(shapes_.size() - 1)};
+  }
+  const std::uint32_t place = removed_.back();
+  removed_.pop_back();
+  shapes_[place].emplace(std::move(shape));
+  return {place};
+}
+
+const Painter2d::Triangles& Painter2d::triangles_of(Shape2dId shape) const {
+  if (shape.value >= shapes_.size() || !shapes_[shape.value])
+    throw std::invalid_argument("no shape " + std::to_string(shape.value));
+  return *shapes_[shape.value];
+}
+
+void Painter2d::remove_shape(Shape2dId shape) {
+  triangles_of(shape);
+  shapes_[shape.value].reset();
+  removed_.push_back(shape.value);
 }
 
 void Painter2d::check(const Frame2d& frame) const {
   for (const Shape2d& shape : frame.shapes) {
-    if (shape.shape.value >= shapes_.size())
-      throw std::invalid_argument("no shape " + std::to_string(shape.shape.value));
-    const std::size_t needed = shapes_[shape.shape.value].vertices_needed;
+    const std::size_t needed = triangles_of(shape.shape).vertices_needed;
     if (shape.vertices.size() < needed) {
       throw std::invalid_argument(std::to_string(shape.vertices.size()) + " vertices for a shape of " +
                                   std::to_string(needed));
@@ -196,7 +212,7 @@ void Painter2d::upload_shapes(std::span<const Shape2d> shapes) {
 }
 
 void Painter2d::draw_triangles(const Shape2d& shape, std::size_t index) const {
-  const Triangles& triangles = shapes_[shape.shape.value];
+  const Triangles& triangles = triangles_of(shape.shape);
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles.indices.name());
   gl_.DrawElementsBaseVertex(GL_TRIANGLES, triangles.index_count, GL_UNSIGNED_INT, nullptr,
                              static_cast<GLint>(first_vertex_[index]));

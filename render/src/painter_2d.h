@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,8 @@ class Painter2d {
 
   /// @throws std::invalid_argument  more indices than OpenGL counts
   Shape2dId add_shape(std::span<const std::array<std::uint32_t, 3>> triangles);
+  /// @throws std::invalid_argument  there is no such shape
+  void remove_shape(Shape2dId shape);
 
   /// @throws std::invalid_argument  there is no such shape, it has too few vertices, or a link is out of range
   void check(const Frame2d& frame) const;
@@ -63,6 +66,8 @@ class Painter2d {
     std::uint32_t rgba;
   };
 
+  /// @throws std::invalid_argument  there is no such shape
+  const Triangles& triangles_of(Shape2dId shape) const;
   void make_targets(int width, int height);
   Target make_target(GLint format, int width, int height) const;
   void upload_shapes(std::span<const Shape2d> shapes);
@@ -85,7 +90,8 @@ class Painter2d {
   const GladGLContext& gl_;
   Program shape_, textured_shape_, mask_, textured_mask_, blur_, paper_, stroke_;
   GlObject shape_layout_, shape_vertices_, stroke_layout_, stroke_vertices_, stroke_indices_, empty_layout_;
-  std::vector<Triangles> shapes_;
+  std::vector<std::optional<Triangles>> shapes_;  // none: it was removed
+  std::vector<std::uint32_t> removed_;            // of these
 
   // The shadow: what casts it in half the picture's resolution, and blurred along x and y in a quarter.
   Target mask_target_, blurred_along_x_, blurred_;

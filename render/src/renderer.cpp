@@ -977,6 +977,13 @@ Shape2dId Renderer::add_shape(std::span<const Triangle> triangles) {
   return state.painter_2d->add_shape(triangles);
 }
 
+void Renderer::remove_shape(Shape2dId shape) {
+  State& state = *state_;
+  if (state.painter_2d == nullptr) throw std::invalid_argument("no shape " + std::to_string(shape.value));
+  state.context.make_current();
+  state.painter_2d->remove_shape(shape);
+}
+
 void Renderer::render(const Frame2d& frame) {
   State& state = *state_;
   state.context.make_current();

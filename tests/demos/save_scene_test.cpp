@@ -403,8 +403,10 @@ TEST_F(SaveScene, GoesOnWithScriptAndTilting) {
       << of_run.transpose() << " and " << of_again.transpose();
 }
 
-std::optional<OwnModel> own(const std::string& model, bool z_up, int cells) {
-  return load_own_model({.mesh = model, .z_up = z_up, .cells = cells, .cell = {}});
+std::optional<OwnModel> own(const std::string& model, bool z_up, int cells,
+                            std::optional<float> tessellation = {}) {
+  return load_own_model(
+      {.mesh = model, .z_up = z_up, .cells = cells, .cell = {}, .tessellation = tessellation});
 }
 
 TEST_F(SaveScene, HasTheModelOfTheCommandLine) {
@@ -416,11 +418,14 @@ TEST_F(SaveScene, HasTheModelOfTheCommandLine) {
       builder.glb(
           R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}])"));
   for (const bool z_up : {false, true}) {
-    const Scene scene = load_scene_3d("drop", own(model, z_up, 7));
+    const Scene scene =
+        load_scene_3d("drop", own(model, z_up, 7, z_up ? std::optional<float>(1.5f) : std::nullopt));
+    EXPECT_EQ(scene.soft_bodies[0].mesh.triangles.size() > 4, z_up);
     Simulation3d run(scene, {.spes = 2});
     step(run, 20);
     const Scene loaded = saved_and_loaded(scene, run, file());
     EXPECT_EQ(loaded.soft_bodies[0].settings, scene.soft_bodies[0].settings);
+    ASSERT_EQ(loaded.soft_bodies[0].mesh.triangles, scene.soft_bodies[0].mesh.triangles);
     for (std::size_t i = 0; i < scene.soft_bodies[0].mesh.positions.size(); ++i)
       EXPECT_LT((loaded.soft_bodies[0].mesh.positions[i] - scene.soft_bodies[0].mesh.positions[i]).norm(),
                 1e-5f);

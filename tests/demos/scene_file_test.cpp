@@ -21,6 +21,7 @@
 #include "document/documents.h"
 #include "document/value.h"
 #include "softcell/base/nearest_name.h"
+#include "softcell/soft_bodies/tessellate.h"
 #include "support/scratch_folder.h"
 #include "support/slow_build.h"
 
@@ -75,6 +76,28 @@ class SceneFile : public testing::Test {
 
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+TEST_F(SceneFile, AMeshOfLongTrianglesIsTessellatedOnRequest) {
+  const auto mesh_of = [&](const std::string& more) {
+    return load_scene_3d(write("s.toml",
+                               "[[soft_body]]\ncell_size = 0.2\n"
+                               "shape = { kind = \"box\", size = [2, 0.4, 0.4], step = 10 }\n" +
+                                   more))
+        .soft_bodies.at(0)
+        .mesh;
+  };
+  const ppu::TriangleMesh coarse = mesh_of(""), finer = mesh_of("tessellate = 1.5\n");
+  EXPECT_EQ(coarse.triangles.size(), 12u);
+  EXPECT_EQ(finer, ppu::tessellate(coarse, 1.5f * 0.2f));
+  EXPECT_GT(finer.triangles.size(), 100u);
+  EXPECT_BEGINS(
+      refusal("s.toml", "[[soft_body]]\ncell_size = 0.2\ntessellate = 0\nshape = { kind = \"box\" }\n"),
+      "s.toml:3:");
+  const std::string too_many =
+      refusal("s.toml", "[[soft_body]]\ncell_size = 0.004\ntessellate = 0.125\nshape = { kind = \"box\" }\n");
+  EXPECT_BEGINS(too_many, "s.toml:1:");
+  EXPECT_NE(too_many.find("more than 2000000 triangles"), std::string::npos) << too_many;
+}
 
 TEST_F(SceneFile, EveryFieldOfA3dSceneArrives) {
   write("meshes/t.obj", kTetrahedron);

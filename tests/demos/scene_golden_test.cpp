@@ -152,7 +152,10 @@ INSTANTIATE_TEST_SUITE_P(Moments, SceneGolden2d,
                                          Moment2d{"stack", 60, View2d::kFilled, "stack_60"},
                                          Moment2d{"two_way", 50, View2d::kFilled, "two_way_50"},
                                          Moment2d{"picture", 40, View2d::kFilled, "picture_40"},
-                                         Moment2d{"rings", 120, View2d::kFilled, "rings_120"}));
+                                         Moment2d{"rings", 120, View2d::kFilled, "rings_120"},
+                                         Moment2d{"man_breaks", 61, View2d::kFilled, "man_breaks_61"},
+                                         Moment2d{"man_breaks", 61, View2d::kDots, "man_breaks_61_dots"},
+                                         Moment2d{"man_breaks", 150, View2d::kFilled, "man_breaks_150"}));
 
 class SceneGoldenReplay : public testing::TestWithParam<const char*> {};
 

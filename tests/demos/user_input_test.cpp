@@ -287,7 +287,7 @@ UserInput<3> input_3d() {
   };
   return {kViews,
           {.tilt = {},
-           .knife = Knife(eye, 800, 600),
+           .knife = knife_3d(eye, 800, 600),
            .hand = MouseReach(eye, pick, 800, 600),
            .camera = CameraControl(eye({}), 600)}};
 }
@@ -311,6 +311,23 @@ TEST(UserInput, TheMouseCutsAlongALineWhileItIsAKnife) {
   EXPECT_LT((cut[0].edge - upper).norm(), 1e-3f) << cut[0].edge.transpose();
   EXPECT_LT((cut[0].way - lower).norm(), 1e-3f) << cut[0].way.transpose();
   EXPECT_EQ(input.look().turn, 0) << "the camera stays";
+}
+
+TEST(UserInput, TheMouseIsAKnifeInTwoDimensionsToo) {
+  const Camera2d camera{.centre = {1, 2}, .height = 6};
+  const auto pick = [](const Vector2f& at) -> std::optional<InputEvent<2>> {
+    return InputEvent<2>{.action = Action::kHold, .value = at};
+  };
+  UserInput<2> input(kViews,
+                     {.hand = MouseHand(camera, pick, 800, 600), .knife = knife_2d(camera, 800, 600)});
+  const auto cut = frame_of(input, {press(SDLK_k), mouse_button(SDL_MOUSEBUTTONDOWN, 400, 0),
+                                    mouse_to(400, 200), mouse_button(SDL_MOUSEBUTTONUP, 500, 600)});
+  ASSERT_EQ(cut.size(), 1u) << "no hand takes anything";
+  EXPECT_EQ(cut[0].action, Action::kCut);
+  EXPECT_EQ(cut[0].body, kEveryBody);
+  EXPECT_LT((cut[0].value - Vector2f(1, 5)).norm(), 1e-5f) << cut[0].value.transpose();
+  EXPECT_LT((cut[0].way - Vector2f(1, -6)).norm(), 1e-5f) << cut[0].way.transpose();
+  EXPECT_EQ(frame_of(input, {press(SDLK_k), mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300)}).size(), 1u);
 }
 
 TEST(UserInput, AKnifeThatIsClickedOrPutAwayCutsNothing) {

@@ -62,6 +62,24 @@ TEST_P(Frames2d, ShapesAreWhereTheyAreAndInTheirColour) {
   EXPECT_EQ(rgb(0, 0), (std::array{255, 0, 0})) << "the picture's middle shows the centre";
 }
 
+TEST_P(Frames2d, AShapeThatWasRemovedIsNoneAndItsPlaceIsFilledAgain) {
+  const Shape2dId other = renderer_.add_shape(std::array<Triangle, 1>{{{0, 1, 2}}});
+  renderer_.remove_shape(square_id_);
+  Frame2d frame = white_paper();
+  const std::array<Shape2d, 1> gone{{{.shape = square_id_, .vertices = square_, .colour = kRed}}};
+  frame.shapes = gone;
+  EXPECT_THROW(draw(frame), std::invalid_argument);
+  EXPECT_THROW(renderer_.remove_shape(square_id_), std::invalid_argument);
+  EXPECT_THROW(renderer_.remove_shape({99}), std::invalid_argument);
+  const Shape2dId next = renderer_.add_shape(std::array<Triangle, 2>{{{0, 1, 2}, {0, 2, 3}}});
+  EXPECT_EQ(next.value, square_id_.value);
+  const std::array<Shape2d, 2> shapes{{{.shape = next, .vertices = square_, .colour = kRed},
+                                       {.shape = other, .vertices = square_, .colour = kRed}}};
+  frame.shapes = shapes;
+  draw(frame);
+  EXPECT_EQ(rgb(-0.5f, -0.5f), (std::array{255, 0, 0}));
+}
+
 TEST_P(Frames2d, DotsAndLinesAreAsLargeAsTheySayWithSmoothEdges) {
   Frame2d frame = white_paper();
   const std::array<Vector2f, 1> centre{{{1, 1}}};

@@ -1018,6 +1018,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{SC_DEMO "--mesh %s/cube.obj --cell nan", 2, "--cell nan: give a length"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --cell inf", 2, "--cell inf: give a length"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --cells 1", 2, "256"},
+        Refusal{SC_DEMO "--mesh %s/cube.obj --tessellate 0", 2, "--tessellate 0: give a number of cells"},
+        Refusal{SC_DEMO "--tessellate 1", 2, "--tessellate"},
         Refusal{SC_DEMO "--mesh %s/cube.obj --up x", 2, "--up x: give y or z"},
         Refusal{SC_DEMO "--up z", 2, "--up"}, Refusal{"report", 2, "softcell report needs TRACE"},
         Refusal{"report %s/file", 2, "--out"}, Refusal{"bench --filter [", 2, "regular expression"},

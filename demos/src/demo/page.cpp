@@ -85,7 +85,7 @@ Rows help(int dimension) {
                                                  : std::string(binding.does));
   }
   if (dimension == 2) {
-    rows.add("mouse", "drag a body, and throw it");
+    rows.add("mouse", "drag a body, and throw it; as a knife: cut along a line");
   } else {
     rows.add("mouse",
              "drag a body, and throw it; wheel meanwhile: farther, nearer; as a knife: cut along a line");
@@ -152,7 +152,7 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
   const auto width = static_cast<float>(page.width), height = static_cast<float>(page.height);
   if (page.look.statistics && !page.look.help && !page.look.menu)
     draw_statistics_box(page, scale, shown_per_second, page.width, page.height);
-  const bool knife = page.look.knife && page.dimension == 3, hint = !page.look.help && !page.look.menu;
+  const bool knife = page.look.knife, hint = !page.look.help && !page.look.menu;
   if (!page.notice.empty()) {
     // Beside the menu, if that is open, and above the hint.
     const float left = page.look.menu ? std::min(kMenuWidth * scale, 0.7f * width) : 0;

@@ -220,10 +220,8 @@ void Panel::draw_density(const BodyMaterial& shown, std::uint32_t changed, int d
 
 void Panel::draw_bodies(const Demo& demo, WindowInput& input) {
   if (!ImGui::CollapsingHeader("Bodies", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  if (demo.dimension() == 3) {
-    bool knife = input.look().knife;
-    if (ImGui::Checkbox("the mouse is a knife (K)", &knife)) input.do_now(Command::kKnife);
-  }
+  bool knife = input.look().knife;
+  if (ImGui::Checkbox("the mouse is a knife (K)", &knife)) input.do_now(Command::kKnife);
   const std::span<const std::string_view> shapes = demo.shapes();
   if (shapes.empty()) return;
   shape_ = std::min(shape_, static_cast<int>(shapes.size()) - 1);

@@ -32,7 +32,7 @@ class Controls {
   /// @param world   has reset(), which restores bodies and world as they were at the beginning, home(i), which does so
   ///                with soft body i, and hold(event), hold_rigid(event), move_hand(event) and release(hand) of hands
   ///                that hold more than a particle, set_material(event, i)
-  ///                of soft body i, and in 3D cut(event)
+  ///                of soft body i, and cut(event)
   template <class Bodies, class World>
   void apply(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
@@ -105,7 +105,7 @@ class Controls {
           for_each(event.body, bodies, [&](std::size_t b) { world.set_material(event, b); });
           break;
         case Action::kCut:
-          if constexpr (Dimension == 3) world.cut(event);
+          world.cut(event);
           break;
       }
     }
@@ -130,6 +130,10 @@ class Controls {
   const std::optional<Vector>& tilt() const { return tilt_; }  ///< radians; none: as the scene has it
   const Hands<Dimension>& hands() const { return hands_; }
   void forget_body(std::size_t body) { hands_.forget_body(body); }  ///< as Hands
+  template <class Follow>
+  void follow_particles(const Follow& follow) {
+    hands_.follow_particles(follow);
+  }  ///< as Hands
   bool paused() const { return paused_; }
 
  private:

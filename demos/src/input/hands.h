@@ -61,6 +61,12 @@ class Hands {
     std::erase_if(held_, [body](const Held& held) { return held.body == body; });
   }
 
+  /// Bodies have broken: @param follow  takes the body and the particle that are held, and changes them to those which they are now
+  template <class Follow>
+  void follow_particles(const Follow& follow) {
+    for (Held& held : held_) follow(held.body, held.particle);
+  }
+
   /// A particle that is held, and `target`, where the hand is.
   struct Held {
     std::uint32_t hand;

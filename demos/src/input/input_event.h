@@ -34,7 +34,8 @@ enum class Action : std::uint8_t {
   kFriction,
   kYield,  ///< makes the body plastic, if it has few enough particles; 0: elastic
   kCreep,  ///< of a plastic body
-  kCut,  ///< in 3D: a blade that reaches from `value` (m) along `edge` (m) moves by `way` (m) and cuts `body` and its pieces
+  /// A blade that reaches from `value` (m) along `edge` (m) moves by `way` (m) and cuts `body` and its pieces. In 2D it is a tip, without edge.
+  kCut,
 };
 inline constexpr int kActions = 23;
 

@@ -9,18 +9,22 @@
 
 namespace softcell::demos {
 
-Knife::Knife(Eye eye, int width, int height) : eye_(std::move(eye)), width_(width), height_(height) {
-  SC_ASSERT(eye_ && width > 0 && height > 0, "a picture of {} by {} pixels, {} an eye", width, height,
-            eye_ ? "with" : "without");
+template <int Dimension>
+Knife<Dimension>::Knife(Blade blade, int width, int height)
+    : blade_(std::move(blade)), width_(width), height_(height) {
+  SC_ASSERT(blade_ && width > 0 && height > 0, "a picture of {} by {} pixels, {} a blade", width, height,
+            blade_ ? "with" : "without");
 }
 
-bool Knife::handle(const SDL_Event& event, Look& look, std::vector<InputEvent<3>>& events) {
+template <int Dimension>
+bool Knife<Dimension>::handle(const SDL_Event& event, Look& look,
+                              std::vector<InputEvent<Dimension>>& events) {
   if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
     width_ = std::max(event.window.data1, 1);  // a window may shrink to nothing
     height_ = std::max(event.window.data2, 1);
     return false;
   }
-  if (!eye_) return false;
+  if (!blade_) return false;
   if (!look.knife) {  // put away, perhaps in the middle of a stroke
     from_.reset();
     look.stroke.reset();
@@ -49,7 +53,8 @@ bool Knife::handle(const SDL_Event& event, Look& look, std::vector<InputEvent<3>
   }
 }
 
-void Knife::show(Look& look) const {
+template <int Dimension>
+void Knife<Dimension>::show(Look& look) const {
   const auto share = [this](const Point& at) {
     return Eigen::Vector2f(static_cast<float>(at.x) / static_cast<float>(width_),
                            static_cast<float>(at.y) / static_cast<float>(height_));
@@ -57,17 +62,41 @@ void Knife::show(Look& look) const {
   look.stroke = std::array{share(*from_), share(to_)};
 }
 
-void Knife::cut(const Look& look, std::vector<InputEvent<3>>& events) const {
+template <int Dimension>
+void Knife<Dimension>::cut(const Look& look, std::vector<InputEvent<Dimension>>& events) const {
   if (std::max(std::abs(to_.x - from_->x), std::abs(to_.y - from_->y)) < kShortest) return;
-  // The parallelogram between both rays lies in the plane that one sees as a line; it is longer than all that is drawn.
-  const render::Camera camera = eye_(look);
-  const Ray first = ray_through(camera, from_->x, from_->y, width_, height_);
-  const Ray last = ray_through(camera, to_.x, to_.y, width_, height_);
-  events.push_back({.action = Action::kCut,
-                    .body = kEveryBody,
-                    .value = camera.eye,
-                    .edge = camera.far_plane * first.along,
-                    .way = camera.far_plane * last.along});
+  InputEvent<Dimension> event = blade_(look, {*from_, to_, width_, height_});
+  event.action = Action::kCut;
+  event.body = kEveryBody;
+  events.push_back(event);
+}
+
+template class Knife<2>;
+template class Knife<3>;
+
+/// The parallelogram between both rays lies in the plane that one sees as a line; it is longer than all that is drawn.
+Knife<3> knife_3d(std::function<render::Camera(const Look&)> eye, int width, int height) {
+  return {[eye = std::move(eye)](const Look& look, const Knife<3>::Stroke& stroke) {
+            const render::Camera camera = eye(look);
+            const Ray first = ray_through(camera, stroke.from.x, stroke.from.y, stroke.width, stroke.height);
+            const Ray last = ray_through(camera, stroke.to.x, stroke.to.y, stroke.width, stroke.height);
+            InputEvent<3> event;
+            event.value = camera.eye;
+            event.edge = camera.far_plane * first.along;
+            event.way = camera.far_plane * last.along;
+            return event;
+          },
+          width, height};
+}
+
+Knife<2> knife_2d(const Camera2d& camera, int width, int height) {
+  return {[camera](const Look&, const Knife<2>::Stroke& stroke) {
+            InputEvent<2> event;
+            event.value = camera.point_at(stroke.from.x, stroke.from.y, stroke.width, stroke.height);
+            event.way = camera.point_at(stroke.to.x, stroke.to.y, stroke.width, stroke.height) - event.value;
+            return event;
+          },
+          width, height};
 }
 
 }  // namespace softcell::demos

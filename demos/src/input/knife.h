@@ -1,5 +1,5 @@
 #pragma once
-// The mouse as a knife in three dimensions: a straight stroke over the window cuts what is under it.
+// The mouse as a knife: a straight stroke over the window cuts what is under it.
 
 #include <SDL.h>
 
@@ -9,38 +9,52 @@
 
 #include "input_event.h"
 #include "scene/look.h"
+#include "scene/scene_2d.h"
 #include "scene/scene_camera.h"
 
 namespace softcell::demos {
 
 /// While Look::knife is on, the left button draws a stroke, which is seen meanwhile and cuts when the button is let go. It cuts all soft
-/// bodies that are seen under it, also those that others hide.
+/// bodies that are seen under it, in three dimensions also those that others hide.
+template <int Dimension>
 class Knife {
  public:
-  /// From where the scene is seen now.
-  using Eye = std::function<render::Camera(const Look&)>;
   static constexpr int kShortest = 4;  ///< a stroke, in the units of SDL's mouse; a click cuts nothing
+  struct Point {
+    int x = 0, y = 0;
+  };
+  /// A stroke over a window of this size.
+  struct Stroke {
+    Point from, to;
+    int width = 1, height = 1;
+  };
+  /// The way of the blade: Action::kCut without a body.
+  using Blade = std::function<InputEvent<Dimension>(const Look&, const Stroke&)>;
 
   /// Cuts nothing.
   Knife() = default;
   /// @param width, height  of the window, in the units in which SDL gives the mouse
-  Knife(Eye eye, int width, int height);
+  Knife(Blade blade, int width, int height);
 
   /// Appends what the event means.
   /// @return true: the event was the knife's
-  bool handle(const SDL_Event& event, Look& look, std::vector<InputEvent<3>>& events);
+  bool handle(const SDL_Event& event, Look& look, std::vector<InputEvent<Dimension>>& events);
 
  private:
-  struct Point {
-    int x = 0, y = 0;
-  };
   void show(Look& look) const;
-  void cut(const Look& look, std::vector<InputEvent<3>>& events) const;
+  void cut(const Look& look, std::vector<InputEvent<Dimension>>& events) const;
 
-  Eye eye_;
+  Blade blade_;
   int width_ = 1, height_ = 1;
   std::optional<Point> from_;  // none: nothing is being cut
   Point to_;
 };
+
+/// @param eye  from where the scene is seen now
+Knife<3> knife_3d(std::function<render::Camera(const Look&)> eye, int width, int height);
+Knife<2> knife_2d(const Camera2d& camera, int width, int height);
+
+extern template class Knife<2>;
+extern template class Knife<3>;
 
 }  // namespace softcell::demos

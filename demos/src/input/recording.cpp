@@ -58,7 +58,7 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "friction", .body = true},
     {.name = "yield", .body = true},
     {.name = "creep", .body = true},
-    {.name = "cut", .body = true, .value = true, .blade = true, .lowest_dimension = 3},
+    {.name = "cut", .body = true, .value = true, .blade = true},
 }};
 
 /// A number of 32 bits that has a name when it is the largest: kUsersHand, kEveryBody.
@@ -87,7 +87,8 @@ void append_line(std::string& text, const RecordedEvent<Dimension>& recorded) {
     for (int i = 0; i < Dimension; ++i) fmt::format_to(std::back_inserter(text), " {}", vector[i]);
   };
   if (syntax.value) append_vector(event.value);
-  if (syntax.blade) append_vector(event.edge), append_vector(event.way);
+  if (syntax.blade && Dimension == 3) append_vector(event.edge);
+  if (syntax.blade) append_vector(event.way);
   if (number_of(event.action) != nullptr) fmt::format_to(std::back_inserter(text), " {}", event.value[0]);
   text += '\n';
 }
@@ -227,7 +228,8 @@ InputEvent<Dimension> read_event(Reader& reader) {
     for (int i = 0; i < Dimension; ++i) vector[i] = reader.coordinate();
   };
   if (found->value) read_vector(event.value);
-  if (found->blade) read_vector(event.edge), read_vector(event.way);
+  if (found->blade && Dimension == 3) read_vector(event.edge);
+  if (found->blade) read_vector(event.way);
   if (const NumberRange* const number = number_of(event.action)) {
     const float value = event.value[0] = reader.coordinate();
     if (value < number->low || value > number->high || (number->whole && value != std::floor(value))) {

@@ -63,6 +63,7 @@ void UserInput<Dimension>::handle(const SDL_Event& event) {
       return;
     pointing_.tilt.handle(event);
   } else {
+    if (pointing_.knife.handle(event, look_, coming_)) return;
     pointing_.hand.handle(event, coming_);
   }
   if (const auto command = command_of(event, Dimension); command && !handle_command(*command))

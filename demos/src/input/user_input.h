@@ -61,18 +61,19 @@ class WindowInput {
   bool quit_ = false, next_scene_ = false, save_ = false, remove_ = false;
 };
 
-/// The pointing devices: the mouse, which is a hand in both dimensions, and in three what tilts the ground. In
-/// three dimensions the mouse may also be a knife, and one that holds nothing moves the camera.
+/// The pointing devices: the mouse, which is a hand or a knife, and in three dimensions what tilts the ground. There a mouse that holds
+/// nothing moves the camera.
 template <int Dimension>
 struct Pointing;
 template <>
 struct Pointing<2> {
   MouseHand hand;
+  Knife<2> knife = {};
 };
 template <>
 struct Pointing<3> {
   GroundTilt tilt;
-  Knife knife;
+  Knife<3> knife;
   MouseReach hand;
   CameraControl camera;
 };

@@ -14,6 +14,7 @@
 
 #include "attachment_placement.h"
 #include "beginning.h"
+#include "breaking.h"
 #include "rigid_body.h"
 #include "scripted_input.h"
 #include "softcell/render/camera.h"
@@ -25,23 +26,6 @@
 
 namespace softcell::demos {
 
-/// Where a body that breaks is weaker, or stronger: cells whose middles are in a slab about a plane.
-struct StrengthSlab {
-  Eigen::Vector3f point{0, 0, 0};   ///< metres, as the body's mesh has it
-  Eigen::Vector3f normal{0, 1, 0};  ///< of any length but 0
-  float thickness = 0;              ///< metres
-  float strength = 1;               ///< by which the limits of its fracture are multiplied, 0 or above
-
-  bool operator==(const StrengthSlab&) const = default;
-};
-
-/// A plane or a stroke that cuts a soft body, and all of its pieces.
-struct ScriptedCut {
-  float time = 0;        ///< seconds
-  std::size_t body = 0;  ///< number of the soft body
-  ppu::Cut where;
-};
-
 struct SoftBodyPlacement {
   std::string name;
   ppu::TriangleMesh mesh;
@@ -51,7 +35,7 @@ struct SoftBodyPlacement {
   float twist = 0;
   render::Colour colour{0.8f, 0.8f, 0.8f};
   bool own_materials = false;  ///< the mesh's materials are drawn, where it has any, in place of `colour`
-  std::vector<StrengthSlab> strengths = {};  ///< of several slabs the weakest counts
+  std::vector<StrengthSlab<3>> strengths = {};  ///< of several slabs the weakest counts
 };
 
 struct RigidBox {
@@ -106,7 +90,7 @@ struct Scene {
   render::Camera camera;
   render::Light light;
   ScriptedInput<3> script;
-  std::vector<ScriptedCut> cuts;
+  std::vector<ScriptedCut<3>> cuts;
   std::vector<int> pictures;                 ///< frames worth a picture, ascending
   std::vector<std::filesystem::path> files;  ///< that it was read from: nothing may be written there
   std::vector<std::string> notes;  ///< for the user, a sentence each: what of its meshes was not read

@@ -11,6 +11,7 @@
 
 #include "attachment_placement.h"
 #include "beginning.h"
+#include "breaking.h"
 #include "scripted_input.h"
 #include "softcell/render/frame.h"
 #include "softcell/render/image.h"
@@ -47,6 +48,7 @@ struct SoftBody2dPlacement {
   std::vector<ColouredCells2d> coloured_cells = {};  ///< of several with a cell the last counts
   std::optional<Face2d> face = {};
   std::shared_ptr<const Picture2d> picture = {};  ///< none: it is drawn in its colours
+  std::vector<StrengthSlab<2>> strengths = {};    ///< of several slabs the weakest counts
 
   /// The lattice, the middle of its box at 0. @throws std::runtime_error  as lattice_from_cells().
   ppu::Lattice<2> lattice() const;
@@ -95,6 +97,7 @@ struct Scene2d {
   int frames = 300;       ///< how long the scene is worth watching without a user
   Camera2d camera;
   ScriptedInput<2> script;
+  std::vector<ScriptedCut<2>> cuts;
   std::vector<int> pictures;                      ///< frames worth a picture, ascending
   std::vector<std::filesystem::path> files;       ///< that it was read from: nothing may be written there
   std::shared_ptr<const Beginning<2>> begin;      ///< null: bodies begin at rest in their own shape

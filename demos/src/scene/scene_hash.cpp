@@ -74,10 +74,12 @@ class Hash {
     const auto& [name, mesh, settings, position, twist, colour, own_materials, strengths] = body;
     add(mesh, settings, position);
     add_unless(twist, 0.0f);
-    for (const StrengthSlab& slab : strengths) {
-      const auto& [point, normal, thickness, strength] = slab;
+    add_strengths(strengths);
+  }
+  template <int Dimension>
+  void add_strengths(const std::vector<StrengthSlab<Dimension>>& strengths) {
+    for (const auto& [point, normal, thickness, strength] : strengths)
       add('s', point, normal, thickness, strength);
-    }
   }
   void add(const RigidBox& box) {
     const auto& [size, mass, position, rotation, colour, opacity, pattern, wall] = box;
@@ -123,9 +125,10 @@ class Hash {
     add(amplitude_x, amplitude_z, period_x, period_z, begin);
   }
   void add(const SoftBody2dPlacement& body) {
-    const auto& [name, cells, settings, position, contact_radius, colour, coloured_cells, face, picture] =
-        body;
+    const auto& [name, cells, settings, position, contact_radius, colour, coloured_cells, face, picture,
+                 strengths] = body;
     add(cells, settings, position, contact_radius);
+    add_strengths(strengths);
   }
   void add(const Box2dShape& box) { add(box.size); }
   void add(const CircleShape& circle) { add(circle.radius); }
@@ -168,19 +171,21 @@ std::uint64_t scene_hash(const Scene& scene) {
   if (!joints.empty()) hash.add('j', joints);
   hash.add_unless(static_cast<int>(sleep), 0);
   if (begin) hash.add('b', *begin);
-  for (const ScriptedCut& cut : cuts)
+  for (const ScriptedCut<3>& cut : cuts)
     hash.add('c', cut.time, cut.body, cut.where.corner, cut.where.along, cut.where.across, cut.where.has_end);
   return hash.value();
 }
 
 std::uint64_t scene_hash(const Scene2d& scene) {
   const auto& [name, title, soft_bodies, rigid_bodies, attachments, gravity, friction, restitution, substeps,
-               frames, camera, script, pictures, files, begin, document] = scene;
+               frames, camera, script, cuts, pictures, files, begin, document] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   if (!attachments.empty()) hash.add('a', attachments);
   if (begin) hash.add('b', *begin);
+  for (const ScriptedCut<2>& cut : cuts)
+    hash.add('c', cut.time, cut.body, cut.where.from, cut.where.way, cut.where.has_end);
   return hash.value();
 }
 

@@ -196,6 +196,7 @@ void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   scene.soft_bodies.erase(scene.soft_bodies.begin() + static_cast<std::ptrdiff_t>(body));
   erase_of_body(scene.script.impulses, body);
   erase_of_body(scene.script.drags, body);
+  erase_of_body(scene.cuts, body);
   auto begin = scene.begin ? std::make_shared<Beginning<Dimension>>(*scene.begin) : nullptr;
   erase_attachments<Dimension>(scene.attachments, body, begin ? &begin->ended_attachments : nullptr);
   if (begin && body < begin->soft_bodies.size())
@@ -266,10 +267,7 @@ void add_shape(Scene2d& scene, std::string_view shape, const NewBody<2>& body) {
   add_item(scene, std::move(item), {});
 }
 
-void remove_body(Scene& scene, std::size_t body) {
-  remove_from<3>(scene, body, "own_model_side");
-  erase_of_body(scene.cuts, body);
-}
+void remove_body(Scene& scene, std::size_t body) { remove_from<3>(scene, body, "own_model_side"); }
 void remove_body(Scene2d& scene, std::size_t body) { remove_from<2>(scene, body, "own_image_side"); }
 
 void set_density(Scene& scene, std::size_t body, float density) { set_density_of(scene, body, density); }

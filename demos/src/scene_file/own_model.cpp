@@ -77,6 +77,7 @@ std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
   ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
   check_lattice(options, model.mesh, longest, cell);
   model.cell_size = static_cast<float>(cell);
+  model.tessellation = options.tessellation;
   return model;
 }
 

@@ -8,11 +8,15 @@
 
 namespace softcell::demos {
 
+/// Of the longest edge of a tessellated mesh, in cells.
+inline constexpr float kLeastTessellation = 0.125f, kMostTessellation = 100;
+
 struct OwnModelOptions {
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
   bool z_up = false;                          ///< its z axis points upwards, not its y axis
   int cells = 8;                              ///< along the model's longest side
   std::optional<double> cell;  ///< their size in the model's own units, above 0, in place of `cells`
+  std::optional<float> tessellation = {};  ///< longer edges of its triangles are halved: cells
 };
 
 /// @return the model, centred; none when the options give none.

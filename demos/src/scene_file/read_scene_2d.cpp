@@ -11,6 +11,7 @@
 #include "ppu/numbers/deterministic_math.h"
 #include "read_attachment.h"
 #include "read_begin.h"
+#include "read_breaking.h"
 #include "read_common.h"
 #include "read_lattice_2d.h"
 #include "read_material.h"
@@ -235,6 +236,7 @@ bool read_soft_body(const Value& value, std::size_t index, LatticeFiles& lattice
       .number("own_image_side", own_image_side, kLength);
   read_cell_colours(fields, body);
   body.face = read_face(fields);
+  read_strengths<2>(fields, body.strengths);
   check_name(fields, scene);
   const bool replaced = picture != nullptr && own_image_side;
   Material material =
@@ -324,6 +326,7 @@ Scene2d read_scene_2d(FieldReader& root, const SceneSource& source,
   read_attachments(root.items("attach", kMaxAttachments), scene);
   scene.begin = read_begin<2>(begin, source, particles, scene);
   read_script<2>(root, scene);
+  read_cuts<2>(root.items("cut", kMaxEvents), scene);
   if (camera != nullptr) {
     FieldReader(*camera, "camera")
         .vector<2>("centre", scene.camera.centre, kCoordinate)

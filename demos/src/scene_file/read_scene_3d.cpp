@@ -9,14 +9,17 @@
 #include <string_view>
 #include <vector>
 
+#include "own_model.h"
 #include "read_attachment.h"
 #include "read_begin.h"
+#include "read_breaking.h"
 #include "read_common.h"
 #include "read_material.h"
 #include "read_mesh.h"
 #include "read_rigid_body.h"
 #include "scene/scene_camera.h"
 #include "softcell/base/assert.h"
+#include "softcell/soft_bodies/tessellate.h"
 
 namespace softcell::demos {
 namespace {
@@ -24,6 +27,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::array<std::string_view, 2> kPatterns{"plain", "tiles"};
+constexpr Range kTessellation{.low = double{kLeastTessellation}, .high = double{kMostTessellation}};
 constexpr Range kTwist{.low = -1000, .high = 1000};  // rad/s
 constexpr Range kOwnModelSide{.low = kLeastCellSize * ppu::kMaxLatticeCellsPerAxis, .high = kFar};
 
@@ -126,24 +130,6 @@ std::size_t count_particles(const SoftBodyPlacement& body, const Place& place) {
   }
 }
 
-/// Where the body is weaker or stronger than its material.
-void read_strengths(FieldReader& fields, SoftBodyPlacement& body) {
-  constexpr std::size_t kMaxSlabs = 64;
-  constexpr Range kStrength{.low = 0, .high = 1000};
-  const auto slabs = fields.items("strength", kMaxSlabs);
-  for (std::size_t i = 0; i < slabs.size(); ++i) {
-    StrengthSlab& slab = body.strengths.emplace_back();
-    FieldReader of_slab(slabs[i], fmt::format("strength {} of {}", i + 1, fields.what()));
-    of_slab.vector<3>("point", slab.point, kCoordinate)
-        .vector<3>("normal", slab.normal, kCoordinate)
-        .number("thickness", slab.thickness, kLength, Need::kRequired)
-        .number("factor", slab.strength, kStrength, Need::kRequired)
-        .finish();
-    if (slab.normal.norm() < 1e-4f)
-      throw SceneError(of_slab.place("normal"), "normal of " + of_slab.what() + " must not be 0");
-  }
-}
-
 /// The material with which pieces of the mesh draw what was inside. A body of one colour stays so elsewhere.
 void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
   ppu::TriangleMesh& mesh = body.mesh;
@@ -156,12 +142,21 @@ void add_cut_material(const Vector3f& colour, SoftBodyPlacement& body) {
   cut.base_colour = Eigen::Vector4f(colour.x(), colour.y(), colour.z(), 1);
 }
 
+/// Has the mesh bend with the lattice. @param longest_edge  metres
+void tessellate_mesh(float longest_edge, const Place& place, ppu::TriangleMesh& mesh) {
+  try {
+    mesh = ppu::tessellate(mesh, longest_edge);
+  } catch (const std::invalid_argument& error) {
+    throw SceneError(place, error.what());
+  }
+}
+
 /// @return whether the model has taken the body's place.
 bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, const Materials& materials,
                     const OwnModel* model, Scene& scene) {
   FieldReader fields(value, item_name("soft body", index, stated_name(value)));
   SoftBodyPlacement& body = scene.soft_bodies.emplace_back();
-  std::optional<float> own_model_side, above;
+  std::optional<float> own_model_side, above, tessellation;
   std::optional<Vector3f> cut_colour;
   bool contacts = true;
   body.name = "body " + std::to_string(index + 1);
@@ -172,8 +167,9 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
       .number("above", above, kCoordinate)
       .number("own_model_side", own_model_side, kOwnModelSide)
       .number("twist", body.twist, kTwist)
+      .number("tessellate", tessellation, kTessellation)
       .flag("contacts", contacts);
-  read_strengths(fields, body);
+  read_strengths<3>(fields, body.strengths);
   check_name(fields, scene);
   const bool replaced = model != nullptr && own_model_side;
   Material material = materials.read(fields, replaced ? Need::kOptional : Need::kRequired);
@@ -183,8 +179,10 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   if (replaced) {
     take_place(body, *model, *own_model_side);
     material.settings.cell_size = body.settings.cell_size;
+    tessellation = model->tessellation;
   }
   rotate(body.mesh, rotation);
+  if (tessellation) tessellate_mesh(*tessellation * material.settings.cell_size, value.place, body.mesh);
   if (cut_colour) add_cut_material(*cut_colour, body);
   body.settings = material.settings_for(step_of(scene));
   body.settings.contacts = contacts;
@@ -232,30 +230,6 @@ void read_attachments(std::span<const Value> items, std::size_t first_box, Scene
       attachment.box = first_box + static_cast<std::size_t>(box) - 1;
     }
     read_attachment(fields, scene, attachment);
-  }
-}
-
-/// Planes and strokes that cut bodies, after the soft bodies.
-void read_cuts(std::span<const Value> items, Scene& scene) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    FieldReader fields(items[i], item_name("cut", i));
-    ScriptedCut& cut = scene.cuts.emplace_back();
-    Vector3f point{0, 0, 0}, normal{1, 0, 0}, edge{0, 0, 0}, way{0, 0, 0};
-    cut.body = read_body(fields, scene);
-    fields.number("time", cut.time, kTime, Need::kRequired)
-        .vector<3>("point", point, kCoordinate, Need::kRequired)
-        .vector<3>("normal", normal, kCoordinate)
-        .vector<3>("edge", edge, kCoordinate)
-        .vector<3>("way", way, kCoordinate)
-        .finish();
-    if (fields.has("edge") != fields.has("way") || fields.has("edge") == fields.has("normal"))
-      throw SceneError(items[i].place, fields.what() + " needs a normal, or an edge and a way");
-    const bool plane = fields.has("normal");
-    if ((plane ? normal.norm() : edge.cross(way).norm()) < 1e-6f)
-      throw SceneError(items[i].place,
-                       plane ? "normal of " + fields.what() + " must not be 0"
-                             : fields.what() + " has no area: its edge and way are along one line");
-    cut.where = plane ? ppu::Cut::plane(point, normal) : ppu::Cut::stroke(point, edge, way);
   }
 }
 
@@ -353,7 +327,7 @@ Scene read_scene_3d(FieldReader& root, const SceneSource& source, const std::opt
   scene.notes = files.notes();
   read_attachments(attachments, first_box, scene);
   read_script<3>(root, scene);
-  read_cuts(cuts, scene);
+  read_cuts<3>(cuts, scene);
   if (camera != nullptr) read_camera(*camera, scene.camera);
   if (camera == nullptr) scene.camera.eye = {1.9f, 2.2f, 4.2f};  // from where frame_bodies() looks
   if (camera == nullptr || model) frame_bodies(scene);

@@ -195,6 +195,8 @@ void save_files_of_bodies(const SceneOf& scene, SavedScene& saved, std::string_v
     set_field(table, "longest_side", longest);
     set_field(table, own, text_value(saved.own_file()));
     if (scene.document->own->z_up) set_field(table, "up", text_value("z"));
+    if (const auto& tessellation = scene.document->own->tessellation)
+      set_field(table, "tessellate", number_value(*tessellation));
     set_field(table, "cell_size", number_value(cell_size));
   }
 }

@@ -11,7 +11,8 @@ namespace softcell::demos {
 /// The file of --mesh or --image, which takes the place of a body.
 struct OwnFile {
   std::filesystem::path file;
-  bool z_up = false;  ///< of a model
+  bool z_up = false;                       ///< of a model
+  std::optional<float> tessellation = {};  ///< of a model, cells
 };
 
 struct SceneDocument {

@@ -52,7 +52,8 @@ std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
   }
   Scene scene = read_scene_3d(root, source, model);
   scene.files = source.files();
-  if (model) document->own = OwnFile{.file = model->file, .z_up = model->z_up};
+  if (model)
+    document->own = OwnFile{.file = model->file, .z_up = model->z_up, .tessellation = model->tessellation};
   scene.document = std::move(document);
   return scene;
 }

@@ -28,6 +28,14 @@ typename Controls<Dimension>::Initial initial_controls(const SceneOf& scene) {
   return initial;
 }
 
+/// Why a moment of a run is none to begin with.
+inline std::string has_broken(const std::string& scene, const std::string& body) {
+  return fmt::format(
+      "the scene {} cannot be saved or changed: '{}' has broken, and a scene file has whole bodies only; "
+      "reset the scene first",
+      scene, body);
+}
+
 /// Puts the particles where the scene begins with them.
 /// @throws std::runtime_error  the state is of another body
 template <int Dimension>

@@ -2,8 +2,11 @@
 // A hand's hold on one body, soft or rigid, and how hard hands pull.
 
 #include <Eigen/Core>
+#include <memory>
+#include <span>
 
 #include "softcell/base/assert.h"
+#include "softcell/soft_bodies/fracture.h"
 
 namespace softcell::demos {
 
@@ -31,8 +34,12 @@ class Grip {
   /// @param gravity  m/s^2, that the substep will add  @pre step > 0
   virtual void pull(const HandMotion<Dimension>& hand, const Vector& gravity, float step) = 0;
 
-  /// Whether it holds this soft body of three dimensions, which may break. @param body  its address
+  /// Whether it holds this soft body, which may break. @param body  its address
   virtual bool holds(const void* /*body*/) const { return false; }
+  /// Bodies have broken, in this order. @return the grip on the piece that has what is held; null: this one goes on as it is
+  virtual std::unique_ptr<Grip> follow(std::span<const ppu::BrokenBody<Dimension>> /*broken*/) const {
+    return nullptr;
+  }
 
   /// Changes the body's velocities as it is thrown: see HandStrength::throw_aid(). @param velocity  the hand's, m/s
   virtual void let_go(const Vector& velocity) = 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,11 @@ class HeldBodies {
   /// The body has broken, or is gone. @param body  its address
   void forget(const void* body) {
     std::erase_if(hands_, [body](const Hand& held) { return held.grip->holds(body); });
+  }
+  /// Bodies have broken, in this order: hands go on with what they held.
+  void follow(std::span<const ppu::BrokenBody<Dimension>> broken) {
+    for (Hand& hand : hands_)
+      if (auto grip = hand.grip->follow(broken)) hand.grip = std::move(grip);
   }
   /// What was held stays as it is.
   void release_all() { hands_.clear(); }

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -19,6 +21,7 @@
 
 #include "beginning_of.h"
 #include "changed_material.h"
+#include "followed_particle.h"
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
@@ -174,10 +177,16 @@ Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
       bodies.size(),
       [&](std::size_t i, std::size_t j) {
         return bodies[i].settings == bodies[j].settings && bodies[i].cells == bodies[j].cells &&
-               bodies[i].contact_radius == bodies[j].contact_radius;
+               bodies[i].contact_radius == bodies[j].contact_radius &&
+               bodies[i].strengths == bodies[j].strengths;
       },
       [&](std::size_t i) {
-        return ppu::make_soft_body_model(bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius);
+        const std::vector<StrengthSlab<2>>& strengths = bodies[i].strengths;
+        if (strengths.empty())
+          return ppu::make_soft_body_model(bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius);
+        return ppu::make_soft_body_model(
+            bodies[i].lattice(), bodies[i].settings, bodies[i].contact_radius,
+            [&strengths](const Vector2f& at) { return strength_at<2>(strengths, at); });
       });
 }
 
@@ -209,9 +218,53 @@ struct Simulation2d::State {
     if (event.body < scene.rigid_bodies.size() && scene.rigid_bodies[event.body].mass > 0)
       held.hold(event.hand, std::make_unique<RigidGrip2d>(*world->rigid_bodies[event.body], event.value));
   }
+  /// Of a body and of all of its pieces, once.
   void set_material(const InputEvent<2>& event, std::size_t body) {
-    ppu::SoftBody<2>& soft = world->soft_bodies[body];
-    soft.set_material(changed_material(soft, event, substep()));
+    if (event.body != kEveryBody && body >= models.size()) return;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (event.body == kEveryBody ? b == body : sources[b] == body)
+        bodies[b].set_material(changed_material(bodies[b], event, substep()));
+  }
+  /// What a user or a recording cuts. No effect: a way of no length.
+  void cut(const InputEvent<2>& event) {
+    if (!(event.way.cast<double>().norm() > 0)) return;
+    cut(ppu::Cut2d::stroke(event.value, event.way),
+        event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
+  }
+  /// What the scene cuts at the beginning of a frame.
+  void cut_as_planned(std::int64_t at_frame) {
+    for (const ScriptedCut<2>& planned : scene.cuts)
+      if (std::llround(double{planned.time} * 60) == at_frame) cut(planned.where, planned.body);
+  }
+  /// Pieces come some steps later, or at once in a pause, in which there are none.
+  /// @param source  the scene's body whose pieces are cut; none: all bodies are
+  void cut(const ppu::Cut2d& where, std::optional<std::size_t> source) {
+    for (std::size_t b = 0, count = bodies.size(); b < count; ++b) {
+      if (source && sources[b] != *source) continue;
+      if (controls.paused())
+        world->soft_bodies.cut(bodies[b], where);
+      else
+        world->soft_bodies.begin_cut(bodies[b], where);
+    }
+    note_broken();
+  }
+  /// After a step or a cut: pieces come behind all other bodies, and hands go on with the piece that has what they hold.
+  void note_broken() {
+    const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.take_broken();
+    for (const ppu::BrokenSoftBody2d& one : broken)
+      sources.insert(sources.end(), one.pieces.size(), sources[number_of(*one.body)]);
+    SC_ASSERT(sources.size() == bodies.size(), "the sources of {} soft bodies of {}", sources.size(),
+              bodies.size());
+    held.follow(broken);
+    controls.follow_particles([&](std::size_t& body, std::size_t& particle) {
+      FollowedParticle<2> now{&bodies[body], static_cast<std::uint32_t>(particle)};
+      if (now.follow(broken)) body = number_of(*now.body), particle = now.number;
+    });
+  }
+  std::size_t number_of(const ppu::SoftBody<2>& soft) const {
+    std::size_t body = 0;
+    while (&bodies[body] != &soft) ++body;
+    return body;
   }
   int substeps_of_frame() const { return controls.substeps(scene.substeps); }
   /// Seconds of one.
@@ -222,10 +275,33 @@ struct Simulation2d::State {
     held.release_all();
     SC_ASSERT(solver != nullptr, "scene '{}' has no solver", scene.name);
     world.emplace(scene, models, *solver);
+    sources.resize(models.size());
+    std::iota(sources.begin(), sources.end(), std::size_t{0});
   }
   void home(std::size_t body) {
-    SC_ASSERT(body < scene.soft_bodies.size(), "body {} of {}", body, scene.soft_bodies.size());
-    world->soft_bodies[body].reset(scene.soft_bodies[body].position);
+    SC_ASSERT(body < sources.size(), "body {} of {}", body, sources.size());
+    body = sources[body];
+    make_whole(body);
+    bodies[body].reset(scene.soft_bodies[body].position);
+  }
+  /// Its pieces go.
+  void make_whole(std::size_t body) {
+    SC_ASSERT(body < models.size(), "body {} of {} is made whole", body, models.size());
+    for (std::size_t b = bodies.size(); b-- > models.size();) {
+      if (sources[b] != body) continue;
+      let_go(b);
+      for (std::size_t after = b + 1; after < bodies.size(); ++after)
+        let_go(after);  // they get other numbers
+      world->soft_bodies.remove(bodies[b]);
+      sources.erase(sources.begin() + static_cast<std::ptrdiff_t>(b));
+    }
+    if (bodies[body].shared_model() == models[body]) return;
+    let_go(body);
+    bodies[body] = ppu::SoftBody<2>(models[body]);
+  }
+  void let_go(std::size_t body) {
+    controls.forget_body(body);
+    held.forget(&bodies[body]);
   }
 
   std::chrono::nanoseconds waited() const {
@@ -240,7 +316,9 @@ struct Simulation2d::State {
   };
 
   const Scene2d& scene;
-  Models models;
+  Models models;  // of the scene's soft bodies before they break
+  // Of each soft body: the number of the scene's that it is, or is a piece of. Pieces come behind the scene's.
+  std::vector<std::size_t> sources;
   ScriptPlayer<2> script;
   Controls<2> controls;
   const ls_sim::Timing* timing;  // null: nothing is timed
@@ -261,10 +339,12 @@ Simulation2d::~Simulation2d() = default;
 FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   State& s = *state_;
   const auto begin = std::chrono::steady_clock::now();
-  const auto scripted = s.script.events_at(s.frame++);
+  const std::int64_t at_frame = s.frame++;
+  const auto scripted = s.script.events_at(at_frame);
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
   s.controls.apply(s.events, s.bodies, s);
+  s.cut_as_planned(at_frame);
   const int substeps = s.controls.due_substeps(s.substeps_of_frame());
   if (substeps == 0) return {};
 
@@ -277,6 +357,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
     s.controls.hands().pull(s.bodies);
     s.held.pull(i, substeps, s.controls.gravity(), s.substep());
     world.soft_bodies.step(s.substep());
+    s.note_broken();
   }
 
   // The SPEs work on the next frame's first step while this frame is drawn.
@@ -305,14 +386,15 @@ std::vector<ls_sim::SpeStatistics> Simulation2d::spe_statistics() const {
 
 std::span<const InputEvent<2>> Simulation2d::last_events() const { return state_->events; }
 
-std::size_t Simulation2d::soft_bodies() const { return state_->models.size(); }
+std::size_t Simulation2d::soft_bodies() const { return state_->bodies.size(); }
+std::size_t Simulation2d::source(std::size_t body) const { return state_->sources.at(body); }
 std::size_t Simulation2d::bodies_on_ppu() const {
   return state_->spes ? state_->spes->solver.bodies_on_ppu() : soft_bodies();
 }
 
 std::size_t Simulation2d::particles() const {
   std::size_t sum = 0;
-  for (const auto& model : state_->models) sum += model->particles();
+  for (std::size_t b = 0; b < soft_bodies(); ++b) sum += soft_body(b).positions().size();
   return sum;
 }
 
@@ -372,9 +454,12 @@ const Vector2f& Simulation2d::gravity() const { return state_->controls.gravity(
 
 void Simulation2d::show(Shown2d& shown) const {
   shown.particles.resize(soft_bodies());
+  shown.models.resize(soft_bodies());
+  shown.sources = state_->sources;
   for (std::size_t b = 0; b < soft_bodies(); ++b) {
     const auto positions = soft_body(b).positions();
     shown.particles[b].assign(positions.begin(), positions.end());
+    shown.models[b] = soft_body(b).shared_model();
   }
   shown.rigid_poses.clear();
   for (std::size_t i = 0; i < state_->scene.rigid_bodies.size(); ++i)
@@ -401,6 +486,10 @@ void Simulation2d::show(Shown2d& shown) const {
 
 Beginning<2> Simulation2d::moment() const {
   const State& s = *state_;
+  for (std::size_t b = 0; b < soft_bodies(); ++b)
+    if (soft_body(b).shared_model() != s.models[s.sources[b]] ||
+        s.world->soft_bodies.is_breaking(soft_body(b)))
+      throw std::runtime_error(has_broken(s.scene.name, s.scene.soft_bodies[s.sources[b]].name));
   Beginning<2> now{.gravity = s.controls.gravity(),
                    .tilt = {},
                    .time_scale = s.controls.time_scale(),

@@ -37,12 +37,15 @@ class Simulation2d {
   /// The events that the last step() applied: the script's, then those of the caller.
   std::span<const InputEvent<2>> last_events() const;
 
+  /// The scene's soft bodies and, behind them, the pieces of those that have broken.
   std::size_t soft_bodies() const;
+  /// The number of the scene's soft body that a body is, or is a piece of.
+  std::size_t source(std::size_t body) const;
   /// How many of them the PPU steps: all with Solver::kReference, else those that fit no local store.
   std::size_t bodies_on_ppu() const;
   std::size_t particles() const;
   std::size_t rigid_bodies() const;  ///< that can move
-  /// Valid until the next step(), which may reset the world.
+  /// Valid until the next step(), which may reset the world or take a piece away.
   const ppu::SoftBody<2>& soft_body(std::size_t body) const;
   Pose2d rigid_pose(std::size_t body) const;  ///< of Scene2d::rigid_bodies
   /// What a hand at a point takes: Action::kHoldRigid of a rigid body that moves and is there, else Action::kHold of the
@@ -60,6 +63,7 @@ class Simulation2d {
   void show(Shown2d& shown) const;
 
   /// Everything as it is now, for a scene that begins with it. Hands hold nothing in it, and a pause has ended.
+  /// @throws std::runtime_error  a soft body has broken
   Beginning<2> moment() const;
 
   /// 64-bit hash over positions and velocities of all particles.

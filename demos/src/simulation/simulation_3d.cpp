@@ -88,17 +88,6 @@ bool puts_elsewhere(std::span<const InputEvent<3>> events) {
   });
 }
 
-float strength_at(const std::vector<StrengthSlab>& slabs, const Eigen::Vector3f& at) {
-  float least = 1;
-  bool in_one = false;
-  for (const StrengthSlab& slab : slabs) {
-    if (std::abs((at - slab.point).dot(slab.normal)) > 0.5f * slab.thickness * slab.normal.norm()) continue;
-    least = in_one ? std::min(least, slab.strength) : slab.strength;
-    in_one = true;
-  }
-  return least;
-}
-
 std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models_of(
     const std::vector<SoftBodyPlacement>& bodies) {
   return shared_models(
@@ -108,7 +97,7 @@ std::vector<std::shared_ptr<const ppu::SoftBodyModel<3>>> models_of(
                bodies[i].mesh == bodies[j].mesh;
       },
       [&](std::size_t i) {
-        const std::vector<StrengthSlab>& strengths = bodies[i].strengths;
+        const std::vector<StrengthSlab<3>>& strengths = bodies[i].strengths;
         if (strengths.empty()) return ppu::make_soft_body_model(bodies[i].mesh, bodies[i].settings);
         return ppu::make_soft_body_model(
             bodies[i].mesh, bodies[i].settings,
@@ -303,11 +292,7 @@ struct Simulation3d::State {
   Beginning<3> moment() const {
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
       if (soft_bodies[b].shared_model() != whole[sources[b]] || soft_bodies.is_breaking(soft_bodies[b]))
-        throw std::runtime_error(
-            fmt::format("the scene {} cannot be saved or changed: '{}' has broken, and a scene file has "
-                        "whole bodies only; "
-                        "reset the scene first",
-                        scene.name, scene.soft_bodies[sources[b]].name));
+        throw std::runtime_error(has_broken(scene.name, scene.soft_bodies[sources[b]].name));
     Beginning<3> now{.gravity = controls.gravity(),
                      .tilt = controls.tilt(),
                      .time_scale = controls.time_scale(),
@@ -423,7 +408,7 @@ struct Simulation3d::State {
 
   /// What the scene cuts at the beginning of a frame.
   void cut_as_planned(std::int64_t at_frame) {
-    for (const ScriptedCut& planned : scene.cuts)
+    for (const ScriptedCut<3>& planned : scene.cuts)
       if (std::llround(double{planned.time} * 60) == at_frame) cut(planned.where, planned.body);
   }
   /// Pieces come some substeps later, or at once in a pause, in which there are none.

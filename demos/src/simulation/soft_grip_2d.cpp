@@ -1,5 +1,10 @@
 #include "soft_grip_2d.h"
 
+#include <memory>
+#include <span>
+
+#include "followed_particle.h"
+
 namespace softcell::demos {
 
 using Eigen::Vector2f;
@@ -12,6 +17,12 @@ void SoftGrip2d::pull(const HandMotion<2>& hand, const Vector2f& gravity, float 
                           .velocity = body_.velocities()[particle_].cast<double>(),
                           .at_rest = grip_.rest().positions[particle_].cast<double>()};
   grip_.pull(held, hand, gravity, step);
+}
+
+std::unique_ptr<Grip<2>> SoftGrip2d::follow(std::span<const ppu::BrokenSoftBody2d> broken) const {
+  FollowedParticle<2> held{&body_, particle_};
+  if (!held.follow(broken)) return nullptr;
+  return std::make_unique<SoftGrip2d>(*held.body, held.number);
 }
 
 void SoftGrip2d::let_go(const Vector2f& velocity) { grip_.let_go(velocity); }

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
+#include <span>
 
 #include "grip.h"
 #include "patch_grip.h"
@@ -21,6 +23,8 @@ class SoftGrip2d final : public Grip<2> {
   Eigen::Vector2f point() const override { return body_.position(particle_); }
   void pull(const HandMotion<2>& hand, const Eigen::Vector2f& gravity, float step) override;
   void let_go(const Eigen::Vector2f& velocity) override;
+  bool holds(const void* body) const override { return &body_ == body; }
+  std::unique_ptr<Grip<2>> follow(std::span<const ppu::BrokenSoftBody2d> broken) const override;
 
   float patch_radius() const { return grip_.patch().radius; }  ///< metres, along the body
 

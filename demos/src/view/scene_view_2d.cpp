@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <span>
+#include <utility>
 #include <variant>
 
 #include "rope_drawing.h"
@@ -43,11 +44,10 @@ SceneView2d::SceneView2d(const Scene2d& scene, const Simulation2d& simulation, r
                          View2d view)
     : scene_(scene), simulation_(simulation), renderer_(renderer), view_(view), moved_(scene) {
   for (const RigidBody2d& body : scene_.rigid_bodies) add_rigid_body(body);
-  SC_ASSERT(simulation_.soft_bodies() == scene_.soft_bodies.size(), "a simulation of {} bodies of {}",
+  SC_ASSERT(simulation_.soft_bodies() >= scene_.soft_bodies.size(), "a simulation of {} bodies of {}",
             simulation_.soft_bodies(), scene_.soft_bodies.size());
-  soft_bodies_.reserve(scene_.soft_bodies.size());
-  for (std::size_t b = 0; b < simulation_.soft_bodies(); ++b)
-    add_soft_body(scene_.soft_bodies[b], simulation_.soft_body(b).model());
+  simulation_.show(now_);
+  follow_bodies(now_);
 }
 
 void SceneView2d::add_rigid_body(const RigidBody2d& body) {
@@ -68,22 +68,37 @@ void SceneView2d::add_rigid_body(const RigidBody2d& body) {
     added.mark_radius = circle->radius;
 }
 
-void SceneView2d::add_soft_body(const SoftBody2dPlacement& body, const ppu::SoftBodyModel<2>& model) {
-  SoftBody& added =
-      soft_bodies_.emplace_back(SoftBody{.model = &model,
-                                         .shape = SoftShape2d(body, model, renderer_, stickers_),
-                                         .particles = {},
-                                         .outer = std::vector<Vector2f>(model.outer().size()),
-                                         .inner = std::vector<Vector2f>(model.inner().size()),
-                                         .edges = {}});
+/// Shapes of bodies that are new, or that have broken since they were drawn last.
+void SceneView2d::follow_bodies(const Shown2d& shown) {
+  const std::size_t count = shown.models.size();
+  for (std::size_t b = count; b < soft_bodies_.size(); ++b) soft_bodies_[b]->shape.remove_from(renderer_);
+  soft_bodies_.resize(count);
+  for (std::size_t b = 0; b < count; ++b) {
+    if (soft_bodies_[b] && soft_bodies_[b]->model == shown.models[b]) continue;
+    if (soft_bodies_[b]) soft_bodies_[b]->shape.remove_from(renderer_);
+    soft_bodies_[b] = make_soft_body(scene_.soft_bodies[shown.sources[b]], shown.models[b]);
+  }
+}
+
+std::unique_ptr<SceneView2d::SoftBody> SceneView2d::make_soft_body(
+    const SoftBody2dPlacement& body, std::shared_ptr<const ppu::SoftBodyModel<2>> model) {
+  SC_ASSERT(model != nullptr, "body '{}' without a model", body.name);
   std::set<Link> edges;
-  for (const auto& corners : model.lattice().corners) {
+  for (const auto& corners : model->lattice().corners) {
     // Corner k is at (k & 1, k >> 1).
     const auto [a, b, c, d] = corners;
     for (const auto& [from, to] : {Link{a, b}, Link{c, d}, Link{a, c}, Link{b, d}})
       edges.insert({std::min(from, to), std::max(from, to)});
   }
-  added.edges.assign(edges.begin(), edges.end());
+  const ppu::SoftBodyModel<2>& of = *model;
+  return std::make_unique<SoftBody>(SoftBody{.model = std::move(model),
+                                             .colour = body.colour,
+                                             .shape = SoftShape2d(body, of, renderer_, stickers_, wholes_),
+                                             .particles = {},
+                                             .outer = {},
+                                             .at_cut = {},
+                                             .inner = {},
+                                             .edges = std::vector<Link>(edges.begin(), edges.end())});
 }
 
 float SceneView2d::line_width() const {
@@ -121,8 +136,8 @@ void SceneView2d::draw_rigid_body(std::size_t index, const Pose2d& pose) {
 }
 
 void SceneView2d::draw_soft_body(std::size_t index, View2d view) {
-  SoftBody& body = soft_bodies_[index];
-  const render::Colour& colour = scene_.soft_bodies[index].colour;
+  SoftBody& body = *soft_bodies_[index];
+  const render::Colour& colour = body.colour;
   const float spacing = body.model->lattice().spacing;
   body.shape.draw(drawing_, line_width(), view == View2d::kFilled ? 1 : kPale);
   if (view == View2d::kLattice) {
@@ -134,12 +149,17 @@ void SceneView2d::draw_soft_body(std::size_t index, View2d view) {
   } else if (view == View2d::kDots) {
     // The outer particles as large as they are to others.
     const auto& positions = body.particles;
-    const auto outer = body.model->outer(), inner = body.model->inner();
-    for (std::size_t i = 0; i < outer.size(); ++i) body.outer[i] = positions[outer[i]];
-    for (std::size_t i = 0; i < inner.size(); ++i) body.inner[i] = positions[inner[i]];
-    drawing_.dots.push_back(
-        {.centres = body.outer, .radius = body.model->contact_radius(), .colour = colour, .opacity = 0.55f});
-    for (const auto& centres : {std::span<const Vector2f>(body.outer), std::span<const Vector2f>(body.inner)})
+    body.outer.clear(), body.at_cut.clear(), body.inner.clear();
+    for (const std::uint32_t i : body.model->outer())
+      (body.model->is_at_cut(i) ? body.at_cut : body.outer).push_back(positions[i]);
+    for (const std::uint32_t i : body.model->inner()) body.inner.push_back(positions[i]);
+    const float radius = body.model->contact_radius();
+    drawing_.dots.push_back({.centres = body.outer, .radius = radius, .colour = colour, .opacity = 0.55f});
+    if (!body.at_cut.empty())
+      drawing_.dots.push_back(
+          {.centres = body.at_cut, .radius = radius / 2, .colour = colour, .opacity = 0.55f});
+    for (const auto& centres : {std::span<const Vector2f>(body.outer), std::span<const Vector2f>(body.at_cut),
+                                std::span<const Vector2f>(body.inner)})
       drawing_.dots.push_back({.centres = centres, .radius = 0.13f * spacing, .colour = darker(colour)});
   }
 }
@@ -180,10 +200,10 @@ void SceneView2d::draw_hands(const Shown2d& shown) {
 
 std::optional<render::PixelRect> SceneView2d::changes(const Shown2d& shown, View2d view) {
   Moved2d::Box soft;
-  for (const SoftBody& body : soft_bodies_) {
-    soft.extend(body.shape.box());
-    const Vector2f radius = Vector2f::Constant(body.model->contact_radius());
-    for (const Vector2f& particle : body.particles) {
+  for (const auto& body : soft_bodies_) {
+    soft.extend(body->shape.box());
+    const Vector2f radius = Vector2f::Constant(body->model->contact_radius());
+    for (const Vector2f& particle : body->particles) {
       soft.extend(particle - radius);
       soft.extend(particle + radius);
     }
@@ -229,6 +249,7 @@ const render::Image& SceneView2d::draw() {
 }
 
 void SceneView2d::draw(const Shown2d& shown, const Look& look) {
+  follow_bodies(shown);
   SC_ASSERT(shown.particles.size() == soft_bodies_.size() && shown.rigid_poses.size() == rigid_bodies_.size(),
             "{} soft and {} rigid bodies in the view of {} and {}", shown.particles.size(),
             shown.rigid_poses.size(), soft_bodies_.size(), rigid_bodies_.size());
@@ -241,8 +262,8 @@ void SceneView2d::draw(const Shown2d& shown, const Look& look) {
     }
   }
   for (std::size_t b = 0; b < soft_bodies_.size(); ++b) {
-    soft_bodies_[b].particles.assign(shown.particles[b].begin(), shown.particles[b].end());
-    soft_bodies_[b].shape.place(shown.particles[b]);
+    soft_bodies_[b]->particles.assign(shown.particles[b].begin(), shown.particles[b].end());
+    soft_bodies_[b]->shape.place(shown.particles[b]);
     draw_soft_body(b, view);
   }
   draw_ropes(shown);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -35,10 +36,12 @@ class SceneView2d {
 
   /// A soft body, and its particles for the views that show them.
   struct SoftBody {
-    const ppu::SoftBodyModel<2>* model;
+    std::shared_ptr<const ppu::SoftBodyModel<2>> model;
+    render::Colour colour;
     SoftShape2d shape;
     std::vector<Eigen::Vector2f> particles;  // all, in order
-    std::vector<Eigen::Vector2f> outer, inner;
+    std::vector<Eigen::Vector2f> outer, at_cut,
+        inner;                // those at a cut are outer ones, too, with a smaller circle
     std::vector<Link> edges;  // of all cells
   };
   struct RigidBody {
@@ -52,7 +55,9 @@ class SceneView2d {
   };
 
   void add_rigid_body(const RigidBody2d& body);
-  void add_soft_body(const SoftBody2dPlacement& body, const ppu::SoftBodyModel<2>& model);
+  void follow_bodies(const Shown2d& shown);
+  std::unique_ptr<SoftBody> make_soft_body(const SoftBody2dPlacement& body,
+                                           std::shared_ptr<const ppu::SoftBodyModel<2>> model);
   void draw_rigid_body(std::size_t index, const Pose2d& pose);
   void draw_soft_body(std::size_t index, View2d view);
   void draw_ropes(const Shown2d& shown);
@@ -67,8 +72,9 @@ class SceneView2d {
   Shown2d now_;
 
   Stickers stickers_;
+  WholeSkins wholes_;
   std::vector<RigidBody> rigid_bodies_;
-  std::vector<SoftBody> soft_bodies_;
+  std::vector<std::unique_ptr<SoftBody>> soft_bodies_;
   std::vector<std::vector<Eigen::Vector2f>> ropes_;    // the points of each, as they are drawn
   std::vector<std::array<Eigen::Vector2f, 2>> hands_;  // the particle, the hand
 

@@ -39,12 +39,13 @@ const Stickers::Entry& Stickers::get(const std::shared_ptr<const render::Image>&
 }
 
 SoftShape2d::SoftShape2d(const SoftBody2dPlacement& body, const ppu::SoftBodyModel<2>& model,
-                         render::Renderer& renderer, Stickers& stickers)
+                         render::Renderer& renderer, Stickers& stickers, WholeSkins& wholes)
     : body_(body), model_(model) {
   if (body.picture) {
-    add_picture(renderer, stickers);
+    add_picture(renderer, stickers, wholes);
   } else {
-    skin_ = ppu::make_skin_2d(model.lattice(), margin_of(body));
+    skin_ = own_skin(
+        wholes, [&](const ppu::Lattice<2>& lattice) { return ppu::make_skin_2d(lattice, margin_of(body)); });
     vertices_.resize(skin_.vertices.size());
     add_parts(renderer);
   }
@@ -53,9 +54,33 @@ SoftShape2d::SoftShape2d(const SoftBody2dPlacement& body, const ppu::SoftBodyMod
   for (const auto& loop : skin_.outlines) {
     outlines_.push_back({.vertices = loop,
                          .points = std::vector<Vector2f>(loop.size()),
-                         .normals = std::vector<Vector2f>(loop.size())});
+                         .normals = std::vector<Vector2f>(model.is_piece() ? 0 : loop.size())});
   }
-  if (body.face) add_face(*body.face);
+  if (has_face()) add_face(*body.face);
+}
+
+void SoftShape2d::remove_from(render::Renderer& renderer) const {
+  for (const Part& part : parts_) renderer.remove_shape(part.shape);
+}
+
+/// @param make  the skin of a whole lattice
+template <class Make>
+ppu::Skin2d SoftShape2d::own_skin(WholeSkins& wholes, const Make& make) const {
+  if (!model_.is_piece()) return make(model_.lattice());
+  const ppu::Lattice<2>& whole = model_.whole()->lattice();
+  return ppu::skin_of_piece(wholes.get(body_, [&] { return make(whole); }), whole, model_.lattice());
+}
+
+/// Of pieces the one that has the cell in the middle of the face.
+bool SoftShape2d::has_face() const {
+  if (!body_.face || !model_.is_piece()) return body_.face.has_value();
+  const auto& cells = model_.whole()->lattice().cells;
+  const auto middle = std::ranges::find_if(cells, [&](const Vector2i& cell) {
+    const Vector2f in = body_.face->centre - cell.cast<float>();
+    return in.minCoeff() >= 0 && in.maxCoeff() <= 1;
+  });
+  return middle != cells.end() &&
+         std::ranges::find(model_.lattice().cells, *middle) != model_.lattice().cells.end();
 }
 
 /// One shape for each colour, in the order in which the scene has them.
@@ -95,7 +120,7 @@ render::Colour SoftShape2d::part_colour(std::size_t part) const {
   return part == 0 ? body_.colour : body_.coloured_cells[part - 1].colour;
 }
 
-void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers) {
+void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers, WholeSkins& wholes) {
   const Picture2d& picture = *body_.picture;
   const auto& [sticker, texture] =
       stickers.get(picture.image, margin_of(body_) * picture.cell_pixels, renderer);
@@ -106,10 +131,12 @@ void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers) {
   const float cell = picture.cell_pixels * static_cast<float>(sticker.scale);
   const Vector2f size(static_cast<float>(sticker.image.width) / cell,
                       static_cast<float>(sticker.image.height) / cell);
-  skin_ = ppu::make_cover_2d(model_.lattice(), [&, &sheet = sticker](const Vector2i& at) {
+  const auto has_something = [&, &sheet = sticker](const Vector2i& at) {
     return sheet.has_something((at.cast<float>() - low) * cell,
                                (at.cast<float>() + Vector2f::Ones() - low) * cell);
-  });
+  };
+  skin_ = own_skin(
+      wholes, [&](const ppu::Lattice<2>& lattice) { return ppu::make_cover_2d(lattice, has_something); });
   vertices_.resize(skin_.vertices.size());
   for (std::size_t i = 0; i < skin_.vertices.size(); ++i)
     vertices_[i].texture = (skin_.rest[i] - low).cwiseQuotient(size);
@@ -165,7 +192,7 @@ void SoftShape2d::place(std::span<const Vector2f> particles) {
   for (Outline& outline : outlines_) {
     for (std::size_t i = 0; i < outline.vertices.size(); ++i) {
       outline.points[i] = positions_[outline.vertices[i]];
-      outline.normals[i] = slopes_[outline.vertices[i]];
+      if (!outline.normals.empty()) outline.normals[i] = slopes_[outline.vertices[i]];
     }
   }
   for (Spots& spots : spots_) {

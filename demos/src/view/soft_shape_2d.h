@@ -49,14 +49,30 @@ class Stickers {
   std::map<std::pair<std::shared_ptr<const render::Image>, float>, Entry> made_;
 };
 
-/// One body's shape. Used by one thread, with the renderer that it was made with.
+/// The skins of a scene's bodies before they break, of which pieces have parts. Each is made once.
+class WholeSkins {
+ public:
+  /// @param make  the body's skin  @return  valid as long as this
+  template <class Make>
+  const ppu::Skin2d& get(const SoftBody2dPlacement& body, const Make& make) {
+    const auto known = made_.find(&body);
+    return known != made_.end() ? known->second : made_.emplace(&body, make()).first->second;
+  }
+
+ private:
+  std::map<const SoftBody2dPlacement*, ppu::Skin2d> made_;
+};
+
+/// One body's shape, or that of a piece of it. Used by one thread, with the renderer that it was made with.
 class SoftShape2d {
  public:
   using Box = Eigen::AlignedBox2f;
 
   /// @param body, model  must outlive it
   SoftShape2d(const SoftBody2dPlacement& body, const ppu::SoftBodyModel<2>& model, render::Renderer& renderer,
-              Stickers& stickers);
+              Stickers& stickers, WholeSkins& wholes);
+  /// Frees what the renderer has of it: it is drawn no more.
+  void remove_from(render::Renderer& renderer) const;
 
   /// Deforms it with its particles.
   void place(std::span<const Eigen::Vector2f> particles);
@@ -80,7 +96,8 @@ class SoftShape2d {
   };
   struct Outline {
     std::vector<std::uint32_t> vertices;
-    std::vector<Eigen::Vector2f> points, normals;
+    std::vector<Eigen::Vector2f> points;
+    std::vector<Eigen::Vector2f> normals;  // none of a piece, whose cuts have no slopes
   };
   /// Dots of one size on the body.
   struct Spots {
@@ -99,9 +116,12 @@ class SoftShape2d {
     render::Colour colour;
   };
 
+  template <class Make>
+  ppu::Skin2d own_skin(WholeSkins& wholes, const Make& make) const;
   void add_parts(render::Renderer& renderer);
   render::Colour part_colour(std::size_t part) const;
-  void add_picture(render::Renderer& renderer, Stickers& stickers);
+  void add_picture(render::Renderer& renderer, Stickers& stickers, WholeSkins& wholes);
+  bool has_face() const;
   void add_face(const Face2d& face);
 
   const SoftBody2dPlacement& body_;

@@ -431,6 +431,8 @@ TEST(FractureSettings, OutOfRangeAreRefused) {
       make_soft_body_model(make_sphere(0.5f, 2), {.cell_size = 0.2f}, [](const Vector3f&) { return -1.0f; }),
       std::runtime_error);
   const std::vector<Eigen::Vector2i> cells{{0, 0}, {1, 0}};
+  EXPECT_NO_THROW(make_soft_body_model(lattice_from_cells(cells, 0.1f), settings));
+  settings.fracture = Fracture{.stretch = -1.0f};
   EXPECT_THROW(make_soft_body_model(lattice_from_cells(cells, 0.1f), settings), std::runtime_error);
 }
 

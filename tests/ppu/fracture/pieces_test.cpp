@@ -124,7 +124,7 @@ TEST_P(Pieces, BrokenAtAllFacesAreClosedAndFillTheWhole) {
   before.add(body);
   double sum = 0;
   std::size_t of_pieces = 0;
-  for (const BodyPiece& piece : pieces_of(body, all_faces(body.model()))) {
+  for (const BodyPiece<3>& piece : pieces_of(body, all_faces(body.model()))) {
     sum += expect_valid(piece.body);
     of_pieces += piece.body.model().lattice().cells.size();
     after.add(piece.body);
@@ -152,7 +152,7 @@ TEST_P(Pieces, OfRandomBreaksOneAfterTheOtherAreValid) {
         std::vector<std::uint32_t> faces;
         for (std::uint32_t f = 0; f < bodies[b].model().cracks().faces.size(); ++f)
           if (random() % 6 == 0) faces.push_back(f);
-        std::vector<BodyPiece> pieces = pieces_of(bodies[b], faces);
+        std::vector<BodyPiece<3>> pieces = pieces_of(bodies[b], faces);
         bodies[b] = pieces[0].body;
         for (std::size_t i = 1; i < pieces.size(); ++i) bodies.push_back(std::move(pieces[i].body));
       }
@@ -281,9 +281,9 @@ TEST(PiecesOfABody, KeepWhatAPlasticBodyKeptOfDeformations) {
   for (const Vector3f& x : body.positions()) bent.push_back(x + Vector3f(0, x.x() * x.x(), 0));
   body.set_rest_positions(bent);
   const std::vector<Vector3f> before = body.rest_positions();
-  std::vector<BodyPiece> pieces = pieces_of(body, faces_across(body, Cut::plane({0, 0, 0}, {1, 0, 0})));
+  std::vector<BodyPiece<3>> pieces = pieces_of(body, faces_across(body, Cut::plane({0, 0, 0}, {1, 0, 0})));
   ASSERT_EQ(pieces.size(), 2u);
-  for (const BodyPiece& piece : pieces) {
+  for (const BodyPiece<3>& piece : pieces) {
     ASSERT_TRUE(piece.body.has_own_rest());
     const std::vector<Vector3f> rest = piece.body.rest_positions();
     for (std::size_t i = 1; i < rest.size(); ++i)

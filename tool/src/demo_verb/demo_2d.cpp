@@ -38,9 +38,10 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
          const Demo2dOptions& options)
       : SceneDemo(
             scene, log, how, options.view,
-            {demos::MouseHand(
-                scene.camera, [this](const Eigen::Vector2f& point) { return simulation().touch(point); },
-                options.size.width, options.size.height)}),
+            {.hand = demos::MouseHand(
+                 scene.camera, [this](const Eigen::Vector2f& point) { return simulation().touch(point); },
+                 options.size.width, options.size.height),
+             .knife = demos::knife_2d(scene.camera, options.size.width, options.size.height)}),
         options_(options) {}
 
   demos::DemoCounts counts() const override {

@@ -51,8 +51,8 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
          const Demo3dOptions& options)
       : SceneDemo(scene, log, skinned_by(options.skin, how), options.view,
                   {.tilt = {},
-                   .knife = demos::Knife([this](const demos::Look& look) { return eye(look); },
-                                         options.size.width, options.size.height),
+                   .knife = demos::knife_3d([this](const demos::Look& look) { return eye(look); },
+                                            options.size.width, options.size.height),
                    .hand = demos::MouseReach([this](const demos::Look& look) { return eye(look); },
                                              [this](const demos::Ray& ray) { return take(ray); },
                                              options.size.width, options.size.height),
@@ -231,6 +231,11 @@ int run_demo_3d(const Demo3dOptions& options) {
   if (const auto cell = options.model.cell;
       options.model.mesh && cell && !(*cell > 0 && std::isfinite(*cell)))
     throw UsageError(fmt::format("--cell {}: give a length above 0, in the model's units", *cell));
+  if (const auto tessellation = options.model.tessellation;
+      tessellation &&
+      !(*tessellation >= demos::kLeastTessellation && *tessellation <= demos::kMostTessellation))
+    throw UsageError(fmt::format("--tessellate {}: give a number of cells from {} to {}", *tessellation,
+                                 demos::kLeastTessellation, demos::kMostTessellation));
   if (options.turntable && !(*options.turntable > 0 && std::isfinite(*options.turntable)))
     throw UsageError(
         fmt::format("--turntable {}: give the seconds of one turn, above 0", *options.turntable));

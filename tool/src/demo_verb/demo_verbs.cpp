@@ -129,6 +129,11 @@ class DemoVerbs final : public Verb {
         ->needs("--mesh")
         ->excludes(cells)
         ->type_name("LENGTH");
+    d->add_option("--tessellate", demo_3d_.model.tessellation,
+                  "Halve edges of the model's triangles that are longer than so many cells (1: they follow "
+                  "the lattice)")
+        ->needs("--mesh")
+        ->type_name("CELLS");
     d->add_option("--view", view_3d_, "What is drawn of soft bodies (default: mesh)")
         ->type_name("mesh|lattice|rotations|contacts");
     d->add_option("--turntable", demo_3d_.turntable,

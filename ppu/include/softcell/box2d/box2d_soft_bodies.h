@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "softcell/soft_bodies/attachment.h"
+#include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
@@ -51,7 +52,9 @@ class Box2dSoftBodies {
   Box2dSoftBodies& operator=(const Box2dSoftBodies&) = delete;
 
   /// Adds a body at rest, its model's origin at `position` (metres). The reference is good until remove().
-  /// Between steps the body may be changed through its own functions; Box2D is told at the next step.
+  /// Between steps the body may be changed through its own functions; Box2D is told at the next step. Its attachments end when a body of
+  /// another model is assigned to it.
+  /// @throws std::runtime_error  there would be more than 32,768 bodies
   SoftBody<2>& add(std::shared_ptr<const SoftBodyModel<2>> model, const Eigen::Vector2f& position);
 
   /// @throws std::invalid_argument  the body is not one of these.
@@ -87,6 +90,28 @@ class Box2dSoftBodies {
   std::optional<AttachmentEnds<2>> attachment_ends(AttachmentId id) const;
   /// Those that have broken, or lost a body, since the last call. Those that were detached are none of them.
   std::vector<EndedAttachment> take_ended_attachments();
+
+  /// Cuts a body as it is now, whatever its settings (soft_bodies/fracture.h). It becomes its largest piece and wakes.
+  ///
+  /// What is attached to it goes on with the piece that has all particles of the patch, each of them once; where none has, the attachment
+  /// breaks. New bodies come behind all others in operator[]. The body gets new b2Bodies: joints of its old ones end with these. Particles
+  /// of pieces that are still in each other do not touch before they have been apart, for which a contact filter is installed as for
+  /// attach().
+  /// @return the other pieces; good until remove()
+  /// @throws std::invalid_argument  the body is not one of these; the cut is not finite or has no length.
+  /// @throws std::runtime_error     there would be more than 32,768 bodies; nothing has changed then
+  std::vector<SoftBody<2>*> cut(const SoftBody<2>& body, const Cut2d& where);
+  /// The same without a stall: the body stays whole for some steps, as one that breaks (below), and take_broken() names its pieces. One that
+  /// is breaking gets the pieces of that first.
+  /// @return whether the cut meets the body   @throws as cut()
+  bool begin_cut(const SoftBody<2>& body, const Cut2d& where);
+  /// What has broken or was cut since the last call, in this order. A body with a SoftBodySettings::fracture is tested at the end of each
+  /// step in which it is awake. One of up to 100 particles has pieces at once; a larger one stays whole for 2 more steps, and one for each
+  /// 1,000 particles, while another thread makes its pieces. Bodies that were removed since then are not named.
+  std::vector<BrokenSoftBody2d> take_broken();
+  /// Whether it is still whole and will have pieces. An assignment, or a reset of its shape, prevents it.
+  /// @throws std::invalid_argument  the body is not one of these
+  bool is_breaking(const SoftBody<2>& body) const;
 
   /// One step of the world and its soft bodies. @param step  seconds, above 0.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);

@@ -61,6 +61,13 @@ Skin2d make_skin_2d(const Lattice<2>& lattice, float margin);
 /// @pre  the lattice has cells
 Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const Eigen::Vector2i&)>& drawn);
 
+/// What of a body's shape belongs to the cells of a piece of it (fracture.h), cut along the cells' edges: the skins of all pieces together are that of the
+/// whole. It opens along cracks that do not go all the way through, too. Cuts are edges of the shape, without slopes; outlines go
+/// around all of it, if the whole has any. Deterministic.
+/// @param whole  of make_skin_2d() or make_cover_2d(), of the lattice that was never broken   @param piece  SoftBodyModel::lattice() of the piece
+/// @pre  the piece is of that lattice
+Skin2d skin_of_piece(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece);
+
 /// The point of the nearest cell.
 /// @param at  grid coordinates: a particle of the lattice is at its grid index
 /// @pre  the lattice has cells

@@ -137,7 +137,7 @@ class SoftBody {
   AxialVector angular_momentum() const;  ///< kg m^2/s, about the centre of mass
   /// m/s: the root of twice the kinetic energy by the mass, the mean speed of the particles by their masses.
   float mean_speed() const;
-  Bounds<kDimension> bounds() const;     ///< of the particles' centres, metres
+  Bounds<kDimension> bounds() const;  ///< of the particles' centres, metres
   /// The longest distance of a particle from where the best rigid motion of the rest shape would have it, in metres.
   float deformation() const;
 

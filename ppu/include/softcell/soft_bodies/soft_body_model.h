@@ -15,6 +15,7 @@
 
 namespace softcell::ppu {
 
+template <int kDimension>
 struct Cracks;
 struct Embedding;
 template <typename Real, int kDimension>
@@ -34,7 +35,7 @@ class SoftBodyModel {
   float mass() const { return mass_; }                             ///< kg, of the body
 
   /// Particle numbers, ascending. Outer particles collide; a body without contacts has none. In two
-  /// dimensions they are those that are not surrounded by four cells. In three they are all corners of the
+  /// dimensions they are those that are not surrounded by four cells, and of a piece the next ones behind its cuts. In three they are all corners of the
   /// cells at the lattice's boundary, which makes them two deep: one layer would keep things out, but a body
   /// that is pressed flat on a floor would push its second layer, which carries the mesh too, through the
   /// first and the floor.
@@ -53,6 +54,12 @@ class SoftBodyModel {
   /// touch each other: nothing gets between the particles of a body, and things meet it half a cell before
   /// they meet what is drawn. Smaller ones let small things in.
   float contact_radius() const { return contact_radius_in_cells_ * lattice_.spacing; }
+  /// The same of one particle. In two dimensions those at a cut of a piece have half of it, as no material reaches beyond a cut.
+  float contact_radius(std::size_t particle) const {
+    return is_at_cut(particle) ? contact_radius() / 2 : contact_radius();
+  }
+  /// Whether a particle of a piece in two dimensions lies at a cut: fewer cells have it than in the whole.
+  bool is_at_cut(std::size_t particle) const { return !at_cut_.empty() && at_cut_[particle]; }
   static constexpr float kContactRadiusInCells = kDimension == 2 ? 0.5f : 0.15f;
 
   /// The same towards particles of other soft bodies. A particle has to meet a lattice of equal cells
@@ -80,7 +87,7 @@ class SoftBodyModel {
   const std::shared_ptr<const RestLattice<kDimension>>& rest_lattice() const;
   /// Where its bodies can break, and where they are broken. Made when it is asked for the first time, which takes some milliseconds; of a
   /// model whose settings have a fracture at once.
-  const Cracks& cracks() const requires(kDimension == 3);
+  const Cracks<kDimension>& cracks() const;
   /// Whether it is of a body that was broken (fracture.h).
   bool is_piece() const { return whole_ != nullptr; }
   /// Of a piece: the model of the body that was never broken. Else null.
@@ -90,7 +97,8 @@ class SoftBodyModel {
   friend struct SoftBodyModelMaker;
   SoftBodyModel(Lattice<kDimension> lattice, std::shared_ptr<const Embedding> embedding,
                 const SoftBodySettings& settings, float contact_radius_in_cells,
-                std::shared_ptr<const MatchingPlan<float, kDimension>> plan = nullptr);
+                std::shared_ptr<const MatchingPlan<float, kDimension>> plan = nullptr,
+                std::vector<bool> at_cut = {});
 
   SoftBodySettings settings_;
   Lattice<kDimension> lattice_;
@@ -98,6 +106,7 @@ class SoftBodyModel {
   std::vector<float> masses_;
   float mass_;
   float contact_radius_in_cells_;
+  std::vector<bool> at_cut_;  // of each particle; empty: none is
   std::vector<std::uint32_t> outer_, inner_;
   std::shared_ptr<const MatchingPlan<float, kDimension>> plan_;
   mutable std::once_flag rest_lattice_made_;
@@ -105,7 +114,7 @@ class SoftBodyModel {
   std::vector<float> strengths_;  // of each cell; empty: 1
   std::shared_ptr<const SoftBodyModel> whole_;
   mutable std::once_flag cracks_made_;
-  mutable std::shared_ptr<const Cracks> cracks_;
+  mutable std::shared_ptr<const Cracks<kDimension>> cracks_;
 };
 
 extern template class SoftBodyModel<2>;
@@ -134,9 +143,19 @@ std::shared_ptr<const SoftBodyModel<3>> make_soft_body_model(Lattice<3> lattice,
                                                              const SoftBodySettings& settings);
 
 /// @param contact_radius_in_cells  above 0 and at most 1.
-/// @throws std::runtime_error  as above; a contact radius out of range; settings with a fracture: bodies break in three dimensions.
+/// @throws std::runtime_error  as above; a contact radius out of range.
 std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(
     Lattice<2> lattice, const SoftBodySettings& settings,
     float contact_radius_in_cells = SoftBodyModel<2>::kContactRadiusInCells);
+
+/// How strong the material is at a place of the lattice at rest (metres), as StrengthField says it in three dimensions.
+using StrengthField2d = std::function<float(const Eigen::Vector2f&)>;
+
+/// The same for a body that breaks more easily in some places: the strength of a cell is that of its middle.
+/// @throws std::runtime_error  as above; a strength out of range.
+std::shared_ptr<const SoftBodyModel<2>> make_soft_body_model(Lattice<2> lattice,
+                                                             const SoftBodySettings& settings,
+                                                             float contact_radius_in_cells,
+                                                             const StrengthField2d& strength);
 
 }  // namespace softcell::ppu

@@ -46,8 +46,7 @@ struct SoftBodySettings {
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
   std::optional<float> damping_time = {};     ///< s, in place of damping: deviations fall to 1/e in this time
   std::optional<Plasticity> plasticity = {};  ///< none: the body is elastic. Up to 4,096 particles
-  std::optional<Fracture> fracture =
-      {};  ///< none: it breaks only where a program cuts it. In three dimensions
+  std::optional<Fracture> fracture = {};      ///< none: it breaks only where a program cuts it
 
   /// alpha of a time step of `step` seconds, above 0: `alpha`, or computed from `frequency`.
   float alpha_of_step(float step) const;

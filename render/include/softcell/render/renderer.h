@@ -129,6 +129,8 @@ class Renderer {
   /// Adds the triangles of a shape in two dimensions. Each frame gives their vertices.
   /// @throws std::invalid_argument  more triangles than OpenGL counts.
   Shape2dId add_shape(std::span<const Triangle> triangles);
+  /// Frees the memory of a shape. The next one that is added may get its handle. @throws std::invalid_argument  no such shape.
+  void remove_shape(Shape2dId shape);
 
   /// Draws one frame in two dimensions.
   /// @pre  its height and its squares are above 0; opacities are 0..1

@@ -1,0 +1,50 @@
+#pragma once
+// How bodies of a scene break and are cut, as plain data, in either dimension.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+#include "softcell/soft_bodies/fracture.h"
+
+namespace softcell::demos {
+
+/// Where a body that breaks is weaker, or stronger: cells whose middles are in a slab about a plane, in two dimensions in a strip about a line.
+template <int Dimension>
+struct StrengthSlab {
+  using Vector = Eigen::Vector<float, Dimension>;
+  Vector point =
+      Vector::Zero();  ///< metres, as the body's mesh has it; in two dimensions from the middle of its cells
+  Vector normal = Vector::Unit(1);  ///< of any length but 0
+  float thickness = 0;              ///< metres
+  float strength = 1;               ///< by which the limits of its fracture are multiplied, 0 or above
+
+  bool operator==(const StrengthSlab&) const = default;
+};
+
+/// Of several slabs the weakest counts; 1 where there is none. @param at  metres
+template <int Dimension>
+float strength_at(const std::vector<StrengthSlab<Dimension>>& slabs,
+                  const Eigen::Vector<float, Dimension>& at) {
+  float least = 1;
+  bool in_one = false;
+  for (const StrengthSlab<Dimension>& slab : slabs) {
+    if (std::abs((at - slab.point).dot(slab.normal)) > 0.5f * slab.thickness * slab.normal.norm()) continue;
+    least = in_one ? std::min(least, slab.strength) : slab.strength;
+    in_one = true;
+  }
+  return least;
+}
+
+/// A plane or a stroke that cuts a soft body, and all of its pieces; in two dimensions a line or a stretch of one.
+template <int Dimension>
+struct ScriptedCut {
+  float time = 0;        ///< seconds
+  std::size_t body = 0;  ///< number of the soft body
+  std::conditional_t<Dimension == 3, ppu::Cut, ppu::Cut2d> where;
+};
+
+}  // namespace softcell::demos

@@ -1,0 +1,40 @@
+#include "ppu/bodies/piece_workshop.h"
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+
+PieceWorkshop::~PieceWorkshop() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  has_changed_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+void PieceWorkshop::add(std::function<void()> task) {
+  SC_ASSERT(task != nullptr, "{} is to be made of a break", "nothing");
+  if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
+  {
+    const std::lock_guard lock(mutex_);
+    tasks_.push(std::move(task));
+  }
+  has_changed_.notify_one();
+}
+
+void PieceWorkshop::work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    has_changed_.wait(lock, [this] { return ends_ || !tasks_.empty(); });
+    if (ends_) return;
+    std::function<void()> task = std::move(tasks_.front());
+    tasks_.pop();
+    lock.unlock();
+    task();
+    task = nullptr;  // what it held goes on this thread
+    lock.lock();
+  }
+}
+
+}  // namespace softcell::ppu
