@@ -65,7 +65,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
         solve.drop();
         for (const auto& body : bodies) {
           if (body->was_reset()) solve.forget(body->soft());
-          if (body->was_changed()) tell_others(*body), follow_model(*body);
+          if (body->was_changed()) tell_others(*body), take_other_model(*body);
           body->begin_substep();
         }
       }
@@ -90,11 +90,19 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
   void debugDraw(btIDebugDraw*) override {}
 
-  /// An assignment may have made it a body of another model.
+  static bool is_of_other_model(const SurfaceBody& body) {
+    return body.contact().model != body.soft().shared_model();
+  }
   void follow_model(const CoupledBody& body) {
     for (SurfaceBody* const with_surface : with_surfaces)
-      if (with_surface == &body && with_surface->contact().model != body.soft().shared_model())
+      if (with_surface == &body && is_of_other_model(*with_surface))
         with_surface->set_contact(surfaces->contact_model(body.soft().shared_model()));
+  }
+  /// An assignment may have made it a body of another model: its attachments have particles that it does not have.
+  void take_other_model(const CoupledBody& body) {
+    for (SurfaceBody* const with_surface : with_surfaces)
+      if (with_surface == &body && is_of_other_model(*with_surface)) attachments().forget(*with_surface);
+    follow_model(body);
   }
 
   using BreaksOfBodies = Breaks<3, CoupledBody, std::vector<PreparedPiece>>;
@@ -221,8 +229,11 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   /// @throws std::invalid_argument  as find(); it does not touch with its surface
   SurfaceBody& find_attachable(const SoftBody<3>& body) {
     const CoupledBody* const coupled = find(body, "to be attached")->get();
-    for (SurfaceBody* const with_surface : with_surfaces)
-      if (with_surface == coupled) return *with_surface;
+    for (SurfaceBody* const with_surface : with_surfaces) {
+      if (with_surface != coupled) continue;
+      take_other_model(*coupled);
+      return *with_surface;
+    }
     throw std::invalid_argument(
         "the soft body to be attached does not touch with its surface; attachments are solved with contacts "
         "of surfaces");

@@ -28,7 +28,7 @@ struct SkinOrchestrator::Body {
     dma::Buffer<SkinJob> jobs;
     dma::Buffer<SkinnedVertex> vertices;
     Eigen::Vector3f origin{0, 0, 0};
-    bool skinned = false;  ///< with others, at least once
+    bool skinned = false;  ///< its vertices are those of its corners
   };
   const Model* model;
   std::array<Half, 2> half;
@@ -42,12 +42,14 @@ constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .elem
 
 }  // namespace
 
-/// The jobs of a frame, as the halves lie in memory: from frame to frame they only change what they point to.
+/// The jobs of a frame, as the halves lie in memory: from frame to frame they only change what they point to, until other bodies move
+/// than before.
 struct SkinOrchestrator::Frame {
   Frame(JobSystem& system, std::size_t jobs)
       : chain{JobChain(system, "skinning, first half", jobs),
               JobChain(system, "skinning, second half", jobs)} {}
   std::array<JobChain, 2> chain;
+  std::array<std::vector<bool>, 2> skins;  ///< of each body: its jobs are in the chain
 };
 
 Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions) {
@@ -139,13 +141,17 @@ void SkinOrchestrator::remove(std::size_t body) {
   if (failure) std::rethrow_exception(failure);
 }
 
-void SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> positions) {
+/// @return false, with nothing done: the vertices are there already, as the body has not moved since they were made
+bool SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> positions) {
   Body::Half& half = body.half[static_cast<std::size_t>(working_)];
   if (positions.size() != half.corners.size()) {
     throw std::invalid_argument("a body of " + std::to_string(half.corners.size()) + " particles was given " +
                                 std::to_string(positions.size()) + " positions");
   }
   static_assert(sizeof(SkinCorner) == sizeof(Eigen::Vector4f));
+  if (half.skinned && std::memcmp(half.corners.data(), positions.data(), positions.size_bytes()) == 0)
+    return false;
+  half.skinned = false;
   std::memcpy(half.corners.data(), positions.data(), positions.size_bytes());
   half.origin = skin_origin(positions);
 
@@ -165,22 +171,30 @@ void SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> p
     job.group_count = part.group_count;
     half.jobs[i] = job;
   }
+  return true;
 }
 
-void SkinOrchestrator::make_frame() {
-  frame_ = std::make_unique<Frame>(system_, jobs_per_frame_);
-  for (std::size_t half = 0; half < 2; ++half) {
-    for (const auto& body : bodies_) {
-      const auto& descriptors = body->half[half].jobs;
-      for (std::size_t i = 0; i < descriptors.size(); ++i) {
-        frame_->chain[half].add({.image = skin_, .argp = descriptors.ea(i)});
-      }
-    }
+/// Of bodies that have moved.
+void SkinOrchestrator::choose_jobs() {
+  if (frame_ == nullptr) frame_ = std::make_unique<Frame>(system_, jobs_per_frame_);
+  const auto half = static_cast<std::size_t>(working_);
+  if (frame_->skins[half] == moved_) return;
+  frame_->skins[half] = moved_;
+  JobChain& chain = frame_->chain[half];
+  chain.clear();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (!moved_[b]) continue;
+    const auto& descriptors = bodies_[b]->half[half].jobs;
+    for (std::size_t i = 0; i < descriptors.size(); ++i)
+      chain.add({.image = skin_, .argp = descriptors.ea(i)});
   }
 }
 
+/// Null: none is, or there was nothing to do for it.
 JobChain* SkinOrchestrator::chain_under_way() {
-  return in_flight_ ? &frame_->chain[static_cast<std::size_t>(working_)] : nullptr;
+  if (!in_flight_) return nullptr;
+  JobChain& chain = frame_->chain[static_cast<std::size_t>(working_)];
+  return chain.size() == 0 ? nullptr : &chain;
 }
 
 bool SkinOrchestrator::kick(std::span<const std::span<const Eigen::Vector4f>> positions) {
@@ -189,17 +203,20 @@ bool SkinOrchestrator::kick(std::span<const std::span<const Eigen::Vector4f>> po
   if (JobChain* const chain = chain_under_way(); chain != nullptr && !chain->finished()) return false;
   collect();
   working_ = shown_ == 0 ? 1 : 0;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) write_half(*bodies_[b], positions[b]);
-  if (frame_ == nullptr) make_frame();
+  moved_.resize(bodies_.size());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) moved_[b] = write_half(*bodies_[b], positions[b]);
+  choose_jobs();
   in_flight_ = true;
-  chain_under_way()->kick();
+  if (JobChain* const chain = chain_under_way()) chain->kick();
   return true;
 }
 
 /// Takes over the frame that the SPEs have finished, if there is one.
 bool SkinOrchestrator::collect() {
   if (!in_flight_) return false;
-  const std::vector<JobFailure>& failures = chain_under_way()->failures();
+  static const std::vector<JobFailure> kNone;
+  const JobChain* const chain = chain_under_way();
+  const std::vector<JobFailure>& failures = chain != nullptr ? chain->failures() : kNone;
   in_flight_ = false;
   if (failures.empty()) {
     shown_ = working_;

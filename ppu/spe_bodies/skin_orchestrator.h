@@ -54,7 +54,7 @@ class SkinOrchestrator {
   void remove(std::size_t body);
 
   /// Starts skinning one frame: copies each body's particle positions (in order of add()) and queues the
-  /// jobs. Never waits.
+  /// jobs of those that have moved since the frame before last. Never waits.
   /// @return false, with nothing done, when the SPEs have not finished the frame before.
   /// @throws std::runtime_error  when a job of the frame before failed: one sentence per fault.
   bool kick(std::span<const std::span<const Eigen::Vector4f>> positions);
@@ -74,10 +74,10 @@ class SkinOrchestrator {
 
   std::unique_ptr<Body> make_body(std::shared_ptr<const Embedding> embedding, std::size_t particles);
   void forget_unused(const Model& model);
-  void make_frame();
   JobChain* chain_under_way();
   bool collect();
-  void write_half(Body& body, std::span<const Eigen::Vector4f> positions);
+  bool write_half(Body& body, std::span<const Eigen::Vector4f> positions);
+  void choose_jobs();
 
   dma::AddressSpace& memory_;
   JobSystem& system_;
@@ -86,6 +86,7 @@ class SkinOrchestrator {
   std::vector<std::unique_ptr<Body>> bodies_;
   std::unique_ptr<Frame> frame_;  // what the SPEs work off; made when the first frame after an add() begins
   std::size_t jobs_per_frame_ = 0;
+  std::vector<bool> moved_;  // of each body: its vertices are made in this frame
   bool in_flight_ = false;
   int working_ = 0;  // the half that the SPEs write, or wrote last
   int shown_ = -1;   // the half that is complete

@@ -41,11 +41,11 @@ float longest_edge_of(const TriangleMesh& mesh) {
   return longest;
 }
 
-struct Shape {
+struct RefinedShape {
   std::string name;
   TriangleMesh mesh;
 };
-std::vector<Shape> coarse_shapes() {
+std::vector<RefinedShape> coarse_shapes() {
   return {{"beam", make_box({2, 0.2f, 0.3f}, 10)}, {"cube", make_box({1, 1, 1}, 10)},
           {"sphere", make_sphere(0.5f, 1)},        {"torus", make_torus(0.5f, 0.2f, 6, 4)},
           {"cone", make_cone(0.4f, 2, 7)},         {"car", make_car(1)}};

@@ -229,6 +229,52 @@ TEST(Skin, AnEmptyJobIsDone) {
   EXPECT_TRUE(batch.failures().empty());
 }
 
+/// Two bodies, of which one lies still: its vertices are made twice, once for each half, and shown in every frame.
+TEST(Orchestrator, BodiesThatDoNotMoveAreNotSkinnedAgain) {
+  dma::AddressSpace memory;
+  const ls_sim::KernelImage job_loop = test::kernel_image("job_loop"), image = test::kernel_image("skin");
+  ppu::JobSystem system(memory, {.spes = 1}, job_loop);
+  const ppu::TriangleMesh mesh = ppu::make_sphere(0.7f, 8);
+  const ppu::Lattice<3> lattice = ppu::voxelize(mesh, 0.35f);
+  const auto embedding = std::make_shared<ppu::Embedding>(ppu::embed(mesh, lattice));
+  ASSERT_EQ(embedding->parts.size(), 1u);
+  std::vector<Eigen::Vector4f> still, moving;
+  for (std::size_t i = 0; i < lattice.particles.size(); ++i)
+    still.push_back(
+        {lattice.rest_position(i).x(), lattice.rest_position(i).y(), lattice.rest_position(i).z(), 0});
+  moving = still;
+  ppu::SkinOrchestrator orchestrator(memory, system, image);
+  orchestrator.add(embedding, still.size());
+  orchestrator.add(embedding, moving.size());
+  const auto frame = [&] {
+    const std::array<std::span<const Eigen::Vector4f>, 2> all{still, moving};
+    ASSERT_TRUE(orchestrator.kick(all));
+    ASSERT_TRUE(orchestrator.drain());
+  };
+  const auto vertex = [&](std::size_t body) {
+    const ppu::SkinnedBody shown = orchestrator.shown(body);
+    return ppu::float_from_half(shown.vertices[0].position[1]) + shown.origin.y();
+  };
+  frame();
+  const float height = vertex(0);
+  for (int i = 1; i < 6; ++i) {
+    for (Eigen::Vector4f& p : moving) p.y() += 1;
+    frame();
+    EXPECT_EQ(vertex(0), height);
+    EXPECT_NEAR(vertex(1), height + static_cast<float>(i), 2 * kUlpAtTwo);
+  }
+  frame();  // nothing has moved since the last frame, but since the one before
+  frame();
+  frame();
+  EXPECT_EQ(vertex(0), height);
+  EXPECT_NEAR(vertex(1), height + 5, 2 * kUlpAtTwo);
+  orchestrator.drain();
+  system.stop();
+  std::uint64_t jobs = 0;
+  for (const ls_sim::SpeStatistics& spe : system.statistics()) jobs += spe.jobs;
+  EXPECT_EQ(jobs, 2u + 6u + 1u);
+}
+
 TEST(Orchestrator, AFaultFailsItsFrameWithItsMessageAndLeavesTheProcessAlive) {
   dma::AddressSpace memory;
   const ls_sim::KernelImage job_loop = test::kernel_image("job_loop");

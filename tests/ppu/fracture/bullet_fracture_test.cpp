@@ -319,6 +319,28 @@ TEST(BulletFracture, WhatHappensToABodyThatIsBreakingIsKept) {
   EXPECT_TRUE(world.bodies.begin_cut(ball, Cut::plane({0, 0, 0}, {1, 0, 0})));
 }
 
+/// A piece hangs on a rope by particles that the whole body numbers in another way.
+TEST(BulletFracture, AttachmentsEndWithAnAssignmentOfAnotherModel) {
+  ContactWorld world({0, -9.81f, 0});
+  SoftBody<3>& ball = world.bodies.add(brittle_ball(1e3f), {0, 0, 0});
+  const SoftBody<3> saved = ball;
+  ASSERT_FALSE(world.bodies.cut(ball, Cut::plane({0, 0, 0}, {1, 0, 0})).empty());
+  world.bodies.attach(ball, Patch<3>::of_particles({0, 1, 2}));
+  run(world, 2);
+  ball = saved;
+  run(world, 2);
+  const std::vector<EndedAttachment> ended = world.bodies.take_ended_attachments();
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_EQ(ended[0].reason, EndedAttachment::Reason::kGone);
+  // One of the new model, made before the next step, stays.
+  SoftBody<3>& half = world.bodies.add(brittle_ball(1e3f), {5, 0, 0});
+  ASSERT_FALSE(world.bodies.cut(half, Cut::plane({5, 0, 0}, {1, 0, 0})).empty());
+  half = saved;
+  world.bodies.attach(half, Patch<3>::of_surface({0, 0.3f, 0}, 0.2f));
+  run(world, 2);
+  EXPECT_TRUE(world.bodies.take_ended_attachments().empty());
+}
+
 TEST(BulletFracture, RandomCutsOfAWorldThatGoesOnLeaveItValid) {
   SpeRuntime spes({.spes = 2});
   ContactWorld world({0, -9.81f, 0}, &spes);

@@ -87,7 +87,7 @@ struct EndedAttachment {
   /// Why it ended.
   enum class Reason : std::uint8_t {
     kBroken,  ///< it would have had to carry more than its break force, or its patch was torn
-    kGone     ///< one of its bodies was removed
+    kGone     ///< one of its bodies was removed, or became one of another model by an assignment
   };
   AttachmentId id{};
   Reason reason = Reason::kBroken;
