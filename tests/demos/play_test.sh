@@ -154,7 +154,7 @@ sleep 0.5
 import -window "$window" -depth 8 "txt:$folder/contacts"
 at=$(sed -n 's/^\([0-9]*\),\([0-9]*\): .*srgb(\([0-9]*\),\([0-9]*\),\([0-9]*\))/\1 \2 \3 \4 \5/p' "$folder/contacts" |
   awk '$3 > 150 && $4 < 60 && $5 < 60 { run = $2 == y && $1 == x + 1 ? run + 1 : 1; x = $1; y = $2; if (run > best) { best = run; bx = x - int(run / 2); by = y } }
-       END { if (best >= 5) print bx, by }')
+       END { if (best >= 4) print bx, by }')
 [ -n "$at" ] || fail "no contact is seen"
 xdotool mousemove --window "$window" $at mousedown 1 mouseup 1
 sleep 0.3

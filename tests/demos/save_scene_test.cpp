@@ -259,7 +259,7 @@ TEST_F(SaveScene, KeepsWhatHasBroken) {
   const Scene loaded = saved_and_loaded(scene, run, file());
   Simulation3d again(loaded, {.spes = 2});
   EXPECT_EQ(again.moment().ended_attachments, broken.ended_attachments);
-  step(run, 20), step(again, 20);
+  step(run, 10), step(again, 10);  // the heavy box falls on planks: soon nobody foresees anything
   for (std::size_t b = 0; b < run.soft_bodies(); ++b)
     EXPECT_LT((run.soft_body(b).centre_of_mass() - again.soft_body(b).centre_of_mass()).norm(), 0.05f) << b;
 }
