@@ -1,8 +1,9 @@
 #pragma once
 // Angular momentum that contacts take or give, and its return.
 //
-// A contact's two impulses are equal and opposite. They act on two points, one of each body, which meet where the bodies would be at the
-// step's end. Where the bodies are, the points are apart:
+// A contact's two impulses are equal and opposite. They act on two points, one of each body, which should be in one place at the step's
+// beginning. The other body's point is found by a few steps of an iteration, and held no farther than half a cell outside of its cell, so the
+// two are somewhat apart:
 //
 //     a  --o--->         lost = (x_a - x_b) x J
 //           \  gap
