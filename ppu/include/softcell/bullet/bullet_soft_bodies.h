@@ -184,10 +184,11 @@ class BulletSoftBodies {
   /// between steps. @pre step > 0
   void begin_ahead(float step);
 
-  /// Lets bodies at rest sleep, or never (std::nullopt, the default). A sleeping body wakes when something
-  /// that moves touches it, when gravity changes, when its user changes it, or when another soft body of
-  /// these, on which it may have lain, is changed or removed. Bodies that lean on each other may keep each
-  /// other awake. Removing a rigid body, or a soft body that another BulletSoftBodies owns, wakes nothing:
+  /// Lets bodies at rest sleep, or never (std::nullopt, the default). Bodies that touch with their surfaces fall
+  /// asleep together with those that they press on; with spheres each does so alone, and those that lean on
+  /// each other may keep each other awake. A sleeping body wakes when something that moves touches it or,
+  /// with surfaces, reaches its box; when gravity changes, when its user changes it, or when another soft body
+  /// of these, on which it may have lain, is changed or removed. Removing a rigid body, or a soft body that another BulletSoftBodies owns, wakes nothing:
   /// wake what rested on it yourself, a soft body by add_velocity({0, 0, 0}).
   void let_sleep(const std::optional<SleepSettings>& settings);
 
