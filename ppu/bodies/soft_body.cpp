@@ -30,16 +30,6 @@ double inverse(double inertia) { return 1 / inertia; }
 float to_float(double axial) { return static_cast<float>(axial); }
 Matrix2d matrix_of(const Eigen::Rotation2Df& rotation) { return rotation.cast<double>().toRotationMatrix(); }
 
-/// @param correlation  sum of m p q^T, p where a particle is and q where it was at rest, about the centres
-Matrix2d best_rotation(const Matrix2d& correlation) {
-  const double cosine = correlation.trace(), sine = correlation(1, 0) - correlation(0, 1);
-  const double length = std::sqrt(cosine * cosine + sine * sine);
-  if (!(length > 0)) return Matrix2d::Identity();
-  Matrix2d rotation;
-  rotation << cosine, -sine, sine, cosine;
-  return rotation / length;
-}
-
 // And in three.
 
 Vector3d cross(const Vector3d& a, const Vector3d& b) { return a.cross(b); }
@@ -52,11 +42,6 @@ Eigen::Vector3f to_float(const Vector3d& axial) { return axial.cast<float>(); }
 Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
   SC_ASSERT(rotation.norm() > 0, "a quaternion of length {} is no rotation", rotation.norm());
   return rotation.normalized().toRotationMatrix().cast<double>();
-}
-
-Matrix3d best_rotation(const Matrix3d& correlation) {
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  return find_rotation(correlation, orientation);
 }
 
 /// Sums over the body in double precision: positions far from the origin lose nothing.
@@ -114,7 +99,7 @@ typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& b
     correlation += m * (body.position(i).template cast<double>() - centre) *
                    rest[i].x0.template cast<double>().transpose();
   }
-  return best_rotation(correlation);
+  return nearest_rotation(correlation);
 }
 
 }  // namespace

@@ -166,19 +166,8 @@ void Box2dAttachments::forget(const Box2dBody& body) {
 
 void Box2dAttachments::follow_pieces(const Box2dBody& body, std::span<const Piece> pieces) {
   if (links_.empty()) return;
-  PieceOfPatch piece_of_patch;
-  for (const Piece& piece : pieces) piece_of_patch.add(piece.particle_of);
-  const auto follow = [&](Box2dBody*& side, AttachmentRows<2>& rows, bool of_b) {
-    auto found = piece_of_patch.find(rows.particles(of_b));
-    if (!found) return false;
-    rows.renumber(of_b, std::move(found->numbers));
-    side = pieces[found->piece].body;
-    return true;
-  };
-  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) {
-    return (link.a == &body && !follow(link.a, link.rows, false)) ||
-           (link.b == &body && !follow(link.b, link.rows, true));
-  });
+  const PiecesOfPatches<Box2dBody> of_patches(body, pieces);
+  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); });
 }
 
 bool Box2dAttachments::holds(const Box2dBody& body) const {

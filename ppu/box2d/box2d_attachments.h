@@ -45,11 +45,7 @@ class Box2dAttachments {
   std::vector<EndedAttachment> take_ended();
   /// Whether no attachment keeps two from touching.
   bool lets(const b2Body& a, const b2Body& b) const;
-  /// A piece of a broken body, and which particle of the whole each of its particles was.
-  struct Piece {
-    Box2dBody* body;
-    std::span<const std::uint32_t> particle_of;
-  };
+  using Piece = PieceOfBody<Box2dBody>;
   /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
   /// each of them once; where none has, the patch was torn, and they break.
   void follow_pieces(const Box2dBody& body, std::span<const Piece> pieces);

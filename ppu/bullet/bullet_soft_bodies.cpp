@@ -65,7 +65,10 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
         solve.drop();
         for (const auto& body : bodies) {
           if (body->was_reset()) solve.forget(body->soft());
-          if (body->was_changed()) tell_others(*body), take_other_model(*body);
+          if (body->was_changed()) {
+            tell_others(*body);
+            if (SurfaceBody* const surface = with_surface(*body)) take_other_model(*surface);
+          }
           body->begin_substep();
         }
       }
@@ -90,18 +93,20 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   }
   void debugDraw(btIDebugDraw*) override {}
 
+  /// Null: it touches in another way.
+  SurfaceBody* with_surface(const CoupledBody& body) const {
+    const auto found = std::find(with_surfaces.begin(), with_surfaces.end(), &body);
+    return found == with_surfaces.end() ? nullptr : *found;
+  }
   static bool is_of_other_model(const SurfaceBody& body) {
     return body.contact().model != body.soft().shared_model();
   }
-  void follow_model(const CoupledBody& body) {
-    for (SurfaceBody* const with_surface : with_surfaces)
-      if (with_surface == &body && is_of_other_model(*with_surface))
-        with_surface->set_contact(surfaces->contact_model(body.soft().shared_model()));
+  void follow_model(SurfaceBody& body) {
+    if (is_of_other_model(body)) body.set_contact(surfaces->contact_model(body.soft().shared_model()));
   }
   /// An assignment may have made it a body of another model: its attachments have particles that it does not have.
-  void take_other_model(const CoupledBody& body) {
-    for (SurfaceBody* const with_surface : with_surfaces)
-      if (with_surface == &body && is_of_other_model(*with_surface)) attachments().forget(*with_surface);
+  void take_other_model(SurfaceBody& body) {
+    if (is_of_other_model(body)) attachments().forget(body);
     follow_model(body);
   }
 
@@ -158,9 +163,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     std::vector<SurfaceAttachments::Piece> with_attachments;
     std::vector<std::vector<std::uint32_t>> particles_before;
     const auto append = [&](const CoupledBody& coupled, std::vector<std::uint32_t> particle_of) {
-      for (SurfaceBody* const with_surface : with_surfaces)
-        if (with_surface == &coupled) with_attachments.push_back({with_surface, particle_of});
       particles_before.push_back(std::move(particle_of));
+      if (SurfaceBody* const surface = with_surface(coupled))
+        with_attachments.push_back({surface, particles_before.back()});
     };
     for (PreparedPiece& piece : prepared)
       if (piece.contact) surfaces->adopt(std::move(piece.contact));
@@ -179,8 +184,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       others.push_back(&own);
     }
     body.soft() = largest;
-    follow_model(body);
     if (!with_attachments.empty()) {
+      follow_model(*with_attachments.front().body);
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments);
       surfaces->forget_pieces(with_surfaces);
     }
@@ -194,10 +199,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       body = std::make_unique<FreeBody>(world, std::move(model), position);
     } else if (surfaces) {
       const ContactModel& contact = surfaces->contact_model(model);
-      auto with_surface =
-          std::make_unique<SurfaceBody>(world, std::move(model), position, contact, next_number++);
-      with_surfaces.push_back(with_surface.get());
-      body = std::move(with_surface);
+      auto surface = std::make_unique<SurfaceBody>(world, std::move(model), position, contact, next_number++);
+      with_surfaces.push_back(surface.get());
+      body = std::move(surface);
     } else {
       body = std::make_unique<SphereBody>(world, std::move(model), position);
     }
@@ -228,11 +232,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
 
   /// @throws std::invalid_argument  as find(); it does not touch with its surface
   SurfaceBody& find_attachable(const SoftBody<3>& body) {
-    const CoupledBody* const coupled = find(body, "to be attached")->get();
-    for (SurfaceBody* const with_surface : with_surfaces) {
-      if (with_surface != coupled) continue;
-      take_other_model(*coupled);
-      return *with_surface;
+    if (SurfaceBody* const surface = with_surface(**find(body, "to be attached"))) {
+      take_other_model(*surface);
+      return *surface;
     }
     throw std::invalid_argument(
         "the soft body to be attached does not touch with its surface; attachments are solved with contacts "
@@ -298,10 +300,10 @@ void BulletSoftBodies::remove(const SoftBody<3>& body) {
   SC_ASSERT((*found)->soft().model().particles() > 0, "a body without particles, one of {}, is removed",
             impl_->bodies.size());
   if (impl_->surfaces) impl_->surfaces->forget(body);
-  for (const SurfaceBody* const with_surface : impl_->with_surfaces)
-    if (with_surface == found->get()) impl_->surfaces->attachments().forget(*with_surface);
-  std::erase_if(impl_->with_surfaces,
-                [&](const SurfaceBody* with_surface) { return with_surface == found->get(); });
+  if (SurfaceBody* const surface = impl_->with_surface(**found)) {
+    impl_->surfaces->attachments().forget(*surface);
+    std::erase(impl_->with_surfaces, surface);
+  }
   forget_removed(body, impl_->broken);
   impl_->bodies.erase(found);
   if (impl_->surfaces) impl_->surfaces->forget_pieces(impl_->with_surfaces);

@@ -139,20 +139,8 @@ void SurfaceAttachments::forget(const SurfaceBody& body) {
 
 void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces) {
   if (links_.empty()) return;
-  PieceOfPatch piece_of_patch;
-  for (const Piece& piece : pieces) piece_of_patch.add(piece.particle_of);
-  const auto follow = [&](SurfaceBody*& side, AttachmentRows<3>& rows, bool of_b) {
-    auto found = piece_of_patch.find(rows.particles(of_b));
-    if (!found) return false;
-    rows.renumber(of_b, std::move(found->numbers));
-    side = pieces[found->piece].body;
-    return true;
-  };
-  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) {
-    return (link.a == &body && !follow(link.a, link.rows, false)) ||
-           (link.b == &body && !follow(link.b, link.rows, true));
-  });
-  find_islands();
+  const PiecesOfPatches<SurfaceBody> of_patches(body, pieces);
+  end_links(EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); });
 }
 
 void SurfaceAttachments::rouse(const Link& link) {

@@ -42,11 +42,7 @@ class SurfaceAttachments {
   std::vector<EndedAttachment> take_ended();
   /// A soft body goes, and its attachments with it.
   void forget(const SurfaceBody& body);
-  /// A piece of a broken body, and which particle of the whole each of its particles was.
-  struct Piece {
-    SurfaceBody* body = nullptr;
-    std::vector<std::uint32_t> particle_of;
-  };
+  using Piece = PieceOfBody<SurfaceBody>;
   /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
   /// each of them once, and break where none has.
   void follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces);

@@ -82,7 +82,7 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
   stage_.find_islands(islands_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    bodies[i]->set_island(islands_[i]);
+    bodies[i]->set_island(islands_.find(static_cast<std::uint32_t>(i)));
     bodies[i]->set_holds_a_moving_body(any_near(in_stage_[i], [&](const btCollisionObject& object) {
       return is_awake(object) && !attachments_.joins(*bodies[i], object);
     }));
@@ -118,7 +118,7 @@ void SurfaceContacts::wake_those_in_the_way(std::span<SurfaceBody* const> bodies
 /// A body that has come to the world since then has no island and waits. Attached bodies fall asleep with what they are
 /// attached to, but may keep their island awake.
 void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const SleepSettings& sleep) {
-  is_restless_.assign(islands_.size(), false);
+  is_restless_.assign(islands_.numbers(), false);
   for (const SurfaceBody* const body : bodies)
     if (body->island() && !body->soft().asleep() && !body->may_fall_asleep(sleep))
       is_restless_[*body->island()] = true;

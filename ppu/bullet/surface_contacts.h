@@ -14,6 +14,7 @@
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_stage.h"
+#include "ppu/numbers/disjoint_sets.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 
 namespace softcell::ppu {
@@ -88,9 +89,9 @@ class SurfaceContacts {
   Attachments<3> in_step_;
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
-  std::vector<std::uint32_t> moving_;   // bodies that wake those in their way
-  std::vector<std::uint32_t> islands_;  // of each body in the last substep
-  std::vector<bool> is_restless_;       // of each island
+  std::vector<std::uint32_t> moving_;  // bodies that wake those in their way
+  DisjointSets islands_;               // of bodies in the last substep
+  std::vector<bool> is_restless_;      // of each island
   bool watches_ = false;
   std::map<TouchKey, Touch> touches_;
   // While events are kept, in each substep:

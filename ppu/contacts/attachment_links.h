@@ -42,37 +42,62 @@ inline void check_seconds_of_move(float seconds) {
                                 " s; it must be 0 or above, and finite");
 }
 
-/// Finds the piece of a broken body that has all particles of a patch, each of them once.
-class PieceOfPatch {
- public:
-  struct Found {
-    std::size_t piece = 0;
-    std::vector<std::uint32_t> numbers;  ///< of the patch's particles in the piece
-  };
+/// A piece of a broken body, and which particle of the whole each of its particles was.
+template <class Body>
+struct PieceOfBody {
+  Body* body = nullptr;
+  std::span<const std::uint32_t> particle_of;
+};
 
-  /// Which particle of the whole each particle of the next piece was.
-  void add(std::span<const std::uint32_t> particle_of) {
-    std::map<std::uint32_t, std::uint32_t>& numbers = number_of_.emplace_back();
-    std::vector<std::uint32_t> twice;
-    for (std::uint32_t i = 0; i < particle_of.size(); ++i)
-      if (!numbers.try_emplace(particle_of[i], i).second) twice.push_back(particle_of[i]);
-    for (const std::uint32_t particle : twice) numbers.erase(particle);
-  }
-  /// None: the patch was torn. @param patch  particles of the whole
-  std::optional<Found> find(std::span<const std::uint32_t> patch) const {
-    for (std::size_t piece = 0; piece < number_of_.size(); ++piece) {
-      std::vector<std::uint32_t> numbers;
-      for (const std::uint32_t particle : patch) {
-        const auto found = number_of_[piece].find(particle);
-        if (found == number_of_[piece].end()) break;
-        numbers.push_back(found->second);
-      }
-      if (numbers.size() == patch.size()) return Found{piece, std::move(numbers)};
+/// A body has fallen into pieces, of which it is one itself: its attachments go on with the piece that has all particles of their patch,
+/// each of them once.
+template <class Body>
+class PiecesOfPatches {
+ public:
+  PiecesOfPatches(const Body& body, std::span<const PieceOfBody<Body>> pieces)
+      : body_(body), pieces_(pieces) {
+    for (const PieceOfBody<Body>& piece : pieces) {
+      std::map<std::uint32_t, std::uint32_t>& numbers = number_of_.emplace_back();
+      std::vector<std::uint32_t> twice;
+      for (std::uint32_t i = 0; i < piece.particle_of.size(); ++i)
+        if (!numbers.try_emplace(piece.particle_of[i], i).second) twice.push_back(piece.particle_of[i]);
+      for (const std::uint32_t particle : twice) numbers.erase(particle);
     }
-    return std::nullopt;
+  }
+
+  /// @tparam Link  as AttachmentLinks   @return false: no piece has all particles of one of its patches
+  template <class Link>
+  bool follow(Link& link) const {
+    return (link.a != &body_ || follow(link.a, link.rows, false)) &&
+           (link.b != &body_ || follow(link.b, link.rows, true));
   }
 
  private:
+  template <class Rows>
+  bool follow(Body*& side, Rows& rows, bool is_b) const {
+    for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
+      std::optional<std::vector<std::uint32_t>> numbers = numbers_in(piece, rows.particles(is_b));
+      if (!numbers) continue;
+      rows.renumber(is_b, std::move(*numbers));
+      side = pieces_[piece].body;
+      return true;
+    }
+    return false;
+  }
+  /// None: the piece does not have all of them.
+  std::optional<std::vector<std::uint32_t>> numbers_in(std::size_t piece,
+                                                       std::span<const std::uint32_t> patch) const {
+    std::vector<std::uint32_t> numbers;
+    for (const std::uint32_t particle : patch) {
+      const auto found = number_of_[piece].find(particle);
+      if (found == number_of_[piece].end()) return std::nullopt;
+      numbers.push_back(found->second);
+    }
+    return numbers;
+  }
+
+  const Body& body_;
+  std::span<const PieceOfBody<Body>> pieces_;
   std::vector<std::map<std::uint32_t, std::uint32_t>> number_of_;  // of particles that a piece has once
 };
 

@@ -509,22 +509,16 @@ void ContactStage::give_to_worker() {
     if (!touched_[i].empty() && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
-void ContactStage::find_islands(std::vector<std::uint32_t>& islands) const {
-  islands.resize(bodies_.size());
-  std::iota(islands.begin(), islands.end(), 0u);
-  const auto root = [&](std::uint32_t i) {
-    while (islands[i] != i) i = islands[i] = islands[islands[i]];
-    return i;
-  };
+void ContactStage::find_islands(DisjointSets& islands) const {
+  islands.reset(bodies_.size());
   for (std::size_t g = 0; g < pair_groups_; ++g) {
     const Group& group = groups_[g];
-    bool presses = false;
-    for (std::size_t c = 0; c < group.size() && !presses; ++c) presses = group.impulse(c) > 0;
-    if (!presses) continue;
-    const std::uint32_t a = root(group.a), b = root(group.b);
-    islands[std::max(a, b)] = std::min(a, b);
+    for (std::size_t c = 0; c < group.size(); ++c) {
+      if (!(group.impulse(c) > 0)) continue;
+      islands.unite(group.a, group.b);
+      break;
+    }
   }
-  for (std::uint32_t i = 0; i < islands.size(); ++i) islands[i] = root(i);
 }
 
 void ContactStage::append_contacts(std::vector<PressingContact>& contacts) const {

@@ -19,6 +19,7 @@
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/lost_spin.h"
 #include "ppu/contacts/obstacle.h"
+#include "ppu/numbers/disjoint_sets.h"
 #include "softcell/soft_bodies/contact.h"
 
 namespace softcell::ppu {
@@ -70,9 +71,9 @@ class ContactStage {
 
   /// Appends those of the last step that press, in the order of bodies.
   void append_contacts(std::vector<PressingContact>& contacts) const;
-  /// Of each body, a number that those have in common which pressed on each other in the last step, directly or through
-  /// others: the lowest body's. What presses on a rigid body only is alone.
-  void find_islands(std::vector<std::uint32_t>& islands) const;
+  /// Sets of the bodies that pressed on each other in the last step, directly or through others. What presses on a rigid body only is
+  /// alone.
+  void find_islands(DisjointSets& islands) const;
   /// Bodies have other numbers from now on.
   void forget_who_presses() { pressed_.clear(); }
 

@@ -44,19 +44,6 @@ Eigen::Matrix<double, kDimension, kDimension> edges_of(const Corners<kDimension>
   return edges;
 }
 
-Matrix2d nearest_rotation(const Matrix2d& deformation) {
-  const double cosine = deformation.trace(), sine = deformation(1, 0) - deformation(0, 1);
-  const double length = std::sqrt(cosine * cosine + sine * sine);
-  if (!(length > 0)) return Matrix2d::Identity();
-  Matrix2d rotation;
-  rotation << cosine, -sine, sine, cosine;
-  return rotation / length;
-}
-Matrix3d nearest_rotation(const Matrix3d& deformation) {
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  return find_rotation(deformation, orientation);
-}
-
 /// Of the turn from one rotation to another.
 double cosine_between(const Matrix2d& a, const Matrix2d& b) { return (a.transpose() * b).trace() / 2; }
 double cosine_between(const Matrix3d& a, const Matrix3d& b) { return ((a.transpose() * b).trace() - 1) / 2; }

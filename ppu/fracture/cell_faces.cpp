@@ -1,35 +1,18 @@
 #include "ppu/fracture/cell_faces.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "ppu/lattice/links.h"
 #include "ppu/lattice/locate.h"
+#include "ppu/numbers/disjoint_sets.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-
-/// Sets of numbers. The first number of a set stands for it.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// The corners of a face in the low cell; in the high one they are without the bit of the axis.
 template <int kDimension, class Work>
@@ -41,10 +24,10 @@ void for_each_corner(const CellFace& face, const Work& work) {
 
 /// Of each corner of each cell, kCorners cell + corner: the set of those that are one particle.
 template <int kDimension>
-Sets corners_that_hold(const Lattice<kDimension>& lattice, std::span<const CellFace> faces,
-                       const std::vector<bool>& broken) {
+DisjointSets corners_that_hold(const Lattice<kDimension>& lattice, std::span<const CellFace> faces,
+                               const std::vector<bool>& broken) {
   constexpr auto kCorners = static_cast<std::uint32_t>(Lattice<kDimension>::kCorners);
-  Sets corners(kCorners * lattice.cells.size());
+  DisjointSets corners(kCorners * lattice.cells.size());
   std::vector<bool> is_touched(lattice.particles.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (!broken[f]) continue;
@@ -72,10 +55,11 @@ Sets corners_that_hold(const Lattice<kDimension>& lattice, std::span<const CellF
 
 /// The cells of each piece, ascending.
 template <int kDimension>
-std::vector<std::vector<std::uint32_t>> cells_of_pieces(const Lattice<kDimension>& lattice, Sets& corners) {
+std::vector<std::vector<std::uint32_t>> cells_of_pieces(const Lattice<kDimension>& lattice,
+                                                        DisjointSets& corners) {
   constexpr auto kCorners = static_cast<std::uint32_t>(Lattice<kDimension>::kCorners);
   const auto count = static_cast<std::uint32_t>(lattice.cells.size());
-  Sets cells(count);
+  DisjointSets cells(count);
   for (std::uint32_t i = 0; i < kCorners * count; ++i) cells.unite(i / kCorners, corners.find(i) / kCorners);
   std::vector<std::vector<std::uint32_t>> pieces;
   std::vector<std::uint32_t> piece_of(count, kNone);
@@ -113,7 +97,7 @@ std::vector<LatticePiece<kDimension>> split(const Lattice<kDimension>& lattice,
                                             const std::vector<bool>& broken) {
   constexpr auto kCorners = static_cast<std::uint32_t>(Lattice<kDimension>::kCorners);
   SC_ASSERT(broken.size() == faces.size(), "{} of {} faces are broken or not", broken.size(), faces.size());
-  Sets corners = corners_that_hold(lattice, faces, broken);
+  DisjointSets corners = corners_that_hold(lattice, faces, broken);
   std::vector<LatticePiece<kDimension>> pieces;
   for (std::vector<std::uint32_t>& cells : cells_of_pieces(lattice, corners)) {
     LatticePiece<kDimension>& piece = pieces.emplace_back();

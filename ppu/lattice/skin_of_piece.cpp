@@ -2,12 +2,12 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "ppu/lattice/locate.h"
+#include "ppu/numbers/disjoint_sets.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/skin_2d.h"
 
@@ -39,8 +39,7 @@ class PieceSkinMaker {
     skin_.spacing = whole_.spacing;
     for (std::uint32_t t = 0; t < whole_.triangles.size(); ++t)
       if (cells_[whole_.cells[t]] != kNowhere) taken_.push_back(t);
-    corner_.resize(3 * taken_.size());
-    std::iota(corner_.begin(), corner_.end(), 0u);
+    fans_.reset(3 * taken_.size());
     unite_corners();
     add_vertices();
     if (!whole_.outlines.empty()) add_outlines();
@@ -52,14 +51,6 @@ class PieceSkinMaker {
     return whole_.triangles[taken_[corner / 3]][corner % 3];
   }
   std::uint32_t cell_of(std::uint32_t corner) const { return whole_.cells[taken_[corner / 3]]; }
-  std::uint32_t find(std::uint32_t corner) {
-    while (corner_[corner] != corner) corner = corner_[corner] = corner_[corner_[corner]];
-    return corner;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    corner_[std::max(a, b)] = std::min(a, b);
-  }
 
   /// Whether two cells of the piece have all particles in common that they had in the whole.
   bool hold(std::uint32_t a, std::uint32_t b) const {
@@ -75,14 +66,14 @@ class PieceSkinMaker {
   void unite_corners() {
     // From the side's ends in the whole, in the direction of one triangle, to its corner there.
     std::map<std::array<std::uint32_t, 2>, std::uint32_t> begins;
-    for (std::uint32_t corner = 0; corner < corner_.size(); ++corner)
+    for (std::uint32_t corner = 0; corner < fans_.numbers(); ++corner)
       begins.emplace(std::array{vertex_of(corner), vertex_of(next(corner))}, corner);
     for (const auto& [side, corner] : begins) {
       const auto other = begins.find({side[1], side[0]});
       if (side[0] > side[1] || other == begins.end() || !hold(cell_of(corner), cell_of(other->second)))
         continue;
-      unite(corner, next(other->second));
-      unite(next(corner), other->second);
+      fans_.unite(corner, next(other->second));
+      fans_.unite(next(corner), other->second);
     }
   }
   /// The next corner of the same triangle.
@@ -91,8 +82,8 @@ class PieceSkinMaker {
   /// Of the cells of a vertex: the one that it hangs in in the whole, else the nearest.
   void add_vertices() {
     std::map<std::uint32_t, std::uint32_t> cell_of_set;
-    for (std::uint32_t corner = 0; corner < corner_.size(); ++corner) {
-      const auto [found, is_first] = cell_of_set.try_emplace(find(corner), cell_of(corner));
+    for (std::uint32_t corner = 0; corner < fans_.numbers(); ++corner) {
+      const auto [found, is_first] = cell_of_set.try_emplace(fans_.find(corner), cell_of(corner));
       if (!is_first && is_better(vertex_of(corner), cell_of(corner), found->second))
         found->second = cell_of(corner);
     }
@@ -108,9 +99,9 @@ class PieceSkinMaker {
       skin_.rest.push_back(rest);
       skin_.slopes.push_back(whole_.slopes[vertex]);
     }
-    for (std::uint32_t corner = 0; corner < corner_.size(); corner += 3) {
+    for (std::uint32_t corner = 0; corner < fans_.numbers(); corner += 3) {
       auto& triangle = skin_.triangles.emplace_back();
-      for (std::uint32_t k = 0; k < 3; ++k) triangle[k] = number_of_set.at(find(corner + k));
+      for (std::uint32_t k = 0; k < 3; ++k) triangle[k] = number_of_set.at(fans_.find(corner + k));
       skin_.cells.push_back(cells_[cell_of(corner)]);
     }
   }
@@ -151,7 +142,7 @@ class PieceSkinMaker {
   std::vector<std::uint32_t> cells_;  // of each of the whole: its number in the piece, or kNowhere
   std::vector<std::uint32_t> taken_;  // triangles of the whole
   // Of each corner of these, 3 triangle + corner: one that is the same vertex. The first one of a vertex stands for it.
-  std::vector<std::uint32_t> corner_;
+  DisjointSets fans_;
   Skin2d skin_;
 };
 

@@ -237,6 +237,20 @@ Eigen::Matrix<Real, 3, 3> find_rotation(const Eigen::Matrix<Real, 3, 3>& matrix,
   return find_from(a, rotation);
 }
 
+Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& matrix) {
+  const double cosine = matrix.trace(), sine = matrix(1, 0) - matrix(0, 1);
+  const double length = std::sqrt(cosine * cosine + sine * sine);
+  if (!(length > 0)) return Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d rotation;
+  rotation << cosine, -sine, sine, cosine;
+  return rotation / length;
+}
+
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  return find_rotation(matrix, orientation);
+}
+
 template Eigen::Matrix<float, 3, 3> update_rotation(const Eigen::Matrix<float, 3, 3>&,
                                                     Eigen::Quaternion<float>&, float);
 template Eigen::Matrix<double, 3, 3> update_rotation(const Eigen::Matrix<double, 3, 3>&,

@@ -11,6 +11,12 @@
 
 namespace softcell::ppu {
 
+/// The optimum from no rotation to begin with: what the matrix leaves open is as in the identity. In two dimensions a matrix of no rotation
+/// gives the identity.
+/// @param matrix  of finite numbers
+Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& matrix);
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
+
 /// Turns `rotation` to the optimum for `matrix`, starting from the last step's answer: Newton's method on
 /// SO(3), two or three iterations as a rule, and a cold start of its own accord when that does not get there.
 /// @param matrix    any 3x3 matrix of finite numbers, of any rank, either sign of the determinant, any scale.

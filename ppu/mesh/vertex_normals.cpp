@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <vector>
 
+#include "ppu/numbers/disjoint_sets.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -28,23 +28,6 @@ struct HalfEdge {
 
 std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 
-/// Disjoint sets of corners; a set is named by its lowest corner.
-class CornerSets {
- public:
-  explicit CornerSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 std::vector<HalfEdge> sorted_half_edges(std::span<const std::array<std::uint32_t, 3>> triangles) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * triangles.size());
@@ -61,11 +44,11 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const std::array<std::uint32_t
 }
 
 /// Joins the corners on both ends of every smooth edge.
-CornerSets smooth_groups(std::span<const std::array<std::uint32_t, 3>> triangles,
-                         std::span<const Eigen::Vector3d> face_normals, double crease_cosine) {
+DisjointSets smooth_groups(std::span<const std::array<std::uint32_t, 3>> triangles,
+                           std::span<const Eigen::Vector3d> face_normals, double crease_cosine) {
   SC_ASSERT(face_normals.size() == triangles.size(), "{} normals of {} triangles", face_normals.size(),
             triangles.size());
-  CornerSets groups(3 * triangles.size());
+  DisjointSets groups(3 * triangles.size());
   const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
   for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
     while (last < edges.size() && edges[last].low == edges[first].low &&
@@ -74,8 +57,8 @@ CornerSets smooth_groups(std::span<const std::array<std::uint32_t, 3>> triangles
     if (last - first != 2 || edges[first].ascending == edges[first + 1].ascending) continue;
     const std::uint32_t a = edges[first].corner, b = edges[first + 1].corner;
     if (face_normals[a / 3].dot(face_normals[b / 3]) < crease_cosine) continue;
-    groups.join(a, next_corner(b));
-    groups.join(next_corner(a), b);
+    groups.unite(a, next_corner(b));
+    groups.unite(next_corner(a), b);
   }
   return groups;
 }
@@ -99,7 +82,7 @@ TriangleMesh with_smooth_normals(std::span<const Eigen::Vector3f> positions,
     SC_ASSERT(areas[t].norm() > 0, "triangle {} has no area", t);
     face_normals[t] = areas[t] / areas[t].norm();
   }
-  CornerSets groups = smooth_groups(triangles, face_normals, crease_cosine);
+  DisjointSets groups = smooth_groups(triangles, face_normals, crease_cosine);
 
   TriangleMesh mesh;
   mesh.triangles.resize(triangles.size());

@@ -214,18 +214,16 @@ bool SkinOrchestrator::kick(std::span<const std::span<const Eigen::Vector4f>> po
 /// Takes over the frame that the SPEs have finished, if there is one.
 bool SkinOrchestrator::collect() {
   if (!in_flight_) return false;
-  static const std::vector<JobFailure> kNone;
   const JobChain* const chain = chain_under_way();
-  const std::vector<JobFailure>& failures = chain != nullptr ? chain->failures() : kNone;
   in_flight_ = false;
-  if (failures.empty()) {
-    shown_ = working_;
-    for (const auto& body : bodies_) body->half[static_cast<std::size_t>(shown_)].skinned = true;
-    return true;
+  if (chain != nullptr && !chain->failures().empty()) {
+    std::string message = "skinning a frame failed";
+    for (const JobFailure& failure : chain->failures()) message += "; " + failure.message;
+    throw std::runtime_error(message);
   }
-  std::string message = "skinning a frame failed";
-  for (const JobFailure& failure : failures) message += "; " + failure.message;
-  throw std::runtime_error(message);
+  shown_ = working_;
+  for (const auto& body : bodies_) body->half[static_cast<std::size_t>(shown_)].skinned = true;
+  return true;
 }
 
 bool SkinOrchestrator::drain() {

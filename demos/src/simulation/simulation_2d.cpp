@@ -21,6 +21,7 @@
 
 #include "beginning_of.h"
 #include "changed_material.h"
+#include "cut_bodies.h"
 #include "followed_particle.h"
 #include "held_bodies.h"
 #include "input/controls.h"
@@ -231,21 +232,9 @@ struct Simulation2d::State {
     cut(ppu::Cut2d::stroke(event.value, event.way),
         event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
   }
-  /// What the scene cuts at the beginning of a frame.
-  void cut_as_planned(std::int64_t at_frame) {
-    for (const ScriptedCut<2>& planned : scene.cuts)
-      if (std::llround(double{planned.time} * 60) == at_frame) cut(planned.where, planned.body);
-  }
-  /// Pieces come some steps later, or at once in a pause, in which there are none.
-  /// @param source  the scene's body whose pieces are cut; none: all bodies are
+  /// Pieces come some substeps later, or at once in a pause, in which there are none.
   void cut(const ppu::Cut2d& where, std::optional<std::size_t> source) {
-    for (std::size_t b = 0, count = bodies.size(); b < count; ++b) {
-      if (source && sources[b] != *source) continue;
-      if (controls.paused())
-        world->soft_bodies.cut(bodies[b], where);
-      else
-        world->soft_bodies.begin_cut(bodies[b], where);
-    }
+    cut_bodies(world->soft_bodies, sources, source, controls.paused(), where);
     note_broken();
   }
   /// After a step or a cut: pieces come behind all other bodies, and hands go on with the piece that has what they hold.
@@ -344,7 +333,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
   s.controls.apply(s.events, s.bodies, s);
-  s.cut_as_planned(at_frame);
+  cut_as_planned(s.scene.cuts, at_frame, [&](const auto& where, std::size_t body) { s.cut(where, body); });
   const int substeps = s.controls.due_substeps(s.substeps_of_frame());
   if (substeps == 0) return {};
 

@@ -14,6 +14,7 @@
 
 #include "beginning_of.h"
 #include "changed_material.h"
+#include "cut_bodies.h"
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
@@ -406,21 +407,9 @@ struct Simulation3d::State {
     soft_bodies[body] = ppu::SoftBody<3>(whole[body]);
   }
 
-  /// What the scene cuts at the beginning of a frame.
-  void cut_as_planned(std::int64_t at_frame) {
-    for (const ScriptedCut<3>& planned : scene.cuts)
-      if (std::llround(double{planned.time} * 60) == at_frame) cut(planned.where, planned.body);
-  }
   /// Pieces come some substeps later, or at once in a pause, in which there are none.
-  /// @param source  the scene's body whose pieces are cut; none: all bodies are
   void cut(const ppu::Cut& where, std::optional<std::size_t> source) {
-    for (std::size_t b = 0, count = soft_bodies.size(); b < count; ++b) {
-      if (source && sources[b] != *source) continue;
-      if (controls.paused())
-        soft_bodies.cut(soft_bodies[b], where);
-      else
-        soft_bodies.begin_cut(soft_bodies[b], where);
-    }
+    cut_bodies(soft_bodies, sources, source, controls.paused(), where);
     note_broken();
   }
 
@@ -587,7 +576,7 @@ FrameTimes Simulation3d::step(std::span<const InputEvent<3>> events) {
   s.events.assign(scripted.begin(), scripted.end());
   s.events.insert(s.events.end(), events.begin(), events.end());
   s.controls.apply(s.events, s.soft_bodies, s);
-  s.cut_as_planned(at_frame);
+  cut_as_planned(s.scene.cuts, at_frame, [&](const auto& where, std::size_t body) { s.cut(where, body); });
   const int substeps = s.controls.due_substeps(s.substeps_of_frame());
   if (substeps == 0) {
     finish();
