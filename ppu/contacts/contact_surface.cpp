@@ -11,6 +11,7 @@
 #include "ppu/contacts/point_chooser.h"
 #include "ppu/contacts/triangle_distance.h"
 #include "ppu/lattice/locate.h"
+#include "ppu/mesh/solid.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -56,10 +57,16 @@ TriangleMesh boundary_of(const Lattice<3>& lattice) {
 }
 
 ContactSurface::ContactSurface(const TriangleMesh& mesh, const Lattice<3>& lattice) {
-  const TriangleMesh boundary = mesh.triangles.empty() ? boundary_of(lattice) : TriangleMesh{};
-  const TriangleMesh& surface = mesh.triangles.empty() ? boundary : mesh;
-  sample(surface, lattice);
-  measure(surface, lattice);
+  if (mesh.triangles.empty()) {
+    const TriangleMesh boundary = boundary_of(lattice);
+    sample(boundary, lattice);
+    measure(boundary, lattice, nullptr);
+    return;
+  }
+  const Solid solid(mesh);
+  const TriangleMesh outside = outer_surface(mesh, solid, lattice.spacing);
+  sample(outside, lattice);
+  measure(outside, lattice, outside.triangles == mesh.triangles ? nullptr : &solid);
 }
 
 /// Vertices come first: those of sharp corners and edges must not give way to what lies beside them.
@@ -93,7 +100,8 @@ void ContactSurface::sample(const TriangleMesh& mesh, const Lattice<3>& lattice)
                    [](const auto& a, const auto& b) { return a.cell < b.cell; });
 }
 
-void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice) {
+/// @param solid  says what is inside; null: the nearest triangle does
+void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice, const Solid* solid) {
   const TriangleGrid triangles(mesh, lattice.spacing);
   const float outwards = volume_of(mesh) < 0 ? -1.0f : 1.0f;  // of a mesh turned inside out
   constexpr int kPerCell = kNodesPerEdge - 1;                 // nodes from cell to cell
@@ -116,7 +124,9 @@ void ContactSurface::measure(const TriangleMesh& mesh, const Lattice<3>& lattice
       if (!is_new) return;
       const Vector3f at = lattice.origin + lattice.spacing * kStep * node.cast<float>();
       const float reach = kReach * lattice.spacing;
-      const float distance = outwards * triangles.signed_distance(at, reach) / lattice.spacing;
+      float distance = outwards * triangles.signed_distance(at, reach) / lattice.spacing;
+      if (solid != nullptr && std::abs(distance) < kReach)
+        distance = solid->contains(at) ? -std::abs(distance) : std::abs(distance);
       if (std::abs(distance) < kReach)
         entry->second = distance;
       else

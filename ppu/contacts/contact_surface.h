@@ -18,6 +18,7 @@ namespace softcell::ppu {
 
 template <int kDimension>
 struct Cracks;
+class Solid;
 
 /// A point of the surface and where it lies in its cell.
 struct SurfacePointAtRest {
@@ -54,6 +55,7 @@ class ContactSurface {
     return 2 * ((k >> 2) * kNodesPerEdge * kNodesPerEdge + (k >> 1 & 1u) * kNodesPerEdge + (k & 1u));
   }
 
+  /// What of the mesh lies within other parts of it does not count.
   /// @param mesh  closed, or nearly so; none: the lattice's own boundary
   ContactSurface(const TriangleMesh& mesh, const Lattice<3>& lattice);
   /// Of a piece of a body with a mesh: what it is in the whole, but where the piece is open. In proportion to the piece (piece_surface.cpp).
@@ -74,7 +76,7 @@ class ContactSurface {
 
  private:
   void sample(const TriangleMesh& mesh, const Lattice<3>& lattice);
-  void measure(const TriangleMesh& mesh, const Lattice<3>& lattice);
+  void measure(const TriangleMesh& mesh, const Lattice<3>& lattice, const Solid* solid);
   void allow_particles(const Lattice<3>& lattice);
 
   std::vector<SurfacePointAtRest> points_;
