@@ -63,7 +63,7 @@ class ContactSurface {
   ContactSurface(const ContactSurface& whole, const Lattice<3>& piece, const TriangleMesh& mesh,
                  const Cracks<3>& cracks);
 
-  /// Ascending by cell. Nearer to each other than half a cell where the surface is smooth; at each corner and
+  /// Ascending by cell. Nearer to each other than half a cell where the surface is flat, and the nearer the more it bends; at each corner and
   /// along each sharp edge of the mesh.
   std::span<const SurfacePointAtRest> points() const { return points_; }
   /// All particles.

@@ -20,6 +20,9 @@ class PointChooser {
   // In cells.
   static constexpr float kPointSpacing = 0.45f;  ///< between points of a smooth surface
   static constexpr float kSamePoint = 0.1f;  ///< nearer than this two points are one, whatever their normals
+  /// How far a point may stand out beyond one that is chosen, where the surface bends: half of what they are apart times the angle
+  /// between their normals.
+  static constexpr float kBulge = 0.06f;
 
   explicit PointChooser(float spacing) : spacing_(spacing) {}
 
@@ -42,9 +45,10 @@ class PointChooser {
     Eigen::Vector3f point, normal;
   };
   bool is_near(const Chosen& other, const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const {
-    constexpr float kOneSurface = 0.5f;  // cosine
     const float apart = (other.point - point).norm() / spacing_;
-    return apart < kSamePoint || (apart < kPointSpacing && other.normal.dot(normal) > kOneSurface);
+    if (apart < kSamePoint || apart >= kPointSpacing) return apart < kSamePoint;
+    const bool of_a_surface = !normal.isZero(0) && !other.normal.isZero(0);
+    return of_a_surface && apart * (other.normal - normal).norm() < 2 * kBulge;
   }
 
   float spacing_;

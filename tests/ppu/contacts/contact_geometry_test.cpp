@@ -14,9 +14,11 @@
 #include "ppu/contacts/contact_body.h"
 #include "ppu/contacts/contact_surface.h"
 #include "ppu/contacts/obstacle.h"
+#include "ppu/contacts/point_chooser.h"
 #include "ppu/contacts/point_set.h"
 #include "ppu/contacts/triangle_boxes.h"
 #include "ppu/contacts/triangle_distance.h"
+#include "ppu/mesh/solid.h"
 #include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::ppu {
@@ -255,11 +257,22 @@ TEST(ContactSurface, PointsCoverTheMesh) {
        {make_penguin(0.9f), make_box({1, 0.5f, 0.5f}, 0.5f), make_cone(0.4f, 0.8f, 24)}) {
     const Lattice<3> lattice = voxelize(mesh, kCell);
     const ContactSurface surface(mesh, lattice);
-    for (const Vector3f& vertex : mesh.positions) {
-      float nearest = 1e9f;
-      for (const SurfacePointAtRest& point : surface.points())
-        nearest = std::min(nearest, (point.rest - vertex).norm());
-      EXPECT_LT(nearest, 0.46f * kCell);
+    // What lies within other parts of a penguin touches nothing.
+    const TriangleMesh outside = outer_surface(mesh, Solid(mesh), kCell);
+    for (const auto& t : outside.triangles) {
+      const std::array<Vector3f, 3> corners{outside.positions[t[0]], outside.positions[t[1]],
+                                            outside.positions[t[2]]};
+      const Vector3f normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+      for (const Vector3f& vertex : corners) {
+        float nearest = 1e9f, stands_out = 1e9f;
+        for (const SurfacePointAtRest& point : surface.points()) {
+          const Vector3f off = vertex - point.rest;
+          nearest = std::min(nearest, off.norm());
+          if (off.norm() < 0.46f * kCell) stands_out = std::min(stands_out, normal.dot(off));
+        }
+        EXPECT_LT(nearest, 0.46f * kCell) << vertex.transpose();
+        EXPECT_LT(stands_out, 2 * PointChooser::kBulge * kCell) << vertex.transpose();
+      }
     }
   }
 }
