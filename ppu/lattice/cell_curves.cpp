@@ -1,6 +1,10 @@
 #include "ppu/lattice/cell_curves.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
 
 #include "softcell/base/assert.h"
 
@@ -8,6 +12,9 @@ namespace softcell::ppu {
 namespace {
 
 using Eigen::Vector2f;
+using Eigen::Vector2i;
+
+constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
 /// Of the two ends of an edge, at a share of it: what each end's position and derivative count.
 struct Curve {
@@ -17,7 +24,74 @@ struct Curve {
   std::array<float, 2> position, derivative;
 };
 
+void add_to(Skin2d& skin, std::uint32_t cell, const Vector2f& at, const std::vector<Pull2d>& pulls) {
+  skin.vertex_cells.push_back(cell);
+  skin.rest.push_back(at);
+  skin.pulls.insert(skin.pulls.end(), pulls.begin(), pulls.end());
+  skin.first_pull.push_back(static_cast<std::uint32_t>(skin.pulls.size()));
+}
+
 }  // namespace
+
+MeanMap::MeanMap(const Lattice<2>& lattice) : lattice_(lattice) {
+  SC_ASSERT(!lattice.particles.empty(), "a lattice of {} cells without particles", lattice.cells.size());
+  Vector2i high = low_ = lattice.particles.front();
+  for (const Vector2i& at : lattice.particles) {
+    low_ = low_.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  size_ = high - low_ + Vector2i::Ones();
+  particle_at_.assign(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()), kNobody);
+  for (std::uint32_t i = 0; i < lattice.particles.size(); ++i) {
+    const Vector2i at = lattice.particles[i] - low_;
+    particle_at_[static_cast<std::size_t>(at.x()) * static_cast<std::size_t>(size_.y()) +
+                 static_cast<std::size_t>(at.y())] = i;
+  }
+}
+
+void MeanMap::add_vertex(Skin2d& skin, std::uint32_t cell, const Vector2f& at) {
+  constexpr double kBeyondNearest = 2.5;  // cells: three rows of particles count at least
+  SC_ASSERT(cell < lattice_.cells.size(), "cell {} of {}", cell, lattice_.cells.size());
+  const auto from_point = [&](std::uint32_t particle) {
+    return Eigen::Vector2d((lattice_.particles[particle].cast<float>() - at).cast<double>());
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t corner : lattice_.corners[cell])
+    nearest = std::min(nearest, from_point(corner).norm());
+  const double reach = nearest + kBeyondNearest;
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  std::vector<std::pair<std::uint32_t, Eigen::Vector3d>> weighted;  // w (1, x, y)
+  const auto weigh = [&](std::uint32_t particle) {
+    const Eigen::Vector2d away = from_point(particle);
+    const double inside = 1 - away.squaredNorm() / (reach * reach);
+    if (inside <= 0) return;
+    const Eigen::Vector3d place(1, away.x(), away.y());
+    weighted.emplace_back(particle, inside * inside * place);
+    moments += weighted.back().second * place.transpose();
+  };
+  const auto first = [&](int axis) {
+    return std::max(static_cast<int>(std::floor(at[axis] - static_cast<float>(reach))) - low_[axis], 0);
+  };
+  const auto last = [&](int axis) {
+    return std::min(static_cast<int>(std::ceil(at[axis] + static_cast<float>(reach))) - low_[axis],
+                    size_[axis] - 1);
+  };
+  for (int x = first(0); x <= last(0); ++x) {
+    for (int y = first(1); y <= last(1); ++y) {
+      const std::uint32_t particle =
+          particle_at_[static_cast<std::size_t>(x) * static_cast<std::size_t>(size_.y()) +
+                       static_cast<std::size_t>(y)];
+      if (particle != kNobody) weigh(particle);
+    }
+  }
+  const Eigen::Matrix3d inverse = moments.inverse();
+  std::vector<Pull2d> pulls;
+  for (const auto& [particle, weight] : weighted) {
+    const Eigen::Vector3f share = (inverse * weight).cast<float>();
+    pulls.push_back({.particle = particle, .share = share.x(), .along_x = share.y(), .along_y = share.z()});
+  }
+  add_to(skin, cell, at, pulls);
+}
 
 CellCurves::CellCurves(const Lattice<2>& lattice) : lattice_(lattice), cells_of_(lattice.particles.size()) {
   for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell)
@@ -88,10 +162,7 @@ void CellCurves::add_vertex(Skin2d& skin, std::uint32_t cell, const Vector2f& at
       if (const float share = weight(other) / sum; share > 0) pull_from(other, at, share);
   }
   std::ranges::sort(pulls_, {}, &Pull2d::particle);
-  skin.vertex_cells.push_back(cell);
-  skin.rest.push_back(at);
-  skin.pulls.insert(skin.pulls.end(), pulls_.begin(), pulls_.end());
-  skin.first_pull.push_back(static_cast<std::uint32_t>(skin.pulls.size()));
+  add_to(skin, cell, at, pulls_);
 }
 
 /// Adds what one cell's patch does with the point.

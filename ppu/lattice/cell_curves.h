@@ -11,21 +11,41 @@
 
 namespace softcell::ppu {
 
-/// The map from places at rest to the places of the moment: one cubic patch for each cell, which has the positions of the cell's particles, and
+/// A map from places at rest to the places of the moment. All of it is linear in the positions of particles: what a point needs is a list
+/// of shares, made once.
+class SkinMap {
+ public:
+  virtual ~SkinMap() = default;
+  /// Appends what moves a point to a skin's lists. @param cell  the number of its nearest cell  @param at  grid coordinates
+  virtual void add_vertex(Skin2d& skin, std::uint32_t cell, const Eigen::Vector2f& at) = 0;
+};
+
+/// The affine map that fits the particles around a point best, the near ones above all (moving least squares). It does not know the cells:
+/// stairs in a lattice's edge are none in what is drawn, also where something presses on them.
+class MeanMap final : public SkinMap {
+ public:
+  /// @param lattice  with one particle at each grid index; must outlive it
+  explicit MeanMap(const Lattice<2>& lattice);
+  void add_vertex(Skin2d& skin, std::uint32_t cell, const Eigen::Vector2f& at) override;
+
+ private:
+  const Lattice<2>& lattice_;
+  Eigen::Vector2i low_, size_;              // of the particles' grid indices
+  std::vector<std::uint32_t> particle_at_;  // rows of y; kNobody
+};
+
+/// One cubic patch for each cell, which has the positions of the cell's particles, and
 /// their derivatives, at the corners. The derivative at a particle is the mean of those along the cells' edges that end there, so patches
 /// side by side have one tangent. Outside of its cells a point goes on along the derivatives at the nearest point of a cell: of several that
 /// share a particle with the nearest one, in the mean, so that nothing jumps where another becomes the nearest.
 ///
 ///      h0 = 1 - h1     h1 = 3 t^2 - 2 t^3      g0 = t (1 - t)^2      g1 = -t^2 (1 - t)
-///
-/// All of it is linear in the positions: what a point needs is a list of shares, made once.
-class CellCurves {
+class CellCurves final : public SkinMap {
  public:
   /// @param lattice  must outlive it
   explicit CellCurves(const Lattice<2>& lattice);
 
-  /// Appends what moves a point to a skin's lists. @param cell  its number  @param at  grid coordinates
-  void add_vertex(Skin2d& skin, std::uint32_t cell, const Eigen::Vector2f& at);
+  void add_vertex(Skin2d& skin, std::uint32_t cell, const Eigen::Vector2f& at) override;
 
  private:
   struct Share {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <memory>
 
 #include "ppu/lattice/cell_curves.h"
 #include "ppu/lattice/cells_by_index.h"
@@ -30,15 +30,15 @@ CellPoint2d point_of(const Lattice<2>& lattice, std::uint32_t cell, const Vector
 class Mesher {
  public:
   /// @param light  has the slopes: of all of the shape, if the field is of a part
-  Mesher(const Lattice<2>& lattice, const CellsByIndex& cells, const SkinField& field, const SkinField& light)
-      : curves_(lattice), cells_(cells), field_(field), light_(light), block_count_(field.size() / kSamples) {
+  Mesher(SkinMap& map, const CellsByIndex& cells, const SkinField& field, const SkinField& light)
+      : map_(map), cells_(cells), field_(field), light_(light), block_count_(field.size() / kSamples) {
     const auto samples =
         static_cast<std::size_t>(field.size().x()) * static_cast<std::size_t>(field.size().y());
     for (auto& vertices : vertex_at_) vertices.assign(samples, kNone);
-    skin_.spacing = lattice.spacing;
   }
 
-  Skin2d run() {
+  Skin2d run(float spacing) {
+    skin_.spacing = spacing;
     for (int x = 0; x < block_count_.x(); ++x) {
       for (int y = 0; y < block_count_.y(); ++y) {
         if (is_inside({x, y})) {
@@ -62,7 +62,7 @@ class Mesher {
   }
 
   std::uint32_t add_vertex(const Vector2f& rest, const Vector2f& slope) {
-    curves_.add_vertex(skin_, cells_.nearest(rest), rest);
+    map_.add_vertex(skin_, cells_.nearest(rest), rest);
     skin_.slopes.push_back(slope);
     return static_cast<std::uint32_t>(skin_.rest.size() - 1);
   }
@@ -185,7 +185,7 @@ class Mesher {
     }
   }
 
-  CellCurves curves_;
+  SkinMap& map_;
   const CellsByIndex& cells_;
   const SkinField& field_;
   const SkinField& light_;
@@ -205,12 +205,19 @@ SkinField field_of(const CellsByIndex& cells, float margin, const Outside2d& out
   return outside ? SkinField::of_shape(cells, margin, outside) : SkinField::of_cells(cells, margin);
 }
 
+/// A shape that cells stand for has no stairs, however it is deformed.
+std::unique_ptr<SkinMap> map_of(const Lattice<2>& lattice, const Outside2d& outside) {
+  if (outside) return std::make_unique<MeanMap>(lattice);
+  return std::make_unique<CellCurves>(lattice);
+}
+
 }  // namespace
 
 Skin2d make_skin_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside) {
   const CellsByIndex cells(lattice);
   const SkinField field = field_of(cells, margin, outside);
-  return Mesher(lattice, cells, field, field).run();
+  const auto map = map_of(lattice, outside);
+  return Mesher(*map, cells, field, field).run(lattice.spacing);
 }
 
 std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside,
@@ -218,6 +225,7 @@ std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, 
   SC_ASSERT(parts.size() == lattice.cells.size(), "{} parts of {} cells", parts.size(), lattice.cells.size());
   const CellsByIndex cells(lattice);
   const SkinField all = field_of(cells, margin, outside);
+  const auto map = map_of(lattice, outside);
   const std::uint32_t count = 1 + *std::ranges::max_element(parts);
   std::vector<Skin2d> skins;
   // Each part from what it and those above it cover, without what those above it do: they leave no gaps where three meet.
@@ -226,7 +234,7 @@ std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, 
   for (std::uint32_t part = 0; part < count; ++part) {
     for (std::size_t cell = 0; cell < parts.size(); ++cell) above[cell] = parts[cell] > part;
     const SkinField next = all.part(above);
-    skins.push_back(Mesher(lattice, cells, covered.without(next), all).run());
+    skins.push_back(Mesher(*map, cells, covered.without(next), all).run(lattice.spacing));
     covered.take(next);
   }
   return skins;

@@ -207,10 +207,36 @@ TEST(Skin2d, ADiscIsRound) {
       make_skin_2d(lattice, 0.5f, [&](const Vector2f& at) { return (at - middle).norm() - 3.5f; });
   ASSERT_EQ(skin.outlines.size(), 1u);
   for (const std::uint32_t vertex : skin.outlines[0]) {
-    EXPECT_NEAR((skin.rest[vertex] - middle).norm(), 4, 0.01f);
+    EXPECT_NEAR((skin.rest[vertex] - middle).norm(), 4, 0.02f);
     EXPECT_NEAR(skin.slopes[vertex].norm(), 0.62f, 0.05f);
   }
   EXPECT_NEAR(area_of_triangles(skin), 3.14159f * 16, 0.3f);
+}
+
+TEST(Skin2d, ADiscStaysSmoothWhereItIsPressed) {
+  // Corners of its stairs are pushed in by a floor, as contacts do; the particles between them are not.
+  const Lattice<2> lattice =
+      lattice_of_rows({"...####...", "..######..", ".########.", "##########", "##########", "##########",
+                       "##########", ".########.", "..######..", "...####..."});
+  const Vector2f middle(5, 5);
+  const Skin2d skin =
+      make_skin_2d(lattice, 0.5f, [&](const Vector2f& at) { return (at - middle).norm() - 5.2f; });
+  std::vector<Vector2f> particles = at_rest(lattice);
+  const Vector2f down = Vector2f(-1, -1).normalized();
+  const auto depth = [&](const Vector2f& at) {
+    return ((at - lattice.origin) / lattice.spacing - middle).dot(down);
+  };
+  for (Vector2f& at : particles)
+    if (const float below = depth(at) - 4.4f; below > 0) at -= lattice.spacing * below * down;
+  const std::vector<Vector2f> positions = placed(skin, particles);
+  float least = 100, most = 0;
+  for (const std::uint32_t vertex : skin.outlines.at(0)) {
+    const Vector2f in = skin.rest[vertex] - middle;
+    if (in.dot(down) < 0 || std::abs(in.x() - in.y()) > 2.2f) continue;
+    least = std::min(least, depth(positions[vertex]));
+    most = std::max(most, depth(positions[vertex]));
+  }
+  EXPECT_LT(most - least, 0.25f) << "cells, along the flat part";
 }
 
 TEST(SkinParts2d, CoverTheShapeOnce) {
@@ -229,7 +255,8 @@ TEST(SkinParts2d, CoverTheShapeOnce) {
         EXPECT_GT(cross(skin.rest[b] - skin.rest[a], skin.rest[c] - skin.rest[a]), 0);
     }
     const float whole = area_of_triangles(make_skin_2d(lattice, 0.5f));
-    EXPECT_NEAR(area, whole, 0.01f * whole);
+    // Where three parts meet, their corners are cut off and overlap, by less than a quarter of a cell.
+    EXPECT_NEAR(area, whole, 0.02f * whole);
   }
 }
 

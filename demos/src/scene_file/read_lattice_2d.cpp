@@ -1,5 +1,6 @@
 #include "read_lattice_2d.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -52,9 +53,16 @@ void ring_of(int diameter, int hole, SoftBody2dPlacement& body) {
     const int dx = 2 * x + 1 - diameter, dy = 2 * y + 1 - diameter, squared = dx * dx + dy * dy;
     return squared <= diameter * diameter && squared >= hole * hole;
   });
-  const float radius = 0.5f * static_cast<float>(diameter);
-  body.ring = {
-      .middle = Eigen::Vector2f::Constant(radius), .radius = radius, .hole = 0.5f * static_cast<float>(hole)};
+  // Between the nearest and the farthest places of the cells' edge, so that what it lies on is neither covered nor far below.
+  const float half = 0.5f * static_cast<float>(diameter);
+  float farthest = half;
+  for (const Vector2i& cell : body.cells) {
+    const Eigen::Vector2f middle = cell.cast<float>() + Eigen::Vector2f::Constant(0.5f - half);
+    farthest = std::max(farthest, (middle.cwiseAbs() + Eigen::Vector2f::Constant(0.5f)).norm());
+  }
+  body.ring = {.middle = Eigen::Vector2f::Constant(half),
+               .radius = half + 0.25f * (farthest - half),
+               .hole = 0.5f * static_cast<float>(hole)};
 }
 
 void disc(FieldReader& fields, SoftBody2dPlacement& body) {
