@@ -35,12 +35,18 @@ class Rows {
       names = std::max(names, ImGui::CalcTextSize(name.c_str()).x);
       texts = std::max(texts, ImGui::CalcTextSize(text.c_str()).x);
     }
-    const float across = room.x - 2 * style.WindowPadding.x - 6 * style.CellPadding.x;
+    const ImVec2 padding = style.CellPadding;
+    const float across = room.x - 2 * style.WindowPadding.x;
     const float row = (room.y - 2 * style.WindowPadding.y) / static_cast<float>(rows_.size());
-    const float size = std::min(
-        {1.0f, across / (names + texts), (row - 2 * style.CellPadding.y) / ImGui::GetTextLineHeight()});
-    ImGui::SetWindowFontScale(std::max(size, kSmallest));
-    if (!ImGui::BeginTable(id, 2)) return;
+    const float size = std::max(std::min({1.0f, across / (names + texts + 6 * padding.x),
+                                          row / (ImGui::GetTextLineHeight() + 2 * padding.y)}),
+                                kSmallest);
+    ImGui::SetWindowFontScale(size);
+    // Between rows, too: where little fits, letters are what counts.
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2(size * padding.x, size * padding.y));
+    const bool is_open = ImGui::BeginTable(id, 2);
+    ImGui::PopStyleVar();
+    if (!is_open) return;
     for (const auto& [name, text] : rows_) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
