@@ -37,7 +37,7 @@ return {
   pictures = { 1, 60, 150 },
   world = { frames = 360, contacts = "surface", sleep = true },
   framework = { half_width = 4, height = 5.4, thickness = 0.3, front_opacity = 0.06 },
-  camera = { eye = { 0, 6.5, 13 }, target = { 0, 3.2, 0 }, tan_half_fov_y = 0.42, near = 1, far = 60 },
+  camera = { eye = { 5.5, 10, 11.5 }, target = { 0, 4.9, 0 }, tan_half_fov_y = 0.45, near = 1, far = 60 },
   light = { shadow_radius = 9 },
   materials = { penguin = { cell_size = 0.15, half_width = 2, density = 250, alpha = 0.3, damping = 0.1 } },
   box = boxes,

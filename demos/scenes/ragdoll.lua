@@ -41,7 +41,7 @@ return {
   world = { frames = 360, substeps = 4 },
   framework = { half_width = 2.6, height = 0.2, thickness = 0.15, front_opacity = 0.2 },
   light = { shadow_radius = 5 },
-  camera = { eye = { 1.4, 2.1, 4.4 }, target = { -0.45, 1.05, 0 }, near = 0.5, far = 40 },
+  camera = { eye = { 1.7, 2.3, 4.1 }, target = { -0.55, 1.15, 0 }, near = 0.5, far = 40 },
   materials = { flesh = { cell_size = 0.075, half_width = 2, density = 150, frequency = 14, damping_time = 0.1, friction = 0.7 } },
   box = stairs, soft_body = bodies, attach = attach,
   impulse = { { time = 0.05, body = "chest", velocity = { 1.6, 0, 0.3 } } },

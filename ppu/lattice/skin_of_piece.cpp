@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/lattice/cell_curves.h"
 #include "ppu/lattice/locate.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "softcell/base/assert.h"
@@ -25,14 +26,8 @@ constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 class PieceSkinMaker {
  public:
   PieceSkinMaker(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece)
-      : whole_(whole),
-        lattice_(lattice),
-        piece_(piece),
-        cell_of_low_corner_(lattice.particles.size(), kNowhere) {
-    for (std::uint32_t c = 0; c < lattice.cells.size(); ++c) {
-      cell_of_low_corner_[lattice.corners[c][0]] = c;
-      cells_.push_back(find_cell<2>(piece, lattice.cells[c]).value_or(kNowhere));
-    }
+      : whole_(whole), lattice_(lattice), piece_(piece), curves_(piece) {
+    for (const auto& cell : lattice.cells) cells_.push_back(find_cell<2>(piece, cell).value_or(kNowhere));
   }
 
   Skin2d run() {
@@ -89,14 +84,9 @@ class PieceSkinMaker {
     }
     std::map<std::uint32_t, std::uint32_t> number_of_set;
     for (const auto& [set, cell] : cell_of_set) {
-      number_of_set.emplace(set, static_cast<std::uint32_t>(skin_.vertices.size()));
+      number_of_set.emplace(set, static_cast<std::uint32_t>(skin_.rest.size()));
       const std::uint32_t vertex = vertex_of(set);
-      const Vector2f& rest = whole_.rest[vertex];
-      const Vector2f in = rest - lattice_.cells[cell].cast<float>();
-      const float x = in.x(), y = in.y();
-      skin_.vertices.push_back(
-          {piece_.corners[cells_[cell]], {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y}});
-      skin_.rest.push_back(rest);
+      curves_.add_vertex(skin_, cells_[cell], whole_.rest[vertex]);
       skin_.slopes.push_back(whole_.slopes[vertex]);
     }
     for (std::uint32_t corner = 0; corner < fans_.numbers(); corner += 3) {
@@ -106,7 +96,7 @@ class PieceSkinMaker {
     }
   }
   bool is_better(std::uint32_t vertex, std::uint32_t cell, std::uint32_t than) const {
-    const std::uint32_t of_whole = cell_of_low_corner_[whole_.vertices[vertex].corner[0]];
+    const std::uint32_t of_whole = whole_.vertex_cells[vertex];
     if (cell == of_whole || than == of_whole) return cell == of_whole;
     return distance(vertex, cell) < distance(vertex, than);
   }
@@ -138,7 +128,7 @@ class PieceSkinMaker {
   const Skin2d& whole_;
   const Lattice<2>& lattice_;
   const Lattice<2>& piece_;
-  std::vector<std::uint32_t> cell_of_low_corner_;  // of each particle of the whole
+  CellCurves curves_;
   std::vector<std::uint32_t> cells_;  // of each of the whole: its number in the piece, or kNowhere
   std::vector<std::uint32_t> taken_;  // triangles of the whole
   // Of each corner of these, 3 triangle + corner: one that is the same vertex. The first one of a vertex stands for it.

@@ -20,7 +20,7 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
   do {
     event.action = static_cast<Action>(below(kActions));
   } while (Dimension == 2 && (event.action == Action::kTilt || event.action == Action::kCut));
-  const auto use_hand = [&] { event.hand = below(3) == 0 ? below(4) : kUsersHand; };
+  const auto use_hand = [&] { event.hand = below(3) == 0 ? below(4) : kUsersHand - below(3); };
   const auto use_body = [&] { event.body = below(3) == 0 ? below(6) : kEveryBody; };
   const auto random_vector = [&](float size) {
     typename Event::Vector vector;

@@ -116,7 +116,7 @@ TEST(Recording, WhatIsWrongIsSaidWithItsLine) {
       {with_lines("0 gravity 0\n" + end), "line 5: a number is missing"},
       {with_lines("0 gravity 0 1 2\n" + end), "line 5: '2' was not expected here"},
       {with_lines("0 release 4294967295\n" + end),
-       "line 5: a hand '4294967295' is not a number from 0 to 4294967294"},
+       "line 5: a hand '4294967295' is not a number from 0 to 4294967292"},
       {with_lines("0 home userland\n" + end),
        "line 5: a body 'userland' is not a number from 0 to 4294967294"},
       {with_lines(std::string(1000, '0') + "\n" + end), "line 5: is longer than any line of a recording"},

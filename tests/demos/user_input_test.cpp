@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -589,6 +590,128 @@ TEST(UserInput3d, TheMouseKnowsTheWindowsSize) {
   input.handle(resized);
   input.handle(mouse_button(SDL_MOUSEBUTTONDOWN, 255, 195));
   ASSERT_EQ(input.next_frame().size(), 1u);
+}
+
+/// Of a controller: axis and share of its way.
+SDL_Event axis_at(SDL_GameControllerAxis axis, float share) {
+  SDL_Event event{};
+  event.caxis.type = SDL_CONTROLLERAXISMOTION;
+  event.caxis.axis = static_cast<Uint8>(axis);
+  event.caxis.value = static_cast<Sint16>(share * 32767);
+  return event;
+}
+
+std::vector<InputEvent<3>> frames_of(UserInput<3>& input, int frames) {
+  std::vector<InputEvent<3>> events;
+  for (int i = 0; i < frames; ++i) {
+    const auto frame = input.next_frame();
+    events.insert(events.end(), frame.begin(), frame.end());
+  }
+  return events;
+}
+
+TEST(ControllerHands, ATriggerThatIsTouchedShowsAHandThatItsStickMoves) {
+  UserInput<3> input(kViews, {.tilt = {}, .knife = {}, .hand = reach_from_above(), .camera = {}});
+  EXPECT_FALSE(input.look().hands[0] || input.look().hands[1]);
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 0.2f));
+  EXPECT_TRUE(frames_of(input, 1).empty());
+  EXPECT_FALSE(input.look().hands[0]) << "the left trigger is not touched";
+  ASSERT_TRUE(input.look().hands[1]);
+  EXPECT_EQ(input.look().hands[1]->at, Vector2f(0.6f, 0.5f));
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_RIGHTX, 1));
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_RIGHTY, -0.5f));
+  EXPECT_TRUE(frames_of(input, 10).empty());
+  // The window is 800 x 600: as far to the right in pixels as it would go upwards.
+  EXPECT_NEAR(input.look().hands[1]->at.x(), 0.6f + 0.2f * 0.75f, 1e-4f);
+  EXPECT_NEAR(input.look().hands[1]->at.y(), 0.5f - 0.1f, 1e-4f);
+  EXPECT_TRUE(frames_of(input, 1000).empty());
+  EXPECT_EQ(input.look().hands[1]->at, Vector2f(1, 0)) << "in the window";
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 0));
+  EXPECT_TRUE(frames_of(input, 1).empty());
+  EXPECT_FALSE(input.look().hands[1]);
+}
+
+TEST(ControllerHands, BothTakeMoveAndLetGo) {
+  UserInput<3> input(kViews, {.tilt = {}, .knife = {}, .hand = reach_from_above(), .camera = {}});
+  for (const auto axis : {SDL_CONTROLLER_AXIS_TRIGGERLEFT, SDL_CONTROLLER_AXIS_TRIGGERRIGHT})
+    input.handle(axis_at(axis, 0.3f));
+  // To the right and down, from the middle to (1, 0, 1), where the body is; 100 pixels are a metre.
+  for (const auto axis : {SDL_CONTROLLER_AXIS_LEFTX, SDL_CONTROLLER_AXIS_LEFTY, SDL_CONTROLLER_AXIS_RIGHTX,
+                          SDL_CONTROLLER_AXIS_RIGHTY})
+    input.handle(axis_at(axis, 0.5f));
+  EXPECT_TRUE(frames_of(input, 16).empty()) << "nothing is held, and the left stick tilts nothing meanwhile";
+  for (const auto axis : {SDL_CONTROLLER_AXIS_TRIGGERLEFT, SDL_CONTROLLER_AXIS_TRIGGERRIGHT})
+    input.handle(axis_at(axis, 1));
+  auto events = frames_of(input, 1);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].action, Action::kHold);
+  EXPECT_EQ(events[0].hand, kUsersLeftHand);
+  EXPECT_EQ(events[1].action, Action::kHold);
+  EXPECT_EQ(events[1].hand, kUsersRightHand);
+  EXPECT_EQ(events[1].body, 2u);
+  EXPECT_TRUE(input.look().hands[0]->holds && input.look().hands[1]->holds);
+  for (const auto axis : {SDL_CONTROLLER_AXIS_LEFTX, SDL_CONTROLLER_AXIS_LEFTY, SDL_CONTROLLER_AXIS_RIGHTY})
+    input.handle(axis_at(axis, 0));
+  events = frames_of(input, 2);
+  ASSERT_EQ(events.size(), 4u);
+  EXPECT_EQ(events[2].action, Action::kMoveHand);
+  EXPECT_EQ(events[2].hand, kUsersLeftHand);
+  EXPECT_EQ(events[3].hand, kUsersRightHand);
+  EXPECT_EQ(events[2].value, events[0].value) << "its stick is in the middle";
+  EXPECT_GT(events[3].value.x(), events[1].value.x() + 0.03f);
+  // The pad takes both away from the eye.
+  SDL_Event pad{};
+  pad.cbutton.type = SDL_CONTROLLERBUTTONDOWN;
+  pad.cbutton.button = SDL_CONTROLLER_BUTTON_DPAD_UP;
+  input.handle(pad);
+  const float before = events[2].value.y();
+  events = frames_of(input, 5);
+  EXPECT_LT(events.back().value.y(), before - 0.3f);
+  EXPECT_EQ(events.size(), 10u) << "one event for each hand and frame";
+  pad.cbutton.type = SDL_CONTROLLERBUTTONUP;
+  input.handle(pad);
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERLEFT, 0.2f));
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 0));
+  events = frames_of(input, 1);
+  ASSERT_EQ(std::ranges::count(events, Action::kRelease, &InputEvent<3>::action), 2);
+  EXPECT_TRUE(input.look().hands[0]) << "touched still, ready for the next time";
+  EXPECT_FALSE(input.look().hands[1]);
+}
+
+TEST(ControllerHands, ThatFindNothingTakeNothingUntilTheyAreOpenedAgain) {
+  UserInput<3> input(kViews, {.tilt = {}, .knife = {}, .hand = reach_from_above(), .camera = {}});
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 1));
+  EXPECT_TRUE(frames_of(input, 1).empty()) << "nothing is there";
+  for (const auto axis : {SDL_CONTROLLER_AXIS_RIGHTX, SDL_CONTROLLER_AXIS_RIGHTY})
+    input.handle(axis_at(axis, 0.5f));
+  EXPECT_TRUE(frames_of(input, 12).empty()) << "it goes over the body closed";
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 0.3f));
+  EXPECT_TRUE(frames_of(input, 1).empty());
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 0.7f));
+  EXPECT_EQ(frames_of(input, 1).size(), 1u);
+  // A controller that is pulled out lets go.
+  SDL_Event removed{};
+  removed.cdevice.type = SDL_CONTROLLERDEVICEREMOVED;
+  input.handle(removed);
+  const auto events = frames_of(input, 1);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].action, Action::kRelease);
+}
+
+TEST(ControllerHands, HoldInTwoDimensionsToo) {
+  const auto pick = [](const Vector2f& at) -> std::optional<InputEvent<2>> {
+    return InputEvent<2>{.action = Action::kHold, .body = 1, .value = at};
+  };
+  UserInput<2> input(kViews2d, {.hand = MouseHand({.centre = {1, 2}, .height = 6}, pick, 800, 600)});
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_TRIGGERLEFT, 1));
+  const auto taken = input.next_frame();
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].hand, kUsersLeftHand);
+  EXPECT_LT((taken[0].value - Vector2f(1 - 0.8f, 2)).norm(), 0.02f) << "a tenth of 8 m left of the middle";
+  input.handle(axis_at(SDL_CONTROLLER_AXIS_LEFTY, -1));
+  const auto moved = input.next_frame();
+  ASSERT_EQ(moved.size(), 1u);
+  EXPECT_NEAR(moved[0].value.y(), 2 + 0.02f * 6, 0.011f);
 }
 
 }  // namespace

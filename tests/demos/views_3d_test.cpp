@@ -133,15 +133,59 @@ TEST(CameraControl, TheRightButtonLooksAroundAndFlies) {
 
 TEST(KeptOutside, TheEyeGoesBackUntilItIsInNoBody) {
   render::Camera camera{.eye = {0, 1, 2}, .target = {0, 0, 0}, .near_plane = 0.1f};
-  const std::vector<ppu::Bounds<3>> far{{{5, 0, 0}, {6, 1, 1}}};
+  const std::vector<SolidBox> far{{.bounds = {{5, 0, 0}, {6, 1, 1}}}};
   EXPECT_EQ(kept_outside(camera, far).eye, camera.eye);
-  const std::vector<ppu::Bounds<3>> around{{{-1, -1, -1}, {1, 2, 3}}, {{-1, 0, 2.5f}, {1, 4, 5}}};
+  const std::vector<SolidBox> around{{.bounds = {{-1, -1, -1}, {1, 2, 3}}},
+                                     {.bounds = {{-1, 0, 2.5f}, {1, 4, 5}}}};
   const render::Camera outside = kept_outside(camera, around);
-  for (const ppu::Bounds<3>& body : around)
+  for (const auto& [body, pose] : around)
     EXPECT_TRUE((outside.eye.array() < body.low.array()).any() ||
                 (outside.eye.array() > body.high.array()).any());
   EXPECT_LT((outside.eye - outside.target).cross(camera.eye - camera.target).norm(), 1e-4f)
       << "the same view";
+}
+
+TEST(KeptOutside, ABoxMayBeTurned) {
+  // Thin, and turned by 45 degrees about y: the eye is in the box around it, and not in it, until it goes nearer.
+  SolidBox plate{.bounds = {{-2, -1, -0.1f}, {2, 1, 0.1f}}};
+  plate.pose.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisf(0.25f * 3.14159265f, Vector3f::UnitY()).toRotationMatrix();
+  plate.pose.topRightCorner<3, 1>() = Vector3f(0, 0, 1);
+  render::Camera camera{.eye = {0, 0, 2}, .target = {0, 0, -5}, .near_plane = 0.01f};
+  EXPECT_EQ(kept_outside(camera, std::vector{plate}).eye, camera.eye);
+  camera.eye.z() = 1.05f;
+  EXPECT_NEAR(kept_outside(camera, std::vector{plate}).eye.z(), 1 + 0.12f * std::sqrt(2.0f), 1e-4f);
+}
+
+TEST(KeptOutside, RigidBodiesAreBodiesToo) {
+  Scene scene = load_scene_3d("rollers");
+  Simulation3d simulation(scene, {.spes = 1});
+  for (int frame = 0; frame < 30; ++frame) simulation.step();
+  std::vector<SolidBox> boxes;
+  append_rigid(scene, simulation.shown_box_poses(), boxes);
+  const Eigen::Matrix4f& pose = simulation.shown_box_poses()[scene.boxes.size()];
+  const Vector3f middle = pose.topRightCorner<3, 1>();  // of a body
+  const render::Camera inside{.eye = middle, .target = middle - Vector3f(0, 0.2f, 1), .near_plane = 0.05f};
+  EXPECT_GT((kept_outside(inside, boxes).eye - middle).norm(), 0.1f);
+}
+
+// Whoever opens a window sees what pictures show.
+TEST(KeptOutside, TheCamerasOfTheScenesAreOutsideOfRigidBodies) {
+  for (const SceneListing& listing : list_scenes()) {
+    if (listing.dimension != 3) continue;
+    const Scene scene = load_scene_3d(listing.name);
+    std::vector<SolidBox> boxes;
+    std::vector<Eigen::Matrix4f> poses;
+    const auto add = [&](const Vector3f& position, const Eigen::Matrix3f& rotation) {
+      Eigen::Matrix4f& pose = poses.emplace_back(Eigen::Matrix4f::Identity());
+      pose.topLeftCorner<3, 3>() = rotation;
+      pose.topRightCorner<3, 1>() = position;
+    };
+    for (const RigidBox& box : scene.boxes) add(box.position, box.rotation.toRotationMatrix());
+    for (const RigidBody& body : scene.rigid_bodies) add(body.position, body.rotation.toRotationMatrix());
+    append_rigid(scene, poses, boxes);
+    EXPECT_EQ(kept_outside(scene.camera, boxes).eye, scene.camera.eye) << listing.name;
+  }
 }
 
 TEST(FramedBodies, AreInThePictureFromTheBeginningToTheGround) {

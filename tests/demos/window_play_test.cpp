@@ -7,6 +7,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -54,9 +55,11 @@ struct SlowTypes {
 class SlowDemo final : public SceneDemo<SlowTypes> {
  public:
   SlowDemo(const Scene2d& scene, const SimulationOptions& how)
-      : SceneDemo(scene, Log(RecordingFiles{}), how, View2d::kFilled,
-                  {MouseHand(
-                      scene.camera, [](const Eigen::Vector2f&) { return std::nullopt; }, 320, 240)}) {}
+      : SceneDemo(
+            scene, Log(RecordingFiles{}), how, View2d::kFilled,
+            {MouseHand(
+                scene.camera, [this](const Eigen::Vector2f& point) { return simulation().touch(point); }, 320,
+                240)}) {}
   Beginning<2> now() const { return simulation().moment(); }
   DemoCounts counts() const override { return {}; }
   ppu::ContactMethod contacts() const override { return ppu::ContactMethod::kSpheres; }
@@ -161,6 +164,59 @@ TEST(Play, AControllerIsHeardWhenItIsPluggedIn) {
   EXPECT_NEAR(run.demo->settings().gravity, 10.81f, 1e-4f) << "the right shoulder is more gravity";
   const Beginning<2> moment = demo.now();
   EXPECT_NEAR(moment.gravity->x(), -10.81f, 1e-4f) << "the directional pad turns it";
+}
+
+TEST(Play, AControllersTwoHandsLiftTheMan) {
+  int device = -1;
+  SDL_Joystick* joystick = nullptr;
+  std::array<bool, 2> shown{}, hold{};
+  const auto turn = [&](const std::array<SDL_GameControllerAxis, 2>& axes, Sint16 to) {
+    for (const auto axis : axes) SDL_JoystickSetVirtualAxis(joystick, axis, to);
+  };
+  constexpr std::array kTriggers{SDL_CONTROLLER_AXIS_TRIGGERLEFT, SDL_CONTROLLER_AXIS_TRIGGERRIGHT};
+  constexpr std::array kSticks{SDL_CONTROLLER_AXIS_LEFTY, SDL_CONTROLLER_AXIS_RIGHTY};
+  use_no_display();
+  SlowDemo* seen = nullptr;
+  const std::vector<NamedDemo> scenes{{"man", "", [&](const SimulationOptions& how) {
+                                         auto made = make_man(how);
+                                         seen = made.get();
+                                         return made;
+                                       }}};
+  int frame = 0;
+  const auto run = play(
+      {.title = "test", .width = 320, .height = 240, .frames = 90, .ui_scale = {}}, scenes, {.spes = 1}, [&] {
+        ++frame;
+        if (frame == 5) {
+          device = SDL_JoystickAttachVirtual(SDL_JOYSTICK_TYPE_GAMECONTROLLER, SDL_CONTROLLER_AXIS_MAX,
+                                             SDL_CONTROLLER_BUTTON_MAX, 0);
+          joystick = SDL_JoystickOpen(device);
+        }
+        if (frame == 7) turn(kTriggers, -32768);
+        if (frame == 9) turn(kTriggers, -20000);  // touched
+        if (frame == 11) turn(kTriggers, 32767);
+        if (frame == 13) turn(kSticks, -32768);  // up
+        if (frame == 21) turn(kSticks, 0);
+        if (frame == 10 || frame == 80) {
+          for (std::size_t side = 0; side < 2; ++side) {
+            const auto& hand = seen->input().look().hands[side];
+            shown[side] = hand.has_value();
+            hold[side] = hand && hand->holds;
+          }
+          if (frame == 10) {
+            EXPECT_TRUE(shown[0] && shown[1]);
+            EXPECT_FALSE(hold[0] || hold[1]);
+          }
+        }
+        return false;
+      });
+  SDL_JoystickClose(joystick);
+  SDL_JoystickDetachVirtual(device);
+  EXPECT_TRUE(hold[0] && hold[1]);
+  const Beginning<2> moment = dynamic_cast<const SlowDemo&>(*run.demo).now();
+  float height = 0;
+  for (const auto& at : moment.soft_bodies.at(0).positions)
+    height += at.y() / static_cast<float>(moment.soft_bodies[0].positions.size());
+  EXPECT_GT(height, 0.3f) << "who falls lies at -1.4";
 }
 
 void push_key(Uint32 type, SDL_Keycode code) {

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -151,7 +153,7 @@ TEST(Skin2d, FollowsAffineMapsExactly) {
     const Vector2f shift(3, -2);
     std::vector<Vector2f> particles = at_rest(lattice);
     for (Vector2f& particle : particles) particle = stretch * particle + shift;
-    std::vector<Vector2f> positions(skin.vertices.size()), slopes(skin.vertices.size());
+    std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
     place(skin, particles, positions, slopes);
     const Eigen::Matrix2f cofactors = stretch.determinant() * stretch.inverse().transpose();
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -160,6 +162,119 @@ TEST(Skin2d, FollowsAffineMapsExactly) {
       ASSERT_LT((slopes[i] - cofactors * skin.slopes[i]).norm(), 1e-4f) << i;
     }
   });
+}
+
+/// A bent bar, and where a skin's vertices are drawn then.
+std::vector<Vector2f> placed(const Skin2d& skin, std::span<const Vector2f> particles) {
+  std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
+  place(skin, particles, positions, slopes);
+  return positions;
+}
+
+/// Bent to a circle of 10 cells about (0, 10).
+Vector2f bent(const Vector2f& at) {
+  const float angle = at.x() / 10, radius = 10 - at.y();
+  return {radius * std::sin(angle), 10 - radius * std::cos(angle)};
+}
+
+// Cells of few corners would be seen as such: the outline turns from vertex to vertex by no more than the bend needs.
+TEST(Skin2d, ABentBarHasNoKinksBetweenCells) {
+  const Lattice<2> lattice = rectangle(12, 2);
+  std::vector<Vector2f> particles;
+  for (const auto& at : lattice.particles) particles.push_back(bent(at.cast<float>()));
+  const Skin2d skin = make_skin_2d(lattice, 0.5f);
+  const std::vector<Vector2f> positions = placed(skin, particles);
+  float most = 0;
+  const auto& loop = skin.outlines.at(0);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector2f& at = skin.rest[loop[i]];
+    if (at.x() < 2 || at.x() > 10) continue;
+    EXPECT_LT((positions[loop[i]] - bent(at)).norm(), 0.03f) << at.transpose();
+    const Vector2f before = positions[loop[i]] - positions[loop[(i + loop.size() - 1) % loop.size()]];
+    const Vector2f behind = positions[loop[(i + 1) % loop.size()]] - positions[loop[i]];
+    if (before.norm() > 0.1f && behind.norm() > 0.1f)
+      most = std::max(most, std::abs(cross(before.normalized(), behind.normalized())));
+  }
+  EXPECT_LT(most, 0.045f)
+      << "radians; a cell that is bent as a whole turns by 0.1 at its ends, a quarter of it by 0.025";
+}
+
+TEST(Skin2d, ADiscIsRound) {
+  const Lattice<2> lattice =
+      lattice_of_rows({"..###..", ".#####.", "#######", "#######", "#######", ".#####.", "..###.."});
+  const Vector2f middle(3.5f, 3.5f);
+  const Skin2d skin =
+      make_skin_2d(lattice, 0.5f, [&](const Vector2f& at) { return (at - middle).norm() - 3.5f; });
+  ASSERT_EQ(skin.outlines.size(), 1u);
+  for (const std::uint32_t vertex : skin.outlines[0]) {
+    EXPECT_NEAR((skin.rest[vertex] - middle).norm(), 4, 0.02f);
+    EXPECT_NEAR(skin.slopes[vertex].norm(), 0.62f, 0.05f);
+  }
+  EXPECT_NEAR(area_of_triangles(skin), 3.14159f * 16, 0.3f);
+}
+
+TEST(Skin2d, ADiscStaysSmoothWhereItIsPressed) {
+  // Corners of its stairs are pushed in by a floor, as contacts do; the particles between them are not.
+  const Lattice<2> lattice =
+      lattice_of_rows({"...####...", "..######..", ".########.", "##########", "##########", "##########",
+                       "##########", ".########.", "..######..", "...####..."});
+  const Vector2f middle(5, 5);
+  const Skin2d skin =
+      make_skin_2d(lattice, 0.5f, [&](const Vector2f& at) { return (at - middle).norm() - 5.2f; });
+  std::vector<Vector2f> particles = at_rest(lattice);
+  const Vector2f down = Vector2f(-1, -1).normalized();
+  const auto depth = [&](const Vector2f& at) {
+    return ((at - lattice.origin) / lattice.spacing - middle).dot(down);
+  };
+  for (Vector2f& at : particles)
+    if (const float below = depth(at) - 4.4f; below > 0) at -= lattice.spacing * below * down;
+  const std::vector<Vector2f> positions = placed(skin, particles);
+  float least = 100, most = 0;
+  for (const std::uint32_t vertex : skin.outlines.at(0)) {
+    const Vector2f in = skin.rest[vertex] - middle;
+    if (in.dot(down) < 0 || std::abs(in.x() - in.y()) > 2.2f) continue;
+    least = std::min(least, depth(positions[vertex]));
+    most = std::max(most, depth(positions[vertex]));
+  }
+  EXPECT_LT(most - least, 0.25f) << "cells, along the flat part";
+}
+
+TEST(SkinParts2d, CoverTheShapeOnce) {
+  for (const auto& [name, lattice] : all_lattices_2d()) {
+    SCOPED_TRACE(name);
+    std::vector<std::uint32_t> parts;
+    for (const auto& cell : lattice.cells)
+      parts.push_back(static_cast<std::uint32_t>((cell.x() + 64) / 3 % 2 + 2 * ((cell.y() + 64) / 3 % 2)));
+    const std::vector<Skin2d> skins = make_skin_parts_2d(lattice, 0.5f, {}, parts);
+    EXPECT_EQ(skins.size(), 1 + *std::max_element(parts.begin(), parts.end()));
+    float area = 0;
+    for (const Skin2d& skin : skins) {
+      area += area_of_triangles(skin);
+      EXPECT_NEAR(area_of_triangles(skin), area_of_outlines(skin), 1e-3f * area_of_triangles(skin) + 1e-4f);
+      for (const auto& [a, b, c] : skin.triangles)
+        EXPECT_GT(cross(skin.rest[b] - skin.rest[a], skin.rest[c] - skin.rest[a]), 0);
+    }
+    const float whole = area_of_triangles(make_skin_2d(lattice, 0.5f));
+    // Where three parts meet, their corners are cut off and overlap, by less than a quarter of a cell.
+    EXPECT_NEAR(area, whole, 0.02f * whole);
+  }
+}
+
+TEST(SkinParts2d, MeetInSmoothLines) {
+  // Below a slope of 45 degrees in steps of a cell, and above it.
+  const Lattice<2> lattice = rectangle(12, 12);
+  std::vector<std::uint32_t> parts;
+  for (const auto& cell : lattice.cells) parts.push_back(cell.y() > cell.x() ? 1 : 0);
+  const std::vector<Skin2d> skins = make_skin_parts_2d(lattice, 0.5f, {}, parts);
+  ASSERT_EQ(skins.size(), 2u);
+  float least = 100, most = -100;
+  for (const std::uint32_t vertex : skins[1].outlines.at(0)) {
+    const Vector2f& at = skins[1].rest[vertex];
+    if (at.minCoeff() < 2 || at.maxCoeff() > 10) continue;
+    least = std::min(least, (at.y() - at.x()) / std::sqrt(2.0f));
+    most = std::max(most, (at.y() - at.x()) / std::sqrt(2.0f));
+  }
+  EXPECT_LT(most - least, 0.3f) << "cells; the stairs are 0.71 high";
 }
 
 TEST(Skin2d, EachTriangleKnowsTheCellThatItLiesIn) {

@@ -113,6 +113,21 @@ TEST(Command, OtherOutputsMayLieInTheFoldersOfPictures) {
     EXPECT_TRUE(std::filesystem::exists(out + file)) << file;
 }
 
+TEST(Command, ARunThatIsRefusedLeavesNoFolders) {
+  const ScratchFolder folder;
+  write_file(folder / "bad.toml", "title = 3\n");
+  std::filesystem::create_directory(folder / "mine");
+  const std::string scene = "demo 3d --headless --scene " + (folder / "bad.toml");
+  for (const std::string& outputs :
+       {"--out " + (folder / "a/b"), "--out " + (folder / "a/b/") + " --json " + (folder / "a/b/s.json"),
+        "--video " + (folder / "c/d.mp4"), "--out " + (folder / "mine")}) {
+    const CommandResult run = run_softcell(scene + " " + outputs);
+    EXPECT_EQ(run.status, 1) << run.output;
+    EXPECT_NE(run.output.find("it must be a text"), std::string::npos) << run.output;
+    EXPECT_EQ(files_in(folder / ""), (std::set<std::string>{"bad.toml", "mine"})) << outputs;
+  }
+}
+
 TEST(Command, ASecondRunReplacesTheFramesOfTheFirst) {
   const ScratchFolder folder;
   ASSERT_EQ(run_softcell(kDrop + std::string("--frames 4 --out ") + (folder / "out")).status, 0);

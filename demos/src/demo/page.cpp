@@ -35,12 +35,18 @@ class Rows {
       names = std::max(names, ImGui::CalcTextSize(name.c_str()).x);
       texts = std::max(texts, ImGui::CalcTextSize(text.c_str()).x);
     }
-    const float across = room.x - 2 * style.WindowPadding.x - 6 * style.CellPadding.x;
+    const ImVec2 padding = style.CellPadding;
+    const float across = room.x - 2 * style.WindowPadding.x;
     const float row = (room.y - 2 * style.WindowPadding.y) / static_cast<float>(rows_.size());
-    const float size = std::min(
-        {1.0f, across / (names + texts), (row - 2 * style.CellPadding.y) / ImGui::GetTextLineHeight()});
-    ImGui::SetWindowFontScale(std::max(size, kSmallest));
-    if (!ImGui::BeginTable(id, 2)) return;
+    const float size = std::max(std::min({1.0f, across / (names + texts + 6 * padding.x),
+                                          row / (ImGui::GetTextLineHeight() + 2 * padding.y)}),
+                                kSmallest);
+    ImGui::SetWindowFontScale(size);
+    // Between rows, too: where little fits, letters are what counts.
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2(size * padding.x, size * padding.y));
+    const bool is_open = ImGui::BeginTable(id, 2);
+    ImGui::PopStyleVar();
+    if (!is_open) return;
     for (const auto& [name, text] : rows_) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
@@ -94,6 +100,9 @@ Rows help(int dimension) {
     rows.add("right button", "look around; with W A S D Q E: fly");
     rows.add("arrows", "tilt the ground (controller: left stick, motion sensor)");
   }
+  rows.add("controller", dimension == 2
+                             ? "LT, RT / L2, R2: two hands, which its sticks move"
+                             : "LT, RT / L2, R2: two hands, which its sticks move, D-pad: farther, nearer");
   return rows;
 }
 
@@ -116,6 +125,17 @@ void draw_stroke(const Page& page, float scale) {
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   list.AddLine(from, to, IM_COL32(0, 0, 0, 140), 4 * scale);
   list.AddLine(from, to, IM_COL32(255, 255, 255, 255), 2 * scale);
+}
+
+/// A controller's hand: a ring, which is full when it holds something.
+void draw_hand(const Page& page, const PointingHand& hand, float scale) {
+  const ImVec2 at(hand.at.x() * static_cast<float>(page.width),
+                  hand.at.y() * static_cast<float>(page.height));
+  const float radius = 9 * scale;
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  if (hand.holds) list.AddCircleFilled(at, 0.6f * radius, IM_COL32(255, 255, 255, 230), 24);
+  list.AddCircle(at, radius, IM_COL32(0, 0, 0, 140), 32, 4.5f * scale);
+  list.AddCircle(at, radius, IM_COL32(255, 255, 255, 255), 32, 2 * scale);
 }
 
 /// Inside a margin.
@@ -176,6 +196,8 @@ void draw_page(const Page& page, float scale, double shown_per_second) {
     });
   }
   if (page.look.stroke) draw_stroke(page, scale);
+  for (const auto& hand : page.look.hands)
+    if (hand) draw_hand(page, *hand, scale);
 }
 
 Page DemoPages::next(const Demo& demo, const FrameTimes& times, const Look& look, int width, int height) {

@@ -29,20 +29,31 @@ bool FilmRate::shows(int frame) const {
   return std::int64_t{frame} * per_second_ % kFramesPerSecond < per_second_;
 }
 
-void make_picture_folders(const PictureOptions& options) {
-  std::error_code error;
+PictureFolders::PictureFolders(const PictureOptions& options) : PictureFolders() {
   if (options.out) {
-    std::filesystem::create_directories(*options.out, error);
+    const std::error_code error = make(*options.out);
     if (!std::filesystem::is_directory(*options.out)) {
       throw std::runtime_error("--out " + options.out->string() +
                                " is not a folder and cannot be created: " + error.message());
     }
   }
-  if (options.video) {
-    // What is wrong with the folder, the writer will say.
-    if (const auto parent = options.video->parent_path(); !parent.empty())
-      std::filesystem::create_directories(parent, error);
+  if (options.video) make(options.video->parent_path());  // what is wrong with it, the writer will say
+}
+
+PictureFolders::~PictureFolders() {
+  std::error_code ignored;
+  for (std::size_t i = made_.size(); i-- > 0;) std::filesystem::remove(made_[i], ignored);  // only empty ones
+}
+
+std::error_code PictureFolders::make(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::path outer;
+  for (const auto& part : folder) {
+    outer /= part;
+    if (std::filesystem::create_directory(outer, error)) made_.push_back(outer);
+    if (error) break;
   }
+  return error;
 }
 
 FrameFolder::FrameFolder(std::filesystem::path folder) : folder_(std::move(folder)) {

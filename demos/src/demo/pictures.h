@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <system_error>
 #include <vector>
 
 #include "demo.h"
@@ -52,9 +53,22 @@ class FilmRate {
   int per_second_;
 };
 
-/// Makes the folders that pictures and videos go to. @throws std::runtime_error  --out is no folder and
-/// cannot be made one.
-void make_picture_folders(const PictureOptions& options);
+/// The folders that pictures and videos go to. Those that were not there are made; at the end of its life the ones in
+/// which nothing lies are removed, so that a run that fails leaves none.
+class PictureFolders {
+ public:
+  /// @throws std::runtime_error  --out is no folder and cannot be made one.
+  explicit PictureFolders(const PictureOptions& options);
+  ~PictureFolders();
+  PictureFolders(const PictureFolders&) = delete;
+  PictureFolders& operator=(const PictureFolders&) = delete;
+
+ private:
+  PictureFolders() = default;
+  std::error_code make(const std::filesystem::path& folder);
+
+  std::vector<std::filesystem::path> made_;  // outer ones first
+};
 
 /// The folder of numbered frames. Removes those of an earlier run, so that all frames in it belong to one run.
 class FrameFolder {

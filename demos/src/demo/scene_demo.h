@@ -131,7 +131,7 @@ class SceneDemo : public Demo {
   void follow_hand() {
     for (const InputEvent<kDimension>& event : simulation_.last_events()) {
       const bool takes = event.action == Action::kGrab || event.action == Action::kHold;
-      if (!takes || event.hand != kUsersHand) continue;
+      if (!takes || !is_users_hand(event.hand)) continue;
       if (const auto nearest = Hands<kDimension>::nearest_particle(event, Bodies{simulation_}))
         picked_ = nearest;
     }

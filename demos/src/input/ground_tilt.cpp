@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller_hands.h"
+
 namespace softcell::demos {
 namespace {
 
 using Eigen::Vector2f;
 
-constexpr float kDeadZone = 0.15f;     // of a stick that nobody touches
 constexpr float kSensorGrain = 0.01f;  // radians: a hand is never still
 
 Vector2f clamped(const Vector2f& v, float most) { return v.cwiseMax(-most).cwiseMin(most); }
@@ -57,8 +58,7 @@ void GroundTilt::handle_key(const SDL_KeyboardEvent& key) {
 }
 
 void GroundTilt::handle_axis(const SDL_ControllerAxisEvent& axis) {
-  const float value = std::clamp(static_cast<float>(axis.value) / 32767, -1.0f, 1.0f);
-  const float used = std::abs(value) < kDeadZone ? 0 : value;
+  const float used = stick_share(axis.value);
   if (axis.axis == SDL_CONTROLLER_AXIS_LEFTX) stick_.x() = used;
   if (axis.axis == SDL_CONTROLLER_AXIS_LEFTY) stick_.y() = used;
 }

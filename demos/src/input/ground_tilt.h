@@ -18,6 +18,9 @@ class GroundTilt {
 
   void handle(const SDL_Event& event);
 
+  /// The stick does something else now.
+  void let_go_of_stick() { stick_.setZero(); }
+
   /// The ground is level again, until the user does something.
   void forget();
 

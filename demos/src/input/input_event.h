@@ -62,8 +62,11 @@ inline const NumberRange* number_of(Action action) {
 
 /// For `body`: to grab or to hold, whichever has the nearest particle; else all.
 inline constexpr std::uint32_t kEveryBody = std::numeric_limits<std::uint32_t>::max();
-/// For `hand`: the user's. The hands of a script are numbered from 0, one for each drag.
-inline constexpr std::uint32_t kUsersHand = std::numeric_limits<std::uint32_t>::max();
+/// For `hand`: the user's, at the mouse, and the two at a controller. The hands of a script are numbered from 0, one for each
+/// drag.
+inline constexpr std::uint32_t kUsersHand = std::numeric_limits<std::uint32_t>::max(),
+                               kUsersLeftHand = kUsersHand - 1, kUsersRightHand = kUsersHand - 2;
+inline constexpr bool is_users_hand(std::uint32_t hand) { return hand >= kUsersRightHand; }
 
 /// Happens at the beginning of a frame. What an action does not use is 0. Dimension: 2 or 3.
 template <int Dimension>

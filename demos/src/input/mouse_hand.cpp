@@ -6,7 +6,7 @@
 
 namespace softcell::demos {
 
-void MouseHand::handle(const SDL_Event& event, std::vector<InputEvent<2>>& events) {
+void MouseHand::handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<2>>& events) {
   switch (event.type) {
     case SDL_WINDOWEVENT:
       if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
@@ -15,31 +15,46 @@ void MouseHand::handle(const SDL_Event& event, std::vector<InputEvent<2>>& event
       }
       break;
     case SDL_MOUSEBUTTONDOWN:
-      if (event.button.button != SDL_BUTTON_LEFT) break;
-      if (auto taken = pick_(camera_.point_at(event.button.x, event.button.y, width_, height_))) {
-        taken->hand = kUsersHand;
-        events.push_back(*taken);
-        holds_ = true;
-      }
+      if (event.button.button == SDL_BUTTON_LEFT) take(event.button.x, event.button.y, look, events);
       break;
     case SDL_MOUSEMOTION:
-      if (holds_) move(event.motion, events);
+      if (holds_) move_to(event.motion.x, event.motion.y, look, events);
       break;
     case SDL_MOUSEBUTTONUP:
-      if (event.button.button != SDL_BUTTON_LEFT || !holds_) break;
-      holds_ = false;
-      events.push_back({.action = Action::kRelease, .hand = kUsersHand});
+      if (event.button.button == SDL_BUTTON_LEFT && holds_) let_go(events);
       break;
     default:
       break;
   }
 }
 
-void MouseHand::move(const SDL_MouseMotionEvent& motion, std::vector<InputEvent<2>>& events) const {
-  SC_ASSERT(holds_, "the mouse moves nothing to ({}, {})", motion.x, motion.y);
-  if (events.empty() || events.back().action != Action::kMoveHand)
-    events.push_back({.action = Action::kMoveHand, .hand = kUsersHand});
-  events.back().value = camera_.point_at(motion.x, motion.y, width_, height_);
+MouseHand MouseHand::for_hand(std::uint32_t hand) const {
+  MouseHand other(*this);
+  other.hand_ = hand;
+  other.holds_ = false;
+  return other;
+}
+
+bool MouseHand::take(int x, int y, const Look&, std::vector<InputEvent<2>>& events) {
+  auto taken = pick_(camera_.point_at(x, y, width_, height_));
+  if (!taken) return false;
+  taken->hand = hand_;
+  events.push_back(*taken);
+  holds_ = true;
+  return true;
+}
+
+void MouseHand::move_to(int x, int y, const Look&, std::vector<InputEvent<2>>& events) {
+  SC_ASSERT(holds_, "hand {} moves nothing to ({}, {})", hand_, x, y);
+  if (events.empty() || events.back().action != Action::kMoveHand || events.back().hand != hand_)
+    events.push_back({.action = Action::kMoveHand, .hand = hand_});
+  events.back().value = camera_.point_at(x, y, width_, height_);
+}
+
+void MouseHand::let_go(std::vector<InputEvent<2>>& events) {
+  SC_ASSERT(holds_, "hand {} lets nothing go", hand_);
+  holds_ = false;
+  events.push_back({.action = Action::kRelease, .hand = hand_});
 }
 
 }  // namespace softcell::demos

@@ -1,14 +1,16 @@
 #pragma once
-// The mouse as the user's hand in a scene of two dimensions.
+// A pointer, mostly the mouse, as the user's hand in a scene of two dimensions.
 
 #include <SDL.h>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "input_event.h"
+#include "scene/look.h"
 #include "scene/scene_2d.h"
 #include "softcell/base/assert.h"
 
@@ -27,14 +29,26 @@ class MouseHand {
   }
 
   /// Appends what the event means. Of moves that follow one another, the last counts.
-  void handle(const SDL_Event& event, std::vector<InputEvent<2>>& events);
+  void handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<2>>& events);
+
+  // For pointers other than the mouse, at (x, y) of the window.
+
+  /// The same for another hand of the user, which holds nothing.
+  MouseHand for_hand(std::uint32_t hand) const;
+  Eigen::Vector2i window_size() const { return {width_, height_}; }
+  bool holds() const { return holds_; }
+  /// @return whether there is something to take
+  bool take(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
+  /// @pre holds()
+  void move_to(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
+  /// @pre holds()
+  void let_go(std::vector<InputEvent<2>>& events);
 
  private:
-  void move(const SDL_MouseMotionEvent& motion, std::vector<InputEvent<2>>& events) const;
-
   Camera2d camera_;
   Pick pick_;
   int width_, height_;
+  std::uint32_t hand_ = kUsersHand;
   bool holds_ = false;
 };
 

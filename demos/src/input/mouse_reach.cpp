@@ -28,49 +28,69 @@ bool MouseReach::handle(const SDL_Event& event, const Look& look, std::vector<In
       }
       return false;
     case SDL_MOUSEBUTTONDOWN:
-      return event.button.button == SDL_BUTTON_LEFT && grab(event.button, look, events);
+      return event.button.button == SDL_BUTTON_LEFT && take(event.button.x, event.button.y, look, events);
     case SDL_MOUSEMOTION:
       if (!depth_) return false;
-      x_ = event.motion.x;
-      y_ = event.motion.y;
-      move(look, events);
+      move_to(event.motion.x, event.motion.y, look, events);
       return true;
     case SDL_MOUSEWHEEL:
       if (!depth_) return false;
-      depth_ = std::max(*depth_ * std::pow(kFartherPerNotch, event.wheel.preciseY), eye_(look).near_plane);
-      move(look, events);
+      move_away(event.wheel.preciseY, look, events);
       return true;
     case SDL_MOUSEBUTTONUP:
       if (event.button.button != SDL_BUTTON_LEFT || !depth_) return false;
-      depth_.reset();
-      events.push_back({.action = Action::kRelease, .hand = kUsersHand});
+      let_go(events);
       return true;
     default:
       return false;
   }
 }
 
-bool MouseReach::grab(const SDL_MouseButtonEvent& button, const Look& look,
-                      std::vector<InputEvent<3>>& events) {
+MouseReach MouseReach::for_hand(std::uint32_t hand) const {
+  MouseReach other(*this);
+  other.hand_ = hand;
+  other.depth_.reset();
+  return other;
+}
+
+bool MouseReach::take(int x, int y, const Look& look, std::vector<InputEvent<3>>& events) {
   if (!pick_) return false;
   const render::Camera camera = eye_(look);
-  auto taken = pick_(ray_through(camera, button.x, button.y, width_, height_));
+  auto taken = pick_(ray_through(camera, x, y, width_, height_));
   if (!taken) return false;
-  x_ = button.x;
-  y_ = button.y;
+  x_ = x;
+  y_ = y;
   depth_ = (taken->value - camera.eye).dot((camera.target - camera.eye).normalized());
-  taken->hand = kUsersHand;
+  taken->hand = hand_;
   events.push_back(*taken);
   return true;
 }
 
+void MouseReach::move_to(int x, int y, const Look& look, std::vector<InputEvent<3>>& events) {
+  x_ = x;
+  y_ = y;
+  move(look, events);
+}
+
+void MouseReach::move_away(float notches, const Look& look, std::vector<InputEvent<3>>& events) {
+  SC_ASSERT(depth_, "hand {} moves nothing away by {}", hand_, notches);
+  depth_ = std::max(*depth_ * std::pow(kFartherPerNotch, notches), eye_(look).near_plane);
+  move(look, events);
+}
+
+void MouseReach::let_go(std::vector<InputEvent<3>>& events) {
+  SC_ASSERT(depth_, "hand {} lets nothing go", hand_);
+  depth_.reset();
+  events.push_back({.action = Action::kRelease, .hand = hand_});
+}
+
 void MouseReach::move(const Look& look, std::vector<InputEvent<3>>& events) const {
-  SC_ASSERT(depth_, "the mouse moves nothing to ({}, {})", x_, y_);
+  SC_ASSERT(depth_, "hand {} moves nothing to ({}, {})", hand_, x_, y_);
   const render::Camera camera = eye_(look);
   const Ray ray = ray_through(camera, x_, y_, width_, height_);
   const Eigen::Vector3f forward = (camera.target - camera.eye).normalized();
-  if (events.empty() || events.back().action != Action::kMoveHand)
-    events.push_back({.action = Action::kMoveHand, .hand = kUsersHand});
+  if (events.empty() || events.back().action != Action::kMoveHand || events.back().hand != hand_)
+    events.push_back({.action = Action::kMoveHand, .hand = hand_});
   events.back().value = ray.from + *depth_ / ray.along.dot(forward) * ray.along;
 }
 

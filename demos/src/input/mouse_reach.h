@@ -1,9 +1,10 @@
 #pragma once
-// The mouse as the user's hand in three dimensions: it moves what it has taken in the plane that faces the
+// A pointer, mostly the mouse, as the user's hand in three dimensions: it moves what it has taken in the plane that faces the
 // eye.
 
 #include <SDL.h>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -32,14 +33,29 @@ class MouseReach {
   /// @return true: the event was the hand's
   bool handle(const SDL_Event& event, const Look& look, std::vector<InputEvent<3>>& events);
 
+  // For pointers other than the mouse, at (x, y) of the window.
+
+  /// The same for another hand of the user, which holds nothing.
+  MouseReach for_hand(std::uint32_t hand) const;
+  Eigen::Vector2i window_size() const { return {width_, height_}; }
+  bool holds() const { return depth_.has_value(); }
+  /// @return whether there is something to take
+  bool take(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
+  /// @pre holds()
+  void move_to(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
+  /// @param notches  of the wheel; below 0: nearer  @pre holds()
+  void move_away(float notches, const Look& look, std::vector<InputEvent<3>>& events);
+  /// @pre holds()
+  void let_go(std::vector<InputEvent<3>>& events);
+
  private:
-  bool grab(const SDL_MouseButtonEvent& button, const Look& look, std::vector<InputEvent<3>>& events);
   void move(const Look& look, std::vector<InputEvent<3>>& events) const;
 
   Eye eye_;
   Pick pick_;
   int width_ = 1, height_ = 1;
-  int x_ = 0, y_ = 0;           // of the mouse while it holds something
+  std::uint32_t hand_ = kUsersHand;
+  int x_ = 0, y_ = 0;           // of the pointer while it holds something
   std::optional<float> depth_;  // of what it holds, along the camera's axis, metres; none: it holds nothing
 };
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -61,14 +62,19 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "cut", .body = true, .value = true, .blade = true},
 }};
 
-/// A number of 32 bits that has a name when it is the largest: kUsersHand, kEveryBody.
-constexpr std::uint32_t kNamed = std::numeric_limits<std::uint32_t>::max();
-static_assert(kUsersHand == kNamed && kEveryBody == kNamed);
-constexpr std::string_view kUserName = "user", kEveryBodyName = "all";
+/// A number of 32 bits that has a name.
+struct NamedNumber {
+  std::string_view name;
+  std::uint32_t number;
+};
+constexpr std::array kHandNames{NamedNumber{"user", kUsersHand}, NamedNumber{"left", kUsersLeftHand},
+                                NamedNumber{"right", kUsersRightHand}};
+constexpr std::array kBodyNames{NamedNumber{"all", kEveryBody}};
 
-void append_number(std::string& text, std::uint32_t number, std::string_view name) {
-  if (number == kNamed) {
-    fmt::format_to(std::back_inserter(text), " {}", name);
+void append_number(std::string& text, std::uint32_t number, std::span<const NamedNumber> names) {
+  const auto named = std::ranges::find(names, number, &NamedNumber::number);
+  if (named != names.end()) {
+    fmt::format_to(std::back_inserter(text), " {}", named->name);
   } else {
     fmt::format_to(std::back_inserter(text), " {}", number);
   }
@@ -80,8 +86,8 @@ void append_line(std::string& text, const RecordedEvent<Dimension>& recorded) {
   const ActionSyntax& syntax = kSyntax.at(static_cast<std::size_t>(event.action));
   SC_ASSERT(Dimension >= syntax.lowest_dimension, "{} in {} dimensions", syntax.name, Dimension);
   fmt::format_to(std::back_inserter(text), "{} {}", recorded.frame, syntax.name);
-  if (syntax.hand) append_number(text, event.hand, kUserName);
-  if (syntax.body) append_number(text, event.body, kEveryBodyName);
+  if (syntax.hand) append_number(text, event.hand, kHandNames);
+  if (syntax.body) append_number(text, event.body, kBodyNames);
   // The shortest text that reads back as the same number.
   const auto append_vector = [&](const auto& vector) {
     for (int i = 0; i < Dimension; ++i) fmt::format_to(std::back_inserter(text), " {}", vector[i]);
@@ -151,12 +157,15 @@ class Reader {
     return value;
   }
 
-  std::uint32_t named_number(std::string_view what, std::string_view name) {
-    if (line_ == name || line_.starts_with(std::string(name) + ' ')) {
-      word(what);
-      return kNamed;
+  /// @param names  of the largest numbers, the last of which is the smallest
+  std::uint32_t named_number(std::string_view what, std::span<const NamedNumber> names) {
+    for (const auto& [name, number] : names) {
+      if (line_ == name || line_.starts_with(std::string(name) + ' ')) {
+        word(what);
+        return number;
+      }
     }
-    return integer<std::uint32_t>(what, 0, kNamed - 1);
+    return integer<std::uint32_t>(what, 0, names.back().number - 1);
   }
 
   float coordinate() {
@@ -222,8 +231,8 @@ InputEvent<Dimension> read_event(Reader& reader) {
     reader.refuse(fmt::format("there is no action '{}'", Reader::quotable(name)));
   InputEvent<Dimension> event;
   event.action = static_cast<Action>(found - kSyntax.begin());
-  if (found->hand) event.hand = reader.named_number("a hand", kUserName);
-  if (found->body) event.body = reader.named_number("a body", kEveryBodyName);
+  if (found->hand) event.hand = reader.named_number("a hand", kHandNames);
+  if (found->body) event.body = reader.named_number("a body", kBodyNames);
   const auto read_vector = [&](auto& vector) {
     for (int i = 0; i < Dimension; ++i) vector[i] = reader.coordinate();
   };

@@ -57,6 +57,7 @@ void UserInput<Dimension>::follow(const Vector& gravity, bool paused) {
 
 template <int Dimension>
 void UserInput<Dimension>::handle(const SDL_Event& event) {
+  if (hands_.handle(event)) return;
   if constexpr (Dimension == 3) {
     if (pointing_.knife.handle(event, look_, coming_) || pointing_.hand.handle(event, look_, coming_) ||
         pointing_.camera.handle(event, look_))
@@ -64,7 +65,7 @@ void UserInput<Dimension>::handle(const SDL_Event& event) {
     pointing_.tilt.handle(event);
   } else {
     if (pointing_.knife.handle(event, look_, coming_)) return;
-    pointing_.hand.handle(event, coming_);
+    pointing_.hand.handle(event, look_, coming_);
   }
   if (const auto command = command_of(event, Dimension); command && !handle_command(*command))
     do_command(*command);
@@ -84,9 +85,11 @@ void UserInput<Dimension>::change(Action action, std::uint32_t body, float value
 
 template <int Dimension>
 std::span<const InputEvent<Dimension>> UserInput<Dimension>::next_frame() {
+  hands_.next_frame(look_, coming_);
   frame_.swap(coming_);
   coming_.clear();
   if constexpr (Dimension == 3) {
+    if (look_.hands[0]) pointing_.tilt.let_go_of_stick();
     pointing_.camera.next_frame(look_);
     if (const auto tilt = pointing_.tilt.next_frame())
       frame_.push_back({.action = Action::kTilt, .value = *tilt});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera_control.h"
+#include "controller_hands.h"
 #include "ground_tilt.h"
 #include "input_event.h"
 #include "key_bindings.h"
@@ -89,7 +90,8 @@ class UserInput final : public WindowInput {
   static constexpr float kMostGravity = 1000;    ///< m/s^2
   static constexpr float kUsualGravity = 9.81f;  ///< m/s^2, where there was none
 
-  UserInput(int views, const Pointing<Dimension>& pointing) : WindowInput(views), pointing_(pointing) {}
+  UserInput(int views, const Pointing<Dimension>& pointing)
+      : WindowInput(views), pointing_(pointing), hands_(pointing.hand) {}
 
   /// What the simulation has become: keys that change gravity or pause go on from there.
   void follow(const Vector& gravity, bool paused);
@@ -112,6 +114,7 @@ class UserInput final : public WindowInput {
   void add_gravity(float more);
 
   Pointing<Dimension> pointing_;
+  ControllerHands<Dimension> hands_;
   Vector gravity_ = Vector::Unit(1) * -kUsualGravity;
   Vector gravity_when_on_ = gravity_;  // not 0: what "on" goes back to
   bool paused_ = false;

@@ -27,6 +27,12 @@ enum class View2d : std::uint8_t {
 
 inline constexpr int kViews2d = 3;
 
+/// Where a hand of a controller is.
+struct PointingHand {
+  Eigen::Vector2f at{0.5f, 0.5f};  ///< shares of the window from its upper left corner
+  bool holds = false;
+};
+
 /// How a window shows a scene.
 struct Look {
   int view = 0;                                        ///< View2d or View, as a number
@@ -42,6 +48,8 @@ struct Look {
   std::optional<Eigen::Vector3f> marked = {};  ///< metres: the contact whose values the menu shows
   /// Where the knife began and where it is, as shares of the window from its upper left corner. None: it cuts nothing now.
   std::optional<std::array<Eigen::Vector2f, 2>> stroke = {};
+  /// The controller's left and right hand. None: its trigger is not touched.
+  std::array<std::optional<PointingHand>, 2> hands = {};
 
   /// The same with the scene's own camera.
   Look with_scenes_camera() const {

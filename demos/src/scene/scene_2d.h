@@ -25,6 +25,12 @@ struct ColouredCells2d {
   render::Colour colour{0.8f, 0.8f, 0.8f};
 };
 
+/// The disc or ring that a soft body's cells stand for, and that is drawn in their place.
+struct Ring2d {
+  Eigen::Vector2f middle{0, 0};  ///< grid coordinates
+  float radius = 4, hole = 0;    ///< cells, from the middle; a disc has a hole of 0
+};
+
 /// Eyes and a mouth, drawn on a soft body's cells.
 struct Face2d {
   Eigen::Vector2f centre{0, 0};  ///< grid coordinates
@@ -47,6 +53,7 @@ struct SoftBody2dPlacement {
   render::Colour colour{0.8f, 0.8f, 0.8f};
   std::vector<ColouredCells2d> coloured_cells = {};  ///< of several with a cell the last counts
   std::optional<Face2d> face = {};
+  std::optional<Ring2d> ring = {};                ///< none: the cells are what is drawn
   std::shared_ptr<const Picture2d> picture = {};  ///< none: it is drawn in its colours
   std::vector<StrengthSlab<2>> strengths = {};    ///< of several slabs the weakest counts
 

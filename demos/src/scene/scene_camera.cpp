@@ -27,6 +27,12 @@ render::Camera tilted(render::Camera camera, const Matrix3f& tilt) {
   return camera;
 }
 
+Vector3f half_size(const ppu::RigidShape& shape) {
+  if (shape.kind == ppu::RigidShapeKind::kBox) return 0.5f * shape.size;
+  const float half = shape.kind == ppu::RigidShapeKind::kSphere ? shape.radius : 0.5f * shape.height;
+  return {shape.radius, half, shape.radius};
+}
+
 }  // namespace
 
 render::Camera moved_by(render::Camera camera, const Look& look) {
@@ -60,19 +66,43 @@ render::Camera seen_from(const Scene& scene, const Look& look, const Matrix3f& t
   return tilted(moved_by(scene.camera, look), tilt);
 }
 
-render::Camera kept_outside(render::Camera camera, std::span<const ppu::Bounds<3>> bodies) {
+void append_rigid(const Scene& scene, std::span<const Eigen::Matrix4f> poses, std::vector<SolidBox>& boxes) {
+  SC_ASSERT(poses.size() == scene.boxes.size() + scene.rigid_bodies.size(),
+            "{} poses of {} boxes and {} bodies", poses.size(), scene.boxes.size(),
+            scene.rigid_bodies.size());
+  const auto add = [&](const Vector3f& half, const Eigen::Matrix4f& pose) {
+    boxes.push_back({.bounds = {-half, half}, .pose = pose});
+  };
+  for (std::size_t i = 0; i < scene.boxes.size(); ++i) add(0.5f * scene.boxes[i].size, poses[i]);
+  for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
+    for (const RigidPart& part : scene.rigid_bodies[i].parts) {
+      Eigen::Matrix4f place = Eigen::Matrix4f::Identity();
+      place.topLeftCorner<3, 3>() = part.shape.rotation.toRotationMatrix();
+      place.topRightCorner<3, 1>() = part.shape.position;
+      add(half_size(part.shape), poses[scene.boxes.size() + i] * place);
+    }
+  }
+  for (const Obstacle& obstacle : scene.obstacles) {
+    SolidBox& box = boxes.emplace_back(SolidBox{.bounds = ppu::bounds(obstacle.mesh)});
+    box.pose.topRightCorner<3, 1>() = obstacle.position;
+  }
+}
+
+render::Camera kept_outside(render::Camera camera, std::span<const SolidBox> bodies) {
   const Vector3f back = (camera.eye - camera.target).normalized();
   const Vector3f margin = Vector3f::Constant(2 * camera.near_plane);
   for (std::size_t again = 0; again < bodies.size(); ++again) {  // behind one there may be another
     bool inside = false;
-    for (const ppu::Bounds<3>& body : bodies) {
-      const Vector3f low = body.low - margin, high = body.high + margin;
-      if ((camera.eye.array() <= low.array()).any() || (camera.eye.array() >= high.array()).any()) continue;
+    for (const auto& [bounds, pose] : bodies) {
+      const Vector3f low = bounds.low - margin, high = bounds.high + margin;
+      const Matrix3f to_box = pose.topLeftCorner<3, 3>().transpose();
+      const Vector3f eye = to_box * (camera.eye - pose.topRightCorner<3, 1>()), way_back = to_box * back;
+      if ((eye.array() <= low.array()).any() || (eye.array() >= high.array()).any()) continue;
       float way = std::numeric_limits<float>::infinity();
       for (int axis = 0; axis < 3; ++axis) {
-        if (back[axis] == 0) continue;
-        const float side = back[axis] > 0 ? high[axis] : low[axis];
-        way = std::min(way, (side - camera.eye[axis]) / back[axis]);
+        if (way_back[axis] == 0) continue;
+        const float side = way_back[axis] > 0 ? high[axis] : low[axis];
+        way = std::min(way, (side - eye[axis]) / way_back[axis]);
       }
       camera.eye += way * back;
       inside = true;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "look.h"
 #include "scene.h"
@@ -19,8 +20,17 @@ render::Camera moved_by(render::Camera camera, const Look& look);
 /// @param tilt  from the ground's frame, in which the world is simulated, to the observer's
 render::Camera seen_from(const Scene& scene, const Look& look, const Eigen::Matrix3f& tilt);
 
+/// A box around a body, or a part of one, in a frame of its own.
+struct SolidBox {
+  ppu::Bounds<3> bounds;
+  Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();  ///< of the frame: turned and moved
+};
+
+/// Appends the boxes of the scene's rigid bodies and obstacles. @param poses  of its boxes, then of its rigid bodies
+void append_rigid(const Scene& scene, std::span<const Eigen::Matrix4f> poses, std::vector<SolidBox>& boxes);
+
 /// Moves the eye back, away from what it looks at, until it is in none of these boxes.
-render::Camera kept_outside(render::Camera camera, std::span<const ppu::Bounds<3>> bodies);
+render::Camera kept_outside(render::Camera camera, std::span<const SolidBox> bodies);
 
 /// Moves the scene's camera along its line of sight and sideways so that it shows everything that moves, where it is at the beginning
 /// and on the ground below. A scene in which nothing moves keeps its camera.

@@ -125,7 +125,7 @@ class Hash {
     add(amplitude_x, amplitude_z, period_x, period_z, begin);
   }
   void add(const SoftBody2dPlacement& body) {
-    const auto& [name, cells, settings, position, contact_radius, colour, coloured_cells, face, picture,
+    const auto& [name, cells, settings, position, contact_radius, colour, coloured_cells, face, ring, picture,
                  strengths] = body;
     add(cells, settings, position, contact_radius);
     add_strengths(strengths);

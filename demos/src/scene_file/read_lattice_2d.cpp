@@ -1,5 +1,6 @@
 #include "read_lattice_2d.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -37,30 +38,40 @@ Cells cells_where(const Vector2i& size, auto is_cell) {
   return cells;
 }
 
-Cells rectangle(FieldReader& fields) {
+void rectangle(FieldReader& fields, SoftBody2dPlacement& body) {
   int width = 4, height = 4;
   fields.integer("width", width, 1, kMaxCells).integer("height", height, 1, kMaxCells).finish();
-  return cells_where({width, height}, [](int, int) { return true; });
+  body.cells = cells_where({width, height}, [](int, int) { return true; });
 }
 
 /// Cells whose middles lie in a ring; a disc is one without a hole.
-Cells ring_of(int diameter, int hole) {
+void ring_of(int diameter, int hole, SoftBody2dPlacement& body) {
   SC_ASSERT(diameter > 0 && hole >= 0 && hole < diameter, "a ring of {} cells with a hole of {}", diameter,
             hole);
-  return cells_where({diameter, diameter}, [&](int x, int y) {
+  body.cells = cells_where({diameter, diameter}, [&](int x, int y) {
     // Twice the distances from the middle, so that all is whole.
     const int dx = 2 * x + 1 - diameter, dy = 2 * y + 1 - diameter, squared = dx * dx + dy * dy;
     return squared <= diameter * diameter && squared >= hole * hole;
   });
+  // Between the nearest and the farthest places of the cells' edge, so that what it lies on is neither covered nor far below.
+  const float half = 0.5f * static_cast<float>(diameter);
+  float farthest = half;
+  for (const Vector2i& cell : body.cells) {
+    const Eigen::Vector2f middle = cell.cast<float>() + Eigen::Vector2f::Constant(0.5f - half);
+    farthest = std::max(farthest, (middle.cwiseAbs() + Eigen::Vector2f::Constant(0.5f)).norm());
+  }
+  body.ring = {.middle = Eigen::Vector2f::Constant(half),
+               .radius = half + 0.25f * (farthest - half),
+               .hole = 0.5f * static_cast<float>(hole)};
 }
 
-Cells disc(FieldReader& fields) {
+void disc(FieldReader& fields, SoftBody2dPlacement& body) {
   int diameter = 8;
   fields.integer("diameter", diameter, 1, kMaxCells).finish();
-  return ring_of(diameter, 0);
+  ring_of(diameter, 0, body);
 }
 
-Cells ring(FieldReader& fields) {
+void ring(FieldReader& fields, SoftBody2dPlacement& body) {
   int diameter = 10, hole = 4;
   fields.integer("diameter", diameter, 3, kMaxCells).integer("hole", hole, 0, kMaxCells).finish();
   if (hole > diameter - 2) {
@@ -68,18 +79,18 @@ Cells ring(FieldReader& fields) {
         fields.place("hole"),
         fmt::format("hole of {} is {}; it must be at least 2 less than diameter", fields.what(), hole));
   }
-  return ring_of(diameter, hole);
+  ring_of(diameter, hole, body);
 }
 
 constexpr std::array<std::string_view, 3> kLatticeKinds{"disc", "rectangle", "ring"};
-constexpr std::array<Cells (*)(FieldReader&), 3> kLatticeMakers{disc, rectangle, ring};
+constexpr std::array<void (*)(FieldReader&, SoftBody2dPlacement&), 3> kLatticeMakers{disc, rectangle, ring};
 
-Cells read_shape(const Value& value, const std::string& owner) {
+void read_shape(const Value& value, const std::string& owner, SoftBody2dPlacement& body) {
   FieldReader fields(value, "the shape of " + owner);
   std::size_t kind = kLatticeKinds.size();
   fields.choice("kind", kind, kLatticeKinds, Need::kRequired);
   if (kind == kLatticeKinds.size()) throw SceneError(value.place, fields.what() + " needs the field 'kind'");
-  return kLatticeMakers[kind](fields);
+  kLatticeMakers[kind](fields, body);
 }
 
 Cells read_rows(std::span<const Value> items, const std::string& owner) {
@@ -199,7 +210,7 @@ void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPictureP
     from_picture(files.picture(image, place), side,
                  stated > 0 ? cells_along(side, stated) : double{kCellsAlongPicture}, place);
   } else if (shape != nullptr) {
-    body.cells = read_shape(*shape, fields.what());
+    read_shape(*shape, fields.what(), body);
   } else if (!rows.empty()) {
     body.cells = read_rows(rows, fields.what());
   } else {

@@ -41,7 +41,7 @@ struct OwnPicturePlace {
 /// The cells of a 2D soft body: its field `rows`, a picture in text; `shape`, a primitive; `lattice`, a Lua file; or
 /// `image`, a picture, which the body is then drawn with. These are the last fields that are read of the body: what else
 /// it has is refused.
-/// @param body  its cells and its picture are set; for a picture its cell size, if it is 0
+/// @param body  its cells, its ring and its picture are set; for a picture its cell size, if it is 0
 /// @throws SceneError
 void read_lattice_2d(FieldReader& fields, LatticeFiles& files, const OwnPicturePlace& own,
                      SoftBody2dPlacement& body);

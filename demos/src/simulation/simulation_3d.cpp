@@ -425,7 +425,7 @@ struct Simulation3d::State {
   void copy_hands(Snapshot& snapshot) const {
     snapshot.hands.clear();
     for (const Hands<3>::Held& hand : controls.hands().held()) {
-      if (hand.hand == kUsersHand)
+      if (is_users_hand(hand.hand))
         snapshot.hands.push_back({soft_bodies[hand.body].position(hand.particle), hand.target});
     }
     held.append(snapshot.hands);

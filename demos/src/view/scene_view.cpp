@@ -250,13 +250,14 @@ const render::Image& SceneView::draw(float turn) {
 void SceneView::draw(const Shown3d& shown, const Look& look) {
   boxes_.clear();
   for (const Shown3d::Body& body : shown.bodies) {
-    ppu::Bounds<3>& box = boxes_.emplace_back();
+    ppu::Bounds<3>& box = boxes_.emplace_back().bounds;
     box.low = box.high = body.particles.front().head<3>();
     for (const Eigen::Vector4f& particle : body.particles) {
       box.low = box.low.cwiseMin(particle.head<3>());
       box.high = box.high.cwiseMax(particle.head<3>());
     }
   }
+  append_rigid(scene_, shown.box_poses, boxes_);
   marked_.clear();
   if (look.marked) marked_.push_back(*look.marked);
   draw(shown, look.view, kept_outside(seen_from(scene_, look, shown.tilt), boxes_));

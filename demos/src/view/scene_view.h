@@ -57,7 +57,7 @@ class SceneView {
   render::Renderer& renderer_;
   View view_;
   Shown3d now_;
-  std::vector<ppu::Bounds<3>> boxes_;  // of soft bodies
+  std::vector<SolidBox> boxes_;  // of all bodies
 
   MeshLooks looks_;
   std::vector<std::vector<render::PartDraw>>

@@ -1,7 +1,6 @@
 #include "soft_shape_2d.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "softcell/base/assert.h"
@@ -12,10 +11,42 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector2i;
 
-constexpr float kSeam = 0.6f;  // of the light of two colours that meet
+// Lines between colours: shares of the colour's light and of the outline's width. They have smooth edges, which triangles have not.
+constexpr float kSeam = 0.6f, kSeamWidth = 0.7f;
 
 float margin_of(const SoftBody2dPlacement& body) {
   return std::min(body.contact_radius, ppu::kMaxSkinMargin);
+}
+
+/// What the body's cells stand for, if it is more than they are.
+ppu::Outside2d outside_of(const SoftBody2dPlacement& body) {
+  if (!body.ring) return {};
+  return [ring = *body.ring](const Vector2f& at) {
+    const float away = (at - ring.middle).norm();
+    return ring.hole > 0 ? std::max(away - ring.radius, ring.hole - away) : away - ring.radius;
+  };
+}
+
+/// Of each cell: 0 for the body's own colour, or 1 and the number of the first of its coloured cells with the colour of the
+/// last that it is of.
+std::vector<std::uint32_t> colours_of(const SoftBody2dPlacement& body, const ppu::Lattice<2>& lattice) {
+  // Rectangles of one colour make one shape.
+  const auto first_alike = [&](std::uint32_t i) {
+    if (body.coloured_cells[i].colour == body.colour) return std::uint32_t{0};
+    std::uint32_t first = 0;
+    while (body.coloured_cells[first].colour != body.coloured_cells[i].colour) ++first;
+    return first + 1;
+  };
+  std::vector<std::uint32_t> colours(lattice.cells.size());
+  for (std::size_t c = 0; c < colours.size(); ++c) {
+    const auto cell = lattice.cells[c].array();
+    for (std::uint32_t i = 0; i < body.coloured_cells.size(); ++i) {
+      const ColouredCells2d& cells = body.coloured_cells[i];
+      if ((cell >= cells.low.array()).all() && (cell <= cells.high.array()).all())
+        colours[c] = first_alike(i);
+    }
+  }
+  return colours;
 }
 
 }  // namespace
@@ -44,31 +75,64 @@ SoftShape2d::SoftShape2d(const SoftBody2dPlacement& body, const ppu::SoftBodyMod
   if (body.picture) {
     add_picture(renderer, stickers, wholes);
   } else {
-    skin_ = own_skin(
-        wholes, [&](const ppu::Lattice<2>& lattice) { return ppu::make_skin_2d(lattice, margin_of(body)); });
-    vertices_.resize(skin_.vertices.size());
-    add_parts(renderer);
-  }
-  positions_.resize(skin_.vertices.size());
-  slopes_.resize(skin_.vertices.size());
-  for (const auto& loop : skin_.outlines) {
-    outlines_.push_back({.vertices = loop,
-                         .points = std::vector<Vector2f>(loop.size()),
-                         .normals = std::vector<Vector2f>(model.is_piece() ? 0 : loop.size())});
+    add_skins(renderer, wholes);
   }
   if (has_face()) add_face(*body.face);
 }
 
 void SoftShape2d::remove_from(render::Renderer& renderer) const {
-  for (const Part& part : parts_) renderer.remove_shape(part.shape);
+  for (const Layer& layer : layers_) renderer.remove_shape(layer.shape);
 }
 
-/// @param make  the skin of a whole lattice
+/// @param make  the skins of a whole lattice
 template <class Make>
-ppu::Skin2d SoftShape2d::own_skin(WholeSkins& wholes, const Make& make) const {
+std::vector<ppu::Skin2d> SoftShape2d::own_skins(WholeSkins& wholes, const Make& make) const {
   if (!model_.is_piece()) return make(model_.lattice());
   const ppu::Lattice<2>& whole = model_.whole()->lattice();
-  return ppu::skin_of_piece(wholes.get(body_, [&] { return make(whole); }), whole, model_.lattice());
+  std::vector<ppu::Skin2d> skins;
+  for (const ppu::Skin2d& skin : wholes.get(body_, [&] { return make(whole); }))
+    skins.push_back(ppu::skin_of_piece(skin, whole, model_.lattice()));
+  return skins;
+}
+
+SoftShape2d::Layer& SoftShape2d::add_layer(ppu::Skin2d skin) {
+  Layer& layer = layers_.emplace_back();
+  layer.skin = std::move(skin);
+  layer.positions.resize(layer.skin.rest.size());
+  layer.slopes.resize(layer.skin.rest.size());
+  layer.vertices.resize(layer.skin.rest.size());
+  for (const auto& loop : layer.skin.outlines) {
+    layer.outlines.push_back({.vertices = loop,
+                              .points = std::vector<Vector2f>(loop.size()),
+                              .normals = std::vector<Vector2f>(model_.is_piece() ? 0 : loop.size())});
+  }
+  return layer;
+}
+
+/// The whole in the body's own colour, and over it a layer for each colour, in the order in which the scene has them.
+void SoftShape2d::add_skins(render::Renderer& renderer, WholeSkins& wholes) {
+  std::vector<ppu::Skin2d> skins = own_skins(wholes, [&](const ppu::Lattice<2>& lattice) {
+    const ppu::Outside2d outside = outside_of(body_);
+    std::vector<ppu::Skin2d> made;
+    made.push_back(ppu::make_skin_2d(lattice, margin_of(body_), outside));
+    if (!body_.coloured_cells.empty()) {
+      for (auto& part :
+           ppu::make_skin_parts_2d(lattice, margin_of(body_), outside, colours_of(body_, lattice)))
+        made.push_back(std::move(part));
+    }
+    return made;
+  });
+  for (std::size_t i = 0; i < skins.size(); ++i) {
+    if (skins[i].triangles.empty()) continue;
+    Layer& layer = add_layer(std::move(skins[i]));
+    layer.shape = renderer.add_shape(layer.skin.triangles);
+    layer.colour = i < 2 ? body_.colour : body_.coloured_cells[i - 2].colour;
+    layer.is_part = i > 0;
+    if (i < 2) continue;
+    // Between colours an outline turns where the shape's edge does not: its own points say how.
+    for (Outline& outline : layer.outlines) outline.normals.clear();
+  }
+  is_coloured_ = layers_.size() > 1;
 }
 
 /// Of pieces the one that has the cell in the middle of the face.
@@ -81,43 +145,6 @@ bool SoftShape2d::has_face() const {
   });
   return middle != cells.end() &&
          std::ranges::find(model_.lattice().cells, *middle) != model_.lattice().cells.end();
-}
-
-/// One shape for each colour, in the order in which the scene has them.
-void SoftShape2d::add_parts(render::Renderer& renderer) {
-  const auto colour_of = [&](std::uint32_t cell) {
-    const Vector2i& at = model_.lattice().cells[cell];
-    for (std::size_t i = body_.coloured_cells.size(); i-- > 0;) {
-      const ColouredCells2d& cells = body_.coloured_cells[i];
-      if ((at.array() >= cells.low.array()).all() && (at.array() <= cells.high.array()).all()) return i + 1;
-    }
-    return std::size_t{0};
-  };
-  std::map<std::size_t, std::vector<render::Triangle>> triangles;
-  using Edge = std::array<std::uint32_t, 2>;
-  std::map<Edge, std::size_t> first_colours;  // of the first triangle at each edge
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<Edge>> seams;
-  for (std::size_t t = 0; t < skin_.triangles.size(); ++t) {
-    const std::size_t colour = colour_of(skin_.cells[t]);
-    const auto& corners = skin_.triangles[t];
-    triangles[colour].push_back(corners);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(corners[k], corners[(k + 1) % 3]);
-      const auto [first, is_new] = first_colours.try_emplace({a, b}, colour);
-      if (!is_new && part_colour(first->second) != part_colour(colour))
-        seams[std::minmax(first->second, colour)].push_back({a, b});
-    }
-  }
-  for (const auto& [colour, list] : triangles)
-    parts_.push_back({.shape = renderer.add_shape(list), .colour = part_colour(colour)});
-  for (auto& [colours, edges] : seams)
-    seams_.push_back({.edges = std::move(edges),
-                      .colour = kSeam * (part_colour(colours.first) + part_colour(colours.second)) / 2});
-}
-
-/// @param part  0: the body's own colour, or 1 and the number of its coloured cells
-render::Colour SoftShape2d::part_colour(std::size_t part) const {
-  return part == 0 ? body_.colour : body_.coloured_cells[part - 1].colour;
 }
 
 void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers, WholeSkins& wholes) {
@@ -135,12 +162,16 @@ void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers, Wh
     return sheet.has_something((at.cast<float>() - low) * cell,
                                (at.cast<float>() + Vector2f::Ones() - low) * cell);
   };
-  skin_ = own_skin(
-      wholes, [&](const ppu::Lattice<2>& lattice) { return ppu::make_cover_2d(lattice, has_something); });
-  vertices_.resize(skin_.vertices.size());
-  for (std::size_t i = 0; i < skin_.vertices.size(); ++i)
-    vertices_[i].texture = (skin_.rest[i] - low).cwiseQuotient(size);
-  parts_.push_back({.shape = renderer.add_shape(skin_.triangles), .colour = body_.colour});
+  std::vector<ppu::Skin2d> skins = own_skins(wholes, [&](const ppu::Lattice<2>& lattice) {
+    std::vector<ppu::Skin2d> made;
+    made.push_back(ppu::make_cover_2d(lattice, has_something));
+    return made;
+  });
+  Layer& layer = add_layer(std::move(skins.front()));
+  for (std::size_t i = 0; i < layer.vertices.size(); ++i)
+    layer.vertices[i].texture = (layer.skin.rest[i] - low).cwiseQuotient(size);
+  layer.shape = renderer.add_shape(layer.skin.triangles);
+  layer.colour = body_.colour;
   texture_ = texture;
 }
 
@@ -182,17 +213,19 @@ void SoftShape2d::add_face(const Face2d& face) {
 void SoftShape2d::place(std::span<const Vector2f> particles) {
   SC_ASSERT(particles.size() == model_.particles(), "{} particles of body '{}' with {}", particles.size(),
             body_.name, model_.particles());
-  ppu::place(skin_, particles, positions_, slopes_);
   box_.setEmpty();
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    vertices_[i].position = positions_[i];
-    vertices_[i].slope = slopes_[i];
-    box_.extend(positions_[i]);
-  }
-  for (Outline& outline : outlines_) {
-    for (std::size_t i = 0; i < outline.vertices.size(); ++i) {
-      outline.points[i] = positions_[outline.vertices[i]];
-      if (!outline.normals.empty()) outline.normals[i] = slopes_[outline.vertices[i]];
+  for (Layer& layer : layers_) {
+    ppu::place(layer.skin, particles, layer.positions, layer.slopes);
+    for (std::size_t i = 0; i < layer.positions.size(); ++i) {
+      layer.vertices[i].position = layer.positions[i];
+      layer.vertices[i].slope = layer.slopes[i];
+      box_.extend(layer.positions[i]);
+    }
+    for (Outline& outline : layer.outlines) {
+      for (std::size_t i = 0; i < outline.vertices.size(); ++i) {
+        outline.points[i] = layer.positions[outline.vertices[i]];
+        if (!outline.normals.empty()) outline.normals[i] = layer.slopes[outline.vertices[i]];
+      }
     }
   }
   for (Spots& spots : spots_) {
@@ -213,23 +246,26 @@ void SoftShape2d::place(std::span<const Vector2f> particles) {
 void SoftShape2d::draw(Drawing2d& drawing, float line_width, float opacity) const {
   SC_ASSERT(line_width > 0 && opacity >= 0 && opacity <= 1, "body '{}' with lines of {} m, opacity {}",
             body_.name, line_width, opacity);
-  for (const Part& part : parts_)
-    drawing.shapes.push_back({.shape = part.shape,
-                              .vertices = vertices_,
-                              .colour = part.colour,
+  const auto add_lines = [&](const Layer& layer, float width, const render::Colour& colour) {
+    for (const Outline& outline : layer.outlines)
+      drawing.lines.push_back({.points = outline.points,
+                               .normals = outline.normals,
+                               .closed = true,
+                               .width = width,
+                               .colour = colour});
+  };
+  for (const Layer& layer : layers_) {
+    // Under a pale part the whole would show.
+    if (opacity < 1 && is_coloured_ && !layer.is_part) continue;
+    drawing.shapes.push_back({.shape = layer.shape,
+                              .vertices = layer.vertices,
+                              .colour = layer.colour,
                               .opacity = opacity,
                               .texture = texture_});
-  if (opacity >= 1) {
-    for (const Seam& seam : seams_)
-      drawing.links.push_back(
-          {.points = positions_, .links = seam.edges, .width = 0.7f * line_width, .colour = seam.colour});
+    if (opacity >= 1 && layer.is_part && layer.colour != body_.colour)
+      add_lines(layer, kSeamWidth * line_width, kSeam * layer.colour);
   }
-  for (const Outline& outline : outlines_)
-    drawing.lines.push_back({.points = outline.points,
-                             .normals = outline.normals,
-                             .closed = true,
-                             .width = line_width,
-                             .colour = ink_of(body_.colour)});
+  add_lines(layers_.front(), line_width, ink_of(body_.colour));
   if (opacity < 1) return;
   for (const Stroke& stroke : strokes_)
     drawing.lines.push_back({.points = stroke.points, .width = stroke.width, .colour = stroke.colour});

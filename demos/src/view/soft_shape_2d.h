@@ -52,15 +52,15 @@ class Stickers {
 /// The skins of a scene's bodies before they break, of which pieces have parts. Each is made once.
 class WholeSkins {
  public:
-  /// @param make  the body's skin  @return  valid as long as this
+  /// @param make  the body's skins  @return  valid as long as this
   template <class Make>
-  const ppu::Skin2d& get(const SoftBody2dPlacement& body, const Make& make) {
+  const std::vector<ppu::Skin2d>& get(const SoftBody2dPlacement& body, const Make& make) {
     const auto known = made_.find(&body);
     return known != made_.end() ? known->second : made_.emplace(&body, make()).first->second;
   }
 
  private:
-  std::map<const SoftBody2dPlacement*, ppu::Skin2d> made_;
+  std::map<const SoftBody2dPlacement*, std::vector<ppu::Skin2d>> made_;
 };
 
 /// One body's shape, or that of a piece of it. Used by one thread, with the renderer that it was made with.
@@ -85,19 +85,20 @@ class SoftShape2d {
   const Box& box() const { return box_; }
 
  private:
-  struct Part {
-    render::Shape2dId shape;
-    render::Colour colour;
-  };
-  /// Where two colours meet. Its line has smooth edges, which triangles have not.
-  struct Seam {
-    std::vector<std::array<std::uint32_t, 2>> edges;  ///< indices of vertices
-    render::Colour colour;
-  };
   struct Outline {
     std::vector<std::uint32_t> vertices;
     std::vector<Eigen::Vector2f> points;
     std::vector<Eigen::Vector2f> normals;  // none of a piece, whose cuts have no slopes
+  };
+  /// A skin with its outlines: of all of the body, or of its cells of one colour.
+  struct Layer {
+    ppu::Skin2d skin;
+    render::Shape2dId shape = {};
+    render::Colour colour{0, 0, 0};
+    bool is_part = false;
+    std::vector<Outline> outlines;
+    std::vector<Eigen::Vector2f> positions, slopes;
+    std::vector<render::Vertex2d> vertices;
   };
   /// Dots of one size on the body.
   struct Spots {
@@ -117,25 +118,20 @@ class SoftShape2d {
   };
 
   template <class Make>
-  ppu::Skin2d own_skin(WholeSkins& wholes, const Make& make) const;
-  void add_parts(render::Renderer& renderer);
-  render::Colour part_colour(std::size_t part) const;
+  std::vector<ppu::Skin2d> own_skins(WholeSkins& wholes, const Make& make) const;
+  void add_skins(render::Renderer& renderer, WholeSkins& wholes);
   void add_picture(render::Renderer& renderer, Stickers& stickers, WholeSkins& wholes);
+  Layer& add_layer(ppu::Skin2d skin);
   bool has_face() const;
   void add_face(const Face2d& face);
 
   const SoftBody2dPlacement& body_;
   const ppu::SoftBodyModel<2>& model_;
-  ppu::Skin2d skin_;
-  std::vector<Part> parts_;
-  std::vector<Seam> seams_;
+  std::vector<Layer> layers_;  // the lowest first: the whole, then its parts
+  bool is_coloured_ = false;   // it has parts
   std::optional<render::TextureId> texture_;
-  std::vector<Outline> outlines_;
   std::vector<Spots> spots_;
   std::vector<Stroke> strokes_;
-
-  std::vector<Eigen::Vector2f> positions_, slopes_;
-  std::vector<render::Vertex2d> vertices_;
   Box box_;
 };
 

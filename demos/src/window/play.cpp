@@ -275,6 +275,7 @@ Run play(const WindowOptions& options, const std::vector<NamedDemo>& scenes, con
     if (!next && !other) return run;
     look = run.demo->input().look();
     look->stroke.reset();  // the next scene's knife has not begun it
+    look->hands = {};
     if (other && same_scene) {
       begins_paused = run.demo->paused();
     } else {

@@ -186,9 +186,10 @@ class Demo3d final : public demos::SceneDemo<Types3d> {
   }
 
   render::Camera eye(const demos::Look& look) const {
-    std::vector<ppu::Bounds<3>> boxes;
+    std::vector<demos::SolidBox> boxes;
     for (std::size_t b = 0; b < simulation().soft_bodies(); ++b)
-      boxes.push_back(simulation().soft_body(b).bounds());
+      boxes.push_back({.bounds = simulation().soft_body(b).bounds()});
+    demos::append_rigid(scene(), simulation().shown_box_poses(), boxes);
     return demos::kept_outside(demos::seen_from(scene(), look, simulation().shown_tilt()), boxes);
   }
 

@@ -186,10 +186,10 @@ int run_demo(const DemoOptions& options, std::string_view verb, const LoadScenes
     throw UsageError(fmt::format("--ui-scale {}: give a number from 0.5 to 4", *options.ui_scale));
   check_pictures(options);
   check_files(options);
+  const InterruptGuard guard;  // before the first file is opened: nothing is to be left of any
+  const demos::PictureFolders folders(options);  // where other outputs may be wanted, too
   OutputFiles files(written_files(options));
   check_saved_scene(options);
-  const InterruptGuard guard;            // before the first file is opened: nothing is to be left of any
-  demos::make_picture_folders(options);  // where other outputs may be wanted, too
   // A recording and a trace are of one scene.
   const std::vector<demos::NamedDemo> scenes =
       load(!options.headless && !options.record && !options.replay && !options.trace);

@@ -31,10 +31,20 @@ struct CellPoint2d {
   }
 };
 
-/// A drawn shape in the cells of one lattice.
+/// What one particle does to a vertex: its share of the vertex's position, and of how the position changes along the
+/// cells' edges, a cell long.
+struct Pull2d {
+  std::uint32_t particle = 0;
+  float share = 0, along_x = 0, along_y = 0;
+};
+
+/// A drawn shape that hangs in the cells of one lattice, and bends without kinks between them.
 struct Skin2d {
-  std::vector<CellPoint2d> vertices;
-  std::vector<Eigen::Vector2f> rest;  ///< of each vertex: where it is at rest, in grid coordinates
+  std::vector<Eigen::Vector2f> rest;        ///< of each vertex: where it is at rest, in grid coordinates
+  std::vector<std::uint32_t> vertex_cells;  ///< of each vertex: the number of the cell that it hangs in
+  /// What moves vertex i: pulls first_pull[i] to first_pull[i + 1].
+  std::vector<Pull2d> pulls;
+  std::vector<std::uint32_t> first_pull{0};
   /// Of each vertex at rest: where the edge is, and how near. As a surface that is level in the middle and falls off
   /// to the edge has its slope: (0, 0) farther than a cell and a half from the edge, some 0.65 long on it, outwards.
   std::vector<Eigen::Vector2f> slopes;
@@ -48,12 +58,25 @@ struct Skin2d {
 /// Most of make_skin_2d()'s margin; also how far outside of its cells a lattice's points may be.
 inline constexpr float kMaxSkinMargin = 0.5f;
 
+/// A shape that a lattice's cells stand for: how far outside of it a point, in grid coordinates, is, in cells; negative
+/// inside.
+using Outside2d = std::function<float(const Eigen::Vector2f&)>;
+
 /// The lattice's cells, wider by `margin` all around, with round corners and without stairs. With a margin of the
 /// contact radius the shape meets other things where the body does. Gaps that are one cell wide stay open.
 /// Deterministic.
-/// @param margin  in cells, 0..kMaxSkinMargin
+/// @param margin   in cells, 0..kMaxSkinMargin
+/// @param outside  a shape that is drawn in place of the cells, wider by the margin: a disc is round, however few cells
+///                 it has. Its edge lies no farther than a cell outside of the cells.
 /// @pre  the lattice has cells
-Skin2d make_skin_2d(const Lattice<2>& lattice, float margin);
+Skin2d make_skin_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside = {});
+
+/// The same shape in parts, for cells of several colours: what is nearest to a part's cells is of that part. The parts
+/// cover the shape, and the lines between them are smooth. Deterministic.
+/// @param parts   of each cell the number of its part  @return  one skin for each number up to the largest
+/// @pre  the lattice has cells, and a part for each
+std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside,
+                                       std::span<const std::uint32_t> parts);
 
 /// All cells of the lattice and those around it that `drawn` asks for, as triangles: for a picture that is
 /// transparent outside of the body. It has no slopes and no outlines. Deterministic.
