@@ -404,9 +404,9 @@ TEST_F(SaveScene, GoesOnWithScriptAndTilting) {
 }
 
 std::optional<OwnModel> own(const std::string& model, bool z_up, int cells,
-                            std::optional<float> tessellation = {}) {
+                            std::optional<float> tessellation = {}, std::optional<double> unit = {}) {
   return load_own_model(
-      {.mesh = model, .z_up = z_up, .cells = cells, .cell = {}, .tessellation = tessellation});
+      {.mesh = model, .z_up = z_up, .unit = unit, .cells = cells, .cell = {}, .tessellation = tessellation});
 }
 
 TEST_F(SaveScene, HasTheModelOfTheCommandLine) {
@@ -419,8 +419,13 @@ TEST_F(SaveScene, HasTheModelOfTheCommandLine) {
           R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}])"));
   for (const bool z_up : {false, true}) {
     const Scene scene =
-        load_scene_3d("drop", own(model, z_up, 7, z_up ? std::optional<float>(1.5f) : std::nullopt));
+        load_scene_3d("drop", own(model, z_up, 7, z_up ? std::optional<float>(1.5f) : std::nullopt,
+                                  z_up ? std::optional<double>(0.25) : std::nullopt));
     EXPECT_EQ(scene.soft_bodies[0].mesh.triangles.size() > 4, z_up);
+    const ppu::Bounds<3> box = ppu::bounds(scene.soft_bodies[0].mesh);
+    if (z_up) {  // four units long, of a quarter of a metre
+      EXPECT_FLOAT_EQ((box.high - box.low).maxCoeff(), 1);
+    }
     Simulation3d run(scene, {.spes = 2});
     step(run, 20);
     const Scene loaded = saved_and_loaded(scene, run, file());

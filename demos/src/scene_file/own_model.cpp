@@ -60,6 +60,20 @@ void check_lattice(const OwnModelOptions& options, const ppu::TriangleMesh& mesh
                                        static_cast<int>(longest / enough)));
 }
 
+/// Metres. @param longest  side of the model's box, in its units
+float own_size(double unit, double longest, double cell) {
+  if (cell * unit < static_cast<double>(kLeastCellSize)) {
+    throw std::runtime_error(
+        fmt::format("--unit {}: a lattice cell would be {:.4g} m long; give {:.4g} or more", unit,
+                    cell * unit, kLeastCellSize / cell * 1.001));
+  }
+  if (longest * unit > static_cast<double>(kFar)) {
+    throw std::runtime_error(fmt::format("--unit {}: the model would be {:.4g} m long; give {:.4g} or less",
+                                         unit, longest * unit, kFar / longest * 0.999));
+  }
+  return static_cast<float>(longest * unit);
+}
+
 }  // namespace
 
 std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
@@ -77,6 +91,7 @@ std::optional<OwnModel> load_own_model(const OwnModelOptions& options) {
   ppu::fit(model.mesh, static_cast<float>(longest));  // centred, its size unchanged
   check_lattice(options, model.mesh, longest, cell);
   model.cell_size = static_cast<float>(cell);
+  if (options.unit) model.longest_side = own_size(*options.unit, longest, cell);
   model.tessellation = options.tessellation;
   return model;
 }

@@ -14,7 +14,9 @@ inline constexpr float kLeastTessellation = 0.125f, kMostTessellation = 100;
 struct OwnModelOptions {
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
   bool z_up = false;                          ///< its z axis points upwards, not its y axis
-  int cells = 8;                              ///< along the model's longest side
+  std::optional<double> unit =
+      {};                      ///< of the model, in metres; none: it is made as large as what it replaces
+  int cells = 8;               ///< along the model's longest side
   std::optional<double> cell;  ///< their size in the model's own units, above 0, in place of `cells`
   std::optional<float> tessellation = {};  ///< longer edges of its triangles are halved: cells
 };

@@ -177,7 +177,7 @@ bool read_soft_body(const Value& value, std::size_t index, MeshFiles& files, con
   body.own_materials = replaced || !fields.has("colour");
   body.mesh = read_mesh(fields, files);
   if (replaced) {
-    take_place(body, *model, *own_model_side);
+    take_place(body, *model, model->longest_side.value_or(*own_model_side));
     material.settings.cell_size = body.settings.cell_size;
     tessellation = model->tessellation;
   }

@@ -192,7 +192,8 @@ void save_files_of_bodies(const SceneOf& scene, SavedScene& saved, std::string_v
     const Value longest = *length;
     erase_fields(table, {side});
     erase_fields(table, replaced);
-    set_field(table, "longest_side", longest);
+    const auto& its_own = scene.document->own->longest_side;
+    set_field(table, "longest_side", its_own ? number_value(*its_own) : longest);
     set_field(table, own, text_value(saved.own_file()));
     if (scene.document->own->z_up) set_field(table, "up", text_value("z"));
     if (const auto& tessellation = scene.document->own->tessellation)

@@ -12,6 +12,7 @@ namespace softcell::demos {
 struct OwnFile {
   std::filesystem::path file;
   bool z_up = false;                       ///< of a model
+  std::optional<float> longest_side = {};  ///< of a model, metres; none: of what it replaces
   std::optional<float> tessellation = {};  ///< of a model, cells
 };
 

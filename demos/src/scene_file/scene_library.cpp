@@ -53,7 +53,10 @@ std::variant<Scene, Scene2d> read_scene(const SceneSource& source,
   Scene scene = read_scene_3d(root, source, model);
   scene.files = source.files();
   if (model)
-    document->own = OwnFile{.file = model->file, .z_up = model->z_up, .tessellation = model->tessellation};
+    document->own = OwnFile{.file = model->file,
+                            .z_up = model->z_up,
+                            .longest_side = model->longest_side,
+                            .tessellation = model->tessellation};
   scene.document = std::move(document);
   return scene;
 }

@@ -45,6 +45,7 @@ struct OwnModel {
   std::vector<std::filesystem::path> files = {};  ///< that it was read from
   std::filesystem::path file = {};                ///< the first of them, as scenes name it
   bool z_up = false;                              ///< turned from there
+  std::optional<float> longest_side = {};         ///< metres; none: of what it replaces
   std::optional<float> tessellation = {};         ///< cells, as the field `tessellate`
 };
 

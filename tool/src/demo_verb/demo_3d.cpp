@@ -232,6 +232,9 @@ int run_demo_3d(const Demo3dOptions& options) {
   if (const auto cell = options.model.cell;
       options.model.mesh && cell && !(*cell > 0 && std::isfinite(*cell)))
     throw UsageError(fmt::format("--cell {}: give a length above 0, in the model's units", *cell));
+  if (const auto unit = options.model.unit; unit && !(*unit > 0 && std::isfinite(*unit)))
+    throw UsageError(
+        fmt::format("--unit {}: give what one of the model's units is in metres, above 0", *unit));
   if (const auto tessellation = options.model.tessellation;
       tessellation &&
       !(*tessellation >= demos::kLeastTessellation && *tessellation <= demos::kMostTessellation))

@@ -118,6 +118,11 @@ class DemoVerbs final : public Verb {
     d->add_option("--up", up_, "The model's axis that points upwards (default: y)")
         ->needs("--mesh")
         ->type_name("y|z");
+    d->add_option(
+         "--unit", demo_3d_.model.unit,
+         "One of the model's units in metres (default: it is made as large as what it takes the place of)")
+        ->needs("--mesh")
+        ->type_name("METRES");
     CLI::Option* const cells =
         accept_whole_number(d->add_option("--cells", demo_3d_.model.cells,
                                           "Lattice cells along the model's longest side (default: 8)"),
