@@ -1,6 +1,7 @@
 // Bodies that break in a Bullet world.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -12,6 +13,7 @@
 
 #include "../contacts/contact_world.h"
 #include "fracture_checks.h"
+#include "ppu/fracture/cracks.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
@@ -231,6 +233,51 @@ TEST(BulletFracture, HasTheSameBitsForAnyNumberOfSpesAndSchedule) {
   }
   EXPECT_EQ(fall(lazy), expected);
   EXPECT_EQ(fall(one), expected);
+}
+
+/// A crack inside leaves a body as it was. Where a rotation is sought from shows in its last bits.
+TEST(BulletFracture, APieceGoesOnWithTheRotationsOfItsRegions) {
+  const auto run_with = [](SolverFactory* solvers, const SoftBodySettings& settings, const Vector3f& size,
+                           bool cracks) {
+    ContactWorld world({0, 0, 0}, solvers);
+    SoftBody<3>& body = world.add(make_box(size, settings.cell_size), settings, {0, 0, 0});
+    for (std::size_t i = 0; i < body.positions().size(); ++i) {
+      const Vector3f x = body.position(i);
+      body.set_particle(i, {x.x() + 0.1f * x.y() * x.y(), -x.z(), x.y() + 0.1f * x.x() * x.z()},
+                        {x.y(), 0.2f * x.x(), 0});
+    }
+    body.translate({0, 0, 0});  // so that couplings notice
+    run(world, 3);
+    if (cracks) {
+      const auto& lattice = body.model().lattice();
+      Vector3f middle = Vector3f::Zero(), across = Vector3f::Zero();  // of a face in the body's middle
+      for (std::uint32_t i = 0; i < body.positions().size(); ++i) {
+        const Vector3f from_middle = lattice.rest_position(i);
+        if ((from_middle.array().abs() - 0.6f * settings.cell_size).maxCoeff() > 0) continue;
+        middle += body.position(i) / 8;
+        across += (from_middle.x() > 0 ? 1.0f : -1.0f) * body.position(i) / 8;
+      }
+      const Vector3f side = 0.4f * settings.cell_size * across.unitOrthogonal();
+      const Vector3f face = middle + across;
+      EXPECT_TRUE(world.bodies
+                      .cut(body, Cut::stroke(face - side / 2 - across.normalized().cross(side) / 2, side,
+                                             across.normalized().cross(side)))
+                      .empty());
+      EXPECT_TRUE(body.model().is_piece());
+      const std::vector<bool>& is_broken = body.model().cracks().is_broken;
+      EXPECT_EQ(std::count(is_broken.begin(), is_broken.end(), true), 1);
+    }
+    run(world, 3);
+    return state_hash(body);
+  };
+  SpeRuntime spes({.spes = 2});
+  for (const Vector3f& size : {Vector3f(0.7f, 0.5f, 0.5f), Vector3f(1.3f, 1.1f, 1.1f)}) {
+    for (SolverFactory* const solvers :
+         {static_cast<SolverFactory*>(nullptr), static_cast<SolverFactory*>(&spes)})
+      EXPECT_EQ(run_with(solvers, brittle(0.1f, 1), size, true),
+                run_with(solvers, brittle(0.1f, 1), size, false))
+          << size.x() << (solvers != nullptr ? " on SPEs" : "");
+  }
 }
 
 /// The thread that makes pieces has all the time in the world, or none: no result depends on it.
