@@ -222,7 +222,8 @@ void SpeContacts::find(std::span<const Pair> pairs) {
       continue;
     }
     spu::FindTask task = find_task(a, b);
-    if (spu::find_bytes(task) > spu::kFindMaxBytes || tasks_.size() == kMostPairs) {
+    const bool with_cracks = a == b && !bodies_[a].model->crack_sides.empty();  // the kernel knows none
+    if (spu::find_bytes(task) > spu::kFindMaxBytes || tasks_.size() == kMostPairs || with_cracks) {
       task_of_.push_back(kByCaller);
       continue;
     }
