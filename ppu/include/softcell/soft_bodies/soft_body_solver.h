@@ -40,10 +40,9 @@ class SoftBodySolver {
   /// no result.
   virtual void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& /*model*/) {}
 
-  /// What the solver knows of a body goes on with a piece of it. Call it after the last step that the body was whole in, for each piece.
-  /// @param piece  of a model that was prepared; the body that is stepped next may be another one of that model
-  /// @param particle_of  of each particle of the piece: which one of the whole it was
-  /// @pre no step is under way
+  /// What the solver knows of a body, the first one, goes on with a piece of it, the second one. Call it after the last step that the body
+  /// was whole in, for each piece. The piece's model was prepared; the body that is stepped next may be another one of that model. The
+  /// last argument says of each particle of the piece which one of the whole it was. @pre no step is under way
   virtual void take_part(const SoftBody<kDimension>& /*whole*/, const SoftBody<kDimension>& /*piece*/,
                          std::span<const std::uint32_t> /*particle_of*/) {}
 };
