@@ -189,7 +189,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       surfaces->forget_pieces(with_surfaces);
     }
     broken.push_back({&body.soft(), others, faces, std::move(particles_before)});
-    workshop->dispose(std::move(before));
+    if (substeps_until_pieces(before.positions().size()) > 0) workshop->dispose(std::move(before));
     return others;
   }
 
