@@ -26,27 +26,11 @@ std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut)
 /// @throws std::invalid_argument  the cut is not finite, or has no length
 std::vector<std::uint32_t> faces_across(const SoftBody<2>& body, const Cut2d& cut);
 
-/// A piece of which there is no body yet.
+/// What is left of bodies of a model when faces break, the largest piece first: bodies at rest, which take part of a body
+/// (SoftBody::take_part()) when it breaks. This is what takes long of pieces_of(), and any thread may do it.
 template <int kDimension>
-struct PlannedPiece {
-  std::shared_ptr<const SoftBodyModel<kDimension>> model;
-  std::vector<std::uint32_t> particle_of;  ///< as in BodyPiece
-};
-
-/// What is left of bodies of a model when faces break; the largest piece first. This is what takes long of pieces_of(), and any thread may
-/// do it.
-template <int kDimension>
-std::vector<PlannedPiece<kDimension>> plan_pieces(
-    const std::shared_ptr<const SoftBodyModel<kDimension>>& model, std::span<const std::uint32_t> faces);
-/// The positions at rest of a body that has yielded, metres; empty: it has the rest shape of its model.
-template <int kDimension>
-std::vector<Eigen::Vector<float, kDimension>> own_rest_of(const SoftBody<kDimension>& body);
-/// Makes a body that is such a piece what it was of the whole as this is now.
-/// @param whole  of the model that was planned for   @param rest  own_rest_of(whole)   @param particle_of  as in PlannedPiece
-template <int kDimension>
-void take_part(SoftBody<kDimension>& piece, const SoftBody<kDimension>& whole,
-               const std::vector<Eigen::Vector<float, kDimension>>& rest,
-               std::span<const std::uint32_t> particle_of);
+std::vector<BodyPiece<kDimension>> plan_pieces(const std::shared_ptr<const SoftBodyModel<kDimension>>& model,
+                                               std::span<const std::uint32_t> faces);
 
 /// What is left of a body when faces break; the largest piece first. The body stays as it is.
 template <int kDimension>

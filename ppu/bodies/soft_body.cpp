@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <stdexcept>
 #include <utility>
 
+#include "ppu/bodies/workshop.h"
 #include "ppu/matching/plastic_flow.h"
 #include "ppu/matching/rotation.h"
 #include "ppu/matching/stiffness.h"
@@ -102,18 +104,36 @@ typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& b
   return nearest_rotation(correlation);
 }
 
+/// Where the rest shapes of all bodies flow.
+Workshop& flows() {
+  static Workshop workshop;
+  return workshop;
+}
+
 }  // namespace
 
-/// What a plastic body has in addition. `plan` is null until it has yielded.
+/// What a plastic body has in addition. It is null until the body was looked at, `shape` until it has yielded.
+//
+//     flow()   look   take   2   3   look   take ...     the result is taken kFlowSteps calls later, or is waited for:
+//     flows()  [ a flow ]            [ a flow ]           what comes of it does not depend on that thread
+//
 template <int kDimension>
 struct SoftBody<kDimension>::RestShape {
   using Exact = Eigen::Matrix<double, kDimension, 1>;
 
-  explicit RestShape(const SoftBodyModel<kDimension>& model)
-      : flow(model.rest_lattice(), positions_of(model)) {}
+  /// What has yielded. Immutable, as copies of a body share it.
+  struct Shape {
+    MatchingPlan<float, kDimension> plan;
+    std::vector<Vector> positions;  // metres
+  };
+
+  explicit RestShape(const SoftBodyModel<kDimension>& model) : RestShape(model, positions_of(model)) {}
+  RestShape(const SoftBodyModel<kDimension>& model, std::span<const Exact> rest)
+      : flow(std::make_shared<PlasticFlow<kDimension>>(model.rest_lattice(), rest)) {}
   RestShape(const RestShape& other)
-      : flow(other.flow),
-        plan(other.plan ? std::make_shared<MatchingPlan<float, kDimension>>(*other.plan) : nullptr) {}
+      : flow((other.wait(), std::make_shared<PlasticFlow<kDimension>>(*other.flow))),
+        shape(other.shape),
+        next(other.next) {}
 
   static std::vector<Exact> positions_of(const SoftBodyModel<kDimension>& model) {
     std::vector<Exact> positions;
@@ -121,9 +141,22 @@ struct SoftBody<kDimension>::RestShape {
       positions.push_back(model.lattice().rest_position(i).template cast<double>());
     return positions;
   }
+  static std::shared_ptr<const Shape> shape_of(const PlasticFlow<kDimension>& flow,
+                                               MatchingPlan<float, kDimension> plan) {
+    plan.set_rest(flow.rest());
+    std::vector<Vector> positions;
+    for (const auto& particle : plan.particle_constants())
+      positions.push_back(plan.rest_centre() + particle.x0);
+    return std::make_shared<const Shape>(Shape{std::move(plan), std::move(positions)});
+  }
+  void wait() const {
+    if (next.valid()) next.wait();
+  }
 
-  PlasticFlow<kDimension> flow;
-  std::shared_ptr<MatchingPlan<float, kDimension>> plan;  // this body's alone
+  std::shared_ptr<PlasticFlow<kDimension>> flow;  // flows() has it while `next` is not ready
+  std::shared_ptr<const Shape> shape;             // null: the model's
+  std::shared_future<std::shared_ptr<const Shape>>
+      next;  // of a flow that has begun; null: the same as before
 };
 
 template <int kDimension>
@@ -145,12 +178,12 @@ SoftBody<kDimension>::SoftBody(const SoftBody& other)
       v_(other.v_),
       padded_(other.padded_),
       matcher_(std::make_unique<ShapeMatcher<float, kDimension>>(*other.matcher_)),
-      steps_since_look_(other.steps_since_look_),
       revision_(other.revision_),
       resets_(other.resets_),
       rest_revision_(other.rest_revision_),
       asleep_(other.asleep_) {
   if (other.rest_) set_rest(std::make_unique<RestShape>(*other.rest_));
+  steps_since_look_ = other.steps_since_look_;
 }
 
 template <int kDimension>
@@ -165,6 +198,28 @@ SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
   steps_since_look_ = other.steps_since_look_;
   asleep_ = other.asleep_;
   // A change by the user: couplings must notice, whatever the other's counts are.
+  ++revision_;
+  ++resets_;
+  return *this;
+}
+
+template <int kDimension>
+SoftBody<kDimension>::SoftBody(SoftBody&& other) noexcept = default;
+
+template <int kDimension>
+SoftBody<kDimension>& SoftBody<kDimension>::operator=(SoftBody&& other) noexcept {
+  const bool has_other_rest = has_own_rest() || other.has_own_rest();
+  std::swap(model_, other.model_);
+  std::swap(settings_, other.settings_);
+  std::swap(x_, other.x_);
+  std::swap(v_, other.v_);
+  std::swap(padded_, other.padded_);
+  std::swap(matcher_, other.matcher_);
+  std::swap(rest_, other.rest_);
+  std::swap(steps_since_look_, other.steps_since_look_);
+  std::swap(asleep_, other.asleep_);
+  // As above.
+  if (has_other_rest) ++rest_revision_;
   ++revision_;
   ++resets_;
   return *this;
@@ -193,26 +248,14 @@ void SoftBody<kDimension>::set_rest(std::unique_ptr<RestShape> rest) {
   if (had_own || has_own_rest()) matcher_->set_plan(plan()), ++rest_revision_;
 }
 
-/// The constants of shape matching follow the rest shape.
-template <int kDimension>
-void SoftBody<kDimension>::take_rest() {
-  SC_ASSERT(rest_ != nullptr, "a body of {} particles has no rest shape of its own", x_.size());
-  if (!rest_->plan) {
-    rest_->plan = std::make_shared<MatchingPlan<float, kDimension>>(*model_->plan());
-    matcher_->set_plan(rest_->plan);
-  }
-  rest_->plan->set_rest(rest_->flow.rest());
-  ++rest_revision_;
-}
-
 template <int kDimension>
 bool SoftBody<kDimension>::has_own_rest() const {
-  return rest_ != nullptr && rest_->plan != nullptr;
+  return rest_ != nullptr && rest_->shape != nullptr;
 }
 
 template <int kDimension>
 auto SoftBody<kDimension>::plan() const -> std::shared_ptr<const MatchingPlan<float, kDimension>> {
-  if (has_own_rest()) return rest_->plan;
+  if (has_own_rest()) return {rest_->shape, &rest_->shape->plan};
   return model_->plan();
 }
 
@@ -225,6 +268,12 @@ auto SoftBody<kDimension>::rest_positions() const -> std::vector<Vector> {
 }
 
 template <int kDimension>
+auto SoftBody<kDimension>::own_rest() const -> std::span<const Vector> {
+  if (!has_own_rest()) return {};
+  return rest_->shape->positions;
+}
+
+template <int kDimension>
 void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
   SC_ASSERT(rest.size() == x_.size(), "{} positions at rest of {} particles", rest.size(), x_.size());
   std::vector<Eigen::Matrix<double, kDimension, 1>> exact;
@@ -232,23 +281,55 @@ void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
     if (!position.allFinite()) throw std::runtime_error("a soft body's rest shape is not finite");
     exact.push_back(position.template cast<double>());
   }
-  if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
-  rest_->flow.set_rest(exact);
-  take_rest();
+  auto own = std::make_unique<RestShape>(*model_, exact);
+  own->shape = RestShape::shape_of(*own->flow, *model_->plan());
+  set_rest(std::move(own));
   ++revision_;
 }
 
 template <int kDimension>
 void SoftBody<kDimension>::flow(float step) {
   SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
-  if (!settings_.plasticity || ++steps_since_look_ < kPlasticSteps) return;
+  if (!settings_.plasticity) return;
+  ++steps_since_look_;
+  if (rest_ && steps_since_look_ >= kFlowSteps) take_flow();
+  if (steps_since_look_ < kPlasticSteps) return;
   steps_since_look_ = 0;
-  const Plasticity& plasticity = *settings_.plasticity;
   if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
-  if (!rest_->flow.may_yield(x_, plasticity.yield)) return;
-  const double share = damping_from_time_constant(1 / static_cast<double>(plasticity.creep),
-                                                  kPlasticSteps * static_cast<double>(step));
-  if (rest_->flow.flow(x_, plan()->sums(), plasticity, share)) take_rest();
+  const Plasticity& plasticity = *settings_.plasticity;
+  if (!rest_->flow->may_yield(x_, plasticity.yield)) return;
+  // The body may have sprung back when the flow is done: with more, and in some ways it would go to and fro.
+  constexpr double kMost = 0.7;
+  const double share = std::min(kMost, damping_from_time_constant(1 / static_cast<double>(plasticity.creep),
+                                                                  kPlasticSteps * static_cast<double>(step)));
+  rest_->next = flows().begin([flow = rest_->flow, x = x_, plan = plan(), plasticity, share] {
+    return flow->flow(x, plan->sums(), plasticity, share) ? RestShape::shape_of(*flow, *plan) : nullptr;
+  });
+}
+
+/// The constants of shape matching follow the rest shape.
+template <int kDimension>
+void SoftBody<kDimension>::take_flow() {
+  SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
+  if (!rest_->next.valid()) return;
+  std::shared_ptr<const typename RestShape::Shape> flowed = std::exchange(rest_->next, {}).get();
+  if (!flowed) return;
+  rest_->shape = std::move(flowed);
+  matcher_->set_plan(plan());
+  ++rest_revision_;
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::take_part(const SoftBody& whole, std::span<const std::uint32_t> particle_of) {
+  SC_ASSERT(x_.size() == particle_of.size(), "{} particles of a piece of {}", particle_of.size(), x_.size());
+  set_material(whole.settings_);
+  for (std::size_t i = 0; i < particle_of.size(); ++i)
+    set_particle(i, whole.x_[particle_of[i]], whole.v_[particle_of[i]]);
+  matcher_->take_rotations(*whole.matcher_, particle_of);
+  if (!whole.has_own_rest()) return;
+  std::vector<Vector> rest;
+  for (const std::uint32_t particle : particle_of) rest.push_back(whole.own_rest()[particle]);
+  set_rest_positions(rest);
 }
 
 template <int kDimension>

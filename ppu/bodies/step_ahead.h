@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -55,6 +57,12 @@ class StepAhead {
   void forget(const Body& body) {
     SC_ASSERT(begun_ == 0, "a body is forgotten during its step of {} s", begun_);
     solver_.forget(body);
+  }
+
+  /// A body becomes pieces: see SoftBodySolver::take_part(). @pre No step has been begun.
+  void take_part(const Body& whole, const Body& piece, std::span<const std::uint32_t> particle_of) {
+    SC_ASSERT(begun_ == 0, "a body breaks during its step of {} s", begun_);
+    solver_.take_part(whole, piece, particle_of);
   }
 
   /// Of any thread.

@@ -14,8 +14,8 @@ namespace softcell::ppu {
 
 using Eigen::Vector2f;
 
-Box2dBody::Box2dBody(b2World& world, const SoftBody<2>& soft, std::int16_t group)
-    : world_(world), soft_(soft), group_(group) {
+Box2dBody::Box2dBody(b2World& world, SoftBody<2> soft, std::int16_t group)
+    : world_(world), soft_(std::move(soft)), group_(group) {
   SC_ASSERT(group < 0, "the particles of a body have group {}, and would touch each other", group);
   add_particles();
 }

@@ -18,7 +18,7 @@ namespace softcell::ppu {
 class Box2dBody {
  public:
   /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
-  Box2dBody(b2World& world, const SoftBody<2>& soft, std::int16_t group);
+  Box2dBody(b2World& world, SoftBody<2> soft, std::int16_t group);
   ~Box2dBody();
   Box2dBody(const Box2dBody&) = delete;
   Box2dBody& operator=(const Box2dBody&) = delete;

@@ -12,8 +12,8 @@
 
 #include "ppu/bodies/break_body.h"
 #include "ppu/bodies/breaks.h"
-#include "ppu/bodies/piece_workshop.h"
 #include "ppu/bodies/step_ahead.h"
+#include "ppu/bodies/workshop.h"
 #include "ppu/box2d/box2d_attachments.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/box2d_filter.h"
@@ -126,9 +126,10 @@ struct Box2dSoftBodies::Impl {
   }
 
   /// @throws std::runtime_error  there are too many bodies
-  Box2dBody& add(const SoftBody<2>& body) {
+  Box2dBody& add(SoftBody<2> body) {
     require_groups(1);
-    Box2dBody& added = *bodies.emplace_back(std::make_unique<Box2dBody>(world, body, free_group()));
+    Box2dBody& added =
+        *bodies.emplace_back(std::make_unique<Box2dBody>(world, std::move(body), free_group()));
     know_particles(added);
     solve.add(added.soft());
     return added;
@@ -154,7 +155,7 @@ struct Box2dSoftBodies::Impl {
     follow_model(body);
   }
 
-  using Pieces = std::vector<PlannedPiece<2>>;
+  using Pieces = std::vector<BodyPiece<2>>;
   using BreaksOfBodies = Breaks<2, Box2dBody, Pieces>;
   using Break = BreaksOfBodies::Break;
 
@@ -185,7 +186,7 @@ struct Box2dSoftBodies::Impl {
   Pieces make_pieces(const std::shared_ptr<const SoftBodyModel<2>>& model,
                      std::span<const std::uint32_t> faces) {
     Pieces pieces = plan_pieces(model, faces);
-    for (const PlannedPiece<2>& piece : pieces) solve.prepare(piece.model);
+    for (const BodyPiece<2>& piece : pieces) solve.prepare(piece.body.shared_model());
     return pieces;
   }
 
@@ -195,16 +196,10 @@ struct Box2dSoftBodies::Impl {
     require_groups(planned.size() - 1);
     solve.drop();
     if (body.soft().asleep()) body.wake();
-    const std::vector<Vector2f> rest_of_whole = own_rest_of(body.soft());
+    for (BodyPiece<2>& piece : planned) piece.body.take_part(body.soft(), piece.particle_of);
     std::vector<Box2dBody*> pieces{&body};
-    for (std::size_t i = 1; i < planned.size(); ++i) {
-      SoftBody<2> piece(planned[i].model);
-      take_part(piece, body.soft(), rest_of_whole, planned[i].particle_of);
-      pieces.push_back(&add(piece));
-    }
-    SoftBody<2> largest(planned.front().model);
-    take_part(largest, body.soft(), rest_of_whole, planned.front().particle_of);
-    body.soft() = largest;
+    for (std::size_t i = 1; i < planned.size(); ++i) pieces.push_back(&add(std::move(planned[i].body)));
+    body.soft() = std::move(planned.front().body);
     const std::vector<PartingPieces::Kept> kept = follow_model(body);
 
     BrokenSoftBody2d& event = broken.emplace_back();
@@ -219,7 +214,7 @@ struct Box2dSoftBodies::Impl {
     parting.add(pieces);
     if (!parting.empty()) filter.install();
     attachments.follow_pieces(body, with_attachments);
-    for (PlannedPiece<2>& piece : planned) event.particles_before.push_back(std::move(piece.particle_of));
+    for (BodyPiece<2>& piece : planned) event.particles_before.push_back(std::move(piece.particle_of));
     return event.pieces;
   }
 
@@ -240,9 +235,9 @@ struct Box2dSoftBodies::Impl {
   std::chrono::nanoseconds spent{0}, waited{0};
   StepAhead<2> solve;  // of `bodies`
   BreakTest<2> break_test;
-  BreaksOfBodies breaks;                  // of `bodies`
-  std::vector<BrokenSoftBody2d> broken;   // since they were asked for
-  std::optional<PieceWorkshop> workshop;  // until the end of what it works with
+  BreaksOfBodies breaks;                 // of `bodies`
+  std::vector<BrokenSoftBody2d> broken;  // since they were asked for
+  std::optional<Workshop> workshop;      // until the end of what it works with
 };
 
 Box2dSoftBodies::Box2dSoftBodies(b2World& world)

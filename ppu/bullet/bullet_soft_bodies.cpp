@@ -13,8 +13,8 @@
 
 #include "ppu/bodies/break_body.h"
 #include "ppu/bodies/breaks.h"
-#include "ppu/bodies/piece_workshop.h"
 #include "ppu/bodies/step_ahead.h"
+#include "ppu/bodies/workshop.h"
 #include "ppu/bullet/bullet_hook.h"
 #include "ppu/bullet/contact_sphere.h"
 #include "ppu/bullet/free_body.h"
@@ -169,41 +169,41 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     };
     for (PreparedPiece& piece : prepared)
       if (piece.contact) surfaces->adopt(std::move(piece.contact));
-    // Bodies are large, and not copied where that can be helped.
-    PlannedPiece<3>& first = prepared.front().piece;
-    const std::vector<Eigen::Vector3f> rest = own_rest_of(body.soft());
-    SoftBody<3> largest(first.model);
-    take_part(largest, body.soft(), rest, first.particle_of);
-    append(body, std::move(first.particle_of));
+    solve.drop();
+    for (auto& [piece, contact] : prepared) {
+      piece.body.take_part(body.soft(), piece.particle_of);
+      // Of a body that was teleported or put back into shape nothing is known.
+      if (!body.was_reset()) solve.take_part(body.soft(), piece.body, piece.particle_of);
+    }
+    append(body, std::move(prepared.front().piece.particle_of));
     for (std::size_t i = 1; i < prepared.size(); ++i) {
-      PlannedPiece<3>& piece = prepared[i].piece;
-      SoftBody<3>& own = add(piece.model, Eigen::Vector3f::Zero());
-      take_part(own, body.soft(), rest, piece.particle_of);
+      BodyPiece<3>& piece = prepared[i].piece;
+      others.push_back(&add(std::move(piece.body)));
       bodies.back()->set_filter(body.filter());
       append(*bodies.back(), std::move(piece.particle_of));
-      others.push_back(&own);
     }
-    body.soft() = largest;
+    SoftBody<3> before = body.become(std::move(prepared.front().piece.body));
     if (!with_attachments.empty()) {
       follow_model(*with_attachments.front().body);
       surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments);
       surfaces->forget_pieces(with_surfaces);
     }
     broken.push_back({&body.soft(), others, faces, std::move(particles_before)});
+    if (substeps_until_pieces(before.positions().size()) > 0) workshop->dispose(std::move(before));
     return others;
   }
 
-  SoftBody<3>& add(std::shared_ptr<const SoftBodyModel<3>> model, const Eigen::Vector3f& position) {
+  SoftBody<3>& add(SoftBody<3> soft) {
     std::unique_ptr<CoupledBody> body;
-    if (!model->settings().contacts) {
-      body = std::make_unique<FreeBody>(world, std::move(model), position);
+    if (!soft.settings().contacts) {
+      body = std::make_unique<FreeBody>(world, std::move(soft));
     } else if (surfaces) {
-      const ContactModel& contact = surfaces->contact_model(model);
-      auto surface = std::make_unique<SurfaceBody>(world, std::move(model), position, contact, next_number++);
+      const ContactModel& contact = surfaces->contact_model(soft.shared_model());
+      auto surface = std::make_unique<SurfaceBody>(world, std::move(soft), contact, next_number++);
       with_surfaces.push_back(surface.get());
       body = std::move(surface);
     } else {
-      body = std::make_unique<SphereBody>(world, std::move(model), position);
+      body = std::make_unique<SphereBody>(world, std::move(soft));
     }
     solve.add(body->soft());
     bodies.push_back(std::move(body));
@@ -262,9 +262,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   std::uint32_t next_number = 0;
   StepAhead<3> solve;  // of `bodies`
   BreakTest<3> break_test;
-  BreaksOfBodies breaks;                  // of `bodies`
-  std::optional<PieceWorkshop> workshop;  // until the end of what it works with
-  std::vector<BrokenSoftBody> broken;     // since they were asked for
+  BreaksOfBodies breaks;               // of `bodies`
+  std::optional<Workshop> workshop;    // until the end of what it works with
+  std::vector<BrokenSoftBody> broken;  // since they were asked for
   std::optional<SleepSettings> sleep;
   SoftBodyTimes times;
 };
@@ -289,7 +289,7 @@ SoftBody<3>& BulletSoftBodies::add(std::shared_ptr<const SoftBodyModel<3>> model
     throw std::invalid_argument(
         "a soft body with a fracture touches with spheres; only bodies that touch with their surfaces break");
   impl_->solve.drop();
-  return impl_->add(std::move(model), position);
+  return impl_->add(SoftBody<3>(std::move(model), position));
 }
 
 void BulletSoftBodies::remove(const SoftBody<3>& body) {

@@ -18,15 +18,21 @@ namespace softcell::ppu {
 
 class CoupledBody {
  public:
-  CoupledBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
-              const Eigen::Vector3f& position)
-      : world_(world), soft_(std::move(model), position) {}
+  CoupledBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft) : world_(world), soft_(std::move(soft)) {}
   virtual ~CoupledBody() = default;
   CoupledBody(const CoupledBody&) = delete;
   CoupledBody& operator=(const CoupledBody&) = delete;
 
   SoftBody<3>& soft() { return soft_; }
   const SoftBody<3>& soft() const { return soft_; }
+
+  /// The largest piece of it takes its place, with the rotations that are known. @return what it was
+  SoftBody<3> become(SoftBody<3> piece) {
+    const bool reset = was_reset();
+    soft_ = std::move(piece);
+    if (!reset) seen_resets_ = soft_.resets();
+    return piece;
+  }
 
   /// Whether the body's user has changed it since the last substep.
   bool was_changed() const { return soft_.revision() != seen_revision_; }

@@ -14,9 +14,7 @@ namespace softcell::ppu {
 
 class FreeBody final : public CoupledBody {
  public:
-  FreeBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
-           const Eigen::Vector3f& position)
-      : CoupledBody(world, std::move(model), position) {
+  FreeBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft) : CoupledBody(world, std::move(soft)) {
     SC_ASSERT(soft_.model().outer().empty(), "a body that touches nothing has {} particles that touch",
               soft_.model().outer().size());
   }

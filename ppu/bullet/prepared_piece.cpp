@@ -11,10 +11,10 @@ std::vector<PreparedPiece> prepare_pieces(const std::shared_ptr<const SoftBodyMo
                                           const PrepareModel& prepare) {
   SC_ASSERT(static_cast<bool>(prepare), "nobody prepares the pieces of {} faces", faces.size());
   std::vector<PreparedPiece> made;
-  for (PlannedPiece<3>& piece : plan_pieces(model, faces)) {
-    prepare(piece.model);
+  for (BodyPiece<3>& piece : plan_pieces(model, faces)) {
+    prepare(piece.body.shared_model());
     std::unique_ptr<ContactModel> contact;
-    if (whole != nullptr) contact = std::make_unique<ContactModel>(piece.model, *whole);
+    if (whole != nullptr) contact = std::make_unique<ContactModel>(piece.body.shared_model(), *whole);
     made.push_back({std::move(piece), std::move(contact)});
   }
   return made;

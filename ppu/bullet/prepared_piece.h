@@ -13,7 +13,7 @@
 namespace softcell::ppu {
 
 struct PreparedPiece {
-  PlannedPiece<3> piece;
+  BodyPiece<3> piece;
   std::unique_ptr<ContactModel> contact;  ///< null: it is not made ahead
 };
 

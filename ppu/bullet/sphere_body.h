@@ -20,9 +20,8 @@ namespace softcell::ppu {
 /// One soft body and the rigid bodies of its outer particles, in the order of SoftBodyModel::outer().
 class SphereBody final : public CoupledBody {
  public:
-  SphereBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
-             const Eigen::Vector3f& position)
-      : CoupledBody(world, std::move(model), position),
+  SphereBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft)
+      : CoupledBody(world, std::move(soft)),
         shape_(soft_.model().contact_radius(), soft_.model().soft_contact_radius(),
                BulletSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing) {
     particles_.reserve(soft_.model().outer().size());

@@ -17,9 +17,9 @@ class SurfaceBody final : public CoupledBody {
  public:
   /// @param contact  of the model; outlives this
   /// @param number  of no other body of the world
-  SurfaceBody(btDiscreteDynamicsWorld& world, std::shared_ptr<const SoftBodyModel<3>> model,
-              const Eigen::Vector3f& position, const ContactModel& contact, std::uint32_t number)
-      : CoupledBody(world, std::move(model), position), contact_(&contact), number_(number) {}
+  SurfaceBody(btDiscreteDynamicsWorld& world, SoftBody<3> soft, const ContactModel& contact,
+              std::uint32_t number)
+      : CoupledBody(world, std::move(soft)), contact_(&contact), number_(number) {}
 
   std::uint32_t number() const { return number_; }
   const ContactModel& contact() const { return *contact_; }

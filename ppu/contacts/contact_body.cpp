@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ppu/contacts/crack_sides.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -33,6 +34,7 @@ ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const 
   SC_ASSERT(model->whole() == whole.model, "a piece of {} particles of another body of {}",
             model->particles(), whole.model->particles());
   place_touch_points();
+  crack_sides = ppu::crack_sides(model->lattice(), model->cracks());
 }
 
 /// In each cell points of the surface come first.

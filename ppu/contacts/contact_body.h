@@ -62,6 +62,7 @@ struct ContactModel {
   std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
   std::vector<float> inverse_masses;         ///< 1/kg, of each particle
   std::vector<float> root_masses;            ///< sqrt(kg), of each particle
+  std::vector<std::uint32_t> crack_sides;    ///< of each cell (crack_sides.h); empty: nothing is cracked
 
  private:
   void place_touch_points();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "ppu/contacts/crack_sides.h"
 #include "ppu/contacts/edge_points.h"
 #include "ppu/contacts/triangle_distance.h"
 
@@ -281,10 +282,16 @@ Vector3f opposite(const ContactBody& b, const DeformedPlace& place, const Vector
 
 }  // namespace
 
+namespace {
+
 /// Cells reach 0.9 cells from their middles.
-bool may_touch_itself(const ContactBody& body) {
+bool is_folded(const ContactBody& body) {
   return may_be_folded(body, 0.5f * (kApartAtRest - 0.9f) * body.spacing());
 }
+
+}  // namespace
+
+bool may_touch_itself(const ContactBody& body) { return !body.model->crack_sides.empty() || is_folded(body); }
 
 void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody& b, EndCells& cells_of_b,
                    float step, std::vector<SoftContact>& contacts) {
@@ -298,7 +305,8 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     const auto is_apart = [&](std::uint32_t other) {
       if (!itself) return true;  // `cell` is one of a's, which b need not have
       const Eigen::Vector3i off = lattice_b.cells[other] - lattice_b.cells[cell];
-      return off.squaredNorm() > kApartAtRest * kApartAtRest;
+      return off.squaredNorm() > kApartAtRest * kApartAtRest ||
+             are_parted(lattice_b, model.crack_sides, cell, other);
     };
     const auto place = cells_of_b.finder().find(to, is_apart);
     if (!place) return;
@@ -316,7 +324,9 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     const Vector3f v = contact.a.of(a.velocities) - contact.b.of(b.velocities);
     complete(contact, distance, contact.normal.dot(v), friction, step);
   };
+  const bool only_at_cracks = itself && !model.crack_sides.empty() && !is_folded(a);
   cells_of_a.boxes().for_each_meeting(b.box, [&](std::uint32_t cell) {
+    if (only_at_cracks && model.crack_sides[cell] == 0) return;
     for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i)
       try_point(cell, model.touch_points[i]);
   });

@@ -20,10 +20,14 @@ using Eigen::Vector3d;
 
 // What turns: quaternions in both dimensions, in two about z.
 
-Vector2d turned(const Quaterniond& by, const Vector2d& v) {
-  return by.toRotationMatrix().topLeftCorner<2, 2>() * v;
+/// @param by  of any length but 0
+Vector3d turned(const Quaterniond& by, const Vector3d& v) {
+  const Vector3d across = by.vec().cross(v);
+  return v + 2 / by.squaredNorm() * (by.w() * across + by.vec().cross(across));
 }
-Vector3d turned(const Quaterniond& by, const Vector3d& v) { return by.toRotationMatrix() * v; }
+Vector2d turned(const Quaterniond& by, const Vector2d& v) {
+  return turned(by, Vector3d(v.x(), v.y(), 0)).head<2>();
+}
 
 /// @param start  a rotation nearby
 Quaterniond rotation_of(const Matrix2d& matrix, const Quaterniond& start) {
@@ -42,15 +46,16 @@ Quaterniond rotation_of(const Matrix3d& matrix, const Quaterniond& start) {
 
 double smaller_turn(const Quaterniond& a, const Quaterniond& b) { return a.dot(b) < 0 ? -1 : 1; }
 
+/// Not of unit length.
 Quaterniond halfway(const Quaterniond& a, const Quaterniond& b) {
-  return Quaterniond(a.coeffs() + smaller_turn(a, b) * b.coeffs()).normalized();
+  return Quaterniond(a.coeffs() + smaller_turn(a, b) * b.coeffs());
 }
 
 /// From a to b in a's frame, axis times about the angle: 4 sin(angle / 4) takes its place, which is less than 1 % less up to
 /// 1 rad.
 Vector3d spin_between(const Quaterniond& a, const Quaterniond& b) {
   const Quaterniond turn = halfway(Quaterniond::Identity(), a.conjugate() * b);
-  return 4 * turn.vec();
+  return 4 / turn.norm() * turn.vec();
 }
 
 /// @param spin  axis times angle, radians
@@ -80,15 +85,18 @@ template <int kDimension>
 Eigen::Matrix<double, kDimension, kDimension> mean_edges(
     const RestLattice<kDimension>& lattice, std::size_t cell,
     std::span<const Eigen::Matrix<double, kDimension, 1>> x) {
-  const auto& edges = lattice.edges_of_cell()[cell];
+  const auto& corners = lattice.corners()[cell];
   Eigen::Matrix<double, kDimension, kDimension> means;
   means.setZero();
-  for (int axis = 0; axis < kDimension; ++axis) {
-    for (const std::uint32_t e : edges[static_cast<std::size_t>(axis)])
-      means.col(axis) += x[lattice.edges()[e].to] - x[lattice.edges()[e].from];
-    means.col(axis) /= static_cast<double>(edges[0].size());
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    for (int axis = 0; axis < kDimension; ++axis) {
+      if ((k >> axis & 1u) != 0)
+        means.col(axis) += x[corners[k]];
+      else
+        means.col(axis) -= x[corners[k]];
+    }
   }
-  return means;
+  return means / static_cast<double>(corners.size() / 2);
 }
 
 /// In spacing^n.
@@ -255,9 +263,11 @@ template <int kDimension>
 void PlasticFlow<kDimension>::keep_volume() {
   constexpr double kBack = 0.5;
   std::vector<double> trace(d_.size(), 0.0);
+  volume_ = 0;
   for (std::size_t cell = 0; cell < lattice_->corners().size(); ++cell) {
     const auto& edges = lattice_->edges_of_cell()[cell];
     const double volume = volume_of<kDimension>(*lattice_, cell, rest_);
+    volume_ += volume;
     const double of_cell = elongations(edges, flow_).sum() + kBack * (volume - 1);
     for (const auto& of_axis : edges)
       for (const std::uint32_t l : of_axis) trace[l] += lattice_->inverse_cells()[l] * of_cell;
@@ -269,40 +279,35 @@ void PlasticFlow<kDimension>::keep_volume() {
 template <int kDimension>
 auto PlasticFlow<kDimension>::new_shape() const -> std::vector<Exact> {
   const auto edges = lattice_->edges();
-  const auto rows = static_cast<Eigen::Index>(edges.size());
-  Eigen::MatrixXd turns(rows, kSpins);
-  for (Eigen::Index l = 0; l < rows; ++l) {
-    const auto n = static_cast<std::size_t>(l);
-    turns.row(l) = turn_[n] * bend_[n].transpose();
-  }
-  const Eigen::MatrixXd omega = lattice_->integrate(turns);
-  Eigen::MatrixXd wanted(rows, kDimension);
-  for (Eigen::Index l = 0; l < rows; ++l) {
-    const auto n = static_cast<std::size_t>(l);
-    const Spin mean = 0.5 * (omega.row(edges[n].from) + omega.row(edges[n].to)).transpose();
+  std::vector<Spin> turns;
+  for (std::size_t l = 0; l < edges.size(); ++l) turns.push_back(turn_[l] * bend_[l]);
+  std::vector<Quaterniond> rotations;  // of each particle of the rest shape
+  for (const Spin& omega : lattice_->template integrate<kSpins>(turns)) {
     Vector3d spin(0, 0, 0);
-    spin.template tail<kSpins>() = mean;
-    wanted.row(l) = (turned(rotation_by(spin), Exact(d_[n] + flow_[n])) - d_[n]).transpose();
+    spin.template tail<kSpins>() = omega;
+    rotations.push_back(rotation_by(spin));
   }
-  const Eigen::MatrixXd u = lattice_->integrate(wanted);
+  std::vector<Exact> wanted;
+  for (std::size_t l = 0; l < edges.size(); ++l)
+    wanted.push_back(
+        turned(halfway(rotations[edges[l].from], rotations[edges[l].to]), Exact(d_[l] + flow_[l])) - d_[l]);
+  const std::vector<Exact> u = lattice_->template integrate<kDimension>(wanted);
   std::vector<Exact> shape = rest_;
   Exact centre = Exact::Zero();
   for (std::size_t i = 0; i < shape.size(); ++i) {
-    shape[i] += u.row(static_cast<Eigen::Index>(i)).transpose();
+    shape[i] += u[i];
     centre += shape[i];
   }
   centre /= static_cast<double>(shape.size());
 
-  double before = 0, after = 0;
-  for (std::size_t cell = 0; cell < lattice_->corners().size(); ++cell) {
-    before += volume_of<kDimension>(*lattice_, cell, rest_);
+  double after = 0;
+  for (std::size_t cell = 0; cell < lattice_->corners().size(); ++cell)
     after += volume_of<kDimension>(*lattice_, cell, shape);
-  }
-  if (!(after > 0.5 * before)) return shape;  // refused for its cells
-  double scale = 1;                           // Newton's method for scale^n after = before
+  if (!(after > 0.5 * volume_)) return shape;  // refused for its cells
+  double scale = 1;                            // Newton's method for scale^n after = before
   for (int i = 0; i < 6; ++i) {
     const double power = kDimension == 2 ? scale : scale * scale;
-    scale -= (power * scale - before / after) / (kDimension * power);
+    scale -= (power * scale - volume_ / after) / (kDimension * power);
   }
   for (Exact& point : shape) point = centre + scale * (point - centre);
   return shape;
@@ -311,7 +316,9 @@ auto PlasticFlow<kDimension>::new_shape() const -> std::vector<Exact> {
 /// Stops the flow of edges of cells that `shape` presses flat or turns inside out. @return whether there are any
 template <int kDimension>
 bool PlasticFlow<kDimension>::stop_bad_cells(std::span<const Exact> shape) {
-  constexpr double kLeastAtCorner = 0.25;
+  constexpr double kLeastAtCorner = 0.25;  // spacing^n
+  const double least_at_corner = kLeastAtCorner * (kDimension == 2 ? 1 : lattice_->spacing()) *
+                                 lattice_->spacing() * lattice_->spacing();
   bool any = false;
   for (std::size_t c = 0; c < lattice_->corners().size(); ++c) {
     const auto& edges = lattice_->edges_of_cell()[c];
@@ -323,7 +330,7 @@ bool PlasticFlow<kDimension>::stop_bad_cells(std::span<const Exact> shape) {
         const std::uint32_t bit = 1u << axis;
         at_corner.col(axis) = shape[corners[k | bit]] - shape[corners[k & ~bit]];
       }
-      good = (at_corner / lattice_->spacing()).determinant() >= kLeastAtCorner;
+      good = at_corner.determinant() >= least_at_corner;
     }
     if (good) continue;
     any = true;

@@ -96,6 +96,7 @@ class PlasticFlow {
   std::vector<Spin> bend_;
   std::vector<double> strain_, rate_, turn_;
   double largest_strain_ = 0;
+  double volume_ = 0;  // of the rest shape, spacing^n
   // How much lengths differed at the last quick look; up to which difference a body that did not yield is not looked
   // at closely again, until it is much less.
   float stretch_ = 0, calm_ = 0;

@@ -45,8 +45,11 @@ class RestLattice {
 
   /// The values of the particles whose differences along the edges come nearest to what is wanted: least squares of
   /// u_to - u_from - wanted. Of all such values those whose mean is 0 in each connected part.
-  /// @param wanted  a row for each edge    @return a row for each particle
-  Eigen::MatrixXd integrate(const Eigen::MatrixXd& wanted) const;
+  /// @param wanted  of each edge    @return of each particle
+  template <int kNumbers>
+  using Values = std::vector<Eigen::Matrix<double, kNumbers, 1>>;
+  template <int kNumbers>
+  Values<kNumbers> integrate(const Values<kNumbers>& wanted) const;
 
  private:
   struct Factor;
@@ -62,5 +65,8 @@ class RestLattice {
 
 extern template class RestLattice<2>;
 extern template class RestLattice<3>;
+extern template RestLattice<2>::Values<1> RestLattice<2>::integrate(const Values<1>&) const;
+extern template RestLattice<2>::Values<2> RestLattice<2>::integrate(const Values<2>&) const;
+extern template RestLattice<3>::Values<3> RestLattice<3>::integrate(const Values<3>&) const;
 
 }  // namespace softcell::ppu

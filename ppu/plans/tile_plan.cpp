@@ -1,7 +1,7 @@
 #include "ppu/plans/tile_plan.h"
 
 #include <algorithm>
-#include <set>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -25,17 +25,18 @@ constexpr int kMostPlanes = 64;   // slices of a tile are kept in the local stor
 int round_up(int count, int step) { return (count + step - 1) / step * step; }
 
 /// Tiles begin where sums start anew, so that they make no sums twice for a chain's sake.
-TileGrid grid_for(const Lattice<3>& lattice, int half_width, TileShape shape, std::uint32_t arena_bytes) {
+int most_rows(const Lattice<3>& lattice, int half_width, std::uint32_t arena_bytes) {
+  const int fit = rows_that_fit(lattice, half_width, arena_bytes);
+  return fit < kSumRestart ? fit : fit / kSumRestart * kSumRestart;
+}
+
+TileGrid grid_for(const Lattice<3>& lattice, int tile_rows, TileShape shape) {
   SC_ASSERT(!lattice.particles.empty(), "{} cells without particles", lattice.cells.size());
   const auto [low, high] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.x(); });
   const int planes = high.x() - low.x() + 1;
   const auto [front, back] = std::ranges::minmax(lattice.particles, {}, [](const auto& p) { return p.y(); });
   const int rows = back.y() - front.y() + 1;
 
-  const int fit = rows_that_fit(lattice, half_width, arena_bytes);
-  const int tile_rows = shape.rows > 0      ? shape.rows
-                        : fit < kSumRestart ? fit
-                                            : fit / kSumRestart * kSumRestart;
   const int strips = (rows + tile_rows - 1) / tile_rows;
   const int slabs = std::max(1, kTilesWanted / strips);
   const int tile_planes = shape.planes > 0
@@ -51,6 +52,65 @@ std::vector<Eigen::Vector3i> homes(const Lattice<3>& lattice, const LatticeSums&
   return sites;
 }
 
+/// A body in tiles of one size.
+struct Tiling {
+  TilePlaces particles, regions;
+  std::vector<TilePlan::Tile> tiles{};
+  spu::TileLimits up{}, down{};  ///< of the tiles that were cut
+  std::vector<std::uint32_t> lists{};
+  std::vector<dma::ElementRun> record{};
+
+  std::uint32_t bytes() const { return std::max(spu::tile_up_bytes(up), spu::tile_down_bytes(down)); }
+};
+
+/// Ends with the first tile that does not fit.
+Tiling cut(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, const LatticeSums& order,
+           const TileGrid& grid, std::uint32_t arena_bytes) {
+  Tiling cut{TilePlaces(grid, lattice.particles), TilePlaces(grid, homes(lattice, order))};
+  TileScheduler scheduler(lattice, matching.sums(), matching.half_width(), order, grid, cut.particles,
+                          cut.regions);
+  std::map<std::pair<int, int>, std::size_t> particles_of;  // each tile
+  for (const Eigen::Vector3i& index : lattice.particles) ++particles_of[grid.tile_of(index)];
+  const auto fits = [&] {
+    cut.up = scheduler.limits(Direction::kUp);
+    cut.down = scheduler.limits(Direction::kDown);
+    return spu::tile_fits(cut.up, cut.down, arena_bytes);
+  };
+  // Where one does not fit it is most likely the fullest.
+  const auto fullest = std::ranges::max_element(
+      particles_of, {},
+      [](const std::pair<const std::pair<int, int>, std::size_t>& tile) { return tile.second; });
+  scheduler.slices(fullest->first, Direction::kUp);
+  scheduler.slices(fullest->first, Direction::kDown);
+  if (!fits()) return cut;
+  for (const auto& [number, count] : particles_of) {
+    TilePlan::Tile& tile = cut.tiles.emplace_back();
+    tile.up = scheduler.slices(number, Direction::kUp);
+    tile.down = scheduler.slices(number, Direction::kDown);
+    tile.damp = scheduler.slices_for_twists();
+    if (!fits()) return cut;
+  }
+  cut.lists = scheduler.lists().release();
+  const auto record = scheduler.lists().record();
+  cut.record.assign(record.begin(), record.end());
+  return cut;
+}
+
+/// Rows are judged by the height of the lattice alone. Where it is not a block, regions have more sums of their own, and lists are longer.
+Tiling cut_to_fit(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, const LatticeSums& order,
+                  TileShape shape, std::uint32_t arena_bytes) {
+  int rows = shape.rows > 0 ? shape.rows : most_rows(lattice, matching.half_width(), arena_bytes);
+  for (;; --rows) {
+    Tiling tiling = cut(lattice, matching, order, grid_for(lattice, rows, shape), arena_bytes);
+    if (spu::tile_fits(tiling.up, tiling.down, arena_bytes)) return tiling;
+    if (shape.rows > 0 || rows == 1)
+      throw BodyTooLarge("a tile of " + std::to_string(rows) + " rows of a soft body needs " +
+                         std::to_string(tiling.bytes()) +
+                         " bytes of local store; the kernel match_tiles has " + std::to_string(arena_bytes) +
+                         "; turn the body so that its lattice is lower along z");
+  }
+}
+
 }  // namespace
 
 TilePlan::TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matching, TileShape shape,
@@ -60,31 +120,14 @@ TilePlan::TilePlan(const Lattice<3>& lattice, const MatchingPlan<float, 3>& matc
                                 std::to_string(shape.rows) + " rows; expected 0 or more of both");
   const SumPlan& sums = matching.sums();
   const LatticeSums order(lattice, sums, sum_restart_of_rows(lattice, matching.half_width()));
-  const TileGrid grid = grid_for(lattice, matching.half_width(), shape, arena_bytes);
-  const TilePlaces particles(grid, lattice.particles), regions(grid, homes(lattice, order));
-
-  TileScheduler scheduler(lattice, sums, matching.half_width(), order, grid, particles, regions);
-  std::set<std::pair<int, int>> numbers;
-  for (const Eigen::Vector3i& index : lattice.particles) numbers.insert(grid.tile_of(index));
-  for (const std::pair<int, int>& number : numbers) {
-    Tile& tile = tiles_.emplace_back();
-    tile.up = scheduler.slices(number, Direction::kUp);
-    tile.down = scheduler.slices(number, Direction::kDown);
-    tile.damp = scheduler.slices_for_twists();
-  }
-  lists_ = scheduler.lists().release();
-  const auto record = scheduler.lists().record();
-  record_of_lists_.assign(record.begin(), record.end());
-
+  Tiling tiling = cut_to_fit(lattice, matching, order, shape, arena_bytes);
+  const TilePlaces &particles = tiling.particles, &regions = tiling.regions;
+  tiles_ = std::move(tiling.tiles);
+  lists_ = std::move(tiling.lists);
+  record_of_lists_ = std::move(tiling.record);
   body_.tiles = static_cast<std::uint32_t>(tiles_.size());
-  body_.up = scheduler.limits(Direction::kUp);
-  body_.down = scheduler.limits(Direction::kDown);
-  if (!spu::tile_fits(body_.up, body_.down, arena_bytes))
-    throw BodyTooLarge(
-        "a tile of " + std::to_string(grid.rows) + " rows of a soft body needs " +
-        std::to_string(std::max(spu::tile_up_bytes(body_.up), spu::tile_down_bytes(body_.down))) +
-        " bytes of local store; the kernel match_tiles has " + std::to_string(arena_bytes) +
-        "; turn the body so that its lattice is lower along z");
+  body_.up = tiling.up;
+  body_.down = tiling.down;
   body_.noise_floor = matching.noise_floor();
   body_.grid = origin_grid(lattice.spacing);
   body_.hold = hold_of(lattice, matching);

@@ -33,6 +33,17 @@ void ShapeMatcher<Real, kDimension>::reset() {
 }
 
 template <typename Real, int kDimension>
+void ShapeMatcher<Real, kDimension>::take_rotations(const ShapeMatcher& whole,
+                                                    std::span<const std::uint32_t> particle_of) {
+  const auto region_of = plan_->sums().region_of(), region_of_whole = whole.plan_->sums().region_of();
+  SC_ASSERT(particle_of.size() == region_of.size(), "{} particles of {}", particle_of.size(),
+            region_of.size());
+  for (std::size_t i = 0; i < region_of.size(); ++i)
+    rotations_[region_of[i]] = whole.rotations_[region_of_whole[particle_of[i]]];
+  cold_ = whole.cold_;
+}
+
+template <typename Real, int kDimension>
 void ShapeMatcher<Real, kDimension>::set_plan(std::shared_ptr<const MatchingPlan<Real, kDimension>> plan) {
   SC_ASSERT(plan != nullptr && plan->particles() == x_.size() && plan->regions() == rotations_.size(),
             "not a plan of {} particles and {} regions", x_.size(), rotations_.size());

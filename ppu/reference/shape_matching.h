@@ -12,6 +12,7 @@
 // intact.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -67,6 +68,10 @@ class ShapeMatcher {
   /// Forgets the rotations: after a teleport, or when the body is put back to rest. The next step starts
   /// cold.
   void reset();
+
+  /// Takes the rotations of another body that this one was a part of.
+  /// @param particle_of  of each particle: which one of the whole it was
+  void take_rotations(const ShapeMatcher& whole, std::span<const std::uint32_t> particle_of);
 
   /// One for each distinct region: that of particle i is rotations()[plan().sums().region_of()[i]]. A region
   /// that has none of its own, all its particles on one point, keeps that of the step before.

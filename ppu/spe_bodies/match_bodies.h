@@ -9,6 +9,7 @@
 
 #include "ppu/matching/matching_plan.h"
 #include "ppu/spe_bodies/match_kernel.h"
+#include "ppu/spe_bodies/region_rotations.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 
@@ -60,6 +61,10 @@ class MatchBodies {
   void reset(std::size_t body);
   /// Takes the rotations of one of `other`'s bodies. @pre both have the same plan
   void take_rotations(std::size_t body, const MatchBodies& other, std::size_t other_body);
+  /// Those of a body, good as long as this.
+  RegionRotations region_rotations(std::size_t body) requires(kDimension == 3) {
+    return {rotations(body), region_of_, result(body).cold};
+  }
 
   /// Adds the jobs of one step to a chain: at most one for each body.
   /// @param settings        of each body to be stepped; a job steps bodies of the same settings

@@ -60,9 +60,10 @@ const SpeContacts::Model* SpeContacts::model_of(const ContactModel& contact) {
   const auto known = models_.find(&contact);
   if (known != models_.end()) return known->second.get();
   std::unique_ptr<Model>& model = models_[&contact];
-  const FindModel arrays(contact);
-  if (contact.inverse_masses.size() > spu::kSolveMaxParticles || arrays.cells.size() > spu::kSolveMaxCells)
+  if (contact.inverse_masses.size() > spu::kSolveMaxParticles ||
+      contact.model->lattice().cells.size() > spu::kSolveMaxCells)
     return nullptr;
+  const FindModel arrays(contact);
   auto made = std::make_unique<Model>();
   made->cells = contact_buffer<spu::FindCell>(memory_, "contact cells", arrays.cells.size(), kSpesOnlyRead);
   made->groups =
@@ -221,7 +222,8 @@ void SpeContacts::find(std::span<const Pair> pairs) {
       continue;
     }
     spu::FindTask task = find_task(a, b);
-    if (spu::find_bytes(task) > spu::kFindMaxBytes || tasks_.size() == kMostPairs) {
+    const bool with_cracks = a == b && !bodies_[a].model->crack_sides.empty();  // the kernel knows none
+    if (spu::find_bytes(task) > spu::kFindMaxBytes || tasks_.size() == kMostPairs || with_cracks) {
       task_of_.push_back(kByCaller);
       continue;
     }

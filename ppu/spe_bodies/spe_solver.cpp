@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <unordered_map>
@@ -82,6 +83,14 @@ struct SpeSolver<kDimension>::Plans {
   std::shared_ptr<const TilePlan> tiles;
 };
 
+/// Where one body will be: in `bodies`, or in `tiled`, or nowhere.
+template <int kDimension>
+struct SpeSolver<kDimension>::Place {
+  std::shared_ptr<const Plans> plans;
+  std::shared_ptr<MatchBodies<kDimension>> bodies;
+  std::unique_ptr<TiledMemory> tiled;
+};
+
 /// The bodies of one model: whole in `bodies`, or in tiles, each in its own memory, or neither. A body that may have a rest
 /// shape of its own is a group by itself: the plan has the rest shape.
 template <int kDimension>
@@ -114,6 +123,7 @@ struct SpeSolver<kDimension>::Known {
 
   std::unordered_map<const Body*, Member*> members;
   std::unordered_map<const Model*, std::shared_ptr<const Plans>> plans;  // and those made since
+  std::unordered_map<const Model*, Place> places;                        // made ahead
 
   /// The same body in it, or null.
   Member* find(const Member& member) const {
@@ -161,7 +171,11 @@ void SpeSolver<kDimension>::find_place(Group& group, Known& known) {
       return;
     }
   }
-  group.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plans->whole, group.members.size());
+  const auto made = known.places.find(group.model.get());
+  if (made != known.places.end() && made->second.bodies && group.members.size() == 1)
+    group.bodies = std::move(made->second.bodies);
+  else
+    group.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plans->whole, group.members.size());
 }
 
 /// Whole where they fit, else in tiles, else by the PPU.
@@ -176,11 +190,50 @@ auto SpeSolver<kDimension>::plans_of(const std::shared_ptr<const SoftBodyModel<k
   }
 }
 
+/// @throws std::runtime_error  main memory is full.
+template <int kDimension>
+auto SpeSolver<kDimension>::place_for(const std::shared_ptr<const Plans>& plans) const -> Place {
+  Place place{plans, nullptr, nullptr};
+  if (plans->whole) place.bodies = std::make_shared<MatchBodies<kDimension>>(memory_, *plans->whole, 1);
+  if constexpr (kDimension == 3)
+    if (plans->tiles) place.tiled = std::make_unique<TiledMemory>(memory_, *plans->tiles);
+  return place;
+}
+
+/// A memory that is full now may have room when the body comes: then kick() lays it out, or reports it.
 template <int kDimension>
 void SpeSolver<kDimension>::prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) {
-  auto plans = std::make_shared<const Plans>(plans_of(model));
+  Place place{std::make_shared<const Plans>(plans_of(model)), nullptr, nullptr};
+  try {
+    place = place_for(place.plans);
+  } catch (const std::runtime_error&) {
+  }
   const std::lock_guard lock(preparing_);
-  prepared_.push_back(std::move(plans));
+  prepared_.push_back(std::move(place));
+}
+
+template <int kDimension>
+void SpeSolver<kDimension>::take_part(const Body& whole, const Body& piece,
+                                      std::span<const std::uint32_t> particle_of) {
+  SC_ASSERT(!is_stepping_, "a body breaks with {} jobs under way", chain_->size());
+  if constexpr (kDimension == 3) {  // in two a rotation has a closed form
+    const auto rotations_at = [](const Body& body, const Plans& plans, MatchBodies<3>* bodies,
+                                 std::size_t number, TiledMemory* tiled) -> std::optional<RegionRotations> {
+      if (bodies != nullptr) return bodies->region_rotations(number);
+      if (tiled != nullptr) return tiled->region_rotations(*plans.tiles, body.model().plan()->sums());
+      return std::nullopt;
+    };
+    const auto member = std::ranges::find(members_, &whole, &Member::body);
+    if (member == members_.end() || member->group->model != whole.shared_model()) return;
+    const std::lock_guard lock(preparing_);
+    const auto place = std::ranges::find(prepared_, piece.shared_model(),
+                                         [](const Place& made) { return made.plans->model; });
+    if (place == prepared_.end()) return;
+    const auto known = rotations_at(whole, *member->group->plans, member->group->bodies.get(), member->number,
+                                    member->tiled.get());
+    auto own = rotations_at(piece, *place->plans, place->bodies.get(), 0, place->tiled.get());
+    if (known && own) own->take_from(*known, particle_of);
+  }
 }
 
 /// Those that nobody can have bodies of any longer go.
@@ -189,9 +242,11 @@ void SpeSolver<kDimension>::take_prepared(Known& known, std::span<Body* const> b
   std::unordered_set<const SoftBodyModel<kDimension>*> models;
   for (const Body* const body : bodies) models.insert(body->shared_model().get());
   const std::lock_guard lock(preparing_);
-  std::erase_if(prepared_, [&](const std::shared_ptr<const Plans>& plans) {
-    if (!models.contains(plans->model.get())) return plans->model.use_count() == 1;
-    known.plans.emplace(plans->model.get(), plans);
+  std::erase_if(prepared_, [&](Place& place) {
+    const auto& model = place.plans->model;
+    if (!models.contains(model.get())) return model.use_count() == 1;
+    known.plans.emplace(model.get(), place.plans);
+    known.places.emplace(model.get(), std::move(place));
     return true;
   });
 }
@@ -255,8 +310,13 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   for (Member& member : members) {
     const Member* const old = known.find(member);
     const Group& group = *member.group;
-    if (group.plans->tiles && old == nullptr)
-      member.tiled = std::make_unique<TiledMemory>(memory_, *group.plans->tiles);
+    if (group.plans->tiles && old == nullptr) {
+      const auto made = known.places.find(group.model.get());
+      if (made != known.places.end() && made->second.tiled)
+        member.tiled = std::move(made->second.tiled);
+      else
+        member.tiled = std::make_unique<TiledMemory>(memory_, *group.plans->tiles);
+    }
     const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
     jobs += tiled != nullptr ? tiled->most_jobs() : 1;
   }
@@ -387,6 +447,12 @@ void SpeSolver<kDimension>::forget(const Body& body) {
     if (member.body != &body) continue;
     if (member.group->bodies) member.group->bodies->reset(member.number);
     if (member.tiled) member.tiled->reset();
+  }
+  const std::lock_guard lock(preparing_);
+  for (Place& place : prepared_) {
+    if (place.plans->model != body.shared_model()) continue;
+    if (place.bodies) place.bodies->reset(0);
+    if (place.tiled) place.tiled->reset();
   }
 }
 

@@ -133,6 +133,14 @@ void TiledMemory::set_rest(const TilePlan& plan, const MatchingPlan<float, 3>& m
   }
 }
 
+RegionRotations TiledMemory::region_rotations(const TilePlan& plan, const SumPlan& sums) {
+  SC_ASSERT(plan.place_of_region().size() == sums.regions(), "places of {} regions of {}",
+            plan.place_of_region().size(), sums.regions());
+  std::vector<std::uint32_t> place_of;
+  for (const std::uint32_t region : sums.region_of()) place_of.push_back(plan.place_of_region()[region]);
+  return {rotations_.span(), std::move(place_of), body_[0].cold};
+}
+
 void TiledMemory::begin_step(const MatchSettings& settings) {
   validate(settings);
   spu::TiledBody& body = body_[0];

@@ -21,6 +21,7 @@
 #include "match_tiles_job.h"
 #include "ppu/plans/tile_plan.h"
 #include "ppu/spe_bodies/match_bodies.h"
+#include "ppu/spe_bodies/region_rotations.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 
@@ -46,6 +47,9 @@ class TiledMemory {
 
   /// The constants of another rest shape. @param plan  the one that the body was made from
   void set_rest(const TilePlan& plan, const MatchingPlan<float, 3>& matching);
+
+  /// The rotations that the next step begins with, good until end_step(). @param plan  as above
+  RegionRotations region_rotations(const TilePlan& plan, const SumPlan& sums);
 
   /// Before the jobs run. @throws std::invalid_argument  settings out of their ranges.
   void begin_step(const MatchSettings& settings);

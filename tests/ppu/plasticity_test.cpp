@@ -4,12 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "lattices.h"
@@ -292,6 +295,43 @@ TEST(Plasticity, ACopyIsASavedState) {
   SoftBody<3> straight(copy);
   straight.set_rest_positions(tumbling_body(metal(0.03f)).rest_positions());
   EXPECT_NE(state_hash(straight), state_hash(copy));
+}
+
+/// A body that is bent beyond its yield, after some calls of flow().
+SoftBody<3> looked_at(int calls) {
+  SoftBody<3> body = tumbling_body(metal(0.03f));
+  for (int i = 0; i < calls; ++i) body.flow(kStep);
+  return body;
+}
+
+TEST(Plasticity, AFlowHasItsResultAtAStatedStep) {
+  for (const int pause_ms : {0, 20}) {
+    SoftBody<3> body = looked_at(SoftBody<3>::kPlasticSteps);  // a flow has begun
+    for (int i = 0; i < SoftBody<3>::kFlowSteps; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms));
+      ASSERT_FALSE(body.has_own_rest()) << i;
+      body.flow(kStep);
+    }
+    EXPECT_TRUE(body.has_own_rest());
+    EXPECT_EQ(body.rest_revision(), 1u);
+  }
+}
+
+TEST(Plasticity, AFlowUnderWayGoesOnInACopyAndEndsWithAReset) {
+  constexpr int kEnd = SoftBody<3>::kPlasticSteps + SoftBody<3>::kFlowSteps;
+  for (int calls = SoftBody<3>::kPlasticSteps; calls < kEnd; ++calls) {
+    SoftBody<3> body = looked_at(calls), assigned = looked_at(1), reset = looked_at(calls);
+    SoftBody<3> copy(body);
+    assigned = body;
+    SoftBody<3> moved(std::move(copy));
+    reset.reset({0, 0, 0});
+    for (SoftBody<3>* const each : {&body, &assigned, &moved, &reset})
+      for (int i = calls; i < kEnd; ++i) each->flow(kStep);
+    ASSERT_TRUE(body.has_own_rest());
+    EXPECT_EQ(state_hash(assigned), state_hash(body)) << calls;
+    EXPECT_EQ(state_hash(moved), state_hash(body)) << calls;
+    EXPECT_FALSE(reset.has_own_rest()) << calls;
+  }
 }
 
 TEST(Plasticity, ARestShapeIsRestored) {

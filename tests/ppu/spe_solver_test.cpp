@@ -12,11 +12,15 @@
 #include <thread>
 #include <vector>
 
+#include "ppu/bodies/break_body.h"
 #include "ppu/plans/match_plan.h"
 #include "ppu/plans/tile_plan.h"
+#include "ppu/spe_bodies/match_bodies.h"
+#include "ppu/spe_bodies/tiled_memory.h"
 #include "soft_body_scenes.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/ls_sim/findings.h"
+#include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "spu_kernels/checked_runs.h"
 #include "spu_kernels/kernel_image.h"
@@ -232,6 +236,31 @@ TEST(SpeSolver, ABodyTooLargeForALocalStoreIsSteppedInTiles) {
   }
 }
 
+/// Regions at a round surface have sums of their own, so fewer rows fit than of a block that is as high.
+TEST(SpeSolver, LargeBallsAndCubesAreSteppedInTilesToo) {
+  std::vector<std::shared_ptr<const SoftBodyModel<3>>> models{block_model({25, 25, 25}, rubber())};
+  for (const float radius : {2.0f, 3.16f})
+    models.push_back(make_soft_body_model(make_sphere(radius, 2), rubber()));
+  for (const auto& model : models) {
+    SpeWorld world;
+    SoftBody<3> on_spe(model), on_ppu(model);
+    bend(on_spe), bend(on_ppu);
+    SoftBody<3>* const one[] = {&on_spe};
+    SoftBody<3>* const other[] = {&on_ppu};
+    PpuSolver<3> ppu;
+    constexpr float kStep = 1.0f / 120, kSize = 2 * 3.16f;
+    world.solver.kick(one, kStep);
+    EXPECT_EQ(world.solver.bodies_on_ppu(), 0u) << model->particles();
+    ppu.kick(other, kStep);
+    world.solver.finish();
+    ppu.finish();
+    for (std::size_t i = 0; i < model->particles(); ++i)
+      ASSERT_LE((on_spe.velocities()[i] - on_ppu.velocities()[i]).norm() * kStep / rubber().alpha,
+                1e-5f * kSize)
+          << model->particles() << ", particle " << i;
+  }
+}
+
 TEST(SpeSolver, ABodyTooHighForTilesIsSteppedByThePpu) {
   const auto huge = huge_model();
   ASSERT_THROW(TilePlan(huge->lattice(), *huge->plan()), BodyTooLarge);
@@ -303,6 +332,69 @@ TEST(SpeSolver, ABodyKeepsItsRotationsWhenOthersComeAndGo) {
       return state_hash(body);
     };
     EXPECT_EQ(hash_of_a_run(true), hash_of_a_run(false)) << model->particles();
+  }
+}
+
+/// Sets each region's rotation to a number of its own.
+void number(RegionRotations rotations) {
+  rotations.cold = 0;
+  for (const std::uint32_t place : rotations.place_of)
+    rotations.rotations[place / 4].w[place % 4] = static_cast<float>(place + 1);
+}
+float number_of(const RegionRotations& rotations, std::size_t particle) {
+  const std::uint32_t place = rotations.place_of[particle];
+  return rotations.rotations[place / 4].w[place % 4];
+}
+
+TEST(SpeSolver, RegionsOfAPieceBeginWithTheRotationsThatTheyHadInTheBody) {
+  const auto large = block_model({12, 11, 10}, rubber());
+  const SoftBody<3> body(large);
+  const auto cut = faces_across(body, Cut::plane({-0.1f, 0, 0}, {1, 0, 0}));
+  const std::vector<BodyPiece<3>> pieces = pieces_of(body, cut);
+  ASSERT_EQ(pieces.size(), 2u);
+  const SoftBodyModel<3>& small = pieces[1].body.model();
+  ASSERT_THROW(MatchPlan(large->lattice(), *large->plan()), BodyTooLarge);
+  const MatchPlan whole_plan(small.lattice(), *small.plan());
+  const TilePlan tiles_of_body(large->lattice(), *large->plan()), tiles(small.lattice(), *small.plan());
+  dma::AddressSpace memory;
+  TiledMemory of_body(memory, tiles_of_body), tiled(memory, tiles);
+  MatchBodies<3> whole(memory, whole_plan, 2);
+  const auto known = [&] { return of_body.region_rotations(tiles_of_body, large->plan()->sums()); };
+  const auto in_tiles = [&] { return tiled.region_rotations(tiles, small.plan()->sums()); };
+  EXPECT_NE(known().cold, 0u);
+  number(known());
+  in_tiles().take_from(known(), pieces[1].particle_of);
+  whole.region_rotations(1).take_from(known(), pieces[1].particle_of);
+  EXPECT_EQ(in_tiles().cold, 0u);
+  EXPECT_EQ(whole.region_rotations(1).cold, 0u);
+  EXPECT_NE(whole.region_rotations(0).cold, 0u);
+  for (std::size_t i = 0; i < small.particles(); ++i) {
+    const float expected = number_of(known(), pieces[1].particle_of[i]);
+    ASSERT_EQ(number_of(in_tiles(), i), expected) << i;
+    ASSERT_EQ(number_of(whole.region_rotations(1), i), expected) << i;
+  }
+}
+
+TEST(SpeSolver, MemoryThatWasPreparedIsNotLaidOutAgain) {
+  for (const auto& model : {block_model({3, 3, 3}, rubber()), large_model()}) {
+    SpeWorld world;
+    world.run(1);
+    const auto free = [&] { return world.memory.free_bytes(dma::Memory::kMain); };
+    const std::uint64_t before = free();
+    world.solver.prepare(model);
+    const std::uint64_t taken = before - free();
+    EXPECT_GT(taken, 50 * model->particles());
+    SoftBody<3>& body = world.soft.add(model, {0, 0, 0});
+    world.run(1);
+    EXPECT_LT(before - free(), taken + 50 * model->particles()) << "but for a chain";
+    world.soft.add(model, {0, 9, 0});  // nothing was prepared for it
+    world.soft.remove(body);
+    EXPECT_NO_THROW(world.run(1));
+    // What nobody has bodies of goes.
+    world.solver.prepare(block_model({4, 4, 4}, rubber()));
+    world.soft.remove(world.soft[0]);
+    world.run(1);
+    EXPECT_LE(before - free(), std::uint64_t{4096});
   }
 }
 

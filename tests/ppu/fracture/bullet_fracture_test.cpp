@@ -1,17 +1,21 @@
 // Bodies that break in a Bullet world.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
 #include "../contacts/contact_world.h"
 #include "fracture_checks.h"
+#include "ppu/contacts/crack_sides.h"
+#include "ppu/fracture/cracks.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
@@ -231,6 +235,143 @@ TEST(BulletFracture, HasTheSameBitsForAnyNumberOfSpesAndSchedule) {
   }
   EXPECT_EQ(fall(lazy), expected);
   EXPECT_EQ(fall(one), expected);
+}
+
+/// A crack inside leaves a body as it was. Where a rotation is sought from shows in its last bits.
+TEST(BulletFracture, APieceGoesOnWithTheRotationsOfItsRegions) {
+  const auto run_with = [](SolverFactory* solvers, const SoftBodySettings& settings, const Vector3f& size,
+                           bool cracks) {
+    ContactWorld world({0, 0, 0}, solvers);
+    SoftBody<3>& body = world.add(make_box(size, settings.cell_size), settings, {0, 0, 0});
+    for (std::size_t i = 0; i < body.positions().size(); ++i) {
+      const Vector3f x = body.position(i);
+      body.set_particle(i, {x.x() + 0.1f * x.y() * x.y(), -x.z(), x.y() + 0.1f * x.x() * x.z()},
+                        {x.y(), 0.2f * x.x(), 0});
+    }
+    body.translate({0, 0, 0});  // so that couplings notice
+    run(world, 3);
+    if (cracks) {
+      const auto& lattice = body.model().lattice();
+      Vector3f middle = Vector3f::Zero(), across = Vector3f::Zero();  // of a face in the body's middle
+      for (std::uint32_t i = 0; i < body.positions().size(); ++i) {
+        const Vector3f from_middle = lattice.rest_position(i);
+        if ((from_middle.array().abs() - 0.6f * settings.cell_size).maxCoeff() > 0) continue;
+        middle += body.position(i) / 8;
+        across += (from_middle.x() > 0 ? 1.0f : -1.0f) * body.position(i) / 8;
+      }
+      const Vector3f side = 0.4f * settings.cell_size * across.unitOrthogonal();
+      const Vector3f face = middle + across;
+      EXPECT_TRUE(world.bodies
+                      .cut(body, Cut::stroke(face - side / 2 - across.normalized().cross(side) / 2, side,
+                                             across.normalized().cross(side)))
+                      .empty());
+      EXPECT_TRUE(body.model().is_piece());
+      const std::vector<bool>& is_broken = body.model().cracks().is_broken;
+      EXPECT_EQ(std::count(is_broken.begin(), is_broken.end(), true), 1);
+    }
+    run(world, 3);
+    return state_hash(body);
+  };
+  SpeRuntime spes({.spes = 2});
+  for (const Vector3f& size : {Vector3f(0.7f, 0.5f, 0.5f), Vector3f(1.3f, 1.1f, 1.1f)}) {
+    for (SolverFactory* const solvers :
+         {static_cast<SolverFactory*>(nullptr), static_cast<SolverFactory*>(&spes)})
+      EXPECT_EQ(run_with(solvers, brittle(0.1f, 1), size, true),
+                run_with(solvers, brittle(0.1f, 1), size, false))
+          << size.x() << (solvers != nullptr ? " on SPEs" : "");
+  }
+}
+
+/// A bar along x with a crack from above down to its middle.
+SoftBody<3>& cracked_bar(ContactWorld& world) {
+  SoftBody<3>& bar = world.add(make_box({1.2f, 0.4f, 0.4f}, 0.1f), brittle(0.1f, 1), {0, 0, 0});
+  EXPECT_TRUE(world.bodies.cut(bar, Cut::stroke({0.01f, 0.05f, -1}, {0, 1, 0}, {0, 0, 2})).empty());
+  EXPECT_TRUE(bar.model().is_piece());
+  return bar;
+}
+
+TEST(BulletFracture, CellsAlongACrackAreOfOneSideOrTheOther) {
+  ContactWorld world({0, 0, 0});
+  const SoftBody<3>& bar = cracked_bar(world);
+  const Lattice<3>& lattice = bar.model().lattice();
+  const std::vector<std::uint32_t> sides = crack_sides(lattice, bar.model().cracks());
+  ASSERT_EQ(sides.size(), lattice.cells.size());
+  std::set<std::uint32_t> left, right;
+  std::size_t none = 0;
+  const auto middle_of = [&](std::uint32_t cell) {
+    return Vector3f(0.5f * (lattice.rest_position(lattice.corners[cell][0]) +
+                            lattice.rest_position(lattice.corners[cell][7])));
+  };
+  for (std::uint32_t c = 0; c < sides.size(); ++c) {
+    const Vector3f middle = middle_of(c);
+    const bool along = std::abs(middle.x()) < 0.1f && middle.y() > 0;
+    EXPECT_EQ(sides[c] != 0, along) << middle.transpose();
+    if (sides[c] == 0) ++none;
+    if (sides[c] != 0) (middle.x() < 0 ? left : right).insert(sides[c]);
+  }
+  EXPECT_GT(none, 0u);
+  ASSERT_EQ(left.size(), 1u);
+  ASSERT_EQ(right.size(), 1u);
+  EXPECT_NE(*left.begin(), *right.begin());
+  for (std::uint32_t a = 0; a < sides.size(); ++a) {
+    for (std::uint32_t b = 0; b < sides.size(); ++b) {
+      if (sides[a] != *left.begin() || sides[b] != *right.begin()) continue;
+      const bool both_at_the_end = middle_of(a).y() < 0.1f && middle_of(b).y() < 0.1f;
+      const bool neighbours = std::abs(middle_of(a).z() - middle_of(b).z()) < 0.15f;
+      EXPECT_EQ(are_parted(lattice, sides, a, b), !(both_at_the_end && neighbours));
+      EXPECT_EQ(are_parted(lattice, sides, b, a), are_parted(lattice, sides, a, b));
+    }
+  }
+  EXPECT_TRUE(crack_sides(bar.model().whole()->lattice(), bar.model().whole()->cracks()).empty());
+}
+
+/// Of particles that a crack has made two of: how far the right one is left of the left one, in cells.
+float deepest_in_crack(const SoftBody<3>& bar) {
+  const Lattice<3>& lattice = bar.model().lattice();
+  float deepest = 0;
+  for (const auto& face : bar.model().cracks().faces) {
+    const auto &low = lattice.corners[face.low], &high = lattice.corners[face.high];
+    for (std::uint32_t k = 0; face.axis == 0 && k < 8; k += 2)
+      if (low[k + 1] != high[k])
+        deepest = std::max(deepest, (bar.position(low[k + 1]) - bar.position(high[k])).x() / lattice.spacing);
+  }
+  return deepest;
+}
+
+TEST(BulletFracture, TheSidesOfACrackInOnePieceTouchEachOther) {
+  SpeRuntime spes({.spes = 2});
+  for (SolverFactory* const solvers :
+       {static_cast<SolverFactory*>(nullptr), static_cast<SolverFactory*>(&spes)}) {
+    ContactWorld world({0, 0, 0}, solvers);
+    SoftBody<3>& bar = cracked_bar(world);
+    // Bent, so that the crack closes.
+    for (std::size_t i = 0; i < bar.positions().size(); ++i) {
+      const Vector3f x = bar.position(i);
+      bar.add_particle_velocity(i, {(x.x() > 0 ? -10 : 10) * std::max(0.0f, x.y()), 20 * x.x() * x.x(), 0});
+    }
+    const Momenta before = momenta_of(world.bodies);
+    float deepest = 0;
+    for (int i = 0; i < 60; ++i) {
+      run(world, 1);
+      deepest = std::max(deepest, deepest_in_crack(bar));
+    }
+    ASSERT_EQ(world.bodies.size(), 1u);
+    EXPECT_GT(deepest, 0);  // 1.7 cells if they did not touch
+    EXPECT_LT(deepest, 0.35f) << (solvers != nullptr ? "on SPEs" : "");
+    EXPECT_LT(deepest_in_crack(bar), 0.1f);
+    const Momenta now = momenta_of(world.bodies);
+    EXPECT_LT((now.momentum - before.momentum).norm(), 1e-4 * before.mass);
+    EXPECT_LT((now.angular_momentum - before.angular_momentum).norm(), 1e-3 * before.mass);
+  }
+}
+
+/// A crack that nothing presses together does nothing.
+TEST(BulletFracture, ABodyWithACrackLiesStill) {
+  ContactWorld world({0, 0, 0});
+  const SoftBody<3>& bar = cracked_bar(world);
+  run(world, 60);
+  EXPECT_LT(bar.mean_speed(), 1e-4f);
+  EXPECT_LT(bar.deformation(), 1e-4f);
 }
 
 /// The thread that makes pieces has all the time in the world, or none: no result depends on it.

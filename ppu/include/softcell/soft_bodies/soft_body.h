@@ -53,6 +53,10 @@ class SoftBody {
   SoftBody(const SoftBody& other);
   /// Becomes what the other is: counts up revision() and resets().
   SoftBody& operator=(const SoftBody& other);
+  /// The other may only be destroyed then.
+  SoftBody(SoftBody&& other) noexcept;
+  /// As an assignment of a copy, but the other gets what this was.
+  SoftBody& operator=(SoftBody&& other) noexcept;
   ~SoftBody();
 
   /// What the body shares with all others of its make. Another one after an assignment from a body of another.
@@ -90,9 +94,15 @@ class SoftBody {
   }
 
   /// The plastic flow of a time step, behind its shape matching: changes the rest shape of a plastic body. It looks at the body
-  /// in every kPlasticSteps-th step only. Allocates when the body yields.
+  /// in every kPlasticSteps-th step only. If the body may yield, another thread flows, and the call of kFlowSteps steps later takes
+  /// the result, or waits for it. Allocates then.
   void flow(float step);
-  static constexpr int kPlasticSteps = 4;
+  static constexpr int kPlasticSteps = 4, kFlowSteps = 1;
+
+  /// Becomes what it was of another body: state, material, rest shape, rotations of regions.
+  /// @param whole  another body   @param particle_of  of each particle of this: which one of the whole it was
+  /// @pre this body's model is a piece of the whole's
+  void take_part(const SoftBody& whole, std::span<const std::uint32_t> particle_of);
 
   /// Sets a velocity that a solver has computed.
   void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
@@ -126,6 +136,8 @@ class SoftBody {
   bool has_own_rest() const;
   /// The rest shape: metres, of each particle; its centre of mass is that of the model at rest.
   std::vector<Vector> rest_positions() const;
+  /// The same of a body that has yielded; empty: it has the rest shape of its model. Good until the rest shape changes.
+  std::span<const Vector> own_rest() const;
   std::uint32_t rest_revision() const { return rest_revision_; }  ///< how often the rest shape has changed
   /// For solvers: the constants of the rest shape, the model's or the body's own.
   std::shared_ptr<const MatchingPlan<float, kDimension>> plan() const;
@@ -147,7 +159,7 @@ class SoftBody {
   void forget_rotations();
   struct RestShape;
   void set_rest(std::unique_ptr<RestShape> rest);
-  void take_rest();
+  void take_flow();
 
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
   SoftBodySettings settings_;

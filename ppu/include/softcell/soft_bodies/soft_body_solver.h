@@ -2,6 +2,7 @@
 // Solvers: they do the shape matching and damping of many bodies in a time step. PpuSolver works on the calling
 // thread, SpeSolver (spe_bodies/spe_solver.h) on SPEs.
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -38,6 +39,12 @@ class SoftBodySolver {
   /// Makes what takes long to make for bodies of a model, when there will be some soon. Any thread may call it at any time, and it changes
   /// no result.
   virtual void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& /*model*/) {}
+
+  /// What the solver knows of a body, the first one, goes on with a piece of it, the second one. Call it after the last step that the body
+  /// was whole in, for each piece. The piece's model was prepared; the body that is stepped next may be another one of that model. The
+  /// last argument says of each particle of the piece which one of the whole it was. @pre no step is under way
+  virtual void take_part(const SoftBody<kDimension>& /*whole*/, const SoftBody<kDimension>& /*piece*/,
+                         std::span<const std::uint32_t> /*particle_of*/) {}
 };
 
 /// The reference: steps the bodies one after the other by SoftBody::pull() and flow(), in finish().

@@ -8,6 +8,7 @@
 //     kick():    positions, velocities --> main memory    one chain of jobs: bodies of one model share a plan
 //     finish():  velocities <-- main memory               when the last job has ended
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -60,6 +61,7 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   void drop() override;
   void forget(const Body& body) override;
   void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) override;
+  void take_part(const Body& whole, const Body& piece, std::span<const std::uint32_t> particle_of) override;
 
   /// How many bodies of the last kick(), awake or asleep, fit no local store in any way: the PPU steps them.
   /// Checked kernels need part of the local store for their checks, so with them it may be more.
@@ -70,11 +72,13 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   struct Member;  // where a body is
   struct Known;   // the layout before
   struct Plans;   // of one model
+  struct Place;   // of one body, made ahead
 
   bool knows(std::span<Body* const> bodies) const;
   void regroup(std::span<Body* const> bodies);
   void find_place(Group& group, Known& known);
   Plans plans_of(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) const;
+  Place place_for(const std::shared_ptr<const Plans>& plans) const;
   void take_prepared(Known& known, std::span<Body* const> bodies);
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
@@ -88,8 +92,8 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<Member> members_;  // in the order of kick()
   std::vector<Body*> left_to_ppu_;
-  std::mutex preparing_;                                // guards prepared_
-  std::vector<std::shared_ptr<const Plans>> prepared_;  // that no group has taken yet
+  std::mutex preparing_;         // guards prepared_
+  std::vector<Place> prepared_;  // that no group has taken yet
   float step_ = 0;
   bool is_stepping_ = false;         // between kick() and finish() or drop()
   std::unique_ptr<JobChain> chain_;  // last, so that it has ended before what its jobs work on goes

@@ -1,10 +1,10 @@
-#include "ppu/bodies/piece_workshop.h"
+#include "ppu/bodies/workshop.h"
 
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
-PieceWorkshop::~PieceWorkshop() {
+Workshop::~Workshop() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
@@ -13,17 +13,17 @@ PieceWorkshop::~PieceWorkshop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void PieceWorkshop::add(std::function<void()> task) {
-  SC_ASSERT(task != nullptr, "{} is to be made of a break", "nothing");
-  if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
+void Workshop::add(std::function<void()> task) {
+  SC_ASSERT(task != nullptr, "a task behind {} others does nothing", tasks_.size());
   {
     const std::lock_guard lock(mutex_);
+    if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
     tasks_.push(std::move(task));
   }
   has_changed_.notify_one();
 }
 
-void PieceWorkshop::work() {
+void Workshop::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
     has_changed_.wait(lock, [this] { return ends_ || !tasks_.empty(); });
