@@ -61,8 +61,9 @@ class MatchBodies {
   void reset(std::size_t body);
   /// Takes the rotations of one of `other`'s bodies. @pre both have the same plan
   void take_rotations(std::size_t body, const MatchBodies& other, std::size_t other_body);
-  /// Those of a body, good as long as this.
-  RegionRotations region_rotations(std::size_t body) requires(kDimension == 3) {
+  /// Those of a body, good as long as this. (A template, as Clang 14 instantiates other members with a class, whatever they require.)
+  template <int kOwn = kDimension>
+  RegionRotations region_rotations(std::size_t body) requires(kOwn == 3) {
     return {rotations(body), region_of_, result(body).cold};
   }
 
