@@ -77,6 +77,17 @@ class SceneFile : public testing::Test {
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
+TEST_F(SceneFile, BodiesOfBothDimensionsMaySleep) {
+  const std::string body2 =
+      "[[soft_body]]\nshape = { kind = \"rectangle\", width = 4, height = 2 }\ncell_size = 0.2\n";
+  const std::string body3 = "[[soft_body]]\nshape = { kind = \"sphere\" }\ncell_size = 0.2\n";
+  for (const bool sleep : {false, true}) {
+    const std::string world = sleep ? "[world]\nsleep = true\n" : "";
+    EXPECT_EQ(std::get<Scene2d>(load_scene(write("s.toml", "dimension = 2\n" + world + body2))).sleep, sleep);
+    EXPECT_EQ(std::get<Scene>(load_scene(write("t.toml", world + body3))).sleep, sleep);
+  }
+}
+
 TEST_F(SceneFile, AMeshOfLongTrianglesIsTessellatedOnRequest) {
   const auto mesh_of = [&](const std::string& more) {
     return load_scene_3d(write("s.toml",

@@ -259,6 +259,39 @@ TEST_P(HeldDisc, IsLiftedCarriedAndThrown) {
 
 INSTANTIATE_TEST_SUITE_P(Cells, HeldDisc, testing::Values(4, 8, 20, 40));
 
+TEST(Simulation2d, AStackSleepsAndWakesWhenGravityChangesOrAHandTakesIt) {
+  Scene2d scene = load_scene_2d("stack");
+  scene.sleep = true;
+  const std::uint64_t one_that_never_sleeps = scene_hash(load_scene_2d("stack"));
+  EXPECT_NE(scene_hash(scene), one_that_never_sleeps);
+  Simulation2d simulation(scene);
+  const auto all_sleep = [&] {
+    for (std::size_t b = 0; b < simulation.soft_bodies(); ++b)
+      if (!simulation.soft_body(b).asleep()) return false;
+    return true;
+  };
+  int frame = 0;
+  for (; frame < 2 * kTenSeconds && !all_sleep(); ++frame) simulation.step();
+  EXPECT_TRUE(all_sleep());
+  const std::uint64_t asleep = simulation.state_hash();
+  step(simulation, 30);
+  EXPECT_EQ(simulation.state_hash(), asleep);
+
+  // What falls to the other side now has slept on the lower one.
+  simulation.step(std::vector<Event>{{.action = Action::kGravity, .value = {0, scene.gravity}}});
+  step(simulation, kTenSeconds);
+  for (std::size_t b = 0; b < simulation.soft_bodies(); ++b)
+    EXPECT_GT(simulation.soft_body(b).centre_of_mass().y(), 0) << b;
+  for (; !all_sleep() && frame < 8 * kTenSeconds; ++frame) simulation.step();
+  EXPECT_TRUE(all_sleep());
+
+  const Vector2f there = simulation.soft_body(0).centre_of_mass();
+  simulation.step(
+      std::vector<Event>{hand(Action::kGrab, there), hand(Action::kMoveHand, there - Vector2f(0, 1))});
+  step(simulation, 5);
+  EXPECT_FALSE(simulation.soft_body(0).asleep());
+}
+
 TEST(Simulation2d, KnowsWhereThereIsRoom) {
   const Scene2d scene = load_scene_2d("man");  // a room of 8 by 6 m, in its middle the man
   const Simulation2d simulation(scene);

@@ -101,6 +101,7 @@ struct Scene2d {
   float friction = 0.6f;
   float restitution = 0;  ///< 0..1, of rigid bodies
   int substeps = 2;       ///< of a frame of 1/60 s
+  bool sleep = false;     ///< bodies fall asleep when they have come to rest
   int frames = 300;       ///< how long the scene is worth watching without a user
   Camera2d camera;
   ScriptedInput<2> script;

@@ -106,13 +106,21 @@ struct World {
       : soft_bodies(world, solver) {
     SC_ASSERT(models.size() == scene.soft_bodies.size(), "the models of {} bodies of {}", models.size(),
               scene.soft_bodies.size());
-    // A body that sleeps would not notice that gravity changes.
-    world.SetAllowSleeping(false);
+    world.SetAllowSleeping(scene.sleep);
+    if (scene.sleep) soft_bodies.let_sleep(ppu::SleepSettings{});
     for (const RigidBody2d& body : scene.rigid_bodies)
       rigid_bodies.push_back(add_rigid_body(world, body, scene.friction, scene.restitution));
     for (std::size_t i = 0; i < models.size(); ++i) soft_bodies.add(models[i], scene.soft_bodies[i].position);
     attach(scene);
     if (scene.begin) begin(scene);
+  }
+
+  /// Rigid bodies that sleep do not notice by themselves that it changes; soft ones do.
+  void set_gravity(const b2Vec2& gravity) {
+    if (gravity == world.GetGravity()) return;
+    world.SetGravity(gravity);
+    for (b2Body* const body : rigid_bodies)
+      if (body->GetType() == b2_dynamicBody) body->SetAwake(true);
   }
 
   void attach(const Scene2d& scene) {
@@ -340,7 +348,7 @@ FrameTimes Simulation2d::step(std::span<const InputEvent<2>> events) {
   World& world = *s.world;
   const FrameOnPs3 on_ps3(s.timing);
   const auto matched_before = world.soft_bodies.time_spent(), waited_before = s.waited();
-  world.world.SetGravity(to_box2d(s.controls.gravity()));
+  world.set_gravity(to_box2d(s.controls.gravity()));
   s.held.begin_frame(static_cast<float>(substeps) * s.substep());
   for (int i = 0; i < substeps; ++i) {
     s.controls.hands().pull(s.bodies);
