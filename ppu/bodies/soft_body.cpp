@@ -10,6 +10,7 @@
 #include "ppu/matching/plastic_flow.h"
 #include "ppu/matching/rotation.h"
 #include "ppu/matching/stiffness.h"
+#include "ppu/numbers/cross.h"
 #include "ppu/reference/shape_matching.h"
 #include "softcell/base/assert.h"
 
@@ -23,7 +24,7 @@ using Eigen::Vector3d;
 
 // What turns, in two dimensions.
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+using ppu::cross;
 Eigen::Vector2f cross(float omega, const Eigen::Vector2f& r) {
   return omega * Eigen::Vector2f(-r.y(), r.x());
 }

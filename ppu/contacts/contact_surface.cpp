@@ -5,12 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 
 #include "ppu/contacts/point_chooser.h"
 #include "ppu/contacts/triangle_distance.h"
 #include "ppu/lattice/locate.h"
+#include "ppu/mesh/outer_surface.h"
 #include "ppu/mesh/solid.h"
 #include "softcell/base/assert.h"
 
@@ -64,9 +66,10 @@ ContactSurface::ContactSurface(const TriangleMesh& mesh, const Lattice<3>& latti
     return;
   }
   const Solid solid(mesh);
-  const TriangleMesh outside = outer_surface(mesh, solid, lattice.spacing);
-  sample(outside, lattice);
-  measure(outside, lattice, outside.triangles == mesh.triangles ? nullptr : &solid);
+  const std::optional<TriangleMesh> outside = outer_surface(mesh, solid, lattice.spacing);
+  const TriangleMesh& surface = outside ? *outside : mesh;
+  sample(surface, lattice);
+  measure(surface, lattice, outside ? &solid : nullptr);
 }
 
 /// Vertices come first: those of sharp corners and edges must not give way to what lies beside them.

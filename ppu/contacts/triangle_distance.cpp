@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -50,8 +51,8 @@ TriangleGrid::TriangleGrid(const TriangleMesh& mesh, float cube_edge) : edge_(cu
   low_ = box.low;
   counts_ = ((box.high - box.low) / edge_).array().floor().cast<int>() + 1;
 
-  // Counted, then filled in: one array for all cubes.
-  const auto for_each_cube = [&](const auto& triangle, const auto& work) {
+  const auto for_each_cube = [&](std::size_t number, const auto& work) {
+    const auto& triangle = triangles_[number];
     const Vector3i first = cube_of(triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]));
     const Vector3i last = cube_of(triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]));
     for (int z = first.z(); z <= last.z(); ++z)
@@ -59,14 +60,7 @@ TriangleGrid::TriangleGrid(const TriangleMesh& mesh, float cube_edge) : edge_(cu
         for (int x = first.x(); x <= last.x(); ++x)
           work(static_cast<std::size_t>((z * counts_.y() + y) * counts_.x() + x));
   };
-  begin_.assign(static_cast<std::size_t>(counts_.prod()) + 1, 0);
-  for (const auto& triangle : triangles_)
-    for_each_cube(triangle, [&](std::size_t cube) { ++begin_[cube + 1]; });
-  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-  items_.resize(begin_.back());
-  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-    for_each_cube(triangles_[t], [&](std::size_t cube) { items_[next[cube]++] = t; });
+  sort_into_lists(static_cast<std::size_t>(counts_.prod()), triangles_.size(), for_each_cube, begin_, items_);
 }
 
 Vector3i TriangleGrid::cube_of(const Vector3f& point) const {

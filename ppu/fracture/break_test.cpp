@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ppu/matching/rotation.h"
+#include "ppu/numbers/cross.h"
 #include "ppu/numbers/deterministic_math.h"
 #include "softcell/base/assert.h"
 
@@ -47,8 +48,6 @@ Eigen::Matrix<double, kDimension, kDimension> edges_of(const Corners<kDimension>
 /// Of the turn from one rotation to another.
 double cosine_between(const Matrix2d& a, const Matrix2d& b) { return (a.transpose() * b).trace() / 2; }
 double cosine_between(const Matrix3d& a, const Matrix3d& b) { return ((a.transpose() * b).trace() - 1) / 2; }
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 

@@ -1,7 +1,6 @@
 #include "ppu/fracture/cell_mesh.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -11,6 +10,8 @@
 #include "ppu/fracture/cut_triangle.h"
 #include "ppu/fracture/fill_loops.h"
 #include "ppu/lattice/locate.h"
+#include "ppu/mesh/position_numbers.h"
+#include "ppu/numbers/hash_of_numbers.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -22,32 +23,10 @@ using Eigen::Vector3f;
 using Eigen::Vector3i;
 using Eigen::Vector4f;
 
-/// FNV-1a over the numbers.
-struct HashOfNumbers {
-  template <std::size_t kCount>
-  std::size_t operator()(const std::array<std::uint32_t, kCount>& numbers) const {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const std::uint32_t number : numbers) hash = (hash ^ number) * 0x100000001b3u;
-    return hash;
-  }
-};
-
 std::uint64_t edge_key(const Vector3i& corner, std::uint32_t axis) {
   constexpr int kOffset = 1 << 19;
   const auto part = [](int i) { return static_cast<std::uint64_t>(i + kOffset); };
   return (part(corner.x()) << 40 | part(corner.y()) << 20 | part(corner.z())) * 3 + axis;
-}
-
-/// Numbers of positions: of equal positions the same.
-std::vector<std::uint32_t> number_positions(const TriangleMesh& mesh) {
-  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, HashOfNumbers> known;
-  std::vector<std::uint32_t> numbers;
-  for (const Vector3f& p : mesh.positions) {
-    std::array<std::uint32_t, 3> bits;
-    for (int d = 0; d < 3; ++d) bits[static_cast<std::size_t>(d)] = std::bit_cast<std::uint32_t>(p[d] + 0.0f);
-    numbers.push_back(known.try_emplace(bits, static_cast<std::uint32_t>(known.size())).first->second);
-  }
-  return numbers;
 }
 
 std::uint32_t part_of(const TriangleMesh& mesh, std::uint32_t triangle) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ppu/lattice/links.h"
+#include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -70,14 +71,11 @@ Csr cells_of_particles(const Lattice<kDimension>& lattice) {
   Csr around;
   SC_ASSERT(lattice.corners.size() == lattice.cells.size(), "the corners of {} cells of {}",
             lattice.corners.size(), lattice.cells.size());
-  around.offsets.assign(lattice.particles.size() + 1, 0);
-  for (const auto& corners : lattice.corners)
-    for (const std::uint32_t particle : corners) ++around.offsets[particle + 1];
-  for (std::size_t i = 1; i < around.offsets.size(); ++i) around.offsets[i] += around.offsets[i - 1];
-  around.items.resize(around.offsets.back());
-  std::vector<std::uint32_t> next(around.offsets.begin(), around.offsets.end() - 1);
-  for (std::uint32_t cell = 0; cell < lattice.corners.size(); ++cell)
-    for (const std::uint32_t particle : lattice.corners[cell]) around.items[next[particle]++] = cell;
+  const auto for_each_particle = [&](std::size_t cell, const auto& work) {
+    for (const std::uint32_t particle : lattice.corners[cell]) work(particle);
+  };
+  sort_into_lists(lattice.particles.size(), lattice.corners.size(), for_each_particle, around.offsets,
+                  around.items);
   return around;
 }
 

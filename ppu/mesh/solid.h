@@ -29,6 +29,8 @@ class Solid {
  private:
   void add_closed_parts(const TriangleMesh& mesh);
   void sort_into_columns();
+  Eigen::Array2i column_of(const Eigen::Vector3d& point) const;
+  std::size_t slot(const Eigen::Array2i& column) const;
 
   /// Triangles by where they lie across the x axis: a line along it meets those of one column only.
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
@@ -38,11 +40,5 @@ class Solid {
   Eigen::Array2i columns_{0, 0};
   std::vector<std::uint32_t> begin_, items_;  // of each column: its triangles
 };
-
-/// The surface of what is inside: the mesh without what lies within other parts of it. Triangles of which a part is
-/// inside are cut into smaller ones, to an eighth of `cell`. When next to nothing is inside, the mesh as it is. Of an open mesh, too.
-/// A new mesh has three positions for each triangle, with its normal, and no attributes.
-/// @param cell  metres, above 0: what is smaller than a thousandth of it does not count
-TriangleMesh outer_surface(const TriangleMesh& mesh, const Solid& solid, float cell);
 
 }  // namespace softcell::ppu

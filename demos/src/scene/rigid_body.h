@@ -31,6 +31,14 @@ struct Motion {
 struct RigidPart {
   ppu::RigidShape shape;
   render::Colour colour{0.8f, 0.8f, 0.8f};
+
+  /// Where the shape is in the body's frame.
+  Eigen::Matrix4f place() const {
+    Eigen::Matrix4f place = Eigen::Matrix4f::Identity();
+    place.topLeftCorner<3, 3>() = shape.rotation.toRotationMatrix();
+    place.topRightCorner<3, 1>() = shape.position;
+    return place;
+  }
 };
 
 struct RigidBody {

@@ -75,12 +75,8 @@ void append_rigid(const Scene& scene, std::span<const Eigen::Matrix4f> poses, st
   };
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) add(0.5f * scene.boxes[i].size, poses[i]);
   for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
-    for (const RigidPart& part : scene.rigid_bodies[i].parts) {
-      Eigen::Matrix4f place = Eigen::Matrix4f::Identity();
-      place.topLeftCorner<3, 3>() = part.shape.rotation.toRotationMatrix();
-      place.topRightCorner<3, 1>() = part.shape.position;
-      add(half_size(part.shape), poses[scene.boxes.size() + i] * place);
-    }
+    for (const RigidPart& part : scene.rigid_bodies[i].parts)
+      add(half_size(part.shape), poses[scene.boxes.size() + i] * part.place());
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     SolidBox& box = boxes.emplace_back(SolidBox{.bounds = ppu::bounds(obstacle.mesh)});

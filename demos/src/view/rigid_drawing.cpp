@@ -33,9 +33,7 @@ std::vector<DrawnPart> add_parts(std::span<const RigidBody> bodies, const AddSta
   std::vector<DrawnPart> parts;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     for (const RigidPart& part : bodies[b].parts) {
-      DrawnPart& drawn = parts.emplace_back(DrawnPart{.body = b, .draw = statics.size()});
-      drawn.place.topLeftCorner<3, 3>() = part.shape.rotation.toRotationMatrix();
-      drawn.place.topRightCorner<3, 1>() = part.shape.position;
+      parts.push_back({.body = b, .draw = statics.size(), .place = part.place()});
       statics.push_back({.mesh = add_static(mesh_of_rigid(part.shape)),
                          .colour = part.colour,
                          .opacity = bodies[b].opacity});
