@@ -50,9 +50,30 @@ bool Box2dAttachments::lets(const b2Body& a, const b2Body& b) const {
   });
 }
 
+bool Box2dAttachments::parts(const Box2dBody& body, const b2Body& rigid) const {
+  return std::ranges::any_of(
+      links_, [&](const auto& link) { return !link->touch && link->a == &body && link->rigid == &rigid; });
+}
+
+std::uint32_t Box2dAttachments::index_of(const Box2dBody* body,
+                                         std::span<const std::unique_ptr<Box2dBody>> bodies) {
+  const auto found = std::ranges::find_if(bodies, [&](const auto& other) { return other.get() == body; });
+  SC_ASSERT(found != bodies.end(), "an attached body is none of {}", bodies.size());
+  return static_cast<std::uint32_t>(found - bodies.begin());
+}
+
+void Box2dAttachments::append_parted(std::span<const std::unique_ptr<Box2dBody>> bodies,
+                                     std::vector<std::pair<std::uint32_t, std::uint32_t>>& parted) const {
+  for (const auto& link : links_) {
+    if (link->touch || link->b == nullptr) continue;
+    parted.emplace_back(std::minmax(index_of(link->a, bodies), index_of(link->b, bodies)));
+  }
+  std::ranges::sort(parted);
+}
+
 /// Box2D asks the filter again about all that touches the bodies of a link.
 void Box2dAttachments::refilter(const Link& link) {
-  if (link.touch) return;
+  if (link.touch || link.a->particles().empty()) return;
   filter_.install();
   for (b2Body* const particle : link.a->particles())
     for (b2Fixture* fixture = particle->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
@@ -242,11 +263,7 @@ void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies,
     bodies_[i] = {soft.positions(),           in_step_[i].velocities,         in_step_[i].pushes,
                   in_step_[i].inverse_masses, soft.model().lattice().spacing, soft.asleep()};
   }
-  const auto number = [&](const Box2dBody* body) {
-    const auto found = std::ranges::find_if(bodies, [&](const auto& other) { return other.get() == body; });
-    SC_ASSERT(found != bodies.end(), "an attached body is none of {}", bodies.size());
-    return static_cast<std::uint32_t>(found - bodies.begin());
-  };
+  const auto number = [&](const Box2dBody* body) { return index_of(body, bodies); };
   rigids_.clear();
   rigid_bodies_.clear();
   attachments_.clear();

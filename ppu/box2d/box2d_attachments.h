@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ppu/box2d/box2d_body.h"
@@ -45,6 +46,11 @@ class Box2dAttachments {
   std::vector<EndedAttachment> take_ended();
   /// Whether no attachment keeps two from touching.
   bool lets(const b2Body& a, const b2Body& b) const;
+  /// Whether one keeps a body that Box2D does not know from touching a rigid one.
+  bool parts(const Box2dBody& body, const b2Body& rigid) const;
+  /// Appends the pairs of bodies that attachments keep from touching, by their indices, the lower first, ascending.
+  void append_parted(std::span<const std::unique_ptr<Box2dBody>> bodies,
+                     std::vector<std::pair<std::uint32_t, std::uint32_t>>& parted) const;
   using Piece = PieceOfBody<Box2dBody>;
   /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
   /// each of them once; where none has, the patch was torn, and they break.
@@ -84,6 +90,7 @@ class Box2dAttachments {
   };
 
   AttachmentId add(Link link);
+  static std::uint32_t index_of(const Box2dBody* body, std::span<const std::unique_ptr<Box2dBody>> bodies);
   bool is_there(const b2Body& rigid) const;
   void end_gone();
   template <class Which>

@@ -1,124 +1,51 @@
 #include "ppu/box2d/box2d_body.h"
 
-#include <box2d/b2_circle_shape.h>
-#include <box2d/b2_contact.h>
-#include <box2d/b2_fixture.h>
-
-#include <algorithm>
 #include <utility>
 
 #include "softcell/base/assert.h"
-#include "softcell/box2d/box2d_soft_bodies.h"
 
 namespace softcell::ppu {
 
 using Eigen::Vector2f;
 
-Box2dBody::Box2dBody(b2World& world, SoftBody<2> soft, std::int16_t group)
-    : world_(world), soft_(std::move(soft)), group_(group) {
-  SC_ASSERT(group < 0, "the particles of a body have group {}, and would touch each other", group);
-  add_particles();
-}
+Box2dBody::Box2dBody(b2World& world, SoftBody<2> soft)
+    : world_(world), soft_(std::move(soft)), model_(soft_.shared_model()) {}
 
-Box2dBody::~Box2dBody() {
-  for (b2Body* particle : particles_) world_.DestroyBody(particle);
-}
-
-void Box2dBody::add_particles() {
-  model_ = soft_.shared_model();
-  of_number_.assign(model_->particles(), nullptr);
-  for (const std::uint32_t particle : model_->outer()) add_particle(particle);
+b2Body* Box2dBody::particle(std::uint32_t number) const {
+  SC_ASSERT(number < soft_.positions().size(), "particle {} of {}", number, soft_.positions().size());
+  return nullptr;
 }
 
 void Box2dBody::follow_model() {
   if (!is_of_other_model()) return;
-  SC_ASSERT(!world_.IsLocked(), "{} particles are exchanged within a step of Box2D", particles_.size());
-  for (b2Body* const particle : particles_) world_.DestroyBody(particle);
-  particles_.clear();
-  add_particles();
+  SC_ASSERT(!world_.IsLocked(), "{} particles are exchanged within a step of Box2D", particles().size());
+  model_ = soft_.shared_model();
+  exchange_particles();
 }
 
-void Box2dBody::add_particle(std::uint32_t number) {
-  b2BodyDef definition;
-  definition.type = b2_dynamicBody;
-  definition.position = to_box2d(soft_.position(number));
-  definition.linearVelocity = to_box2d(soft_.velocities()[number]);
-  definition.fixedRotation = true;
-  // A particle alone never sleeps: its neighbours would be pulled towards one that hangs still.
-  definition.allowSleep = false;
-  b2Body* const particle = world_.CreateBody(&definition);
-  b2CircleShape circle;
-  circle.m_radius = soft_.model().contact_radius(number);
-  b2FixtureDef fixture;
-  fixture.shape = &circle;
-  fixture.density = 1;
-  fixture.friction = soft_.settings().friction;
-  fixture.restitution = soft_.settings().restitution;
-  fixture.filter.groupIndex = group_;
-  particle->CreateFixture(&fixture);
-  // All of it: braces alone leave the centre unset, as b2Vec2 has a constructor that does nothing.
-  const b2MassData mass{.mass = soft_.model().masses()[number], .center = {0, 0}, .I = 0};
-  particle->SetMassData(&mass);
-  particles_.push_back(particle);
-  of_number_[number] = particle;
-}
-
-/// Box2D has woken a particle because something that moves touches it, or what it touched is gone.
-bool Box2dBody::was_disturbed() const {
-  return world_.GetGravity() != gravity_asleep_ ||
-         std::ranges::any_of(particles_, [](const b2Body* particle) { return particle->IsAwake(); });
-}
-
-bool Box2dBody::was_pushed() const {
-  if (soft_.asleep()) return was_disturbed();
-  const auto outer = soft_.model().outer();
-  for (std::size_t i = 0; i < outer.size(); ++i) {
-    if (to_eigen(particles_[i]->GetPosition()) != soft_.position(outer[i]) ||
-        to_eigen(particles_[i]->GetLinearVelocity()) != soft_.velocities()[outer[i]])
-      return true;
-  }
-  return false;
-}
+bool Box2dBody::was_disturbed() const { return world_.GetGravity() != gravity_asleep_; }
 
 void Box2dBody::begin_step() {
   if (soft_.asleep() && (was_changed() || was_disturbed())) wake();
-  if (was_changed())
-    place_particles();
-  else
-    take_over_particles();
+  if (!was_changed()) return take_over_particles();
+  seen_revision_ = soft_.revision();
+  seen_resets_ = soft_.resets();
+  place_particles();
 }
 
 void Box2dBody::take_over_particles() {
-  if (!was_changed() && !soft_.asleep()) gather();
+  if (!was_changed() && !soft_.asleep()) gather_particles();
 }
 
 void Box2dBody::move_particle(std::size_t particle, const Vector2f& way) {
-  SC_ASSERT(particle < of_number_.size() && way.allFinite(), "particle {} of {} is moved by ({}, {}) m",
-            particle, of_number_.size(), way.x(), way.y());
-  const Vector2f position = soft_.position(particle) + way;
-  soft_.set_particle(particle, position, soft_.velocities()[particle]);
-  if (b2Body* const outer = of_number_[particle]) outer->SetTransform(to_box2d(position), 0);
+  SC_ASSERT(particle < soft_.positions().size() && way.allFinite(), "particle {} of {} is moved by ({}, {}) m",
+            particle, soft_.positions().size(), way.x(), way.y());
+  soft_.set_particle(particle, soft_.position(particle) + way, soft_.velocities()[particle]);
+  place_particle(particle);
 }
 
-void Box2dBody::hand_over(float step) {
-  SC_ASSERT(step > 0, "a time step of {} s", step);
-  if (soft_.asleep()) return;
-  soft_.limit_speed(Box2dSoftBodies::kMaxTravelInCells * soft_.model().lattice().spacing / step);
-  const auto outer = soft_.model().outer();
-  for (std::size_t i = 0; i < outer.size(); ++i)
-    particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
-}
-
-void Box2dBody::end_step(float step) {
-  if (soft_.asleep()) {
-    if (!was_disturbed()) return;
-    wake();
-    gather();  // Box2D has moved only what was touched: inner particles stay where they are as well
-    return;
-  }
-  gather();
-  soft_.advance_inner(step, to_eigen(world_.GetGravity()));
-  soft_.keep_inner_inside();
+void Box2dBody::end_step(float /*step*/) {
+  if (soft_.asleep() && was_disturbed()) wake();
 }
 
 void Box2dBody::count_stillness(float step, float speed) {
@@ -129,7 +56,7 @@ void Box2dBody::fall_asleep() {
   SC_ASSERT(!soft_.asleep(), "a body falls asleep that has been still for {} s and sleeps",
             stillness_.seconds());
   for (std::size_t i = 0; i < soft_.velocities().size(); ++i) soft_.set_velocity(i, Vector2f::Zero());
-  for (b2Body* particle : particles_) particle->SetAwake(false);  // Box2D stops it, too
+  set_particles_awake(false);  // Box2D stops them, too
   gravity_asleep_ = world_.GetGravity();
   soft_.set_asleep(true);
 }
@@ -137,41 +64,7 @@ void Box2dBody::fall_asleep() {
 void Box2dBody::wake() {
   stillness_.begin();
   soft_.set_asleep(false);
-  for (b2Body* particle : particles_) particle->SetAwake(true);
-}
-
-void Box2dBody::gather() {
-  const auto outer = soft_.model().outer();
-  SC_ASSERT(particles_.size() == outer.size(), "{} bodies of Box2D for {} particles", particles_.size(),
-            outer.size());
-  for (std::size_t i = 0; i < outer.size(); ++i) {
-    soft_.set_particle(outer[i], to_eigen(particles_[i]->GetPosition()),
-                       to_eigen(particles_[i]->GetLinearVelocity()));
-  }
-}
-
-/// The body was changed by its user: so are its particles.
-void Box2dBody::place_particles() {
-  seen_revision_ = soft_.revision();
-  seen_resets_ = soft_.resets();
-  const auto outer = soft_.model().outer();
-  for (std::size_t i = 0; i < outer.size(); ++i) {
-    const b2Vec2 position = to_box2d(soft_.position(outer[i]));
-    if (position != particles_[i]->GetPosition()) particles_[i]->SetTransform(position, 0);
-    particles_[i]->SetLinearVelocity(to_box2d(soft_.velocities()[outer[i]]));
-  }
-  if (particles_.empty()) return;
-  const b2Fixture& now = *particles_.front()->GetFixtureList();
-  if (now.GetFriction() == soft_.settings().friction && now.GetRestitution() == soft_.settings().restitution)
-    return;
-  for (b2Body* const particle : particles_) {
-    particle->GetFixtureList()->SetFriction(soft_.settings().friction);
-    particle->GetFixtureList()->SetRestitution(soft_.settings().restitution);
-    for (b2ContactEdge* edge = particle->GetContactList(); edge != nullptr; edge = edge->next) {
-      edge->contact->ResetFriction();  // contacts keep what they began with
-      edge->contact->ResetRestitution();
-    }
-  }
+  set_particles_awake(true);
 }
 
 }  // namespace softcell::ppu

@@ -1,5 +1,6 @@
 #pragma once
-// One soft body in a Box2D world, and the b2Bodies of its outer particles.
+// One soft body in a Box2D world, whatever it touches with: circles (circle_body.h), or its drawn surface. Box2D knows nothing of the
+// latter: surface_contacts_2d.h moves it.
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_world.h>
@@ -7,27 +8,25 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "ppu/bodies/stillness.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {
 
-/// Its particles are in the order of SoftBodyModel::outer().
 class Box2dBody {
  public:
-  /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
-  Box2dBody(b2World& world, SoftBody<2> soft, std::int16_t group);
-  ~Box2dBody();
+  Box2dBody(b2World& world, SoftBody<2> soft);
+  virtual ~Box2dBody() = default;
   Box2dBody(const Box2dBody&) = delete;
   Box2dBody& operator=(const Box2dBody&) = delete;
 
   SoftBody<2>& soft() { return soft_; }
   const SoftBody<2>& soft() const { return soft_; }
-  std::int16_t group() const { return group_; }
-  std::span<b2Body* const> particles() const { return particles_; }
-  b2Body* particle(std::uint32_t number) const { return of_number_[number]; }  ///< null: an inner one
+  /// Its b2Bodies, in the order of SoftBodyModel::outer(); none: Box2D does not know it.
+  virtual std::span<b2Body* const> particles() const { return {}; }
+  /// @param number  of a particle in the body  @return  null: an inner one, or Box2D does not know it
+  virtual b2Body* particle(std::uint32_t number) const;
 
   /// Whether it has become a body of another model, by a break or an assignment: the particles are not its own.
   bool is_of_other_model() const { return model_ != soft_.shared_model(); }
@@ -39,7 +38,7 @@ class Box2dBody {
   /// Whether what is known of its rotations is of no use since then.
   bool was_reset() const { return soft_.resets() != seen_resets_; }
   /// Whether particles are no longer as they were gathered last, or a sleeping body has a reason to wake.
-  bool was_pushed() const;
+  virtual bool was_pushed() const { return soft_.asleep() && was_disturbed(); }
 
   /// Before the solver: what the body's user may have done to it, or to its particles in Box2D.
   void begin_step();
@@ -47,31 +46,34 @@ class Box2dBody {
   void take_over_particles();
   /// Moves a particle without a velocity. @param particle  its number in the body  @param way  metres
   void move_particle(std::size_t particle, const Eigen::Vector2f& way);
-  /// Behind the solver: Box2D integrates with the new velocities.
-  void hand_over(float step);
-  /// After Box2D's step: outer particles are taken over, inner ones follow.
-  void end_step(float step);
+  /// Behind the solver: whoever integrates gets the new velocities.
+  virtual void hand_over(float /*step*/) {}
+  /// After Box2D's step.
+  virtual void end_step(float step);
 
   /// Adds a step to the time for which the body was slower than `speed` (m/s).
   void count_stillness(float step, float speed);
   float still_for() const { return stillness_.seconds(); }  ///< seconds
+  /// Whether it was too fast to fall asleep at the end of the last step.
+  bool moves() const { return stillness_.moves(); }
   void fall_asleep();
   /// It sleeps again when it has been still for as long again.
   void wake();
 
- private:
-  void add_particles();
-  void add_particle(std::uint32_t number);
-  void gather();
-  void place_particles();
-  bool was_disturbed() const;
+ protected:
+  /// Whether gravity is another than when it fell asleep, or Box2D has woken a particle.
+  virtual bool was_disturbed() const;
+  virtual void exchange_particles() {}                     ///< it has another model
+  virtual void gather_particles() {}                       ///< as Box2D has them
+  virtual void place_particles() {}                        ///< where the body is, with its settings
+  virtual void place_particle(std::size_t /*particle*/) {}  ///< likewise, one that may be an inner one
+  virtual void set_particles_awake(bool /*awake*/) {}
 
   b2World& world_;
   SoftBody<2> soft_;
-  std::shared_ptr<const SoftBodyModel<2>> model_;  // of `particles_`
-  std::int16_t group_;
-  std::vector<b2Body*> particles_;
-  std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner one
+  std::shared_ptr<const SoftBodyModel<2>> model_;  // of its particles
+
+ private:
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;
   Stillness stillness_;
   b2Vec2 gravity_asleep_{0, 0};

@@ -17,8 +17,10 @@
 #include "ppu/box2d/box2d_attachments.h"
 #include "ppu/box2d/box2d_body.h"
 #include "ppu/box2d/box2d_filter.h"
+#include "ppu/box2d/circle_body.h"
 #include "ppu/box2d/parting_pieces.h"
 #include "ppu/box2d/rest.h"
+#include "ppu/box2d/surface_contacts_2d.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -28,7 +30,7 @@ using Eigen::Vector2f;
 struct Box2dSoftBodies::Impl {
   /// @param solver  a SoftBodySolver<2>, or the pointer that owns one
   template <typename Solver>
-  Impl(b2World& w, Solver&& solver)
+  Impl(b2World& w, Solver&& solver, ContactMethod contacts, std::shared_ptr<ContactWorker> worker)
       : world(w),
         rest(w, [this](const b2Body& body) { return soft_body_of(body); }),
         filter(w,
@@ -39,7 +41,9 @@ struct Box2dSoftBodies::Impl {
         attachments(
             w, [this](const b2Body& body) { return soft_body_of(body); }, filter),
         solve(std::forward<Solver>(solver)),
-        workshop(std::in_place) {}
+        workshop(std::in_place) {
+    if (contacts == ContactMethod::kSurface) surfaces.emplace(world, std::move(worker));
+  }
   ~Impl() { workshop.reset(); }  // it works with all of this
 
   template <typename Work>
@@ -65,6 +69,7 @@ struct Box2dSoftBodies::Impl {
     waited += solve.finish(step);
     attachments.solve(bodies, step);
     for (const auto& body : bodies) body->hand_over(step);
+    if (surfaces) surfaces->step(bodies, attachments, step);
   }
 
   void end_step(float step) {
@@ -76,8 +81,12 @@ struct Box2dSoftBodies::Impl {
     if (!sleep) return;
     for (const auto& body : bodies)
       if (!body->soft().asleep() && !attachments.holds(*body)) body->count_stillness(step, sleep->speed);
-    for (const auto& body : bodies)
-      if (!body->soft().asleep()) rest.settle(*body, *sleep);
+    const SoftTouches touches = surfaces ? surfaces->touches() : SoftTouches();
+    for (const auto& body : bodies) {
+      if (body->soft().asleep()) continue;
+      for (Box2dBody* const resting : rest.settle(*body, *sleep, touches))
+        if (surfaces) surfaces->let_lie(*resting);
+    }
   }
 
   /// Null for a b2Body that is no particle.
@@ -112,31 +121,36 @@ struct Box2dSoftBodies::Impl {
   static constexpr std::size_t kMostBodies = 32768;  // one for each negative group
   /// @throws std::runtime_error  there would be too many bodies
   void require_groups(std::size_t more) const {
-    if (bodies.size() + more > kMostBodies)
+    if (!surfaces && bodies.size() + more > kMostBodies)
       throw std::runtime_error(
           "a Box2D world has at most 32768 soft bodies: there are no more collision groups");
   }
   /// The negative group nearest to 0 that no body has.
   std::int16_t free_group() const {
     std::vector<bool> used(kMostBodies + 1);
-    for (const auto& body : bodies) used[static_cast<std::size_t>(-body->group())] = true;
+    for (const auto& body : bodies)
+      used[static_cast<std::size_t>(-static_cast<const CircleBody&>(*body).group())] = true;
     const auto free = std::find(used.begin() + 1, used.end(), false);
     SC_ASSERT(free != used.end(), "{} bodies have all groups", bodies.size());
     return static_cast<std::int16_t>(-(free - used.begin()));
   }
 
+  std::unique_ptr<Box2dBody> make_body(SoftBody<2> body) const {
+    if (surfaces) return std::make_unique<Box2dBody>(world, std::move(body));
+    return std::make_unique<CircleBody>(world, std::move(body), free_group());
+  }
   /// @throws std::runtime_error  there are too many bodies
   Box2dBody& add(SoftBody<2> body) {
     require_groups(1);
-    Box2dBody& added =
-        *bodies.emplace_back(std::make_unique<Box2dBody>(world, std::move(body), free_group()));
+    Box2dBody& added = *bodies.emplace_back(make_body(std::move(body)));
     know_particles(added);
     solve.add(added.soft());
     return added;
   }
   void know_particles(Box2dBody& body) {
     const auto outer = body.soft().model().outer();
-    for (std::size_t i = 0; i < outer.size(); ++i) particles[body.particles()[i]] = {&body, outer[i]};
+    for (std::size_t i = 0; i < body.particles().size(); ++i)
+      particles[body.particles()[i]] = {&body, outer[i]};
   }
   void forget_particles(const Box2dBody& body) {
     for (const b2Body* const particle : body.particles()) particles.erase(particle);
@@ -211,8 +225,13 @@ struct Box2dSoftBodies::Impl {
       with_attachments.push_back({pieces[i], planned[i].particle_of});
       if (i > 0) event.pieces.push_back(&pieces[i]->soft());
     }
-    parting.add(pieces);
-    if (!parting.empty()) filter.install();
+    if (surfaces) {
+      surfaces->forget(body);
+      surfaces->forget_pieces(bodies);
+    } else {
+      parting.add(pieces);
+      if (!parting.empty()) filter.install();
+    }
     attachments.follow_pieces(body, with_attachments);
     for (BodyPiece<2>& piece : planned) event.particles_before.push_back(std::move(piece.particle_of));
     return event.pieces;
@@ -231,6 +250,7 @@ struct Box2dSoftBodies::Impl {
   Box2dFilter filter;
   Box2dAttachments attachments;
   PartingPieces parting;
+  std::optional<SurfaceContacts2d> surfaces;  // none: bodies touch with circles
   std::optional<SleepSettings> sleep;
   std::chrono::nanoseconds spent{0}, waited{0};
   StepAhead<2> solve;  // of `bodies`
@@ -240,12 +260,15 @@ struct Box2dSoftBodies::Impl {
   std::optional<Workshop> workshop;      // until the end of what it works with
 };
 
-Box2dSoftBodies::Box2dSoftBodies(b2World& world)
-    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver<2>>())) {}
-Box2dSoftBodies::Box2dSoftBodies(b2World& world, SolverFactory& solvers)
-    : impl_(std::make_unique<Impl>(world, solvers.make_solver_2d())) {}
-Box2dSoftBodies::Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver)
-    : impl_(std::make_unique<Impl>(world, solver)) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, ContactMethod contacts)
+    : impl_(std::make_unique<Impl>(world, std::make_unique<PpuSolver<2>>(), contacts, nullptr)) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, SolverFactory& solvers, ContactMethod contacts)
+    : impl_(std::make_unique<Impl>(
+          world, solvers.make_solver_2d(), contacts,
+          contacts == ContactMethod::kSurface ? solvers.make_contact_worker() : nullptr)) {}
+Box2dSoftBodies::Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver, ContactMethod contacts,
+                                 std::shared_ptr<ContactWorker> worker)
+    : impl_(std::make_unique<Impl>(world, solver, contacts, std::move(worker))) {}
 Box2dSoftBodies::~Box2dSoftBodies() = default;
 
 SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position) {
@@ -266,7 +289,9 @@ void Box2dSoftBodies::remove(const SoftBody<2>& body) {
   impl_->attachments.forget(**found);
   impl_->forget_particles(**found);
   forget_removed(body, impl_->broken);
+  if (impl_->surfaces) impl_->surfaces->forget(**found);
   impl_->bodies.erase(found);
+  if (impl_->surfaces) impl_->surfaces->forget_pieces(impl_->bodies);
 }
 
 std::vector<SoftBody<2>*> Box2dSoftBodies::cut(const SoftBody<2>& body, const Cut2d& where) {
@@ -358,6 +383,12 @@ Box2dSoftBodies::Particle Box2dSoftBodies::particle_of(const b2Body& body) const
   const auto found = impl_->particles.find(&body);
   if (found == impl_->particles.end()) return {};
   return {&found->second.body->soft(), found->second.number};
+}
+
+std::vector<Contact2d> Box2dSoftBodies::contacts() const {
+  std::vector<Contact2d> contacts;
+  if (impl_->surfaces) impl_->surfaces->append_contacts(contacts);
+  return contacts;
 }
 
 std::chrono::nanoseconds Box2dSoftBodies::time_spent() const { return impl_->spent; }

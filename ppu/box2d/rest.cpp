@@ -31,36 +31,53 @@ bool Rest::rests(const b2Body& body, const SleepSettings& settings) const {
 
 /// What already sleeps, or never moves, keeps nobody awake.
 void Rest::add(b2Body& body) {
-  if (Box2dBody* const soft = soft_body_of_(body)) {
-    if (!soft->soft().asleep()) add_once(soft_, *soft);
-  } else if (body.GetType() != b2_staticBody && body.IsAwake()) {
+  if (Box2dBody* const soft = soft_body_of_(body))
+    add(*soft);
+  else if (body.GetType() != b2_staticBody && body.IsAwake())
     add_once(rigid_, body);
-  }
 }
 
-void Rest::add_neighbours(b2Body& body) {
+void Rest::add(Box2dBody& body) {
+  if (!body.soft().asleep()) add_once(soft_, body);
+}
+
+void Rest::add_neighbours(b2Body& body, const SoftTouches& touches) {
   for (const b2ContactEdge* edge = body.GetContactList(); edge != nullptr; edge = edge->next)
     if (edge->contact->IsTouching()) add(*edge->other);
   for (const b2JointEdge* edge = body.GetJointList(); edge != nullptr; edge = edge->next) add(*edge->other);
+  for (const auto& [soft, rigid] : touches.rigid)
+    if (rigid == &body) add(*soft);
 }
 
-void Rest::settle(Box2dBody& body, const SleepSettings& settings) {
+void Rest::add_neighbours(Box2dBody& body, const SoftTouches& touches) {
+  for (b2Body* const particle : body.particles()) add_neighbours(*particle, touches);
+  for (const auto& [soft, rigid] : touches.rigid)
+    if (soft == &body) add(*rigid);
+  for (const auto& [a, b] : touches.soft) {
+    if (a == &body) add(*b);
+    if (b == &body) add(*a);
+  }
+}
+
+std::span<Box2dBody* const> Rest::settle(Box2dBody& body, const SleepSettings& settings,
+                                         const SoftTouches& touches) {
   SC_ASSERT(!body.soft().asleep(), "a body that has been still for {} s already sleeps", body.still_for());
   soft_.assign(1, &body);
   rigid_.clear();
   for (std::size_t soft = 0, rigid = 0; soft < soft_.size() || rigid < rigid_.size();) {
     if (soft < soft_.size()) {
       Box2dBody& next = *soft_[soft++];
-      if (!rests(next, settings)) return;
-      for (b2Body* const particle : next.particles()) add_neighbours(*particle);
+      if (!rests(next, settings)) return {};
+      add_neighbours(next, touches);
     } else {
       b2Body& next = *rigid_[rigid++];
-      if (!rests(next, settings)) return;
-      if (next.GetType() != b2_kinematicBody) add_neighbours(next);
+      if (!rests(next, settings)) return {};
+      if (next.GetType() != b2_kinematicBody) add_neighbours(next, touches);
     }
   }
   for (Box2dBody* const resting : soft_) resting->fall_asleep();
   for (b2Body* const resting : rigid_) resting->SetAwake(false);
+  return soft_;
 }
 
 }  // namespace softcell::ppu

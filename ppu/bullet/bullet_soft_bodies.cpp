@@ -99,7 +99,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return found == with_surfaces.end() ? nullptr : *found;
   }
   static bool is_of_other_model(const SurfaceBody& body) {
-    return body.contact().model != body.soft().shared_model();
+    return body.contact().model() != body.soft().shared_model();
   }
   void follow_model(SurfaceBody& body) {
     if (is_of_other_model(body)) body.set_contact(surfaces->contact_model(body.soft().shared_model()));

@@ -25,8 +25,8 @@ class SurfaceBody final : public CoupledBody {
   const ContactModel& contact() const { return *contact_; }
   /// The body has another model than before. @param contact  of that; outlives this
   void set_contact(const ContactModel& contact) {
-    SC_ASSERT(contact.model == soft_.shared_model(), "a body of {} particles touches as one of {}",
-              soft_.model().particles(), contact.model->particles());
+    SC_ASSERT(contact.model() == soft_.shared_model(), "a body of {} particles touches as one of {}",
+              soft_.model().particles(), contact.masses().size());
     contact_ = &contact;
   }
 

@@ -38,7 +38,7 @@ const ContactModel& SurfaceContacts::contact_model(const std::shared_ptr<const S
 
 void SurfaceContacts::adopt(std::unique_ptr<ContactModel> contact) {
   SC_ASSERT(contact != nullptr, "no contact model is kept beside {}", models_.size());
-  const SoftBodyModel<3>* const model = contact->model.get();
+  const SoftBodyModel<3>* const model = contact->model().get();
   models_.try_emplace(model, std::move(contact));
 }
 
@@ -63,10 +63,18 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   obstacles_.begin(world_, step);
   if (!attachments_.empty()) attachments_.begin();
   in_stage_.resize(bodies.size());
+  softs_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BodyInStage& in_stage = in_stage_[i];
-    in_stage = {&bodies[i]->soft(), &bodies[i]->contact(), box_of_step(bodies[i]->soft(), step),
-                std::move(in_stage.obstacles)};
+    const SoftBody<3>& soft = bodies[i]->soft();
+    softs_.push_back(&soft);
+    in_stage = {.model = &bodies[i]->contact(),
+                .positions = soft.positions(),
+                .velocities = soft.velocities(),
+                .friction = soft.settings().friction,
+                .restitution = soft.settings().restitution,
+                .box = box_of_step(soft.positions(), soft.velocities(), step),
+                .obstacles = std::move(in_stage.obstacles)};
     in_stage.obstacles.clear();
     obstacles_.add_near(in_stage.box, bodies[i]->filter().group, bodies[i]->filter().mask,
                         in_stage.obstacles);
@@ -80,6 +88,7 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   in_step_.clear();
   if (!attachments_.empty()) attachments_.fill(in_step_, bodies, obstacles_, step);
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
+  move(bodies, step);
   stage_.find_islands(islands_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i]->set_island(islands_.find(static_cast<std::uint32_t>(i)));
@@ -93,6 +102,16 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
     note_triggers(bodies, step);
   }
   obstacles_.apply();
+}
+
+void SurfaceContacts::move(std::span<SurfaceBody* const> bodies, float step) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (in_stage_[i].asleep) continue;
+    SoftBody<3>& soft = bodies[i]->soft();
+    const auto velocities = stage_.velocities(i), pushes = stage_.pushes(i);
+    for (std::size_t p = 0; p < velocities.size(); ++p)
+      soft.set_particle(p, soft.position(p) + step * (velocities[p] + pushes[p]), velocities[p]);
+  }
 }
 
 /// Before anything is solved: what sleeps would stop like a wall whatever hits it, and take its momentum away.
@@ -190,11 +209,11 @@ void SurfaceContacts::append_contacts(std::vector<Contact>& contacts) const {
     appended.position = contact.point;
     appended.normal = contact.normal;
     appended.impulse = contact.impulse;
-    appended.first.soft = in_stage_[contact.a].body;
+    appended.first.soft = softs_[contact.a];
     if (contact.with_rigid)
       appended.second.object = obstacles_.objects()[contact.rigid];
     else
-      appended.second.soft = in_stage_[contact.b].body;
+      appended.second.soft = softs_[contact.b];
   }
 }
 

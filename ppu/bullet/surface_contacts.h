@@ -74,6 +74,7 @@ class SurfaceContacts {
   /// A soft body's number, whether the other one is a collision object, and that one's number: in an order that does not depend on addresses.
   using TouchKey = std::tuple<std::uint32_t, bool, int>;
 
+  void move(std::span<SurfaceBody* const> bodies, float step);
   void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
@@ -89,6 +90,7 @@ class SurfaceContacts {
   Attachments<3> in_step_;
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
+  std::vector<const SoftBody<3>*> softs_;  // of the last substep
   std::vector<std::uint32_t> moving_;  // bodies that wake those in their way
   DisjointSets islands_;               // of bodies in the last substep
   std::vector<bool> is_restless_;      // of each island

@@ -54,7 +54,7 @@ void Bounces::Whole::push(const Vector3d& point, const Vector3d& impulse) {
 
 /// @param time  seconds after the substep's beginning
 Bounces::Whole Bounces::whole_of(const ContactBody& body, double time) {
-  const std::span<const float> masses = body.model->model->masses();
+  const std::span<const float> masses = body.model->masses();
   const auto place = [&](std::size_t p) -> Vector3d {
     return body.positions[p].cast<double>() + time * body.velocities[p].cast<double>();
   };

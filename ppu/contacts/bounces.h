@@ -7,6 +7,7 @@
 // wall in the substep in which it is hit.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,6 +21,12 @@ struct BounceSettings {
   float least_speed = 0.2f;  ///< m/s: what hits more slowly does not bounce, so that it comes to rest
   /// m/s^2, of bodies and of rigid ones that move; velocities hold it already.
   Eigen::Vector3f gravity{0, 0, 0};
+  /// What two restitutions are together: their product, Bullet's way, or the larger one, Box2D's.
+  enum class Mix { kProduct, kLarger } mix = Mix::kProduct;
+
+  float restitution_of(float a, float b) const { return mix == Mix::kProduct ? a * b : std::max(a, b); }
+  /// Whether a body of that restitution may bounce off something.
+  bool may_bounce(float restitution) const { return mix == Mix::kLarger || restitution > 0; }
 };
 
 /// A contact that bounces if it is fast enough.

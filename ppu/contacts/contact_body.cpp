@@ -24,39 +24,78 @@ std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> homes_of_particles(const 
 }  // namespace
 
 ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> shared)
-    : model((SC_ASSERT(shared != nullptr, "contacts of a body without a model"), std::move(shared))),
-      surface(model->mesh(), model->lattice()) {
+    : surface((SC_ASSERT(shared != nullptr, "contacts of a body without a model"), shared->mesh()),
+              shared->lattice()),
+      model_(std::move(shared)),
+      lattice_(model_, &model_->lattice()),
+      masses_(model_->masses()) {
+  weigh();
   place_touch_points();
 }
 
 ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const ContactModel& whole)
-    : model(std::move(piece)), surface(whole.surface, model->lattice(), model->mesh(), model->cracks()) {
-  SC_ASSERT(model->whole() == whole.model, "a piece of {} particles of another body of {}",
-            model->particles(), whole.model->particles());
+    : surface(whole.surface, piece->lattice(), piece->mesh(), piece->cracks()),
+      model_(std::move(piece)),
+      lattice_(model_, &model_->lattice()),
+      masses_(model_->masses()) {
+  SC_ASSERT(model_->whole() == whole.model(), "a piece of {} particles of another body of {}",
+            model_->particles(), whole.masses().size());
+  weigh();
   place_touch_points();
-  crack_sides = ppu::crack_sides(model->lattice(), model->cracks());
+  crack_sides = ppu::crack_sides(lattice(), model_->cracks());
+}
+
+ContactModel::ContactModel(std::shared_ptr<const Lattice<3>> lattice, std::vector<float> masses,
+                           ContactSurface own_surface, std::vector<MarginCell> margin_cells,
+                           std::vector<std::uint32_t> sides)
+    : surface(std::move(own_surface)),
+      crack_sides(std::move(sides)),
+      lattice_(std::move(lattice)),
+      own_masses_(std::move(masses)),
+      masses_(own_masses_),
+      margin_cells_(std::move(margin_cells)) {
+  SC_ASSERT(masses_.size() == lattice_->particles.size() && margin_cells_.size() == lattice_->cells.size(),
+            "{} masses of {} particles, {} of {} cells", masses_.size(), lattice_->particles.size(),
+            margin_cells_.size(), lattice_->cells.size());
+  weigh();
+  place_touch_points();
+}
+
+/// Nothing holds on to a particle without a mass, so that any number will do for it.
+void ContactModel::weigh() {
+  double sum = 0;
+  for (const float mass : masses_) {
+    sum += double{mass};
+    inverse_masses.push_back(mass > 0 ? 1 / mass : 1);
+    root_masses.push_back(mass > 0 ? std::sqrt(mass) : 1);
+  }
+  mass_ = model_ != nullptr ? model_->mass() : static_cast<float>(sum);
+}
+
+Anchor ContactModel::held(const Anchor& anchor) const {
+  if (anchor.cell == Anchor::kNoCell || !is_margin(anchor.cell)) return anchor;
+  Eigen::Vector3f xi = margin_cells_[anchor.cell].off;
+  for (unsigned k = 0; k < 8; ++k)
+    for (unsigned d = 0; d < 3; ++d)
+      if ((k >> d & 1u) != 0) xi[d] += anchor.share[k];
+  return anchor_in_cell(lattice(), margin_cells_[anchor.cell].beside, xi);
 }
 
 /// In each cell points of the surface come first.
 void ContactModel::place_touch_points() {
-  const Lattice<3>& lattice = model->lattice();
-  const auto homes = homes_of_particles(lattice);
-  first_of_cell.assign(lattice.cells.size() + 1, 0);
+  const auto homes = homes_of_particles(lattice());
+  first_of_cell.assign(lattice().cells.size() + 1, 0);
   for (const SurfacePointAtRest& point : surface.points()) ++first_of_cell[point.cell + 1];
-  for (const auto& [cell, xi] : homes) ++first_of_cell[cell + 1];
+  for (const TouchingParticle& touching : surface.particles()) ++first_of_cell[homes[touching.particle].first + 1];
   for (std::size_t i = 1; i < first_of_cell.size(); ++i) first_of_cell[i] += first_of_cell[i - 1];
   touch_points.resize(first_of_cell.back());
   std::vector<std::uint32_t> next(first_of_cell.begin(), first_of_cell.end() - 1);
   for (const SurfacePointAtRest& point : surface.points())
-    touch_points[next[point.cell]++] = {anchor_in_cell(lattice, point.cell, point.xi), point.xi, 0};
+    touch_points[next[point.cell]++] = {anchor_in_cell(lattice(), point.cell, point.xi), point.xi, 0};
   for (const TouchingParticle& touching : surface.particles()) {
     const auto& [cell, xi] = homes[touching.particle];
-    touch_points[next[cell]++] = {anchor_in_cell(lattice, cell, xi), xi,
-                                  touching.allowance * lattice.spacing};
-  }
-  for (const float mass : model->masses()) {
-    inverse_masses.push_back(1 / mass);
-    root_masses.push_back(std::sqrt(mass));
+    touch_points[next[cell]++] = {anchor_in_cell(lattice(), cell, xi), xi,
+                                  touching.allowance * lattice().spacing};
   }
 }
 
@@ -103,7 +142,7 @@ bool may_be_folded(const ContactBody& body, float most) {
 void stiffen(ContactBody& body, std::uint32_t cell, float share) {
   using Eigen::Vector3f;
   const auto& corners = body.lattice().corners[cell];
-  const std::span<const float> masses = body.model->model->masses();
+  const std::span<const float> masses = body.model->masses();
   float mass = 0;
   for (const std::uint32_t k : corners) mass += masses[k];
   // Lengths in cells and masses as shares: the same numbers at every scale.

@@ -49,14 +49,41 @@ struct TouchPoint {
   float allowance = 0;          ///< metres: how deep in others it may be
 };
 
-/// Of a model: its surface and what a particle weighs. Immutable.
-struct ContactModel {
+/// A cell beside a body into which its drawn surface reaches: it moves with the body's cell beside it. Bodies of two dimensions have such
+/// cells (flat_body.h); in three the surface lies within the lattice.
+struct MarginCell {
+  std::uint32_t beside = 0;       ///< the body's cell; of one of the body's own cells: itself
+  Eigen::Vector3f off{0, 0, 0};  ///< from that cell to this one, in cells
+};
+
+/// Of a model: its lattice, its surface and what a particle weighs. Immutable.
+class ContactModel {
+ public:
   explicit ContactModel(std::shared_ptr<const SoftBodyModel<3>> model);
   /// Of a piece of a broken body, which takes a fraction of the time.
   /// @param whole  of the model's whole()
   ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const ContactModel& whole);
+  /// Of a body that is flat: a layer of cells, one cell thick.
+  /// @param masses        kg, of each particle; 0 of those that margin cells alone have
+  /// @param margin_cells  of each cell
+  /// @param crack_sides   as below
+  ContactModel(std::shared_ptr<const Lattice<3>> lattice, std::vector<float> masses, ContactSurface surface,
+               std::vector<MarginCell> margin_cells, std::vector<std::uint32_t> crack_sides);
+  ContactModel(const ContactModel&) = delete;
+  ContactModel& operator=(const ContactModel&) = delete;
 
-  std::shared_ptr<const SoftBodyModel<3>> model;
+  /// Of a body in three dimensions; else null.
+  const std::shared_ptr<const SoftBodyModel<3>>& model() const { return model_; }
+  const Lattice<3>& lattice() const { return *lattice_; }
+  std::span<const float> masses() const { return masses_; }  ///< kg, of each particle
+  float mass() const { return mass_; }                       ///< kg, of the body
+
+  bool is_flat() const { return !margin_cells_.empty(); }
+  /// Whether a cell is none of the body's own.
+  bool is_margin(std::uint32_t cell) const { return is_flat() && margin_cells_[cell].beside != cell; }
+  /// The same place as held by a cell of the body.
+  Anchor held(const Anchor& anchor) const;
+
   ContactSurface surface;
   std::vector<TouchPoint> touch_points;      ///< ascending by cell
   std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
@@ -66,6 +93,14 @@ struct ContactModel {
 
  private:
   void place_touch_points();
+  void weigh();
+
+  std::shared_ptr<const SoftBodyModel<3>> model_;
+  std::shared_ptr<const Lattice<3>> lattice_;
+  std::vector<float> own_masses_;  // of a flat body
+  std::span<const float> masses_;
+  float mass_ = 0;
+  std::vector<MarginCell> margin_cells_;  // empty: there are none
 };
 
 struct ContactBody;
@@ -91,8 +126,8 @@ struct ContactBody {
   float friction = 0.5f;
   float restitution = 0;
 
-  float spacing() const { return model->model->lattice().spacing; }
-  const Lattice<3>& lattice() const { return model->model->lattice(); }
+  float spacing() const { return model->lattice().spacing; }
+  const Lattice<3>& lattice() const { return model->lattice(); }
 };
 
 }  // namespace softcell::ppu

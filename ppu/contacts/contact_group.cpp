@@ -133,6 +133,38 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
   return result;
 }
 
+namespace {
+
+/// What the kernel says of it. Of a body that sleeps it says nothing: no impulse changes that.
+Anchor held_by(const ContactBody& body, const spu::SolveAnchor& there, std::uint16_t cell) {
+  Anchor anchor;
+  anchor.cell = cell;
+  for (std::size_t k = 0; k < 8; ++k) {
+    anchor.particle[k] = there.particle[k];
+    anchor.share[k] = there.weight[k] * body.model->root_masses[there.particle[k]];
+  }
+  return body.model->held(anchor);
+}
+
+}  // namespace
+
+void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b) {
+  float mobility = 0;
+  Vector3f carried = Vector3f::Zero();
+  const auto hold = [&](spu::SolveAnchor& there, std::uint16_t& cell, const ContactBody& body, float sign) {
+    if (body.asleep) return;
+    const Anchor own = held_by(body, there, cell);
+    there = as_kernels_solve_it(own, body.inverse_masses);
+    cell = static_cast<std::uint16_t>(own.cell);
+    mobility += own.mobility(body.inverse_masses);
+    carried += sign * own.of(body.velocities);
+  };
+  hold(contact.a, contact.cell_a, a, -1);
+  hold(contact.b, contact.cell_b, b, 1);
+  contact.mass = 1 / mobility;
+  for (int d = 0; d < 3; ++d) contact.carried[d] = carried[d];
+}
+
 /// The kernel lets contacts alone that push with 0 m/s.
 void hold_pushes(spu::SolveContact& contact) {
   constexpr float kAsGoodAsNothing = 1e-20f;  // m/s

@@ -50,6 +50,10 @@ void prepare(std::span<SoftContact> contacts, const ContactSides& sides);
 spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactSides& sides,
                                       std::span<const ContactRigid> rigids, float step);
 
+/// A contact of two bodies that the kernel contact_find has found, of which one is flat: it is held by cells of the bodies themselves from
+/// now on (ContactModel::held()). @pre nothing has solved it yet
+void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b);
+
 /// As SoftContact::holds_pushes, of a contact that the kernel contact_find has found.
 void hold_pushes(spu::SolveContact& contact);
 

@@ -44,12 +44,14 @@ Vector3f arm_of(const spu::SolveAnchor& anchor, const ContactBody& body, const V
 
 }  // namespace
 
-Bounds<3> box_of_step(const SoftBody<3>& body, float step) {
-  Bounds<3> box{body.position(0), body.position(0)};
-  for (std::size_t i = 0; i < body.positions().size(); ++i) {
-    const Vector3f end = body.position(i) + step * body.velocities()[i];
-    box.low = box.low.cwiseMin(body.position(i)).cwiseMin(end);
-    box.high = box.high.cwiseMax(body.position(i)).cwiseMax(end);
+Bounds<3> box_of_step(std::span<const Vector3f> positions, std::span<const Vector3f> velocities, float step) {
+  SC_ASSERT(!positions.empty() && velocities.size() == positions.size(), "{} velocities of {} particles",
+            velocities.size(), positions.size());
+  Bounds<3> box{positions[0], positions[0]};
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vector3f end = positions[i] + step * velocities[i];
+    box.low = box.low.cwiseMin(positions[i]).cwiseMin(end);
+    box.high = box.high.cwiseMax(positions[i]).cwiseMax(end);
   }
   return box;
 }
@@ -61,19 +63,19 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
   crushed_ = {};
   // Before the first body points into it.
   for (const BodyInStage& body : bodies)
-    nothing_moves_.resize(std::max(nothing_moves_.size(), body.body->positions().size()));
+    nothing_moves_.resize(std::max(nothing_moves_.size(), body.positions.size()));
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const SoftBody<3>& soft = *bodies[i].body;
+    const BodyInStage& soft = bodies[i];
     ContactBody& body = bodies_[i];
-    body.model = bodies[i].model;
-    body.positions = soft.positions();
-    body.velocities.assign(soft.velocities().begin(), soft.velocities().end());
+    body.model = soft.model;
+    body.positions = soft.positions;
+    body.velocities.assign(soft.velocities.begin(), soft.velocities.end());
     body.pushes.assign(body.velocities.size(), Vector3f::Zero());
     body.ends.resize(body.velocities.size());
-    body.friction = soft.settings().friction;
-    body.restitution = soft.settings().restitution;
-    body.box = bodies[i].box;
-    body.asleep = bodies[i].asleep;
+    body.friction = soft.friction;
+    body.restitution = soft.restitution;
+    body.box = soft.box;
+    body.asleep = soft.asleep;
     body.inverse_masses = body.asleep ? std::span<const float>(nothing_moves_).first(body.ends.size())
                                       : body.model->inverse_masses;
     is_crushed_[i] = false;
@@ -97,6 +99,14 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
   }
 }
 
+bool ContactStage::may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInStage> bodies) const {
+  if (bodies[a].asleep && bodies[b].asleep) return false;
+  if (a == b) return may_touch_itself(bodies_[a]);
+  if (!bodies[a].filter.lets(bodies[b].filter)) return false;
+  if (has_attachments() && attachments->parts(a, b)) return false;
+  return !std::binary_search(parted.begin(), parted.end(), Pair(a, b));
+}
+
 /// Pairs of bodies whose boxes overlap, and folded bodies with themselves, in ascending order.
 void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
   by_low_.resize(bodies.size());
@@ -109,10 +119,7 @@ void ContactStage::find_pairs(std::span<const BodyInStage> bodies) {
     const Bounds<3>& box = bodies_[by_low_[i]].box;
     for (std::size_t j = i; j < by_low_.size() && bodies_[by_low_[j]].box.low.x() <= box.high.x(); ++j) {
       const std::uint32_t a = std::min(by_low_[i], by_low_[j]), b = std::max(by_low_[i], by_low_[j]);
-      if (!overlap(box, bodies_[by_low_[j]].box) || (bodies[a].asleep && bodies[b].asleep)) continue;
-      if (a != b && !bodies[a].filter.lets(bodies[b].filter)) continue;
-      if (a != b && has_attachments() && attachments->parts(a, b)) continue;
-      if (a != b || may_touch_itself(bodies_[a])) pairs_.emplace_back(a, b);
+      if (overlap(box, bodies_[by_low_[j]].box) && may_touch(a, b, bodies)) pairs_.emplace_back(a, b);
     }
   }
   std::sort(pairs_.begin(), pairs_.end());
@@ -141,6 +148,13 @@ void ContactStage::find_here(Group& group, float step) {
   }
 }
 
+/// Of what the worker has found.
+void ContactStage::hold_by_own_cells(Group& group) {
+  const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
+  if (!a.model->is_flat() && !b.model->is_flat()) return;
+  for (spu::SolveContact& contact : group.solved.contacts) ppu::hold_by_own_cells(contact, a, b);
+}
+
 /// What the worker was asked for is there already.
 void ContactStage::find_among_bodies(float step) {
   const std::span<const FoundContacts> found =
@@ -152,7 +166,10 @@ void ContactStage::find_among_bodies(float step) {
       group.solved = found[next++];
       group.by_worker = !group.solved.by_caller;
     }
-    if (!group.by_worker) find_here(group, step);
+    if (group.by_worker)
+      hold_by_own_cells(group);
+    else
+      find_here(group, step);
     if (group.size() == 0) --group_count_;
   }
   pair_groups_ = group_count_;
@@ -214,7 +231,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
     const Group& group = groups_[i];
     const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
     const bool itself = !group.with_rigid && group.a == group.b;
-    if (!(a.restitution > 0) || itself) continue;
+    if (!settings.bounces.may_bounce(a.restitution) || itself) continue;
     BounceContact bounce{.a = group.a};
     if (!group.with_rigid) bounce.b = group.b;
     const auto add = [&](std::uint32_t other, const Vector3f& point, const Vector3f& normal,
@@ -231,7 +248,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
       for (const spu::SolveContact& contact : group.solved.contacts) {
         const Vector3f normal(contact.normal);
         add(group.b, Vector3f(contact.point), normal, contact.least_velocity,
-            -normal.dot(Vector3f(contact.carried)), contact.friction, a.restitution * b.restitution);
+            -normal.dot(Vector3f(contact.carried)), contact.friction, settings.bounces.restitution_of(a.restitution, b.restitution));
       }
       continue;
     }
@@ -242,11 +259,11 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
         v -= rigid.velocity_at(contact.point);
         bounce.rigid = contact.rigid;
         add(rigid.number, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction, a.restitution * rigid.restitution);
+            contact.friction, settings.bounces.restitution_of(a.restitution, rigid.restitution));
       } else {
         v -= contact.b.of(b.velocities);
         add(group.b, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction, a.restitution * b.restitution);
+            contact.friction, settings.bounces.restitution_of(a.restitution, b.restitution));
       }
     }
   }
@@ -258,7 +275,7 @@ void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
   pressed_.clear();
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
-    if (!(bodies_[group.a].restitution > 0)) continue;
+    if (!settings.bounces.may_bounce(bodies_[group.a].restitution)) continue;
     const auto remember = [&](std::size_t c, float impulse) {
       if (!(impulse > 0)) return;
       const std::uint32_t other = group.with_rigid ? rigids[group.contacts[c].rigid].number : group.b;
@@ -321,13 +338,6 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
     take_back_lost_spin();
   }
   remember_who_presses(rigids);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i].asleep) continue;
-    const ContactBody& body = bodies_[i];
-    for (std::size_t p = 0; p < body.velocities.size(); ++p)
-      bodies[i].body->set_particle(p, body.positions[p] + step * (body.velocities[p] + body.pushes[p]),
-                                   body.velocities[p]);
-  }
 }
 
 void ContactStage::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
@@ -374,7 +384,7 @@ void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
   const auto with_heavy = [&](const Group& group) {
     return std::any_of(group.contacts.begin(), group.contacts.end(), [&](const SoftContact& contact) {
       const float inverse_mass = rigids[contact.rigid].inverse_mass;
-      return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->model->mass() < 1;
+      return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->mass() < 1;
     });
   };
   const auto with_moving = [&](const Group& group) {

@@ -26,8 +26,11 @@ namespace softcell::ppu {
 
 /// A soft body and what is near it.
 struct BodyInStage {
-  SoftBody<3>* body = nullptr;
   const ContactModel* model = nullptr;
+  std::span<const Eigen::Vector3f> positions = {};   ///< of its particles, metres
+  std::span<const Eigen::Vector3f> velocities = {};  ///< m/s, with the gravity of the substep
+  float friction = 0.5f;
+  float restitution = 0;
   Bounds<3> box = {};                         ///< box_of_step()
   std::vector<std::uint32_t> obstacles = {};  ///< indices of those that it may meet
   bool asleep = false;                        ///< nothing moves it
@@ -56,18 +59,23 @@ struct ContactSettings {
   BounceSettings bounces = {};
 };
 
-/// Around a body's particles and where they would be after `step` seconds.
-Bounds<3> box_of_step(const SoftBody<3>& body, float step);
+/// Around particles and where they would be after `step` seconds. @pre there is one
+Bounds<3> box_of_step(std::span<const Eigen::Vector3f> positions, std::span<const Eigen::Vector3f> velocities,
+                      float step);
 
 /// Used by one thread.
 class ContactStage {
  public:
-  /// Finds the contacts that bodies would have in `step` seconds and changes velocities so that they have
-  /// them, then moves the bodies' particles: x += step (v + push). Rigid bodies' velocities change, too.
-  /// @param bodies  velocities hold gravity already
+  /// Finds the contacts that bodies would have in `step` seconds, and the velocities with which they have them: particles then move
+  /// by step (v + push). Rigid bodies' velocities change, too.
   /// @throws std::runtime_error  a body is not finite, or 1e15 m large or far.
   void step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
             std::span<ContactRigid> rigids, float step);
+
+  /// Of a body after the last step, m/s; a body that sleeps has the same velocities as before.
+  std::span<const Eigen::Vector3f> velocities(std::size_t body) const { return bodies_[body].velocities; }
+  /// What moves it out of what it is in, in that step only, m/s.
+  std::span<const Eigen::Vector3f> pushes(std::size_t body) const { return bodies_[body].pushes; }
 
   /// Appends those of the last step that press, in the order of bodies.
   void append_contacts(std::vector<PressingContact>& contacts) const;
@@ -86,6 +94,8 @@ class ContactStage {
   /// Of these bodies, solved with contacts: behind those of bodies that move, before those with what nothing moves. Null: none. Outlives
   /// the steps.
   Attachments<3>* attachments = nullptr;
+  /// Pairs of bodies that do not touch, the lower number first, ascending; besides those that attachments part.
+  std::span<const std::pair<std::uint32_t, std::uint32_t>> parted = {};
 
  private:
   /// The contacts of a pair of bodies, as seen from a, or of a body with rigid ones.
@@ -105,6 +115,8 @@ class ContactStage {
 
   void take_over(std::span<const BodyInStage> bodies, float step);
   void find_pairs(std::span<const BodyInStage> bodies);
+  bool may_touch(std::uint32_t a, std::uint32_t b, std::span<const BodyInStage> bodies) const;
+  void hold_by_own_cells(Group& group);
   void find_here(Group& group, float step);
   void find_among_bodies(float step);
   void find_with_rigid(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,

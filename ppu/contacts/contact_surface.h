@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "softcell/soft_bodies/lattice.h"
@@ -62,11 +63,15 @@ class ContactSurface {
   /// @param mesh    of the piece   @param cracks  of the piece
   ContactSurface(const ContactSurface& whole, const Lattice<3>& piece, const TriangleMesh& mesh,
                  const Cracks<3>& cracks);
+  /// As somebody else has found it; no particle touches by itself.
+  /// @param points  ascending by cell   @param fields  of each cell, as nodes()
+  ContactSurface(std::vector<SurfacePointAtRest> points, std::vector<CellField> fields)
+      : points_(std::move(points)), fields_(std::move(fields)) {}
 
   /// Ascending by cell. Nearer to each other than half a cell where the surface is flat, and the nearer the more it bends; at each corner and
   /// along each sharp edge of the mesh.
   std::span<const SurfacePointAtRest> points() const { return points_; }
-  /// All particles.
+  /// All particles, or none.
   std::span<const TouchingParticle> particles() const { return particles_; }
 
   /// Distances at a cell's nodes, in cells, x fastest.

@@ -10,7 +10,8 @@ namespace softcell::ppu {
 namespace {
 
 /// Whether a particle at the face has become two.
-bool is_open(const Lattice<3>& lattice, const CellFace& face) {
+template <int kDimension>
+bool is_open(const Lattice<kDimension>& lattice, const CellFace& face) {
   const auto &low = lattice.corners[face.low], &high = lattice.corners[face.high];
   for (std::uint32_t k = 0; k < low.size(); ++k)
     if ((k >> face.axis & 1u) != 0 && low[k] != high[k & ~(1u << face.axis)]) return true;
@@ -19,7 +20,8 @@ bool is_open(const Lattice<3>& lattice, const CellFace& face) {
 
 }  // namespace
 
-std::vector<std::uint32_t> crack_sides(const Lattice<3>& lattice, const Cracks<3>& cracks) {
+template <int kDimension>
+std::vector<std::uint32_t> crack_sides(const Lattice<kDimension>& lattice, const Cracks<kDimension>& cracks) {
   SC_ASSERT(cracks.faces.size() == cracks.is_broken.size(), "{} faces, of which {} may be broken",
             cracks.faces.size(), cracks.is_broken.size());
   std::vector<bool> at_crack(lattice.cells.size());
@@ -38,6 +40,9 @@ std::vector<std::uint32_t> crack_sides(const Lattice<3>& lattice, const Cracks<3
     if (at_crack[cell]) sides[cell] = along.find(cell) + 1;
   return sides;
 }
+
+template std::vector<std::uint32_t> crack_sides(const Lattice<2>&, const Cracks<2>&);
+template std::vector<std::uint32_t> crack_sides(const Lattice<3>&, const Cracks<3>&);
 
 bool are_parted(const Lattice<3>& lattice, const std::vector<std::uint32_t>& sides, std::uint32_t a,
                 std::uint32_t b) {

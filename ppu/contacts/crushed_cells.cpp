@@ -53,8 +53,10 @@ std::array<Vector3f, 8> gradient(const Edges& edges) {
 /// Changes motions, in cells a substep, so that the volume grows by `wanted`.
 void grow(std::vector<Vector3f>& values, float per_value, const std::array<std::uint32_t, 8>& corners,
           const Edges& edges, float wanted, const ContactBody& body) {
-  const auto by_corner = gradient(edges);
-  const std::span<const float> masses = body.model->model->masses();
+  auto by_corner = gradient(edges);
+  if (body.model->is_flat())  // it stays a layer
+    for (Vector3f& by : by_corner) by.z() = 0;
+  const std::span<const float> masses = body.model->masses();
   float mass = 0, mobility = 0;
   for (unsigned k = 0; k < 8; ++k) {
     mass += masses[corners[k]];
@@ -83,7 +85,8 @@ bool CrushedCells::hold(ContactBody& body, float step) {
     return edges_of([&](unsigned k) -> Vector3f { return per_spacing * body.positions[corners[k]]; });
   };
   for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell)
-    if (edges_at_end(lattice.corners[cell]).volume() < kLeastVolume) cells_.push_back(cell);
+    if (!body.model->is_margin(cell) && edges_at_end(lattice.corners[cell]).volume() < kLeastVolume)
+      cells_.push_back(cell);
   if (cells_.empty()) return false;
 
   bool changed = false;

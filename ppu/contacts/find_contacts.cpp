@@ -98,7 +98,7 @@ class ObstacleContacts {
         cells_(cells),
         obstacle_(obstacle),
         rigid_(rigids[obstacle.rigid]),
-        friction_(body.friction * rigid_.friction),
+        friction_(body.friction * rigid_.friction * obstacle.friction),
         step_(step),
         contacts_(contacts) {}
 
@@ -203,11 +203,11 @@ class ObstacleContacts {
 
   void add(const Anchor& anchor, const Vector3f& point, const Hit& hit) {
     SoftContact& contact = contacts_.emplace_back();
-    contact.a = anchor;
+    contact.a = body_.model->held(anchor);
     contact.rigid = obstacle_.rigid;
     contact.point = point;
     contact.normal = obstacle_.rotation * hit.normal;
-    const Vector3f v = anchor.of(body_.velocities) - rigid_.velocity_at(point);
+    const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
     complete(contact, hit.end, contact.normal.dot(v), friction_, step_);
   }
 
@@ -240,7 +240,7 @@ class ObstacleContacts {
     const float steep = outwards.norm();
     if (!(steep > 0) || field.distance / steep > kNear * body_.spacing() + obstacle_.rounding) return;
     SoftContact& contact = contacts_.emplace_back();
-    contact.a = anchor_in_cell(body_.lattice(), place->cell, place->xi);
+    contact.a = body_.model->held(anchor_in_cell(body_.lattice(), place->cell, place->xi));
     contact.rigid = obstacle_.rigid;
     contact.point = point;
     contact.normal = -outwards / steep;
@@ -317,8 +317,9 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     const float distance = field.distance / steep + point.allowance;
     if (distance > kNear * b.spacing()) return;
     SoftContact& contact = contacts.emplace_back();
-    contact.a = point.anchor;
-    contact.b = anchor_in_cell(lattice_b, place->cell, opposite(b, *place, point.anchor.of(a.positions)));
+    contact.a = model.held(point.anchor);
+    contact.b = b.model->held(
+        anchor_in_cell(lattice_b, place->cell, opposite(b, *place, point.anchor.of(a.positions))));
     contact.point = to;
     contact.normal = outwards / steep;
     const Vector3f v = contact.a.of(a.velocities) - contact.b.of(b.velocities);

@@ -15,7 +15,7 @@ LostSpin::Spinning& LostSpin::spinning(std::span<const ContactBody> bodies, std:
   if (of_body.is_known) return of_body;
   of_body.is_known = true;
   const ContactBody& soft = bodies[body];
-  const std::span<const float> masses = soft.model->model->masses();
+  const std::span<const float> masses = soft.model->masses();
   double mass = 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     mass += double{masses[i]};

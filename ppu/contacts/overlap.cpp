@@ -110,7 +110,7 @@ class OverlapSearch {
 
 std::optional<Overlap> find_overlap(const SoftBody<3>& body, const ContactModel& model,
                                     const CellFinder& cells, const Obstacle& obstacle) {
-  SC_ASSERT(&body.model() == model.model.get(), "a body of {} particles with the surface of another model",
+  SC_ASSERT(&body.model() == model.model().get(), "a body of {} particles with the surface of another model",
             body.positions().size());
   return OverlapSearch(body, model, cells, obstacle).find();
 }

@@ -29,7 +29,7 @@ void fit_below(spu::FindCell& cell) {
 }  // namespace
 
 FindModel::FindModel(const ContactModel& model) {
-  const Lattice<3>& lattice = model.model->lattice();
+  const Lattice<3>& lattice = model.lattice();
   for (std::uint32_t c = 0; c < lattice.cells.size(); ++c) {
     spu::FindCell& cell = cells.emplace_back();
     std::copy(lattice.corners[c].begin(), lattice.corners[c].end(), cell.corner);

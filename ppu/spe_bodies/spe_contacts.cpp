@@ -61,7 +61,7 @@ const SpeContacts::Model* SpeContacts::model_of(const ContactModel& contact) {
   if (known != models_.end()) return known->second.get();
   std::unique_ptr<Model>& model = models_[&contact];
   if (contact.inverse_masses.size() > spu::kSolveMaxParticles ||
-      contact.model->lattice().cells.size() > spu::kSolveMaxCells)
+      contact.lattice().cells.size() > spu::kSolveMaxCells)
     return nullptr;
   const FindModel arrays(contact);
   auto made = std::make_unique<Model>();

@@ -52,7 +52,7 @@ std::vector<SceneFile> files_of(const Scene& scene, const Simulation3d& simulati
   return saved_scene(scene, present(simulation), scene.camera, simulation.contacts(), file);
 }
 std::vector<SceneFile> files_of(const Scene2d& scene, const Simulation2d& simulation, const fs::path& file) {
-  return saved_scene(scene, present(simulation), file);
+  return saved_scene(scene, present(simulation), simulation.contacts(), file);
 }
 
 template <class SceneOf, class Simulation>

@@ -26,10 +26,14 @@ inline std::shared_ptr<const SoftBodyModel<2>> rectangle_model(const Eigen::Vect
 }
 
 struct World2d {
-  explicit World2d(float gravity = 9.81f) : box2d(b2Vec2(0, -gravity)) {}
+  explicit World2d(float gravity = 9.81f, ContactMethod contacts = ContactMethod::kSpheres)
+      : box2d(b2Vec2(0, -gravity)), soft(box2d, contacts) {}
+  /// @param solvers  who steps the bodies and has their contacts
+  World2d(float gravity, ContactMethod contacts, SolverFactory& solvers)
+      : box2d(b2Vec2(0, -gravity)), soft(box2d, solvers, contacts) {}
 
   b2World box2d;
-  Box2dSoftBodies soft{box2d};
+  Box2dSoftBodies soft;
 
   b2Body* add_box(const b2Vec2& centre, const b2Vec2& half, float density = 0) {
     b2BodyDef definition;

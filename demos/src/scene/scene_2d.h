@@ -15,6 +15,7 @@
 #include "scripted_input.h"
 #include "softcell/render/frame.h"
 #include "softcell/render/image.h"
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
@@ -101,6 +102,7 @@ struct Scene2d {
   float friction = 0.6f;
   float restitution = 0;  ///< 0..1, of rigid bodies
   int substeps = 2;       ///< of a frame of 1/60 s
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSpheres;  ///< unless the user wants another; kSpheres: circles
   bool sleep = false;     ///< bodies fall asleep when they have come to rest
   int frames = 300;       ///< how long the scene is worth watching without a user
   Camera2d camera;

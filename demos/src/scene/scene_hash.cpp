@@ -178,11 +178,12 @@ std::uint64_t scene_hash(const Scene& scene) {
 
 std::uint64_t scene_hash(const Scene2d& scene) {
   const auto& [name, title, soft_bodies, rigid_bodies, attachments, gravity, friction, restitution, substeps,
-               sleep, frames, camera, script, cuts, pictures, files, begin, document] = scene;
+               contacts, sleep, frames, camera, script, cuts, pictures, files, begin, document] = scene;
   Hash hash;
   hash.add(2, soft_bodies, rigid_bodies, gravity, friction, substeps);
   hash.add_unless(restitution, 0.0f);
   if (!attachments.empty()) hash.add('a', attachments);
+  hash.add_unless(static_cast<int>(contacts), static_cast<int>(ppu::ContactMethod::kSpheres));
   hash.add_unless(static_cast<int>(sleep), 0);
   if (begin) hash.add('b', *begin);
   for (const ScriptedCut<2>& cut : cuts)

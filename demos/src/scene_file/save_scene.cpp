@@ -252,6 +252,11 @@ void save_camera(Table& root, const render::Camera& camera) {
   set_field(table, "far", number_value(camera.far_plane));
 }
 
+void save_contacts(Table& root, ppu::ContactMethod contacts) {
+  set_field(table_in(root, "world"), "contacts",
+            text_value(kContactMethods.at(static_cast<std::size_t>(contacts))));
+}
+
 }  // namespace
 
 Table present_root(const Scene& scene, const PresentScene<3>& now) { return root_now<3>(scene, now); }
@@ -264,9 +269,7 @@ std::vector<SceneFile> saved_scene(const Scene& scene, const PresentScene<3>& no
   SavedScene saved(*scene.document, std::move(now_root), scene_file);
   save_moment(saved.root(), now.moment);
   Table& root = saved.root();
-  if (contacts != scene.contacts)
-    set_field(table_in(root, "world"), "contacts",
-              text_value(kContactMethods.at(static_cast<std::size_t>(contacts))));
+  if (contacts != scene.contacts) save_contacts(root, contacts);
   if (now.moment.tilt) set_field(table_in(root, "begin"), "tilt", vector_value(*now.moment.tilt));
   if (now.moment.seconds > 0)
     set_field(table_in(root, "begin"), "seconds", number_value(static_cast<float>(now.moment.seconds)));
@@ -279,10 +282,11 @@ std::vector<SceneFile> saved_scene(const Scene& scene, const PresentScene<3>& no
 }
 
 std::vector<SceneFile> saved_scene(const Scene2d& scene, const PresentScene<2>& now,
-                                   const fs::path& scene_file) {
+                                   ppu::ContactMethod contacts, const fs::path& scene_file) {
   Table now_root = present_root(scene, now);
   SavedScene saved(*scene.document, std::move(now_root), scene_file);
   save_moment(saved.root(), now.moment);
+  if (contacts != scene.contacts) save_contacts(saved.root(), contacts);
   save_files_of_bodies(scene, saved, "own_image_side", "image",
                        {"shape", "rows", "lattice", "image", "face", "cell_colours"}, {"lattice", "image"});
   return saved.files(now.moment, scene.name);

@@ -40,7 +40,7 @@ std::vector<SceneFile> saved_scene(const Scene& scene, const PresentScene<3>& no
                                    const render::Camera& camera, ppu::ContactMethod contacts,
                                    const std::filesystem::path& scene_file);
 std::vector<SceneFile> saved_scene(const Scene2d& scene, const PresentScene<2>& now,
-                                   const std::filesystem::path& scene_file);
+                                   ppu::ContactMethod contacts, const std::filesystem::path& scene_file);
 
 /// All of them appear, or none. @throws std::runtime_error  one cannot be written; the sentence names it
 void write_scene_files(std::span<const SceneFile> files);

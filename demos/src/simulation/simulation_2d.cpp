@@ -26,6 +26,7 @@
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
+#include "ppu/spe_bodies/spe_contacts.h"
 #include "rigid_grip_2d.h"
 #include "scene/shared_models.h"
 #include "soft_grip_2d.h"
@@ -102,8 +103,9 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction,
 
 /// Everything that moves. A reset makes it anew, so that nothing is left of what was: no contact, no impulse.
 struct World {
-  World(const Scene2d& scene, const Models& models, ppu::SoftBodySolver<2>& solver)
-      : soft_bodies(world, solver) {
+  World(const Scene2d& scene, const Models& models, ppu::SoftBodySolver<2>& solver, ppu::ContactMethod contacts,
+        std::shared_ptr<ppu::ContactWorker> worker)
+      : soft_bodies(world, solver, contacts, std::move(worker)) {
     SC_ASSERT(models.size() == scene.soft_bodies.size(), "the models of {} bodies of {}", models.size(),
               scene.soft_bodies.size());
     world.SetAllowSleeping(scene.sleep);
@@ -169,14 +171,25 @@ struct World {
 
 /// The SPEs, and the solver that works on them.
 struct Spes {
-  explicit Spes(const SimulationOptions& options)
+  Spes(const SimulationOptions& options, ppu::ContactMethod contacts)
       : match_2d(options.kernel("match_2d")),
         job_loop(options.job_loop()),
         jobs(memory, options.spe_options(), job_loop),
-        solver(memory, jobs, {match_2d}) {}
+        solver(memory, jobs, {match_2d}) {
+    if (contacts != ppu::ContactMethod::kSurface) return;
+    contact_find = options.kernel("contact_find");
+    contact_solve = options.kernel("contact_solve");
+  }
+
+  /// Whoever steps the bodies has their contacts, too.
+  std::shared_ptr<ppu::ContactWorker> make_contact_worker() {
+    if (!contact_find) return nullptr;
+    return std::make_shared<ppu::SpeContacts>(memory, jobs, *contact_find, *contact_solve);
+  }
 
   dma::AddressSpace memory;
   ls_sim::KernelImage match_2d, job_loop;
+  std::optional<ls_sim::KernelImage> contact_find, contact_solve;
   ppu::JobSystem jobs;
   ppu::SpeSolver<2> solver;
 };
@@ -206,10 +219,11 @@ struct Simulation2d::State {
       : scene(scene_description),
         script(scene.script),
         controls(initial_controls<2>(scene)),
+        contacts(options.contacts.value_or(scene.contacts)),
         timing(options.timing) {
     SC_ASSERT(scene.substeps > 0, "{} substeps in a frame of scene '{}'", scene.substeps, scene.name);
     if (options.solver == Solver::kSpe) {
-      spes.emplace(options);
+      spes.emplace(options, contacts);
       solver = &spes->solver;
     }
     models = models_of(scene.soft_bodies);
@@ -271,7 +285,8 @@ struct Simulation2d::State {
   void reset() {
     held.release_all();
     SC_ASSERT(solver != nullptr, "scene '{}' has no solver", scene.name);
-    world.emplace(scene, models, *solver);
+    world.reset();  // its worker before the next one's
+    world.emplace(scene, models, *solver, contacts, spes ? spes->make_contact_worker() : nullptr);
     sources.resize(models.size());
     std::iota(sources.begin(), sources.end(), std::size_t{0});
   }
@@ -318,6 +333,7 @@ struct Simulation2d::State {
   std::vector<std::size_t> sources;
   ScriptPlayer<2> script;
   Controls<2> controls;
+  const ppu::ContactMethod contacts;
   const ls_sim::Timing* timing;  // null: nothing is timed
   ppu::PpuSolver<2> on_this_thread;
   std::optional<Spes> spes;
@@ -440,9 +456,20 @@ bool Simulation2d::is_free(const Vector2f& middle, float side) const {
   box.lowerBound = to_box2d(middle - Vector2f::Constant(side / 2));
   box.upperBound = to_box2d(middle + Vector2f::Constant(side / 2));
   state_->world->world.QueryAABB(&anything, box);
-  return !anything.found;
+  if (anything.found) return false;
+  // Box2D does not know bodies that touch with their drawn edges.
+  for (std::size_t b = 0; b < soft_bodies(); ++b) {
+    const ppu::SoftBody<2>& body = soft_body(b);
+    const float reach = side / 2 + body.model().contact_radius();
+    const auto is_near = [&](const Vector2f& particle) {
+      return (particle - middle).cwiseAbs().maxCoeff() < reach;
+    };
+    if (std::ranges::any_of(body.positions(), is_near)) return false;
+  }
+  return true;
 }
 
+ppu::ContactMethod Simulation2d::contacts() const { return state_->contacts; }
 float Simulation2d::time_scale() const { return state_->controls.time_scale(); }
 int Simulation2d::substeps() const { return state_->substeps_of_frame(); }
 bool Simulation2d::paused() const { return state_->controls.paused(); }

@@ -54,6 +54,7 @@ class Simulation2d {
   /// Whether nothing is in a square, or near it: no rigid body's box and no particle. @param side  metres, above 0
   bool is_free(const Eigen::Vector2f& middle, float side) const;
   bool paused() const;
+  ppu::ContactMethod contacts() const;  ///< what the soft bodies touch with
   float time_scale() const;
   int substeps() const;  ///< of a frame of 1/60 s
   std::span<const Hands<2>::Held> held() const;

@@ -37,7 +37,7 @@ struct SimulationOptions {
   /// What the SPEs execute: kernels built for the host, or, interpreted, those built for the SPU. The same bits.
   ls_sim::Machine machine = ls_sim::Machine::kHost;
   Skin skin = Skin::kSpe;
-  std::optional<ppu::ContactMethod> contacts = {};  ///< in three dimensions; none: the scene's
+  std::optional<ppu::ContactMethod> contacts = {};  ///< none: the scene's
   int spes = dma::kSpeCount;
   dma::Schedule schedule{};
   ls_sim::Findings* findings = nullptr;  ///< where checked kernels report; null: kernels are not checked

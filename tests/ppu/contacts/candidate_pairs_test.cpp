@@ -96,7 +96,7 @@ TEST(CandidatePairs, ContactsDoNotDependOnWhenTheirCandidatesWereFound) {
   const ContactModel penguin(make_soft_body_model(make_penguin(0.9f), settings_of(0.15f)));
   SpeRuntime spes({.spes = 1});
   SpeContacts used(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));
-  const Lattice<3>& lattice = penguin.model->lattice();
+  const Lattice<3>& lattice = penguin.lattice();
   const std::size_t count = lattice.particles.size();
   std::size_t contacts = 0;
   for (int i = 0; i < 60; ++i) {

@@ -34,7 +34,7 @@ float volume_of(const SoftBody<3>& body, std::size_t cell) {
 /// A cube whose upper half has been pressed through its lower half.
 struct FoldedCube {
   FoldedCube() {
-    const Lattice<3>& lattice = contact.model->lattice();
+    const Lattice<3>& lattice = contact.lattice();
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       Vector3f p = lattice.rest_position(i);
       if (p.y() > 0.01f) p.y() *= -0.5f;
@@ -56,7 +56,7 @@ TEST(CrushedCells, AreCountedAndBothMomentaAreKept) {
   const auto momenta = [&](const std::vector<Vector3f>& motions) {
     Eigen::Vector<double, 6> sum = Eigen::Vector<double, 6>::Zero();
     for (std::size_t i = 0; i < motions.size(); ++i) {
-      const Vector3d p = double{cube.contact.model->masses()[i]} * motions[i].cast<double>();
+      const Vector3d p = double{cube.contact.masses()[i]} * motions[i].cast<double>();
       sum.head<3>() += p;
       sum.tail<3>() += cube.positions[i].cast<double>().cross(p);
     }
@@ -64,7 +64,7 @@ TEST(CrushedCells, AreCountedAndBothMomentaAreKept) {
   };
   double size = 0;
   for (std::size_t i = 0; i < cube.positions.size(); ++i)
-    size += double{cube.contact.model->masses()[i]} * double{cube.body.velocities[i].norm()};
+    size += double{cube.contact.masses()[i]} * double{cube.body.velocities[i].norm()};
   const auto before = momenta(cube.body.velocities);
   CrushedCells crushed;
   crushed.hold(cube.body, 1.0f / 120);
@@ -80,7 +80,7 @@ TEST(CrushedCells, AreCountedAndBothMomentaAreKept) {
 TEST(CrushedCells, WhatIsNotCrushedIsLeftAlone) {
   FoldedCube cube;
   for (std::size_t i = 0; i < cube.positions.size(); ++i)
-    cube.positions[i] = 0.85f * cube.contact.model->lattice().rest_position(i);  // 0.61 of the volume
+    cube.positions[i] = 0.85f * cube.contact.lattice().rest_position(i);  // 0.61 of the volume
   for (Vector3f& v : cube.body.velocities) v = {1, 2, 3};
   CrushedCells crushed;
   EXPECT_FALSE(crushed.hold(cube.body, 1.0f / 120));
@@ -91,7 +91,7 @@ TEST(CrushedCells, WhatIsNotCrushedIsLeftAlone) {
 /// A cell keeps at least the volume that it has, however fast its corners come together.
 TEST(CrushedCells, AreNotPressedFurther) {
   FoldedCube cube;
-  const Lattice<3>& lattice = cube.contact.model->lattice();
+  const Lattice<3>& lattice = cube.contact.lattice();
   for (std::size_t i = 0; i < cube.positions.size(); ++i) {
     cube.positions[i] = lattice.rest_position(i);
     cube.body.velocities[i] = {0, -90 * lattice.rest_position(i).y(), 0};  // to a quarter in this substep

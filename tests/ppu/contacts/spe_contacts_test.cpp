@@ -23,7 +23,7 @@ using Eigen::Vector3f;
 /// A body somewhere, turned and bent, that moves.
 struct PlacedBody {
   PlacedBody(const ContactModel& model, const Vector3f& position, const Vector3f& velocity, float bend) {
-    const Lattice<3>& lattice = model.model->lattice();
+    const Lattice<3>& lattice = model.lattice();
     for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
       const Vector3f p = lattice.rest_position(i);
       const Eigen::AngleAxisf turn(0.7f + bend * p.y(), Vector3f(1, 2, -1).normalized());
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Bent, SpeContactsFind, ::testing::Values(0.0f, 0.5f, 1.
 TEST(SpeContacts, ABodyMeetsItself) {
   const ContactModel model(make_soft_body_model(make_box({1.8f, 0.2f, 0.2f}, 0.1f), settings_of(0.1f)));
   PlacedBody ring(model, {0, 0, 0}, {0, 0, 0}, 0);
-  const Lattice<3>& lattice = model.model->lattice();
+  const Lattice<3>& lattice = model.lattice();
   for (std::size_t i = 0; i < ring.positions.size(); ++i) {
     const Vector3f p = lattice.rest_position(i);
     const float angle = 3.7f * p.x(), radius = 0.4f - p.y();  // more than once around

@@ -19,7 +19,7 @@ inline void run_contacts(SampleRun& sample, bool solves) {
   ppu::SoftBodySettings settings;
   settings.cell_size = 0.2f;
   const ppu::ContactModel contact(ppu::make_soft_body_model(ppu::make_sphere(0.5f, 12), settings));
-  const ppu::Lattice<3>& lattice = contact.model->lattice();
+  const ppu::Lattice<3>& lattice = contact.lattice();
   const auto particles = static_cast<std::uint32_t>(lattice.particles.size());
   auto contacts = ppu::contact_buffer<spu::SolveContact>(sample.memory(), "contacts", spu::kFindMaxContacts);
   if (solves) {

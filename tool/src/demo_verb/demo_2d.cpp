@@ -51,10 +51,10 @@ class Demo2d final : public demos::SceneDemo<Types2d> {
             .vertices = simulation().particles(),
             .bodies_on_ppu = simulation().bodies_on_ppu()};
   }
-  ppu::ContactMethod contacts() const override { return ppu::ContactMethod::kSpheres; }
+  ppu::ContactMethod contacts() const override { return simulation().contacts(); }
   std::filesystem::path save_scene(const std::optional<std::filesystem::path>& file) const override {
     return write_scene(scene(), file, [&](const std::filesystem::path& path) {
-      return demos::saved_scene(scene(), present(), path);
+      return demos::saved_scene(scene(), present(), simulation().contacts(), path);
     });
   }
 

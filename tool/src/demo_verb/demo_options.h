@@ -25,7 +25,7 @@ struct DemoOptions : demos::PictureOptions, demos::RecordingFiles {
   std::optional<std::filesystem::path> save_scene = {};  ///< at the end of the run
   demos::Solver solver = demos::Solver::kSpe;
   ls_sim::Machine machine = ls_sim::Machine::kHost;
-  std::optional<ppu::ContactMethod> contacts = {};  ///< in three dimensions; none: the scene's
+  std::optional<ppu::ContactMethod> contacts = {};  ///< none: the scene's
   int spes = dma::kSpeCount;
   dma::Schedule schedule{};
   bool checked = false;  ///< run instrumented kernels

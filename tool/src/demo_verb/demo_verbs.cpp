@@ -147,16 +147,11 @@ class DemoVerbs final : public Verb {
     d->add_option("--skin", skin_,
                   "Who makes mesh vertices from particles: spe (default), or gpu, a vertex shader")
         ->type_name("spe|gpu");
-    d->add_option("--contacts", contacts_,
-                  "What soft bodies touch with: spheres, rigid ones at their outer particles, or surface, "
-                  "what is drawn (default: the scene's, mostly surface)")
-        ->type_name("spheres|surface");
     d->callback([&] {
       chosen = [this] {
         parse_texts(demo_3d_);
         demo_3d_.skin = parse_skin(skin_);
         demo_3d_.model.z_up = parse_up(up_);
-        if (contacts_) demo_3d_.contacts = parse_contacts(*contacts_);
         demo_3d_.view = parse_view_3d(view_3d_);
         demo_3d_.view_name = view_3d_;
         return run_demo_3d(demo_3d_);
@@ -167,6 +162,10 @@ class DemoVerbs final : public Verb {
   /// What all demos have.
   void add_demo_options(CLI::App& d, DemoOptions& options, const std::string& default_scene) {
     d.add_flag("--headless", options.headless, "Run without a window, as fast as it goes");
+    d.add_option("--contacts", contacts_,
+                 "What soft bodies touch with: spheres, rigid ones at their outer particles (circles in two "
+                 "dimensions), or surface, what is drawn (default: the scene's)")
+        ->type_name("spheres|surface");
     d.add_option(
          "--scene", options.scene,
          "Scene by name, or a scene file; `softcell scenes` lists them (default: " + default_scene + ")")
@@ -236,6 +235,7 @@ class DemoVerbs final : public Verb {
     options.size = parse_size(size_);
     options.schedule = parse_dma(schedule_);
     parse_engine(engine_, options);
+    if (contacts_) options.contacts = parse_contacts(*contacts_);
   }
 
   Demo2dOptions demo_2d_;

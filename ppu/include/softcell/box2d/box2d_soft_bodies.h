@@ -6,7 +6,10 @@
 //     soft_bodies.step(1.0f / 120);                            // in place of world.Step()
 //     draw(man.positions());
 //
-// Each outer particle is a b2Body: a circle that cannot turn (one that rolls has no friction), which meets
+// With ContactMethod::kSurface bodies touch with their drawn edges (make_skin_2d(), with the model's contact radius), what SPEs find and
+// solve for a solver on SPEs. Box2D does not know them: its rays and listeners see nothing of them, and contacts() says what they press on.
+//
+// With ContactMethod::kSpheres, the default, each outer particle is a b2Body: a circle that cannot turn (one that rolls has no friction), which meets
 // everything in the world but its own body. Before each step of Box2D shape matching changes the particles'
 // velocities, with that step's length; positions are Box2D's own business. Inner particles, which nothing can
 // touch, are integrated here.
@@ -22,12 +25,23 @@
 #include <vector>
 
 #include "softcell/soft_bodies/attachment.h"
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
 
 namespace softcell::ppu {
+
+/// A point at which a soft body presses on something.
+struct Contact2d {
+  Eigen::Vector2f position{0, 0};  ///< metres, in the world
+  Eigen::Vector2f normal{0, 1};    ///< unit length, from the other one to the first
+  float impulse = 0;               ///< kg m/s along the normal, in the last step; above 0
+  const SoftBody<2>* first = nullptr;
+  const SoftBody<2>* second = nullptr;  ///< or null: `rigid`
+  b2Body* rigid = nullptr;
+};
 
 /// All soft bodies of one world, which has only one of these; used by the thread that steps it. Box2D has no
 /// callback before a step, so the step goes through here. Negative collision groups are its own, one for each
@@ -41,11 +55,14 @@ class Box2dSoftBodies {
   static constexpr float kMaxTravelInCells = 1.0f;
 
   /// The thread that steps the world does the shape matching. @param world  outlives this.
-  explicit Box2dSoftBodies(b2World& world);
+  explicit Box2dSoftBodies(b2World& world, ContactMethod contacts = ContactMethod::kSpheres);
   /// @param solvers  makes the solver that does the shape matching: SpeRuntime has SPEs do it. Outlives this.
-  Box2dSoftBodies(b2World& world, SolverFactory& solvers);
+  Box2dSoftBodies(b2World& world, SolverFactory& solvers, ContactMethod contacts = ContactMethod::kSpheres);
   /// @param solver  does the shape matching: SpeSolver<2> on the SPEs. Outlives this, and serves nobody else.
-  Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver);
+  /// @param worker  for ContactMethod::kSurface: who finds and solves contacts, as SolverFactory makes it; null: the thread that steps the
+  ///                world
+  Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver, ContactMethod contacts = ContactMethod::kSpheres,
+                  std::shared_ptr<ContactWorker> worker = nullptr);
   /// Removes all bodies.
   ~Box2dSoftBodies();
   Box2dSoftBodies(const Box2dSoftBodies&) = delete;
@@ -144,6 +161,9 @@ class Box2dSoftBodies {
   };
   /// The particle that a b2Body stands for, for contact listeners; without a body for every other b2Body.
   Particle particle_of(const b2Body& body) const;
+
+  /// With ContactMethod::kSurface: the contacts of the last step. Else none: Box2D has them.
+  std::vector<Contact2d> contacts() const;
 
   /// Time spent in this class's part of the steps so far, by the clock.
   std::chrono::nanoseconds time_spent() const;

@@ -1,0 +1,214 @@
+#include "ppu/box2d/box2d_obstacles.h"
+
+#include <box2d/b2_chain_shape.h>
+#include <box2d/b2_circle_shape.h>
+#include <box2d/b2_edge_shape.h>
+#include <box2d/b2_polygon_shape.h>
+#include <box2d/b2_world_callbacks.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+Vector3f lifted(const b2Vec2& v, float z = 0) { return {v.x, v.y, z}; }
+
+bool is_wanted(const b2Fixture& fixture, const CollisionFilter& filter) {
+  const b2Filter& own = fixture.GetFilterData();
+  return !fixture.IsSensor() && fixture.GetBody()->IsEnabled() &&
+         filter.lets({static_cast<int>(own.categoryBits), static_cast<int>(own.maskBits)});
+}
+
+/// How many fixtures a body has got before this one.
+std::uint32_t number_of(const b2Fixture& fixture) {
+  std::uint32_t behind = 0;
+  for (const b2Fixture* next = fixture.GetNext(); next != nullptr; next = next->GetNext()) ++behind;
+  return behind;
+}
+
+}  // namespace
+
+class Box2dObstacles::Collector final : public b2QueryCallback {
+ public:
+  Collector(const CollisionFilter& filter, const b2AABB& box, const Box2dObstacles& of, std::vector<Found>& found)
+      : filter_(filter), box_(box), of_(of), found_(found) {}
+  /// Once for each child whose box is near.
+  bool ReportFixture(b2Fixture* fixture) override {
+    if (!is_wanted(*fixture, filter_)) return true;
+    const std::uint32_t body = of_.numbers_.at(fixture->GetBody()), number = number_of(*fixture);
+    for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child)
+      if (b2TestOverlap(fixture->GetAABB(child), box_)) found_.push_back({body, number, child, fixture});
+    return true;
+  }
+
+ private:
+  const CollisionFilter& filter_;
+  const b2AABB& box_;
+  const Box2dObstacles& of_;
+  std::vector<Found>& found_;
+};
+
+void Box2dObstacles::begin(b2World& world, float step, float layer) {
+  SC_ASSERT(step > 0 && layer > 0, "a substep of {} s, of bodies {} m above and below the plane", step, layer);
+  world_ = &world;
+  step_ = step;
+  layer_ = layer;
+  obstacles_.clear();
+  rigids_.clear();
+  before_.clear();
+  bodies_.clear();
+  known_.clear();
+  shapes_used_ = 0;
+  number_bodies();
+}
+
+/// Bodies keep their numbers as long as they are there. The world lists the newest first.
+void Box2dObstacles::number_bodies() {
+  unknown_.clear();
+  std::size_t count = 0;
+  for (b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext(), ++count)
+    if (!numbers_.contains(body)) unknown_.push_back(body);
+  if (numbers_.size() + unknown_.size() != count) {
+    std::unordered_map<const b2Body*, std::uint32_t> there;
+    for (const b2Body* body = world_->GetBodyList(); body != nullptr; body = body->GetNext())
+      if (const auto known = numbers_.find(body); known != numbers_.end()) there.insert(*known);
+    numbers_ = std::move(there);
+  }
+  for (auto body = unknown_.rbegin(); body != unknown_.rend(); ++body) numbers_.emplace(*body, next_number_++);
+}
+
+void Box2dObstacles::add_near(const Bounds<3>& box, const CollisionFilter& filter,
+                              std::vector<std::uint32_t>& indices) {
+  SC_ASSERT(world_ != nullptr, "obstacles for groups {} are looked for before begin()", filter.mask);
+  b2AABB query;
+  query.lowerBound = {box.low.x(), box.low.y()};
+  query.upperBound = {box.high.x(), box.high.y()};
+  found_.clear();
+  Collector near(filter, query, *this, found_);
+  world_->QueryAABB(&near, query);
+  std::sort(found_.begin(), found_.end());
+  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  for (const Found& found : found_) indices.push_back(obstacle_of(found));
+}
+
+std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
+  const auto known = std::find(bodies_.begin(), bodies_.end(), &body);
+  if (known != bodies_.end()) return static_cast<std::uint32_t>(known - bodies_.begin());
+  ContactRigid rigid;
+  rigid.number = numbers_.at(&body);
+  rigid.centre = lifted(body.GetWorldCenter());
+  rigid.velocity = lifted(body.GetLinearVelocity());
+  rigid.spin = {0, 0, body.GetAngularVelocity()};
+  rigid.friction = 1;  // fixtures have it
+  for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
+    rigid.restitution = std::max(rigid.restitution, fixture->GetRestitution());
+  if (body.GetType() == b2_dynamicBody) {
+    // Box2D adds gravity after this.
+    if (body.IsAwake()) rigid.velocity += step_ * body.GetGravityScale() * lifted(world_->GetGravity());
+    rigid.inverse_mass = 1 / body.GetMass();
+    const float inertia = body.GetInertia() - body.GetMass() * body.GetLocalCenter().LengthSquared();
+    if (!body.IsFixedRotation() && inertia > 0) rigid.inverse_inertia(2, 2) = 1 / inertia;
+  }
+  rigids_.push_back(rigid);
+  before_.push_back(rigid);
+  bodies_.push_back(&body);
+  return static_cast<std::uint32_t>(rigids_.size() - 1);
+}
+
+Box2dObstacles::Shape& Box2dObstacles::next_shape() {
+  if (shapes_used_ == shapes_.size()) shapes_.emplace_back();
+  Shape& shape = shapes_[shapes_used_++];
+  shape.planes.clear();
+  shape.edges.clear();
+  shape.triangles.clear();
+  return shape;
+}
+
+std::uint32_t Box2dObstacles::obstacle_of(const Found& found) {
+  const std::pair<const b2Fixture*, int> key(found.there, found.child);
+  const auto known = std::ranges::find(known_, key, [](const auto& entry) { return entry.first; });
+  if (known != known_.end()) return known->second;
+  b2Fixture& fixture = *found.there;
+  const b2Transform& pose = fixture.GetBody()->GetTransform();
+  Obstacle obstacle;
+  obstacle.rigid = rigid_of(*fixture.GetBody());
+  obstacle.friction = std::sqrt(fixture.GetFriction());
+  obstacle.position = lifted(pose.p);
+  obstacle.rotation << pose.q.c, -pose.q.s, 0, pose.q.s, pose.q.c, 0, 0, 0, 1;
+  Shape& shape = next_shape();
+  switch (fixture.GetType()) {
+    case b2Shape::e_circle:
+      add_circle(fixture, obstacle, shape);
+      break;
+    case b2Shape::e_polygon:
+      add_polygon(fixture, obstacle, shape);
+      break;
+    case b2Shape::e_edge: {
+      const auto& edge = static_cast<const b2EdgeShape&>(*fixture.GetShape());
+      add_edge(edge.m_vertex1, edge.m_vertex2, obstacle, shape);
+      break;
+    }
+    default: {
+      SC_ASSERT(fixture.GetType() == b2Shape::e_chain, "a fixture of type {}",
+                static_cast<int>(fixture.GetType()));
+      b2EdgeShape edge;
+      static_cast<const b2ChainShape&>(*fixture.GetShape()).GetChildEdge(&edge, found.child);
+      add_edge(edge.m_vertex1, edge.m_vertex2, obstacle, shape);
+    }
+  }
+  obstacle.planes = shape.planes;
+  obstacle.edges = shape.edges;
+  obstacle.triangles = shape.triangles;
+  const auto index = static_cast<std::uint32_t>(obstacles_.size());
+  obstacles_.push_back(obstacle);
+  known_.emplace_back(key, index);
+  return index;
+}
+
+/// A ball: nothing touches it but at z = 0.
+void Box2dObstacles::add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape) {
+  const auto& circle = static_cast<const b2CircleShape&>(*fixture.GetShape());
+  obstacle.kind = ObstacleKind::kBox;
+  obstacle.position = obstacle.to_world(lifted(circle.m_p));
+  obstacle.rounding = circle.m_radius;
+  shape.edges.push_back({Vector3f::Zero(), Vector3f::Zero()});
+}
+
+/// Without top and bottom. Its corners are what may be sharper than what it meets.
+void Box2dObstacles::add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape) {
+  const auto& polygon = static_cast<const b2PolygonShape&>(*fixture.GetShape());
+  obstacle.kind = ObstacleKind::kHull;
+  for (int i = 0; i < polygon.m_count; ++i) {
+    const b2Vec2 &normal = polygon.m_normals[i], &corner = polygon.m_vertices[i];
+    shape.planes.emplace_back(normal.x, normal.y, 0, b2Dot(normal, corner));
+    shape.edges.push_back({lifted(corner), lifted(corner)});
+  }
+}
+
+/// A wall, as high as the layer and as much again.
+void Box2dObstacles::add_edge(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const {
+  obstacle.kind = ObstacleKind::kTriangles;
+  const float high = 2 * layer_;
+  shape.triangles.push_back({lifted(from, -high), lifted(to, -high), lifted(to, high)});
+  shape.triangles.push_back({lifted(from, -high), lifted(to, high), lifted(from, high)});
+  for (const b2Vec2& end : {from, to, from, from, to, to}) shape.edges.push_back({lifted(end), lifted(end)});
+}
+
+void Box2dObstacles::apply() {
+  for (std::size_t i = 0; i < rigids_.size(); ++i) {
+    if (rigids_[i].inverse_mass == 0) continue;
+    const Vector3f dv = rigids_[i].velocity - before_[i].velocity;
+    const float dw = rigids_[i].spin.z() - before_[i].spin.z();
+    if (dv.isZero(0) && dw == 0) continue;
+    b2Body& body = *bodies_[i];
+    body.SetLinearVelocity(body.GetLinearVelocity() + b2Vec2(dv.x(), dv.y()));
+    body.SetAngularVelocity(body.GetAngularVelocity() + dw);
+  }
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,81 @@
+#pragma once
+// What is rigid near soft bodies in two dimensions, as plain data of contacts in three: shapes go on endlessly above and below.
+
+#include <box2d/b2_body.h>
+#include <box2d/b2_fixture.h>
+#include <box2d/b2_world.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "ppu/contacts/obstacle.h"
+#include "softcell/soft_bodies/contact.h"
+
+namespace softcell::ppu {
+
+/// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains keep out what comes from either
+/// side. Sensors are none. Used by one thread. Allocates when there are more of them than ever before.
+class Box2dObstacles {
+ public:
+  /// Forgets what was near before. @param layer  metres above and below z = 0 in which soft bodies are
+  void begin(b2World& world, float step, float layer);
+
+  /// Appends the indices of all obstacles in a box, those of one body behind each other, bodies in the order in which the world got them.
+  void add_near(const Bounds<3>& box, const CollisionFilter& filter, std::vector<std::uint32_t>& indices);
+
+  std::span<const Obstacle> obstacles() const { return obstacles_; }
+  std::span<ContactRigid> rigids() { return rigids_; }
+  /// Whose rigids() these are.
+  std::span<b2Body* const> bodies() const { return bodies_; }
+
+  /// Whether the world has a body, which may be destroyed. @pre begin() was called
+  bool has(const b2Body* body) const { return numbers_.contains(body); }
+
+  /// Gives rigid bodies the velocities that contacts have given their ContactRigid.
+  void apply();
+
+ private:
+  using Triangle = std::array<Eigen::Vector3f, 3>;
+  /// The lists of one obstacle.
+  struct Shape {
+    std::vector<Eigen::Vector4f> planes;
+    std::vector<ObstacleEdge> edges;
+    std::vector<Triangle> triangles;
+  };
+  struct Found {
+    std::uint32_t body;     // its number
+    std::uint32_t fixture;  // how many the body has behind it
+    int child;
+    b2Fixture* there;
+    auto operator<=>(const Found&) const = default;
+  };
+  class Collector;
+
+  void number_bodies();
+  std::uint32_t rigid_of(b2Body& body);
+  std::uint32_t obstacle_of(const Found& found);
+  static void add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
+  static void add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
+  void add_edge(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const;
+  Shape& next_shape();
+
+  b2World* world_ = nullptr;
+  float step_ = 0, layer_ = 0;
+  std::vector<Obstacle> obstacles_;
+  std::vector<ContactRigid> rigids_, before_;
+  std::vector<b2Body*> bodies_;
+  std::unordered_map<const b2Body*, std::uint32_t> numbers_;  // of all that the world has
+  std::uint32_t next_number_ = 0;
+  std::vector<b2Body*> unknown_;
+  std::vector<Found> found_;
+  std::vector<std::pair<std::pair<const b2Fixture*, int>, std::uint32_t>> known_;  // obstacles of this substep
+  std::deque<Shape> shapes_;  // obstacles point into them
+  std::size_t shapes_used_ = 0;
+};
+
+}  // namespace softcell::ppu

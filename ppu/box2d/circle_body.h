@@ -1,0 +1,45 @@
+#pragma once
+// A soft body of which each outer particle is a b2Body: a circle.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ppu/box2d/box2d_body.h"
+
+namespace softcell::ppu {
+
+/// Its particles are in the order of SoftBodyModel::outer().
+class CircleBody final : public Box2dBody {
+ public:
+  /// @param group  below 0, no other body's: Box2D makes no contacts within a negative group.
+  CircleBody(b2World& world, SoftBody<2> soft, std::int16_t group);
+  ~CircleBody() override;
+
+  std::int16_t group() const { return group_; }
+  std::span<b2Body* const> particles() const override { return particles_; }
+  b2Body* particle(std::uint32_t number) const override { return of_number_[number]; }
+
+  bool was_pushed() const override;
+  /// Box2D integrates with the new velocities.
+  void hand_over(float step) override;
+  /// Outer particles are taken over, inner ones follow.
+  void end_step(float step) override;
+
+ private:
+  bool was_disturbed() const override;
+  void exchange_particles() override;
+  void gather_particles() override;
+  void place_particles() override;
+  void place_particle(std::size_t particle) override;
+  void set_particles_awake(bool awake) override;
+  void add_particles();
+  void add_particle(std::uint32_t number);
+  void remove_particles();
+
+  std::int16_t group_;
+  std::vector<b2Body*> particles_;
+  std::vector<b2Body*> of_number_;  // by the particle's number in the body; null: an inner one
+};
+
+}  // namespace softcell::ppu

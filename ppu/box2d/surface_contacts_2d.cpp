@@ -1,0 +1,215 @@
+#include "ppu/box2d/surface_contacts_2d.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+/// Kinematic bodies, too.
+bool moves(const b2Body& body) {
+  constexpr float kMoves = 0.05f;  // m/s and rad/s
+  return body.GetType() != b2_staticBody && body.IsAwake() &&
+         (body.GetLinearVelocity().LengthSquared() > kMoves * kMoves ||
+          std::abs(body.GetAngularVelocity()) > kMoves);
+}
+
+bool is_same(const b2Transform& a, const b2Transform& b) {
+  return a.p == b.p && a.q.s == b.q.s && a.q.c == b.q.c;
+}
+
+}  // namespace
+
+SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker)
+    : world_(world), worker_(std::move(worker)) {
+  stage_.worker = worker_.get();
+}
+
+/// A piece is drawn as its part of the whole, and touches as it is drawn.
+const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
+    const std::shared_ptr<const SoftBodyModel<2>>& model) {
+  std::unique_ptr<Model>& known = models_[model.get()];  // stays where it is, whatever else comes
+  if (known) return *known;
+  Skin2d skin = model->is_piece()
+                    ? skin_of_piece(model_of(model->whole()).skin, model->whole()->lattice(), model->lattice())
+                    : make_skin_2d(model->lattice(), std::min(model->contact_radius() / model->lattice().spacing, kMaxSkinMargin));
+  known = std::make_unique<Model>(model, std::move(skin));
+  return *known;
+}
+
+void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
+  const SoftBody<2>& soft = body.soft();
+  kept.model->flat.lift(soft.positions(), 0.5f * soft.model().lattice().spacing, kept.positions);
+  kept.model->flat.lift(soft.velocities(), 0, kept.velocities);
+  if (soft.asleep()) return;
+  const Vector2f fall = step * to_eigen(world_.GetGravity());
+  for (Vector3f& v : kept.velocities) v.head<2>() += fall;
+}
+
+void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments, float step) {
+  float largest = 0;
+  for (const auto& body : bodies) largest = std::max(largest, body->soft().model().lattice().spacing);
+  obstacles_.begin(world_, step, largest);
+  in_stage_.resize(bodies.size());
+  softs_.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Box2dBody& body = *bodies[i];
+    const SoftBody<2>& soft = body.soft();
+    Kept& kept = kept_[&body];
+    kept.model = &model_of(soft.shared_model());
+    lift(body, kept, step);
+    softs_.push_back(&soft);
+    BodyInStage& in_stage = in_stage_[i];
+    in_stage = {.model = &kept.model->flat.contact(),
+                .positions = kept.positions,
+                .velocities = kept.velocities,
+                .friction = std::sqrt(soft.settings().friction),
+                .restitution = soft.settings().restitution,
+                .box = box_of_step(kept.positions, kept.velocities, step),
+                .obstacles = std::move(in_stage.obstacles)};
+    in_stage.obstacles.clear();
+    obstacles_.add_near(in_stage.box, in_stage.filter, in_stage.obstacles);
+    std::erase_if(in_stage.obstacles, [&](std::uint32_t obstacle) {
+      return attachments.parts(body, *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
+    });
+    if (soft.asleep() && must_wake(kept, in_stage)) wake(body, kept);
+  }
+  parted_.clear();
+  attachments.append_parted(bodies, parted_);
+  stage_.parted = parted_;
+}
+
+/// What lies beside it has begun to move, or what it lies on is gone.
+bool SurfaceContacts2d::must_wake(const Kept& kept, const BodyInStage& in_stage) const {
+  const auto is_gone = [&](const Support& support) {
+    return !obstacles_.has(support.body) || !is_same(support.body->GetTransform(), support.pose);
+  };
+  const auto moves_there = [&](std::uint32_t obstacle) {
+    return moves(*obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
+  };
+  return kept.lost_support || std::ranges::any_of(kept.supports, is_gone) || std::ranges::any_of(in_stage.obstacles, moves_there);
+}
+
+void SurfaceContacts2d::wake(Box2dBody& body, Kept& kept) {
+  body.wake();
+  kept.supports.clear();
+  kept.lies_on.clear();
+  kept.lost_support = false;
+}
+
+/// Before anything is solved: what sleeps would stop like a wall whatever hits it, and take its momentum away.
+void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    BodyInStage& sleeper = in_stage_[i];
+    if (bodies[i]->soft().asleep()) {
+      for (std::size_t other = 0; other < bodies.size(); ++other) {
+        const bool hits = !bodies[other]->soft().asleep() && bodies[other]->moves() &&
+                          overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.lets(in_stage_[other].filter);
+        if (!hits) continue;
+        wake(*bodies[i], kept_.at(bodies[i].get()));
+        break;
+      }
+    }
+    sleeper.asleep = bodies[i]->soft().asleep();
+    if (sleeper.asleep) sleeper.obstacles.clear();
+  }
+}
+
+void SurfaceContacts2d::step(Bodies bodies, const Box2dAttachments& attachments, float step) {
+  if (bodies.empty()) return;
+  SC_ASSERT(step > 0 && !world_.IsLocked(), "contacts of {} s within a step of Box2D, or of none", step);
+  begin(bodies, attachments, step);
+  wake_those_in_the_way(bodies);
+  stage_.settings.bounces = {
+      .least_speed = 1,  // Box2D's threshold of restitution
+      .gravity = {world_.GetGravity().x, world_.GetGravity().y, 0},
+      .mix = BounceSettings::Mix::kLarger,
+  };
+  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
+  move(bodies, step);
+  obstacles_.apply();
+  note_touches(bodies);
+}
+
+void SurfaceContacts2d::move(Bodies bodies, float step) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (in_stage_[i].asleep) continue;
+    SoftBody<2>& soft = bodies[i]->soft();
+    for (std::size_t p = 0; p < soft.positions().size(); ++p) {
+      const Vector2f velocity = FlatModel::lower(stage_.velocities(i), p);
+      const Vector2f push = FlatModel::lower(stage_.pushes(i), p);
+      soft.set_particle(p, soft.position(p) + step * (velocity + push), velocity);
+    }
+  }
+}
+
+/// What presses on a body that is awake stays awake.
+void SurfaceContacts2d::note_touches(Bodies bodies) {
+  pressing_.clear();
+  stage_.append_contacts(pressing_);
+  touches_.soft.clear();
+  touches_.rigid.clear();
+  for (const PressingContact& contact : pressing_) {
+    Box2dBody* const a = bodies[contact.a].get();
+    if (contact.with_rigid) {
+      b2Body* const rigid = obstacles_.bodies()[contact.rigid];
+      if (!touches_.rigid.empty() && touches_.rigid.back() == std::pair(a, rigid)) continue;
+      touches_.rigid.emplace_back(a, rigid);
+      if (rigid->GetType() == b2_dynamicBody) rigid->SetAwake(true);
+    } else if (contact.a != contact.b) {
+      Box2dBody* const b = bodies[contact.b].get();
+      if (touches_.soft.empty() || touches_.soft.back() != std::pair(a, b)) touches_.soft.emplace_back(a, b);
+    }
+  }
+}
+
+void SurfaceContacts2d::append_contacts(std::vector<Contact2d>& contacts) const {
+  for (const PressingContact& contact : pressing_) {
+    Contact2d& appended = contacts.emplace_back();
+    appended.position = contact.point.head<2>();
+    appended.normal = contact.normal.head<2>();
+    appended.impulse = contact.impulse;
+    appended.first = softs_[contact.a];
+    if (contact.with_rigid)
+      appended.rigid = obstacles_.bodies()[contact.rigid];
+    else
+      appended.second = softs_[contact.b];
+  }
+}
+
+void SurfaceContacts2d::let_lie(const Box2dBody& body) {
+  Kept& kept = kept_[&body];
+  kept.supports.clear();
+  kept.lies_on.clear();
+  for (const auto& [soft, rigid] : touches_.rigid)
+    if (soft == &body) kept.supports.push_back({rigid, rigid->GetTransform()});
+  for (const auto& [a, b] : touches_.soft) {
+    if (a == &body) kept.lies_on.push_back(b);
+    if (b == &body) kept.lies_on.push_back(a);
+  }
+}
+
+void SurfaceContacts2d::forget(const Box2dBody& body) {
+  kept_.erase(&body);
+  std::erase_if(touches_.soft, [&](const auto& pair) { return pair.first == &body || pair.second == &body; });
+  std::erase_if(touches_.rigid, [&](const auto& pair) { return pair.first == &body; });
+  for (auto& [other, kept] : kept_)
+    if (std::ranges::find(kept.lies_on, &body) != kept.lies_on.end()) kept.lost_support = true;
+  stage_.forget_who_presses();
+}
+
+void SurfaceContacts2d::forget_pieces(Bodies bodies) {
+  std::erase_if(models_, [&](const auto& known) {
+    const auto is_of = [&](const auto& body) { return body->soft().shared_model().get() == known.first; };
+    if (!known.first->is_piece() || std::ranges::any_of(bodies, is_of)) return false;
+    if (worker_) worker_->forget(known.second->flat.contact());
+    return true;
+  });
+}
+
+}  // namespace softcell::ppu

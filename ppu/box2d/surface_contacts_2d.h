@@ -1,0 +1,92 @@
+#pragma once
+// The contacts of all soft bodies of a Box2dSoftBodies that touch with their drawn edges.
+
+#include <box2d/b2_world.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "ppu/box2d/box2d_attachments.h"
+#include "ppu/box2d/box2d_body.h"
+#include "ppu/box2d/box2d_obstacles.h"
+#include "ppu/box2d/rest.h"
+#include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/flat_body.h"
+#include "softcell/box2d/box2d_soft_bodies.h"
+
+namespace softcell::ppu {
+
+/// Used by the thread that steps the world.
+class SurfaceContacts2d {
+ public:
+  using Bodies = std::span<const std::unique_ptr<Box2dBody>>;
+
+  /// @param worker  finds and solves contacts; null: the thread that steps the world does
+  SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker);
+
+  /// Behind the solver and the attachments of a step: adds gravity to velocities, finds and solves contacts, moves all particles of bodies
+  /// that are awake, and gives rigid bodies their impulses before Box2D integrates them. Bodies that are touched wake.
+  void step(Bodies bodies, const Box2dAttachments& attachments, float step);
+
+  /// Who pressed on whom in the last step.
+  const SoftTouches& touches() const { return touches_; }
+  /// Appends the contacts of the last step that press.
+  void append_contacts(std::vector<Contact2d>& contacts) const;
+
+  /// A body has fallen asleep, with what it touches.
+  void let_lie(const Box2dBody& body);
+  /// A body goes: those that lie on it wake.
+  void forget(const Box2dBody& body);
+  /// Frees what is kept of pieces that none of these bodies is any longer. @pre between steps
+  void forget_pieces(Bodies bodies);
+
+ private:
+  /// What bodies of one model share.
+  struct Model {
+    Model(std::shared_ptr<const SoftBodyModel<2>> shared, Skin2d drawn)
+        : model(std::move(shared)), skin(std::move(drawn)), flat(*model, skin) {}
+    std::shared_ptr<const SoftBodyModel<2>> model;
+    Skin2d skin;
+    FlatModel flat;
+  };
+  /// A rigid body on which a soft one lies, as it was when this fell asleep.
+  struct Support {
+    b2Body* body;
+    b2Transform pose;
+  };
+  /// What is kept of a body.
+  struct Kept {
+    const Model* model = nullptr;
+    std::vector<Eigen::Vector3f> positions, velocities;  // of its layer, at the step's beginning
+    std::vector<Support> supports;                       // while it sleeps
+    std::vector<const Box2dBody*> lies_on;               // likewise
+    bool lost_support = false;                           // one of these is gone
+  };
+
+  const Model& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
+  void lift(const Box2dBody& body, Kept& kept, float step);
+  void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
+  bool must_wake(const Kept& kept, const BodyInStage& in_stage) const;
+  void wake(Box2dBody& body, Kept& kept);
+  void wake_those_in_the_way(Bodies bodies);
+  void move(Bodies bodies, float step);
+  void note_touches(Bodies bodies);
+
+  b2World& world_;
+  std::shared_ptr<ContactWorker> worker_;
+  std::unordered_map<const SoftBodyModel<2>*, std::unique_ptr<Model>> models_;
+  std::unordered_map<const Box2dBody*, Kept> kept_;
+  Box2dObstacles obstacles_;
+  ContactStage stage_;
+  std::vector<BodyInStage> in_stage_;
+  std::vector<const SoftBody<2>*> softs_;  // of the last step
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
+  std::vector<PressingContact> pressing_;  // of the last step
+  SoftTouches touches_;
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,40 @@
+#pragma once
+// How far from the drawn edge of a body in two dimensions a place is.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "softcell/soft_bodies/skin_2d.h"
+
+namespace softcell::ppu {
+
+/// The outlines of a skin at rest, in grid coordinates. Takes time in proportion to what of the outlines is near.
+class OutlineDistance {
+ public:
+  /// @pre  the skin has outlines
+  explicit OutlineDistance(const Skin2d& skin);
+
+  /// In cells, below 0 inside: where outlines go around a place more often counter-clockwise than clockwise.
+  float signed_distance(const Eigen::Vector2f& at) const;
+
+ private:
+  struct Segment {
+    Eigen::Vector2f from, to;
+    float distance(const Eigen::Vector2f& at) const;
+  };
+  const std::vector<std::uint32_t>& in_square(int x, int y) const {
+    return squares_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.x()) + static_cast<std::size_t>(x)];
+  }
+  float nearest(const Eigen::Vector2f& at) const;
+  bool is_inside(const Eigen::Vector2f& at) const;
+
+  std::vector<Segment> segments_;
+  Eigen::Vector2i low_, size_;                       // of the squares, a cell large
+  std::vector<std::vector<std::uint32_t>> squares_;  // rows of x: segments there
+  std::vector<std::vector<std::uint32_t>> rows_;     // of each y: segments there
+};
+
+}  // namespace softcell::ppu

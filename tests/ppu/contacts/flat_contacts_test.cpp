@@ -1,0 +1,331 @@
+// Soft bodies in a Box2D world that touch with their drawn edges.
+#include <gtest/gtest.h>
+
+#include <box2d/b2_chain_shape.h>
+#include <box2d/b2_circle_shape.h>
+#include <box2d/b2_edge_shape.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "../soft_body_2d_scenes.h"
+#include "ppu/contacts/flat_body.h"
+#include "ppu/fracture/cracks.h"
+#include "ppu/lattice/outline_distance.h"
+#include "softcell/soft_bodies/skin_2d.h"
+#include "softcell/soft_bodies/state_hash.h"
+#include "softcell/spe_bodies/spe_runtime.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr float kStep2d = 1.0f / 120;
+
+SoftBodySettings calm(float cell_size = 0.25f) {
+  return {.cell_size = cell_size, .half_width = 2, .density = 5, .alpha = 0.5f, .damping = 0.3f};
+}
+
+/// Where the drawn edge of a body is.
+std::vector<Vector2f> drawn_edge(const SoftBody<2>& body) {
+  const Skin2d skin = make_skin_2d(body.model().lattice(), SoftBodyModel<2>::kContactRadiusInCells);
+  std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size()), edge;
+  place(skin, body.positions(), positions, slopes);
+  for (const auto& loop : skin.outlines)
+    for (const std::uint32_t vertex : loop) edge.push_back(positions[vertex]);
+  return edge;
+}
+float lowest(const SoftBody<2>& body) {
+  const std::vector<Vector2f> edge = drawn_edge(body);
+  return std::ranges::min_element(edge, {}, [](const Vector2f& at) { return at.y(); })->y();
+}
+float highest(const SoftBody<2>& body) {
+  const std::vector<Vector2f> edge = drawn_edge(body);
+  return std::ranges::max_element(edge, {}, [](const Vector2f& at) { return at.y(); })->y();
+}
+
+double mass_of(const SoftBody<2>& body) {
+  return std::accumulate(body.model().masses().begin(), body.model().masses().end(), 0.0);
+}
+
+TEST(OutlineDistance, IsThatOfASquareWithAHole) {
+  Skin2d skin;
+  skin.rest = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 1}, {1, 3}, {3, 3}, {3, 1}};
+  skin.outlines = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  const OutlineDistance outline(skin);
+  EXPECT_FLOAT_EQ(outline.signed_distance({0.5f, 2}), -0.5f);
+  EXPECT_FLOAT_EQ(outline.signed_distance({2, 2}), 1);  // in the hole
+  EXPECT_FLOAT_EQ(outline.signed_distance({-3, -4}), 5);
+  EXPECT_FLOAT_EQ(outline.signed_distance({7, 2}), 3);
+  EXPECT_FLOAT_EQ(outline.signed_distance({2, 0.75f}), -0.25f);
+  EXPECT_EQ(outline.signed_distance({4, 2}), 0);
+}
+
+/// Half a cell around its cells, all through the layer.
+TEST(FlatModel, IsALayerWithTheDrawnEdgeInMarginCells) {
+  const auto model = rectangle_model({4, 3}, calm());
+  const Skin2d skin = make_skin_2d(model->lattice(), 0.5f);
+  const FlatModel flat(*model, skin);
+  const ContactModel& contact = flat.contact();
+  const Lattice<3>& layer = contact.lattice();
+  ASSERT_EQ(layer.cells.size(), 12u + 2 * 7 + 4);
+  EXPECT_TRUE(contact.is_flat());
+  EXPECT_NEAR(contact.mass(), model->mass(), 1e-6 * model->mass());
+  std::vector<Vector3f> places;
+  flat.lift(SoftBody<2>(model, {1, 2}).positions(), 0.125f, places);
+  ASSERT_EQ(places.size(), layer.particles.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vector3f expected = layer.rest_position(i) + Vector3f(1, 2, 0);
+    EXPECT_LT((places[i] - expected).norm(), 1e-5f) << i;
+  }
+  for (std::uint32_t c = 0; c < layer.cells.size(); ++c) {
+    const Eigen::Vector2i cell = layer.cells[c].head<2>();
+    EXPECT_EQ(contact.is_margin(c), (cell.array() < 0).any() || cell.x() > 3 || cell.y() > 2);
+    const FieldValue field = contact.surface.field(c, {0.5f, 0.5f, 0.3f});
+    EXPECT_EQ(field.gradient.z(), 0);
+    if (cell.y() == 1 && cell.x() == 0) {
+      EXPECT_NEAR(field.distance, -1, 0.05f);
+    } else if (cell.y() == 1 && cell.x() == -1) {
+      EXPECT_NEAR(field.distance, 0, 0.05f);
+    }
+    // A place of a margin cell is the same place beyond the cell beside.
+    const Anchor there = anchor_in_cell(layer, c, {0.25f, 0.75f, 0.5f}), held = contact.held(there);
+    EXPECT_FALSE(contact.is_margin(held.cell));
+    EXPECT_LT((there.of(places) - held.of(places)).norm(), 1e-5f);
+    for (const std::uint32_t particle : held.particle) EXPECT_LT(particle, 2 * model->particles());
+  }
+  for (const SurfacePointAtRest& point : contact.surface.points()) EXPECT_EQ(point.xi.z(), 0.5f);
+}
+
+/// The thread that steps the world, or SPEs.
+class FlatContacts : public testing::TestWithParam<bool> {
+ protected:
+  std::unique_ptr<World2d> world(float gravity = 9.81f) {
+    if (!GetParam()) return std::make_unique<World2d>(gravity, ContactMethod::kSurface);
+    return std::make_unique<World2d>(gravity, ContactMethod::kSurface, spes_.emplace());
+  }
+
+ private:
+  std::optional<SpeRuntime> spes_;
+};
+
+TEST_P(FlatContacts, WhatIsDrawnRestsOnTheFloor) {
+  const auto w = world();
+  w->add_box({0, -1}, {10, 1});
+  SoftBody<2>& body = w->soft.add(rectangle_model({6, 4}, calm()), {0, 0.3f});
+  w->run(8);
+  EXPECT_LT(body.mean_speed(), 0.002f);
+  EXPECT_LT(body.deformation(), 0.02f);
+  EXPECT_NEAR(lowest(body), 0, 0.05f * 0.25f);
+  ASSERT_FALSE(w->soft.contacts().empty());
+  float impulse = 0;
+  for (const Contact2d& contact : w->soft.contacts()) {
+    EXPECT_EQ(contact.first, &body);
+    EXPECT_EQ(contact.second, nullptr);
+    EXPECT_EQ(contact.rigid->GetType(), b2_staticBody);
+    EXPECT_NEAR(contact.normal.y(), 1, 0.01f);
+    impulse += contact.impulse * contact.normal.y();
+  }
+  EXPECT_NEAR(impulse, mass_of(body) * 9.81 * double{kStep2d}, 0.02 * mass_of(body) * 9.81 * double{kStep2d});
+  EXPECT_EQ(w->box2d.GetBodyCount(), 1);
+}
+
+TEST_P(FlatContacts, OneBodyRestsOnAnother) {
+  const auto w = world();
+  w->add_box({0, -1}, {10, 1});
+  SoftBody<2>& below = w->soft.add(rectangle_model({8, 3}, calm()), {0, 0.15f});
+  SoftBody<2>& above = w->soft.add(rectangle_model({4, 3}, calm()), {0.1f, 1.4f});
+  w->run(8);
+  EXPECT_LT(above.mean_speed(), 0.005f);
+  EXPECT_NEAR(lowest(below), 0, 0.05f * 0.25f);
+  // The lower one's upper edge is bent by the weight.
+  const float gap = lowest(above) - highest(below);
+  EXPECT_LT(gap, 0.02f * 0.25f);
+  EXPECT_GT(gap, -0.2f * 0.25f);
+}
+
+TEST_P(FlatContacts, KeepMomentum) {
+  const auto w = world(0);
+  SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, 0});
+  SoftBody<2>& other = w->soft.add(rectangle_model({4, 3}, calm()), {2.5f, 0.3f});
+  b2Body* const box = w->add_box({-3, 0.5f}, {0.4f, 0.4f}, 4);
+  other.add_velocity({-3, 0});
+  box->SetLinearVelocity({4, 0});
+  const auto momentum = [&] {
+    const b2Vec2 v = box->GetLinearVelocity();
+    return Vector2d(body.linear_momentum().cast<double>() + other.linear_momentum().cast<double>() +
+                    double{box->GetMass()} * Vector2d(double{v.x}, double{v.y}));
+  };
+  const Vector2d before = momentum();
+  w->run(2);
+  EXPECT_GT(other.linear_momentum().x(), -1.5 * mass_of(other)) << "they have not hit each other";
+  EXPECT_LT(box->GetLinearVelocity().x, 3);
+  EXPECT_LT((momentum() - before).norm(), 1e-4 * before.norm() + 1e-4);
+}
+
+/// A needle stands up from the floor, narrower than the circles of a body are apart.
+TEST_P(FlatContacts, AThinThingStaysOutside) {
+  const auto w = world();
+  b2Body* const floor = w->add_box({0, -1}, {10, 1});
+  b2PolygonShape needle;
+  const b2Vec2 corners[] = {{-0.02f, 1}, {0.02f, 1}, {0, 2}};
+  needle.Set(corners, 3);
+  floor->CreateFixture(&needle, 0);
+  SoftBodySettings settings = calm();
+  settings.alpha = 0.8f;
+  SoftBody<2>& body = w->soft.add(rectangle_model({8, 3}, settings), {0.05f, 1.6f});
+  float deepest = 0;
+  const Vector2f tip(0, 1);
+  for (int i = 0; i < 600; ++i) {
+    w->soft.step(kStep2d);
+    const std::vector<Vector2f> edge = drawn_edge(body);
+    // How far the edge above the tip is below it.
+    for (const Vector2f& at : edge)
+      if (std::abs(at.x()) < 0.05f && at.y() < body.centre_of_mass().y())
+        deepest = std::max(deepest, tip.y() - at.y());
+  }
+  EXPECT_LT(deepest, 0.3f * 0.25f);
+}
+
+/// The thickness of walls is nothing: an edge, a chain, a polygon of 2 cm.
+TEST_P(FlatContacts, NothingPassesAThinWall) {
+  for (int kind = 0; kind < 3; ++kind) {
+    const auto w = world(0);
+    b2BodyDef definition;
+    b2Body* const wall = w->box2d.CreateBody(&definition);
+    b2EdgeShape edge;
+    edge.SetTwoSided({2, -4}, {2, 4});
+    b2ChainShape chain;
+    const b2Vec2 corners[] = {{2, -4}, {2, -1}, {2, 1}, {2, 4}};
+    chain.CreateChain(corners, 4, {2, -5}, {2, 5});
+    b2PolygonShape thin;
+    thin.SetAsBox(0.01f, 4, {2, 0}, 0);
+    wall->CreateFixture(kind == 0 ? static_cast<b2Shape*>(&edge) : kind == 1 ? static_cast<b2Shape*>(&chain) : &thin, 0);
+    SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, -0.5f});
+    body.add_velocity({100, 0});
+    for (int i = 0; i < 60; ++i) {
+      w->soft.step(kStep2d);
+      for (const Vector2f& position : body.positions()) ASSERT_LT(position.x(), 2) << kind << " after " << i;
+    }
+  }
+}
+
+/// Box2D takes the geometric mean of two coefficients.
+TEST_P(FlatContacts, FrictionIsTheGeometricMeanOfBothCoefficients) {
+  for (const auto& [of_body, of_floor] : {std::pair(0.3f, 1.0f), {0.6f, 0.5f}, {0.0f, 1.0f}}) {
+    const auto w = world();
+    w->add_box({0, -1}, {20, 1})->GetFixtureList()->SetFriction(of_floor);
+    SoftBodySettings settings = calm();
+    settings.friction = of_body;
+    SoftBody<2>& body = w->soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
+    w->run(4);
+    const float before = body.linear_momentum().x();
+    body.add_velocity({3, 0});
+    w->run(0.25f);
+    const double slowed_by = 3 + (double{before} - double{body.linear_momentum().x()}) / mass_of(body);
+    EXPECT_NEAR(slowed_by / (9.81 * 0.25), std::sqrt(double{of_body} * double{of_floor}), 0.02);
+  }
+}
+
+/// Of two restitutions Box2D takes the larger one.
+TEST_P(FlatContacts, RestitutionIsTheLargerOfBoth) {
+  for (const auto& [of_body, of_floor] : {std::pair(0.0f, 0.6f), {0.6f, 0.2f}}) {
+    const auto w = world();
+    w->add_box({0, -1}, {20, 1})->GetFixtureList()->SetRestitution(of_floor);
+    SoftBodySettings settings = calm();
+    settings.restitution = of_body;
+    settings.alpha = 1;
+    settings.damping = 1;
+    SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, settings), {0, 2.125f});
+    float top = 0;
+    bool was_down = false;
+    for (int i = 0; i < 240; ++i) {
+      w->soft.step(kStep2d);
+      was_down = was_down || body.linear_momentum().y() > 0;
+      if (was_down) top = std::max(top, lowest(body));
+    }
+    EXPECT_NEAR(top, 0.36f * 2, 0.05f * 2);
+  }
+}
+
+/// A box of ten times its mass lies on a body, and goes no deeper.
+TEST_P(FlatContacts, AHeavyBoxRestsOnABody) {
+  const auto w = world();
+  w->add_box({0, -1}, {10, 1});
+  SoftBodySettings settings = calm();
+  settings.alpha = 0.9f;
+  SoftBody<2>& body = w->soft.add(rectangle_model({8, 4}, settings), {0, 0.13f});
+  const auto density = static_cast<float>(10 * mass_of(body) / (1.2 * 0.4));
+  b2Body* const box = w->add_box({0, 1.7f}, {0.6f, 0.2f}, density);
+  w->run(5);
+  const float then = box->GetPosition().y;
+  w->run(20);
+  EXPECT_NEAR(box->GetPosition().y, then, 0.01f * 0.25f);
+  EXPECT_LT(std::abs(box->GetAngle()), 0.05f);
+  EXPECT_GT(box->GetPosition().y, 0.6f);
+}
+
+/// A bar with a crack from above down to its middle is bent so that the crack closes.
+TEST_P(FlatContacts, TheSidesOfACrackTouchEachOther) {
+  const auto w = world(0);
+  SoftBodySettings settings = calm(0.1f);
+  settings.fracture = Fracture{.stretch = 1};
+  SoftBody<2>& bar = w->soft.add(rectangle_model({12, 4}, settings), {0, -0.2f});
+  EXPECT_TRUE(w->soft.cut(bar, Cut2d::stroke({0.001f, 0.05f}, {0, 1})).empty());
+  ASSERT_TRUE(bar.model().is_piece());
+  for (std::size_t i = 0; i < bar.positions().size(); ++i) {
+    const Vector2f x = bar.position(i);
+    bar.add_particle_velocity(i, {(x.x() > 0 ? -10 : 10) * std::max(0.0f, x.y()), 0});
+  }
+  const auto deepest_in_crack = [&] {
+    const Lattice<2>& lattice = bar.model().lattice();
+    float deepest = 0;
+    for (const auto& face : bar.model().cracks().faces) {
+      const auto &low = lattice.corners[face.low], &high = lattice.corners[face.high];
+      for (std::uint32_t k = 0; face.axis == 0 && k < 4; k += 2)
+        if (low[k + 1] != high[k])
+          deepest = std::max(deepest, (bar.position(low[k + 1]) - bar.position(high[k])).x() / lattice.spacing);
+    }
+    return deepest;
+  };
+  float deepest = 0;
+  for (int i = 0; i < 60; ++i) {
+    w->soft.step(kStep2d);
+    deepest = std::max(deepest, deepest_in_crack());
+  }
+  EXPECT_GT(deepest, 0);
+  EXPECT_LT(deepest, 0.35f);
+  EXPECT_LT(deepest_in_crack(), 0.1f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Workers, FlatContacts, testing::Bool(),
+                         [](const auto& worker) { return worker.param ? "Spes" : "Ppu"; });
+
+TEST(FlatContacts, TheSameBitsForAnyNumberOfSpesAndSchedule) {
+  const auto fall = [](SpeRuntime& spes) {
+    World2d w(9.81f, ContactMethod::kSurface, spes);
+    w.add_box({0, -1}, {10, 1});
+    w.add_box({0.3f, 0.5f}, {0.3f, 0.3f}, 2);
+    for (int i = 0; i < 4; ++i)
+      w.soft.add(rectangle_model({5, 3}, calm()), {0.2f * static_cast<float>(i), 1.6f + 1.2f * static_cast<float>(i)});
+    w.run(2);
+    std::uint64_t hash = 0;
+    for (std::size_t b = 0; b < w.soft.size(); ++b) hash = state_hash(w.soft[b], hash);
+    return hash;
+  };
+  SpeRuntime one({.spes = 1}), six({.spes = 6}), lazy({.spes = 3, .schedule = dma::parse_schedule("lazy")});
+  const std::uint64_t expected = fall(one);
+  EXPECT_EQ(fall(six), expected);
+  EXPECT_EQ(fall(lazy), expected);
+}
+
+}  // namespace
+}  // namespace softcell::ppu
