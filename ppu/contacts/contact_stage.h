@@ -51,8 +51,8 @@ struct ContactSettings {
   int iterations = 3;             ///< in a group, in a round
   int heavy_iterations = 8;       ///< likewise, of a body with a rigid one that outweighs it
   int attachment_iterations = 4;  ///< over all attachments, in a round
-  float stiffening =
-      0.35f;  ///< 0..1: share of what corners of touched cells do against each other, after each round but the last
+  /// 0..1: the share of their motion against each other that corners of touched cells lose after each round but the last.
+  float stiffening = 0.35f;
   BounceSettings bounces = {};
 };
 
