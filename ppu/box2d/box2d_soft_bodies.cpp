@@ -196,7 +196,7 @@ struct Box2dSoftBodies::Impl {
     require_groups(planned.size() - 1);
     solve.drop();
     if (body.soft().asleep()) body.wake();
-    for (BodyPiece<2>& piece : planned) piece.body.take_part(body.soft(), piece.particle_of);
+    for (BodyPiece<2>& piece : planned) piece.body.inherit_state(body.soft(), piece.particle_of);
     std::vector<Box2dBody*> pieces{&body};
     for (std::size_t i = 1; i < planned.size(); ++i) pieces.push_back(&add(std::move(planned[i].body)));
     body.soft() = std::move(planned.front().body);
@@ -290,7 +290,7 @@ bool Box2dSoftBodies::is_breaking(const SoftBody<2>& body) const {
   return impl_->breaks.has(**impl_->find(body, "that may be breaking"));
 }
 
-std::vector<BrokenSoftBody2d> Box2dSoftBodies::take_broken() { return std::exchange(impl_->broken, {}); }
+std::vector<BrokenSoftBody2d> Box2dSoftBodies::poll_broken() { return std::exchange(impl_->broken, {}); }
 
 AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch,
                                      const AttachmentSettings<2>& settings) {
@@ -315,7 +315,7 @@ std::optional<AttachmentState<2>> Box2dSoftBodies::attachment(AttachmentId id) c
 std::optional<AttachmentEnds<2>> Box2dSoftBodies::attachment_ends(AttachmentId id) const {
   return impl_->attachments.ends(id);
 }
-std::vector<EndedAttachment> Box2dSoftBodies::take_ended_attachments() {
+std::vector<EndedAttachment> Box2dSoftBodies::poll_ended_attachments() {
   return impl_->attachments.take_ended();
 }
 

@@ -247,7 +247,7 @@ struct Simulation2d::State {
   }
   /// After a step or a cut: pieces come behind all other bodies, and hands go on with the piece that has what they hold.
   void note_broken() {
-    const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.take_broken();
+    const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.poll_broken();
     for (const ppu::BrokenSoftBody2d& one : broken)
       sources.insert(sources.end(), one.pieces.size(), sources[number_of(*one.body)]);
     SC_ASSERT(sources.size() == bodies.size(), "the sources of {} soft bodies of {}", sources.size(),

@@ -215,7 +215,7 @@ void SoftShape2d::place(std::span<const Vector2f> particles) {
             body_.name, model_.particles());
   box_.setEmpty();
   for (Layer& layer : layers_) {
-    ppu::place(layer.skin, particles, layer.positions, layer.slopes);
+    ppu::deform(layer.skin, particles, layer.positions, layer.slopes);
     for (std::size_t i = 0; i < layer.positions.size(); ++i) {
       layer.vertices[i].position = layer.positions[i];
       layer.vertices[i].slope = layer.slopes[i];
