@@ -156,7 +156,6 @@ class Mfc {
   bool may_miss_host_stores() const { return port_.may_miss_host_stores(); }
 
   const MfcStatistics& statistics() const { return statistics_; }
-  void clear_statistics() { statistics_ = {}; }
 
  private:
   enum class Condition : std::uint32_t { kImmediate = 0, kAny = 1, kAll = 2 };
