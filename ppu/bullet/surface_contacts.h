@@ -12,9 +12,9 @@
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
-#include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_stage.h"
 #include "ppu/numbers/disjoint_sets.h"
+#include "ppu/surfaces/cell_finder.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 
 namespace softcell::ppu {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ppu/contacts/crack_sides.h"
+#include "ppu/surfaces/crack_sides.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

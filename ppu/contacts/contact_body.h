@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/contacts/contact_surface.h"
+#include "ppu/surfaces/contact_surface.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {

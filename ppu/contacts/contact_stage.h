@@ -18,8 +18,8 @@
 #include "ppu/contacts/crushed_cells.h"
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/lost_spin.h"
-#include "ppu/contacts/obstacle.h"
 #include "ppu/numbers/disjoint_sets.h"
+#include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
 
 namespace softcell::ppu {

@@ -14,8 +14,8 @@
 
 #include "../contacts/contact_world.h"
 #include "fracture_checks.h"
-#include "ppu/contacts/crack_sides.h"
 #include "ppu/fracture/cracks.h"
+#include "ppu/surfaces/crack_sides.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
