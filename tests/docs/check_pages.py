@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The pages are true as far as a program can tell: links lead somewhere, the walks of architecture.md are as the code is, its tables of
+"""The pages are true as far as a program can tell: links lead somewhere, the sources that they name exist, the walks of architecture.md are as the code is, its tables of
 rooms are as those of ci/check-layers.
 
     check_pages.py ROOT
@@ -48,6 +48,16 @@ def missing_pages(root):
                 yield f"{file.relative_to(root)}: {name} is no page"
 
 
+def missing_sources(root):
+    """Of pages that name a source by its last folders: `surfaces/obstacle.h`."""
+    folders = [root / name for name in ("base", "ci", "demos", "dma", "examples", "ls_sim", "ppu", "render", "spu_kernels", "tests", "tool")]
+    known = ["/" + str(file.relative_to(root)) for folder in folders for file in folder.rglob("*.*")]
+    for page in pages(root):
+        for name in sorted(set(re.findall(r"`([\w/]+/\w+\.(?:h|cpp|def|py|toml|lua))`", without_code(page.read_text())))):
+            if not any(file.endswith("/" + name) for file in known):
+                yield f"{page.relative_to(root)}: {name} is no file"
+
+
 def wrong_walks(root):
     text = (root / "docs/reference/architecture.md").read_text()
     part = text[text.index("## Walks through the code\n"):]
@@ -94,6 +104,7 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     wrong = [sentence for page in pages(root) for sentence in broken_links(page)]
     wrong += missing_pages(root)
+    wrong += missing_sources(root)
     wrong += wrong_walks(root)
     wrong += wrong_rooms(root)
     print("\n".join(wrong))
