@@ -147,8 +147,12 @@ function(softcell_install_package)
     DESTINATION ${SOFTCELL_INSTALL_PACKAGE} COMPONENT development)
 
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
-    DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+    ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples
     DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/demos/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/demos COMPONENT documentation)
+  # Pictures and broken kernels that the pages show and link.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/demos/golden DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/demos COMPONENT documentation)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/zoo/broken ${PROJECT_SOURCE_DIR}/tests/zoo/legal
+    DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/zoo COMPONENT documentation)
 endfunction()

@@ -102,6 +102,9 @@ foreach(file share/doc/softcell/LICENSE share/doc/softcell/README.md share/doc/s
   endif()
 endforeach()
 
+find_program(PYTHON python3 REQUIRED)
+step("links of the installed pages" ${PYTHON} ${EXAMPLES}/../tests/docs/check_pages.py --links ${prefix}/share/doc/softcell)
+
 # The installed command on the example's kernels: the right one, and the broken one.
 string(REPEAT "0123456789abcdef" 256 bytes)  # 1024 floats
 file(WRITE ${SCRATCH}/x.bin "${bytes}")
