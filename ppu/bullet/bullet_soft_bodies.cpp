@@ -391,7 +391,7 @@ void BulletSoftBodies::watch_contacts(bool watch) {
   if (impl_->surfaces) impl_->surfaces->watch(watch);
 }
 std::vector<ContactEvent> BulletSoftBodies::poll_contact_events() {
-  return impl_->surfaces ? impl_->surfaces->take_events() : std::vector<ContactEvent>();
+  return impl_->surfaces ? impl_->surfaces->poll_events() : std::vector<ContactEvent>();
 }
 
 std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to,

@@ -55,7 +55,7 @@ class SurfaceContacts {
   /// Whether events are kept from the next substep on.
   void watch(bool events);
   /// What has begun, gone on or ended since the last call.
-  std::vector<ContactEvent> take_events();
+  std::vector<ContactEvent> poll_events();
   /// A body goes: what it touched ends.
   void forget(const SoftBody<3>& body);
 

@@ -93,7 +93,7 @@ class SpeContext {
   virtual std::uint32_t wait_any_proxy(std::uint32_t tag_mask) = 0;
 
   /// The fault of a proxy command that could not move its bytes; each once.
-  virtual std::optional<dma::Fault> take_proxy_fault() = 0;
+  virtual std::optional<dma::Fault> poll_proxy_fault() = 0;
 
   /// Statistics up to the end of the last run.
   virtual SpeStatistics statistics() = 0;
