@@ -45,8 +45,9 @@ class SoftBodySolver {
   /// @param whole  the body that broke   @param piece  one of its pieces
   /// @param particle_of  for each particle of the piece, its number in the whole
   /// @pre no step is under way
-  virtual void inherit_state(const SoftBody<kDimension>& /*whole*/, const SoftBody<kDimension>& /*piece*/,
-                             std::span<const std::uint32_t> /*particle_of*/) {}
+  virtual void inherit_state([[maybe_unused]] const SoftBody<kDimension>& whole,
+                             [[maybe_unused]] const SoftBody<kDimension>& piece,
+                             [[maybe_unused]] std::span<const std::uint32_t> particle_of) {}
 };
 
 /// The reference: steps the bodies one after the other by SoftBody::pull() and flow(), in finish().
