@@ -104,9 +104,14 @@ function(softcell_install_package)
     softcell_install_component(${component})
   endforeach()
   list(REMOVE_DUPLICATES SOFTCELL_PUBLIC_HEADERS)
+  # What only softcell's own layers include of each other; windows are the demos'.
+  set(own)
+  foreach(header base/embedded_file base/json_text base/nearest_name base/read_file base/text dma/host_registers dma/local_store_port
+      dma/mfc_rules dma/proxy_queue dma/sanitizers render/overlay render/window)
+    list(APPEND own PATTERN ${header}.h EXCLUDE)
+  endforeach()
   foreach(headers IN LISTS SOFTCELL_PUBLIC_HEADERS)
-    # Windows are the demos'.
-    install(DIRECTORY ${headers} TYPE INCLUDE COMPONENT development PATTERN render/window.h EXCLUDE PATTERN render/overlay.h EXCLUDE)
+    install(DIRECTORY ${headers} TYPE INCLUDE COMPONENT development ${own})
   endforeach()
 
   if(TARGET softcell)
@@ -147,8 +152,12 @@ function(softcell_install_package)
     DESTINATION ${SOFTCELL_INSTALL_PACKAGE} COMPONENT development)
 
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
-    DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+    ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples
     DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/demos/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/demos COMPONENT documentation)
+  # Pictures and broken kernels that the pages show and link.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/demos/golden DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/demos COMPONENT documentation)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/zoo/broken ${PROJECT_SOURCE_DIR}/tests/zoo/legal
+    DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/zoo COMPONENT documentation)
 endfunction()

@@ -38,7 +38,7 @@ std::variant<ListElement, Fault> ListTransfer::open_next(std::span<std::byte> lo
       return std::move(*fault);
     }
     const auto& place = std::get<StoragePlace>(resolved);
-    std::byte* local = &local_store[element.place(cursor_).value];
+    std::byte* local = &local_store[element.local_address(cursor_).value];
     transfers_[open_++] = get ? Transfer::get(place, local, bytes) : Transfer::put(local, place, bytes);
   }
   cursor_ = element.next(cursor_);

@@ -459,7 +459,7 @@ Fault Mfc::suspension() {
   return *suspended_by_;
 }
 
-std::optional<Fault> Mfc::take_fault() {
+std::optional<Fault> Mfc::poll_fault() {
   if (!suspended_by_ || suspension_told_) return std::nullopt;
   return suspension();
 }

@@ -184,7 +184,7 @@ std::optional<Breach> check(const MfcCommand& command, ListElement element, Loca
                   byte_count(size) + " from " + to_text(element.ea(command)) +
                       " on reach past a boundary of 4 GB, and MFC_EAH is common to all elements"};
   }
-  const LocalStoreAddress lsa = element.place(cursor);
+  const LocalStoreAddress lsa = element.local_address(cursor);
   if (size >= kQuadwordBytes && lsa.value % kQuadwordBytes != 0) {
     return Breach{Rule::kLsaAlignment, misaligned("LSA " + to_text(lsa), lsa.value, size)};
   }

@@ -60,7 +60,7 @@ void ProxyQueue::drop_all(Fault&& why) {
   failure_ = std::move(why);
 }
 
-std::optional<Fault> ProxyQueue::take_fault() {
+std::optional<Fault> ProxyQueue::poll_fault() {
   const std::lock_guard lock(mutex_);
   return std::exchange(failure_, std::nullopt);
 }
@@ -77,7 +77,7 @@ std::optional<Fault> ProxyQueue::issue(const MfcCommand& command) {
     issuing_start_ = starts;
     return mfc_.issue(moved);
   });
-  if (!fault) fault = take_fault();
+  if (!fault) fault = poll_fault();
   if (fault) fault->command = command;
   return fault;
 }

@@ -36,7 +36,7 @@ int main() try {
 
   for (int frame = 1; frame <= 120; ++frame) {
     world.stepSimulation(1 / 60.0f, 4, 1 / 240.0f);
-    for (const BrokenSoftBody& broken : soft_bodies.take_broken())
+    for (const BrokenSoftBody& broken : soft_bodies.poll_broken())
       std::printf("%.2f s: %zu faces break, %zu new pieces\n", frame / 60.0, broken.faces,
                   broken.pieces.size());
   }

@@ -50,7 +50,7 @@ template <int kDimension>
 std::vector<BodyPiece<kDimension>> pieces_of(const SoftBody<kDimension>& body,
                                              std::span<const std::uint32_t> faces) {
   std::vector<BodyPiece<kDimension>> pieces = plan_pieces(body.shared_model(), faces);
-  for (BodyPiece<kDimension>& piece : pieces) piece.body.take_part(body, piece.particle_of);
+  for (BodyPiece<kDimension>& piece : pieces) piece.body.inherit_state(body, piece.particle_of);
   return pieces;
 }
 

@@ -27,7 +27,7 @@ std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut)
 std::vector<std::uint32_t> faces_across(const SoftBody<2>& body, const Cut2d& cut);
 
 /// What is left of bodies of a model when faces break, the largest piece first: bodies at rest, which take part of a body
-/// (SoftBody::take_part()) when it breaks. This is what takes long of pieces_of(), and any thread may do it.
+/// (SoftBody::inherit_state()) when it breaks. This is what takes long of pieces_of(), and any thread may do it.
 template <int kDimension>
 std::vector<BodyPiece<kDimension>> plan_pieces(const std::shared_ptr<const SoftBodyModel<kDimension>>& model,
                                                std::span<const std::uint32_t> faces);

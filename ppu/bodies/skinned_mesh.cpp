@@ -42,6 +42,8 @@ void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::sp
 
 TriangleMesh rest_mesh(const SoftBody<3>& body) {
   TriangleMesh mesh = body.model().mesh();
+  SC_ASSERT(!mesh.positions.empty(), "a body of {} particles has no mesh in its rest shape",
+            body.positions().size());
   const std::vector<Eigen::Vector3f> rest = body.rest_positions();
   // A mesh may come without normals.
   std::vector<Eigen::Vector3f> normals(mesh.positions.size());

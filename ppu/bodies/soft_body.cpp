@@ -321,7 +321,7 @@ void SoftBody<kDimension>::take_flow() {
 }
 
 template <int kDimension>
-void SoftBody<kDimension>::take_part(const SoftBody& whole, std::span<const std::uint32_t> particle_of) {
+void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of) {
   SC_ASSERT(x_.size() == particle_of.size(), "{} particles of a piece of {}", particle_of.size(), x_.size());
   set_material(whole.settings_);
   for (std::size_t i = 0; i < particle_of.size(); ++i)

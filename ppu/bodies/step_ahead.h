@@ -59,10 +59,10 @@ class StepAhead {
     solver_.forget(body);
   }
 
-  /// A body becomes pieces: see SoftBodySolver::take_part(). @pre No step has been begun.
-  void take_part(const Body& whole, const Body& piece, std::span<const std::uint32_t> particle_of) {
+  /// A body becomes pieces: see SoftBodySolver::inherit_state(). @pre No step has been begun.
+  void inherit_state(const Body& whole, const Body& piece, std::span<const std::uint32_t> particle_of) {
     SC_ASSERT(begun_ == 0, "a body breaks during its step of {} s", begun_);
-    solver_.take_part(whole, piece, particle_of);
+    solver_.inherit_state(whole, piece, particle_of);
   }
 
   /// Of any thread.

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "ppu/contacts/obstacle.h"
+#include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
 
 namespace softcell::ppu {

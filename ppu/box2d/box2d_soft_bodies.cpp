@@ -210,7 +210,7 @@ struct Box2dSoftBodies::Impl {
     require_groups(planned.size() - 1);
     solve.drop();
     if (body.soft().asleep()) body.wake();
-    for (BodyPiece<2>& piece : planned) piece.body.take_part(body.soft(), piece.particle_of);
+    for (BodyPiece<2>& piece : planned) piece.body.inherit_state(body.soft(), piece.particle_of);
     std::vector<Box2dBody*> pieces{&body};
     for (std::size_t i = 1; i < planned.size(); ++i) pieces.push_back(&add(std::move(planned[i].body)));
     body.soft() = std::move(planned.front().body);
@@ -271,11 +271,15 @@ Box2dSoftBodies::Box2dSoftBodies(b2World& world, SoftBodySolver<2>& solver, Cont
     : impl_(std::make_unique<Impl>(world, solver, contacts, std::move(worker))) {}
 Box2dSoftBodies::~Box2dSoftBodies() = default;
 
-SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position) {
+SoftBody<2>& Box2dSoftBodies::add(std::shared_ptr<const SoftBodyModel<2>> model, const Vector2f& position,
+                                  const Skin2d* drawn) {
   SC_ASSERT(model != nullptr && position.allFinite(), "a soft body {} a model, at ({}, {})",
             model ? "with" : "without", position.x(), position.y());
   SC_ASSERT(!impl_->world.IsLocked(), "add() of body {} within a step of Box2D", impl_->bodies.size());
+  SC_ASSERT(drawn == nullptr || !drawn->outlines.empty(), "a skin of {} vertices has no outlines",
+            drawn->rest.size());
   impl_->solve.drop();
+  if (impl_->surfaces && drawn != nullptr) impl_->surfaces->draw(model, *drawn);
   return impl_->add(SoftBody<2>(std::move(model), position)).soft();
 }
 
@@ -315,7 +319,7 @@ bool Box2dSoftBodies::is_breaking(const SoftBody<2>& body) const {
   return impl_->breaks.has(**impl_->find(body, "that may be breaking"));
 }
 
-std::vector<BrokenSoftBody2d> Box2dSoftBodies::take_broken() { return std::exchange(impl_->broken, {}); }
+std::vector<BrokenSoftBody2d> Box2dSoftBodies::poll_broken() { return std::exchange(impl_->broken, {}); }
 
 AttachmentId Box2dSoftBodies::attach(const SoftBody<2>& body, const Patch<2>& patch,
                                      const AttachmentSettings<2>& settings) {
@@ -340,7 +344,7 @@ std::optional<AttachmentState<2>> Box2dSoftBodies::attachment(AttachmentId id) c
 std::optional<AttachmentEnds<2>> Box2dSoftBodies::attachment_ends(AttachmentId id) const {
   return impl_->attachments.ends(id);
 }
-std::vector<EndedAttachment> Box2dSoftBodies::take_ended_attachments() {
+std::vector<EndedAttachment> Box2dSoftBodies::poll_ended_attachments() {
   return impl_->attachments.take_ended();
 }
 

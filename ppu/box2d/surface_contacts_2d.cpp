@@ -11,6 +11,10 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
+/// SPEs are asked ten times in a step, which takes longer than the contacts of so few. Once asked they are in every step: they know ways
+/// from the step before.
+constexpr std::size_t kFewParticles = 1000;
+
 /// Kinematic bodies, too.
 bool moves(const b2Body& body) {
   constexpr float kMoves = 0.05f;  // m/s and rad/s
@@ -26,9 +30,7 @@ bool is_same(const b2Transform& a, const b2Transform& b) {
 }  // namespace
 
 SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker)
-    : world_(world), worker_(std::move(worker)) {
-  stage_.worker = worker_.get();
-}
+    : world_(world), worker_(std::move(worker)) {}
 
 /// A piece is drawn as its part of the whole, and touches as it is drawn.
 const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
@@ -42,10 +44,15 @@ const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
   return *known;
 }
 
+void SurfaceContacts2d::draw(const std::shared_ptr<const SoftBodyModel<2>>& model, const Skin2d& skin) {
+  std::unique_ptr<Model>& known = models_[model.get()];
+  if (!known) known = std::make_unique<Model>(model, skin);
+}
+
 void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
   const SoftBody<2>& soft = body.soft();
-  kept.model->flat.lift(soft.positions(), 0.5f * soft.model().lattice().spacing, kept.positions);
-  kept.model->flat.lift(soft.velocities(), 0, kept.velocities);
+  kept.model->layer.lift(soft.positions(), 0.5f * soft.model().lattice().spacing, kept.positions);
+  kept.model->layer.lift(soft.velocities(), 0, kept.velocities);
   if (soft.asleep()) return;
   const Vector2f fall = step * to_eigen(world_.GetGravity());
   for (Vector3f& v : kept.velocities) v.head<2>() += fall;
@@ -65,7 +72,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     lift(body, kept, step);
     softs_.push_back(&soft);
     BodyInStage& in_stage = in_stage_[i];
-    in_stage = {.model = &kept.model->flat.contact(),
+    in_stage = {.model = &kept.model->contact,
                 .positions = kept.positions,
                 .velocities = kept.velocities,
                 .friction = std::sqrt(soft.settings().friction),
@@ -130,6 +137,9 @@ void SurfaceContacts2d::step(Bodies bodies, const Box2dAttachments& attachments,
       .gravity = {world_.GetGravity().x, world_.GetGravity().y, 0},
       .mix = BounceSettings::Mix::kLarger,
   };
+  std::size_t particles = 0;
+  for (const auto& body : bodies) particles += body->soft().positions().size();
+  if (particles >= kFewParticles) stage_.worker = worker_.get();
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
   move(bodies, step);
   obstacles_.apply();
@@ -141,8 +151,8 @@ void SurfaceContacts2d::move(Bodies bodies, float step) {
     if (in_stage_[i].asleep) continue;
     SoftBody<2>& soft = bodies[i]->soft();
     for (std::size_t p = 0; p < soft.positions().size(); ++p) {
-      const Vector2f velocity = FlatModel::lower(stage_.velocities(i), p);
-      const Vector2f push = FlatModel::lower(stage_.pushes(i), p);
+      const Vector2f velocity = FlatLayer::lower(stage_.velocities(i), p);
+      const Vector2f push = FlatLayer::lower(stage_.pushes(i), p);
       soft.set_particle(p, soft.position(p) + step * (velocity + push), velocity);
     }
   }
@@ -207,7 +217,7 @@ void SurfaceContacts2d::forget_pieces(Bodies bodies) {
   std::erase_if(models_, [&](const auto& known) {
     const auto is_of = [&](const auto& body) { return body->soft().shared_model().get() == known.first; };
     if (!known.first->is_piece() || std::ranges::any_of(bodies, is_of)) return false;
-    if (worker_) worker_->forget(known.second->flat.contact());
+    if (worker_) worker_->forget(known.second->contact);
     return true;
   });
 }

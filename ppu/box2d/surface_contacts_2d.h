@@ -15,7 +15,7 @@
 #include "ppu/box2d/box2d_obstacles.h"
 #include "ppu/box2d/rest.h"
 #include "ppu/contacts/contact_stage.h"
-#include "ppu/contacts/flat_body.h"
+#include "ppu/surfaces/flat_layer.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
 
 namespace softcell::ppu {
@@ -31,6 +31,9 @@ class SurfaceContacts2d {
   /// Behind the solver and the attachments of a step: adds gravity to velocities, finds and solves contacts, moves all particles of bodies
   /// that are awake, and gives rigid bodies their impulses before Box2D integrates them. Bodies that are touched wake.
   void step(Bodies bodies, const Box2dAttachments& attachments, float step);
+
+  /// How bodies of a model are drawn, if not as make_skin_2d() makes it. No effect: a body of the model has touched before.
+  void draw(const std::shared_ptr<const SoftBodyModel<2>>& model, const Skin2d& skin);
 
   /// Who pressed on whom in the last step.
   const SoftTouches& touches() const { return touches_; }
@@ -48,10 +51,11 @@ class SurfaceContacts2d {
   /// What bodies of one model share.
   struct Model {
     Model(std::shared_ptr<const SoftBodyModel<2>> shared, Skin2d drawn)
-        : model(std::move(shared)), skin(std::move(drawn)), flat(*model, skin) {}
+        : model(std::move(shared)), skin(std::move(drawn)), layer(*model, skin), contact(layer) {}
     std::shared_ptr<const SoftBodyModel<2>> model;
     Skin2d skin;
-    FlatModel flat;
+    FlatLayer layer;
+    ContactModel contact;
   };
   /// A rigid body on which a soft one lies, as it was when this fell asleep.
   struct Support {

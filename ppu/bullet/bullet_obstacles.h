@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/contacts/obstacle.h"
+#include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {

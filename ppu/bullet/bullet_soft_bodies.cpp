@@ -171,9 +171,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       if (piece.contact) surfaces->adopt(std::move(piece.contact));
     solve.drop();
     for (auto& [piece, contact] : prepared) {
-      piece.body.take_part(body.soft(), piece.particle_of);
+      piece.body.inherit_state(body.soft(), piece.particle_of);
       // Of a body that was teleported or put back into shape nothing is known.
-      if (!body.was_reset()) solve.take_part(body.soft(), piece.body, piece.particle_of);
+      if (!body.was_reset()) solve.inherit_state(body.soft(), piece.body, piece.particle_of);
     }
     append(body, std::move(prepared.front().piece.particle_of));
     for (std::size_t i = 1; i < prepared.size(); ++i) {
@@ -331,7 +331,7 @@ bool BulletSoftBodies::is_breaking(const SoftBody<3>& body) const {
   return impl_->breaks.has(**impl_->find(body, "that may be breaking"));
 }
 
-std::vector<BrokenSoftBody> BulletSoftBodies::take_broken() { return std::exchange(impl_->broken, {}); }
+std::vector<BrokenSoftBody> BulletSoftBodies::poll_broken() { return std::exchange(impl_->broken, {}); }
 
 AttachmentId BulletSoftBodies::attach(const SoftBody<3>& body, const Patch<3>& patch,
                                       const AttachmentSettings<3>& settings) {
@@ -362,7 +362,7 @@ std::optional<AttachmentState<3>> BulletSoftBodies::attachment(AttachmentId id) 
 std::optional<AttachmentEnds<3>> BulletSoftBodies::attachment_ends(AttachmentId id) const {
   return impl_->surfaces ? impl_->surfaces->attachments().ends(id) : std::nullopt;
 }
-std::vector<EndedAttachment> BulletSoftBodies::take_ended_attachments() {
+std::vector<EndedAttachment> BulletSoftBodies::poll_ended_attachments() {
   return impl_->surfaces ? impl_->surfaces->attachments().take_ended() : std::vector<EndedAttachment>();
 }
 
@@ -390,8 +390,8 @@ void BulletSoftBodies::set_filter(const SoftBody<3>& body, const CollisionFilter
 void BulletSoftBodies::watch_contacts(bool watch) {
   if (impl_->surfaces) impl_->surfaces->watch(watch);
 }
-std::vector<ContactEvent> BulletSoftBodies::take_contact_events() {
-  return impl_->surfaces ? impl_->surfaces->take_events() : std::vector<ContactEvent>();
+std::vector<ContactEvent> BulletSoftBodies::poll_contact_events() {
+  return impl_->surfaces ? impl_->surfaces->poll_events() : std::vector<ContactEvent>();
 }
 
 std::optional<SoftRayHit> BulletSoftBodies::cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to,

@@ -228,7 +228,7 @@ void SurfaceContacts::forget(const SoftBody<3>& body) {
   stage_.forget_who_presses();
 }
 
-std::vector<ContactEvent> SurfaceContacts::take_events() {
+std::vector<ContactEvent> SurfaceContacts::poll_events() {
   // Contacts of those that sleep are not looked for, and go on; trigger volumes are.
   const auto sleeps = [](const Touch& touch) {
     return !touch.is_trigger && touch.event.body->asleep() &&

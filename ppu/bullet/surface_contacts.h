@@ -12,9 +12,9 @@
 #include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
-#include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_stage.h"
 #include "ppu/numbers/disjoint_sets.h"
+#include "ppu/surfaces/cell_finder.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 
 namespace softcell::ppu {
@@ -55,7 +55,7 @@ class SurfaceContacts {
   /// Whether events are kept from the next substep on.
   void watch(bool events);
   /// What has begun, gone on or ended since the last call.
-  std::vector<ContactEvent> take_events();
+  std::vector<ContactEvent> poll_events();
   /// A body goes: what it touched ends.
   void forget(const SoftBody<3>& body);
 

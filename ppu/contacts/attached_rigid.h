@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "ppu/contacts/obstacle.h"
+#include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
 

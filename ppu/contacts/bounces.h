@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ppu/contacts/contact_body.h"
-#include "ppu/contacts/obstacle.h"
+#include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
 

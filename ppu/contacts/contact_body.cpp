@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ppu/contacts/crack_sides.h"
+#include "ppu/surfaces/crack_sides.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -45,18 +45,13 @@ ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const 
   crack_sides = ppu::crack_sides(lattice(), model_->cracks());
 }
 
-ContactModel::ContactModel(std::shared_ptr<const Lattice<3>> lattice, std::vector<float> masses,
-                           ContactSurface own_surface, std::vector<MarginCell> margin_cells,
-                           std::vector<std::uint32_t> sides)
-    : surface(std::move(own_surface)),
-      crack_sides(std::move(sides)),
-      lattice_(std::move(lattice)),
-      own_masses_(std::move(masses)),
+ContactModel::ContactModel(const FlatLayer& layer)
+    : surface(layer.surface()),
+      crack_sides(layer.crack_sides().begin(), layer.crack_sides().end()),
+      lattice_(layer.lattice()),
+      own_masses_(layer.masses().begin(), layer.masses().end()),
       masses_(own_masses_),
-      margin_cells_(std::move(margin_cells)) {
-  SC_ASSERT(masses_.size() == lattice_->particles.size() && margin_cells_.size() == lattice_->cells.size(),
-            "{} masses of {} particles, {} of {} cells", masses_.size(), lattice_->particles.size(),
-            margin_cells_.size(), lattice_->cells.size());
+      margin_cells_(layer.margin_cells().begin(), layer.margin_cells().end()) {
   weigh();
   place_touch_points();
 }

@@ -8,7 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "ppu/contacts/contact_surface.h"
+#include "ppu/surfaces/contact_surface.h"
+#include "ppu/surfaces/flat_layer.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {
@@ -49,13 +50,6 @@ struct TouchPoint {
   float allowance = 0;          ///< metres: how deep in others it may be
 };
 
-/// A cell beside a body into which its drawn surface reaches: it moves with the body's cell beside it. Bodies of two dimensions have such
-/// cells (flat_body.h); in three the surface lies within the lattice.
-struct MarginCell {
-  std::uint32_t beside = 0;       ///< the body's cell; of one of the body's own cells: itself
-  Eigen::Vector3f off{0, 0, 0};  ///< from that cell to this one, in cells
-};
-
 /// Of a model: its lattice, its surface and what a particle weighs. Immutable.
 class ContactModel {
  public:
@@ -63,12 +57,8 @@ class ContactModel {
   /// Of a piece of a broken body, which takes a fraction of the time.
   /// @param whole  of the model's whole()
   ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const ContactModel& whole);
-  /// Of a body that is flat: a layer of cells, one cell thick.
-  /// @param masses        kg, of each particle; 0 of those that margin cells alone have
-  /// @param margin_cells  of each cell
-  /// @param crack_sides   as below
-  ContactModel(std::shared_ptr<const Lattice<3>> lattice, std::vector<float> masses, ContactSurface surface,
-               std::vector<MarginCell> margin_cells, std::vector<std::uint32_t> crack_sides);
+  /// Of a model in two dimensions.
+  explicit ContactModel(const FlatLayer& layer);
   ContactModel(const ContactModel&) = delete;
   ContactModel& operator=(const ContactModel&) = delete;
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
@@ -72,10 +75,22 @@ float push_velocity(const SoftContact& contact, float spacing, float step) {
   return excess > 0 ? std::min(kPushShare * excess, kMostPush * spacing) / step : 0.0f;
 }
 
+/// Kernels number particles and cells with 16 bits; the highest number says that there is none.
+constexpr std::uint32_t kMostOfKernel = std::numeric_limits<std::uint16_t>::max() - 1;
+
+std::uint16_t as_kernels_number_it(std::uint32_t number) {
+  SC_ASSERT(number <= kMostOfKernel, "particle or cell {}; kernels number up to {}", number, kMostOfKernel);
+  return static_cast<std::uint16_t>(number);
+}
+
+std::uint16_t cell_of(const Anchor& anchor) {
+  return anchor.cell == Anchor::kNoCell ? spu::kSolveNoCell : as_kernels_number_it(anchor.cell);
+}
+
 spu::SolveAnchor as_kernels_solve_it(const Anchor& anchor, std::span<const float> inverse_masses) {
   spu::SolveAnchor result{};
   for (std::size_t k = 0; k < 8; ++k) {
-    result.particle[k] = static_cast<std::uint16_t>(anchor.particle[k]);
+    result.particle[k] = as_kernels_number_it(anchor.particle[k]);
     result.weight[k] = anchor.share[k] * std::sqrt(inverse_masses[anchor.particle[k]]);
   }
   return result;
@@ -115,11 +130,11 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
     result.b = as_kernels_solve_it(contact.b, sides.b->inverse_masses);
     mobility += contact.b.mobility(sides.b->inverse_masses);
     carried += contact.b.of(sides.b->velocities);
-    result.cell_b = static_cast<std::uint16_t>(contact.b.cell);
+    result.cell_b = cell_of(contact.b);
   } else {
     carried += rigids[contact.rigid].velocity_at(contact.point);
   }
-  result.cell_a = static_cast<std::uint16_t>(contact.a.cell);
+  result.cell_a = cell_of(contact.a);
   for (int d = 0; d < 3; ++d) {
     result.normal[d] = contact.normal[d];
     result.carried[d] = carried[d];

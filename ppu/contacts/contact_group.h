@@ -9,7 +9,7 @@
 
 #include "contact_solve_job.h"
 #include "ppu/contacts/contact_body.h"
-#include "ppu/contacts/obstacle.h"
+#include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
 

@@ -18,8 +18,8 @@
 #include "ppu/contacts/crushed_cells.h"
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/lost_spin.h"
-#include "ppu/contacts/obstacle.h"
 #include "ppu/numbers/disjoint_sets.h"
+#include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
 
 namespace softcell::ppu {
@@ -54,8 +54,8 @@ struct ContactSettings {
   int iterations = 3;             ///< in a group, in a round
   int heavy_iterations = 8;       ///< likewise, of a body with a rigid one that outweighs it
   int attachment_iterations = 4;  ///< over all attachments, in a round
-  float stiffening =
-      0.35f;  ///< 0..1: share of what corners of touched cells do against each other, after each round but the last
+  /// 0..1: the share of their motion against each other that corners of touched cells lose after each round but the last.
+  float stiffening = 0.35f;
   BounceSettings bounces = {};
 };
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "ppu/contacts/crack_sides.h"
-#include "ppu/contacts/edge_points.h"
-#include "ppu/contacts/triangle_distance.h"
+#include "ppu/surfaces/crack_sides.h"
+#include "ppu/surfaces/edge_points.h"
+#include "ppu/surfaces/triangle_distance.h"
 
 namespace softcell::ppu {
 namespace {

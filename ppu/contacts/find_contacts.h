@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "ppu/contacts/cell_boxes.h"
-#include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_group.h"
-#include "ppu/contacts/point_set.h"
-#include "ppu/contacts/triangle_boxes.h"
+#include "ppu/surfaces/cell_boxes.h"
+#include "ppu/surfaces/cell_finder.h"
+#include "ppu/surfaces/point_set.h"
+#include "ppu/surfaces/triangle_boxes.h"
 
 namespace softcell::ppu {
 

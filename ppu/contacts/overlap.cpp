@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ppu/contacts/edge_points.h"
-#include "ppu/contacts/triangle_distance.h"
+#include "ppu/surfaces/edge_points.h"
+#include "ppu/surfaces/triangle_distance.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

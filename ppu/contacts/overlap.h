@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_body.h"
-#include "ppu/contacts/obstacle.h"
+#include "ppu/surfaces/cell_finder.h"
+#include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
 

@@ -51,8 +51,8 @@ template <>
 struct CrackedPiece<3> {
   LatticePiece<3> part;
   Cracks<3> cracks;
-  PieceMesh
-      mesh;  ///< without what `cracks` has; empty where the whole has none, and where no crack has opened
+  /// The mesh without what `cracks` has; empty if the whole has no mesh, and if no crack has opened.
+  PieceMesh mesh;
 };
 
 /// What is left when some faces break, in the order of split(). Those that never break do not.

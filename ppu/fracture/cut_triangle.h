@@ -22,8 +22,8 @@ using UnitPoint = std::array<std::int64_t, 3>;  ///< odd, 0..kMaxUnits
 /// (on one), or where a line of the lattice meets the triangle (on two).
 struct CutVertex {
   std::uint8_t planes = 0;  ///< how many it is on
-  std::uint8_t of =
-      0;  ///< on none: number of the corner; on one: of the side, from corner `of` to the next one
+  /// On no plane: the corner's number in the triangle. On one plane: the number of the side, which goes from corner `of` to the next.
+  std::uint8_t of = 0;
   std::array<std::uint8_t, 2> axis{};  ///< of the planes, ascending
   std::array<int, 2> plane{};          ///< multiples of kUnitsPerCell
 

@@ -381,7 +381,7 @@ JobSystem::~JobSystem() = default;
 
 void JobSystem::stop() { state_->stop(); }
 
-JobImage JobSystem::place(const ls_sim::KernelImage& image) {
+JobImage JobSystem::load(const ls_sim::KernelImage& image) {
   SC_ASSERT(!image.bytes.empty(), "the image of kernel {} is empty", image.name);
   auto placed = std::find_if(state_->images.begin(), state_->images.end(),
                              [&](const State::Placed& known) { return known.kernel == &image; });
@@ -510,7 +510,7 @@ void JobChain::clear() {
 
 void JobChain::add(const Job& job) {
   SC_ASSERT(!state_->under_way, "add() while the chain's {} jobs are under way", size());
-  SC_ASSERT(job.image.kernel_ != nullptr, "job {} has no image; JobSystem::place() returns one", size());
+  SC_ASSERT(job.image.kernel_ != nullptr, "job {} has no image; JobSystem::load() returns one", size());
   if (state_->kernels.size() == state_->most_jobs) {
     throw std::length_error("a chain of " + std::to_string(state_->most_jobs) + " jobs is full");
   }

@@ -294,8 +294,8 @@ CellPoint2d point_in_cells(const Lattice<2>& lattice, const Vector2f& at) {
   return point_of(lattice, cells.nearest(at), at);
 }
 
-void place(const Skin2d& skin, std::span<const Vector2f> particles, std::span<Vector2f> positions,
-           std::span<Vector2f> slopes) {
+void deform(const Skin2d& skin, std::span<const Vector2f> particles, std::span<Vector2f> positions,
+            std::span<Vector2f> slopes) {
   SC_ASSERT(positions.size() == skin.rest.size() && slopes.size() == skin.rest.size(),
             "room for {} positions and {} slopes of {} vertices", positions.size(), slopes.size(),
             skin.rest.size());

@@ -82,7 +82,7 @@ int spe_mfcio_tag_status_read(spe_context_ptr_t spe, unsigned int mask, unsigned
         return fail(EINVAL);
     }
     context.tags.fetch_and(~complete);
-    if (const auto fault = context.spe->take_proxy_fault()) {
+    if (const auto fault = context.spe->poll_proxy_fault()) {
       Machine::get().report(*fault);
       return fail(EIO);
     }

@@ -62,9 +62,6 @@ class PlasticFlow {
   /// @return         whether the rest shape has changed
   bool flow(std::span<const Vector> x, const SumPlan& sums, const Plasticity& plasticity, double share);
 
-  /// The largest strain e of the last flow(), before it flowed.
-  double largest_strain() const { return largest_strain_; }
-
   /// Of a cell of the rest shape, in spacing^n: the volume that its mean edges span. A cell counts as crushed
   /// below 0.5 (contacts/crushed_cells.h).
   static constexpr double kLeastRestVolume = 0.7;

@@ -81,11 +81,6 @@ class Cutter {
   std::vector<std::uint32_t> plate_list_, bar_list_;
 };
 
-std::size_t additions(const Csr& lists) {
-  SC_ASSERT(lists.items.size() >= lists.size(), "{} terms in {} sums", lists.items.size(), lists.size());
-  return lists.items.size() - lists.size();
-}
-
 }  // namespace
 
 SumPlan::SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions) {
@@ -102,7 +97,6 @@ SumPlan::SumPlan(std::span<const Eigen::Vector3i> particles, const Csr& regions)
   Cutter cutter(particles);
   region_of_.reserve(regions.size());
   for (std::size_t r = 0; r < regions.size(); ++r) region_of_.push_back(cutter.add(regions[r]));
-  naive_additions_ = additions(regions);
 
   particles_of_bar_ = cutter.bars.take();
   bars_of_plate_ = cutter.plates.take();
@@ -118,10 +112,6 @@ std::vector<std::uint32_t> SumPlan::members(std::size_t region) const {
     for (const std::uint32_t bar : bars_of_plate_[plate])
       for (const std::uint32_t particle : particles_of_bar_[bar]) members.push_back(particle);
   return members;
-}
-
-std::size_t SumPlan::shared_additions() const {
-  return additions(particles_of_bar_) + additions(bars_of_plate_) + additions(plates_of_region_);
 }
 
 }  // namespace softcell::ppu

@@ -48,14 +48,9 @@ class SumPlan {
   /// The particles of a distinct region, ascending.
   std::vector<std::uint32_t> members(std::size_t region) const;
 
-  /// Payload additions of one sum over all regions, shared, and naive with one region per particle.
-  std::size_t shared_additions() const;
-  std::size_t naive_additions() const { return naive_additions_; }
-
  private:
   Csr particles_of_bar_, regions_of_bar_, bars_of_plate_, plates_of_region_;
   std::vector<std::uint32_t> region_of_;
-  std::size_t naive_additions_ = 0;
 };
 
 /// Partial sums of one shared sum; sized once, used by every call.

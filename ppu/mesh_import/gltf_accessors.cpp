@@ -245,8 +245,6 @@ void GltfAccessor::read_sparse(const GltfValue& sparse, GltfBuffers& buffers) {
   }
 }
 
-bool GltfAccessor::is_float() const { return type_ == kFloat; }
-
 bool GltfAccessor::is_unsigned() const {
   return type_ == kUnsignedByte || type_ == kUnsignedShort || type_ == kUnsignedInt;
 }

@@ -54,7 +54,6 @@ class GltfAccessor {
 
   std::size_t count() const { return count_; }
   std::size_t components() const { return components_; }
-  bool is_float() const;
   bool is_normalized() const { return normalized_; }
   bool is_unsigned() const;
   const std::string& place() const { return place_; }

@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "softcell/base/assert.h"
+#include "softcell/dma/addresses.h"
 #include "softcell/dma/element_layout.h"
 
 namespace softcell::ppu {
 
 /// A line of main storage: plans occupy whole ones, which a get moves fastest.  [CBEA, MFC commands] documented
-inline constexpr std::size_t kPlanLineBytes = 128;
+inline constexpr std::size_t kPlanLineBytes = dma::kLineBytes;
 
 /// Plan and state of one body need more local store than the kernel has; the sentence states both.
 class BodyTooLarge : public std::runtime_error {

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/fault.h"
 
@@ -268,6 +269,7 @@ void make_contexts(Group& group) {
 
 void configure_signals(SpuThread& thread) {
   using ls_sim::SignalMode;
+  SC_ASSERT(thread.context != nullptr, "signal modes {} of a thread without a context", thread.configuration);
   ls_sim::ProblemState& state = thread.context->problem_state();
   const auto mode = [&](u64 bit) {
     return (thread.configuration & bit) != 0 ? SignalMode::kOr : SignalMode::kOverwrite;

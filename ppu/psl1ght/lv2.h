@@ -84,8 +84,8 @@ struct SpuThread {
   std::optional<s32> exit_status;
   std::atomic<bool> ended{true};
   std::atomic<bool> has_stopped{false};  ///< since it was started
-  std::unique_ptr<ls_sim::SpeContext>
-      context;  ///< of the last start; it is never replaced while the group runs
+  /// Of the last start; it is never replaced while the group runs.
+  std::unique_ptr<ls_sim::SpeContext> context;
   std::jthread host;
 };
 

@@ -64,7 +64,7 @@ Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions) {
 
 SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
                                    const ls_sim::KernelImage& skin)
-    : memory_(memory), system_(jobs), skin_(jobs.place(skin)) {}
+    : memory_(memory), system_(jobs), skin_(jobs.load(skin)) {}
 
 SkinOrchestrator::~SkinOrchestrator() {
   frame_.reset();  // which waits, while the bodies' memory is still there

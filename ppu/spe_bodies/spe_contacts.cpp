@@ -51,8 +51,8 @@ SpeContacts::SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ls_si
                          const ls_sim::KernelImage& contact_solve)
     : memory_(memory),
       jobs_(jobs),
-      contact_find_(jobs.place(contact_find)),
-      contact_solve_(jobs.place(contact_solve)) {}
+      contact_find_(jobs.load(contact_find)),
+      contact_solve_(jobs.load(contact_solve)) {}
 
 SpeContacts::~SpeContacts() = default;
 

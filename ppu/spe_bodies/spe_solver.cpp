@@ -43,7 +43,7 @@ const ls_sim::KernelImage& whole(const MatchKernels<2>& kernels) { return kernel
 const ls_sim::KernelImage& whole(const MatchKernels<3>& kernels) { return kernels.match; }
 JobImage place_tiles(JobSystem&, const MatchKernels<2>&) { return {}; }
 JobImage place_tiles(JobSystem& jobs, const MatchKernels<3>& kernels) {
-  return jobs.place(kernels.match_tiles);
+  return jobs.load(kernels.match_tiles);
 }
 
 std::span<const Eigen::Vector2f> as_the_kernel_reads_them(const SoftBody<2>& body) {
@@ -137,7 +137,7 @@ SpeSolver<kDimension>::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs,
                                  const MatchKernels<kDimension>& kernels)
     : memory_(memory),
       jobs_(jobs),
-      match_(jobs.place(whole(kernels))),
+      match_(jobs.load(whole(kernels))),
       match_tiles_(place_tiles(jobs, kernels)),
       checked_(whole(kernels).checked) {
   regroup({});  // a world without soft bodies steps, too
@@ -213,8 +213,8 @@ void SpeSolver<kDimension>::prepare(const std::shared_ptr<const SoftBodyModel<kD
 }
 
 template <int kDimension>
-void SpeSolver<kDimension>::take_part(const Body& whole, const Body& piece,
-                                      std::span<const std::uint32_t> particle_of) {
+void SpeSolver<kDimension>::inherit_state(const Body& whole, const Body& piece,
+                                          std::span<const std::uint32_t> particle_of) {
   SC_ASSERT(!is_stepping_, "a body breaks with {} jobs under way", chain_->size());
   if constexpr (kDimension == 3) {  // in two a rotation has a closed form
     const auto rotations_at = [](const Body& body, const Plans& plans, MatchBodies<3>* bodies,

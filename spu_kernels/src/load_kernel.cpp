@@ -1,6 +1,11 @@
 #include "softcell/spu_kernels/load_kernel.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <stdexcept>
 #include <string>
 
 #include "softcell/base/read_file.h"
@@ -11,6 +16,11 @@ namespace {
 
 /// With all that a debugger wants to know, far more than an image of 256 KB needs.
 constexpr std::uint64_t kMostImageBytes = std::uint64_t{256} << 20;
+
+bool begins_as_elf(std::span<const std::byte> bytes) {
+  constexpr std::array<std::byte, 4> kMagic{std::byte{0x7F}, std::byte{'E'}, std::byte{'L'}, std::byte{'F'}};
+  return bytes.size() >= kMagic.size() && std::ranges::equal(kMagic, bytes.first(kMagic.size()));
+}
 
 }  // namespace
 
@@ -31,8 +41,17 @@ ls_sim::KernelImage load_kernel_file(const std::filesystem::path& file) {
     break;
   }
   const auto bytes = base::read_file(file, kMostImageBytes);
-  return ls_sim::is_spu_program(bytes) ? ls_sim::load_spu_program(name, bytes)
-                                       : ls_sim::load_image(name, bytes);
+  if (!begins_as_elf(bytes))
+    throw std::runtime_error(
+        file.string() +
+        " is not an ELF file; a kernel is the file NAME.spu.elf that softcell_add_spu_kernel "
+        "makes, or an executable that a compiler for the SPU has made");
+  try {
+    return ls_sim::is_spu_program(bytes) ? ls_sim::load_spu_program(name, bytes)
+                                         : ls_sim::load_image(name, bytes);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
 }
 
 }  // namespace softcell::spu_kernels

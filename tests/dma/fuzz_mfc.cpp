@@ -189,7 +189,7 @@ class Program {
       case 10:
         return answer(mfc_.advance() ? 1 : 0);
       case 11:
-        return answer(mfc_.take_events());
+        return answer(mfc_.poll_events());
       case 12:
         return write_list();
       case 13:

@@ -359,13 +359,13 @@ TEST(MfcListFault, SuspendsTheQueueAndIsGivenOnceToWhoeverAsksFirst) {
   ListBench bench(kLazy);
   bench.issue(MfcOpcode::get, 0x2000, 0, 16, 4);
   bench.issue_list(MfcOpcode::getl, 0x1000, {bench.element(3, 0)}, 3);
-  EXPECT_FALSE(bench.mfc.take_fault());
+  EXPECT_FALSE(bench.mfc.poll_fault());
   EXPECT_TRUE(bench.mfc.advance()) << "the list is the newest, and tried first";
   EXPECT_FALSE(bench.mfc.advance());
-  const std::optional<Fault> fault = bench.mfc.take_fault();
+  const std::optional<Fault> fault = bench.mfc.poll_fault();
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->rule, Rule::kListElementSize);
-  EXPECT_FALSE(bench.mfc.take_fault());
+  EXPECT_FALSE(bench.mfc.poll_fault());
 
   EXPECT_EQ(bench.count_in_store(0x2000, 16, 0), 16) << "nothing moves any more";
   const auto refused = bench.mfc.issue(command(MfcOpcode::get, 0x2000, bench.buffer.ea(), 16, 4));
@@ -374,7 +374,7 @@ TEST(MfcListFault, SuspendsTheQueueAndIsGivenOnceToWhoeverAsksFirst) {
   EXPECT_TRUE(bench.mfc.drain());
 
   bench.mfc.begin_job(1);
-  EXPECT_FALSE(bench.mfc.take_fault());
+  EXPECT_FALSE(bench.mfc.poll_fault());
   bench.issue(MfcOpcode::get, 0x2000, 0, 16, 4);
   EXPECT_EQ(bench.wait_all(1u << 4), 1u << 4);
   EXPECT_FALSE(bench.mfc.drain());

@@ -95,18 +95,18 @@ TEST_P(MfcProgress, TheTagStatusEventComesWhenTheRequestBecomesTrue) {
   bench.issue_list(MfcOpcode::getl, 0, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   while (bench.mfc.advance()) {
   }
-  bench.mfc.take_events();
+  bench.mfc.poll_events();
   bench.mfc.write_tag_mask(1u << 3);
   ASSERT_FALSE(bench.mfc.write_tag_update(2));
-  EXPECT_EQ(bench.mfc.take_events(), 0u);
+  EXPECT_EQ(bench.mfc.poll_events(), 0u);
   ASSERT_FALSE(bench.mfc.write_list_stall_ack(3));
   while (bench.mfc.advance()) {
   }
-  EXPECT_EQ(bench.mfc.take_events(), Mfc::kTagStatusEvent);
-  EXPECT_EQ(bench.mfc.take_events(), 0u) << "taken";
+  EXPECT_EQ(bench.mfc.poll_events(), Mfc::kTagStatusEvent);
+  EXPECT_EQ(bench.mfc.poll_events(), 0u) << "taken";
   EXPECT_TRUE(std::holds_alternative<std::uint32_t>(bench.mfc.read_tag_status()));
   ASSERT_FALSE(bench.mfc.write_tag_update(2));
-  EXPECT_EQ(bench.mfc.take_events(), Mfc::kTagStatusEvent) << "true at once";
+  EXPECT_EQ(bench.mfc.poll_events(), Mfc::kTagStatusEvent) << "true at once";
 }
 
 TEST_P(MfcProgress, TheListStallEventComesWhenAListStalls) {
@@ -114,20 +114,20 @@ TEST_P(MfcProgress, TheListStallEventComesWhenAListStalls) {
   bench.issue_list(MfcOpcode::getl, 0, {bench.stalling(16, 0), bench.element(16, 0)}, 3);
   while (bench.mfc.advance()) {
   }
-  EXPECT_EQ(bench.mfc.take_events(), Mfc::kListStallEvent);
+  EXPECT_EQ(bench.mfc.poll_events(), Mfc::kListStallEvent);
 }
 
 TEST(MfcEvents, TheQueueSlotEventComesWhenAFullQueueHasRoomAgain) {
   MfcBench bench(kLazy);
   for (std::uint32_t i = 0; i < 15; ++i) bench.issue(MfcOpcode::get, i * 16, 0, 16, 3);
   ASSERT_TRUE(bench.mfc.advance());
-  EXPECT_EQ(bench.mfc.take_events(), 0u) << "it was not full";
+  EXPECT_EQ(bench.mfc.poll_events(), 0u) << "it was not full";
   for (std::uint32_t i = 0; i < 2; ++i) bench.issue(MfcOpcode::get, i * 16, 0, 16, 3);
-  EXPECT_EQ(bench.mfc.take_events(), 0u);
+  EXPECT_EQ(bench.mfc.poll_events(), 0u);
   ASSERT_TRUE(bench.mfc.advance());
-  EXPECT_EQ(bench.mfc.take_events(), Mfc::kQueueSlotEvent);
+  EXPECT_EQ(bench.mfc.poll_events(), Mfc::kQueueSlotEvent);
   ASSERT_TRUE(bench.mfc.advance());
-  EXPECT_EQ(bench.mfc.take_events(), 0u);
+  EXPECT_EQ(bench.mfc.poll_events(), 0u);
 }
 
 // Observers.

@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""The pages are true as far as a program can tell: links lead somewhere, the walks of architecture.md are as the code is.
+"""The pages are true as far as a program can tell: links lead somewhere, the sources that they name exist, the walks of architecture.md are as the code is, its tables of
+rooms are as those of ci/check-layers.
 
-    check_pages.py ROOT
+    check_pages.py [--links] ROOT
+
+With --links only the links, for pages that were installed.
 """
 import pathlib
 import re
@@ -47,6 +50,16 @@ def missing_pages(root):
                 yield f"{file.relative_to(root)}: {name} is no page"
 
 
+def missing_sources(root):
+    """Of pages that name a source by its last folders: `surfaces/obstacle.h`."""
+    folders = [root / name for name in ("base", "ci", "demos", "dma", "examples", "ls_sim", "ppu", "render", "spu_kernels", "tests", "tool")]
+    known = ["/" + str(file.relative_to(root)) for folder in folders for file in folder.rglob("*.*")]
+    for page in pages(root):
+        for name in sorted(set(re.findall(r"`([\w/]+/\w+\.(?:h|cpp|def|py|toml|lua))`", without_code(page.read_text())))):
+            if not any(file.endswith("/" + name) for file in known):
+                yield f"{page.relative_to(root)}: {name} is no file"
+
+
 def wrong_walks(root):
     text = (root / "docs/reference/architecture.md").read_text()
     part = text[text.index("## Walks through the code\n"):]
@@ -69,11 +82,34 @@ def wrong_walks(root):
                     yield f"architecture.md, '{title}': {file} has no {name}()"
 
 
+def wrong_rooms(root):
+    page = (root / "docs/reference/architecture.md").read_text()
+    layers = (root / "ci/check-layers").read_text()
+    page_has = set(re.findall(r"^\| `((?:ls_sim|demos|tool)/src/\w+)` \|", page, flags=re.M))
+    layers_have = set(re.findall(r"^  \[((?:ls_sim|demos|tool)/src/\w+)\]=", layers, flags=re.M))
+    for room in sorted(page_has ^ layers_have):
+        yield f"{room} has a row in {'architecture.md' if room in page_has else 'ci/check-layers'} only"
+
+    table = page[page.index("### The rooms of ppu\n"):]
+    table = table[:table.index("\n\n", table.index("\n|"))]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines() if line.startswith("| `")]
+    page_says = {row[0].strip("`"): set(re.findall(r"`(\w+)`", row[3])) for row in rows}
+    of_ppu = re.search(r"^ppu_rooms='\n(.*?)^'", layers, flags=re.M | re.S).group(1)
+    layers_say = {row.split()[0]: set(row.split()[1].split("|")) - {"-"} for row in of_ppu.splitlines()}
+    for room in sorted(page_says.keys() | layers_say.keys()):
+        if page_says.get(room) != layers_say.get(room):
+            yield (f"the room ppu/{room} includes {sorted(page_says.get(room, []))} in architecture.md, "
+                   f"{sorted(layers_say.get(room, []))} in ci/check-layers")
+
+
 def main():
-    root = pathlib.Path(sys.argv[1]).resolve()
+    root = pathlib.Path(sys.argv[-1]).resolve()
     wrong = [sentence for page in pages(root) for sentence in broken_links(page)]
-    wrong += missing_pages(root)
-    wrong += wrong_walks(root)
+    if "--links" not in sys.argv:
+        wrong += missing_pages(root)
+        wrong += missing_sources(root)
+        wrong += wrong_walks(root)
+        wrong += wrong_rooms(root)
     print("\n".join(wrong))
     return 1 if wrong else 0
 

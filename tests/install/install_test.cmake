@@ -102,6 +102,24 @@ foreach(file share/doc/softcell/LICENSE share/doc/softcell/README.md share/doc/s
   endif()
 endforeach()
 
+# Installed headers include installed headers.
+file(GLOB_RECURSE headers ${prefix}/include/softcell/*.h)
+foreach(header IN LISTS headers)
+  file(STRINGS ${header} lines REGEX "^#include \"softcell/")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^#include \"([^\"]*)\".*" "\\1" included "${line}")
+    if(NOT EXISTS ${prefix}/include/${included})
+      message(FATAL_ERROR "${header} includes ${included}, which was not installed")
+    endif()
+  endforeach()
+endforeach()
+if(EXISTS ${prefix}/include/softcell/dma/mfc_rules.h)
+  message(FATAL_ERROR "headers of softcell's own layers were installed")
+endif()
+
+find_program(PYTHON python3 REQUIRED)
+step("links of the installed pages" ${PYTHON} ${EXAMPLES}/../tests/docs/check_pages.py --links ${prefix}/share/doc/softcell)
+
 # The installed command on the example's kernels: the right one, and the broken one.
 string(REPEAT "0123456789abcdef" 256 bytes)  # 1024 floats
 file(WRITE ${SCRATCH}/x.bin "${bytes}")

@@ -37,7 +37,11 @@ TEST(RunVerb, EndsAsTheProgramDoes) {
   EXPECT_TRUE(has(other, "no SPE context was made")) << other.output;
   const CommandResult none = run_softcell("run -- ./no_such_program");
   EXPECT_EQ(none.status, 1);
-  EXPECT_TRUE(has(none, "softcell: cannot run ./no_such_program: No such file or directory")) << none.output;
+  EXPECT_TRUE(has(none, "softcell: cannot run ./no_such_program: there is no such file")) << none.output;
+  const CommandResult unknown = run_softcell("run -- no_such_program");
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_TRUE(has(unknown, "softcell: cannot run no_such_program: no folder of PATH has it"))
+      << unknown.output;
 }
 
 TEST(RunVerb, FindsAForgottenWaitOfACheckedProgram) {

@@ -133,7 +133,7 @@ TEST(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
         {.kind = AttachmentKind::kRope, .point = Vector2f(0, 1.5f), .break_force = share * weight});
     w.run(1);
     EXPECT_EQ(w.soft.attachment(weak).has_value(), share > 1) << share;
-    const auto ended = w.soft.take_ended_attachments();
+    const auto ended = w.soft.poll_ended_attachments();
     EXPECT_EQ(ended.size(), share > 1 ? 0u : 1u);
     for (const EndedAttachment& one : ended) EXPECT_EQ(one.reason, EndedAttachment::Reason::kBroken);
   }
@@ -181,7 +181,7 @@ TEST(Box2dAttachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
   EXPECT_FALSE(w.soft.attachment(to_bar));
   w.soft.remove(b);
   EXPECT_FALSE(w.soft.attachment(to_b));
-  const auto ended = w.soft.take_ended_attachments();
+  const auto ended = w.soft.poll_ended_attachments();
   ASSERT_EQ(ended.size(), 2u);
   for (const EndedAttachment& one : ended) EXPECT_EQ(one.reason, EndedAttachment::Reason::kGone);
   w.run(0.1f);

@@ -31,6 +31,10 @@ TEST(SoftBodyContractsDeathTest, ABodyHasAModel) {
   SC_EXPECT_VIOLATES(world.soft.add(nullptr, {0, 0, 0}), "add.*: a soft body without a model");
 }
 
+TEST(SoftBodyContractsDeathTest, ARestMeshIsOfABodyWithAMesh) {
+  SC_EXPECT_VIOLATES(static_cast<void>(rest_mesh(SoftBody<3>(cube()))), "a body of 8 particles has no mesh");
+}
+
 TEST(SoftBodyContractsDeathTest, ABodyStaysWithinTheFiniteWorld) {
   SoftBody<3> body(cube());
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -115,7 +119,7 @@ TEST(SoftBodyContractsDeathTest, SitesOfTilesAscend) {
 TEST(JobContractsDeathTest, AChainIsFilledAndKickedWhenItHasFinished) {
   SpeRuntime spes({.spes = 1});
   JobChain chain(spes.jobs(), "empty", 1);
-  SC_EXPECT_VIOLATES(chain.add({}), "add.*: job 0 has no image; JobSystem::place\\(\\) returns one\n");
+  SC_EXPECT_VIOLATES(chain.add({}), "add.*: job 0 has no image; JobSystem::load\\(\\) returns one\n");
 }
 
 /// Whether the jobs have ended by then makes no difference: who does not ask may not go on.
@@ -124,7 +128,7 @@ TEST(JobContractsDeathTest, WhoKicksAChainAsksWhetherItHasFinished) {
   SpeRuntime spes({.spes = 1});
   const ls_sim::KernelImage kernel = spu_kernels::load_kernel("transfers");
   JobChain chain(spes.jobs(), "kicked", 1);
-  chain.add({.image = spes.jobs().place(kernel), .argp = {}});  // returns at once
+  chain.add({.image = spes.jobs().load(kernel), .argp = {}});  // returns at once
   chain.kick();
   SC_EXPECT_VIOLATES(chain.kick(), "kick.*: kick\\(\\) while the chain's 1 jobs are under way\n");
   SC_EXPECT_VIOLATES(chain.clear(), "clear.*: clear\\(\\) while the chain's 1 jobs are under way\n");

@@ -77,7 +77,7 @@ TEST_F(JobSystemTest, RunsEveryJobOnceForAnyNumberOfSpesAndAnySchedule) {
     for (const char* schedule : {"eager", "lazy", "random:1", "random:2"}) {
       JobSystem jobs(memory_, {.spes = spes, .schedule = dma::parse_schedule(schedule)}, loop_);
       auto lines = make_lines(100);
-      const JobImage adds = jobs.place(adds_);
+      const JobImage adds = jobs.load(adds_);
       JobChain chain(jobs, "adds", 100);
       for (std::size_t i = 0; i < 100; ++i) chain.add({adds, lines.ea(i)});
       chain.kick();
@@ -102,7 +102,7 @@ TEST_F(JobSystemTest, OfSpesThatTakeTurnsEndsItsJobs) {
       if (by_time) ls_sim::time_by(&timing, options);
       JobSystem jobs(memory_, options, loop_);
       auto lines = make_lines(40);
-      const JobImage adds = jobs.place(adds_);
+      const JobImage adds = jobs.load(adds_);
       JobChain first(jobs, "first", 20), second(jobs, "second", 20);
       for (std::size_t i = 0; i < 40; ++i) (i < 20 ? first : second).add({adds, lines.ea(i)});
       for (int kick = 0; kick < 2; ++kick) {
@@ -130,7 +130,7 @@ std::vector<Words> mix(dma::AddressSpace& memory, const KernelImage& loop, const
   constexpr std::size_t kLines = 13, kStages = 20;
   const KernelImage image = test_image(options.findings != nullptr ? "mixes_checked" : "mixes");
   JobSystem jobs(memory, options, loop);
-  const JobImage mixes = jobs.place(image);
+  const JobImage mixes = jobs.load(image);
   std::array<dma::Buffer<Words>, 2> lines{dma::Buffer<Words>(memory, "even", kLines),
                                           dma::Buffer<Words>(memory, "odd", kLines)};
   for (std::size_t i = 0; i < kLines; ++i) lines[0][i].fill(static_cast<std::uint32_t>(i * i + 1));
@@ -173,7 +173,7 @@ TEST_F(JobSystemTest, ThousandsOfJobsOfTwoImages) {
   const KernelImage other = test_image("remembers");
   JobSystem jobs(memory_, {.spes = 3}, loop_);
   auto lines = make_lines(kJobs), counts = make_lines(kJobs);
-  const JobImage adds = jobs.place(adds_), remembers = jobs.place(other);
+  const JobImage adds = jobs.load(adds_), remembers = jobs.load(other);
   JobChain chain(jobs, "many", 2 * kJobs);
   for (std::size_t i = 0; i < kJobs; ++i) {
     chain.add({adds, lines.ea(i)});
@@ -191,7 +191,7 @@ TEST_F(JobSystemTest, ThousandsOfJobsOfTwoImages) {
 TEST_F(JobSystemTest, AChainIsKickedAgainAndAgain) {
   JobSystem jobs(memory_, {.spes = 2}, loop_);
   auto lines = make_lines(3);
-  const JobImage adds = jobs.place(adds_);
+  const JobImage adds = jobs.load(adds_);
   JobChain chain(jobs, "again", 3);
   for (std::size_t i = 0; i < 3; ++i) chain.add({adds, lines.ea(i)}), chain.sync();
   for (int kick = 0; kick < 2000; ++kick) {
@@ -211,7 +211,7 @@ TEST_F(JobSystemTest, AChainIsKickedAgainAndAgain) {
 TEST_F(JobSystemTest, ChainsRunBesideEachOther) {
   JobSystem jobs(memory_, {.spes = 4}, loop_);
   auto lines = make_lines(15 * 50);
-  const JobImage adds = jobs.place(adds_);
+  const JobImage adds = jobs.load(adds_);
   std::vector<std::unique_ptr<JobChain>> chains;
   for (std::size_t c = 0; c < spu::kMaxChains; ++c) {
     chains.push_back(std::make_unique<JobChain>(jobs, "chain", 50));
@@ -229,7 +229,7 @@ TEST_F(JobSystemTest, AnEarlierChainGoesFirst) {
   const KernelImage endless = test_image("endless"), copies = test_image("mixes");
   JobSystem jobs(memory_, {.spes = 1, .deadline = 300ms}, loop_);
   auto lines = make_lines(3);
-  const JobImage adds = jobs.place(adds_), mixes = jobs.place(copies), blocks = jobs.place(endless);
+  const JobImage adds = jobs.load(adds_), mixes = jobs.load(copies), blocks = jobs.load(endless);
   JobChain urgent(jobs, "urgent", 1), later(jobs, "later", 1), blocker(jobs, "blocker", 1);
   blocker.add({blocks, {}});
   blocker.kick();  // the only SPE is busy while both others are kicked
@@ -255,13 +255,13 @@ TEST_F(JobSystemTest, AnEmptyChainHasEnded) {
   chain.kick();
   chain.wait();
   EXPECT_TRUE(chain.failures().empty());
-  EXPECT_THROW(chain.add({jobs.place(adds_), {}}), std::length_error);
+  EXPECT_THROW(chain.add({jobs.load(adds_), {}}), std::length_error);
 }
 
 TEST_F(JobSystemTest, AJobThatReturnsAStatusFailsItsChainAfterItsStage) {
   JobSystem jobs(memory_, {.spes = 2}, loop_);
   auto lines = make_lines(4);
-  const JobImage adds = jobs.place(adds_);
+  const JobImage adds = jobs.load(adds_);
   JobChain chain(jobs, "refuses", 4);
   chain.add({adds, lines.ea(0)});
   chain.add({adds, lines.ea(1), {9}});
@@ -295,7 +295,7 @@ TEST_F(JobSystemTest, OfSeveralJobsThatFailTheFirstInTheChainIsNamedInWhateverOr
   const KernelImage image = test_image("takes_turns");
   const auto expect_first = [&](JobSystem& jobs, const std::vector<std::size_t>& turns, std::size_t first) {
     auto lines = make_lines(4);
-    const JobImage takes_turns = jobs.place(image), adds = jobs.place(adds_);
+    const JobImage takes_turns = jobs.load(image), adds = jobs.load(adds_);
     JobChain chain(jobs, "fails", 3 + turns.size());
     chain.add({adds, lines.ea(1)});
     chain.sync();
@@ -335,7 +335,7 @@ TEST_F(JobSystemTest, AJobThatFaultsIsNamedAndTheSpesGoOn) {
   for (const char* schedule : {"eager", "lazy", "random:3"}) {
     JobSystem jobs(memory_, {.spes = 2, .schedule = dma::parse_schedule(schedule)}, loop_);
     auto lines = make_lines(3);
-    const JobImage adds = jobs.place(adds_), breaks = jobs.place(bad);
+    const JobImage adds = jobs.load(adds_), breaks = jobs.load(bad);
     JobChain chain(jobs, "faults", 4);
     chain.add({adds, lines.ea(0)});
     chain.add({breaks, lines.ea(2), {24}});
@@ -370,7 +370,7 @@ TEST_F(JobSystemTest, EveryWayToCrashIsReported) {
     for (const ls_sim::Interleaving interleaving : kInterleavings) {
       JobSystem jobs(memory_, {.spes = 1, .interleaving = interleaving}, loop_);
       auto lines = make_lines(1);
-      const JobImage crashes = jobs.place(image), adds = jobs.place(adds_);
+      const JobImage crashes = jobs.load(image), adds = jobs.load(adds_);
       JobChain chain(jobs, "crashes", 2);
       chain.add({crashes, lines.ea(), {4096}});  // envp: a depth of stack
       chain.add({adds, lines.ea()});
@@ -388,7 +388,7 @@ TEST_F(JobSystemTest, TheDeadlineIsThatOfAJobNotOfTheLoop) {
   JobSystem jobs(memory_, {.spes = 2, .deadline = 100ms}, loop_);
   std::this_thread::sleep_for(300ms);  // idle for longer than the deadline
   auto lines = make_lines(1);
-  const JobImage hangs = jobs.place(endless), adds = jobs.place(adds_);
+  const JobImage hangs = jobs.load(endless), adds = jobs.load(adds_);
   JobChain chain(jobs, "hangs", 3);
   chain.add({hangs, {}, {0}});
   chain.add({hangs, {}, {1}});
@@ -407,7 +407,7 @@ TEST_F(JobSystemTest, AJobThatWaitsForWhatNeverComesEndsAtTheDeadline) {
   for (const ls_sim::Interleaving interleaving : kInterleavings) {
     JobSystem jobs(memory_, {.spes = 2, .deadline = 100ms, .interleaving = interleaving}, loop_);
     JobChain chain(jobs, "waits", 3);
-    const JobImage waits = jobs.place(image);
+    const JobImage waits = jobs.load(image);
     for (const std::uint64_t channel : {29, 3, 0}) chain.add({waits, {channel}, {0x2}});
     chain.kick();
     chain.wait();
@@ -422,7 +422,7 @@ TEST_F(JobSystemTest, AJobThatOverwritesTheLoopIsNamed) {
   const KernelImage image = test_image("overwrites");
   JobSystem jobs(memory_, {.spes = 2}, loop_);
   auto lines = make_lines(1);
-  const JobImage overwrites = jobs.place(image), adds = jobs.place(adds_);
+  const JobImage overwrites = jobs.load(image), adds = jobs.load(adds_);
   std::uint32_t kick = 0;
   for (std::uint32_t lsa = loop_.begin; lsa < loop_.sizes.end; lsa += 16) {
     JobChain chain(jobs, "overwrites", 2), good(jobs, "good", 1);
@@ -443,7 +443,7 @@ TEST_F(JobSystemTest, AJobThatOverwritesTheLoopIsNamed) {
 TEST_F(JobSystemTest, ChainsMayGoWhileSpesLookForWork) {
   JobSystem jobs(memory_, {.spes = 6}, loop_);
   auto lines = make_lines(6);
-  const JobImage adds = jobs.place(adds_);
+  const JobImage adds = jobs.load(adds_);
   for (int i = 0; i < 10000; ++i) {
     JobChain chain(jobs, "short", 6);
     for (std::size_t line = 0; line < 6; ++line) chain.add({adds, lines.ea(line)});
@@ -460,7 +460,7 @@ TEST_F(JobSystemTest, ATransferIntoTheLoopIsNamed) {
       JobSystem jobs(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)}, loop_);
       auto lines = make_lines(100);
       JobChain chain(jobs, "gets over", 1);
-      chain.add({jobs.place(image), lines.ea(99), {lsa & ~127u}});
+      chain.add({jobs.load(image), lines.ea(99), {lsa & ~127u}});
       chain.kick();
       chain.wait();
       ASSERT_EQ(chain.failures().size(), 1u) << schedule << " " << std::hex << lsa;
@@ -475,8 +475,8 @@ TEST_F(JobSystemTest, AJobThatLeavesAStalledListIsNamed) {
     JobSystem jobs(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)}, loop_);
     auto lines = make_lines(1);
     JobChain chain(jobs, "stalls", 2);
-    chain.add({jobs.place(image), lines.ea()});
-    chain.add({jobs.place(adds_), lines.ea()});
+    chain.add({jobs.load(image), lines.ea()});
+    chain.add({jobs.load(adds_), lines.ea()});
     chain.kick();
     chain.wait();
     ASSERT_EQ(chain.failures().size(), 1u);
@@ -490,7 +490,7 @@ TEST_F(JobSystemTest, ADamagedStackOfTheLoopHangsNobody) {
   const KernelImage image = test_image("overwrites");
   JobSystem jobs(memory_, {.spes = 2, .deadline = 500ms}, loop_);
   auto lines = make_lines(1);
-  const JobImage overwrites = jobs.place(image), adds = jobs.place(adds_);
+  const JobImage overwrites = jobs.load(image), adds = jobs.load(adds_);
   std::size_t failed = 0;
   for (std::uint32_t lsa = loop_.begin - loop_.sizes.stack; lsa < loop_.begin; lsa += 16) {
     JobChain chain(jobs, "overwrites", 4);
@@ -516,7 +516,7 @@ TEST_F(JobSystemTest, AFaultThatNamesNoJobFailsTheChainsUnderWay) {
   for (int spes = 1; spes <= 6; ++spes) {
     JobSystem jobs(memory_, {.spes = spes}, broken);
     JobChain first(jobs, "first", 3), second(jobs, "second", 1);
-    const JobImage adds = jobs.place(adds_);
+    const JobImage adds = jobs.load(adds_);
     auto lines = make_lines(4);
     for (std::size_t i = 0; i < 3; ++i) first.add({adds, lines.ea(i)});
     second.add({adds, lines.ea(3)});
@@ -539,7 +539,7 @@ TEST_F(JobSystemTest, AChainMayBeFilledWhileTheLoopsBreakDown) {
   const KernelImage broken = test_image("breaks_down");
   JobSystem jobs(memory_, {.spes = 2}, broken);
   JobChain kicked(jobs, "kicked", 1), filled(jobs, "filled", 100);
-  const JobImage adds = jobs.place(adds_);
+  const JobImage adds = jobs.load(adds_);
   auto lines = make_lines(2);
   kicked.add({adds, lines.ea(0)});
   for (int kick = 0; kick < 20; ++kick) {
@@ -560,7 +560,7 @@ TEST_F(JobSystemTest, LoopsThatHaveRunJobsEndWithoutAFault) {
   JobSystem jobs(memory_, {.spes = 2, .trace = &trace}, loop_);
   const auto lines = make_lines(8);
   JobChain chain(jobs, "adds", lines.size());
-  for (std::size_t i = 0; i < lines.size(); ++i) chain.add({jobs.place(adds_), lines.ea(i)});
+  for (std::size_t i = 0; i < lines.size(); ++i) chain.add({jobs.load(adds_), lines.ea(i)});
   chain.kick();
   chain.wait();
   expect_no_failures(chain);
@@ -576,7 +576,7 @@ TEST_F(JobSystemTest, LoopsThatHaveRunJobsEndWithoutAFault) {
 TEST_F(JobSystemTest, AJobBeginsWithAnEmptyEventMaskThoughItsLoopHasSlept) {
   JobSystem jobs(memory_, {.spes = 1}, loop_);
   const KernelImage image = test_image("sees_mask");
-  const JobImage sees_mask = jobs.place(image);
+  const JobImage sees_mask = jobs.load(image);
   JobChain chain(jobs, "sees_mask", 1);
   chain.add({sees_mask, {}});
   for (int kick = 0; kick < 3; ++kick) {
@@ -591,7 +591,7 @@ TEST_F(JobSystemTest, AResidentJobKeepsItsVariablesUpToItsCallersStack) {
   JobSystem jobs(memory_, {.spes = 1}, loop_);
   const KernelImage image =
       ls_sim::load_image("fills_up", {softcell_image_fills_up, softcell_image_fills_up_end});
-  const JobImage fills_up = jobs.place(image);
+  const JobImage fills_up = jobs.load(image);
   JobChain chain(jobs, "fills_up", 1);
   chain.add({fills_up, {}});
   chain.kick();
@@ -618,7 +618,7 @@ TEST_F(JobSystemTest, AnIdleSystemTakesNoTimeAndIsNoDeadlock) {
   };
   JobSystem jobs(memory_, {.spes = 6}, loop_);
   auto lines = make_lines(1);
-  const JobImage adds = jobs.place(adds_);
+  const JobImage adds = jobs.load(adds_);
   JobChain chain(jobs, "once in a while", 1);
   chain.add({adds, lines.ea()});
   chain.kick();
@@ -639,7 +639,7 @@ TEST_F(JobSystemTest, NoMoreSpesAreWokenThanThereAreJobs) {
   for (const std::size_t count : {1u, 2u, 4u}) {
     JobSystem jobs(memory_, {.spes = 6}, loop_);
     auto lines = make_lines(count);
-    const JobImage adds = jobs.place(adds_);
+    const JobImage adds = jobs.load(adds_);
     JobChain chain(jobs, "few", count);
     for (std::size_t i = 0; i < count; ++i) chain.add({adds, lines.ea(i)});
     for (std::uint64_t kick = 0; kick < kKicks; ++kick) {
@@ -660,7 +660,7 @@ TEST_F(JobSystemTest, AllSpesAreWokenWhenThereIsWorkForAll) {
   const KernelImage image = test_image("meets");
   JobSystem jobs(memory_, {.spes = 6, .deadline = 20s}, loop_);
   auto lines = make_lines(7);  // a barrier, and a line of each SPE
-  const JobImage meets = jobs.place(image), adds = jobs.place(adds_);
+  const JobImage meets = jobs.load(image), adds = jobs.load(adds_);
   auto alone = make_lines(1);
   JobChain chain(jobs, "meets", 13);
   for (int i = 0; i < 6; ++i) chain.add({meets, lines.ea(), {1}});
@@ -689,9 +689,9 @@ TEST_F(JobSystemTest, CheckedJobsAreChecked) {
     JobSystem jobs(memory_, options, loop_);
     auto lines = make_lines(2);
     JobChain chain(jobs, "finds", 2);
-    chain.add({jobs.place(no_wait), lines.ea(1), lines.ea(0)});
+    chain.add({jobs.load(no_wait), lines.ea(1), lines.ea(0)});
     chain.sync();
-    chain.add({jobs.place(no_wait), lines.ea(1), lines.ea(0)});
+    chain.add({jobs.load(no_wait), lines.ea(1), lines.ea(0)});
     chain.kick();
     chain.wait();
     expect_no_failures(chain);
@@ -700,19 +700,19 @@ TEST_F(JobSystemTest, CheckedJobsAreChecked) {
     EXPECT_EQ(found[0].count, 64u);
     EXPECT_EQ(found[0].fault.place, "no_wait.cpp:12");
     EXPECT_EQ(found[0].fault.kernel, "no_wait_checked");
-    EXPECT_THROW(jobs.place(adds_), std::invalid_argument);
+    EXPECT_THROW(jobs.load(adds_), std::invalid_argument);
   }
 }
 
 TEST_F(JobSystemTest, RefusesImagesThatAreNoJobs) {
   JobSystem jobs(memory_, {.spes = 1}, loop_);
-  EXPECT_THROW(jobs.place(loop_), std::invalid_argument);
+  EXPECT_THROW(jobs.load(loop_), std::invalid_argument);
   ls_sim::KernelImage program = adds_;
   program.program = true;
-  EXPECT_THROW(jobs.place(program), std::invalid_argument) << "a program is loaded whole";
+  EXPECT_THROW(jobs.load(program), std::invalid_argument) << "a program is loaded whole";
   KernelImage large = adds_;
   large.sizes.stack = loop_.begin - loop_.sizes.stack - large.sizes.end + 16;
-  EXPECT_THROW(jobs.place(large), std::invalid_argument);
+  EXPECT_THROW(jobs.load(large), std::invalid_argument);
 }
 
 TEST_F(JobSystemTest, RefusesOptionsOutOfRange) {
@@ -725,7 +725,7 @@ TEST_F(JobSystemTest, EndsAtOnceWhateverIsUnderWay) {
   for (int round = 0; round < 50; ++round) {
     JobSystem jobs(memory_, {.spes = 1 + round % 6}, loop_);
     auto lines = make_lines(20);
-    const JobImage adds = jobs.place(adds_);
+    const JobImage adds = jobs.load(adds_);
     std::optional<JobChain> first(std::in_place, jobs, "first", 20),
         second(std::in_place, jobs, "second", 20);
     for (std::size_t i = 0; i < 10; ++i) first->add({adds, lines.ea(i)});
@@ -745,7 +745,7 @@ TEST_F(JobSystemTest, AReadWithoutAWaitShowsUnderTheLazySchedule) {
     JobSystem jobs(memory_, {.spes = 1, .schedule = dma::parse_schedule(schedule)}, loop_);
     auto lines = make_lines(2);
     JobChain chain(jobs, "no wait", 1);
-    chain.add({jobs.place(image), lines.ea(1), lines.ea()});
+    chain.add({jobs.load(image), lines.ea(1), lines.ea()});
     chain.kick();
     chain.wait();
     expect_no_failures(chain);
@@ -758,7 +758,7 @@ TEST_F(JobSystemTest, ComputesWithTheArithmeticOfTheSpu) {
   JobSystem jobs(memory_, {.spes = 1}, loop_);
   dma::Buffer<ls_sim::ArithmeticResults> results(memory_, "results", 1);
   JobChain chain(jobs, "arithmetic", 1);
-  chain.add({jobs.place(image), results.ea()});
+  chain.add({jobs.load(image), results.ea()});
   chain.kick();
   chain.wait();
   expect_no_failures(chain);

@@ -154,7 +154,7 @@ TEST(Skin2d, FollowsAffineMapsExactly) {
     std::vector<Vector2f> particles = at_rest(lattice);
     for (Vector2f& particle : particles) particle = stretch * particle + shift;
     std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
-    place(skin, particles, positions, slopes);
+    deform(skin, particles, positions, slopes);
     const Eigen::Matrix2f cofactors = stretch.determinant() * stretch.inverse().transpose();
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const Vector2f expected = stretch * (lattice.origin + lattice.spacing * skin.rest[i]) + shift;
@@ -167,7 +167,7 @@ TEST(Skin2d, FollowsAffineMapsExactly) {
 /// A bent bar, and where a skin's vertices are drawn then.
 std::vector<Vector2f> placed(const Skin2d& skin, std::span<const Vector2f> particles) {
   std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
-  place(skin, particles, positions, slopes);
+  deform(skin, particles, positions, slopes);
   return positions;
 }
 
@@ -316,7 +316,7 @@ TEST(Skin2dContract, RefusesMarginsAndSizesThatDoNotFit) {
   SC_EXPECT_VIOLATES(make_skin_2d(Lattice<2>(), 0.5f), "has no cells");
   const Skin2d skin = make_skin_2d(lattice, 0.5f);
   std::vector<Vector2f> none;
-  SC_EXPECT_VIOLATES(place(skin, at_rest(lattice), none, none), "room for 0 positions");
+  SC_EXPECT_VIOLATES(deform(skin, at_rest(lattice), none, none), "room for 0 positions");
 }
 
 }  // namespace

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "mesh_checks.h"
-#include "ppu/contacts/contact_surface.h"
 #include "ppu/mesh/outer_surface.h"
+#include "ppu/surfaces/contact_surface.h"
 #include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::ppu {

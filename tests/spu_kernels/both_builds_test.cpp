@@ -33,8 +33,8 @@ using ls_sim::Machine;
 struct Outcome {
   std::vector<std::byte> bytes;       ///< of its output, in the host's byte order
   std::vector<std::string> failures;  ///< of jobs
-  std::vector<std::string>
-      commands;                   ///< opcode, effective address, size and tag of each DMA command, in order
+  /// Opcode, effective address, size and tag of each DMA command, in order.
+  std::vector<std::string> commands;
   std::uint32_t local_store = 0;  ///< bytes that image and stack took at most
   std::uint32_t stack = 0;        ///< of these, the stack of job and job loop
 
@@ -67,7 +67,7 @@ class Rig {
 
   void run(const std::string& name, dma::EffectiveAddress argp, Outcome& outcome) {
     ppu::JobChain chain(jobs_, name, 1);
-    chain.add({jobs_.place(kernel(name)), argp});
+    chain.add({jobs_.load(kernel(name)), argp});
     chain.kick();
     chain.wait();
     for (const ppu::JobFailure& failure : chain.failures()) outcome.failures.push_back(failure.message);

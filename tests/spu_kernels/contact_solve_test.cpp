@@ -234,7 +234,7 @@ class SolveRig {
     job_[0].tasks_ea = tasks_.ea().value;
     job_[0].task_count = 1;
     ppu::JobChain chain(jobs_, "solve", 1);
-    chain.add({jobs_.place(image_), job_.ea()});
+    chain.add({jobs_.load(image_), job_.ea()});
     chain.kick();
     chain.wait();
     for (const ppu::JobFailure& failure : chain.failures()) failures.push_back(failure.message);

@@ -62,7 +62,10 @@ TEST_F(LoadKernel, NamesAFileThatIsNoKernel) {
   };
   EXPECT_NE(problem(folder_ / "none.spu.elf").find("none.spu.elf"), std::string::npos);
   const std::byte few[4] = {};
-  EXPECT_NE(problem(write("few.spu.elf", few)).find("few"), std::string::npos);
+  EXPECT_NE(problem(write("few.spu.elf", few)).find("few.spu.elf is not an ELF file"), std::string::npos);
+  const std::string cut = problem(write("cut.spu.elf", image_file("skin", false).first(100)));
+  EXPECT_NE(cut.find("cut.spu.elf: "), std::string::npos) << cut;
+  EXPECT_NE(cut.find("truncated"), std::string::npos) << cut;
 }
 
 }  // namespace

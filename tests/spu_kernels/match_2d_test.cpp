@@ -382,7 +382,7 @@ TEST(Match2d, RefusesAJobWhosePlanDoesNotFit) {
     job[0].plan_ea = plans.ea(i).value;
     job[0].body_count = 1;
     ppu::JobChain chain(system, "refused", 1);
-    chain.add({system.place(image), job.ea()});
+    chain.add({system.load(image), job.ea()});
     chain.kick();
     chain.wait();
     ASSERT_EQ(chain.failures().size(), 1u);
@@ -396,7 +396,7 @@ TEST(Match2d, AnEmptyJobIsDone) {
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   const dma::Buffer<spu::MatchJob2d> job(memory, "job", 1, {.record = ppu::kMatchJob2dRecord});
   ppu::JobChain chain(system, "empty", 1);
-  chain.add({system.place(image), job.ea()});
+  chain.add({system.load(image), job.ea()});
   chain.kick();
   chain.wait();
   EXPECT_TRUE(chain.failures().empty());
@@ -457,7 +457,7 @@ TEST(Match2d, StepsSomeOfTheBodies) {
   const std::vector<std::size_t> stepped{0, 2, 3, 4, 6};
   const Settings settings{.pull = 30, .damping = 0.1f};
   ppu::JobChain chain(system, "some bodies", bodies.size());
-  bodies.add_jobs(chain, system.place(image), settings, stepped, 2);
+  bodies.add_jobs(chain, system.load(image), settings, stepped, 2);
   EXPECT_EQ(chain.size(), 4u);  // 0, 2 and 3, 4, 6
   test::run(chain);
   EXPECT_TRUE(bodies.take_results().empty());

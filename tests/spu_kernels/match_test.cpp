@@ -331,7 +331,7 @@ TEST(Match, RefusesAJobWhosePlanDoesNotFit) {
     descriptors[i].plan_ea = plans.ea(i).value;
     descriptors[i].body_count = 1;
     chain.clear();
-    chain.add({system.place(image), descriptors.ea(i)});
+    chain.add({system.load(image), descriptors.ea(i)});
     chain.kick();
     chain.wait();
     ASSERT_EQ(chain.failures().size(), 1u) << i;
@@ -345,7 +345,7 @@ TEST(Match, AnEmptyJobIsDone) {
   ppu::JobSystem system(memory, {.spes = 1}, job_loop);
   dma::Buffer<spu::MatchJob> jobs(memory, "jobs", 1, {.record = ppu::kMatchJobRecord});
   ppu::JobChain chain(system, "empty", 1);
-  chain.add({system.place(image), jobs.ea()});
+  chain.add({system.load(image), jobs.ea()});
   chain.kick();
   chain.wait();
   EXPECT_TRUE(chain.failures().empty());

@@ -343,7 +343,7 @@ TEST(MatchTiles, RefusesAJobThatDoesNotFit) {
   dma::Buffer<spu::TileJob> descriptor(memory, "job", 1, {.record = ppu::kTileJobRecord});
   descriptor[0].body_ea = body.ea().value;
   ppu::JobChain chain(system, "refused", 1);
-  chain.add({system.place(image), descriptor.ea()});
+  chain.add({system.load(image), descriptor.ea()});
   body[0] = {};
   body[0].positions_ea = positions.ea().value;
   chain.kick();

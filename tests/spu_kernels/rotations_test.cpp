@@ -38,7 +38,7 @@ struct RotationsRig {
 
   std::vector<ppu::JobFailure> run() {
     ppu::JobChain chain(jobs, "rotations", 1);
-    chain.add({jobs.place(kernel), job.ea()});
+    chain.add({jobs.load(kernel), job.ea()});
     chain.kick();
     chain.wait();
     return chain.failures();

@@ -208,7 +208,7 @@ TEST(Skin, RefusesAJobWithTooManyCorners) {
   jobs[2].window[0].count = 0xFFFFFFFF;
   jobs[2].window[1].count = 2;
   ppu::JobChain batch(system, "refused", 3);
-  for (std::size_t i = 0; i < 3; ++i) batch.add({system.place(image), jobs.ea(i)});
+  for (std::size_t i = 0; i < 3; ++i) batch.add({system.load(image), jobs.ea(i)});
   batch.kick();
   batch.wait();
   ASSERT_EQ(batch.failures().size(), 1u);
@@ -223,7 +223,7 @@ TEST(Skin, AnEmptyJobIsDone) {
   const ls_sim::KernelImage image = test::kernel_image("skin");
   dma::Buffer<spu::SkinJob> jobs(memory, "jobs", 1, {.record = ppu::kSkinJobRecord});
   ppu::JobChain batch(system, "empty", 1);
-  batch.add({system.place(image), jobs.ea()});
+  batch.add({system.load(image), jobs.ea()});
   batch.kick();
   batch.wait();
   EXPECT_TRUE(batch.failures().empty());

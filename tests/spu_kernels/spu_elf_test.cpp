@@ -111,7 +111,7 @@ struct BrokenJobs {
 
   /// Of a first job that does as its words say. The same system runs a second one: loops that a job has broken start anew.
   std::string failure() {
-    const ppu::JobImage broken = jobs.place(kernel), whole = jobs.place(sound);
+    const ppu::JobImage broken = jobs.load(kernel), whole = jobs.load(sound);
     std::string message = "none";
     ppu::JobChain chain(jobs, "jobs", 1);
     constexpr dma::ElementRun kRecord[] = {{8, 8}, {120, 4}};
@@ -174,7 +174,7 @@ std::string refusal_of_place(Machine loop_machine, const KernelImage& image) {
   const KernelImage loop = spu_kernels::load_kernel("job_loop", false, loop_machine);
   ppu::JobSystem jobs(memory, {.spes = 1}, loop);
   try {
-    jobs.place(image);
+    jobs.load(image);
   } catch (const std::invalid_argument& wrong) {
     return wrong.what();
   }

@@ -27,7 +27,7 @@ class SteppedBodies : public ppu::MatchBodies<kDimension> {
                 const typename ppu::MatchKernel<kDimension>::Plan& plan, std::size_t bodies,
                 std::size_t bodies_per_job = 16)
       : ppu::MatchBodies<kDimension>(memory, plan, bodies),
-        match_(jobs.place(match)),
+        match_(jobs.load(match)),
         all_(bodies),
         bodies_per_job_(bodies_per_job),
         chain_(jobs, "match", bodies) {
@@ -55,7 +55,7 @@ class SteppedTiles : public ppu::TiledMemory {
  public:
   SteppedTiles(dma::AddressSpace& memory, ppu::JobSystem& jobs, const ls_sim::KernelImage& match_tiles,
                const ppu::TilePlan& plan)
-      : TiledMemory(memory, plan), image_(jobs.place(match_tiles)), chain_(jobs, "tiles", most_jobs()) {}
+      : TiledMemory(memory, plan), image_(jobs.load(match_tiles)), chain_(jobs, "tiles", most_jobs()) {}
 
   /// @throws std::runtime_error  as run() and TiledMemory::end_step().
   void step(const ppu::MatchSettings& settings) {

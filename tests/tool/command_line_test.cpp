@@ -209,7 +209,7 @@ zpty -d shell
 TEST(Completion, OfAnUnknownShellIsRefused) {
   const CommandResult run = run_softcell("completion tcsh");
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.output.find("bash"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("completion tcsh: give bash, zsh or fish"), std::string::npos) << run.output;
 }
 
 TEST(Quiet, PrintsNothing) {

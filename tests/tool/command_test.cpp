@@ -404,6 +404,7 @@ TEST(Command, ComparesWithAnEarlierRunAndMarksWhatGotSlower) {
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.output.find("old.json holds no figures of `softcell bench --json`"), std::string::npos)
       << refused.output;
+  EXPECT_EQ(refused.output.find("json.exception"), std::string::npos) << refused.output;
 }
 
 /// A row of docs/notes/ps3.md by its cells.
@@ -1057,7 +1058,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"bench --compare %s/none", 1, "none"},
         Refusal{"spu budget nowhere.spu.elf", 1,
                 "there is no file nowhere.spu.elf, and no kernel of softcell"},
-        Refusal{"spu budget %s/cube.obj", 1, "cube.obj"},
+        Refusal{"spu budget %s/cube.obj", 1,
+                "cube.obj is not an ELF file; a kernel is the file NAME.spu.elf"},
+        Refusal{"spu timing skin --static", 1, "or --engine interpreter for softcell's own build"},
         Refusal{"spu budget --checked job_loop", 1, "has no checked flavour"},
         Refusal{"report /dev/zero --out %s/r.html", 1, "/dev/zero: it is not a regular file"},
         Refusal{"demo 2d --headless --image %s/none.png", 1, "none.png"},

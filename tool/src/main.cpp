@@ -54,7 +54,7 @@ class CommandLine {
 
  private:
   Verbs verbs_;
-  CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload are FastLSM soft bodies.",
+  CLI::App app_{"Runs Cell/PS3 SPU job kernels on a PC; its main workload is FastLSM soft bodies.",
                 "softcell"};
   Call chosen_;
 };

@@ -27,8 +27,8 @@ class ControllerHands {
   using Pointer = std::conditional_t<Dimension == 2, MouseHand, MouseReach>;
 
   static constexpr float kTouched = 0.05f, kTakes = 0.6f, kLetsGo = 0.4f;  ///< shares of a trigger's way
-  static constexpr float kSpeed =
-      1.2f / 60;  ///< heights of the window in a frame, the stick being all the way
+  /// Heights of the window in a frame, when the stick is pushed all the way.
+  static constexpr float kSpeed = 1.2f / 60;
 
   /// @param mouse  how a pointer takes and moves things
   explicit ControllerHands(const Pointer& mouse);

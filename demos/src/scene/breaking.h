@@ -16,8 +16,8 @@ namespace softcell::demos {
 template <int Dimension>
 struct StrengthSlab {
   using Vector = Eigen::Vector<float, Dimension>;
-  Vector point =
-      Vector::Zero();  ///< metres, as the body's mesh has it; in two dimensions from the middle of its cells
+  /// Metres, in the coordinates of the body's mesh; in two dimensions from the middle of its cells.
+  Vector point = Vector::Zero();
   Vector normal = Vector::Unit(1);  ///< of any length but 0
   float thickness = 0;              ///< metres
   float strength = 1;               ///< by which the limits of its fracture are multiplied, 0 or above

@@ -25,4 +25,14 @@ Eigen::Vector2f Camera2d::point_at(int x, int y, int picture_width, int picture_
          metres * Eigen::Vector2f(static_cast<float>(x) - middle.x(), middle.y() - static_cast<float>(y));
 }
 
+float SoftBody2dPlacement::skin_margin() const { return std::min(contact_radius, ppu::kMaxSkinMargin); }
+
+ppu::Outside2d SoftBody2dPlacement::outside() const {
+  if (!ring) return {};
+  return [own = *ring](const Eigen::Vector2f& at) {
+    const float away = (at - own.middle).norm();
+    return own.hole > 0 ? std::max(away - own.radius, own.hole - away) : away - own.radius;
+  };
+}
+
 }  // namespace softcell::demos

@@ -16,6 +16,7 @@
 #include "softcell/render/frame.h"
 #include "softcell/render/image.h"
 #include "softcell/soft_bodies/contact.h"
+#include "softcell/soft_bodies/skin_2d.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::demos {
@@ -60,6 +61,10 @@ struct SoftBody2dPlacement {
 
   /// The lattice, the middle of its box at 0. @throws std::runtime_error  as lattice_from_cells().
   ppu::Lattice<2> lattice() const;
+  float skin_margin() const;       ///< of make_skin_2d()
+  ppu::Outside2d outside() const;  ///< what the cells stand for, if it is more than they are
+  /// How the body is drawn, and what touches of it. @param of  its own lattice, as lattice()
+  ppu::Skin2d skin(const ppu::Lattice<2>& of) const { return ppu::make_skin_2d(of, skin_margin(), outside()); }
 };
 
 struct Box2dShape {
@@ -102,7 +107,7 @@ struct Scene2d {
   float friction = 0.6f;
   float restitution = 0;  ///< 0..1, of rigid bodies
   int substeps = 2;       ///< of a frame of 1/60 s
-  ppu::ContactMethod contacts = ppu::ContactMethod::kSpheres;  ///< unless the user wants another; kSpheres: circles
+  ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;  ///< unless the user wants another; kSpheres: circles
   bool sleep = false;     ///< bodies fall asleep when they have come to rest
   int frames = 300;       ///< how long the scene is worth watching without a user
   Camera2d camera;

@@ -24,10 +24,10 @@ std::span<const std::string_view> spawned_shapes(int dimension);
 /// How large a new body is, how stiff, and where.
 template <int Dimension>
 struct NewBody {
-  Eigen::Matrix<float, Dimension, 1> middle =
-      Eigen::Matrix<float, Dimension, 1>::Zero();  ///< of its box, metres
-  float longest_side = 1;                          ///< metres
-  float alpha = 0.5f;                              ///< see ppu::SoftBodySettings
+  /// The middle of its box, metres.
+  Eigen::Matrix<float, Dimension, 1> middle = Eigen::Matrix<float, Dimension, 1>::Zero();
+  float longest_side = 1;  ///< metres
+  float alpha = 0.5f;      ///< see ppu::SoftBodySettings
 };
 
 /// Adds a soft body that is made as --mesh or --image would make it, undeformed and at rest. Its other material is that of the scene's first soft body.

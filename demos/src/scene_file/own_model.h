@@ -14,8 +14,8 @@ inline constexpr float kLeastTessellation = 0.125f, kMostTessellation = 100;
 struct OwnModelOptions {
   std::optional<std::filesystem::path> mesh;  ///< the user's own model
   bool z_up = false;                          ///< its z axis points upwards, not its y axis
-  std::optional<double> unit =
-      {};                      ///< of the model, in metres; none: it is made as large as what it replaces
+  /// Metres of one unit of the model; none: the model is scaled to the size of what it replaces.
+  std::optional<double> unit = {};
   int cells = 8;               ///< along the model's longest side
   std::optional<double> cell;  ///< their size in the model's own units, above 0, in place of `cells`
   std::optional<float> tessellation = {};  ///< longer edges of its triangles are halved: cells

@@ -17,7 +17,7 @@ namespace softcell::demos {
 /// Appends the items of `rigid_body` to the scene's. @throws SceneError
 void read_rigid_bodies(std::span<const Value> items, Scene& scene);
 
-/// Appends the items of `joint`. @pre the scene has its rigid bodies. @throws SceneError
+/// Appends the items of `joint`, which name rigid bodies of the scene: call it after read_rigid_bodies(). @throws SceneError
 void read_joints(std::span<const Value> items, Scene& scene);
 
 /// The number of the rigid body of that name. @throws SceneError  there is none.

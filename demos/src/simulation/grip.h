@@ -50,8 +50,8 @@ template <int Dimension>
 struct HandStrength {
   using Vector = Eigen::Vector<double, Dimension>;
 
-  static constexpr double kReachSeconds =
-      0.05;  ///< in which the held point makes up for its distance from the hand
+  /// The time in which the held point makes up for its distance from the hand.
+  static constexpr double kReachSeconds = 0.05;
   static constexpr double kMostSpeed = 20;      ///< m/s
   static constexpr double kSwingSeconds = 0.1;  ///< in which the swinging of what is held falls to 1/e
 

@@ -28,8 +28,8 @@ struct PickedContact {
   std::string first, second;  ///< what the two bodies are called
   Eigen::Vector3f position{0, 0, 0};
   Eigen::Vector3f normal{0, 1, 0};  ///< unit length, from the second body to the first
-  float impulse =
-      0;            ///< kg m/s along the normal, in the last substep; 0: they do not press on each other now
+  /// Kg m/s along the normal, in the last substep; 0: they do not press on each other now.
+  float impulse = 0;
   float force = 0;  ///< N: the impulse over the substep
 };
 

@@ -34,8 +34,8 @@ struct ShownRope {
 /// Metres.
 struct Shown2d {
   std::vector<std::vector<Eigen::Vector2f>> particles;  ///< of each soft body
-  std::vector<std::shared_ptr<const ppu::SoftBodyModel<2>>> models =
-      {};                                 ///< likewise; another one when it has broken
+  /// The model of each soft body; it changes when the body breaks.
+  std::vector<std::shared_ptr<const ppu::SoftBodyModel<2>>> models = {};
   std::vector<std::size_t> sources = {};  ///< likewise: Simulation2d::source()
   std::vector<Pose2d> rigid_poses;        ///< of Scene2d::rigid_bodies, in order
   std::vector<ShownRope<2>> ropes = {};

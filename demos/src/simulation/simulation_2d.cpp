@@ -112,7 +112,12 @@ struct World {
     if (scene.sleep) soft_bodies.let_sleep(ppu::SleepSettings{});
     for (const RigidBody2d& body : scene.rigid_bodies)
       rigid_bodies.push_back(add_rigid_body(world, body, scene.friction, scene.restitution));
-    for (std::size_t i = 0; i < models.size(); ++i) soft_bodies.add(models[i], scene.soft_bodies[i].position);
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const SoftBody2dPlacement& body = scene.soft_bodies[i];
+      std::optional<ppu::Skin2d> skin;
+      if (contacts == ppu::ContactMethod::kSurface && std::find(models.begin(), models.begin() + static_cast<std::ptrdiff_t>(i), models[i]) == models.begin() + static_cast<std::ptrdiff_t>(i)) skin = body.skin(models[i]->lattice());
+      soft_bodies.add(models[i], body.position, skin ? &*skin : nullptr);
+    }
     attach(scene);
     if (scene.begin) begin(scene);
   }
@@ -199,7 +204,7 @@ Models models_of(const std::vector<SoftBody2dPlacement>& bodies) {
       bodies.size(),
       [&](std::size_t i, std::size_t j) {
         return bodies[i].settings == bodies[j].settings && bodies[i].cells == bodies[j].cells &&
-               bodies[i].contact_radius == bodies[j].contact_radius &&
+               bodies[i].contact_radius == bodies[j].contact_radius && bodies[i].ring == bodies[j].ring &&
                bodies[i].strengths == bodies[j].strengths;
       },
       [&](std::size_t i) {
@@ -261,7 +266,7 @@ struct Simulation2d::State {
   }
   /// After a step or a cut: pieces come behind all other bodies, and hands go on with the piece that has what they hold.
   void note_broken() {
-    const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.take_broken();
+    const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.poll_broken();
     for (const ppu::BrokenSoftBody2d& one : broken)
       sources.insert(sources.end(), one.pieces.size(), sources[number_of(*one.body)]);
     SC_ASSERT(sources.size() == bodies.size(), "the sources of {} soft bodies of {}", sources.size(),

@@ -351,7 +351,7 @@ struct Simulation3d::State {
 
   /// After a substep or a cut: pieces come behind all other bodies, and hands let go of what has broken.
   void note_broken() {
-    for (const ppu::BrokenSoftBody& broken : soft_bodies.take_broken()) {
+    for (const ppu::BrokenSoftBody& broken : soft_bodies.poll_broken()) {
       std::size_t body = 0;
       while (&soft_bodies[body] != broken.body) ++body;
       sources.insert(sources.end(), broken.pieces.size(), sources[body]);

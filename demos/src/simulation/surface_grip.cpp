@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ppu/contacts/cell_finder.h"
+#include "ppu/surfaces/cell_finder.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {

@@ -14,19 +14,6 @@ using Eigen::Vector2i;
 // Lines between colours: shares of the colour's light and of the outline's width. They have smooth edges, which triangles have not.
 constexpr float kSeam = 0.6f, kSeamWidth = 0.7f;
 
-float margin_of(const SoftBody2dPlacement& body) {
-  return std::min(body.contact_radius, ppu::kMaxSkinMargin);
-}
-
-/// What the body's cells stand for, if it is more than they are.
-ppu::Outside2d outside_of(const SoftBody2dPlacement& body) {
-  if (!body.ring) return {};
-  return [ring = *body.ring](const Vector2f& at) {
-    const float away = (at - ring.middle).norm();
-    return ring.hole > 0 ? std::max(away - ring.radius, ring.hole - away) : away - ring.radius;
-  };
-}
-
 /// Of each cell: 0 for the body's own colour, or 1 and the number of the first of its coloured cells with the colour of the
 /// last that it is of.
 std::vector<std::uint32_t> colours_of(const SoftBody2dPlacement& body, const ppu::Lattice<2>& lattice) {
@@ -112,12 +99,11 @@ SoftShape2d::Layer& SoftShape2d::add_layer(ppu::Skin2d skin) {
 /// The whole in the body's own colour, and over it a layer for each colour, in the order in which the scene has them.
 void SoftShape2d::add_skins(render::Renderer& renderer, WholeSkins& wholes) {
   std::vector<ppu::Skin2d> skins = own_skins(wholes, [&](const ppu::Lattice<2>& lattice) {
-    const ppu::Outside2d outside = outside_of(body_);
     std::vector<ppu::Skin2d> made;
-    made.push_back(ppu::make_skin_2d(lattice, margin_of(body_), outside));
+    made.push_back(body_.skin(lattice));
     if (!body_.coloured_cells.empty()) {
       for (auto& part :
-           ppu::make_skin_parts_2d(lattice, margin_of(body_), outside, colours_of(body_, lattice)))
+           ppu::make_skin_parts_2d(lattice, body_.skin_margin(), body_.outside(), colours_of(body_, lattice)))
         made.push_back(std::move(part));
     }
     return made;
@@ -150,7 +136,7 @@ bool SoftShape2d::has_face() const {
 void SoftShape2d::add_picture(render::Renderer& renderer, Stickers& stickers, WholeSkins& wholes) {
   const Picture2d& picture = *body_.picture;
   const auto& [sticker, texture] =
-      stickers.get(picture.image, margin_of(body_) * picture.cell_pixels, renderer);
+      stickers.get(picture.image, body_.skin_margin() * picture.cell_pixels, renderer);
   // In grid coordinates: where the sticker, which is larger than the picture, begins and how large it is.
   const Vector2f low =
       picture.low - Vector2f::Constant(static_cast<float>(sticker.border) /
@@ -215,7 +201,7 @@ void SoftShape2d::place(std::span<const Vector2f> particles) {
             body_.name, model_.particles());
   box_.setEmpty();
   for (Layer& layer : layers_) {
-    ppu::place(layer.skin, particles, layer.positions, layer.slopes);
+    ppu::deform(layer.skin, particles, layer.positions, layer.slopes);
     for (std::size_t i = 0; i < layer.positions.size(); ++i) {
       layer.vertices[i].position = layer.positions[i];
       layer.vertices[i].slope = layer.slopes[i];

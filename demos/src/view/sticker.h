@@ -8,8 +8,8 @@
 namespace softcell::demos {
 
 struct Sticker {
-  render::Image
-      image;  ///< opaque in the silhouette and its border, else transparent; white where nothing is painted
+  /// Opaque in the silhouette and its border, else transparent; white where nothing is painted.
+  render::Image image;
   int scale = 1;   ///< its pixels along one of the picture: more than one where the picture is small
   int border = 0;  ///< its pixels before the picture's first, in both directions
 

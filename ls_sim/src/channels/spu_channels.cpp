@@ -147,7 +147,7 @@ ChannelReply SpuChannels::count(std::uint32_t channel) {
   if (channel_access(channel) == ChannelAccess::kNone) return illegal(channel, "count of");
   const std::uint32_t slots = count_now(static_cast<Channel>(channel));
   // A loop that only counts asks nothing else: it is to hear of what the passing time has brought to light.
-  if (auto fault = to_.mfc.take_fault()) return reply_of(std::move(fault));
+  if (auto fault = to_.mfc.poll_fault()) return reply_of(std::move(fault));
   return {slots, {}};
 }
 
@@ -304,7 +304,7 @@ std::uint32_t SpuChannels::count_register(Channel channel) {
 template <class Attempt>
 ChannelReply SpuChannels::attempt_or_sleep(Channel channel, Attempt&& attempt) {
   to_.mfc.visit();
-  if (auto fault = to_.mfc.take_fault()) return reply_of(std::move(fault));
+  if (auto fault = to_.mfc.poll_fault()) return reply_of(std::move(fault));
   {
     const SpeMonitor::Lock lock = to_.monitor.lock();
     if (const auto value = attempt()) return {*value, {}};
@@ -321,7 +321,7 @@ ChannelReply SpuChannels::sleep_until(Channel channel, Attempt&& attempt) {
     const SpeMonitor::Lock lock = to_.monitor.lock();
     if (const auto value = attempt()) return {*value, {}};
   }
-  if (auto fault = to_.mfc.take_fault()) return reply_of(std::move(fault));
+  if (auto fault = to_.mfc.poll_fault()) return reply_of(std::move(fault));
 
   SpeMonitor::Lock lock = to_.monitor.lock();
   for (;;) {
@@ -383,7 +383,7 @@ bool SpuChannels::waits_for_host_stores(Channel channel) const {
 // ---- events
 
 void SpuChannels::collect_events() {
-  std::uint32_t events = to_.mfc.take_events();
+  std::uint32_t events = to_.mfc.poll_events();
   if (decrementer_.next_event() && decrementer_.take_event(clock_.ticks())) events |= event::kDecrementer;
   to_.registers.events.raise(events);
 }

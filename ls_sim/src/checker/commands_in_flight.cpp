@@ -58,7 +58,7 @@ void add_ranges(CommandInFlight& in_flight, std::span<const std::byte> local_sto
         dma::read_element(local_store, command, in_flight.next_element, is_big_endian);
     if (element.size() != 0) {
       in_flight.ranges.push_back(
-          {element.place(in_flight.cursor).value, element.ea(command).value, element.size()});
+          {element.local_address(in_flight.cursor).value, element.ea(command).value, element.size()});
     }
     in_flight.cursor = element.next(in_flight.cursor);
     ++in_flight.next_element;

@@ -112,8 +112,8 @@ class Door final : public ProblemState {
   }
   std::uint32_t wait_proxy(std::uint32_t tag_mask) override { return proxy_.wait_all(tag_mask); }
   std::uint32_t wait_any_proxy(std::uint32_t tag_mask) { return proxy_.wait_any(tag_mask); }
-  std::optional<dma::Fault> take_proxy_fault() {
-    auto fault = proxy_.take_fault();
+  std::optional<dma::Fault> poll_proxy_fault() {
+    auto fault = proxy_.poll_fault();
     if (fault) fault->spe = number_;
     return fault;
   }

@@ -252,7 +252,7 @@ class Context final : public SpeContext, private StopListener {
 
   void move_proxy() override { door_.move_proxy(); }
   std::uint32_t wait_any_proxy(std::uint32_t tag_mask) override { return door_.wait_any_proxy(tag_mask); }
-  std::optional<dma::Fault> take_proxy_fault() override { return door_.take_proxy_fault(); }
+  std::optional<dma::Fault> poll_proxy_fault() override { return door_.poll_proxy_fault(); }
 
   SpeStatistics statistics() override {
     const SpeMonitor::Lock lock = monitor_.lock();

@@ -1,13 +1,17 @@
 #pragma once
-// From an address of an SPU program to the function that it lies in.
+// Names of functions: a symbol as the source has it, and the function that an address lies in.
 
 #include <string>
+#include <string_view>
 
 #include "softcell/ls_sim/image.h"
 
 namespace softcell::ls_sim {
 
-/// "main + 0x20", or an empty string where the image names nothing.
+/// A C++ symbol as the source has it: "step(Map&)". Any other symbol is returned as it is, also that of a damaged file.
+std::string demangled(std::string_view symbol);
+
+/// The function of an SPU program that an address lies in: "main + 0x20". Empty where the image names nothing.
 std::string function_at(const KernelImage& image, dma::LocalStoreAddress address);
 
 }  // namespace softcell::ls_sim

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "demangled.h"
 #include "elf_file.h"
+#include "function_names.h"
 #include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "demangled.h"
+#include "function_names.h"
 #include "softcell/base/assert.h"
 #include "softcell/ls_sim/image.h"
 

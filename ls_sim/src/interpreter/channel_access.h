@@ -48,7 +48,7 @@ class ChannelAccess : public Surroundings {
   }
 
   /// Why the run has ended.
-  std::optional<dma::Fault> take_fault() { return std::exchange(fault_, std::nullopt); }
+  std::optional<dma::Fault> poll_fault() { return std::exchange(fault_, std::nullopt); }
 
  protected:
   static constexpr auto kMachineStatus = static_cast<std::uint32_t>(Channel::kSpuRdMachStat);

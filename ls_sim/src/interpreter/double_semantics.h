@@ -7,6 +7,7 @@
 
 #include "fpscr.h"
 #include "quadword.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ls_sim::interpreter::semantics {
 
@@ -168,6 +169,7 @@ Quadword mask_of_doubles(const In& in, Test&& test) {
 }
 /// Numbers as signed integers in the same order, -0 and +0 being the same. @pre  no NaN
 inline std::int64_t double_in_order(std::uint64_t bits) {
+  SC_ASSERT(!is_nan(bits), "the bits {} are no number", bits);
   const auto magnitude = static_cast<std::int64_t>(double_magnitude(bits));
   return (bits & kDoubleSign) != 0 ? -magnitude : magnitude;
 }

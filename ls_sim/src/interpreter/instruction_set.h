@@ -2,9 +2,11 @@
 // The SPU's instruction set as a table (instructions.def), and the decoder made from it.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
+#include "softcell/base/assert.h"
 #include "softcell/dma/addresses.h"
 
 namespace softcell::ls_sim::interpreter {
@@ -102,6 +104,8 @@ inline constexpr std::array<InstructionInfo, kInstructions> kInstructionTable{{
 
 /// @pre  the mnemonic is not `invalid`
 constexpr const InstructionInfo& info_of(Mnemonic mnemonic) {
+  SC_ASSERT(static_cast<std::size_t>(mnemonic) < kInstructionTable.size(), "mnemonic {} of {}", mnemonic,
+            kInstructionTable.size());
   return kInstructionTable[static_cast<std::size_t>(mnemonic)];
 }
 

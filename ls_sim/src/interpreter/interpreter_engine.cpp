@@ -269,8 +269,8 @@ dma::Fault InterpreterEngine::fault_of(const Core& core, ChannelAccess& access, 
       return fault(dma::Rule::kDeadlineExceeded,
                    "the kernel did not end in time; it was at local-store address " + describe(core.last_pc));
     case Ending::kChannelFault:
-      if (auto broken = jobs.take_fault()) return std::move(*broken);
-      if (auto broken = access.take_fault()) return std::move(*broken);
+      if (auto broken = jobs.poll_fault()) return std::move(*broken);
+      if (auto broken = access.poll_fault()) return std::move(*broken);
       break;
     default:
       break;

@@ -28,7 +28,7 @@ class JobCalls {
   bool is_border(std::uint32_t from, std::uint32_t to) const {
     return jobs_ != nullptr && (from < caller_.begin) != (to < caller_.begin);
   }
-  /// A jump was taken. @return  false when the run ends, by take_fault().
+  /// A jump was taken. @return  false when the run ends, by poll_fault().
   bool on_jump(std::uint32_t from, std::uint32_t to) {
     if (!is_border(from, to)) return true;
     const HostArithmetic host;
@@ -37,7 +37,7 @@ class JobCalls {
 
   bool are_watched() const { return jobs_ != nullptr; }
   bool under_way() const { return under_way_; }
-  std::optional<dma::Fault> take_fault() { return std::exchange(fault_, std::nullopt); }
+  std::optional<dma::Fault> poll_fault() { return std::exchange(fault_, std::nullopt); }
   /// The local store below this has been the image of a job, or may have been; 0: no job was called.
   std::uint32_t last_job_end() const { return last_job_end_; }
 

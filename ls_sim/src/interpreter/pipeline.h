@@ -89,7 +89,7 @@ class IssueModel {
     bool is_special = false;  ///< it takes more than its place in a pipe
     bool is_channel = false;
   };
-  static constexpr std::uint8_t kNoRegister = 128;  ///< always ready
+  static constexpr std::uint8_t kNoRegister = kSpuRegisters;  ///< always ready
   static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
 
   Traits traits_of(const InstructionInfo& info) const;

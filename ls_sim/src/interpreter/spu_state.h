@@ -6,6 +6,7 @@
 #include "fpscr.h"
 #include "instruction_set.h"
 #include "quadword.h"
+#include "softcell/ls_sim/debugger.h"
 
 namespace softcell::ls_sim::interpreter {
 
@@ -13,7 +14,7 @@ namespace softcell::ls_sim::interpreter {
 /// preferred slot of register n; load_quadword() and store_quadword() change between a register and 16 bytes
 /// in the SPU's order.
 struct SpuState {
-  alignas(64) Quadword registers[128] = {};
+  alignas(64) Quadword registers[kSpuRegisters] = {};
   std::uint32_t pc = 0;    ///< local-store address of the next instruction; a multiple of 4
   std::uint32_t srr0 = 0;  ///< where iret returns to
   bool interrupts_enabled = false;

@@ -35,10 +35,10 @@ class UndefinedValues {
   std::optional<UndefinedUse> use(const Operation& op, const InstructionInfo& info, const SpuState& state);
 
   /// Set where a register's bit is undefined.
-  std::array<Quadword, 128> undefined_{};
-  std::array<std::optional<LoadedFrom>, 128> from_{};  ///< none: a register that was never written
-  SpuState trial_;                                     ///< in which instructions are computed again
-  std::uint8_t target_ = 0;                            ///< of the last instruction
+  std::array<Quadword, kSpuRegisters> undefined_{};
+  std::array<std::optional<LoadedFrom>, kSpuRegisters> from_{};  ///< none: a register that was never written
+  SpuState trial_;                                               ///< in which instructions are computed again
+  std::uint8_t target_ = 0;                                      ///< of the last instruction
   std::uint32_t pc_ = 0;
 };
 

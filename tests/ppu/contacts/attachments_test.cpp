@@ -373,14 +373,14 @@ TEST(Attachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
   EXPECT_NO_THROW(w.bodies.attach(first, of_first, second, of_second, {.kind = AttachmentKind::kRope}));
   w.run(2);
   ASSERT_FALSE(w.bodies.attachment(weld));
-  auto ended = w.bodies.take_ended_attachments();
+  auto ended = w.bodies.poll_ended_attachments();
   ASSERT_EQ(ended.size(), 1u);
   EXPECT_EQ(ended[0].id, weld);
   EXPECT_EQ(ended[0].reason, EndedAttachment::Reason::kGone);
   EXPECT_THROW(w.bodies.detach(weld), std::invalid_argument);
   w.bodies.remove(second);
   EXPECT_FALSE(w.bodies.attachment(rope));
-  EXPECT_EQ(w.bodies.take_ended_attachments().size(), 2u);
+  EXPECT_EQ(w.bodies.poll_ended_attachments().size(), 2u);
   w.run(2);
 }
 

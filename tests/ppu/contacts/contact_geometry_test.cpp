@@ -10,16 +10,16 @@
 #include <random>
 #include <vector>
 
-#include "ppu/contacts/cell_finder.h"
 #include "ppu/contacts/contact_body.h"
-#include "ppu/contacts/contact_surface.h"
-#include "ppu/contacts/obstacle.h"
-#include "ppu/contacts/point_chooser.h"
-#include "ppu/contacts/point_set.h"
-#include "ppu/contacts/triangle_boxes.h"
-#include "ppu/contacts/triangle_distance.h"
 #include "ppu/mesh/outer_surface.h"
 #include "ppu/mesh/solid.h"
+#include "ppu/surfaces/cell_finder.h"
+#include "ppu/surfaces/contact_surface.h"
+#include "ppu/surfaces/obstacle.h"
+#include "ppu/surfaces/point_chooser.h"
+#include "ppu/surfaces/point_set.h"
+#include "ppu/surfaces/triangle_boxes.h"
+#include "ppu/surfaces/triangle_distance.h"
 #include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::ppu {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ppu/bullet/bullet_vector.h"
-#include "ppu/contacts/triangle_distance.h"
+#include "ppu/surfaces/triangle_distance.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/skinned_mesh.h"

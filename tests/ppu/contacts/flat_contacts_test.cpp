@@ -14,9 +14,10 @@
 #include <vector>
 
 #include "../soft_body_2d_scenes.h"
-#include "ppu/contacts/flat_body.h"
+#include "ppu/contacts/contact_body.h"
 #include "ppu/fracture/cracks.h"
 #include "ppu/lattice/outline_distance.h"
+#include "ppu/surfaces/flat_layer.h"
 #include "softcell/soft_bodies/skin_2d.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
@@ -70,11 +71,11 @@ TEST(OutlineDistance, IsThatOfASquareWithAHole) {
 }
 
 /// Half a cell around its cells, all through the layer.
-TEST(FlatModel, IsALayerWithTheDrawnEdgeInMarginCells) {
+TEST(FlatLayer, IsALayerWithTheDrawnEdgeInMarginCells) {
   const auto model = rectangle_model({4, 3}, calm());
   const Skin2d skin = make_skin_2d(model->lattice(), 0.5f);
-  const FlatModel flat(*model, skin);
-  const ContactModel& contact = flat.contact();
+  const FlatLayer flat(*model, skin);
+  const ContactModel contact(flat);
   const Lattice<3>& layer = contact.lattice();
   ASSERT_EQ(layer.cells.size(), 12u + 2 * 7 + 4);
   EXPECT_TRUE(contact.is_flat());

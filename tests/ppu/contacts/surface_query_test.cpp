@@ -185,10 +185,10 @@ void expect_events(SolverFactory* solvers) {
   SoftBody<3>& upper =
       w.add(make_box({0.5f, 0.5f, 0.5f}, 0.125f), settings_of(0.125f, 0.5f, 0.3f), {0, 1.5f, 0});
   w.run(10);
-  EXPECT_TRUE(w.bodies.take_contact_events().empty()) << "nobody watches";
+  EXPECT_TRUE(w.bodies.poll_contact_events().empty()) << "nobody watches";
   w.bodies.watch_contacts(true);
   w.run(1);
-  std::vector<ContactEvent> events = w.bodies.take_contact_events();
+  std::vector<ContactEvent> events = w.bodies.poll_contact_events();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].kind, Kind::kBegin);
   EXPECT_EQ(events[0].body, &lower);
@@ -197,9 +197,9 @@ void expect_events(SolverFactory* solvers) {
   EXPECT_NEAR(events[0].position.y(), 0, 0.05f);
   EXPECT_GT(events[0].normal.y(), 0.99f);
   w.run(120);
-  w.bodies.take_contact_events();
+  w.bodies.poll_contact_events();
   w.run(60);
-  events = w.bodies.take_contact_events();
+  events = w.bodies.poll_contact_events();
   ASSERT_EQ(events.size(), 2u);
   // Those with soft bodies and those with objects, by the number of the first body.
   const ContactEvent& between = events[0].other != nullptr ? events[0] : events[1];
@@ -216,7 +216,7 @@ void expect_events(SolverFactory* solvers) {
   events.clear();
   for (int i = 0; i < 3; ++i) {
     w.run(3);
-    for (const ContactEvent& event : w.bodies.take_contact_events())
+    for (const ContactEvent& event : w.bodies.poll_contact_events())
       if (event.kind == Kind::kEnd) events.push_back(event);
   }
   const auto ended =
@@ -224,7 +224,7 @@ void expect_events(SolverFactory* solvers) {
   ASSERT_NE(ended, events.end());
   EXPECT_EQ(ended->impulse, 0);
   w.bodies.watch_contacts(false);
-  EXPECT_TRUE(w.bodies.take_contact_events().empty());
+  EXPECT_TRUE(w.bodies.poll_contact_events().empty());
 }
 
 TEST(SoftBodiesInBullet, SleepEndsNoContactAndRemovalDoes) {
@@ -236,14 +236,14 @@ TEST(SoftBodiesInBullet, SleepEndsNoContactAndRemovalDoes) {
       w.add(make_box({0.5f, 0.5f, 0.5f}, 0.125f), settings_of(0.125f, 0.5f, 0.3f), {0, 0.251f, 0});
   for (int i = 0; i < 600 && !body.asleep(); ++i) w.run(1);
   ASSERT_TRUE(body.asleep());
-  w.bodies.take_contact_events();
+  w.bodies.poll_contact_events();
   w.run(10);
-  EXPECT_TRUE(w.bodies.take_contact_events().empty());
+  EXPECT_TRUE(w.bodies.poll_contact_events().empty());
   w.bodies.remove(body);
-  const std::vector<ContactEvent> events = w.bodies.take_contact_events();
+  const std::vector<ContactEvent> events = w.bodies.poll_contact_events();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].kind, ContactEvent::Kind::kEnd);
-  EXPECT_TRUE(w.bodies.take_contact_events().empty());
+  EXPECT_TRUE(w.bodies.poll_contact_events().empty());
 }
 
 TEST(SoftBodiesInBullet, TellOfContacts) { expect_events(nullptr); }

@@ -61,7 +61,7 @@ TEST(TriggerVolumes, TellWhoFallsThroughThemAndHoldNobody) {
     with.run(1);
     without.run(1);
     ASSERT_EQ(body.centre_of_mass(), free.centre_of_mass()) << i;
-    for (const ContactEvent& event : with.bodies.take_contact_events()) {
+    for (const ContactEvent& event : with.bodies.poll_contact_events()) {
       EXPECT_EQ(event.body, &body);
       EXPECT_EQ(event.object, &gate.object());
       EXPECT_EQ(event.other, nullptr);
@@ -144,7 +144,7 @@ TEST(TriggerVolumes, OfEveryShapeKnowWhoIsInThem) {
     const SoftBody<3>& body = w.add(make_box({1, 1, 1}, 0.25f), settings_of(0.25f), {0, 0, 0});
     w.bodies.watch_contacts(true);
     w.run(1);
-    EXPECT_EQ(w.bodies.take_contact_events().size(), c.inside ? 1u : 0u) << c.what;
+    EXPECT_EQ(w.bodies.poll_contact_events().size(), c.inside ? 1u : 0u) << c.what;
     EXPECT_LT(body.centre_of_mass().norm(), 1e-5f) << c.what;
   }
 }
@@ -161,12 +161,12 @@ TEST(TriggerVolumes, MeetBodiesThatSleepAndDoNotWakeThem) {
   ASSERT_TRUE(body.asleep());
   w.bodies.watch_contacts(true);
   w.run(2);
-  EXPECT_TRUE(w.bodies.take_contact_events().empty());
+  EXPECT_TRUE(w.bodies.poll_contact_events().empty());
   std::vector<Kind> kinds;
   for (const float x : {0.1f, 0.15f, 5.0f, 5.0f}) {
     hand.move_to({x, 0.25f, 0});
     w.run(2);
-    for (const ContactEvent& event : w.bodies.take_contact_events()) kinds.push_back(event.kind);
+    for (const ContactEvent& event : w.bodies.poll_contact_events()) kinds.push_back(event.kind);
   }
   EXPECT_EQ(kinds, (std::vector<Kind>{Kind::kBegin, Kind::kPersist, Kind::kEnd}));
   EXPECT_TRUE(body.asleep());
@@ -180,11 +180,11 @@ TEST(TriggerVolumes, ObeyFiltersAndEndWhenABodyGoes) {
   const SoftBody<3>& body = w.add(make_box({1, 1, 1}, 0.25f), settings_of(0.25f), {0, 0, 0});
   w.bodies.watch_contacts(true);
   w.run(1);
-  std::vector<ContactEvent> events = w.bodies.take_contact_events();
+  std::vector<ContactEvent> events = w.bodies.poll_contact_events();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].object, &all.object());
   w.bodies.remove(body);
-  events = w.bodies.take_contact_events();
+  events = w.bodies.poll_contact_events();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].kind, Kind::kEnd);
 }

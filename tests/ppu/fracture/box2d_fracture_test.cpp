@@ -114,8 +114,8 @@ TEST(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
   EXPECT_TRUE((count(0) == 7 && count(1) == 5) || (count(0) == 8 && count(1) == 4))
       << count(0) << " and " << count(1);
   EXPECT_TRUE(w.soft.attachment(wall) && w.soft.attachment(hand));
-  EXPECT_TRUE(w.soft.take_ended_attachments().empty());
-  const auto broken = w.soft.take_broken();
+  EXPECT_TRUE(w.soft.poll_ended_attachments().empty());
+  const auto broken = w.soft.poll_broken();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].body, &w.soft[0]);
   ASSERT_EQ(broken[0].pieces.size(), 1u);
@@ -129,7 +129,7 @@ TEST(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
                 model->lattice().particles[broken[0].particles_before[p][i]]);
   }
   EXPECT_GE(broken[0].faces, 2u);
-  EXPECT_TRUE(w.soft.take_broken().empty());
+  EXPECT_TRUE(w.soft.poll_broken().empty());
   w.run(5);
   EXPECT_EQ(w.soft.size(), 2u);
   float gap = 0;
@@ -321,10 +321,10 @@ TEST(Box2dFracture, ACutThatBeginsHasItsPiecesLaterAndTheSame) {
   EXPECT_FALSE(w.soft.begin_cut(disc, Cut2d::line({2, 0}, {1, 0})));
   EXPECT_TRUE(w.soft.begin_cut(disc, half));
   EXPECT_TRUE(w.soft.is_breaking(disc));
-  EXPECT_TRUE(w.soft.take_broken().empty());
+  EXPECT_TRUE(w.soft.poll_broken().empty());
   w.run(3.1f / 120);
   EXPECT_FALSE(w.soft.is_breaking(disc));
-  const auto broken = w.soft.take_broken();
+  const auto broken = w.soft.poll_broken();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].body, &disc);
   ASSERT_EQ(broken[0].pieces.size(), 1u);
@@ -351,18 +351,18 @@ TEST(Box2dFracture, WhatHappensToABodyThatIsBreakingIsKept) {
     disc = saved;
     w.run(0.1f);
     EXPECT_EQ(w.soft.size(), 1u);
-    EXPECT_TRUE(w.soft.take_broken().empty());
+    EXPECT_TRUE(w.soft.poll_broken().empty());
   });
   with_breaking_disc([](World2d& w, SoftBody<2>& disc, const SoftBody<2>&) {
     EXPECT_FALSE(w.soft.cut(disc, Cut2d::line(disc.centre_of_mass(), {0, 1})).empty());
     EXPECT_GT(w.soft.size(), 2u);
-    EXPECT_EQ(w.soft.take_broken().size(), 2u);
+    EXPECT_EQ(w.soft.poll_broken().size(), 2u);
   });
   with_breaking_disc([](World2d& w, SoftBody<2>& disc, const SoftBody<2>&) {
     w.soft.remove(disc);
     w.run(0.1f);
     EXPECT_EQ(w.soft.size(), 0u);
-    EXPECT_TRUE(w.soft.take_broken().empty());
+    EXPECT_TRUE(w.soft.poll_broken().empty());
   });
   // The world goes while a break is under way.
   World2d w(0);
@@ -381,7 +381,7 @@ TEST(Box2dFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
   EXPECT_TRUE(w.soft.attachment(left));
   EXPECT_FALSE(w.soft.attachment(middle));
   EXPECT_TRUE(w.soft.attachment(right));
-  const auto ended = w.soft.take_ended_attachments();
+  const auto ended = w.soft.poll_ended_attachments();
   ASSERT_EQ(ended.size(), 1u);
   EXPECT_EQ(ended[0].id, middle);
   EXPECT_EQ(ended[0].reason, EndedAttachment::Reason::kBroken);
@@ -401,7 +401,7 @@ TEST(Box2dFracture, WhatIsRemovedIsNotNamed) {
   const auto second = w.soft.cut(*first[0], Cut2d::line({0.301f, 2}, {1, 0}));
   ASSERT_EQ(second.size(), 1u);
   w.soft.remove(*first[0]);
-  const auto broken = w.soft.take_broken();
+  const auto broken = w.soft.poll_broken();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].body, &bar);
   EXPECT_TRUE(broken[0].pieces.empty());
@@ -509,8 +509,8 @@ TEST(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
       }
       w.soft.step(kStep2d);
       w.soft.step(kStep2d);
-      if (i % 3 == 0) w.soft.take_broken();
-      for (const EndedAttachment& ended : w.soft.take_ended_attachments()) std::erase(attachments, ended.id);
+      if (i % 3 == 0) w.soft.poll_broken();
+      for (const EndedAttachment& ended : w.soft.poll_ended_attachments()) std::erase(attachments, ended.id);
       const double now = energy();
       ASSERT_TRUE(std::isfinite(now)) << "seed " << seed << ", step " << i;
       EXPECT_LT(now, 1.1 * most + 1) << "seed " << seed << ", step " << i;

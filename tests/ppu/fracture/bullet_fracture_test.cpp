@@ -14,8 +14,8 @@
 
 #include "../contacts/contact_world.h"
 #include "fracture_checks.h"
-#include "ppu/contacts/crack_sides.h"
 #include "ppu/fracture/cracks.h"
+#include "ppu/surfaces/crack_sides.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
@@ -97,14 +97,14 @@ TEST(BulletFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
       << cells(0) << " and " << cells(1);
   // Both ends still hold.
   EXPECT_TRUE(world.bodies.attachment(wall) && world.bodies.attachment(hand));
-  EXPECT_TRUE(world.bodies.take_ended_attachments().empty());
-  const auto broken = world.bodies.take_broken();
+  EXPECT_TRUE(world.bodies.poll_ended_attachments().empty());
+  const auto broken = world.bodies.poll_broken();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].body, &world.bodies[0]);
   ASSERT_EQ(broken[0].pieces.size(), 1u);
   EXPECT_EQ(broken[0].pieces[0], &world.bodies[1]);
   EXPECT_GE(broken[0].faces, 4u);
-  EXPECT_TRUE(world.bodies.take_broken().empty());
+  EXPECT_TRUE(world.bodies.poll_broken().empty());
   // The piece that is pulled follows the hand, the other one stays with the wall.
   run(world, 600);
   EXPECT_EQ(world.bodies.size(), 2u);
@@ -406,10 +406,10 @@ TEST(BulletFracture, ACutThatBeginsHasItsPiecesLater) {
   EXPECT_FALSE(world.bodies.begin_cut(ball, Cut::plane({2, 0, 0}, {1, 0, 0})));
   EXPECT_TRUE(world.bodies.begin_cut(ball, half));
   EXPECT_TRUE(world.bodies.is_breaking(ball));
-  EXPECT_TRUE(world.bodies.take_broken().empty());
+  EXPECT_TRUE(world.bodies.poll_broken().empty());
   run(world, 3);
   EXPECT_FALSE(world.bodies.is_breaking(ball));
-  const auto broken = world.bodies.take_broken();
+  const auto broken = world.bodies.poll_broken();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].body, &ball);
   ASSERT_EQ(broken[0].pieces.size(), 1u);
@@ -440,19 +440,19 @@ TEST(BulletFracture, WhatHappensToABodyThatIsBreakingIsKept) {
     ball = saved;
     run(world, 10);
     EXPECT_EQ(world.bodies.size(), 1u);
-    EXPECT_TRUE(world.bodies.take_broken().empty());
+    EXPECT_TRUE(world.bodies.poll_broken().empty());
   });
   with_breaking_ball([](ContactWorld& world, SoftBody<3>& ball, const SoftBody<3>&) {
     const auto pieces = world.bodies.cut(ball, Cut::plane(ball.centre_of_mass(), {0, 1, 0}));
     EXPECT_FALSE(pieces.empty());
     EXPECT_GT(world.bodies.size(), 2u);
-    EXPECT_EQ(world.bodies.take_broken().size(), 2u);
+    EXPECT_EQ(world.bodies.poll_broken().size(), 2u);
   });
   with_breaking_ball([](ContactWorld& world, SoftBody<3>& ball, const SoftBody<3>&) {
     world.bodies.remove(ball);
     run(world, 10);
     EXPECT_EQ(world.bodies.size(), 0u);
-    EXPECT_TRUE(world.bodies.take_broken().empty());
+    EXPECT_TRUE(world.bodies.poll_broken().empty());
   });
   // The world goes while a break is under way.
   ContactWorld world({0, 0, 0});
@@ -470,7 +470,7 @@ TEST(BulletFracture, AttachmentsEndWithAnAssignmentOfAnotherModel) {
   run(world, 2);
   ball = saved;
   run(world, 2);
-  const std::vector<EndedAttachment> ended = world.bodies.take_ended_attachments();
+  const std::vector<EndedAttachment> ended = world.bodies.poll_ended_attachments();
   ASSERT_EQ(ended.size(), 1u);
   EXPECT_EQ(ended[0].reason, EndedAttachment::Reason::kGone);
   // One of the new model, made before the next step, stays.
@@ -479,7 +479,7 @@ TEST(BulletFracture, AttachmentsEndWithAnAssignmentOfAnotherModel) {
   half = saved;
   world.bodies.attach(half, Patch<3>::of_surface({0, 0.3f, 0}, 0.2f));
   run(world, 2);
-  EXPECT_TRUE(world.bodies.take_ended_attachments().empty());
+  EXPECT_TRUE(world.bodies.poll_ended_attachments().empty());
 }
 
 TEST(BulletFracture, RandomCutsOfAWorldThatGoesOnLeaveItValid) {
@@ -500,7 +500,7 @@ TEST(BulletFracture, RandomCutsOfAWorldThatGoesOnLeaveItValid) {
     const SoftBody<3>& body = world.bodies[random() % world.bodies.size()];
     world.bodies.cut(body, Cut::plane(body.centre_of_mass() + 0.1f * vector(), vector()));
     if (i % 7 == 3) world.bodies.begin_ahead(kStep);
-    if (i % 5 == 4) world.bodies.take_broken();
+    if (i % 5 == 4) world.bodies.poll_broken();
   }
   run(world, 60);
   double sum = 0;
@@ -525,7 +525,7 @@ TEST(BulletFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
   EXPECT_TRUE(world.bodies.attachment(left));
   EXPECT_FALSE(world.bodies.attachment(middle));
   EXPECT_TRUE(world.bodies.attachment(right));
-  const auto ended = world.bodies.take_ended_attachments();
+  const auto ended = world.bodies.poll_ended_attachments();
   ASSERT_EQ(ended.size(), 1u);
   EXPECT_EQ(ended[0].id, middle);
   EXPECT_EQ(ended[0].reason, EndedAttachment::Reason::kBroken);
@@ -547,7 +547,7 @@ TEST(BulletFracture, WhatIsRemovedIsNotNamed) {
   const auto second = world.bodies.cut(*first[0], Cut::plane({0.301f, 2, 0}, {1, 0, 0}));
   ASSERT_EQ(second.size(), 1u);
   world.bodies.remove(*first[0]);
-  const auto broken = world.bodies.take_broken();
+  const auto broken = world.bodies.poll_broken();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].body, &bar);
   EXPECT_TRUE(broken[0].pieces.empty());

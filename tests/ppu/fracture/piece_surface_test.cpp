@@ -10,7 +10,7 @@
 #include "fracture_checks.h"
 #include "ppu/bodies/break_body.h"
 #include "ppu/contacts/contact_body.h"
-#include "ppu/contacts/triangle_distance.h"
+#include "ppu/surfaces/triangle_distance.h"
 
 namespace softcell::ppu {
 namespace {

@@ -75,7 +75,7 @@ void expect_valid_skin(const Skin2d& skin, const Lattice<2>& lattice) {
   std::vector<Vector2f> particles;
   for (std::size_t i = 0; i < lattice.particles.size(); ++i) particles.push_back(lattice.rest_position(i));
   std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
-  place(skin, particles, positions, slopes);
+  deform(skin, particles, positions, slopes);
   for (std::size_t v = 0; v < skin.rest.size(); ++v) {
     const Vector2f wanted = lattice.origin + lattice.spacing * skin.rest[v];
     EXPECT_LT((positions[v] - wanted).norm(), 1e-5f);
@@ -190,7 +190,7 @@ TEST(Pieces2d, ACrackThatEndsInTheBodyOpensInThePicture) {
   for (std::size_t i = 0; i < particles.size(); ++i)
     if (on_left[i]) particles[i].x() -= 0.05f;
   std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
-  place(skin, particles, positions, slopes);
+  deform(skin, particles, positions, slopes);
   const auto drawn_at = [&](const Vector2f& rest, bool left) {
     float nearest = 1;
     for (std::size_t v = 0; v < skin.rest.size(); ++v) {

@@ -112,13 +112,13 @@ TEST(RandomBreaks, LeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
       }
       world.run(1, 2);
       if (i % 3 == 0) {
-        for (const BrokenSoftBody& broken : world.bodies.take_broken()) {
+        for (const BrokenSoftBody& broken : world.bodies.poll_broken()) {
           for (const SoftBody<3>* piece : broken.pieces) {
             EXPECT_GT(piece->model().mass(), 0);
           }
         }
       }
-      for (const EndedAttachment& ended : world.bodies.take_ended_attachments())
+      for (const EndedAttachment& ended : world.bodies.poll_ended_attachments())
         std::erase(attachments, ended.id);
       const double now = energy_of_motion(world.bodies);
       ASSERT_TRUE(std::isfinite(now)) << "seed " << seed << ", step " << i;
@@ -161,7 +161,7 @@ TEST(RandomBreaks, AHundredASecondNeitherLeakNorSlowDown) {
       bar.add_particle_velocity(p, Vector3f(bar.position(p).x() > 0 ? 3.0f : -3.0f, 0, 0));
     bodies.emplace_back(i, &bar);
     world.world.stepSimulation(0.01f, 0);
-    for (const BrokenSoftBody& broken : world.bodies.take_broken()) {
+    for (const BrokenSoftBody& broken : world.bodies.poll_broken()) {
       ++breaks;
       for (const SoftBody<3>* piece : broken.pieces) bodies.emplace_back(i, piece), ++pieces;
     }

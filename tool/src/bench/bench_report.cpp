@@ -11,6 +11,7 @@
 #include "softcell/base/assert.h"
 #include "softcell/base/read_file.h"
 #include "softcell/base/text.h"
+#include "verb/verb_files.h"
 
 namespace softcell::tool {
 namespace {
@@ -89,7 +90,7 @@ OldFigures read_old_figures(const std::filesystem::path& file) {
     }
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{} holds no figures of `softcell bench --json`: {}", file.string(),
-                                         base::one_line(error.what())));
+                                         base::one_line(explanation_of(error))));
   }
   return figures;
 }

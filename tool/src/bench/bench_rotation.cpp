@@ -82,7 +82,7 @@ class RotationRig {
                least_iterations,
                most_iterations,
                {}};
-    chain_.add({jobs_.place(kernel_), job_.ea()});
+    chain_.add({jobs_.load(kernel_), job_.ea()});
   }
 
   void run_spe() {

@@ -52,7 +52,7 @@ class SpeBodies {
  public:
   explicit SpeBodies(const Model& model)
       : jobs_(memory_, {.spes = 1}, job_loop_),
-        image_(jobs_.place(kernel_)),
+        image_(jobs_.load(kernel_)),
         spes_(memory_, ppu::MatchPlan(model.lattice, *model.plan), model.bodies),
         all_(model.bodies),
         chain_(jobs_, "match", model.bodies) {

@@ -54,7 +54,7 @@ struct SolverCase2d {
         jobs(memory, {.spes = 1}, job_loop),
         waker(jobs),
         bodies(std::max<std::size_t>(1, kParticlesAtOnce / lattice.particles.size())),
-        image(jobs.place(kernel)),
+        image(jobs.load(kernel)),
         spes(memory, ppu::MatchPlan2d(lattice, *plan), bodies),
         all(bodies),
         chain(jobs, "match_2d", bodies),

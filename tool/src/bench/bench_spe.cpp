@@ -30,7 +30,7 @@ class TransfersRig {
       : kernel_(load_kernel("transfers")),
         job_loop_(load_kernel("job_loop")),
         jobs_(memory_, {.spes = spes, .schedule = schedule}, job_loop_),
-        image_(jobs_.place(kernel_)),
+        image_(jobs_.load(kernel_)),
         chain_(jobs_, "benchmark", kQueuedJobs),
         descriptor_(memory_, "transfers job", 1),
         data_(memory_, "transfers data", spu::kTransfersBufferBytes) {}

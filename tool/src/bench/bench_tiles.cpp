@@ -28,7 +28,7 @@ class LargeBody {
   LargeBody(const ppu::Lattice<3>& lattice, int half_width)
       : plan_(lattice, ppu::MatchingPlan<float, 3>(lattice, half_width, ppu::particle_masses(lattice, 1000))),
         jobs_(memory_, {.spes = 1}, job_loop_),
-        image_(jobs_.place(kernel_)),
+        image_(jobs_.load(kernel_)),
         body_(memory_, plan_),
         chain_(jobs_, "tiles", body_.most_jobs()) {
     SC_ASSERT(plan_.place_of().size() == lattice.particles.size(), "places for {} particles of {}",

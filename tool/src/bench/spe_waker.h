@@ -12,7 +12,7 @@ namespace softcell::tool {
 class SpeWaker {
  public:
   /// @param jobs  must outlive the waker
-  explicit SpeWaker(ppu::JobSystem& jobs) : image_(jobs.place(kernel_)), chain_(jobs, "waker", 1) {
+  explicit SpeWaker(ppu::JobSystem& jobs) : image_(jobs.load(kernel_)), chain_(jobs, "waker", 1) {
     chain_.add({image_, {}});  // returns at once
   }
 

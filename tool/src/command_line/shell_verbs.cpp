@@ -1,5 +1,7 @@
 #include "shell_verbs.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -47,7 +49,10 @@ class ShellVerbs final : public Verb {
                                          "Print a script for the shell that completes softcell's commands");
     c->add_option("SHELL", shell_, "bash, zsh or fish: source <(softcell completion bash)")
         ->required()
-        ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
+        ->check([](const std::string& text) -> std::string {
+          if (text == "bash" || text == "zsh" || text == "fish") return {};
+          throw UsageError(fmt::format("completion {}: give bash, zsh or fish", text));
+        })
         ->type_name("bash|zsh|fish");
     c->callback([&] {
       chosen = [&] {

@@ -110,7 +110,8 @@ class DemoVerbs final : public Verb {
   }
 
   void add_3d(CLI::App& demo, Call& chosen) {
-    CLI::App* d = demo.add_subcommand("3d", "Soft bodies in a Bullet world, skinned on six emulated SPEs");
+    CLI::App* d =
+        demo.add_subcommand("3d", "Soft bodies in a Bullet world, stepped and skinned on six emulated SPEs");
     add_demo_options(*d, demo_3d_, "arena");
     d->add_option("--mesh", demo_3d_.model.mesh,
                   "Put this glTF, OBJ, PLY or STL model into the scene (default: drop)")

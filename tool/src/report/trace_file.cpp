@@ -11,6 +11,7 @@
 #include "softcell/dma/addresses.h"
 #include "softcell/dma/list_element.h"
 #include "softcell/dma/mfc_command.h"
+#include "verb/verb_files.h"
 
 namespace softcell::tool {
 namespace {
@@ -173,13 +174,6 @@ void read_about(const JsonFields& about, std::uint64_t highest_spe, TraceFile& f
   }
 }
 
-/// Without the library's own prefix, on one line.
-std::string explanation(const json::exception& error) {
-  const std::string text = error.what();
-  const std::size_t prefix = text.find("] ");
-  return prefix == std::string::npos ? text : text.substr(prefix + 2);
-}
-
 }  // namespace
 
 TraceFile parse_trace(std::string_view text) {
@@ -198,7 +192,7 @@ TraceFile parse_trace(std::string_view text) {
   try {
     root = json::parse(text.begin(), text.end(), take_events);
   } catch (const json::exception& error) {
-    throw std::runtime_error("it is not JSON: " + explanation(error));
+    throw std::runtime_error("it is not JSON: " + explanation_of(error));
   }
   SC_ASSERT(file.spes.size() >= dma::kSpeCount, "events of {} SPEs", file.spes.size());
   const JsonFields fields(root, "the file");

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -36,6 +37,14 @@ std::vector<std::string> environment_with(const std::map<std::string, std::strin
     if (!value.empty()) environment.push_back(name + "=" + value);
   }
   return environment;
+}
+
+/// Why a program was not started. A name without a slash is looked for in the folders of PATH only.
+std::string why_not_run(const std::string& program, int error) {
+  if (error != ENOENT) return std::strerror(error);
+  if (program.find('/') != std::string::npos) return "there is no such file";
+  const bool is_here = std::filesystem::exists(program);
+  return "no folder of PATH has it" + (is_here ? "; did you mean ./" + program + "?" : std::string());
 }
 
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
@@ -91,7 +100,8 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
                                  pointers_to(arguments).data(), pointers_to(environment).data());
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
-  if (error != 0) throw std::runtime_error("cannot run " + words.front() + ": " + std::strerror(error));
+  if (error != 0)
+    throw std::runtime_error("cannot run " + words.front() + ": " + why_not_run(words.front(), error));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }

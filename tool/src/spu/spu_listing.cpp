@@ -37,9 +37,12 @@ ls_sim::KernelImage load_program(const SpuListingOptions& options, const char* v
   ls_sim::KernelImage image =
       load_kernel_file(options.task.image, options.task.checked, options.task.machine);
   if (image.machine == ls_sim::Machine::kSpu) return image;
+  const bool has_other_build =
+      std::string_view(verb) == "timing" && !find_kernel_file(options.task.image, false);
   throw std::runtime_error(fmt::format(
-      "spu {} {}: this image is built for the host; give a program that a compiler for the SPU has made",
-      verb, options.task.image));
+      "spu {} {}: this image is built for the host; give a program that a compiler for the SPU has made{}",
+      verb, options.task.image,
+      has_other_build ? ", or --engine interpreter for softcell's own build for the SPU" : ""));
 }
 
 /// "step_body" stands for "step_body(float, Map const&)" as well.

@@ -55,6 +55,12 @@ void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>
   }
 }
 
+std::string explanation_of(const std::exception& error) {
+  const std::string text = error.what();
+  const std::size_t prefix = text.starts_with("[json.exception.") ? text.find("] ") : std::string::npos;
+  return prefix == std::string::npos ? text : text.substr(prefix + 2);
+}
+
 void write_json(base::WholeFile& file, const nlohmann::ordered_json& document) {
   SC_ASSERT(!document.is_null() && !document.is_discarded(), "a document of {} values is nothing",
             document.size());

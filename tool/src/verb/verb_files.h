@@ -1,6 +1,7 @@
 #pragma once
 // The files that a verb reads and writes.
 
+#include <exception>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -28,6 +29,9 @@ void check_distinct(const std::vector<NamedFile>& files);
 /// Checks that no output replaces a file that is read.
 /// @throws UsageError  one would.
 void check_kept(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
+
+/// What is wrong with a document in JSON, without the prefix "[json.exception....] " of the library that has read it.
+std::string explanation_of(const std::exception& error);
 
 /// Writes the document as all of the file, which the caller commits. @throws std::runtime_error  it cannot be written.
 void write_json(base::WholeFile& file, const nlohmann::ordered_json& document);

@@ -31,7 +31,7 @@ struct ListElement {
 
   /// Local-store address of the element's bytes when the list has reached `cursor`. Less than a quadword has
   /// the same offset in a quadword as in main storage.
-  constexpr LocalStoreAddress place(LocalStoreAddress cursor) const {
+  constexpr LocalStoreAddress local_address(LocalStoreAddress cursor) const {
     return size() < kQuadwordBytes ? LocalStoreAddress{quadword_of(cursor.value) | offset_in_quadword(eal)}
                                    : cursor;
   }

@@ -4,7 +4,7 @@
 //
 //   issue() --> rules --> translation --> queue of 16 --> local store <-> main storage
 //                              |             |
-//                              |             +--> read_tag_status(), read_list_stall_status(), take_events()
+//                              |             +--> read_tag_status(), read_list_stall_status(), poll_events()
 //                              |
 //                              +--> getllar, putllc, putlluc at once --> read_atomic_status()
 //
@@ -135,15 +135,15 @@ class Mfc {
   bool advance();
 
   /// Events since the last call, as bits of SPU_RdEventStat.
-  std::uint32_t take_events() { return std::exchange(events_, 0); }
+  std::uint32_t poll_events() { return std::exchange(events_, 0); }
   static constexpr std::uint32_t kTagStatusEvent = 0x1;  ///< TG: an open tag-status request became true
   static constexpr std::uint32_t kListStallEvent = 0x2;  ///< SN: a list has stalled
   static constexpr std::uint32_t kQueueSlotEvent = 0x8;  ///< QV: a slot became free in a full queue
 
   /// The fault of a list element, if there is one that no other call has returned. Such a fault occurs while
   /// the command executes, and suspends the queue until begin_job(). Every call that can return a fault
-  /// returns this one first; call take_fault() after one that cannot.
-  std::optional<Fault> take_fault();
+  /// returns this one first; call poll_fault() after one that cannot.
+  std::optional<Fault> poll_fault();
 
   /// Completes every queued command, in an order that fences and barriers allow.
   /// @return  nothing, or the fault that prevents it: an element's, or list-stalled-for-ever.
@@ -156,7 +156,6 @@ class Mfc {
   bool may_miss_host_stores() const { return port_.may_miss_host_stores(); }
 
   const MfcStatistics& statistics() const { return statistics_; }
-  void clear_statistics() { statistics_ = {}; }
 
  private:
   enum class Condition : std::uint32_t { kImmediate = 0, kAny = 1, kAll = 2 };

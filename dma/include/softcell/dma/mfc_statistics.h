@@ -8,7 +8,7 @@
 
 namespace softcell::dma {
 
-/// Sums since construction or the last clear_statistics(). Commands that broke a rule do not count.
+/// Sums since construction. Commands that broke a rule do not count.
 struct MfcStatistics {
   /// Commands of one kind.
   struct Traffic {

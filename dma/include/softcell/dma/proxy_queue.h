@@ -59,7 +59,7 @@ class ProxyQueue : private MfcObserver {
 
   /// The fault of a queued command, if a host program has unmapped its bytes since it was issued. All commands
   /// that were queued then are dropped, and count as complete.
-  std::optional<Fault> take_fault();
+  std::optional<Fault> poll_fault();
 
   /// Number of commands that can be queued without waiting, 0..8 (MFC_QStatus). Time passes.
   int free_slots();

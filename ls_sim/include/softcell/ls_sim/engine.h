@@ -20,7 +20,7 @@ class Debugger;
 struct HostCalls;
 class SpeTimer;
 
-/// Who starts an SPU program, and so what its registers hold at first. Each argument is in bytes 0 to 7 of its
+/// What starts an SPU program, which decides what its registers hold at first. Each argument is in bytes 0 to 7 of its
 /// register.
 enum class EntryState : std::uint8_t {
   /// $3 to $5 are the arguments, $6 the effective address of the SPE's local store, $1 a stack. [libspe2] second-hand
@@ -29,14 +29,14 @@ enum class EntryState : std::uint8_t {
   kThreadGroup,
 };
 
-/// The 64-bit arguments of a kernel's main: three by libspe2, four by lv2's thread groups, for which the first
-/// three are any numbers, too. [SPU ABI, libspe2; PSL1GHT, sys/spu.h]
+/// The 64-bit arguments of a kernel's main. libspe2 passes three with the meanings below. lv2's thread groups pass four
+/// numbers that mean what the program wants. [SPU ABI, libspe2; PSL1GHT, sys/spu.h]
 struct EntryArguments {
   std::uint64_t spe_id = 0;
   std::uint64_t argp = 0;
   std::uint64_t envp = 0;
-  std::uint64_t fourth = 0;                       ///< of programs that thread groups start
-  EntryState entry_state = EntryState::kLibspe2;  ///< of SPU programs only
+  std::uint64_t fourth = 0;                       ///< only for programs that thread groups start
+  EntryState entry_state = EntryState::kLibspe2;  ///< only for SPU programs
 };
 
 /// The result of a run, which ends by main's return (or spu_stop) with a stop code, or by a fault.
@@ -52,7 +52,7 @@ struct RunResult {
   std::uint32_t status() const { return stop_code & 0xFFu; }
 };
 
-/// Bits of a quadword in the order of the local store, a byte to each of its bytes: set where they come from nowhere.
+/// Marks the undefined bits of a quadword: a bit is set if nobody has written that bit. Bytes are in the order of the local store.
 using UndefinedBits = std::array<std::uint8_t, 16>;
 
 /// One load or store of a checked kernel.
@@ -62,7 +62,7 @@ struct Access {
   bool is_store = false;
   dma::LocalStoreAddress instruction;    ///< local-store address of the load or store
   dma::LocalStoreAddress stack_pointer;  ///< at that moment
-  UndefinedBits undefined{};             ///< of what a program for the SPU stores
+  UndefinedBits undefined{};             ///< the undefined bits that a program for the SPU stores
 };
 
 /// A quadword that a program has loaded.
@@ -70,39 +70,39 @@ struct LoadedFrom {
   dma::LocalStoreAddress lsa, instruction;
 };
 
-/// What depends on bytes that nobody has written, neither in a register nor in the local store.
+/// A use of undefined bits: of a register or bytes of the local store that nobody has written.
 struct UndefinedUse {
   enum class Kind : std::uint8_t {
     kAddress,    ///< of a load or store
     kCondition,  ///< of a branch
     kTarget,     ///< of a branch
-    kHalt,       ///< on a condition
-    kChannel,    ///< what is written to one
+    kHalt,       ///< the condition of a halt
+    kChannel,    ///< the value that is written to a channel
   };
   Kind kind = Kind::kAddress;
-  int reg = 0;                     ///< which has the bytes
-  std::optional<LoadedFrom> from;  ///< where they come from; none: a register that was never written
+  int reg = 0;                     ///< the number of the register with the undefined bits
+  std::optional<LoadedFrom> from;  ///< where they were loaded from; none: the register was never written
 };
 
 /// One instruction of a checked program for the SPU.
 struct ExecutedInstruction {
   dma::LocalStoreAddress address;
   dma::LocalStoreAddress stack_pointer;        ///< before it
-  std::optional<UndefinedUse> undefined = {};  ///< that it makes; none: none
+  std::optional<UndefinedUse> undefined = {};  ///< its use of undefined bits, if it makes one
 };
 
-/// Observes every load and store of a checked kernel, before it happens. Of a program for the SPU these are whole
+/// Observes every load and store of a checked kernel, before it happens. A program for the SPU loads and stores whole
 /// quadwords. Called by the thread that runs the SPE.
 class AccessObserver {
  public:
   virtual ~AccessObserver() = default;
   virtual void on_access(const Access& access) = 0;
 
-  // Only of programs for the SPU:
+  // Only for programs for the SPU:
 
   /// Called before each instruction.
   virtual void on_instruction(const ExecutedInstruction&) {}
-  /// Of a quadword: what nobody has written.
+  /// The undefined bits of the quadword at this address.
   virtual UndefinedBits undefined_bits(dma::LocalStoreAddress) { return {}; }
   /// The host has written there, in a call that it serves.
   virtual void on_host_write(dma::LocalStoreAddress, std::uint32_t) {}
@@ -161,22 +161,23 @@ class Engine {
   virtual std::uint64_t instructions() const { return 0; }
 };
 
-/// What the native engine has to do besides; all of it outlives the engine.
+/// What a native engine works with. Whatever it points to must outlive the engine.
 struct NativeOptions {
-  Debugger* debugger = nullptr;  ///< is told of each instruction (Debugger::on_instruction); null: nobody
-  int spe = 0;                   ///< whose engine it is, for the debugger
+  Debugger* debugger = nullptr;  ///< its on_instruction() is called before each instruction; may be null
+  int spe = 0;                   ///< the SPE's number, for the debugger
 };
 
 /// Makes the engine for images that softcell_add_spu_kernel has built for this host.
 /// @throws std::runtime_error  the processor lacks AVX2 or FMA.
 std::unique_ptr<Engine> make_native_engine(LocalStore& local_store, const NativeOptions& options = {});
 
-/// What an interpreter has to do besides; all of it outlives the engine.
+/// What an interpreter works with. Whatever it points to must outlive the engine.
 struct InterpreterOptions {
-  const HostCalls* host_calls = nullptr;  ///< what the host does for programs; null: nothing
-  SpeTimer* timer = nullptr;              ///< where instructions are timed; null: nowhere
-  Debugger* debugger = nullptr;  ///< who is told of each instruction; null: nobody. Then nothing is timed
-  int spe = 0;                   ///< the number that the debugger is told
+  const HostCalls* host_calls = nullptr;  ///< the calls that the host serves for programs; null: none
+  SpeTimer* timer = nullptr;              ///< times the instructions; null: they are not timed
+  /// Its on_instruction() is called before each instruction, and nothing is timed; may be null.
+  Debugger* debugger = nullptr;
+  int spe = 0;  ///< the SPE's number, for the debugger
 };
 
 /// Makes the engine for programs built for the SPU (load_spu_program()).

@@ -68,7 +68,8 @@ class SpeContext {
   /// Continues behind the last stop. @throws std::logic_error  the context has not stopped so.
   virtual ContextStop resume() = 0;
 
-  /// Ends a run that has stopped and could go on; its statistics are counted then. @pre it does not run
+  /// Ends a run that has stopped and could go on; its statistics are counted then.
+  /// @throws std::logic_error  the context runs.
   virtual void give_up() = 0;
 
   /// Ends the run in progress with the fault deadline-exceeded.
@@ -76,7 +77,7 @@ class SpeContext {
 
   virtual ProblemState& problem_state() = 0;
 
-  /// Sets which effective addresses mean something else to this context. @pre it does not run
+  /// Sets which effective addresses mean something else to this context. @throws std::logic_error  it runs.
   virtual void set_window(dma::AddressWindow window) = 0;
 
   /// The state at this moment.
@@ -92,7 +93,7 @@ class SpeContext {
   virtual std::uint32_t wait_any_proxy(std::uint32_t tag_mask) = 0;
 
   /// The fault of a proxy command that could not move its bytes; each once.
-  virtual std::optional<dma::Fault> take_proxy_fault() = 0;
+  virtual std::optional<dma::Fault> poll_proxy_fault() = 0;
 
   /// Statistics up to the end of the last run.
   virtual SpeStatistics statistics() = 0;

@@ -45,17 +45,17 @@ struct SpeOptions {
   /// Where checked images report their findings; then images that are not checked are refused. Null: nothing
   /// is checked. It outlives the SPEs.
   Findings* findings = nullptr;
-  /// What programs built for the SPU may have the host do (host_calls.h). Null: nothing. It outlives the SPEs.
+  /// The calls that the host serves for programs built for the SPU (host_calls.h). Null: none. It outlives the SPEs.
   const HostCalls* host_calls = nullptr;
-  /// What the model of the SPU's pipelines says of programs built for the SPU, and that of transfers of all. Needs Clock::kSimulated and
-  /// Interleaving::kByTime. Null: nothing is timed. It outlives the SPEs.
+  /// Collects cycles: for programs built for the SPU by the model of its pipelines, for all programs by the model of transfers. Needs
+  /// Clock::kSimulated and Interleaving::kByTime. Null: nothing is timed. It outlives the SPEs.
   Timing* timing = nullptr;
-  /// Is told of each instruction (debugger.h). Programs built for the SPU are not timed then. Null: nobody. It outlives the SPEs.
+  /// Called before each instruction (debugger.h). Programs built for the SPU are not timed then. Null: no debugger. It outlives the SPEs.
   Debugger* debugger = nullptr;
   Trace* trace = nullptr;  ///< null: nothing is recorded. It outlives the SPEs
 };
 
-/// Has SPEs with these options run by the model of time. @param timing  null: the options stay as they are
+/// Sets options so that SPEs run by the model of time. @param timing  if null, the options do not change
 inline void time_by(Timing* timing, SpeOptions& options) {
   if (timing == nullptr) return;
   options.timing = timing;

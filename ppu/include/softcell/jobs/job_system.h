@@ -3,7 +3,7 @@
 // take one after the other.
 //
 //   JobSystem jobs(memory, {.spes = 6}, job_loop);
-//   const JobImage skin = jobs.place(image);
+//   const JobImage skin = jobs.load(image);
 //   JobChain chain(jobs, "skinning", 100);
 //   chain.add({skin, first.ea()});  chain.add({skin, second.ea()});  // in any order, at the same time
 //   chain.sync();                                                    // not before all of the above:
@@ -29,7 +29,7 @@ class JobChain;
 /// An image in main memory, where job loops fetch it. Valid as long as its JobSystem.
 class JobImage {
  public:
-  const ls_sim::KernelImage& kernel() const { return *kernel_; }  ///< as it was given to place()
+  const ls_sim::KernelImage& kernel() const { return *kernel_; }  ///< as it was given to load()
 
  private:
   friend class JobSystem;
@@ -47,16 +47,15 @@ struct Job {
 
 /// Why a job failed: the fault's message, or the status that the kernel returned.
 struct JobFailure {
-  std::size_t job = 0;  ///< its number in the chain; the number of jobs where nobody knows which it was
+  std::size_t job = 0;  ///< its number in the chain; size() of the chain if the job is unknown
   std::string message;
 };
 
-/// Up to six SPEs with a job loop each. They sleep while there is nothing to do; no more are woken than there
-/// are jobs.
+/// Up to six SPEs, each with a job loop. They sleep while there is nothing to do; a kick wakes no more of them than
+/// there are jobs. Used by one thread, except where stated.
 ///
-/// A job that fails ends its own chain only. If a job loop itself fails, nobody knows its job: then all loops
-/// finish their present jobs and end, every chain that has not ended by then fails, and the next kick starts
-/// the loops again.
+/// A job that fails ends only its own chain. If a job loop itself fails, its job is unknown: all loops then finish
+/// their present jobs and end, every chain that has not ended by then fails, and the next kick starts the loops again.
 ///
 /// With SpeOptions::interleaving other than kFree, SPEs run only while the PPU side waits: finished() and wait() then
 /// return when all SPEs sleep. So a run, and with SpeOptions::timing its cycles, is the same every time.
@@ -74,13 +73,15 @@ class JobSystem {
   JobSystem(const JobSystem&) = delete;
   JobSystem& operator=(const JobSystem&) = delete;
 
-  /// Copies an image to main memory, once for each image, which must outlive the system.
-  /// @throws std::invalid_argument  it leaves no room for the job loop, or is not checked where findings are
-  /// wanted.
-  JobImage place(const ls_sim::KernelImage& image);
+  /// Copies an image to main memory, where the job loops find it. Loading an image again returns the same copy. The image
+  /// must outlive the system.
+  /// @throws std::invalid_argument  the image leaves no room for the job loop, or is not checked although the options
+  ///                                ask for findings.
+  /// @throws std::runtime_error     main memory is full.
+  JobImage load(const ls_sim::KernelImage& image);
 
-  /// Waits for all chains and ends the job loops. Then statistics and traces are whole: what the loops do
-  /// between jobs is in both. No chain may be kicked afterwards.
+  /// Waits for all chains and ends the job loops. Statistics and traces are complete afterwards: they also have what the
+  /// loops did between jobs. No chain may be kicked after this.
   void stop();
 
   /// Of each SPE, up to the last job that it has ended. Any thread.
@@ -95,14 +96,14 @@ class JobSystem {
 };
 
 /// Jobs in stages: those of one stage run in any order and at the same time, so they must not depend on each
-/// other; the next stage begins when all have ended. Then the result is the same bits for any number of SPEs.
-/// Used by one thread. Chains are looked at in the order of their making: jobs of an earlier one go first.
+/// other; the next stage begins when all have ended. So the result has the same bits for any number of SPEs.
+/// Used by one thread. SPEs look at chains in the order in which they were constructed: jobs of an earlier one go first.
 class JobChain {
  public:
   /// @throws std::runtime_error  there are 15 chains already, or main memory is full.
   JobChain(JobSystem& system, const std::string& name, std::size_t most_jobs);
 
-  /// Waits for the jobs under way.
+  /// Waits for its jobs under way.
   ~JobChain();
   JobChain(const JobChain&) = delete;
   JobChain& operator=(const JobChain&) = delete;
@@ -126,7 +127,7 @@ class JobChain {
   /// Blocks until they have. Always returns: a job that never ends is stopped by the deadline of the options.
   void wait();
 
-  /// Of the last kick, in order; empty when all went well. Stages behind one that failed have not run.
+  /// The failures of the last kick, in order; empty if there were none. Stages behind one that failed have not run.
   /// @pre finished()
   const std::vector<JobFailure>& failures() const;
 

@@ -10,10 +10,10 @@
 
 namespace softcell::ppu {
 
-/// What import_mesh() says beside the mesh.
+/// What import_mesh() reports besides the mesh.
 struct ImportReport {
-  /// What the file has and the mesh has not, for a sentence that begins with "not read: ": "animations",
-  /// "the picture 'bark.webp', which is neither PNG nor JPEG". Empty: all was read.
+  /// What the file has and import_mesh() does not read, to be printed behind "not read: ": "animations",
+  /// "the picture 'bark.webp', which is neither PNG nor JPEG". Empty: everything was read.
   std::vector<std::string> not_read;
   /// The files that were read: the mesh's own, its material library, buffers and pictures.
   std::vector<std::filesystem::path> files;
@@ -32,7 +32,7 @@ struct ImportReport {
 ///
 /// Other files that the mesh's file names (buffers, material library, pictures) are opened only if they lie in its
 /// folder or below, after links are followed. A mesh can do without material library and pictures.
-/// @param report  receives what was not read; null: nobody asks.
+/// @param report  receives what was not read; may be null
 /// @throws std::runtime_error  one sentence that names the file and what is wrong with it: there is no such
 /// file, the format is unknown, the file, or one that it names, cannot be read as one, it has no triangles or more than
 /// 4 million, its pictures have more than 64 million pixels, a coordinate is NaN or infinite, an index is out of range,
@@ -40,7 +40,7 @@ struct ImportReport {
 TriangleMesh import_mesh(const std::filesystem::path& path, ImportReport* report = nullptr);
 
 /// The same for a file in memory, which can name no other files.
-/// @param name  whose extension is that of the format, and which errors name: "crate.glb"
+/// @param name  a name for error messages, whose extension tells the format: "crate.glb"
 TriangleMesh import_mesh(std::span<const std::byte> bytes, const std::filesystem::path& name,
                          ImportReport* report = nullptr);
 

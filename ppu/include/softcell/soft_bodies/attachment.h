@@ -4,7 +4,8 @@
 //     const AttachmentId tyre = soft_bodies.attach(ring, Patch<3>::of_surface(hub, 0.4f), rim);
 //     soft_bodies.attach(lamp, Patch<3>::of_surface(top, 0.1f), {.kind = AttachmentKind::kRope, .point = hook});
 //
-// BulletSoftBodies holds them and solves them with the contacts of each substep.
+// BulletSoftBodies and Box2dSoftBodies have the functions that attach. BulletSoftBodies solves attachments together with
+// the contacts of each substep, Box2dSoftBodies before Box2D solves contacts.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -16,12 +17,12 @@
 namespace softcell::ppu {
 
 enum class AttachmentKind : std::uint8_t {
-  kWeld,   ///< the patch moves with the other side as it lay there when it was attached
-  kHinge,  ///< it turns about `point`, in three dimensions about `axis`
+  kWeld,   ///< the patch keeps the place and orientation that it had on the other side when it was attached
+  kHinge,  ///< the patch turns about `point`, in three dimensions about `axis`
   kRope    ///< the middle of the patch is never farther than `length` from the other end
 };
 
-/// A part of a soft body. Exactly one of particles, cells and a radius is given.
+/// A part of a soft body. Give exactly one of `particles`, `cells` and `radius`.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 struct Patch {
@@ -30,37 +31,38 @@ struct Patch {
   std::vector<std::uint32_t> particles = {};  ///< by their numbers
   std::vector<std::uint32_t> cells = {};      ///< by their numbers: all their corners
   Vector centre = Vector::Zero();             ///< metres, in the world
-  /// Metres: all of the drawn surface that is not farther from the centre. The corners of its cells are held. In two dimensions all particles.
+  /// Metres: the patch is all of the drawn surface within this distance from the centre, and the corners of its cells are held. In two
+  /// dimensions the patch is all particles within this distance.
   float radius = 0;
 
   /// The particles with these numbers.
   static Patch of_particles(std::vector<std::uint32_t> numbers) { return {.particles = std::move(numbers)}; }
   /// The cells with these numbers, with all their corners.
   static Patch of_cells(std::vector<std::uint32_t> numbers) { return {.cells = std::move(numbers)}; }
-  /// What of the drawn surface is within `radius` metres of `centre`.
+  /// The drawn surface within `radius` metres of `centre`; in two dimensions the particles there.
   static Patch of_surface(const Vector& centre, float radius) { return {.centre = centre, .radius = radius}; }
 };
 
-/// How a patch is held. Places are in the world, where things are when they are attached.
+/// How a patch is held. Points and axes are in world coordinates, at the moment when the patch is attached.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 struct AttachmentSettings {
   using Vector = Eigen::Vector<float, kDimension>;
 
   AttachmentKind kind = AttachmentKind::kWeld;
-  /// Metres: of a hinge, where it is; if nothing is said, the middle of the patch. Of a rope to the world or to a rigid body, its other end; to a
-  /// rigid body, if nothing is said, its centre.
+  /// Metres. The place of a hinge; without a value, the middle of the patch. The other end of a rope that goes to the world or to a rigid
+  /// body; without a value, the rigid body's centre.
   std::optional<Vector> point = {};
   Vector axis = Vector::UnitX();     ///< of a hinge in three dimensions; of any length but 0
-  std::optional<float> length = {};  ///< metres, of a rope; if nothing is said, as long as it is now
-  float compliance = 0;              ///< m/N: by how much it gives; 0: not at all
-  /// N: it breaks when it would have to carry more, and never carries more.
+  std::optional<float> length = {};  ///< of a rope, metres; without a value, the present distance of its ends
+  float compliance = 0;              ///< m/N: how much the attachment gives; 0: not at all
+  /// N: the largest force that the attachment carries. It breaks when it would have to carry more.
   float break_force = std::numeric_limits<float>::infinity();
-  /// Whether the two sides touch each other; if nothing is said, those of ropes do.
+  /// Whether the two sides touch each other. Without a value, those of ropes do, and those of welds and hinges do not.
   std::optional<bool> touch = {};
 };
 
-/// Of an attachment; never given twice by the same coupling.
+/// Names an attachment. A coupling never uses a number twice.
 enum class AttachmentId : std::uint32_t {};
 
 /// What an attachment did in the last substep.
@@ -72,22 +74,23 @@ struct AttachmentState {
   float gap = 0;
 };
 
-/// Where an attachment holds, as things are now. Metres.
+/// Where an attachment's ends are now, metres.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 struct AttachmentEnds {
-  Eigen::Vector<float, kDimension> patch =
-      Eigen::Vector<float, kDimension>::Zero();  ///< the middle of what is held
-  Eigen::Vector<float, kDimension> other = Eigen::Vector<float, kDimension>::Zero();  ///< where it is held
-  float length = 0;                                                                   ///< of a rope
+  using Vector = Eigen::Vector<float, kDimension>;
+
+  Vector patch = Vector::Zero();  ///< the middle of the patch
+  Vector other = Vector::Zero();  ///< where the patch is held
+  float length = 0;               ///< the length of a rope
 };
 
-/// An attachment that is there no longer.
+/// An attachment that has ended.
 struct EndedAttachment {
   /// Why it ended.
   enum class Reason : std::uint8_t {
-    kBroken,  ///< it would have had to carry more than its break force, or its patch was torn
-    kGone     ///< one of its bodies was removed, or became one of another model by an assignment
+    kBroken,  ///< it had to carry more than its break force, or its patch was torn
+    kGone     ///< one of its bodies was removed, or a body of another model was assigned to it
   };
   AttachmentId id{};
   Reason reason = Reason::kBroken;

@@ -1,5 +1,5 @@
 #pragma once
-// How soft bodies touch, and where they do.
+// How soft bodies touch, and where.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -13,18 +13,17 @@ class SoftBody;
 
 /// What soft bodies touch with.
 enum class ContactMethod {
-  /// A rigid sphere at each outer particle, which the engine moves: the way of the report of 2008. Costs a
-  /// rigid body for each, and things are kept at a distance from what is drawn.
+  /// A rigid sphere at each outer particle, which the engine moves: the way of the report of 2008. Each outer particle costs a rigid body,
+  /// and things stop at a distance from what is drawn.
   kSpheres,
-  /// What is drawn, unless a program asks for the other: points of the mesh's surface meet rigid shapes and other soft bodies, whose edges and
-  /// points meet the body's distance field. The engine knows nothing of the body, and no rigid body stands
-  /// for its particles, so that its own rays, overlap tests and contact callbacks do not see it:
-  /// BulletSoftBodies has cast_ray() and take_contact_events(), and SurfaceQuery looks at one body.
+  /// What is drawn; the default. Points of the mesh's surface meet rigid shapes and other soft bodies; the edges and points of those meet
+  /// the body's distance field. The engine does not know the body or its particles, so the engine's own rays, overlap tests and contact
+  /// callbacks do not see it. Use BulletSoftBodies::cast_ray() and poll_contact_events(), or SurfaceQuery for one body.
   kSurface,
 };
 
-/// What may touch what: two bodies do if the group of each has a bit in common with the mask of the other. The numbers are Bullet's, where 1 is
-/// what moves and 2 what stands still.
+/// Says which bodies may touch. Two bodies may if the group of each has a bit in common with the mask of the other. Groups are Bullet's: by
+/// default what moves is in group 1, what stands still in group 2.
 struct CollisionFilter {
   int group = 1;
   int mask = -1;
@@ -35,9 +34,10 @@ struct CollisionFilter {
   }
 };
 
-/// Cells that contacts have pressed to less than a part of their volume.
+/// How many cells contacts have crushed.
 struct CrushedCellCount {
-  std::size_t crushed = 0;  ///< cells with less than half of their volume, those turned inside out included
+  /// Cells with less than half of their volume at rest, including those that are turned inside out.
+  std::size_t crushed = 0;
   std::size_t inside_out = 0;  ///< cells of negative volume
 };
 
@@ -47,8 +47,8 @@ struct Contact {
   Eigen::Vector3f normal{0, 1, 0};    ///< unit length, from the second body to the first
   float impulse = 0;                  ///< kg m/s along the normal, in the last substep; above 0
 
-  /// One of the two: a soft body, or something that the engine knows; the other pointer is null. Of a body that was removed since that
-  /// substep the address is only a name.
+  /// One of the two bodies: either a soft body or an object of the engine; the other pointer is null. If the body was removed since the
+  /// substep, do not follow the pointer: the address only identifies the body.
   struct Body {
     const SoftBody<3>* soft = nullptr;
     const btCollisionObject* object = nullptr;

@@ -5,17 +5,17 @@
 //     vase.fracture = Fracture{.stretch = 0.05f};
 //     ...
 //     world.stepSimulation(dt);
-//     for (const BrokenSoftBody& broken : soft_bodies.take_broken()) play_crash(broken.pieces.size());
+//     for (const BrokenSoftBody& broken : soft_bodies.poll_broken()) play_crash(broken.pieces.size());
 //     soft_bodies.cut(loaf, Cut::plane(knife, {1, 0, 0}));
 //
-// A body that breaks becomes its largest piece, where it is in memory: nobody's reference dangles. All other pieces are new bodies. A
-// piece has a model of its own, the velocities that its particles had, and the material of the whole. Particles at a crack become
-// several, and share the mass of the one that they were; so masses and both momenta are those of the whole. Regions do not reach
-// across a crack, also where the body still hangs together. The mesh opens along the faces, and both sides are closed by the cut of the
-// solid with them, in the mesh's material "cut". However small a piece is, it stays: a single cell is a body of eight particles.
+// When a body breaks, the object becomes the largest piece, so references to it stay valid. All other pieces are new bodies. A piece has a
+// model of its own, the velocities that its particles had, and the material of the whole body. A particle at a crack becomes several, which
+// share its mass; so the pieces together have the mass and both momenta of the whole. Regions do not reach across a crack, not even where
+// the body still hangs together. The mesh opens along the broken faces, and the cut of the solid with these faces closes both sides, in the
+// mesh's material "cut". No piece vanishes, however small: a single cell is a body of eight particles.
 //
-// In two dimensions all is the same (box2d/box2d_soft_bodies.h): a face is an edge between two squares, a single cell has four particles,
-// and skin_of_piece() of skin_2d.h is what is drawn of a piece.
+// Bodies of two dimensions break in the same way (box2d/box2d_soft_bodies.h). There a face is an edge between two squares, and a single
+// cell is a body of four particles. skin_of_piece() in skin_2d.h makes what is drawn of a piece.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -26,56 +26,59 @@
 
 namespace softcell::ppu {
 
-/// Where a program cuts bodies, as they are now. A face breaks when the middles of its two cells lie on different sides of it.
+/// Where a program cuts bodies: a parallelogram or a plane, in world coordinates. A face between two cells breaks when the cut separates the
+/// middles of the two cells.
 struct Cut {
   Eigen::Vector3f corner{0, 0, 0};  ///< metres
   Eigen::Vector3f along{1, 0, 0};   ///< metres: a side of a parallelogram, from its corner
-  Eigen::Vector3f across{0, 1, 0};  ///< and the other one
-  bool has_end = true;              ///< false: the whole plane in which it lies
+  Eigen::Vector3f across{0, 1, 0};  ///< metres: the other side, from the same corner
+  bool has_end = true;              ///< false: the whole plane in which the parallelogram lies
 
-  /// @param normal  of any length but 0
+  /// A whole plane. @param point  metres, in the plane  @param normal  of any length but 0
   static Cut plane(const Eigen::Vector3f& point, const Eigen::Vector3f& normal);
-  /// What a blade passes: `edge` from its tip, moved by `way`.
+  /// The area that a blade passes: its edge reaches from `tip` to `tip` + `edge`, and it moves by `way` (metres).
   static Cut stroke(const Eigen::Vector3f& tip, const Eigen::Vector3f& edge, const Eigen::Vector3f& way) {
     return {.corner = tip, .along = edge, .across = way};
   }
 };
 
-/// The same in two dimensions: along a stretch of a line.
+/// Where a program cuts bodies of two dimensions: along a line, or a stretch of it.
 struct Cut2d {
   Eigen::Vector2f from{0, 0};  ///< metres: one end of the stretch
   Eigen::Vector2f way{1, 0};   ///< metres: from there to the other end
-  bool has_end = true;         ///< false: the whole line on which it lies
+  bool has_end = true;         ///< false: the whole line on which the stretch lies
 
-  /// @param normal  of any length but 0
+  /// A whole line. @param point  metres, on the line  @param normal  of any length but 0
   static Cut2d line(const Eigen::Vector2f& point, const Eigen::Vector2f& normal) {
     return {.from = point, .way = {-normal.y(), normal.x()}, .has_end = false};
   }
-  /// What a tip passes on its way.
+  /// What a tip passes when it moves by `way` (metres).
   static Cut2d stroke(const Eigen::Vector2f& tip, const Eigen::Vector2f& way) {
     return {.from = tip, .way = way};
   }
 };
 
-/// What a break has left of a body, as BulletSoftBodies::take_broken() and Box2dSoftBodies::take_broken() return it.
+/// What a break has left of a body, as BulletSoftBodies::poll_broken() and Box2dSoftBodies::poll_broken() return it.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 struct BrokenBody {
-  SoftBody<kDimension>* body = nullptr;       ///< what is left of it: its largest piece
-  std::vector<SoftBody<kDimension>*> pieces;  ///< new bodies; none: it is cracked and hangs together
-  std::size_t faces = 0;                      ///< that broke
-  /// Of `body`, then of each of `pieces`: for each particle which one of the body before the break it was. Particles at a crack are several.
+  SoftBody<kDimension>* body = nullptr;  ///< the body, now its largest piece
+  std::vector<SoftBody<kDimension>*>
+      pieces;             ///< the new bodies; empty: the body has cracks and hangs together
+  std::size_t faces = 0;  ///< how many faces broke
+  /// One list for `body`, then one for each of `pieces`: for each particle, its number in the body before the break. A particle at a crack
+  /// has become several, which all have its number.
   std::vector<std::vector<std::uint32_t>> particles_before;
 };
 using BrokenSoftBody = BrokenBody<3>;    ///< in a Bullet world
 using BrokenSoftBody2d = BrokenBody<2>;  ///< in a Box2D world
 
-// Without an engine. For a body that BulletSoftBodies or Box2dSoftBodies has, use their own functions.
+// For bodies without an engine. BulletSoftBodies and Box2dSoftBodies have functions of their own for their bodies.
 
-/// Breaks what is strained beyond the limits of its settings. @return the pieces but the largest, which `body` becomes
+/// Breaks the body where it is strained beyond the limits of its settings; `body` becomes the largest piece. @return  the other pieces
 std::vector<SoftBody<3>> break_where_strained(SoftBody<3>& body);
 std::vector<SoftBody<2>> break_where_strained(SoftBody<2>& body);  ///< the same in two dimensions
-/// Cuts a body, whatever its settings. @return as above
+/// Cuts a body, whatever its settings; `body` becomes the largest piece. @return  the other pieces
 /// @throws std::invalid_argument  the cut is not finite, or has no area
 std::vector<SoftBody<3>> cut(SoftBody<3>& body, const Cut& where);
 /// The same in two dimensions. @throws std::invalid_argument  the cut is not finite, or has no length

@@ -34,8 +34,8 @@ struct Csr {
   }
 };
 
-/// The most particles of a lattice. Main memory may hold fewer: a body in tiles takes some 250 bytes of it for each
-/// particle.
+/// The most particles of a lattice. Main memory may hold fewer: a body that is stepped in tiles takes some 250 bytes of
+/// it for each particle.
 template <int kDimension>
 inline constexpr std::uint32_t kMaxLatticeParticles = kDimension == 2 ? 1u << 16 : 1u << 20;
 inline constexpr int kMaxLatticeCellsPerAxis = 256;
@@ -54,10 +54,10 @@ struct Lattice {
   std::vector<GridIndex> cells;        ///< of each cell's low corner, sorted likewise
   /// Of each cell: particle numbers, corner k = bx + 2 by + 4 bz.
   std::vector<std::array<std::uint32_t, kCorners>> corners;
-  /// Of each cell that a triangle touches: the share of its volume inside the mesh, 0.25..1; of all others 1,
-  /// also in closed cavities, and of all cells in two dimensions.
+  /// For each cell that a triangle touches: the share of its volume inside the mesh, 0.25..1. For all other cells 1,
+  /// also in closed cavities; in two dimensions 1 for all cells.
   std::vector<float> fill;
-  /// Of each particle: the particles with which it shares a cell, ascending, itself excluded.
+  /// For each particle: the other particles with which it shares a cell, ascending.
   Csr neighbours;
 
   /// Metres, in the lattice's frame.
@@ -94,8 +94,7 @@ std::vector<Eigen::Vector2i> cells_from_rows(std::span<const std::string> rows);
 template <int kDimension>
 std::vector<float> particle_masses(const Lattice<kDimension>& lattice, float density);
 
-/// Particles that are not surrounded by occupied cells, four in two dimensions and eight in three: those that
-/// collide.
+/// For each particle, whether it lies at the lattice's boundary: fewer than four cells (in three dimensions eight) have it as a corner.
 template <int kDimension>
 std::vector<bool> outer_particles(const Lattice<kDimension>& lattice);
 

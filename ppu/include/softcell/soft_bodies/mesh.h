@@ -22,8 +22,8 @@ struct MeshPart {
   bool operator==(const MeshPart&) const = default;
 };
 
-/// An indexed triangle mesh in metres. `normals` has one unit vector per position. Each of the attributes
-/// behind the triangles is either empty or complete; softcell carries them along and does not interpret them.
+/// An indexed triangle mesh in metres. `normals` has one unit vector per position. Each attribute below
+/// `triangles` is either empty or complete; softcell carries attributes along and does not interpret them.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
@@ -32,7 +32,7 @@ struct TriangleMesh {
   std::vector<Eigen::Vector2f> texture_coordinates = {};  ///< one per position; v grows upwards
   /// One per position: red, green, blue, alpha, 0..1, sRGB-encoded. Multiplied with the material's base colour.
   std::vector<Eigen::Vector4f> colours = {};
-  std::vector<MeshPart> parts = {};          ///< ascending; together they are all triangles
+  std::vector<MeshPart> parts = {};          ///< ascending; together they have all triangles
   std::vector<MeshMaterial> materials = {};  ///< of the parts
 
   bool operator==(const TriangleMesh&) const = default;
@@ -60,9 +60,9 @@ void turn_z_up(TriangleMesh& mesh);
 /// Multiplies all lengths. @pre the factor is positive and finite.
 void scale(TriangleMesh& mesh, float factor);
 
-/// @throws std::invalid_argument  the mesh's arrays do not fit each other: another number of normals or of an
-/// attribute than of positions, an index out of range, parts that leave triangles out or name a material
-/// that there is not; the sentence says which.
+/// Checks that the mesh's arrays fit each other.
+/// @throws std::invalid_argument  the number of normals or of an attribute is not that of positions, an index is out of
+/// range, or parts leave triangles out or name a material that does not exist; the sentence says which.
 void validate(const TriangleMesh& mesh);
 
 }  // namespace softcell::ppu

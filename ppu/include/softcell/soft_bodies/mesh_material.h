@@ -28,12 +28,12 @@ enum class TextureWrap : std::uint8_t {
 
 /// A picture on a mesh. Texture coordinates (0, 0) are the picture's lower left corner, (1, 1) the upper right one.
 struct MeshTexture {
-  std::string
-      file;  ///< the picture's file, as the model's file names it; empty: it is embedded, or there is none
+  /// The picture's file, as the model's file names it; empty: the picture is embedded, or there is none.
+  std::string file;
   std::shared_ptr<const MeshPicture> picture;  ///< null: there is none, or it was not read
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
 
-  /// By content: two readings of one file are equal.
+  /// Compares pictures by their content: two readings of one file are equal.
   bool operator==(const MeshTexture& other) const;
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 // The smooth shape with which a soft body in two dimensions is drawn: triangles and outlines whose vertices hang in
-// the lattice's cells and deform with them. Made once for each model, placed with the positions of the moment:
+// the lattice's cells and deform with them. Make a skin once for each model, and deform it in each frame:
 //
 //     const Skin2d skin = make_skin_2d(model->lattice(), SoftBodyModel<2>::kContactRadiusInCells);   // once
 //     ...
-//     place(skin, body.positions(), positions, slopes);                                             // each frame
+//     deform(skin, body.positions(), positions, slopes);                                             // each frame
 //     draw_triangles(positions, skin.triangles);
 
 #include <Eigen/Core>
@@ -18,21 +18,21 @@
 
 namespace softcell::ppu {
 
-/// A point that moves with a cell: the sum of the corners, each times its share. The shares sum to 1; those of a
-/// point outside of its cell extrapolate.
+/// A point that moves with a cell: the sum of the cell's corners, each times its share. The shares sum to 1. For a
+/// point outside of its cell some shares are negative, and the point is extrapolated.
 struct CellPoint2d {
   std::array<std::uint32_t, 4> corner{};  ///< particle numbers, in the order of Lattice<2>::corners
   std::array<float, 4> share{};
 
-  /// Where the point is. @param particles  positions of all particles of the body, metres
+  /// The point's position, metres. @param particles  positions of all particles of the body, metres
   Eigen::Vector2f at(std::span<const Eigen::Vector2f> particles) const {
     return share[0] * particles[corner[0]] + share[1] * particles[corner[1]] +
            share[2] * particles[corner[2]] + share[3] * particles[corner[3]];
   }
 };
 
-/// What one particle does to a vertex: its share of the vertex's position, and of how the position changes along the
-/// cells' edges, a cell long.
+/// The weights of one particle at a vertex: its share of the vertex's position, and its shares of the derivatives of
+/// that position along the grid's x and y, for one cell's edge.
 struct Pull2d {
   std::uint32_t particle = 0;
   float share = 0, along_x = 0, along_y = 0;
@@ -45,8 +45,8 @@ struct Skin2d {
   /// What moves vertex i: pulls first_pull[i] to first_pull[i + 1].
   std::vector<Pull2d> pulls;
   std::vector<std::uint32_t> first_pull{0};
-  /// Of each vertex at rest: where the edge is, and how near. As a surface that is level in the middle and falls off
-  /// to the edge has its slope: (0, 0) farther than a cell and a half from the edge, some 0.65 long on it, outwards.
+  /// Of each vertex at rest: the slope of a surface that is level in the middle of the body and falls off to its edge.
+  /// It points outwards, is some 0.65 long at the edge, and (0, 0) farther than a cell and a half from the edge.
   std::vector<Eigen::Vector2f> slopes;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise at rest
   std::vector<std::uint32_t> cells;                     ///< of each triangle: the number of the nearest cell
@@ -55,11 +55,11 @@ struct Skin2d {
   float spacing = 0;  ///< edge of a cell, metres
 };
 
-/// Most of make_skin_2d()'s margin; also how far outside of its cells a lattice's points may be.
+/// The largest margin of make_skin_2d(), in cells; also how far outside of its cells a point of a lattice may be.
 inline constexpr float kMaxSkinMargin = 0.5f;
 
-/// A shape that a lattice's cells stand for: how far outside of it a point, in grid coordinates, is, in cells; negative
-/// inside.
+/// The shape that a lattice's cells stand for, as a function of a point in grid coordinates: how many cells the point is
+/// outside of the shape; negative inside.
 using Outside2d = std::function<float(const Eigen::Vector2f&)>;
 
 /// The lattice's cells, wider by `margin` all around, with round corners and without stairs. With a margin of the
@@ -71,36 +71,37 @@ using Outside2d = std::function<float(const Eigen::Vector2f&)>;
 /// @pre  the lattice has cells
 Skin2d make_skin_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside = {});
 
-/// The same shape in parts, for cells of several colours: what is nearest to a part's cells is of that part. The parts
+/// The same shape in parts, for cells of several colours. Each point belongs to the part whose cells are nearest. The parts
 /// cover the shape, and the lines between them are smooth. Deterministic.
-/// @param parts   of each cell the number of its part  @return  one skin for each number up to the largest
+/// @param parts  for each cell, the number of its part  @return  one skin for each number up to the largest
 /// @pre  the lattice has cells, and a part for each
 std::vector<Skin2d> make_skin_parts_2d(const Lattice<2>& lattice, float margin, const Outside2d& outside,
                                        std::span<const std::uint32_t> parts);
 
-/// All cells of the lattice and those around it that `drawn` asks for, as triangles: for a picture that is
-/// transparent outside of the body. It has no slopes and no outlines. Deterministic.
-/// @param drawn  asked of cells beside the lattice's, by the grid index of their low corner
+/// Triangles for a picture that is transparent outside of the body: all cells of the lattice, and the cells around it for
+/// which `drawn` returns true. It has no slopes and no outlines. Deterministic.
+/// @param drawn  called with the grid index of the low corner of a cell that is not the lattice's
 /// @pre  the lattice has cells
 Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const Eigen::Vector2i&)>& drawn);
 
-/// What of a body's shape belongs to the cells of a piece of it (fracture.h), cut along the cells' edges: the skins of all pieces together are that of the
-/// whole. It opens along cracks that do not go all the way through, too. Cuts are edges of the shape, without slopes; outlines go
-/// around all of it, if the whole has any. Deterministic.
-/// @param whole  of make_skin_2d() or make_cover_2d(), of the lattice that was never broken   @param piece  SoftBodyModel::lattice() of the piece
-/// @pre  the piece is of that lattice
+/// The skin of a piece of a broken body (fracture.h): the part of the whole skin in the piece's cells, cut along the cells' edges. The skins
+/// of all pieces together are the whole skin. It also opens along cracks that do not go all the way through. At cuts there are no slopes. If
+/// the whole skin has outlines, outlines go around the piece, cuts included. Deterministic.
+/// @param whole    made by make_skin_2d() or make_cover_2d() for `lattice`
+/// @param lattice  of the body before it first broke   @param piece  SoftBodyModel::lattice() of the piece
+/// @pre  the piece is a part of that lattice
 Skin2d skin_of_piece(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece);
 
-/// The point of the nearest cell.
+/// Binds a point to the nearest cell, so that it moves with the cell.
 /// @param at  grid coordinates: a particle of the lattice is at its grid index
 /// @pre  the lattice has cells
 CellPoint2d point_in_cells(const Lattice<2>& lattice, const Eigen::Vector2f& at);
 
-/// Where the vertices are, and the slopes there, turned and stretched with the cells.
+/// Computes the positions of the vertices (metres) and the slopes there, turned and stretched with the cells. Any thread.
 /// @param particles  positions of the lattice's particles, metres
-/// @param positions,slopes  one for each vertex
-/// @pre  the sizes fit
-void place(const Skin2d& skin, std::span<const Eigen::Vector2f> particles,
-           std::span<Eigen::Vector2f> positions, std::span<Eigen::Vector2f> slopes);
+/// @param positions,slopes  receive one value for each vertex
+/// @pre  both have as many elements as skin.rest; `particles` has one for each particle of the lattice
+void deform(const Skin2d& skin, std::span<const Eigen::Vector2f> particles,
+            std::span<Eigen::Vector2f> positions, std::span<Eigen::Vector2f> slopes);
 
 }  // namespace softcell::ppu

@@ -6,7 +6,7 @@
 //     ...
 //     skin.update(body);                                 // after each step
 //     upload(skin.positions(), skin.normals());          // one of each for every vertex of skin.mesh()
-//     draw(skin.mesh().triangles);                       // its texture coordinates, colours and parts beside
+//     draw(skin.mesh().triangles);                       // skin.mesh() also has texture coordinates, colours, parts
 //
 // The calling thread does the work, also for a body that SPEs step. SpeSkinner (spe_bodies/spe_skinner.h) has
 // the SPEs do it, one frame late.
@@ -33,8 +33,8 @@ namespace softcell::ppu {
 /// Any thread, while nobody changes the body.
 void skin(const SoftBody<3>& body, std::span<Eigen::Vector3f> positions, std::span<Eigen::Vector3f> normals);
 
-/// The mesh of body.model() in the body's rest shape, with all its attributes: what a plastic body would be without loads. A model that
-/// is made of it begins dented. @pre the model has a mesh
+/// The mesh of body.model() in the body's rest shape, with all its attributes: the shape of a plastic body without loads. Bodies of a model
+/// made from this mesh begin with the dents. @pre the model has a mesh
 TriangleMesh rest_mesh(const SoftBody<3>& body);
 
 /// A deformed mesh with memory of its own. Used by one thread at a time.

@@ -36,8 +36,10 @@ struct Turning<3> {
 };
 
 /// Positions and velocities of one body's particles. One thread at a time uses it. It allocates nothing after
-/// construction, except when it yields (soft_body_settings.h, Plasticity). Copy a SoftBody to save its state, and assign the copy to restore it: that is a change by its
-/// user, as those below.
+/// construction, except when it yields (soft_body_settings.h, Plasticity).
+///
+/// To save a body's state, copy the SoftBody; to restore the state, assign the copy. An assignment counts as a change by the user, like the
+/// functions below.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SoftBody {
@@ -49,31 +51,31 @@ class SoftBody {
   /// At rest, undeformed, the model's own origin at `position` (metres).
   explicit SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> model,
                     const Vector& position = Vector::Zero());
-  /// A copy with all of the other's state, rotations of its regions included.
+  /// Copies the whole state of the other, with the rotations of its regions.
   SoftBody(const SoftBody& other);
-  /// Becomes what the other is: counts up revision() and resets().
+  /// Copies the whole state of the other, which may have another model. Increments revision() and resets().
   SoftBody& operator=(const SoftBody& other);
-  /// The other may only be destroyed then.
+  /// Moves the state out of the other, which can only be destroyed afterwards.
   SoftBody(SoftBody&& other) noexcept;
-  /// As an assignment of a copy, but the other gets what this was.
+  /// Exchanges the states of both bodies. Increments revision() and resets() as a copying assignment does.
   SoftBody& operator=(SoftBody&& other) noexcept;
   ~SoftBody();
 
-  /// What the body shares with all others of its make. Another one after an assignment from a body of another.
+  /// What the body shares with all bodies of its kind. Assigning a body of another model changes it.
   const SoftBodyModel<kDimension>& model() const { return *model_; }
-  /// The same, for an owner that outlives the body.
+  /// The same, for code that needs the model longer than the body lives.
   const std::shared_ptr<const SoftBodyModel<kDimension>>& shared_model() const { return model_; }
 
-  /// What this body is made of: as its model until set_material().
+  /// Detail, material and contacts of this body: its model's settings, until set_material() changes them.
   const SoftBodySettings& settings() const { return settings_; }
 
   std::span<const Vector> positions() const { return x_; }                     ///< metres, of each particle
   const Vector& position(std::size_t particle) const { return x_[particle]; }  ///< metres
   std::span<const Vector> velocities() const { return v_; }                    ///< m/s, of each particle
-  /// The positions as x y z 0, 16 bytes each, to be copied to SPEs or to a graphics card.
+  /// The positions as x y z 0 in metres, 16 bytes each, ready to be copied to SPEs or to a graphics card.
   std::span<const Eigen::Vector4f> padded_positions() const requires(kDimension == 3) { return padded_; }
 
-  // For an engine's coupling: what it calls in a time step of `step` seconds, in this order.
+  // For an engine's coupling, which calls these in this order in each time step of `step` seconds.
 
   /// Shape matching and damping: changes velocities, conserves momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
@@ -93,53 +95,54 @@ class SoftBody {
     if constexpr (kDimension == 3) padded_[particle] = {position.x(), position.y(), position.z(), 0};
   }
 
-  /// The plastic flow of a time step, behind its shape matching: changes the rest shape of a plastic body. It looks at the body
-  /// in every kPlasticSteps-th step only. If the body may yield, another thread flows, and the call of kFlowSteps steps later takes
-  /// the result, or waits for it. Allocates then.
+  /// Lets a plastic body flow: changes its rest shape. Call it in each time step after pull(). Every kPlasticSteps-th call looks at the
+  /// strains. If the body may yield, another thread computes the flow, and the call kFlowSteps steps later applies the result, for which it
+  /// may have to wait. Only such steps allocate memory.
   void flow(float step);
   static constexpr int kPlasticSteps = 4, kFlowSteps = 1;
 
-  /// Becomes what it was of another body: state, material, rest shape, rotations of regions.
-  /// @param whole  another body   @param particle_of  of each particle of this: which one of the whole it was
+  /// Sets this body, a piece, to the state that its particles had in the whole body: positions, velocities, material, rest shape,
+  /// rotations of regions.
+  /// @param whole  the body that broke   @param particle_of  for each particle of this body, its number in the whole
   /// @pre this body's model is a piece of the whole's
-  void take_part(const SoftBody& whole, std::span<const std::uint32_t> particle_of);
+  void inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of);
 
-  /// Sets a velocity that a solver has computed.
+  /// Sets a particle's velocity (m/s), which a solver has computed.
   void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
 
-  /// No solver steps a body that sleeps. Couplings put bodies to sleep and wake them.
+  /// Whether the body sleeps. Solvers do not step it then. Couplings put bodies to sleep and wake them.
   bool asleep() const { return asleep_; }
   void set_asleep(bool asleep) { asleep_ = asleep; }  ///< for couplings
 
-  // For the user, between time steps. Each of these functions increments revision(), by which a coupling
-  // notices the change. Those after which the rotations of the last step are useless increment resets(), too.
+  // For the user, between time steps. Each of these functions increments revision(), which tells a coupling of the
+  // change. Functions that make the rotations of the last step useless also increment resets().
 
   /// Changes stiffness, damping, friction and restitution; the next time step has them.
   /// @throws std::runtime_error  as validate(); nothing has changed then
   /// @pre cell_size, half_width, density and contacts are the model's
   void set_material(const SoftBodySettings& settings);
   void translate(const Vector& by);  ///< metres; finite
-  /// Back to the model's shape at rest, the model's own origin at `position`.
+  /// Puts the body back into the model's shape, at rest, with the model's own origin at `position` (metres).
   void reset(const Vector& position);
-  /// Teleports: turns the body about its centre of mass, then moves it. Velocities turn with the body.
+  /// Teleports the body: turns it about its centre of mass, then moves it by `translation` (metres). Velocities turn with the body.
   void move_without_force(const Rotation& rotation, const Vector& translation);
-  /// Back to the model's shape, centre, mean orientation and both momenta kept: a plastic body is straightened.
+  /// Puts the body back into the model's shape, a plastic body too. Keeps its centre, mean orientation and both momenta.
   void reset_deformation();
-  /// Another rest shape, as of a saved body: positions in metres, in any frame, of each particle.
+  /// Gives the body another rest shape, for example that of a saved body: the position of each particle in metres, in any frame.
   /// @throws std::runtime_error  a position is not finite, or the model has too many particles for plastic bodies
   void set_rest_positions(std::span<const Vector> rest);
   void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s
   /// Adds a turn about the centre of mass, in rad/s, to every particle's velocity.
   void add_angular_velocity(const AxialVector& dw);
-  /// Whether the body has a rest shape of its own: whether it has yielded.
+  /// Whether the body has a rest shape of its own, because it has yielded or set_rest_positions() gave it one.
   bool has_own_rest() const;
   /// The rest shape: metres, of each particle; its centre of mass is that of the model at rest.
   std::vector<Vector> rest_positions() const;
-  /// The same of a body that has yielded; empty: it has the rest shape of its model. Good until the rest shape changes.
+  /// The body's own rest shape without a copy; empty if the body has its model's rest shape. Valid until the rest shape changes.
   std::span<const Vector> own_rest() const;
   std::uint32_t rest_revision() const { return rest_revision_; }  ///< how often the rest shape has changed
-  /// For solvers: the constants of the rest shape, the model's or the body's own.
+  /// For solvers: the constants of the body's rest shape, its model's or its own.
   std::shared_ptr<const MatchingPlan<float, kDimension>> plan() const;
   std::uint32_t revision() const { return revision_; }  ///< how often its user has changed the body
   std::uint32_t resets() const { return resets_; }  ///< how often it was teleported or put back into shape
@@ -147,10 +150,10 @@ class SoftBody {
   Vector centre_of_mass() const;         ///< metres
   Vector linear_momentum() const;        ///< kg m/s
   AxialVector angular_momentum() const;  ///< kg m^2/s, about the centre of mass
-  /// m/s: the root of twice the kinetic energy by the mass, the mean speed of the particles by their masses.
+  /// m/s: sqrt(2 E / m) with the kinetic energy E and the mass m, the root mean square of the particles' speeds weighted by mass.
   float mean_speed() const;
-  Bounds<kDimension> bounds() const;  ///< of the particles' centres, metres
-  /// The longest distance of a particle from where the best rigid motion of the rest shape would have it, in metres.
+  Bounds<kDimension> bounds() const;  ///< the box around the particles' centres, metres
+  /// Metres: the largest distance between a particle and its place in the rest shape, after the best rigid motion of that shape.
   float deformation() const;
 
  private:

@@ -23,7 +23,7 @@ class MatchingPlan;
 template <int kDimension>
 class RestLattice;
 
-/// What bodies of one kind share. Immutable; any thread may read it.
+/// What bodies of one kind share. No public function changes it, so any thread may read it.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SoftBodyModel {
@@ -34,11 +34,12 @@ class SoftBodyModel {
   std::span<const float> masses() const { return masses_; }        ///< kg, of each particle
   float mass() const { return mass_; }                             ///< kg, of the body
 
-  /// Particle numbers, ascending. Outer particles collide; a body without contacts has none. In two
-  /// dimensions they are those that are not surrounded by four cells, and of a piece the next ones behind its cuts. In three they are all corners of the
-  /// cells at the lattice's boundary, which makes them two deep: one layer would keep things out, but a body
-  /// that is pressed flat on a floor would push its second layer, which carries the mesh too, through the
-  /// first and the floor.
+  /// Numbers of the outer particles, ascending. Outer particles collide; a body without contacts has none.
+  ///
+  /// In two dimensions a particle is outer if fewer than four cells surround it; in a piece, so are the next particles behind its cuts. In
+  /// three dimensions all corners of the cells at the lattice's boundary are outer, so outer particles lie two deep. One layer would keep
+  /// things out, but a body that is pressed flat on a floor would push its second layer, which also carries the mesh, through the first
+  /// layer and the floor.
   std::span<const std::uint32_t> outer() const { return outer_; }
   std::span<const std::uint32_t> inner() const { return inner_; }  ///< all others, ascending
 
@@ -54,7 +55,7 @@ class SoftBodyModel {
   /// touch each other: nothing gets between the particles of a body, and things meet it half a cell before
   /// they meet what is drawn. Smaller ones let small things in.
   float contact_radius() const { return contact_radius_in_cells_ * lattice_.spacing; }
-  /// The same of one particle. In two dimensions those at a cut of a piece have half of it, as no material reaches beyond a cut.
+  /// Contact radius of one particle, metres. In two dimensions particles at a cut have half of it, because no material reaches beyond a cut.
   float contact_radius(std::size_t particle) const {
     return is_at_cut(particle) ? contact_radius() / 2 : contact_radius();
   }
@@ -62,9 +63,9 @@ class SoftBodyModel {
   bool is_at_cut(std::size_t particle) const { return !at_cut_.empty() && at_cut_[particle]; }
   static constexpr float kContactRadiusInCells = kDimension == 2 ? 0.5f : 0.15f;
 
-  /// The same towards particles of other soft bodies. A particle has to meet a lattice of equal cells
-  /// wherever it comes, also in the middle of a face: 2 r > s / sqrt(2), and with something to spare, because
-  /// a face gives: at 0.40 cells 5 of 30 pairs of balls came to rest inside each other, at 0.45 none.
+  /// Radius in metres of that sphere towards particles of other soft bodies. A particle must meet a lattice of equal cells wherever it
+  /// arrives, also in the middle of a face: 2 r > s / sqrt(2). Some reserve is needed, because a face gives way: at 0.40 cells 5 of 30
+  /// pairs of balls came to rest inside each other, at 0.45 none.
   float soft_contact_radius() const requires(kDimension == 3) {
     return kSoftContactRadiusInCells * lattice_.spacing;
   }
@@ -81,16 +82,16 @@ class SoftBodyModel {
   const Embedding& embedding() const requires(kDimension == 3) { return *embedding_; }
   /// Constants of its particles and regions.
   const std::shared_ptr<const MatchingPlan<float, kDimension>>& plan() const { return plan_; }
-  /// For its plastic bodies. Made when it is asked for the first time, which takes 6 ms for 1,000 particles; of a model whose
-  /// settings have a plasticity at once.
-  /// @throws std::runtime_error  it has too many particles for plastic bodies; the sentence says how many may be.
+  /// What plastic bodies of this model flow with. The first call makes it, which takes 6 ms for 1,000 particles; a model whose settings have
+  /// a plasticity has it from the beginning.
+  /// @throws std::runtime_error  the model has too many particles for plastic bodies; the sentence says how many it may have.
   const std::shared_ptr<const RestLattice<kDimension>>& rest_lattice() const;
-  /// Where its bodies can break, and where they are broken. Made when it is asked for the first time, which takes some milliseconds; of a
-  /// model whose settings have a fracture at once.
+  /// Where its bodies can break, and where they are broken. The first call makes it, which takes some milliseconds; a model whose settings
+  /// have a fracture has it from the beginning.
   const Cracks<kDimension>& cracks() const;
-  /// Whether it is of a body that was broken (fracture.h).
+  /// Whether this is the model of a piece of a broken body (fracture.h).
   bool is_piece() const { return whole_ != nullptr; }
-  /// Of a piece: the model of the body that was never broken. Else null.
+  /// The model of the body before it first broke; null if this is no model of a piece.
   const std::shared_ptr<const SoftBodyModel>& whole() const { return whole_; }
 
  private:

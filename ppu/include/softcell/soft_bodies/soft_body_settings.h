@@ -5,25 +5,24 @@
 
 namespace softcell::ppu {
 
-/// What a body keeps of deformations. Its rest shape flows towards the shape that it has, where the strain is above the
-/// yield: the elongation of a bar that is pulled, half the thickness times the curvature of one that is bent. The volume at
-/// rest stays.
+/// What a body keeps of deformations. Where the strain is above the yield, the rest shape flows towards the present shape. The strain of
+/// a bar that is pulled is its elongation; that of a bent bar is half its thickness times its curvature. The volume at rest stays.
 struct Plasticity {
   float yield = 0.1f;  ///< above 0, at most 1: the strain below which a deformation is elastic and goes back
   float creep = 10;    ///< 1/s, above 0: what is above the yield falls to 1/e in 1 / creep seconds
-  float limit =
-      1;  ///< above 0: at rest no edge of a cell gets longer than 1 + limit cells, or shorter than 1 / (1 + limit)
+  /// Above 0: at rest no edge of a cell gets longer than 1 + limit cells, or shorter than 1 / (1 + limit) cells.
+  float limit = 1;
 
   bool operator==(const Plasticity&) const = default;
 };
 
-/// When a body breaks, along the faces between its cells (fracture.h). A face breaks by whichever measure passes its limit first; one
-/// without a value never does. A model may be weaker or stronger in some of its cells: the limits are for a strength of 1.
+/// When a body breaks, along the faces between its cells (fracture.h). A face breaks as soon as one of the two measures passes its limit.
+/// A measure without a limit breaks nothing. The limits are for a strength of 1; a model can be weaker or stronger in some of its cells.
 struct Fracture {
-  std::optional<float> stretch =
-      {};  ///< above 0: by what share of a cell the middles of two cells move apart
-  std::optional<float> turn =
-      {};  ///< radians, above 0, up to pi: by how much neighbouring cells turn against each other
+  /// Above 0: how far the middles of two neighbouring cells may move apart, as a share of a cell's edge.
+  std::optional<float> stretch = {};
+  /// Radians, above 0, up to pi: how far two neighbouring cells may turn against each other.
+  std::optional<float> turn = {};
 
   bool operator==(const Fracture&) const = default;
 };
@@ -38,11 +37,12 @@ struct SoftBodySettings {
   float density = 200;    ///< kg/m^3; kg/m^2 in two dimensions
   float alpha = 0.5f;     ///< 0..1: the share of the way to its goal that a particle makes up for in one step
   float damping = 0.05f;  ///< 0..1: the share of the deviation from rigid motion taken away in one step
-  float friction = 0.6f;  ///< coefficient of the particles; Bullet multiplies it with the other body's
-  float restitution =
-      0;                 ///< 0..1: share of its speed with which the body as a whole leaves what it hits; the
-                         ///< engine combines it with the other body's: Bullet by product, Box2D by maximum
-  bool contacts = true;  ///< false: nothing touches the body, whose particles then are all inner ones
+  /// Coefficient of friction, 0 and up. In Bullet it is multiplied by that of the other body; Box2D takes the geometric mean of both.
+  float friction = 0.6f;
+  /// 0..1: the share of its speed with which the body as a whole leaves what it hits. In Bullet it is multiplied by that of the other
+  /// body; Box2D takes the larger one.
+  float restitution = 0;
+  bool contacts = true;  ///< false: nothing touches the body, and all its particles are inner ones
   std::optional<float> frequency = {};  ///< Hz, in place of alpha: at which a particle swings about its goal
   std::optional<float> damping_time = {};     ///< s, in place of damping: deviations fall to 1/e in this time
   std::optional<Plasticity> plasticity = {};  ///< none: the body is elastic. Up to 4,096 particles

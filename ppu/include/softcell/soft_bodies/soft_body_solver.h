@@ -32,19 +32,22 @@ class SoftBodySolver {
   /// otherwise within the tolerance of the iteration.
   virtual void drop() = 0;
 
-  /// Discards what the solver knows of the body from earlier steps. Call it when a body was teleported, and
+  /// Discards what the solver knows of the body from earlier steps. Call it after the body was teleported and
   /// before it is destroyed. @pre no step is under way.
   virtual void forget(const SoftBody<kDimension>& body) = 0;
 
-  /// Makes what takes long to make for bodies of a model, when there will be some soon. Any thread may call it at any time, and it changes
-  /// no result.
+  /// Prepares for bodies of a model that will be stepped soon: makes now what takes long to make. Any thread may call it at any time. It
+  /// changes no result.
   virtual void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& /*model*/) {}
 
-  /// What the solver knows of a body, the first one, goes on with a piece of it, the second one. Call it after the last step that the body
-  /// was whole in, for each piece. The piece's model was prepared; the body that is stepped next may be another one of that model. The
-  /// last argument says of each particle of the piece which one of the whole it was. @pre no step is under way
-  virtual void take_part(const SoftBody<kDimension>& /*whole*/, const SoftBody<kDimension>& /*piece*/,
-                         std::span<const std::uint32_t> /*particle_of*/) {}
+  /// Hands what the solver knows of a body on to a piece of it. Call it for each piece, after the last step of the whole body. The piece's
+  /// model was prepared. The body that is stepped next may be another object of the same model.
+  /// @param whole  the body that broke   @param piece  one of its pieces
+  /// @param particle_of  for each particle of the piece, its number in the whole
+  /// @pre no step is under way
+  virtual void inherit_state([[maybe_unused]] const SoftBody<kDimension>& whole,
+                             [[maybe_unused]] const SoftBody<kDimension>& piece,
+                             [[maybe_unused]] std::span<const std::uint32_t> particle_of) {}
 };
 
 /// The reference: steps the bodies one after the other by SoftBody::pull() and flow(), in finish().

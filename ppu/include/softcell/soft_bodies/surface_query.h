@@ -1,7 +1,7 @@
 #pragma once
 // Rays, moved spheres and distances against the drawn surface of a soft body as it is now.
 //
-//     const SurfaceQuery surface(body);                       // after a step; as good as until the next
+//     const SurfaceQuery surface(body);                       // after a step; valid until the next one
 //     if (auto hit = surface.cast_ray(eye, eye + 100 * look)) mark(hit->position, hit->normal);
 //
 // All bodies of a world at once: BulletSoftBodies::cast_ray().
@@ -25,27 +25,27 @@ struct SurfaceHit {
   std::uint32_t triangle = 0;         ///< of the model's mesh
 };
 
-/// The triangles of a deformed body, in a tree of boxes. A body whose model has no mesh has the boundary of its lattice as its surface.
-/// Keeps nothing of the body. Immutable; any thread.
+/// The triangles of a deformed body, in a tree of boxes. If the body's model has no mesh, the surface is the boundary of its lattice.
+/// A query copies what it needs: it does not change with the body, and may outlive it. Immutable; any thread.
 class SurfaceQuery {
  public:
-  /// Some microseconds for a thousand triangles.
+  /// Takes some microseconds for a thousand triangles.
   /// @throws std::runtime_error  a particle is not finite.
   explicit SurfaceQuery(const SoftBody<3>& body);
 
-  /// The first point of the way from `from` to `to` on the surface, from either side of it. The normal points out of the body, not towards
-  /// the ray. @pre both are finite
+  /// The first point at which the line from `from` to `to` (metres) meets the surface, from inside or outside. The normal points out of the
+  /// body, not towards the ray. @pre both are finite
   std::optional<SurfaceHit> cast_ray(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
-  /// Where a sphere that moves from `from` to `to` first touches the surface, from outside; with share 0 if it does so at `from`. The normal
-  /// points from the surface to its centre. @param radius  metres, above 0
+  /// Where a sphere that moves from `from` to `to` (metres) first touches the surface from outside. If the sphere touches at `from`, the
+  /// share is 0. The normal points from the surface to the sphere's centre. @param radius  metres, above 0
   std::optional<SurfaceHit> cast_sphere(const Eigen::Vector3f& from, const Eigen::Vector3f& to,
                                         float radius) const;
 
-  /// Metres to the surface, below 0 inside of it.
+  /// Metres from a point to the surface; below 0 inside the body.
   float distance(const Eigen::Vector3f& point) const;
 
-  /// Around the surface, metres.
+  /// The box around the surface, metres.
   const Bounds<3>& bounds() const { return nodes_.front().box; }
 
  private:

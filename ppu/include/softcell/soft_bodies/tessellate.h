@@ -1,5 +1,5 @@
 #pragma once
-// Finer triangles for a coarse mesh: a soft body is drawn and touches with its triangles, and these bend at their vertices only.
+// Divides the triangles of a coarse mesh. A soft body is drawn, and touches, with its triangles; a surface bends only at their vertices.
 //
 //     const auto model = make_soft_body_model(tessellate(mesh, settings.cell_size), settings);
 
@@ -7,12 +7,12 @@
 
 namespace softcell::ppu {
 
-/// The same shape with edges of at most a length: longer ones are halved until none is. About the edge of a cell follows a lattice; more
-/// costs more vertices and shows nothing.
+/// Returns the same shape with no edge longer than `longest_edge`: longer edges are halved until none is left. Edges as long as a cell
+/// follow the lattice; shorter ones cost vertices and show nothing more.
 ///
-/// The mesh's own vertices stay as they are and keep their numbers; those in the middle of edges come behind them, with the mean of both
-/// ends' attributes. Triangles stay in their parts. An edge is halved by where its ends are, alike in all triangles that have it: a closed
-/// mesh stays closed, also along seams where vertices are there twice. Deterministic.
+/// The mesh's own vertices do not change and keep their numbers. New vertices in the middle of edges follow them and have the mean of both
+/// ends' attributes. Triangles stay in their parts. Whether an edge is halved depends only on the positions of its ends, so all triangles
+/// at an edge are divided alike: a closed mesh stays closed, also along seams with double vertices. Deterministic. Any thread.
 /// @param longest_edge  metres, above 0
 /// @throws std::invalid_argument  the length is not above 0 and finite; more than kMaxTessellatedTriangles would be needed; as validate()
 TriangleMesh tessellate(const TriangleMesh& mesh, float longest_edge);

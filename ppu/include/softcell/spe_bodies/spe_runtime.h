@@ -6,7 +6,7 @@
 //     Box2dSoftBodies bodies_2d(world_2d, spes);
 //     SpeSkinner skinner(spes);                       // vertex buffers: spe_skinner.h
 //
-// Kernels of one's own run beside softcell's: jobs().place(image), then a JobChain (jobs/job_system.h).
+// Kernels of one's own run beside softcell's: jobs().load(image), then a JobChain (jobs/job_system.h).
 
 #include <chrono>
 #include <memory>
@@ -40,8 +40,8 @@ struct SpeRuntimeOptions {
   std::uint64_t main_memory_bytes = dma::kMainMemoryBytes;
 };
 
-/// Outlives all that uses it: solvers, skinners, chains, worlds' soft bodies. Construct it first. The SPEs are
-/// host threads that sleep while there is nothing to do. Used by one thread at a time, except where stated.
+/// Must outlive all that uses it: solvers, skinners, chains, the soft bodies of worlds. So construct it first. The SPEs
+/// are host threads that sleep while there is nothing to do. Used by one thread at a time, except where stated.
 class SpeRuntime final : public SolverFactory {
  public:
   /// @throws std::invalid_argument  another number of SPEs than 1..6, or another size of main memory than
@@ -56,10 +56,12 @@ class SpeRuntime final : public SolverFactory {
 
   /// A solver for the soft bodies of one Bullet world: BulletSoftBodies calls it. A job system has room for
   /// 15 chains; a solver takes one of them, a skinner two.
+  /// @throws std::runtime_error  main memory is full, or there are 15 chains already.
   std::unique_ptr<SoftBodySolver<3>> make_solver() override;
-  /// For contacts of what is drawn, of the soft bodies of one Bullet world; takes two chains.
+  /// What finds and solves contacts of drawn surfaces in one Bullet world: BulletSoftBodies calls it. It takes two
+  /// chains. @throws std::runtime_error  main memory is full, or there are 15 chains already.
   std::shared_ptr<ContactWorker> make_contact_worker() override;
-  /// A solver for the soft bodies of one Box2D world.
+  /// A solver for the soft bodies of one Box2D world: Box2dSoftBodies calls it. @throws as make_solver()
   std::unique_ptr<SoftBodySolver<2>> make_solver_2d() override;
 
   dma::AddressSpace& memory();  ///< main memory, from which buffers are made
@@ -70,7 +72,7 @@ class SpeRuntime final : public SolverFactory {
   /// @throws std::runtime_error  there is none of that name.
   const ls_sim::KernelImage& kernel(std::string_view name);
 
-  /// What checked kernels have done wrong so far; empty for others. Any thread.
+  /// The findings of checked kernels so far; empty for other kernels. Any thread.
   const ls_sim::Findings& findings() const;
 
   /// What each SPE has done so far: jobs, transfers, time. Any thread.

@@ -35,16 +35,16 @@ struct MatchKernels<3> {
   const ls_sim::KernelImage& match_tiles;
 };
 
-/// The result is the same bits for any number of SPEs. The rotations of regions live in main memory, not in
-/// the bodies: a body restored from a copy starts without any.
+/// Steps soft bodies on SPEs. The result has the same bits for any number of SPEs. The rotations of regions live in
+/// main memory, not in the bodies: a body that is restored from a copy begins without rotations.
 ///
 /// The rest shapes of plastic bodies flow on the PPU, in finish(). A body with a plasticity has a plan of its own in main memory, which
-/// its SPE fetches for it alone.
+/// its SPE fetches for this body alone.
 ///
-/// A body that fits a local store is stepped whole by one SPE, with others of its model. A larger one is
-/// stepped in three dimensions in tiles, by all SPEs. What no SPE can step, the PPU steps while the SPEs step
-/// the others: in two dimensions bodies that do not fit a local store, in three those that do not even fit in
-/// tiles, a lattice some hundreds of particles high (z) with wide regions.
+/// One SPE steps a body that fits a local store, together with other bodies of its model. In three dimensions all SPEs
+/// together step a larger body, in tiles. The PPU steps what no SPE can step, while the SPEs step the other bodies: in
+/// two dimensions bodies that do not fit a local store; in three dimensions bodies that do not fit even in tiles, whose
+/// lattices are some hundreds of particles high (z) and have wide regions.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class SpeSolver final : public SoftBodySolver<kDimension> {
@@ -61,10 +61,11 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   void drop() override;
   void forget(const Body& body) override;
   void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) override;
-  void take_part(const Body& whole, const Body& piece, std::span<const std::uint32_t> particle_of) override;
+  void inherit_state(const Body& whole, const Body& piece,
+                     std::span<const std::uint32_t> particle_of) override;
 
-  /// How many bodies of the last kick(), awake or asleep, fit no local store in any way: the PPU steps them.
-  /// Checked kernels need part of the local store for their checks, so with them it may be more.
+  /// How many bodies of the last kick(), awake or asleep, the PPU steps, because no SPE can. Checked kernels need a part
+  /// of the local store for their checks, so with them the number may be larger.
   std::size_t bodies_on_ppu() const;
 
  private:

@@ -34,10 +34,10 @@ struct Material {
   Eigen::Vector3f base_colour{1, 1, 1};  ///< in linear light, each channel 0..1
   float alpha = 1;                       ///< 0..1
   std::optional<TextureId> base_texture = {};
-  bool vertex_colours =
-      false;               ///< the base colour is multiplied with those of Renderer::set_vertex_colours()
-  float metallic = 0;      ///< 0..1
-  float roughness = 0.6f;  ///< 0..1
+  /// The base colour is multiplied with those of Renderer::set_vertex_colours().
+  bool vertex_colours = false;
+  float metallic = 0;                                        ///< 0..1
+  float roughness = 0.6f;                                    ///< 0..1
   std::optional<TextureId> metallic_roughness_texture = {};  ///< linear: green is roughness, blue metallic
   std::optional<TextureId> normal_texture = {};  ///< linear: x along u, y along v, z along the normal
   float normal_scale = 1;                        ///< of x and y

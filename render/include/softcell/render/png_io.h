@@ -19,8 +19,8 @@ enum class PngEffort {
 
 /// A text in a PNG file, for programs that show what is known of a picture.
 struct PngText {
-  std::string
-      keyword;  ///< 1 to 79 letters, digits and single spaces; "Software", "Title" and others are the format's
+  /// 1 to 79 letters, digits and single spaces; "Software", "Title" and others are the format's.
+  std::string keyword;
   std::string text;  ///< UTF-8, one line
 };
 

@@ -41,15 +41,15 @@ struct RendererSettings {
   int shadow_map_size = 1536;  ///< texels a side
   int occlusion_pixels = 2;    ///< a side, for which ambient occlusion is computed together; 0: not at all
   bool soft_shadows = true;    ///< with wider edges; without a GPU a lit pixel takes twice the time
-  /// Where a mesh is small or far off, it is drawn with fewer triangles: those of vertices that are moved by this many pixels at
-  /// most, nearly all of it along the surface; in the shadow map by as many texels. 12 can hardly be seen. 0: all triangles.
+  /// Meshes that are small or far away are drawn with fewer triangles, whose vertices have moved by at most this many pixels, mostly along
+  /// the surface; in the shadow map by as many texels. 12 can hardly be seen. 0: all triangles are drawn.
   float coarse_pixels = 0;
 };
 
-/// One sun with soft-edged shadows, light from sky and ground that surfaces nearby keep off, tone mapping and sRGB
-/// encoding, four samples a pixel; with one sample, edges are smoothed in the finished picture. Draws into its own framebuffer and has no global state. Use it on the context's thread; the context
-/// must outlive it. After the first frames, render() and pixels() allocate no memory themselves (the GL
-/// library may).
+/// Draws with one sun that casts soft-edged shadows, light from sky and ground with ambient occlusion, tone mapping and
+/// sRGB encoding, with four samples a pixel. With one sample it smooths edges in the finished picture. It draws into its
+/// own framebuffer and has no global state. Use it on the context's thread; the context must outlive it. After the first
+/// frames, render() and pixels() allocate no memory themselves (the GL library may).
 class Renderer {
  public:
   /// @throws std::runtime_error  the context has no OpenGL 3.3, or refuses the sizes.
@@ -88,15 +88,15 @@ class Renderer {
   void update_corners(MeshId mesh, std::span<const std::byte> corners, const Eigen::Vector3f& origin);
 
   /// The texture coordinates of a mesh's vertices, in their order. They stay when the vertices are given anew.
-  /// @param coordinates  one for each vertex that the indices speak of, or more: (0, 0) is the picture's lower
-  /// left corner, (1, 1) the upper right one.
+  /// @param coordinates  at least one for each vertex that the indices name: (0, 0) is the picture's lower left corner,
+  /// (1, 1) the upper right one.
   /// @throws std::invalid_argument  too few, or no such mesh.
   void set_texture_coordinates(MeshId mesh, std::span<const Eigen::Vector2f> coordinates);
   /// The same of a mesh that does not change.
   void set_texture_coordinates(StaticMeshId mesh, std::span<const Eigen::Vector2f> coordinates);
 
   /// The colours of a mesh's vertices, in their order: red, green, blue in linear light, and alpha, each 0..1. They
-  /// stay likewise. @throws std::invalid_argument  too few, or no such mesh.
+  /// stay when the vertices are given anew. @throws std::invalid_argument  too few, or no such mesh.
   void set_vertex_colours(MeshId mesh, std::span<const Eigen::Vector4f> colours);
   /// The same of a mesh that does not change.
   void set_vertex_colours(StaticMeshId mesh, std::span<const Eigen::Vector4f> colours);
@@ -105,8 +105,8 @@ class Renderer {
   /// @throws std::invalid_argument  a picture without pixels, or larger than the context takes.
   TextureId add_texture(const Image& picture, const TextureSettings& settings = {});
 
-  /// The shape of a mesh whose vertices change: what RendererSettings::coarse_pixels needs to leave out triangles of it.
-  /// @param positions,normals  of the vertices in any one shape, metres; one of each for each vertex that the indices speak of, or more
+  /// Sets the rest shape of a mesh whose vertices change. RendererSettings::coarse_pixels needs it to leave out triangles.
+  /// @param positions,normals  of the vertices in any one shape, metres; at least one of each for each vertex that the indices name
   /// @throws std::invalid_argument  too few, or no such mesh.
   void set_rest_shape(MeshId mesh, std::span<const Eigen::Vector3f> positions,
                       std::span<const Eigen::Vector3f> normals);

@@ -1,4 +1,4 @@
-#include "ppu/contacts/triangle_boxes.h"
+#include "ppu/surfaces/triangle_boxes.h"
 
 namespace softcell::ppu {
 

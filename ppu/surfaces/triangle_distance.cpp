@@ -1,4 +1,4 @@
-#include "ppu/contacts/triangle_distance.h"
+#include "ppu/surfaces/triangle_distance.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "ppu/contacts/contact_surface.h"
+#include "ppu/surfaces/contact_surface.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,11 +9,11 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "ppu/contacts/point_chooser.h"
-#include "ppu/contacts/triangle_distance.h"
 #include "ppu/lattice/locate.h"
 #include "ppu/mesh/outer_surface.h"
 #include "ppu/mesh/solid.h"
+#include "ppu/surfaces/point_chooser.h"
+#include "ppu/surfaces/triangle_distance.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

@@ -1,4 +1,4 @@
-#include "ppu/contacts/cell_finder.h"
+#include "ppu/surfaces/cell_finder.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "ppu/contacts/contact_surface.h"
-#include "ppu/contacts/triangle_distance.h"
-#include "ppu/contacts/way_in_box.h"
+#include "ppu/surfaces/contact_surface.h"
+#include "ppu/surfaces/triangle_distance.h"
+#include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/skinned_mesh.h"
 

@@ -1,4 +1,4 @@
-#include "ppu/contacts/cell_boxes.h"
+#include "ppu/surfaces/cell_boxes.h"
 
 #include "softcell/base/assert.h"
 

@@ -32,8 +32,8 @@ struct SurfacePointAtRest {
 /// lag behind it, and those inside may be all that is left between the two sides of a crushed body.
 struct TouchingParticle {
   std::uint32_t particle = 0;
-  float allowance =
-      0;  ///< cells: how deep in others it may be, because it lies outside of the surface at rest
+  /// Cells: how deep in others it may be, because it lies outside of the surface at rest.
+  float allowance = 0;
 };
 
 /// A signed distance and the direction in which it grows fastest.

@@ -1,4 +1,4 @@
-#include "ppu/contacts/crack_sides.h"
+#include "ppu/surfaces/crack_sides.h"
 
 #include <algorithm>
 

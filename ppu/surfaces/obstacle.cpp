@@ -1,4 +1,4 @@
-#include "ppu/contacts/obstacle.h"
+#include "ppu/surfaces/obstacle.h"
 
 #include <algorithm>
 #include <cmath>

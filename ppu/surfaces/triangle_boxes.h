@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ppu/contacts/four_boxes.h"
+#include "ppu/surfaces/four_boxes.h"
 
 namespace softcell::ppu {
 

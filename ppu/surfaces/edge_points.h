@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ppu/contacts/way_in_box.h"
+#include "ppu/surfaces/way_in_box.h"
 
 namespace softcell::ppu {
 

@@ -1,4 +1,4 @@
-#include "ppu/contacts/flat_body.h"
+#include "ppu/surfaces/flat_layer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "ppu/contacts/crack_sides.h"
-#include "ppu/contacts/point_chooser.h"
+#include "ppu/surfaces/crack_sides.h"
+#include "ppu/surfaces/point_chooser.h"
 #include "ppu/fracture/cracks.h"
 #include "ppu/lattice/outline_distance.h"
 #include "softcell/base/assert.h"
@@ -21,33 +21,40 @@ using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 /// Builds the layer: the body's cells first, so that what lies in them and in a margin cell is in them.
-class FlatModel::Maker {
+class FlatLayer::Maker {
  public:
   Maker(const SoftBodyModel<2>& model, const Skin2d& skin)
       : model_(model), flat_(model.lattice()), skin_(skin), outline_(skin) {
-    layer_->spacing = flat_.spacing;
-    layer_->origin << flat_.origin, -0.5f * flat_.spacing;
+    lattice->spacing = flat_.spacing;
+    lattice->origin << flat_.origin, -0.5f * flat_.spacing;
     for (const Vector2i& particle : flat_.particles) add_column(particle);
     for (std::size_t c = 0; c < flat_.cells.size(); ++c) {
       add_cell(flat_.cells[c], flat_.corners[c]);
-      margins_.push_back({static_cast<std::uint32_t>(c), Vector3f::Zero()});
-      fields_.push_back(field_of(flat_.cells[c]));
+      margin_cells.push_back({static_cast<std::uint32_t>(c), Vector3f::Zero()});
+      fields.push_back(field_of(flat_.cells[c]));
     }
     add_margin_cells();
     place_points();
   }
 
-  ContactModel make() {
+  std::vector<float> masses() const {
     std::vector<float> masses;
     for (const float mass : model_.masses()) masses.insert(masses.end(), 2, mass / 2);
-    masses.resize(layer_->particles.size(), 0.0f);
-    std::vector<std::uint32_t> sides;
-    if (model_.is_piece()) sides = crack_sides(flat_, model_.cracks());
-    if (!sides.empty()) sides.resize(layer_->cells.size(), 0u);
-    return ContactModel(std::move(layer_), std::move(masses), ContactSurface(std::move(points_), std::move(fields_)),
-                        std::move(margins_), std::move(sides));
+    masses.resize(lattice->particles.size(), 0.0f);
+    return masses;
   }
 
+  std::vector<std::uint32_t> sides() const {
+    if (!model_.is_piece()) return {};
+    std::vector<std::uint32_t> sides = ppu::crack_sides(flat_, model_.cracks());
+    if (!sides.empty()) sides.resize(lattice->cells.size(), 0u);
+    return sides;
+  }
+
+  std::shared_ptr<Lattice<3>> lattice = std::make_shared<Lattice<3>>();
+  std::vector<SurfacePointAtRest> points;
+  std::vector<ContactSurface::CellField> fields;
+  std::vector<MarginCell> margin_cells;
   std::vector<Beyond> beyond;
   std::vector<std::uint32_t> first_beyond{0};
 
@@ -59,13 +66,13 @@ class FlatModel::Maker {
   };
 
   std::uint32_t add_column(const Vector2i& at) {
-    for (int z = 0; z < 2; ++z) layer_->particles.emplace_back(at.x(), at.y(), z);
-    return static_cast<std::uint32_t>(layer_->particles.size() / 2 - 1);
+    for (int z = 0; z < 2; ++z) lattice->particles.emplace_back(at.x(), at.y(), z);
+    return static_cast<std::uint32_t>(lattice->particles.size() / 2 - 1);
   }
 
   void add_cell(const Vector2i& at, const std::array<std::uint32_t, 4>& columns) {
-    layer_->cells.emplace_back(at.x(), at.y(), 0);
-    auto& corners = layer_->corners.emplace_back();
+    lattice->cells.emplace_back(at.x(), at.y(), 0);
+    auto& corners = lattice->corners.emplace_back();
     for (std::size_t k = 0; k < corners.size(); ++k)
       corners[k] = 2 * columns[k & 3u] + static_cast<std::uint32_t>(k >> 2);
   }
@@ -97,9 +104,9 @@ class FlatModel::Maker {
     for (const auto& [at, cell] : beside) {
       const ContactSurface::CellField field = field_of(at);
       if (!(*std::ranges::min_element(field) < kNothingThere)) continue;
-      margins_.push_back({cell, lifted(at - flat_.cells[cell])});
-      margin_at_.emplace(at, static_cast<std::uint32_t>(layer_->cells.size()));
-      fields_.push_back(field);
+      margin_cells.push_back({cell, lifted(at - flat_.cells[cell])});
+      margin_at_.emplace(at, static_cast<std::uint32_t>(lattice->cells.size()));
+      fields.push_back(field);
       std::array<std::uint32_t, 4> columns{};
       for (int k = 0; k < 4; ++k)
         columns[static_cast<std::size_t>(k)] = column_of(at + Vector2i(k & 1, k >> 1), cell);
@@ -156,7 +163,7 @@ class FlatModel::Maker {
         is_placed[particle] = true;
         add_point(flat_.particles[particle].cast<float>(), c);
       }
-    std::ranges::stable_sort(points_, {}, &SurfacePointAtRest::cell);
+    std::ranges::stable_sort(points, {}, &SurfacePointAtRest::cell);
   }
 
   /// Which cell of the layer a place of the surface is in. @param near  the body's cell that is nearest
@@ -172,9 +179,9 @@ class FlatModel::Maker {
   }
 
   void add_point(const Vector2f& at, std::uint32_t cell) {
-    SurfacePointAtRest& point = points_.emplace_back();
+    SurfacePointAtRest& point = points.emplace_back();
     point.cell = cell;
-    const Vector2f in = (at - layer_->cells[cell].head<2>().cast<float>()).cwiseMax(0.0f).cwiseMin(1.0f);
+    const Vector2f in = (at - lattice->cells[cell].head<2>().cast<float>()).cwiseMax(0.0f).cwiseMin(1.0f);
     point.xi = {in.x(), in.y(), 0.5f};
     const Vector2f rest = flat_.origin + flat_.spacing * at;
     point.rest = {rest.x(), rest.y(), 0};
@@ -192,24 +199,24 @@ class FlatModel::Maker {
   const Lattice<2>& flat_;
   const Skin2d& skin_;
   OutlineDistance outline_;
-  std::shared_ptr<Lattice<3>> layer_ = std::make_shared<Lattice<3>>();
-  std::vector<MarginCell> margins_;  // of each cell
-  std::vector<ContactSurface::CellField> fields_;
-  std::vector<SurfacePointAtRest> points_;
   std::map<Vector2i, std::uint32_t, GridOrder> margin_at_;
   std::map<Vector2i, std::size_t, GridOrder> beyond_at_;  // numbers of `columns_`
   std::vector<std::vector<Hanging>> columns_;
 };
 
-FlatModel::FlatModel(const SoftBodyModel<2>& model, const Skin2d& skin) : FlatModel(Maker(model, skin)) {}
+FlatLayer::FlatLayer(const SoftBodyModel<2>& model, const Skin2d& skin) : FlatLayer(Maker(model, skin)) {}
 
-FlatModel::FlatModel(Maker maker)
-    : contact_(maker.make()),
+FlatLayer::FlatLayer(Maker maker)
+    : lattice_(maker.lattice),
+      surface_(std::move(maker.points), std::move(maker.fields)),
+      masses_(maker.masses()),
+      margin_cells_(std::move(maker.margin_cells)),
+      crack_sides_(maker.sides()),
       beyond_(std::move(maker.beyond)),
       first_beyond_(std::move(maker.first_beyond)) {}
 
-void FlatModel::lift(std::span<const Vector2f> flat, float half, std::vector<Vector3f>& lifted) const {
-  const std::size_t columns = contact_.lattice().particles.size() / 2;
+void FlatLayer::lift(std::span<const Vector2f> flat, float half, std::vector<Vector3f>& lifted) const {
+  const std::size_t columns = lattice_->particles.size() / 2;
   SC_ASSERT(flat.size() + first_beyond_.size() - 1 == columns, "{} particles and {} places beyond of {} columns",
             flat.size(), first_beyond_.size() - 1, columns);
   lifted.clear();

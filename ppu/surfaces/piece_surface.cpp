@@ -21,10 +21,10 @@
 #include <utility>
 #include <vector>
 
-#include "ppu/contacts/contact_surface.h"
-#include "ppu/contacts/point_chooser.h"
-#include "ppu/contacts/triangle_distance.h"
 #include "ppu/fracture/cracks.h"
+#include "ppu/surfaces/contact_surface.h"
+#include "ppu/surfaces/point_chooser.h"
+#include "ppu/surfaces/triangle_distance.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {

@@ -1,0 +1,75 @@
+#pragma once
+// A body of two dimensions as contacts in three see it: a layer of cells around z = 0, one cell thick.
+//
+//                        o  a particle: two of the layer, one half a cell above it and one below
+//     . . . . . . .      .  the drawn edge, half a cell outside of the cells: margin cells (m) hold it, which move with the
+//     . o-----o   .         cells beside them
+//     m |  c  | m .      c  a cell of the body
+//     . o-----o   .
+//     . . . . . . .
+//
+// Nothing leads out of the plane: what touches lies at z = 0, and distances are the same all through the layer. So
+// impulses are the same above and below, and what kernels solve is the contact in two dimensions.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ppu/surfaces/contact_surface.h"
+#include "softcell/soft_bodies/skin_2d.h"
+#include "softcell/soft_bodies/soft_body_model.h"
+
+namespace softcell::ppu {
+
+/// A cell beside a body into which its drawn edge reaches: it moves with the body's cell beside it.
+struct MarginCell {
+  std::uint32_t beside = 0;      ///< the body's cell; of one of the body's own cells: itself
+  Eigen::Vector3f off{0, 0, 0};  ///< from that cell to this one, in cells
+};
+
+/// Of a model in two dimensions. Immutable.
+class FlatLayer {
+ public:
+  /// @param skin  how bodies of the model are drawn, with outlines: what touches
+  FlatLayer(const SoftBodyModel<2>& model, const Skin2d& skin);
+
+  /// The body's cells first, then margin cells. Of particle i in the plane: 2 i below it, 2 i + 1 above. `fill` and `neighbours` are empty.
+  const std::shared_ptr<const Lattice<3>>& lattice() const { return lattice_; }
+  const ContactSurface& surface() const { return surface_; }
+  /// kg, of each particle; 0 of those that margin cells alone have.
+  std::span<const float> masses() const { return masses_; }
+  std::span<const MarginCell> margin_cells() const { return margin_cells_; }  ///< of each cell
+  /// As crack_sides(); of margin cells 0.
+  std::span<const std::uint32_t> crack_sides() const { return crack_sides_; }
+
+  /// Places or velocities in the plane as those of all particles of the layer; places also lie `half` a cell above and below.
+  /// @param flat  of each particle  @param half  metres; 0 for velocities
+  void lift(std::span<const Eigen::Vector2f> flat, float half, std::vector<Eigen::Vector3f>& lifted) const;
+  /// What a velocity of the layer is in the plane. @param particle  in the plane
+  static Eigen::Vector2f lower(std::span<const Eigen::Vector3f> lifted, std::size_t particle) {
+    return 0.5f * (lifted[2 * particle] + lifted[2 * particle + 1]).head<2>();
+  }
+
+ private:
+  class Maker;
+  /// A place that goes on beyond a cell: shares of its corners.
+  struct Beyond {
+    std::array<std::uint32_t, 4> particle;
+    std::array<float, 4> share;
+  };
+  explicit FlatLayer(Maker maker);
+
+  std::shared_ptr<const Lattice<3>> lattice_;
+  ContactSurface surface_;
+  std::vector<float> masses_;
+  std::vector<MarginCell> margin_cells_;
+  std::vector<std::uint32_t> crack_sides_;
+  /// Of each place that margin cells alone have: the mean of these.
+  std::vector<Beyond> beyond_;
+  std::vector<std::uint32_t> first_beyond_{0};
+};
+
+}  // namespace softcell::ppu
