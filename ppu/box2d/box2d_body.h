@@ -10,6 +10,7 @@
 #include <span>
 
 #include "ppu/bodies/stillness.h"
+#include "softcell/soft_bodies/contact.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {
@@ -23,6 +24,8 @@ class Box2dBody {
 
   SoftBody<2>& soft() { return soft_; }
   const SoftBody<2>& soft() const { return soft_; }
+  const CollisionFilter& filter() const { return filter_; }
+  virtual void set_filter(const CollisionFilter& filter) { filter_ = filter; }
   /// Its b2Bodies, in the order of SoftBodyModel::outer(); none: Box2D does not know it.
   virtual std::span<b2Body* const> particles() const { return {}; }
   /// @param number  of a particle in the body  @return  null: an inner one, or Box2D does not know it
@@ -72,6 +75,7 @@ class Box2dBody {
   b2World& world_;
   SoftBody<2> soft_;
   std::shared_ptr<const SoftBodyModel<2>> model_;  // of its particles
+  CollisionFilter filter_;
 
  private:
   std::uint32_t seen_revision_ = 0, seen_resets_ = 0;

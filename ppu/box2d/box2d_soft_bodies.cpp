@@ -348,6 +348,12 @@ std::vector<EndedAttachment> Box2dSoftBodies::poll_ended_attachments() {
   return impl_->attachments.take_ended();
 }
 
+void Box2dSoftBodies::set_filter(const SoftBody<2>& body, const CollisionFilter& filter) {
+  Box2dBody& coupled = **impl_->find(body, "to get a filter");
+  if (coupled.soft().asleep()) coupled.wake();
+  coupled.set_filter(filter);
+}
+
 void Box2dSoftBodies::step(float step, int velocity_iterations, int position_iterations) {
   begin_step(step);
   impl_->world.Step(step, velocity_iterations, position_iterations);

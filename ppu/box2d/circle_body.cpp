@@ -2,7 +2,6 @@
 
 #include <box2d/b2_circle_shape.h>
 #include <box2d/b2_contact.h>
-#include <box2d/b2_fixture.h>
 
 #include <algorithm>
 #include <utility>
@@ -51,13 +50,28 @@ void CircleBody::add_particle(std::uint32_t number) {
   fixture.density = 1;
   fixture.friction = soft_.settings().friction;
   fixture.restitution = soft_.settings().restitution;
-  fixture.filter.groupIndex = group_;
+  fixture.filter = own_filter();
   particle->CreateFixture(&fixture);
   // All of it: braces alone leave the centre unset, as b2Vec2 has a constructor that does nothing.
   const b2MassData mass{.mass = soft_.model().masses()[number], .center = {0, 0}, .I = 0};
   particle->SetMassData(&mass);
   particles_.push_back(particle);
   of_number_[number] = particle;
+}
+
+b2Filter CircleBody::own_filter() const {
+  b2Filter filter;
+  filter.categoryBits = static_cast<std::uint16_t>(filter_.group);
+  filter.maskBits = static_cast<std::uint16_t>(filter_.mask);
+  filter.groupIndex = group_;
+  return filter;
+}
+
+void CircleBody::set_filter(const CollisionFilter& filter) {
+  Box2dBody::set_filter(filter);
+  for (b2Body* const particle : particles_)
+    for (b2Fixture* fixture = particle->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
+      fixture->SetFilterData(own_filter());
 }
 
 /// Box2D has woken a particle because something that moves touches it, or what it touched is gone.

@@ -1,6 +1,8 @@
 #pragma once
 // A soft body of which each outer particle is a b2Body: a circle.
 
+#include <box2d/b2_fixture.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,6 +22,7 @@ class CircleBody final : public Box2dBody {
   std::span<b2Body* const> particles() const override { return particles_; }
   b2Body* particle(std::uint32_t number) const override { return of_number_[number]; }
 
+  void set_filter(const CollisionFilter& filter) override;
   bool was_pushed() const override;
   /// Box2D integrates with the new velocities.
   void hand_over(float step) override;
@@ -36,6 +39,7 @@ class CircleBody final : public Box2dBody {
   void add_particles();
   void add_particle(std::uint32_t number);
   void remove_particles();
+  b2Filter own_filter() const;
 
   std::int16_t group_;
   std::vector<b2Body*> particles_;

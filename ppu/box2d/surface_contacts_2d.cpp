@@ -80,6 +80,7 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
                 .box = box_of_step(kept.positions, kept.velocities, step),
                 .obstacles = std::move(in_stage.obstacles)};
     in_stage.obstacles.clear();
+    in_stage.filter = body.filter();
     obstacles_.add_near(in_stage.box, in_stage.filter, in_stage.obstacles);
     std::erase_if(in_stage.obstacles, [&](std::uint32_t obstacle) {
       return attachments.parts(body, *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);

@@ -256,7 +256,7 @@ TEST(BrokenBodies2d, AreSavedWithTheirStrengthsAndCuts) {
   Simulation2d run(scene, {});
   step(run, 5);
   const auto file = folder.path() / "saved.toml";
-  write_scene_files(saved_scene(scene, present(run), file));
+  write_scene_files(saved_scene(scene, present(run), run.contacts(), file));
   const Scene2d loaded = load_scene_2d(file.string());
   EXPECT_EQ(loaded.soft_bodies[0].settings, scene.soft_bodies[0].settings);
   EXPECT_EQ(loaded.soft_bodies[0].strengths, scene.soft_bodies[0].strengths);

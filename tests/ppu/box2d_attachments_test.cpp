@@ -47,9 +47,13 @@ Eigen::Vector2d momentum_of_all(const Box2dSoftBodies& bodies) {
   return sum;
 }
 
+class Box2dAttachments : public testing::TestWithParam<ContactMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dAttachments, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
+                         name_of_method);
+
 /// A hung body with another standing on it carries both, and no rope is longer than its length by more than 1 %.
-TEST(Box2dAttachments, AHungBodyCarriesOneThatStandsOnIt) {
-  World2d w;
+TEST_P(Box2dAttachments, AHungBodyCarriesOneThatStandsOnIt) {
+  World2d w(9.81f, GetParam());
   const SoftBody<2>& plank = w.soft.add(rectangle_model({12, 2}, firm()), {0, 1});
   const SoftBody<2>& load = w.soft.add(rectangle_model({4, 4}, firm()), {0, 1.35f});
   std::vector<AttachmentId> ropes;
@@ -76,9 +80,9 @@ TEST(Box2dAttachments, AHungBodyCarriesOneThatStandsOnIt) {
   EXPECT_NEAR(carried, 9.81f * (mass_of_body(plank) + mass_of_body(load)), 0.03f * carried);
 }
 
-TEST(Box2dAttachments, TwoFreeBodiesKeepTheirMomentum) {
+TEST_P(Box2dAttachments, TwoFreeBodiesKeepTheirMomentum) {
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
-    World2d w(0);
+    World2d w(0, GetParam());
     SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
     SoftBody<2>& b = w.soft.add(rectangle_model({4, 4}, firm()), {0.6f, 0.05f});
     w.soft.attach(a, Patch<2>::of_surface({0.2f, 0.2f}, 0.17f), b, Patch<2>::of_surface({0.4f, 0.2f}, 0.17f),
@@ -96,8 +100,8 @@ TEST(Box2dAttachments, TwoFreeBodiesKeepTheirMomentum) {
   }
 }
 
-TEST(Box2dAttachments, AHingeToARigidBodyCarriesIt) {
-  World2d w;
+TEST_P(Box2dAttachments, AHingeToARigidBodyCarriesIt) {
+  World2d w(9.81f, GetParam());
   const SoftBody<2>& top = w.soft.add(rectangle_model({6, 2}, firm()), {0, 2});
   w.soft.attach(top, Patch<2>::of_surface({0, 2.2f}, 0.15f));
   b2Body* const bar = w.add_box({0, 1.5f}, {0.05f, 0.45f}, 20);
@@ -114,9 +118,9 @@ TEST(Box2dAttachments, AHingeToARigidBodyCarriesIt) {
   EXPECT_GT(bar->GetPosition().y, 1.4f) << "and does not fall";
 }
 
-TEST(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
+TEST_P(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
   for (const float share : {0.9f, 3.0f}) {  // it falls into the rope, and swings up and down in it
-    World2d w;
+    World2d w(9.81f, GetParam());
     const SoftBody<2>& lamp = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
     const float weight = 9.81f * mass_of_body(lamp);
     const AttachmentId id = w.soft.attach(lamp, Patch<2>::of_surface({0, 0.4f}, 0.12f),
@@ -139,8 +143,8 @@ TEST(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
   }
 }
 
-TEST(Box2dAttachments, FollowAPointThatTheProgramMoves) {
-  World2d w(0);
+TEST_P(Box2dAttachments, FollowAPointThatTheProgramMoves) {
+  World2d w(0, GetParam());
   const SoftBody<2>& body = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
   const AttachmentId id = w.soft.attach(body, Patch<2>::of_surface({0, 0.2f}, 0.2f));
   const Vector2f from = middle_of(body);
@@ -152,8 +156,8 @@ TEST(Box2dAttachments, FollowAPointThatTheProgramMoves) {
 }
 
 /// Two that are welded overlap where they lie, and do not push each other apart; when they are free they do.
-TEST(Box2dAttachments, WhatIsWeldedDoesNotTouchEachOther) {
-  World2d w(0);
+TEST_P(Box2dAttachments, WhatIsWeldedDoesNotTouchEachOther) {
+  World2d w(0, GetParam());
   const SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
   const SoftBody<2>& b = w.soft.add(rectangle_model({4, 4}, firm()), {0.45f, 0});
   const AttachmentId id = w.soft.attach(a, Patch<2>::of_surface({0.15f, 0.2f}, 0.2f), b,
@@ -165,8 +169,8 @@ TEST(Box2dAttachments, WhatIsWeldedDoesNotTouchEachOther) {
   EXPECT_GT((middle_of(a) - middle_of(b)).norm(), 0.48f);
 }
 
-TEST(Box2dAttachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
-  World2d w;
+TEST_P(Box2dAttachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
+  World2d w(9.81f, GetParam());
   SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 1});
   SoftBody<2>& b = w.soft.add(rectangle_model({4, 4}, firm()), {0.6f, 1});
   b2Body* const bar = w.add_box({0, 3}, {0.1f, 0.1f}, 5);
@@ -187,8 +191,8 @@ TEST(Box2dAttachments, ThingsThatVanishTakeTheirAttachmentsWithThem) {
   w.run(0.1f);
 }
 
-TEST(Box2dAttachments, SayWhatIsOutOfRange) {
-  World2d w, other;
+TEST_P(Box2dAttachments, SayWhatIsOutOfRange) {
+  World2d w(9.81f, GetParam()), other(9.81f, GetParam());
   SoftBody<2>& a = w.soft.add(rectangle_model({4, 4}, firm()), {0, 1});
   SoftBody<2>& stranger = other.soft.add(rectangle_model({4, 4}, firm()), {0, 1});
   b2Body* const elsewhere = other.add_box({0, 0}, {1, 1});
@@ -206,11 +210,11 @@ TEST(Box2dAttachments, SayWhatIsOutOfRange) {
 }
 
 /// A world without attachments has its own filter, and gets it back.
-TEST(Box2dAttachments, LeaveTheWorldsFilterAsItWas) {
+TEST(Box2dAttachmentsOfCircles, LeaveTheWorldsFilterAsItWas) {
   b2World world({0, 0});
   b2ContactFilter* const before = world.GetContactManager().m_contactFilter;
   {
-    Box2dSoftBodies soft(world);
+    Box2dSoftBodies soft(world, ContactMethod::kSpheres);
     const SoftBody<2>& a = soft.add(rectangle_model({4, 4}, firm()), {0, 0});
     EXPECT_EQ(world.GetContactManager().m_contactFilter, before);
     soft.attach(a, Patch<2>::of_surface({0, 0.2f}, 0.2f));

@@ -29,8 +29,12 @@ float lowest(const SoftBody<2>& body) {
   return y;
 }
 
-TEST(Box2dCoupling, RestsOnAFloorInShape) {
-  World2d world;
+class Box2dCoupling : public testing::TestWithParam<ContactMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dCoupling, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
+                         name_of_method);
+
+TEST_P(Box2dCoupling, RestsOnAFloorInShape) {
+  World2d world(9.81f, GetParam());
   world.add_box({0, -1}, {10, 1});
   SoftBodySettings settings = rubber();
   settings.damping = 0.3f;
@@ -50,7 +54,7 @@ TEST(Box2dCoupling, RestsOnAFloorInShape) {
 }
 
 // b2Vec2's default constructor sets nothing, not even by empty braces: the centre was what lay on the stack.
-TEST(Box2dCoupling, TheCentreOfMassOfAParticleIsItsPosition) {
+TEST(Box2dCouplingOfCircles, TheCentreOfMassOfAParticleIsItsPosition) {
   World2d world;
   const std::shared_ptr<const SoftBodyModel<2>> model = rectangle_model({3, 3}, rubber());
   litter_the_stack();
@@ -62,8 +66,8 @@ TEST(Box2dCoupling, TheCentreOfMassOfAParticleIsItsPosition) {
   }
 }
 
-TEST(Box2dCoupling, FallsAsEverythingFalls) {
-  World2d world;
+TEST_P(Box2dCoupling, FallsAsEverythingFalls) {
+  World2d world(9.81f, GetParam());
   SoftBody<2>& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 10});
   const Vector2f begin = body.centre_of_mass();
   const int steps = 60;
@@ -74,8 +78,8 @@ TEST(Box2dCoupling, FallsAsEverythingFalls) {
   EXPECT_LT(body.deformation(), 1e-4f);
 }
 
-TEST(Box2dCoupling, KeepsMomentumInCollisionsWithRigidBodies) {
-  World2d world(0);
+TEST_P(Box2dCoupling, KeepsMomentumInCollisionsWithRigidBodies) {
+  World2d world(0, GetParam());
   SoftBody<2>& body = world.soft.add(rectangle_model({4, 4}, rubber()), {0, 0});
   b2Body* const box = world.add_box({3, 0.5f}, {0.4f, 0.4f}, 4);
   box->SetLinearVelocity({-3, 0});
@@ -103,19 +107,19 @@ float bounces_to(float restitution) {
   return highest;
 }
 
-TEST(Box2dCoupling, ItsParticlesHaveTheRestitutionOfTheMaterial) {
+TEST(Box2dCouplingOfCircles, ItsParticlesHaveTheRestitutionOfTheMaterial) {
   EXPECT_GT(bounces_to(0.9f), bounces_to(0) + 0.05f);
 }
 
-TEST(Box2dCoupling, MakesNoContactsWithinABody) {
+TEST(Box2dCouplingOfCircles, MakesNoContactsWithinABody) {
   World2d world;
   world.soft.add(rectangle_model({5, 5}, rubber()), {0, 0});
   world.run(0.1f);
   EXPECT_EQ(world.box2d.GetContactCount(), 0);
 }
 
-TEST(Box2dCoupling, TwoBodiesStackOnEachOther) {
-  World2d world;
+TEST_P(Box2dCoupling, TwoBodiesStackOnEachOther) {
+  World2d world(9.81f, GetParam());
   world.add_box({0, -1}, {10, 1});
   SoftBody<2>& under = world.soft.add(rectangle_model({6, 3}, rubber()), {0, 0.2f});
   SoftBody<2>& over = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 1.6f});
@@ -124,8 +128,8 @@ TEST(Box2dCoupling, TwoBodiesStackOnEachOther) {
   EXPECT_LT(over.deformation(), 0.1f);
 }
 
-TEST(Box2dCoupling, ComesBackToItsShapeAfterBeingThrown) {
-  World2d world;
+TEST_P(Box2dCoupling, ComesBackToItsShapeAfterBeingThrown) {
+  World2d world(9.81f, GetParam());
   world.add_box({0, -1}, {10, 1});
   world.add_box({-5, 5}, {1, 10});
   world.add_box({5, 5}, {1, 10});  // or it would bounce off the floor's end and fall for ever
@@ -174,8 +178,8 @@ INSTANTIATE_TEST_SUITE_P(Coefficients, SlidingFriction2d,
                          testing::Values(Friction{0, 1}, Friction{0.1f, 1}, Friction{0.3f, 1},
                                          Friction{0.9f, 1}, Friction{0.6f, 0.5f}, Friction{1, 0.25f}));
 
-TEST(Box2dCoupling, TakesChangesBetweenSteps) {
-  World2d world(0);
+TEST_P(Box2dCoupling, TakesChangesBetweenSteps) {
+  World2d world(0, GetParam());
   SoftBody<2>& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 0});
   world.run(0.1f);
   body.translate({3, 4});
@@ -189,7 +193,7 @@ TEST(Box2dCoupling, TakesChangesBetweenSteps) {
   EXPECT_LT(body.linear_momentum().norm(), 1e-6f);
 }
 
-TEST(Box2dCoupling, KnowsItsParticles) {
+TEST(Box2dCouplingOfCircles, KnowsItsParticles) {
   World2d world;
   b2Body* const box = world.add_box({0, 0}, {1, 1});
   SoftBody<2>& body = world.soft.add(rectangle_model({2, 2}, rubber()), {0, 5});
@@ -210,16 +214,38 @@ TEST(Box2dCoupling, KnowsItsParticles) {
   EXPECT_EQ(world.soft.size(), 0u);
 }
 
-TEST(Box2dCoupling, RefusesWhatItIsNotGiven) {
-  World2d world, other;
+TEST_P(Box2dCoupling, RefusesWhatItIsNotGiven) {
+  World2d world(9.81f, GetParam()), other(9.81f, GetParam());
   SoftBody<2>& body = other.soft.add(rectangle_model({1, 1}, rubber()), {0, 0});
   EXPECT_THROW(world.soft.remove(body), std::invalid_argument);
   EXPECT_THROW(rectangle_model({1, 1}, rubber(), 0), std::runtime_error);
   EXPECT_THROW(rectangle_model({1, 1}, {.cell_size = 0}), std::runtime_error);
 }
 
-TEST(Box2dCoupling, GravityOf300Holds) {
-  World2d world(300);
+TEST_P(Box2dCoupling, FiltersSayWhatTouches) {
+  World2d world(9.81f, GetParam());
+  world.add_box({0, -1}, {10, 1});
+  SoftBody<2>& under = world.soft.add(rectangle_model({6, 3}, rubber()), {0, 0.2f});
+  SoftBody<2>& through = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 1.6f});
+  world.soft.set_filter(through, {.group = 2, .mask = 1});
+  world.soft.set_filter(under, {.group = 1, .mask = 1});  // not 2
+  world.run(4);
+  EXPECT_LT(through.centre_of_mass().y(), 0.6f) << "it lies on the floor, in the other one";
+  EXPECT_GT(lowest(through), 0);
+  b2Filter none;
+  none.maskBits = 0xFFFD;
+  b2Body* floor = world.box2d.GetBodyList();
+  while (floor->GetType() != b2_staticBody) floor = floor->GetNext();
+  floor->GetFixtureList()->SetFilterData(none);
+  world.run(1);
+  EXPECT_LT(through.centre_of_mass().y(), -1);
+  EXPECT_GT(lowest(under), 0);
+  World2d other(0, GetParam());
+  EXPECT_THROW(other.soft.set_filter(under, {}), std::invalid_argument);
+}
+
+TEST_P(Box2dCoupling, GravityOf300Holds) {
+  World2d world(300, GetParam());
   world.add_box({0, -1}, {10, 1});
   SoftBodySettings settings = rubber();
   settings.alpha = 1;
@@ -231,7 +257,7 @@ TEST(Box2dCoupling, GravityOf300Holds) {
 
 /// Asleep on a floor, as far as it will.
 struct Resting {
-  Resting() {
+  explicit Resting(ContactMethod contacts) : world(9.81f, contacts) {
     floor = world.add_box({0, -1}, {10, 1});
     world.soft.let_sleep(SleepSettings{});
     body = &world.soft.add(rectangle_model({6, 4}, calm()), {0, 0.2f});
@@ -248,8 +274,12 @@ struct Resting {
   SoftBody<2>* body;
 };
 
-TEST(Box2dSleep, ABodyAtRestStaysWhereItIs) {
-  Resting resting;
+class Box2dSleep : public testing::TestWithParam<ContactMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dSleep, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
+                         name_of_method);
+
+TEST_P(Box2dSleep, ABodyAtRestStaysWhereItIs) {
+  Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
   EXPECT_NEAR(lowest(*resting.body), resting.body->model().contact_radius(), 0.02f);
   const std::uint64_t state = state_hash(*resting.body);
@@ -258,16 +288,16 @@ TEST(Box2dSleep, ABodyAtRestStaysWhereItIs) {
   EXPECT_EQ(state_hash(*resting.body), state);
 }
 
-TEST(Box2dSleep, NobodySleepsUnlessAsked) {
-  World2d world;
+TEST_P(Box2dSleep, NobodySleepsUnlessAsked) {
+  World2d world(9.81f, GetParam());
   world.add_box({0, -1}, {10, 1});
   SoftBody<2>& body = world.soft.add(rectangle_model({6, 4}, Resting::calm()), {0, 0.2f});
   world.run(12);
   EXPECT_FALSE(body.asleep());
 }
 
-TEST(Box2dSleep, ARigidBodyThatFallsOnItWakesIt) {
-  Resting resting;
+TEST_P(Box2dSleep, ARigidBodyThatFallsOnItWakesIt) {
+  Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
   resting.world.add_box({0, 1.6f}, {0.2f, 0.2f}, 5);
   resting.world.run(0.05f);
@@ -278,16 +308,16 @@ TEST(Box2dSleep, ARigidBodyThatFallsOnItWakesIt) {
   EXPECT_NE(state_hash(*resting.body), state);
 }
 
-TEST(Box2dSleep, ASoftBodyThatFallsOnItWakesIt) {
-  Resting resting;
+TEST_P(Box2dSleep, ASoftBodyThatFallsOnItWakesIt) {
+  Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
   resting.world.soft.add(rectangle_model({2, 2}, rubber()), {0, 2.5f});
   resting.world.run(1);
   EXPECT_FALSE(resting.body->asleep());
 }
 
-TEST(Box2dSleep, WakesWhenGravityTurns) {
-  Resting resting;
+TEST_P(Box2dSleep, WakesWhenGravityTurns) {
+  Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
   const float before = resting.body->centre_of_mass().x();
   resting.world.box2d.SetGravity({9.81f, -2});
@@ -296,8 +326,8 @@ TEST(Box2dSleep, WakesWhenGravityTurns) {
   EXPECT_GT(resting.body->centre_of_mass().x(), before + 0.1f);
 }
 
-TEST(Box2dSleep, WakesWhenItsUserChangesIt) {
-  Resting resting;
+TEST_P(Box2dSleep, WakesWhenItsUserChangesIt) {
+  Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
   resting.body->add_velocity({0, 3});
   resting.world.run(0.1f);
@@ -305,8 +335,8 @@ TEST(Box2dSleep, WakesWhenItsUserChangesIt) {
   EXPECT_GT(lowest(*resting.body), resting.body->model().contact_radius() + 0.1f);
 }
 
-TEST(Box2dSleep, WakesWhenAParticleIsPushed) {
-  Resting resting;
+TEST(Box2dSleepOfCircles, WakesWhenAParticleIsPushed) {
+  Resting resting(ContactMethod::kSpheres);
   ASSERT_TRUE(resting.body->asleep());
   for (b2Body* b = resting.world.box2d.GetBodyList(); b != nullptr; b = b->GetNext())
     if (resting.world.soft.particle_of(*b).number == 0) b->ApplyLinearImpulseToCenter({0, 0.1f}, true);
@@ -314,16 +344,16 @@ TEST(Box2dSleep, WakesWhenAParticleIsPushed) {
   EXPECT_FALSE(resting.body->asleep());
 }
 
-TEST(Box2dSleep, FallsWhenTheFloorIsTakenAway) {
-  Resting resting;
+TEST_P(Box2dSleep, FallsWhenTheFloorIsTakenAway) {
+  Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
   resting.world.box2d.DestroyBody(resting.floor);
   resting.world.run(1);
   EXPECT_LT(resting.body->centre_of_mass().y(), -1);
 }
 
-TEST(Box2dSleep, WakesWhenBodiesMayNoLongerSleep) {
-  Resting resting;
+TEST_P(Box2dSleep, WakesWhenBodiesMayNoLongerSleep) {
+  Resting resting(GetParam());
   ASSERT_TRUE(resting.body->asleep());
   resting.world.soft.let_sleep(std::nullopt);
   EXPECT_FALSE(resting.body->asleep());
@@ -333,7 +363,7 @@ TEST(Box2dSleep, WakesWhenBodiesMayNoLongerSleep) {
 
 /// A soft body on another, and a rigid box on top of both.
 struct Tower {
-  Tower() {
+  explicit Tower(ContactMethod contacts) : world(9.81f, contacts) {
     world.add_box({0, -1}, {10, 1});
     world.soft.let_sleep(SleepSettings{});
     under = &world.soft.add(rectangle_model({6, 3}, Resting::calm()), {0, 0.2f});
@@ -345,8 +375,8 @@ struct Tower {
   b2Body* box;
 };
 
-TEST(Box2dSleep, WhatTouchesSleepsTogether) {
-  Tower tower;
+TEST_P(Box2dSleep, WhatTouchesSleepsTogether) {
+  Tower tower(GetParam());
   bool together = true;
   for (int i = 0; i < 3600; ++i) {
     tower.world.soft.step(1.0f / 120);
@@ -360,8 +390,8 @@ TEST(Box2dSleep, WhatTouchesSleepsTogether) {
   EXPECT_TRUE(tower.box->IsAwake());
 }
 
-TEST(Box2dSleep, ARigidBodyThatMayNotSleepKeepsWhatItTouchesAwake) {
-  Tower tower;
+TEST_P(Box2dSleep, ARigidBodyThatMayNotSleepKeepsWhatItTouchesAwake) {
+  Tower tower(GetParam());
   tower.box->SetSleepingAllowed(false);
   tower.world.run(20);
   EXPECT_FALSE(tower.over->asleep());

@@ -6,7 +6,10 @@
 #include <box2d/b2_polygon_shape.h>
 #include <box2d/b2_world.h>
 
+#include <gtest/gtest.h>
+
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "softcell/box2d/box2d_soft_bodies.h"
@@ -23,6 +26,11 @@ inline std::shared_ptr<const SoftBodyModel<2>> rectangle_model(const Eigen::Vect
   const Eigen::Vector2f origin(-0.5f * settings.cell_size * static_cast<float>(cells.x()), 0);
   return make_soft_body_model(lattice_from_cells(all, settings.cell_size, origin), settings,
                               contact_radius_in_cells);
+}
+
+/// For suites of tests of both methods.
+inline std::string name_of_method(const testing::TestParamInfo<ContactMethod>& method) {
+  return method.param == ContactMethod::kSpheres ? "Circles" : "Surface";
 }
 
 struct World2d {

@@ -1,5 +1,7 @@
 #include "scene_2d.h"
 
+#include <algorithm>
+
 #include "softcell/base/assert.h"
 
 namespace softcell::demos {

@@ -31,6 +31,8 @@ struct ColouredCells2d {
 struct Ring2d {
   Eigen::Vector2f middle{0, 0};  ///< grid coordinates
   float radius = 4, hole = 0;    ///< cells, from the middle; a disc has a hole of 0
+
+  bool operator==(const Ring2d&) const = default;
 };
 
 /// Eyes and a mouth, drawn on a soft body's cells.

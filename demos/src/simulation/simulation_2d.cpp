@@ -114,8 +114,9 @@ struct World {
       rigid_bodies.push_back(add_rigid_body(world, body, scene.friction, scene.restitution));
     for (std::size_t i = 0; i < models.size(); ++i) {
       const SoftBody2dPlacement& body = scene.soft_bodies[i];
+      const bool is_first = std::ranges::find(models, models[i]) - models.begin() == static_cast<std::ptrdiff_t>(i);
       std::optional<ppu::Skin2d> skin;
-      if (contacts == ppu::ContactMethod::kSurface && std::find(models.begin(), models.begin() + static_cast<std::ptrdiff_t>(i), models[i]) == models.begin() + static_cast<std::ptrdiff_t>(i)) skin = body.skin(models[i]->lattice());
+      if (is_first && contacts == ppu::ContactMethod::kSurface) skin = body.skin(models[i]->lattice());
       soft_bodies.add(models[i], body.position, skin ? &*skin : nullptr);
     }
     attach(scene);

@@ -71,10 +71,14 @@ void expect_finite(const Box2dSoftBodies& bodies) {
     for (const Vector2f& x : bodies[b].positions()) ASSERT_TRUE(x.allFinite());
 }
 
+class Box2dFracture : public testing::TestWithParam<ContactMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dFracture, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
+                         name_of_method);
+
 /// A bar of 12 cells along x with a weak middle that a weld at each end pulls apart.
-TEST(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
+TEST_P(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
   constexpr float kStretch = 0.1f, kWeak = 0.5f, kCell = 0.1f;
-  World2d w(0);
+  World2d w(0, GetParam());
   SoftBodySettings settings = brittle_2d(kStretch);
   settings.half_width = 1;
   std::vector<Eigen::Vector2i> cells;
@@ -138,9 +142,9 @@ TEST(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
   EXPECT_GT(gap, 0.02f);
 }
 
-TEST(Box2dFracture, ABentBarBreaksByItsTurn) {
+TEST_P(Box2dFracture, ABentBarBreaksByItsTurn) {
   for (const float turn : {0.1f, 3.0f}) {
-    World2d w;
+    World2d w(9.81f, GetParam());
     SoftBodySettings settings{
         .cell_size = 0.1f, .half_width = 1, .density = 100, .alpha = 0.2f, .damping = 0.2f};
     settings.fracture = Fracture{.turn = turn};
@@ -154,8 +158,8 @@ TEST(Box2dFracture, ABentBarBreaksByItsTurn) {
   }
 }
 
-TEST(Box2dFracture, ADiscThatFallsBreaksAndItsPiecesLieOnTheFloor) {
-  World2d w;
+TEST_P(Box2dFracture, ADiscThatFallsBreaksAndItsPiecesLieOnTheFloor) {
+  World2d w(9.81f, GetParam());
   w.add_box({0, -0.5f}, {20, 0.5f});
   const SoftBody<2>& disc = w.soft.add(disc_model(6, brittle_2d(0.03f)), {0, 3});
   const double mass = double{disc.model().mass()};
@@ -184,7 +188,7 @@ TEST(Box2dFracture, ADiscThatFallsBreaksAndItsPiecesLieOnTheFloor) {
 }
 
 /// A cut alone moves nothing: the upper half stays on the lower one, although their circles cover each other at first.
-TEST(Box2dFracture, PiecesAreNotPushedApartAndCarryEachOther) {
+TEST(Box2dFractureOfCircles, PiecesAreNotPushedApartAndCarryEachOther) {
   World2d w;
   w.add_box({0, -0.5f}, {20, 0.5f});
   SoftBodySettings firm{.cell_size = 0.1f, .half_width = 2, .density = 100, .alpha = 0.9f, .damping = 0.3f};
@@ -209,7 +213,7 @@ TEST(Box2dFracture, PiecesAreNotPushedApartAndCarryEachOther) {
 }
 
 /// What flies apart and meets again touches.
-TEST(Box2dFracture, PiecesThatHaveBeenApartTouch) {
+TEST(Box2dFractureOfCircles, PiecesThatHaveBeenApartTouch) {
   World2d w(0);
   SoftBodySettings settings{
       .cell_size = 0.1f, .half_width = 2, .density = 100, .alpha = 0.9f, .damping = 0.2f};
@@ -233,8 +237,8 @@ TEST(Box2dFracture, PiecesThatHaveBeenApartTouch) {
 }
 
 /// Pieces fly apart as the whole turned.
-TEST(Box2dFracture, KeepsBothMomentaForAThousandSteps) {
-  World2d w(0);
+TEST_P(Box2dFracture, KeepsBothMomentaForAThousandSteps) {
+  World2d w(0, GetParam());
   SoftBody<2>& disc = w.soft.add(disc_model(6, brittle_2d(0.02f)), {0, 0});
   disc.add_angular_velocity(9);
   disc.add_velocity({0.3f, 0.1f});
@@ -255,14 +259,14 @@ TEST(Box2dFracture, KeepsBothMomentaForAThousandSteps) {
   EXPECT_NEAR(after.angular_momentum, before.angular_momentum, 1e-5 * before.mass * 5 * 25);
 }
 
-TEST(Box2dFracture, HasTheSameBitsForAnyNumberOfSpesAndScheduleAndOnThePpu) {
+TEST_P(Box2dFracture, HasTheSameBitsForAnyNumberOfSpesAndScheduleAndOnThePpu) {
   const auto fall = [](SolverFactory* spes) {
     b2World world(b2Vec2(0, -9.81f));
     std::optional<Box2dSoftBodies> made;
     if (spes != nullptr)
-      made.emplace(world, *spes);
+      made.emplace(world, *spes, GetParam());
     else
-      made.emplace(world);
+      made.emplace(world, GetParam());
     Box2dSoftBodies& bodies = *made;
     b2BodyDef floor;
     floor.position = {0, -0.5f};
@@ -292,9 +296,9 @@ TEST(Box2dFracture, HasTheSameBitsForAnyNumberOfSpesAndScheduleAndOnThePpu) {
 }
 
 /// The thread that makes pieces has all the time in the world, or none: no result depends on it.
-TEST(Box2dFracture, ABodyStaysWholeUntilItsPiecesAreDue) {
+TEST_P(Box2dFracture, ABodyStaysWholeUntilItsPiecesAreDue) {
   const auto tear = [](std::chrono::milliseconds pause) {
-    World2d w(0);
+    World2d w(0, GetParam());
     SoftBody<2>& disc = w.soft.add(disc_model(7, brittle_2d(0.03f)), {0, 0});
     EXPECT_GT(disc.positions().size(), 100u);
     for (std::size_t i = 0; i < disc.positions().size(); ++i)
@@ -313,10 +317,10 @@ TEST(Box2dFracture, ABodyStaysWholeUntilItsPiecesAreDue) {
   EXPECT_EQ(tear(std::chrono::milliseconds(0)), tear(std::chrono::milliseconds(30)));
 }
 
-TEST(Box2dFracture, ACutThatBeginsHasItsPiecesLaterAndTheSame) {
+TEST_P(Box2dFracture, ACutThatBeginsHasItsPiecesLaterAndTheSame) {
   const Cut2d half = Cut2d::line({0.01f, 0}, {1, 0});
   const SoftBodySettings jelly{.cell_size = 0.1f, .half_width = 1};
-  World2d w(0), other(0);
+  World2d w(0, GetParam()), other(0, GetParam());
   SoftBody<2>& disc = w.soft.add(disc_model(6, jelly), {0, 0});
   EXPECT_FALSE(w.soft.begin_cut(disc, Cut2d::line({2, 0}, {1, 0})));
   EXPECT_TRUE(w.soft.begin_cut(disc, half));
@@ -334,9 +338,9 @@ TEST(Box2dFracture, ACutThatBeginsHasItsPiecesLaterAndTheSame) {
 }
 
 /// A body that is about to break is assigned, cut or removed.
-TEST(Box2dFracture, WhatHappensToABodyThatIsBreakingIsKept) {
+TEST_P(Box2dFracture, WhatHappensToABodyThatIsBreakingIsKept) {
   const auto with_breaking_disc = [](const auto& work) {
-    World2d w(0);
+    World2d w(0, GetParam());
     SoftBody<2>& disc = w.soft.add(disc_model(7, brittle_2d(0.03f)), {0, 0});
     const SoftBody<2> saved = disc;
     for (std::size_t i = 0; i < disc.positions().size(); ++i)
@@ -365,13 +369,13 @@ TEST(Box2dFracture, WhatHappensToABodyThatIsBreakingIsKept) {
     EXPECT_TRUE(w.soft.poll_broken().empty());
   });
   // The world goes while a break is under way.
-  World2d w(0);
+  World2d w(0, GetParam());
   SoftBody<2>& disc = w.soft.add(disc_model(7, brittle_2d(0.03f)), {0, 0});
   EXPECT_TRUE(w.soft.begin_cut(disc, Cut2d::line({0, 0}, {1, 0})));
 }
 
-TEST(Box2dFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
-  World2d w;
+TEST_P(Box2dFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
+  World2d w(9.81f, GetParam());
   SoftBody<2>& bar = w.soft.add(rectangle_model({10, 1}, {.cell_size = 0.1f, .half_width = 1}), {0, 2});
   const AttachmentId left = w.soft.attach(bar, Patch<2>::of_surface({-0.45f, 2.05f}, 0.08f));
   const AttachmentId middle = w.soft.attach(bar, Patch<2>::of_surface({0.1f, 2.05f}, 0.12f));
@@ -393,8 +397,8 @@ TEST(Box2dFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
   w.run(0.1f);
 }
 
-TEST(Box2dFracture, WhatIsRemovedIsNotNamed) {
-  World2d w(0);
+TEST_P(Box2dFracture, WhatIsRemovedIsNotNamed) {
+  World2d w(0, GetParam());
   SoftBody<2>& bar = w.soft.add(rectangle_model({10, 1}, {.cell_size = 0.1f, .half_width = 1}), {0, 2});
   const auto first = w.soft.cut(bar, Cut2d::line({0.101f, 2}, {1, 0}));
   ASSERT_EQ(first.size(), 1u);
@@ -412,8 +416,8 @@ TEST(Box2dFracture, WhatIsRemovedIsNotNamed) {
 }
 
 /// The body that a program assigns may be of any other model; attachments end, as their particles are no more.
-TEST(Box2dFracture, ACopyBringsAWholeBodyBack) {
-  World2d w;
+TEST_P(Box2dFracture, ACopyBringsAWholeBodyBack) {
+  World2d w(9.81f, GetParam());
   w.add_box({0, -0.5f}, {20, 0.5f});
   SoftBody<2>& disc = w.soft.add(disc_model(6, brittle_2d(0.03f)), {0, 2});
   const SoftBody<2> saved = disc;
@@ -435,7 +439,7 @@ TEST(Box2dFracture, ACopyBringsAWholeBodyBack) {
 }
 
 /// Hits, cuts, attachments and removals in any order.
-TEST(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
+TEST_P(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     std::mt19937 random(seed);
     const auto number = [&](float low, float high) {
@@ -445,7 +449,7 @@ TEST(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
       const float x = number(-most, most);
       return Vector2f(x, number(-most, most));
     };
-    World2d w(0);
+    World2d w(0, GetParam());
     const auto energy = [&] {
       double sum = 0;
       for (std::size_t b = 0; b < w.soft.size(); ++b)
@@ -519,8 +523,8 @@ TEST(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
 }
 
 /// Bodies of a thousand cells are broken to single ones, and these are still bodies.
-TEST(Box2dFracture, ABodyBrokenToSingleCellsIsStillASetOfBodies) {
-  World2d w;
+TEST_P(Box2dFracture, ABodyBrokenToSingleCellsIsStillASetOfBodies) {
+  World2d w(9.81f, GetParam());
   w.add_box({0, -0.5f}, {20, 0.5f});
   SoftBody<2>& block = w.soft.add(rectangle_model({8, 8}, {.cell_size = 0.1f, .half_width = 1}), {0, 0.2f});
   const double mass = double{block.model().mass()};

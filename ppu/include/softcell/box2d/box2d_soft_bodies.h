@@ -52,7 +52,7 @@ struct Contact2d {
 /// infinite, begin_step() throws std::runtime_error.
 class Box2dSoftBodies {
  public:
-  /// A particle moves at most this many cells in one step; faster particles are slowed down, which takes momentum from
+  /// With ContactMethod::kSpheres a particle moves at most this many cells in one step; faster particles are slowed down, which takes momentum from
   /// their body. This keeps particles from passing through other soft bodies. Box2D's continuous collision keeps them
   /// from passing through walls that do not move.
   static constexpr float kMaxTravelInCells = 1.0f;
@@ -86,8 +86,8 @@ class Box2dSoftBodies {
 
   /// Holds a patch of a body at its present place in the world, which move_attachment() can move.
   ///
-  /// begin_step() solves attachments after the shape matching; Box2D solves contacts after them. The bodies wake, and do not sleep while they
-  /// are attached. Attached sides that shall not touch need a contact filter, which softcell installs. It asks the world's own filter first
+  /// begin_step() solves attachments after the shape matching and before contacts. The bodies wake, and do not sleep while they
+  /// are attached. With ContactMethod::kSpheres attached sides that shall not touch need a contact filter, which softcell installs. It asks the world's own filter first
   /// and puts that back at the end. A filter that the caller installs later must call the one that it replaces
   /// (b2ContactManager::m_contactFilter).
   /// @throws std::invalid_argument  a body is not one of these; a setting is out of its range; the patch is empty, or too small for what
@@ -120,8 +120,8 @@ class Box2dSoftBodies {
   /// Cuts a body as it is now, whatever its settings (soft_bodies/fracture.h). The body becomes its largest piece and wakes.
   ///
   /// An attachment continues with the piece that has all particles of its patch, each of them once; if no piece has, it breaks. New bodies
-  /// follow all others in operator[]. The body gets new b2Bodies; joints of its old ones end. Circles of two pieces that overlap do not
-  /// collide until they have been apart; softcell installs a contact filter for that, as attach() does.
+  /// follow all others in operator[]. With ContactMethod::kSpheres the body gets new b2Bodies; joints of its old ones end. Circles of two
+  /// pieces that overlap do not collide until they have been apart; softcell installs a contact filter for that, as attach() does.
   /// @return the other pieces; valid until remove()
   /// @throws std::invalid_argument  the body is not one of these; the cut is not finite or has no length.
   /// @throws std::runtime_error     there would be more than 32,768 bodies; nothing has changed then
@@ -139,6 +139,10 @@ class Box2dSoftBodies {
   /// @throws std::invalid_argument  the body is not one of these
   bool is_breaking(const SoftBody<2>& body) const;
 
+  /// Says what a body may touch: fixtures, whose category and mask bits count, and other soft bodies. The body wakes.
+  /// @throws std::invalid_argument  the body is not one of these
+  void set_filter(const SoftBody<2>& body, const CollisionFilter& filter);
+
   /// One step of the world and its soft bodies. @param step  seconds, above 0.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);
 
@@ -154,8 +158,8 @@ class Box2dSoftBodies {
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). Bodies that touch each other or are connected by
   /// joints fall asleep together, soft ones and rigid ones; each of them must be slow and allowed to sleep. A sleeping body
-  /// wakes when something that moves touches it, when what it touched is removed, when gravity changes, when its user
-  /// changes it, and when Box2D wakes one of its particles.
+  /// wakes when something that moves comes to it, when what it lay on is removed or moved, when gravity changes, when its user
+  /// changes it, and when Box2D wakes one of its circles.
   void let_sleep(const std::optional<SleepSettings>& settings);
 
   std::size_t size() const;                                ///< number of soft bodies
@@ -167,7 +171,7 @@ class Box2dSoftBodies {
     const SoftBody<2>* body = nullptr;  ///< null: no particle
     std::size_t number = 0;             ///< of the particle in its body
   };
-  /// For contact listeners: the particle that a b2Body stands for. For any other b2Body the result has no body.
+  /// For contact listeners, with ContactMethod::kSpheres: the particle that a b2Body stands for. For any other b2Body the result has no body.
   Particle particle_of(const b2Body& body) const;
 
   /// The contacts of the last step at which something presses. None with ContactMethod::kSpheres: Box2D has these.

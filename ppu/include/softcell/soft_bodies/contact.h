@@ -13,12 +13,13 @@ class SoftBody;
 
 /// What soft bodies touch with.
 enum class ContactMethod {
-  /// A rigid sphere at each outer particle, which the engine moves: the way of the report of 2008. Each outer particle costs a rigid body,
+  /// A rigid sphere, in two dimensions a circle, at each outer particle, which the engine moves: the way of the report of 2008. Each outer particle costs a rigid body,
   /// and things stop at a distance from what is drawn.
   kSpheres,
   /// What is drawn; the default. Points of the mesh's surface meet rigid shapes and other soft bodies; the edges and points of those meet
   /// the body's distance field. The engine does not know the body or its particles, so the engine's own rays, overlap tests and contact
-  /// callbacks do not see it. Use BulletSoftBodies::cast_ray() and poll_contact_events(), or SurfaceQuery for one body.
+  /// callbacks do not see it. Use BulletSoftBodies::cast_ray() and poll_contact_events(), or SurfaceQuery for one body; in two dimensions
+  /// Box2dSoftBodies::contacts().
   kSurface,
 };
 
