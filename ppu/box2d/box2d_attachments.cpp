@@ -195,12 +195,7 @@ bool Box2dAttachments::holds(const Box2dBody& body) const {
   return std::ranges::any_of(links_, [&](const auto& link) { return link->a == &body || link->b == &body; });
 }
 
-/// Without a look at the body, which may be no more.
-bool Box2dAttachments::is_there(const b2Body& rigid) const {
-  for (const b2Body* body = world_.GetBodyList(); body != nullptr; body = body->GetNext())
-    if (body == &rigid) return true;
-  return false;
-}
+bool Box2dAttachments::is_there(const b2Body& rigid) const { return has_body(world_, &rigid); }
 
 void Box2dAttachments::end_gone() {
   end_links(EndedAttachment::Reason::kGone, [&](Link& link) {

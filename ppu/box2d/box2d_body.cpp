@@ -8,6 +8,12 @@ namespace softcell::ppu {
 
 using Eigen::Vector2f;
 
+bool has_body(const b2World& world, const b2Body* body) {
+  for (const b2Body* there = world.GetBodyList(); there != nullptr; there = there->GetNext())
+    if (there == body) return true;
+  return false;
+}
+
 Box2dBody::Box2dBody(b2World& world, SoftBody<2> soft)
     : world_(world), soft_(std::move(soft)), model_(soft_.shared_model()) {}
 

@@ -83,6 +83,9 @@ class Box2dBody {
   b2Vec2 gravity_asleep_{0, 0};
 };
 
+/// Whether a world has a body, which may have been destroyed: it is not looked at.
+bool has_body(const b2World& world, const b2Body* body);
+
 inline b2Vec2 to_box2d(const Eigen::Vector2f& v) { return {v.x(), v.y()}; }
 inline Eigen::Vector2f to_eigen(const b2Vec2& v) { return {v.x, v.y}; }
 

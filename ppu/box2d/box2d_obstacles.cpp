@@ -14,6 +14,7 @@
 namespace softcell::ppu {
 namespace {
 
+using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 Vector3f lifted(const b2Vec2& v, float z = 0) { return {v.x, v.y, z}; }
@@ -22,6 +23,29 @@ bool is_wanted(const b2Fixture& fixture, const CollisionFilter& filter) {
   const b2Filter& own = fixture.GetFilterData();
   return !fixture.IsSensor() && fixture.GetBody()->IsEnabled() &&
          filter.lets({static_cast<int>(own.categoryBits), static_cast<int>(own.maskBits)});
+}
+
+/// Of an edge, or of one of a chain, in its body's frame.
+struct Ends {
+  b2Vec2 from, to;
+};
+Ends ends_of(const b2Fixture& fixture, int child) {
+  if (fixture.GetType() == b2Shape::e_edge) {
+    const auto& edge = static_cast<const b2EdgeShape&>(*fixture.GetShape());
+    return {edge.m_vertex1, edge.m_vertex2};
+  }
+  SC_ASSERT(fixture.GetType() == b2Shape::e_chain, "a fixture of type {}", static_cast<int>(fixture.GetType()));
+  b2EdgeShape edge;
+  static_cast<const b2ChainShape&>(*fixture.GetShape()).GetChildEdge(&edge, child);
+  return {edge.m_vertex1, edge.m_vertex2};
+}
+
+/// Whether a place in the world lies to the left of an edge. False of other shapes.
+bool is_left_of(const Vector2f& place, const b2Fixture& fixture, int child) {
+  if (fixture.GetType() != b2Shape::e_edge && fixture.GetType() != b2Shape::e_chain) return false;
+  const Ends ends = ends_of(fixture, child);
+  const b2Vec2 at = b2MulT(fixture.GetBody()->GetTransform(), b2Vec2(place.x(), place.y()));
+  return b2Cross(ends.to - ends.from, at - ends.from) > 0;
 }
 
 /// How many fixtures a body has got before this one.
@@ -82,7 +106,7 @@ void Box2dObstacles::number_bodies() {
   for (auto body = unknown_.rbegin(); body != unknown_.rend(); ++body) numbers_.emplace(*body, next_number_++);
 }
 
-void Box2dObstacles::add_near(const Bounds<3>& box, const CollisionFilter& filter,
+void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, const CollisionFilter& filter,
                               std::vector<std::uint32_t>& indices) {
   SC_ASSERT(world_ != nullptr, "obstacles for groups {} are looked for before begin()", filter.mask);
   b2AABB query;
@@ -93,7 +117,7 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const CollisionFilter& filte
   world_->QueryAABB(&near, query);
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-  for (const Found& found : found_) indices.push_back(obstacle_of(found));
+  for (const Found& found : found_) indices.push_back(obstacle_of(found, middle));
 }
 
 std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
@@ -129,14 +153,16 @@ Box2dObstacles::Shape& Box2dObstacles::next_shape() {
   return shape;
 }
 
-std::uint32_t Box2dObstacles::obstacle_of(const Found& found) {
-  const std::pair<const b2Fixture*, int> key(found.there, found.child);
-  const auto known = std::ranges::find(known_, key, [](const auto& entry) { return entry.first; });
-  if (known != known_.end()) return known->second;
-  b2Fixture& fixture = *found.there;
+std::uint32_t Box2dObstacles::obstacle_of(const Found& found, const Vector2f& middle) {
+  const b2Fixture& fixture = *found.there;
+  const bool turned = is_left_of(middle, fixture, found.child);
+  const auto known = std::ranges::find_if(known_, [&](const Known& one) {
+    return one.fixture == &fixture && one.child == found.child && one.turned == turned;
+  });
+  if (known != known_.end()) return known->obstacle;
   const b2Transform& pose = fixture.GetBody()->GetTransform();
   Obstacle obstacle;
-  obstacle.rigid = rigid_of(*fixture.GetBody());
+  obstacle.rigid = rigid_of(*found.there->GetBody());
   obstacle.friction = std::sqrt(fixture.GetFriction());
   obstacle.position = lifted(pose.p);
   obstacle.rotation << pose.q.c, -pose.q.s, 0, pose.q.s, pose.q.c, 0, 0, 0, 1;
@@ -148,25 +174,15 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found) {
     case b2Shape::e_polygon:
       add_polygon(fixture, obstacle, shape);
       break;
-    case b2Shape::e_edge: {
-      const auto& edge = static_cast<const b2EdgeShape&>(*fixture.GetShape());
-      add_edge(edge.m_vertex1, edge.m_vertex2, obstacle, shape);
-      break;
-    }
-    default: {
-      SC_ASSERT(fixture.GetType() == b2Shape::e_chain, "a fixture of type {}",
-                static_cast<int>(fixture.GetType()));
-      b2EdgeShape edge;
-      static_cast<const b2ChainShape&>(*fixture.GetShape()).GetChildEdge(&edge, found.child);
-      add_edge(edge.m_vertex1, edge.m_vertex2, obstacle, shape);
-    }
+    default:
+      add_edge(fixture, found.child, turned, obstacle, shape);
   }
   obstacle.planes = shape.planes;
   obstacle.edges = shape.edges;
   obstacle.triangles = shape.triangles;
   const auto index = static_cast<std::uint32_t>(obstacles_.size());
   obstacles_.push_back(obstacle);
-  known_.emplace_back(key, index);
+  known_.push_back({&fixture, found.child, turned, index});
   return index;
 }
 
@@ -190,8 +206,11 @@ void Box2dObstacles::add_polygon(const b2Fixture& fixture, Obstacle& obstacle, S
   }
 }
 
-/// A wall, as high as the layer and as much again.
-void Box2dObstacles::add_edge(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const {
+/// A wall, as high as the layer and as much again, whose front is on one side.
+void Box2dObstacles::add_edge(const b2Fixture& fixture, int child, bool turned, Obstacle& obstacle,
+                              Shape& shape) const {
+  const Ends ends = ends_of(fixture, child);
+  const b2Vec2 &from = turned ? ends.to : ends.from, &to = turned ? ends.from : ends.to;
   obstacle.kind = ObstacleKind::kTriangles;
   const float high = 2 * layer_;
   shape.triangles.push_back({lifted(from, -high), lifted(to, -high), lifted(to, high)});

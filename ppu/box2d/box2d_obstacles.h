@@ -10,7 +10,6 @@
 #include <deque>
 #include <span>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "ppu/surfaces/obstacle.h"
@@ -18,15 +17,17 @@
 
 namespace softcell::ppu {
 
-/// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains keep out what comes from either
-/// side. Sensors are none. Used by one thread. Allocates when there are more of them than ever before.
+/// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains have two sides: of each of them
+/// a body is kept on the side where its middle is. Sensors are none. Used by one thread. Allocates when there are more of them than ever before.
 class Box2dObstacles {
  public:
   /// Forgets what was near before. @param layer  metres above and below z = 0 in which soft bodies are
   void begin(b2World& world, float step, float layer);
 
   /// Appends the indices of all obstacles in a box, those of one body behind each other, bodies in the order in which the world got them.
-  void add_near(const Bounds<3>& box, const CollisionFilter& filter, std::vector<std::uint32_t>& indices);
+  /// @param middle  of the body in the box: says on which side of edges it is
+  void add_near(const Bounds<3>& box, const Eigen::Vector2f& middle, const CollisionFilter& filter,
+                std::vector<std::uint32_t>& indices);
 
   std::span<const Obstacle> obstacles() const { return obstacles_; }
   std::span<ContactRigid> rigids() { return rigids_; }
@@ -54,14 +55,21 @@ class Box2dObstacles {
     b2Fixture* there;
     auto operator<=>(const Found&) const = default;
   };
+  /// An obstacle of this substep.
+  struct Known {
+    const b2Fixture* fixture;
+    int child;
+    bool turned;  // an edge, seen from the left of the way from its first end to the second
+    std::uint32_t obstacle;
+  };
   class Collector;
 
   void number_bodies();
   std::uint32_t rigid_of(b2Body& body);
-  std::uint32_t obstacle_of(const Found& found);
+  std::uint32_t obstacle_of(const Found& found, const Eigen::Vector2f& middle);
   static void add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   static void add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
-  void add_edge(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const;
+  void add_edge(const b2Fixture& fixture, int child, bool turned, Obstacle& obstacle, Shape& shape) const;
   Shape& next_shape();
 
   b2World* world_ = nullptr;
@@ -73,7 +81,7 @@ class Box2dObstacles {
   std::uint32_t next_number_ = 0;
   std::vector<b2Body*> unknown_;
   std::vector<Found> found_;
-  std::vector<std::pair<std::pair<const b2Fixture*, int>, std::uint32_t>> known_;  // obstacles of this substep
+  std::vector<Known> known_;
   std::deque<Shape> shapes_;  // obstacles point into them
   std::size_t shapes_used_ = 0;
 };

@@ -81,11 +81,12 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
                 .obstacles = std::move(in_stage.obstacles)};
     in_stage.obstacles.clear();
     in_stage.filter = body.filter();
-    obstacles_.add_near(in_stage.box, in_stage.filter, in_stage.obstacles);
+    obstacles_.add_near(in_stage.box, soft.centre_of_mass(), in_stage.filter, in_stage.obstacles);
     std::erase_if(in_stage.obstacles, [&](std::uint32_t obstacle) {
       return attachments.parts(body, *obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
     });
-    if (soft.asleep() && must_wake(kept, in_stage)) wake(body, kept);
+    if (soft.asleep() && must_wake(kept, in_stage)) body.wake();
+    if (!soft.asleep() && kept.lies()) rise(kept);
   }
   parted_.clear();
   attachments.append_parted(bodies, parted_);
@@ -103,8 +104,10 @@ bool SurfaceContacts2d::must_wake(const Kept& kept, const BodyInStage& in_stage)
   return kept.lost_support || std::ranges::any_of(kept.supports, is_gone) || std::ranges::any_of(in_stage.obstacles, moves_there);
 }
 
-void SurfaceContacts2d::wake(Box2dBody& body, Kept& kept) {
-  body.wake();
+/// It is awake: what has slept with it wakes, too.
+void SurfaceContacts2d::rise(Kept& kept) {
+  for (const Support& support : kept.supports)
+    if (has_body(world_, support.body) && support.body->GetType() == b2_dynamicBody) support.body->SetAwake(true);
   kept.supports.clear();
   kept.lies_on.clear();
   kept.lost_support = false;
@@ -119,7 +122,8 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
         const bool hits = !bodies[other]->soft().asleep() && bodies[other]->moves() &&
                           overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.lets(in_stage_[other].filter);
         if (!hits) continue;
-        wake(*bodies[i], kept_.at(bodies[i].get()));
+        bodies[i]->wake();
+        rise(kept_.at(bodies[i].get()));
         break;
       }
     }
@@ -195,8 +199,6 @@ void SurfaceContacts2d::append_contacts(std::vector<Contact2d>& contacts) const 
 
 void SurfaceContacts2d::let_lie(const Box2dBody& body) {
   Kept& kept = kept_[&body];
-  kept.supports.clear();
-  kept.lies_on.clear();
   for (const auto& [soft, rigid] : touches_.rigid)
     if (soft == &body) kept.supports.push_back({rigid, rigid->GetTransform()});
   for (const auto& [a, b] : touches_.soft) {
@@ -206,7 +208,10 @@ void SurfaceContacts2d::let_lie(const Box2dBody& body) {
 }
 
 void SurfaceContacts2d::forget(const Box2dBody& body) {
-  kept_.erase(&body);
+  if (const auto known = kept_.find(&body); known != kept_.end()) {
+    rise(known->second);
+    kept_.erase(known);
+  }
   std::erase_if(touches_.soft, [&](const auto& pair) { return pair.first == &body || pair.second == &body; });
   std::erase_if(touches_.rigid, [&](const auto& pair) { return pair.first == &body; });
   for (auto& [other, kept] : kept_)

@@ -69,13 +69,14 @@ class SurfaceContacts2d {
     std::vector<Support> supports;                       // while it sleeps
     std::vector<const Box2dBody*> lies_on;               // likewise
     bool lost_support = false;                           // one of these is gone
+    bool lies() const { return lost_support || !supports.empty() || !lies_on.empty(); }
   };
 
   const Model& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
   bool must_wake(const Kept& kept, const BodyInStage& in_stage) const;
-  void wake(Box2dBody& body, Kept& kept);
+  void rise(Kept& kept);
   void wake_those_in_the_way(Bodies bodies);
   void move(Bodies bodies, float step);
   void note_touches(Bodies bodies);

@@ -267,7 +267,7 @@ TEST(SpeSolver2d, SleepingBodiesHaveNoJob) {
 TEST(SpeSolver2d, ANanThatThePpuFindsLeavesNoJobUnderWay) {
   Spes spes;
   b2World world({0, 0});
-  Box2dSoftBodies soft(world, spes.solver);
+  Box2dSoftBodies soft(world, spes.solver, ContactMethod::kSpheres);
   SoftBody<2>& large = soft.add(rectangle_model({45, 45}, rubber_sheet()), {0, 0});
   SoftBody<2>& small = soft.add(man(), {20, 0});
   large.add_particle_velocity(7, {std::nanf(""), 0});

@@ -198,11 +198,11 @@ TEST_P(FlatContacts, AThinThingStaysOutside) {
     w->soft.step(kStep2d);
     deepest = std::max(deepest, depth_in(body, {0, 1}));
   }
-  EXPECT_GT(deepest, 0) << "it has not come down on the needle";
+  ASSERT_LT(body.centre_of_mass().y(), 1.6f) << "it has not come down to the needle";
   EXPECT_LT(deepest, 0.1f);
 }
 
-/// The thickness of walls is nothing: an edge, a chain, a polygon of 2 cm.
+/// Edges and chains have no thickness, and the polygon a tenth of a cell.
 TEST_P(FlatContacts, NothingPassesAThinWall) {
   for (int kind = 0; kind < 3; ++kind) {
     const auto w = world(0);
@@ -214,13 +214,18 @@ TEST_P(FlatContacts, NothingPassesAThinWall) {
     const b2Vec2 corners[] = {{2, -4}, {2, -1}, {2, 1}, {2, 4}};
     chain.CreateChain(corners, 4, {2, -5}, {2, 5});
     b2PolygonShape thin;
-    thin.SetAsBox(0.01f, 4, {2, 0}, 0);
+    thin.SetAsBox(0.0125f, 4, {2, 0}, 0);
     wall->CreateFixture(kind == 0 ? static_cast<b2Shape*>(&edge) : kind == 1 ? static_cast<b2Shape*>(&chain) : &thin, 0);
-    SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, -0.5f});
-    body.add_velocity({100, 0});
-    for (int i = 0; i < 60; ++i) {
-      w->soft.step(kStep2d);
-      for (const Vector2f& position : body.positions()) ASSERT_LT(position.x(), 2.01f) << kind << " after " << i;
+    for (const float speed : {5.0f, 20.0f, 100.0f}) {
+      SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, -0.5f});
+      body.add_velocity({speed, 0});
+      for (int i = 0; i < 120; ++i) {
+        w->soft.step(kStep2d);
+        for (const Vector2f& position : body.positions())
+          ASSERT_LT(position.x(), 2 + 0.1f * 0.25f) << kind << " at " << speed << " m/s after " << i;
+      }
+      EXPECT_LT(body.linear_momentum().x(), 0) << "it has not come to the wall";
+      w->soft.remove(body);
     }
   }
 }
@@ -282,7 +287,8 @@ TEST_P(FlatContacts, AHeavyBoxRestsOnABody) {
 
 /// Its cells have stairs, what is drawn has none.
 TEST_P(FlatContacts, ADiscRollsOnWhatIsDrawn) {
-  const auto w = world();
+  constexpr float kGravity = 2;
+  const auto w = world(kGravity);
   b2Body* const floor = w->add_box({0, -1}, {20, 1});
   floor->SetTransform({0, -1}, -0.2f);
   SoftBodySettings settings = calm(0.2f);
@@ -298,12 +304,12 @@ TEST_P(FlatContacts, ADiscRollsOnWhatIsDrawn) {
   const float radius = 4.5f * settings.cell_size;
   SoftBody<2>& body = w->soft.add(model, Vector2f(0, -1) + (1 + radius) * normal, &disc);
   const Vector2f begin = body.centre_of_mass();
-  const float seconds = 2;
+  const float seconds = 4;
   w->run(seconds);
   const Vector2f way = body.centre_of_mass() - begin;
-  EXPECT_NEAR(way.dot(normal), 0, 0.1f * settings.cell_size);
+  EXPECT_NEAR(way.dot(normal), 0, 0.2f * settings.cell_size);  // its weight
   // Of a disc that rolls without sliding: two thirds of g sin(angle).
-  EXPECT_NEAR(way.dot(along), 9.81f * std::sin(0.2f) / 3 * seconds * seconds, 0.08f * way.dot(along));
+  EXPECT_NEAR(way.dot(along), kGravity * std::sin(0.2f) / 3 * seconds * seconds, 0.08f * way.dot(along));
 }
 
 /// A bar with a crack from above down to its middle is bent so that the crack closes.

