@@ -44,8 +44,8 @@ void Box2dBody::take_over_particles() {
 }
 
 void Box2dBody::move_particle(std::size_t particle, const Vector2f& way) {
-  SC_ASSERT(particle < soft_.positions().size() && way.allFinite(), "particle {} of {} is moved by ({}, {}) m",
-            particle, soft_.positions().size(), way.x(), way.y());
+  SC_ASSERT(particle < soft_.positions().size() && way.allFinite(),
+            "particle {} of {} is moved by ({}, {}) m", particle, soft_.positions().size(), way.x(), way.y());
   soft_.set_particle(particle, soft_.position(particle) + way, soft_.velocities()[particle]);
   place_particle(particle);
 }

@@ -66,9 +66,9 @@ class Box2dBody {
  protected:
   /// Whether gravity is another than when it fell asleep, or Box2D has woken a particle.
   virtual bool was_disturbed() const;
-  virtual void exchange_particles() {}                     ///< it has another model
-  virtual void gather_particles() {}                       ///< as Box2D has them
-  virtual void place_particles() {}                        ///< where the body is, with its settings
+  virtual void exchange_particles() {}                      ///< it has another model
+  virtual void gather_particles() {}                        ///< as Box2D has them
+  virtual void place_particles() {}                         ///< where the body is, with its settings
   virtual void place_particle(std::size_t /*particle*/) {}  ///< likewise, one that may be an inner one
   virtual void set_particles_awake(bool /*awake*/) {}
 

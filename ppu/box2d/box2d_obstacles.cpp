@@ -34,7 +34,8 @@ Ends ends_of(const b2Fixture& fixture, int child) {
     const auto& edge = static_cast<const b2EdgeShape&>(*fixture.GetShape());
     return {edge.m_vertex1, edge.m_vertex2};
   }
-  SC_ASSERT(fixture.GetType() == b2Shape::e_chain, "a fixture of type {}", static_cast<int>(fixture.GetType()));
+  SC_ASSERT(fixture.GetType() == b2Shape::e_chain, "a fixture of type {}",
+            static_cast<int>(fixture.GetType()));
   b2EdgeShape edge;
   static_cast<const b2ChainShape&>(*fixture.GetShape()).GetChildEdge(&edge, child);
   return {edge.m_vertex1, edge.m_vertex2};
@@ -59,7 +60,8 @@ std::uint32_t number_of(const b2Fixture& fixture) {
 
 class Box2dObstacles::Collector final : public b2QueryCallback {
  public:
-  Collector(const CollisionFilter& filter, const b2AABB& box, const Box2dObstacles& of, std::vector<Found>& found)
+  Collector(const CollisionFilter& filter, const b2AABB& box, const Box2dObstacles& of,
+            std::vector<Found>& found)
       : filter_(filter), box_(box), of_(of), found_(found) {}
   /// Once for each child whose box is near.
   bool ReportFixture(b2Fixture* fixture) override {
@@ -78,7 +80,8 @@ class Box2dObstacles::Collector final : public b2QueryCallback {
 };
 
 void Box2dObstacles::begin(b2World& world, float step, float layer) {
-  SC_ASSERT(step > 0 && layer > 0, "a substep of {} s, of bodies {} m above and below the plane", step, layer);
+  SC_ASSERT(step > 0 && layer > 0, "a substep of {} s, of bodies {} m above and below the plane", step,
+            layer);
   world_ = &world;
   step_ = step;
   layer_ = layer;
@@ -103,7 +106,8 @@ void Box2dObstacles::number_bodies() {
       if (const auto known = numbers_.find(body); known != numbers_.end()) there.insert(*known);
     numbers_ = std::move(there);
   }
-  for (auto body = unknown_.rbegin(); body != unknown_.rend(); ++body) numbers_.emplace(*body, next_number_++);
+  for (auto body = unknown_.rbegin(); body != unknown_.rend(); ++body)
+    numbers_.emplace(*body, next_number_++);
 }
 
 void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, const CollisionFilter& filter,

@@ -33,7 +33,8 @@ class Rest {
   /// Puts `body` to sleep with all that it touches, if all of it has been at rest for long enough.
   /// @param touches  besides those that Box2D knows
   /// @return  the soft ones  @pre  the body is awake
-  std::span<Box2dBody* const> settle(Box2dBody& body, const SleepSettings& settings, const SoftTouches& touches);
+  std::span<Box2dBody* const> settle(Box2dBody& body, const SleepSettings& settings,
+                                     const SoftTouches& touches);
 
  private:
   bool rests(const Box2dBody& body, const SleepSettings& settings) const;

@@ -37,9 +37,11 @@ const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
     const std::shared_ptr<const SoftBodyModel<2>>& model) {
   std::unique_ptr<Model>& known = models_[model.get()];  // stays where it is, whatever else comes
   if (known) return *known;
-  Skin2d skin = model->is_piece()
-                    ? skin_of_piece(model_of(model->whole()).skin, model->whole()->lattice(), model->lattice())
-                    : make_skin_2d(model->lattice(), std::min(model->contact_radius() / model->lattice().spacing, kMaxSkinMargin));
+  Skin2d skin =
+      model->is_piece()
+          ? skin_of_piece(model_of(model->whole()).skin, model->whole()->lattice(), model->lattice())
+          : make_skin_2d(model->lattice(),
+                         std::min(model->contact_radius() / model->lattice().spacing, kMaxSkinMargin));
   known = std::make_unique<Model>(model, std::move(skin));
   return *known;
 }
@@ -101,13 +103,15 @@ bool SurfaceContacts2d::must_wake(const Kept& kept, const BodyInStage& in_stage)
   const auto moves_there = [&](std::uint32_t obstacle) {
     return moves(*obstacles_.bodies()[obstacles_.obstacles()[obstacle].rigid]);
   };
-  return kept.lost_support || std::ranges::any_of(kept.supports, is_gone) || std::ranges::any_of(in_stage.obstacles, moves_there);
+  return kept.lost_support || std::ranges::any_of(kept.supports, is_gone) ||
+         std::ranges::any_of(in_stage.obstacles, moves_there);
 }
 
 /// It is awake: what has slept with it wakes, too.
 void SurfaceContacts2d::rise(Kept& kept) {
   for (const Support& support : kept.supports)
-    if (has_body(world_, support.body) && support.body->GetType() == b2_dynamicBody) support.body->SetAwake(true);
+    if (has_body(world_, support.body) && support.body->GetType() == b2_dynamicBody)
+      support.body->SetAwake(true);
   kept.supports.clear();
   kept.lies_on.clear();
   kept.lost_support = false;
@@ -120,7 +124,8 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
     if (bodies[i]->soft().asleep()) {
       for (std::size_t other = 0; other < bodies.size(); ++other) {
         const bool hits = !bodies[other]->soft().asleep() && bodies[other]->moves() &&
-                          overlap(sleeper.box, in_stage_[other].box) && sleeper.filter.lets(in_stage_[other].filter);
+                          overlap(sleeper.box, in_stage_[other].box) &&
+                          sleeper.filter.lets(in_stage_[other].filter);
         if (!hits) continue;
         bodies[i]->wake();
         rise(kept_.at(bodies[i].get()));

@@ -91,9 +91,9 @@ class SurfaceContacts {
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
   std::vector<const SoftBody<3>*> softs_;  // of the last substep
-  std::vector<std::uint32_t> moving_;  // bodies that wake those in their way
-  DisjointSets islands_;               // of bodies in the last substep
-  std::vector<bool> is_restless_;      // of each island
+  std::vector<std::uint32_t> moving_;      // bodies that wake those in their way
+  DisjointSets islands_;                   // of bodies in the last substep
+  std::vector<bool> is_restless_;          // of each island
   bool watches_ = false;
   std::map<TouchKey, Touch> touches_;
   // While events are kept, in each substep:

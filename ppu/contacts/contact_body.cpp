@@ -81,7 +81,8 @@ void ContactModel::place_touch_points() {
   const auto homes = homes_of_particles(lattice());
   first_of_cell.assign(lattice().cells.size() + 1, 0);
   for (const SurfacePointAtRest& point : surface.points()) ++first_of_cell[point.cell + 1];
-  for (const TouchingParticle& touching : surface.particles()) ++first_of_cell[homes[touching.particle].first + 1];
+  for (const TouchingParticle& touching : surface.particles())
+    ++first_of_cell[homes[touching.particle].first + 1];
   for (std::size_t i = 1; i < first_of_cell.size(); ++i) first_of_cell[i] += first_of_cell[i - 1];
   touch_points.resize(first_of_cell.back());
   std::vector<std::uint32_t> next(first_of_cell.begin(), first_of_cell.end() - 1);

@@ -248,7 +248,8 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
       for (const spu::SolveContact& contact : group.solved.contacts) {
         const Vector3f normal(contact.normal);
         add(group.b, Vector3f(contact.point), normal, contact.least_velocity,
-            -normal.dot(Vector3f(contact.carried)), contact.friction, settings.bounces.restitution_of(a.restitution, b.restitution));
+            -normal.dot(Vector3f(contact.carried)), contact.friction,
+            settings.bounces.restitution_of(a.restitution, b.restitution));
       }
       continue;
     }

@@ -1,6 +1,7 @@
 #include "ppu/lattice/outline_distance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "softcell/base/assert.h"
@@ -30,7 +31,8 @@ OutlineDistance::OutlineDistance(const Skin2d& skin) {
     for (int y = first.y(); y <= last.y(); ++y) {
       rows_[static_cast<std::size_t>(y)].push_back(i);
       for (int x = first.x(); x <= last.x(); ++x)
-        squares_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.x()) + static_cast<std::size_t>(x)]
+        squares_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.x()) +
+                 static_cast<std::size_t>(x)]
             .push_back(i);
     }
   }

@@ -26,7 +26,8 @@ class OutlineDistance {
     float distance(const Eigen::Vector2f& at) const;
   };
   const std::vector<std::uint32_t>& in_square(int x, int y) const {
-    return squares_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.x()) + static_cast<std::size_t>(x)];
+    return squares_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.x()) +
+                    static_cast<std::size_t>(x)];
   }
   float nearest(const Eigen::Vector2f& at) const;
   bool is_inside(const Eigen::Vector2f& at) const;

@@ -7,10 +7,10 @@
 #include <memory>
 #include <utility>
 
-#include "ppu/surfaces/crack_sides.h"
-#include "ppu/surfaces/point_chooser.h"
 #include "ppu/fracture/cracks.h"
 #include "ppu/lattice/outline_distance.h"
+#include "ppu/surfaces/crack_sides.h"
+#include "ppu/surfaces/point_chooser.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -83,9 +83,11 @@ class FlatLayer::Maker {
     ContactSurface::CellField field{};
     for (int y = 0; y < kNodes; ++y)
       for (int x = 0; x < kNodes; ++x) {
-        const Vector2f at = cell.cast<float>() + 0.5f * Vector2f(static_cast<float>(x), static_cast<float>(y));
+        const Vector2f at =
+            cell.cast<float>() + 0.5f * Vector2f(static_cast<float>(x), static_cast<float>(y));
         const float distance = outline_.signed_distance(at);
-        for (int z = 0; z < kNodes; ++z) field[static_cast<std::size_t>((z * kNodes + y) * kNodes + x)] = distance;
+        for (int z = 0; z < kNodes; ++z)
+          field[static_cast<std::size_t>((z * kNodes + y) * kNodes + x)] = distance;
       }
     return field;
   }
@@ -217,8 +219,9 @@ FlatLayer::FlatLayer(Maker maker)
 
 void FlatLayer::lift(std::span<const Vector2f> flat, float half, std::vector<Vector3f>& lifted) const {
   const std::size_t columns = lattice_->particles.size() / 2;
-  SC_ASSERT(flat.size() + first_beyond_.size() - 1 == columns, "{} particles and {} places beyond of {} columns",
-            flat.size(), first_beyond_.size() - 1, columns);
+  SC_ASSERT(flat.size() + first_beyond_.size() - 1 == columns,
+            "{} particles and {} places beyond of {} columns", flat.size(), first_beyond_.size() - 1,
+            columns);
   lifted.clear();
   lifted.reserve(2 * columns);
   const auto add = [&](const Vector2f& v) {

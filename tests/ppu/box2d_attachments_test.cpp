@@ -48,8 +48,8 @@ Eigen::Vector2d momentum_of_all(const Box2dSoftBodies& bodies) {
 }
 
 class Box2dAttachments : public testing::TestWithParam<ContactMethod> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Box2dAttachments, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
-                         name_of_method);
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dAttachments,
+                         testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface), name_of_method);
 
 /// A hung body with another standing on it carries both, and no rope is longer than its length by more than 1 %.
 TEST_P(Box2dAttachments, AHungBodyCarriesOneThatStandsOnIt) {

@@ -30,8 +30,8 @@ float lowest(const SoftBody<2>& body) {
 }
 
 class Box2dCoupling : public testing::TestWithParam<ContactMethod> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Box2dCoupling, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
-                         name_of_method);
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dCoupling,
+                         testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface), name_of_method);
 
 TEST_P(Box2dCoupling, RestsOnAFloorInShape) {
   World2d world(9.81f, GetParam());
@@ -45,7 +45,8 @@ TEST_P(Box2dCoupling, RestsOnAFloorInShape) {
   EXPECT_LT(fastest, 0.005f);
   EXPECT_LT(body.deformation(), 0.04f);
   // What is drawn gives below its weight, circles do not.
-  EXPECT_NEAR(lowest(body), body.model().contact_radius(), GetParam() == ContactMethod::kSpheres ? 0.02f : 0.05f);
+  EXPECT_NEAR(lowest(body), body.model().contact_radius(),
+              GetParam() == ContactMethod::kSpheres ? 0.02f : 0.05f);
 }
 
 /// Leaves large numbers where the frames of the functions that are called next will lie.
@@ -276,8 +277,8 @@ struct Resting {
 };
 
 class Box2dSleep : public testing::TestWithParam<ContactMethod> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Box2dSleep, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
-                         name_of_method);
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dSleep,
+                         testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface), name_of_method);
 
 TEST_P(Box2dSleep, ABodyAtRestStaysWhereItIs) {
   Resting resting(GetParam());

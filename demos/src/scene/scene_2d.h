@@ -66,7 +66,9 @@ struct SoftBody2dPlacement {
   float skin_margin() const;       ///< of make_skin_2d()
   ppu::Outside2d outside() const;  ///< what the cells stand for, if it is more than they are
   /// How the body is drawn, and what touches of it. @param of  its own lattice, as lattice()
-  ppu::Skin2d skin(const ppu::Lattice<2>& of) const { return ppu::make_skin_2d(of, skin_margin(), outside()); }
+  ppu::Skin2d skin(const ppu::Lattice<2>& of) const {
+    return ppu::make_skin_2d(of, skin_margin(), outside());
+  }
 };
 
 struct Box2dShape {
@@ -109,9 +111,10 @@ struct Scene2d {
   float friction = 0.6f;
   float restitution = 0;  ///< 0..1, of rigid bodies
   int substeps = 2;       ///< of a frame of 1/60 s
-  ppu::ContactMethod contacts = ppu::ContactMethod::kSurface;  ///< unless the user wants another; kSpheres: circles
-  bool sleep = false;     ///< bodies fall asleep when they have come to rest
-  int frames = 300;       ///< how long the scene is worth watching without a user
+  ppu::ContactMethod contacts =
+      ppu::ContactMethod::kSurface;  ///< unless the user wants another; kSpheres: circles
+  bool sleep = false;                ///< bodies fall asleep when they have come to rest
+  int frames = 300;                  ///< how long the scene is worth watching without a user
   Camera2d camera;
   ScriptedInput<2> script;
   std::vector<ScriptedCut<2>> cuts;

@@ -103,8 +103,8 @@ b2Body* add_rigid_body(b2World& world, const RigidBody2d& rigid, float friction,
 
 /// Everything that moves. A reset makes it anew, so that nothing is left of what was: no contact, no impulse.
 struct World {
-  World(const Scene2d& scene, const Models& models, ppu::SoftBodySolver<2>& solver, ppu::ContactMethod contacts,
-        std::shared_ptr<ppu::ContactWorker> worker)
+  World(const Scene2d& scene, const Models& models, ppu::SoftBodySolver<2>& solver,
+        ppu::ContactMethod contacts, std::shared_ptr<ppu::ContactWorker> worker)
       : soft_bodies(world, solver, contacts, std::move(worker)) {
     SC_ASSERT(models.size() == scene.soft_bodies.size(), "the models of {} bodies of {}", models.size(),
               scene.soft_bodies.size());
@@ -114,7 +114,8 @@ struct World {
       rigid_bodies.push_back(add_rigid_body(world, body, scene.friction, scene.restitution));
     for (std::size_t i = 0; i < models.size(); ++i) {
       const SoftBody2dPlacement& body = scene.soft_bodies[i];
-      const bool is_first = std::ranges::find(models, models[i]) - models.begin() == static_cast<std::ptrdiff_t>(i);
+      const bool is_first =
+          std::ranges::find(models, models[i]) - models.begin() == static_cast<std::ptrdiff_t>(i);
       std::optional<ppu::Skin2d> skin;
       if (is_first && contacts == ppu::ContactMethod::kSurface) skin = body.skin(models[i]->lattice());
       soft_bodies.add(models[i], body.position, skin ? &*skin : nullptr);

@@ -72,8 +72,8 @@ void expect_finite(const Box2dSoftBodies& bodies) {
 }
 
 class Box2dFracture : public testing::TestWithParam<ContactMethod> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Box2dFracture, testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface),
-                         name_of_method);
+INSTANTIATE_TEST_SUITE_P(Methods, Box2dFracture,
+                         testing::Values(ContactMethod::kSpheres, ContactMethod::kSurface), name_of_method);
 
 /// A bar of 12 cells along x with a weak middle that a weld at each end pulls apart.
 TEST_P(Box2dFracture, ABarUnderTensionBreaksWhereItIsWeakAtTheStretchStated) {
