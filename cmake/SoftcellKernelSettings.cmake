@@ -3,6 +3,7 @@
 
 set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk)
 set(SOFTCELL_CHECK_BUDGET ${CMAKE_CURRENT_LIST_DIR}/CheckSpuBudget.cmake)
+set(SOFTCELL_LINK_IMAGE ${CMAKE_CURRENT_LIST_DIR}/link_spu_image.sh)
 
 set(SOFTCELL_KERNEL_FLAGS
   -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fPIE -fvisibility=hidden -fno-stack-protector
