@@ -141,6 +141,7 @@ function(softcell_install_package)
     ${PROJECT_SOURCE_DIR}/cmake/SoftcellSpuKernel.cmake
     ${PROJECT_SOURCE_DIR}/cmake/SoftcellSpuElf.cmake
     ${PROJECT_SOURCE_DIR}/cmake/CheckSpuBudget.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/link_spu_image.sh
     ${PROJECT_SOURCE_DIR}/cmake/FindBulletFloat.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindTurboJpeg.cmake
     DESTINATION ${SOFTCELL_INSTALL_MODULES} COMPONENT development)

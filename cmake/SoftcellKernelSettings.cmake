@@ -3,6 +3,7 @@
 
 set(SOFTCELL_SDK_DIR ${CMAKE_CURRENT_LIST_DIR}/../spu_kernels/sdk)
 set(SOFTCELL_CHECK_BUDGET ${CMAKE_CURRENT_LIST_DIR}/CheckSpuBudget.cmake)
+set(SOFTCELL_LINK_IMAGE ${CMAKE_CURRENT_LIST_DIR}/link_spu_image.sh)
 
 set(SOFTCELL_KERNEL_FLAGS
   -std=c++17 -ffreestanding -fno-exceptions -fno-rtti -fPIE -fvisibility=hidden -fno-stack-protector
@@ -55,8 +56,13 @@ list(REMOVE_ITEM SOFTCELL_SPU_CXX_FLAGS -std=gnu17)
 list(PREPEND SOFTCELL_SPU_CXX_FLAGS -std=c++17)
 
 # Programs: other people's sources, in C or C++, with the C library of the local store. What they do not use is left out of the image.
-execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=include OUTPUT_VARIABLE SOFTCELL_COMPILER_HEADERS
-  OUTPUT_STRIP_TRAILING_WHITESPACE)
+# (The compiler is asked once: a build has hundreds of kernels, each of which reads this file several times.)
+get_property(SOFTCELL_COMPILER_HEADERS GLOBAL PROPERTY SOFTCELL_COMPILER_HEADERS)
+if(NOT SOFTCELL_COMPILER_HEADERS)
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=include OUTPUT_VARIABLE SOFTCELL_COMPILER_HEADERS
+    OUTPUT_STRIP_TRAILING_WHITESPACE)
+  set_property(GLOBAL PROPERTY SOFTCELL_COMPILER_HEADERS ${SOFTCELL_COMPILER_HEADERS})
+endif()
 set(SOFTCELL_PROGRAM_FLAGS -ffunction-sections -fdata-sections -D__SPU__ -nostdinc
   -isystem${SOFTCELL_SDK_DIR}/library/include -isystem${SOFTCELL_COMPILER_HEADERS})  # joined: CMake drops a second -isystem
 # Of a C source that softcell_vector_casts has rewritten: lines are those of the source, columns are not.

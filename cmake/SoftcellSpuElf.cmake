@@ -29,6 +29,19 @@ function(softcell_find_spu_tool variable tool)
   set(${variable} ${path} PARENT_SCOPE)
 endfunction()
 
+# softcell_find_spu_libgcc(<variable>): the compiler's own library: products of 64 bits, the manager of MFC tags. Nothing of a C library.
+# The compiler is asked once for all kernels.
+function(softcell_find_spu_libgcc variable)
+  set(known SOFTCELL_LIBGCC_OF_${SOFTCELL_SPU_CXX})
+  get_property(libgcc GLOBAL PROPERTY ${known})
+  if(NOT libgcc)
+    execute_process(COMMAND ${SOFTCELL_SPU_CXX} -print-libgcc-file-name OUTPUT_VARIABLE libgcc OUTPUT_STRIP_TRAILING_WHITESPACE
+      COMMAND_ERROR_IS_FATAL ANY)
+    set_property(GLOBAL PROPERTY ${known} ${libgcc})
+  endif()
+  set(${variable} ${libgcc} PARENT_SCOPE)
+endfunction()
+
 # softcell_add_spu_elf(<name> SOURCES <file>... STACK_BYTES <n> BUDGET_BYTES <n> [INCLUDES <folder>...] [OPTIONS <option>...]
 #                      [RESIDENT_AT <address>] [WARNINGS_AS_ERRORS])
 # <binary dir>/<name>.elf, target <name>_spu_elf; its property SOFTCELL_IMAGE is the path.
@@ -38,9 +51,7 @@ function(softcell_add_spu_elf name)
   softcell_find_spu_tool(c_compiler gcc)
   softcell_find_spu_tool(linker ld)
   softcell_find_spu_tool(nm nm)
-  # The compiler's own library: products of 64 bits, the manager of MFC tags. Nothing of a C library.
-  execute_process(COMMAND ${SOFTCELL_SPU_CXX} -print-libgcc-file-name OUTPUT_VARIABLE libgcc OUTPUT_STRIP_TRAILING_WHITESPACE
-    COMMAND_ERROR_IS_FATAL ANY)
+  softcell_find_spu_libgcc(libgcc)
   softcell_spu_source_options(options "${arg_INCLUDES}" "${arg_OPTIONS}" "${arg_WARNINGS_AS_ERRORS}")
   list(APPEND options -I${SOFTCELL_SDK_DIR}/.. -I${SOFTCELL_SDK_DIR}/shared)
   set(objects)

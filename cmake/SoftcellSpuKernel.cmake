@@ -122,14 +122,13 @@ function(softcell_link_spu_image name)
   endif()
   list(TRANSFORM arg_OBJECTS REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
   add_custom_command(OUTPUT ${arg_IMAGE}
-    COMMAND ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
-      --defsym softcell_stack_bytes=${arg_STACK_BYTES} --defsym softcell_budget_bytes=${arg_BUDGET_BYTES}
+    COMMAND sh ${SOFTCELL_LINK_IMAGE} ${name} ${arg_IMAGE} ${begin} ${arg_STACK_BYTES} ${arg_BUDGET_BYTES} ${CMAKE_COMMAND} ${CMAKE_NM}
+      ${SOFTCELL_KERNEL_LINKER} -m elf32_x86_64 -pie --no-dynamic-linker -T ${SOFTCELL_SDK_DIR}/ls.ld
+      --defsym softcell_stack_bytes=${arg_STACK_BYTES}
       --defsym softcell_is_checked=${arg_CHECKED} --defsym softcell_is_program=${program} --defsym softcell_image_begin=${image_begin}
       --emit-relocs --build-id=none -z noexecstack --no-warn-rwx-segments -z max-page-size=128
-      ${objects} ${arg_OBJECT_FILES} ${library} -o ${arg_IMAGE}
-    COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DIMAGE=${arg_IMAGE} -DKERNEL=${name} -DBEGIN=${begin}
-      -DSTACK_BYTES=${arg_STACK_BYTES} -DBUDGET_BYTES=${arg_BUDGET_BYTES} -P ${SOFTCELL_CHECK_BUDGET}
-    DEPENDS ${arg_OBJECTS} ${objects} ${arg_OBJECT_FILES} ${arg_LIBRARY} ${SOFTCELL_SDK_DIR}/ls.ld ${SOFTCELL_CHECK_BUDGET}
+      ${objects} ${arg_OBJECT_FILES} ${library}
+    DEPENDS ${arg_OBJECTS} ${objects} ${arg_OBJECT_FILES} ${arg_LIBRARY} ${SOFTCELL_SDK_DIR}/ls.ld ${SOFTCELL_LINK_IMAGE}
     COMMAND_EXPAND_LISTS VERBATIM
     COMMENT "Linking local-store image ${name}")
 endfunction()
