@@ -264,7 +264,8 @@ TEST(Simulation2d, AStackSleepsAndWakesWhenGravityChangesOrAHandTakesIt) {
   scene.sleep = true;
   const std::uint64_t one_that_never_sleeps = scene_hash(load_scene_2d("stack"));
   EXPECT_NE(scene_hash(scene), one_that_never_sleeps);
-  Simulation2d simulation(scene);
+  // What is drawn of the rings is round, so that they roll from under their load in the end. Circles hold each other like cogs.
+  Simulation2d simulation(scene, {.contacts = ppu::ContactMethod::kSpheres});
   const auto all_sleep = [&] {
     for (std::size_t b = 0; b < simulation.soft_bodies(); ++b)
       if (!simulation.soft_body(b).asleep()) return false;
