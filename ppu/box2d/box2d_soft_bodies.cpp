@@ -212,7 +212,10 @@ struct Box2dSoftBodies::Impl {
     if (body.soft().asleep()) body.wake();
     for (BodyPiece<2>& piece : planned) piece.body.inherit_state(body.soft(), piece.particle_of);
     std::vector<Box2dBody*> pieces{&body};
-    for (std::size_t i = 1; i < planned.size(); ++i) pieces.push_back(&add(std::move(planned[i].body)));
+    for (std::size_t i = 1; i < planned.size(); ++i) {
+      pieces.push_back(&add(std::move(planned[i].body)));
+      pieces.back()->set_filter(body.filter());
+    }
     body.soft() = std::move(planned.front().body);
     const std::vector<PartingPieces::Kept> kept = follow_model(body);
 

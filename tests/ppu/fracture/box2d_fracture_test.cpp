@@ -397,6 +397,18 @@ TEST_P(Box2dFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
   w.run(0.1f);
 }
 
+TEST_P(Box2dFracture, PiecesTouchWhatTheWholeMay) {
+  World2d w(9.81f, GetParam());
+  w.add_box({0, -0.5f}, {20, 0.5f});
+  SoftBody<2>& disc = w.soft.add(disc_model(4, brittle_2d(1)), {0, 1});
+  w.soft.set_filter(disc, {.group = 2, .mask = 2});  // the floor is of group 1
+  const auto pieces = w.soft.cut(disc, Cut2d::line(disc.centre_of_mass(), {1, 0}));
+  ASSERT_EQ(pieces.size(), 1u);
+  w.run(1);
+  EXPECT_LT(disc.centre_of_mass().y(), -2);
+  EXPECT_LT(pieces[0]->centre_of_mass().y(), -2);
+}
+
 TEST_P(Box2dFracture, WhatIsRemovedIsNotNamed) {
   World2d w(0, GetParam());
   SoftBody<2>& bar = w.soft.add(rectangle_model({10, 1}, {.cell_size = 0.1f, .half_width = 1}), {0, 2});
