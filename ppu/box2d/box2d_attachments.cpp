@@ -93,7 +93,7 @@ AttachmentId Box2dAttachments::add(Box2dBody& body, const Patch<2>& patch, b2Bod
   const PatchParticles<2> particles = particles_of(patch, body.soft());
   AttachmentFrame<2> frame;
   if (rigid != nullptr) {
-    if (!is_there(*rigid))
+    if (!has_body(world_, rigid))
       throw std::invalid_argument("the rigid body of an attachment is not in this world");
     if (soft_body_of_(*rigid) != nullptr)
       throw std::invalid_argument("the rigid body of an attachment is a particle of a soft one");
@@ -171,7 +171,7 @@ std::optional<AttachmentState<2>> Box2dAttachments::state(AttachmentId id) const
 
 std::optional<AttachmentEnds<2>> Box2dAttachments::ends(AttachmentId id) const {
   const Link* const link = links_.find(id);
-  if (link == nullptr || (link->rigid != nullptr && !is_there(*link->rigid))) return std::nullopt;
+  if (link == nullptr || (link->rigid != nullptr && !has_body(world_, link->rigid))) return std::nullopt;
   return link->rows.ends(link->a->soft().positions(),
                          link->b != nullptr ? link->b->soft().positions() : std::span<const Vector2f>(),
                          link->rigid != nullptr ? frame_of(*link->rigid) : link->hold.frame);
@@ -195,11 +195,9 @@ bool Box2dAttachments::holds(const Box2dBody& body) const {
   return std::ranges::any_of(links_, [&](const auto& link) { return link->a == &body || link->b == &body; });
 }
 
-bool Box2dAttachments::is_there(const b2Body& rigid) const { return has_body(world_, &rigid); }
-
 void Box2dAttachments::end_gone() {
   end_links(EndedAttachment::Reason::kGone, [&](Link& link) {
-    if (link.rigid == nullptr || is_there(*link.rigid)) return false;
+    if (link.rigid == nullptr || has_body(world_, link.rigid)) return false;
     link.rigid = nullptr;
     return true;
   });
@@ -236,8 +234,7 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   if (rigid.GetType() == b2_dynamicBody) {
     added.velocity += step * rigid.GetGravityScale() * to_eigen(world_.GetGravity());
     added.inverse_mass = 1 / rigid.GetMass();
-    const float inertia = rigid.GetInertia() - rigid.GetMass() * rigid.GetLocalCenter().LengthSquared();
-    added.inverse_inertia = !rigid.IsFixedRotation() && inertia > 0 ? 1 / inertia : 0;
+    added.inverse_inertia = inverse_inertia_of(rigid);
   }
   rigid_bodies_.push_back(&rigid);
   return static_cast<std::uint32_t>(rigids_.size() - 1);

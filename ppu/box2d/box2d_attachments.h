@@ -91,7 +91,6 @@ class Box2dAttachments {
 
   AttachmentId add(Link link);
   static std::uint32_t index_of(const Box2dBody* body, std::span<const std::unique_ptr<Box2dBody>> bodies);
-  bool is_there(const b2Body& rigid) const;
   void end_gone();
   template <class Which>
   void end_links(EndedAttachment::Reason reason, const Which& which);

@@ -85,6 +85,8 @@ class Box2dBody {
 
 /// Whether a world has a body, which may have been destroyed: it is not looked at.
 bool has_body(const b2World& world, const b2Body* body);
+/// 1/(kg m^2), about its centre of mass; 0: nothing turns it. @pre it is dynamic
+float inverse_inertia_of(const b2Body& body);
 
 inline b2Vec2 to_box2d(const Eigen::Vector2f& v) { return {v.x(), v.y()}; }
 inline Eigen::Vector2f to_eigen(const b2Vec2& v) { return {v.x, v.y}; }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ppu/box2d/box2d_body.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -139,8 +140,7 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
     // Box2D adds gravity after this.
     if (body.IsAwake()) rigid.velocity += step_ * body.GetGravityScale() * lifted(world_->GetGravity());
     rigid.inverse_mass = 1 / body.GetMass();
-    const float inertia = body.GetInertia() - body.GetMass() * body.GetLocalCenter().LengthSquared();
-    if (!body.IsFixedRotation() && inertia > 0) rigid.inverse_inertia(2, 2) = 1 / inertia;
+    rigid.inverse_inertia(2, 2) = inverse_inertia_of(body);
   }
   rigids_.push_back(rigid);
   before_.push_back(rigid);

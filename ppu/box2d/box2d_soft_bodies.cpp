@@ -81,7 +81,8 @@ struct Box2dSoftBodies::Impl {
     if (!sleep) return;
     for (const auto& body : bodies)
       if (!body->soft().asleep() && !attachments.holds(*body)) body->count_stillness(step, sleep->speed);
-    const SoftTouches touches = surfaces ? surfaces->touches() : SoftTouches();
+    static const SoftTouches kNone;
+    const SoftTouches& touches = surfaces ? surfaces->touches() : kNone;
     for (const auto& body : bodies) {
       if (body->soft().asleep()) continue;
       for (Box2dBody* const resting : rest.settle(*body, *sleep, touches))

@@ -19,12 +19,6 @@ using Eigen::Vector2i;
 constexpr std::uint32_t kNone = CellsByIndex::kNone;
 constexpr int kSamples = SkinField::kSamples;
 
-CellPoint2d point_of(const Lattice<2>& lattice, std::uint32_t cell, const Vector2f& at) {
-  const Vector2f in = at - lattice.cells[cell].cast<float>();
-  const float x = in.x(), y = in.y();
-  return {lattice.corners[cell], {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y}};
-}
-
 /// Cuts the field's shape into triangles, cell by cell. Where the edge passes, a cell has kSamples x kSamples squares;
 /// elsewhere it is one.
 class Mesher {
@@ -289,9 +283,16 @@ Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const V
   return skin;
 }
 
+CellPoint2d point_in_cell(const Lattice<2>& lattice, std::uint32_t cell, const Vector2f& at) {
+  SC_ASSERT(cell < lattice.cells.size(), "cell {} of {}", cell, lattice.cells.size());
+  const Vector2f in = at - lattice.cells[cell].cast<float>();
+  const float x = in.x(), y = in.y();
+  return {lattice.corners[cell], {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y}};
+}
+
 CellPoint2d point_in_cells(const Lattice<2>& lattice, const Vector2f& at) {
   const CellsByIndex cells(lattice);
-  return point_of(lattice, cells.nearest(at), at);
+  return point_in_cell(lattice, cells.nearest(at), at);
 }
 
 void deform(const Skin2d& skin, std::span<const Vector2f> particles, std::span<Vector2f> positions,

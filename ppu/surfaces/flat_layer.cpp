@@ -1,13 +1,14 @@
 #include "ppu/surfaces/flat_layer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
 
 #include "ppu/fracture/cracks.h"
+#include "ppu/lattice/cells_by_index.h"
 #include "ppu/lattice/outline_distance.h"
 #include "ppu/surfaces/crack_sides.h"
 #include "ppu/surfaces/point_chooser.h"
@@ -18,7 +19,6 @@ namespace softcell::ppu {
 using Eigen::Vector2f;
 using Eigen::Vector2i;
 using Eigen::Vector3f;
-using Eigen::Vector3i;
 
 /// Builds the layer: the body's cells first, so that what lies in them and in a margin cell is in them.
 class FlatLayer::Maker {
@@ -55,7 +55,7 @@ class FlatLayer::Maker {
   std::vector<SurfacePointAtRest> points;
   std::vector<ContactSurface::CellField> fields;
   std::vector<MarginCell> margin_cells;
-  std::vector<Beyond> beyond;
+  std::vector<CellPoint2d> beyond;
   std::vector<std::uint32_t> first_beyond{0};
 
  private:
@@ -96,12 +96,12 @@ class FlatLayer::Maker {
   void add_margin_cells() {
     constexpr std::array<std::array<int, 2>, 8> kAround{
         {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
-    std::map<Vector2i, std::uint32_t, GridOrder> cell_at, beside;
-    for (std::uint32_t c = 0; c < flat_.cells.size(); ++c) cell_at.emplace(flat_.cells[c], c);
+    const CellsByIndex cells(flat_);
+    std::map<Vector2i, std::uint32_t, GridOrder> beside;
     for (const auto& off : kAround)
       for (std::uint32_t c = 0; c < flat_.cells.size(); ++c) {
         const Vector2i at = flat_.cells[c] + Vector2i(off[0], off[1]);
-        if (!cell_at.contains(at)) beside.emplace(at, c);
+        if (!cells.has(at)) beside.emplace(at, c);
       }
     for (const auto& [at, cell] : beside) {
       const ContactSurface::CellField field = field_of(at);
@@ -138,11 +138,8 @@ class FlatLayer::Maker {
     }
     std::vector<Hanging>& column = columns_[entry->second];
     const auto hangs_there = [&](const Hanging& hanging) { return hanging.cell == beside; };
-    if (std::ranges::none_of(column, hangs_there)) {
-      const float x = static_cast<float>(off.x()), y = static_cast<float>(off.y());
-      column.push_back(
-          {beside, {flat_.corners[beside], {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y}}});
-    }
+    if (std::ranges::none_of(column, hangs_there))
+      column.push_back({beside, point_in_cell(flat_, beside, at.cast<float>())});
     return static_cast<std::uint32_t>(flat_.particles.size() + entry->second);
   }
 
@@ -192,7 +189,7 @@ class FlatLayer::Maker {
   /// What a place beyond the body's cells hangs on.
   struct Hanging {
     std::uint32_t cell;
-    Beyond place;
+    CellPoint2d place;
   };
   /// Every place of a cell is nearer than this to one of its nodes: in cells.
   static constexpr float kNothingThere = 0.36f;
@@ -233,7 +230,7 @@ void FlatLayer::lift(std::span<const Vector2f> flat, float half, std::vector<Vec
     Vector2f sum = Vector2f::Zero();
     for (std::uint32_t k = first_beyond_[i]; k < first_beyond_[i + 1]; ++k)
       for (std::size_t corner = 0; corner < 4; ++corner)
-        sum += beyond_[k].share[corner] * flat[beyond_[k].particle[corner]];
+        sum += beyond_[k].share[corner] * flat[beyond_[k].corner[corner]];
     add(sum / static_cast<float>(first_beyond_[i + 1] - first_beyond_[i]));
   }
 }

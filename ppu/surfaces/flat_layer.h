@@ -12,7 +12,6 @@
 // impulses are the same above and below, and what kernels solve is the contact in two dimensions.
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -55,11 +54,6 @@ class FlatLayer {
 
  private:
   class Maker;
-  /// A place that goes on beyond a cell: shares of its corners.
-  struct Beyond {
-    std::array<std::uint32_t, 4> particle;
-    std::array<float, 4> share;
-  };
   explicit FlatLayer(Maker maker);
 
   std::shared_ptr<const Lattice<3>> lattice_;
@@ -68,7 +62,7 @@ class FlatLayer {
   std::vector<MarginCell> margin_cells_;
   std::vector<std::uint32_t> crack_sides_;
   /// Of each place that margin cells alone have: the mean of these.
-  std::vector<Beyond> beyond_;
+  std::vector<CellPoint2d> beyond_;
   std::vector<std::uint32_t> first_beyond_{0};
 };
 

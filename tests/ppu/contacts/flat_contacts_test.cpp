@@ -9,13 +9,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <vector>
 
+#include "../fracture/crack_depth.h"
 #include "../soft_body_2d_scenes.h"
 #include "ppu/contacts/contact_body.h"
-#include "ppu/fracture/cracks.h"
 #include "ppu/lattice/outline_distance.h"
 #include "ppu/surfaces/flat_layer.h"
 #include "softcell/soft_bodies/skin_2d.h"
@@ -63,9 +62,7 @@ float depth_in(const SoftBody<2>& body, const Vector2f& place) {
   return -OutlineDistance(skin).signed_distance(place / cell);
 }
 
-double mass_of(const SoftBody<2>& body) {
-  return std::accumulate(body.model().masses().begin(), body.model().masses().end(), 0.0);
-}
+double mass_of(const SoftBody<2>& body) { return double{body.model().mass()}; }
 
 TEST(OutlineDistance, IsThatOfASquareWithAHole) {
   Skin2d skin;
@@ -330,26 +327,14 @@ TEST_P(FlatContacts, TheSidesOfACrackTouchEachOther) {
     const Vector2f x = bar.position(i);
     bar.add_particle_velocity(i, {(x.x() > 0 ? -10 : 10) * std::max(0.0f, x.y()), 0});
   }
-  const auto deepest_in_crack = [&] {
-    const Lattice<2>& lattice = bar.model().lattice();
-    float deepest = 0;
-    for (const auto& face : bar.model().cracks().faces) {
-      const auto &low = lattice.corners[face.low], &high = lattice.corners[face.high];
-      for (std::uint32_t k = 0; face.axis == 0 && k < 4; k += 2)
-        if (low[k + 1] != high[k])
-          deepest =
-              std::max(deepest, (bar.position(low[k + 1]) - bar.position(high[k])).x() / lattice.spacing);
-    }
-    return deepest;
-  };
   float deepest = 0;
   for (int i = 0; i < 60; ++i) {
     w->soft.step(kStep2d);
-    deepest = std::max(deepest, deepest_in_crack());
+    deepest = std::max(deepest, deepest_in_crack(bar));
   }
   EXPECT_GT(deepest, 0);
   EXPECT_LT(deepest, 0.35f);
-  EXPECT_LT(deepest_in_crack(), 0.1f);
+  EXPECT_LT(deepest_in_crack(bar), 0.1f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Workers, FlatContacts, testing::Bool(),

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../contacts/contact_world.h"
+#include "crack_depth.h"
 #include "fracture_checks.h"
 #include "ppu/fracture/cracks.h"
 #include "ppu/surfaces/crack_sides.h"
@@ -323,19 +324,6 @@ TEST(BulletFracture, CellsAlongACrackAreOfOneSideOrTheOther) {
     }
   }
   EXPECT_TRUE(crack_sides(bar.model().whole()->lattice(), bar.model().whole()->cracks()).empty());
-}
-
-/// Of particles that a crack has made two of: how far the right one is left of the left one, in cells.
-float deepest_in_crack(const SoftBody<3>& bar) {
-  const Lattice<3>& lattice = bar.model().lattice();
-  float deepest = 0;
-  for (const auto& face : bar.model().cracks().faces) {
-    const auto &low = lattice.corners[face.low], &high = lattice.corners[face.high];
-    for (std::uint32_t k = 0; face.axis == 0 && k < 8; k += 2)
-      if (low[k + 1] != high[k])
-        deepest = std::max(deepest, (bar.position(low[k + 1]) - bar.position(high[k])).x() / lattice.spacing);
-  }
-  return deepest;
 }
 
 TEST(BulletFracture, TheSidesOfACrackInOnePieceTouchEachOther) {

@@ -92,6 +92,10 @@ Skin2d make_cover_2d(const Lattice<2>& lattice, const std::function<bool(const E
 /// @pre  the piece is a part of that lattice
 Skin2d skin_of_piece(const Skin2d& whole, const Lattice<2>& lattice, const Lattice<2>& piece);
 
+/// The point of a cell, also of one that it is outside of.
+/// @param cell  its number  @param at  grid coordinates: a particle of the lattice is at its grid index
+CellPoint2d point_in_cell(const Lattice<2>& lattice, std::uint32_t cell, const Eigen::Vector2f& at);
+
 /// Binds a point to the nearest cell, so that it moves with the cell.
 /// @param at  grid coordinates: a particle of the lattice is at its grid index
 /// @pre  the lattice has cells
