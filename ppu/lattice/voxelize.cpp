@@ -46,6 +46,8 @@ class Grid {
               spacing);
   }
 
+  Eigen::Vector3f origin() const { return origin_.cast<float>(); }
+
   /// Marks the cells that the triangle touches.
   void add_surface(const std::array<Vector3d, 3>& corners) {
     std::array<Vector3d, 3> triangle;
@@ -180,9 +182,8 @@ void check_particles(std::size_t particles, double spacing) {
       std::to_string(kMaxLatticeParticles<3>) + " particles; use about " + metres(fits) + " or more");
 }
 
-}  // namespace
-
-Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size) {
+/// The cells that the mesh occupies. @throws what voxelize() throws of its arguments
+Grid occupied_cells(const TriangleMesh& mesh, float cell_size) {
   const double spacing = static_cast<double>(cell_size);
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw std::runtime_error("cell size " + metres(spacing) + ": expected a positive number of metres");
@@ -196,19 +197,29 @@ Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size) {
   const Vector3i size = grid_size(high - low, spacing);
   const Vector3d corner = (low + high) / 2 - size.cast<double>() * (spacing / 2);
   check_distance(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), spacing);
-  const Eigen::Vector3f origin = corner.cast<float>();
 
-  Grid grid(origin, spacing, size);
+  Grid grid(corner.cast<float>(), spacing, size);
   for (const auto& [a, b, c] : mesh.triangles)
     grid.add_surface({mesh.positions[a].cast<double>(), mesh.positions[b].cast<double>(),
                       mesh.positions[c].cast<double>()});
   grid.flood_outside();
-  check_particles(grid.occupied(), spacing);  // each cell has a low corner of its own
+  return grid;
+}
 
+}  // namespace
+
+std::size_t count_particles(const TriangleMesh& mesh, float cell_size) {
+  return occupied_cells(mesh, cell_size).particles();
+}
+
+Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size) {
+  const double spacing = static_cast<double>(cell_size);
+  const Grid grid = occupied_cells(mesh, cell_size);
+  check_particles(grid.occupied(), spacing);  // each cell has a low corner of its own
   check_particles(grid.particles(), spacing);
 
   const std::vector<Vector3i> cells = grid.cells();
-  Lattice<3> lattice = lattice_from_cells(cells, cell_size, origin);
+  Lattice<3> lattice = lattice_from_cells(cells, cell_size, grid.origin());
   SC_ASSERT(lattice.cells == cells, "a lattice of {} cells from {}, or in another order",
             lattice.cells.size(), cells.size());
   lattice.fill = fill_fractions(mesh, lattice);

@@ -300,6 +300,14 @@ TEST(Voxelize, RefusesCellsTooSmallForTheLimits) {
   EXPECT_EQ(message_of(mesh, 0.0265f), "no error");
 }
 
+TEST(CountParticles, CountsThoseThatVoxelizeMakesAndThoseOfLatticesThatItRefuses) {
+  const TriangleMesh mesh = box({0, 0, 0}, {1, 1, 1});
+  for (const float cell_size : {0.7f, 0.3f, 0.05f})
+    EXPECT_EQ(count_particles(mesh, cell_size), voxelize(mesh, cell_size).particles.size()) << cell_size;
+  EXPECT_EQ(count_particles(mesh, 1.0f / 128), 129u * 129u * 129u);
+  EXPECT_THROW(count_particles(mesh, 1e-3f), std::runtime_error);
+}
+
 TEST(Voxelize, RefusesMeshesItCannotPlace) {
   EXPECT_EQ(message_of({}, 0.1f), "the mesh has no triangles; a soft body needs a surface");
   EXPECT_NE(message_of(box({1e6f, 0, 0}, {1e6f + 1, 1, 1}), 0.1f).find("too far"), std::string::npos);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -33,22 +36,31 @@ double cell_size(const OwnModelOptions& options, double longest) {
   return cell;
 }
 
-bool fits(const ppu::TriangleMesh& mesh, double cell) {
+/// Of the lattice with such cells; nothing when there is no such lattice.
+std::optional<std::size_t> particles_of(const ppu::TriangleMesh& mesh, double cell) {
   try {
-    return ppu::voxelize(mesh, static_cast<float>(cell)).particles.size() <= kMaxParticlesOfScene;
+    return ppu::count_particles(mesh, static_cast<float>(cell));
   } catch (const std::runtime_error&) {
-    return false;
+    return std::nullopt;
   }
+}
+
+bool fit_a_scene(std::optional<std::size_t> particles) {
+  return particles && *particles <= kMaxParticlesOfScene;
 }
 
 /// Says what is wrong with cells of this size, or with the model, when something is. It is refused here,
 /// before the scene scales both.
 void check_lattice(const OwnModelOptions& options, const ppu::TriangleMesh& mesh, double longest,
                    double cell) {
-  if (fits(mesh, cell)) return;
+  const std::optional<std::size_t> particles = particles_of(mesh, cell);
+  if (fit_a_scene(particles)) return;
+  // Cells of twice the size leave an eighth of the particles or more: smaller ones than these need no try.
+  const double least =
+      particles ? cell * std::cbrt(static_cast<double>(*particles) / kMaxParticlesOfScene) : cell;
   constexpr double kCoarser = 1.2;  // few tries, and near enough
   double enough = cell * kCoarser;
-  while (enough < longest && !fits(mesh, enough)) enough *= kCoarser;
+  while (enough < longest && (enough < least || !fit_a_scene(particles_of(mesh, enough)))) enough *= kCoarser;
   if (enough >= longest) ppu::voxelize(mesh, static_cast<float>(cell));  // whose sentence is about the mesh
   const std::string too_many =
       fmt::format("the lattice would have more than {} particles", kMaxParticlesOfScene);

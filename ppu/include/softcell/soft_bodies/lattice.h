@@ -73,6 +73,10 @@ struct Lattice {
 ///         before anything is allocated for it); the sentence states the value and what would fit.
 Lattice<3> voxelize(const TriangleMesh& mesh, float cell_size);
 
+/// The number of particles that voxelize() would make, found without the lattice; it may pass kMaxLatticeParticles.
+/// @throws std::runtime_error  as voxelize() for all else
+std::size_t count_particles(const TriangleMesh& mesh, float cell_size);
+
 /// A lattice from cells given by their grid indices (any order, repeats ignored), all with fill 1.
 /// @param spacing  edge of a cell, metres
 /// @param origin   position of grid index 0, metres
