@@ -20,9 +20,9 @@ using Eigen::Vector3f;
 
 Vector3f lifted(const b2Vec2& v, float z = 0) { return {v.x, v.y, z}; }
 
-bool is_wanted(const b2Fixture& fixture, const CollisionFilter& filter) {
+bool may_touch(const b2Fixture& fixture, const CollisionFilter& filter) {
   const b2Filter& own = fixture.GetFilterData();
-  return !fixture.IsSensor() && fixture.GetBody()->IsEnabled() &&
+  return fixture.GetBody()->IsEnabled() &&
          filter.lets({static_cast<int>(own.categoryBits), static_cast<int>(own.maskBits)});
 }
 
@@ -50,13 +50,6 @@ bool is_left_of(const Vector2f& place, const b2Fixture& fixture, int child) {
   return b2Cross(ends.to - ends.from, at - ends.from) > 0;
 }
 
-/// How many fixtures a body has got before this one.
-std::uint32_t number_of(const b2Fixture& fixture) {
-  std::uint32_t behind = 0;
-  for (const b2Fixture* next = fixture.GetNext(); next != nullptr; next = next->GetNext()) ++behind;
-  return behind;
-}
-
 }  // namespace
 
 class Box2dObstacles::Collector final : public b2QueryCallback {
@@ -66,8 +59,9 @@ class Box2dObstacles::Collector final : public b2QueryCallback {
       : filter_(filter), box_(box), of_(of), found_(found) {}
   /// Once for each child whose box is near.
   bool ReportFixture(b2Fixture* fixture) override {
-    if (!is_wanted(*fixture, filter_)) return true;
-    const std::uint32_t body = of_.numbers_.at(fixture->GetBody()), number = number_of(*fixture);
+    if (fixture->IsSensor() != (of_.wanted_ == Fixtures::kSensors) || !may_touch(*fixture, filter_))
+      return true;
+    const std::uint32_t body = of_.number(*fixture->GetBody()), number = Box2dObstacles::number(*fixture);
     for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child)
       if (b2TestOverlap(fixture->GetAABB(child), box_)) found_.push_back({body, number, child, fixture});
     return true;
@@ -87,12 +81,19 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
   step_ = step;
   layer_ = layer;
   obstacles_.clear();
+  fixtures_.clear();
   rigids_.clear();
   before_.clear();
   bodies_.clear();
   known_.clear();
   shapes_used_ = 0;
   number_bodies();
+}
+
+std::uint32_t Box2dObstacles::number(const b2Fixture& fixture) {
+  std::uint32_t behind = 0;
+  for (const b2Fixture* next = fixture.GetNext(); next != nullptr; next = next->GetNext()) ++behind;
+  return behind;
 }
 
 /// Bodies keep their numbers as long as they are there. The world lists the newest first.
@@ -129,7 +130,7 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   const auto known = std::find(bodies_.begin(), bodies_.end(), &body);
   if (known != bodies_.end()) return static_cast<std::uint32_t>(known - bodies_.begin());
   ContactRigid rigid;
-  rigid.number = numbers_.at(&body);
+  rigid.number = number(body);
   rigid.centre = lifted(body.GetWorldCenter());
   rigid.velocity = lifted(body.GetLinearVelocity());
   rigid.spin = {0, 0, body.GetAngularVelocity()};
@@ -186,6 +187,7 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, const Vector2f& mi
   obstacle.triangles = shape.triangles;
   const auto index = static_cast<std::uint32_t>(obstacles_.size());
   obstacles_.push_back(obstacle);
+  fixtures_.push_back(found.there);
   known_.push_back({&fixture, found.child, turned, index});
   return index;
 }

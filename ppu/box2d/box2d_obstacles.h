@@ -18,9 +18,12 @@
 namespace softcell::ppu {
 
 /// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains have two sides: of each of them
-/// a body is kept on the side where its middle is. Sensors are none. Used by one thread. Allocates when there are more of them than ever before.
+/// a body is kept on the side where its middle is. Used by one thread. Allocates when there are more of them than ever before.
 class Box2dObstacles {
  public:
+  enum class Fixtures { kSolid, kSensors };
+  explicit Box2dObstacles(Fixtures wanted) : wanted_(wanted) {}
+
   /// Forgets what was near before. @param layer  metres above and below z = 0 in which soft bodies are
   void begin(b2World& world, float step, float layer);
 
@@ -33,9 +36,16 @@ class Box2dObstacles {
   std::span<ContactRigid> rigids() { return rigids_; }
   /// Whose rigids() these are.
   std::span<b2Body* const> bodies() const { return bodies_; }
+  /// Of an obstacle.
+  b2Fixture& fixture(std::uint32_t obstacle) const { return *fixtures_[obstacle]; }
 
   /// Whether the world has a body, which may be destroyed. @pre begin() was called
   bool has(const b2Body* body) const { return numbers_.contains(body); }
+
+  /// Of a body of the world, for as long as it is there.
+  std::uint32_t number(const b2Body& body) const { return numbers_.at(&body); }
+  /// How many fixtures a body has got before this one.
+  static std::uint32_t number(const b2Fixture& fixture);
 
   /// Gives rigid bodies the velocities that contacts have given their ContactRigid.
   void apply();
@@ -72,9 +82,11 @@ class Box2dObstacles {
   void add_edge(const b2Fixture& fixture, int child, bool turned, Obstacle& obstacle, Shape& shape) const;
   Shape& next_shape();
 
+  Fixtures wanted_;
   b2World* world_ = nullptr;
   float step_ = 0, layer_ = 0;
   std::vector<Obstacle> obstacles_;
+  std::vector<b2Fixture*> fixtures_;  // of each obstacle
   std::vector<ContactRigid> rigids_, before_;
   std::vector<b2Body*> bodies_;
   std::unordered_map<const b2Body*, std::uint32_t> numbers_;  // of all that the world has

@@ -241,6 +241,11 @@ struct Box2dSoftBodies::Impl {
     return event.pieces;
   }
 
+  /// Of what is drawn now.
+  SurfaceQuery<2> query(const SoftBody<2>& soft) {
+    return surfaces ? SurfaceQuery<2>(soft, surfaces->skin(soft.shared_model())) : SurfaceQuery<2>(soft);
+  }
+
   /// What a b2Body stands for.
   struct OneParticle {
     Box2dBody* body;
@@ -403,6 +408,32 @@ std::vector<Contact2d> Box2dSoftBodies::contacts() const {
   std::vector<Contact2d> contacts;
   if (impl_->surfaces) impl_->surfaces->append_contacts(contacts);
   return contacts;
+}
+
+void Box2dSoftBodies::watch_contacts(bool watch) {
+  if (impl_->surfaces) impl_->surfaces->watch(watch);
+}
+std::vector<ContactEvent2d> Box2dSoftBodies::poll_contact_events() {
+  return impl_->surfaces ? impl_->surfaces->poll_events() : std::vector<ContactEvent2d>();
+}
+
+std::optional<SoftRayHit2d> Box2dSoftBodies::cast_ray(const Eigen::Vector2f& from, const Eigen::Vector2f& to,
+                                                      const CollisionFilter& filter) const {
+  SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {})", from.x(), from.y());
+  std::optional<SoftRayHit2d> nearest;
+  const Eigen::Vector2f low = from.cwiseMin(to), high = from.cwiseMax(to);
+  for (const auto& body : impl_->bodies) {
+    const SoftBody<2>& soft = body->soft();
+    // What is drawn lies beyond the particles by half a cell at most, which may be stretched, but not further than the body.
+    const Bounds<2> box = soft.bounds();
+    const Eigen::Vector2f size = box.high - box.low;
+    if (!body->filter().lets(filter) || (box.low - size - high).maxCoeff() > 0 ||
+        (low - box.high - size).maxCoeff() > 0)
+      continue;
+    const auto hit = impl_->query(soft).cast_ray(from, to);
+    if (hit && (!nearest || hit->share < nearest->hit.share)) nearest = SoftRayHit2d{&soft, *hit};
+  }
+  return nearest;
 }
 
 std::chrono::nanoseconds Box2dSoftBodies::time_spent() const { return impl_->spent; }

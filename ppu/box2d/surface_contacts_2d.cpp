@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ppu/contacts/overlap.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -37,12 +38,10 @@ const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
     const std::shared_ptr<const SoftBodyModel<2>>& model) {
   std::unique_ptr<Model>& known = models_[model.get()];  // stays where it is, whatever else comes
   if (known) return *known;
-  Skin2d skin =
-      model->is_piece()
-          ? skin_of_piece(model_of(model->whole()).skin, model->whole()->lattice(), model->lattice())
-          : make_skin_2d(model->lattice(),
-                         std::min(model->contact_radius() / model->lattice().spacing, kMaxSkinMargin));
-  known = std::make_unique<Model>(model, std::move(skin));
+  known = std::make_unique<Model>(
+      model, model->is_piece()
+                 ? skin_of_piece(model_of(model->whole()).skin, model->whole()->lattice(), model->lattice())
+                 : touching_skin(*model));
   return *known;
 }
 
@@ -69,7 +68,9 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Box2dBody& body = *bodies[i];
     const SoftBody<2>& soft = body.soft();
-    Kept& kept = kept_[&body];
+    const auto [there, is_new] = kept_.try_emplace(&body);
+    Kept& kept = there->second;
+    if (is_new) kept.number = next_number_++;
     kept.model = &model_of(soft.shared_model());
     lift(body, kept, step);
     softs_.push_back(&soft);
@@ -154,6 +155,9 @@ void SurfaceContacts2d::step(Bodies bodies, const Box2dAttachments& attachments,
   move(bodies, step);
   obstacles_.apply();
   note_touches(bodies);
+  if (!watches_) return;
+  log_touches(bodies);
+  log_sensors(bodies, step);
 }
 
 void SurfaceContacts2d::move(Bodies bodies, float step) {
@@ -186,6 +190,57 @@ void SurfaceContacts2d::note_touches(Bodies bodies) {
       if (touches_.soft.empty() || touches_.soft.back() != std::pair(a, b)) touches_.soft.emplace_back(a, b);
     }
   }
+}
+
+void SurfaceContacts2d::log_touches(Bodies bodies) {
+  for (const PressingContact& contact : pressing_) {
+    const std::uint32_t number = kept_.at(bodies[contact.a].get()).number;
+    TouchLog<ContactEvent2d>::Touch* touch;
+    if (contact.with_rigid) {
+      b2Body* const rigid = obstacles_.bodies()[contact.rigid];
+      touch = &log_[{number, TouchedKind::kRigid, obstacles_.number(*rigid)}];
+      touch->event.rigid = rigid;
+    } else {
+      const Box2dBody* const other = bodies[contact.b].get();
+      touch = &log_[{number, TouchedKind::kSoft, kept_.at(other).number}];
+      touch->event.other = &other->soft();
+    }
+    touch->event.body = &bodies[contact.a]->soft();
+    touch->add(contact.impulse, contact.impulse, contact.point.head<2>(), contact.normal.head<2>());
+  }
+}
+
+/// Of bodies where the step has moved them, also of those that sleep.
+void SurfaceContacts2d::log_sensors(Bodies bodies, float step) {
+  float largest = 0;
+  for (const auto& body : bodies) largest = std::max(largest, body->soft().model().lattice().spacing);
+  sensors_.begin(world_, step, largest);
+  for (const auto& body : bodies) {
+    const SoftBody<2>& soft = body->soft();
+    const Kept& kept = kept_.at(body.get());
+    kept.model->layer.lift(soft.positions(), 0.5f * soft.model().lattice().spacing, moved_);
+    near_.clear();
+    sensors_.add_near(bounds_of(moved_), soft.centre_of_mass(), body->filter(), near_);
+    if (near_.empty()) continue;
+    cells_.place(*kept.model->layer.lattice(), moved_);
+    for (const std::uint32_t near : near_) {
+      const auto overlap = find_overlap(moved_, kept.model->contact, cells_, sensors_.obstacles()[near]);
+      if (!overlap) continue;
+      b2Fixture& sensor = sensors_.fixture(near);
+      const std::uint64_t of_body = sensors_.number(*sensor.GetBody());
+      auto& touch =
+          log_[{kept.number, TouchedKind::kTrigger, of_body << 32 | Box2dObstacles::number(sensor)}];
+      touch.event.body = &soft;
+      touch.event.rigid = sensor.GetBody();
+      touch.event.sensor = &sensor;
+      touch.add(0, 1, overlap->point.head<2>(), overlap->normal.head<2>());
+    }
+  }
+}
+
+void SurfaceContacts2d::watch(bool events) {
+  watches_ = events;
+  if (!events) log_.clear();
 }
 
 void SurfaceContacts2d::append_contacts(std::vector<Contact2d>& contacts) const {
@@ -221,6 +276,7 @@ void SurfaceContacts2d::forget(const Box2dBody& body) {
   std::erase_if(touches_.rigid, [&](const auto& pair) { return pair.first == &body; });
   for (auto& [other, kept] : kept_)
     if (std::ranges::find(kept.lies_on, &body) != kept.lies_on.end()) kept.lost_support = true;
+  log_.forget(body.soft());
   stage_.forget_who_presses();
 }
 

@@ -15,6 +15,8 @@
 #include "ppu/box2d/box2d_obstacles.h"
 #include "ppu/box2d/rest.h"
 #include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/touch_log.h"
+#include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/flat_layer.h"
 #include "softcell/box2d/box2d_soft_bodies.h"
 
@@ -40,6 +42,14 @@ class SurfaceContacts2d {
   /// Appends the contacts of the last step that press.
   void append_contacts(std::vector<Contact2d>& contacts) const;
 
+  /// Whether events are kept from the next step on.
+  void watch(bool events);
+  /// What has begun, gone on or ended since the last call.
+  std::vector<ContactEvent2d> poll_events() { return log_.poll(); }
+
+  /// How a body of the model is drawn: what touches.
+  const Skin2d& skin(const std::shared_ptr<const SoftBodyModel<2>>& model) { return model_of(model).skin; }
+
   /// A body has fallen asleep, with what it touches.
   void let_lie(const Box2dBody& body);
   /// A body goes: those that lie on it wake.
@@ -64,6 +74,7 @@ class SurfaceContacts2d {
   };
   /// What is kept of a body.
   struct Kept {
+    std::uint32_t number = 0;  // in the order in which bodies came
     const Model* model = nullptr;
     std::vector<Eigen::Vector3f> positions, velocities;  // of its layer, at the step's beginning
     std::vector<Support> supports;                       // while it sleeps
@@ -80,18 +91,28 @@ class SurfaceContacts2d {
   void wake_those_in_the_way(Bodies bodies);
   void move(Bodies bodies, float step);
   void note_touches(Bodies bodies);
+  void log_touches(Bodies bodies);
+  void log_sensors(Bodies bodies, float step);
 
   b2World& world_;
   std::shared_ptr<ContactWorker> worker_;
   std::unordered_map<const SoftBodyModel<2>*, std::unique_ptr<Model>> models_;
   std::unordered_map<const Box2dBody*, Kept> kept_;
-  Box2dObstacles obstacles_;
+  Box2dObstacles obstacles_{Box2dObstacles::Fixtures::kSolid};
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
   std::vector<const SoftBody<2>*> softs_;  // of the last step
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
   std::vector<PressingContact> pressing_;  // of the last step
   SoftTouches touches_;
+  std::uint32_t next_number_ = 0;
+  // While events are kept:
+  bool watches_ = false;
+  TouchLog<ContactEvent2d> log_;
+  Box2dObstacles sensors_{Box2dObstacles::Fixtures::kSensors};
+  std::vector<std::uint32_t> near_;     // sensors_ near a body
+  std::vector<Eigen::Vector3f> moved_;  // where a body near one is
+  CellFinder cells_;                    // of it
 };
 
 }  // namespace softcell::ppu

@@ -147,25 +147,13 @@ void SurfaceContacts::let_sleep(std::span<SurfaceBody* const> bodies, const Slee
   attachments_.let_sleep(sleep);
 }
 
-void SurfaceContacts::Touch::add(float impulse, float its_weight, const Eigen::Vector3f& point,
-                                 const Eigen::Vector3f& normal) {
-  if (!goes_on) event.impulse = 0, weight = 0, event.position.setZero(), event.normal.setZero();
-  goes_on = true;
-  event.impulse += impulse;
-  weight += its_weight;
-  event.position += its_weight * point;
-  event.normal += its_weight * normal;
-}
-
-/// @param other, object  one of them is null
-SurfaceContacts::Touch& SurfaceContacts::touch_of(const SurfaceBody& body, const SurfaceBody* other,
-                                                  const btCollisionObject* object) {
-  const int number =
-      object != nullptr ? object->getBroadphaseHandle()->m_uniqueId : static_cast<int>(other->number());
-  Touch& touch = touches_[{body.number(), object != nullptr, number}];
+SurfaceContacts::Touch& SurfaceContacts::touch_of(const SurfaceBody& body, TouchedKind kind,
+                                                  const btCollisionObject& object) {
+  const int number = object.getBroadphaseHandle()->m_uniqueId;
+  SC_ASSERT(number >= 0, "an object of Bullet has the number {}", number);
+  Touch& touch = touches_[{body.number(), kind, static_cast<std::uint64_t>(number)}];
   touch.event.body = &body.soft();
-  touch.event.other = other != nullptr ? &other->soft() : nullptr;
-  touch.event.object = object;
+  touch.event.object = &object;
   return touch;
 }
 
@@ -173,10 +161,12 @@ void SurfaceContacts::note_touches(std::span<SurfaceBody* const> bodies) {
   pressing_.clear();
   stage_.append_contacts(pressing_);
   for (const PressingContact& contact : pressing_) {
+    const SurfaceBody &body = *bodies[contact.a], &other = *bodies[contact.b];
     Touch& touch = contact.with_rigid
-                       ? touch_of(*bodies[contact.a], nullptr, obstacles_.objects()[contact.rigid])
-                       : touch_of(*bodies[contact.a], bodies[contact.b], nullptr);
-    touch.is_trigger = false;
+                       ? touch_of(body, TouchedKind::kRigid, *obstacles_.objects()[contact.rigid])
+                       : touches_[{body.number(), TouchedKind::kSoft, other.number()}];
+    touch.event.body = &body.soft();
+    if (!contact.with_rigid) touch.event.other = &other.soft();
     touch.add(contact.impulse, contact.impulse, contact.point, contact.normal);
   }
 }
@@ -192,11 +182,9 @@ void SurfaceContacts::note_triggers(std::span<SurfaceBody* const> bodies, float 
     cells_.place(soft.model().lattice(), soft.positions());
     for (const std::uint32_t trigger : near_) {
       const Obstacle& volume = triggers_.obstacles()[trigger];
-      const auto overlap = find_overlap(soft, body->contact(), cells_, volume);
-      if (!overlap) continue;
-      Touch& touch = touch_of(*body, nullptr, triggers_.objects()[volume.rigid]);
-      touch.is_trigger = true;
-      touch.add(0, 1, overlap->point, overlap->normal);
+      if (const auto overlap = find_overlap(soft.positions(), body->contact(), cells_, volume))
+        touch_of(*body, TouchedKind::kTrigger, *triggers_.objects()[volume.rigid])
+            .add(0, 1, overlap->point, overlap->normal);
     }
   }
 }
@@ -223,42 +211,8 @@ void SurfaceContacts::watch(bool events) {
 }
 
 void SurfaceContacts::forget(const SoftBody<3>& body) {
-  for (auto& [key, touch] : touches_)
-    if (touch.event.body == &body || touch.event.other == &body) touch.is_over = true;
+  touches_.forget(body);
   stage_.forget_who_presses();
-}
-
-std::vector<ContactEvent> SurfaceContacts::poll_events() {
-  // Contacts of those that sleep are not looked for, and go on; trigger volumes are.
-  const auto sleeps = [](const Touch& touch) {
-    return !touch.is_trigger && touch.event.body->asleep() &&
-           (touch.event.other == nullptr || touch.event.other->asleep());
-  };
-  std::vector<ContactEvent> events;
-  for (auto entry = touches_.begin(); entry != touches_.end();) {
-    Touch& touch = entry->second;
-    if (!touch.is_over && !touch.goes_on && sleeps(touch)) {
-      ++entry;
-      continue;
-    }
-    ContactEvent& event = events.emplace_back(touch.event);
-    if (touch.is_over || !touch.goes_on) {
-      event.kind = ContactEvent::Kind::kEnd;
-      event.impulse = 0;
-      entry = touches_.erase(entry);
-      continue;
-    }
-    event.kind = touch.is_old ? ContactEvent::Kind::kPersist : ContactEvent::Kind::kBegin;
-    event.position /= touch.weight;
-    event.normal = event.normal.norm() > 0 ? event.normal.normalized() : Eigen::Vector3f::UnitY();
-    // Where it ends is where they touched last.
-    touch.event.position = event.position;
-    touch.event.normal = event.normal;
-    touch.is_old = true;
-    touch.goes_on = false;
-    ++entry;
-  }
-  return events;
 }
 
 }  // namespace softcell::ppu

@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/touch_log.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/cell_finder.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
@@ -55,30 +55,18 @@ class SurfaceContacts {
   /// Whether events are kept from the next substep on.
   void watch(bool events);
   /// What has begun, gone on or ended since the last call.
-  std::vector<ContactEvent> poll_events();
+  std::vector<ContactEvent> poll_events() { return touches_.poll(); }
   /// A body goes: what it touched ends.
   void forget(const SoftBody<3>& body);
 
  private:
-  /// Two that touch, or did when events were taken last.
-  struct Touch {
-    ContactEvent event;
-    bool is_trigger = false;  ///< the object is a trigger volume
-    bool is_old = false;      ///< it was among those that were taken
-    bool goes_on = false;     ///< they touched in a substep since then
-    bool is_over = false;     ///< one of them is gone
-    float weight = 0;         ///< of the sums since then: position and normal are not divided by it yet
-
-    void add(float impulse, float its_weight, const Eigen::Vector3f& point, const Eigen::Vector3f& normal);
-  };
-  /// A soft body's number, whether the other one is a collision object, and that one's number: in an order that does not depend on addresses.
-  using TouchKey = std::tuple<std::uint32_t, bool, int>;
+  using Touch = TouchLog<ContactEvent>::Touch;
 
   void move(std::span<SurfaceBody* const> bodies, float step);
   void wake_those_in_the_way(std::span<SurfaceBody* const> bodies);
   template <typename Is>
   bool any_near(const BodyInStage& body, const Is& is) const;
-  Touch& touch_of(const SurfaceBody& body, const SurfaceBody* other, const btCollisionObject* object);
+  Touch& touch_of(const SurfaceBody& body, TouchedKind kind, const btCollisionObject& object);
   void note_touches(std::span<SurfaceBody* const> bodies);
   void note_triggers(std::span<SurfaceBody* const> bodies, float step);
 
@@ -95,7 +83,7 @@ class SurfaceContacts {
   DisjointSets islands_;                   // of bodies in the last substep
   std::vector<bool> is_restless_;          // of each island
   bool watches_ = false;
-  std::map<TouchKey, Touch> touches_;
+  TouchLog<ContactEvent> touches_;
   // While events are kept, in each substep:
   std::vector<PressingContact> pressing_;
   BulletObstacles triggers_{BulletObstacles::Objects::kTriggers};

@@ -15,20 +15,20 @@ using Eigen::Vector3f;
 
 class OverlapSearch {
  public:
-  OverlapSearch(const SoftBody<3>& body, const ContactModel& model, const CellFinder& cells,
+  OverlapSearch(std::span<const Vector3f> positions, const ContactModel& model, const CellFinder& cells,
                 const Obstacle& obstacle)
-      : body_(body),
+      : positions_(positions),
         model_(model),
         cells_(cells),
         obstacle_(obstacle),
-        spacing_(body.model().lattice().spacing) {}
+        spacing_(model.lattice().spacing) {}
 
   std::optional<Overlap> find() const {
     Vector3f sum = Vector3f::Zero();
     float inside = 0;
     std::optional<Overlap> beside;  // a point of the obstacle that is in the body
     for (const TouchPoint& touch : model_.touch_points) {
-      const Vector3f point = touch.anchor.of(body_.positions());
+      const Vector3f point = touch.anchor.of(positions_);
       const Separation from = separation_of(point);
       if (from.distance <= -touch.allowance && obstacle_.kind != ObstacleKind::kTriangles) {
         sum += point;
@@ -77,7 +77,7 @@ class OverlapSearch {
 
   std::optional<Overlap> find_along_edges() const {
     std::optional<Overlap> found;
-    const Bounds<3> box = body_.bounds();
+    const Bounds<3> box = bounds_of(positions_);
     for (const ObstacleEdge& edge : obstacle_.edges) {
       const Vector3f from = obstacle_.to_world(edge.from), along = obstacle_.to_world(edge.to) - from;
       for_each_point_of_edge(from, along, box, kEdgeSpacing * spacing_, [&](const Vector3f& point) {
@@ -99,7 +99,7 @@ class OverlapSearch {
     return field.distance <= rounding * steep;
   }
 
-  const SoftBody<3>& body_;
+  std::span<const Vector3f> positions_;
   const ContactModel& model_;
   const CellFinder& cells_;
   const Obstacle& obstacle_;
@@ -108,11 +108,12 @@ class OverlapSearch {
 
 }  // namespace
 
-std::optional<Overlap> find_overlap(const SoftBody<3>& body, const ContactModel& model,
+std::optional<Overlap> find_overlap(std::span<const Vector3f> positions, const ContactModel& model,
                                     const CellFinder& cells, const Obstacle& obstacle) {
-  SC_ASSERT(&body.model() == model.model().get(), "a body of {} particles with the surface of another model",
-            body.positions().size());
-  return OverlapSearch(body, model, cells, obstacle).find();
+  SC_ASSERT(positions.size() == model.lattice().particles.size(),
+            "{} particles with the surface of a model of {}", positions.size(),
+            model.lattice().particles.size());
+  return OverlapSearch(positions, model, cells, obstacle).find();
 }
 
 }  // namespace softcell::ppu

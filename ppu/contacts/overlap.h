@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 
 #include "ppu/contacts/contact_body.h"
 #include "ppu/surfaces/cell_finder.h"
@@ -20,8 +21,8 @@ struct Overlap {
 /// Where the drawn surface of a body, or what is in it, and a shape have points in common. Finds a sheet or a wire of any thinness that
 /// goes through the body, and all that lies in it; something blunt that only dips into the surface, when it is a third of a cell deep.
 /// Triangles are sheets.
-/// @param cells  of the body as it is now
-std::optional<Overlap> find_overlap(const SoftBody<3>& body, const ContactModel& model,
+/// @param positions  of the particles of the model's lattice  @param cells  of the body as it is now
+std::optional<Overlap> find_overlap(std::span<const Eigen::Vector3f> positions, const ContactModel& model,
                                     const CellFinder& cells, const Obstacle& obstacle);
 
 }  // namespace softcell::ppu

@@ -20,6 +20,13 @@ using Eigen::Vector2f;
 using Eigen::Vector2i;
 using Eigen::Vector3f;
 
+Skin2d touching_skin(const SoftBodyModel<2>& model) {
+  if (model.is_piece())
+    return skin_of_piece(touching_skin(*model.whole()), model.whole()->lattice(), model.lattice());
+  return make_skin_2d(model.lattice(),
+                      std::min(model.contact_radius() / model.lattice().spacing, kMaxSkinMargin));
+}
+
 /// Builds the layer: the body's cells first, so that what lies in them and in a margin cell is in them.
 class FlatLayer::Maker {
  public:

@@ -23,6 +23,10 @@
 
 namespace softcell::ppu {
 
+/// What touches of bodies of a model, if their user has not said how they are drawn: make_skin_2d() with the model's contact radius. A piece
+/// has its part of the whole.
+Skin2d touching_skin(const SoftBodyModel<2>& model);
+
 /// A cell beside a body into which its drawn edge reaches: it moves with the body's cell beside it.
 struct MarginCell {
   std::uint32_t beside = 0;      ///< the body's cell; of one of the body's own cells: itself

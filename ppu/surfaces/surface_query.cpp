@@ -6,7 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "ppu/numbers/cross.h"
 #include "ppu/surfaces/contact_surface.h"
+#include "ppu/surfaces/flat_layer.h"
 #include "ppu/surfaces/triangle_distance.h"
 #include "ppu/surfaces/way_in_box.h"
 #include "softcell/base/assert.h"
@@ -15,29 +17,63 @@
 namespace softcell::ppu {
 namespace {
 
+using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr std::uint32_t kTrianglesInLeaf = 4;
-constexpr float kFarthest = std::numeric_limits<float>::max();
+/// Of a surface: an edge of an outline, or a triangle.
+template <int kDimension>
+using FaceOf = std::array<Eigen::Vector<float, kDimension>, kDimension>;
 
-Bounds<3> around(const std::array<Vector3f, 3>& triangle) {
-  return {triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]),
-          triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2])};
+constexpr std::uint32_t kFacesInLeaf = 4;
+constexpr float kFarthest = std::numeric_limits<float>::max();
+constexpr float kRounding = 1e-5f;  // a ray at a border meets one of its two faces at least
+
+template <int kDimension>
+Bounds<kDimension> around(const FaceOf<kDimension>& face) {
+  Bounds<kDimension> box{face[0], face[0]};
+  for (const auto& corner : face) box = {box.low.cwiseMin(corner), box.high.cwiseMax(corner)};
+  return box;
 }
 
-float square_of_distance(const Bounds<3>& box, const Vector3f& point) {
+template <int kDimension>
+float square_of_distance(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& point) {
   return (point - point.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm();
 }
 
 /// Where a way enters a box, as a share of it; beyond 1: nowhere.
-float entry_of(const Bounds<3>& box, const Vector3f& from, const Vector3f& along) {
+template <int kDimension>
+float entry_of(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& from,
+               const Eigen::Vector<float, kDimension>& along) {
   const WayInBox part = way_in_box(box, from, along);
   // Rounding must not part two boxes that share a side.
   return part.first <= part.last + 1e-6f ? part.first : kFarthest;
 }
 
-/// The share of the way at which it passes a triangle; beyond 1: it does not.  [MT97]
-float share_of(const std::array<Vector3f, 3>& triangle, const Vector3f& from, const Vector3f& along) {
+/// Out of the body, as long as the face is large, if outlines go around it counter-clockwise.
+Vector2f normal_of(const FaceOf<2>& edge) {
+  const Vector2f along = edge[1] - edge[0];
+  return {along.y(), -along.x()};
+}
+Vector3f normal_of(const FaceOf<3>& triangle) {
+  return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+}
+
+/// In proportion to the volume between the origin and a face; negative where it is seen from behind.
+float volume_below(const FaceOf<2>& edge) { return cross(edge[0], edge[1]); }
+float volume_below(const FaceOf<3>& triangle) { return triangle[0].dot(triangle[1].cross(triangle[2])); }
+
+/// The share of the way at which it passes a face; beyond 1: it does not.
+float share_of(const FaceOf<2>& edge, const Vector2f& from, const Vector2f& along) {
+  const Vector2f ab = edge[1] - edge[0], off = edge[0] - from;
+  const float area = cross(along, ab);
+  if (area == 0) return kFarthest;
+  const float at = cross(off, along) / area;
+  if (at < -kRounding || at > 1 + kRounding) return kFarthest;
+  const float share = cross(off, ab) / area;
+  return share >= 0 && share <= 1 ? share : kFarthest;
+}
+/// [MT97]
+float share_of(const FaceOf<3>& triangle, const Vector3f& from, const Vector3f& along) {
   const Vector3f ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
   const Vector3f across = along.cross(ac), off = from - triangle[0];
   const float volume = ab.dot(across);
@@ -45,15 +81,20 @@ float share_of(const std::array<Vector3f, 3>& triangle, const Vector3f& from, co
   const float u = off.dot(across) / volume;
   const Vector3f turned = off.cross(ab);
   const float v = along.dot(turned) / volume;
-  constexpr float kRounding = 1e-5f;  // a ray at an edge meets one of its two triangles at least
   if (u < -kRounding || v < -kRounding || u + v > 1 + kRounding) return kFarthest;
   const float share = ac.dot(turned) / volume;
   return share >= 0 && share <= 1 ? share : kFarthest;
 }
 
-}  // namespace
+/// The point of an edge that is nearest to `point`.
+Vector2f nearest_point(const FaceOf<2>& edge, const Vector2f& point) {
+  const Vector2f along = edge[1] - edge[0];
+  const float square = along.squaredNorm();
+  const float share = square > 0 ? std::clamp(along.dot(point - edge[0]) / square, 0.0f, 1.0f) : 0;
+  return edge[0] + share * along;
+}
 
-SurfaceQuery::SurfaceQuery(const SoftBody<3>& body) {
+std::vector<FaceOf<3>> faces_of(const SoftBody<3>& body) {
   const TriangleMesh& mesh = body.model().mesh();
   const TriangleMesh boundary = mesh.triangles.empty() ? boundary_of(body.model().lattice()) : TriangleMesh{};
   const TriangleMesh& surface = mesh.triangles.empty() ? boundary : mesh;
@@ -62,43 +103,75 @@ SurfaceQuery::SurfaceQuery(const SoftBody<3>& body) {
     positions.assign(body.positions().begin(), body.positions().end());
   else
     skin(body, positions, normals);
+  std::vector<FaceOf<3>> faces;
+  for (const auto& t : surface.triangles)
+    faces.push_back({positions[t[0]], positions[t[1]], positions[t[2]]});
+  return faces;
+}
+
+std::vector<FaceOf<2>> faces_of(const SoftBody<2>& body, const Skin2d& drawn) {
+  std::vector<Vector2f> positions(drawn.rest.size()), slopes(drawn.rest.size());
+  deform(drawn, body.positions(), positions, slopes);
+  std::vector<FaceOf<2>> faces;
+  for (const auto& loop : drawn.outlines)
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      faces.push_back({positions[loop[i]], positions[loop[(i + 1) % loop.size()]]});
+  return faces;
+}
+
+std::vector<FaceOf<2>> faces_of(const SoftBody<2>& body) {
+  return faces_of(body, touching_skin(body.model()));
+}
+
+}  // namespace
+
+template <int kDimension>
+SurfaceQuery<kDimension>::SurfaceQuery(const SoftBody<kDimension>& body) : SurfaceQuery(faces_of(body)) {}
+
+template <int kDimension>
+template <std::same_as<Skin2d> Skin>
+requires(kDimension == 2) SurfaceQuery<kDimension>::SurfaceQuery(const SoftBody<kDimension>& body,
+                                                                 const Skin& drawn)
+    : SurfaceQuery(faces_of(body, drawn)) {}
+
+template <int kDimension>
+SurfaceQuery<kDimension>::SurfaceQuery(std::vector<Face> faces) : faces_(std::move(faces)) {
+  SC_ASSERT(!faces_.empty(), "a surface of {} faces", faces_.size());
   float volume = 0;
-  for (std::uint32_t i = 0; i < surface.triangles.size(); ++i) {
-    const auto& t = surface.triangles[i];
-    const Triangle triangle{positions[t[0]], positions[t[1]], positions[t[2]]};
-    for (const Vector3f& corner : triangle)
+  for (std::uint32_t i = 0; i < faces_.size(); ++i) {
+    for (const Vector& corner : faces_[i])
       if (!corner.allFinite())
         throw std::runtime_error("a soft body's surface has positions that are not finite numbers");
-    triangles_.push_back(triangle);
     numbers_.push_back(i);
-    volume += triangle[0].dot(triangle[1].cross(triangle[2]));
+    volume += volume_below(faces_[i]);
   }
   if (volume < 0) outwards_ = -1;
   nodes_.resize(1);
-  build(0, 0, static_cast<std::uint32_t>(triangles_.size()));
+  build(0, 0, static_cast<std::uint32_t>(faces_.size()));
 }
 
-/// Halves the triangles along the longest axis of their middles.
-void SurfaceQuery::build(std::uint32_t node, std::uint32_t first, std::uint32_t count) {
-  SC_ASSERT(count > 0 && first + count <= triangles_.size(), "{} triangles from {} on, of {}", count, first,
-            triangles_.size());
-  Bounds<3> box = around(triangles_[first]),
-            middles{Vector3f::Constant(kFarthest), Vector3f::Constant(-kFarthest)};
+/// Halves the faces along the longest axis of their middles.
+template <int kDimension>
+void SurfaceQuery<kDimension>::build(std::uint32_t node, std::uint32_t first, std::uint32_t count) {
+  SC_ASSERT(count > 0 && first + count <= faces_.size(), "{} faces from {} on, of {}", count, first,
+            faces_.size());
+  Bounds<kDimension> box = around<kDimension>(faces_[first]),
+                     middles{Vector::Constant(kFarthest), Vector::Constant(-kFarthest)};
   for (std::uint32_t i = first; i < first + count; ++i) {
-    const Bounds<3> own = around(triangles_[i]);
+    const Bounds<kDimension> own = around<kDimension>(faces_[i]);
     box = {box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
-    const Vector3f middle = 0.5f * (own.low + own.high);
+    const Vector middle = 0.5f * (own.low + own.high);
     middles = {middles.low.cwiseMin(middle), middles.high.cwiseMax(middle)};
   }
   nodes_[node] = {box, first, count};
-  if (count <= kTrianglesInLeaf) return;
+  if (count <= kFacesInLeaf) return;
   Eigen::Index axis;
   (middles.high - middles.low).maxCoeff(&axis);
-  // Triangles and numbers are sorted together; equal middles by number, so that the tree is the same everywhere.
+  // Faces and numbers are sorted together; equal middles by number, so that the tree is the same everywhere.
   std::vector<std::uint32_t> order(count);
   for (std::uint32_t i = 0; i < count; ++i) order[i] = first + i;
   const auto place = [&](std::uint32_t i) {
-    const Bounds<3> own = around(triangles_[i]);
+    const Bounds<kDimension> own = around<kDimension>(faces_[i]);
     return own.low[axis] + own.high[axis];
   };
   const std::uint32_t half = count / 2;
@@ -106,10 +179,10 @@ void SurfaceQuery::build(std::uint32_t node, std::uint32_t first, std::uint32_t 
     const float at_a = place(a), at_b = place(b);
     return at_a != at_b ? at_a < at_b : numbers_[a] < numbers_[b];
   });
-  std::vector<Triangle> triangles;
+  std::vector<Face> faces;
   std::vector<std::uint32_t> numbers;
-  for (const std::uint32_t i : order) triangles.push_back(triangles_[i]), numbers.push_back(numbers_[i]);
-  std::copy(triangles.begin(), triangles.end(), triangles_.begin() + first);
+  for (const std::uint32_t i : order) faces.push_back(faces_[i]), numbers.push_back(numbers_[i]);
+  std::copy(faces.begin(), faces.end(), faces_.begin() + first);
   std::copy(numbers.begin(), numbers.end(), numbers_.begin() + first);
   const auto children = static_cast<std::uint32_t>(nodes_.size());
   nodes_.resize(nodes_.size() + 2);
@@ -118,15 +191,17 @@ void SurfaceQuery::build(std::uint32_t node, std::uint32_t first, std::uint32_t 
   build(children + 1, first + half, count - half);
 }
 
-SurfaceHit SurfaceQuery::hit_of(std::uint32_t triangle, float share, const Vector3f& position) const {
-  const auto& [a, b, c] = triangles_[triangle];
-  const Vector3f cross = outwards_ * (b - a).cross(c - a);
-  const float area = cross.norm();
-  return {share, position, area > 0 ? Vector3f(cross / area) : Vector3f::UnitY(), numbers_[triangle]};
+template <int kDimension>
+SurfaceHit<kDimension> SurfaceQuery<kDimension>::hit_of(std::uint32_t face, float share,
+                                                        const Vector& position) const {
+  const Vector normal = outwards_ * normal_of(faces_[face]);
+  const float size = normal.norm();
+  return {share, position, size > 0 ? Vector(normal / size) : Vector::UnitY().eval(), numbers_[face]};
 }
 
+template <int kDimension>
 template <typename Cost, typename Limit, typename Work>
-void SurfaceQuery::visit(const Cost& cost, const Limit& limit, const Work& work) const {
+void SurfaceQuery<kDimension>::visit(const Cost& cost, const Limit& limit, const Work& work) const {
   std::vector<std::uint32_t> open{0};
   while (!open.empty()) {
     const Node& node = nodes_[open.back()];
@@ -141,32 +216,35 @@ void SurfaceQuery::visit(const Cost& cost, const Limit& limit, const Work& work)
   }
 }
 
-std::optional<SurfaceHit> SurfaceQuery::cast_ray(const Vector3f& from, const Vector3f& to) const {
-  SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {}, {})", from.x(), from.y(), from.z());
-  const Vector3f along = to - from;
+template <int kDimension>
+std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_ray(const Vector& from,
+                                                                         const Vector& to) const {
+  SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {})", from.x(), from.y());
+  const Vector along = to - from;
   float best = kFarthest;
-  std::uint32_t best_triangle = 0;
-  visit([&](const Bounds<3>& box) { return entry_of(box, from, along); },
+  std::uint32_t best_face = 0;
+  visit([&](const Bounds<kDimension>& box) { return entry_of(box, from, along); },
         [&] { return std::min(best, 1.0f); },
         [&](std::uint32_t i) {
-          const float share = share_of(triangles_[i], from, along);
+          const float share = share_of(faces_[i], from, along);
           // Of equal ones that with the lower number.
-          if (share < best || (share == best && share <= 1 && numbers_[i] < numbers_[best_triangle]))
-            best = share, best_triangle = i;
+          if (share < best || (share == best && share <= 1 && numbers_[i] < numbers_[best_face]))
+            best = share, best_face = i;
         });
   if (best > 1) return std::nullopt;
-  return hit_of(best_triangle, best, from + best * along);
+  return hit_of(best_face, best, from + best * along);
 }
 
-/// Where several triangles are equally near, at edges and corners, the one that looks at the point most
+/// Where several faces are equally near, at edges and corners, the one that looks at the point most
 /// squarely decides about the side.
-SurfaceQuery::Nearest SurfaceQuery::nearest(const Vector3f& point) const {
+template <int kDimension>
+typename SurfaceQuery<kDimension>::Nearest SurfaceQuery<kDimension>::nearest(const Vector& point) const {
   constexpr float kEqual = 1 + 1e-5f;
   Nearest best{.square = kFarthest};
-  visit([&](const Bounds<3>& box) { return square_of_distance(box, point); },
+  visit([&](const Bounds<kDimension>& box) { return square_of_distance(box, point); },
         [&] { return best.square * kEqual; },
         [&](std::uint32_t i) {
-          const Vector3f position = nearest_point(triangles_[i], point), off = point - position;
+          const Vector position = nearest_point(faces_[i], point), off = point - position;
           const float square = off.squaredNorm();
           if (square > best.square * kEqual) return;
           const float towards = off.dot(hit_of(i, 0, position).normal);
@@ -177,27 +255,33 @@ SurfaceQuery::Nearest SurfaceQuery::nearest(const Vector3f& point) const {
   return best;
 }
 
-float SurfaceQuery::Nearest::distance() const { return behind ? -std::sqrt(square) : std::sqrt(square); }
+template <int kDimension>
+float SurfaceQuery<kDimension>::Nearest::distance() const {
+  return behind ? -std::sqrt(square) : std::sqrt(square);
+}
 
-float SurfaceQuery::distance(const Vector3f& point) const {
-  SC_ASSERT(point.allFinite(), "the distance of ({}, {}, {})", point.x(), point.y(), point.z());
+template <int kDimension>
+float SurfaceQuery<kDimension>::distance(const Vector& point) const {
+  SC_ASSERT(point.allFinite(), "the distance of ({}, {})", point.x(), point.y());
   return nearest(point).distance();
 }
 
 /// Goes on by as much as is free, which is never too far.
-std::optional<SurfaceHit> SurfaceQuery::cast_sphere(const Vector3f& from, const Vector3f& to,
-                                                    float radius) const {
+template <int kDimension>
+std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_sphere(const Vector& from,
+                                                                            const Vector& to,
+                                                                            float radius) const {
   SC_ASSERT(from.allFinite() && to.allFinite() && radius > 0, "a sphere of {} m", radius);
-  const Vector3f along = to - from;
+  const Vector along = to - from;
   const float length = along.norm(), near = 1e-4f * radius;
   const float least_step = 1e-3f * radius;  // of a way that runs along a surface
   float done = 0;
   for (;;) {
-    const Vector3f centre = length > 0 ? Vector3f(from + done / length * along) : from;
+    const Vector centre = length > 0 ? Vector(from + done / length * along) : from;
     const Nearest found = nearest(centre);
     const float distance = found.distance();
     if (distance - radius <= near) {
-      SurfaceHit hit = hit_of(found.triangle, length > 0 ? done / length : 0, found.position);
+      SurfaceHit hit = hit_of(found.face, length > 0 ? done / length : 0, found.position);
       if (distance > 0) hit.normal = (centre - found.position) / distance;
       return hit;
     }
@@ -205,5 +289,9 @@ std::optional<SurfaceHit> SurfaceQuery::cast_sphere(const Vector3f& from, const 
     done = std::min(length, done + std::max(distance - radius, least_step));
   }
 }
+
+template class SurfaceQuery<2>;
+template SurfaceQuery<2>::SurfaceQuery(const SoftBody<2>&, const Skin2d&);
+template class SurfaceQuery<3>;
 
 }  // namespace softcell::ppu

@@ -14,9 +14,11 @@ struct WayInBox {
 };
 
 /// @param along  from the way's begin to its end
-inline WayInBox way_in_box(const Bounds<3>& box, const Eigen::Vector3f& from, const Eigen::Vector3f& along) {
+template <int kDimension>
+WayInBox way_in_box(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& from,
+                    const Eigen::Vector<float, kDimension>& along) {
   WayInBox part;
-  for (int d = 0; d < 3; ++d) {
+  for (int d = 0; d < kDimension; ++d) {
     const float low = box.low[d] - from[d], high = box.high[d] - from[d];
     if (along[d] == 0) {
       if (low > 0 || high < 0) return {1, 0};

@@ -209,7 +209,7 @@ TEST(TriggerVolumes, FindWhatGeometryFinds) {
     sphere.edges = edges;
     const Vector3f beyond = sphere.position.cwiseAbs() - Vector3f::Constant(0.5f);
     const float depth = sphere.rounding - beyond.cwiseMax(0.0f).norm();
-    const bool found = find_overlap(body, contact, cells, sphere).has_value();
+    const bool found = find_overlap(body.positions(), contact, cells, sphere).has_value();
     if (depth < -1e-3f) {
       EXPECT_FALSE(found) << i;
       ++out;

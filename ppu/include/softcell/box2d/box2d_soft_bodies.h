@@ -7,8 +7,8 @@
 //     draw(man.positions());
 //
 // A soft body touches with its drawn edge: make_skin_2d() with the contact radius of its model, or the skin that add() gets. Box2D
-// knows nothing of the body, so that its rays, overlap tests and contact listeners do not see it; contacts() says where it
-// presses on something. Rigid bodies are Box2D's own business.
+// knows nothing of the body, so that its rays, overlap tests and contact listeners do not see it; contacts(), poll_contact_events()
+// and cast_ray() do. Rigid bodies are Box2D's own business.
 //
 //     step:  [solver: v] [contacts: v, x += h v, impulses on rigid bodies] [Box2D: rigid bodies]
 //
@@ -33,6 +33,7 @@
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/soft_bodies/solver_factory.h"
+#include "softcell/soft_bodies/surface_query.h"
 
 namespace softcell::ppu {
 
@@ -44,6 +45,18 @@ struct Contact2d {
   const SoftBody<2>* first = nullptr;
   const SoftBody<2>* second = nullptr;  ///< the other soft body; or null, and it is `rigid`
   b2Body* rigid = nullptr;              ///< the rigid body; or null
+};
+
+/// A contact, and with which object of Box2D.
+struct ContactEvent2d : SoftContactEvent<2> {
+  b2Body* rigid = nullptr;      ///< the rigid body, also of a sensor; or null, and it is `other`
+  b2Fixture* sensor = nullptr;  ///< the trigger volume; or null
+};
+
+/// The first point at which a ray meets a soft body.
+struct SoftRayHit2d {
+  const SoftBody<2>* body = nullptr;
+  SurfaceHit<2> hit;
 };
 
 /// All soft bodies of one world. A world can have only one object of this class. Used by the thread that steps the world.
@@ -173,6 +186,22 @@ class Box2dSoftBodies {
   };
   /// For contact listeners, with ContactMethod::kSpheres: the particle that a b2Body stands for. For any other b2Body the result has no body.
   Particle particle_of(const b2Body& body) const;
+
+  /// Switches contact events on or off for bodies that touch with their drawn edges. They are off by default and cost nothing then. For
+  /// circles use a listener of Box2D's.
+  void watch_contacts(bool watch);
+  /// Which contacts have begun, continued or ended since the last call: one event for each two bodies, in the order in which bodies were
+  /// added. Two bodies that sleep on each other have no events until one of them wakes.
+  ///
+  /// A sensor fixture is a trigger volume: the events say which bodies, awake or asleep, are in it. Its collision filter counts. An edge or
+  /// chain has no inside: a body is in such a volume if the edge cuts it.
+  std::vector<ContactEvent2d> poll_contact_events();
+
+  /// The first point at which the line from `from` to `to` (metres) meets the drawn edge of one of these bodies, from inside or outside.
+  /// Each body near the line costs some microseconds, with circles more, as a skin is made: for many rays keep a SurfaceQuery for each body.
+  /// @param filter  the ray passes through bodies that may not touch something with this filter  @pre from and to are finite
+  std::optional<SoftRayHit2d> cast_ray(const Eigen::Vector2f& from, const Eigen::Vector2f& to,
+                                       const CollisionFilter& filter = {}) const;
 
   /// The contacts of the last step at which something presses. None with ContactMethod::kSpheres: Box2D has these.
   std::vector<Contact2d> contacts() const;

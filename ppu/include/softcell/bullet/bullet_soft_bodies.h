@@ -56,32 +56,16 @@ struct SoftBodyTimes {
   std::chrono::nanoseconds processor() const { return gather + solve + apply + contacts; }
 };
 
-/// A soft body touches something or is in a trigger volume. One event sums up all contacts of the two.
-struct ContactEvent {
-  /// How the two touch now, compared with the last call of BulletSoftBodies::poll_contact_events().
-  enum class Kind {
-    kBegin,    ///< they touch, and did not then
-    kPersist,  ///< they touch, and did then
-    kEnd  ///< they no longer touch. One of them may be removed: then its address only identifies it; do not follow it
-  };
-  Kind kind = Kind::kBegin;
-  const SoftBody<3>* body = nullptr;
-  /// The other soft body, or `body` itself if it is folded; null if the other one is `object`.
-  const SoftBody<3>* other = nullptr;
+/// A contact, and with which object.
+struct ContactEvent : SoftContactEvent<3> {
   /// The object of Bullet that the body touches, or null. If its hasContactResponse() is false, it is a trigger volume.
   const btCollisionObject* object = nullptr;
-  /// Metres: the mean of the points where they press, weighted by impulse; for a trigger volume, a point that both have in common.
-  Eigen::Vector3f position{0, 0, 0};
-  /// Unit length, from the other one to `body`; for a trigger volume, the direction out of it.
-  Eigen::Vector3f normal{0, 1, 0};
-  /// kg m/s along the contacts' normals, summed since the last call; 0 for a trigger volume.
-  float impulse = 0;
 };
 
 /// The first point at which a ray meets a soft body.
 struct SoftRayHit {
   const SoftBody<3>* body = nullptr;
-  SurfaceHit hit;
+  SurfaceHit<3> hit;
 };
 
 /// The soft bodies of one world. Several objects of this class may share a world.

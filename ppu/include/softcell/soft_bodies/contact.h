@@ -18,8 +18,7 @@ enum class ContactMethod {
   kSpheres,
   /// What is drawn; the default. Points of the mesh's surface meet rigid shapes and other soft bodies; the edges and points of those meet
   /// the body's distance field. The engine does not know the body or its particles, so the engine's own rays, overlap tests and contact
-  /// callbacks do not see it. Use BulletSoftBodies::cast_ray() and poll_contact_events(), or SurfaceQuery for one body; in two dimensions
-  /// Box2dSoftBodies::contacts().
+  /// callbacks do not see it. Use cast_ray() and poll_contact_events() of BulletSoftBodies and Box2dSoftBodies, or SurfaceQuery for one body.
   kSurface,
 };
 
@@ -57,6 +56,29 @@ struct Contact {
     bool operator==(const Body&) const = default;
   };
   Body first = {}, second = {};
+};
+
+/// A soft body touches something or is in a trigger volume. One event sums up all contacts of the two. ContactEvent and ContactEvent2d add
+/// the object of Bullet or Box2D.
+template <int kDimension>
+struct SoftContactEvent {
+  using Vector = Eigen::Vector<float, kDimension>;
+  /// How the two touch now, compared with the last call of poll_contact_events().
+  enum class Kind {
+    kBegin,    ///< they touch, and did not then
+    kPersist,  ///< they touch, and did then
+    kEnd  ///< they no longer touch. One of them may be removed: then its address only identifies it; do not follow it
+  };
+  Kind kind = Kind::kBegin;
+  const SoftBody<kDimension>* body = nullptr;
+  /// The other soft body, or `body` itself if it is folded; null if the other one is an object of the engine.
+  const SoftBody<kDimension>* other = nullptr;
+  /// Metres: the mean of the points where they press, weighted by impulse; for a trigger volume, a point that both have in common.
+  Vector position = Vector::Zero();
+  /// Unit length, from the other one to `body`; for a trigger volume, the direction out of it.
+  Vector normal = Vector::UnitY();
+  /// kg m/s along the contacts' normals, summed since the last call; 0 for a trigger volume.
+  float impulse = 0;
 };
 
 }  // namespace softcell::ppu

@@ -1,0 +1,102 @@
+#pragma once
+// Who touches whom, summed up from call to call of poll(): what contact events of both engines are made of.
+
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "softcell/base/assert.h"
+#include "softcell/soft_bodies/contact.h"
+#include "softcell/soft_bodies/soft_body.h"
+
+namespace softcell::ppu {
+
+/// What the other one of a touch is.
+enum class TouchedKind { kSoft, kRigid, kTrigger };
+
+/// @tparam Event  ContactEvent or ContactEvent2d. Used by one thread.
+template <typename Event>
+class TouchLog {
+ public:
+  using Vector = typename Event::Vector;
+  /// A soft body's number, what the other one is, and that one's number: in an order that does not depend on addresses.
+  using Key = std::tuple<std::uint32_t, TouchedKind, std::uint64_t>;
+
+  /// Two that touch, or did when events were polled last.
+  class Touch {
+   public:
+    Event event;
+
+    /// Adds a point where they touch.
+    /// @param impulse  kg m/s  @param weight  of the point in the mean of positions and normals, above 0
+    void add(float impulse, float weight, const Vector& point, const Vector& normal) {
+      if (!goes_on_) event.impulse = 0, weight_ = 0, event.position.setZero(), event.normal.setZero();
+      goes_on_ = true;
+      event.impulse += impulse;
+      weight_ += weight;
+      event.position += weight * point;
+      event.normal += weight * normal;
+    }
+
+   private:
+    friend TouchLog;
+    Event take() {
+      Event taken = event;
+      taken.kind = is_old_ ? Event::Kind::kPersist : Event::Kind::kBegin;
+      taken.position /= weight_;
+      taken.normal = event.normal.norm() > 0 ? event.normal.normalized() : Vector::UnitY().eval();
+      // Where it ends is where they touched last.
+      event.position = taken.position;
+      event.normal = taken.normal;
+      is_old_ = true;
+      goes_on_ = false;
+      return taken;
+    }
+
+    bool is_old_ = false;   // it was among those that were polled
+    bool goes_on_ = false;  // they touched in a substep since then
+    bool is_over_ = false;  // one of them is gone
+    float weight_ = 0;      // of the sums since then: position and normal are not divided by it yet
+  };
+
+  Touch& operator[](const Key& key) { return touches_[key]; }
+  void clear() { touches_.clear(); }
+
+  /// A body goes: what it touched ends.
+  template <typename Body>
+  void forget(const Body& body) {
+    for (auto& [key, touch] : touches_)
+      if (touch.event.body == &body || touch.event.other == &body) touch.is_over_ = true;
+  }
+
+  /// What has begun, gone on or ended since the last call, in the order of keys.
+  std::vector<Event> poll() {
+    std::vector<Event> events;
+    for (auto entry = touches_.begin(); entry != touches_.end();) {
+      Touch& touch = entry->second;
+      if (!touch.is_over_ && touch.goes_on_) {
+        events.push_back(touch.take());
+      } else if (touch.is_over_ || !sleeps(entry->first, touch.event)) {
+        events.push_back(touch.event);
+        events.back().kind = Event::Kind::kEnd;
+        events.back().impulse = 0;
+        entry = touches_.erase(entry);
+        continue;
+      }
+      ++entry;
+    }
+    return events;
+  }
+
+ private:
+  /// Contacts of those that sleep are not looked for, and go on; trigger volumes are.
+  static bool sleeps(const Key& key, const Event& event) {
+    return std::get<TouchedKind>(key) != TouchedKind::kTrigger && event.body->asleep() &&
+           (event.other == nullptr || event.other->asleep());
+  }
+
+  std::map<Key, Touch> touches_;
+};
+
+}  // namespace softcell::ppu
