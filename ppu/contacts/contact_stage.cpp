@@ -24,22 +24,31 @@ void check_finite(const ContactBody& body) {
         "a soft body has positions or velocities that are not finite numbers, or passes 1e15 m");
 }
 
-/// From a point to where an anchor is before the step.
-Vector3f arm_of(const Anchor& anchor, const ContactBody& body, const Vector3f& point) {
-  Vector3f arm = Vector3f::Zero();
-  for (std::size_t k = 0; k < 8; ++k) arm += anchor.share[k] * (body.positions[anchor.particle[k]] - point);
-  return arm;
+/// What an anchor has of what its particles have.
+template <typename OfParticle>
+Vector3f of_anchor(const Anchor& anchor, const ContactBody& /*body*/, const OfParticle& of_particle) {
+  Vector3f sum = Vector3f::Zero();
+  for (std::size_t k = 0; k < 8; ++k) sum += anchor.share[k] * of_particle(anchor.particle[k]);
+  return sum;
 }
-
 /// Its weights are shares times roots of inverse masses.
-Vector3f arm_of(const spu::SolveAnchor& anchor, const ContactBody& body, const Vector3f& point) {
-  Vector3f arm = Vector3f::Zero();
+template <typename OfParticle>
+Vector3f of_anchor(const spu::SolveAnchor& anchor, const ContactBody& body, const OfParticle& of_particle) {
+  Vector3f sum = Vector3f::Zero();
   for (std::size_t k = 0; k < 8; ++k) {
     const std::size_t particle = anchor.particle[k];
     if (particle >= body.positions.size()) continue;  // the slot of zeros
-    arm += anchor.weight[k] * body.model->root_masses[particle] * (body.positions[particle] - point);
+    sum += anchor.weight[k] * body.model->root_masses[particle] * of_particle(particle);
   }
-  return arm;
+  return sum;
+}
+
+/// From a point to where an anchor is before the step.
+Vector3f arm_of(const auto& anchor, const ContactBody& body, const Vector3f& point) {
+  return of_anchor(anchor, body, [&](std::size_t i) -> Vector3f { return body.positions[i] - point; });
+}
+Vector3f velocity_of(const auto& anchor, const ContactBody& body) {
+  return of_anchor(anchor, body, [&](std::size_t i) -> Vector3f { return body.velocities[i]; });
 }
 
 }  // namespace
@@ -336,7 +345,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
       solve_with_worker(rigids, step);
     else
       solve_here(rigids, step);
-    take_back_lost_spin();
+    take_back_lost_spin(step);
   }
   remember_who_presses(rigids);
 }
@@ -487,8 +496,8 @@ void ContactStage::take_from_worker() {
     if (!touched_[i].empty() && worker->holds(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
-/// Of pairs of soft bodies. What rigid bodies and sleepers get is not counted here.
-void ContactStage::take_back_lost_spin() {
+/// Of pairs of soft bodies. What rigid bodies and sleepers get is not counted here. A push moves particles, with their momenta.
+void ContactStage::take_back_lost_spin(float step) {
   using Eigen::Vector3d;
   lost_spin_.begin(bodies_.size());
   for (std::size_t g = 0; g < pair_groups_; ++g) {
@@ -496,19 +505,24 @@ void ContactStage::take_back_lost_spin() {
     const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
     if (a.asleep || b.asleep) continue;
     Vector3d given = Vector3d::Zero();
-    const auto add = [&](const auto& anchor_a, const auto& anchor_b, const Vector3f& point,
-                         const Vector3f& impulse) {
-      if (impulse.isZero(0)) return;
-      const Vector3f apart = arm_of(anchor_a, a, point) - arm_of(anchor_b, b, point);
-      given += apart.cast<double>().cross(impulse.cast<double>());
+    const auto add = [&](const auto& contact, const Vector3f& point, const Vector3f& normal,
+                         const Vector3f& friction_impulse) {
+      const Vector3f impulse = contact.impulse * normal + friction_impulse;
+      if (!impulse.isZero(0)) {
+        const Vector3f apart = arm_of(contact.a, a, point) - arm_of(contact.b, b, point);
+        given += apart.cast<double>().cross(impulse.cast<double>());
+      }
+      if (contact.push != 0) {
+        const Vector3f against = velocity_of(contact.a, a) - velocity_of(contact.b, b);
+        given += double{step * contact.push} * normal.cast<double>().cross(against.cast<double>());
+      }
     };
     if (group.by_worker) {
       for (const spu::SolveContact& contact : group.solved.contacts)
-        add(contact.a, contact.b, Vector3f(contact.point),
-            contact.impulse * Vector3f(contact.normal) + Vector3f(contact.friction_impulse));
+        add(contact, Vector3f(contact.point), Vector3f(contact.normal), Vector3f(contact.friction_impulse));
     } else {
       for (const SoftContact& contact : group.contacts)
-        add(contact.a, contact.b, contact.point, contact.impulse * contact.normal + contact.friction_impulse);
+        add(contact, contact.point, contact.normal, contact.friction_impulse);
     }
     lost_spin_.add(bodies_, group.a, group.b, given);
   }

@@ -139,7 +139,7 @@ class ContactStage {
   void add_pairs_to(SolveStages& stages);
   void add_bodies_to(SolveStages& stages, float stiffening);
   void take_from_worker();
-  void take_back_lost_spin();
+  void take_back_lost_spin(float step);
   void give_to_worker();
 
   std::vector<ContactBody> bodies_;
