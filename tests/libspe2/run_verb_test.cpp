@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -35,6 +36,11 @@ TEST(RunVerb, EndsAsTheProgramDoes) {
   const CommandResult other = run_softcell("run -- true");
   EXPECT_EQ(other.status, 0);
   EXPECT_TRUE(has(other, "no SPE context was made")) << other.output;
+  const ScratchFolder folder;
+  const CommandResult untraced = run_softcell("run --trace " + (folder / "t.json") + " -- true");
+  EXPECT_EQ(untraced.status, 1);
+  EXPECT_TRUE(has(untraced, "is not written: a trace shows SPE contexts")) << untraced.output;
+  EXPECT_FALSE(std::filesystem::exists(folder / "t.json"));
   const CommandResult none = run_softcell("run -- ./no_such_program");
   EXPECT_EQ(none.status, 1);
   EXPECT_TRUE(has(none, "softcell: cannot run ./no_such_program: there is no such file")) << none.output;

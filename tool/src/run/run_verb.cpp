@@ -83,7 +83,10 @@ int run_one(const RunOptions& options, OutputFiles& files, base::WholeFile* json
   fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), how_it_ended(run), run.summary());
   if (json != nullptr) write_json(*json, document(options, run));
   files.commit();
-  return run.exit_status();
+  const int status = run.exit_status();
+  if (!options.trace || !run.report.is_null() || status != 0) return status;
+  fmt::print(stderr, "softcell: '{}' is not written: a trace shows SPE contexts\n", options.trace->string());
+  return 1;
 }
 
 int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
