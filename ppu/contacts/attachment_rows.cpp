@@ -26,6 +26,7 @@ struct Spread {
   float mass = 0;
   Vector middle = Vector::Zero();
   Matrix root = Matrix::Zero();  // L, lower triangular; L L' = S
+  Matrix inverse_of_root;
 
   void add_masses(const PatchParticles<kDimension>& patch) {
     for (std::size_t i = 0; i < patch.particles.size(); ++i) {
@@ -50,6 +51,7 @@ struct Spread {
                                                     "at least four particles that do not lie in a plane"
                                                   : "a hinge, or a weld of two soft bodies, needs patches of "
                                                     "at least three particles that do not lie on a line");
+    inverse_of_root = root.inverse();
   }
 };
 
@@ -76,6 +78,17 @@ std::vector<Eigen::Vector<float, kDimension>> simplex() {
     const float height = std::sqrt(1.5f), half = std::sqrt(0.5f);
     return {{0, 2 * half}, {height, -half}, {-height, -half}};
   }
+}
+
+/// By the formulas for its size, which is known at compile time: a factorisation for all sizes takes ten times as long to compile.
+/// @pre there are 1 to kMost rows
+template <int kMost, typename Matrix>
+Matrix inverse_of_few(const Matrix& matrix) {
+  SC_ASSERT(matrix.rows() > 0 && matrix.rows() <= kMost, "{} rows, of at most {}", matrix.rows(), kMost);
+  if constexpr (kMost > 1) {
+    if (matrix.rows() < kMost) return inverse_of_few<kMost - 1>(matrix);
+  }
+  return Eigen::Matrix<float, kMost, kMost>(matrix).inverse();
 }
 
 }  // namespace
@@ -128,16 +141,16 @@ template <int kDimension>
 auto AttachmentRows<kDimension>::Side::append(const PatchParticles<kDimension>& patch, const Vector& point)
     -> Place {
   const Spread<kDimension> spread = spread_of(patch);
-  const auto lower = spread.root.template triangularView<Eigen::Lower>();
   constexpr float kFarthest = 12;
-  const float reaches = lower.solve(Vector(point - spread.middle)).norm();
+  const Vector in_patches = spread.inverse_of_root * (point - spread.middle);
+  const float reaches = in_patches.norm();
   if (reaches > kFarthest)
     throw std::invalid_argument("a patch is held at a place " + std::to_string(reaches) +
                                 " times as far from its middle as the patch reaches; it may be 12 times as "
                                 "far: a larger patch can be "
                                 "held there");
   // S^-1 (p - c)
-  const Vector pull = lower.transpose().solve(lower.solve(Vector(point - spread.middle)));
+  const Vector pull = spread.inverse_of_root.transpose() * in_patches;
   const Place place{static_cast<std::uint32_t>(particle.size()),
                     static_cast<std::uint32_t>(patch.particles.size())};
   for (std::size_t i = 0; i < patch.particles.size(); ++i)
@@ -171,7 +184,7 @@ void AttachmentRows<kDimension>::add_places_in_common(const PatchParticles<kDime
                                                       const PatchParticles<kDimension>& b) {
   const Spread<kDimension> spread = spread_of(a, &b);
   for (const Vector& corner : simplex<kDimension>())
-    add_row(spread.middle + spread.root.template triangularView<Eigen::Lower>() * corner, a, &b, nullptr);
+    add_row(spread.middle + spread.root * corner, a, &b, nullptr);
 }
 
 template <int kDimension>
@@ -184,9 +197,9 @@ void AttachmentRows<kDimension>::add_hinge(const PatchParticles<kDimension>& a,
   } else {
     const Spread<kDimension> spread = spread_of(a, b);
     const Vector axis = settings_.axis.normalized();
-    const auto lower = spread.root.template triangularView<Eigen::Lower>();
     const float reach =
-        1 / lower.solve(axis).norm();  // such that the two do not feel each other around the middle
+        1 /
+        (spread.inverse_of_root * axis).norm();  // such that the two do not feel each other around the middle
     for (const float way : {-reach, reach}) add_row(point + way * axis, a, b, frame);
   }
 }
@@ -350,9 +363,9 @@ void AttachmentRows<kDimension>::begin_places() {
   if (sides_.b != nullptr) add(b_, &Row::b, sides_.b->inverse_masses);
   for (Eigen::Index k = 0; k < count; ++k)
     for (Eigen::Index l = k + 1; l < count; ++l) mobilities(k, l) = mobilities(l, k);
-  inverse_of_pushes_ = mobilities.inverse();
+  inverse_of_pushes_ = inverse_of_few<kDimension + 1>(mobilities);
   mobilities.diagonal().array() += softness_;
-  inverse_of_places_ = mobilities.inverse();
+  inverse_of_places_ = inverse_of_few<kDimension + 1>(mobilities);
 }
 
 /// Of the rigid body's mass and inertia, and of its rows'. @pre it has both
@@ -457,7 +470,7 @@ float AttachmentRows<kDimension>::solve_places() {
     largest = std::max(largest, v.squaredNorm());
     missing.row(static_cast<Eigen::Index>(k)) = -v;
   }
-  missing = (inverse_of_places_ * missing).eval();
+  missing = inverse_of_places_.lazyProduct(missing).eval();
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const Vector change = missing.row(static_cast<Eigen::Index>(k));
     rows_[k].impulse += change;
@@ -466,7 +479,7 @@ float AttachmentRows<kDimension>::solve_places() {
   if (!pushes_) return largest;
   for (std::size_t k = 0; k < rows_.size(); ++k)
     missing.row(static_cast<Eigen::Index>(k)) = -(relative_push(rows_[k]) + rows_[k].error);
-  missing = (inverse_of_pushes_ * missing).eval();
+  missing = inverse_of_pushes_.lazyProduct(missing).eval();
   for (std::size_t k = 0; k < rows_.size(); ++k)
     apply_push(rows_[k], missing.row(static_cast<Eigen::Index>(k)));
   return largest;

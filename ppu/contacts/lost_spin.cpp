@@ -1,6 +1,6 @@
 #include "ppu/contacts/lost_spin.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "softcell/base/assert.h"
 
@@ -38,9 +38,10 @@ void LostSpin::add(std::span<const ContactBody> bodies, std::uint32_t a, std::ui
   Spinning& first = spinning(bodies, a);
   Matrix3d inertia = first.inertia;
   if (b != a) inertia += spinning(bodies, b).inertia;
-  const Eigen::LLT<Matrix3d> solver(inertia);
-  if (solver.info() != Eigen::Success) return;  // both are pressed to one line
-  const Vector3d turn = solver.solve(given);
+  constexpr double kFlat = 1e-9;
+  const double size = inertia.trace();
+  if (!(inertia.determinant() > kFlat * size * size * size)) return;  // both are pressed to one line
+  const Vector3d turn = inertia.inverse() * given;
   first.turn -= turn;
   if (b != a) of_bodies_[b].turn -= turn;
 }
