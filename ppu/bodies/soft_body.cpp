@@ -134,7 +134,8 @@ struct SoftBody<kDimension>::RestShape {
   RestShape(const RestShape& other)
       : flow((other.wait(), std::make_shared<PlasticFlow<kDimension>>(*other.flow))),
         shape(other.shape),
-        next(other.next) {}
+        next(other.next),
+        is_flowing(other.is_flowing) {}
 
   static std::vector<Exact> positions_of(const SoftBodyModel<kDimension>& model) {
     std::vector<Exact> positions;
@@ -154,10 +155,16 @@ struct SoftBody<kDimension>::RestShape {
     if (next.valid()) next.wait();
   }
 
-  std::shared_ptr<PlasticFlow<kDimension>> flow;  // flows() has it while `next` is not ready
-  std::shared_ptr<const Shape> shape;             // null: the model's
+  // flows() has these two while `next` is not ready.
+  std::shared_ptr<PlasticFlow<kDimension>> flow;
+  std::shared_ptr<std::vector<Vector>> seen = std::make_shared<std::vector<Vector>>();  // positions, metres
+
+  std::shared_ptr<const Shape> shape;  // null: the model's
   std::shared_future<std::shared_ptr<const Shape>>
       next;  // of a flow that has begun; null: the same as before
+  // What was taken last was another shape: whether it goes on flows() finds out.
+  bool is_flowing = false;
+  std::shared_ptr<const Shape> worn;  // the one before it: flows() destroys it with the next flow
 };
 
 template <int kDimension>
@@ -298,13 +305,20 @@ void SoftBody<kDimension>::flow(float step) {
   steps_since_look_ = 0;
   if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
   const Plasticity& plasticity = *settings_.plasticity;
-  if (!rest_->flow->may_yield(x_, plasticity.yield)) return;
+  const bool looked = !rest_->is_flowing;
+  if (looked && !rest_->flow->may_yield(x_, plasticity.yield)) return;
   // The body may have sprung back when the flow is done: with more, and in some ways it would go to and fro.
   constexpr double kMost = 0.7;
   const double share = std::min(kMost, damping_from_time_constant(1 / static_cast<double>(plasticity.creep),
                                                                   kPlasticSteps * static_cast<double>(step)));
-  rest_->next = flows().begin([flow = rest_->flow, x = x_, plan = plan(), plasticity, share] {
-    return flow->flow(x, plan->sums(), plasticity, share) ? RestShape::shape_of(*flow, *plan) : nullptr;
+  // Memory that another thread frees comes with new pages each time, which cost this thread more than the copy.
+  rest_->seen->assign(x_.begin(), x_.end());
+  using Shape = std::shared_ptr<const typename RestShape::Shape>;
+  rest_->next = flows().begin([flow = rest_->flow, seen = rest_->seen, plan = plan(), plasticity, share,
+                               looked, worn = std::move(rest_->worn)]() -> Shape {
+    if (!looked && !flow->may_yield(*seen, plasticity.yield)) return nullptr;
+    if (!flow->flow(*seen, plan->sums(), plasticity, share)) return nullptr;
+    return RestShape::shape_of(*flow, *plan);
   });
 }
 
@@ -314,8 +328,9 @@ void SoftBody<kDimension>::take_flow() {
   SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
   if (!rest_->next.valid()) return;
   std::shared_ptr<const typename RestShape::Shape> flowed = std::exchange(rest_->next, {}).get();
+  rest_->is_flowing = flowed != nullptr;
+  rest_->worn = flowed ? std::exchange(rest_->shape, flowed) : nullptr;
   if (!flowed) return;
-  rest_->shape = std::move(flowed);
   matcher_->set_plan(plan());
   ++rest_revision_;
 }

@@ -2,6 +2,7 @@
 // What takes long and need not be ready at once, such as pieces of broken bodies, is made on a thread of its own.
 
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <future>
 #include <memory>
@@ -22,12 +23,20 @@ class Workshop {
   Workshop(const Workshop&) = delete;
   Workshop& operator=(const Workshop&) = delete;
 
-  /// @param make  makes something. What it uses outlives this
+  /// @param make  makes something. What it uses outlives this; what it has is destroyed on this thread
   template <class Make>
   std::future<std::invoke_result_t<Make>> begin(Make make) {
-    const auto task = std::make_shared<std::packaged_task<std::invoke_result_t<Make>()>>(std::move(make));
-    std::future<std::invoke_result_t<Make>> made = task->get_future();
-    add([task] { (*task)(); });
+    // Not a std::packaged_task: that keeps `make` for as long as somebody has the future.
+    using Made = std::promise<std::invoke_result_t<Make>>;
+    const auto task = std::make_shared<std::pair<Made, Make>>(Made(), std::move(make));
+    std::future<std::invoke_result_t<Make>> made = task->first.get_future();
+    add([task] {
+      try {
+        task->first.set_value(task->second());
+      } catch (...) {
+        task->first.set_exception(std::current_exception());
+      }
+    });
     return made;
   }
 

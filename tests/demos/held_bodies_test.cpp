@@ -19,6 +19,7 @@
 #include "simulation/hand_patch.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/soft_bodies/shapes.h"
+#include "softcell/soft_bodies/skinned_mesh.h"
 #include "support/slow_build.h"
 
 namespace softcell::demos {
@@ -224,6 +225,68 @@ TEST(HeldBodies, AHandIsNoStrongerThanItSays) {
   user.move({0, 60'000, 0}, 60);
   EXPECT_LT(velocity_of(body).norm(), 40) << "the speed is limited, too";
   EXPECT_TRUE(body.bounds().low.allFinite());
+}
+
+/// A cone with a ring around it.
+Scene cone_scene() {
+  Scene scene;
+  scene.name = "cone";
+  scene.boxes = {{.size = {20, 1, 20}, .position = {0, -0.5f, 0}}};
+  SoftBodyPlacement cone, ring;
+  cone.mesh = ppu::make_cone(0.6f, 1.2f, 32);
+  cone.settings = {.cell_size = 0.12f, .half_width = 3, .alpha = 0.9f, .damping = 0.2f};
+  cone.position = {0, 0.62f, 0};
+  ring.mesh = ppu::make_torus(0.4f, 0.12f, 32, 12);
+  ring.settings = {.cell_size = 0.12f, .half_width = 2, .alpha = 0.9f, .damping = 0.2f};
+  ring.position = {0, 0.65f, 0};
+  scene.soft_bodies = {cone, ring};
+  return scene;
+}
+
+TEST(HeldBodies, AHandCarriesWhatStandsOnTheBodyThatItHolds) {
+  const Scene scene = cone_scene();
+  Simulation3d simulation(scene, {.spes = 2});
+  for (int frame = 0; frame < 60; ++frame) simulation.step();
+  const ppu::SoftBody<3>&cone = simulation.soft_body(0), &ring = simulation.soft_body(1);
+  const Vector3f before = ring.centre_of_mass();
+  ASSERT_GT(before.y(), 0.3f) << "it lies on the cone, not on the floor";
+  User user(simulation);
+  ASSERT_TRUE(user.take({.from = {0.01f, 5, 0.01f}, .along = -Vector3f::UnitY()}));
+  ASSERT_GT(user.at().y(), 1) << "the cone's tip";
+  user.move({0, 2, 0}, 30);
+  user.move({0, 0, 0}, 240);
+  EXPECT_NEAR(ring.centre_of_mass().y(), before.y() + 1, 0.2f) << "it is lifted, too";
+  EXPECT_LT(velocity_of(cone).norm() + velocity_of(ring).norm(), 0.1f) << "both hang still";
+  Shown3d shown;
+  simulation.finish();
+  simulation.show(shown);
+  ASSERT_EQ(shown.hands.size(), 1u);
+  EXPECT_LT((shown.hands[0][0] - user.at()).norm(), 0.05f) << "as near as with the cone alone";
+}
+
+/// A hand pulls a body against the floor as hard as it can.
+TEST(HeldBodies, AHandPressesNothingIntoTheFloor) {
+  for (const float cells : {6.0f, 10.0f}) {
+    const Scene scene = standing({"ball", ppu::make_sphere(0.5f, 16), cells});
+    const float cell = scene.soft_bodies[0].settings.cell_size;
+    Simulation3d simulation(scene, {.spes = 2});
+    const ppu::SoftBody<3>& body = simulation.soft_body(0);
+    User user(simulation);
+    ASSERT_TRUE(take_from_above(user, body));
+    float deepest = 0;
+    ppu::SkinnedMesh skin(body.shared_model());
+    const auto look = [&] {
+      skin.update(body);
+      for (const Vector3f& vertex : skin.positions()) deepest = std::min(deepest, vertex.y());
+    };
+    user.move({0, -6, 0}, 30, look);
+    user.move({0, 0, 0}, 60, look);
+    EXPECT_GT(deepest, -0.1f * cell) << cells << " cells";
+    EXPECT_GT(least_volume(body), -0.5f) << cells << " cells";
+    user.release();
+    for (int frame = 0; frame < 120; ++frame) simulation.step();
+    EXPECT_LT(body.deformation(), 0.5f * cell + 0.1f) << cells << " cells";
+  }
 }
 
 /// A heavy box on a floor, behind it a soft ball, and a wall beside them.

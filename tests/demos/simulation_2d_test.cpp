@@ -3,6 +3,7 @@
 #include "simulation/simulation_2d.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -258,6 +259,97 @@ TEST_P(HeldDisc, IsLiftedCarriedAndThrown) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, HeldDisc, testing::Values(4, 8, 20, 40));
+
+/// The user's hand in a simulation of two dimensions.
+class User2d {
+ public:
+  /// Takes what is at a point.
+  User2d(Simulation2d& simulation, const Vector2f& at) : simulation_(simulation), at_(at) {
+    auto taken = simulation.touch(at);
+    if (!taken) throw std::runtime_error("nothing to take");
+    taken->hand = kUsersHand;
+    simulation.step(std::vector<Event>{*taken});
+  }
+  const Vector2f& at() const { return at_; }
+  template <class AfterFrame>
+  void move(const Vector2f& velocity, int frames, const AfterFrame& after_frame) {
+    for (int frame = 0; frame < frames; ++frame) {
+      at_ += velocity / 60;
+      simulation_.step(std::vector<Event>{hand(Action::kMoveHand, at_)});
+      after_frame();
+    }
+  }
+  void move(const Vector2f& velocity, int frames) {
+    move(velocity, frames, [] {});
+  }
+
+ private:
+  Simulation2d& simulation_;
+  Vector2f at_;
+};
+
+class HandsAndContacts : public testing::TestWithParam<ppu::ContactMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, HandsAndContacts,
+                         testing::Values(ppu::ContactMethod::kSpheres, ppu::ContactMethod::kSurface));
+
+/// As in three dimensions, in held_bodies_test.cpp: a ring that is held, and a disc that lies in it.
+TEST_P(HandsAndContacts, AHandCarriesWhatStandsOnTheBodyThatItHolds) {
+  const Scene2d scene = std::get<Scene2d>(
+      parse_scene("dimension = 2\n[framework]\nwidth = 8\nheight = 6\n"
+                  "[[soft_body]]\ncell_size = 0.15\nalpha = 0.8\ndamping = 0.2\nhalf_width = 3\n"
+                  "shape = { kind = \"ring\", diameter = 16, hole = 10 }\nposition = [0, -1.72]\n"
+                  "[[soft_body]]\ncell_size = 0.1\nalpha = 0.8\ndamping = 0.2\n"
+                  "shape = { kind = \"disc\", diameter = 5 }\nposition = [0, -2.05]\n",
+                  "s.toml"));
+  Simulation2d simulation(scene, {.contacts = GetParam()});
+  step(simulation, 30);
+  const ppu::SoftBody<2>&ring = simulation.soft_body(0), &disc = simulation.soft_body(1);
+  const Vector2f before = disc.centre_of_mass();
+  User2d user(simulation, {ring.centre_of_mass().x(), ring.bounds().high.y() - 0.02f});
+  user.move({0, 2}, 30);
+  user.move({0, 0}, 240);
+  EXPECT_GT(disc.centre_of_mass().y(), before.y() + 0.6f) << "it is lifted, by what the ring does not give";
+  const auto speed = [](const ppu::SoftBody<2>& body) {
+    return (body.linear_momentum() / body.model().mass()).norm();
+  };
+  EXPECT_LT(speed(ring) + speed(disc), 0.1f) << "both hang still";
+  EXPECT_LT((disc.centre_of_mass() - ring.centre_of_mass()).norm(), 0.7f) << "it lies in the ring";
+  Shown2d shown;
+  simulation.show(shown);
+  ASSERT_EQ(shown.hands.size(), 1u);
+  EXPECT_LT((shown.hands[0][0] - user.at()).norm(), 0.05f);
+}
+
+/// How deep what is drawn of the man is in a wall, cells.
+float depth_in_walls(const ppu::SoftBody<2>& man, const ppu::Skin2d& skin) {
+  std::vector<Vector2f> places(skin.rest.size()), slopes(skin.rest.size());
+  ppu::deform(skin, man.positions(), places, slopes);
+  float deepest = 0;
+  for (const Vector2f& place : places)
+    deepest = std::max(deepest, (place.cwiseAbs() - Vector2f(4, 3)).maxCoeff());
+  return deepest / man.settings().cell_size;
+}
+
+/// A hand that pulls him through a wall, with all its strength.
+TEST_P(HandsAndContacts, AHandPressesNobodyIntoAWall) {
+  const Scene2d scene = load_scene_2d("man");
+  for (const Vector2f& way : {Vector2f(9, 0), Vector2f(-9, 0), Vector2f(0, -9), Vector2f(9, -7)}) {
+    Simulation2d simulation(scene, {.contacts = GetParam()});
+    const ppu::SoftBody<2>& man = simulation.soft_body(0);
+    const ppu::Skin2d skin = scene.soft_bodies[0].skin(man.model().lattice());
+    User2d user(simulation, man.centre_of_mass());
+    float deepest = 0, outside = -1;
+    const auto look = [&] {
+      deepest = std::max(deepest, depth_in_walls(man, skin));
+      outside = std::max(outside, test::outside(simulation, scene));
+    };
+    user.move(way, 60, look);
+    user.move({0, 0}, 120, look);
+    // Of a limb that is bent double the drawn edge, half a cell wide, may be in the wall, and no particle.
+    EXPECT_LT(deepest, 0.75f) << way.transpose();
+    EXPECT_LT(outside, 0.05f * man.settings().cell_size) << way.transpose();
+  }
+}
 
 TEST(Simulation2d, AStackSleepsAndWakesWhenGravityChangesOrAHandTakesIt) {
   Scene2d scene = load_scene_2d("stack");
