@@ -8,8 +8,6 @@
 namespace softcell::tool {
 namespace {
 
-constexpr float kSpacing = 0.1f;
-
 /// Cells (x, y, z) of a box of `size` cells for which `inside` is true of their centres, seen from the box's.
 template <typename Inside>
 ppu::Lattice<3> lattice_where(const Eigen::Vector3i& size, const Inside& inside) {

@@ -24,6 +24,9 @@ ppu::Lattice<3> bench_block(const Eigen::Vector3i& particles);
 /// Particles in one measurement, in as many bodies as that makes: waking an SPE does not count then, and the
 /// data of all bodies are more than the nearest caches hold, as in a scene.
 inline constexpr std::size_t kBenchParticles = 16'000;
+/// Of the bodies of all benchmarks of solvers: metres, seconds, kg/m^3.
+inline constexpr float kSpacing = 0.1f, kStep = 1.0f / 60, kAlpha = 0.5f, kDamping = 0.1f, kDensity = 1000;
+inline constexpr std::size_t kBodiesPerJob = 16;
 
 /// A bent pose of a body, the same for all solvers: where a particle is.
 Eigen::Vector3f bent_position(const ppu::Lattice<3>& lattice, std::size_t particle);

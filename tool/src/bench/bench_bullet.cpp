@@ -18,7 +18,7 @@
 namespace softcell::tool {
 namespace {
 
-constexpr float kStep = 1.0f / 60, kDamping = 0.1f, kMatching = 0.5f, kDensity = 1000;
+constexpr float kMatching = 0.5f;
 
 using ppu::to_bullet;
 

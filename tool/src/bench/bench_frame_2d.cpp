@@ -20,8 +20,8 @@
 namespace softcell::tool {
 namespace {
 
-constexpr int kFramesBefore = 300;  // so that all is on the floor when measuring begins
-constexpr int kFrames = 20;         // in one measurement
+constexpr int kFramesBefore2d = 300;  // so that all is on the floor when measuring begins
+constexpr int kFrames2d = 20;         // in one measurement
 using demos::kFrameSeconds;
 
 using SoftFrames2d = SceneFrames<demos::Scene2d, demos::Simulation2d>;
@@ -43,7 +43,7 @@ class CircleFrames {
       for (std::size_t i = 0; i < model->particles(); ++i)
         add_circle(model->lattice().rest_position(i) + placement.position, model->contact_radius());
     }
-    for (int i = 0; i < kFramesBefore; ++i) step();
+    for (int i = 0; i < kFramesBefore2d; ++i) step();
   }
 
   void step() {
@@ -77,8 +77,8 @@ class CircleFrames {
 
 template <typename Frames>
 Work work_of(const std::shared_ptr<Frames>& frames) {
-  return {kFrames, [=] {
-            for (int i = 0; i < kFrames; ++i) frames->step();
+  return {kFrames2d, [=] {
+            for (int i = 0; i < kFrames2d; ++i) frames->step();
           }};
 }
 
@@ -86,7 +86,7 @@ Work work_of(const std::shared_ptr<Frames>& frames) {
 
 void add_frame_2d_benchmarks(std::vector<Benchmark>& all) {
   const Shared<SoftFrames2d> man(
-      [] { return std::make_shared<SoftFrames2d>(demos::load_scene_2d("man"), kFramesBefore); });
+      [] { return std::make_shared<SoftFrames2d>(demos::load_scene_2d("man"), kFramesBefore2d); });
   all.push_back({"frame/man", [=] { return work_of(man.get()); }});
   all.push_back({"frame/man/ppu", [=] {
                    Work work = work_of(man.get());

@@ -20,7 +20,7 @@
 namespace softcell::tool {
 namespace {
 
-constexpr std::size_t kGroups = 128, kMatrices = 4 * kGroups;
+constexpr std::size_t kGroupsOfFour = 128, kMatrices = 4 * kGroupsOfFour;
 constexpr std::uint32_t kRepeats = 32;  // in one job, so that its dispatch does not count
 constexpr float kTurn = 0.01f;          // radians since the last step
 
@@ -57,9 +57,9 @@ RotationCase deformed_a_little(Random& random) {
 class RotationRig {
  public:
   RotationRig(RotationCase (*make)(Random&), std::uint32_t least_iterations, std::uint32_t most_iterations)
-      : matrices_(memory_, "matrices", kGroups),
-        starts_(memory_, "starts", kGroups),
-        found_(memory_, "found", kGroups),
+      : matrices_(memory_, "matrices", kGroupsOfFour),
+        starts_(memory_, "starts", kGroupsOfFour),
+        found_(memory_, "found", kGroupsOfFour),
         job_(memory_, "rotations job", 1) {
     SC_ASSERT(least_iterations <= most_iterations, "from {} to {} iterations", least_iterations,
               most_iterations);
@@ -77,7 +77,7 @@ class RotationRig {
     job_[0] = {matrices_.ea().value,
                starts_.ea().value,
                found_.ea().value,
-               kGroups,
+               kGroupsOfFour,
                kRepeats,
                least_iterations,
                most_iterations,

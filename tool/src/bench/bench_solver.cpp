@@ -24,9 +24,6 @@
 namespace softcell::tool {
 namespace {
 
-constexpr float kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f, kDensity = 1000;
-constexpr std::size_t kBodiesPerJob = 16;
-
 /// What all solvers work on: several bodies of one model, so that none has one body's data in its caches.
 struct Model {
   /// @param copies  0: as many as make kBenchParticles

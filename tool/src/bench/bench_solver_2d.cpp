@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench_bodies.h"
 #include "benchmarks.h"
 #include "ppu/reference/eigen_solver.h"
 #include "ppu/reference/shape_matching.h"
@@ -22,8 +23,6 @@
 namespace softcell::tool {
 namespace {
 
-constexpr float kSpacing = 0.1f, kAlpha = 0.5f, kStep = 1.0f / 60, kDamping = 0.1f;
-constexpr std::size_t kBodiesPerJob = 16;
 constexpr std::size_t kParticlesAtOnce = 16'000;  // so many in one measurement: waking the SPE does not count
 
 /// The man of the 2D demo.

@@ -114,7 +114,7 @@ void run_match(SampleRun& sample) {
 
 /// A step of three bodies, as MatchBodies makes it.
 void run_match_2d(SampleRun& sample) {
-  constexpr std::uint32_t kBodies = 3;
+  constexpr std::uint32_t kBodiesOfJob = 3;
   const std::vector<std::string> rows(9, "#########");
   const ppu::Lattice<2> lattice = ppu::lattice_from_cells(ppu::cells_from_rows(rows), 0.5f);
   const ppu::MatchPlan2d plan(lattice, {lattice, 2, ppu::particle_masses(lattice, 1000)});
@@ -123,15 +123,15 @@ void run_match_2d(SampleRun& sample) {
   const std::size_t stride = spu::match_2d_positions_stride(plan.header()) / sizeof(spu::MatchVector2d);
   SC_ASSERT(stride >= lattice.particles.size(), "bodies of {} particles, {} apart", lattice.particles.size(),
             stride);
-  dma::Buffer<spu::MatchVector2d> positions(sample.memory(), "positions", kBodies * stride, kFloats);
-  for (std::size_t body = 0; body < kBodies; ++body)
+  dma::Buffer<spu::MatchVector2d> positions(sample.memory(), "positions", kBodiesOfJob * stride, kFloats);
+  for (std::size_t body = 0; body < kBodiesOfJob; ++body)
     for (std::size_t i = 0; i < lattice.particles.size(); ++i)
       positions[body * stride + i] = {-lattice.rest_position(i).x(), lattice.rest_position(i).y()};
   const dma::Buffer<std::byte> states(sample.memory(), "states",
-                                      kBodies * spu::match_2d_state_stride(plan.header()), kFloats);
+                                      kBodiesOfJob * spu::match_2d_state_stride(plan.header()), kFloats);
   dma::Buffer<spu::MatchJob2d> job(sample.memory(), "job", 1, {.record = ppu::kMatchJob2dRecord});
-  job[0] = {plan_bytes.ea().value, positions.ea().value, states.ea().value, kBodies, 30, 0.1f, {}};
-  sample.run(job.ea(), kBodies * lattice.particles.size());
+  job[0] = {plan_bytes.ea().value, positions.ea().value, states.ea().value, kBodiesOfJob, 30, 0.1f, {}};
+  sample.run(job.ea(), kBodiesOfJob * lattice.particles.size());
 }
 
 /// All passes over a body in tiles, rotations from nothing and then from the last step.
