@@ -43,24 +43,41 @@ SoftBodySettings metal(float yield, float creep = 20) {
           .plasticity = Plasticity{.yield = yield, .creep = creep}};
 }
 
+template <int kDimension>
+using Vector = Eigen::Vector<float, kDimension>;
+template <int kDimension>
+using Places = std::span<const typename Lattice<kDimension>::Position>;
+
 /// A bar along x, its lowest particles at y = 0.
-std::shared_ptr<const SoftBodyModel<3>> bar(int length, int thickness, const SoftBodySettings& settings) {
-  return block_model({length, thickness, thickness}, settings);
+template <int kDimension = 3>
+std::shared_ptr<const SoftBodyModel<kDimension>> bar(int length, int thickness,
+                                                     const SoftBodySettings& settings) {
+  if constexpr (kDimension == 3) {
+    return block_model({length, thickness, thickness}, settings);
+  } else {
+    std::vector<Eigen::Vector2i> cells;
+    for (int x = 0; x < length; ++x)
+      for (int y = 0; y < thickness; ++y) cells.push_back({x, y});
+    return make_soft_body_model(lattice_from_cells(cells, kCell), settings);
+  }
 }
 
 /// Where a point of a straight bar is when the bar is bent about z to a circle of this curvature (1/m) and of the length that
 /// it had.
-Vector3f bent(const Vector3f& x, float curvature, float half_height) {
+template <int kDimension>
+Vector<kDimension> bent(Vector<kDimension> x, float curvature, float half_height) {
   const float angle = curvature * x.x(), radius = 1 / curvature, y = x.y() - half_height;
-  return {(radius - y) * std::sin(angle), radius - (radius - y) * std::cos(angle), x.z()};
+  x.template head<2>() << (radius - y) * std::sin(angle), radius - (radius - y) * std::cos(angle);
+  return x;
 }
 
 /// The angle between the ends of a bar that lies along x at rest, in the plane of x and y: of the cells at its ends.
-float angle_between_ends(const SoftBodyModel<3>& model, std::span<const Vector3f> x) {
+template <int kDimension>
+float angle_between_ends(const SoftBodyModel<kDimension>& model, Places<kDimension> x) {
   const auto direction = [&](std::uint32_t cell) {
     const auto& corners = model.lattice().corners[cell];
-    Vector3f along = Vector3f::Zero();
-    for (unsigned k = 0; k < 8; k += 2) along += x[corners[k + 1]] - x[corners[k]];
+    Vector<kDimension> along = Vector<kDimension>::Zero();
+    for (unsigned k = 0; k < corners.size(); k += 2) along += x[corners[k + 1]] - x[corners[k]];
     return std::atan2(along.y(), along.x());
   };
   const auto& cells = model.lattice().cells;
@@ -75,18 +92,21 @@ float angle_between_ends(const SoftBodyModel<3>& model, std::span<const Vector3f
   return end(true) - end(false);
 }
 
-/// Of all cells, by their mean edges, in spacing^3.
+/// Of all cells, by their mean edges, in those of a cell at rest.
 struct Volumes {
   double sum = 0, least = std::numeric_limits<double>::max();
 };
-Volumes volumes(const SoftBodyModel<3>& model, std::span<const Vector3f> x) {
+template <int kDimension>
+Volumes volumes(const SoftBodyModel<kDimension>& model, Places<kDimension> x) {
   Volumes volumes;
-  const double whole = std::pow(double{model.lattice().spacing}, 3);
+  const double whole = std::pow(double{model.lattice().spacing}, kDimension);
   for (const auto& corners : model.lattice().corners) {
-    Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
-    for (unsigned k = 0; k < 8; ++k)
-      for (unsigned axis = 0; axis < 3; ++axis)
-        edges.col(axis) += ((k >> axis & 1u) != 0 ? 0.25 : -0.25) * x[corners[k]].cast<double>();
+    Eigen::Matrix<double, kDimension, kDimension> edges =
+        Eigen::Matrix<double, kDimension, kDimension>::Zero();
+    const double share = 2.0 / static_cast<double>(corners.size());
+    for (unsigned k = 0; k < corners.size(); ++k)
+      for (unsigned axis = 0; axis < kDimension; ++axis)
+        edges.col(axis) += ((k >> axis & 1u) != 0 ? share : -share) * x[corners[k]].template cast<double>();
     const double volume = edges.determinant() / whole;
     volumes.sum += volume;
     volumes.least = std::min(volumes.least, volume);
@@ -96,48 +116,55 @@ Volumes volumes(const SoftBodyModel<3>& model, std::span<const Vector3f> x) {
 
 /// One step without an engine: solver, then positions.
 /// @param drag  share of its velocity that each particle loses: with much of it, loads come and go slowly
-void advance(SoftBody<3>& body, float drag = 0) {
-  SoftBody<3>* const one[] = {&body};
-  PpuSolver<3> solver;
+template <int kDimension>
+void advance(SoftBody<kDimension>& body, float drag = 0) {
+  SoftBody<kDimension>* const one[] = {&body};
+  PpuSolver<kDimension> solver;
   solver.kick(one, kStep);
   solver.finish();
   for (std::size_t i = 0; i < body.positions().size(); ++i)
     body.set_particle(i, body.position(i) + kStep * body.velocities()[i], (1 - drag) * body.velocities()[i]);
 }
 
-void settle(SoftBody<3>& body, float seconds) {
+template <int kDimension>
+void settle(SoftBody<kDimension>& body, float seconds) {
   for (int i = 0; i < static_cast<int>(seconds / kStep); ++i) advance(body, kDrag);
 }
 
 /// Sets a bar's particles on a circle.
-void bend(SoftBody<3>& body, float curvature, float half_height) {
+template <int kDimension>
+void bend(SoftBody<kDimension>& body, float curvature, float half_height) {
   for (std::size_t i = 0; i < body.positions().size(); ++i)
-    body.set_particle(i, bent(body.model().lattice().rest_position(i), curvature, half_height),
-                      Vector3f::Zero());
+    body.set_particle(i, bent<kDimension>(body.model().lattice().rest_position(i), curvature, half_height),
+                      Vector<kDimension>::Zero());
 }
 
 /// Holds the bar on the circle for a while as a pure moment does: each cross-section stays plane and keeps its angle, and
 /// is free to change its shape.
-void hold(SoftBody<3>& body, float curvature, float seconds) {
-  const Vector3f centre(0, 1 / curvature, 0);
+template <int kDimension>
+void hold(SoftBody<kDimension>& body, float curvature, float seconds) {
+  const Eigen::Vector2f centre(0, 1 / curvature);
   for (int n = 0; n < static_cast<int>(seconds / kStep); ++n) {
     advance(body, kDrag);
     for (std::size_t i = 0; i < body.positions().size(); ++i) {
       const float angle = curvature * body.model().lattice().rest_position(i).x();
-      const Vector3f out(std::sin(angle), -std::cos(angle), 0), along(std::cos(angle), std::sin(angle), 0);
-      const Vector3f from = body.position(i) - centre, v = body.velocities()[i];
-      body.set_particle(i, centre + from.dot(out) * out + Vector3f(0, 0, from.z()), v - v.dot(along) * along);
+      const Eigen::Vector2f out(std::sin(angle), -std::cos(angle)), along(std::cos(angle), std::sin(angle));
+      Vector<kDimension> x = body.position(i), v = body.velocities()[i];
+      x.template head<2>() = centre + (x.template head<2>() - centre).dot(out) * out;
+      v.template head<2>() -= v.template head<2>().dot(along) * along;
+      body.set_particle(i, x, v);
     }
   }
 }
 
 // The strain of the surface is the elastic part of the curvature times half the thickness, measured against the rest shape,
 // whose fibres on the inside are shorter: (k - k_rest) h / 2 = yield (1 - k_rest h / 2).
-TEST(Plasticity, ABarThatIsHeldBentKeepsTheAngleOfTheLaw) {
+template <int kDimension>
+void expect_law_of_bending(float tolerance) {
   constexpr float kYield = 0.02f;
   for (const int thickness : {1, 2, 4}) {
     const int length = 16 + 4 * thickness;
-    SoftBody<3> body(bar(length, thickness, metal(kYield)));
+    SoftBody<kDimension> body(bar<kDimension>(length, thickness, metal(kYield)));
     const float half_height = kCell * static_cast<float>(thickness) / 2;
     const float strain = 3 * kYield, curvature = strain / half_height;
     bend(body, curvature, half_height);
@@ -149,7 +176,7 @@ TEST(Plasticity, ABarThatIsHeldBentKeepsTheAngleOfTheLaw) {
     settle(body, 10);
     const float kept = angle_between_ends(body.model(), body.positions());
     const float law = held * (strain - kYield) / (1 - kYield) / strain;
-    EXPECT_NEAR(kept, law, 0.05f * law) << thickness << " cells thick";
+    EXPECT_NEAR(kept, law, tolerance * law) << thickness << " cells thick";
     EXPECT_NEAR(angle_between_ends(body.model(), body.rest_positions()), kept, 0.01f * law);
     const Volumes now = volumes(body.model(), body.positions());
     const auto cells = static_cast<double>(body.model().lattice().cells.size());
@@ -157,6 +184,10 @@ TEST(Plasticity, ABarThatIsHeldBentKeepsTheAngleOfTheLaw) {
     EXPECT_NEAR(volumes(body.model(), body.rest_positions()).sum / cells, 1, 1e-5) << "at rest it is exact";
   }
 }
+
+TEST(Plasticity, ABarThatIsHeldBentKeepsTheAngleOfTheLaw) { expect_law_of_bending<3>(0.05f); }
+// It flows on a little while it is let go.
+TEST(Plasticity, InTwoDimensionsABarThatIsHeldBentKeepsTheAngleOfTheLaw) { expect_law_of_bending<2>(0.08f); }
 
 TEST(Plasticity, BelowTheYieldABarGoesBack) {
   SoftBody<3> body(bar(16, 2, metal(0.2f)));
@@ -426,36 +457,6 @@ TEST(Plasticity, TheRestShapeBecomesAModel) {
   const TriangleMesh same = rest_mesh(SoftBody<3>(model));
   for (std::size_t i = 0; i < same.positions.size(); ++i)
     ASSERT_LT((same.positions[i] - model->mesh().positions[i]).norm(), 1e-6f);
-}
-
-// In two dimensions a bar of one cell keeps what the same law says.
-TEST(Plasticity, InTwoDimensionsABentBarStaysBent) {
-  std::vector<Eigen::Vector2i> cells;
-  for (int x = 0; x < 24; ++x) cells.push_back({x, 0}), cells.push_back({x, 1});
-  constexpr float kYield = 0.02f, kStrain = 3 * kYield, kCurvature = kStrain / kCell;
-  const auto model = make_soft_body_model(lattice_from_cells(cells, kCell), metal(kYield));
-  SoftBody<2> body(model);
-  const auto place = [&](std::size_t i) {
-    const Eigen::Vector2f x = model->lattice().rest_position(i);
-    const Vector3f on_circle = bent({x.x(), x.y(), 0}, kCurvature, kCell);
-    return Eigen::Vector2f(on_circle.head<2>());
-  };
-  for (int n = 0; n < 400; ++n) {
-    for (std::size_t i = 0; i < model->particles(); ++i) body.set_particle(i, place(i), {0, 0});
-    body.flow(kStep);
-  }
-  ASSERT_TRUE(body.has_own_rest());
-  const auto rest = body.rest_positions();
-  const auto direction = [&](std::uint32_t cell) {
-    const auto& c = model->lattice().corners[cell];
-    const Eigen::Vector2f along = rest[c[1]] - rest[c[0]] + rest[c[3]] - rest[c[2]];
-    return std::atan2(along.y(), along.x());
-  };
-  const float kept = direction(static_cast<std::uint32_t>(model->lattice().cells.size() - 1)) - direction(0);
-  const float held = 23 * kCell * kCurvature;
-  // All particles are held, so that the sides cannot follow: what the sides would give stays elastic.
-  EXPECT_GT(kept, 0.3f * held);
-  EXPECT_LT(kept, held * (kStrain - kYield) / kStrain * 1.05f);
 }
 
 }  // namespace
