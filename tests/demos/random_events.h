@@ -42,6 +42,7 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
       use_value(3);
       break;
     case Action::kRelease:
+    case Action::kPin:
       use_hand();
       break;
     case Action::kPush:
@@ -52,6 +53,7 @@ InputEvent<Dimension> random_event(std::mt19937& random) {
       use_value(15);
       break;
     case Action::kHome:
+    case Action::kUnpin:
       use_body();
       break;
     case Action::kTilt:

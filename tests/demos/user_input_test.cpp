@@ -346,6 +346,24 @@ TEST(UserInput, AKnifeThatIsClickedOrPutAwayCutsNothing) {
   EXPECT_EQ(hold[0].action, Action::kHold);
 }
 
+TEST(UserInput, AKeyPinsWhatHandsHoldAndElseTakesAllPinsOff) {
+  UserInput<2> input = input_2d();
+  const Events2d all_off{{.action = Action::kUnpin, .body = kEveryBody}};
+  EXPECT_EQ(frame_of(input, {press(SDLK_h)}), all_off);
+  EXPECT_FALSE(input.take_pinned());
+  const auto pin = frame_of(input, {mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300), press(SDLK_h)});
+  ASSERT_EQ(pin.size(), 2u);
+  EXPECT_EQ(pin[1], (InputEvent<2>{.action = Action::kPin, .hand = kUsersHand}));
+  EXPECT_TRUE(input.take_pinned());
+  EXPECT_FALSE(input.take_pinned()) << "asking forgets it";
+  EXPECT_EQ(frame_of(input, {mouse_button(SDL_MOUSEBUTTONUP, 400, 300), press(SDLK_h)})[1], all_off[0]);
+
+  UserInput<3> solid = input_3d();
+  EXPECT_EQ(frame_of(solid, {press(SDLK_h)}), (Events3d{{.action = Action::kUnpin, .body = kEveryBody}}));
+  EXPECT_EQ(frame_of(solid, {mouse_button(SDL_MOUSEBUTTONDOWN, 400, 300), press(SDLK_h)}).back(),
+            (InputEvent<3>{.action = Action::kPin, .hand = kUsersHand}));
+}
+
 TEST(UserInput, AControllerThatIsPulledOutTiltsNoMore) {
   SDL_Event stick{};
   stick.caxis.type = SDL_CONTROLLERAXISMOTION;
@@ -650,6 +668,10 @@ TEST(ControllerHands, BothTakeMoveAndLetGo) {
   EXPECT_EQ(events[1].hand, kUsersRightHand);
   EXPECT_EQ(events[1].body, 2u);
   EXPECT_TRUE(input.look().hands[0]->holds && input.look().hands[1]->holds);
+  UserInput<3> pinning = input;
+  const std::vector<InputEvent<3>> pins = frame_of(pinning, {press(SDLK_h)});
+  EXPECT_EQ(pins[0], (InputEvent<3>{.action = Action::kPin, .hand = kUsersLeftHand}));
+  EXPECT_EQ(pins[1], (InputEvent<3>{.action = Action::kPin, .hand = kUsersRightHand}));
   for (const auto axis : {SDL_CONTROLLER_AXIS_LEFTX, SDL_CONTROLLER_AXIS_LEFTY, SDL_CONTROLLER_AXIS_RIGHTY})
     input.handle(axis_at(axis, 0));
   events = frames_of(input, 2);

@@ -121,6 +121,12 @@ void ControllerHands<Dimension>::move(Hand& hand, const Look& look,
   }
 }
 
+template <int Dimension>
+void ControllerHands<Dimension>::pin(std::vector<InputEvent<Dimension>>& events) const {
+  for (const Hand& hand : hands_)
+    if (hand.pointer.holds()) hand.pointer.pin(events);
+}
+
 template class ControllerHands<2>;
 template class ControllerHands<3>;
 

@@ -37,6 +37,8 @@ class ControllerHands {
   bool handle(const SDL_Event& event);
   /// Appends what the hands do in a frame, and shows them.
   void next_frame(Look& look, std::vector<InputEvent<Dimension>>& events);
+  /// Each hand that holds something pins it.
+  void pin(std::vector<InputEvent<Dimension>>& events) const;
 
  private:
   struct Hand {

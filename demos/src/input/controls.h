@@ -32,7 +32,7 @@ class Controls {
   /// @param world   has reset(), which restores bodies and world as they were at the beginning, home(i), which does so
   ///                with soft body i, and hold(event), hold_rigid(event), move_hand(event) and release(hand) of hands
   ///                that hold more than a particle, set_material(event, i)
-  ///                of soft body i, and cut(event)
+  ///                of soft body i, cut(event), pin(hand) and unpin(event)
   template <class Bodies, class World>
   void apply(std::span<const Event> events, Bodies& bodies, World& world) {
     for (const Event& event : events) {
@@ -106,6 +106,12 @@ class Controls {
           break;
         case Action::kCut:
           world.cut(event);
+          break;
+        case Action::kPin:
+          world.pin(event.hand);
+          break;
+        case Action::kUnpin:
+          world.unpin(event);
           break;
       }
     }

@@ -36,8 +36,10 @@ enum class Action : std::uint8_t {
   kCreep,  ///< of a plastic body
   /// A blade that reaches from `value` (m) along `edge` (m) moves by `way` (m) and cuts `body` and its pieces. In 2D it is a tip, without edge.
   kCut,
+  kPin,  ///< hand: the part of the soft body that it holds stays where it is in the world; nothing when it holds none
+  kUnpin,  ///< pins of `body` and its pieces are taken off
 };
-inline constexpr int kActions = 23;
+inline constexpr int kActions = 25;
 
 /// What the number of an action may be.
 struct NumberRange {

@@ -38,6 +38,8 @@ constexpr std::array kBindings{
                false, false, true},
     KeyBinding{Command::kRemove, SDLK_DELETE, kNoButton, "Delete", "remove the soft body that was held last"},
     KeyBinding{Command::kKnife, SDLK_k, kNoButton, "K", "the mouse is a knife, or a hand again"},
+    KeyBinding{Command::kPin, SDLK_h, kNoButton, "H",
+               "pin what hands hold; with nothing held: take all pins off"},
     KeyBinding{Command::kSaveScene, SDLK_F5, kNoButton, "F5", "save the scene as it is"},
     KeyBinding{Command::kStatistics, SDLK_s, SDL_CONTROLLER_BUTTON_LEFTSTICK, "S", "statistics"},
     KeyBinding{Command::kHelp, SDLK_F1, SDL_CONTROLLER_BUTTON_RIGHTSTICK, "F1", "this help"},

@@ -30,6 +30,7 @@ enum class Command : std::uint8_t {
   kSaveScene,
   kRemove,
   kKnife,
+  kPin,
   kStatistics,
   kHelp,
   kQuit,

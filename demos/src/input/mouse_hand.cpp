@@ -57,4 +57,9 @@ void MouseHand::let_go(std::vector<InputEvent<2>>& events) {
   events.push_back({.action = Action::kRelease, .hand = hand_});
 }
 
+void MouseHand::pin(std::vector<InputEvent<2>>& events) const {
+  SC_ASSERT(holds_, "hand {} pins nothing", hand_);
+  events.push_back({.action = Action::kPin, .hand = hand_});
+}
+
 }  // namespace softcell::demos

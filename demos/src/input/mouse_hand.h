@@ -41,6 +41,8 @@ class MouseHand {
   bool take(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
   /// @pre holds()
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<2>>& events);
+  /// What it holds stays where it is. @pre holds()
+  void pin(std::vector<InputEvent<2>>& events) const;
   /// @pre holds()
   void let_go(std::vector<InputEvent<2>>& events);
 

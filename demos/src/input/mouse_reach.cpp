@@ -78,6 +78,11 @@ void MouseReach::move_away(float notches, const Look& look, std::vector<InputEve
   move(look, events);
 }
 
+void MouseReach::pin(std::vector<InputEvent<3>>& events) const {
+  SC_ASSERT(depth_, "hand {} pins nothing", hand_);
+  events.push_back({.action = Action::kPin, .hand = hand_});
+}
+
 void MouseReach::let_go(std::vector<InputEvent<3>>& events) {
   SC_ASSERT(depth_, "hand {} lets nothing go", hand_);
   depth_.reset();

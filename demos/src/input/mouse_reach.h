@@ -45,6 +45,8 @@ class MouseReach {
   void move_to(int x, int y, const Look& look, std::vector<InputEvent<3>>& events);
   /// @param notches  of the wheel; below 0: nearer  @pre holds()
   void move_away(float notches, const Look& look, std::vector<InputEvent<3>>& events);
+  /// What it holds stays where it is. @pre holds()
+  void pin(std::vector<InputEvent<3>>& events) const;
   /// @pre holds()
   void let_go(std::vector<InputEvent<3>>& events);
 

@@ -60,6 +60,8 @@ constexpr std::array<ActionSyntax, kActions> kSyntax{{
     {.name = "yield", .body = true},
     {.name = "creep", .body = true},
     {.name = "cut", .body = true, .value = true, .blade = true},
+    {.name = "pin", .hand = true},
+    {.name = "unpin", .body = true},
 }};
 
 /// A number of 32 bits that has a name.

@@ -111,6 +111,9 @@ void UserInput<Dimension>::do_command(Command command) {
       coming_.push_back({.action = Action::kReset});
       if constexpr (Dimension == 3) pointing_.tilt.forget();
       break;
+    case Command::kPin:
+      pin_or_unpin();
+      break;
     case Command::kPause:
       paused_ = !paused_;
       coming_.push_back({.action = paused_ ? Action::kPause : Action::kResume});
@@ -142,6 +145,17 @@ void UserInput<Dimension>::do_command(Command command) {
     default:
       break;  // the window's
   }
+}
+
+template <int Dimension>
+void UserInput<Dimension>::pin_or_unpin() {
+  const std::size_t before = coming_.size();
+  if (pointing_.hand.holds()) pointing_.hand.pin(coming_);
+  hands_.pin(coming_);
+  if (coming_.size() > before)
+    pinned_ = true;
+  else
+    coming_.push_back({.action = Action::kUnpin, .body = kEveryBody});
 }
 
 template <int Dimension>

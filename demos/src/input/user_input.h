@@ -50,12 +50,15 @@ class WindowInput {
   bool take_save() { return std::exchange(save_, false); }
   /// Whether the body that was held last is to be removed; asking forgets it.
   bool take_remove() { return std::exchange(remove_, false); }
+  /// Whether hands have pinned what they hold; asking forgets it.
+  bool take_pinned() { return std::exchange(pinned_, false); }
 
  protected:
   /// Handles a command that concerns the window. @return  whether it did.
   bool handle_command(Command command);
 
   Look look_;
+  bool pinned_ = false;
 
  private:
   int views_;
@@ -110,6 +113,7 @@ class UserInput final : public WindowInput {
 
  private:
   void do_command(Command command);
+  void pin_or_unpin();
   void set_gravity(const Vector& gravity);
   void add_gravity(float more);
 

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "hand_patch.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/fracture.h"
 
@@ -34,6 +36,8 @@ class Grip {
   /// @param gravity  m/s^2, that the substep will add  @pre step > 0
   virtual void pull(const HandMotion<Dimension>& hand, const Vector& gravity, float step) = 0;
 
+  /// What it holds of a soft body. None: it holds a rigid one.
+  virtual std::optional<HeldPart<Dimension>> part() const { return std::nullopt; }
   /// Whether it holds this soft body, which may break. @param body  its address
   virtual bool holds(const void* /*body*/) const { return false; }
   /// Bodies have broken, in this order. @return the grip on the piece that has what is held; null: this one goes on as it is

@@ -90,6 +90,26 @@ struct HandPatch {
   }
 };
 
+/// What a hand holds of a soft body, so that it can be pinned there.
+template <int Dimension>
+struct HeldPart {
+  const ppu::SoftBody<Dimension>* body = nullptr;
+  Eigen::Vector<float, Dimension> point = Eigen::Vector<float, Dimension>::Zero();  ///< metres, as it is now
+  float radius = 0;                      ///< metres: of the hand's patch
+  std::vector<std::uint32_t> particles;  ///< those that a pin holds, ascending
+
+  HeldPart(const ppu::SoftBody<Dimension>& held, const HandPatch<Dimension>& patch,
+           const Eigen::Vector<float, Dimension>& at)
+      : body(&held), point(at), radius(patch.radius) {
+    for (std::uint32_t i = 0; i < patch.weights.size(); ++i)
+      if (patch.weights[i] > kLeastWeight) particles.push_back(i);
+  }
+
+ private:
+  // Two thirds of the radius; in the smallest patch still all neighbours along the axes, so that none is flat.
+  static constexpr float kLeastWeight = 0.3f;
+};
+
 /// The shape to which a held body would return: that of its model, or its own one if it has yielded (ppu::Plasticity).
 template <int Dimension>
 struct HeldRest {

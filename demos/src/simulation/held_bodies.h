@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -39,6 +40,12 @@ class HeldBodies {
       if (held.number == hand) held.grip->let_go(held.velocity);
     }
     std::erase_if(hands_, [hand](const Hand& held) { return held.number == hand; });
+  }
+  /// What the hand holds of a soft body.
+  std::optional<HeldPart<Dimension>> part(std::uint32_t hand) const {
+    for (const Hand& held : hands_)
+      if (held.number == hand) return held.grip->part();
+    return std::nullopt;
   }
   /// The body has broken, or is gone. @param body  its address
   void forget(const void* body) {

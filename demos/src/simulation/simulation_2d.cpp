@@ -26,6 +26,7 @@
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
+#include "pins.h"
 #include "ppu/spe_bodies/spe_contacts.h"
 #include "rigid_grip_2d.h"
 #include "scene/shared_models.h"
@@ -289,9 +290,18 @@ struct Simulation2d::State {
   float substep() const { return kFrameSeconds / static_cast<float>(substeps_of_frame()); }
   void move_hand(const InputEvent<2>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
+  void pin(std::uint32_t hand) {
+    if (const auto part = part_held_by<2>(hand, held, controls.hands(), bodies))
+      pins.add(world->soft_bodies, sources[number_of(*part->body)], *part);
+  }
+  void unpin(const InputEvent<2>& event) {
+    pins.remove(world->soft_bodies,
+                event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
+  }
   void reset() {
     held.release_all();
     SC_ASSERT(solver != nullptr, "scene '{}' has no solver", scene.name);
+    pins.forget();
     world.reset();  // its worker before the next one's
     world.emplace(scene, models, *solver, contacts, spes ? spes->make_contact_worker() : nullptr);
     sources.resize(models.size());
@@ -300,6 +310,7 @@ struct Simulation2d::State {
   void home(std::size_t body) {
     SC_ASSERT(body < sources.size(), "body {} of {}", body, sources.size());
     body = sources[body];
+    pins.remove(world->soft_bodies, body);
     make_whole(body);
     bodies[body].reset(scene.soft_bodies[body].position);
   }
@@ -348,6 +359,7 @@ struct Simulation2d::State {
   std::optional<World> world;
   Bodies bodies{world};
   HeldBodies<2> held;                 // of `world`
+  Pins<2> pins;                       // likewise
   std::vector<InputEvent<2>> events;  // of the last step
   std::int64_t frame = 0;             // of the script: counts without a break
 };
@@ -505,6 +517,7 @@ void Simulation2d::show(Shown2d& shown) const {
                              .thickness = placement.thickness,
                              .colour = placement.colour});
   }
+  state_->pins.append(state_->world->soft_bodies, shown.ropes);
   shown.hands.clear();
   for (const Hands<2>::Held& held : held()) {
     SC_ASSERT(held.body < soft_bodies(), "hand {} holds body {} of {}", held.hand, held.body, soft_bodies());

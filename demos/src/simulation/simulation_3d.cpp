@@ -18,6 +18,7 @@
 #include "held_bodies.h"
 #include "input/controls.h"
 #include "input/script_player.h"
+#include "pins.h"
 #include "ppu/bullet/bullet_world.h"
 #include "ppu/bullet/processor_time.h"
 #include "ppu/numbers/deterministic_math.h"
@@ -352,13 +353,17 @@ struct Simulation3d::State {
   /// After a substep or a cut: pieces come behind all other bodies, and hands let go of what has broken.
   void note_broken() {
     for (const ppu::BrokenSoftBody& broken : soft_bodies.poll_broken()) {
-      std::size_t body = 0;
-      while (&soft_bodies[body] != broken.body) ++body;
+      const std::size_t body = number_of(*broken.body);
       sources.insert(sources.end(), broken.pieces.size(), sources[body]);
       let_go(body);
     }
     SC_ASSERT(sources.size() == soft_bodies.size(), "the sources of {} soft bodies of {}", sources.size(),
               soft_bodies.size());
+  }
+  std::size_t number_of(const ppu::SoftBody<3>& soft) const {
+    std::size_t body = 0;
+    while (&soft_bodies[body] != &soft) ++body;
+    return body;
   }
   void let_go(std::size_t body) {
     controls.forget_body(body);
@@ -442,6 +447,7 @@ struct Simulation3d::State {
                                   .thickness = placement.thickness,
                                   .colour = placement.colour});
     }
+    pins.append(soft_bodies, snapshot.ropes);
   }
 
   /// Waits for the SPEs; what was handed over is shown from now on.
@@ -477,6 +483,16 @@ struct Simulation3d::State {
   }
   void move_hand(const InputEvent<3>& event) { held.move(event.hand, event.value); }
   void release(std::uint32_t hand) { held.release(hand); }
+  /// No effect: bodies that touch with spheres, which cannot be attached.
+  void pin(std::uint32_t hand) {
+    if (contacts == ppu::ContactMethod::kSpheres) return;
+    if (const auto part = part_held_by<3>(hand, held, controls.hands(), soft_bodies))
+      pins.add(soft_bodies, sources[number_of(*part->body)], *part);
+  }
+  void unpin(const InputEvent<3>& event) {
+    pins.remove(soft_bodies,
+                event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
+  }
 
   int substeps_of_frame() const { return controls.substeps(scene.substeps); }
   /// Seconds of one.
@@ -517,6 +533,7 @@ struct Simulation3d::State {
   void home(std::size_t body) {
     SC_ASSERT(body < soft_bodies.size(), "body {} of {}", body, soft_bodies.size());
     body = sources[body];
+    pins.remove(soft_bodies, body);
     make_whole(body);
     soft_bodies[body].reset(scene.soft_bodies[body].position);
     twist(soft_bodies[body], scene.soft_bodies[body].twist);
@@ -550,6 +567,7 @@ struct Simulation3d::State {
   std::vector<std::span<const Eigen::Vector4f>> positions;
   std::size_t vertices = 0;
   HeldBodies<3> held;  // of `soft_bodies` and `world`
+  Pins<3> pins;        // of `soft_bodies`
   bool records_contacts = false;
   bool contacts_stand = true;  // false: bodies are elsewhere since the world has found its contacts
 

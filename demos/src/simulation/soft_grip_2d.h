@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "grip.h"
@@ -23,6 +24,7 @@ class SoftGrip2d final : public Grip<2> {
   Eigen::Vector2f point() const override { return body_.position(particle_); }
   void pull(const HandMotion<2>& hand, const Eigen::Vector2f& gravity, float step) override;
   void let_go(const Eigen::Vector2f& velocity) override;
+  std::optional<HeldPart<2>> part() const override { return HeldPart<2>(body_, grip_.patch(), point()); }
   bool holds(const void* body) const override { return &body_ == body; }
   std::unique_ptr<Grip<2>> follow(std::span<const ppu::BrokenSoftBody2d> broken) const override;
 

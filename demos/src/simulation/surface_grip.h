@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "grip.h"
 #include "patch_grip.h"
@@ -21,6 +22,7 @@ class SurfaceGrip final : public Grip<3> {
   SurfaceGrip(ppu::SoftBody<3>& body, const Eigen::Vector3f& point);
 
   const ppu::SoftBody<3>& body() const { return body_; }
+  std::optional<HeldPart<3>> part() const override { return HeldPart<3>(body_, grip_.patch(), point()); }
   bool holds(const void* body) const override { return &body_ == body; }
   Eigen::Vector3f point() const override;
   void pull(const HandMotion<3>& hand, const Eigen::Vector3f& gravity, float step) override;

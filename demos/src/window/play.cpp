@@ -107,6 +107,9 @@ class PlayedScene {
       demo_.input().do_now(Command::kKnife);
       overlays_.notice.show("bodies that touch with spheres cannot be cut; start with --contacts surface");
     }
+    if (demo_.input().take_pinned() && demo_.dimension() == 3 &&
+        demo_.contacts() == ppu::ContactMethod::kSpheres)
+      overlays_.notice.show("bodies that touch with spheres cannot be pinned; start with --contacts surface");
     const FrameTimes times = demo_.step();
     record_.add(times);
     demo_.publish();
