@@ -12,13 +12,14 @@ fail() { echo "$(basename "$0" .sh): $*" >&2; sed 's/^/softcell: /' "$folder"/lo
 cd "$folder"
 start_virtual_display "$folder" 1400x800 || fail "Xvfb did not start"
 
-# start VERB OPTIONS...: runs softcell and waits for its window. It is small, as the processor draws its pixels; `size=1280x720 start` has a
+# start VERB OPTIONS...: runs softcell and waits for its first picture. It is small, as the processor draws its pixels; `size=1280x720 start` has a
 # larger one.
 start() {
   "$softcell" demo "$1" --size "${size:-640x360}" "${@:2}" >"$folder/log" 2>&1 &
   pid=$!
   window=$(timeout 60 xdotool search --sync --onlyvisible --name "softcell demo $1" | head -1) || fail "no window"
   xdotool windowfocus --sync "$window"
+  shot "begin_$1"  # what comes before the first picture meets nothing
   sleep 1
 }
 # finish: the user closes the window.
