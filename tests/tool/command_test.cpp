@@ -427,7 +427,7 @@ TEST(Command, SaysWhatTheWorkOfTheSpesTakesOnAPs3) {
     GTEST_SKIP() << "a sanitizer takes a minute for it; SpeRuntime.CountsTheCyclesOfAPs3 runs there";
   const ScratchFolder folder;
   for (const auto& [scene, dimension, contacts] :
-       {std::tuple{"cell", "3d", "surface"}, std::tuple{"two_way", "2d", "circles"}}) {
+       {std::tuple{"cell", "3d", "surface"}, std::tuple{"two_way", "2d", "surface"}}) {
     const std::string json = folder / "run.json";
     const CommandResult run =
         run_softcell(std::string("demo ") + dimension + " --scene " + scene +
