@@ -10,6 +10,7 @@
 #include "ppu/matching/plastic_flow.h"
 #include "ppu/matching/rotation.h"
 #include "ppu/matching/stiffness.h"
+#include "ppu/numbers/box_around.h"
 #include "ppu/numbers/cross.h"
 #include "ppu/reference/shape_matching.h"
 #include "softcell/base/assert.h"
@@ -507,12 +508,7 @@ auto SoftBody<kDimension>::angular_momentum() const -> AxialVector {
 template <int kDimension>
 Bounds<kDimension> SoftBody<kDimension>::bounds() const {
   SC_ASSERT(!x_.empty(), "a body without particles has no box, nor {} velocities", v_.size());
-  Bounds<kDimension> box{x_[0], x_[0]};
-  for (const Vector& x : x_) {
-    box.low = box.low.cwiseMin(x);
-    box.high = box.high.cwiseMax(x);
-  }
-  return box;
+  return box_around<Bounds<kDimension>>(x_);
 }
 
 template <int kDimension>

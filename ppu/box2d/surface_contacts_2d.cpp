@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ppu/contacts/overlap.h"
+#include "ppu/numbers/box_around.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -22,6 +23,12 @@ bool moves(const b2Body& body) {
   return body.GetType() != b2_staticBody && body.IsAwake() &&
          (body.GetLinearVelocity().LengthSquared() > kMoves * kMoves ||
           std::abs(body.GetAngularVelocity()) > kMoves);
+}
+
+float largest_cell(SurfaceContacts2d::Bodies bodies) {
+  float largest = 0;
+  for (const auto& body : bodies) largest = std::max(largest, body->soft().model().lattice().spacing);
+  return largest;
 }
 
 bool is_same(const b2Transform& a, const b2Transform& b) {
@@ -60,9 +67,7 @@ void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
 }
 
 void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments, float step) {
-  float largest = 0;
-  for (const auto& body : bodies) largest = std::max(largest, body->soft().model().lattice().spacing);
-  obstacles_.begin(world_, step, largest);
+  obstacles_.begin(world_, step, largest_cell(bodies));
   in_stage_.resize(bodies.size());
   softs_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -212,15 +217,13 @@ void SurfaceContacts2d::log_touches(Bodies bodies) {
 
 /// Of bodies where the step has moved them, also of those that sleep.
 void SurfaceContacts2d::log_sensors(Bodies bodies, float step) {
-  float largest = 0;
-  for (const auto& body : bodies) largest = std::max(largest, body->soft().model().lattice().spacing);
-  sensors_.begin(world_, step, largest);
+  sensors_.begin(world_, step, largest_cell(bodies));
   for (const auto& body : bodies) {
     const SoftBody<2>& soft = body->soft();
     const Kept& kept = kept_.at(body.get());
     kept.model->layer.lift(soft.positions(), 0.5f * soft.model().lattice().spacing, moved_);
     near_.clear();
-    sensors_.add_near(bounds_of(moved_), soft.centre_of_mass(), body->filter(), near_);
+    sensors_.add_near(box_around<Bounds<3>>(moved_), soft.centre_of_mass(), body->filter(), near_);
     if (near_.empty()) continue;
     cells_.place(*kept.model->layer.lattice(), moved_);
     for (const std::uint32_t near : near_) {

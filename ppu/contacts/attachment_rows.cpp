@@ -197,9 +197,8 @@ void AttachmentRows<kDimension>::add_hinge(const PatchParticles<kDimension>& a,
   } else {
     const Spread<kDimension> spread = spread_of(a, b);
     const Vector axis = settings_.axis.normalized();
-    const float reach =
-        1 /
-        (spread.inverse_of_root * axis).norm();  // such that the two do not feel each other around the middle
+    // Such that the two do not feel each other around the middle.
+    const float reach = 1 / (spread.inverse_of_root * axis).norm();
     for (const float way : {-reach, reach}) add_row(point + way * axis, a, b, frame);
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ppu/numbers/box_around.h"
 #include "ppu/surfaces/edge_points.h"
 #include "ppu/surfaces/triangle_distance.h"
 #include "softcell/base/assert.h"
@@ -77,7 +78,7 @@ class OverlapSearch {
 
   std::optional<Overlap> find_along_edges() const {
     std::optional<Overlap> found;
-    const Bounds<3> box = bounds_of(positions_);
+    const Bounds<3> box = box_around<Bounds<3>>(positions_);
     for (const ObstacleEdge& edge : obstacle_.edges) {
       const Vector3f from = obstacle_.to_world(edge.from), along = obstacle_.to_world(edge.to) - from;
       for_each_point_of_edge(from, along, box, kEdgeSpacing * spacing_, [&](const Vector3f& point) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ppu/numbers/share_of_segment.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -40,9 +41,7 @@ OutlineDistance::OutlineDistance(const Skin2d& skin) {
 
 float OutlineDistance::Segment::distance(const Vector2f& at) const {
   const Vector2f along = to - from;
-  const float square = along.squaredNorm();
-  const float share = square > 0 ? std::clamp(along.dot(at - from) / square, 0.0f, 1.0f) : 0.0f;
-  return (at - from - share * along).norm();
+  return (at - from - share_of_segment(from, along, at) * along).norm();
 }
 
 /// Squares around the place, ring by ring: what lies beyond ring r is farther than r cells.

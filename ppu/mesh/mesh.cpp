@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "ppu/numbers/box_around.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -29,12 +30,7 @@ bool MeshMaterial::has_looks() const {
 
 Bounds<3> bounds(const TriangleMesh& mesh) {
   SC_ASSERT(!mesh.positions.empty(), "a mesh without positions has no box");
-  Bounds<3> box{mesh.positions.front(), mesh.positions.front()};
-  for (const Eigen::Vector3f& position : mesh.positions) {
-    box.low = box.low.cwiseMin(position);
-    box.high = box.high.cwiseMax(position);
-  }
-  return box;
+  return box_around<Bounds<3>>(mesh.positions);
 }
 
 void fit(TriangleMesh& mesh, float longest_side) {

@@ -69,15 +69,9 @@ struct Separation {
   Eigen::Vector3f normal{0, 1, 0};  ///< unit length
 };
 
-/// The box around places. @pre there is one
-inline Bounds<3> bounds_of(std::span<const Eigen::Vector3f> places) {
-  Bounds<3> box{places.front(), places.front()};
-  for (const Eigen::Vector3f& place : places) box = {box.low.cwiseMin(place), box.high.cwiseMax(place)};
-  return box;
-}
-
 /// Whether two boxes have a point in common.
-inline bool overlap(const Bounds<3>& a, const Bounds<3>& b) {
+template <int kDimension>
+bool overlap(const Bounds<kDimension>& a, const Bounds<kDimension>& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 

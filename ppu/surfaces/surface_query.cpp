@@ -6,7 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "ppu/numbers/box_around.h"
 #include "ppu/numbers/cross.h"
+#include "ppu/numbers/share_of_segment.h"
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/flat_layer.h"
 #include "ppu/surfaces/triangle_distance.h"
@@ -27,13 +29,6 @@ using FaceOf = std::array<Eigen::Vector<float, kDimension>, kDimension>;
 constexpr std::uint32_t kFacesInLeaf = 4;
 constexpr float kFarthest = std::numeric_limits<float>::max();
 constexpr float kRounding = 1e-5f;  // a ray at a border meets one of its two faces at least
-
-template <int kDimension>
-Bounds<kDimension> around(const FaceOf<kDimension>& face) {
-  Bounds<kDimension> box{face[0], face[0]};
-  for (const auto& corner : face) box = {box.low.cwiseMin(corner), box.high.cwiseMax(corner)};
-  return box;
-}
 
 template <int kDimension>
 float square_of_distance(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimension>& point) {
@@ -89,9 +84,7 @@ float share_of(const FaceOf<3>& triangle, const Vector3f& from, const Vector3f& 
 /// The point of an edge that is nearest to `point`.
 Vector2f nearest_point(const FaceOf<2>& edge, const Vector2f& point) {
   const Vector2f along = edge[1] - edge[0];
-  const float square = along.squaredNorm();
-  const float share = square > 0 ? std::clamp(along.dot(point - edge[0]) / square, 0.0f, 1.0f) : 0;
-  return edge[0] + share * along;
+  return edge[0] + share_of_segment(edge[0], along, point) * along;
 }
 
 std::vector<FaceOf<3>> faces_of(const SoftBody<3>& body) {
@@ -155,10 +148,10 @@ template <int kDimension>
 void SurfaceQuery<kDimension>::build(std::uint32_t node, std::uint32_t first, std::uint32_t count) {
   SC_ASSERT(count > 0 && first + count <= faces_.size(), "{} faces from {} on, of {}", count, first,
             faces_.size());
-  Bounds<kDimension> box = around<kDimension>(faces_[first]),
+  Bounds<kDimension> box = box_around<Bounds<kDimension>>(faces_[first]),
                      middles{Vector::Constant(kFarthest), Vector::Constant(-kFarthest)};
   for (std::uint32_t i = first; i < first + count; ++i) {
-    const Bounds<kDimension> own = around<kDimension>(faces_[i]);
+    const Bounds<kDimension> own = box_around<Bounds<kDimension>>(faces_[i]);
     box = {box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
     const Vector middle = 0.5f * (own.low + own.high);
     middles = {middles.low.cwiseMin(middle), middles.high.cwiseMax(middle)};
@@ -171,7 +164,7 @@ void SurfaceQuery<kDimension>::build(std::uint32_t node, std::uint32_t first, st
   std::vector<std::uint32_t> order(count);
   for (std::uint32_t i = 0; i < count; ++i) order[i] = first + i;
   const auto place = [&](std::uint32_t i) {
-    const Bounds<kDimension> own = around<kDimension>(faces_[i]);
+    const Bounds<kDimension> own = box_around<Bounds<kDimension>>(faces_[i]);
     return own.low[axis] + own.high[axis];
   };
   const std::uint32_t half = count / 2;

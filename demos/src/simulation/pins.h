@@ -55,12 +55,12 @@ class Pins {
       return;
     }
   }
-  /// @param source  as above; none: all pins go
+  /// @param source  as above; kEveryBody: all pins go
   template <class SoftBodies>
-  void remove(SoftBodies& bodies, std::optional<std::size_t> source) {
+  void remove(SoftBodies& bodies, std::size_t source) {
     forget_ended(bodies);
     std::erase_if(pins_, [&](const Pin& pin) {
-      if (source && pin.source != *source) return false;
+      if (source != kEveryBody && pin.source != source) return false;
       bodies.detach(pin.id);
       return true;
     });

@@ -294,10 +294,7 @@ struct Simulation2d::State {
     if (const auto part = part_held_by<2>(hand, held, controls.hands(), bodies))
       pins.add(world->soft_bodies, sources[number_of(*part->body)], *part);
   }
-  void unpin(const InputEvent<2>& event) {
-    pins.remove(world->soft_bodies,
-                event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
-  }
+  void unpin(const InputEvent<2>& event) { pins.remove(world->soft_bodies, event.body); }
   void reset() {
     held.release_all();
     SC_ASSERT(solver != nullptr, "scene '{}' has no solver", scene.name);

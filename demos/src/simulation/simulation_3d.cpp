@@ -489,10 +489,7 @@ struct Simulation3d::State {
     if (const auto part = part_held_by<3>(hand, held, controls.hands(), soft_bodies))
       pins.add(soft_bodies, sources[number_of(*part->body)], *part);
   }
-  void unpin(const InputEvent<3>& event) {
-    pins.remove(soft_bodies,
-                event.body == kEveryBody ? std::nullopt : std::optional<std::size_t>(event.body));
-  }
+  void unpin(const InputEvent<3>& event) { pins.remove(soft_bodies, event.body); }
 
   int substeps_of_frame() const { return controls.substeps(scene.substeps); }
   /// Seconds of one.

@@ -3,7 +3,6 @@
 source "$(dirname "$0")/play.sh"
 
 size=1280x720 start 3d --scene drop --view contacts --record "$folder/contact.rec"
-shot demo3d_contacts
 sleep 2
 xdotool key p
 sleep 0.5

@@ -4,7 +4,6 @@ source "$(dirname "$0")/play.sh"
 
 convert -size 120x100 xc:none -fill red -draw 'circle 60,50 60,90' cat.png
 start 2d --json "$folder/drop.json"
-shot demo2d_before_drop
 drop 150 100 "$folder/cat.png"
 sleep 1
 shot demo2d_dropped
@@ -13,7 +12,6 @@ grep -q '"bodies": 2' drop.json || fail "the dropped picture is no second body: 
 
 # A recording belongs to one scene.
 start 2d --record "$folder/one.rec" --json "$folder/drop.json"
-shot demo2d_before_drop
 drop 150 100 "$folder/cat.png"
 sleep 0.7
 shot demo2d_drop_refused

@@ -7,7 +7,6 @@ make_tetrahedron
 echo rubbish >rubbish.ply
 printf '[framework]\n[[soft_body]]\ncell_size = 0.25\nshape = { kind = "sphere" }\nposition = [0, 1, 0]\n' >mine.toml
 start 3d --scene drop --json "$folder/drop.json"
-shot demo3d_before_drop
 drop 320 150 "$folder/tetrahedron.obj"
 sleep 1.5
 shot demo3d_dropped
@@ -17,7 +16,6 @@ shot demo3d_dropped_rubbish
 finish
 grep -q '"bodies": 2' drop.json || fail "the dropped model is no second body: $(grep bodies drop.json)"
 start 3d --scene drop --json "$folder/drop.json"
-shot demo3d_before_drop
 drop 320 150 "$folder/mine.toml"
 sleep 1.5
 xdotool mousemove --window "$window" 320 200 mousedown 1

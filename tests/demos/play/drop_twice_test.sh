@@ -4,7 +4,6 @@ source "$(dirname "$0")/play.sh"
 
 make_tetrahedron
 start 3d --scene drop --json "$folder/drop.json"
-shot demo3d_before_drop
 sleep 1
 xdotool key p
 sleep 0.3

@@ -3,7 +3,6 @@
 source "$(dirname "$0")/play.sh"
 
 start 3d --scene drop --record "$folder/hold.rec"
-shot demo3d_drop
 sleep 1
 xdotool mousemove --window "$window" 320 210 mousedown 1
 for y in 190 165 140 120; do xdotool mousemove --window "$window" 320 $y; sleep 0.1; done

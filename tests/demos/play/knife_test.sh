@@ -3,7 +3,6 @@
 source "$(dirname "$0")/play.sh"
 
 start 3d --scene drop --record "$folder/cut.rec" --json "$folder/cut.json"
-shot demo3d_before_cut
 sleep 1
 xdotool key k
 xdotool mousemove --window "$window" 320 30 mousedown 1

@@ -3,7 +3,6 @@
 source "$(dirname "$0")/play.sh"
 
 start 3d --scene drop
-shot demo3d_drop_before
 sleep 1
 xdotool key p
 sleep 0.3

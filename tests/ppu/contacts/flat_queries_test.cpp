@@ -120,6 +120,15 @@ class ToldIn2d : public testing::Test {
     w_.run(seconds);
     return w_.soft.poll_contact_events();
   }
+  /// A body that has fallen asleep on a floor.
+  SoftBody<2>& add_sleeper() {
+    w_.add_box({0, -1}, {10, 1});
+    SoftBody<2>& body = add({0, 0.13f});
+    w_.soft.let_sleep(SleepSettings{});
+    for (int i = 0; i < 1200 && !body.asleep(); ++i) w_.run(1.0f / 120);
+    w_.soft.poll_contact_events();
+    return body;
+  }
   b2Fixture* add_sensor(const b2Shape& shape) {
     b2FixtureDef definition;
     definition.shape = &shape;
@@ -168,12 +177,8 @@ TEST_F(ToldIn2d, ContactsBeginGoOnAndEnd) {
 }
 
 TEST_F(ToldIn2d, SleepEndsNoContactAndRemovalDoes) {
-  w_.add_box({0, -1}, {10, 1});
-  SoftBody<2>& body = add({0, 0.13f});
-  w_.soft.let_sleep(SleepSettings{});
-  for (int i = 0; i < 1200 && !body.asleep(); ++i) w_.run(1.0f / 120);
+  SoftBody<2>& body = add_sleeper();
   ASSERT_TRUE(body.asleep());
-  w_.soft.poll_contact_events();
   EXPECT_TRUE(after(0.1f).empty());
   w_.soft.remove(body);
   const std::vector<ContactEvent2d> events = w_.soft.poll_contact_events();
@@ -215,12 +220,8 @@ TEST_F(ToldIn2d, SensorsHoldNothingUpAndSayWhatIsInThem) {
 }
 
 TEST_F(ToldIn2d, SensorsObeyFiltersAndMeetBodiesThatSleep) {
-  w_.add_box({0, -1}, {10, 1});
-  SoftBody<2>& body = add({0, 0.13f});
-  w_.soft.let_sleep(SleepSettings{});
-  for (int i = 0; i < 1200 && !body.asleep(); ++i) w_.run(1.0f / 120);
+  SoftBody<2>& body = add_sleeper();
   ASSERT_TRUE(body.asleep());
-  w_.soft.poll_contact_events();
   b2CircleShape circle;
   circle.m_p = {0, 0.6f};
   circle.m_radius = 0.2f;
