@@ -14,14 +14,17 @@ namespace {
 
 using Eigen::Vector3f;
 
+[[noreturn]] void refuse_to_be_infinite() {
+  throw std::runtime_error(
+      "a soft body has positions or velocities that are not finite numbers, or passes 1e15 m");
+}
+
 /// Of what is to be squared, too.
 void check_finite(const ContactBody& body) {
   constexpr float kFarthest = 1e15f;  // metres
   bool finite = (body.box.high - body.box.low).cwiseAbs().maxCoeff() < kFarthest;
   for (const Vector3f& end : body.ends) finite = finite && end.cwiseAbs().maxCoeff() < kFarthest;
-  if (!finite)
-    throw std::runtime_error(
-        "a soft body has positions or velocities that are not finite numbers, or passes 1e15 m");
+  if (!finite) refuse_to_be_infinite();
 }
 
 /// What an anchor has of what its particles have.
@@ -524,6 +527,7 @@ void ContactStage::take_back_lost_spin(float step) {
       for (const SoftContact& contact : group.contacts)
         add(contact, contact.point, contact.normal, contact.friction_impulse);
     }
+    if (!given.allFinite()) refuse_to_be_infinite();  // velocities overflowed in this step
     lost_spin_.add(bodies_, group.a, group.b, given);
   }
   lost_spin_.take_back(bodies_);
