@@ -161,6 +161,7 @@ void stiffen(ContactBody& body, std::uint32_t cell, float share) {
   inertia.diagonal().array() += kLittle;
   const Eigen::Matrix3f inverse = inertia.inverse();
   const Vector3f omega = inverse * (spin + kLittle * (inverse * spin));
+  if (!omega.allFinite()) return;  // torn over 10^6 of its size: the determinant overflows
   for (const std::uint32_t k : corners) {
     body.velocities[k] += share * (velocity + omega.cross(arm(k)) - body.velocities[k]);
   }

@@ -57,6 +57,7 @@ TEST(SurfaceContacts, SizesAndSpeedsOfAllKindsEndInTime) {
   for (const float speed : {1.0f, 1e3f, 1e6f, 1e12f}) {
     body.add_velocity({speed, -speed, 0});
     w.run(1, 1);
+    for (const Vector3f& velocity : body.velocities()) ASSERT_TRUE(velocity.allFinite()) << speed << " m/s";
   }
   body.add_velocity({3e38f, 3e38f, 0});
   EXPECT_THROW(w.run(2, 1), std::runtime_error);
