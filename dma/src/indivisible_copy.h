@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "softcell/base/sanitizers.h"
 #include "softcell/dma/local_store_bytes.h"
-#include "softcell/dma/sanitizers.h"
 
 namespace softcell::dma {
 

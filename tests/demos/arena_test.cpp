@@ -15,6 +15,7 @@
 #include "ppu/reference/skin_scalar.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 namespace {
@@ -82,7 +83,7 @@ WorstVertex compare_with_oracle(const Simulation3d& simulation) {
 
 TEST(Arena, EveryVertexOfEveryFrameAgreesWithTheOracle) {
   Simulation3d simulation(arena(), {});
-  for (int frame = 0; frame < 120; ++frame) {
+  for (int frame = 0; frame < (kSlowBuild ? 20 : 120); ++frame) {
     simulation.step();
     const WorstVertex worst = compare_with_oracle(simulation);
     ASSERT_LE(worst.position_ulps, 1.0) << "frame " << frame;
@@ -102,7 +103,7 @@ TEST(Arena, HoldsWhatTheIssueAsksOfIt) {
 
 TEST(Arena, NothingLeavesThroughFloorOrWallsAndEverythingStaysFinite) {
   Simulation3d simulation(arena(), {});
-  for (int frame = 0; frame < 480; ++frame) {
+  for (int frame = 0; frame < (kSlowBuild ? 90 : 480); ++frame) {
     simulation.step();
     for (std::size_t b = 0; b < simulation.soft_bodies(); ++b) {
       for (const Eigen::Vector4f& p : simulation.shown_particles(b)) ASSERT_TRUE(p.allFinite());

@@ -14,6 +14,7 @@
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
 #include "simulation_runs.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 namespace {
@@ -156,6 +157,7 @@ TEST(LiveSettings, YieldAndCreepSetWhatTheySayIn2d) {
 }
 
 TEST(LiveSettings, ABodyOfTooManyParticlesStaysElastic) {
+  if (kSlowBuild) GTEST_SKIP() << "half a minute with sanitizers, for the scene to be made";
   const Scene scene = load_scene_3d("big");
   Simulation3d run(scene, {.spes = 2});
   ASSERT_GT(run.particles(), 4096u);

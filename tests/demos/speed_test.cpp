@@ -9,7 +9,7 @@
 #include "ppu/reference/skin_scalar.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
-#include "softcell/dma/sanitizers.h"
+#include "softcell/base/sanitizers.h"
 #include "softcell/soft_bodies/shapes.h"
 
 namespace softcell::demos {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "softcell/dma/sanitizers.h"
+#include "softcell/base/sanitizers.h"
 #include "support/run_command.h"
 #include "support/scratch_folder.h"
 

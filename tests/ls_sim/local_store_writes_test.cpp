@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "softcell/base/sanitizers.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/local_store_bytes.h"
 #include "softcell/dma/mfc.h"
-#include "softcell/dma/sanitizers.h"
 #include "softcell/ls_sim/local_store.h"
 #include "softcell/ls_sim/spe_group.h"
 #include "test_images.h"

@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "arithmetic_results.h"
+#include "softcell/base/sanitizers.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/dma/local_store_port.h"
-#include "softcell/dma/sanitizers.h"
 #include "softcell/ls_sim/trace.h"
 #include "test_images.h"
 

@@ -2,7 +2,7 @@
 // Whether a sanitizer makes everything ten times as slow. Tests then take fewer steps, or one scene of many: what a sanitizer finds hangs on
 // the code that runs and not on how often, and the builds without one have the whole.
 
-#include "softcell/dma/sanitizers.h"
+#include "softcell/base/sanitizers.h"
 
 namespace softcell {
 

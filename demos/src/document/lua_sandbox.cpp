@@ -15,7 +15,7 @@
 #include <string_view>
 #include <utility>
 
-#include "softcell/dma/sanitizers.h"
+#include "softcell/base/sanitizers.h"
 #include "value_message.h"
 
 namespace softcell::demos {

@@ -10,7 +10,7 @@
 #include "shift_semantics.h"
 #include "shuffle_semantics.h"
 #include "single_semantics.h"
-#include "softcell/dma/sanitizers.h"
+#include "softcell/base/sanitizers.h"
 #include "spu_state.h"
 
 namespace softcell::ls_sim::interpreter {
