@@ -1,6 +1,6 @@
 // What `spu run` and `spu explore` are told: buffers, arguments and how they are refused.
 
-#include "spu/kernel_task.h"
+#include "kernel_runs/kernel_task.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "spu/kernel_buffers.h"
+#include "kernel_runs/kernel_buffers.h"
 #include "support/scratch_folder.h"
 #include "support/text_file.h"
 #include "verb/exit_status.h"

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "kernel_runs/kernel_file.h"
 #include "ppu/bullet/bullet_world.h"
 #include "scene_file/scene_library.h"
 #include "scene_frames.h"
 #include "simulation/simulation_3d.h"
 #include "softcell/base/assert.h"
 #include "softcell/spe_bodies/spe_solver.h"
-#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 namespace {

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "kernel_runs/kernel_file.h"
 #include "ppu/matching/rotation.h"
 #include "rotations_job.h"
 #include "softcell/base/assert.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
-#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 namespace {

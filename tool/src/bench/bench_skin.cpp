@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "kernel_runs/kernel_file.h"
 #include "ppu/reference/skin_scalar.h"
 #include "ppu/spe_bodies/skin_orchestrator.h"
 #include "softcell/base/assert.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "spe_waker.h"
-#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 namespace {

@@ -12,13 +12,13 @@
 
 #include "bench_bodies.h"
 #include "benchmarks.h"
+#include "kernel_runs/kernel_file.h"
 #include "ppu/reference/eigen_solver.h"
 #include "ppu/reference/shape_matching.h"
 #include "ppu/spe_bodies/match_bodies.h"
 #include "softcell/base/assert.h"
 #include "softcell/jobs/job_system.h"
 #include "spe_waker.h"
-#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "benchmarks.h"
+#include "kernel_runs/kernel_file.h"
 #include "softcell/base/assert.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
-#include "spu/kernel_file.h"
 #include "transfers_job.h"
 
 namespace softcell::tool {

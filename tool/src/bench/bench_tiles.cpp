@@ -12,10 +12,10 @@
 
 #include "bench_bodies.h"
 #include "benchmarks.h"
+#include "kernel_runs/kernel_file.h"
 #include "ppu/reference/shape_matching.h"
 #include "ppu/spe_bodies/tiled_memory.h"
 #include "softcell/base/assert.h"
-#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "spu/kernel_samples.h"
+#include "kernel_runs/kernel_samples.h"
 
 namespace softcell::tool {
 

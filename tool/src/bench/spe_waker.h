@@ -1,8 +1,8 @@
 #pragma once
 // SPEs awake, for benchmarks of what they then do.
 
+#include "kernel_runs/kernel_file.h"
 #include "softcell/jobs/job_system.h"
-#include "spu/kernel_file.h"
 
 namespace softcell::tool {
 

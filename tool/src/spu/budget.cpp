@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "kernel_file.h"
-#include "kernel_timing.h"
+#include "kernel_runs/kernel_file.h"
+#include "kernel_runs/kernel_timing.h"
 #include "softcell/dma/addresses.h"
 #include "spu_verbs.h"
 #include "verb/output_files.h"

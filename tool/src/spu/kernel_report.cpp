@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel_file.h"
+#include "kernel_runs/kernel_file.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
 

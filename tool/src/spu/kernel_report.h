@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 
-#include "kernel_run.h"
+#include "kernel_runs/kernel_run.h"
 
 namespace softcell::tool {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel_task.h"
+#include "kernel_runs/kernel_task.h"
 
 namespace softcell::tool {
 

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "gdb_server.h"
-#include "kernel_file.h"
+#include "debugger/gdb_server.h"
 #include "kernel_report.h"
+#include "kernel_runs/kernel_file.h"
 #include "spu_verbs.h"
 #include "verb/exit_status.h"
 #include "verb/interrupt.h"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "kernel_file.h"
-#include "kernel_outcome.h"
 #include "kernel_report.h"
+#include "kernel_runs/kernel_file.h"
+#include "kernel_runs/kernel_outcome.h"
 #include "softcell/base/assert.h"
 #include "spu_verbs.h"
 #include "verb/exit_status.h"

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "kernel_file.h"
 #include "kernel_report.h"
-#include "kernel_run.h"
-#include "kernel_timing.h"
+#include "kernel_runs/kernel_file.h"
+#include "kernel_runs/kernel_run.h"
+#include "kernel_runs/kernel_timing.h"
 #include "softcell/base/nearest_name.h"
 #include "softcell/ls_sim/spu_listing.h"
 #include "spu_verbs.h"

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "coverage.h"
-#include "kernel_file.h"
 #include "kernel_report.h"
-#include "kernel_run.h"
-#include "kernel_timing.h"
+#include "kernel_runs/kernel_file.h"
+#include "kernel_runs/kernel_run.h"
+#include "kernel_runs/kernel_timing.h"
 #include "softcell/ls_sim/trace.h"
 #include "spu_verbs.h"
 #include "verb/output_files.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "command_line/verb.h"
-#include "kernel_samples.h"
-#include "kernel_task.h"
+#include "kernel_runs/kernel_samples.h"
+#include "kernel_runs/kernel_task.h"
 #include "softcell/dma/schedule.h"
 #include "softcell/ls_sim/spe_options.h"
 

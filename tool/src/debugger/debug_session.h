@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "kernel_run.h"
-#include "kernel_task.h"
+#include "kernel_runs/kernel_run.h"
+#include "kernel_runs/kernel_task.h"
 #include "softcell/ls_sim/debugger.h"
 
 namespace softcell::tool {
