@@ -33,7 +33,6 @@ void pin_software_rasterizer() {
   // differ by 1 in 0.01 % of them. A width of 512 crashes.
   ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", "avx", 1);
   ::setenv("LP_NATIVE_VECTOR_WIDTH", "256", 1);
-  ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
 }
 
 }  // namespace softcell::render
