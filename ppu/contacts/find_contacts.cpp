@@ -175,30 +175,35 @@ class ObstacleContacts {
     try_edges_of_triangles(reach);
   }
 
-  /// The ends of short edges belong to many triangles: each is looked up once.
+  /// The ends of short edges belong to many triangles: each is looked up once. Those within a plane are not, as they stand out of nothing:
+  /// the body's points meet the plane.
   void try_edges_of_triangles(float reach) {
-    PointSet& corners = cells_.corners;
+    CornerSet& corners = cells_.corners;
     corners.begin(obstacle_.edges.size());
     const float longest = kEdgeSpacing * body_.spacing();
     cells_.triangles.for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
       if (!cells_.boxes().any_meets(widened(to_world(obstacle_, box), 2 * reach))) return;
-      for (const ObstacleEdge& edge : obstacle_.edges.subspan(3 * first, 3 * (end - first))) {
+      for (std::size_t i = 3 * first; i < 3 * end; ++i) {
+        const ObstacleEdge& edge = obstacle_.edges[i];
+        const CornerSet::Triangle& triangle = obstacle_.triangles[i / 3];
         if ((edge.to - edge.from).squaredNorm() > longest * longest)
           try_edge(edge, reach);
-        else  // where it ends the next edge of the triangle begins
+        else if (edge.from == triangle[i % 3])  // where it ends the next edge of the triangle begins
+          corners.add(triangle, i % 3);
+        else  // an edge of two dimensions, in their plane
           corners.add(edge.from);
       }
     });
-    const auto in_world = [&](const PointSet::Point& corner) {
+    const auto in_world = [&](const CornerSet::Point& corner) {
       return obstacle_.to_world({corner[0], corner[1], corner[2]});
     };
     // In an order that does not depend on where the list of triangles begins.
-    std::vector<PointSet::Point>& near = cells_.near_corners;
+    std::vector<CornerSet::Point>& near = cells_.near_corners;
     near.clear();
-    for (const PointSet::Point& corner : corners.points())
-      if (may_be_in_body(in_world(corner))) near.push_back(corner);
+    for (const CornerSet::Corner& corner : corners.corners())
+      if (!corner.is_flat() && may_be_in_body(in_world(corner.point))) near.push_back(corner.point);
     std::sort(near.begin(), near.end());
-    for (const PointSet::Point& corner : near) try_corner(in_world(corner));
+    for (const CornerSet::Point& corner : near) try_corner(in_world(corner));
   }
 
   void add(const Anchor& anchor, const Vector3f& point, const Hit& hit) {

@@ -7,7 +7,7 @@
 #include "ppu/contacts/contact_group.h"
 #include "ppu/surfaces/cell_boxes.h"
 #include "ppu/surfaces/cell_finder.h"
-#include "ppu/surfaces/point_set.h"
+#include "ppu/surfaces/corner_set.h"
 #include "ppu/surfaces/triangle_boxes.h"
 
 namespace softcell::ppu {
@@ -29,8 +29,8 @@ class EndCells {
   }
   // For those who look for contacts with triangles, again and again without allocating.
   TriangleBoxes triangles;
-  PointSet corners;
-  std::vector<PointSet::Point> near_corners;
+  CornerSet corners;
+  std::vector<CornerSet::Point> near_corners;
 
  private:
   const ContactBody* body_ = nullptr;

@@ -25,7 +25,7 @@ grep -q 'shown 320 x 180' "$folder/log" || fail "showed nothing on the dummy dri
 start_virtual_display "$folder" 800x600 || fail "Xvfb did not start"
 "$probe" >"$folder/log" 2>&1 &
 pid=$!
-expect() { for _ in $(seq 100); do grep -q "$1" "$folder/log" && return; sleep 0.1; done; fail "no '$1'"; }
+expect() { for _ in $(seq 300); do grep -q "$1" "$folder/log" && return; sleep 0.1; done; fail "no '$1'"; }
 expect 'shown 320 x 180'
 # What the program has drawn may be with the X server before the window's name is.
 window=$(timeout 30 xdotool search --sync --onlyvisible --name 'window probe' | head -1) || fail "no window has the name"

@@ -15,9 +15,9 @@
 #include "ppu/mesh/solid.h"
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/contact_surface.h"
+#include "ppu/surfaces/corner_set.h"
 #include "ppu/surfaces/obstacle.h"
 #include "ppu/surfaces/point_chooser.h"
-#include "ppu/surfaces/point_set.h"
 #include "ppu/surfaces/triangle_boxes.h"
 #include "ppu/surfaces/triangle_distance.h"
 #include "softcell/soft_bodies/shapes.h"
@@ -134,22 +134,75 @@ TEST(TriangleBoxes, FindsWhatAPlainLoopFinds) {
   }
 }
 
-TEST(PointSet, HasEachPointOnceInTheOrderInWhichTheyCame) {
+TEST(CornerSet, HasEachCornerOnceInTheOrderInWhichTheyCame) {
   RandomPoints random;
-  PointSet set;
+  CornerSet set;
   for (const std::size_t count : {1000u, 1u, 0u, 37u}) {
     set.begin(3 * count);
-    std::vector<PointSet::Point> expected;
+    std::vector<CornerSet::Point> expected;
     for (std::size_t i = 0; i < count; ++i) {
       const Vector3f p = random.in_cube(1);
       expected.push_back({p.x(), p.y(), p.z()});
       for (const std::size_t other : {i, i / 2, i}) {
         const auto& [x, y, z] = expected[other];
-        set.add({x, y, z});
+        set.add(Vector3f(x, y, z));
       }
     }
-    EXPECT_TRUE(std::ranges::equal(set.points(), expected)) << count;
+    EXPECT_TRUE(std::ranges::equal(set.corners(), expected, {}, &CornerSet::Corner::point)) << count;
   }
+}
+
+/// A square of quads with heights: which of its corners are flat, in any order of its triangles, turned and moved anyhow.
+TEST(CornerSet, KnowsWhichCornersStandOutOfNothing) {
+  constexpr int kSide = 7;  // corners
+  RandomPoints random;
+  std::mt19937 order(1);
+  const auto flat_corners = [&](const auto& height) {
+    const Eigen::Matrix3f turn =
+        Eigen::Quaternionf::FromTwoVectors(random.in_cube(1), random.in_cube(1)).toRotationMatrix();
+    const auto at = [&](int i, int j) -> Vector3f {
+      return turn * Vector3f(0.1f * static_cast<float>(i), height(i, j), 0.1f * static_cast<float>(j));
+    };
+    std::vector<CornerSet::Triangle> triangles;
+    for (int i = 0; i + 1 < kSide; ++i)
+      for (int j = 0; j + 1 < kSide; ++j) {
+        triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
+        triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
+      }
+    std::shuffle(triangles.begin(), triangles.end(), order);
+    CornerSet set;
+    set.begin(3 * triangles.size());
+    for (const CornerSet::Triangle& triangle : triangles)
+      for (std::size_t i = 0; i < 3; ++i) set.add(triangle, i);
+    EXPECT_EQ(set.corners().size(), std::size_t{kSide * kSide});
+    return std::ranges::count_if(set.corners(), &CornerSet::Corner::is_flat);
+  };
+  constexpr int kInner = (kSide - 2) * (kSide - 2);
+  for (int turn = 0; turn < 20; ++turn) {
+    EXPECT_EQ(flat_corners([](int, int) { return 0.0f; }), kInner) << "all but those of the border";
+    EXPECT_EQ(flat_corners([](int i, int) { return 0.3f * static_cast<float>(i); }), kInner) << "a slope";
+    EXPECT_EQ(flat_corners([](int i, int) { return i < 3 ? 0.0f : 0.1f; }), kInner - 2 * (kSide - 2))
+        << "a step";
+    EXPECT_EQ(flat_corners([](int i, int j) { return i == 3 && j == 3 ? 0.01f : 0.0f; }), kInner - 7)
+        << "a point and the six corners that share a triangle with it";
+    EXPECT_EQ(flat_corners([](int i, int j) { return 0.01f * static_cast<float>(i * i + j * j); }), 0)
+        << "a bowl";
+  }
+}
+
+/// A hole in a plane has a border; a triangle without an area says nothing of the plane.
+TEST(CornerSet, BordersAndTrianglesWithoutAnAreaStandOut) {
+  const Vector3f middle(0, 0, 0), around[] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  const auto middle_is_flat = [&](int triangles, bool with_a_line) {
+    CornerSet set;
+    set.begin(6);
+    for (int i = 0; i < triangles; ++i) set.add({middle, around[i], around[(i + 1) % 4]}, 0);
+    if (with_a_line) set.add({middle, around[0], around[0]}, 0);
+    return set.corners()[0].is_flat();
+  };
+  EXPECT_TRUE(middle_is_flat(4, false));
+  EXPECT_FALSE(middle_is_flat(3, false));
+  EXPECT_FALSE(middle_is_flat(4, true));
 }
 
 TEST(Obstacle, ABoxAroundItsPartsIsAroundThemInTheWorld) {

@@ -1,0 +1,100 @@
+#pragma once
+// Corners of triangles, each once, and which of them stand out of nothing.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace softcell::ppu {
+
+/// A hash table of corners. Allocates only when there are more of them than ever before.
+class CornerSet {
+ public:
+  using Point = std::array<float, 3>;
+  using Triangle = std::array<Eigen::Vector3f, 3>;
+
+  class Corner {
+   public:
+    Point point{};
+
+    /// Whether triangles surround this corner, in any order, and lie in one plane to a thousandth of a radian.
+    bool is_flat() const { return !stands_out_ && around_ == 0; }
+
+   private:
+    friend CornerSet;
+    Eigen::Vector3f normal_;    // of the first triangle; its length is of no interest
+    std::uint64_t around_ = 0;  // hashes of next corners less last ones: 0 if each next one is another's last
+    bool stands_out_ = false;
+  };
+
+  /// Empties the set. @param most  of corners that will be added, repeated ones included
+  void begin(std::size_t most) {
+    corners_.clear();
+    corners_.reserve(most);
+    const std::size_t slots = std::bit_ceil(2 * most + 1);
+    mask_ = slots - 1;
+    slots_.assign(slots, kNone);
+  }
+
+  /// Corner i of a triangle. @pre  not more often than begin() was told
+  void add(const Triangle& triangle, std::size_t i) {
+    const Eigen::Vector3f &here = triangle[i], &next = triangle[(i + 1) % 3], &last = triangle[(i + 2) % 3];
+    const Eigen::Vector3f normal = (next - here).cross(last - here);
+    Corner& corner = at(point_of(here), normal);
+    corner.stands_out_ = corner.stands_out_ || !are_parallel(corner.normal_, normal);
+    corner.around_ += hash_of(point_of(next)) - hash_of(point_of(last));
+  }
+
+  /// A corner of which nothing else is known: it is not flat. @pre  as above
+  void add(const Eigen::Vector3f& point) { at(point_of(point), {0, 0, 0}).stands_out_ = true; }
+
+  /// In the order in which they were added first.
+  std::span<const Corner> corners() const { return corners_; }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0u;
+
+  static Point point_of(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
+
+  /// Also false if one of them is zero or not finite.
+  static bool are_parallel(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+    constexpr float kSine = 1e-3f;
+    const float along = a.dot(b);
+    return along > 0 && a.cross(b).squaredNorm() <= kSine * kSine * along * along;
+  }
+
+  Corner& at(const Point& point, const Eigen::Vector3f& normal) {
+    for (std::size_t slot = static_cast<std::size_t>(hash_of(point)) & mask_;; slot = (slot + 1) & mask_) {
+      if (slots_[slot] == kNone) {
+        slots_[slot] = static_cast<std::uint32_t>(corners_.size());
+        Corner& corner = corners_.emplace_back();
+        corner.point = point;
+        corner.normal_ = normal;
+        return corner;
+      }
+      if (corners_[slots_[slot]].point == point) return corners_[slots_[slot]];
+    }
+  }
+
+  static std::uint64_t hash_of(const Point& point) {
+    std::uint64_t hash = 0;
+    // -0 + 0 is 0: points that compare equal have one hash.
+    for (const float x : point) {
+      hash =
+          (hash ^ std::bit_cast<std::uint32_t>(x + 0.0f)) * 0x9E3779B97F4A7C15u;  // 2^64 by the golden ratio
+      hash ^= hash >> 32;
+    }
+    return hash;
+  }
+
+  std::vector<Corner> corners_;
+  std::vector<std::uint32_t> slots_;
+  std::size_t mask_ = 0;
+};
+
+}  // namespace softcell::ppu
