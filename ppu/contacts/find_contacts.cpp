@@ -175,23 +175,36 @@ class ObstacleContacts {
     try_edges_of_triangles(reach);
   }
 
+  bool is_short(const ObstacleEdge& edge) const {
+    const float longest = kEdgeSpacing * body_.spacing();
+    return (edge.to - edge.from).squaredNorm() <= longest * longest;
+  }
+  /// Edges of two dimensions are no sides: they lie in their plane.
+  bool are_short_sides(std::span<const ObstacleEdge> edges, const CornerSet::Triangle& triangle) const {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (edges[i].from != triangle[i] || !is_short(edges[i])) return false;
+    return true;
+  }
+
   /// The ends of short edges belong to many triangles: each is looked up once. Those within a plane are not, as they stand out of nothing:
   /// the body's points meet the plane.
   void try_edges_of_triangles(float reach) {
     CornerSet& corners = cells_.corners;
     corners.begin(obstacle_.edges.size());
-    const float longest = kEdgeSpacing * body_.spacing();
     cells_.triangles.for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
       if (!cells_.boxes().any_meets(widened(to_world(obstacle_, box), 2 * reach))) return;
-      for (std::size_t i = 3 * first; i < 3 * end; ++i) {
-        const ObstacleEdge& edge = obstacle_.edges[i];
-        const CornerSet::Triangle& triangle = obstacle_.triangles[i / 3];
-        if ((edge.to - edge.from).squaredNorm() > longest * longest)
-          try_edge(edge, reach);
-        else if (edge.from == triangle[i % 3])  // where it ends the next edge of the triangle begins
-          corners.add(triangle, i % 3);
-        else  // an edge of two dimensions, in their plane
-          corners.add(edge.from);
+      for (std::size_t t = first; t < end; ++t) {
+        const std::span<const ObstacleEdge> edges = obstacle_.edges.subspan(3 * t, 3);
+        if (are_short_sides(edges, obstacle_.triangles[t])) {
+          corners.add(obstacle_.triangles[t]);
+          continue;
+        }
+        for (const ObstacleEdge& edge : edges) {
+          if (is_short(edge))
+            corners.add(edge.from);
+          else
+            try_edge(edge, reach);
+        }
       }
     });
     const auto in_world = [&](const CornerSet::Point& corner) {

@@ -41,17 +41,24 @@ class CornerSet {
     slots_.assign(slots, kNone);
   }
 
-  /// Corner i of a triangle. @pre  not more often than begin() was told
-  void add(const Triangle& triangle, std::size_t i) {
-    const Eigen::Vector3f &here = triangle[i], &next = triangle[(i + 1) % 3], &last = triangle[(i + 2) % 3];
-    const Eigen::Vector3f normal = (next - here).cross(last - here);
-    Corner& corner = at(point_of(here), normal);
-    corner.stands_out_ = corner.stands_out_ || !are_parallel(corner.normal_, normal);
-    corner.around_ += hash_of(point_of(next)) - hash_of(point_of(last));
+  /// The corners of a triangle. @pre  no more corners than begin() was told
+  void add(const Triangle& triangle) {
+    const Eigen::Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    std::array<Point, 3> points;
+    std::array<std::uint64_t, 3> hashes;
+    for (std::size_t i = 0; i < 3; ++i) hashes[i] = hash_of(points[i] = point_of(triangle[i]));
+    for (std::size_t i = 0; i < 3; ++i) {
+      Corner& corner = at(points[i], hashes[i], normal);
+      corner.stands_out_ = corner.stands_out_ || !are_parallel(corner.normal_, normal);
+      corner.around_ += hashes[(i + 1) % 3] - hashes[(i + 2) % 3];
+    }
   }
 
   /// A corner of which nothing else is known: it is not flat. @pre  as above
-  void add(const Eigen::Vector3f& point) { at(point_of(point), {0, 0, 0}).stands_out_ = true; }
+  void add(const Eigen::Vector3f& point) {
+    const Point added = point_of(point);
+    at(added, hash_of(added), {0, 0, 0}).stands_out_ = true;
+  }
 
   /// In the order in which they were added first.
   std::span<const Corner> corners() const { return corners_; }
@@ -68,8 +75,8 @@ class CornerSet {
     return along > 0 && a.cross(b).squaredNorm() <= kSine * kSine * along * along;
   }
 
-  Corner& at(const Point& point, const Eigen::Vector3f& normal) {
-    for (std::size_t slot = static_cast<std::size_t>(hash_of(point)) & mask_;; slot = (slot + 1) & mask_) {
+  Corner& at(const Point& point, std::uint64_t hash, const Eigen::Vector3f& normal) {
+    for (std::size_t slot = static_cast<std::size_t>(hash) & mask_;; slot = (slot + 1) & mask_) {
       if (slots_[slot] == kNone) {
         slots_[slot] = static_cast<std::uint32_t>(corners_.size());
         Corner& corner = corners_.emplace_back();

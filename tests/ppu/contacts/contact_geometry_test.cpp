@@ -172,8 +172,7 @@ TEST(CornerSet, KnowsWhichCornersStandOutOfNothing) {
     std::shuffle(triangles.begin(), triangles.end(), order);
     CornerSet set;
     set.begin(3 * triangles.size());
-    for (const CornerSet::Triangle& triangle : triangles)
-      for (std::size_t i = 0; i < 3; ++i) set.add(triangle, i);
+    for (const CornerSet::Triangle& triangle : triangles) set.add(triangle);
     EXPECT_EQ(set.corners().size(), std::size_t{kSide * kSide});
     return std::ranges::count_if(set.corners(), &CornerSet::Corner::is_flat);
   };
@@ -195,9 +194,9 @@ TEST(CornerSet, BordersAndTrianglesWithoutAnAreaStandOut) {
   const Vector3f middle(0, 0, 0), around[] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
   const auto middle_is_flat = [&](int triangles, bool with_a_line) {
     CornerSet set;
-    set.begin(6);
-    for (int i = 0; i < triangles; ++i) set.add({middle, around[i], around[(i + 1) % 4]}, 0);
-    if (with_a_line) set.add({middle, around[0], around[0]}, 0);
+    set.begin(15);
+    for (int i = 0; i < triangles; ++i) set.add(CornerSet::Triangle{middle, around[i], around[(i + 1) % 4]});
+    if (with_a_line) set.add(CornerSet::Triangle{middle, around[0], around[0]});
     return set.corners()[0].is_flat();
   };
   EXPECT_TRUE(middle_is_flat(4, false));
