@@ -211,6 +211,30 @@ TEST_P(Box2dAttachments, SayWhatIsOutOfRange) {
   EXPECT_THROW(w.soft.move_attachment(id, {0, 0}, 0, -1), std::invalid_argument);
 }
 
+/// Contacts and attachments are solved together: what lands on a welded patch does not move it in the step in which it lands, and what lands
+/// on a hung body does not make its rope longer.
+TEST(Box2dAttachmentsOfDrawnEdges, HoldInTheStepInWhichSomethingLands) {
+  World2d w(9.81f, ContactMethod::kSurface);
+  const SoftBody<2>& shelf = w.soft.add(rectangle_model({4, 2}, firm()), {0, 1});
+  const SoftBody<2>& plank = w.soft.add(rectangle_model({4, 2}, firm()), {2, 1});
+  const auto patch = Patch<2>::of_surface({0, 1.1f}, 0.3f);
+  w.soft.attach(shelf, patch);
+  const AttachmentId rope = w.soft.attach(plank, Patch<2>::of_surface({2, 1.1f}, 0.3f),
+                                          {.kind = AttachmentKind::kRope, .point = Vector2f(2, 3)});
+  w.run(1);
+  for (const float x : {0.0f, 2.0f})
+    w.soft.add(rectangle_model({4, 4}, firm()), {x, 1.4f}).add_velocity({0, -3});
+  float fastest = 0, longest = 0;
+  for (int i = 0; i < 120; ++i) {
+    w.soft.step(kStepOf2d);
+    for (const Vector2f& v : shelf.velocities()) fastest = std::max(fastest, v.norm());
+    const auto ends = w.soft.attachment_ends(rope);
+    longest = std::max(longest, (ends->patch - ends->other).norm() / ends->length);
+  }
+  EXPECT_LT(fastest, 0.001f) << "m/s";
+  EXPECT_LT(longest, 1.001f);
+}
+
 /// A world without attachments has its own filter, and gets it back.
 TEST(Box2dAttachmentsOfCircles, LeaveTheWorldsFilterAsItWas) {
   b2World world({0, 0});
