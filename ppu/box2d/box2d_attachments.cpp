@@ -62,15 +62,6 @@ std::uint32_t Box2dAttachments::index_of(const Box2dBody* body,
   return static_cast<std::uint32_t>(found - bodies.begin());
 }
 
-void Box2dAttachments::append_parted(std::span<const std::unique_ptr<Box2dBody>> bodies,
-                                     std::vector<std::pair<std::uint32_t, std::uint32_t>>& parted) const {
-  for (const auto& link : links_) {
-    if (link->touch || link->b == nullptr) continue;
-    parted.emplace_back(std::minmax(index_of(link->a, bodies), index_of(link->b, bodies)));
-  }
-  std::ranges::sort(parted);
-}
-
 /// Box2D asks the filter again about all that touches the bodies of a link.
 void Box2dAttachments::refilter(const Link& link) {
   if (link.touch || link.a->particles().empty()) return;
@@ -203,7 +194,7 @@ void Box2dAttachments::end_gone() {
   });
 }
 
-void Box2dAttachments::begin(const Box2dBody& body, InStep& in_step, float step) const {
+void Box2dAttachments::lay_out(const Box2dBody& body, InStep& in_step, float step) const {
   const SoftBody<2>& soft = body.soft();
   const Vector2f fall = step * to_eigen(world_.GetGravity());
   in_step.velocities.assign(soft.velocities().begin(), soft.velocities().end());
@@ -240,42 +231,8 @@ std::uint32_t Box2dAttachments::number_of(b2Body& rigid, float step) {
   return static_cast<std::uint32_t>(rigids_.size() - 1);
 }
 
-void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step) {
-  end_gone();
-  if (links_.empty()) return;
-  SC_ASSERT(step > 0, "a time step of {} s", step);
-  in_step_.resize(bodies.size());
-  bodies_.assign(bodies.size(), {});
-  std::vector<bool> held(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    held[i] = holds(*bodies[i]);
-    if (!held[i]) continue;
-    begin(*bodies[i], in_step_[i], step);
-    const SoftBody<2>& soft = bodies[i]->soft();
-    bodies_[i] = {soft.positions(),           in_step_[i].velocities,         in_step_[i].pushes,
-                  in_step_[i].inverse_masses, soft.model().lattice().spacing, soft.asleep()};
-  }
-  const auto number = [&](const Box2dBody* body) { return index_of(body, bodies); };
-  rigids_.clear();
-  rigid_bodies_.clear();
-  attachments_.clear();
-  for (const auto& link : links_) {
-    if (link->hold.moves) link->hold.begin(step);
-    AttachmentInStep<2> in_step{
-        .rows = &link->rows, .a = number(link->a), .frame = link->hold.frame, .touch = link->touch};
-    if (link->b != nullptr) {
-      in_step.b = number(link->b);
-    } else if (link->rigid != nullptr) {
-      in_step.rigid = number_of(*link->rigid, step);
-      in_step.frame = frame_of(*link->rigid);
-    }
-    attachments_.add(in_step);
-  }
-  attachments_.begin(bodies_, rigids_, step);
-  attachments_.iterate(kIterations);
-  attachments_.finish();
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (held[i]) finish(*bodies[i], in_step_[i], step);
+/// Box2D adds gravity after this.
+void Box2dAttachments::move_rigids(float step) const {
   for (std::size_t i = 0; i < rigids_.size(); ++i) {
     b2Body& rigid = *rigid_bodies_[i];
     if (rigid.GetType() != b2_dynamicBody) continue;
@@ -283,9 +240,62 @@ void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies,
         to_box2d(rigids_[i].velocity - step * rigid.GetGravityScale() * to_eigen(world_.GetGravity())));
     rigid.SetAngularVelocity(rigids_[i].spin);
   }
+}
+
+std::span<const AttachmentInStep<2>> Box2dAttachments::begin(
+    std::span<const std::unique_ptr<Box2dBody>> bodies,
+    const std::function<std::uint32_t(b2Body&)>& number_of, float step) {
+  end_gone();
+  to_solve_.clear();
+  for (const auto& link : links_) {
+    if (link->hold.moves) link->hold.begin(step);
+    AttachmentInStep<2>& in_step = to_solve_.emplace_back();
+    in_step.rows = &link->rows;
+    in_step.a = index_of(link->a, bodies);
+    in_step.frame = link->hold.frame;
+    in_step.touch = link->touch;
+    if (link->b != nullptr) {
+      in_step.b = index_of(link->b, bodies);
+    } else if (link->rigid != nullptr) {
+      in_step.rigid = number_of(*link->rigid);
+      in_step.frame = frame_of(*link->rigid);
+    }
+  }
+  return to_solve_;
+}
+
+void Box2dAttachments::end() {
   for (const auto& link : links_)
     if (link->hold.moves) link->hold.end();
   end_links(EndedAttachment::Reason::kBroken, [](const Link& link) { return link.rows.broke(); });
+}
+
+void Box2dAttachments::solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step) {
+  rigids_.clear();
+  rigid_bodies_.clear();
+  attachments_.clear();
+  for (const AttachmentInStep<2>& in_step : begin(
+           bodies, [&](b2Body& rigid) { return number_of(rigid, step); }, step))
+    attachments_.add(in_step);
+  if (attachments_.empty()) return;
+  in_step_.resize(bodies.size());
+  bodies_.assign(bodies.size(), {});
+  std::vector<bool> held(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    held[i] = holds(*bodies[i]);
+    if (!held[i]) continue;
+    lay_out(*bodies[i], in_step_[i], step);
+    const SoftBody<2>& soft = bodies[i]->soft();
+    bodies_[i] = {soft.positions(),           in_step_[i].velocities,         in_step_[i].pushes,
+                  in_step_[i].inverse_masses, soft.model().lattice().spacing, soft.asleep()};
+  }
+  attachments_.begin(bodies_, rigids_, step);
+  attachments_.iterate(kIterations);
+  attachments_.finish();
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (held[i]) finish(*bodies[i], in_step_[i], step);
+  move_rigids(step);
+  end();
 }
 
 /// Evenly, and in the last step to its goal exactly.

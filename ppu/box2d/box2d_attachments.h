@@ -1,6 +1,6 @@
 #pragma once
-// The attachments of soft bodies in a Box2D world: they change velocities behind the solver and before Box2D's step, whose contacts
-// come after them.
+// The attachments of soft bodies in a Box2D world. Those of bodies that touch with circles are solved behind the solver and before Box2D's
+// step, whose contacts come after them; those of bodies that touch with their drawn edges together with contacts.
 
 #include <box2d/b2_body.h>
 #include <box2d/b2_world.h>
@@ -48,9 +48,6 @@ class Box2dAttachments {
   bool lets(const b2Body& a, const b2Body& b) const;
   /// Whether one keeps a body that Box2D does not know from touching a rigid one.
   bool parts(const Box2dBody& body, const b2Body& rigid) const;
-  /// Appends the pairs of bodies that attachments keep from touching, by their indices, the lower first, ascending.
-  void append_parted(std::span<const std::unique_ptr<Box2dBody>> bodies,
-                     std::vector<std::pair<std::uint32_t, std::uint32_t>>& parted) const;
   using Piece = PieceOfBody<Box2dBody>;
   /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
   /// each of them once; where none has, the patch was torn, and they break.
@@ -59,7 +56,14 @@ class Box2dAttachments {
   void forget(const Box2dBody& body);
   bool holds(const Box2dBody& body) const;
 
-  /// Behind the solver of a step: changes velocities, and moves particles by what is left of errors of position.
+  /// Begins a step, behind the solver of bodies. @param number_of  a rigid body, as whoever solves knows it
+  /// @return  what is to be solved, of bodies by their indices; to be followed by end()
+  std::span<const AttachmentInStep<2>> begin(std::span<const std::unique_ptr<Box2dBody>> bodies,
+                                             const std::function<std::uint32_t(b2Body&)>& number_of,
+                                             float step);
+  /// What has had to carry too much ends.
+  void end();
+  /// A step without contacts, from begin() to end(): changes velocities, and moves particles by what is left of errors of position.
   void solve(std::span<const std::unique_ptr<Box2dBody>> bodies, float step);
 
  private:
@@ -96,9 +100,10 @@ class Box2dAttachments {
   void end_links(EndedAttachment::Reason reason, const Which& which);
   void refilter(const Link& link);
   static void wake(const Link& link);
-  void begin(const Box2dBody& body, InStep& in_step, float step) const;
+  void lay_out(const Box2dBody& body, InStep& in_step, float step) const;
   void finish(Box2dBody& body, const InStep& in_step, float step) const;
   std::uint32_t number_of(b2Body& rigid, float step);
+  void move_rigids(float step) const;
 
   b2World& world_;
   std::function<Box2dBody*(const b2Body&)> soft_body_of_;
@@ -106,6 +111,7 @@ class Box2dAttachments {
   AttachmentLinks<Link> links_;
   std::vector<EndedAttachment> ended_;
   // Of a step:
+  std::vector<AttachmentInStep<2>> to_solve_;
   Attachments<2> attachments_;
   std::vector<InStep> in_step_;
   std::vector<AttachedBody<2>> bodies_;

@@ -36,6 +36,8 @@ class Box2dObstacles {
   std::span<ContactRigid> rigids() { return rigids_; }
   /// Whose rigids() these are.
   std::span<b2Body* const> bodies() const { return bodies_; }
+  /// Which of rigids() a body is; it is added if it is none yet. @pre begin() was called
+  std::uint32_t rigid_of(b2Body& body);
   /// Of an obstacle.
   b2Fixture& fixture(std::uint32_t obstacle) const { return *fixtures_[obstacle]; }
 
@@ -75,7 +77,6 @@ class Box2dObstacles {
   class Collector;
 
   void number_bodies();
-  std::uint32_t rigid_of(b2Body& body);
   std::uint32_t obstacle_of(const Found& found, const Eigen::Vector2f& middle);
   static void add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   static void add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);

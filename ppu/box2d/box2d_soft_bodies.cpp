@@ -67,7 +67,7 @@ struct Box2dSoftBodies::Impl {
       }
     }
     waited += solve.finish(step);
-    attachments.solve(bodies, step);
+    if (!surfaces) attachments.solve(bodies, step);
     for (const auto& body : bodies) body->hand_over(step);
     if (surfaces) surfaces->step(bodies, attachments, step);
   }

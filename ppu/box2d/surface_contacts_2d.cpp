@@ -38,7 +38,9 @@ bool is_same(const b2Transform& a, const b2Transform& b) {
 }  // namespace
 
 SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker)
-    : world_(world), worker_(std::move(worker)) {}
+    : world_(world), worker_(std::move(worker)) {
+  stage_.attachments = &attachments_;
+}
 
 /// A piece is drawn as its part of the whole, and touches as it is drawn.
 const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
@@ -66,8 +68,18 @@ void SurfaceContacts2d::lift(const Box2dBody& body, Kept& kept, float step) {
   for (Vector3f& v : kept.velocities) v.head<2>() += fall;
 }
 
+/// Attached bodies do not sleep.
+void SurfaceContacts2d::begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step) {
+  const auto number_of = [&](b2Body& rigid) {
+    if (rigid.GetType() == b2_dynamicBody) rigid.SetAwake(true);
+    return obstacles_.rigid_of(rigid);
+  };
+  attachments_.clear();
+  for (const AttachmentInStep<2>& attachment : attachments.begin(bodies, number_of, step))
+    attachments_.add(attachment);
+}
+
 void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments, float step) {
-  obstacles_.begin(world_, step, largest_cell(bodies));
   in_stage_.resize(bodies.size());
   softs_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -96,9 +108,6 @@ void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments
     if (soft.asleep() && must_wake(kept, in_stage)) body.wake();
     if (!soft.asleep() && kept.lies()) rise(kept);
   }
-  parted_.clear();
-  attachments.append_parted(bodies, parted_);
-  stage_.parted = parted_;
 }
 
 /// What lies beside it has begun to move, or what it lies on is gone.
@@ -143,9 +152,11 @@ void SurfaceContacts2d::wake_those_in_the_way(Bodies bodies) {
   }
 }
 
-void SurfaceContacts2d::step(Bodies bodies, const Box2dAttachments& attachments, float step) {
+void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float step) {
   if (bodies.empty()) return;
   SC_ASSERT(step > 0 && !world_.IsLocked(), "contacts of {} s within a step of Box2D, or of none", step);
+  obstacles_.begin(world_, step, largest_cell(bodies));
+  begin_attachments(bodies, attachments, step);
   begin(bodies, attachments, step);
   wake_those_in_the_way(bodies);
   stage_.settings.bounces = {
@@ -159,6 +170,7 @@ void SurfaceContacts2d::step(Bodies bodies, const Box2dAttachments& attachments,
   stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
   move(bodies, step);
   obstacles_.apply();
+  attachments.end();
   note_touches(bodies);
   if (!watches_) return;
   log_touches(bodies);

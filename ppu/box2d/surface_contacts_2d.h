@@ -15,6 +15,7 @@
 #include "ppu/box2d/box2d_obstacles.h"
 #include "ppu/box2d/rest.h"
 #include "ppu/contacts/contact_stage.h"
+#include "ppu/contacts/flat_attachments.h"
 #include "ppu/contacts/touch_log.h"
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/flat_layer.h"
@@ -30,9 +31,9 @@ class SurfaceContacts2d {
   /// @param worker  finds and solves contacts; null: the thread that steps the world does
   SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker);
 
-  /// Behind the solver and the attachments of a step: adds gravity to velocities, finds and solves contacts, moves all particles of bodies
+  /// Behind the solver of a step: adds gravity to velocities, finds contacts, solves them with attachments, moves all particles of bodies
   /// that are awake, and gives rigid bodies their impulses before Box2D integrates them. Bodies that are touched wake.
-  void step(Bodies bodies, const Box2dAttachments& attachments, float step);
+  void step(Bodies bodies, Box2dAttachments& attachments, float step);
 
   /// How bodies of a model are drawn, if not as make_skin_2d() makes it. No effect: a body of the model has touched before.
   void draw(const std::shared_ptr<const SoftBodyModel<2>>& model, const Skin2d& skin);
@@ -86,6 +87,7 @@ class SurfaceContacts2d {
   const Model& model_of(const std::shared_ptr<const SoftBodyModel<2>>& model);
   void lift(const Box2dBody& body, Kept& kept, float step);
   void begin(Bodies bodies, const Box2dAttachments& attachments, float step);
+  void begin_attachments(Bodies bodies, Box2dAttachments& attachments, float step);
   bool must_wake(const Kept& kept, const BodyInStage& in_stage) const;
   void rise(Kept& kept);
   void wake_those_in_the_way(Bodies bodies);
@@ -99,10 +101,10 @@ class SurfaceContacts2d {
   std::unordered_map<const SoftBodyModel<2>*, std::unique_ptr<Model>> models_;
   std::unordered_map<const Box2dBody*, Kept> kept_;
   Box2dObstacles obstacles_{Box2dObstacles::Fixtures::kSolid};
+  FlatAttachments attachments_;
   ContactStage stage_;
   std::vector<BodyInStage> in_stage_;
   std::vector<const SoftBody<2>*> softs_;  // of the last step
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
   std::vector<PressingContact> pressing_;  // of the last step
   SoftTouches touches_;
   std::uint32_t next_number_ = 0;

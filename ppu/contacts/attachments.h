@@ -21,25 +21,39 @@ struct AttachmentInStep {
   bool touch = false;                   ///< its two soft bodies touch each other
 };
 
-/// Used by one thread. A coupling fills it before each substep.
+/// Solves attachments in the order begin(), iterate() once or more often, finish().
 template <int kDimension>
-class Attachments {
+class AttachmentSolver {
  public:
   using Rigid = typename AttachedRigid<kDimension>::Rigid;
+
+  virtual ~AttachmentSolver() = default;
+  virtual bool empty() const = 0;
+  /// Whether two soft bodies do not touch each other because they are attached. @pre a < b
+  virtual bool parts(std::uint32_t a, std::uint32_t b) const = 0;
+  /// @param bodies, rigids  stay where they are until finish()
+  virtual void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids,
+                     float step) = 0;
+  /// Up to as many iterations; fewer when nothing changes any more.
+  virtual void iterate(int iterations) = 0;
+  virtual void finish() = 0;
+};
+
+/// Used by one thread. A coupling fills it before each substep.
+template <int kDimension>
+class Attachments final : public AttachmentSolver<kDimension> {
+ public:
+  using typename AttachmentSolver<kDimension>::Rigid;
 
   /// Empty, with the room that it has.
   void clear();
   void add(const AttachmentInStep<kDimension>& attachment);
-  bool empty() const { return all_.empty(); }
 
-  /// Whether two soft bodies do not touch each other because they are attached. @pre a < b
-  bool parts(std::uint32_t a, std::uint32_t b) const;
-
-  /// @param bodies, rigids  stay where they are until finish()
-  void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids, float step);
-  /// Up to as many iterations; fewer when nothing changes any more.
-  void iterate(int iterations);
-  void finish();
+  bool empty() const override { return all_.empty(); }
+  bool parts(std::uint32_t a, std::uint32_t b) const override;
+  void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids, float step) override;
+  void iterate(int iterations) override;
+  void finish() override;
 
  private:
   std::vector<AttachmentInStep<kDimension>> all_;

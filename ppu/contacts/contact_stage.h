@@ -93,9 +93,7 @@ class ContactStage {
   ContactWorker* worker = nullptr;
   /// Of these bodies, solved with contacts: behind those of bodies that move, before those with what nothing moves. Null: none. Outlives
   /// the steps.
-  Attachments<3>* attachments = nullptr;
-  /// Pairs of bodies that do not touch, the lower number first, ascending; besides those that attachments part.
-  std::span<const std::pair<std::uint32_t, std::uint32_t>> parted = {};
+  AttachmentSolver<3>* attachments = nullptr;
 
  private:
   /// The contacts of a pair of bodies, as seen from a, or of a body with rigid ones.

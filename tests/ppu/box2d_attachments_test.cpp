@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "soft_body_2d_scenes.h"
+#include "support/slow_build.h"
 
 namespace softcell::ppu {
 namespace {
@@ -143,6 +144,95 @@ TEST_P(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
   }
 }
 
+/// The particles of a body whose rest position passes a test.
+template <typename Is>
+std::vector<std::uint32_t> particles_where(const SoftBody<2>& body, const Is& is) {
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < body.model().particles(); ++i)
+    if (is(body.model().lattice().rest_position(i))) numbers.push_back(i);
+  return numbers;
+}
+
+/// A hundred times the weight of the patch hangs from it: most of it is a rigid body that is welded to the soft one's lower end.
+TEST_P(Box2dAttachments, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  World2d w(9.81f, GetParam());
+  SoftBodySettings settings = firm();
+  settings.alpha = 1;
+  settings.damping = 0.3f;
+  settings.half_width = 4;
+  const SoftBody<2>& body = w.soft.add(rectangle_model({4, 4}, settings), {0, 2});
+  const auto top = particles_where(body, [](const Vector2f& p) { return p.y() > 0.35f; });
+  const auto bottom = particles_where(body, [](const Vector2f& p) { return p.y() < 0.05f; });
+  float patch = 0;
+  for (const std::uint32_t i : top) patch += body.model().masses()[i];
+  const float load = 100 * patch - mass_of_body(body);
+  ASSERT_GT(load, 100);
+  b2Body* const weight = w.add_box({0, 1.75f}, {0.2f, 0.2f}, load / 0.16f);
+  const AttachmentId weld = w.soft.attach(body, Patch<2>::of_particles(top));
+  w.soft.attach(body, Patch<2>::of_particles(bottom), *weight);
+  std::vector<Vector2f> before;
+  for (const std::uint32_t i : top) before.push_back(body.position(i));
+  float worst = 0;
+  for (int second = 0; second < 600; ++second) {
+    w.run(1);
+    for (std::size_t i = 0; i < top.size(); ++i)
+      worst = std::max(worst, (body.position(top[i]) - before[i]).norm());
+  }
+  EXPECT_LT(worst, 0.01f * kCellOf2d);
+  const auto state = w.soft.attachment(weld);
+  ASSERT_TRUE(state);
+  const float carried = 9.81f * (load + mass_of_body(body));
+  EXPECT_NEAR(state->force.y(), carried, 0.02f * carried);
+  EXPECT_LT(weight->GetLinearVelocity().Length(), 0.05f);
+}
+
+/// By the momentum of the body, not by what the attachment says of itself.
+/// @return  force on the body in each step, with the break force given; 0 after it broke
+std::vector<float> forces_on(ContactMethod contacts, float break_force, bool suddenly, AttachmentKind kind,
+                             int* broken_at = nullptr) {
+  World2d w(0, contacts);
+  SoftBody<2>& body = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
+  AttachmentSettings<2> settings{.kind = kind, .break_force = break_force};
+  if (kind == AttachmentKind::kRope) settings.point = Vector2f(0, 1.2f);
+  const auto upper = particles_where(body, [](const Vector2f& p) { return p.y() > 0.25f; });
+  const AttachmentId id = w.soft.attach(body, Patch<2>::of_particles(upper), settings);
+  std::vector<float> forces;
+  if (suddenly) body.add_velocity({0, -3});
+  for (int i = 0; i < 960; ++i) {
+    const float gravity = suddenly ? 0.0f : 0.025f * static_cast<float>(i);
+    w.box2d.SetGravity({0, -gravity});
+    const Eigen::Vector2d before = momentum_of_all(w.soft);
+    w.soft.step(kStepOf2d);
+    const Eigen::Vector2d changed = momentum_of_all(w.soft) - before;
+    forces.push_back(static_cast<float>(changed.y()) / kStepOf2d + gravity * mass_of_body(body));
+    if (broken_at != nullptr && *broken_at < 0 && !w.soft.attachment(id)) *broken_at = i;
+  }
+  return forces;
+}
+
+TEST_P(Box2dAttachments, BreakAtTheirBreakForceLoadedSlowlyOrSuddenly) {
+  for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
+    for (const bool suddenly : {false, true}) {
+      const std::vector<float> held = forces_on(GetParam(), 1e9f, suddenly, kind);
+      const float most = *std::ranges::max_element(held);
+      for (const float share : {0.3f, 0.6f, 0.9f}) {
+        const float force = share * most;
+        int broken_at = -1;
+        const std::vector<float> broke = forces_on(GetParam(), force, suddenly, kind, &broken_at);
+        ASSERT_GE(broken_at, 0) << share << " suddenly: " << suddenly;
+        const auto at = static_cast<std::size_t>(broken_at);
+        for (std::size_t i = 0; i < at; ++i) EXPECT_LE(broke[i], 1.05f * force);
+        // It carries no more than its break force, and breaks when the one that holds carries that.
+        EXPECT_NEAR(broke[at], force, 0.05f * force) << share << " suddenly: " << suddenly;
+        EXPECT_GE(held[at], 0.95f * force) << share << " suddenly: " << suddenly;
+        ASSERT_LT(at + 10, broke.size());
+        for (std::size_t i = at + 1; i <= at + 10; ++i) EXPECT_NEAR(broke[i], 0, 0.01f * force);
+      }
+    }
+  }
+}
+
 TEST_P(Box2dAttachments, FollowAPointThatTheProgramMoves) {
   World2d w(0, GetParam());
   const SoftBody<2>& body = w.soft.add(rectangle_model({4, 4}, firm()), {0, 0});
@@ -209,6 +299,30 @@ TEST_P(Box2dAttachments, SayWhatIsOutOfRange) {
   const AttachmentId id = w.soft.attach(a, patch);
   EXPECT_THROW(w.soft.move_attachment(id, {NAN, 0}), std::invalid_argument);
   EXPECT_THROW(w.soft.move_attachment(id, {0, 0}, 0, -1), std::invalid_argument);
+}
+
+/// Contacts and attachments are solved together: what lands on a welded patch does not move it in the step in which it lands, and what lands
+/// on a hung body does not make its rope longer.
+TEST(Box2dAttachmentsOfDrawnEdges, HoldInTheStepInWhichSomethingLands) {
+  World2d w(9.81f, ContactMethod::kSurface);
+  const SoftBody<2>& shelf = w.soft.add(rectangle_model({4, 2}, firm()), {0, 1});
+  const SoftBody<2>& plank = w.soft.add(rectangle_model({4, 2}, firm()), {2, 1});
+  const auto patch = Patch<2>::of_surface({0, 1.1f}, 0.3f);
+  w.soft.attach(shelf, patch);
+  const AttachmentId rope = w.soft.attach(plank, Patch<2>::of_surface({2, 1.1f}, 0.3f),
+                                          {.kind = AttachmentKind::kRope, .point = Vector2f(2, 3)});
+  w.run(1);
+  for (const float x : {0.0f, 2.0f})
+    w.soft.add(rectangle_model({4, 4}, firm()), {x, 1.4f}).add_velocity({0, -3});
+  float fastest = 0, longest = 0;
+  for (int i = 0; i < 120; ++i) {
+    w.soft.step(kStepOf2d);
+    for (const Vector2f& v : shelf.velocities()) fastest = std::max(fastest, v.norm());
+    const auto ends = w.soft.attachment_ends(rope);
+    longest = std::max(longest, (ends->patch - ends->other).norm() / ends->length);
+  }
+  EXPECT_LT(fastest, 0.001f) << "m/s";
+  EXPECT_LT(longest, 1.001f);
 }
 
 /// A world without attachments has its own filter, and gets it back.

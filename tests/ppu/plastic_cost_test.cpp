@@ -2,7 +2,6 @@
 // that it is no multiple.)
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -16,18 +15,13 @@
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 #include "softcell/spe_bodies/spe_runtime.h"
+#include "support/median.h"
 #include "support/slow_build.h"
 
 namespace softcell::ppu {
 namespace {
 
 using Eigen::Vector3f;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Of all threads, microseconds.
 double processor_time_us() {

@@ -99,8 +99,8 @@ class Box2dSoftBodies {
 
   /// Holds a patch of a body at its present place in the world, which move_attachment() can move.
   ///
-  /// begin_step() solves attachments after the shape matching and before contacts. The bodies wake, and do not sleep while they
-  /// are attached. With ContactMethod::kSpheres attached sides that shall not touch need a contact filter, which softcell installs. It asks the world's own filter first
+  /// begin_step() solves attachments after the shape matching, together with contacts; with ContactMethod::kSpheres before Box2D solves
+  /// contacts. The bodies wake, and do not sleep while they are attached. With ContactMethod::kSpheres attached sides that shall not touch need a contact filter, which softcell installs. It asks the world's own filter first
   /// and puts that back at the end. A filter that the caller installs later must call the one that it replaces
   /// (b2ContactManager::m_contactFilter).
   /// @throws std::invalid_argument  a body is not one of these; a setting is out of its range; the patch is empty, or too small for what

@@ -4,8 +4,8 @@
 //     const AttachmentId tyre = soft_bodies.attach(ring, Patch<3>::of_surface(hub, 0.4f), rim);
 //     soft_bodies.attach(lamp, Patch<3>::of_surface(top, 0.1f), {.kind = AttachmentKind::kRope, .point = hook});
 //
-// BulletSoftBodies and Box2dSoftBodies have the functions that attach. BulletSoftBodies solves attachments together with
-// the contacts of each substep, Box2dSoftBodies before Box2D solves contacts.
+// BulletSoftBodies and Box2dSoftBodies have the functions that attach. Attachments are solved together with the
+// contacts of each substep; with ContactMethod::kSpheres in a Box2D world before Box2D solves contacts.
 
 #include <Eigen/Core>
 #include <cstdint>

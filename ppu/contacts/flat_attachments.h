@@ -1,0 +1,49 @@
+#pragma once
+// Attachments in two dimensions among contacts of flat layers (flat_layer.h): what they do to a particle in the plane, both particles of its
+// column get.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ppu/contacts/attachments.h"
+
+namespace softcell::ppu {
+
+/// Used by one thread. A coupling fills it before each substep.
+class FlatAttachments final : public AttachmentSolver<3> {
+ public:
+  /// Empty, with the room that it has.
+  void clear();
+  /// Its bodies and rigid body by their numbers in the stage.
+  void add(const AttachmentInStep<2>& attachment);
+
+  bool empty() const override { return in_plane_.empty(); }
+  bool parts(std::uint32_t a, std::uint32_t b) const override { return in_plane_.parts(a, b); }
+  void begin(std::span<const AttachedBody<3>> bodies, std::span<ContactRigid> rigids, float step) override;
+  void iterate(int iterations) override;
+  void finish() override;
+
+ private:
+  /// A body of the stage in the plane: only its held particles are there.
+  struct InPlane {
+    std::vector<std::uint32_t> held;
+    std::vector<Eigen::Vector2f> positions, velocities, pushes;
+    std::vector<float> inverse_masses;
+  };
+
+  void hold(std::uint32_t body, std::span<const std::uint32_t> particles);
+  static void begin(InPlane& plane, const AttachedBody<3>& body);
+  void lower();
+  void raise() const;
+
+  Attachments<2> in_plane_;
+  std::vector<InPlane> planes_;  // of each body of the stage, or of fewer
+  std::vector<AttachedBody<2>> bodies_;
+  std::vector<AttachedRigid2d> rigids_;
+  std::span<const AttachedBody<3>> lifted_;  // of the stage
+  std::span<ContactRigid> lifted_rigids_;
+};
+
+}  // namespace softcell::ppu

@@ -1,0 +1,92 @@
+// What a break costs the thread that steps the world: no substep takes much longer because pieces come. (docs/notes/performance.md has
+// figures; here only that a frame is not lost, as machines may be busy.)
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "../contacts/contact_world.h"
+#include "softcell/soft_bodies/fracture.h"
+#include "softcell/soft_bodies/shapes.h"
+#include "support/median.h"
+#include "support/slow_build.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+/// Of this thread, milliseconds: what another one computes does not stall it.
+double processor_time_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+/// Of a substep, milliseconds.
+struct Cost {
+  double before = 0, with_pieces = 0, next = 0;
+  double stall() const { return std::max(with_pieces, next) - before; }
+};
+
+/// Cuts the only body of a world and steps it until there are two.
+/// @param bodies  of the world: both couplings have the same functions
+template <typename Bodies, typename Cut, typename Substep>
+Cost cost_of_break(Bodies& bodies, const Cut& where, const Substep& substep) {
+  const auto timed = [&] {
+    const double begin = processor_time_ms();
+    substep();
+    const double end = processor_time_ms();
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));  // the rest of a frame
+    return end - begin;
+  };
+  std::vector<double> before;
+  for (int i = 0; i < 5; ++i) before.push_back(timed());
+  EXPECT_TRUE(bodies.begin_cut(bodies[0], where));
+  Cost cost{.before = median(before)};
+  for (int i = 0; i < 100 && bodies.size() == 1; ++i) cost.with_pieces = timed();
+  EXPECT_EQ(bodies.size(), 2u);
+  cost.next = timed();
+  return cost;
+}
+
+/// Prints the run of three that stalls least, and holds it to a multiple of what a quiet machine keeps to.
+template <typename Run>
+void expect_no_stall(const char* what, double most_ms, const Run& run) {
+  std::size_t particles = 0;
+  Cost least = run(particles);
+  for (int i = 0; i < 2; ++i)
+    if (const Cost cost = run(particles); cost.stall() < least.stall()) least = cost;
+  std::printf("%s, %zu particles: a substep %.2f ms, with pieces %+.2f ms, the next one %+.2f ms\n", what,
+              particles, least.before, least.with_pieces - least.before, least.next - least.before);
+  constexpr double kBusy = 4;
+  EXPECT_LT(least.stall(), kBusy * most_ms);
+}
+
+constexpr std::pair<int, double> kSizes[] = {{1000, 2.0}, {20000, 5.0}};  // particles, milliseconds
+
+/// A sphere whose halves fly apart.
+TEST(BreakCost, NoSubstepOfASphereStallsWhenPiecesCome) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers";
+  for (const auto& [size, most_ms] : kSizes) {
+    const float cell = size == 1000 ? 1 / 12.0f : 1 / 33.0f;
+    const auto model = make_soft_body_model(
+        make_sphere(0.5f, 3), {.cell_size = cell, .half_width = 2, .alpha = 0.5f, .damping = 0.1f});
+    expect_no_stall("a sphere", most_ms, [&](std::size_t& particles) {
+      ContactWorld world({0, 0, 0});
+      SoftBody<3>& ball = world.bodies.add(model, {0, 0, 0});
+      particles = model->particles();
+      for (std::size_t p = 0; p < particles; ++p)
+        ball.add_particle_velocity(p, Vector3f(ball.position(p).x() > 0 ? 0.5f : -0.5f, 0, 0));
+      return cost_of_break(world.bodies, Cut::plane({0.001f, 0, 0}, {1, 0, 0}), [&] { world.run(1, 1); });
+    });
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ppu
