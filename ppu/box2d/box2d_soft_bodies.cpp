@@ -170,7 +170,11 @@ struct Box2dSoftBodies::Impl {
     follow_model(body);
   }
 
-  using Pieces = std::vector<BodyPiece<2>>;
+  /// Pieces, and what touches of each, if they touch with their drawn edges.
+  struct Pieces {
+    std::vector<BodyPiece<2>> bodies;
+    std::vector<std::unique_ptr<SurfaceContacts2d::Model>> touching;
+  };
   using BreaksOfBodies = Breaks<2, Box2dBody, Pieces>;
   using Break = BreaksOfBodies::Break;
 
@@ -188,27 +192,37 @@ struct Box2dSoftBodies::Impl {
     const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
     const int steps = substeps_until_pieces(model->particles());
     if (steps == 0) {
-      put_pieces(body, make_pieces(model, faces), faces.size());
+      put_pieces(body, make_pieces(model, faces, whole_of(model)), faces.size());
       return;
     }
     breaks.begin(body, faces.size(), steps,
-                 workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end())] {
-                   return make_pieces(model, own);
-                 }));
+                 workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
+                                  whole = whole_of(model)] { return make_pieces(model, own, whole); }));
   }
 
-  /// Of any thread.
+  /// Null: bodies touch with circles.
+  const SurfaceContacts2d::Model* whole_of(const std::shared_ptr<const SoftBodyModel<2>>& model) {
+    return surfaces ? &surfaces->whole_of(model) : nullptr;
+  }
+
+  /// Of any thread. @param whole  whole_of() the model
   Pieces make_pieces(const std::shared_ptr<const SoftBodyModel<2>>& model,
-                     std::span<const std::uint32_t> faces) {
-    Pieces pieces = plan_pieces(model, faces);
-    for (const BodyPiece<2>& piece : pieces) solve.prepare(piece.body.shared_model());
+                     std::span<const std::uint32_t> faces, const SurfaceContacts2d::Model* whole) {
+    Pieces pieces{plan_pieces(model, faces), {}};
+    for (const BodyPiece<2>& piece : pieces.bodies) {
+      solve.prepare(piece.body.shared_model());
+      if (whole != nullptr)
+        pieces.touching.push_back(SurfaceContacts2d::make_piece(piece.body.shared_model(), *whole));
+    }
     return pieces;
   }
 
   /// @param faces  that broke   @return what is left beside the body itself
   /// @throws std::runtime_error  there are too many pieces; nothing has changed then
-  std::vector<SoftBody<2>*> put_pieces(Box2dBody& body, Pieces planned, std::size_t faces) {
+  std::vector<SoftBody<2>*> put_pieces(Box2dBody& body, Pieces made, std::size_t faces) {
+    std::vector<BodyPiece<2>>& planned = made.bodies;
     require_groups(planned.size() - 1);
+    for (auto& touching : made.touching) surfaces->adopt(std::move(touching));
     solve.drop();
     if (body.soft().asleep()) body.wake();
     for (BodyPiece<2>& piece : planned) piece.body.inherit_state(body.soft(), piece.particle_of);
@@ -311,7 +325,9 @@ std::vector<SoftBody<2>*> Box2dSoftBodies::cut(const SoftBody<2>& body, const Cu
   Box2dBody& coupled = impl_->find_breakable(body);
   const std::vector<std::uint32_t> faces = faces_across(body, where);
   if (faces.empty()) return {};
-  return impl_->put_pieces(coupled, impl_->make_pieces(body.shared_model(), faces), faces.size());
+  return impl_->put_pieces(
+      coupled, impl_->make_pieces(body.shared_model(), faces, impl_->whole_of(body.shared_model())),
+      faces.size());
 }
 
 bool Box2dSoftBodies::begin_cut(const SoftBody<2>& body, const Cut2d& where) {

@@ -42,15 +42,23 @@ SurfaceContacts2d::SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWork
   stage_.attachments = &attachments_;
 }
 
-/// A piece is drawn as its part of the whole, and touches as it is drawn.
+/// It is drawn as its part of the whole, and touches as it is drawn.
+std::unique_ptr<SurfaceContacts2d::Model> SurfaceContacts2d::make_piece(
+    const std::shared_ptr<const SoftBodyModel<2>>& piece, const Model& whole) {
+  return std::make_unique<Model>(piece, skin_of_piece(whole.skin, whole.model->lattice(), piece->lattice()));
+}
+
+void SurfaceContacts2d::adopt(std::unique_ptr<Model> piece) {
+  const SoftBodyModel<2>* const model = piece->model.get();
+  models_.try_emplace(model, std::move(piece));
+}
+
 const SurfaceContacts2d::Model& SurfaceContacts2d::model_of(
     const std::shared_ptr<const SoftBodyModel<2>>& model) {
   std::unique_ptr<Model>& known = models_[model.get()];  // stays where it is, whatever else comes
   if (known) return *known;
-  known = std::make_unique<Model>(
-      model, model->is_piece()
-                 ? skin_of_piece(model_of(model->whole()).skin, model->whole()->lattice(), model->lattice())
-                 : touching_skin(*model));
+  known = model->is_piece() ? make_piece(model, whole_of(model))
+                            : std::make_unique<Model>(model, touching_skin(*model));
   return *known;
 }
 

@@ -27,6 +27,15 @@ namespace softcell::ppu {
 class SurfaceContacts2d {
  public:
   using Bodies = std::span<const std::unique_ptr<Box2dBody>>;
+  /// What bodies of one model share.
+  struct Model {
+    Model(std::shared_ptr<const SoftBodyModel<2>> shared, Skin2d drawn)
+        : model(std::move(shared)), skin(std::move(drawn)), layer(*model, skin), contact(layer) {}
+    std::shared_ptr<const SoftBodyModel<2>> model;
+    Skin2d skin;
+    FlatLayer layer;
+    ContactModel contact;
+  };
 
   /// @param worker  finds and solves contacts; null: the thread that steps the world does
   SurfaceContacts2d(b2World& world, std::shared_ptr<ContactWorker> worker);
@@ -37,6 +46,16 @@ class SurfaceContacts2d {
 
   /// How bodies of a model are drawn, if not as make_skin_2d() makes it. No effect: a body of the model has touched before.
   void draw(const std::shared_ptr<const SoftBodyModel<2>>& model, const Skin2d& skin);
+
+  /// What pieces of bodies of a model are made from. It stays.
+  const Model& whole_of(const std::shared_ptr<const SoftBodyModel<2>>& model) {
+    return model_of(model->is_piece() ? model->whole() : model);
+  }
+  /// Of any thread. @param whole  whole_of() the body that breaks
+  static std::unique_ptr<Model> make_piece(const std::shared_ptr<const SoftBodyModel<2>>& piece,
+                                           const Model& whole);
+  /// Keeps what make_piece() has made.
+  void adopt(std::unique_ptr<Model> piece);
 
   /// Who pressed on whom in the last step.
   const SoftTouches& touches() const { return touches_; }
@@ -59,15 +78,6 @@ class SurfaceContacts2d {
   void forget_pieces(Bodies bodies);
 
  private:
-  /// What bodies of one model share.
-  struct Model {
-    Model(std::shared_ptr<const SoftBodyModel<2>> shared, Skin2d drawn)
-        : model(std::move(shared)), skin(std::move(drawn)), layer(*model, skin), contact(layer) {}
-    std::shared_ptr<const SoftBodyModel<2>> model;
-    Skin2d skin;
-    FlatLayer layer;
-    ContactModel contact;
-  };
   /// A rigid body on which a soft one lies, as it was when this fell asleep.
   struct Support {
     b2Body* body;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../contacts/contact_world.h"
+#include "../soft_body_2d_scenes.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "support/median.h"
@@ -19,6 +20,7 @@
 namespace softcell::ppu {
 namespace {
 
+using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 /// Of this thread, milliseconds: what another one computes does not stall it.
@@ -84,6 +86,23 @@ TEST(BreakCost, NoSubstepOfASphereStallsWhenPiecesCome) {
       for (std::size_t p = 0; p < particles; ++p)
         ball.add_particle_velocity(p, Vector3f(ball.position(p).x() > 0 ? 0.5f : -0.5f, 0, 0));
       return cost_of_break(world.bodies, Cut::plane({0.001f, 0, 0}, {1, 0, 0}), [&] { world.run(1, 1); });
+    });
+  }
+}
+
+TEST(BreakCost, NoStepOfASquareStallsWhenPiecesCome) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers";
+  for (const auto& [size, most_ms] : kSizes) {
+    const int edge = size == 1000 ? 31 : 140;
+    const auto model =
+        rectangle_model({edge, edge}, {.cell_size = 0.05f, .half_width = 2, .alpha = 0.5f, .damping = 0.1f});
+    expect_no_stall("a square", most_ms, [&](std::size_t& particles) {
+      World2d world(0, ContactMethod::kSurface);
+      SoftBody<2>& square = world.soft.add(model, {0, 0});
+      particles = model->particles();
+      for (std::size_t p = 0; p < particles; ++p)
+        square.add_particle_velocity(p, Vector2f(square.position(p).x() > 0 ? 0.5f : -0.5f, 0));
+      return cost_of_break(world.soft, Cut2d::line({0.001f, 0}, {1, 0}), [&] { world.soft.step(kStep); });
     });
   }
 }
