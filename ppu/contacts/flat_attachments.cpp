@@ -36,7 +36,7 @@ void FlatAttachments::add(const AttachmentInStep<2>& attachment) {
 
 void FlatAttachments::begin(InPlane& plane, const AttachedBody<3>& body) {
   std::ranges::sort(plane.held);
-  plane.held.erase(std::ranges::unique(plane.held).begin(), plane.held.end());
+  plane.held.erase(std::unique(plane.held.begin(), plane.held.end()), plane.held.end());
   const std::size_t particles = body.positions.size() / 2;
   plane.positions.resize(particles);
   plane.velocities.resize(particles);
