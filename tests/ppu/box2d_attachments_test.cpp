@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "particles_where.h"
 #include "soft_body_2d_scenes.h"
 #include "support/slow_build.h"
 
@@ -142,15 +143,6 @@ TEST_P(Box2dAttachments, BreakWhenTheyWouldCarryMore) {
     EXPECT_EQ(ended.size(), share > 1 ? 0u : 1u);
     for (const EndedAttachment& one : ended) EXPECT_EQ(one.reason, EndedAttachment::Reason::kBroken);
   }
-}
-
-/// The particles of a body whose rest position passes a test.
-template <typename Is>
-std::vector<std::uint32_t> particles_where(const SoftBody<2>& body, const Is& is) {
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < body.model().particles(); ++i)
-    if (is(body.model().lattice().rest_position(i))) numbers.push_back(i);
-  return numbers;
 }
 
 /// A hundred times the weight of the patch hangs from it: most of it is a rigid body that is welded to the soft one's lower end.

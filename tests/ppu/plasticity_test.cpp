@@ -180,7 +180,8 @@ template <int kDimension>
 void expect_law_of_bending() {
   constexpr float kYield = 0.02f;
   for (const int thickness : {1, 2, 4}) {
-    const int length = 20 + 4 * thickness;
+    // The ends of a thin bar in three dimensions would keep it from the tolerance if it were shorter.
+    const int length = kDimension == 3 ? std::max(24, 16 + 4 * thickness) : 16 + 4 * thickness;
     SoftBody<kDimension> body(bar<kDimension>(length, thickness, metal(kYield)));
     const float half_height = kCell * static_cast<float>(thickness) / 2;
     const float strain = 3 * kYield, curvature = strain / half_height;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../particles_where.h"
 #include "contact_world.h"
 #include "ppu/contacts/attachments.h"
 #include "softcell/soft_bodies/attachment.h"
@@ -25,15 +26,6 @@ using Eigen::Vector3f;
 constexpr float kCell = 0.1f;
 
 TriangleMesh block(const Vector3f& size) { return make_box(size, kCell); }
-
-/// The particles of a body whose rest position passes a test.
-template <typename Is>
-std::vector<std::uint32_t> particles_where(const SoftBody<3>& body, const Is& is) {
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < body.model().particles(); ++i)
-    if (is(body.model().lattice().rest_position(i))) numbers.push_back(i);
-  return numbers;
-}
 
 float mass_of(const SoftBody<3>& body, const std::vector<std::uint32_t>& particles) {
   float mass = 0;

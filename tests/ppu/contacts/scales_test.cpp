@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <ctime>
-
+#include <chrono>
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "contact_world.h"
+#include "ppu/bullet/processor_time.h"
 
 namespace softcell::ppu {
 namespace {
@@ -52,12 +52,6 @@ struct Scaled {
   double seconds = 0;           // of this thread's processor time
 };
 
-double processor_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 Scaled run_at_scale(float cell) {
   const float scale = cell / 0.1f;
   ContactWorld w({0, -9.81f * scale, 0});
@@ -66,7 +60,7 @@ Scaled run_at_scale(float cell) {
   const SoftBody<3>& left = w.bodies.add(model, {-4.1f * cell, 4.2f * cell, 0});
   const SoftBody<3>& right = w.bodies.add(model, {3.6f * cell, 5 * cell, 0});
   Scaled result;
-  const double begin = processor_seconds();
+  const auto begin = processor_time();
   std::vector<Contact> contacts;
   for (int i = 0; i < 120; ++i) {
     w.run(1);
@@ -74,7 +68,7 @@ Scaled run_at_scale(float cell) {
     w.bodies.append_contacts(contacts);
     result.contacts += contacts.size();
   }
-  result.seconds = processor_seconds() - begin;
+  result.seconds = std::chrono::duration<double>(processor_time() - begin).count();
   for (const SoftBody<3>* body : {&left, &right})
     for (const Vector3f& p : ContactWorld::drawn(*body)) result.drawn.push_back(p / cell);
   return result;

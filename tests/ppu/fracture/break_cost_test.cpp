@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "../contacts/contact_world.h"
 #include "../soft_body_2d_scenes.h"
+#include "ppu/bullet/processor_time.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "support/median.h"
@@ -23,14 +23,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-/// Of this thread, milliseconds: what another one computes does not stall it.
-double processor_time_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
-/// Of a substep, milliseconds. Afterwards the pieces touch along the whole cut, which is contact and no stall.
+/// Of a substep, milliseconds of this thread's processor time: what another one computes does not stall it. Afterwards the pieces touch along the whole cut, which is contact and no stall.
 struct Cost {
   double before = 0, with_pieces = 0, next = 0, afterwards = 0;
   double stall() const { return std::max(with_pieces - before, next - afterwards); }
@@ -41,11 +34,11 @@ struct Cost {
 template <typename Bodies, typename Cut, typename Substep>
 Cost cost_of_break(Bodies& bodies, const Cut& where, const Substep& substep) {
   const auto timed = [&] {
-    const double begin = processor_time_ms();
+    const auto begin = processor_time();
     substep();
-    const double end = processor_time_ms();
+    const std::chrono::duration<double, std::milli> took = processor_time() - begin;
     std::this_thread::sleep_for(std::chrono::milliseconds(8));  // the rest of a frame
-    return end - begin;
+    return took.count();
   };
   const auto median_of_five = [&] {
     std::vector<double> each;
