@@ -144,10 +144,10 @@ TEST(Recording, AFileThatIsNoneIsRefusedByName) {
 
 // A run and its replay, by way of the file.
 
-/// @param of_user  appends what he does in a frame
-template <class Simulation, int Dimension, class User>
-std::uint64_t run_with(Simulation& simulation, InputLog<Dimension>& log, std::int64_t frames,
-                       const User& of_user) {
+/// @param seed  of what the user does in a run that is no replay
+template <class Simulation, int Dimension>
+std::uint64_t run(Simulation& simulation, InputLog<Dimension>& log, std::int64_t frames, std::uint32_t seed) {
+  std::mt19937 random(seed);
   std::vector<InputEvent<Dimension>> events;
   for (std::int64_t frame = 0; frame < frames; ++frame) {
     events.clear();
@@ -155,22 +155,14 @@ std::uint64_t run_with(Simulation& simulation, InputLog<Dimension>& log, std::in
       const auto recorded = log.events_at(frame);
       events.assign(recorded.begin(), recorded.end());
     } else {
-      of_user(frame, events);
+      for (std::uint32_t i = static_cast<std::uint32_t>(random() % 5); i > 0; --i)
+        events.push_back(random_event<Dimension>(random));
     }
     simulation.step(events);
     log.record(frame, simulation.last_events());
   }
   log.save(simulation.state_hash());
   return simulation.state_hash();
-}
-
-template <class Simulation, int Dimension>
-std::uint64_t run(Simulation& simulation, InputLog<Dimension>& log, std::int64_t frames, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  return run_with(simulation, log, frames, [&](std::int64_t, std::vector<InputEvent<Dimension>>& events) {
-    for (std::uint32_t i = static_cast<std::uint32_t>(random() % 5); i > 0; --i)
-      events.push_back(random_event<Dimension>(random));
-  });
 }
 
 constexpr const char* kScene2d =
@@ -225,52 +217,6 @@ TEST(Replay, EndsInTheSameStateForAnyNumberOfSpesAndSchedule3d) {
     EXPECT_EQ(run(repeat, second, 120, 0), state) << spes << " SPEs, " << schedule;
     second.check();
   }
-}
-
-/// A scene with a user who takes its first body, pulls it aside and lets go: recorded, and replayed on other SPEs.
-template <class Simulation, int Dimension, class Scene>
-void expect_replay_of(const Scene& scene) {
-  const tests::ScratchFolder scratch;
-  RecordingFiles recorded, repeated;
-  recorded.record = repeated.replay = scratch.path() / "run.rec";
-  constexpr std::int64_t kFrames = 90;
-  InputLog<Dimension> first(recorded);
-  Scene played = scene;
-  first.begin(played);
-  Simulation simulation(scene, {.spes = 2});
-  typename InputEvent<Dimension>::Vector at;
-  const std::uint64_t state = run_with(
-      simulation, first, kFrames, [&](std::int64_t frame, std::vector<InputEvent<Dimension>>& events) {
-        if (frame == 10) at = simulation.soft_body(0).position(0);
-        if (frame == 10)
-          events.push_back({.action = Action::kHold, .hand = kUsersHand, .body = 0, .value = at});
-        if (frame > 10 && frame < 40) at.x() += 0.03f;
-        if (frame > 10 && frame < 40)
-          events.push_back({.action = Action::kMoveHand, .hand = kUsersHand, .value = at});
-        if (frame == 40) events.push_back({.action = Action::kRelease, .hand = kUsersHand});
-      });
-  for (const auto& [spes, schedule] : {std::pair{1, "lazy"}, {5, "random:7"}}) {
-    InputLog<Dimension> second(repeated);
-    Scene again = scene;
-    second.begin(again);
-    Simulation repeat(again, {.spes = spes, .schedule = dma::parse_schedule(schedule)});
-    EXPECT_EQ(run_with(repeat, second, kFrames, [](std::int64_t, auto&) {}), state)
-        << spes << " SPEs, " << schedule;
-    EXPECT_EQ(repeat.soft_bodies(), simulation.soft_bodies());
-    second.check();
-  }
-}
-
-/// Whose bodies are held, stay bent, break, and are cut.
-class ReplayOf : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, ReplayOf,
-                         testing::Values("break", "bridge", "car_crash", "cut", "hang", "tyres"),
-                         [](const auto& scene) { return scene.param; });
-
-TEST_P(ReplayOf, EndsInTheSameState) { expect_replay_of<Simulation3d, 3>(load_scene_3d(GetParam())); }
-
-TEST(Replay, OfAManWhoLosesAnArmEndsInTheSameState) {
-  expect_replay_of<Simulation2d, 2>(load_scene_2d("man_breaks"));
 }
 
 TEST(Replay, OfAnotherSceneIsRefused) {
