@@ -106,8 +106,8 @@ function(softcell_install_package)
   list(REMOVE_DUPLICATES SOFTCELL_PUBLIC_HEADERS)
   # What only softcell's own layers include of each other; windows are the demos'.
   set(own)
-  foreach(header base/embedded_file base/json_text base/nearest_name base/read_file base/text dma/host_registers dma/local_store_port
-      dma/mfc_rules dma/proxy_queue dma/sanitizers render/overlay render/window)
+  foreach(header base/embedded_file base/json_text base/nearest_name base/read_file base/sanitizers base/text dma/host_registers dma/local_store_port
+      dma/mfc_rules dma/proxy_queue render/overlay render/window)
     list(APPEND own PATTERN ${header}.h EXCLUDE)
   endforeach()
   foreach(headers IN LISTS SOFTCELL_PUBLIC_HEADERS)

@@ -332,10 +332,10 @@ void Renderer::State::require_drawable(int side) const {
 /// Where it throws, all stays as it was.
 void Renderer::State::make_picture_buffers(int new_width, int new_height) {
   const auto refuse = [&](const std::string& what) {
+    gl.GetError();  // which the context would keep for whoever asks next
     throw std::runtime_error(description + ": " + what + " of " + std::to_string(new_width) + " by " +
                              std::to_string(new_height) + " pixels");
   };
-  gl.GetError();  // of a size that was refused before, which a framebuffer's status had told first
   PictureBuffers made;
   try {
     made.frame = std::make_unique<PostProcess>(gl, PostProcessSettings{.width = new_width,

@@ -617,6 +617,8 @@ TEST(RendererSettings, RefusesSizesThatCannotBeDrawn) {
   EXPECT_THROW(Renderer(pinned_context(), {.width = 0, .height = 10}), std::runtime_error);
   EXPECT_THROW(Renderer(pinned_context(), {.width = 10, .height = 1 << 24}), std::runtime_error);
   EXPECT_THROW(Renderer(pinned_context(), {.width = 16384, .height = 16384}), std::runtime_error);
+  const auto get_error = reinterpret_cast<GLenum (*)()>(pinned_context().function("glGetError"));
+  EXPECT_EQ(get_error(), 0u) << "what was refused is an error of the context";
 }
 
 TEST(Srgb, IsNearTheCurve) {
