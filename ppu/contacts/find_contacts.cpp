@@ -103,13 +103,9 @@ class ObstacleContacts {
         contacts_(contacts) {}
 
   void find() {
-    const bool triangles = obstacle_.kind == ObstacleKind::kTriangles;
-    if (triangles) cells_.triangles.place(obstacle_.triangles);
-    const Bounds<3> box = triangles ? bounds_of_triangles() : bounds(obstacle_);
-    const float reach =
-        kNear * body_.spacing() + step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * radius(box));
-    near_ = widened(box, reach);
-    if (triangles) return find_with_triangles(reach);
+    if (obstacle_.kind == ObstacleKind::kTriangles)
+      return find_with_triangles(cells_.triangles(obstacle_, kEdgeSpacing * body_.spacing()));
+    const float reach = come_near(bounds(obstacle_));
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
       for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (const auto hit = meet(obstacle_, way_of(from, to), point.allowance, body_.spacing()))
@@ -124,9 +120,12 @@ class ObstacleContacts {
     return {box.low - Vector3f::Constant(by), box.high + Vector3f::Constant(by)};
   }
 
-  /// As bounds(), but quicker.
-  Bounds<3> bounds_of_triangles() const {
-    return widened(to_world(obstacle_, cells_.triangles.bounds()), obstacle_.rounding);
+  /// Sets what is near. @param box  around the obstacle  @return how far from the obstacle that reaches, metres
+  float come_near(const Bounds<3>& box) {
+    const float reach =
+        kNear * body_.spacing() + step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * radius(box));
+    near_ = widened(box, reach);
+    return reach;
   }
 
   /// The farthest that a point of the obstacle may be from what it turns about.
@@ -155,8 +154,10 @@ class ObstacleContacts {
   }
 
   /// Points meet the triangles near their way only.
-  void find_with_triangles(float reach) {
-    const TriangleBoxes& boxes = cells_.triangles;
+  void find_with_triangles(const KnownTriangles& triangles) {
+    const TriangleBoxes& boxes = triangles.boxes();
+    // As bounds(), but quicker.
+    const float reach = come_near(widened(to_world(obstacle_, boxes.bounds()), obstacle_.rounding));
     const float near = kNear * body_.spacing(), pressed_through = kPressedThrough * body_.spacing();
     // What has been pressed through a triangle may be so far behind it, and still meets it.
     const Vector3f margin = Vector3f::Constant(near + pressed_through + obstacle_.rounding);
@@ -172,51 +173,29 @@ class ObstacleContacts {
         });
       });
     });
-    try_edges_of_triangles(reach);
+    try_edges_of_triangles(triangles, reach);
   }
 
-  bool is_short(const ObstacleEdge& edge) const {
-    const float longest = kEdgeSpacing * body_.spacing();
-    return (edge.to - edge.from).squaredNorm() <= longest * longest;
-  }
-  /// Edges of two dimensions are no sides: they lie in their plane.
-  bool are_short_sides(std::span<const ObstacleEdge> edges, const CornerSet::Triangle& triangle) const {
-    for (std::size_t i = 0; i < 3; ++i)
-      if (edges[i].from != triangle[i] || !is_short(edges[i])) return false;
-    return true;
-  }
-
-  /// The ends of short edges belong to many triangles: each is looked up once. Those within a plane are not, as they stand out of nothing:
-  /// the body's points meet the plane.
-  void try_edges_of_triangles(float reach) {
-    CornerSet& corners = cells_.corners;
-    corners.begin(obstacle_.edges.size());
-    cells_.triangles.for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
-      if (!cells_.boxes().any_meets(widened(to_world(obstacle_, box), 2 * reach))) return;
-      for (std::size_t t = first; t < end; ++t) {
-        const std::span<const ObstacleEdge> edges = obstacle_.edges.subspan(3 * t, 3);
-        if (are_short_sides(edges, obstacle_.triangles[t])) {
-          corners.add(obstacle_.triangles[t]);
-          continue;
-        }
-        for (const ObstacleEdge& edge : edges) {
-          if (is_short(edge))
-            corners.add(edge.from);
-          else
-            try_edge(edge, reach);
-        }
-      }
-    });
+  void try_edges_of_triangles(const KnownTriangles& triangles, float reach) {
+    if (triangles.has_long_edges()) try_long_edges(triangles, reach);
     const auto in_world = [&](const CornerSet::Point& corner) {
       return obstacle_.to_world({corner[0], corner[1], corner[2]});
     };
     // In an order that does not depend on where the list of triangles begins.
     std::vector<CornerSet::Point>& near = cells_.near_corners;
     near.clear();
-    for (const CornerSet::Corner& corner : corners.corners())
-      if (!corner.is_flat() && may_be_in_body(in_world(corner.point))) near.push_back(corner.point);
+    for (const CornerSet::Point& corner : triangles.corners())
+      if (may_be_in_body(in_world(corner))) near.push_back(corner);
     std::sort(near.begin(), near.end());
     for (const CornerSet::Point& corner : near) try_corner(in_world(corner));
+  }
+
+  void try_long_edges(const KnownTriangles& triangles, float reach) {
+    triangles.boxes().for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
+      if (!cells_.boxes().any_meets(widened(to_world(obstacle_, box), 2 * reach))) return;
+      for (const ObstacleEdge& edge : obstacle_.edges.subspan(3 * first, 3 * (end - first)))
+        if (triangles.is_long(edge)) try_edge(edge, reach);
+    });
   }
 
   void add(const Anchor& anchor, const Vector3f& point, const Hit& hit) {

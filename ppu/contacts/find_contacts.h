@@ -1,21 +1,24 @@
 #pragma once
 // Where bodies would enter something in the coming substep.
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "ppu/contacts/contact_group.h"
 #include "ppu/surfaces/cell_boxes.h"
 #include "ppu/surfaces/cell_finder.h"
-#include "ppu/surfaces/corner_set.h"
-#include "ppu/surfaces/triangle_boxes.h"
+#include "ppu/surfaces/known_triangles.h"
 
 namespace softcell::ppu {
 
 /// The cells of where a body will be, placed when somebody asks: most bodies need none.
 class EndCells {
  public:
-  void begin(const ContactBody& body) { body_ = &body, is_placed_ = has_boxes_ = false; }
+  void begin(const ContactBody& body) {
+    body_ = &body, is_placed_ = has_boxes_ = false;
+    seen_ = 0;
+  }
   const CellFinder& finder() {
     if (!is_placed_) finder_.place(body_->lattice(), body_->ends);
     is_placed_ = true;
@@ -27,16 +30,25 @@ class EndCells {
     has_boxes_ = true;
     return boxes_;
   }
-  // For those who look for contacts with triangles, again and again without allocating.
-  TriangleBoxes triangles;
-  CornerSet corners;
-  std::vector<CornerSet::Point> near_corners;
+  /// The first obstacle of triangles in a substep, the second and so on: each is likely to be the one of the substep before.
+  /// @param longest  as KnownTriangles::see() has it  @return valid until the next call
+  const KnownTriangles& triangles(const Obstacle& obstacle, float longest) {
+    if (seen_ == triangles_.size()) triangles_.emplace_back();
+    KnownTriangles& known = triangles_[seen_++];
+    known.see(obstacle, longest);
+    return known;
+  }
+
+  std::vector<CornerSet::Point>
+      near_corners;  // for those who look for contacts with triangles, without allocating
 
  private:
   const ContactBody* body_ = nullptr;
   CellFinder finder_;
   CellBoxes boxes_;
   bool is_placed_ = false, has_boxes_ = false;
+  std::vector<KnownTriangles> triangles_;
+  std::size_t seen_ = 0;  // of these, in this substep
 };
 
 /// Points of the body's surface, and its particles, in an obstacle, and the obstacle's edges in the body.

@@ -16,6 +16,7 @@
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/corner_set.h"
+#include "ppu/surfaces/known_triangles.h"
 #include "ppu/surfaces/obstacle.h"
 #include "ppu/surfaces/point_chooser.h"
 #include "ppu/surfaces/triangle_boxes.h"
@@ -202,6 +203,56 @@ TEST(CornerSet, BordersAndTrianglesWithoutAnAreaStandOut) {
   EXPECT_TRUE(middle_is_flat(4, false));
   EXPECT_FALSE(middle_is_flat(3, false));
   EXPECT_FALSE(middle_is_flat(4, true));
+}
+
+/// Whoever has seen other triangles before knows the same of these as whoever sees them first.
+TEST(KnownTriangles, AreThoseOfTheLastCallWhateverHasChanged) {
+  std::vector<CornerSet::Triangle> triangles;
+  std::vector<ObstacleEdge> edges;
+  const auto see = [&](KnownTriangles& known, float longest) {
+    Obstacle obstacle;
+    obstacle.kind = ObstacleKind::kTriangles;
+    obstacle.triangles = triangles;
+    obstacle.edges = edges;
+    known.see(obstacle, longest);
+  };
+  const Vector3f middle(0, 0, 0), around[] = {{1, 0, 0}, {0, 0, -1}, {-1, 0, 0}, {0, 0, 1}};
+  const auto make_pyramid = [&](float height) {
+    triangles.clear();
+    edges.clear();
+    for (int i = 0; i < 4; ++i) {
+      triangles.push_back({middle + Vector3f(0, height, 0), around[i], around[(i + 1) % 4]});
+      for (std::size_t k = 0; k < 3; ++k)
+        edges.push_back({triangles.back()[k], triangles.back()[(k + 1) % 3]});
+    }
+  };
+  KnownTriangles known;
+  const auto expect_what_a_new_one_knows = [&](float longest, std::size_t corners, bool has_long) {
+    KnownTriangles fresh;
+    see(fresh, longest);
+    for (int again = 0; again < 2; ++again) {
+      see(known, longest);
+      EXPECT_TRUE(std::ranges::equal(known.corners(), fresh.corners()));
+      EXPECT_EQ(known.corners().size(), corners);
+      EXPECT_EQ(known.has_long_edges(), has_long);
+      EXPECT_EQ(known.boxes().bounds().high, fresh.boxes().bounds().high);
+      EXPECT_EQ(known.boxes().bounds().low, fresh.boxes().bounds().low);
+    }
+  };
+  make_pyramid(0);
+  expect_what_a_new_one_knows(2, 4, false);  // the middle is flat
+  make_pyramid(0.01f);
+  expect_what_a_new_one_knows(2, 5, false);
+  make_pyramid(-0.01f);
+  expect_what_a_new_one_knows(2, 5, false);
+  expect_what_a_new_one_knows(1.2f, 5, true);  // the four along the border are longer
+  edges[0].from.y() += 0.5f;                   // an edge that is no side, as those of two dimensions
+  expect_what_a_new_one_knows(2, 6, false);
+  triangles.resize(1);
+  edges.resize(3);
+  expect_what_a_new_one_knows(2, 3, false);
+  make_pyramid(0);
+  expect_what_a_new_one_knows(2, 4, false);
 }
 
 TEST(Obstacle, ABoxAroundItsPartsIsAroundThemInTheWorld) {

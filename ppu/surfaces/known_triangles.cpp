@@ -1,0 +1,62 @@
+#include "ppu/surfaces/known_triangles.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+/// Both are lists of floats without gaps.
+template <typename T>
+bool are_same(const std::vector<T>& known, std::span<const T> now) {
+  return known.size() == now.size() && std::memcmp(known.data(), now.data(), now.size_bytes()) == 0;
+}
+
+/// Edges of two dimensions are no sides: they lie in their plane.
+bool are_sides(std::span<const ObstacleEdge> edges, const CornerSet::Triangle& triangle) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (edges[i].from != triangle[i]) return false;
+  return true;
+}
+
+}  // namespace
+
+void KnownTriangles::see(const Obstacle& obstacle, float longest) {
+  static_assert(sizeof(ObstacleEdge) == 6 * sizeof(float));
+  static_assert(sizeof(triangles_[0]) == 9 * sizeof(float));
+  SC_ASSERT(obstacle.kind == ObstacleKind::kTriangles && !obstacle.triangles.empty() &&
+                obstacle.edges.size() == 3 * obstacle.triangles.size(),
+            "{} triangles with {} edges", obstacle.triangles.size(), obstacle.edges.size());
+  if (longest == longest_ && are_same(triangles_, obstacle.triangles) && are_same(edges_, obstacle.edges))
+    return;
+  longest_ = longest;
+  triangles_.assign(obstacle.triangles.begin(), obstacle.triangles.end());
+  edges_.assign(obstacle.edges.begin(), obstacle.edges.end());
+  boxes_.place(triangles_);
+  find_corners();
+}
+
+void KnownTriangles::find_corners() {
+  set_.begin(edges_.size());
+  has_long_edges_ = false;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const std::span<const ObstacleEdge> edges(&edges_[3 * t], 3);
+    const auto is_short = [&](const ObstacleEdge& edge) { return !is_long(edge); };
+    const bool all_are_short = std::all_of(edges.begin(), edges.end(), is_short);
+    if (!all_are_short) has_long_edges_ = true;
+    if (all_are_short && are_sides(edges, triangles_[t])) {
+      set_.add(triangles_[t]);
+      continue;
+    }
+    for (const ObstacleEdge& edge : edges)
+      if (is_short(edge)) set_.add(edge.from);
+  }
+  corners_.clear();
+  for (const CornerSet::Corner& corner : set_.corners())
+    if (!corner.is_flat()) corners_.push_back(corner.point);
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,48 @@
+#pragma once
+// The triangles of an obstacle near a body, known from one substep to the next.
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "ppu/surfaces/corner_set.h"
+#include "ppu/surfaces/obstacle.h"
+#include "ppu/surfaces/triangle_boxes.h"
+
+namespace softcell::ppu {
+
+/// What follows from triangles alone, made when others come. A program may change a mesh at any time, so the triangles themselves are
+/// compared, number by number, which takes a twentieth of making this anew. Allocates only when there are more of them than ever before.
+class KnownTriangles {
+ public:
+  /// Makes it anew if these are not the triangles of the last call.
+  /// @param obstacle  of triangles  @param longest  of edges that are short, metres
+  void see(const Obstacle& obstacle, float longest);
+
+  const TriangleBoxes& boxes() const { return boxes_; }
+
+  /// The ends of short edges, in the obstacle's frame, each once although many triangles have it. Those within a plane are left out, as
+  /// they stand out of nothing: a body's points meet the plane. In the order of the triangles.
+  std::span<const CornerSet::Point> corners() const { return corners_; }
+
+  bool is_long(const ObstacleEdge& edge) const {
+    return (edge.to - edge.from).squaredNorm() > longest_ * longest_;
+  }
+  /// Whether any edge is.
+  bool has_long_edges() const { return has_long_edges_; }
+
+ private:
+  void find_corners();
+
+  std::vector<std::array<Eigen::Vector3f, 3>> triangles_;
+  std::vector<ObstacleEdge> edges_;
+  float longest_ = 0;
+
+  TriangleBoxes boxes_;
+  CornerSet set_;
+  std::vector<CornerSet::Point> corners_;
+  bool has_long_edges_ = false;
+};
+
+}  // namespace softcell::ppu
