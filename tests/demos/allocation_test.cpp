@@ -6,11 +6,13 @@
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
 #include "support/allocation_counter.h"
+#include "support/slow_build.h"
 
 namespace softcell::demos {
 namespace {
 
 TEST(Allocation, ASteadyFrameAllocatesNothing) {
+  if (kSlowBuild) GTEST_SKIP() << "as many as in every build";
   const Scene scene = load_scene_3d("arena");
   Simulation3d simulation(scene, {});
   ASSERT_GT(test::allocations(), 0u) << "allocations are not counted";

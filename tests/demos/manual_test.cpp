@@ -13,6 +13,7 @@
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_3d.h"
 #include "support/scratch_folder.h"
+#include "support/slow_build.h"
 #include "support/text_file.h"
 
 namespace softcell::demos {
@@ -102,6 +103,7 @@ double measured_modulus(const Row& row, const std::string& stiffness, double exp
 }
 
 TEST(Manual, ItsTableOfStiffnessesIsWhatABarOnTheSpesHas) {
+  if (kSlowBuild) GTEST_SKIP() << "numbers that are the same bits in every build";
   for (const Row& row : rows()) {
     const double measured = measured_modulus(row, "alpha = 1", row.modulus);
     EXPECT_NEAR(measured / row.modulus, 1, 0.05)

@@ -7,13 +7,13 @@
 
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "input/input_log.h"
+#include "replayed.h"
 #include "scene_file/scene_library.h"
 #include "simulation/simulation_2d.h"
 #include "simulation/simulation_3d.h"
@@ -21,10 +21,6 @@
 
 namespace softcell::demos {
 namespace {
-
-std::filesystem::path file_of(const std::string& scene) {
-  return std::filesystem::path(SOFTCELL_RECORDINGS_DIR) / (scene + ".rec");
-}
 
 /// A user takes the first body of a scene after ten frames, pulls it aside and lets go.
 template <int Dimension>
@@ -52,7 +48,7 @@ class User {
 
 template <class Simulation, int Dimension, class Scene>
 void record(Scene scene) {
-  InputLog<Dimension> log({.record = file_of(scene.name), .replay = {}});
+  InputLog<Dimension> log({.record = recording_file(scene.name), .replay = {}});
   log.begin(scene);
   Simulation simulation(scene, {});
   User<Dimension> user;
@@ -63,19 +59,11 @@ void record(Scene scene) {
   log.save(simulation.state_hash());
 }
 
-template <class Simulation, int Dimension, class Scene>
-void expect_recorded_end(const Scene& scene) {
+template <class Replay>
+void expect_recorded_end(const std::string& name) {
   for (const auto& [spes, schedule] : {std::pair{1, "lazy"}, {5, "random:7"}}) {
-    InputLog<Dimension> log({.record = {}, .replay = file_of(scene.name)});
-    Scene again = scene;
-    log.begin(again);
-    Simulation simulation(again, {.spes = spes, .schedule = dma::parse_schedule(schedule)});
-    for (std::int64_t frame = 0; frame < log.frames(); ++frame) {
-      simulation.step(log.events_at(frame));
-      log.record(frame, simulation.last_events());
-    }
-    log.save(simulation.state_hash());
-    EXPECT_NO_THROW(log.check()) << spes << " SPEs, " << schedule;
+    const SimulationOptions options{.spes = spes, .schedule = dma::parse_schedule(schedule)};
+    EXPECT_NO_THROW(Replay(name, {}, options)) << spes << " SPEs, " << schedule;
     if (kSlowBuild) return;
   }
 }
@@ -90,11 +78,11 @@ const auto name_of = [](const auto& scene) { return scene.param; };
 
 class StoredRecording3d : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, StoredRecording3d, testing::ValuesIn(kScenes3d), name_of);
-TEST_P(StoredRecording3d, EndsAsItDid) { expect_recorded_end<Simulation3d, 3>(load_scene_3d(GetParam())); }
+TEST_P(StoredRecording3d, EndsAsItDid) { expect_recorded_end<Replayed3d>(GetParam()); }
 
 class StoredRecording2d : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, StoredRecording2d, testing::ValuesIn(kScenes2d), name_of);
-TEST_P(StoredRecording2d, EndsAsItDid) { expect_recorded_end<Simulation2d, 2>(load_scene_2d(GetParam())); }
+TEST_P(StoredRecording2d, EndsAsItDid) { expect_recorded_end<Replayed>(GetParam()); }
 
 }  // namespace
 

@@ -14,6 +14,7 @@
 #include "ppu/contacts/find_contacts.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
+#include "support/slow_build.h"
 
 namespace softcell::ppu {
 namespace {
@@ -180,7 +181,8 @@ TEST(SpeContacts, InterpretedKernelsGiveTheSameBits) {
 TEST(SpeContacts, CheckedKernelsFindNothingAndGiveTheSameBits) {
   SpeRuntimeOptions checked{.spes = 2, .schedule = dma::parse_schedule("random:1"), .checked = true};
   ls_sim::Findings findings;
-  EXPECT_EQ(heap(checked, 24, &findings), heap({.spes = 2}, 24));
+  constexpr int kFrames = kSlowBuild ? 12 : 24;
+  EXPECT_EQ(heap(checked, kFrames, &findings), heap({.spes = 2}, kFrames));
   for (const ls_sim::Finding& finding : findings.list()) ADD_FAILURE() << finding.fault.message();
 }
 
