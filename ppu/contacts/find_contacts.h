@@ -39,8 +39,8 @@ class EndCells {
     return known;
   }
 
-  std::vector<CornerSet::Point>
-      near_corners;  // for those who look for contacts with triangles, without allocating
+  /// For those who look for contacts with triangles, again and again without allocating.
+  std::vector<CornerSet::Point> near_corners;
 
  private:
   const ContactBody* body_ = nullptr;

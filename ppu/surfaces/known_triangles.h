@@ -27,7 +27,7 @@ class KnownTriangles {
   std::span<const CornerSet::Point> corners() const { return corners_; }
 
   bool is_long(const ObstacleEdge& edge) const {
-    return (edge.to - edge.from).squaredNorm() > longest_ * longest_;
+    return !((edge.to - edge.from).squaredNorm() <= longest_ * longest_);
   }
   /// Whether any edge is.
   bool has_long_edges() const { return has_long_edges_; }
