@@ -336,6 +336,7 @@ void Renderer::State::make_picture_buffers(int new_width, int new_height) {
     throw std::runtime_error(description + ": " + what + " of " + std::to_string(new_width) + " by " +
                              std::to_string(new_height) + " pixels");
   };
+  gl.GetError();  // of whoever had the context before: no fault of this size
   PictureBuffers made;
   try {
     made.frame = std::make_unique<PostProcess>(gl, PostProcessSettings{.width = new_width,

@@ -621,6 +621,12 @@ TEST(RendererSettings, RefusesSizesThatCannotBeDrawn) {
   EXPECT_EQ(get_error(), 0u) << "what was refused is an error of the context";
 }
 
+TEST(RendererSettings, AreNotRefusedForAnErrorThatWasThereBefore) {
+  pinned_context().make_current();
+  reinterpret_cast<void (*)(GLenum)>(pinned_context().function("glEnable"))(0xFFFF);
+  EXPECT_NO_THROW(Renderer(pinned_context(), {.width = 16, .height = 16}));
+}
+
 TEST(Srgb, IsNearTheCurve) {
   EXPECT_EQ(srgb(0x000000), Colour(0, 0, 0));
   for (std::uint32_t level = 0; level < 256; ++level) {
