@@ -42,12 +42,23 @@ Ends ends_of(const b2Fixture& fixture, int child) {
   return {edge.m_vertex1, edge.m_vertex2};
 }
 
-/// Whether a place in the world lies to the left of an edge. False of other shapes.
-bool is_left_of(const Vector2f& place, const b2Fixture& fixture, int child) {
-  if (fixture.GetType() != b2Shape::e_edge && fixture.GetType() != b2Shape::e_chain) return false;
+/// Whether a place in the frame of an edge's body lies to the left of the edge.
+bool is_left_of(const b2Vec2& place, const b2Fixture& fixture, int child) {
   const Ends ends = ends_of(fixture, child);
-  const b2Vec2 at = b2MulT(fixture.GetBody()->GetTransform(), b2Vec2(place.x(), place.y()));
-  return b2Cross(ends.to - ends.from, at - ends.from) > 0;
+  return b2Cross(ends.to - ends.from, place - ends.from) > 0;
+}
+
+/// Of a polygon, in its body's frame; counterclockwise, so that its inside lies to the left.
+Ends face_of(const b2PolygonShape& polygon, int face) {
+  return {polygon.m_vertices[face], polygon.m_vertices[(face + 1) % polygon.m_count]};
+}
+
+/// How far a polygon reaches behind one of its faces, metres.
+float depth_behind(const b2PolygonShape& polygon, int face) {
+  float least = 0;
+  for (int i = 0; i < polygon.m_count; ++i)
+    least = std::min(least, b2Dot(polygon.m_normals[face], polygon.m_vertices[i] - polygon.m_vertices[face]));
+  return -least;
 }
 
 }  // namespace
@@ -123,7 +134,32 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
   world_->QueryAABB(&near, query);
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-  for (const Found& found : found_) indices.push_back(obstacle_of(found, middle));
+  for (const Found& found : found_) indices.push_back(obstacle_of(found, side_of(found, box, middle)));
+}
+
+/// Of an edge, the side that the middle is on; of a thin polygon, the face that the body as a whole is in front of.
+int Box2dObstacles::side_of(const Found& found, const Bounds<3>& box, const Vector2f& middle) const {
+  const b2Fixture& fixture = *found.there;
+  const b2Transform& pose = fixture.GetBody()->GetTransform();
+  const b2Vec2 at = b2MulT(pose, b2Vec2(middle.x(), middle.y()));
+  if (fixture.GetType() == b2Shape::e_edge || fixture.GetType() == b2Shape::e_chain)
+    return is_left_of(at, fixture, found.child) ? kLeft : kRight;
+  if (fixture.GetType() != b2Shape::e_polygon || wanted_ == Fixtures::kSensors) return kWhole;
+  const auto& polygon = static_cast<const b2PolygonShape&>(*fixture.GetShape());
+  for (int face = 0; face < polygon.m_count; ++face) {
+    const Ends ends = face_of(polygon, face);
+    if (!(b2Dot(polygon.m_normals[face], at - ends.from) > 0)) continue;
+    if (!(depth_behind(polygon, face) < kThin * 2 * layer_)) continue;
+    const b2Vec2 along = ends.to - ends.from;
+    const auto is_beside = [&](float x, float y) {
+      const float place = b2Dot(along, b2MulT(pose, b2Vec2(x, y)) - ends.from);
+      return place >= 0 && place <= along.LengthSquared();
+    };
+    if (is_beside(box.low.x(), box.low.y()) && is_beside(box.high.x(), box.low.y()) &&
+        is_beside(box.low.x(), box.high.y()) && is_beside(box.high.x(), box.high.y()))
+      return face;
+  }
+  return kWhole;
 }
 
 std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
@@ -158,11 +194,10 @@ Box2dObstacles::Shape& Box2dObstacles::next_shape() {
   return shape;
 }
 
-std::uint32_t Box2dObstacles::obstacle_of(const Found& found, const Vector2f& middle) {
+std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int side) {
   const b2Fixture& fixture = *found.there;
-  const bool turned = is_left_of(middle, fixture, found.child);
   const auto known = std::ranges::find_if(known_, [&](const Known& one) {
-    return one.fixture == &fixture && one.child == found.child && one.turned == turned;
+    return one.fixture == &fixture && one.child == found.child && one.side == side;
   });
   if (known != known_.end()) return known->obstacle;
   const b2Transform& pose = fixture.GetBody()->GetTransform();
@@ -177,10 +212,16 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, const Vector2f& mi
       add_circle(fixture, obstacle, shape);
       break;
     case b2Shape::e_polygon:
-      add_polygon(fixture, obstacle, shape);
+      if (side == kWhole)
+        add_polygon(fixture, obstacle, shape);
+      else
+        add_face(fixture, side, obstacle, shape);
       break;
-    default:
-      add_edge(fixture, found.child, turned, obstacle, shape);
+    default: {
+      const Ends ends = ends_of(fixture, found.child);
+      add_wall(ends.from, ends.to, side == kLeft, obstacle, shape);
+      break;
+    }
   }
   obstacle.planes = shape.planes;
   obstacle.edges = shape.edges;
@@ -188,7 +229,7 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, const Vector2f& mi
   const auto index = static_cast<std::uint32_t>(obstacles_.size());
   obstacles_.push_back(obstacle);
   fixtures_.push_back(found.there);
-  known_.push_back({&fixture, found.child, turned, index});
+  known_.push_back({&fixture, found.child, side, index});
   return index;
 }
 
@@ -212,12 +253,18 @@ void Box2dObstacles::add_polygon(const b2Fixture& fixture, Obstacle& obstacle, S
   }
 }
 
-/// A wall, as high as the layer and as much again, whose front is on one side.
-void Box2dObstacles::add_edge(const b2Fixture& fixture, int child, bool turned, Obstacle& obstacle,
+/// Its outside is on the right of the way round.
+void Box2dObstacles::add_face(const b2Fixture& fixture, int face, Obstacle& obstacle, Shape& shape) const {
+  const Ends ends = face_of(static_cast<const b2PolygonShape&>(*fixture.GetShape()), face);
+  add_wall(ends.from, ends.to, false, obstacle, shape);
+}
+
+/// As high as the layer and as much again. Its front is on the right of the way from one end to the other, or on the left if it is turned.
+void Box2dObstacles::add_wall(const b2Vec2& one, const b2Vec2& other, bool turned, Obstacle& obstacle,
                               Shape& shape) const {
-  const Ends ends = ends_of(fixture, child);
-  const b2Vec2 &from = turned ? ends.to : ends.from, &to = turned ? ends.from : ends.to;
+  const b2Vec2 &from = turned ? other : one, &to = turned ? one : other;
   obstacle.kind = ObstacleKind::kTriangles;
+  obstacle.faces_bodies = true;
   const float high = 2 * layer_;
   shape.triangles.push_back({lifted(from, -high), lifted(to, -high), lifted(to, high)});
   shape.triangles.push_back({lifted(from, -high), lifted(to, high), lifted(from, high)});

@@ -18,7 +18,8 @@
 namespace softcell::ppu {
 
 /// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains have two sides: of each of them
-/// a body is kept on the side where its middle is. Used by one thread. Allocates when there are more of them than ever before.
+/// a body is kept on the side where its middle is. So is a body in front of a face of a thin polygon: what is pressed into such a polygon
+/// would leave it on the other side. Used by one thread. Allocates when there are more of them than ever before.
 class Box2dObstacles {
  public:
   enum class Fixtures { kSolid, kSensors };
@@ -53,6 +54,9 @@ class Box2dObstacles {
   void apply();
 
  private:
+  /// From the first end of an edge to the second. kWhole: all of a circle or polygon.
+  static constexpr int kWhole = -1, kRight = 0, kLeft = 1;
+  static constexpr float kThin = 0.25f;  // cells: as far as something may be pressed through a wall
   using Triangle = std::array<Eigen::Vector3f, 3>;
   /// The lists of one obstacle.
   struct Shape {
@@ -71,16 +75,18 @@ class Box2dObstacles {
   struct Known {
     const b2Fixture* fixture;
     int child;
-    bool turned;  // an edge, seen from the left of the way from its first end to the second
+    int side;  // of an edge kLeft or kRight, of a polygon the number of a face or kWhole
     std::uint32_t obstacle;
   };
   class Collector;
 
   void number_bodies();
-  std::uint32_t obstacle_of(const Found& found, const Eigen::Vector2f& middle);
+  int side_of(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;
+  std::uint32_t obstacle_of(const Found& found, int side);
   static void add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   static void add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
-  void add_edge(const b2Fixture& fixture, int child, bool turned, Obstacle& obstacle, Shape& shape) const;
+  void add_face(const b2Fixture& fixture, int face, Obstacle& obstacle, Shape& shape) const;
+  void add_wall(const b2Vec2& one, const b2Vec2& other, bool turned, Obstacle& obstacle, Shape& shape) const;
   Shape& next_shape();
 
   Fixtures wanted_;

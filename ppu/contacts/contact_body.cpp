@@ -31,6 +31,7 @@ ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> shared)
       masses_(model_->masses()) {
   weigh();
   place_touch_points();
+  inner_places = find_inner_places(surface, lattice());
 }
 
 ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const ContactModel& whole)
@@ -42,6 +43,7 @@ ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const 
             model_->particles(), whole.masses().size());
   weigh();
   place_touch_points();
+  inner_places = find_inner_places(surface, lattice());
   crack_sides = ppu::crack_sides(lattice(), model_->cracks());
 }
 

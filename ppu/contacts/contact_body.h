@@ -10,6 +10,7 @@
 
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/flat_layer.h"
+#include "ppu/surfaces/inner_places.h"
 #include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::ppu {
@@ -77,9 +78,11 @@ class ContactModel {
   ContactSurface surface;
   std::vector<TouchPoint> touch_points;      ///< ascending by cell
   std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
-  std::vector<float> inverse_masses;         ///< 1/kg, of each particle
-  std::vector<float> root_masses;            ///< sqrt(kg), of each particle
-  std::vector<std::uint32_t> crack_sides;    ///< of each cell (crack_sides.h); empty: nothing is cracked
+  /// Of each cell: a place well inside of the body near it (inner_places.h). None in two dimensions.
+  std::vector<CellPlace> inner_places;
+  std::vector<float> inverse_masses;       ///< 1/kg, of each particle
+  std::vector<float> root_masses;          ///< sqrt(kg), of each particle
+  std::vector<std::uint32_t> crack_sides;  ///< of each cell (crack_sides.h); empty: nothing is cracked
 
  private:
   void place_touch_points();

@@ -19,8 +19,9 @@ using Eigen::Vector3f;
 // kLeastStep.
 constexpr float kNear = 0.005f, kLeastStep = 0.02f;
 constexpr float kMostSteps = 256;  // of a way: what is faster goes in longer ones
-// A point so near behind a triangle, in cells, has been pressed through it.
+// A point so near behind a triangle, in cells, has been pressed through it; and one so near before it may be, from the other side.
 constexpr float kPressedThrough = 0.25f;
+constexpr float kClearSide = 0.05f;  // cells: what is nearer to a triangle may be on either side
 constexpr int kApartAtRest =
     3;  // a point never meets cells of its own body that are nearer at rest: their middles
 
@@ -35,12 +36,13 @@ struct Hit {
   float end;  ///< metres, along the normal, at the end of the way: below 0 inside
 };
 
+/// @param front  1 or -1: towards the side from which it is wound counterclockwise, or the other one
 std::optional<Hit> meet_triangle(const std::array<Vector3f, 3>& triangle, float rounding, const Way& way,
-                                 float near, float pressed_through) {
+                                 float near, float pressed_through, float front) {
   const Vector3f cross = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   const float area = cross.norm();
   if (!(area > 0)) return {};
-  Vector3f normal = cross / area;
+  Vector3f normal = cross / (front * area);
   float from = normal.dot(way.from - triangle[0]);
   if (from < -pressed_through) normal = -normal, from = -from;
   const float to = normal.dot(way.to - triangle[0]) - rounding;
@@ -153,6 +155,42 @@ class ObstacleContacts {
     return {obstacle_.to_own(from), obstacle_.to_own(to - carried)};
   }
 
+  /// On which side of a triangle the body is as a point of it, which may have been pressed through, tells: above 0 in front.
+  /// 0: the point is far from the triangle at both ends of its way, or passes beside it.
+  float side_of(const EndCells::PointAtTriangle& near) const {
+    const std::array<Vector3f, 3>& triangle = obstacle_.triangles[near.triangle];
+    const float thick = kPressedThrough * body_.spacing() + obstacle_.rounding;
+    const Vector3f cross = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    const float area = cross.norm();
+    if (!(area > 0)) return 0;
+    const Vector3f normal = cross / area;
+    const float from = normal.dot(near.from - triangle[0]), to = normal.dot(near.to - triangle[0]);
+    if (std::min(from, to) > thick || std::max(from, to) < -thick) return 0;
+    const float share = from * to < 0 ? from / (from - to) : 1;
+    const Vector3f at = near.from + share * (near.to - near.from);
+    const Vector3f beside = at - nearest_point(triangle, at);
+    const float closest = kNear * body_.spacing();
+    if ((beside - normal * normal.dot(beside)).squaredNorm() > closest * closest) return 0;
+    if (std::abs(from) > thick) return from;
+    const CellPlace& inner = body_.model->inner_places[near.point->anchor.cell];
+    const Vector3f inside = anchor_in_cell(body_.lattice(), inner.cell, inner.xi).of(body_.positions);
+    return normal.dot(obstacle_.to_own(inside) - triangle[0]);
+  }
+
+  /// A mesh is wound one way or the other, closed around something or around a room: most of what is near it says on which side the body
+  /// is.
+  /// @return  1 or -1, as meet_triangle() takes it
+  float front_of_triangles() {
+    if (obstacle_.faces_bodies || cells_.near_triangles.empty()) return 1;
+    const float clear = kClearSide * body_.spacing();
+    int seen = 0;
+    for (const EndCells::PointAtTriangle& near : cells_.near_triangles) {
+      const float side = side_of(near);
+      seen += side > clear ? 1 : side < -clear ? -1 : 0;
+    }
+    return cells_.side_of(rigid_.number, seen);
+  }
+
   /// Points meet the triangles near their way only.
   void find_with_triangles(const KnownTriangles& triangles) {
     const TriangleBoxes& boxes = triangles.boxes();
@@ -161,18 +199,22 @@ class ObstacleContacts {
     const float near = kNear * body_.spacing(), pressed_through = kPressedThrough * body_.spacing();
     // What has been pressed through a triangle may be so far behind it, and still meets it.
     const Vector3f margin = Vector3f::Constant(near + pressed_through + obstacle_.rounding);
+    cells_.near_triangles.clear();
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
       for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (point.allowance > 0) return;  // it may be on either side
         const Way way = way_of(from, to);
         const Bounds<3> box{way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin};
         boxes.for_each_meeting(box, [&](std::uint32_t t) {
-          if (const auto hit =
-                  meet_triangle(obstacle_.triangles[t], obstacle_.rounding, way, near, pressed_through))
-            add(point.anchor, to, *hit);
+          cells_.near_triangles.push_back({&point, t, way.from, way.to});
         });
       });
     });
+    const float front = front_of_triangles();
+    for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
+      if (const auto hit = meet_triangle(obstacle_.triangles[at.triangle], obstacle_.rounding,
+                                         {at.from, at.to}, near, pressed_through, front))
+        add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
     try_edges_of_triangles(triangles, reach);
   }
 
@@ -256,6 +298,20 @@ class ObstacleContacts {
 };
 
 }  // namespace
+
+float EndCells::side_of(std::uint32_t rigid, int seen) {
+  constexpr int kMostDoubts = 12;
+  auto known = std::ranges::find(sides_, rigid, &Side::rigid);
+  if (known == sides_.end()) known = sides_.insert(known, Side{rigid, true, 0, 0});
+  known->is_near = true;
+  const int side = seen > 0 ? 1 : seen < 0 ? -1 : 0;
+  if (side * known->side < 0)
+    ++known->doubts;
+  else if (side != 0)
+    known->doubts = 0;
+  if (side != 0 && (known->side == 0 || known->doubts > kMostDoubts)) known->side = side, known->doubts = 0;
+  return known->side < 0 ? -1.0f : 1.0f;
+}
 
 void find_contacts(const ContactBody& body, EndCells& cells, const Obstacle& obstacle,
                    std::span<const ContactRigid> rigids, float step, std::vector<SoftContact>& contacts) {

@@ -1,7 +1,9 @@
 #pragma once
 // Where bodies would enter something in the coming substep.
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,9 @@ namespace softcell::ppu {
 class EndCells {
  public:
   void begin(const ContactBody& body) {
+    std::erase_if(sides_, [&](const Side& known) { return !known.is_near || body.model != model_; });
+    for (Side& known : sides_) known.is_near = false;
+    model_ = body.model;
     body_ = &body, is_placed_ = has_boxes_ = false;
     seen_ = 0;
   }
@@ -39,11 +44,31 @@ class EndCells {
     return known;
   }
 
-  /// For those who look for contacts with triangles, again and again without allocating.
+  /// On which side of a rigid body's triangles the body is: 1 in front, -1 behind. As long as it is near them it stays there, unless the
+  /// other side is seen again and again: pressed flat, a body may look as if it were on the other side.
+  /// @param rigid  ContactRigid::number   @param seen  above 0 in front, below 0 behind; 0 if that is not clear now
+  float side_of(std::uint32_t rigid, int seen);
+
+  /// A touch point and a triangle that it may meet; in the obstacle's frame.
+  struct PointAtTriangle {
+    const TouchPoint* point;
+    std::uint32_t triangle;
+    Eigen::Vector3f from, to;  ///< before and after the substep
+  };
+  // For those who look for contacts with triangles, again and again without allocating.
   std::vector<CornerSet::Point> near_corners;
+  std::vector<PointAtTriangle> near_triangles;
 
  private:
+  struct Side {
+    std::uint32_t rigid;
+    bool is_near;  // in this substep
+    int side;      // 0: not known
+    int doubts;    // substeps one after the other in which it looked like the other side
+  };
   const ContactBody* body_ = nullptr;
+  const ContactModel* model_ = nullptr;  // of the substep before
+  std::vector<Side> sides_;
   CellFinder finder_;
   CellBoxes boxes_;
   bool is_placed_ = false, has_boxes_ = false;

@@ -56,6 +56,14 @@ class ContactSurface {
     return 2 * ((k >> 2) * kNodesPerEdge * kNodesPerEdge + (k >> 1 & 1u) * kNodesPerEdge + (k & 1u));
   }
 
+  /// Where a node lies in its cell, 0..1 along each edge.
+  static Eigen::Vector3f place_of_node(std::size_t node) {
+    constexpr auto kEdge = static_cast<std::size_t>(kNodesPerEdge);
+    return Eigen::Vector3f(static_cast<float>(node % kEdge), static_cast<float>(node / kEdge % kEdge),
+                           static_cast<float>(node / (kEdge * kEdge))) /
+           static_cast<float>(kNodesPerEdge - 1);
+  }
+
   /// What of the mesh lies within other parts of it does not count.
   /// @param mesh  closed, or nearly so; none: the lattice's own boundary
   ContactSurface(const TriangleMesh& mesh, const Lattice<3>& lattice);

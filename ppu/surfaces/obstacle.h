@@ -36,7 +36,7 @@ enum class ObstacleKind : std::uint32_t {
   kCylinder,  ///< radius extent.x, half height extent.y, along y
   kCone,      ///< radius of the base extent.x, half height extent.y, the tip at +y
   kHull,      ///< the inside of all `planes`
-  kTriangles  ///< without an inside: both sides keep things out
+  kTriangles  ///< without an inside: both sides keep things out, whichever way they are wound
 };
 
 /// A point of a shape that is sharper than the surface that it may meet: looked up in that body's field.
@@ -55,6 +55,7 @@ struct Obstacle {
   float rounding = 0;                            ///< metres: what lies so near to the shape is inside
   std::span<const Eigen::Vector4f> planes = {};  ///< outward unit normal, and its distance from 0
   std::span<const std::array<Eigen::Vector3f, 3>> triangles = {};
+  bool faces_bodies = false;  ///< of triangles: known to be wound so that their fronts are towards the bodies
   std::span<const ObstacleEdge> edges = {};  ///< of triangles: three around each, in their order
 
   Eigen::Vector3f to_own(const Eigen::Vector3f& world) const {

@@ -16,6 +16,7 @@
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/corner_set.h"
+#include "ppu/surfaces/inner_places.h"
 #include "ppu/surfaces/known_triangles.h"
 #include "ppu/surfaces/obstacle.h"
 #include "ppu/surfaces/point_chooser.h"
@@ -351,6 +352,26 @@ TEST(ContactSurface, ItsGradientIsThatOfTheField) {
       const float slope =
           (surface.field(cell, xi + by).distance - surface.field(cell, xi - by).distance) / 0.02f;
       EXPECT_NEAR(value.gradient[d], slope, 1e-2f);
+    }
+  }
+}
+
+/// At least half a cell deep where the body is thick, in the middle where it is thin, and never two cells away.
+TEST(ContactSurface, InnerPlacesAreWellInsideAndNear) {
+  constexpr float kCell = 0.1f;
+  for (const float thick : {0.8f, 0.1f}) {
+    const TriangleMesh mesh = make_box({0.83f, thick, 0.83f}, kCell);
+    const Lattice<3> lattice = voxelize(mesh, kCell);
+    const std::vector<CellPlace> places = find_inner_places(ContactSurface(mesh, lattice), lattice);
+    ASSERT_EQ(places.size(), lattice.cells.size());
+    for (std::size_t cell = 0; cell < places.size(); ++cell) {
+      const Vector3f at = lattice.cells[places[cell].cell].cast<float>() + places[cell].xi;
+      const Vector3f rest = lattice.origin + kCell * at;
+      const float depth = std::min(0.5f * thick - std::abs(rest.y()),
+                                   0.415f - std::max(std::abs(rest.x()), std::abs(rest.z())));
+      EXPECT_GT(depth, 0.4f * std::min(kCell, 0.5f * thick)) << rest.transpose();
+      EXPECT_LE((at - lattice.cells[cell].cast<float>() - Vector3f::Constant(0.5f)).cwiseAbs().maxCoeff(),
+                1.5f);
     }
   }
 }

@@ -200,8 +200,7 @@ TEST_P(FlatContacts, AThinThingStaysOutside) {
   EXPECT_LT(deepest, 0.1f);
 }
 
-/// Edges and chains have no thickness, and the polygon a tenth of a cell: at 100 m/s, where a body of four cells is pressed flat in one step,
-/// a particle in the polygon's far half is on its other side.
+/// Edges and chains have no thickness, and the polygon a tenth of a cell. At 100 m/s a body of four cells is pressed flat in one step.
 TEST_P(FlatContacts, NothingPassesAThinWall) {
   for (int kind = 0; kind < 3; ++kind) {
     const auto w = world(0);
@@ -218,8 +217,7 @@ TEST_P(FlatContacts, NothingPassesAThinWall) {
                         : kind == 1 ? static_cast<b2Shape*>(&chain)
                                     : &thin,
                         0);
-    for (const float speed : {5.0f, 20.0f, 100.0f}) {
-      if (kind == 2 && speed > 20) break;
+    for (const float speed : {5.0f, 20.0f, 50.0f, 100.0f}) {
       SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, -0.5f});
       body.add_velocity({speed, 0});
       for (int i = 0; i < 120; ++i) {

@@ -48,6 +48,72 @@ TEST(SurfaceContacts, NothingPassesAThinWall) {
   }
 }
 
+/// A wall of triangles has no thickness. It holds from both sides, whichever way it is wound: two triangles, or 1,800 small ones.
+TEST(SurfaceContacts, NothingPassesAWallOfTriangles) {
+  constexpr float kCell = 0.1f;
+  for (const int pieces : {1, 30}) {
+    for (const float way : {1.0f, -1.0f}) {
+      btTriangleMesh wall;
+      const float edge = 6.0f / static_cast<float>(pieces);
+      for (int y = 0; y < pieces; ++y) {
+        for (int z = 0; z < pieces; ++z) {
+          const btVector3 at(0, -3 + edge * static_cast<float>(y), -3 + edge * static_cast<float>(z));
+          const btVector3 up(0, edge, 0), across(0, 0, edge);
+          wall.addTriangle(at, at + up, at + up + across);
+          wall.addTriangle(at, at + up + across, at + across);
+        }
+      }
+      for (const float speed : {0.5f, 5.0f, 20.0f, 100.0f}) {
+        for (const TriangleMesh& mesh : {make_sphere(0.2f, 8), cube(0.4f, kCell)}) {
+          ContactWorld w({0, 0, 0});
+          w.add(std::make_unique<btBvhTriangleMeshShape>(&wall, true), 0, {0, 0, 0});
+          SoftBody<3>& body = w.add(mesh, settings_of(kCell), {-way, 0.03f, 0.02f});
+          body.add_velocity({way * speed, 0, 0});
+          float deepest = -1;
+          const auto behind = [&] {
+            float most = -1;
+            for (const Vector3f& p : ContactWorld::drawn(body)) most = std::max(most, way * p.x());
+            return most / kCell;
+          };
+          for (int i = 0; i < (speed < 1 ? 240 : 60); ++i) {
+            w.run(1);
+            deepest = std::max(deepest, behind());
+          }
+          // At 100 m/s it is pressed flat for a moment.
+          EXPECT_LT(deepest, speed < 50 ? 0.25f : 0.75f) << pieces << " pieces, " << way * speed << " m/s";
+          EXPECT_LT(behind(), 0.02f) << pieces << " pieces, " << way * speed << " m/s";
+          EXPECT_LT(way * body.centre_of_mass().x(), -0.05f)
+              << pieces << " pieces, " << way * speed << " m/s";
+          EXPECT_LT(way * body.linear_momentum().x(), 0.1f * speed * body.model().mass())
+              << "it has not come to the wall";
+        }
+      }
+    }
+  }
+}
+
+/// A closed mesh whose fronts are outside is a room for who is inside, and a box for who falls on it. What flies about in the room goes from
+/// wall to wall.
+TEST(SurfaceContacts, ARoomOfTrianglesHoldsWhatIsInIt) {
+  const TriangleMesh box = make_box({2, 2, 2}, 0.5f);
+  btTriangleMesh walls;
+  const auto corner = [&](std::uint32_t i) {
+    return btVector3(box.positions[i].x(), box.positions[i].y(), box.positions[i].z());
+  };
+  for (const auto& t : box.triangles) walls.addTriangle(corner(t[0]), corner(t[1]), corner(t[2]));
+  ContactWorld w;
+  w.add(std::make_unique<btBvhTriangleMeshShape>(&walls, true), 0, {0, 0, 0});
+  SoftBody<3>& inside = w.add(make_sphere(0.25f, 8), settings_of(0.1f), {0, 0, 0});
+  SoftBody<3>& on_top = w.add(cube(0.5f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0.5f, 1.6f, 0.3f});
+  inside.add_velocity({20, 15, 10});
+  for (int i = 0; i < 240; ++i) {
+    w.run(1);
+    for (const Vector3f& p : ContactWorld::drawn(inside))
+      ASSERT_LT(p.cwiseAbs().maxCoeff(), 1.02f) << "frame " << i;
+  }
+  EXPECT_NEAR(on_top.centre_of_mass().y(), 1.25f, 0.05f);
+}
+
 /// A floor of a thousand kilometres and a body of millimetres, thrown as fast as numbers allow: no loop runs for ever.
 TEST(SurfaceContacts, SizesAndSpeedsOfAllKindsEndInTime) {
   constexpr float kCell = 0.001f;
@@ -195,21 +261,27 @@ TEST(SurfaceContacts, KindsOfShapesHoldABody) {
     triangles.addTriangle(corners[0], corners[1], corners[2]);
     triangles.addTriangle(corners[0], corners[2], corners[3]);
   };
-  btTriangleMesh ground;
+  btTriangleMesh ground, ground_from_below;
   mesh({{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}}, ground);
+  mesh({{-3, 0, -3}, {3, 0, -3}, {3, 0, 3}, {-3, 0, 3}}, ground_from_below);
   std::vector<std::pair<const char*, std::unique_ptr<btCollisionShape>>> shapes;
   shapes.emplace_back("plane", std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), 0));
   shapes.emplace_back("triangles", std::make_unique<btBvhTriangleMeshShape>(&ground, true));
-  btTriangleMesh fine;
+  shapes.emplace_back("triangles wound the other way",
+                      std::make_unique<btBvhTriangleMeshShape>(&ground_from_below, true));
+  btTriangleMesh fine, fine_from_below;
   for (int x = -20; x < 20; ++x) {
     for (int z = -20; z < 20; ++z) {
       const auto at = [](int i, int j) {
         return btVector3(0.05f * static_cast<float>(i), 0, 0.05f * static_cast<float>(j));
       };
       mesh({at(x, z), at(x, z + 1), at(x + 1, z + 1), at(x + 1, z)}, fine);
+      mesh({at(x, z), at(x + 1, z), at(x + 1, z + 1), at(x, z + 1)}, fine_from_below);
     }
   }
   shapes.emplace_back("fine triangles", std::make_unique<btBvhTriangleMeshShape>(&fine, true));
+  shapes.emplace_back("fine triangles wound the other way",
+                      std::make_unique<btBvhTriangleMeshShape>(&fine_from_below, true));
   auto hull = std::make_unique<btConvexHullShape>();
   for (int i = 0; i < 8; ++i)
     hull->addPoint(

@@ -1,0 +1,33 @@
+#include "ppu/surfaces/inner_places.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "ppu/lattice/locate.h"
+
+namespace softcell::ppu {
+
+using Eigen::Vector3i;
+
+std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice) {
+  std::vector<CellPlace> places(lattice.cells.size());
+  for (std::uint32_t cell = 0; cell < places.size(); ++cell) {
+    float deepest = std::numeric_limits<float>::max();
+    const auto look_at = [&](std::uint32_t other) {
+      const ContactSurface::CellField& nodes = surface.nodes(other);
+      const auto lowest = std::min_element(nodes.begin(), nodes.end());
+      if (*lowest >= deepest) return;
+      deepest = *lowest;
+      places[cell] = {other, ContactSurface::place_of_node(static_cast<std::size_t>(lowest - nodes.begin()))};
+    };
+    look_at(cell);
+    for (int d = 0; d < 6; ++d) {
+      const Vector3i beside = (d < 3 ? 1 : -1) * Vector3i(Vector3i::Unit(d % 3));
+      if (const auto other = find_cell(lattice, Vector3i(lattice.cells[cell] + beside))) look_at(*other);
+    }
+  }
+  return places;
+}
+
+}  // namespace softcell::ppu

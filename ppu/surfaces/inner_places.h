@@ -1,0 +1,22 @@
+#pragma once
+// Places well inside of a body: they tell on which side of something thin a body is whose surface has been pressed through it.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "ppu/surfaces/contact_surface.h"
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// A place in a cell of a body.
+struct CellPlace {
+  std::uint32_t cell = 0;
+  Eigen::Vector3f xi{0, 0, 0};  ///< 0..1 along each edge of the cell
+};
+
+/// Of each cell the deepest of the field's nodes in it and in the cells beside it.
+std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice);
+
+}  // namespace softcell::ppu
