@@ -67,6 +67,18 @@ void ContactModel::weigh() {
     root_masses.push_back(mass > 0 ? std::sqrt(mass) : 1);
   }
   mass_ = model_ != nullptr ? model_->mass() : static_cast<float>(sum);
+  measure_thickness();
+}
+
+void ContactModel::measure_thickness() {
+  Eigen::Array3i low = lattice().cells[0].array(), high = low;
+  for (const Eigen::Vector3i& cell : lattice().cells) {
+    low = low.min(cell.array());
+    high = high.max(cell.array());
+  }
+  const Eigen::Array3i cells = high - low + 1;
+  thickness_ =
+      lattice().spacing * static_cast<float>(is_flat() ? cells.head<2>().minCoeff() : cells.minCoeff());
 }
 
 Anchor ContactModel::held(const Anchor& anchor) const {

@@ -68,6 +68,9 @@ class ContactModel {
   const Lattice<3>& lattice() const { return *lattice_; }
   std::span<const float> masses() const { return masses_; }  ///< kg, of each particle
   float mass() const { return mass_; }                       ///< kg, of the body
+  float thickness() const {
+    return thickness_;
+  }  ///< metres: how far the lattice reaches along that axis along which it is thinnest
 
   bool is_flat() const { return !margin_cells_.empty(); }
   /// Whether a cell is none of the body's own.
@@ -87,12 +90,14 @@ class ContactModel {
  private:
   void place_touch_points();
   void weigh();
+  void measure_thickness();
 
   std::shared_ptr<const SoftBodyModel<3>> model_;
   std::shared_ptr<const Lattice<3>> lattice_;
   std::vector<float> own_masses_;  // of a flat body
   std::span<const float> masses_;
   float mass_ = 0;
+  float thickness_ = 0;
   std::vector<MarginCell> margin_cells_;  // empty: there are none
 };
 
@@ -114,6 +119,7 @@ struct ContactBody {
   std::vector<Eigen::Vector3f> pushes;         ///< m/s, for this substep only: out of what it is in
   std::vector<Eigen::Vector3f> ends;           ///< where particles would be at its end without contacts
   Bounds<3> box{};                             ///< around positions and ends
+  Eigen::Vector3f travel{0, 0, 0};             ///< metres, from positions to ends, in the mean
   bool asleep = false;                         ///< nothing moves it
   std::span<const float> inverse_masses;       ///< 1/kg; 0 of a body that sleeps
   float friction = 0.5f;

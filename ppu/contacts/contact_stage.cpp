@@ -98,8 +98,13 @@ void ContactStage::take_over(std::span<const BodyInStage> bodies, float step) {
       crushed_.inside_out += crushed_cells_.inside_out();
       is_crushed_[i] = crushed_cells_.count() > 0;
     }
-    for (std::size_t p = 0; p < body.ends.size(); ++p)
-      body.ends[p] = body.positions[p] + step * body.velocities[p];
+    body.travel.setZero();
+    for (std::size_t p = 0; p < body.ends.size(); ++p) {
+      const Vector3f way = step * body.velocities[p];
+      body.ends[p] = body.positions[p] + way;
+      body.travel += way;
+    }
+    body.travel /= static_cast<float>(body.ends.size());
     if (velocities_changed) {  // since the box was made
       for (const Vector3f& end : body.ends) {
         body.box.low = body.box.low.cwiseMin(end);
@@ -140,7 +145,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
   if (group_count_ == groups_.size()) groups_.emplace_back();
   Group& group = groups_[group_count_++];
   group.a = a, group.b = b, group.with_rigid = with_rigid;
-  group.by_worker = group.heavy = false;
+  group.by_worker = group.heavy = group.fast = false;
   group.contacts.clear();
   group.solved = {};
   return group;
@@ -148,10 +153,18 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
 
 /// Points of both bodies.
 void ContactStage::find_here(Group& group, float step) {
-  find_contacts(bodies_[group.a], cells_[group.a], bodies_[group.b], cells_[group.b], step, group.contacts);
+  const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
+  group.fast = group.a != group.b && are_fast(a, b);
+  if (group.fast)
+    swept_.find(a, b, step, group.contacts);
+  else
+    find_contacts(a, cells_[group.a], b, cells_[group.b], step, group.contacts);
   if (group.a == group.b) return;
   other_way_.clear();
-  find_contacts(bodies_[group.b], cells_[group.b], bodies_[group.a], cells_[group.a], step, other_way_);
+  if (group.fast)
+    swept_.find(b, a, step, other_way_);
+  else
+    find_contacts(b, cells_[group.b], a, cells_[group.a], step, other_way_);
   for (SoftContact& contact : other_way_) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
@@ -242,7 +255,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
     const Group& group = groups_[i];
     const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
     const bool itself = !group.with_rigid && group.a == group.b;
-    if (!settings.bounces.may_bounce(a.restitution) || itself) continue;
+    if ((!settings.bounces.may_bounce(a.restitution) && !group.fast) || itself) continue;
     BounceContact bounce{.a = group.a};
     if (!group.with_rigid) bounce.b = group.b;
     const auto add = [&](std::uint32_t other, const Vector3f& point, const Vector3f& normal,
@@ -260,7 +273,8 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
         const Vector3f normal(contact.normal);
         add(group.b, Vector3f(contact.point), normal, contact.least_velocity,
             -normal.dot(Vector3f(contact.carried)), contact.friction,
-            settings.bounces.restitution_of(a.restitution, b.restitution));
+            std::max(settings.bounces.restitution_of(a.restitution, b.restitution),
+                     group.fast ? kFastRestitution : 0.0f));
       }
       continue;
     }
@@ -275,7 +289,9 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
       } else {
         v -= contact.b.of(b.velocities);
         add(group.b, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction, settings.bounces.restitution_of(a.restitution, b.restitution));
+            contact.friction,
+            std::max(settings.bounces.restitution_of(a.restitution, b.restitution),
+                     group.fast ? kFastRestitution : 0.0f));
       }
     }
   }
@@ -335,7 +351,8 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   if (worker != nullptr) {
     worker->begin(bodies_, step);
     for (const auto& [a, b] : pairs_)
-      if (worker->holds(a) && worker->holds(b)) asked_.emplace_back(a, b);
+      if (worker->holds(a) && worker->holds(b) && (a == b || !are_fast(bodies_[a], bodies_[b])))
+        asked_.emplace_back(a, b);
     if (!asked_.empty()) worker->find(asked_);
   }
   find_among_bodies(step);

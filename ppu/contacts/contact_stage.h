@@ -18,6 +18,7 @@
 #include "ppu/contacts/crushed_cells.h"
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/lost_spin.h"
+#include "ppu/contacts/swept_contacts.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/obstacle.h"
 #include "softcell/soft_bodies/contact.h"
@@ -102,6 +103,7 @@ class ContactStage {
     bool with_rigid = false;
     bool by_worker = false;             ///< he solves them: they are in `solved`
     bool heavy = false;                 ///< solved here, with a rigid body that outweighs a
+    bool fast = false;                  ///< two bodies that may pass each other in the substep
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
     std::size_t size() const { return by_worker ? solved.contacts.size() : contacts.size(); }
@@ -146,7 +148,8 @@ class ContactStage {
   std::vector<std::uint32_t> by_low_;
   std::vector<Pair> pairs_, asked_;     // asked_: of the worker
   std::vector<SoftContact> other_way_;  // b's points in a
-  std::vector<Group> groups_;           // of pairs, then with rigid bodies
+  SweptContacts swept_;
+  std::vector<Group> groups_;  // of pairs, then with rigid bodies
   std::size_t group_count_ = 0;
   std::size_t pair_groups_ = 0;                      // of them
   ContactOrder order_;                               // of the former

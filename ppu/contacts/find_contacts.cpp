@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "ppu/contacts/contact_terms.h"
 #include "ppu/surfaces/crack_sides.h"
 #include "ppu/surfaces/edge_points.h"
 #include "ppu/surfaces/triangle_distance.h"
@@ -15,9 +16,8 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-// In cells. What comes nearer than kNear in a substep is in contact. Ways are followed in steps, none below
-// kLeastStep.
-constexpr float kNear = 0.005f, kLeastStep = 0.02f;
+// In cells. Ways are followed in steps, none below kLeastStep.
+constexpr float kLeastStep = 0.02f;
 constexpr float kMostSteps = 256;  // of a way: what is faster goes in longer ones
 // A point so near behind a triangle, in cells, has been pressed through it; and one so near before it may be, from the other side.
 constexpr float kPressedThrough = 0.25f;
@@ -77,19 +77,6 @@ std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowanc
   if (here.distance > near) return {};
   const float left = length > 0 ? 1 - done / length : 0;
   return Hit{here.normal, here.distance + allowance + left * here.normal.dot(along)};
-}
-
-/// Fills in what follows from a contact's two velocities.
-void complete(SoftContact& contact, float end, float approach, float friction, float step) {
-  // The distance at the beginning, if what moves moves straight.
-  const float begin = end - step * approach;
-  contact.least_velocity = -std::max(begin, 0.0f) / step;
-  contact.depth = std::max(-begin, 0.0f);
-  contact.friction = friction;
-}
-
-bool contains(const Bounds<3>& box, const Vector3f& point) {
-  return (point.array() < box.high.array()).all() && (box.low.array() < point.array()).all();
 }
 
 class ObstacleContacts {
@@ -363,20 +350,16 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     };
     const auto place = cells_of_b.finder().find(to, is_apart);
     if (!place) return;
-    const FieldValue field = b.model->surface.field(place->cell, place->xi);
-    const Vector3f outwards = place->jacobian.inverse().transpose() * field.gradient;
-    const float steep = outwards.norm();
-    if (!(steep > 0)) return;
-    const float distance = field.distance / steep + point.allowance;
-    if (distance > kNear * b.spacing()) return;
+    const auto way_out = way_out_of(b, *place, point.allowance);
+    if (!way_out) return;
     SoftContact& contact = contacts.emplace_back();
     contact.a = model.held(point.anchor);
     contact.b = b.model->held(
         anchor_in_cell(lattice_b, place->cell, opposite(b, *place, point.anchor.of(a.positions))));
     contact.point = to;
-    contact.normal = outwards / steep;
+    contact.normal = way_out->normal;
     const Vector3f v = contact.a.of(a.velocities) - contact.b.of(b.velocities);
-    complete(contact, distance, contact.normal.dot(v), friction, step);
+    complete(contact, way_out->distance, contact.normal.dot(v), friction, step);
   };
   const bool only_at_cracks = itself && !model.crack_sides.empty() && !is_folded(a);
   cells_of_a.boxes().for_each_meeting(b.box, [&](std::uint32_t cell) {

@@ -92,6 +92,27 @@ TEST(SurfaceContacts, NothingPassesAWallOfTriangles) {
   }
 }
 
+/// Two bodies that would change places in a substep hit each other, and part as slower ones do. Momentum is kept.
+TEST(SurfaceContacts, FastBodiesDoNotPassEachOther) {
+  for (const float speed : {5.0f, 10.0f, 20.0f, 40.0f, 100.0f}) {
+    for (const TriangleMesh& mesh : {make_sphere(0.3f, 8), make_box({0.3f, 0.5f, 0.5f}, 0.1f)}) {
+      for (const float off : {0.0f, 0.1f, 0.3f}) {
+        ContactWorld w({0, 0, 0});
+        SoftBody<3>& left = w.add(mesh, settings_of(0.1f), {-1 - off, 0.02f, 0});
+        SoftBody<3>& right = w.add(mesh, settings_of(0.1f), {1, 0, 0.01f});
+        left.add_velocity({speed, 0, 0});
+        right.add_velocity({-speed, 0, 0});
+        w.run(60);
+        const float mass = left.model().mass(), parting = -left.linear_momentum().x() / mass;
+        EXPECT_LT(left.centre_of_mass().x(), right.centre_of_mass().x() - 0.4f) << speed << " m/s, " << off;
+        EXPECT_GT(parting, 0.1f * speed) << off;
+        EXPECT_LT(parting, 0.7f * speed) << off;
+        EXPECT_LT((left.linear_momentum() + right.linear_momentum()).norm(), 1e-4f * mass * speed);
+      }
+    }
+  }
+}
+
 /// A closed mesh whose fronts are outside is a room for who is inside, and a box for who falls on it. What flies about in the room goes from
 /// wall to wall.
 TEST(SurfaceContacts, ARoomOfTrianglesHoldsWhatIsInIt) {
