@@ -1,6 +1,7 @@
 #include "ppu/bodies/break_body.h"
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -34,22 +35,30 @@ std::vector<std::uint32_t> faces_across(const SoftBody<2>& body, const Cut2d& cu
 }
 
 template <int kDimension>
-std::vector<BodyPiece<kDimension>> plan_pieces(const std::shared_ptr<const SoftBodyModel<kDimension>>& model,
-                                               std::span<const std::uint32_t> faces) {
+std::uint32_t least_cells_of(const SoftBody<kDimension>& body) {
+  const std::optional<Fracture>& fracture = body.settings().fracture;
+  return fracture ? fracture->least_cells : Fracture{}.least_cells;
+}
+
+template <int kDimension>
+PlannedPieces<kDimension> plan_pieces(const std::shared_ptr<const SoftBodyModel<kDimension>>& model,
+                                      std::span<const std::uint32_t> faces, std::uint32_t least_cells) {
   SC_ASSERT(model != nullptr, "{} faces of no body break", faces.size());
-  std::vector<BodyPiece<kDimension>> pieces;
-  for (CrackedPiece<kDimension>& piece : break_faces(model->lattice(), model->cracks(), faces)) {
+  CrackedPieces<kDimension> cracked = break_faces(model->lattice(), model->cracks(), faces, least_cells);
+  PlannedPieces<kDimension> planned{.stay = {}, .vanished = std::move(cracked.vanished)};
+  for (CrackedPiece<kDimension>& piece : cracked.stay) {
     std::vector<std::uint32_t> particle_of = std::move(piece.part.particle_of);
-    pieces.push_back(
+    planned.stay.push_back(
         {SoftBody<kDimension>(make_piece_model(model, std::move(piece))), std::move(particle_of)});
   }
-  return pieces;
+  return planned;
 }
 
 template <int kDimension>
 std::vector<BodyPiece<kDimension>> pieces_of(const SoftBody<kDimension>& body,
                                              std::span<const std::uint32_t> faces) {
-  std::vector<BodyPiece<kDimension>> pieces = plan_pieces(body.shared_model(), faces);
+  std::vector<BodyPiece<kDimension>> pieces =
+      plan_pieces(body.shared_model(), faces, least_cells_of(body)).stay;
   for (BodyPiece<kDimension>& piece : pieces) piece.body.inherit_state(body, piece.particle_of);
   return pieces;
 }
@@ -91,10 +100,11 @@ std::vector<SoftBody<2>> cut(SoftBody<2>& body, const Cut2d& where) {
   return break_into_pieces(body, faces_across(body, where));
 }
 
-#define SOFTCELL_INSTANTIATE(D)                                                                  \
-  template std::span<const std::uint32_t> strained_faces(const SoftBody<D>&, BreakTest<D>&);     \
-  template std::vector<BodyPiece<D>> plan_pieces(const std::shared_ptr<const SoftBodyModel<D>>&, \
-                                                 std::span<const std::uint32_t>);                \
+#define SOFTCELL_INSTANTIATE(D)                                                              \
+  template std::span<const std::uint32_t> strained_faces(const SoftBody<D>&, BreakTest<D>&); \
+  template std::uint32_t least_cells_of(const SoftBody<D>&);                                 \
+  template PlannedPieces<D> plan_pieces(const std::shared_ptr<const SoftBodyModel<D>>&,      \
+                                        std::span<const std::uint32_t>, std::uint32_t);      \
   template std::vector<BodyPiece<D>> pieces_of(const SoftBody<D>&, std::span<const std::uint32_t>)
 SOFTCELL_INSTANTIATE(2);
 SOFTCELL_INSTANTIATE(3);

@@ -26,13 +26,25 @@ std::vector<std::uint32_t> faces_across(const SoftBody<3>& body, const Cut& cut)
 /// @throws std::invalid_argument  the cut is not finite, or has no length
 std::vector<std::uint32_t> faces_across(const SoftBody<2>& body, const Cut2d& cut);
 
-/// What is left of bodies of a model when faces break, the largest piece first: bodies at rest, which take part of a body
-/// (SoftBody::inherit_state()) when it breaks. This is what takes long of pieces_of(), and any thread may do it.
+/// The number of cells from which on a piece of the body stays: what its fracture says.
 template <int kDimension>
-std::vector<BodyPiece<kDimension>> plan_pieces(const std::shared_ptr<const SoftBodyModel<kDimension>>& model,
-                                               std::span<const std::uint32_t> faces);
+std::uint32_t least_cells_of(const SoftBody<kDimension>& body);
 
-/// What is left of a body when faces break; the largest piece first. The body stays as it is.
+template <int kDimension>
+struct PlannedPieces {
+  std::vector<BodyPiece<kDimension>> stay;  ///< the largest piece first
+  /// Of each piece that is too small to stay: which particles of the whole its own were, ascending.
+  std::vector<std::vector<std::uint32_t>> vanished;
+};
+
+/// What comes of bodies of a model when faces break: bodies at rest, which take part of a body (SoftBody::inherit_state()) when it breaks.
+/// This is what takes long of pieces_of(), and any thread may do it.
+/// @param least_cells  least_cells_of() the body
+template <int kDimension>
+PlannedPieces<kDimension> plan_pieces(const std::shared_ptr<const SoftBodyModel<kDimension>>& model,
+                                      std::span<const std::uint32_t> faces, std::uint32_t least_cells);
+
+/// What stays of a body when faces break; the largest piece first. The body stays as it is.
 template <int kDimension>
 std::vector<BodyPiece<kDimension>> pieces_of(const SoftBody<kDimension>& body,
                                              std::span<const std::uint32_t> faces);

@@ -41,12 +41,14 @@ void validate(const SoftBodySettings& s) {
     require(limit > 0, "limit", limit, "a strain above 0");
   }
   if (s.fracture) {
-    const auto& [stretch, turn] = *s.fracture;
+    const auto& [stretch, turn, least_cells] = *s.fracture;
     if (stretch) require(*stretch > 0, "fracture.stretch", *stretch, "a share above 0");
     constexpr float kHalfTurn = 3.1415927f;
     if (turn)
       require(*turn > 0 && *turn <= kHalfTurn, "fracture.turn", *turn,
               "an angle in radians above 0 and at most pi");
+    require(least_cells >= 1, "fracture.least_cells", static_cast<float>(least_cells),
+            "a number of cells, 1 or above");
   }
 }
 

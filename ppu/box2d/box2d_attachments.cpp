@@ -176,9 +176,11 @@ void Box2dAttachments::forget(const Box2dBody& body) {
             [&](const Link& link) { return link.a == &body || link.b == &body; });
 }
 
-void Box2dAttachments::follow_pieces(const Box2dBody& body, std::span<const Piece> pieces) {
+void Box2dAttachments::follow_pieces(const Box2dBody& body, std::span<const Piece> pieces,
+                                     std::span<const std::vector<std::uint32_t>> vanished) {
   if (links_.empty()) return;
-  const PiecesOfPatches<Box2dBody> of_patches(body, pieces);
+  const PiecesOfPatches<Box2dBody> of_patches(body, pieces, vanished);
+  end_links(EndedAttachment::Reason::kGone, [&](const Link& link) { return of_patches.is_gone(link); });
   end_links(EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); });
 }
 

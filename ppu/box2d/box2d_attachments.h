@@ -50,8 +50,10 @@ class Box2dAttachments {
   bool parts(const Box2dBody& body, const b2Body& rigid) const;
   using Piece = PieceOfBody<Box2dBody>;
   /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
-  /// each of them once; where none has, the patch was torn, and they break.
-  void follow_pieces(const Box2dBody& body, std::span<const Piece> pieces);
+  /// each of them once. Where none has, they end: their patch has vanished with a piece, or was torn.
+  /// @param vanished  as PlannedPieces
+  void follow_pieces(const Box2dBody& body, std::span<const Piece> pieces,
+                     std::span<const std::vector<std::uint32_t>> vanished);
   /// A soft body goes, and its attachments with it.
   void forget(const Box2dBody& body);
   bool holds(const Box2dBody& body) const;

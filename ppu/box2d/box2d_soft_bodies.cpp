@@ -170,9 +170,9 @@ struct Box2dSoftBodies::Impl {
     follow_model(body);
   }
 
-  /// Pieces, and what touches of each, if they touch with their drawn edges.
+  /// Pieces, and what touches of each that stays, if they touch with their drawn edges.
   struct Pieces {
-    std::vector<BodyPiece<2>> bodies;
+    PlannedPieces<2> planned;
     std::vector<std::unique_ptr<SurfaceContacts2d::Model>> touching;
   };
   using BreaksOfBodies = Breaks<2, Box2dBody, Pieces>;
@@ -192,12 +192,14 @@ struct Box2dSoftBodies::Impl {
     const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
     const int steps = substeps_until_pieces(model->particles());
     if (steps == 0) {
-      put_pieces(body, make_pieces(model, faces, whole_of(model)), faces.size());
+      put_pieces(body, make_pieces(model, faces, least_cells_of(body.soft()), whole_of(model)), faces.size());
       return;
     }
     breaks.begin(body, faces.size(), steps,
                  workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
-                                  whole = whole_of(model)] { return make_pieces(model, own, whole); }));
+                                  least_cells = least_cells_of(body.soft()), whole = whole_of(model)] {
+                   return make_pieces(model, own, least_cells, whole);
+                 }));
   }
 
   /// Null: bodies touch with circles.
@@ -205,11 +207,12 @@ struct Box2dSoftBodies::Impl {
     return surfaces ? &surfaces->whole_of(model) : nullptr;
   }
 
-  /// Of any thread. @param whole  whole_of() the model
+  /// Of any thread. @param least_cells  as plan_pieces()  @param whole  whole_of() the model
   Pieces make_pieces(const std::shared_ptr<const SoftBodyModel<2>>& model,
-                     std::span<const std::uint32_t> faces, const SurfaceContacts2d::Model* whole) {
-    Pieces pieces{plan_pieces(model, faces), {}};
-    for (const BodyPiece<2>& piece : pieces.bodies) {
+                     std::span<const std::uint32_t> faces, std::uint32_t least_cells,
+                     const SurfaceContacts2d::Model* whole) {
+    Pieces pieces{plan_pieces(model, faces, least_cells), {}};
+    for (const BodyPiece<2>& piece : pieces.planned.stay) {
       solve.prepare(piece.body.shared_model());
       if (whole != nullptr)
         pieces.touching.push_back(SurfaceContacts2d::make_piece(piece.body.shared_model(), *whole));
@@ -217,10 +220,10 @@ struct Box2dSoftBodies::Impl {
     return pieces;
   }
 
-  /// @param faces  that broke   @return what is left beside the body itself
+  /// @param faces  that broke   @return what stays beside the body itself
   /// @throws std::runtime_error  there are too many pieces; nothing has changed then
   std::vector<SoftBody<2>*> put_pieces(Box2dBody& body, Pieces made, std::size_t faces) {
-    std::vector<BodyPiece<2>>& planned = made.bodies;
+    std::vector<BodyPiece<2>>& planned = made.planned.stay;
     require_groups(planned.size() - 1);
     for (auto& touching : made.touching) surfaces->adopt(std::move(touching));
     solve.drop();
@@ -237,6 +240,7 @@ struct Box2dSoftBodies::Impl {
     BrokenSoftBody2d& event = broken.emplace_back();
     event.body = &body.soft();
     event.faces = faces;
+    event.vanished = made.planned.vanished.size();
     std::vector<Box2dAttachments::Piece> with_attachments;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       parting.keep(kept, *pieces[i], planned[i].particle_of);
@@ -250,7 +254,7 @@ struct Box2dSoftBodies::Impl {
       parting.add(pieces);
       if (!parting.empty()) filter.install();
     }
-    attachments.follow_pieces(body, with_attachments);
+    attachments.follow_pieces(body, with_attachments, made.planned.vanished);
     for (BodyPiece<2>& piece : planned) event.particles_before.push_back(std::move(piece.particle_of));
     return event.pieces;
   }
@@ -325,9 +329,10 @@ std::vector<SoftBody<2>*> Box2dSoftBodies::cut(const SoftBody<2>& body, const Cu
   Box2dBody& coupled = impl_->find_breakable(body);
   const std::vector<std::uint32_t> faces = faces_across(body, where);
   if (faces.empty()) return {};
-  return impl_->put_pieces(
-      coupled, impl_->make_pieces(body.shared_model(), faces, impl_->whole_of(body.shared_model())),
-      faces.size());
+  return impl_->put_pieces(coupled,
+                           impl_->make_pieces(body.shared_model(), faces, least_cells_of(body),
+                                              impl_->whole_of(body.shared_model())),
+                           faces.size());
 }
 
 bool Box2dSoftBodies::begin_cut(const SoftBody<2>& body, const Cut2d& where) {

@@ -110,7 +110,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     follow_model(body);
   }
 
-  using BreaksOfBodies = Breaks<3, CoupledBody, std::vector<PreparedPiece>>;
+  using BreaksOfBodies = Breaks<3, CoupledBody, PreparedPieces>;
   using Break = BreaksOfBodies::Break;
 
   /// Pieces are tested from the next substep on, bodies that are breaking not any more.
@@ -138,27 +138,32 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       break_body(body, faces);
       return;
     }
-    breaks.begin(
-        body, faces.size(), substeps,
-        workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
-                         whole = contact_of_whole(body)] { return make_pieces(model, own, whole); }));
+    breaks.begin(body, faces.size(), substeps,
+                 workshop->begin([this, model, own = std::vector<std::uint32_t>(faces.begin(), faces.end()),
+                                  least_cells = least_cells_of(body.soft()), whole = contact_of_whole(body)] {
+                   return make_pieces(model, own, least_cells, whole);
+                 }));
   }
 
   /// Of any thread.
-  std::vector<PreparedPiece> make_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
-                                         std::span<const std::uint32_t> faces, const ContactModel* whole) {
-    return prepare_pieces(model, faces, whole, [this](const auto& of_piece) { solve.prepare(of_piece); });
+  PreparedPieces make_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
+                             std::span<const std::uint32_t> faces, std::uint32_t least_cells,
+                             const ContactModel* whole) {
+    return prepare_pieces(model, faces, least_cells, whole,
+                          [this](const auto& of_piece) { solve.prepare(of_piece); });
   }
 
-  /// @return what is left beside the body itself
+  /// @return what stays beside the body itself
   std::vector<SoftBody<3>*> break_body(CoupledBody& body, std::span<const std::uint32_t> faces) {
-    return put_pieces(body, make_pieces(body.soft().shared_model(), faces, contact_of_whole(body)),
-                      faces.size());
+    return put_pieces(
+        body,
+        make_pieces(body.soft().shared_model(), faces, least_cells_of(body.soft()), contact_of_whole(body)),
+        faces.size());
   }
 
-  /// @param faces  that broke   @return what is left beside the body itself
-  std::vector<SoftBody<3>*> put_pieces(CoupledBody& body, std::vector<PreparedPiece> prepared,
-                                       std::size_t faces) {
+  /// @param faces  that broke   @return what stays beside the body itself
+  std::vector<SoftBody<3>*> put_pieces(CoupledBody& body, PreparedPieces made, std::size_t faces) {
+    std::vector<PreparedPiece>& prepared = made.stay;
     std::vector<SoftBody<3>*> others;
     std::vector<SurfaceAttachments::Piece> with_attachments;
     std::vector<std::vector<std::uint32_t>> particles_before;
@@ -182,13 +187,14 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       bodies.back()->set_filter(body.filter());
       append(*bodies.back(), std::move(piece.particle_of));
     }
+    if (!made.vanished.empty()) tell_others(body);
     SoftBody<3> before = body.become(std::move(prepared.front().piece.body));
     if (!with_attachments.empty()) {
       follow_model(*with_attachments.front().body);
-      surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments);
+      surfaces->attachments().follow_pieces(*with_attachments.front().body, with_attachments, made.vanished);
       surfaces->forget_pieces(with_surfaces);
     }
-    broken.push_back({&body.soft(), others, faces, std::move(particles_before)});
+    broken.push_back({&body.soft(), others, faces, made.vanished.size(), std::move(particles_before)});
     if (substeps_until_pieces(before.positions().size()) > 0) workshop->dispose(std::move(before));
     return others;
   }

@@ -6,16 +6,17 @@
 
 namespace softcell::ppu {
 
-std::vector<PreparedPiece> prepare_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
-                                          std::span<const std::uint32_t> faces, const ContactModel* whole,
-                                          const PrepareModel& prepare) {
+PreparedPieces prepare_pieces(const std::shared_ptr<const SoftBodyModel<3>>& model,
+                              std::span<const std::uint32_t> faces, std::uint32_t least_cells,
+                              const ContactModel* whole, const PrepareModel& prepare) {
   SC_ASSERT(static_cast<bool>(prepare), "nobody prepares the pieces of {} faces", faces.size());
-  std::vector<PreparedPiece> made;
-  for (BodyPiece<3>& piece : plan_pieces(model, faces)) {
+  PlannedPieces<3> planned = plan_pieces(model, faces, least_cells);
+  PreparedPieces made{.stay = {}, .vanished = std::move(planned.vanished)};
+  for (BodyPiece<3>& piece : planned.stay) {
     prepare(piece.body.shared_model());
     std::unique_ptr<ContactModel> contact;
     if (whole != nullptr) contact = std::make_unique<ContactModel>(piece.body.shared_model(), *whole);
-    made.push_back({std::move(piece), std::move(contact)});
+    made.stay.push_back({std::move(piece), std::move(contact)});
   }
   return made;
 }

@@ -137,9 +137,11 @@ void SurfaceAttachments::forget(const SurfaceBody& body) {
             [&](const Link& link) { return link.a == &body || link.b == &body; });
 }
 
-void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces) {
+void SurfaceAttachments::follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces,
+                                       std::span<const std::vector<std::uint32_t>> vanished) {
   if (links_.empty()) return;
-  const PiecesOfPatches<SurfaceBody> of_patches(body, pieces);
+  const PiecesOfPatches<SurfaceBody> of_patches(body, pieces, vanished);
+  end_links(EndedAttachment::Reason::kGone, [&](const Link& link) { return of_patches.is_gone(link); });
   end_links(EndedAttachment::Reason::kBroken, [&](Link& link) { return !of_patches.follow(link); });
 }
 

@@ -44,8 +44,10 @@ class SurfaceAttachments {
   void forget(const SurfaceBody& body);
   using Piece = PieceOfBody<SurfaceBody>;
   /// A body has fallen into pieces, of which it is one itself. Its attachments go on with the piece that has all particles of their patch,
-  /// each of them once, and break where none has.
-  void follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces);
+  /// each of them once. Where none has, they end: their patch has vanished with a piece, or was torn.
+  /// @param vanished  as PlannedPieces
+  void follow_pieces(const SurfaceBody& body, std::span<const Piece> pieces,
+                     std::span<const std::vector<std::uint32_t>> vanished);
 
   bool empty() const { return links_.empty(); }
   /// Before a substep: ends those to rigid bodies that are no longer in the world, and wakes what is attached to what is awake.

@@ -50,12 +50,14 @@ struct PieceOfBody {
 };
 
 /// A body has fallen into pieces, of which it is one itself: its attachments go on with the piece that has all particles of their patch,
-/// each of them once.
+/// each of them once. If only a piece that was too small to stay has them, the patch is gone with it.
 template <class Body>
 class PiecesOfPatches {
  public:
-  PiecesOfPatches(const Body& body, std::span<const PieceOfBody<Body>> pieces)
-      : body_(body), pieces_(pieces) {
+  /// @param vanished  of each piece that did not stay: which particles of the whole its own were, ascending
+  PiecesOfPatches(const Body& body, std::span<const PieceOfBody<Body>> pieces,
+                  std::span<const std::vector<std::uint32_t>> vanished)
+      : body_(body), pieces_(pieces), vanished_(vanished) {
     for (const PieceOfBody<Body>& piece : pieces) {
       std::map<std::uint32_t, std::uint32_t>& numbers = number_of_.emplace_back();
       std::vector<std::uint32_t> twice;
@@ -65,6 +67,12 @@ class PiecesOfPatches {
     }
   }
 
+  /// Before follow(). @tparam Link  as AttachmentLinks
+  template <class Link>
+  bool is_gone(const Link& link) const {
+    return (link.a == &body_ && is_gone(link.rows.particles(false))) ||
+           (link.b == &body_ && is_gone(link.rows.particles(true)));
+  }
   /// @tparam Link  as AttachmentLinks   @return false: no piece has all particles of one of its patches
   template <class Link>
   bool follow(Link& link) const {
@@ -73,6 +81,14 @@ class PiecesOfPatches {
   }
 
  private:
+  bool is_gone(std::span<const std::uint32_t> patch) const {
+    for (std::size_t piece = 0; piece < pieces_.size(); ++piece)
+      if (numbers_in(piece, patch)) return false;
+    return std::ranges::any_of(vanished_, [&](const std::vector<std::uint32_t>& particle_of) {
+      return std::ranges::all_of(
+          patch, [&](std::uint32_t particle) { return std::ranges::binary_search(particle_of, particle); });
+    });
+  }
   template <class Rows>
   bool follow(Body*& side, Rows& rows, bool is_b) const {
     for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
@@ -98,6 +114,7 @@ class PiecesOfPatches {
 
   const Body& body_;
   std::span<const PieceOfBody<Body>> pieces_;
+  std::span<const std::vector<std::uint32_t>> vanished_;
   std::vector<std::map<std::uint32_t, std::uint32_t>> number_of_;  // of particles that a piece has once
 };
 

@@ -92,9 +92,8 @@ Cracks<2> no_cracks(const Lattice<2>& lattice, std::span<const float> strengths)
 }
 
 template <int kDimension>
-std::vector<CrackedPiece<kDimension>> break_faces(const Lattice<kDimension>& lattice,
-                                                  const Cracks<kDimension>& cracks,
-                                                  std::span<const std::uint32_t> faces) {
+CrackedPieces<kDimension> break_faces(const Lattice<kDimension>& lattice, const Cracks<kDimension>& cracks,
+                                      std::span<const std::uint32_t> faces, std::uint32_t least_cells) {
   std::vector<bool> broken = cracks.is_broken;
   for (const std::uint32_t face : faces) {
     SC_ASSERT(face < broken.size(), "face {} of {} breaks", face, broken.size());
@@ -104,9 +103,14 @@ std::vector<CrackedPiece<kDimension>> break_faces(const Lattice<kDimension>& lat
   for (std::uint32_t f = 0; f < cracks.faces.size(); ++f)
     face_at[kDimension * cracks.faces[f].low + cracks.faces[f].axis] = f;
 
-  std::vector<CrackedPiece<kDimension>> pieces;
+  CrackedPieces<kDimension> pieces;
   for (LatticePiece<kDimension>& part : split<kDimension>(lattice, cracks.faces, broken)) {
-    CrackedPiece<kDimension>& piece = pieces.emplace_back();
+    const bool is_largest = pieces.stay.empty();
+    if (!is_largest && part.cell_of.size() < least_cells) {
+      pieces.vanished.push_back(std::move(part.particle_of));
+      continue;
+    }
+    CrackedPiece<kDimension>& piece = pieces.stay.emplace_back();
     take_faces_of_piece(part, cracks, broken, face_at, piece.cracks);
     piece.part = std::move(part);
     if constexpr (kDimension == 3) draw_piece(lattice, cracks, piece);
@@ -114,9 +118,9 @@ std::vector<CrackedPiece<kDimension>> break_faces(const Lattice<kDimension>& lat
   return pieces;
 }
 
-template std::vector<CrackedPiece<2>> break_faces(const Lattice<2>&, const Cracks<2>&,
-                                                  std::span<const std::uint32_t>);
-template std::vector<CrackedPiece<3>> break_faces(const Lattice<3>&, const Cracks<3>&,
-                                                  std::span<const std::uint32_t>);
+template CrackedPieces<2> break_faces(const Lattice<2>&, const Cracks<2>&, std::span<const std::uint32_t>,
+                                      std::uint32_t);
+template CrackedPieces<3> break_faces(const Lattice<3>&, const Cracks<3>&, std::span<const std::uint32_t>,
+                                      std::uint32_t);
 
 }  // namespace softcell::ppu

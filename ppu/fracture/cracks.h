@@ -55,10 +55,18 @@ struct CrackedPiece<3> {
   PieceMesh mesh;
 };
 
-/// What is left when some faces break, in the order of split(). Those that never break do not.
+/// What comes of a body when some of its faces break.
 template <int kDimension>
-std::vector<CrackedPiece<kDimension>> break_faces(const Lattice<kDimension>& lattice,
-                                                  const Cracks<kDimension>& cracks,
-                                                  std::span<const std::uint32_t> faces);
+struct CrackedPieces {
+  std::vector<CrackedPiece<kDimension>> stay;  ///< in the order of split()
+  /// Of each piece that is too small to stay: which particles of the whole its own were, ascending.
+  std::vector<std::vector<std::uint32_t>> vanished;
+};
+
+/// Faces that never break do not.
+/// @param least_cells  pieces of fewer cells vanish, but for the largest one
+template <int kDimension>
+CrackedPieces<kDimension> break_faces(const Lattice<kDimension>& lattice, const Cracks<kDimension>& cracks,
+                                      std::span<const std::uint32_t> faces, std::uint32_t least_cells);
 
 }  // namespace softcell::ppu

@@ -229,6 +229,60 @@ TEST(BrokenBodies2d, AreWeakWhereTheSceneSaysSo) {
   for (const Eigen::Vector2i& cell : run.soft_body(0).model().lattice().cells) EXPECT_LE(cell.x(), 4);
 }
 
+/// Hands of both kinds at what a cut leaves too small to stay.
+TEST(BrokenBodies2d, HandsLetGoOfWhatVanishes) {
+  for (const Action action : {Action::kHold, Action::kGrab}) {
+    const Scene2d scene = scene_of("fracture = { least_cells = 1000 }\n");
+    Simulation2d run(scene, {});
+    const std::size_t cells = run.soft_body(0).model().lattice().cells.size();
+    InputEvent<2> take;
+    take.action = action;
+    take.hand = kUsersHand;
+    take.body = 0;
+    take.value = {0.8f, 0};  // the end that is cut off
+    run.step({&take, 1});
+    Shown2d shown;
+    run.show(shown);
+    EXPECT_EQ(shown.hands.size(), 1u);
+    const InputEvent<2> stroke = stroke_2d({0.41f, 9}, {0, -90});
+    run.step({&stroke, 1});
+    step(run, 10);
+    EXPECT_EQ(run.soft_bodies(), 1u);
+    EXPECT_LT(run.soft_body(0).model().lattice().cells.size(), cells);
+    run.show(shown);
+    EXPECT_TRUE(shown.hands.empty());
+    InputEvent<2> reset;
+    reset.action = Action::kReset;
+    run.step({&reset, 1});
+    EXPECT_EQ(run.soft_body(0).model().lattice().cells.size(), cells);
+    run.step({&take, 1});
+    step(run, 5);
+  }
+}
+
+TEST(BrokenBodies2d, AHandOnWhatStaysHoldsOn) {
+  const Scene2d scene = scene_of("fracture = { least_cells = 1000 }\n");
+  Simulation2d run(scene, {});
+  InputEvent<2> take;
+  take.action = Action::kHold;
+  take.hand = kUsersHand;
+  take.body = 0;
+  take.value = {-0.8f, 0};
+  run.step({&take, 1});
+  const InputEvent<2> stroke = stroke_2d({0.41f, 9}, {0, -90});
+  run.step({&stroke, 1});
+  step(run, 10);
+  Shown2d shown;
+  run.show(shown);
+  ASSERT_EQ(shown.hands.size(), 1u);
+}
+
+TEST(BrokenBodies2d, OfScenesWithOtherLeastCellsHaveOtherHashes) {
+  const auto hash = [](const std::string& fracture) { return scene_hash(scene_of(fracture)); };
+  EXPECT_EQ(hash("fracture = { stretch = 0.5 }\n"), hash("fracture = { stretch = 0.5, least_cells = 1 }\n"));
+  EXPECT_NE(hash("fracture = { stretch = 0.5 }\n"), hash("fracture = { stretch = 0.5, least_cells = 2 }\n"));
+}
+
 TEST(BrokenBodies2d, ScenesThatCutNothingAreRefused) {
   const auto refusal = [](const std::string& more) -> std::string {
     try {
@@ -250,7 +304,7 @@ TEST(BrokenBodies2d, ScenesThatCutNothingAreRefused) {
 TEST(BrokenBodies2d, AreSavedWithTheirStrengthsAndCuts) {
   const tests::ScratchFolder folder;
   const Scene2d scene = scene_of(
-      "fracture = { stretch = 0.5, turn = 20 }\n"
+      "fracture = { stretch = 0.5, turn = 20, least_cells = 3 }\n"
       "[[soft_body.strength]]\npoint = [0.1, 0]\nnormal = [1, 0]\nthickness = 0.1\nfactor = 0.1\n"
       "[[cut]]\ntime = 5\nbody = \"body 1\"\npoint = [0.21, 0]\nnormal = [1, 0]\n");
   Simulation2d run(scene, {});
@@ -259,6 +313,7 @@ TEST(BrokenBodies2d, AreSavedWithTheirStrengthsAndCuts) {
   write_scene_files(saved_scene(scene, present(run), run.contacts(), file));
   const Scene2d loaded = load_scene_2d(file.string());
   EXPECT_EQ(loaded.soft_bodies[0].settings, scene.soft_bodies[0].settings);
+  EXPECT_EQ(loaded.soft_bodies[0].settings.fracture->least_cells, 3u);
   EXPECT_EQ(loaded.soft_bodies[0].strengths, scene.soft_bodies[0].strengths);
   ASSERT_EQ(loaded.cuts.size(), 1u);
   EXPECT_EQ(loaded.cuts[0].where.from, scene.cuts[0].where.from);

@@ -136,6 +136,7 @@ damping_time = 0.5
 friction = 0.1
 restitution = 0.5
 plasticity = { yield = 0.25, limit = 2 }
+fracture = { stretch = 0.5, least_cells = 4 }
 [[box]]
 size = [1, 2, 3]
 mass = 4
@@ -214,6 +215,7 @@ begin = 2
   EXPECT_EQ(body.settings.friction, 0.1f);
   EXPECT_EQ(body.settings.restitution, 0.5f);
   EXPECT_EQ(body.settings.plasticity, (ppu::Plasticity{.yield = 0.25f, .creep = 10, .limit = 2}));
+  EXPECT_EQ(body.settings.fracture, (ppu::Fracture{.stretch = 0.5f, .turn = {}, .least_cells = 4}));
   EXPECT_EQ(body.position, Eigen::Vector3f(3, 2.5f, 4));
   ASSERT_EQ(scene.script.impulses.size(), 1u);
   EXPECT_EQ(scene.script.impulses[0].velocity, Eigen::Vector3f(1, 2, 3));
@@ -464,6 +466,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "bad.toml:3:1: colour of box 1 is 'red'; it must be a colour"},
         BadToml{"[materials.tin]\nplasticity = { yield = 0 }\n",
                 "bad.toml:2:16: yield of the plasticity of material 'tin' is 0; it must be a number above 0"},
+        BadToml{"[materials.cup]\nfracture = { stretch = 0.1, least_cells = 0 }\n",
+                "bad.toml:2:29: least_cells of the fracture of material 'cup' is 0; it must be a whole "
+                "number from 1 to "
+                "1000000"},
         BadToml{
             "[materials.tin]\nplasticity = { yeild = 0.1 }\n",
             "bad.toml:2:16: the plasticity of material 'tin' has no field 'yeild'; did you mean 'yield'?"},

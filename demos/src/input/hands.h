@@ -61,10 +61,12 @@ class Hands {
     std::erase_if(held_, [body](const Held& held) { return held.body == body; });
   }
 
-  /// Bodies have broken: @param follow  takes the body and the particle that are held, and changes them to those which they are now
+  /// Bodies have broken. @param follow  takes the body and the particle that are held, changes them to those which they are now, and returns
+  /// whether they are there yet: a hand lets go of what has vanished
   template <class Follow>
   void follow_particles(const Follow& follow) {
-    for (Held& held : held_) follow(held.body, held.particle);
+    for (auto held = held_.begin(); held != held_.end();)
+      held = follow(held->body, held->particle) ? held + 1 : held_.erase(held);
   }
 
   /// A particle that is held, and `target`, where the hand is.

@@ -68,7 +68,10 @@ class Hash {
     add_unless(restitution, 0.0f);
     add_unless(contacts, true);
     if (plasticity) add('p', plasticity->yield, plasticity->creep, plasticity->limit);
-    if (fracture) add('b', fracture->stretch, fracture->turn);
+    if (!fracture) return;
+    const auto& [stretch, turn, least_cells] = *fracture;
+    add('b', stretch, turn);
+    add_unless(least_cells, ppu::Fracture{}.least_cells);
   }
   void add(const SoftBodyPlacement& body) {
     const auto& [name, mesh, settings, position, twist, colour, own_materials, strengths] = body;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +28,7 @@ constexpr Range kYield{.low = 0, .high = 1, .low_excluded = true};
 constexpr Range kCreep{.low = 0, .high = 1e6, .low_excluded = true};
 constexpr Range kStretch{.low = 0, .high = 10, .low_excluded = true};
 constexpr Range kBreakingTurn{.low = 0, .high = 180, .low_excluded = true};  // degrees
+constexpr int kMostLeastCells = 1'000'000;                                   // more than any scene has
 constexpr Range kPlasticLimit{.low = 0, .high = 10, .low_excluded = true};
 
 /// At most one of the names may be given. @return whether one is.
@@ -70,9 +73,14 @@ void read_fields(FieldReader& fields, Material& material, Need cell_size) {
   if (const Value* const value = fields.field("fracture")) {
     ppu::Fracture fracture;
     std::optional<float> degrees;
+    auto least_cells = static_cast<int>(fracture.least_cells);
     FieldReader of_fracture(*value, "the fracture of " + fields.what());
-    of_fracture.number("stretch", fracture.stretch, kStretch).number("turn", degrees, kBreakingTurn).finish();
+    of_fracture.number("stretch", fracture.stretch, kStretch)
+        .number("turn", degrees, kBreakingTurn)
+        .integer("least_cells", least_cells, 1, kMostLeastCells)
+        .finish();
     if (degrees) fracture.turn = *degrees * (static_cast<float>(ppu::kPi) / 180);
+    fracture.least_cells = static_cast<std::uint32_t>(least_cells);
     s.fracture = fracture;
   }
 }

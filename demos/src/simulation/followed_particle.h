@@ -11,18 +11,18 @@
 
 namespace softcell::demos {
 
-/// A particle that becomes several at a crack is followed to the largest piece that has it.
+/// A particle that becomes several at a crack is followed to the first piece that has it: the largest, if that does.
 template <int Dimension>
 struct FollowedParticle {
-  ppu::SoftBody<Dimension>* body = nullptr;
+  ppu::SoftBody<Dimension>* body = nullptr;  ///< null: the piece that had the particle has vanished
   std::uint32_t number = 0;
 
   /// @param broken  in the order in which it happened
-  /// @return whether it has another number, or is of another body
+  /// @return whether it has another number, is of another body, or has vanished
   bool follow(std::span<const ppu::BrokenBody<Dimension>> broken) {
     bool changed = false;
     for (const ppu::BrokenBody<Dimension>& one : broken)
-      if (one.body == body) go_on(one), changed = true;
+      if (body != nullptr && one.body == body) go_on(one), changed = true;
     return changed;
   }
 
@@ -36,7 +36,9 @@ struct FollowedParticle {
       number = static_cast<std::uint32_t>(found - before.begin());
       return;
     }
-    SC_ASSERT(false, "particle {} is in none of {} pieces", number, broken.particles_before.size());
+    SC_ASSERT(broken.vanished > 0, "particle {} is in none of {} pieces", number,
+              broken.particles_before.size());
+    body = nullptr;
   }
 };
 

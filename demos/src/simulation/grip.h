@@ -40,9 +40,11 @@ class Grip {
   virtual std::optional<HeldPart<Dimension>> part() const { return std::nullopt; }
   /// Whether it holds this soft body, which may break. @param body  its address
   virtual bool holds(const void* /*body*/) const { return false; }
-  /// Bodies have broken, in this order. @return the grip on the piece that has what is held; null: this one goes on as it is
-  virtual std::unique_ptr<Grip> follow(std::span<const ppu::BrokenBody<Dimension>> /*broken*/) const {
-    return nullptr;
+  /// Bodies have broken, in this order. @return the grip on the piece that has what is held, null if that has vanished; none: this one goes
+  /// on as it is
+  virtual std::optional<std::unique_ptr<Grip>> follow(
+      std::span<const ppu::BrokenBody<Dimension>> /*broken*/) const {
+    return std::nullopt;
   }
 
   /// Changes the body's velocities as it is thrown: see HandStrength::throw_aid(). @param velocity  the hand's, m/s

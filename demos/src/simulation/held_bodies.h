@@ -51,10 +51,11 @@ class HeldBodies {
   void forget(const void* body) {
     std::erase_if(hands_, [body](const Hand& held) { return held.grip->holds(body); });
   }
-  /// Bodies have broken, in this order: hands go on with what they held.
+  /// Bodies have broken, in this order: hands go on with what they held, if it has not vanished.
   void follow(std::span<const ppu::BrokenBody<Dimension>> broken) {
     for (Hand& hand : hands_)
-      if (auto grip = hand.grip->follow(broken)) hand.grip = std::move(grip);
+      if (auto grip = hand.grip->follow(broken)) hand.grip = std::move(*grip);
+    std::erase_if(hands_, [](const Hand& hand) { return hand.grip == nullptr; });
   }
   /// What was held stays as it is.
   void release_all() { hands_.clear(); }

@@ -267,7 +267,8 @@ struct Simulation2d::State {
     cut_bodies(world->soft_bodies, sources, source, controls.paused(), where);
     note_broken();
   }
-  /// After a step or a cut: pieces come behind all other bodies, and hands go on with the piece that has what they hold.
+  /// After a step or a cut: pieces come behind all other bodies, and hands go on with the piece that has what they hold, if
+  /// there is one.
   void note_broken() {
     const std::vector<ppu::BrokenSoftBody2d> broken = world->soft_bodies.poll_broken();
     for (const ppu::BrokenSoftBody2d& one : broken)
@@ -277,7 +278,10 @@ struct Simulation2d::State {
     held.follow(broken);
     controls.follow_particles([&](std::size_t& body, std::size_t& particle) {
       FollowedParticle<2> now{&bodies[body], static_cast<std::uint32_t>(particle)};
-      if (now.follow(broken)) body = number_of(*now.body), particle = now.number;
+      if (!now.follow(broken)) return true;
+      if (now.body == nullptr) return false;
+      body = number_of(*now.body), particle = now.number;
+      return true;
     });
   }
   std::size_t number_of(const ppu::SoftBody<2>& soft) const {

@@ -1,6 +1,7 @@
 #include "soft_grip_2d.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "followed_particle.h"
@@ -19,9 +20,11 @@ void SoftGrip2d::pull(const HandMotion<2>& hand, const Vector2f& gravity, float 
   grip_.pull(held, hand, gravity, step);
 }
 
-std::unique_ptr<Grip<2>> SoftGrip2d::follow(std::span<const ppu::BrokenSoftBody2d> broken) const {
+std::optional<std::unique_ptr<Grip<2>>> SoftGrip2d::follow(
+    std::span<const ppu::BrokenSoftBody2d> broken) const {
   FollowedParticle<2> held{&body_, particle_};
-  if (!held.follow(broken)) return nullptr;
+  if (!held.follow(broken)) return std::nullopt;
+  if (held.body == nullptr) return nullptr;
   return std::make_unique<SoftGrip2d>(*held.body, held.number);
 }
 

@@ -26,7 +26,8 @@ class SoftGrip2d final : public Grip<2> {
   void let_go(const Eigen::Vector2f& velocity) override;
   std::optional<HeldPart<2>> part() const override { return HeldPart<2>(body_, grip_.patch(), point()); }
   bool holds(const void* body) const override { return &body_ == body; }
-  std::unique_ptr<Grip<2>> follow(std::span<const ppu::BrokenSoftBody2d> broken) const override;
+  std::optional<std::unique_ptr<Grip<2>>> follow(
+      std::span<const ppu::BrokenSoftBody2d> broken) const override;
 
   float patch_radius() const { return grip_.patch().radius; }  ///< metres, along the body
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -398,6 +399,121 @@ TEST_P(Box2dFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
   w.run(0.1f);
 }
 
+/// Both ways, at once and by the thread that makes pieces: a bar of 10 layers loses 3 of them.
+TEST_P(Box2dFracture, PiecesOfFewerCellsThanStatedVanish) {
+  for (const int across : {1, 10}) {
+    SCOPED_TRACE(across);
+    World2d w(9.81f, GetParam());
+    const auto layer = static_cast<std::uint32_t>(across);
+    SoftBodySettings settings{.cell_size = 0.1f, .half_width = 1, .density = 100};
+    settings.fracture = Fracture{.least_cells = 3 * layer + 1};
+    SoftBody<2>& bar = w.soft.add(rectangle_model({10, across}, settings), {0, 2});
+    SoftBody<2>& other = w.soft.add(rectangle_model({10, 1}, settings), {0, 4});
+    EXPECT_EQ(bar.positions().size() > 100, across > 1);
+    const float mass = bar.model().mass();
+    // The particles of some layers.
+    const auto patch_at = [&](int first, int last) {
+      std::vector<std::uint32_t> particles;
+      for (std::uint32_t i = 0; i < bar.model().particles(); ++i)
+        if (const int x = bar.model().lattice().particles[i].x(); first <= x && x <= last)
+          particles.push_back(i);
+      return Patch<2>::of_particles(particles);
+    };
+    AttachmentSettings<2> rope;
+    rope.kind = AttachmentKind::kRope;
+    const AttachmentId stays = w.soft.attach(bar, patch_at(0, 1));
+    const AttachmentId torn = w.soft.attach(bar, patch_at(6, 8));
+    const AttachmentId gone = w.soft.attach(bar, patch_at(8, 10));
+    const AttachmentId gone_by_b =
+        w.soft.attach(other, Patch<2>::of_surface({0.45f, 4.05f}, 0.1f), bar, patch_at(9, 10), rope);
+    const AttachmentId of_other = w.soft.attach(other, Patch<2>::of_surface({-0.45f, 4.05f}, 0.1f));
+    const Cut2d end = Cut2d::line({0.201f, 0}, {1, 0});
+    if (across == 1) {
+      EXPECT_TRUE(w.soft.cut(bar, end).empty());
+    } else {
+      EXPECT_TRUE(w.soft.begin_cut(bar, end));
+      EXPECT_TRUE(w.soft.is_breaking(bar));
+      w.run(4.1f / 120);
+      EXPECT_FALSE(w.soft.is_breaking(bar));
+    }
+    EXPECT_EQ(w.soft.size(), 2u);
+    EXPECT_EQ(bar.model().lattice().cells.size(), 7 * layer);
+    EXPECT_NEAR(bar.model().mass(), 0.7f * mass, 1e-5f * mass);
+    const auto broken = w.soft.poll_broken();
+    ASSERT_EQ(broken.size(), 1u);
+    EXPECT_EQ(broken[0].body, &bar);
+    EXPECT_TRUE(broken[0].pieces.empty());
+    EXPECT_EQ(broken[0].vanished, 1u);
+    ASSERT_EQ(broken[0].particles_before.size(), 1u);
+    EXPECT_EQ(broken[0].particles_before[0].size(), bar.positions().size());
+    EXPECT_TRUE(w.soft.attachment(stays) && w.soft.attachment(of_other));
+    std::map<std::uint32_t, EndedAttachment::Reason> ended;
+    for (const EndedAttachment& one : w.soft.poll_ended_attachments())
+      ended[static_cast<std::uint32_t>(one.id)] = one.reason;
+    const std::map<std::uint32_t, EndedAttachment::Reason> expected{
+        {static_cast<std::uint32_t>(torn), EndedAttachment::Reason::kBroken},
+        {static_cast<std::uint32_t>(gone), EndedAttachment::Reason::kGone},
+        {static_cast<std::uint32_t>(gone_by_b), EndedAttachment::Reason::kGone}};
+    EXPECT_EQ(ended, expected);
+    w.run(0.5f);
+    expect_finite(w.soft);
+    EXPECT_TRUE(w.soft.attachment(stays));
+    // Particles of what has vanished are in Box2D no longer.
+    std::size_t particles = 0;
+    for (const b2Body* body = w.box2d.GetBodyList(); body != nullptr; body = body->GetNext())
+      particles += w.soft.particle_of(*body).body != nullptr ? 1 : 0;
+    EXPECT_EQ(particles, GetParam() == ContactMethod::kSpheres
+                             ? bar.model().outer().size() + other.model().outer().size()
+                             : 0);
+    w.soft.remove(bar);
+    w.soft.remove(other);
+    w.run(0.1f);
+  }
+}
+
+TEST_P(Box2dFracture, ADiscThatFallsKeepsItsLargestPiecesOnly) {
+  constexpr std::uint32_t kLeast = 6;
+  World2d w(9.81f, GetParam());
+  w.add_box({0, -0.5f}, {20, 0.5f});
+  SoftBodySettings settings = brittle_2d(0.03f);
+  settings.fracture->least_cells = kLeast;
+  const SoftBody<2>& disc = w.soft.add(disc_model(6, settings), {0, 3});
+  const double whole = double{disc.model().mass()};
+  std::size_t vanished = 0;
+  for (int i = 0; i < 240; ++i) {
+    w.soft.step(kStep2d);
+    for (const BrokenSoftBody2d& broken : w.soft.poll_broken()) {
+      vanished += broken.vanished;
+      EXPECT_EQ(broken.particles_before.size(), broken.pieces.size() + 1);
+    }
+  }
+  EXPECT_GT(vanished, 0u);
+  expect_finite(w.soft);
+  EXPECT_EQ(&w.soft[0], &disc);
+  EXPECT_LT(sums_of(w.soft).mass, whole);
+}
+
+/// Its support is cut off, far from what stays of the lower one.
+TEST_P(Box2dFracture, WhatSleepsOnAPieceThatVanishesFalls) {
+  World2d w(9.81f, GetParam());
+  w.add_box({0, -0.5f}, {20, 0.5f});
+  w.soft.let_sleep(SleepSettings{});
+  SoftBodySettings firm{.cell_size = 0.1f, .half_width = 2, .density = 100, .alpha = 0.9f, .damping = 0.2f};
+  SoftBodySettings crumbs = firm;
+  crumbs.fracture = Fracture{.least_cells = 13};
+  SoftBody<2>& slab = w.soft.add(rectangle_model({20, 2}, crumbs), {0, 0.06f});
+  SoftBody<2>& box = w.soft.add(rectangle_model({4, 2}, firm), {-0.7f, 0.37f});
+  b2Body* const rigid = w.add_box({-0.7f, 0.8f}, {0.15f, 0.08f}, 100);
+  for (int i = 0; i < 1200 && !(slab.asleep() && box.asleep()); ++i) w.soft.step(kStep2d);
+  ASSERT_TRUE(slab.asleep() && box.asleep());
+  const float before = box.centre_of_mass().y(), rigid_before = rigid->GetPosition().y;
+  EXPECT_TRUE(w.soft.cut(slab, Cut2d::line({-0.399f, 0}, {1, 0})).empty());
+  EXPECT_EQ(slab.model().lattice().cells.size(), 28u);
+  w.run(0.5f);
+  EXPECT_LT(box.centre_of_mass().y(), before - 0.1f);
+  EXPECT_LT(rigid->GetPosition().y, rigid_before - 0.1f);
+}
+
 TEST_P(Box2dFracture, PiecesTouchWhatTheWholeMay) {
   World2d w(9.81f, GetParam());
   w.add_box({0, -0.5f}, {20, 0.5f});
@@ -451,9 +567,11 @@ TEST_P(Box2dFracture, ACopyBringsAWholeBodyBack) {
   expect_finite(w.soft);
 }
 
-/// Hits, cuts, attachments and removals in any order.
+/// Hits, cuts, attachments and removals in any order. With the last seeds small pieces vanish.
 TEST_P(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) {
-  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+  constexpr std::uint32_t kSeeds = 8, kMoreSeeds = 4;
+  std::size_t vanished = 0;
+  for (std::uint32_t seed = 1; seed <= kSeeds + kMoreSeeds; ++seed) {
     std::mt19937 random(seed);
     const auto number = [&](float low, float high) {
       return std::uniform_real_distribution<float>(low, high)(random);
@@ -474,6 +592,7 @@ TEST_P(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) 
     if (seed % 3 == 0) w.soft.let_sleep(SleepSettings{});
     for (int i = 0; i < 4; ++i) {
       SoftBodySettings settings = brittle_2d(number(0.01f, 0.15f));
+      settings.fracture->least_cells = seed <= kSeeds ? 1 : 4;
       if (random() % 2 == 0) settings.fracture->turn = number(0.05f, 0.5f);
       settings.alpha = number(0.3f, 0.9f);
       const auto model = random() % 2 == 0 ? disc_model(3 + static_cast<int>(random() % 4), settings)
@@ -526,13 +645,15 @@ TEST_P(Box2dFracture, RandomBreaksLeaveNoNanNoDanglingReferenceAndNoMoreEnergy) 
       }
       w.soft.step(kStep2d);
       w.soft.step(kStep2d);
-      if (i % 3 == 0) w.soft.poll_broken();
+      if (i % 3 == 0)
+        for (const BrokenSoftBody2d& broken : w.soft.poll_broken()) vanished += broken.vanished;
       for (const EndedAttachment& ended : w.soft.poll_ended_attachments()) std::erase(attachments, ended.id);
       const double now = energy();
       ASSERT_TRUE(std::isfinite(now)) << "seed " << seed << ", step " << i;
       EXPECT_LT(now, 1.1 * most + 1) << "seed " << seed << ", step " << i;
     }
   }
+  EXPECT_GT(vanished, 0u);
 }
 
 /// Bodies of a thousand cells are broken to single ones, and these are still bodies.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -529,6 +530,119 @@ TEST(BulletFracture, AttachmentsGoOnWithThePieceThatHasTheirPatch) {
   run(world, 10);
 }
 
+/// Both ways, at once and by the thread that makes pieces: a bar of 10 cells loses its last 3, or with more cells across, 3 layers.
+TEST(BulletFracture, PiecesOfFewerCellsThanStatedVanish) {
+  SpeRuntime spes({.spes = 2});
+  for (const int across : {1, 4})
+    for (SolverFactory* const solvers :
+         {static_cast<SolverFactory*>(nullptr), static_cast<SolverFactory*>(&spes)}) {
+      SCOPED_TRACE(across);
+      ContactWorld world({0, -9.81f, 0}, solvers);
+      const auto layer = static_cast<std::uint32_t>(across * across);
+      SoftBodySettings settings{.cell_size = 0.1f, .half_width = 1};
+      settings.fracture = Fracture{.least_cells = 3 * layer + 1};
+      const float width = 0.1f * static_cast<float>(across);
+      SoftBody<3>& bar =
+          world.bodies.add(make_soft_body_model(make_box({1, width, width}, 0.1f), settings), {0, 2, 0});
+      SoftBody<3>& other = world.bodies.add(bar.shared_model(), {0, 4, 0});
+      ASSERT_EQ(bar.model().lattice().cells.size(), 10 * layer);
+      EXPECT_EQ(bar.positions().size() > 100, across > 1);
+      const float mass = bar.model().mass(), reach = 0.07f + 0.5f * width;
+      const auto patch_at = [&](float x) { return Patch<3>::of_surface({x, 2, 0}, reach); };
+      const auto other_patch = Patch<3>::of_surface({0.45f, 4, 0}, reach);
+      AttachmentSettings<3> rope;
+      rope.kind = AttachmentKind::kRope;
+      const AttachmentId stays = world.bodies.attach(bar, patch_at(-0.45f));
+      const AttachmentId torn = world.bodies.attach(bar, patch_at(0.2f));
+      const AttachmentId gone = world.bodies.attach(bar, patch_at(0.45f));
+      const AttachmentId gone_by_b = world.bodies.attach(other, other_patch, bar, patch_at(0.45f), rope);
+      const AttachmentId of_other = world.bodies.attach(other, Patch<3>::of_surface({-0.45f, 4, 0}, reach));
+      const Cut end = Cut::plane({0.201f, 2, 0}, {1, 0, 0});
+      if (across == 1) {
+        EXPECT_TRUE(world.bodies.cut(bar, end).empty());
+      } else {
+        EXPECT_TRUE(world.bodies.begin_cut(bar, end));
+        EXPECT_TRUE(world.bodies.is_breaking(bar));
+        run(world, 4);
+        EXPECT_FALSE(world.bodies.is_breaking(bar));
+      }
+      EXPECT_EQ(world.bodies.size(), 2u);
+      EXPECT_EQ(bar.model().lattice().cells.size(), 7 * layer);
+      EXPECT_NEAR(bar.model().mass(), 0.7f * mass, 1e-5f * mass);
+      const auto broken = world.bodies.poll_broken();
+      ASSERT_EQ(broken.size(), 1u);
+      EXPECT_EQ(broken[0].body, &bar);
+      EXPECT_TRUE(broken[0].pieces.empty());
+      EXPECT_EQ(broken[0].vanished, 1u);
+      ASSERT_EQ(broken[0].particles_before.size(), 1u);
+      EXPECT_EQ(broken[0].particles_before[0].size(), bar.positions().size());
+      EXPECT_TRUE(world.bodies.attachment(stays) && world.bodies.attachment(of_other));
+      std::map<std::uint32_t, EndedAttachment::Reason> ended;
+      for (const EndedAttachment& one : world.bodies.poll_ended_attachments())
+        ended[static_cast<std::uint32_t>(one.id)] = one.reason;
+      const std::map<std::uint32_t, EndedAttachment::Reason> expected{
+          {static_cast<std::uint32_t>(torn), EndedAttachment::Reason::kBroken},
+          {static_cast<std::uint32_t>(gone), EndedAttachment::Reason::kGone},
+          {static_cast<std::uint32_t>(gone_by_b), EndedAttachment::Reason::kGone}};
+      EXPECT_EQ(ended, expected);
+      run(world, 60);
+      EXPECT_NEAR(world.bodies.attachment_ends(stays)->patch.y(), 2, 0.02f);
+      for (const Vector3f& x : bar.positions()) EXPECT_TRUE(x.allFinite());
+      world.bodies.remove(bar);
+      world.bodies.remove(other);
+      run(world, 2);
+    }
+}
+
+TEST(BulletFracture, ABallThatFallsKeepsItsLargestPiecesOnly) {
+  constexpr std::uint32_t kLeast = 12;
+  ContactWorld world;
+  world.add(std::make_unique<btBoxShape>(btVector3(10, 0.5f, 10)), 0, {0, -0.5f, 0});
+  SoftBodySettings settings = brittle(0.125f, 0.05f);
+  settings.fracture->least_cells = kLeast;
+  const SoftBody<3>& ball = world.bodies.add(make_soft_body_model(make_sphere(0.5f, 3), settings), {0, 3, 0});
+  const double whole = double{ball.model().mass()};
+  std::size_t vanished = 0;
+  for (int i = 0; i < 240; ++i) {
+    run(world, 1);
+    for (const BrokenSoftBody& broken : world.bodies.poll_broken()) {
+      vanished += broken.vanished;
+      EXPECT_EQ(broken.particles_before.size(), broken.pieces.size() + 1);
+    }
+  }
+  EXPECT_GT(vanished, 0u);
+  double sum = 0;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    sum += double{world.bodies[b].model().mass()};
+    EXPECT_EQ(unmet_sides(world.bodies[b].model().mesh()), 0u);
+    for (const Vector3f& x : world.bodies[b].positions()) EXPECT_TRUE(x.allFinite());
+  }
+  EXPECT_EQ(&world.bodies[0], &ball);
+  EXPECT_LT(sum, whole);
+}
+
+/// Its support is cut off, far from what stays of the lower one.
+TEST(BulletFracture, WhatSleepsOnAPieceThatVanishesFalls) {
+  ContactWorld world;
+  world.add(std::make_unique<btBoxShape>(btVector3(10, 0.5f, 10)), 0, {0, -0.5f, 0});
+  world.bodies.let_sleep(SleepSettings{});
+  SoftBodySettings firm{.cell_size = 0.1f, .half_width = 2, .alpha = 0.9f, .damping = 0.2f};
+  SoftBodySettings crumbs = firm;
+  crumbs.fracture = Fracture{.least_cells = 40};
+  SoftBody<3>& slab =
+      world.bodies.add(make_soft_body_model(make_box({1.6f, 0.2f, 0.2f}, 0.1f), crumbs), {0, 0.1f, 0});
+  SoftBody<3>& box =
+      world.bodies.add(make_soft_body_model(make_box({0.2f, 0.2f, 0.2f}, 0.1f), firm), {-0.65f, 0.31f, 0});
+  for (int i = 0; i < 1200 && !(slab.asleep() && box.asleep()); ++i) run(world, 1);
+  ASSERT_TRUE(slab.asleep() && box.asleep());
+  const float before = box.centre_of_mass().y();
+  EXPECT_TRUE(world.bodies.cut(slab, Cut::plane({-0.399f, 0, 0}, {1, 0, 0})).empty());
+  EXPECT_EQ(slab.model().lattice().cells.size(), 48u);
+  EXPECT_FALSE(box.asleep());
+  run(world, 60);
+  EXPECT_LT(box.centre_of_mass().y(), before - 0.1f);
+}
+
 TEST(BulletFracture, WhatIsRemovedIsNotNamed) {
   ContactWorld world({0, 0, 0});
   SoftBodySettings settings{.cell_size = 0.1f, .half_width = 1};
@@ -580,6 +694,16 @@ TEST(FractureSettings, OutOfRangeAreRefused) {
   settings.fracture = Fracture{.turn = 4.0f};
   EXPECT_THROW(validate(settings), std::runtime_error);
   settings.fracture = Fracture{};
+  EXPECT_NO_THROW(validate(settings));
+  settings.fracture = Fracture{.least_cells = 0};
+  try {
+    validate(settings);
+    FAIL() << "pieces of 0 cells and more stay";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "a soft body's fracture.least_cells is 0; it must be a number of cells, 1 or above");
+  }
+  settings.fracture = Fracture{.least_cells = ~0u};
   EXPECT_NO_THROW(validate(settings));
   EXPECT_THROW(
       make_soft_body_model(make_sphere(0.5f, 2), {.cell_size = 0.2f}, [](const Vector3f&) { return -1.0f; }),

@@ -263,6 +263,43 @@ TEST(Pieces2d, TheWeakerCellOfAFaceDecides) {
                std::runtime_error);
 }
 
+TEST(Pieces2d, VanishIfTheyHaveFewerCellsThanStated) {
+  const Lattice<2> lattice = test::rectangle(12, 1);
+  const auto at = [&](int cell) {
+    return Cut2d::line({lattice.origin.x() + 0.1f * static_cast<float>(cell) + 0.001f, 0}, {1, 0});
+  };
+  for (const std::uint32_t least_cells : {1u, 2u, 3u, 4u, 1000u}) {
+    SCOPED_TRACE(least_cells);
+    SoftBodySettings settings = paper();
+    settings.fracture = Fracture{.stretch = 0.1f, .least_cells = least_cells};
+    SoftBody<2> body(make_soft_body_model(lattice, settings));
+    std::vector<std::uint32_t> faces;
+    for (const int cell : {1, 4, 6})
+      for (const std::uint32_t face : faces_across(body, at(cell))) faces.push_back(face);
+    const auto planned = plan_pieces(body.shared_model(), faces, least_cells_of(body));
+    std::vector<std::size_t> stay, vanished, expected_stay{6}, expected_vanished;
+    for (const BodyPiece<2>& piece : planned.stay) {
+      const SoftBodyModel<2>& model = piece.body.model();
+      stay.push_back(model.lattice().cells.size());
+      EXPECT_NEAR(model.mass(), body.model().mass() * static_cast<float>(stay.back()) / 12, 1e-6f);
+    }
+    for (const auto& particles : planned.vanished) vanished.push_back(particles.size() / 2 - 1);
+    for (const std::size_t cells : {1u, 3u, 2u})
+      (cells < least_cells ? expected_vanished : expected_stay).push_back(cells);
+    EXPECT_EQ(stay, expected_stay);
+    EXPECT_EQ(vanished, expected_vanished);
+    EXPECT_EQ(cut(body, at(6)).size(), 6 < least_cells ? 0u : 1u);
+    EXPECT_EQ(body.model().lattice().cells.size(), 6u);
+    // All faces break: the largest piece stays, a single cell.
+    for (std::size_t i = 0; i < body.positions().size(); ++i) {
+      const Vector2f x = body.position(i);
+      body.set_particle(i, {1.2f * x.x(), x.y()}, {0, 0});
+    }
+    EXPECT_EQ(break_where_strained(body).size(), 1 < least_cells ? 0u : 5u);
+    EXPECT_EQ(body.model().lattice().cells.size(), 1u);
+  }
+}
+
 TEST(Pieces2d, ACutThatIsNoneIsRefused) {
   SoftBody<2> body(make_soft_body_model(test::rectangle(4, 4), paper()));
   EXPECT_THROW(cut(body, Cut2d::stroke({0, 0}, {0, 0})), std::invalid_argument);

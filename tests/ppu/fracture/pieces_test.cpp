@@ -1,6 +1,7 @@
 // Bodies that fall into pieces: what hangs together, what is drawn, and what is kept.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "ppu/fracture/fill_loops.h"
 #include "ppu/lattice/embedding.h"
 #include "ppu/matching/matching_plan.h"
+#include "softcell/soft_bodies/state_hash.h"
 
 namespace softcell::ppu {
 namespace {
@@ -290,6 +292,80 @@ TEST(PiecesOfABody, KeepWhatAPlasticBodyKeptOfDeformations) {
       EXPECT_LT((rest[i] - rest[0] - (before[piece.particle_of[i]] - before[piece.particle_of[0]])).norm(),
                 1e-5f);
   }
+}
+
+/// A bar of single cells in a row: cuts leave it in pieces of 1, 3, 2 and 6 cells.
+SoftBody<3> bar_to_cut(std::uint32_t least_cells) {
+  SoftBodySettings settings{.cell_size = 0.1f, .half_width = 1};
+  settings.fracture = Fracture{.least_cells = least_cells};
+  return SoftBody<3>(make_soft_body_model(make_box({1.2f, 0.1f, 0.1f}, 0.05f), settings));
+}
+std::vector<std::uint32_t> faces_of_cuts(const SoftBody<3>& body) {
+  std::vector<std::uint32_t> faces;
+  for (const float at : {-0.499f, -0.199f, 0.001f})
+    for (const std::uint32_t face : faces_across(body, Cut::plane({at, 0, 0}, {1, 0, 0})))
+      faces.push_back(face);
+  return faces;
+}
+
+TEST(PiecesOfABody, VanishIfTheyHaveFewerCellsThanStated) {
+  for (const std::uint32_t least_cells : {1u, 2u, 3u, 4u, 1000u}) {
+    SCOPED_TRACE(least_cells);
+    SoftBody<3> body = bar_to_cut(least_cells);
+    std::mt19937 random(3);
+    stir(body, random, 0.1f);
+    const auto planned = plan_pieces(body.shared_model(), faces_of_cuts(body), least_cells_of(body));
+    std::vector<std::size_t> stay, vanished;
+    for (const BodyPiece<3>& piece : planned.stay) stay.push_back(piece.body.model().lattice().cells.size());
+    for (const auto& particles : planned.vanished) vanished.push_back(particles.size() / 4 - 1);
+    std::vector<std::size_t> expected_stay{6}, expected_vanished;
+    for (const std::size_t cells : {1u, 3u, 2u})
+      (cells < least_cells ? expected_vanished : expected_stay).push_back(cells);
+    EXPECT_EQ(stay, expected_stay);
+    EXPECT_EQ(vanished, expected_vanished);
+    for (const auto& particles : planned.vanished) EXPECT_TRUE(std::ranges::is_sorted(particles));
+    // What stays is what it is when everything does, and has its share of the mass: one of 12 for each cell.
+    SoftBody<3> all = bar_to_cut(1);
+    stir(all, random = std::mt19937(3), 0.1f);
+    const auto of_all = pieces_of(all, faces_of_cuts(all)), own = pieces_of(body, faces_of_cuts(body));
+    ASSERT_EQ(own.size(), stay.size());
+    for (const BodyPiece<3>& piece : own) {
+      expect_valid(piece.body);
+      const std::size_t cells = piece.body.model().lattice().cells.size();
+      EXPECT_NEAR(piece.body.model().mass(), body.model().mass() * static_cast<float>(cells) / 12, 1e-5f);
+      const auto same = std::ranges::find_if(
+          of_all, [&](const BodyPiece<3>& other) { return other.particle_of == piece.particle_of; });
+      ASSERT_NE(same, of_all.end());
+      EXPECT_EQ(state_hash(piece.body), state_hash(same->body));
+    }
+  }
+}
+
+TEST(PiecesOfABody, VanishWhenItIsCutAndWhenItBreaks) {
+  SoftBody<3> body = bar_to_cut(3);
+  EXPECT_TRUE(cut(body, Cut::plane({0.401f, 0, 0}, {1, 0, 0})).empty());
+  EXPECT_EQ(body.model().lattice().cells.size(), 10u);
+  EXPECT_EQ(unmet_sides(body.model().mesh()), 0u);
+  EXPECT_NEAR(volume(body.model().mesh()), 0.01, 1e-6);
+  ASSERT_EQ(cut(body, Cut::plane({0.101f, 0, 0}, {1, 0, 0})).size(), 1u);
+  EXPECT_EQ(body.model().lattice().cells.size(), 7u);
+  // All faces break: the largest piece stays, a single cell.
+  SoftBodySettings brittle = body.settings();
+  brittle.fracture->stretch = 0.1f;
+  body.set_material(brittle);
+  for (std::size_t i = 0; i < body.positions().size(); ++i) {
+    const Vector3f x = body.position(i);
+    body.set_particle(i, {1.2f * x.x(), x.y(), x.z()}, {0, 0, 0});
+  }
+  EXPECT_TRUE(break_where_strained(body).empty());
+  EXPECT_EQ(body.model().lattice().cells.size(), 1u);
+  EXPECT_EQ(body.settings(), brittle);
+}
+
+TEST(PiecesOfABody, OfABodyWithoutAFractureAllStay) {
+  SoftBody<3> body(bar(6));
+  ASSERT_EQ(cut(body, Cut::plane({0.201f, 0, 0}, {1, 0, 0})).size(), 1u);
+  EXPECT_EQ(least_cells_of(body), 1u);
 }
 
 TEST(PiecesOfABody, DrawCutsInTheMaterialOfThatName) {

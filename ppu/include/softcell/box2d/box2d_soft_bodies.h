@@ -130,12 +130,12 @@ class Box2dSoftBodies {
   /// The attachments that have broken or lost a body since the last call, but not those that detach() ended.
   std::vector<EndedAttachment> poll_ended_attachments();
 
-  /// Cuts a body as it is now, whatever its settings (soft_bodies/fracture.h). The body becomes its largest piece and wakes.
+  /// Cuts a body as it is now, whether it has a fracture or not (soft_bodies/fracture.h). The body becomes its largest piece and wakes.
   ///
-  /// An attachment continues with the piece that has all particles of its patch, each of them once; if no piece has, it breaks. New bodies
+  /// An attachment continues with the piece that has all particles of its patch, each of them once; if no piece has, it ends. New bodies
   /// follow all others in operator[]. With ContactMethod::kSpheres the body gets new b2Bodies; joints of its old ones end. Circles of two
   /// pieces that overlap do not collide until they have been apart; softcell installs a contact filter for that, as attach() does.
-  /// @return the other pieces; valid until remove()
+  /// @return the other pieces that stay (Fracture::least_cells); valid until remove()
   /// @throws std::invalid_argument  the body is not one of these; the cut is not finite or has no length.
   /// @throws std::runtime_error     there would be more than 32,768 bodies; nothing has changed then
   std::vector<SoftBody<2>*> cut(const SoftBody<2>& body, const Cut2d& where);

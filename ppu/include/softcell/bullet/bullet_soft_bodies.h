@@ -143,11 +143,11 @@ class BulletSoftBodies {
   /// The attachments that have broken or lost a body since the last call, but not those that detach() ended.
   std::vector<EndedAttachment> poll_ended_attachments();
 
-  /// Cuts a body as it is now, whatever its settings (soft_bodies/fracture.h). The body becomes its largest piece and wakes.
+  /// Cuts a body as it is now, whether it has a fracture or not (soft_bodies/fracture.h). The body becomes its largest piece and wakes.
   ///
-  /// An attachment continues with the piece that has all particles of its patch, each of them once; if no piece has, it breaks. New bodies
+  /// An attachment continues with the piece that has all particles of its patch, each of them once; if no piece has, it ends. New bodies
   /// have the collision filter of the body and follow all others in operator[].
-  /// @return the other pieces; valid until remove()
+  /// @return the other pieces that stay (Fracture::least_cells); valid until remove()
   /// @throws std::invalid_argument  the body is not one of these, or touches with spheres; the cut is not finite or has no area.
   std::vector<SoftBody<3>*> cut(const SoftBody<3>& body, const Cut& where);
   /// The same without a stall: the body stays whole for some substeps, like one that breaks (below), and poll_broken() returns its pieces. If

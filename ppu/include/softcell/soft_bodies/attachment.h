@@ -90,7 +90,9 @@ struct EndedAttachment {
   /// Why it ended.
   enum class Reason : std::uint8_t {
     kBroken,  ///< it had to carry more than its break force, or its patch was torn
-    kGone     ///< one of its bodies was removed, or a body of another model was assigned to it
+    /// One of its bodies was removed, a body of another model was assigned to it, or its patch was in a piece that was too small to stay
+    /// (Fracture::least_cells).
+    kGone
   };
   AttachmentId id{};
   Reason reason = Reason::kBroken;

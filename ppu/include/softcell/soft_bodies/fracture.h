@@ -12,7 +12,8 @@
 // model of its own, the velocities that its particles had, and the material of the whole body. A particle at a crack becomes several, which
 // share its mass; so the pieces together have the mass and both momenta of the whole. Regions do not reach across a crack, not even where
 // the body still hangs together. The mesh opens along the broken faces, and the cut of the solid with these faces closes both sides, in the
-// mesh's material "cut". No piece vanishes, however small: a single cell is a body of eight particles.
+// mesh's material "cut". A piece may be as small as a single cell, a body of eight particles. No piece vanishes, unless the body's settings
+// say so: with Fracture::least_cells pieces of fewer cells do, and take their mass and momenta with them.
 //
 // Bodies of two dimensions break in the same way (box2d/box2d_soft_bodies.h). There a face is an edge between two squares, and a single
 // cell is a body of four particles. skin_of_piece() in skin_2d.h makes what is drawn of a piece.
@@ -63,9 +64,11 @@ struct Cut2d {
 template <int kDimension>
 struct BrokenBody {
   SoftBody<kDimension>* body = nullptr;  ///< the body, now its largest piece
-  std::vector<SoftBody<kDimension>*>
-      pieces;             ///< the new bodies; empty: the body has cracks and hangs together
+  /// The new bodies. Empty: the body has cracks and hangs together, or all other pieces have vanished.
+  std::vector<SoftBody<kDimension>*> pieces;
   std::size_t faces = 0;  ///< how many faces broke
+  /// How many pieces were too small to stay (Fracture::least_cells). They are in no list here, nor are particles that only they had.
+  std::size_t vanished = 0;
   /// One list for `body`, then one for each of `pieces`: for each particle, its number in the body before the break. A particle at a crack
   /// has become several, which all have its number.
   std::vector<std::vector<std::uint32_t>> particles_before;
@@ -76,9 +79,10 @@ using BrokenSoftBody2d = BrokenBody<2>;  ///< in a Box2D world
 // For bodies without an engine. BulletSoftBodies and Box2dSoftBodies have functions of their own for their bodies.
 
 /// Breaks the body where it is strained beyond the limits of its settings; `body` becomes the largest piece. @return  the other pieces
+/// that stay
 std::vector<SoftBody<3>> break_where_strained(SoftBody<3>& body);
 std::vector<SoftBody<2>> break_where_strained(SoftBody<2>& body);  ///< the same in two dimensions
-/// Cuts a body, whatever its settings; `body` becomes the largest piece. @return  the other pieces
+/// Cuts a body, whether it has a fracture or not; `body` becomes the largest piece. @return  the other pieces that stay
 /// @throws std::invalid_argument  the cut is not finite, or has no area
 std::vector<SoftBody<3>> cut(SoftBody<3>& body, const Cut& where);
 /// The same in two dimensions. @throws std::invalid_argument  the cut is not finite, or has no length

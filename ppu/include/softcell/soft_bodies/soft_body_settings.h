@@ -1,6 +1,7 @@
 #pragma once
 // Settings of soft bodies in two dimensions and three, and of their sleep.
 
+#include <cstdint>
 #include <optional>
 
 namespace softcell::ppu {
@@ -23,6 +24,10 @@ struct Fracture {
   std::optional<float> stretch = {};
   /// Radians, above 0, up to pi: how far two neighbouring cells may turn against each other.
   std::optional<float> turn = {};
+  /// Cells, 1 and up. When the body breaks or is cut, pieces of fewer cells vanish and take their mass and momenta with them. The largest
+  /// piece, which is the body itself, stays whatever its size. An attachment whose patch is in a piece that vanishes ends as those to a
+  /// removed body do (EndedAttachment::Reason::kGone). With 1 nothing vanishes.
+  std::uint32_t least_cells = 1;
 
   bool operator==(const Fracture&) const = default;
 };
