@@ -21,9 +21,9 @@ using Eigen::Vector3f;
 
 /// Of what is to be squared, too.
 void check_finite(const ContactBody& body) {
-  constexpr float kMost = 1e15f;  // metres
-  bool finite = (body.box.high - body.box.low).cwiseAbs().maxCoeff() < kMost;
-  for (const Vector3f& end : body.ends) finite = finite && end.cwiseAbs().maxCoeff() < kMost;
+  constexpr float kFarthest = 1e15f;  // metres
+  bool finite = (body.box.high - body.box.low).cwiseAbs().maxCoeff() < kFarthest;
+  for (const Vector3f& end : body.ends) finite = finite && end.cwiseAbs().maxCoeff() < kFarthest;
   if (!finite) refuse_to_be_infinite();
 }
 

@@ -27,7 +27,7 @@ template <int kDimension>
 using FaceOf = std::array<Eigen::Vector<float, kDimension>, kDimension>;
 
 constexpr std::uint32_t kFacesInLeaf = 4;
-constexpr float kFarthest = std::numeric_limits<float>::max();
+constexpr float kEndless = std::numeric_limits<float>::max();
 constexpr float kRounding = 1e-5f;  // a ray at a border meets one of its two faces at least
 
 template <int kDimension>
@@ -41,7 +41,7 @@ float entry_of(const Bounds<kDimension>& box, const Eigen::Vector<float, kDimens
                const Eigen::Vector<float, kDimension>& along) {
   const WayInBox part = way_in_box(box, from, along);
   // Rounding must not part two boxes that share a side.
-  return part.first <= part.last + 1e-6f ? part.first : kFarthest;
+  return part.first <= part.last + 1e-6f ? part.first : kEndless;
 }
 
 /// Out of the body, as long as the face is large, if outlines go around it counter-clockwise.
@@ -61,24 +61,24 @@ float volume_below(const FaceOf<3>& triangle) { return triangle[0].dot(triangle[
 float share_of(const FaceOf<2>& edge, const Vector2f& from, const Vector2f& along) {
   const Vector2f ab = edge[1] - edge[0], off = edge[0] - from;
   const float area = cross(along, ab);
-  if (area == 0) return kFarthest;
+  if (area == 0) return kEndless;
   const float at = cross(off, along) / area;
-  if (at < -kRounding || at > 1 + kRounding) return kFarthest;
+  if (at < -kRounding || at > 1 + kRounding) return kEndless;
   const float share = cross(off, ab) / area;
-  return share >= 0 && share <= 1 ? share : kFarthest;
+  return share >= 0 && share <= 1 ? share : kEndless;
 }
 /// [MT97]
 float share_of(const FaceOf<3>& triangle, const Vector3f& from, const Vector3f& along) {
   const Vector3f ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
   const Vector3f across = along.cross(ac), off = from - triangle[0];
   const float volume = ab.dot(across);
-  if (volume == 0) return kFarthest;
+  if (volume == 0) return kEndless;
   const float u = off.dot(across) / volume;
   const Vector3f turned = off.cross(ab);
   const float v = along.dot(turned) / volume;
-  if (u < -kRounding || v < -kRounding || u + v > 1 + kRounding) return kFarthest;
+  if (u < -kRounding || v < -kRounding || u + v > 1 + kRounding) return kEndless;
   const float share = ac.dot(turned) / volume;
-  return share >= 0 && share <= 1 ? share : kFarthest;
+  return share >= 0 && share <= 1 ? share : kEndless;
 }
 
 /// The point of an edge that is nearest to `point`.
@@ -149,7 +149,7 @@ void SurfaceQuery<kDimension>::build(std::uint32_t node, std::uint32_t first, st
   SC_ASSERT(count > 0 && first + count <= faces_.size(), "{} faces from {} on, of {}", count, first,
             faces_.size());
   Bounds<kDimension> box = box_around<Bounds<kDimension>>(faces_[first]),
-                     middles{Vector::Constant(kFarthest), Vector::Constant(-kFarthest)};
+                     middles{Vector::Constant(kEndless), Vector::Constant(-kEndless)};
   for (std::uint32_t i = first; i < first + count; ++i) {
     const Bounds<kDimension> own = box_around<Bounds<kDimension>>(faces_[i]);
     box = {box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
@@ -214,7 +214,7 @@ std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_ray(const V
                                                                          const Vector& to) const {
   SC_ASSERT(from.allFinite() && to.allFinite(), "a ray from ({}, {})", from.x(), from.y());
   const Vector along = to - from;
-  float best = kFarthest;
+  float best = kEndless;
   std::uint32_t best_face = 0;
   visit([&](const Bounds<kDimension>& box) { return entry_of(box, from, along); },
         [&] { return std::min(best, 1.0f); },
@@ -233,7 +233,7 @@ std::optional<SurfaceHit<kDimension>> SurfaceQuery<kDimension>::cast_ray(const V
 template <int kDimension>
 typename SurfaceQuery<kDimension>::Nearest SurfaceQuery<kDimension>::nearest(const Vector& point) const {
   constexpr float kEqual = 1 + 1e-5f;
-  Nearest best{.square = kFarthest};
+  Nearest best{.square = kEndless};
   visit([&](const Bounds<kDimension>& box) { return square_of_distance(box, point); },
         [&] { return best.square * kEqual; },
         [&](std::uint32_t i) {
