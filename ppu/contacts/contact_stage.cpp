@@ -256,6 +256,10 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
     const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
     const bool itself = !group.with_rigid && group.a == group.b;
     if ((!settings.bounces.may_bounce(a.restitution) && !group.fast) || itself) continue;
+    const auto restitution_with = [&](float other) {
+      const float both = settings.bounces.restitution_of(a.restitution, other);
+      return group.fast ? std::max(both, kFastRestitution) : both;
+    };
     BounceContact bounce{.a = group.a};
     if (!group.with_rigid) bounce.b = group.b;
     const auto add = [&](std::uint32_t other, const Vector3f& point, const Vector3f& normal,
@@ -272,9 +276,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
       for (const spu::SolveContact& contact : group.solved.contacts) {
         const Vector3f normal(contact.normal);
         add(group.b, Vector3f(contact.point), normal, contact.least_velocity,
-            -normal.dot(Vector3f(contact.carried)), contact.friction,
-            std::max(settings.bounces.restitution_of(a.restitution, b.restitution),
-                     group.fast ? kFastRestitution : 0.0f));
+            -normal.dot(Vector3f(contact.carried)), contact.friction, restitution_with(b.restitution));
       }
       continue;
     }
@@ -285,13 +287,11 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
         v -= rigid.velocity_at(contact.point);
         bounce.rigid = contact.rigid;
         add(rigid.number, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction, settings.bounces.restitution_of(a.restitution, rigid.restitution));
+            contact.friction, restitution_with(rigid.restitution));
       } else {
         v -= contact.b.of(b.velocities);
         add(group.b, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction,
-            std::max(settings.bounces.restitution_of(a.restitution, b.restitution),
-                     group.fast ? kFastRestitution : 0.0f));
+            contact.friction, restitution_with(b.restitution));
       }
     }
   }

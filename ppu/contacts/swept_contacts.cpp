@@ -22,13 +22,13 @@ Vector3f between(const Vector3f& from, const Vector3f& to, float share) { return
 Bounds<3> between(const Bounds<3>& from, const Bounds<3>& to, float share) {
   return {between(from.low, to.low, share), between(from.high, to.high, share)};
 }
+/// How far one body moves against another in the substep, as a whole, metres.
+float relative_travel(const ContactBody& a, const ContactBody& b) { return (a.travel - b.travel).norm(); }
 float smaller_spacing(const ContactBody& a, const ContactBody& b) {
   return std::min(a.spacing(), b.spacing());
 }
 
 }  // namespace
-
-float relative_travel(const ContactBody& a, const ContactBody& b) { return (a.travel - b.travel).norm(); }
 
 bool are_fast(const ContactBody& a, const ContactBody& b) {
   const float thickness = std::min(a.model->thickness(), b.model->thickness());

@@ -10,9 +10,6 @@
 
 namespace softcell::ppu {
 
-/// How far one body moves against another in the substep, as a whole, metres.
-float relative_travel(const ContactBody& a, const ContactBody& b);
-
 /// Whether two bodies would go so far into each other in the substep that they have to be swept: more than a cell, and three tenths of the
 /// thinner one's thickness. Their surfaces alone would be stopped, and what is behind goes on through them, so they hit each other as
 /// rigid bodies would (bounces.h), with a restitution that slower ones have about.
