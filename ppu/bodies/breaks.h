@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/bodies/break_body.h"
 #include "softcell/soft_bodies/fracture.h"
 #include "softcell/soft_bodies/soft_body.h"
 
@@ -20,6 +21,14 @@ namespace softcell::ppu {
 inline int substeps_until_pieces(std::size_t particles) {
   constexpr std::size_t kAtOnce = 100;  // takes less than handing over
   return particles <= kAtOnce ? 0 : 2 + static_cast<int>(particles / 1000);
+}
+
+/// Whether it is tested only in the next substep if a substep has broken the body, as soon as the solver has ended its part: an SPE may have
+/// seen by then that it has not. Not of bodies whose pieces come at once, nor of those whose rest shape may flow in that part.
+template <int kDimension>
+bool is_tested_late(const SoftBody<kDimension>& body) {
+  return substeps_until_pieces(body.positions().size()) > 0 && !body.settings().plasticity &&
+         !body.has_own_rest();
 }
 
 /// What was removed is not named any more.
@@ -35,29 +44,64 @@ void forget_removed(const SoftBody<kDimension>& body, std::vector<BrokenBody<kDi
 }
 
 /// In the order in which they began.
-/// @tparam Coupled  has soft()   @tparam Pieces  what is made
+/// @tparam Coupled  has soft() and can_break()   @tparam Pieces  what is made
 template <int kDimension, class Coupled, class Pieces>
 class Breaks {
  public:
-  struct Break {
-    Coupled* body = nullptr;
+  /// A body as it was when a substep had moved it.
+  struct Strained {
+    explicit Strained(Coupled& coupled)
+        : body(&coupled), model(coupled.soft().shared_model()), resets(coupled.soft().resets()) {}
+
+    Coupled* body;
     std::shared_ptr<const SoftBodyModel<kDimension>> model;
-    std::uint32_t resets = 0;  ///< SoftBody::resets() when it began
-    std::size_t faces = 0;
-    int substeps = 0;  ///< until it has pieces
-    std::future<Pieces> pieces;
+    std::uint32_t resets;  ///< SoftBody::resets()
 
     /// The body was assigned, teleported or straightened since: it is not the one that was strained.
     bool is_void() const { return body->soft().shared_model() != model || body->soft().resets() != resets; }
   };
+  struct Break : Strained {
+    std::size_t faces = 0;
+    int substeps = 0;  ///< until it has pieces
+    std::future<Pieces> pieces;
+  };
+
+  /// After a substep: tests those that may break. Pieces are tested from the next substep on, bodies that are breaking not any more.
+  /// @param maker  of pieces: its begin_break(body, faces, substeps) has them made; so many substeps are to come until they are there
+  template <class Bodies, class Maker>
+  void test(const Bodies& bodies, Maker& maker) {
+    for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {  // pieces come behind them
+      Coupled& body = *bodies[i];
+      const SoftBody<kDimension>& soft = body.soft();
+      if (!soft.settings().fracture || soft.asleep() || !body.can_break() || has(body)) continue;
+      if (is_tested_late(soft))
+        to_test_.emplace_back(body);
+      else
+        test(body, substeps_until_pieces(soft.positions().size()), maker);
+    }
+  }
+  /// In the next substep: tests those that wait for it. @param solver  a StepAhead, which has ended its part
+  template <class Solver, class Maker>
+  void test_late(const Solver& solver, Maker& maker) {
+    for (const Strained& one : std::exchange(to_test_, {}))
+      if (!one.is_void() && solver.may_break(one.body->soft())) test_late(*one.body, maker);
+  }
+  /// Between substeps: whether a body is breaking. If it waits for its test, it is tested now.
+  template <class Maker>
+  bool is_breaking(Coupled& body, Maker& maker) {
+    const bool waits = std::erase_if(to_test_, [&](const Strained& one) {
+                         return one.body == &body && !one.is_void();
+                       }) != 0;
+    if (waits) test_late(body, maker);
+    return has(body);
+  }
 
   bool has(const Coupled& body) const {
     return std::any_of(breaks_.begin(), breaks_.end(), [&](const Break& one) { return one.body == &body; });
   }
   /// @param faces  that break   @param substeps  until it has pieces
   void begin(Coupled& body, std::size_t faces, int substeps, std::future<Pieces> pieces) {
-    breaks_.push_back(
-        {&body, body.soft().shared_model(), body.soft().resets(), faces, substeps, std::move(pieces)});
+    breaks_.push_back({Strained(body), faces, substeps, std::move(pieces)});
   }
   /// After a substep. @return those whose bodies have pieces now; those that are void are gone
   std::vector<Break> take_due() {
@@ -78,10 +122,25 @@ class Breaks {
     return one;
   }
   void forget(const Coupled& body) {
+    std::erase_if(to_test_, [&](const Strained& one) { return one.body == &body; });
     std::erase_if(breaks_, [&](const Break& one) { return one.body == &body; });
   }
 
  private:
+  template <class Maker>
+  void test(Coupled& body, int substeps, Maker& maker) {
+    if (const auto faces = strained_faces(body.soft(), break_test_); !faces.empty())
+      maker.begin_break(body, faces, substeps);
+  }
+  /// The substep that has strained the body has counted already.
+  template <class Maker>
+  void test_late(Coupled& body, Maker& maker) {
+    if (!body.soft().settings().fracture) return;  // it had
+    test(body, substeps_until_pieces(body.soft().positions().size()) - 1, maker);
+  }
+
+  BreakTest<kDimension> break_test_;
+  std::vector<Strained> to_test_;
   std::vector<Break> breaks_;
 };
 

@@ -297,7 +297,12 @@ void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
 }
 
 template <int kDimension>
-void SoftBody<kDimension>::flow(float step) {
+bool SoftBody<kDimension>::will_look() const {
+  return settings_.plasticity && steps_since_look_ + 1 >= kPlasticSteps && !(rest_ && rest_->is_flowing);
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
   SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   if (!settings_.plasticity) return;
   ++steps_since_look_;
@@ -307,6 +312,7 @@ void SoftBody<kDimension>::flow(float step) {
   if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
   const Plasticity& plasticity = *settings_.plasticity;
   const bool looked = !rest_->is_flowing;
+  if (looked && stretch && !rest_->flow->may_yield(*stretch, plasticity.yield)) return;
   if (looked && !rest_->flow->may_yield(x_, plasticity.yield)) return;
   // The body may have sprung back when the flow is done: with more, and in some ways it would go to and fro.
   constexpr double kMost = 0.7;

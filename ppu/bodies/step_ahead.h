@@ -65,6 +65,12 @@ class StepAhead {
     solver_.inherit_state(whole, piece, particle_of);
   }
 
+  /// Directly after finish(): see SoftBodySolver::may_break(). @pre No step has been begun.
+  bool may_break(const Body& body) const {
+    SC_ASSERT(begun_ == 0, "a body is asked whether it breaks during its step of {} s", begun_);
+    return solver_.may_break(body);
+  }
+
   /// Of any thread.
   void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) { solver_.prepare(model); }
 

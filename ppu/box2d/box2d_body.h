@@ -22,6 +22,7 @@ class Box2dBody {
   Box2dBody(const Box2dBody&) = delete;
   Box2dBody& operator=(const Box2dBody&) = delete;
 
+  bool can_break() const { return true; }
   SoftBody<2>& soft() { return soft_; }
   const SoftBody<2>& soft() const { return soft_; }
   const CollisionFilter& filter() const { return filter_; }

@@ -67,6 +67,7 @@ struct Box2dSoftBodies::Impl {
       }
     }
     waited += solve.finish(step);
+    breaks.test_late(solve, *this);
     if (!surfaces) attachments.solve(bodies, step);
     for (const auto& body : bodies) body->hand_over(step);
     if (surfaces) surfaces->step(bodies, attachments, step);
@@ -114,7 +115,9 @@ struct Box2dSoftBodies::Impl {
     Box2dBody& coupled = **find(body, "to be cut");
     SC_ASSERT(!world.IsLocked(), "one of {} bodies is cut within a step of Box2D", bodies.size());
     if (coupled.is_of_other_model()) take_other_model(coupled);
-    if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
+    if (breaks.is_breaking(coupled, *this)) {
+      if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
+    }
     coupled.take_over_particles();
     return coupled;
   }
@@ -178,19 +181,14 @@ struct Box2dSoftBodies::Impl {
   using BreaksOfBodies = Breaks<2, Box2dBody, Pieces>;
   using Break = BreaksOfBodies::Break;
 
-  /// Pieces are tested from the next step on, bodies that are breaking not any more.
   void break_strained() {
-    for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {
-      const SoftBody<2>& soft = bodies[i]->soft();
-      if (!soft.settings().fracture || soft.asleep() || breaks.has(*bodies[i])) continue;
-      if (const auto faces = strained_faces(soft, break_test); !faces.empty()) begin_break(*bodies[i], faces);
-    }
+    breaks.test(bodies, *this);
     for (Break& one : breaks.take_due()) put_pieces(*one.body, one.pieces.get(), one.faces);
   }
 
-  void begin_break(Box2dBody& body, std::span<const std::uint32_t> faces) {
+  /// @param steps  to come, until there are pieces
+  void begin_break(Box2dBody& body, std::span<const std::uint32_t> faces, int steps) {
     const std::shared_ptr<const SoftBodyModel<2>>& model = body.soft().shared_model();
-    const int steps = substeps_until_pieces(model->particles());
     if (steps == 0) {
       put_pieces(body, make_pieces(model, faces, least_cells_of(body.soft()), whole_of(model)), faces.size());
       return;
@@ -280,8 +278,7 @@ struct Box2dSoftBodies::Impl {
   std::optional<SurfaceContacts2d> surfaces;  // none: bodies touch with circles
   std::optional<SleepSettings> sleep;
   std::chrono::nanoseconds spent{0}, waited{0};
-  StepAhead<2> solve;  // of `bodies`
-  BreakTest<2> break_test;
+  StepAhead<2> solve;                    // of `bodies`
   BreaksOfBodies breaks;                 // of `bodies`
   std::vector<BrokenSoftBody2d> broken;  // since they were asked for
   std::optional<Workshop> workshop;      // until the end of what it works with
@@ -341,12 +338,12 @@ bool Box2dSoftBodies::begin_cut(const SoftBody<2>& body, const Cut2d& where) {
   if (faces.empty()) return false;
   impl_->solve.drop();
   if (coupled.soft().asleep()) coupled.wake();
-  impl_->begin_break(coupled, faces);
+  impl_->begin_break(coupled, faces, substeps_until_pieces(body.positions().size()));
   return true;
 }
 
 bool Box2dSoftBodies::is_breaking(const SoftBody<2>& body) const {
-  return impl_->breaks.has(**impl_->find(body, "that may be breaking"));
+  return impl_->breaks.is_breaking(**impl_->find(body, "that may be breaking"), *impl_);
 }
 
 std::vector<BrokenSoftBody2d> Box2dSoftBodies::poll_broken() { return std::exchange(impl_->broken, {}); }

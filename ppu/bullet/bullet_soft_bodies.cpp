@@ -75,6 +75,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     });
     timed(times.solve, [&] { times.wait += solve.finish(step); });
     timed(times.apply, [&] {
+      breaks.test_late(solve, *this);
       for (const auto& body : bodies) body->apply(step);
     });
     if (surfaces) timed(times.contacts, [&] { surfaces->step(with_surfaces, step); });
@@ -113,14 +114,8 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
   using BreaksOfBodies = Breaks<3, CoupledBody, PreparedPieces>;
   using Break = BreaksOfBodies::Break;
 
-  /// Pieces are tested from the next substep on, bodies that are breaking not any more.
   void break_strained() {
-    for (std::size_t i = 0, count = bodies.size(); i < count; ++i) {
-      const SoftBody<3>& soft = bodies[i]->soft();
-      if (!soft.settings().fracture || soft.asleep() || !bodies[i]->can_break()) continue;
-      if (breaks.has(*bodies[i])) continue;
-      if (const auto faces = strained_faces(soft, break_test); !faces.empty()) begin_break(*bodies[i], faces);
-    }
+    breaks.test(bodies, *this);
     for (Break& one : breaks.take_due()) put_pieces(*one.body, one.pieces.get(), one.faces);
   }
 
@@ -131,9 +126,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     return &surfaces->contact_model(model->is_piece() ? model->whole() : model);
   }
 
-  void begin_break(CoupledBody& body, std::span<const std::uint32_t> faces) {
+  /// @param substeps  to come, until there are pieces
+  void begin_break(CoupledBody& body, std::span<const std::uint32_t> faces, int substeps) {
     const std::shared_ptr<const SoftBodyModel<3>>& model = body.soft().shared_model();
-    const int substeps = substeps_until_pieces(model->particles());
     if (substeps == 0) {
       break_body(body, faces);
       return;
@@ -232,7 +227,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     if (!coupled.can_break())
       throw std::invalid_argument(
           "the soft body to be cut touches with spheres; only bodies that touch with their surfaces break");
-    if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
+    if (breaks.is_breaking(coupled, *this)) {
+      if (std::optional<Break> one = breaks.take(coupled)) put_pieces(coupled, one->pieces.get(), one->faces);
+    }
     return coupled;
   }
 
@@ -266,8 +263,7 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
       surfaces;  // of bodies that touch with their surfaces: all that touch, or none
   std::vector<SurfaceBody*> with_surfaces;  // of `bodies`
   std::uint32_t next_number = 0;
-  StepAhead<3> solve;  // of `bodies`
-  BreakTest<3> break_test;
+  StepAhead<3> solve;                  // of `bodies`
   BreaksOfBodies breaks;               // of `bodies`
   std::optional<Workshop> workshop;    // until the end of what it works with
   std::vector<BrokenSoftBody> broken;  // since they were asked for
@@ -329,12 +325,12 @@ bool BulletSoftBodies::begin_cut(const SoftBody<3>& body, const Cut& where) {
   if (faces.empty()) return false;
   impl_->solve.drop();
   coupled.rouse();
-  impl_->begin_break(coupled, faces);
+  impl_->begin_break(coupled, faces, substeps_until_pieces(body.positions().size()));
   return true;
 }
 
 bool BulletSoftBodies::is_breaking(const SoftBody<3>& body) const {
-  return impl_->breaks.has(**impl_->find(body, "that may be breaking"));
+  return impl_->breaks.is_breaking(**impl_->find(body, "that may be breaking"), *impl_);
 }
 
 std::vector<BrokenSoftBody> BulletSoftBodies::poll_broken() { return std::exchange(impl_->broken, {}); }

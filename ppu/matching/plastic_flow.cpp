@@ -121,15 +121,6 @@ PlasticFlow<kDimension>::PlasticFlow(std::shared_ptr<const RestLattice<kDimensio
 
 /// Calls visit(a, b) for each edge, and behind them for each diagonal of a cell.
 template <int kDimension>
-template <typename Visit>
-void PlasticFlow<kDimension>::each_length(const Visit& visit) const {
-  for (const auto& edge : lattice_->edges()) visit(edge.from, edge.to);
-  constexpr std::uint32_t kLast = Lattice<kDimension>::kCorners - 1;
-  for (const auto& corners : lattice_->corners())
-    for (std::uint32_t k = 0; 2 * k < kLast; ++k) visit(corners[k], corners[kLast - k]);
-}
-
-template <int kDimension>
 void PlasticFlow<kDimension>::set_rest(std::span<const Exact> rest) {
   SC_ASSERT(rest.size() == lattice_->particles(), "{} positions at rest of {} particles", rest.size(),
             lattice_->particles());
@@ -141,25 +132,40 @@ void PlasticFlow<kDimension>::set_rest(std::span<const Exact> rest) {
 template <int kDimension>
 void PlasticFlow<kDimension>::find_inverse_squares() {
   inverse_squares_.clear();
-  each_length([&](std::uint32_t a, std::uint32_t b) {
+  lattice_->each_length([&](std::uint32_t a, std::uint32_t b) {
     inverse_squares_.push_back(static_cast<float>(1 / (rest_[b] - rest_[a]).squaredNorm()));
   });
+}
+
+/// At the yield an edge is at least 0.67 of it longer or shorter where the volume stays, a diagonal 0.44 where a square is sheared. Of a
+/// length's square it is twice as much.
+template <int kDimension>
+float PlasticFlow<kDimension>::stretch_of(float edges, float diagonals) {
+  return std::max(edges / 1.2f, diagonals / 0.8f);
 }
 
 template <int kDimension>
 bool PlasticFlow<kDimension>::may_yield(std::span<const Vector> x, float yield) {
   SC_ASSERT(x.size() == rest_.size(), "{} positions of {} particles", x.size(), rest_.size());
-  // At the yield an edge is at least 0.67 of it longer or shorter where the volume stays, a diagonal 0.44 where a square
-  // is sheared. Of a length's square it is twice as much.
   float edges = 0, diagonals = 0;
   std::size_t n = 0;
-  each_length([&](std::uint32_t a, std::uint32_t b) {
+  lattice_->each_length([&](std::uint32_t a, std::uint32_t b) {
     float& largest = n < lattice_->edges().size() ? edges : diagonals;
     largest = std::max(largest, std::abs((x[b] - x[a]).squaredNorm() * inverse_squares_[n++] - 1));
   });
-  stretch_ = std::max(edges / 1.2f, diagonals / 0.8f);
+  stretch_ = stretch_of(edges, diagonals);
   if (stretch_ < kForget * calm_) calm_ = 0;
   return stretch_ > std::max(yield, calm_);
+}
+
+template <int kDimension>
+bool PlasticFlow<kDimension>::may_yield(float stretch, float yield) {
+  const float most = stretch + kSeenWithin;
+  if (!(most < std::max(yield, calm_))) return true;
+  if (calm_ == 0) return false;
+  if (!(most < kForget * calm_)) return stretch - kSeenWithin < kForget * calm_;
+  calm_ = 0;
+  return !(most < yield);
 }
 
 template <int kDimension>

@@ -53,6 +53,14 @@ class PlasticFlow {
 
   /// A quick look at the lengths of edges and diagonals. @return false: no strain is above `yield`
   bool may_yield(std::span<const Vector> x, float yield);
+  /// The same by what somebody else has seen: spares most looks.
+  /// @param stretch  stretch_of() what he saw, within kSeenWithin
+  /// @return false: may_yield() would return false, and what it would remember is remembered
+  bool may_yield(float stretch, float yield);
+  /// What counts of the lengths: the largest |now^2 / rest^2 - 1| of edges, and of diagonals.
+  static float stretch_of(float edges, float diagonals);
+  /// The rest shape that somebody else has is rounded, and so are his sums: of bodies of a hundred cells by 1e-5.
+  static constexpr float kSeenWithin = 0.002f;
 
   /// Moves the rest shape towards the shape that the body has, where it has yielded. The volume of the whole stays as it
   /// is, and no cell of the rest shape gets less than kLeastRestVolume.
@@ -71,8 +79,6 @@ class PlasticFlow {
   static constexpr int kSpins = kDimension == 2 ? 1 : 3;  // numbers of an angle, or of axis times angle
   using Spin = Eigen::Matrix<double, kSpins, 1>;
 
-  template <typename Visit>
-  void each_length(const Visit& visit) const;
   void find_inverse_squares();
   void find_rotations(std::span<const Vector> x);
   void find_strains(std::span<const Vector> x);
@@ -86,7 +92,7 @@ class PlasticFlow {
 
   std::shared_ptr<const RestLattice<kDimension>> lattice_;
   std::vector<Exact> rest_;
-  std::vector<float> inverse_squares_;         // of lengths at rest, as each_length() visits them
+  std::vector<float> inverse_squares_;  // of lengths at rest, as RestLattice::each_length() visits them
   std::vector<Eigen::Quaterniond> rotations_;  // of each particle; in two dimensions about z
   // Of each edge.
   std::vector<Exact> d_, eta_, flow_;

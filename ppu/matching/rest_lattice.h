@@ -43,6 +43,17 @@ class RestLattice {
     return corners_;
   }
 
+  /// Calls visit(a, b) for pairs of particles whose distances say how much a body is strained: ends of edges, then opposite corners of cells.
+  template <typename Visit>
+  void each_length(const Visit& visit) const {
+    for (const Edge& edge : edges_) visit(edge.from, edge.to);
+    constexpr std::uint32_t kLast = Lattice<kDimension>::kCorners - 1;
+    for (const auto& corners : corners_)
+      for (std::uint32_t k = 0; 2 * k < kLast; ++k) visit(corners[k], corners[kLast - k]);
+  }
+  /// How many pairs each_length() visits.
+  std::size_t lengths() const { return edges_.size() + corners_.size() * Lattice<kDimension>::kCorners / 2; }
+
   /// The values of the particles whose differences along the edges come nearest to what is wanted: least squares of
   /// u_to - u_from - wanted. Of all such values those whose mean is 0 in each connected part.
   /// @param wanted  of each edge    @return of each particle

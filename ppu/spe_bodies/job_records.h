@@ -9,6 +9,7 @@
 #include "match_tiles_job.h"
 #include "skin_job.h"
 #include "softcell/dma/address_space.h"
+#include "strain_job.h"
 
 namespace softcell::ppu {
 
@@ -40,6 +41,18 @@ static_assert(covers<spu::SkinGroup>(kSkinGroupRecord));
 
 inline constexpr dma::ElementRun kSkinJobRecord[] = {{16, 8}, {8, 8}, {8, 4}, {8, 8}, {8, 4}, {80, 4}};
 static_assert(covers<spu::SkinJob>(kSkinJobRecord));
+
+inline constexpr dma::ElementRun kStrainLengthsRecord[] = {{16, 2}, {16, 4}};
+static_assert(covers<spu::StrainLengths>(kStrainLengthsRecord));
+
+inline constexpr dma::ElementRun kStrainFacesRecord[] = {{96, 2}, {16, 4}};
+static_assert(covers<spu::StrainFaces>(kStrainFacesRecord));
+
+inline constexpr dma::ElementRun kStrainResultRecord[] = {{16, 4}};
+static_assert(covers<spu::StrainResult>(kStrainResultRecord));
+
+inline constexpr dma::ElementRun kStrainJobRecord[] = {{32, 8}, {96, 4}};
+static_assert(covers<spu::StrainJob>(kStrainJobRecord));
 
 /// The options of a buffer of such structures.
 inline dma::BufferOptions of_record(std::span<const dma::ElementRun> record,

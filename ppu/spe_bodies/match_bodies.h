@@ -44,6 +44,9 @@ class MatchBodies {
   std::size_t size() const { return descriptors_.size(); }
   std::span<Vector> positions(std::size_t body);   ///< metres; a step does not change them
   std::span<Vector> velocities(std::size_t body);  ///< m/s
+  dma::EffectiveAddress positions_ea(std::size_t body) const {
+    return positions_.ea(body * Kernel::positions_stride(header_));
+  }
   /// Of the plan's regions, in groups of four: see KernelPlan::region_of().
   std::span<const Rotations> rotations(std::size_t body) const;
   /// The largest |axial(R^T A)| of the last step over the sum of |A|'s elements, roughly radians; 0 in two
@@ -96,9 +99,6 @@ class MatchBodies {
   /// Writes which bodies a job steps. @param first  where `bodies` stand among those of the step
   void write_bodies(typename Kernel::Job& job, std::span<const std::size_t> bodies, std::size_t first);
 
-  dma::EffectiveAddress positions_ea(std::size_t body) const {
-    return positions_.ea(body * Kernel::positions_stride(header_));
-  }
   dma::EffectiveAddress state_ea(std::size_t body) const {
     return states_.ea(body * Kernel::state_stride(header_));
   }

@@ -46,8 +46,8 @@ SpeRuntime::SpeRuntime(const SpeRuntimeOptions& options) : state_(std::make_uniq
 SpeRuntime::~SpeRuntime() = default;
 
 std::unique_ptr<SoftBodySolver<3>> SpeRuntime::make_solver() {
-  return std::make_unique<SpeSolver<3>>(memory(), jobs(),
-                                        MatchKernels<3>{kernel("match"), kernel("match_tiles")});
+  return std::make_unique<SpeSolver<3>>(
+      memory(), jobs(), MatchKernels<3>{kernel("match"), kernel("match_tiles"), &kernel("strain")});
 }
 
 std::shared_ptr<ContactWorker> SpeRuntime::make_contact_worker() {
@@ -55,7 +55,8 @@ std::shared_ptr<ContactWorker> SpeRuntime::make_contact_worker() {
 }
 
 std::unique_ptr<SoftBodySolver<2>> SpeRuntime::make_solver_2d() {
-  return std::make_unique<SpeSolver<2>>(memory(), jobs(), MatchKernels<2>{kernel("match_2d")});
+  return std::make_unique<SpeSolver<2>>(memory(), jobs(),
+                                        MatchKernels<2>{kernel("match_2d"), &kernel("strain")});
 }
 
 dma::AddressSpace& SpeRuntime::memory() { return state_->memory; }

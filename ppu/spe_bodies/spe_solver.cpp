@@ -12,6 +12,7 @@
 
 #include "ppu/spe_bodies/match_bodies.h"
 #include "ppu/spe_bodies/match_orchestration.h"
+#include "ppu/spe_bodies/strain_looks.h"
 #include "ppu/spe_bodies/tiled_memory.h"
 #include "softcell/base/assert.h"
 
@@ -100,6 +101,7 @@ struct SpeSolver<kDimension>::Group {
   std::vector<Body*> members;
   std::shared_ptr<const Plans> plans;
   std::shared_ptr<MatchBodies<kDimension>> bodies;
+  std::shared_ptr<StrainLooks<kDimension>> looks;  // null: nobody has asked, or the PPU looks
   std::vector<std::size_t> awake;
   std::vector<MatchSettings> settings;  // of these
 };
@@ -140,6 +142,7 @@ SpeSolver<kDimension>::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs,
       match_(jobs.load(whole(kernels))),
       match_tiles_(place_tiles(jobs, kernels)),
       checked_(whole(kernels).checked) {
+  if (kernels.strain != nullptr) strain_ = jobs.load(*kernels.strain);
   regroup({});  // a world without soft bodies steps, too
 }
 
@@ -163,14 +166,14 @@ void SpeSolver<kDimension>::find_place(Group& group, Known& known) {
   std::shared_ptr<const Plans>& plans = known.plans[group.model.get()];
   if (!plans) plans = std::make_shared<const Plans>(plans_of(group.model));
   group.plans = plans;
-  if (!plans->whole) return;
   if (const auto old = known.members.find(group.members.front()); old != known.members.end()) {
     const Group& same = *old->second->group;
     if (same.model == group.model && same.own_plan == group.own_plan && same.members == group.members) {
       group.bodies = same.bodies;
-      return;
+      group.looks = same.looks;
     }
   }
+  if (!plans->whole || group.bodies) return;
   const auto made = known.places.find(group.model.get());
   if (made != known.places.end() && made->second.bodies && group.members.size() == 1)
     group.bodies = std::move(made->second.bodies);
@@ -318,7 +321,7 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
         member.tiled = std::make_unique<TiledMemory>(memory_, *group.plans->tiles);
     }
     const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
-    jobs += tiled != nullptr ? tiled->most_jobs() : 1;
+    jobs += 1 + (tiled != nullptr ? tiled->most_jobs() : 1);  // the first is a look
   }
   auto chain = std::make_unique<JobChain>(jobs_, "soft bodies", jobs);
   for (Member& member : members)
@@ -326,6 +329,38 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
   chain_ = std::move(chain);
   groups_ = std::move(groups);
   members_ = std::move(members);
+}
+
+/// A job beside the step's, for a body that may yield or break. Its positions are in main memory.
+template <int kDimension>
+void SpeSolver<kDimension>::look_at(Member& member) {
+  const Body& body = *member.body;
+  if (!strain_ || (!body.settings().fracture && !body.settings().plasticity)) return;
+  Group& group = *member.group;
+  std::span<const std::uint32_t> place_of;
+  std::size_t places = group.model->particles();
+  dma::EffectiveAddress positions{};
+  if (group.bodies) positions = group.bodies->positions_ea(member.number);
+  if constexpr (kDimension == 3) {
+    if (member.tiled) {
+      place_of = group.plans->tiles->place_of();
+      places = member.tiled->positions().size();
+      positions = member.tiled->positions_ea();
+    }
+  }
+  if (!StrainLooks<kDimension>::can_look_at(*group.model, places)) return;
+  if (!group.looks)
+    group.looks = std::make_shared<StrainLooks<kDimension>>(memory_, group.model, place_of, places,
+                                                            group.members.size());
+  group.looks->add_job(*chain_, *strain_, member.number, body, positions);
+}
+
+template <int kDimension>
+bool SpeSolver<kDimension>::may_break(const Body& body) const {
+  SC_ASSERT(!is_stepping_, "asked whether a body breaks with {} jobs under way", chain_->size());
+  const auto member = std::ranges::find(members_, &body, &Member::body);
+  return member == members_.end() || !member->stepped || !member->group->looks ||
+         member->group->looks->may_break(member->number);
 }
 
 /// Positions and velocities to main memory.
@@ -384,6 +419,8 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
     group->bodies->add_jobs(*chain_, match_, group->settings, group->awake,
                             bodies_per_job(group->awake.size(), jobs_.spes()));
   }
+  for (Member& member : members_)
+    if (member.stepped) look_at(member);
   for (const spu::TilePass pass : kTilePasses) {
     for (const Member& member : members_)
       if (member.stepped && member.tiled) member.tiled->add_jobs(*chain_, match_tiles_, pass);
@@ -430,7 +467,8 @@ void SpeSolver<kDimension>::finish() {
   for (const Member& member : members_) {
     if (!member.stepped) continue;
     take_back(member);
-    member.body->flow(step_);
+    const auto& looks = member.group->looks;
+    member.body->flow(step_, looks ? looks->stretch(member.number) : std::nullopt);
   }
 }
 

@@ -44,6 +44,7 @@ class TiledMemory {
   /// By place, see TilePlan::place_of(). Leave the places between as they are.
   std::span<Vector> positions() { return positions_.span(); }    ///< metres; a step does not change them
   std::span<Vector> velocities() { return velocities_.span(); }  ///< m/s
+  dma::EffectiveAddress positions_ea() const { return positions_.ea(); }
 
   /// The constants of another rest shape. @param plan  the one that the body was made from
   void set_rest(const TilePlan& plan, const MatchingPlan<float, 3>& matching);

@@ -19,6 +19,7 @@ SC_DECLARE(match_2d)
 SC_DECLARE(match_tiles)
 SC_DECLARE(rotations)
 SC_DECLARE(skin)
+SC_DECLARE(strain)
 SC_DECLARE(transfers)
 }
 #undef SC_DECLARE
@@ -44,6 +45,7 @@ std::span<const ImageFile> image_files() {
       SC_FILE(match_tiles),
       SC_FILE(rotations),
       SC_FILE(skin),
+      SC_FILE(strain),
       SC_FILE(transfers)};
 #undef SC_FILE
   return files;

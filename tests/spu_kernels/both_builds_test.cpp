@@ -22,6 +22,7 @@
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/spu_kernels/load_kernel.h"
 #include "spu_kernels/stepped_bodies.h"
+#include "spu_kernels/strained_body.h"
 #include "transfers_job.h"
 
 namespace softcell {
@@ -252,6 +253,17 @@ Outcome refused_rotations(Machine machine) {
   return outcome;
 }
 
+Outcome strain(Machine machine) {
+  Outcome outcome;
+  Rig rig(machine);
+  test::StrainedBody body(rig.memory(),
+                          {.particles = 500, .edge_groups = 700, .diagonal_groups = 9, .face_groups = 400});
+  rig.run("strain", body.job.ea(), outcome);
+  outcome.add<spu::StrainResult>(body.result.span());
+  rig.finish(outcome);
+  return outcome;
+}
+
 Outcome transfers(Machine machine) {
   Outcome outcome;
   Rig rig(machine);
@@ -287,6 +299,7 @@ TEST(BothBuilds, OfMatchTilesAreTheSameKernel) { expect_same("match_tiles", matc
 TEST(BothBuilds, OfSkinAreTheSameKernel) { expect_same("skin", skin); }
 TEST(BothBuilds, OfRotationsAreTheSameKernel) { expect_same("rotations", rotations); }
 TEST(BothBuilds, OfRotationsRefuseTheSameJob) { expect_same("rotations", refused_rotations); }
+TEST(BothBuilds, OfStrainAreTheSameKernel) { expect_same("strain", strain); }
 TEST(BothBuilds, OfTransfersAreTheSameKernel) { expect_same("transfers", transfers); }
 
 }  // namespace

@@ -181,9 +181,10 @@ struct World {
 struct Spes {
   Spes(const SimulationOptions& options, ppu::ContactMethod contacts)
       : match_2d(options.kernel("match_2d")),
+        strain(options.kernel("strain")),
         job_loop(options.job_loop()),
         jobs(memory, options.spe_options(), job_loop),
-        solver(memory, jobs, {match_2d}) {
+        solver(memory, jobs, {match_2d, &strain}) {
     if (contacts != ppu::ContactMethod::kSurface) return;
     contact_find = options.kernel("contact_find");
     contact_solve = options.kernel("contact_solve");
@@ -196,7 +197,7 @@ struct Spes {
   }
 
   dma::AddressSpace memory;
-  ls_sim::KernelImage match_2d, job_loop;
+  ls_sim::KernelImage match_2d, strain, job_loop;
   std::optional<ls_sim::KernelImage> contact_find, contact_solve;
   ppu::JobSystem jobs;
   ppu::SpeSolver<2> solver;

@@ -131,6 +131,7 @@ struct Simulation3d::State {
         job_loop(options.job_loop()),
         match(options.kernel("match")),
         match_tiles(options.kernel("match_tiles")),
+        strain(options.kernel("strain")),
         jobs(memory, options.spe_options(), job_loop),
         solver(make_solver(options.solver)),
         contacts(options.contacts.value_or(scene.contacts)),
@@ -181,7 +182,8 @@ struct Simulation3d::State {
 
   std::unique_ptr<ppu::SoftBodySolver<3>> make_solver(Solver wanted) {
     if (wanted == Solver::kReference) return std::make_unique<ppu::PpuSolver<3>>();
-    auto made = std::make_unique<ppu::SpeSolver<3>>(memory, jobs, ppu::MatchKernels<3>{match, match_tiles});
+    auto made =
+        std::make_unique<ppu::SpeSolver<3>>(memory, jobs, ppu::MatchKernels<3>{match, match_tiles, &strain});
     on_spes = made.get();
     return made;
   }
@@ -546,7 +548,7 @@ struct Simulation3d::State {
 
   const ls_sim::Timing* timing;  // null: nothing is timed
   dma::AddressSpace memory;
-  ls_sim::KernelImage job_loop, match, match_tiles;
+  ls_sim::KernelImage job_loop, match, match_tiles, strain;
   std::optional<ls_sim::KernelImage> skin;                         // none: the GPU does it
   std::optional<ls_sim::KernelImage> contact_find, contact_solve;  // none: the PPU does it
   ppu::JobSystem jobs;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -98,7 +99,11 @@ class SoftBody {
   /// Lets a plastic body flow: changes its rest shape. Call it in each time step after pull(). Every kPlasticSteps-th call looks at the
   /// strains. If the body may yield, another thread computes the flow, and the call kFlowSteps steps later applies the result, for which it
   /// may have to wait. Only such steps allocate memory.
-  void flow(float step);
+  /// @param stretch  what an SPE has seen of the positions and the rest shape as they are (PlasticFlow::stretch_of()): spares most looks,
+  ///                 and changes no result. Nothing: nobody has looked
+  void flow(float step, std::optional<float> stretch = {});
+  /// The next flow() looks at the strains.
+  bool will_look() const;
   static constexpr int kPlasticSteps = 4, kFlowSteps = 1;
 
   /// Sets this body, a piece, to the state that its particles had in the whole body: positions, velocities, material, rest shape,

@@ -48,6 +48,10 @@ class SoftBodySolver {
   virtual void inherit_state([[maybe_unused]] const SoftBody<kDimension>& whole,
                              [[maybe_unused]] const SoftBody<kDimension>& piece,
                              [[maybe_unused]] std::span<const std::uint32_t> particle_of) {}
+
+  /// Whether a face of the body may have broken before the step that finish() has ended last. A solver that has looked, and has seen that
+  /// none has, returns false and spares the caller the look. @pre nothing has moved the body since finish()
+  virtual bool may_break(const SoftBody<kDimension>& /*body*/) const { return true; }
 };
 
 /// The reference: steps the bodies one after the other by SoftBody::pull() and flow(), in finish().

@@ -2,7 +2,7 @@
 // Shape matching and damping of soft bodies on the SPEs, in two dimensions by the kernel `match_2d`, in three
 // by `match` and `match_tiles`.
 //
-//     SpeSolver<3> solver(memory, jobs, {match, match_tiles});   // the kernels' images
+//     SpeSolver<3> solver(memory, jobs, {match, match_tiles, &strain});   // the kernels' images
 //     BulletSoftBodies soft_bodies(world, solver);
 //
 //     kick():    positions, velocities --> main memory    one chain of jobs: bodies of one model share a plan
@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct MatchKernels;
 template <>
 struct MatchKernels<2> {
   const ls_sim::KernelImage& match_2d;  ///< steps bodies that fit a local store
+  /// Looks whether bodies yield or break. Null: the PPU does. Of the same flavour.
+  const ls_sim::KernelImage* strain = nullptr;
 };
 /// In three dimensions.
 template <>
@@ -33,13 +36,16 @@ struct MatchKernels<3> {
   const ls_sim::KernelImage& match;  ///< steps bodies that fit a local store
   /// Steps larger ones, in tiles. Of the same flavour as `match`, checked or not.
   const ls_sim::KernelImage& match_tiles;
+  /// Looks whether bodies yield or break. Null: the PPU does. Of the same flavour.
+  const ls_sim::KernelImage* strain = nullptr;
 };
 
 /// Steps soft bodies on SPEs. The result has the same bits for any number of SPEs. The rotations of regions live in
 /// main memory, not in the bodies: a body that is restored from a copy begins without rotations.
 ///
 /// The rest shapes of plastic bodies flow on the PPU, in finish(). A body with a plasticity has a plan of its own in main memory, which
-/// its SPE fetches for this body alone.
+/// its SPE fetches for this body alone. Whether a body yields or breaks SPEs look beside the step, in bodies of 128 to some 10,000
+/// particles; the PPU looks closely at those that may.
 ///
 /// One SPE steps a body that fits a local store, together with other bodies of its model. In three dimensions all SPEs
 /// together step a larger body, in tiles. The PPU steps what no SPE can step, while the SPEs step the other bodies: in
@@ -63,6 +69,7 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   void prepare(const std::shared_ptr<const SoftBodyModel<kDimension>>& model) override;
   void inherit_state(const Body& whole, const Body& piece,
                      std::span<const std::uint32_t> particle_of) override;
+  bool may_break(const Body& body) const override;
 
   /// How many bodies of the last kick(), awake or asleep, the PPU steps, because no SPE can. Checked kernels need a part
   /// of the local store for their checks, so with them the number may be larger.
@@ -84,12 +91,14 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   void take_over(Member& member, Member& old);
   void hand_over(Member& member);
   void follow_rest(Member& member);
+  void look_at(Member& member);
   void take_back(const Member& member);
 
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
-  JobImage match_, match_tiles_;  // the second in three dimensions only
-  bool checked_;                  // the kernels' flavour
+  JobImage match_, match_tiles_;    // the second in three dimensions only
+  std::optional<JobImage> strain_;  // none: the PPU looks whether bodies yield or break
+  bool checked_;                    // the kernels' flavour
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<Member> members_;  // in the order of kick()
   std::vector<Body*> left_to_ppu_;
