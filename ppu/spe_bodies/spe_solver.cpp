@@ -352,7 +352,8 @@ void SpeSolver<kDimension>::look_at(Member& member) {
   if (!group.looks)
     group.looks = std::make_shared<StrainLooks<kDimension>>(memory_, group.model, place_of, places,
                                                             group.members.size());
-  group.looks->add_job(*chain_, *strain_, member.number, body, positions);
+  if (const auto job = group.looks->job(member.number, body, positions))
+    chain_->add({.image = *strain_, .argp = *job});
 }
 
 template <int kDimension>

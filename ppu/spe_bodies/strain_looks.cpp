@@ -116,8 +116,8 @@ void StrainLooks<kDimension>::write_lengths(const Body& body) {
 }
 
 template <int kDimension>
-void StrainLooks<kDimension>::add_job(JobChain& chain, const JobImage& strain, std::size_t number,
-                                      const Body& body, dma::EffectiveAddress positions) {
+std::optional<dma::EffectiveAddress> StrainLooks<kDimension>::job(std::size_t number, const Body& body,
+                                                                  dma::EffectiveAddress positions) {
   SC_ASSERT(number < jobs_.size() && body.shared_model() == model_, "body {} of {}", number, jobs_.size());
   const std::optional<Fracture>& fracture = body.settings().fracture;
   const bool at_faces = fracture && !body.settings().plasticity && !body.has_own_rest();
@@ -144,8 +144,8 @@ void StrainLooks<kDimension>::add_job(JobChain& chain, const JobImage& strain, s
   }
   // A face that nobody looks at may have broken.
   results_[number] = {.edges = 0, .diagonals = 0, .faces = at_faces ? 0u : 1u, .pad = 0};
-  if (job.edge_groups + job.diagonal_groups + job.face_groups != 0)
-    chain.add({.image = strain, .argp = jobs_.ea(number)});
+  if (job.edge_groups + job.diagonal_groups + job.face_groups == 0) return std::nullopt;
+  return jobs_.ea(number);
 }
 
 template <int kDimension>

@@ -2,9 +2,10 @@
 // How much bodies of one model are strained, as the kernel `strain` finds it on the SPEs.
 //
 //     StrainLooks<3> looks(memory, model, places, bodies);
-//     looks.add_job(chain, strain, number, body, positions_ea);   // of bodies that break, or that are about to look whether they yield
-//     ...                                                         // the chain's jobs run
-//     if (!looks.may_break(number)) ...                           // nobody has to look closer
+//     if (const auto job = looks.job(number, body, positions_ea))   // of bodies that break, or that are about to look whether they yield
+//       chain.add({strain, *job});
+//     ...                                                           // the chain's jobs run
+//     if (!looks.may_break(number)) ...                             // nobody has to look closer
 //
 // A look on an SPE is a hint on the safe side. What yields and what breaks is decided by the PPU, as without SPEs.
 
@@ -16,13 +17,12 @@
 #include <vector>
 
 #include "softcell/dma/buffer.h"
-#include "softcell/jobs/job_system.h"
 #include "softcell/soft_bodies/soft_body.h"
 #include "strain_job.h"
 
 namespace softcell::ppu {
 
-/// Used by one thread at a time. While jobs are under way nothing may be asked or added.
+/// Used by one thread at a time. While jobs are under way nothing may be asked.
 /// @tparam kDimension  2 or 3
 template <int kDimension>
 class StrainLooks {
@@ -38,15 +38,15 @@ class StrainLooks {
   StrainLooks(dma::AddressSpace& memory, std::shared_ptr<const Model> model,
               std::span<const std::uint32_t> place_of, std::size_t places, std::size_t bodies);
 
-  /// Adds a job that looks at a body, if there is something to look for: at the distances in a plastic body whose next flow() looks at them,
-  /// which has a StrainLooks for itself; at the faces of another one that may break, if it has its model's rest shape.
+  /// The descriptor of a job that looks at a body, if there is something to look for: at the distances in a plastic body whose next flow()
+  /// looks at them, which has a StrainLooks for itself; at the faces of another one that may break, if it has its model's rest shape.
   /// @param positions  where they lie   @throws std::runtime_error  main memory is full.
-  void add_job(JobChain& chain, const JobImage& strain, std::size_t number, const Body& body,
-               dma::EffectiveAddress positions);
+  std::optional<dma::EffectiveAddress> job(std::size_t number, const Body& body,
+                                           dma::EffectiveAddress positions);
 
-  /// Of the body's last add_job(). False: no face has broken.
+  /// Of the body's last job(). False: no face has broken.
   bool may_break(std::size_t number) const;
-  /// Of the body's last add_job(): what SoftBody::flow() takes; nothing if distances were not looked at.
+  /// Of the body's last job(): what SoftBody::flow() takes; nothing if distances were not looked at.
   std::optional<float> stretch(std::size_t number) const;
 
  private:

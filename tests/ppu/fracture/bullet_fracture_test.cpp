@@ -390,6 +390,30 @@ TEST(BulletFracture, ABodyStaysWholeUntilItsPiecesAreDue) {
   EXPECT_EQ(tear(std::chrono::milliseconds(0)), tear(std::chrono::milliseconds(30)));
 }
 
+/// Bodies of more than 100 particles are tested in the next substep. Nobody who cuts before has to know.
+TEST(BulletFracture, ACutFindsWhatTheSubstepBeforeHasBroken) {
+  const auto ball_that_tears = [](ContactWorld& world) -> SoftBody<3>& {
+    SoftBody<3>& ball = world.bodies.add(brittle_ball(0.03f), {0, 0, 0});
+    for (std::size_t i = 0; i < ball.positions().size(); ++i)
+      ball.add_particle_velocity(i, Vector3f(ball.position(i).x() > 0.1f ? 3.0f : -3.0f, 0, 0));
+    return ball;
+  };
+  ContactWorld world({0, 0, 0}), other({0, 0, 0});
+  const SoftBody<3>&ball = ball_that_tears(world), &same = ball_that_tears(other);
+  int substeps = 0;
+  for (; substeps < 60 && !world.bodies.is_breaking(ball); ++substeps) run(world, 1);
+  ASSERT_LT(substeps, 60);
+  const Cut elsewhere = Cut::plane({9, 0, 0}, {1, 0, 0});
+  run(other, substeps - 1);
+  EXPECT_TRUE(other.bodies.cut(same, elsewhere).empty());
+  EXPECT_EQ(other.bodies.size(), 1u) << "it has not broken yet";
+  run(other, 1);
+  EXPECT_TRUE(other.bodies.cut(same, elsewhere).empty());
+  EXPECT_GT(other.bodies.size(), 1u);
+  run(world, 3);
+  EXPECT_EQ(world.bodies.size(), other.bodies.size());
+}
+
 TEST(BulletFracture, ACutThatBeginsHasItsPiecesLater) {
   ContactWorld world({0, 0, 0});
   SoftBodySettings jelly{.cell_size = 0.125f, .half_width = 1};

@@ -12,12 +12,14 @@
 #include "ppu/plans/match_plan_2d.h"
 #include "ppu/reference/shape_matching.h"
 #include "ppu/spe_bodies/job_records.h"
+#include "ppu/spe_bodies/strain_looks.h"
 #include "ppu/spe_bodies/tiled_memory.h"
 #include "skin_job.h"
 #include "softcell/base/assert.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/soft_bodies/lattice.h"
 #include "softcell/soft_bodies/shapes.h"
+#include "softcell/soft_bodies/soft_body.h"
 
 namespace softcell::tool {
 namespace {
@@ -163,6 +165,31 @@ void run_match_tiles(SampleRun& sample) {
   sample.worked(lattice.particles.size());
 }
 
+/// A body that may break, and one that looks whether it yields.
+void run_strain(SampleRun& sample) {
+  ppu::SoftBodySettings glass{.cell_size = 0.1f, .half_width = 2}, tin = glass;
+  glass.fracture = ppu::Fracture{.stretch = 0.3f, .turn = 0.8f};
+  tin.plasticity = ppu::Plasticity{.yield = 0.1f};
+  ppu::SoftBody<3> brittle(ppu::make_soft_body_model(block(), glass)),
+      plastic(ppu::make_soft_body_model(block(), tin));
+  while (!plastic.will_look()) plastic.flow(1.0f / 120);
+  const std::size_t particles = brittle.positions().size();
+  dma::Buffer<spu::SkinCorner> positions(sample.memory(), "positions", particles, kFloats);
+  for (std::size_t i = 0; i < particles; ++i) {
+    const Eigen::Vector3f x = bent(brittle.model().lattice().rest_position(i));
+    positions[i] = {x.x(), x.y(), x.z(), 0};
+  }
+  const auto look_at = [&](const ppu::SoftBody<3>& body) {
+    ppu::StrainLooks<3> looks(sample.memory(), body.shared_model(), {}, particles, 1);
+    const auto job = looks.job(0, body, positions.ea());
+    SC_ASSERT(job.has_value(), "nothing to look for in a body of {} particles", particles);
+    sample.run(*job, particles);
+  };
+  look_at(plastic);
+  sample.begin_timing();
+  look_at(brittle);
+}
+
 }  // namespace
 
 std::span<const KernelSample> body_samples() {
@@ -173,6 +200,7 @@ std::span<const KernelSample> body_samples() {
       {"match_2d", "particle", run_match_2d},
       {"match_tiles", "particle", run_match_tiles},
       {"skin", "vertex", run_skin},
+      {"strain", "particle", run_strain},
   };
   return kSamples;
 }
