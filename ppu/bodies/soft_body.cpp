@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -311,9 +312,14 @@ void SoftBody<kDimension>::flow(float step, std::optional<float> stretch) {
   steps_since_look_ = 0;
   if (!rest_) rest_ = std::make_unique<RestShape>(*model_);
   const Plasticity& plasticity = *settings_.plasticity;
-  const bool looked = !rest_->is_flowing;
-  if (looked && stretch && !rest_->flow->may_yield(*stretch, plasticity.yield)) return;
-  if (looked && !rest_->flow->may_yield(x_, plasticity.yield)) return;
+  // The thread that flows looks closely where this one need not.
+  bool looked = false;
+  if (!rest_->is_flowing) {
+    std::optional<bool> yields = stretch ? rest_->flow->may_yield(*stretch, plasticity.yield) : std::nullopt;
+    looked = !yields;
+    if (looked) yields = rest_->flow->may_yield(x_, plasticity.yield);
+    if (!*yields) return;
+  }
   // The body may have sprung back when the flow is done: with more, and in some ways it would go to and fro.
   constexpr double kMost = 0.7;
   const double share = std::min(kMost, damping_from_time_constant(1 / static_cast<double>(plasticity.creep),

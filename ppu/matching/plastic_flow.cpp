@@ -159,13 +159,14 @@ bool PlasticFlow<kDimension>::may_yield(std::span<const Vector> x, float yield) 
 }
 
 template <int kDimension>
-bool PlasticFlow<kDimension>::may_yield(float stretch, float yield) {
-  const float most = stretch + kSeenWithin;
-  if (!(most < std::max(yield, calm_))) return true;
-  if (calm_ == 0) return false;
-  if (!(most < kForget * calm_)) return stretch - kSeenWithin < kForget * calm_;
-  calm_ = 0;
-  return !(most < yield);
+std::optional<bool> PlasticFlow<kDimension>::may_yield(float stretch, float yield) {
+  const float most = stretch + kSeenWithin, least = stretch - kSeenWithin;
+  if (least > std::max(yield, calm_)) return true;
+  const bool forgets = most < kForget * calm_;
+  if (!forgets && calm_ > 0 && least < kForget * calm_) return std::nullopt;
+  if (!(most < (forgets ? yield : std::max(yield, calm_)))) return std::nullopt;
+  if (forgets) calm_ = 0;
+  return false;
 }
 
 template <int kDimension>

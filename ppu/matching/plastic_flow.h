@@ -29,6 +29,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,8 +56,8 @@ class PlasticFlow {
   bool may_yield(std::span<const Vector> x, float yield);
   /// The same by what somebody else has seen: spares most looks.
   /// @param stretch  stretch_of() what he saw, within kSeenWithin
-  /// @return false: may_yield() would return false, and what it would remember is remembered
-  bool may_yield(float stretch, float yield);
+  /// @return what may_yield() would return; if that is false, what it would remember is remembered. Nothing: somebody has to look closely
+  std::optional<bool> may_yield(float stretch, float yield);
   /// What counts of the lengths: the largest |now^2 / rest^2 - 1| of edges, and of diagonals.
   static float stretch_of(float edges, float diagonals);
   /// The rest shape that somebody else has is rounded, and so are his sums: of bodies of a hundred cells by 1e-5.

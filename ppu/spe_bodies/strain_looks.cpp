@@ -115,15 +115,23 @@ void StrainLooks<kDimension>::write_lengths(const Body& body) {
   rest_of_lengths_ = body.rest_revision();
 }
 
+/// A rest shape that has just changed is likely to change again: its distances are written at the second look at it.
+template <int kDimension>
+bool StrainLooks<kDimension>::has_lengths_of(const Body& body) {
+  if (rest_of_lengths_ == body.rest_revision()) return true;
+  const bool again = std::exchange(seen_rest_, body.rest_revision()) == body.rest_revision();
+  if (again) write_lengths(body);
+  return again;
+}
+
 template <int kDimension>
 std::optional<dma::EffectiveAddress> StrainLooks<kDimension>::job(std::size_t number, const Body& body,
                                                                   dma::EffectiveAddress positions) {
   SC_ASSERT(number < jobs_.size() && body.shared_model() == model_, "body {} of {}", number, jobs_.size());
   const std::optional<Fracture>& fracture = body.settings().fracture;
   const bool at_faces = fracture && !body.settings().plasticity && !body.has_own_rest();
-  const bool at_lengths = body.will_look();
+  const bool at_lengths = body.will_look() && has_lengths_of(body);
   if (at_faces && !has_faces_) write_faces();
-  if (at_lengths && rest_of_lengths_ != body.rest_revision()) write_lengths(body);
   spu::StrainJob& job = jobs_[number];
   job = {};
   job.positions_ea = positions.value;

@@ -39,7 +39,8 @@ class StrainLooks {
               std::span<const std::uint32_t> place_of, std::size_t places, std::size_t bodies);
 
   /// The descriptor of a job that looks at a body, if there is something to look for: at the distances in a plastic body whose next flow()
-  /// looks at them, which has a StrainLooks for itself; at the faces of another one that may break, if it has its model's rest shape.
+  /// looks at them, which has a StrainLooks for itself and has had its rest shape at the look before; at the faces of another one that may
+  /// break, if it has its model's rest shape.
   /// @param positions  where they lie   @throws std::runtime_error  main memory is full.
   std::optional<dma::EffectiveAddress> job(std::size_t number, const Body& body,
                                            dma::EffectiveAddress positions);
@@ -51,6 +52,7 @@ class StrainLooks {
 
  private:
   void write_faces();
+  bool has_lengths_of(const Body& body);
   void write_lengths(const Body& body);
   std::uint16_t place_of(std::uint32_t particle) const;
 
@@ -63,9 +65,10 @@ class StrainLooks {
   // Empty until a body wants them.
   dma::Buffer<spu::StrainFaces> faces_;
   dma::Buffer<spu::StrainLengths> lengths_;
-  bool has_faces_ = false;                        // written; there may be none
-  std::uint32_t edge_groups_ = 0;                 // of `lengths_`; the others are of diagonals
-  std::optional<std::uint32_t> rest_of_lengths_;  // SoftBody::rest_revision()
+  bool has_faces_ = false;         // written; there may be none
+  std::uint32_t edge_groups_ = 0;  // of `lengths_`; the others are of diagonals
+  // SoftBody::rest_revision() of `lengths_`, and of the last look.
+  std::optional<std::uint32_t> rest_of_lengths_, seen_rest_;
 };
 
 extern template class StrainLooks<2>;
