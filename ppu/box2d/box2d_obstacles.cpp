@@ -42,12 +42,6 @@ Ends ends_of(const b2Fixture& fixture, int child) {
   return {edge.m_vertex1, edge.m_vertex2};
 }
 
-/// Whether a place in the frame of an edge's body lies to the left of the edge.
-bool is_left_of(const b2Vec2& place, const b2Fixture& fixture, int child) {
-  const Ends ends = ends_of(fixture, child);
-  return b2Cross(ends.to - ends.from, place - ends.from) > 0;
-}
-
 /// Of a polygon, in its body's frame; counterclockwise, so that its inside lies to the left.
 Ends face_of(const b2PolygonShape& polygon, int face) {
   return {polygon.m_vertices[face], polygon.m_vertices[(face + 1) % polygon.m_count]};
@@ -134,17 +128,15 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
   world_->QueryAABB(&near, query);
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-  for (const Found& found : found_) indices.push_back(obstacle_of(found, side_of(found, box, middle)));
+  for (const Found& found : found_) indices.push_back(obstacle_of(found, face_before(found, box, middle)));
 }
 
-/// Of an edge, the side that the middle is on; of a thin polygon, the face that the body as a whole is in front of.
-int Box2dObstacles::side_of(const Found& found, const Bounds<3>& box, const Vector2f& middle) const {
+/// Of a thin polygon, the face that the body as a whole is in front of.
+int Box2dObstacles::face_before(const Found& found, const Bounds<3>& box, const Vector2f& middle) const {
   const b2Fixture& fixture = *found.there;
+  if (fixture.GetType() != b2Shape::e_polygon || wanted_ == Fixtures::kSensors) return kWhole;
   const b2Transform& pose = fixture.GetBody()->GetTransform();
   const b2Vec2 at = b2MulT(pose, b2Vec2(middle.x(), middle.y()));
-  if (fixture.GetType() == b2Shape::e_edge || fixture.GetType() == b2Shape::e_chain)
-    return is_left_of(at, fixture, found.child) ? kLeft : kRight;
-  if (fixture.GetType() != b2Shape::e_polygon || wanted_ == Fixtures::kSensors) return kWhole;
   const auto& polygon = static_cast<const b2PolygonShape&>(*fixture.GetShape());
   for (int face = 0; face < polygon.m_count; ++face) {
     const Ends ends = face_of(polygon, face);
@@ -194,10 +186,10 @@ Box2dObstacles::Shape& Box2dObstacles::next_shape() {
   return shape;
 }
 
-std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int side) {
+std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int face) {
   const b2Fixture& fixture = *found.there;
   const auto known = std::ranges::find_if(known_, [&](const Known& one) {
-    return one.fixture == &fixture && one.child == found.child && one.side == side;
+    return one.fixture == &fixture && one.child == found.child && one.face == face;
   });
   if (known != known_.end()) return known->obstacle;
   const b2Transform& pose = fixture.GetBody()->GetTransform();
@@ -212,14 +204,15 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int side) {
       add_circle(fixture, obstacle, shape);
       break;
     case b2Shape::e_polygon:
-      if (side == kWhole)
+      if (face == kWhole)
         add_polygon(fixture, obstacle, shape);
       else
-        add_face(fixture, side, obstacle, shape);
+        add_face(fixture, face, obstacle, shape);
       break;
     default: {
       const Ends ends = ends_of(fixture, found.child);
-      add_wall(ends.from, ends.to, side == kLeft, obstacle, shape);
+      add_wall(ends.from, ends.to, obstacle, shape);
+      obstacle.part = found.fixture;  // edges of a chain are wound alike
       break;
     }
   }
@@ -229,7 +222,7 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int side) {
   const auto index = static_cast<std::uint32_t>(obstacles_.size());
   obstacles_.push_back(obstacle);
   fixtures_.push_back(found.there);
-  known_.push_back({&fixture, found.child, side, index});
+  known_.push_back({&fixture, found.child, face, index});
   return index;
 }
 
@@ -256,15 +249,13 @@ void Box2dObstacles::add_polygon(const b2Fixture& fixture, Obstacle& obstacle, S
 /// Its outside is on the right of the way round.
 void Box2dObstacles::add_face(const b2Fixture& fixture, int face, Obstacle& obstacle, Shape& shape) const {
   const Ends ends = face_of(static_cast<const b2PolygonShape&>(*fixture.GetShape()), face);
-  add_wall(ends.from, ends.to, false, obstacle, shape);
+  add_wall(ends.from, ends.to, obstacle, shape);
+  obstacle.faces_bodies = true;
 }
 
-/// As high as the layer and as much again. Its front is on the right of the way from one end to the other, or on the left if it is turned.
-void Box2dObstacles::add_wall(const b2Vec2& one, const b2Vec2& other, bool turned, Obstacle& obstacle,
-                              Shape& shape) const {
-  const b2Vec2 &from = turned ? other : one, &to = turned ? one : other;
+/// As high as the layer and as much again. Its front is on the right of the way from one end to the other.
+void Box2dObstacles::add_wall(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const {
   obstacle.kind = ObstacleKind::kTriangles;
-  obstacle.faces_bodies = true;
   const float high = 2 * layer_;
   shape.triangles.push_back({lifted(from, -high), lifted(to, -high), lifted(to, high)});
   shape.triangles.push_back({lifted(from, -high), lifted(to, high), lifted(from, high)});

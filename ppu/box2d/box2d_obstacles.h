@@ -17,8 +17,8 @@
 
 namespace softcell::ppu {
 
-/// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains have two sides: of each of them
-/// a body is kept on the side where its middle is. So is a body in front of a face of a thin polygon: what is pressed into such a polygon
+/// The fixtures of a world that are near some boxes: circles, polygons, edges and chains. Edges and chains have two sides, and keep out what
+/// comes to either of them. A body in front of a face of a thin polygon has that face only before it: what is pressed into such a polygon
 /// would leave it on the other side. Used by one thread. Allocates when there are more of them than ever before.
 class Box2dObstacles {
  public:
@@ -29,7 +29,7 @@ class Box2dObstacles {
   void begin(b2World& world, float step, float layer);
 
   /// Appends the indices of all obstacles in a box, those of one body behind each other, bodies in the order in which the world got them.
-  /// @param middle  of the body in the box: says on which side of edges it is
+  /// @param middle  of the body in the box: says which face of a thin polygon is before it
   void add_near(const Bounds<3>& box, const Eigen::Vector2f& middle, const CollisionFilter& filter,
                 std::vector<std::uint32_t>& indices);
 
@@ -54,8 +54,7 @@ class Box2dObstacles {
   void apply();
 
  private:
-  /// From the first end of an edge to the second. kWhole: all of a circle or polygon.
-  static constexpr int kWhole = -1, kRight = 0, kLeft = 1;
+  static constexpr int kWhole = -1;      // no face, but all of the fixture
   static constexpr float kThin = 0.25f;  // cells: as far as something may be pressed through a wall
   using Triangle = std::array<Eigen::Vector3f, 3>;
   /// The lists of one obstacle.
@@ -75,18 +74,18 @@ class Box2dObstacles {
   struct Known {
     const b2Fixture* fixture;
     int child;
-    int side;  // of an edge kLeft or kRight, of a polygon the number of a face or kWhole
+    int face;  // of a polygon, or kWhole
     std::uint32_t obstacle;
   };
   class Collector;
 
   void number_bodies();
-  int side_of(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;
-  std::uint32_t obstacle_of(const Found& found, int side);
+  int face_before(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;
+  std::uint32_t obstacle_of(const Found& found, int face);
   static void add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   static void add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   void add_face(const b2Fixture& fixture, int face, Obstacle& obstacle, Shape& shape) const;
-  void add_wall(const b2Vec2& one, const b2Vec2& other, bool turned, Obstacle& obstacle, Shape& shape) const;
+  void add_wall(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const;
   Shape& next_shape();
 
   Fixtures wanted_;

@@ -56,6 +56,7 @@ ContactModel::ContactModel(const FlatLayer& layer)
       margin_cells_(layer.margin_cells().begin(), layer.margin_cells().end()) {
   weigh();
   place_touch_points();
+  inner_places = find_inner_places(layer);
 }
 
 /// Nothing holds on to a particle without a mass, so that any number will do for it.

@@ -81,7 +81,7 @@ class ContactModel {
   ContactSurface surface;
   std::vector<TouchPoint> touch_points;      ///< ascending by cell
   std::vector<std::uint32_t> first_of_cell;  ///< of each cell: its first touch point; and their number
-  /// Of each cell: a place well inside of the body near it (inner_places.h). None in two dimensions.
+  /// Of each cell: a place well inside of the body near it (inner_places.h).
   std::vector<CellPlace> inner_places;
   std::vector<float> inverse_masses;       ///< 1/kg, of each particle
   std::vector<float> root_masses;          ///< sqrt(kg), of each particle

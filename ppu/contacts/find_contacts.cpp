@@ -175,7 +175,7 @@ class ObstacleContacts {
       const float side = side_of(near);
       seen += side > clear ? 1 : side < -clear ? -1 : 0;
     }
-    return cells_.side_of(rigid_.number, seen);
+    return cells_.side_of(rigid_.number, obstacle_.part, seen);
   }
 
   /// Points meet the triangles near their way only.
@@ -286,10 +286,11 @@ class ObstacleContacts {
 
 }  // namespace
 
-float EndCells::side_of(std::uint32_t rigid, int seen) {
+float EndCells::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
   constexpr int kMostDoubts = 12;
-  auto known = std::ranges::find(sides_, rigid, &Side::rigid);
-  if (known == sides_.end()) known = sides_.insert(known, Side{rigid, true, 0, 0});
+  auto known = std::ranges::find_if(
+      sides_, [&](const Side& side) { return side.rigid == rigid && side.part == part; });
+  if (known == sides_.end()) known = sides_.insert(known, Side{rigid, part, true, 0, 0});
   known->is_near = true;
   const int side = seen > 0 ? 1 : seen < 0 ? -1 : 0;
   if (side * known->side < 0)

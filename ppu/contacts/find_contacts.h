@@ -46,8 +46,9 @@ class EndCells {
 
   /// On which side of a rigid body's triangles the body is: 1 in front, -1 behind. As long as it is near them it stays there, unless the
   /// other side is seen again and again: pressed flat, a body may look as if it were on the other side.
-  /// @param rigid  ContactRigid::number   @param seen  above 0 in front, below 0 behind; 0 if that is not clear now
-  float side_of(std::uint32_t rigid, int seen);
+  /// @param rigid  ContactRigid::number   @param part  Obstacle::part
+  /// @param seen  above 0 in front, below 0 behind; 0 if that is not clear now
+  float side_of(std::uint32_t rigid, std::uint32_t part, int seen);
 
   /// A touch point and a triangle that it may meet; in the obstacle's frame.
   struct PointAtTriangle {
@@ -61,7 +62,7 @@ class EndCells {
 
  private:
   struct Side {
-    std::uint32_t rigid;
+    std::uint32_t rigid, part;
     bool is_near;  // in this substep
     int side;      // 0: not known
     int doubts;    // substeps one after the other in which it looked like the other side

@@ -16,16 +16,23 @@ constexpr double kFaceTolerance = 1e-4;
 }  // namespace
 
 template <int kDimension>
-std::optional<std::uint32_t> find_cell(const Lattice<kDimension>& lattice,
-                                       const typename Lattice<kDimension>::GridIndex& index) {
+std::optional<std::uint32_t> find_cell(std::span<const Eigen::Vector<int, kDimension>> cells,
+                                       const Eigen::Vector<int, kDimension>& index) {
   const auto before = [](const auto& a, const auto& b) {
     return std::lexicographical_compare(a.data(), a.data() + kDimension, b.data(), b.data() + kDimension);
   };
-  const auto found = std::lower_bound(lattice.cells.begin(), lattice.cells.end(), index, before);
-  if (found == lattice.cells.end() || *found != index) return std::nullopt;
-  return static_cast<std::uint32_t>(found - lattice.cells.begin());
+  const auto found = std::lower_bound(cells.begin(), cells.end(), index, before);
+  if (found == cells.end() || *found != index) return std::nullopt;
+  return static_cast<std::uint32_t>(found - cells.begin());
 }
 
+template <int kDimension>
+std::optional<std::uint32_t> find_cell(const Lattice<kDimension>& lattice,
+                                       const typename Lattice<kDimension>::GridIndex& index) {
+  return find_cell<kDimension>(std::span(lattice.cells), index);
+}
+
+template std::optional<std::uint32_t> find_cell<3>(std::span<const Eigen::Vector3i>, const Eigen::Vector3i&);
 template std::optional<std::uint32_t> find_cell(const Lattice<2>&, const Eigen::Vector2i&);
 template std::optional<std::uint32_t> find_cell(const Lattice<3>&, const Eigen::Vector3i&);
 

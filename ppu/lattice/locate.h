@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "softcell/soft_bodies/lattice.h"
 
@@ -14,6 +15,10 @@ struct PlaceInCell {
   Eigen::Vector3d xi{0, 0, 0};  ///< 0..1 along each edge
 };
 
+/// Which of these cells, ascending as a lattice has them, has this low corner.
+template <int kDimension>
+std::optional<std::uint32_t> find_cell(std::span<const Eigen::Vector<int, kDimension>> cells,
+                                       const Eigen::Vector<int, kDimension>& index);
 /// The cell with this low corner.
 template <int kDimension>
 std::optional<std::uint32_t> find_cell(const Lattice<kDimension>& lattice,

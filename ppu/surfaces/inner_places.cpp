@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "ppu/lattice/locate.h"
 
@@ -10,8 +11,11 @@ namespace softcell::ppu {
 
 using Eigen::Vector3i;
 
-std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice) {
-  std::vector<CellPlace> places(lattice.cells.size());
+namespace {
+
+/// @param cells  the first ones of the surface
+std::vector<CellPlace> deepest_nodes(const ContactSurface& surface, std::span<const Vector3i> cells) {
+  std::vector<CellPlace> places(cells.size());
   for (std::uint32_t cell = 0; cell < places.size(); ++cell) {
     float deepest = std::numeric_limits<float>::max();
     const auto look_at = [&](std::uint32_t other) {
@@ -24,9 +28,26 @@ std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const La
     look_at(cell);
     for (int d = 0; d < 6; ++d) {
       const Vector3i beside = (d < 3 ? 1 : -1) * Vector3i(Vector3i::Unit(d % 3));
-      if (const auto other = find_cell(lattice, Vector3i(lattice.cells[cell] + beside))) look_at(*other);
+      if (const auto other = find_cell<3>(cells, cells[cell] + beside)) look_at(*other);
     }
   }
+  return places;
+}
+
+}  // namespace
+
+std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice) {
+  return deepest_nodes(surface, lattice.cells);
+}
+
+std::vector<CellPlace> find_inner_places(const FlatLayer& layer) {
+  const std::span<const MarginCell> cells = layer.margin_cells();
+  std::uint32_t own = 0;
+  while (own < cells.size() && cells[own].beside == own) ++own;
+  std::vector<CellPlace> places =
+      deepest_nodes(layer.surface(), std::span(layer.lattice()->cells).first(own));
+  for (std::uint32_t margin = own; margin < cells.size(); ++margin)
+    places.push_back(CellPlace(places[cells[margin].beside]));
   return places;
 }
 

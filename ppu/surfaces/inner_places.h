@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ppu/surfaces/contact_surface.h"
+#include "ppu/surfaces/flat_layer.h"
 #include "softcell/soft_bodies/lattice.h"
 
 namespace softcell::ppu {
@@ -18,5 +19,7 @@ struct CellPlace {
 
 /// Of each cell the deepest of the field's nodes in it and in the cells beside it.
 std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice);
+/// Of a flat layer: in the body's own cells. What a margin cell has is that of the cell beside which it moves.
+std::vector<CellPlace> find_inner_places(const FlatLayer& layer);
 
 }  // namespace softcell::ppu

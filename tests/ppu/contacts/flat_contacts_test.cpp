@@ -6,6 +6,7 @@
 #include <box2d/b2_edge_shape.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -202,20 +203,20 @@ TEST_P(FlatContacts, AThinThingStaysOutside) {
 
 /// Edges and chains have no thickness, and the polygon a tenth of a cell. At 100 m/s a body of four cells is pressed flat in one step.
 TEST_P(FlatContacts, NothingPassesAThinWall) {
-  for (int kind = 0; kind < 3; ++kind) {
+  for (int kind = 0; kind < 4; ++kind) {
     const auto w = world(0);
     b2BodyDef definition;
     b2Body* const wall = w->box2d.CreateBody(&definition);
     b2EdgeShape edge;
-    edge.SetTwoSided({2, -4}, {2, 4});
+    edge.SetTwoSided({2, kind == 3 ? 4.0f : -4.0f}, {2, kind == 3 ? -4.0f : 4.0f});
     b2ChainShape chain;
     const b2Vec2 corners[] = {{2, -4}, {2, -1}, {2, 1}, {2, 4}};
     chain.CreateChain(corners, 4, {2, -5}, {2, 5});
     b2PolygonShape thin;
     thin.SetAsBox(0.0125f, 4, {2, 0}, 0);
-    wall->CreateFixture(kind == 0   ? static_cast<b2Shape*>(&edge)
-                        : kind == 1 ? static_cast<b2Shape*>(&chain)
-                                    : &thin,
+    wall->CreateFixture(kind == 1   ? static_cast<b2Shape*>(&chain)
+                        : kind == 2 ? static_cast<b2Shape*>(&thin)
+                                    : &edge,
                         0);
     for (const float speed : {5.0f, 20.0f, 50.0f, 100.0f}) {
       SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, calm()), {0, -0.5f});
@@ -227,6 +228,39 @@ TEST_P(FlatContacts, NothingPassesAThinWall) {
       }
       EXPECT_LT(body.linear_momentum().x(), 0) << "it has not come to the wall";
       w->soft.remove(body);
+    }
+  }
+}
+
+/// Its middle comes below the edge long before its last part has left it.
+TEST_P(FlatContacts, WhatHangsOverTheEndOfAnEdgeSlidesOff) {
+  for (const bool is_chain : {false, true}) {
+    for (const bool turned : {false, true}) {
+      for (const float start : {0.1f, 0.3f, 0.6f}) {
+        const auto w = world();
+        b2BodyDef definition;
+        b2Body* const ledge = w->box2d.CreateBody(&definition);
+        std::array<b2Vec2, 4> corners{b2Vec2{-6, 0}, {-4, 0}, {-2, 0}, {0, 0}};
+        if (turned) std::reverse(corners.begin(), corners.end());
+        b2EdgeShape edge;
+        edge.SetTwoSided(corners.front(), corners.back());
+        b2ChainShape chain;
+        const float beyond = turned ? 1.0f : -1.0f;
+        chain.CreateChain(corners.data(), 4, corners.front() + b2Vec2(beyond, 0),
+                          corners.back() - b2Vec2(beyond, 0));
+        ledge->CreateFixture(is_chain ? static_cast<b2Shape*>(&chain) : &edge, 0)->SetFriction(0.4f);
+        SoftBody<2>& bar = w->soft.add(rectangle_model({16, 2}, calm()), {start, 0.01f});
+        const float size = bar.settings().cell_size;
+        for (int i = 0; i < 300; ++i) {
+          const std::vector<Vector2f> before(bar.positions().begin(), bar.positions().end());
+          w->soft.step(kStep2d);
+          for (std::size_t p = 0; p < before.size(); ++p)
+            ASSERT_FALSE(before[p].x() < -0.5f * size && before[p].y() > 0 &&
+                         bar.position(p).y() < -0.1f * size)
+                << "particle " << p << " goes through the edge after " << i;
+        }
+        EXPECT_LT(bar.centre_of_mass().y(), -5) << is_chain << turned << " from " << start;
+      }
     }
   }
 }
