@@ -99,8 +99,8 @@ class SoftBody {
   /// Lets a plastic body flow: changes its rest shape. Call it in each time step after pull(). Every kPlasticSteps-th call looks at the
   /// strains. If the body may yield, another thread computes the flow, and the call kFlowSteps steps later applies the result, for which it
   /// may have to wait. Only such steps allocate memory.
-  /// @param stretch  what an SPE has seen of the positions and the rest shape as they are (PlasticFlow::stretch_of()): spares most looks,
-  ///                 and changes no result. Nothing: nobody has looked
+  /// @param stretch  how much distances differ from those of the rest shape, as the SPEs' solver has seen it: spares most looks, and changes
+  ///                 no result. Nothing: nobody has looked
   void flow(float step, std::optional<float> stretch = {});
   /// The next flow() looks at the strains.
   bool will_look() const;
