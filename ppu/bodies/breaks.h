@@ -83,8 +83,9 @@ class Breaks {
   /// In the next substep: tests those that wait for it. @param solver  a StepAhead, which has ended its part
   template <class Solver, class Maker>
   void test_late(const Solver& solver, Maker& maker) {
-    for (const Strained& one : std::exchange(to_test_, {}))
+    for (const Strained& one : to_test_)
       if (!one.is_void() && solver.may_break(one.body->soft())) test_late(*one.body, maker);
+    to_test_.clear();
   }
   /// Between substeps: whether a body is breaking. If it waits for its test, it is tested now.
   template <class Maker>

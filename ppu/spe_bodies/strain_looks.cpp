@@ -10,14 +10,13 @@
 #include "ppu/spe_bodies/job_records.h"
 #include "ppu/spe_bodies/match_orchestration.h"
 #include "softcell/base/assert.h"
+#include "sum_list_job.h"
 
 namespace softcell::ppu {
 namespace {
 
 /// A look at fewer takes less time than handing it over, which are some microseconds.
 constexpr std::size_t kLeastParticles = 128;
-
-std::size_t groups_of_four(std::size_t count) { return (count + 3) / 4; }
 
 /// Of a face across `axis`: corner k of its four, in a cell on that side. In two dimensions corners are there twice.
 template <int kDimension>
@@ -65,7 +64,7 @@ void StrainLooks<kDimension>::write_faces() {
   for (std::uint32_t f = 0; f < cracks.faces.size(); ++f)
     if (!cracks.is_broken[f] && std::isfinite(cracks.strength[f])) breakable.push_back(f);
   if (breakable.empty()) return;
-  faces_ = {memory_, "strain faces", groups_of_four(breakable.size()),
+  faces_ = {memory_, "strain faces", spu::groups_of(static_cast<std::uint32_t>(breakable.size())),
             of_record(kStrainFacesRecord, kSpesOnlyRead)};
   const auto& corners = model_->lattice().corners;
   for (std::size_t i = 0; i < breakable.size(); ++i) {
@@ -88,10 +87,11 @@ void StrainLooks<kDimension>::write_faces() {
 template <int kDimension>
 void StrainLooks<kDimension>::write_lengths(const Body& body) {
   const RestLattice<kDimension>& lattice = *model_->rest_lattice();
-  const std::size_t edges = lattice.edges().size();
-  edge_groups_ = static_cast<std::uint32_t>(groups_of_four(edges));
+  const auto edges = static_cast<std::uint32_t>(lattice.edges().size()),
+             lengths = static_cast<std::uint32_t>(lattice.lengths());
+  edge_groups_ = spu::groups_of(edges);
   if (lengths_.size() == 0)
-    lengths_ = {memory_, "strain lengths", edge_groups_ + groups_of_four(lattice.lengths() - edges),
+    lengths_ = {memory_, "strain lengths", edge_groups_ + spu::groups_of(lengths - edges),
                 of_record(kStrainLengthsRecord, kSpesOnlyRead)};
   const std::span<const typename Body::Vector> own = body.own_rest();
   const auto rest = [&](std::uint32_t particle) {
@@ -103,14 +103,14 @@ void StrainLooks<kDimension>::write_lengths(const Body& body) {
     group.to[place % 4] = place_of(b);
     group.inverse_square[place % 4] = inverse_square;
   };
-  std::size_t n = 0;
+  std::uint32_t n = 0;
   lattice.each_length([&](std::uint32_t a, std::uint32_t b) {
     const float inverse_square = 1 / (rest(b) - rest(a)).squaredNorm();
-    const std::size_t place = n < edges ? n : std::size_t{edge_groups_} * 4 + (n - edges);
+    const std::uint32_t place = n < edges ? n : 4 * edge_groups_ + (n - edges);
     ++n;
-    const bool is_last = n == edges || n == lattice.lengths();
-    const std::size_t end = is_last ? groups_of_four(place + 1) * 4 : place + 1;
-    for (std::size_t i = place; i < end; ++i) write(i, a, b, inverse_square);
+    const bool is_last = n == edges || n == lengths;
+    const std::uint32_t end = is_last ? 4 * spu::groups_of(place + 1) : place + 1;
+    for (std::uint32_t i = place; i < end; ++i) write(i, a, b, inverse_square);
   });
   rest_of_lengths_ = body.rest_revision();
 }
