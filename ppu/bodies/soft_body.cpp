@@ -7,12 +7,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ppu/bodies/lost_momenta.h"
+#include "ppu/bodies/turning.h"
 #include "ppu/bodies/workshop.h"
 #include "ppu/matching/plastic_flow.h"
 #include "ppu/matching/rotation.h"
 #include "ppu/matching/stiffness.h"
 #include "ppu/numbers/box_around.h"
-#include "ppu/numbers/cross.h"
 #include "ppu/reference/shape_matching.h"
 #include "softcell/base/assert.h"
 
@@ -21,29 +22,9 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using turning::cross, turning::inertia_of, turning::inverse, turning::to_float;
 
-// What turns, in two dimensions.
-
-using ppu::cross;
-Eigen::Vector2f cross(float omega, const Eigen::Vector2f& r) {
-  return omega * Eigen::Vector2f(-r.y(), r.x());
-}
-double inertia_of(const Matrix2d& second_moment) { return second_moment.trace(); }
-double inverse(double inertia) { return 1 / inertia; }
-float to_float(double axial) { return static_cast<float>(axial); }
 Matrix2d matrix_of(const Eigen::Rotation2Df& rotation) { return rotation.cast<double>().toRotationMatrix(); }
-
-// And in three.
-
-Vector3d cross(const Vector3d& a, const Vector3d& b) { return a.cross(b); }
-Eigen::Vector3f cross(const Eigen::Vector3f& omega, const Eigen::Vector3f& r) { return omega.cross(r); }
-Matrix3d inertia_of(const Matrix3d& second_moment) {
-  return second_moment.trace() * Matrix3d::Identity() - second_moment;
-}
-Matrix3d inverse(const Matrix3d& inertia) { return inertia.inverse(); }
-Eigen::Vector3f to_float(const Vector3d& axial) { return axial.cast<float>(); }
 Matrix3d matrix_of(const Eigen::Quaternionf& rotation) {
   SC_ASSERT(rotation.norm() > 0, "a quaternion of length {} is no rotation", rotation.norm());
   return rotation.normalized().toRotationMatrix().cast<double>();
@@ -57,7 +38,7 @@ struct Motion {
 
   Vector centre = Vector::Zero();                        // metres
   Vector velocity = Vector::Zero();                      // m/s, of the centre
-  decltype(cross(Vector(), Vector())) spin;              // kg m^2/s, angular momentum about the centre
+  turning::Axial<kDimension> spin;                       // kg m^2/s, angular momentum about the centre
   decltype(inertia_of(std::declval<Matrix>())) inertia;  // kg m^2, about the centre
 };
 
@@ -175,8 +156,10 @@ SoftBody<kDimension>::SoftBody(std::shared_ptr<const SoftBodyModel<kDimension>> 
       settings_(model_->settings()),
       x_(model_->particles()),
       v_(model_->particles(), Vector::Zero()),
+      pulled_(v_),
       padded_(kDimension == 3 ? model_->particles() : 0),
-      matcher_(std::make_unique<ShapeMatcher<float, kDimension>>(model_->plan())) {
+      matcher_(std::make_unique<ShapeMatcher<float, kDimension>>(model_->plan())),
+      lost_(std::make_unique<LostMomenta<kDimension>>()) {
   place_at_rest(position);
 }
 
@@ -186,8 +169,10 @@ SoftBody<kDimension>::SoftBody(const SoftBody& other)
       settings_(other.settings_),
       x_(other.x_),
       v_(other.v_),
+      pulled_(other.pulled_),
       padded_(other.padded_),
       matcher_(std::make_unique<ShapeMatcher<float, kDimension>>(*other.matcher_)),
+      lost_(std::make_unique<LostMomenta<kDimension>>(*other.lost_)),
       revision_(other.revision_),
       resets_(other.resets_),
       rest_revision_(other.rest_revision_),
@@ -202,8 +187,10 @@ SoftBody<kDimension>& SoftBody<kDimension>::operator=(const SoftBody& other) {
   settings_ = other.settings_;
   x_ = other.x_;
   v_ = other.v_;
+  pulled_.resize(v_.size());
   padded_ = other.padded_;
   *matcher_ = *other.matcher_;
+  *lost_ = *other.lost_;
   set_rest(other.rest_ ? std::make_unique<RestShape>(*other.rest_) : nullptr);
   steps_since_look_ = other.steps_since_look_;
   asleep_ = other.asleep_;
@@ -223,8 +210,10 @@ SoftBody<kDimension>& SoftBody<kDimension>::operator=(SoftBody&& other) noexcept
   std::swap(settings_, other.settings_);
   std::swap(x_, other.x_);
   std::swap(v_, other.v_);
+  std::swap(pulled_, other.pulled_);
   std::swap(padded_, other.padded_);
   std::swap(matcher_, other.matcher_);
+  std::swap(lost_, other.lost_);
   std::swap(rest_, other.rest_);
   std::swap(steps_since_look_, other.steps_since_look_);
   std::swap(asleep_, other.asleep_);
@@ -242,6 +231,13 @@ template <int kDimension>
 void SoftBody<kDimension>::place_at_rest(const Vector& position) {
   for (std::size_t i = 0; i < x_.size(); ++i)
     set_particle(i, model_->lattice().rest_position(i) + position, Vector::Zero());
+  lost_->forget();
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::set_asleep(bool asleep) {
+  asleep_ = asleep;
+  if (asleep) lost_->forget();  // couplings stop what falls asleep
 }
 
 template <int kDimension>
@@ -369,7 +365,16 @@ void SoftBody<kDimension>::set_position(std::size_t particle, const Vector& posi
 
 template <int kDimension>
 void SoftBody<kDimension>::pull(float step) {
-  matcher_->step_velocities(x_, v_, settings_.alpha_of_step(step), step, settings_.damping_of_step(step));
+  std::ranges::copy(v_, pulled_.begin());
+  matcher_->step_velocities(x_, pulled_, settings_.alpha_of_step(step), step,
+                            settings_.damping_of_step(step));
+  end_pull();
+}
+
+template <int kDimension>
+void SoftBody<kDimension>::end_pull() {
+  lost_->count(x_, model_->masses(), v_, pulled_);
+  v_.swap(pulled_);
 }
 
 template <int kDimension>
@@ -424,6 +429,7 @@ template <int kDimension>
 void SoftBody<kDimension>::translate(const Vector& by) {
   SC_ASSERT(by.allFinite(), "a body of {} particles is moved to infinity or NaN", x_.size());
   for (std::size_t i = 0; i < x_.size(); ++i) set_position(i, x_[i] + by);
+  lost_->forget();  // it was about a place
   ++revision_;
 }
 
@@ -449,6 +455,7 @@ void SoftBody<kDimension>::move_without_force(const Rotation& rotation, const Ve
     set_particle(i, x.template cast<float>(), v.template cast<float>());
   }
   forget_rotations();
+  lost_->forget();
   ++revision_;
 }
 
@@ -466,6 +473,7 @@ void SoftBody<kDimension>::reset_deformation() {
   // at least a cell in each direction, so its inertia can be inverted.
   const decltype(motion.spin) omega = inverse(motion_of(*this).inertia) * motion.spin;
   forget_rotations();
+  lost_->forget();
   add_angular_velocity(to_float(omega));
 }
 

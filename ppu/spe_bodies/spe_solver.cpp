@@ -437,13 +437,13 @@ void SpeSolver<kDimension>::take_back(const Member& member) {
   Body& body = *member.body;
   if (member.group->bodies) {
     const auto velocities = member.group->bodies->velocities(member.number);
-    for (std::size_t i = 0; i < velocities.size(); ++i) body.set_velocity(i, Kernel::read(velocities[i]));
+    body.take_pulled([&](std::size_t i) { return Kernel::read(velocities[i]); });
     return;
   }
   if constexpr (kDimension == 3) {
     const std::span<const std::uint32_t> place_of = member.group->plans->tiles->place_of();
-    for (std::size_t i = 0; i < place_of.size(); ++i)
-      body.set_velocity(i, Kernel::read(member.tiled->velocities()[place_of[i]]));
+    const auto velocities = member.tiled->velocities();
+    body.take_pulled([&](std::size_t i) { return Kernel::read(velocities[place_of[i]]); });
   }
 }
 

@@ -19,6 +19,8 @@ namespace softcell::ppu {
 
 template <typename Real, int kDimension>
 class ShapeMatcher;
+template <int kDimension>
+class LostMomenta;
 
 /// Rotations and angular velocities in two dimensions and three.
 template <int kDimension>
@@ -78,9 +80,17 @@ class SoftBody {
 
   // For an engine's coupling, which calls these in this order in each time step of `step` seconds.
 
-  /// Shape matching and damping: changes velocities, conserves momentum, moves nothing.
+  /// Shape matching and damping: changes velocities, conserves momentum and angular momentum, moves nothing.
   /// @throws std::runtime_error  a particle is NaN or infinite; nothing has changed then.
   void pull(float step);
+  /// In place of pull(), for a solver that has computed what shape matching and damping make of positions() and velocities(). What it
+  /// has lost of both momenta by rounding comes back.
+  /// @param velocity_of  returns particle i's velocity in m/s for each i
+  template <typename VelocityOf>
+  void take_pulled(const VelocityOf& velocity_of) {
+    for (std::size_t i = 0; i < pulled_.size(); ++i) pulled_[i] = velocity_of(i);
+    end_pull();
+  }
   /// Slows particles down that are faster than `limit` (m/s).
   void limit_speed(float limit);
   /// Integrates the inner particles under `gravity` (m/s^2): v += h g, x += h v. The engines' own order.
@@ -112,12 +122,12 @@ class SoftBody {
   /// @pre this body's model is a piece of the whole's
   void inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of);
 
-  /// Sets a particle's velocity (m/s), which a solver has computed.
+  /// Sets a particle's velocity (m/s), which a coupling has computed.
   void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
 
   /// Whether the body sleeps. Solvers do not step it then. Couplings put bodies to sleep and wake them.
   bool asleep() const { return asleep_; }
-  void set_asleep(bool asleep) { asleep_ = asleep; }  ///< for couplings
+  void set_asleep(bool asleep);  ///< for couplings
 
   // For the user, between time steps. Each of these functions increments revision(), which tells a coupling of the
   // change. Functions that make the rotations of the last step useless also increment resets().
@@ -165,6 +175,7 @@ class SoftBody {
   void set_position(std::size_t particle, const Vector& position);
   void place_at_rest(const Vector& position);
   void forget_rotations();
+  void end_pull();
   struct RestShape;
   void set_rest(std::unique_ptr<RestShape> rest);
   void take_flow();
@@ -172,8 +183,10 @@ class SoftBody {
   std::shared_ptr<const SoftBodyModel<kDimension>> model_;
   SoftBodySettings settings_;
   std::vector<Vector> x_, v_;
+  std::vector<Vector> pulled_;           // velocities that end_pull() makes v_
   std::vector<Eigen::Vector4f> padded_;  // x_ again, in three dimensions
   std::unique_ptr<ShapeMatcher<float, kDimension>> matcher_;
+  std::unique_ptr<LostMomenta<kDimension>> lost_;
   std::unique_ptr<RestShape> rest_;  // null: the body is elastic, or was never looked at
   int steps_since_look_ = 0;
   std::uint32_t revision_ = 0, resets_ = 0, rest_revision_ = 0;

@@ -1,0 +1,35 @@
+#pragma once
+// What turns, in two dimensions and three: cross products, and moments of inertia in kg m^2.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "ppu/numbers/cross.h"
+
+namespace softcell::ppu::turning {
+
+using ppu::cross;
+template <typename Real>
+Eigen::Vector2<Real> cross(Real omega, const Eigen::Vector2<Real>& r) {
+  return omega * Eigen::Vector2<Real>(-r.y(), r.x());
+}
+inline double inertia_of(const Eigen::Matrix2d& second_moment) { return second_moment.trace(); }
+inline double inverse(double inertia) { return 1 / inertia; }
+inline float to_float(double axial) { return static_cast<float>(axial); }
+
+template <typename Real>
+Eigen::Vector3<Real> cross(const Eigen::Vector3<Real>& a, const Eigen::Vector3<Real>& b) {
+  return a.cross(b);
+}
+inline Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second_moment) {
+  return second_moment.trace() * Eigen::Matrix3d::Identity() - second_moment;
+}
+inline Eigen::Matrix3d inverse(const Eigen::Matrix3d& inertia) { return inertia.inverse(); }
+inline Eigen::Vector3f to_float(const Eigen::Vector3d& axial) { return axial.cast<float>(); }
+
+/// Angular momentum, or an angular velocity.
+template <int kDimension>
+using Axial = decltype(cross(Eigen::Vector<double, kDimension>(), Eigen::Vector<double, kDimension>()));
+
+}  // namespace softcell::ppu::turning
