@@ -1,11 +1,82 @@
 #include "ppu/bodies/lost_momenta.h"
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
+
+/// A particle's vector in one register, which has room for four numbers: in three dimensions the fourth is of no use, and anything.
+template <int kDimension>
+using InRegister = std::conditional_t<kDimension == 3, Eigen::Vector4f, Eigen::Vector2f>;
+
+template <int kDimension>
+InRegister<kDimension> in_register(std::span<const Eigen::Vector<float, kDimension>> vectors, std::size_t i) {
+  if constexpr (kDimension == 3) {
+    if (i + 1 == vectors.size()) return {vectors[i].x(), vectors[i].y(), vectors[i].z(), 0};
+    return Eigen::Map<const Eigen::Vector4f>(vectors[i].data());
+  } else {
+    return vectors[i];
+  }
+}
+
+template <int kDimension>
+Eigen::Vector<float, kDimension> narrow(const InRegister<kDimension>& vector) {
+  return vector.template head<kDimension>();
+}
+
+/// Sums of d and of r d^T over particles: floats over few, doubles over all.
+template <int kDimension>
+class Moments {
+ public:
+  using Double = Eigen::Vector<double, kDimension>;
+  using Matrix = Eigen::Matrix<double, kDimension, kDimension>;
+
+  void add(const InRegister<kDimension>& r, const InRegister<kDimension>& d) {
+    first_ += d;
+    for (int k = 0; k < kDimension; ++k) second_[k] += r * d[k];
+    if (++added_ == kAtOnce) carry();
+  }
+  const Double& first() {
+    carry();
+    return sum_;
+  }
+  const Matrix& second() {
+    carry();
+    return matrix_;
+  }
+  /// Sum of r x d.
+  turning::Axial<kDimension> spin() {
+    const Matrix& m = second();
+    if constexpr (kDimension == 3)
+      return {m(1, 2) - m(2, 1), m(2, 0) - m(0, 2), m(0, 1) - m(1, 0)};
+    else
+      return m(0, 1) - m(1, 0);
+  }
+
+ private:
+  static constexpr int kAtOnce = 32;
+  static InRegister<kDimension> zero() { return InRegister<kDimension>::Zero(); }
+
+  void carry() {
+    sum_ += narrow<kDimension>(first_).template cast<double>();
+    first_ = zero();
+    for (int k = 0; k < kDimension; ++k) {
+      matrix_.col(k) += narrow<kDimension>(second_[k]).template cast<double>();
+      second_[k] = zero();
+    }
+    added_ = 0;
+  }
+
+  InRegister<kDimension> first_ = zero();
+  InRegister<kDimension> second_[3] = {zero(), zero(), zero()};
+  int added_ = 0;
+  Double sum_ = Double::Zero();
+  Matrix matrix_ = Matrix::Zero();
+};
 
 bool is_finite(double spin) { return std::isfinite(spin); }
 bool is_finite(const Eigen::Vector3d& spin) { return spin.allFinite(); }
@@ -19,25 +90,40 @@ Eigen::Vector3d turn_of(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& s
   return turning::inverse(inertia) * spin;
 }
 
+/// Columns k with velocity = sum of column k times arm k.
+void set_columns(InRegister<2> (&columns)[3], double turn) {
+  const auto omega = static_cast<float>(turn);
+  columns[0] = {0, omega};
+  columns[1] = {-omega, 0};
+}
+void set_columns(InRegister<3> (&columns)[3], const Eigen::Vector3d& turn) {
+  const Eigen::Vector3f omega = turn.cast<float>();
+  columns[0] = {0, omega.z(), -omega.y(), 0};
+  columns[1] = {-omega.z(), 0, omega.x(), 0};
+  columns[2] = {omega.y(), -omega.x(), 0, 0};
+}
+
 }  // namespace
 
 template <int kDimension>
 void LostMomenta<kDimension>::count(std::span<const Vector> positions, std::span<const float> masses,
                                     std::span<const Vector> before, std::span<Vector> after) {
-  SC_ASSERT(masses.size() == positions.size() && before.size() == positions.size() &&
+  SC_ASSERT(!positions.empty() && masses.size() == positions.size() && before.size() == positions.size() &&
                 after.size() == positions.size(),
             "{} positions, {} masses, {} and {} velocities", positions.size(), masses.size(), before.size(),
             after.size());
-  Double momentum = Double::Zero();
-  Axial spin = no_spin();
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Double lost = double{masses[i]} * (before[i] - after[i]).template cast<double>();
-    momentum += lost;
-    spin += turning::cross(Double(positions[i].template cast<double>()), lost);
-  }
+  // Arms from a point of the body: far from the origin they are as exact as near it.
+  const InRegister<kDimension> middle = in_register<kDimension>(positions, positions.size() / 2);
+  const std::span<const Vector> now = after;
+  Moments<kDimension> lost;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    lost.add(in_register<kDimension>(positions, i) - middle,
+             masses[i] * (in_register<kDimension>(before, i) - in_register<kDimension>(now, i)));
+  const Double momentum = lost.first();
+  const Axial spin = lost.spin();
   if (!momentum.allFinite() || !is_finite(spin)) return forget();  // velocities overflow
   momentum_ += momentum;
-  spin_ += spin;
+  spin_ += spin + turning::cross(Double(narrow<kDimension>(middle).template cast<double>()), momentum);
   if (++steps_ < kSteps) return;
   steps_ = 0;
   give_back(positions, masses, after);
@@ -46,30 +132,38 @@ void LostMomenta<kDimension>::count(std::span<const Vector> positions, std::span
 template <int kDimension>
 void LostMomenta<kDimension>::give_back(std::span<const Vector> positions, std::span<const float> masses,
                                         std::span<Vector> velocities) {
+  const InRegister<kDimension> middle = in_register<kDimension>(positions, positions.size() / 2);
   double mass = 0;
-  Double centre = Double::Zero();
+  Moments<kDimension> body;
   for (std::size_t i = 0; i < positions.size(); ++i) {
+    const InRegister<kDimension> arm = in_register<kDimension>(positions, i) - middle;
+    body.add(arm, masses[i] * arm);
     mass += double{masses[i]};
-    centre += double{masses[i]} * positions[i].template cast<double>();
   }
-  centre /= mass;
-  Eigen::Matrix<double, kDimension, kDimension> second_moment;
-  second_moment.setZero();
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Double arm = positions[i].template cast<double>() - centre;
-    second_moment += double{masses[i]} * arm * arm.transpose();
-  }
+  // About the centre of mass, which is here from `middle`.
+  const Double centre = body.first() / mass, origin = narrow<kDimension>(middle).template cast<double>();
   const Double velocity = momentum_ / mass;
-  const Axial turn = turn_of(turning::inertia_of(second_moment),
-                             Axial(spin_ - turning::cross(centre, Double(momentum_))));
+  const Axial spin = spin_ - turning::cross(Double(origin + centre), momentum_);
+  const typename Moments<kDimension>::Matrix about_centre =
+      body.second() - mass * centre * centre.transpose();
+  const Axial turn = turn_of(turning::inertia_of(about_centre), spin);
+
+  const Double at_middle = velocity - turning::cross(turn, centre);
+  InRegister<kDimension> steady = InRegister<kDimension>::Zero(), columns[3];
+  steady.template head<kDimension>() = at_middle.template cast<float>();
+  set_columns(columns, turn);
+  Moments<kDimension> given;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Double x = positions[i].template cast<double>();
-    const Vector was = velocities[i];
-    velocities[i] += (velocity + turning::cross(turn, Double(x - centre))).template cast<float>();
-    const Double given = double{masses[i]} * (velocities[i] - was).template cast<double>();
-    momentum_ -= given;
-    spin_ -= turning::cross(x, given);
+    const InRegister<kDimension> arm = in_register<kDimension>(positions, i) - middle;
+    InRegister<kDimension> by = steady;
+    for (int k = 0; k < kDimension; ++k) by += columns[k] * arm[k];
+    const InRegister<kDimension> was = in_register<kDimension>(std::span<const Vector>(velocities), i),
+                                 is = was + by;
+    velocities[i] = narrow<kDimension>(is);
+    given.add(arm, masses[i] * (is - was));
   }
+  momentum_ -= given.first();
+  spin_ -= given.spin() + turning::cross(origin, given.first());
 }
 
 template class LostMomenta<2>;

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "free_flight.h"
 #include "lattices_2d.h"
 #include "ppu/plans/match_plan_2d.h"
 #include "soft_body_2d_scenes.h"
@@ -84,6 +85,13 @@ struct Pile {
   b2World box2d{{0, -9.81f}};
   Box2dSoftBodies soft;
 };
+
+TEST(SpeSolver2d, ABodyInFlightKeepsItsMomenta) {
+  Spes spes;
+  SoftBody<2> body(man(), {1, 2});
+  test::expect_momenta_stay_in_flight(spes.solver, body);
+  EXPECT_EQ(spes.solver.bodies_on_ppu(), 0u);
+}
 
 TEST(SpeSolver2d, GoesWithTheSolverOfThePpu) {
   Spes spes;

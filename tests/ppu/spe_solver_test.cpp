@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "free_flight.h"
 #include "ppu/bodies/break_body.h"
 #include "ppu/plans/match_plan.h"
 #include "ppu/plans/tile_plan.h"
@@ -97,6 +98,17 @@ TEST(SpeSolver, AgreesWithThePpuInOneStepFromTheSameState) {
     for (std::size_t i = 0; i < model->particles(); ++i) {
       on_spe.set_velocity(i, on_ppu.velocities()[i]);  // the same state again
     }
+  }
+}
+
+TEST(SpeSolver, BodiesInFlightKeepTheirMomenta) {
+  for (const Eigen::Vector3i& cells :
+       {Eigen::Vector3i(5, 4, 3), Eigen::Vector3i(12, 12, 12)}) {  // the second in tiles
+    if (kSlowBuild && cells.x() > 5) continue;
+    SpeWorld world;
+    SoftBody<3> body(block_model(cells, rubber()), {3, 2, 1});
+    test::expect_momenta_stay_in_flight(world.solver, body);
+    EXPECT_EQ(world.solver.bodies_on_ppu(), 0u);
   }
 }
 
