@@ -166,6 +166,14 @@ void LostMomenta<kDimension>::give_back(std::span<const Vector> positions, std::
   spin_ -= given.spin() + turning::cross(origin, given.first());
 }
 
+template <int kDimension>
+void LostMomenta<kDimension>::inherit(const LostMomenta& whole, double share, const Double& from_centre) {
+  SC_ASSERT(share > 0 && share <= 1, "a piece with {} of the whole's mass", share);
+  momentum_ = share * whole.momentum_;
+  spin_ = share * (whole.spin_ + turning::cross(from_centre, whole.momentum_));
+  steps_ = whole.steps_;
+}
+
 template class LostMomenta<2>;
 template class LostMomenta<3>;
 

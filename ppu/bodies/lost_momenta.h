@@ -32,8 +32,12 @@ class LostMomenta {
 
   static constexpr int kSteps = 4;
 
- private:
   using Double = Eigen::Vector<double, kDimension>;
+  /// Of a piece, the part that it has in what was lost of the whole, by mass: of all pieces together all.
+  /// @param share  of the whole's mass   @param from_centre  metres, to the piece's centre of mass from the whole's
+  void inherit(const LostMomenta& whole, double share, const Double& from_centre);
+
+ private:
   using Axial = turning::Axial<kDimension>;
   static Axial no_spin() { return turning::cross(Double(Double::Zero()), Double(Double::Zero())); }
 

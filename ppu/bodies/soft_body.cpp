@@ -351,6 +351,8 @@ void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const 
   for (std::size_t i = 0; i < particle_of.size(); ++i)
     set_particle(i, whole.x_[particle_of[i]], whole.v_[particle_of[i]]);
   matcher_->take_rotations(*whole.matcher_, particle_of);
+  const double share = double{model_->mass()} / double{whole.model_->mass()};
+  lost_->inherit(*whole.lost_, std::min(share, 1.0), motion_of(*this).centre - motion_of(whole).centre);
   if (!whole.has_own_rest()) return;
   std::vector<Vector> rest;
   for (const std::uint32_t particle : particle_of) rest.push_back(whole.own_rest()[particle]);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "free_flight.h"
@@ -121,6 +123,38 @@ TEST(LostMomenta, ForgetWhatIsNotFinite) {
     momenta.count(cloud.positions, cloud.masses, cloud.before, after);
     EXPECT_EQ(after, cloud.before);
   }
+}
+
+TEST(LostMomenta, OfAWholeAreThoseOfItsPieces) {
+  const Cloud<3> cloud(30, 5);
+  LostMomenta<3> whole;
+  auto after = cloud.after;
+  whole.count(cloud.positions, cloud.masses, cloud.before, after);
+  // Particles 0 to 11, and the others.
+  const std::span<const Eigen::Vector3f> x = cloud.positions;
+  const std::span<const float> m = cloud.masses;
+  const auto mass_and_centre = [&](std::size_t first, std::size_t end) {
+    double mass = 0;
+    Eigen::Vector3d centre(0, 0, 0);
+    for (std::size_t i = first; i < end; ++i) mass += m[i], centre += double{m[i]} * x[i].cast<double>();
+    return std::pair(mass, Eigen::Vector3d(centre / mass));
+  };
+  const auto [mass, centre] = mass_and_centre(0, 30);
+  Cloud<3> given = cloud;
+  given.after = cloud.before;
+  for (const auto& [first, end] :
+       {std::pair(std::size_t{0}, std::size_t{12}), {std::size_t{12}, std::size_t{30}}}) {
+    const auto of_piece = mass_and_centre(first, end);
+    LostMomenta<3> piece;
+    piece.inherit(whole, of_piece.first / mass, of_piece.second - centre);
+    const std::size_t count = end - first;
+    const std::span<Eigen::Vector3f> changed = std::span(given.after).subspan(first, count);
+    for (int step = 1; step < LostMomenta<3>::kSteps; ++step)
+      piece.count(x.subspan(first, count), m.subspan(first, count), changed, changed);
+  }
+  const test::Momenta<3> lost = cloud.change(), back = given.change();
+  EXPECT_LT((lost.linear + back.linear).norm(), 2e-3 * lost.linear.norm());
+  EXPECT_LT((lost.angular + back.angular).norm(), 2e-3 * lost.angular.norm());
 }
 
 SoftBodySettings soft_rubber() {
