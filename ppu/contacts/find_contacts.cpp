@@ -222,8 +222,8 @@ class ObstacleContacts {
   void try_long_edges(const KnownTriangles& triangles, float reach) {
     triangles.boxes().for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
       if (!cells_.boxes().any_meets(widened(to_world(obstacle_, box), 2 * reach))) return;
-      for (const ObstacleEdge& edge : obstacle_.edges.subspan(3 * first, 3 * (end - first)))
-        if (triangles.is_long(edge)) try_edge(edge, reach);
+      for (std::size_t edge = 3 * first; edge < 3 * end; ++edge)
+        if (triangles.is_long(edge)) try_edge(obstacle_.edges[edge], reach);
     });
   }
 

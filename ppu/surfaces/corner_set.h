@@ -2,7 +2,6 @@
 // Corners of triangles, each once, and which of them stand out of nothing.
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -10,19 +9,21 @@
 #include <span>
 #include <vector>
 
+#include "ppu/surfaces/exact_point.h"
+
 namespace softcell::ppu {
 
 /// A hash table of corners. Allocates only when there are more of them than ever before.
 class CornerSet {
  public:
-  using Point = std::array<float, 3>;
+  using Point = ExactPoint;
   using Triangle = std::array<Eigen::Vector3f, 3>;
 
   class Corner {
    public:
     Point point{};
 
-    /// Whether triangles surround this corner, in any order, and lie in one plane to a thousandth of a radian.
+    /// Whether triangles surround this corner, in any order, and bend by no more than are_nearly_parallel() says.
     bool is_flat() const { return !stands_out_ && around_ == 0; }
 
    private:
@@ -46,17 +47,17 @@ class CornerSet {
     const Eigen::Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
     std::array<Point, 3> points;
     std::array<std::uint64_t, 3> hashes;
-    for (std::size_t i = 0; i < 3; ++i) hashes[i] = hash_of(points[i] = point_of(triangle[i]));
+    for (std::size_t i = 0; i < 3; ++i) hashes[i] = hash_of(points[i] = exact_point(triangle[i]));
     for (std::size_t i = 0; i < 3; ++i) {
       Corner& corner = at(points[i], hashes[i], normal);
-      corner.stands_out_ = corner.stands_out_ || !are_parallel(corner.normal_, normal);
+      corner.stands_out_ = corner.stands_out_ || !are_nearly_parallel(corner.normal_, normal);
       corner.around_ += hashes[(i + 1) % 3] - hashes[(i + 2) % 3];
     }
   }
 
   /// A corner of which nothing else is known: it is not flat. @pre  as above
   void add(const Eigen::Vector3f& point) {
-    const Point added = point_of(point);
+    const Point added = exact_point(point);
     at(added, hash_of(added), {0, 0, 0}).stands_out_ = true;
   }
 
@@ -65,15 +66,6 @@ class CornerSet {
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
-
-  static Point point_of(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
-
-  /// Also false if one of them is zero or not finite.
-  static bool are_parallel(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-    constexpr float kSine = 1e-3f;
-    const float along = a.dot(b);
-    return along > 0 && a.cross(b).squaredNorm() <= kSine * kSine * along * along;
-  }
 
   Corner& at(const Point& point, std::uint64_t hash, const Eigen::Vector3f& normal) {
     for (std::size_t slot = static_cast<std::size_t>(hash) & mask_;; slot = (slot + 1) & mask_) {
@@ -86,17 +78,6 @@ class CornerSet {
       }
       if (corners_[slots_[slot]].point == point) return corners_[slots_[slot]];
     }
-  }
-
-  static std::uint64_t hash_of(const Point& point) {
-    std::uint64_t hash = 0;
-    // -0 + 0 is 0: points that compare equal have one hash.
-    for (const float x : point) {
-      hash =
-          (hash ^ std::bit_cast<std::uint32_t>(x + 0.0f)) * 0x9E3779B97F4A7C15u;  // 2^64 by the golden ratio
-      hash ^= hash >> 32;
-    }
-    return hash;
   }
 
   std::vector<Corner> corners_;

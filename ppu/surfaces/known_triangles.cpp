@@ -37,26 +37,36 @@ void KnownTriangles::see(const Obstacle& obstacle, float longest) {
   edges_.assign(obstacle.edges.begin(), obstacle.edges.end());
   boxes_.place(triangles_);
   find_corners();
+  find_long_edges();
 }
 
 void KnownTriangles::find_corners() {
   set_.begin(edges_.size());
-  has_long_edges_ = false;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const std::span<const ObstacleEdge> edges(&edges_[3 * t], 3);
-    const auto is_short = [&](const ObstacleEdge& edge) { return !is_long(edge); };
-    const bool all_are_short = std::all_of(edges.begin(), edges.end(), is_short);
-    if (!all_are_short) has_long_edges_ = true;
-    if (all_are_short && are_sides(edges, triangles_[t])) {
+    if (are_sides(edges, triangles_[t])) {
       set_.add(triangles_[t]);
       continue;
     }
-    for (const ObstacleEdge& edge : edges)
-      if (is_short(edge)) set_.add(edge.from);
+    for (const ObstacleEdge& edge : edges) set_.add(edge.from);
   }
   corners_.clear();
   for (const CornerSet::Corner& corner : set_.corners())
     if (!corner.is_flat()) corners_.push_back(corner.point);
+}
+
+void KnownTriangles::find_long_edges() {
+  const float most = longest_ * longest_;
+  is_long_.resize(edges_.size());
+  for (std::size_t i = 0; i < edges_.size(); ++i)
+    is_long_[i] = !((edges_[i].to - edges_[i].from).squaredNorm() <= most);
+  has_long_edges_ = std::find(is_long_.begin(), is_long_.end(), true) != is_long_.end();
+  if (!has_long_edges_) return;
+  sides_.begin(edges_.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    if (are_sides({&edges_[3 * t], 3}, triangles_[t])) sides_.add(t, triangles_[t]);
+  for (std::size_t i = 0; i < edges_.size(); ++i) is_long_[i] = is_long_[i] && !sides_.is_flat(i);
+  has_long_edges_ = std::find(is_long_.begin(), is_long_.end(), true) != is_long_.end();
 }
 
 }  // namespace softcell::ppu

@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "ppu/surfaces/corner_set.h"
+#include "ppu/surfaces/edge_set.h"
 #include "ppu/surfaces/obstacle.h"
 #include "ppu/surfaces/triangle_boxes.h"
 
@@ -22,18 +24,19 @@ class KnownTriangles {
 
   const TriangleBoxes& boxes() const { return boxes_; }
 
-  /// The ends of short edges, in the obstacle's frame, each once although many triangles have it. Those within a plane are left out, as
-  /// they stand out of nothing: a body's points meet the plane. In the order of the triangles.
-  std::span<const CornerSet::Point> corners() const { return corners_; }
+  // What lies within a plane is left out, as it stands out of nothing: a body's points meet the plane. (Within a body's distance field a
+  // point of the plane near the rim of the body's flat side would be pushed out sideways.)
 
-  bool is_long(const ObstacleEdge& edge) const {
-    return !((edge.to - edge.from).squaredNorm() <= longest_ * longest_);
-  }
+  /// The corners, in the obstacle's frame, each once although many triangles have it. In the order of the triangles.
+  std::span<const CornerSet::Point> corners() const { return corners_; }
+  /// Whether an edge, by its number in the obstacle, is too long for its ends to be all that is looked up.
+  bool is_long(std::size_t edge) const { return is_long_[edge]; }
   /// Whether any edge is.
   bool has_long_edges() const { return has_long_edges_; }
 
  private:
   void find_corners();
+  void find_long_edges();
 
   std::vector<std::array<Eigen::Vector3f, 3>> triangles_;
   std::vector<ObstacleEdge> edges_;
@@ -41,7 +44,9 @@ class KnownTriangles {
 
   TriangleBoxes boxes_;
   CornerSet set_;
+  EdgeSet sides_;
   std::vector<CornerSet::Point> corners_;
+  std::vector<bool> is_long_;  // of each edge
   bool has_long_edges_ = false;
 };
 

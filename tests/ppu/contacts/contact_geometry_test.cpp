@@ -16,6 +16,7 @@
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/corner_set.h"
+#include "ppu/surfaces/edge_set.h"
 #include "ppu/surfaces/inner_places.h"
 #include "ppu/surfaces/known_triangles.h"
 #include "ppu/surfaces/obstacle.h"
@@ -206,6 +207,29 @@ TEST(CornerSet, BordersAndTrianglesWithoutAnAreaStandOut) {
   EXPECT_FALSE(middle_is_flat(4, true));
 }
 
+TEST(EdgeSet, KnowsWhichSidesStandOutOfNothing) {
+  // Two triangles of a square, the second one bent up by a height, and perhaps a third one at their common side.
+  const auto flat_sides = [](float height, bool wound_alike, bool with_third) {
+    const Vector3f a(0, 0, 0), b(1, 0, 0), c(1, 0, -1), d(0, height, -1);
+    std::vector<CornerSet::Triangle> triangles = {{a, b, c}};
+    triangles.push_back(wound_alike ? CornerSet::Triangle{c, d, a} : CornerSet::Triangle{a, d, c});
+    if (with_third) triangles.push_back({a, c, Vector3f(0.5f, 1, -0.5f)});
+    EdgeSet set;
+    set.begin(3 * triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) set.add(t, triangles[t]);
+    std::vector<std::size_t> flat;
+    for (std::size_t side = 0; side < 3 * triangles.size(); ++side)
+      if (set.is_flat(side)) flat.push_back(side);
+    return flat;
+  };
+  const std::vector<std::size_t> none, diagonal = {2, 5};
+  EXPECT_EQ(flat_sides(0, true, false), diagonal);
+  EXPECT_EQ(flat_sides(0.03f, true, false), diagonal) << "nearly";
+  EXPECT_EQ(flat_sides(0.2f, true, false), none) << "bent";
+  EXPECT_EQ(flat_sides(0, false, false), none) << "two sides of one sheet, or folded onto itself";
+  EXPECT_EQ(flat_sides(0, true, true), none) << "a third one stands on it";
+}
+
 /// Whoever has seen other triangles before knows the same of these as whoever sees them first.
 TEST(KnownTriangles, AreThoseOfTheLastCallWhateverHasChanged) {
   std::vector<CornerSet::Triangle> triangles;
@@ -242,10 +266,13 @@ TEST(KnownTriangles, AreThoseOfTheLastCallWhateverHasChanged) {
   };
   make_pyramid(0);
   expect_what_a_new_one_knows(2, 4, false);  // the middle is flat
-  make_pyramid(0.01f);
+  make_pyramid(0.1f);
   expect_what_a_new_one_knows(2, 5, false);
-  make_pyramid(-0.01f);
+  make_pyramid(-0.1f);
   expect_what_a_new_one_knows(2, 5, false);
+  make_pyramid(0.02f);
+  expect_what_a_new_one_knows(2, 4, false);  // nearly flat
+  make_pyramid(-0.1f);
   expect_what_a_new_one_knows(1.2f, 5, true);  // the four along the border are longer
   edges[0].from.y() += 0.5f;                   // an edge that is no side, as those of two dimensions
   expect_what_a_new_one_knows(2, 6, false);
