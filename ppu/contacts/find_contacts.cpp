@@ -1,5 +1,6 @@
 #include "ppu/contacts/find_contacts.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,6 +22,8 @@ constexpr float kLeastStep = 0.02f;
 constexpr float kMostSteps = 256;  // of a way: what is faster goes in longer ones
 // A point so near behind a triangle, in cells, has been pressed through it; and one so near before it may be, from the other side.
 constexpr float kPressedThrough = 0.25f;
+// Deeper behind it only if the way to it from well inside of the body goes through the triangle.
+constexpr float kDeepest = 1;
 constexpr float kClearSide = 0.05f;  // cells: what is nearer to a triangle may be on either side
 constexpr int kApartAtRest =
     3;  // a point never meets cells of its own body that are nearer at rest: their middles
@@ -36,15 +39,35 @@ struct Hit {
   float end;  ///< metres, along the normal, at the end of the way: below 0 inside
 };
 
+/// Whether the triangle is above or below a point, or beside it by no more than `most`. In double precision: of the triangles of a ground a
+/// kilometre long, floats know the nearest place to a tenth of a millimetre.
+/// @param normal  of unit length
+bool is_over(const std::array<Vector3f, 3>& triangle, const Vector3f& normal, const Vector3f& point,
+             float most) {
+  const std::array<Eigen::Vector3d, 3> exact{triangle[0].cast<double>(), triangle[1].cast<double>(),
+                                             triangle[2].cast<double>()};
+  const Eigen::Vector3d at = point.cast<double>(), n = normal.cast<double>();
+  const Eigen::Vector3d beside = at - nearest_point(exact, at);
+  return (beside - n * n.dot(beside)).squaredNorm() <= double{most} * double{most};
+}
+
 /// @param front  1 or -1: towards the side from which it is wound counterclockwise, or the other one
+/// @param inside  a place of the point's body, before the substep
 std::optional<Hit> meet_triangle(const std::array<Vector3f, 3>& triangle, float rounding, const Way& way,
-                                 float near, float pressed_through, float front) {
+                                 const Vector3f& inside, float spacing, float front) {
+  const float near = kNear * spacing;
   const Vector3f cross = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   const float area = cross.norm();
   if (!(area > 0)) return {};
   Vector3f normal = cross / (front * area);
   float from = normal.dot(way.from - triangle[0]);
-  if (from < -pressed_through) normal = -normal, from = -from;
+  if (from < -kPressedThrough * spacing) {
+    const float of_inside = normal.dot(inside - triangle[0]);
+    const bool may_be_deep = from > -kDeepest * spacing && of_inside > 0;
+    const float crossing = of_inside / (of_inside - from);
+    if (!may_be_deep || !is_over(triangle, normal, inside + crossing * (way.from - inside), near))
+      normal = -normal, from = -from;
+  }
   const float to = normal.dot(way.to - triangle[0]) - rounding;
   if (to > near) return {};
   const float share =
@@ -56,8 +79,7 @@ std::optional<Hit> meet_triangle(const std::array<Vector3f, 3>& triangle, float 
     const auto [low, high] = std::minmax({triangle[0][d], triangle[1][d], triangle[2][d]});
     if (at[d] < low - farthest || at[d] > high + farthest) return {};
   }
-  const Vector3f beside = at - nearest_point(triangle, at);
-  if ((beside - normal * normal.dot(beside)).squaredNorm() > near * near) return {};
+  if (!is_over(triangle, normal, at, near)) return {};
   return Hit{normal, to};
 }
 
@@ -155,13 +177,15 @@ class ObstacleContacts {
     if (std::min(from, to) > thick || std::max(from, to) < -thick) return 0;
     const float share = from * to < 0 ? from / (from - to) : 1;
     const Vector3f at = near.from + share * (near.to - near.from);
-    const Vector3f beside = at - nearest_point(triangle, at);
-    const float closest = kNear * body_.spacing();
-    if ((beside - normal * normal.dot(beside)).squaredNorm() > closest * closest) return 0;
+    if (!is_over(triangle, normal, at, kNear * body_.spacing())) return 0;
     if (std::abs(from) > thick) return from;
-    const CellPlace& inner = body_.model->inner_places[near.point->anchor.cell];
-    const Vector3f inside = anchor_in_cell(body_.lattice(), inner.cell, inner.xi).of(body_.positions);
-    return normal.dot(obstacle_.to_own(inside) - triangle[0]);
+    return normal.dot(near.inside - triangle[0]);
+  }
+
+  /// Of a cell, in the obstacle's frame.
+  Vector3f inner_place(std::uint32_t cell) const {
+    const CellPlace& inner = body_.model->inner_places[cell];
+    return obstacle_.to_own(anchor_in_cell(body_.lattice(), inner.cell, inner.xi).of(body_.positions));
   }
 
   /// A mesh is wound one way or the other, closed around something or around a room: most of what is near it says on which side the body
@@ -183,24 +207,31 @@ class ObstacleContacts {
     const TriangleBoxes& boxes = triangles.boxes();
     // As bounds(), but quicker.
     const float reach = come_near(widened(to_world(obstacle_, boxes.bounds()), obstacle_.rounding));
-    const float near = kNear * body_.spacing(), pressed_through = kPressedThrough * body_.spacing();
+    const float spacing = body_.spacing();
     // What has been pressed through a triangle may be so far behind it, and still meets it.
-    const Vector3f margin = Vector3f::Constant(near + pressed_through + obstacle_.rounding);
+    const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
+    near_ = widened(near_, kDeepest * spacing);
     cells_.near_triangles.clear();
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
+      std::optional<Vector3f> inside;
       for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (point.allowance > 0) return;  // it may be on either side
+        if (!inside) inside = inner_place(cell);
         const Way way = way_of(from, to);
-        const Bounds<3> box{way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin};
+        const Vector3f inwards = *inside - way.from;
+        const float share = std::min(1.0f, kDeepest * spacing / inwards.norm());
+        const Vector3f deepest = way.from + share * inwards;
+        const Bounds<3> box{way.from.cwiseMin(way.to).cwiseMin(deepest) - margin,
+                            way.from.cwiseMax(way.to).cwiseMax(deepest) + margin};
         boxes.for_each_meeting(box, [&](std::uint32_t t) {
-          cells_.near_triangles.push_back({&point, t, way.from, way.to});
+          cells_.near_triangles.push_back({&point, t, way.from, way.to, *inside});
         });
       });
     });
     const float front = front_of_triangles();
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
       if (const auto hit = meet_triangle(obstacle_.triangles[at.triangle], obstacle_.rounding,
-                                         {at.from, at.to}, near, pressed_through, front))
+                                         {at.from, at.to}, at.inside, spacing, front))
         add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
     try_edges_of_triangles(triangles, reach);
   }

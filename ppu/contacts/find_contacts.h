@@ -55,6 +55,7 @@ class EndCells {
     const TouchPoint* point;
     std::uint32_t triangle;
     Eigen::Vector3f from, to;  ///< before and after the substep
+    Eigen::Vector3f inside;    ///< a place well inside of the body near the point, before it
   };
   // For those who look for contacts with triangles, again and again without allocating.
   std::vector<CornerSet::Point> near_corners;

@@ -13,27 +13,6 @@ namespace softcell::ppu {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-Vector3f nearest_point(const std::array<Vector3f, 3>& triangle, const Vector3f& point) {
-  const auto& [a, b, c] = triangle;
-  const Vector3f ab = b - a, ac = c - a, ap = point - a;
-  const float d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const Vector3f bp = point - b;
-  const float d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const float vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
-  const Vector3f cp = point - c;
-  const float d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const float vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
-  const float va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-  const float scale = 1 / (va + vb + vc);
-  return a + vb * scale * ab + vc * scale * ac;
-}
-
 TriangleGrid::TriangleGrid(const TriangleMesh& mesh, float cube_edge) : edge_(cube_edge) {
   SC_ASSERT(cube_edge > 0 && !mesh.triangles.empty(), "a grid of cubes of {} m over {} triangles", cube_edge,
             mesh.triangles.size());

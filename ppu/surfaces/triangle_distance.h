@@ -10,8 +10,31 @@
 
 namespace softcell::ppu {
 
-/// The point of the triangle that is nearest to `point`.  [Eri05, 5.1.5]
-Eigen::Vector3f nearest_point(const std::array<Eigen::Vector3f, 3>& triangle, const Eigen::Vector3f& point);
+/// The point of the triangle that is nearest to `point`.  [Eri05, 5.1.5] In single precision the result may be off by the rounding of the
+/// triangle's longest side, times that side by the height upon it.
+template <typename Real>
+Eigen::Vector3<Real> nearest_point(const std::array<Eigen::Vector3<Real>, 3>& triangle,
+                                   const Eigen::Vector3<Real>& point) {
+  const auto& [a, b, c] = triangle;
+  using Vector = Eigen::Vector3<Real>;
+  const Vector ab = b - a, ac = c - a, ap = point - a;
+  const Real d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vector bp = point - b;
+  const Real d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const Real vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const Vector cp = point - c;
+  const Real d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const Real vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const Real va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  const Real scale = 1 / (va + vb + vc);
+  return a + vb * scale * ab + vc * scale * ac;
+}
 
 /// Finds the triangles near a point by a grid of cubes.
 class TriangleGrid {

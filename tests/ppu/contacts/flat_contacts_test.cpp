@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "../fracture/crack_depth.h"
@@ -229,6 +230,43 @@ TEST_P(FlatContacts, NothingPassesAThinWall) {
       EXPECT_LT(body.linear_momentum().x(), 0) << "it has not come to the wall";
       w->soft.remove(body);
     }
+  }
+}
+
+/// How high the middle of a block is that has fallen on a ground, in cells. Small cells and long steps press its edge deep into the ground.
+float height_on(World2d& w, const b2Shape& ground, float cell, float alpha, float step) {
+  b2BodyDef definition;
+  b2Body* const body = w.box2d.CreateBody(&definition);
+  body->CreateFixture(&ground, 0)->SetFriction(0.6f);
+  SoftBodySettings settings = calm(cell);
+  settings.alpha = alpha;
+  settings.damping = 0.1f;
+  SoftBody<2>& block = w.soft.add(rectangle_model({8, 6}, settings), {0, 10 * cell});
+  for (float time = 0; time < 5; time += step) w.soft.step(step);
+  const float height = block.centre_of_mass().y() / cell;
+  w.soft.remove(block);
+  w.box2d.DestroyBody(body);
+  return height;
+}
+
+/// An edge is as long as a level, or one of many.
+TEST_P(FlatContacts, AGroundOfEdgesCarriesAsABoxDoes) {
+  b2PolygonShape box;
+  box.SetAsBox(40, 1, {0, -1}, 0);
+  b2EdgeShape edge;
+  edge.SetTwoSided({-400, 0}, {400, 0});
+  std::vector<b2Vec2> corners;
+  for (int i = 80; i >= -80; --i) corners.push_back({0.5f * static_cast<float>(i), 0});
+  b2ChainShape chain;
+  chain.CreateChain(corners.data(), static_cast<int>(corners.size()), {41, 0}, {-41, 0});
+  const auto w = world();
+  for (const auto& [cell, alpha, step] : {std::tuple(0.05f, 0.7f, 1 / 60.0f),
+                                          {0.1f, 0.7f, 1 / 60.0f},
+                                          {0.1f, 0.3f, kStep2d},
+                                          {0.25f, 1.0f, kStep2d}}) {
+    const float expected = height_on(*w, box, cell, alpha, step);
+    EXPECT_NEAR(height_on(*w, edge, cell, alpha, step), expected, 0.25f) << "an edge, cells of " << cell;
+    EXPECT_NEAR(height_on(*w, chain, cell, alpha, step), expected, 0.25f) << "a chain, cells of " << cell;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -30,6 +31,25 @@ TEST(SurfaceContacts, WhatIsDrawnRestsOnWhatIsBelow) {
     w.run(400);
     EXPECT_NEAR(ContactWorld::lowest_drawn(body), 0, 0.05f * kCell) << mesh.positions.size();
     EXPECT_LT(ContactWorld::fastest(body), 0.05f) << mesh.positions.size();
+  }
+}
+
+/// Two triangles of four kilometres, and strips as long and as wide as a cell.
+TEST(SurfaceContacts, AGroundOfLongTrianglesIsAsLevelAsABox) {
+  constexpr float kCell = 0.1f, kFar = 2000;
+  for (const float width : {kFar, 2 * kCell}) {
+    btTriangleMesh ground;
+    for (float z = -std::max(width, 1.0f); z < std::max(width, 1.0f); z += width) {
+      const btVector3 a(-kFar, 0, z), b(kFar, 0, z), c(-kFar, 0, z + width), d(kFar, 0, z + width);
+      ground.addTriangle(a, c, b);
+      ground.addTriangle(b, c, d);
+    }
+    ContactWorld w;
+    w.add(std::make_unique<btBvhTriangleMeshShape>(&ground, true), 0, {0, 0, 0});
+    const SoftBody<3>& body = w.add(cube(6 * kCell, kCell), settings_of(kCell, 0.6f, 0.3f), {0, 0.4f, 0});
+    w.run(200);
+    EXPECT_NEAR(ContactWorld::lowest_drawn(body), 0, 0.05f * kCell) << width;
+    EXPECT_LT(ContactWorld::fastest(body), 0.05f) << width;
   }
 }
 
