@@ -39,16 +39,35 @@ struct Hit {
   float end;  ///< metres, along the normal, at the end of the way: below 0 inside
 };
 
-/// Whether the triangle is above or below a point, or beside it by no more than `most`. In double precision: of the triangles of a ground a
-/// kilometre long, floats know the nearest place to a tenth of a millimetre.
+/// How far a point is beside a triangle, squared: not above or below it.
 /// @param normal  of unit length
-bool is_over(const std::array<Vector3f, 3>& triangle, const Vector3f& normal, const Vector3f& point,
-             float most) {
-  const std::array<Eigen::Vector3d, 3> exact{triangle[0].cast<double>(), triangle[1].cast<double>(),
-                                             triangle[2].cast<double>()};
-  const Eigen::Vector3d at = point.cast<double>(), n = normal.cast<double>();
-  const Eigen::Vector3d beside = at - nearest_point(exact, at);
-  return (beside - n * n.dot(beside)).squaredNorm() <= double{most} * double{most};
+template <typename Real>
+Real squared_beside(const std::array<Vector3f, 3>& triangle, const Vector3f& normal, const Vector3f& point) {
+  using Vector = Eigen::Vector3<Real>;
+  const Vector n = normal.cast<Real>(), at = point.cast<Real>();
+  const Vector beside =
+      at -
+      nearest_point<Real>({triangle[0].cast<Real>(), triangle[1].cast<Real>(), triangle[2].cast<Real>()}, at);
+  return (beside - n * n.dot(beside)).squaredNorm();
+}
+
+/// Whether the triangle is above or below a point, or beside it by no more than `most` metres. Of a ground's triangles a kilometre long, or of
+/// needles, floats know the nearest place to a tenth of a millimetre, or worse.
+/// @param normal  of unit length   @param area  twice the triangle's
+bool is_over(const std::array<Vector3f, 3>& triangle, const Vector3f& normal, float area,
+             const Vector3f& point, float most) {
+  constexpr float kRounding = 2e-6f;
+  const float longest =
+      ((triangle[1] - triangle[0]).cwiseAbs() + (triangle[2] - triangle[0]).cwiseAbs()).sum();
+  const bool is_exact = kRounding * longest * longest * longest < most * area;
+  if (is_exact) return squared_beside<float>(triangle, normal, point) <= most * most;
+  return squared_beside<double>(triangle, normal, point) <= double{most} * double{most};
+}
+
+/// Whether two points are on different sides of a triangle's plane.
+bool parts(const std::array<Vector3f, 3>& triangle, const Vector3f& a, const Vector3f& b) {
+  const Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  return normal.dot(a - triangle[0]) * normal.dot(b - triangle[0]) < 0;
 }
 
 /// @param front  1 or -1: towards the side from which it is wound counterclockwise, or the other one
@@ -65,7 +84,7 @@ std::optional<Hit> meet_triangle(const std::array<Vector3f, 3>& triangle, float 
     const float of_inside = normal.dot(inside - triangle[0]);
     const bool may_be_deep = from > -kDeepest * spacing && of_inside > 0;
     const float crossing = of_inside / (of_inside - from);
-    if (!may_be_deep || !is_over(triangle, normal, inside + crossing * (way.from - inside), near))
+    if (!may_be_deep || !is_over(triangle, normal, area, inside + crossing * (way.from - inside), near))
       normal = -normal, from = -from;
   }
   const float to = normal.dot(way.to - triangle[0]) - rounding;
@@ -79,7 +98,7 @@ std::optional<Hit> meet_triangle(const std::array<Vector3f, 3>& triangle, float 
     const auto [low, high] = std::minmax({triangle[0][d], triangle[1][d], triangle[2][d]});
     if (at[d] < low - farthest || at[d] > high + farthest) return {};
   }
-  if (!is_over(triangle, normal, at, near)) return {};
+  if (!is_over(triangle, normal, area, at, near)) return {};
   return Hit{normal, to};
 }
 
@@ -177,15 +196,15 @@ class ObstacleContacts {
     if (std::min(from, to) > thick || std::max(from, to) < -thick) return 0;
     const float share = from * to < 0 ? from / (from - to) : 1;
     const Vector3f at = near.from + share * (near.to - near.from);
-    if (!is_over(triangle, normal, at, kNear * body_.spacing())) return 0;
+    if (!is_over(triangle, normal, area, at, kNear * body_.spacing())) return 0;
     if (std::abs(from) > thick) return from;
     return normal.dot(near.inside - triangle[0]);
   }
 
-  /// Of a cell, in the obstacle's frame.
+  /// Of a cell, well inside of the body.
   Vector3f inner_place(std::uint32_t cell) const {
     const CellPlace& inner = body_.model->inner_places[cell];
-    return obstacle_.to_own(anchor_in_cell(body_.lattice(), inner.cell, inner.xi).of(body_.positions));
+    return anchor_in_cell(body_.lattice(), inner.cell, inner.xi).of(body_.positions);
   }
 
   /// A mesh is wound one way or the other, closed around something or around a room: most of what is near it says on which side the body
@@ -204,36 +223,51 @@ class ObstacleContacts {
 
   /// Points meet the triangles near their way only.
   void find_with_triangles(const KnownTriangles& triangles) {
-    const TriangleBoxes& boxes = triangles.boxes();
     // As bounds(), but quicker.
-    const float reach = come_near(widened(to_world(obstacle_, boxes.bounds()), obstacle_.rounding));
-    const float spacing = body_.spacing();
-    // What has been pressed through a triangle may be so far behind it, and still meets it.
-    const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
-    near_ = widened(near_, kDeepest * spacing);
-    cells_.near_triangles.clear();
-    cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
-      std::optional<Vector3f> inside;
-      for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
-        if (point.allowance > 0) return;  // it may be on either side
-        if (!inside) inside = inner_place(cell);
-        const Way way = way_of(from, to);
-        const Vector3f inwards = *inside - way.from;
-        const float share = std::min(1.0f, kDeepest * spacing / inwards.norm());
-        const Vector3f deepest = way.from + share * inwards;
-        const Bounds<3> box{way.from.cwiseMin(way.to).cwiseMin(deepest) - margin,
-                            way.from.cwiseMax(way.to).cwiseMax(deepest) + margin};
-        boxes.for_each_meeting(box, [&](std::uint32_t t) {
-          cells_.near_triangles.push_back({&point, t, way.from, way.to, *inside});
-        });
-      });
-    });
+    const float reach =
+        come_near(widened(to_world(obstacle_, triangles.boxes().bounds()), obstacle_.rounding));
+    find_near_triangles(triangles.boxes());
     const float front = front_of_triangles();
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
       if (const auto hit = meet_triangle(obstacle_.triangles[at.triangle], obstacle_.rounding,
-                                         {at.from, at.to}, at.inside, spacing, front))
+                                         {at.from, at.to}, at.inside, body_.spacing(), front))
         add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
     try_edges_of_triangles(triangles, reach);
+  }
+
+  /// Of each point those near its way; if there are none, those that it has been pressed through, at some depth.
+  void find_near_triangles(const TriangleBoxes& boxes) {
+    const float spacing = body_.spacing();
+    // What has been pressed through a triangle may be so far behind it, and still meets it.
+    const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
+    const Bounds<3> touching = near_;
+    near_ = widened(near_, kDeepest * spacing);
+    cells_.near_triangles.clear();
+    cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
+      const Vector3f inner = inner_place(cell);
+      const Bounds<3> around = cells_.boxes().at(cell);
+      if (!overlap(touching, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
+      const Vector3f inside = obstacle_.to_own(inner);
+      for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+        if (point.allowance > 0) return;  // it may be on either side
+        const Way way = way_of(from, to);
+        const std::size_t before = cells_.near_triangles.size();
+        const auto for_each_meeting = [&](const Bounds<3>& box, const auto& work) {
+          if (overlap(box, boxes.bounds())) boxes.for_each_meeting(box, work);
+        };
+        const auto add = [&](std::uint32_t t) {
+          cells_.near_triangles.push_back({&point, t, way.from, way.to, inside});
+        };
+        for_each_meeting({way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin}, add);
+        if (cells_.near_triangles.size() > before) return;
+        const Vector3f inwards = inside - way.from;
+        const float share = std::min(1.0f, kDeepest * spacing / inwards.norm());
+        const Vector3f deepest = way.from + share * inwards;
+        for_each_meeting({way.from.cwiseMin(deepest), way.from.cwiseMax(deepest)}, [&](std::uint32_t t) {
+          if (parts(obstacle_.triangles[t], way.from, inside)) add(t);
+        });
+      });
+    });
   }
 
   void try_edges_of_triangles(const KnownTriangles& triangles, float reach) {

@@ -32,6 +32,9 @@ class CellBoxes {
     }
   }
 
+  /// Around one cell.
+  Bounds<3> at(std::uint32_t cell) const { return fours_[cell / 4].at(static_cast<Eigen::Index>(cell % 4)); }
+
   bool any_meets(const Bounds<3>& box) const {
     return std::any_of(fours_.begin(), fours_.end(),
                        [&](const FourBoxes& four) { return four.apart_from(box).minCoeff() <= 0; });

@@ -43,16 +43,20 @@ class CornerSet {
   }
 
   /// The corners of a triangle. @pre  no more corners than begin() was told
-  void add(const Triangle& triangle) {
+  /// @return  their indices in corners()
+  std::array<std::uint32_t, 3> add(const Triangle& triangle) {
     const Eigen::Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
     std::array<Point, 3> points;
     std::array<std::uint64_t, 3> hashes;
     for (std::size_t i = 0; i < 3; ++i) hashes[i] = hash_of(points[i] = exact_point(triangle[i]));
+    std::array<std::uint32_t, 3> indices;
     for (std::size_t i = 0; i < 3; ++i) {
       Corner& corner = at(points[i], hashes[i], normal);
+      indices[i] = static_cast<std::uint32_t>(&corner - corners_.data());
       corner.stands_out_ = corner.stands_out_ || !are_nearly_parallel(corner.normal_, normal);
       corner.around_ += hashes[(i + 1) % 3] - hashes[(i + 2) % 3];
     }
+    return indices;
   }
 
   /// A corner of which nothing else is known: it is not flat. @pre  as above

@@ -24,15 +24,12 @@ class EdgeSet {
   /// Empties the set. @param sides  three for each triangle
   void begin(std::size_t sides) {
     found_.clear();
-    found_.reserve(sides);
     is_flat_.assign(sides, false);
-    const std::size_t slots = std::bit_ceil(2 * sides + 1);
-    mask_ = slots - 1;
-    slots_.assign(slots, kNone);
   }
 
   /// The sides 3 t, 3 t + 1, 3 t + 2 of triangle t: from corner 0 to 1, to 2, to 0. @pre  begin() was told of them
   void add(std::size_t t, const std::array<Eigen::Vector3f, 3>& triangle) {
+    if (found_.empty()) make_slots();
     const Eigen::Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
     for (std::size_t i = 0; i < 3; ++i)
       add_side(static_cast<std::uint32_t>(3 * t + i), exact_point(triangle[i]),
@@ -50,6 +47,14 @@ class EdgeSet {
     std::uint32_t first, second;
     bool runs_up;  // the first triangle's side, from low to high
   };
+
+  /// When the first triangle comes: often none does.
+  void make_slots() {
+    found_.reserve(is_flat_.size());
+    const std::size_t slots = std::bit_ceil(2 * is_flat_.size() + 1);
+    mask_ = slots - 1;
+    slots_.assign(slots, kNone);
+  }
 
   void add_side(std::uint32_t side, ExactPoint from, ExactPoint to, const Eigen::Vector3f& normal) {
     const bool runs_up = from < to;

@@ -42,10 +42,11 @@ void KnownTriangles::see(const Obstacle& obstacle, float longest) {
 
 void KnownTriangles::find_corners() {
   set_.begin(edges_.size());
+  corners_of_.assign(triangles_.size(), {kNone, kNone, kNone});
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const std::span<const ObstacleEdge> edges(&edges_[3 * t], 3);
     if (are_sides(edges, triangles_[t])) {
-      set_.add(triangles_[t]);
+      corners_of_[t] = set_.add(triangles_[t]);
       continue;
     }
     for (const ObstacleEdge& edge : edges) set_.add(edge.from);
@@ -55,18 +56,31 @@ void KnownTriangles::find_corners() {
     if (!corner.is_flat()) corners_.push_back(corner.point);
 }
 
+/// Sides at a flat corner do not.
+bool KnownTriangles::may_stand_out(std::size_t t, std::size_t side) const {
+  const std::array<std::uint32_t, 3>& corners = corners_of_[t];
+  if (corners[0] == kNone) return true;
+  return !set_.corners()[corners[side]].is_flat() && !set_.corners()[corners[(side + 1) % 3]].is_flat();
+}
+
 void KnownTriangles::find_long_edges() {
-  const float most = longest_ * longest_;
-  is_long_.resize(edges_.size());
-  for (std::size_t i = 0; i < edges_.size(); ++i)
-    is_long_[i] = !((edges_[i].to - edges_[i].from).squaredNorm() <= most);
-  has_long_edges_ = std::find(is_long_.begin(), is_long_.end(), true) != is_long_.end();
-  if (!has_long_edges_) return;
+  is_long_.assign(edges_.size(), false);
   sides_.begin(edges_.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    if (are_sides({&edges_[3 * t], 3}, triangles_[t])) sides_.add(t, triangles_[t]);
-  for (std::size_t i = 0; i < edges_.size(); ++i) is_long_[i] = is_long_[i] && !sides_.is_flat(i);
-  has_long_edges_ = std::find(is_long_.begin(), is_long_.end(), true) != is_long_.end();
+  has_long_edges_ = false;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    bool has_one = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const ObstacleEdge& edge = edges_[3 * t + i];
+      if ((edge.to - edge.from).squaredNorm() <= longest_ * longest_ || !may_stand_out(t, i)) continue;
+      is_long_[3 * t + i] = has_one = true;
+    }
+    // Most triangles of a large mesh have none.
+    if (has_one && corners_of_[t][0] != kNone) sides_.add(t, triangles_[t]);
+  }
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    is_long_[i] = is_long_[i] && !sides_.is_flat(i);
+    has_long_edges_ = has_long_edges_ || is_long_[i];
+  }
 }
 
 }  // namespace softcell::ppu

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,8 +36,10 @@ class KnownTriangles {
   bool has_long_edges() const { return has_long_edges_; }
 
  private:
+  static constexpr std::uint32_t kNone = ~0u;
   void find_corners();
   void find_long_edges();
+  bool may_stand_out(std::size_t t, std::size_t side) const;
 
   std::vector<std::array<Eigen::Vector3f, 3>> triangles_;
   std::vector<ObstacleEdge> edges_;
@@ -46,7 +49,8 @@ class KnownTriangles {
   CornerSet set_;
   EdgeSet sides_;
   std::vector<CornerSet::Point> corners_;
-  std::vector<bool> is_long_;  // of each edge
+  std::vector<std::array<std::uint32_t, 3>> corners_of_;  // of each triangle: in set_, or kNone
+  std::vector<bool> is_long_;                             // of each edge
   bool has_long_edges_ = false;
 };
 

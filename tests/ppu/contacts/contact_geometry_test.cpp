@@ -270,7 +270,7 @@ TEST(KnownTriangles, AreThoseOfTheLastCallWhateverHasChanged) {
   expect_what_a_new_one_knows(2, 5, false);
   make_pyramid(-0.1f);
   expect_what_a_new_one_knows(2, 5, false);
-  make_pyramid(0.02f);
+  make_pyramid(0.015f);
   expect_what_a_new_one_knows(2, 4, false);  // nearly flat
   make_pyramid(-0.1f);
   expect_what_a_new_one_knows(1.2f, 5, true);  // the four along the border are longer
