@@ -6,7 +6,7 @@
 // the same side: in a thousand steps a body that only turns loses 1/2000 of its angular momentum.
 //
 //     step    1      2      3      4             5  ...
-//     lost    +      +      +      +  -> given back as one rigid motion, what floats cannot hold of it stays lost
+//     lost    +      +      +      +  -> given back as one rigid motion; what floats cannot hold of it stays on account
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -21,6 +21,7 @@ template <int kDimension>
 class LostMomenta {
  public:
   using Vector = Eigen::Vector<float, kDimension>;
+  using Double = Eigen::Vector<double, kDimension>;
 
   /// Of a body that was moved by its user, nothing is lost.
   void forget() { *this = {}; }
@@ -32,7 +33,6 @@ class LostMomenta {
 
   static constexpr int kSteps = 4;
 
-  using Double = Eigen::Vector<double, kDimension>;
   /// Of a piece, the part that it has in what was lost of the whole, by mass: of all pieces together all.
   /// @param share  of the whole's mass   @param from_centre  metres, to the piece's centre of mass from the whole's
   void inherit(const LostMomenta& whole, double share, const Double& from_centre);
