@@ -59,7 +59,8 @@ std::vector<BodyPiece<kDimension>> pieces_of(const SoftBody<kDimension>& body,
                                              std::span<const std::uint32_t> faces) {
   std::vector<BodyPiece<kDimension>> pieces =
       plan_pieces(body.shared_model(), faces, least_cells_of(body)).stay;
-  for (BodyPiece<kDimension>& piece : pieces) piece.body.inherit_state(body, piece.particle_of);
+  const auto centre = body.precise_centre_of_mass();
+  for (BodyPiece<kDimension>& piece : pieces) piece.body.inherit_state(body, piece.particle_of, centre);
   return pieces;
 }
 

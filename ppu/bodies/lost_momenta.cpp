@@ -1,6 +1,5 @@
 #include "ppu/bodies/lost_momenta.h"
 
-#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -81,15 +80,6 @@ class Moments {
 bool is_finite(double spin) { return std::isfinite(spin); }
 bool is_finite(const Eigen::Vector3d& spin) { return spin.allFinite(); }
 
-/// The turn (rad/s) with that spin; none for what lies on a point or, in three dimensions, on a line.
-double turn_of(double inertia, double spin) { return inertia > 0 ? spin / inertia : 0; }
-Eigen::Vector3d turn_of(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& spin) {
-  constexpr double kFlat = 1e-9;
-  const double size = inertia.trace();
-  if (!(inertia.determinant() > kFlat * size * size * size)) return Eigen::Vector3d::Zero();
-  return turning::inverse(inertia) * spin;
-}
-
 /// Columns k with velocity = sum of column k times arm k.
 void set_columns(InRegister<2> (&columns)[3], double turn) {
   const auto omega = static_cast<float>(turn);
@@ -146,7 +136,7 @@ void LostMomenta<kDimension>::give_back(std::span<const Vector> positions, std::
   const Axial spin = spin_ - turning::cross(Double(origin + centre), momentum_);
   const typename Moments<kDimension>::Matrix about_centre =
       body.second() - mass * centre * centre.transpose();
-  const Axial turn = turn_of(turning::inertia_of(about_centre), spin);
+  const Axial turn = turning::turn_of(turning::inertia_of(about_centre), spin);
 
   const Double at_middle = velocity - turning::cross(turn, centre);
   InRegister<kDimension> steady = InRegister<kDimension>::Zero(), columns[3];

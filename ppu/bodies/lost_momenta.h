@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <span>
 
-#include "ppu/bodies/turning.h"
+#include "ppu/numbers/turning.h"
 
 namespace softcell::ppu {
 

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "ppu/bodies/lost_momenta.h"
-#include "ppu/bodies/turning.h"
 #include "ppu/bodies/workshop.h"
 #include "ppu/matching/plastic_flow.h"
 #include "ppu/matching/rotation.h"
 #include "ppu/matching/stiffness.h"
 #include "ppu/numbers/box_around.h"
+#include "ppu/numbers/turning.h"
 #include "ppu/reference/shape_matching.h"
 #include "softcell/base/assert.h"
 
@@ -345,14 +345,15 @@ void SoftBody<kDimension>::take_flow() {
 }
 
 template <int kDimension>
-void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of) {
+void SoftBody<kDimension>::inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of,
+                                         const Eigen::Vector<double, kDimension>& centre) {
   SC_ASSERT(x_.size() == particle_of.size(), "{} particles of a piece of {}", particle_of.size(), x_.size());
   set_material(whole.settings_);
   for (std::size_t i = 0; i < particle_of.size(); ++i)
     set_particle(i, whole.x_[particle_of[i]], whole.v_[particle_of[i]]);
   matcher_->take_rotations(*whole.matcher_, particle_of);
   const double share = double{model_->mass()} / double{whole.model_->mass()};
-  lost_->inherit(*whole.lost_, std::min(share, 1.0), motion_of(*this).centre - motion_of(whole).centre);
+  lost_->inherit(*whole.lost_, std::min(share, 1.0), precise_centre_of_mass() - centre);
   if (!whole.has_own_rest()) return;
   std::vector<Vector> rest;
   for (const std::uint32_t particle : particle_of) rest.push_back(whole.own_rest()[particle]);
@@ -501,7 +502,12 @@ void SoftBody<kDimension>::add_angular_velocity(const AxialVector& dw) {
 
 template <int kDimension>
 auto SoftBody<kDimension>::centre_of_mass() const -> Vector {
-  return motion_of(*this).centre.template cast<float>();
+  return precise_centre_of_mass().template cast<float>();
+}
+
+template <int kDimension>
+auto SoftBody<kDimension>::precise_centre_of_mass() const -> Eigen::Vector<double, kDimension> {
+  return motion_of(*this).centre;
 }
 
 template <int kDimension>

@@ -226,7 +226,8 @@ struct Box2dSoftBodies::Impl {
     for (auto& touching : made.touching) surfaces->adopt(std::move(touching));
     solve.drop();
     if (body.soft().asleep()) body.wake();
-    for (BodyPiece<2>& piece : planned) piece.body.inherit_state(body.soft(), piece.particle_of);
+    const Eigen::Vector2d centre = body.soft().precise_centre_of_mass();
+    for (BodyPiece<2>& piece : planned) piece.body.inherit_state(body.soft(), piece.particle_of, centre);
     std::vector<Box2dBody*> pieces{&body};
     for (std::size_t i = 1; i < planned.size(); ++i) {
       pieces.push_back(&add(std::move(planned[i].body)));

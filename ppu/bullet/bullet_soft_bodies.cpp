@@ -170,8 +170,9 @@ struct BulletSoftBodies::Impl final : SubstepClient, btActionInterface {
     for (PreparedPiece& piece : prepared)
       if (piece.contact) surfaces->adopt(std::move(piece.contact));
     solve.drop();
+    const Eigen::Vector3d centre = body.soft().precise_centre_of_mass();
     for (auto& [piece, contact] : prepared) {
-      piece.body.inherit_state(body.soft(), piece.particle_of);
+      piece.body.inherit_state(body.soft(), piece.particle_of, centre);
       // Of a body that was teleported or put back into shape nothing is known.
       if (!body.was_reset()) solve.inherit_state(body.soft(), piece.body, piece.particle_of);
     }

@@ -137,7 +137,7 @@ class ObstacleContacts {
       return find_with_triangles(cells_.triangles(obstacle_, kEdgeSpacing * body_.spacing()));
     const float reach = come_near(bounds(obstacle_));
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
-      for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      for_each_point_in(near_, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (const auto hit = meet(obstacle_, way_of(from, to), point.allowance, body_.spacing()))
           add(point.anchor, to, *hit);
       });
@@ -164,15 +164,15 @@ class ObstacleContacts {
     return (box.low - rigid_.centre).cwiseAbs().cwiseMax((box.high - rigid_.centre).cwiseAbs()).norm();
   }
 
-  /// Calls work(point, from, to) for a cell's points that pass what is near the obstacle.
+  /// Calls work(point, from, to) for a cell's points whose ways pass through the box.
   template <typename Work>
-  void for_each_point_near(std::uint32_t cell, const Work& work) const {
+  void for_each_point_in(const Bounds<3>& box, std::uint32_t cell, const Work& work) const {
     const ContactModel& model = *body_.model;
     for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
       const TouchPoint& point = model.touch_points[i];
       const Vector3f from = point.anchor.of(body_.positions), to = point.anchor.of(body_.ends);
-      if ((from.cwiseMax(to).array() < near_.low.array()).any() ||
-          (from.cwiseMin(to).array() > near_.high.array()).any())
+      if ((from.cwiseMax(to).array() < box.low.array()).any() ||
+          (from.cwiseMin(to).array() > box.high.array()).any())
         continue;
       work(point, from, to);
     }
@@ -240,15 +240,14 @@ class ObstacleContacts {
     const float spacing = body_.spacing();
     // What has been pressed through a triangle may be so far behind it, and still meets it.
     const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
-    const Bounds<3> touching = near_;
-    near_ = widened(near_, kDeepest * spacing);
+    const Bounds<3> deep = widened(near_, kDeepest * spacing);
     cells_.near_triangles.clear();
-    cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
+    cells_.boxes().for_each_meeting(deep, [&](std::uint32_t cell) {
       const Vector3f inner = inner_place(cell);
       const Bounds<3> around = cells_.boxes().at(cell);
-      if (!overlap(touching, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
+      if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
       const Vector3f inside = obstacle_.to_own(inner);
-      for_each_point_near(cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      for_each_point_in(deep, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (point.allowance > 0) return;  // it may be on either side
         const Way way = way_of(from, to);
         const std::size_t before = cells_.near_triangles.size();

@@ -1,7 +1,6 @@
 #include "ppu/contacts/lost_spin.h"
 
-#include <Eigen/LU>
-
+#include "ppu/numbers/turning.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -38,10 +37,7 @@ void LostSpin::add(std::span<const ContactBody> bodies, std::uint32_t a, std::ui
   Spinning& first = spinning(bodies, a);
   Matrix3d inertia = first.inertia;
   if (b != a) inertia += spinning(bodies, b).inertia;
-  constexpr double kFlat = 1e-9;
-  const double size = inertia.trace();
-  if (!(inertia.determinant() > kFlat * size * size * size)) return;  // both are pressed to one line
-  const Vector3d turn = inertia.inverse() * given;
+  const Vector3d turn = turning::turn_of(inertia, given);  // none: both are pressed to one line
   first.turn -= turn;
   if (b != a) of_bodies_[b].turn -= turn;
 }

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "ppu/bodies/turning.h"
+#include "ppu/numbers/turning.h"
 #include "softcell/soft_bodies/soft_body.h"
 #include "softcell/soft_bodies/soft_body_solver.h"
 

@@ -119,8 +119,10 @@ class SoftBody {
   /// Sets this body, a piece, to the state that its particles had in the whole body: positions, velocities, material, rest shape,
   /// rotations of regions.
   /// @param whole  the body that broke   @param particle_of  for each particle of this body, its number in the whole
+  /// @param centre  whole.precise_centre_of_mass(), which all its pieces need
   /// @pre this body's model is a piece of the whole's
-  void inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of);
+  void inherit_state(const SoftBody& whole, std::span<const std::uint32_t> particle_of,
+                     const Eigen::Vector<double, kDimension>& centre);
 
   /// Sets a particle's velocity (m/s), which a coupling has computed.
   void set_velocity(std::size_t particle, const Vector& velocity) { v_[particle] = velocity; }
@@ -162,9 +164,10 @@ class SoftBody {
   std::uint32_t revision() const { return revision_; }  ///< how often its user has changed the body
   std::uint32_t resets() const { return resets_; }  ///< how often it was teleported or put back into shape
 
-  Vector centre_of_mass() const;         ///< metres
-  Vector linear_momentum() const;        ///< kg m/s
-  AxialVector angular_momentum() const;  ///< kg m^2/s, about the centre of mass
+  Vector centre_of_mass() const;                                     ///< metres
+  Eigen::Vector<double, kDimension> precise_centre_of_mass() const;  ///< the same, not rounded
+  Vector linear_momentum() const;                                    ///< kg m/s
+  AxialVector angular_momentum() const;                              ///< kg m^2/s, about the centre of mass
   /// m/s: sqrt(2 E / m) with the kinetic energy E and the mass m, the root mean square of the particles' speeds weighted by mass.
   float mean_speed() const;
   Bounds<kDimension> bounds() const;  ///< the box around the particles' centres, metres

@@ -28,6 +28,15 @@ inline Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second_moment) {
 inline Eigen::Matrix3d inverse(const Eigen::Matrix3d& inertia) { return inertia.inverse(); }
 inline Eigen::Vector3f to_float(const Eigen::Vector3d& axial) { return axial.cast<float>(); }
 
+/// The turn (rad/s) with that spin; none for what lies on a point or, in three dimensions, on a line.
+inline double turn_of(double inertia, double spin) { return inertia > 0 ? spin / inertia : 0; }
+inline Eigen::Vector3d turn_of(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& spin) {
+  constexpr double kFlat = 1e-9;
+  const double size = inertia.trace();
+  if (!(inertia.determinant() > kFlat * size * size * size)) return Eigen::Vector3d::Zero();
+  return inverse(inertia) * spin;
+}
+
 /// Angular momentum, or an angular velocity.
 template <int kDimension>
 using Axial = decltype(cross(Eigen::Vector<double, kDimension>(), Eigen::Vector<double, kDimension>()));
