@@ -13,6 +13,9 @@ namespace softcell::ppu {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
+template Vector3f nearest_point(const std::array<Vector3f, 3>&, const Vector3f&);
+template Eigen::Vector3d nearest_point(const std::array<Eigen::Vector3d, 3>&, const Eigen::Vector3d&);
+
 TriangleGrid::TriangleGrid(const TriangleMesh& mesh, float cube_edge) : edge_(cube_edge) {
   SC_ASSERT(cube_edge > 0 && !mesh.triangles.empty(), "a grid of cubes of {} m over {} triangles", cube_edge,
             mesh.triangles.size());

@@ -35,6 +35,9 @@ Eigen::Vector3<Real> nearest_point(const std::array<Eigen::Vector3<Real>, 3>& tr
   const Real scale = 1 / (va + vb + vc);
   return a + vb * scale * ab + vc * scale * ac;
 }
+// One of each for all, in triangle_distance.cpp: tests with sanitizers are compiled without optimisation, and the linker would take theirs.
+extern template Eigen::Vector3f nearest_point(const std::array<Eigen::Vector3f, 3>&, const Eigen::Vector3f&);
+extern template Eigen::Vector3d nearest_point(const std::array<Eigen::Vector3d, 3>&, const Eigen::Vector3d&);
 
 /// Finds the triangles near a point by a grid of cubes.
 class TriangleGrid {
