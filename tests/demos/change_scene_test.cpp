@@ -158,7 +158,13 @@ TEST_F(ChangeScene, RemovesABodyWithWhatIsAttachedToIt) {
   const Scene scene = load_scene_3d("bridge");
   Simulation3d run(scene, {.spes = 2});
   step(run, 140);
+  const InputEvent<3> hold{
+      .action = Action::kHold, .hand = kUsersHand, .body = 2, .value = positions(run, 2)[0]};
+  run.step(std::vector<InputEvent<3>>{
+      hold, {.action = Action::kPin, .hand = kUsersHand}, {.action = Action::kRelease, .hand = kUsersHand}});
   const Beginning<3> broken = run.moment();
+  ASSERT_EQ(broken.pins.size(), 1u);
+  EXPECT_EQ(broken.pins[0].body, 2u);
   ASSERT_FALSE(broken.ended_attachments.empty());
   constexpr std::size_t kSecond = 1;
   Scene less = scene_now(scene, present(run));
@@ -179,10 +185,16 @@ TEST_F(ChangeScene, RemovesABodyWithWhatIsAttachedToIt) {
   EXPECT_EQ(kept, less.attachments.size());
   EXPECT_LT(kept, scene.attachments.size());
   EXPECT_EQ(less.begin->ended_attachments.size(), kept_broken);
+  ASSERT_EQ(less.begin->pins.size(), 1u);
+  EXPECT_EQ(less.begin->pins[0].body, 1u);
+  EXPECT_EQ(less.begin->pins[0].particles, broken.pins[0].particles);
   Simulation3d again(less, {.spes = 2});
   EXPECT_EQ(positions(again, 0), positions(run, 0));
   EXPECT_EQ(positions(again, 1), positions(run, 2));
   step(again, 10);
+  EXPECT_EQ(again.moment().pins.size(), 1u);
+  remove_body(less, 1);
+  EXPECT_TRUE(less.begin->pins.empty());
 }
 
 TEST_F(ChangeScene, RemovesWhatTheScriptDoesToABody) {

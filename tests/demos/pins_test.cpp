@@ -2,14 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "input/recording.h"
+#include "scene/beginning.h"
 #include "scene_file/scene_library.h"
+#include "scene_file/state_file.h"
 #include "simulation/pins.h"
 #include "simulation_runs.h"
 
@@ -143,12 +147,43 @@ TYPED_TEST(Pin, TakesThePlaceOfTheOldestWhereThereAreMany) {
   const std::size_t held = this->highest();
   const auto before = this->place_of(held);
   this->step_with({hold_at<TestFixture::kDimension>(this->top()), {.action = Action::kPause}});
-  for (std::size_t i = 0; i < Pins<TestFixture::kDimension>::kMost + 3; ++i)
+  for (std::size_t i = 0; i < kMostPins + 3; ++i)
     this->step_with({{.action = Action::kPin, .hand = kUsersHand}});
   this->step_with({{.action = Action::kResume}, {.action = Action::kRelease, .hand = kUsersHand}});
-  EXPECT_EQ(this->heads(), Pins<TestFixture::kDimension>::kMost);
+  EXPECT_EQ(this->heads(), kMostPins);
   step(this->run, 60);
   EXPECT_LT((this->place_of(held) - before).norm(), 0.02f);
+}
+
+/// By way of the text of its state.
+TYPED_TEST(Pin, HoldsInTheSceneThatASavedMomentBegins) {
+  constexpr int kOf = TestFixture::kDimension;
+  this->pin_top();
+  step(this->run, 30);
+  auto begun = this->scene;
+  begun.begin = std::make_shared<const Beginning<kOf>>(parse_state<kOf>(state_to_text(this->run.moment())));
+  ASSERT_EQ(begun.begin->pins.size(), 1u);
+  const std::vector<std::uint32_t>& pinned = begun.begin->pins[0].particles;
+  ASSERT_FALSE(pinned.empty());
+  typename TestFixture::P::Simulation again(begun, {});
+  const auto stays = [&] {
+    std::vector<Vector<kOf>> before;
+    for (const std::uint32_t i : pinned) before.push_back(again.soft_body(0).position(i));
+    step(again, 60);
+    float farthest = 0;
+    for (std::size_t k = 0; k < pinned.size(); ++k)
+      farthest = std::max(farthest, (again.soft_body(0).position(pinned[k]) - before[k]).norm());
+    return farthest < 0.01f;
+  };
+  EXPECT_TRUE(stays());
+  EXPECT_EQ(again.moment().pins.size(), 1u);
+  const typename TestFixture::Events reset{{.action = Action::kReset}},
+      off{{.action = Action::kUnpin, .body = kEveryBody}};
+  again.step(reset);
+  EXPECT_TRUE(stays()) << "the scene begins with the pin again";
+  again.step(off);
+  EXPECT_FALSE(stays());
+  EXPECT_TRUE(again.moment().pins.empty());
 }
 
 /// By way of the text of a recording.

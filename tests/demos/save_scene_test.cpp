@@ -573,6 +573,11 @@ TEST(StateFile, RefusesWithTheLine) {
   const std::string head = "softcell state 1\ndimension 2\n";
   EXPECT_EQ(refused(head), "(accepted)");
   EXPECT_EQ(refused(head + "soft_body 1\n1 2 3 4\nrigid_body 3 1 2 3 4 5 6\n"), "(accepted)");
+  const std::string pin = "pin 0 1 2 0.5 0\n";
+  std::string pins;
+  for (std::size_t i = 0; i < kMostPins; ++i) pins += pin;
+  EXPECT_EQ(refused(head + "soft_body 1\n1 2 3 4\n" + pins), "(accepted)");
+  EXPECT_EQ(refused(head + "soft_body 1\n1 2 3 4\n" + pins + pin), "line 105: more than 100 pins");
   struct Case {
     std::string lines, expected;
   };
@@ -594,6 +599,13 @@ TEST(StateFile, RefusesWithTheLine) {
            {head + "soft_body 1\n1 2 3 4\nrest_shape\n1\n", "line 6: expected a number"},
            {head + "soft_body 1\n1 2 3 4\nrest_shape\n1 2 3\n", "line 6: the line has more"},
            {head + "ended_attachment 3\nended_attachment 2\n", "line 4: attachments must be in ascending"},
+           {head + "pin 0 0 0 1 0\n", "line 3: a pin of soft body 0, of 0"},
+           {head + "soft_body 2\n1 2 3 4\n1 2 3 4\npin 0 0 0 0 1\n",
+            "line 6: the radius of a pin must be above 0"},
+           {head + "soft_body 2\n1 2 3 4\n1 2 3 4\npin 0 0 0 1\n", "line 6: a pin needs particles"},
+           {head + "soft_body 2\n1 2 3 4\n1 2 3 4\npin 0 0 0 1 2\n", "line 6: a pin of particle 2, of 2"},
+           {head + "soft_body 2\n1 2 3 4\n1 2 3 4\npin 0 0 0 1 1 0\n",
+            "line 6: the particles of a pin must be in asc"},
            {head + "else\n", "line 3: expected soft_body, rest_shape, rigid_body"}}) {
     EXPECT_EQ(refused(lines).rfind(expected, 0), 0u) << refused(lines) << "\n" << expected;
   }

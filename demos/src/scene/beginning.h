@@ -3,12 +3,15 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
 namespace softcell::demos {
+
+inline constexpr std::size_t kMostPins = 100;
 
 /// Dimension: 2 or 3. Metres, seconds, radians.
 template <int Dimension>
@@ -43,6 +46,14 @@ struct Beginning {
     AxialVector angular_velocity = at_rest();
   };
 
+  /// Where a hand has left a soft body.
+  struct Pin {
+    std::uint32_t body = 0;  ///< its number in the scene
+    Vector point = Vector::Zero();
+    float radius = 0;                      ///< metres around the point, that the hand held
+    std::vector<std::uint32_t> particles;  ///< which stay where they are, ascending
+  };
+
   std::optional<Vector> gravity;  ///< m/s^2; none: the scene's
   std::optional<Vector> tilt;  ///< in 3D, of the ground, as Action::kTilt has it; none: as the scene has it
   float time_scale = 1;        ///< as Action::kTimeScale has it
@@ -51,6 +62,7 @@ struct Beginning {
   std::vector<SoftBody> soft_bodies;             ///< all of the scene's, in order
   std::vector<RigidBody> rigid_bodies;           ///< all that move, ascending
   std::vector<std::uint32_t> ended_attachments;  ///< numbers of those that have broken, ascending
+  std::vector<Pin> pins;                         ///< at most kMostPins, the oldest first
 };
 
 }  // namespace softcell::demos

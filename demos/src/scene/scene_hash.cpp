@@ -142,10 +142,11 @@ class Hash {
   }
   template <int Dimension>
   void add(const Beginning<Dimension>& begin) {
-    const auto& [gravity, tilt, time_scale, frames, seconds, soft_bodies, rigid_bodies, ended_attachments] =
-        begin;
+    const auto& [gravity, tilt, time_scale, frames, seconds, soft_bodies, rigid_bodies, ended_attachments,
+                 pins] = begin;
     add(gravity, tilt, time_scale, frames, seconds, ended_attachments);
     for (const auto& [positions, velocities, rest] : soft_bodies) add(positions, velocities, rest);
+    for (const auto& [body, point, radius, particles] : pins) add(body, point, radius, particles);
     for (const auto& [body, position, rotation, velocity, angular_velocity] : rigid_bodies) {
       add(body, position, velocity, angular_velocity);
       if constexpr (Dimension == 3) {

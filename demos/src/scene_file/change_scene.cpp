@@ -201,6 +201,7 @@ void remove_from(SceneOf& scene, std::size_t body, std::string_view own_side) {
   erase_attachments<Dimension>(scene.attachments, body, begin ? &begin->ended_attachments : nullptr);
   if (begin && body < begin->soft_bodies.size())
     begin->soft_bodies.erase(begin->soft_bodies.begin() + static_cast<std::ptrdiff_t>(body));
+  if (begin) erase_of_body(begin->pins, body);
   scene.begin = std::move(begin);
 }
 

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "document/field_reader.h"
 #include "read_common.h"
@@ -138,6 +139,28 @@ void read_rest(StateReader& reader, typename Beginning<Dimension>::SoftBody& bod
 }
 
 template <int Dimension>
+typename Beginning<Dimension>::Pin read_pin(
+    StateReader& reader, const std::vector<typename Beginning<Dimension>::SoftBody>& bodies) {
+  typename Beginning<Dimension>::Pin pin;
+  pin.body = reader.whole("the number of a soft body", static_cast<std::uint32_t>(kMaxSoftBodies));
+  if (pin.body >= bodies.size())
+    reader.refuse(fmt::format("a pin of soft body {}, of {}", pin.body, bodies.size()));
+  for (int axis = 0; axis < Dimension; ++axis) pin.point[axis] = reader.number(kFar);
+  pin.radius = reader.number(kFar);
+  if (!(pin.radius > 0)) reader.refuse("the radius of a pin must be above 0");
+  const std::size_t count = bodies[pin.body].positions.size();
+  while (!reader.rest().empty()) {
+    const std::uint32_t particle = reader.whole("a pin's particle", kMaxParticlesOfScene);
+    if (particle >= count) reader.refuse(fmt::format("a pin of particle {}, of {}", particle, count));
+    if (!pin.particles.empty() && particle <= pin.particles.back())
+      reader.refuse("the particles of a pin must be in ascending order");
+    pin.particles.push_back(particle);
+  }
+  if (pin.particles.empty()) reader.refuse("a pin needs particles");
+  return pin;
+}
+
+template <int Dimension>
 typename Beginning<Dimension>::RigidBody read_rigid(StateReader& reader) {
   typename Beginning<Dimension>::RigidBody body;
   body.body = reader.whole("the number of a rigid body", static_cast<std::uint32_t>(4 * kMaxRigidBodies));
@@ -204,6 +227,13 @@ std::string state_to_text(const Beginning<Dimension>& moment) {
   }
   for (const std::uint32_t number : moment.ended_attachments)
     fmt::format_to(std::back_inserter(text), "ended_attachment {}\n", number);
+  for (const auto& pin : moment.pins) {
+    const std::size_t axes = Dimension;
+    check_range({pin.point.data(), axes}, kFar, "a pin", "m");
+    fmt::format_to(std::back_inserter(text), "pin {} {} {} {}\n", pin.body,
+                   fmt::join(std::span(pin.point.data(), axes), " "), pin.radius,
+                   fmt::join(pin.particles, " "));
+  }
   fmt::format_to(std::back_inserter(text), "end {:016x}\n", state_checksum(text));
   return text;
 }
@@ -246,13 +276,16 @@ Beginning<Dimension> parse_state(std::string_view text) {
       if (!moment.ended_attachments.empty() && number <= moment.ended_attachments.back())
         reader.refuse("attachments must be in ascending order");
       moment.ended_attachments.push_back(number);
+    } else if (kind == "pin") {
+      if (moment.pins.size() == kMostPins) reader.refuse(fmt::format("more than {} pins", kMostPins));
+      moment.pins.push_back(read_pin<Dimension>(reader, moment.soft_bodies));
     } else if (kind == "end") {
       if (!reader.is_last()) reader.refuse("expected nothing behind the line 'end'");
       if (reader.rest() != fmt::format("{:016x}", state_checksum(reader.before_line())))
         reader.refuse("the checksum is another: the file was changed, or a part of it is missing");
       return moment;
     } else {
-      reader.refuse("expected soft_body, rest_shape, rigid_body, ended_attachment or end");
+      reader.refuse("expected soft_body, rest_shape, rigid_body, ended_attachment, pin or end");
     }
   }
 }

@@ -306,6 +306,7 @@ struct Simulation2d::State {
     pins.forget();
     world.reset();  // its worker before the next one's
     world.emplace(scene, models, *solver, contacts, spes ? spes->make_contact_worker() : nullptr);
+    if (scene.begin) pins.put(world->soft_bodies, scene.begin->pins);
     sources.resize(models.size());
     std::iota(sources.begin(), sources.end(), std::size_t{0});
   }
@@ -543,7 +544,8 @@ Beginning<2> Simulation2d::moment() const {
                    .seconds = 0,
                    .soft_bodies = {},
                    .rigid_bodies = {},
-                   .ended_attachments = ended_attachments(s.world->attachments, s.world->soft_bodies)};
+                   .ended_attachments = ended_attachments(s.world->attachments, s.world->soft_bodies),
+                   .pins = s.pins.saved(s.world->soft_bodies)};
   for (std::size_t b = 0; b < soft_bodies(); ++b) now.soft_bodies.push_back(state_of(soft_body(b)));
   for (std::uint32_t i = 0; i < s.world->rigid_bodies.size(); ++i) {
     const b2Body& body = *s.world->rigid_bodies[i];

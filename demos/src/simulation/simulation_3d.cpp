@@ -292,6 +292,7 @@ struct Simulation3d::State {
                              .angular_velocity = rigid.angular_velocity});
     }
     end_attachments(scene, attachments, soft_bodies);
+    pins.put(soft_bodies, scene.begin->pins);
   }
   Beginning<3> moment() const {
     for (std::size_t b = 0; b < soft_bodies.size(); ++b)
@@ -304,7 +305,8 @@ struct Simulation3d::State {
                      .seconds = frame / 60,
                      .soft_bodies = {},
                      .rigid_bodies = {},
-                     .ended_attachments = ended_attachments(attachments, soft_bodies)};
+                     .ended_attachments = ended_attachments(attachments, soft_bodies),
+                     .pins = pins.saved(soft_bodies)};
     for (std::size_t b = 0; b < soft_bodies.size(); ++b) now.soft_bodies.push_back(state_of(soft_bodies[b]));
     for (std::uint32_t i = 0; i < world.rigid_bodies(); ++i) {
       if (!world.moves(i)) continue;
