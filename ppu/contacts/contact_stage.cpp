@@ -205,7 +205,8 @@ void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::spa
     if (bodies[a].obstacles.empty()) continue;
     Group& group = next_group(a, a, true);
     for (const std::uint32_t obstacle : bodies[a].obstacles)
-      find_contacts(bodies_[a], cells_[a], obstacles[obstacle], rigids, step, group.contacts);
+      find_contacts(bodies_[a], cells_[a], obstacles, bodies[a].obstacles, obstacle, rigids, step,
+                    group.contacts);
     if (group.contacts.empty()) --group_count_;
   }
 }

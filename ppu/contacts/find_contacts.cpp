@@ -122,13 +122,16 @@ std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowanc
 
 class ObstacleContacts {
  public:
-  ObstacleContacts(const ContactBody& body, EndCells& cells, const Obstacle& obstacle,
+  ObstacleContacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
+                   std::span<const std::uint32_t> near, std::uint32_t obstacle,
                    std::span<const ContactRigid> rigids, float step, std::vector<SoftContact>& contacts)
       : body_(body),
         cells_(cells),
-        obstacle_(obstacle),
-        rigid_(rigids[obstacle.rigid]),
-        friction_(body.friction * rigid_.friction * obstacle.friction),
+        obstacles_(obstacles),
+        near_obstacles_(near),
+        obstacle_(obstacles[obstacle]),
+        rigid_(rigids[obstacle_.rigid]),
+        friction_(body.friction * rigid_.friction * obstacle_.friction),
         step_(step),
         contacts_(contacts) {}
 
@@ -136,10 +139,15 @@ class ObstacleContacts {
     if (obstacle_.kind == ObstacleKind::kTriangles)
       return find_with_triangles(cells_.triangles(obstacle_, kEdgeSpacing * body_.spacing()));
     const float reach = come_near(bounds(obstacle_));
+    if (may_have_others_beside())
+      cells_.beside.begin(obstacles_, near_obstacles_, obstacle_, body_.spacing());
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
       for_each_point_in(near_, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
-        if (const auto hit = meet(obstacle_, way_of(from, to), point.allowance, body_.spacing()))
-          add(point.anchor, to, *hit);
+        const Way way = way_of(from, to);
+        auto hit = meet(obstacle_, way, point.allowance, body_.spacing());
+        if (!hit) return;
+        turn_outwards(way.to, point.allowance, *hit);
+        add(point.anchor, to, *hit);
       });
     });
     for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge, reach);
@@ -280,7 +288,7 @@ class ObstacleContacts {
     for (const CornerSet::Point& corner : triangles.corners())
       if (may_be_in_body(in_world(corner))) near.push_back(corner);
     std::sort(near.begin(), near.end());
-    for (const CornerSet::Point& corner : near) try_corner(in_world(corner));
+    for (const CornerSet::Point& corner : near) try_corner(in_world(corner), Vector3f::Zero());
   }
 
   void try_long_edges(const KnownTriangles& triangles, float reach) {
@@ -310,7 +318,7 @@ class ObstacleContacts {
     const Vector3f a = from + first * along, b = from + last * along, margin = Vector3f::Constant(2 * reach);
     if (!cells_.boxes().any_meets({a.cwiseMin(b) - margin, a.cwiseMax(b) + margin})) return;
     for_each_point_of_edge(from, along, body_.box, kEdgeSpacing * body_.spacing(),
-                           [&](const Vector3f& point) { try_corner(point); });
+                           [&](const Vector3f& point) { try_corner(point, along); });
   }
 
   Vector3f moved(const Vector3f& point) const { return point + step_ * rigid_.velocity_at(point); }
@@ -320,7 +328,27 @@ class ObstacleContacts {
     return contains(body_.box, point) && cells_.finder().may_find(moved(point));
   }
 
-  void try_corner(const Vector3f& corner) {
+  /// Of triangles it is known already, and what is round has its edges within.
+  bool may_have_others_beside() const {
+    return obstacle_.kind != ObstacleKind::kTriangles && obstacle_.rounding == 0 &&
+           near_obstacles_.size() > 1;
+  }
+
+  bool is_within_a_floor(const Vector3f& corner, const Vector3f& along) {
+    if (!may_have_others_beside()) return false;
+    if (!along.isZero(0)) return cells_.beside.face_goes_on(corner, along);
+    return body_.model->is_flat() && cells_.beside.face_goes_on(corner, Vector3f::UnitZ());
+  }
+
+  /// Not towards a face that has another shape behind it, if there is another one.
+  void turn_outwards(const Vector3f& end, float allowance, Hit& hit) {
+    if (!may_have_others_beside()) return;
+    const auto other = cells_.beside.way_out(end, {hit.end - allowance, hit.normal});
+    if (other) hit = {other->normal, other->distance + allowance};
+  }
+
+  /// @param along  the edge that has it; 0: a tip, in two dimensions a corner
+  void try_corner(const Vector3f& corner, const Vector3f& along) {
     if (!contains(body_.box, corner)) return;
     const Vector3f point = moved(corner);
     const auto place = cells_.finder().find(point, [](std::uint32_t) { return true; });
@@ -329,6 +357,7 @@ class ObstacleContacts {
     const Vector3f outwards = place->jacobian.inverse().transpose() * field.gradient;
     const float steep = outwards.norm();
     if (!(steep > 0) || field.distance / steep > kNear * body_.spacing() + obstacle_.rounding) return;
+    if (is_within_a_floor(corner, along)) return;
     SoftContact& contact = contacts_.emplace_back();
     contact.a = body_.model->held(anchor_in_cell(body_.lattice(), place->cell, place->xi));
     contact.rigid = obstacle_.rigid;
@@ -340,6 +369,8 @@ class ObstacleContacts {
 
   const ContactBody& body_;
   EndCells& cells_;
+  std::span<const Obstacle> obstacles_;
+  std::span<const std::uint32_t> near_obstacles_;
   const Obstacle& obstacle_;
   const ContactRigid& rigid_;
   float friction_;
@@ -365,9 +396,10 @@ float EndCells::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
   return known->side < 0 ? -1.0f : 1.0f;
 }
 
-void find_contacts(const ContactBody& body, EndCells& cells, const Obstacle& obstacle,
+void find_contacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
+                   std::span<const std::uint32_t> near, std::uint32_t obstacle,
                    std::span<const ContactRigid> rigids, float step, std::vector<SoftContact>& contacts) {
-  ObstacleContacts(body, cells, obstacle, rigids, step, contacts).find();
+  ObstacleContacts(body, cells, obstacles, near, obstacle, rigids, step, contacts).find();
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include "ppu/surfaces/cell_boxes.h"
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/known_triangles.h"
+#include "ppu/surfaces/side_by_side.h"
 
 namespace softcell::ppu {
 
@@ -60,6 +61,7 @@ class EndCells {
   // For those who look for contacts with triangles, again and again without allocating.
   std::vector<CornerSet::Point> near_corners;
   std::vector<PointAtTriangle> near_triangles;
+  Beside beside;  // the obstacle that is looked at
 
  private:
   struct Side {
@@ -81,8 +83,10 @@ class EndCells {
 /// Points of the body's surface, and its particles, in an obstacle, and the obstacle's edges in the body.
 /// Appends to `contacts`.
 /// @param cells  the body's
+/// @param near   the indices of the obstacles near the body, each of which is asked for once  @param obstacle  one of these
 /// @param step   seconds
-void find_contacts(const ContactBody& body, EndCells& cells, const Obstacle& obstacle,
+void find_contacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
+                   std::span<const std::uint32_t> near, std::uint32_t obstacle,
                    std::span<const ContactRigid> rigids, float step, std::vector<SoftContact>& contacts);
 
 /// Points of a's surface in b. Appends to `contacts`, as seen from a.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "ppu/surfaces/known_triangles.h"
 #include "ppu/surfaces/obstacle.h"
 #include "ppu/surfaces/point_chooser.h"
+#include "ppu/surfaces/side_by_side.h"
 #include "ppu/surfaces/triangle_boxes.h"
 #include "ppu/surfaces/triangle_distance.h"
 #include "softcell/soft_bodies/shapes.h"
@@ -428,6 +430,63 @@ TEST(ContactSurface, PointsCoverTheMesh) {
       }
     }
   }
+}
+
+/// Two boxes, the first of which ends at x = 0 with its upper side at y = 0; the spacing is 1.
+class TwoBoxes {
+ public:
+  /// @param turned  radians: the second one, about z at the first one's corner
+  explicit TwoBoxes(const Vector3f& middle_of_second, float turned = 0) {
+    for (Obstacle& box : obstacles_) box.kind = ObstacleKind::kBox, box.extent = {2, 1, 5};
+    obstacles_[0].position = {-2, -1, 0};
+    obstacles_[1].rotation = Eigen::AngleAxisf(turned, Vector3f::UnitZ()).toRotationMatrix();
+    obstacles_[1].position = obstacles_[1].rotation * middle_of_second;
+    beside_.begin(obstacles_, kNear, obstacles_[0], 1);
+  }
+  bool face_goes_on(const Vector3f& point) { return beside_.face_goes_on(point, {0, 0, 3}); }
+  /// Of a point of the world, by the nearest face.
+  std::optional<Separation> way_out(const Vector3f& point) {
+    const Vector3f own = obstacles_[0].to_own(point);
+    return beside_.way_out(own, separation(obstacles_[0], own));
+  }
+
+ private:
+  static constexpr std::array<std::uint32_t, 2> kNear{0, 1};
+  std::array<Obstacle, 2> obstacles_;
+  Beside beside_;
+};
+
+TEST(Beside, FlushShapesHaveNoEdgeBetweenThem) {
+  EXPECT_TRUE(TwoBoxes({2, -1, 0}).face_goes_on({0, 0, 0}));
+  EXPECT_TRUE(TwoBoxes({2, -1.002f, 0}).face_goes_on({0, 0, 1})) << "less than a four-hundredth lower";
+  EXPECT_TRUE(TwoBoxes({2.1f, -1, 0}).face_goes_on({0, 0, -1})) << "across a gap";
+  EXPECT_TRUE(TwoBoxes({2, 0.5f, 0}).face_goes_on({0, 0, 0})) << "at the foot of a wall";
+  EXPECT_TRUE(TwoBoxes({0, -3, 0}).face_goes_on({0, -2, 0})) << "what it stands on";
+  EXPECT_TRUE(TwoBoxes({2, -1, 0}, 0.3f).face_goes_on({0, 0, 0})) << "a valley";
+  EXPECT_TRUE(TwoBoxes({2, -1, 0}).face_goes_on({0, 0, 5})) << "where the edge ends";
+}
+
+TEST(Beside, EdgesThatStandOutStay) {
+  EXPECT_FALSE(TwoBoxes({2, -1.05f, 0}).face_goes_on({0, 0, 0})) << "a step";
+  EXPECT_FALSE(TwoBoxes({2.3f, -1, 0}).face_goes_on({0, 0, 0})) << "a gap";
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}, -0.1f).face_goes_on({0, 0, 0})) << "a ridge";
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}, -0.1f).face_goes_on({0, 0, 5})) << "the end of a ridge";
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}).face_goes_on({-4, 0, 0})) << "the far edge";
+  EXPECT_FALSE(TwoBoxes({2, -1, 8}).face_goes_on({0, 0, 0})) << "the other box begins at z = 3";
+}
+
+TEST(Beside, TheWayOutIsNotIntoTheNextShape) {
+  // A tenth of a millimetre before the second box, which is nearer than the upper side.
+  const Vector3f point(-1e-4f, -0.02f, 0.5f);
+  const auto up = TwoBoxes({2, -1, 0}).way_out(point);
+  ASSERT_TRUE(up);
+  EXPECT_NEAR(up->distance, -0.02f, 1e-6f);
+  EXPECT_EQ(up->normal, Vector3f(0, 1, 0));
+  EXPECT_FALSE(TwoBoxes({4, -1, 0}).way_out(point)) << "nothing is beside it there";
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out({-0.5f, -0.02f, 0.5f})) << "the upper side is the nearest";
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out({-1e-4f, -0.5f, 0.5f})) << "deep within both";
+  // At the foot of a wall the ground pushes upwards, although the wall is there, too.
+  EXPECT_FALSE(TwoBoxes({1.99f, 0.5f, 0}).way_out({-0.005f, -0.002f, 0}));
 }
 
 TEST(CellFinder, FindsPlacesInATwistedLattice) {

@@ -321,6 +321,34 @@ TEST_P(FlatContacts, FrictionIsTheGeometricMeanOfBothCoefficients) {
   }
 }
 
+/// Bodies of their own, fixtures of one body, and boxes of which every other one has sunk by a thousandth of a cell.
+TEST_P(FlatContacts, BoxesSideBySideSlowDownWhatSlidesAsOneFloor) {
+  for (const bool one_body : {false, true})
+    for (const float lower : {0.0f, 0.00025f})
+      for (const float friction : {0.0f, 0.3f, 0.8f}) {
+        const auto w = world();
+        b2BodyDef definition;
+        b2Body* floor = w->box2d.CreateBody(&definition);
+        for (int i = -20; i < 40; ++i) {
+          b2PolygonShape box;
+          box.SetAsBox(0.2f, 1, {0.4f * static_cast<float>(i), -1 - (i % 2 == 0 ? lower : 0)}, 0);
+          if (!one_body) floor = w->box2d.CreateBody(&definition);
+          floor->CreateFixture(&box, 0)->SetFriction(friction);
+        }
+        SoftBodySettings settings = calm();
+        settings.friction = friction;
+        SoftBody<2>& body = w->soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
+        w->run(4);
+        EXPECT_NEAR(body.linear_momentum().x() / mass_of(body), 0, 1e-3) << "it does not lie still";
+        const float before = body.linear_momentum().x();
+        body.add_velocity({3, 0});
+        w->run(0.25f);
+        const double slowed_by = 3 + (double{before} - double{body.linear_momentum().x()}) / mass_of(body);
+        EXPECT_NEAR(slowed_by / (9.81 * 0.25), double{friction}, 0.03)
+            << (one_body ? "fixtures of one body" : "bodies") << ", steps of " << lower << " m";
+      }
+}
+
 /// Of two restitutions Box2D takes the larger one.
 TEST_P(FlatContacts, RestitutionIsTheLargerOfBoth) {
   for (const auto& [of_body, of_floor] : {std::pair(0.0f, 0.6f), {0.6f, 0.2f}}) {

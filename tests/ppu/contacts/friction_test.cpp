@@ -14,18 +14,28 @@
 namespace softcell::ppu {
 namespace {
 
-/// A slope, gravity turned: a block, two triangles in each square of a grid, or a height field.
-enum class Slope { kBox, kTriangles, kHeights };
+/// A slope, gravity turned: a block, planks across it side by side, two triangles in each square of a grid, or a height field.
+enum class Slope { kBox, kPlanks, kTriangles, kHeights };
 
 /// The lists and meshes that Bullet's shapes only refer to.
 struct Ground {
   btTriangleMesh triangles;
   std::vector<float> heights = std::vector<float>(64 * 64);
+  std::unique_ptr<btBoxShape> plank;
 };
 
 std::unique_ptr<btCollisionShape> shape_of(Slope slope, float cell, Ground& ground) {
   if (slope == Slope::kBox) return std::make_unique<btBoxShape>(btVector3(500 * cell, 10 * cell, 500 * cell));
   const float square = 1.3f * cell;
+  if (slope == Slope::kPlanks) {
+    ground.plank = std::make_unique<btBoxShape>(btVector3(square / 2, cell, 50 * cell));
+    auto shape = std::make_unique<btCompoundShape>();
+    for (int i = -7; i < 53; ++i)
+      shape->addChildShape(
+          btTransform(btMatrix3x3::getIdentity(), {static_cast<float>(i) * square, -cell, 0}),
+          ground.plank.get());
+    return shape;
+  }
   if (slope == Slope::kHeights) {
     auto shape = std::make_unique<btHeightfieldTerrainShape>(64, 64, ground.heights.data(), 1.0f, -1.0f, 1.0f,
                                                              1, PHY_FLOAT, false);
@@ -100,6 +110,14 @@ TEST(Friction, TrianglesInAPlaneAreAsOneSlope) {
       expect_coulomb({.friction = friction, .cell = 0.03f, .on = on}, {1.2f}, nullptr);
       expect_coulomb({.friction = friction, .substeps = 1, .on = on}, {1.2f}, &spes);
     }
+}
+
+TEST(Friction, PlanksSideBySideAreAsOneSlope) {
+  SpeRuntime spes({.spes = 2});
+  for (const float friction : {0.3f, 0.8f}) {
+    expect_coulomb({.friction = friction, .cell = 0.03f, .on = Slope::kPlanks}, {1.2f}, nullptr);
+    expect_coulomb({.friction = friction, .substeps = 1, .on = Slope::kPlanks}, {1.2f}, &spes);
+  }
 }
 
 }  // namespace
