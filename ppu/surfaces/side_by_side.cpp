@@ -12,8 +12,7 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 
 // Of the spacing:
-constexpr float kInside =
-    0.02f;  // how far from an edge its faces are looked at, and from a face what is behind it
+constexpr float kInside = 0.02f;   // to where the faces at an edge are looked at, and what is behind a face
 constexpr float kGoesOn = 0.25f;   // so far beyond an edge there has to be something
 constexpr float kLevel = 0.0025f;  // as high as a face
 constexpr float kDeepest = 0.25f;  // another way out is no longer
