@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -251,6 +252,22 @@ TEST(Pins, HoldNothingWhereBodiesTouchWithSpheres) {
   free.step({&hold, 1});
   step(run, 20), step(free, 20);
   EXPECT_EQ(run.state_hash(), free.state_hash());
+}
+
+TEST(Pins, OfASavedMomentAreRefusedWhereBodiesTouchWithSpheres) {
+  Scene scene = load_scene_3d("drop");
+  Simulation3d run(scene, {});
+  run.step(std::vector{hold_at<3>(run.soft_body(0).bounds().high),
+                       InputEvent<3>{.action = Action::kPin, .hand = kUsersHand}});
+  scene.begin = std::make_shared<const Beginning<3>>(run.moment());
+  try {
+    Simulation3d(scene, {.contacts = ppu::ContactMethod::kSpheres});
+    FAIL() << "it was not refused";
+  } catch (const std::runtime_error& error) {
+    EXPECT_TRUE(
+        std::string(error.what()).starts_with("pin 1 of the saved state: the soft body to be attached"))
+        << error.what();
+  }
 }
 
 TEST(Pins, HoldBodiesThatTouchWithCirclesInTwoDimensions) {
