@@ -144,14 +144,17 @@ typename Beginning<Dimension>::Pin read_pin(
   typename Beginning<Dimension>::Pin pin;
   pin.body = reader.whole("the number of a soft body", static_cast<std::uint32_t>(kMaxSoftBodies));
   if (pin.body >= bodies.size())
-    reader.refuse(fmt::format("a pin of soft body {}, of {}", pin.body, bodies.size()));
+    reader.refuse(
+        fmt::format("a pin of soft body {}; there are {}, counted from 0", pin.body, bodies.size()));
   for (int axis = 0; axis < Dimension; ++axis) pin.point[axis] = reader.number(kFar);
   pin.radius = reader.number(kFar);
   if (!(pin.radius > 0)) reader.refuse("the radius of a pin must be above 0");
   const std::size_t count = bodies[pin.body].positions.size();
   while (!reader.rest().empty()) {
     const std::uint32_t particle = reader.whole("a pin's particle", kMaxParticlesOfScene);
-    if (particle >= count) reader.refuse(fmt::format("a pin of particle {}, of {}", particle, count));
+    if (particle >= count)
+      reader.refuse(
+          fmt::format("a pin of particle {}; the soft body has {}, counted from 0", particle, count));
     if (!pin.particles.empty() && particle <= pin.particles.back())
       reader.refuse("the particles of a pin must be in ascending order");
     pin.particles.push_back(particle);
