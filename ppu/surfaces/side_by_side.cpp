@@ -80,15 +80,19 @@ bool Beside::none() {
   around.high.array() += kGoesOn * spacing_;
   for (const std::uint32_t index : near_) {
     const Obstacle& other = obstacles_[index];
-    if (&other != own_ && other.kind != ObstacleKind::kTriangles && overlap(around, bounds(other)))
-      others_.push_back(&other);
+    if (&other == own_ || other.kind == ObstacleKind::kTriangles) continue;
+    Bounds<3> box = bounds(other);
+    if (!overlap(around, box)) continue;
+    box.low.array() -= 2 * kLevel * spacing_;
+    box.high.array() += 2 * kLevel * spacing_;
+    others_.push_back({&other, box});
   }
   return others_.empty();
 }
 
 bool Beside::is_inside_others(const Vector3f& world, float most) const {
-  for (const Obstacle* const other : others_)
-    if (distance_to(*other, world) <= most) return true;
+  for (const auto& [other, box] : others_)
+    if (overlap(box, Bounds<3>{world, world}) && distance_to(*other, world) <= most) return true;
   return false;
 }
 

@@ -35,6 +35,10 @@ class Beside {
   std::optional<Separation> way_out(const Eigen::Vector3f& point, const Separation& nearest);
 
  private:
+  struct Other {
+    const Obstacle* obstacle;
+    Bounds<3> box;  // a bit wider: a point outside is not inside, nor level with a face
+  };
   bool none();
   bool is_inside_others(const Eigen::Vector3f& world, float most) const;
 
@@ -43,7 +47,7 @@ class Beside {
   const Obstacle* own_ = nullptr;
   float spacing_ = 0;
   bool has_looked_ = false;
-  std::vector<const Obstacle*> others_;
+  std::vector<Other> others_;
 };
 
 }  // namespace softcell::ppu
