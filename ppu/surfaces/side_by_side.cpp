@@ -74,7 +74,6 @@ bool Beside::none() {
   if (has_looked_) return others_.empty();
   has_looked_ = true;
   others_.clear();
-  if (near_.size() < 2) return true;
   Bounds<3> around = bounds(*own_);
   around.low.array() -= kGoesOn * spacing_;
   around.high.array() += kGoesOn * spacing_;

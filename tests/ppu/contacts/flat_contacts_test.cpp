@@ -304,6 +304,15 @@ TEST_P(FlatContacts, WhatHangsOverTheEndOfAnEdgeSlidesOff) {
   }
 }
 
+/// By how much a body that lies on a level ground is slowed down when it slides, as a coefficient.
+double friction_of_slide(World2d& w, SoftBody<2>& body) {
+  const float before = body.linear_momentum().x();
+  body.add_velocity({3, 0});
+  w.run(0.25f);
+  const double slowed_by = 3 + (double{before} - double{body.linear_momentum().x()}) / mass_of(body);
+  return slowed_by / (9.81 * 0.25);
+}
+
 /// Box2D takes the geometric mean of two coefficients.
 TEST_P(FlatContacts, FrictionIsTheGeometricMeanOfBothCoefficients) {
   for (const auto& [of_body, of_floor] : {std::pair(0.3f, 1.0f), {0.6f, 0.5f}, {0.0f, 1.0f}}) {
@@ -313,11 +322,7 @@ TEST_P(FlatContacts, FrictionIsTheGeometricMeanOfBothCoefficients) {
     settings.friction = of_body;
     SoftBody<2>& body = w->soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
     w->run(4);
-    const float before = body.linear_momentum().x();
-    body.add_velocity({3, 0});
-    w->run(0.25f);
-    const double slowed_by = 3 + (double{before} - double{body.linear_momentum().x()}) / mass_of(body);
-    EXPECT_NEAR(slowed_by / (9.81 * 0.25), std::sqrt(double{of_body} * double{of_floor}), 0.02);
+    EXPECT_NEAR(friction_of_slide(*w, body), std::sqrt(double{of_body} * double{of_floor}), 0.02);
   }
 }
 
@@ -340,11 +345,7 @@ TEST_P(FlatContacts, BoxesSideBySideSlowDownWhatSlidesAsOneFloor) {
         SoftBody<2>& body = w->soft.add(rectangle_model({6, 2}, settings), {-3, 0.13f});
         w->run(4);
         EXPECT_NEAR(body.linear_momentum().x() / mass_of(body), 0, 1e-3) << "it does not lie still";
-        const float before = body.linear_momentum().x();
-        body.add_velocity({3, 0});
-        w->run(0.25f);
-        const double slowed_by = 3 + (double{before} - double{body.linear_momentum().x()}) / mass_of(body);
-        EXPECT_NEAR(slowed_by / (9.81 * 0.25), double{friction}, 0.03)
+        EXPECT_NEAR(friction_of_slide(*w, body), double{friction}, 0.03)
             << (one_body ? "fixtures of one body" : "bodies") << ", steps of " << lower << " m";
       }
 }
