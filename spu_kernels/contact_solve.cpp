@@ -1,10 +1,11 @@
-// contact_solve: solves contacts of soft bodies with each other and with what nothing moves.  [Cat05]
+// contact_solve: solves contacts of soft bodies with each other, with rigid bodies and with what nothing moves.  [Cat05]
 //
 //   array       direction  element                        count          alignment
 //   job         in         SolveJob, 128 bytes            1              128
 //   tasks       in         SolveTask, 128 bytes           any            128
 //   velocities  in, out    SolveVelocity, 16 bytes        of two bodies  16
 //   contacts    in, out    SolveContact, 176 bytes        <= 512         16
+//   rigids      in, out    SolveRigid, 80 bytes           <= 64          16
 //   cells       in         SolveCell, 16 bytes            <= 1024        16
 //   positions   in         x y z and anything, 16 bytes   <= 1023        16
 //   start       in         SolveVelocity, 16 bytes        <= 1023        16
@@ -12,8 +13,8 @@
 // A task has two bodies and all contacts between them in the local store for all its iterations. Tasks of a job follow each other:
 // one may have a body of the one before.
 //
-// Budget: 192 KB. Contacts 88 KB, or cells and positions in their place; velocities and pushes of two bodies 64 KB; the rest for code
-// and 4 KB of stack.
+// Budget: 192 KB. Contacts 88 KB, or cells and positions in their place; velocities and pushes of two bodies 64 KB; rigid bodies 5 KB;
+// the rest for code and 4 KB of stack.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
 
@@ -42,6 +43,7 @@ struct alignas(128) LocalStoreMap {
   SolveTask task;
   alignas(128) vec_float4 a[solve_slots(kSolveMaxParticles)];
   alignas(128) vec_float4 b[solve_slots(kSolveMaxParticles)];
+  alignas(128) RigidInMotion rigids[kSolveMaxRigids];
   union alignas(128) {
     SolvedContact contacts[kSolveMaxContacts];
     Stiffening stiffening;
@@ -51,7 +53,8 @@ LocalStoreMap ls;
 
 bool fits(const SolveTask& task) {
   return task.a_count <= kSolveMaxParticles && task.b_count <= kSolveMaxParticles &&
-         task.contact_count <= kSolveMaxContacts && task.cell_count <= kSolveMaxCells;
+         task.contact_count <= kSolveMaxContacts && task.rigid_count <= kSolveMaxRigids &&
+         task.cell_count <= kSolveMaxCells;
 }
 
 /// Velocities, and pushes only where somebody pushes.
@@ -59,29 +62,35 @@ inline uint32_t bytes_of(uint32_t particles, bool pushes) {
   return (pushes ? solve_slots(particles) : particles + 1) * 16;
 }
 
-template <bool kTwo>
+template <With kWith>
 void solve(const SolveTask& task, vec_float4* a, vec_float4* b) {
   vec_float4* const pushes_a = a + task.a_count + 1;
   vec_float4* const pushes_b = b + task.b_count + 1;
   for (uint32_t i = 0; i < task.iterations; ++i)
-    for (uint32_t c = 0; c < task.contact_count; ++c) solve_velocities<kTwo>(ls.contacts[c], a, b);
+    for (uint32_t c = 0; c < task.contact_count; ++c)
+      solve_velocities<kWith>(ls.contacts[c], a, b, ls.rigids);
   if (task.pushes == 0) return;
   for (uint32_t i = 0; i < task.iterations; ++i)
     for (uint32_t c = 0; c < task.contact_count; ++c)
-      if (spu_extract(ls.contacts[c].terms, 2) > 0.0f) solve_push<kTwo>(ls.contacts[c], pushes_a, pushes_b);
+      if (spu_extract(ls.contacts[c].terms, 2) > 0.0f) solve_push<kWith>(ls.contacts[c], pushes_a, pushes_b);
 }
 
 void solve_contacts(const SolveTask& task) {
   const bool pushes = task.pushes != 0, two = task.b_ea != 0, itself = task.b_ea == task.a_ea;
   const uint32_t bytes = task.contact_count * static_cast<uint32_t>(sizeof(SolvedContact));
+  const uint32_t bytes_of_rigids = task.rigid_count * static_cast<uint32_t>(sizeof(SolveRigid));
   get_large(ls.contacts, task.contacts_ea, bytes, kTagIn);
+  get_large(ls.rigids, task.rigids_ea, bytes_of_rigids, kTagIn);
   if (two && !itself) get_large(ls.b, task.b_ea, bytes_of(task.b_count, pushes), kTagIn);
   wait_for_tag(kTagIn);
-  if (two)
-    solve<true>(task, ls.a, itself ? ls.a : ls.b);
+  if (task.rigid_count != 0)
+    solve<With::kRigid>(task, ls.a, ls.b);
+  else if (two)
+    solve<With::kSoft>(task, ls.a, itself ? ls.a : ls.b);
   else
-    solve<false>(task, ls.a, ls.b);
+    solve<With::kNothingThatMoves>(task, ls.a, ls.b);
   put_large(ls.contacts, task.contacts_ea, bytes, kTagOut);
+  put_large(ls.rigids, task.rigids_ea, bytes_of_rigids, kTagOut);
   if (two && !itself && task.b_sleeps == 0)
     put_large(ls.b, task.b_ea, bytes_of(task.b_count, pushes), kTagOut);
   wait_for_tag(kTagOut);

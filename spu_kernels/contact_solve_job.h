@@ -26,10 +26,34 @@ struct alignas(16) SolveAnchor {
   float weight[8];  ///< share of the contact times the root of the inverse mass, 1/sqrt(kg)
 };
 
+/// A rigid body that impulses move.
+struct alignas(16) SolveRigid {
+  float velocity[3];  ///< changed: m/s, how that of its centre has changed in this step
+  float inverse_mass;
+  float spin[3];  ///< changed: rad/s, likewise
+  float zero;
+  float inverse_inertia[3][4];  ///< columns in world axes, 1/(kg m^2); the fourth row is 0
+};
+static_assert(sizeof(SolveRigid) == 80, "five quadwords");
+
+/// Where a contact holds on to a rigid body.
+struct alignas(16) SolveRigidPoint {
+  uint16_t rigid;  ///< which of the task's
+  uint16_t zeros[7];
+  float arm[3];         ///< metres, from its centre of mass
+  float push_mass;      ///< kg: of a alone; nothing pushes rigid bodies
+  float feels[3];       ///< 1/kg: what an impulse of 1 kg m/s along the normal changes of a's velocity against b's
+  float friction_mass;  ///< kg: the least that an impulse across the normal may meet
+};
+static_assert(sizeof(SolveRigidPoint) == sizeof(SolveAnchor), "in place of each other");
+
 /// A contact of a and b, where b may be something that nothing moves.
 struct alignas(16) SolveContact {
   SolveAnchor a;
-  SolveAnchor b;    ///< unused where the task has no b
+  union {
+    SolveAnchor b;          ///< of a soft body
+    SolveRigidPoint rigid;  ///< where the task has rigid bodies
+  };  ///< unused where it has neither
   float normal[3];  ///< from b to a, unit length
   float zero;
   /// m/s: the velocity of b minus that of a before anything has changed; b is a body, or what nothing moves.
@@ -53,8 +77,8 @@ struct alignas(16) SolveCell {
   uint16_t particle[8];
 };
 
-/// Contacts of one body with another one, with itself, or with what nothing moves, one after the other; then
-/// cells of the first body are stiffened. Counts within kSolveMaxParticles, kSolveMaxContacts, kSolveMaxCells.
+/// Contacts of one body with another one, with itself, with rigid bodies, or with what nothing moves, one after the other; then
+/// cells of the first body are stiffened. Counts within kSolveMaxParticles, kSolveMaxContacts, kSolveMaxRigids, kSolveMaxCells.
 struct alignas(128) SolveTask {
   uint64_t a_ea;          ///< solve_slots(a_count) SolveVelocity, a multiple of 128
   uint64_t b_ea;          ///< likewise; 0: there is no b; a_ea: a body with itself
@@ -62,8 +86,10 @@ struct alignas(128) SolveTask {
   uint64_t cells_ea;      ///< cell_count SolveCell, a multiple of 16
   uint64_t positions_ea;  ///< if there are cells: of a's particles, x y z and anything, metres
   uint64_t start_ea;      ///< likewise: a_count SolveVelocity, before anything has changed
+  uint64_t rigids_ea;     ///< rigid_count SolveRigid, a multiple of 16
   uint32_t a_count, b_count;
   uint32_t contact_count;
+  uint32_t rigid_count;  ///< not 0: contacts are with these, and there is no b
   uint32_t cell_count;
   uint32_t iterations;  ///< over the contacts
   uint32_t pushes;      ///< 0: none of the contacts pushes
@@ -71,15 +97,16 @@ struct alignas(128) SolveTask {
   uint32_t a_sleeps;
   float stiffening;       ///< 0..1: the share that is taken of what corners of a cell do against each other
   float inverse_spacing;  ///< 1/m
-  uint32_t pad[10];
+  uint32_t pad[7];
 };
 static_assert(sizeof(SolveTask) == 128, "one line");
 
 constexpr uint32_t kSolveMaxParticles = 1023;
 constexpr uint32_t kSolveMaxContacts = 512;
+constexpr uint32_t kSolveMaxRigids = 64;
 constexpr uint32_t kSolveMaxCells = 1024;
 
-/// The job's descriptor, one line in main memory. No two jobs that run at the same time may share a body that
+/// The job's descriptor, one line in main memory. No two jobs that run at the same time may share a rigid body, or a soft one that
 /// is not asleep in both.
 struct alignas(128) SolveJob {
   uint64_t tasks_ea;    ///< task_count SolveTask, done in this order

@@ -148,6 +148,30 @@ spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactS
   return result;
 }
 
+/// Across the normal a rigid body moves most in one direction and least in another one; friction is solved as if it moved most in all.
+void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const ContactSides& sides,
+                std::uint16_t number) {
+  const ContactRigid& rigid = sides.rigids[contact.rigid];
+  const float own = contact.a.mobility(sides.a->inverse_masses);
+  const Vector3f arm = contact.point - rigid.centre, &normal = contact.normal;
+  const auto moved_by = [&](const Vector3f& impulse) -> Vector3f {
+    return rigid.inverse_mass * impulse + (rigid.inverse_inertia * arm.cross(impulse)).cross(arm);
+  };
+  const Vector3f across = normal.unitOrthogonal(), also_across = normal.cross(across);
+  const Vector3f by_across = moved_by(across);
+  const float one = across.dot(by_across), other = also_across.dot(moved_by(also_across));
+  const float mixed = also_across.dot(by_across), half = 0.5f * (one - other);
+  const float most = 0.5f * (one + other) + std::sqrt(half * half + mixed * mixed);
+  const Vector3f feels = own * normal + moved_by(normal);
+  solved.rigid = {};
+  solved.rigid.rigid = number;
+  Vector3f::Map(solved.rigid.arm) = arm;
+  Vector3f::Map(solved.rigid.feels) = feels;
+  solved.rigid.push_mass = own > 0 ? 1 / own : 0;  // 0 of a body that sleeps
+  solved.rigid.friction_mass = 1 / (own + most);
+  solved.mass = 1 / normal.dot(feels);
+}
+
 namespace {
 
 /// What the kernel says of it. Of a body that sleeps it says nothing: no impulse changes that.

@@ -50,6 +50,11 @@ void prepare(std::span<SoftContact> contacts, const ContactSides& sides);
 spu::SolveContact as_kernels_solve_it(const SoftContact& contact, const ContactSides& sides,
                                       std::span<const ContactRigid> rigids, float step);
 
+/// Of a contact as_kernels_solve_it(): it is solved among others of which some are with rigid bodies that impulses move.
+/// @param number  of the rigid body among those of the kernel's task
+void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const ContactSides& sides,
+                std::uint16_t number);
+
 /// A contact of two bodies that the kernel contact_find has found, of which one is flat: it is held by cells of the bodies themselves from
 /// now on (ContactModel::held()). @pre nothing has solved it yet
 void hold_by_own_cells(spu::SolveContact& contact, const ContactBody& a, const ContactBody& b);

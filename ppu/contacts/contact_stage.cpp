@@ -148,6 +148,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
   group.by_worker = group.heavy = group.fast = false;
   group.contacts.clear();
   group.solved = {};
+  group.rigid_set = RigidSets::kNone;
   return group;
 }
 
@@ -218,20 +219,48 @@ void ContactStage::put_in_order() {
   order_.arrange(bodies_, pairs_);
 }
 
-/// Contacts of two soft bodies, or with rigid ones that nothing moves, to the worker's memory if he can solve
-/// them.
-void ContactStage::hand_to_worker(Group& group, std::span<const ContactRigid> rigids, float step) {
-  if (group.by_worker || group.contacts.size() > ContactWorker::kMostContacts) return;
-  if (!worker->holds(group.a) || !worker->holds(group.b)) return;
-  if (group.with_rigid) {
-    const auto moves = [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; };
-    if (std::any_of(group.contacts.begin(), group.contacts.end(), moves)) return;
+/// Whether the worker may solve what this thread has found.
+bool ContactStage::can_hand_to_worker(const Group& group) const {
+  return !group.by_worker && group.contacts.size() <= ContactWorker::kMostContacts && worker->holds(group.a) &&
+         worker->holds(group.b);
+}
+
+/// Which rigid bodies the worker would move.
+void ContactStage::find_rigid_sets(std::span<ContactRigid> rigids) {
+  rigid_sets_.begin(rigids);
+  for (std::size_t i = pair_groups_; i < group_count_; ++i) {
+    if (!can_hand_to_worker(groups_[i])) continue;
+    std::uint32_t last = RigidSets::kNone;
+    for (const SoftContact& contact : groups_[i].contacts) {
+      if (rigids[contact.rigid].inverse_mass == 0 || contact.rigid == last) continue;
+      rigid_sets_.join(contact.rigid, last == RigidSets::kNone ? contact.rigid : last);
+      last = contact.rigid;
+    }
   }
-  const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], {}};
+  rigid_sets_.arrange(*worker);
+}
+
+/// Contacts to the worker's memory if he can solve them.
+void ContactStage::hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step) {
+  if (!can_hand_to_worker(group)) return;
+  const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], rigids};
+  if (group.with_rigid) {
+    const auto moving = std::find_if(
+        group.contacts.begin(), group.contacts.end(),
+        [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; });
+    if (moving != group.contacts.end()) {
+      group.rigid_set = rigid_sets_.set_of(moving->rigid);
+      if (group.rigid_set == RigidSets::kNone) return;
+    }
+  }
   group.solved = {worker->room(group.contacts.size()), false, false};
   for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-    group.solved.contacts[i] = as_kernels_solve_it(group.contacts[i], sides, rigids, step);
-    group.solved.pushes = group.solved.pushes || group.solved.contacts[i].push_velocity > 0;
+    const SoftContact& contact = group.contacts[i];
+    spu::SolveContact& solved = group.solved.contacts[i];
+    solved = as_kernels_solve_it(contact, sides, rigids, step);
+    if (group.rigid_set != RigidSets::kNone)
+      meet_rigid(solved, contact, sides, rigid_sets_.number_in(group.rigid_set, contact.rigid));
+    group.solved.pushes = group.solved.pushes || solved.push_velocity > 0;
   }
   group.by_worker = true;
 }
@@ -373,8 +402,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
 void ContactStage::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
   for (Group* const group : groups) {
     const ContactSides sides{&bodies_[group->a], group->with_rigid ? nullptr : &bodies_[group->b], rigids};
-    const int iterations = group->heavy ? settings.heavy_iterations : settings.iterations;
-    for (int i = 0; i < iterations; ++i) iterate(group->contacts, sides, step);
+    for (int i = 0; i < iterations_of(*group); ++i) iterate(group->contacts, sides, step);
   }
 }
 
@@ -383,6 +411,7 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
   bounce(rigids, step);
   here_.clear();
   for (const std::uint32_t i : order_.order()) here_.push_back(&groups_[i]);
+  find_heavy_groups(rigids);
   add_rigid_groups(rigids);
   prepare_here(rigids);
   find_touched_cells();
@@ -409,20 +438,23 @@ void ContactStage::solve_attachments(std::span<ContactRigid> rigids, float step,
   attachments->iterate(settings.attachment_iterations);
 }
 
+void ContactStage::find_heavy_groups(std::span<const ContactRigid> rigids) {
+  for (std::size_t i = pair_groups_; i < group_count_; ++i) {
+    Group& group = groups_[i];
+    group.heavy =
+        std::any_of(group.contacts.begin(), group.contacts.end(), [&](const SoftContact& contact) {
+          const float inverse_mass = rigids[contact.rigid].inverse_mass;
+          return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->mass() < 1;
+        });
+  }
+}
+
 /// Rigid bodies that move before those that nothing moves.
 void ContactStage::add_rigid_groups(std::span<const ContactRigid> rigids) {
-  const auto with_heavy = [&](const Group& group) {
-    return std::any_of(group.contacts.begin(), group.contacts.end(), [&](const SoftContact& contact) {
-      const float inverse_mass = rigids[contact.rigid].inverse_mass;
-      return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->mass() < 1;
-    });
-  };
   const auto with_moving = [&](const Group& group) {
     return std::any_of(group.contacts.begin(), group.contacts.end(),
                        [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; });
   };
-  for (std::size_t i = pair_groups_; i < group_count_; ++i)
-    groups_[i].heavy = !groups_[i].by_worker && with_heavy(groups_[i]);
   for (const bool moving : {true, false}) {
     for (std::size_t i = pair_groups_; i < group_count_; ++i)
       if (!groups_[i].by_worker && with_moving(groups_[i]) == moving) here_.push_back(&groups_[i]);
@@ -443,10 +475,28 @@ void ContactStage::add_pairs_to(SolveStages& stages) {
       stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
       for (std::uint32_t i = order_.units()[unit]; i < order_.units()[unit + 1]; ++i) {
         const Group& group = groups_[order_.order()[i]];
-        if (group.by_worker)
-          stages.groups.push_back({group.a, group.b, group.solved.contacts, group.solved.pushes});
+        if (group.by_worker) stages.groups.push_back(solved_by_worker(group));
       }
     }
+  }
+}
+
+SolveGroup ContactStage::solved_by_worker(const Group& group) const {
+  SolveGroup solved{.a = group.a, .contacts = group.solved.contacts, .pushes = group.solved.pushes};
+  if (!group.with_rigid) solved.b = group.b;
+  if (group.rigid_set != RigidSets::kNone) solved.rigids = rigid_sets_.of(group.rigid_set);
+  solved.iterations = static_cast<std::uint32_t>(iterations_of(group));
+  return solved;
+}
+
+/// Those with rigid bodies that move, a unit for each set of these.
+void ContactStage::add_rigid_sets_to(SolveStages& stages) {
+  if (rigid_sets_.sets() == 0) return;
+  stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
+  for (std::uint32_t set = 0; set < rigid_sets_.sets(); ++set) {
+    stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
+    for (std::size_t i = pair_groups_; i < group_count_; ++i)
+      if (groups_[i].rigid_set == set) stages.groups.push_back(solved_by_worker(groups_[i]));
   }
 }
 
@@ -458,10 +508,9 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     SolveGroup of_body{.a = i, .contacts = {}};
     while (rigid < group_count_ && groups_[rigid].a < i) ++rigid;
-    if (rigid < group_count_ && groups_[rigid].a == i && groups_[rigid].by_worker) {
-      of_body.contacts = groups_[rigid].solved.contacts;
-      of_body.pushes = groups_[rigid].solved.pushes;
-    }
+    if (rigid < group_count_ && groups_[rigid].a == i && groups_[rigid].by_worker &&
+        groups_[rigid].rigid_set == RigidSets::kNone)
+      of_body = solved_by_worker(groups_[rigid]);
     if (stiffening > 0 && worker->holds(i)) of_body.cells = touched_[i];
     of_body.stiffening = stiffening;
     if (of_body.contacts.empty() && of_body.cells.empty()) continue;
@@ -473,11 +522,14 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
 
 /// What only this thread can solve comes behind what bodies do to each other, and before what nothing moves.
 void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
+  find_heavy_groups(rigids);
+  find_rigid_sets(rigids);
   for (std::size_t i = 0; i < group_count_; ++i) hand_to_worker(groups_[i], rigids, step);
   bounce(rigids, step);
   if (!bounces_.empty())
     for (const std::uint32_t i : bounces_.changed())
       if (worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
+  rigid_sets_.put();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
     if (is_crushed_[i] && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
   here_.clear();
@@ -486,13 +538,13 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   add_rigid_groups(rigids);
   prepare_here(rigids);
   find_touched_cells();
-  const auto iterations = static_cast<std::uint32_t>(settings.iterations);
   stages_.clear();
   for (int round = 0; round < settings.rounds; ++round) {
     const float stiffening = round + 1 < settings.rounds ? settings.stiffening : 0;
     add_pairs_to(stages_);
+    add_rigid_sets_to(stages_);
     if (!here_.empty() || has_attachments()) {
-      worker->solve(stages_, iterations);
+      worker->solve(stages_);
       stages_.clear();
       take_from_worker();
       iterate_here(std::span(here_).first(here_that_move_), rigids, step);
@@ -506,12 +558,13 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
     }
     add_bodies_to(stages_, stiffening);
   }
-  worker->solve(stages_, iterations);
+  worker->solve(stages_);
   take_from_worker();
   if (has_attachments()) attachments->finish();
 }
 
 void ContactStage::take_from_worker() {
+  rigid_sets_.take();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
     if (!touched_[i].empty() && worker->holds(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
 }
@@ -551,6 +604,7 @@ void ContactStage::take_back_lost_spin(float step) {
 }
 
 void ContactStage::give_to_worker() {
+  rigid_sets_.put();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
     if (!touched_[i].empty() && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
 }

@@ -18,6 +18,7 @@
 #include "ppu/contacts/crushed_cells.h"
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/lost_spin.h"
+#include "ppu/contacts/rigid_sets.h"
 #include "ppu/contacts/swept_contacts.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/obstacle.h"
@@ -102,10 +103,12 @@ class ContactStage {
     std::uint32_t a = 0, b = 0;
     bool with_rigid = false;
     bool by_worker = false;             ///< he solves them: they are in `solved`
-    bool heavy = false;                 ///< solved here, with a rigid body that outweighs a
+    bool heavy = false;                 ///< with a rigid body that outweighs a
     bool fast = false;                  ///< two bodies that may pass each other in the substep
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
+    /// Of those that the worker moves in it; kNone: nothing moves the rigid bodies.
+    std::uint32_t rigid_set = RigidSets::kNone;
     std::size_t size() const { return by_worker ? solved.contacts.size() : contacts.size(); }
     float impulse(std::size_t contact) const {
       return by_worker ? solved.contacts[contact].impulse : contacts[contact].impulse;
@@ -123,7 +126,12 @@ class ContactStage {
                        std::span<const ContactRigid> rigids, float step);
   Group& next_group(std::uint32_t a, std::uint32_t b, bool with_rigid);
   void put_in_order();
-  void hand_to_worker(Group& group, std::span<const ContactRigid> rigids, float step);
+  bool can_hand_to_worker(const Group& group) const;
+  void find_rigid_sets(std::span<ContactRigid> rigids);
+  void hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step);
+  int iterations_of(const Group& group) const {
+    return group.heavy ? settings.heavy_iterations : settings.iterations;
+  }
   void hold_pushes_of_crushed_bodies();
   void bounce(std::span<ContactRigid> rigids, float step);
   void remember_who_presses(std::span<const ContactRigid> rigids);
@@ -131,12 +139,15 @@ class ContactStage {
   void stiffen_touched_cells();
   void solve_here(std::span<ContactRigid> rigids, float step);
   void solve_with_worker(std::span<ContactRigid> rigids, float step);
+  void find_heavy_groups(std::span<const ContactRigid> rigids);
   void add_rigid_groups(std::span<const ContactRigid> rigids);
   void prepare_here(std::span<ContactRigid> rigids);
   bool has_attachments() const { return attachments != nullptr && !attachments->empty(); }
   void solve_attachments(std::span<ContactRigid> rigids, float step, int round);
   void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
+  SolveGroup solved_by_worker(const Group& group) const;
   void add_pairs_to(SolveStages& stages);
+  void add_rigid_sets_to(SolveStages& stages);
   void add_bodies_to(SolveStages& stages, float stiffening);
   void take_from_worker();
   void take_back_lost_spin(float step);
@@ -157,6 +168,7 @@ class ContactStage {
   CrushedCells crushed_cells_;
   CrushedCellCount crushed_;
   std::vector<bool> is_crushed_;  // of each body: it has crushed cells
+  RigidSets rigid_sets_;
   Bounces bounces_;
   // In the last substep: a, b or a rigid one's number, and which.
   std::vector<std::array<std::uint32_t, 3>> pressed_;

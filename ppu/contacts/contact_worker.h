@@ -27,14 +27,16 @@ struct FoundContacts {
 /// Contacts that are solved together, one after the other; then cells of a are stiffened.
 struct SolveGroup {
   static constexpr std::uint32_t kNobody = ~0u;
-  std::uint32_t a = 0, b = kNobody;       ///< bodies; b kNobody: what nothing moves
+  std::uint32_t a = 0, b = kNobody;       ///< bodies; b kNobody: rigid bodies, or what nothing moves
   std::span<spu::SolveContact> contacts;  ///< from found() or room()
+  std::span<spu::SolveRigid> rigids = {};  ///< from rigid_room(): those that contacts are with
+  std::uint32_t iterations = 0;           ///< over the contacts
   bool pushes = false;
   std::span<const std::uint32_t> cells = {};  ///< of a, to be stiffened
   float stiffening = 0;                       ///< 0..1
 };
 
-/// Groups in units, units in stages: units of one stage share no body that is not asleep, and may be solved at
+/// Groups in units, units in stages: units of one stage share no body that is not asleep and no rigid body, and may be solved at
 /// the same time; groups of a unit are solved one after the other.
 struct SolveStages {
   std::vector<SolveGroup> groups;
@@ -68,8 +70,11 @@ class ContactWorker {
   virtual std::span<spu::SolveContact> room(std::size_t contacts) = 0;
   static constexpr std::size_t kMostContacts = spu::kSolveMaxContacts;  ///< of a group
 
+  /// Room for rigid bodies. Good until the next call of it, and the next begin().
+  virtual std::span<spu::SolveRigid> rigid_room(std::size_t rigids) = 0;
+
   /// @throws std::runtime_error  as found().
-  virtual void solve(const SolveStages& stages, std::uint32_t iterations) = 0;
+  virtual void solve(const SolveStages& stages) = 0;
 
   /// A body's velocities and pushes, as they are now. @pre no solve() is under way
   virtual void take(std::uint32_t body, std::span<Eigen::Vector3f> velocities,

@@ -54,8 +54,12 @@ struct ContactRecord<spu::SolveCell> {
   static constexpr dma::ElementRun kRuns[] = {{16, 2}};
 };
 template <>
+struct ContactRecord<spu::SolveRigid> {
+  static constexpr dma::ElementRun kRuns[] = {{80, 4}};
+};
+template <>
 struct ContactRecord<spu::SolveTask> {
-  static constexpr dma::ElementRun kRuns[] = {{48, 8}, {80, 4}};
+  static constexpr dma::ElementRun kRuns[] = {{56, 8}, {72, 4}};
 };
 template <>
 struct ContactRecord<spu::SolveJob> {

@@ -306,6 +306,11 @@ std::span<spu::SolveContact> SpeContacts::room(std::size_t contacts) {
   return rooms_[room_].span().subspan(used_ - contacts, contacts);
 }
 
+std::span<spu::SolveRigid> SpeContacts::rigid_room(std::size_t rigids) {
+  make_room(memory_, "rigid bodies in contact", rigids_, rigids);
+  return rigids_.span().first(rigids);
+}
+
 dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveContact* contact) const {
   const auto within = [&](const dma::Buffer<spu::SolveContact>& buffer) {
     return !buffer.empty() && contact >= buffer.data() && contact < buffer.data() + buffer.size();
@@ -316,7 +321,7 @@ dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveContact* contact) const
   return room->ea(static_cast<std::size_t>(contact - room->data()));
 }
 
-spu::SolveTask SpeContacts::solve_task(const SolveGroup& group, std::uint32_t iterations) {
+spu::SolveTask SpeContacts::solve_task(const SolveGroup& group) {
   spu::SolveTask task{};
   const auto particles = [&](std::uint32_t body) {
     return static_cast<std::uint32_t>(bodies_[body].ends.size());
@@ -331,7 +336,11 @@ spu::SolveTask SpeContacts::solve_task(const SolveGroup& group, std::uint32_t it
   }
   task.contact_count = static_cast<std::uint32_t>(group.contacts.size());
   if (task.contact_count != 0) task.contacts_ea = ea_of(group.contacts.data()).value;
-  task.iterations = iterations;
+  if (!group.rigids.empty()) {
+    task.rigids_ea = rigids_.ea(static_cast<std::size_t>(group.rigids.data() - rigids_.data())).value;
+    task.rigid_count = static_cast<std::uint32_t>(group.rigids.size());
+  }
+  task.iterations = group.iterations;
   task.pushes = group.pushes ? 1 : 0;
   if (!group.cells.empty()) {
     task.cells_ea = cells_.ea(cells_used_).value;
@@ -347,7 +356,7 @@ spu::SolveTask SpeContacts::solve_task(const SolveGroup& group, std::uint32_t it
   return task;
 }
 
-void SpeContacts::solve(const SolveStages& stages, std::uint32_t iterations) {
+void SpeContacts::solve(const SolveStages& stages) {
   if (stages.groups.empty()) return;
   std::size_t cells = 0;
   for (const SolveGroup& group : stages.groups) cells += group.cells.size();
@@ -357,7 +366,7 @@ void SpeContacts::solve(const SolveStages& stages, std::uint32_t iterations) {
   make_room(memory_, "jobs of solving contacts", solve_jobs_, stages.units.size());
   make_room(jobs_, "solving contacts", solving_, most_solve_jobs_, stages.units.size());
   for (std::size_t g = 0; g < stages.groups.size(); ++g)
-    solve_tasks_[g] = solve_task(stages.groups[g], iterations);
+    solve_tasks_[g] = solve_task(stages.groups[g]);
   std::size_t stage = 0;
   for (std::size_t u = 0; u < stages.units.size(); ++u) {
     for (; stage < stages.stages.size() && stages.stages[stage] == u; ++stage) solving_->sync();

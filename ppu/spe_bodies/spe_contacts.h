@@ -36,7 +36,8 @@ class SpeContacts final : public ContactWorker {
   void find(std::span<const Pair> pairs) override;
   std::span<const FoundContacts> found() override;
   std::span<spu::SolveContact> room(std::size_t contacts) override;
-  void solve(const SolveStages& stages, std::uint32_t iterations) override;
+  std::span<spu::SolveRigid> rigid_room(std::size_t rigids) override;
+  void solve(const SolveStages& stages) override;
   void take(std::uint32_t body, std::span<Eigen::Vector3f> velocities,
             std::span<Eigen::Vector3f> pushes) const override;
   void put(std::uint32_t body, std::span<const Eigen::Vector3f> velocities,
@@ -65,7 +66,7 @@ class SpeContacts final : public ContactWorker {
   void make_room_for_candidates();
   spu::FindTask find_task(std::uint32_t a, std::uint32_t b);
   dma::EffectiveAddress ea_of(const spu::SolveContact* contact) const;
-  spu::SolveTask solve_task(const SolveGroup& group, std::uint32_t iterations);
+  spu::SolveTask solve_task(const SolveGroup& group);
 
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
@@ -89,6 +90,7 @@ class SpeContacts final : public ContactWorker {
   dma::Buffer<spu::SolveContact> contacts_;            // kFindMaxContacts for each pair
   std::vector<dma::Buffer<spu::SolveContact>> rooms_;  // for contacts that others have found
   std::size_t room_ = 0, used_ = 0;                    // the one that is being filled, and how far
+  dma::Buffer<spu::SolveRigid> rigids_;
   std::vector<spu::FindTask> tasks_;
   std::vector<std::uint32_t> task_of_;        // of each pair
   std::vector<std::uint32_t> known_of_task_;  // which of pairs_.known() a task is about

@@ -17,9 +17,23 @@ struct Anchor {
   vec_float4 weight[2];
 };
 
+/// What the other side of a contact is.
+enum class With { kNothingThatMoves, kSoft, kRigid };
+
+/// A SolveRigidPoint as registers.
+struct RigidPoint {
+  vec_ushort8 rigid;  // which, and zeros
+  vec_float4 arm;     // x y z, and the mass of pushes
+  vec_float4 feels;   // x y z, and the mass of friction
+};
+
 /// A SolveContact as registers.
 struct SolvedContact {
-  Anchor a, b;
+  Anchor a;
+  union {
+    Anchor b;
+    RigidPoint rigid;
+  };
   vec_float4 normal;   // x y z 0
   vec_float4 carried;  // x y z, and the least velocity
   vec_float4 terms;    // mass, friction, push velocity, push
@@ -27,6 +41,14 @@ struct SolvedContact {
   vec_float4 point;    // x y z, and cells
 };
 static_assert(sizeof(SolvedContact) == sizeof(SolveContact), "the same bytes");
+
+/// A SolveRigid as registers.
+struct RigidInMotion {
+  vec_float4 velocity;  // x y z, and the inverse mass
+  vec_float4 spin;
+  vec_float4 inverse_inertia[3];
+};
+static_assert(sizeof(RigidInMotion) == sizeof(SolveRigid), "the same bytes");
 
 /// The sum of weight times value: even terms, odd terms, then both.
 inline vec_float4 value_at(const Anchor& anchor, const vec_float4* values) {
@@ -60,24 +82,51 @@ inline void add_at(const Anchor& anchor, vec_float4* values, vec_float4 impulse)
   add(spu_extract(p, 7), splat_lane<3>(w1));
 }
 
+inline RigidInMotion& rigid_of(const RigidPoint& point, RigidInMotion* rigids) {
+  return rigids[spu_extract(point.rigid, 0)];
+}
+
+/// How a rigid body's velocity at a point has changed.
+inline vec_float4 value_at(const RigidPoint& point, RigidInMotion* rigids) {
+  const RigidInMotion& rigid = rigid_of(point, rigids);
+  return spu_add(rigid.velocity, cross_of(rigid.spin, only_xyz(point.arm)));
+}
+
+/// It loses the impulse.
+inline void take_at(const RigidPoint& point, RigidInMotion* rigids, vec_float4 impulse) {
+  RigidInMotion& rigid = rigid_of(point, rigids);
+  const vec_float4 turn = cross_of(only_xyz(point.arm), impulse);
+  rigid.velocity = spu_nmsub(splat_lane<3>(rigid.velocity), impulse, rigid.velocity);
+  vec_float4 spin = spu_nmsub(splat_lane<0>(turn), rigid.inverse_inertia[0], rigid.spin);
+  spin = spu_nmsub(splat_lane<1>(turn), rigid.inverse_inertia[1], spin);
+  rigid.spin = spu_nmsub(splat_lane<2>(turn), rigid.inverse_inertia[2], spin);
+}
+
 /// Of one contact, along its normal and against it by friction (Coulomb's law, the same in all directions).
-/// @tparam kTwo  whether b is a soft body
-template <bool kTwo>
-inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unused]] vec_float4* b) {
+template <With kWith>
+inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unused]] vec_float4* b,
+                             [[maybe_unused]] RigidInMotion* rigids) {
   const vec_float4 n = contact.normal, terms = contact.terms;
   const vec_float4 mass = splat_lane<0>(terms);
   vec_float4 v = spu_sub(value_at(contact.a, a), contact.carried);
-  if constexpr (kTwo) v = spu_sub(v, value_at(contact.b, b));
+  if constexpr (kWith == With::kSoft) v = spu_sub(v, value_at(contact.b, b));
+  if constexpr (kWith == With::kRigid) v = spu_sub(v, value_at(contact.rigid, rigids));
   v = only_xyz(v);
-  const vec_float4 along = dot_in_all_lanes(n, v);
+  vec_float4 along = dot_in_all_lanes(n, v);
   const vec_float4 before = splat_lane<3>(contact.impulse);
   const vec_float4 wanted = spu_madd(spu_sub(splat_lane<3>(contact.carried), along), mass, before);
   const vec_float4 impulse = not_below_zero(wanted);
 
-  // What slides is not changed by an impulse along the normal.
+  // What slides is not changed by an impulse along the normal, but where that turns a rigid body.
+  vec_float4 friction_mass = mass;
+  if constexpr (kWith == With::kRigid) {
+    v = spu_madd(only_xyz(contact.rigid.feels), spu_sub(impulse, before), v);
+    along = dot_in_all_lanes(n, v);
+    friction_mass = splat_lane<3>(contact.rigid.feels);
+  }
   const vec_float4 sliding = spu_nmsub(along, n, v);
   const vec_float4 friction_before = only_xyz(contact.impulse);
-  vec_float4 friction = spu_nmsub(sliding, mass, friction_before);
+  vec_float4 friction = spu_nmsub(sliding, friction_mass, friction_before);
   const vec_float4 most = spu_mul(splat_lane<1>(terms), impulse);
   const vec_float4 square = dot_in_all_lanes(friction, friction);
   const vec_uint4 slips = below_zero(spu_msub(most, most, square));
@@ -86,23 +135,25 @@ inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unus
 
   const vec_float4 change = spu_madd(n, spu_sub(impulse, before), spu_sub(friction, friction_before));
   add_at(contact.a, a, change);
-  if constexpr (kTwo) add_at(contact.b, b, negative(change));
+  if constexpr (kWith == With::kSoft) add_at(contact.b, b, negative(change));
+  if constexpr (kWith == With::kRigid) take_at(contact.rigid, rigids, change);
   contact.impulse = with_fourth(friction, impulse);
 }
 
-/// Of one contact that pushes.
-template <bool kTwo>
+/// Of one contact that pushes: soft bodies only.
+template <With kWith>
 inline void solve_push(SolvedContact& contact, vec_float4* a, [[maybe_unused]] vec_float4* b) {
   const vec_float4 n = contact.normal, terms = contact.terms;
   vec_float4 v = value_at(contact.a, a);
-  if constexpr (kTwo) v = spu_sub(v, value_at(contact.b, b));
+  if constexpr (kWith == With::kSoft) v = spu_sub(v, value_at(contact.b, b));
+  const vec_float4 mass = kWith == With::kRigid ? splat_lane<3>(contact.rigid.arm) : splat_lane<0>(terms);
   const vec_float4 along = dot_in_all_lanes(n, only_xyz(v));
   const vec_float4 before = splat_lane<3>(terms);
-  const vec_float4 wanted = spu_madd(spu_sub(splat_lane<2>(terms), along), splat_lane<0>(terms), before);
+  const vec_float4 wanted = spu_madd(spu_sub(splat_lane<2>(terms), along), mass, before);
   const vec_float4 push = not_below_zero(wanted);
   const vec_float4 change = spu_mul(n, spu_sub(push, before));
   add_at(contact.a, a, change);
-  if constexpr (kTwo) add_at(contact.b, b, negative(change));
+  if constexpr (kWith == With::kSoft) add_at(contact.b, b, negative(change));
   contact.terms = with_fourth(terms, push);
 }
 

@@ -23,6 +23,7 @@ namespace {
 
 using spu::SolveCell;
 using spu::SolveContact;
+using spu::SolveRigid;
 using spu::SolveTask;
 using spu::SolveVelocity;
 
@@ -108,14 +109,53 @@ class Twin {
     c.impulse = impulse;
   }
 
-  static void solve_push(SolveContact& c, SolveVelocity* a, SolveVelocity* b) {
+  static V value_at(const spu::SolveRigidPoint& point, const SolveRigid& rigid) {
+    const V spin{rigid.spin[0], rigid.spin[1], rigid.spin[2]};
+    const V turn = cross(spin, {point.arm[0], point.arm[1], point.arm[2]});
+    return {rigid.velocity[0] + turn.x, rigid.velocity[1] + turn.y, rigid.velocity[2] + turn.z};
+  }
+  static void take_at(const spu::SolveRigidPoint& point, SolveRigid& rigid, const V& impulse) {
+    const V turn = cross({point.arm[0], point.arm[1], point.arm[2]}, impulse);
+    vector_of(rigid.velocity) = V::of(
+        [&](Axis d) { return nmsub(rigid.inverse_mass, impulse.*d, vector_of(rigid.velocity).*d); });
+    for (int d = 0; d < 3; ++d) {
+      float& spin = rigid.spin[d];
+      spin = nmsub(turn.x, rigid.inverse_inertia[0][d], spin);
+      spin = nmsub(turn.y, rigid.inverse_inertia[1][d], spin);
+      spin = nmsub(turn.z, rigid.inverse_inertia[2][d], spin);
+    }
+  }
+  static void solve_with_rigid(SolveContact& c, SolveVelocity* a, std::vector<SolveRigid>& rigids) {
+    SolveRigid& rigid = rigids[c.rigid.rigid];
+    const V n = vector_of(c.normal), at_a = value_at(c.a, a), at_b = value_at(c.rigid, rigid);
+    V v = V::of([&](Axis d) { return (at_a.*d - vector_of(c.carried).*d) - at_b.*d; });
+    const float before = c.impulse, wanted = madd(c.least_velocity - dot(n, v), c.mass, before);
+    const float impulse = below_zero(wanted) ? 0.0f : wanted;
+    v = V::of([&](Axis d) { return madd(vector_of(c.rigid.feels).*d, impulse - before, v.*d); });
+    const float along = dot(n, v);
+    const V friction_before = vector_of(c.friction_impulse);
+    V friction = V::of([&](Axis d) {
+      return nmsub(nmsub(along, n.*d, v.*d), c.rigid.friction_mass, friction_before.*d);
+    });
+    const float most = c.friction * impulse, square = dot(friction, friction);
+    const float scale = below_zero(msub(most, most, square)) ? most * reciprocal_sqrt(square) : 1.0f;
+    friction = V::of([&](Axis d) { return friction.*d * scale; });
+    const V change =
+        V::of([&](Axis d) { return madd(n.*d, impulse - before, friction.*d - friction_before.*d); });
+    add_at(c.a, a, change, 1);
+    take_at(c.rigid, rigid, change);
+    vector_of(c.friction_impulse) = friction;
+    c.impulse = impulse;
+  }
+
+  static void solve_push(SolveContact& c, SolveVelocity* a, SolveVelocity* b, float mass) {
     const V n = vector_of(c.normal);
     V v = value_at(c.a, a);
     if (b != nullptr) {
       const V at_b = value_at(c.b, b);
       v = V::of([&](Axis d) { return v.*d - at_b.*d; });
     }
-    const float wanted = madd(c.push_velocity - dot(n, v), c.mass, c.push);
+    const float wanted = madd(c.push_velocity - dot(n, v), mass, c.push);
     const float push = below_zero(wanted) ? 0.0f : wanted, change = push - c.push;
     const V by = V::of([&](Axis d) { return n.*d * change; });
     add_at(c.a, a, by, 1);
@@ -185,14 +225,24 @@ class Twin {
     for (std::uint32_t i = 0; i < task.iterations; ++i)
       for (SolveContact& c : contacts)
         if (task.pushes != 0 && c.push_velocity > 0)
-          solve_push(c, a.data() + task.a_count + 1, b != nullptr ? b->data() + task.b_count + 1 : nullptr);
+          solve_push(c, a.data() + task.a_count + 1, b != nullptr ? b->data() + task.b_count + 1 : nullptr,
+                     c.mass);
+  }
+  static void solve(const SolveTask& task, std::vector<SolveContact>& contacts, Body& a,
+                    std::vector<SolveRigid>& rigids) {
+    for (std::uint32_t i = 0; i < task.iterations; ++i)
+      for (SolveContact& c : contacts) solve_with_rigid(c, a.data(), rigids);
+    for (std::uint32_t i = 0; i < task.iterations; ++i)
+      for (SolveContact& c : contacts)
+        if (task.pushes != 0 && c.push_velocity > 0)
+          solve_push(c, a.data() + task.a_count + 1, nullptr, c.rigid.push_mass);
   }
 };
 
 /// Two bodies and contacts between them, in main memory and as copies for the twin.
 class SolveRig {
  public:
-  static constexpr std::uint32_t kA = 61, kB = 83, kContacts = 120, kCells = 20;
+  static constexpr std::uint32_t kA = 61, kB = 83, kContacts = 120, kRigids = 5, kCells = 20;
 
   explicit SolveRig(const ls_sim::SpeOptions& options = {.spes = 1})
       : image_(test::kernel_image("contact_solve", options.findings != nullptr)),
@@ -200,6 +250,7 @@ class SolveRig {
         a(memory_, "a", spu::solve_slots(kA)),
         b(memory_, "b", spu::solve_slots(kB)),
         contacts(memory_, "contacts", kContacts),
+        rigids(memory_, "rigids", kRigids),
         cells(memory_, "cells", kCells),
         positions(memory_, "positions", kA),
         start(memory_, "start", kA),
@@ -238,6 +289,46 @@ class SolveRig {
     chain.kick();
     chain.wait();
     for (const ppu::JobFailure& failure : chain.failures()) failures.push_back(failure.message);
+  }
+
+  /// Contacts are with rigid bodies from now on, of which the last one is not moved by anything.
+  SolveTask task_with_rigids() {
+    for (std::uint32_t i = 0; i < kRigids; ++i) {
+      SolveRigid& rigid = rigids[i];
+      rigid = {};
+      for (int d = 0; d < 3; ++d) rigid.velocity[d] = number(0.2f), rigid.spin[d] = number(0.2f);
+      if (i + 1 == kRigids) continue;
+      rigid.inverse_mass = 0.3f + number(0.2f);
+      for (int d = 0; d < 3; ++d) rigid.inverse_inertia[d][d] = 2 + number(1);
+      for (int d = 0; d < 3; ++d)
+        rigid.inverse_inertia[d][(d + 1) % 3] = rigid.inverse_inertia[(d + 1) % 3][d] = number(0.3f);
+    }
+    for (SolveContact& c : contacts.span()) {
+      float own = 0;
+      for (const float weight : c.a.weight) own += weight * weight;
+      c.rigid = {};
+      c.rigid.rigid = static_cast<std::uint16_t>(std::uniform_int_distribution<int>(0, kRigids - 1)(random_));
+      const SolveRigid& rigid = rigids[c.rigid.rigid];
+      for (float& arm : c.rigid.arm) arm = number(0.4f);
+      V& arm = vector_of(c.rigid.arm);
+      const V n = vector_of(c.normal), turn = cross(arm, n);
+      V spin{0, 0, 0};
+      for (const Axis d : {&V::x, &V::y, &V::z})
+        for (int k = 0; k < 3; ++k)
+          spin.*d += (k == 0 ? turn.x : k == 1 ? turn.y : turn.z) *
+                     rigid.inverse_inertia[k][d == &V::x ? 0 : d == &V::y ? 1 : 2];
+      const V moved = cross(spin, arm);
+      vector_of(c.rigid.feels) =
+          V::of([&](Axis d) { return (own + rigid.inverse_mass) * n.*d + moved.*d; });
+      c.rigid.push_mass = 1 / own;
+      c.rigid.friction_mass = 1 / (own + rigid.inverse_mass + 0.5f);
+      c.mass = 1 / dot(n, vector_of(c.rigid.feels));
+    }
+    SolveTask with_rigids = task();
+    with_rigids.b_ea = 0;
+    with_rigids.rigids_ea = rigids.ea().value;
+    with_rigids.rigid_count = kRigids;
+    return with_rigids;
   }
 
   SolveTask task() const {
@@ -289,6 +380,7 @@ class SolveRig {
  public:
   dma::Buffer<SolveVelocity> a, b;
   dma::Buffer<SolveContact> contacts;
+  dma::Buffer<SolveRigid> rigids;
   dma::Buffer<SolveCell> cells;
   dma::Buffer<SolveVelocity> positions, start;
   std::vector<std::string> failures;
@@ -362,6 +454,61 @@ TEST(ContactSolve, ABodyAndWhatNothingMovesAreBitForBitTheTwin) { expect_twin(fa
 TEST(ContactSolve, ABodyWithItselfIsBitForBitTheTwin) { expect_twin(true, true, false); }
 TEST(ContactSolve, StiffenedCellsAreBitForBitTheTwin) { expect_twin(false, false, true); }
 
+TEST(ContactSolve, ABodyAndRigidOnesAreBitForBitTheTwin) {
+  SolveRig rig;
+  const SolveTask task = rig.task_with_rigids();
+  auto a = copy_of(rig.a);
+  auto contacts = copy_of(rig.contacts);
+  auto rigids = copy_of(rig.rigids);
+  const auto before = rigids;
+  rig.run(task);
+  ASSERT_TRUE(rig.failures.empty()) << rig.failures[0];
+  {
+    const unsigned int host = _mm_getcsr();
+    _mm_setcsr(test::kSpuArithmetic);
+    Twin::solve(task, contacts, a, rigids);
+    _mm_setcsr(host);
+  }
+  expect_same(a, rig.a, "a");
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    ASSERT_EQ(contacts[i].impulse, rig.contacts[i].impulse) << i;
+    ASSERT_EQ(contacts[i].push, rig.contacts[i].push) << i;
+    for (int d = 0; d < 3; ++d)
+      ASSERT_EQ(contacts[i].friction_impulse[d], rig.contacts[i].friction_impulse[d]) << i;
+  }
+  for (std::size_t i = 0; i < rigids.size(); ++i) {
+    const bool moves = i + 1 < rigids.size();
+    EXPECT_EQ(rig.rigids[i].velocity[0] != before[i].velocity[0], moves) << i;
+    for (int d = 0; d < 3; ++d) {
+      ASSERT_EQ(rigids[i].velocity[d], rig.rigids[i].velocity[d]) << i;
+      ASSERT_EQ(rigids[i].spin[d], rig.rigids[i].spin[d]) << i;
+    }
+    EXPECT_EQ(rig.rigids[i].inverse_mass, before[i].inverse_mass);
+  }
+}
+
+/// What the soft body gets, rigid ones lose.
+TEST(ContactSolve, ABodyAndRigidOnesKeepTheirMomentum) {
+  SolveRig rig;
+  SolveTask task = rig.task_with_rigids();
+  task.pushes = 0;
+  const auto rigids = copy_of(rig.rigids);
+  rig.run(task);
+  std::array<double, 3> given{}, lost{};
+  double most = 0;
+  for (const SolveContact& c : rig.contacts.span()) {
+    if (c.rigid.rigid + 1 == SolveRig::kRigids) continue;
+    for (std::size_t d = 0; d < 3; ++d)
+      given[d] += double{c.impulse} * double{c.normal[d]} + double{c.friction_impulse[d]};
+    most = std::max(most, double{c.impulse});
+  }
+  EXPECT_GT(most, 0.05);
+  for (std::size_t i = 0; i + 1 < SolveRig::kRigids; ++i)
+    for (std::size_t d = 0; d < 3; ++d)
+      lost[d] -= double{rig.rigids[i].velocity[d] - rigids[i].velocity[d]} / double{rigids[i].inverse_mass};
+  for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(lost[d], given[d], 1e-4) << d;
+}
+
 TEST(ContactSolve, StiffeningKeepsBothMomenta) {
   SolveRig rig;
   SolveTask task = rig.task();
@@ -411,13 +558,14 @@ TEST(ContactSolve, SleepersAreNotWritten) {
 }
 
 TEST(ContactSolve, WhatIsTooLargeIsRefused) {
-  for (const int which : {0, 1, 2, 3}) {
+  for (const int which : {0, 1, 2, 3, 4}) {
     SolveRig rig;
     SolveTask task = rig.task();
     if (which == 0) task.a_count = spu::kSolveMaxParticles + 1;
     if (which == 1) task.b_count = spu::kSolveMaxParticles + 1;
     if (which == 2) task.contact_count = spu::kSolveMaxContacts + 1;
     if (which == 3) task.cell_count = spu::kSolveMaxCells + 1;
+    if (which == 4) task.rigid_count = spu::kSolveMaxRigids + 1;
     const auto a = copy_of(rig.a);
     rig.run(task);
     ASSERT_EQ(rig.failures.size(), 1u);
@@ -437,6 +585,7 @@ TEST(ContactSolve, ItsCheckedFlavourFindsNothing) {
     task.stiffening = 0.5f;
     task.inverse_spacing = 4;
     rig.run(task);
+    rig.run(rig.task_with_rigids());
     EXPECT_TRUE(rig.failures.empty()) << rig.failures[0];
   });
 }

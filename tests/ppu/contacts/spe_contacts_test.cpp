@@ -12,6 +12,7 @@
 
 #include "contact_world.h"
 #include "ppu/contacts/find_contacts.h"
+#include "ppu/contacts/rigid_sets.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 #include "support/slow_build.h"
@@ -235,7 +236,78 @@ TEST(SpeContacts, TwoBodiesKeepTheirMomentum) {
   EXPECT_LT(meeting, 2e-4);
 }
 
-/// What the SPEs cannot do, the PPU does in between: a rigid body that moves, and a body of too many particles.
+Vector3f momentum_of(const btRigidBody& body) {
+  const btVector3 v = body.getLinearVelocity() / body.getInvMass();
+  return {v.x(), v.y(), v.z()};
+}
+
+/// Two boxes, one ten times as heavy as the other, between two bodies: SPEs move all four.
+TEST(SpeContacts, RigidBodiesGetWhatBodiesLose) {
+  SpeRuntime spes({.spes = 2});
+  ContactWorld w({0, 0, 0}, &spes);
+  SoftBody<3>& left = w.add(make_sphere(0.4f, 12), settings_of(0.1f), {-0.8f, 0, 0});
+  SoftBody<3>& right = w.add(make_penguin(0.9f), settings_of(0.12f), {0.8f, 0.1f, 0.05f});
+  left.add_velocity({3, 0.2f, 0});
+  right.add_velocity({-2, 0, 0.3f});
+  btRigidBody& light =
+      w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 2, {0, 0.15f, 0});
+  btRigidBody& heavy =
+      w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 20, {0, -0.15f, 0});
+  const auto momentum = [&] {
+    return Vector3f(left.linear_momentum() + right.linear_momentum() + momentum_of(light) +
+                    momentum_of(heavy));
+  };
+  const Vector3f before = momentum();
+  const float size = left.linear_momentum().norm();
+  w.run(120);
+  EXPECT_GT(momentum_of(light).norm(), 0.01f * size);
+  EXPECT_GT(momentum_of(heavy).norm(), 0.01f * size);
+  EXPECT_LT((momentum() - before).norm(), 1e-5f * size);
+}
+
+/// SPEs and PPU solve the same contacts with the same iterations.
+TEST(SpeContacts, RigidBodiesMoveAsThePpuMovesThem) {
+  const auto box_after = [](SpeRuntime* spes) {
+    ContactWorld w({0, -9.81f, 0}, spes);
+    w.add_floor();
+    w.add(make_box({0.8f, 0.3f, 0.8f}, 0.1f), settings_of(0.1f, 0.7f, 0.3f), {0, 0.16f, 0});
+    btRigidBody& box =
+        w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 12, {0.05f, 0.5f, 0.02f});
+    box.setLinearVelocity({1.2f, 0, 0.3f});
+    box.setAngularVelocity({0, 2, 0});
+    w.run(45);
+    return box.getWorldTransform();
+  };
+  SpeRuntime spes({.spes = 2});
+  const btTransform on_spes = box_after(&spes), on_ppu = box_after(nullptr);
+  EXPECT_LT((on_spes.getOrigin() - on_ppu.getOrigin()).length(), 0.01f);
+  EXPECT_LT(on_spes.getRotation().angleShortestPath(on_ppu.getRotation()), 0.05f);
+  EXPECT_GT(on_ppu.getOrigin().x(), 0.08f) << "it has slid";
+}
+
+/// A bed of more boxes than SPEs have room for in a set: the PPU solves them.
+TEST(SpeContacts, MoreRigidBodiesThanASetHasRoomForAreThere) {
+  SpeRuntime spes({.spes = 2});
+  ContactWorld w({0, -9.81f, 0}, &spes);
+  w.add_floor();
+  const SoftBody<3>& bed =
+      w.add(make_box({1.7f, 0.2f, 1.7f}, 0.2f), settings_of(0.2f, 0.7f, 0.5f), {0, 0.11f, 0});
+  ASSERT_LE(bed.model().particles(), spu::kSolveMaxParticles);
+  std::vector<btRigidBody*> boxes;
+  for (int x = 0; x < 9; ++x)
+    for (int z = 0; z < 9; ++z)
+      boxes.push_back(
+          &w.add(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, 0.05f)), 0.5f,
+                 {0.18f * static_cast<float>(x - 4), 0.3f, 0.18f * static_cast<float>(z - 4)}));
+  ASSERT_GT(boxes.size(), RigidSets::kMost);
+  w.run(90);
+  for (const btRigidBody* box : boxes) {
+    EXPECT_NEAR(box->getWorldTransform().getOrigin().y(), 0.25f, 0.03f);
+    EXPECT_LT(box->getLinearVelocity().length(), 0.1f);
+  }
+}
+
+/// What the SPEs cannot do, the PPU does in between: contacts of a body of too many particles.
 TEST(SpeContacts, RigidBodiesThatMoveAndLargeBodiesAreThere) {
   constexpr float kCell = 0.1f;
   SpeRuntime spes({.spes = 2});
