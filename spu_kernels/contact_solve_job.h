@@ -40,9 +40,9 @@ static_assert(sizeof(SolveRigid) == 80, "five quadwords");
 struct alignas(16) SolveRigidPoint {
   uint16_t rigid;  ///< which of the task's
   uint16_t zeros[7];
-  float arm[3];         ///< metres, from its centre of mass
-  float push_mass;      ///< kg: of a alone; nothing pushes rigid bodies
-  float feels[3];       ///< 1/kg: what an impulse of 1 kg m/s along the normal changes of a's velocity against b's
+  float arm[3];     ///< metres, from its centre of mass
+  float push_mass;  ///< kg: of a alone; nothing pushes rigid bodies
+  float feels[3];  ///< 1/kg: what an impulse of 1 kg m/s along the normal changes of a's velocity against b's
   float friction_mass;  ///< kg: the least that an impulse across the normal may meet
 };
 static_assert(sizeof(SolveRigidPoint) == sizeof(SolveAnchor), "in place of each other");
@@ -53,8 +53,8 @@ struct alignas(16) SolveContact {
   union {
     SolveAnchor b;          ///< of a soft body
     SolveRigidPoint rigid;  ///< where the task has rigid bodies
-  };  ///< unused where it has neither
-  float normal[3];  ///< from b to a, unit length
+  };                        ///< unused where it has neither
+  float normal[3];          ///< from b to a, unit length
   float zero;
   /// m/s: the velocity of b minus that of a before anything has changed; b is a body, or what nothing moves.
   float carried[3];

@@ -333,12 +333,17 @@ auto AttachmentRows<kDimension>::begin_row(Row& row) -> Vector {
   return apart;
 }
 
+template <int kDimension>
+float AttachmentRows<kDimension>::most_push(const AttachedBody<kDimension>& body) const {
+  return kMostPushInCells * body.spacing / step_;
+}
+
 /// m/s: the most that an error of position may ask of a row. A compliant row gives way, and makes only the rigid share of it a velocity.
 /// @param mobility  of the row, softness included
 template <int kDimension>
 float AttachmentRows<kDimension>::most_of_error(float mobility) const {
   SC_ASSERT(mobility >= softness_, "a row with a mobility of {} is softer, {}", mobility, softness_);
-  const float most = kMostPushInCells * sides_.a.spacing / step_, rigid = mobility - softness_;
+  const float most = most_push(sides_.a), rigid = mobility - softness_;
   return rigid > 0 ? most * mobility / rigid : most;
 }
 
@@ -398,7 +403,7 @@ void AttachmentRows<kDimension>::begin_rope(Row& row, const Vector& apart) {
   const float excess = std::max(distance - length, 0.0f);
   row.most = (reach - std::min(distance, length)) / h;
   if (softness_ > 0) row.most -= std::min(excess / h, most_of_error(row.mobility));
-  row.push_most = softness_ > 0 ? 0 : -std::min(excess, kMostPushInCells * sides_.a.spacing) / h;
+  row.push_most = softness_ > 0 ? 0 : -std::min(excess / h, most_push(sides_.a));
   row.push = 0;
   pushes_ = pushes_ || row.push_most < 0;
 }
@@ -574,7 +579,7 @@ float AttachmentRows<kDimension>::iterate() {
 template <int kDimension>
 void AttachmentRows<kDimension>::limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const {
   if (!pushes_) return;
-  const float most = kMostPushInCells * body.spacing / step_;
+  const float most = most_push(body);
   for (std::size_t i = 0; i < side.pushed.size(); ++i) {
     const Vector& pushed = side.pushed[i];
     const float speed = pushed.norm();

@@ -26,6 +26,7 @@
 #include <span>
 #include <vector>
 
+#include "ppu/contacts/attach_unit.h"
 #include "ppu/contacts/attached_rigid.h"
 #include "softcell/soft_bodies/attachment.h"
 
@@ -103,6 +104,13 @@ class AttachmentRows {
   float iterate();
   void finish();
 
+  /// In place of iterate() and finish(): appends what the kernel `attach` needs. The caller sets AttachLink::rigid, and gives slots.
+  /// @return false: the kernel cannot solve it, and nothing is appended. @pre begin()
+  bool write(AttachUnit& unit) const;
+  /// What the kernel has made of it.
+  void read(const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
+            std::span<const spu::AttachRow> rows);
+
   /// Whether the last iteration of the last substep would have passed the break force.
   bool broke() const { return broke_; }
   const AttachmentState<kDimension>& state() const { return state_; }
@@ -164,6 +172,7 @@ class AttachmentRows {
   Vector begin_row(Row& row);
   void begin_weld_to_rigid();
   void begin_rope(Row& row, const Vector& apart);
+  float most_push(const AttachedBody<kDimension>& body) const;  // m/s, of a particle
   float most_of_error(float mobility) const;
   Vector relative_velocity(const Row& row) const;
   Vector relative_push(const Row& row) const;
@@ -178,6 +187,9 @@ class AttachmentRows {
   void keep_below_break_force();
   void limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const;
   Vector carried_impulse() const;
+  void write_points(spu::AttachLink& link, AttachUnit& unit) const;
+  void write_rows(spu::AttachLink& link, AttachUnit& unit) const;
+  void write_entries(bool of_b, spu::AttachLink& link, AttachUnit& unit) const;
 
   AttachmentSettings<kDimension> settings_;
   float length_ = 0;  // of a rope

@@ -36,9 +36,10 @@ void Attachments<kDimension>::begin(std::span<const AttachedBody<kDimension>> bo
     const AttachedBody<kDimension>* const b = attachment.b != kNone ? &bodies[attachment.b] : nullptr;
     if (bodies[attachment.a].asleep && (b == nullptr || b->asleep)) continue;
     Rigid* const rigid = attachment.rigid != kNone ? &rigids[attachment.rigid] : nullptr;
+    const bool moves = rigid != nullptr && rigid->inverse_mass > 0;
     attachment.rows->begin({bodies[attachment.a], b, b == nullptr ? &attachment.frame : nullptr, rigid},
                            step);
-    solved_.push_back(attachment.rows);
+    solved_.push_back({attachment.rows, {attachment.a, attachment.b, moves ? attachment.rigid : kNone}});
   }
 }
 
@@ -48,15 +49,15 @@ void Attachments<kDimension>::iterate(int iterations) {
   float first = 0;
   for (int i = 0; i < iterations; ++i) {
     float error = 0;
-    for (AttachmentRows<kDimension>* const rows : solved_) error = std::max(error, rows->iterate());
+    for (const Solved& solved : solved_) error = std::max(error, solved.rows->iterate());
     if (i == 0) first = error;
-    if (error <= kDone * first || (solved_.size() == 1 && solved_[0]->is_direct())) return;
+    if (error <= kDone * first || (solved_.size() == 1 && solved_[0].rows->is_direct())) return;
   }
 }
 
 template <int kDimension>
 void Attachments<kDimension>::finish() {
-  for (AttachmentRows<kDimension>* const rows : solved_) rows->finish();
+  for (const Solved& solved : solved_) solved.rows->finish();
 }
 
 template class Attachments<2>;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/contacts/attach_unit.h"
 #include "ppu/contacts/attachment_rows.h"
 
 namespace softcell::ppu {
@@ -21,7 +22,14 @@ struct AttachmentInStep {
   bool touch = false;                   ///< its two soft bodies touch each other
 };
 
-/// Solves attachments in the order begin(), iterate() once or more often, finish().
+/// The sides of an attachment, by their numbers.
+struct AttachmentSides {
+  static constexpr std::uint32_t kNone = ~0u;
+  std::uint32_t a = 0, b = kNone;  ///< soft bodies
+  std::uint32_t rigid = kNone;     ///< one that impulses move
+};
+
+/// Solves attachments in the order begin(), iterate() once or more often, finish(). Or a kernel does, between begin() and read() of each.
 template <int kDimension>
 class AttachmentSolver {
  public:
@@ -37,6 +45,16 @@ class AttachmentSolver {
   /// Up to as many iterations; fewer when nothing changes any more.
   virtual void iterate(int iterations) = 0;
   virtual void finish() = 0;
+
+  // For the kernel `attach`, after begin().
+
+  virtual std::size_t solved() const = 0;  ///< how many there are to solve
+  virtual AttachmentSides sides(std::size_t attachment) const = 0;
+  /// Appends its records. @return false: the kernel cannot solve it, and nothing is appended.
+  virtual bool write(std::size_t attachment, AttachUnit& unit) const = 0;
+  /// What the kernel has made of these. In place of finish().
+  virtual void read(std::size_t attachment, const spu::AttachLink& link,
+                    std::span<const spu::AttachPoint> points, std::span<const spu::AttachRow> rows) = 0;
 };
 
 /// Used by one thread. A coupling fills it before each substep.
@@ -54,10 +72,23 @@ class Attachments final : public AttachmentSolver<kDimension> {
   void begin(std::span<const AttachedBody<kDimension>> bodies, std::span<Rigid> rigids, float step) override;
   void iterate(int iterations) override;
   void finish() override;
+  std::size_t solved() const override { return solved_.size(); }
+  AttachmentSides sides(std::size_t attachment) const override { return solved_[attachment].sides; }
+  bool write(std::size_t attachment, AttachUnit& unit) const override {
+    return solved_[attachment].rows->write(unit);
+  }
+  void read(std::size_t attachment, const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
+            std::span<const spu::AttachRow> rows) override {
+    solved_[attachment].rows->read(link, points, rows);
+  }
 
  private:
+  struct Solved {
+    AttachmentRows<kDimension>* rows = nullptr;
+    AttachmentSides sides;
+  };
   std::vector<AttachmentInStep<kDimension>> all_;
-  std::vector<AttachmentRows<kDimension>*> solved_;  // of them: those with a side that may move
+  std::vector<Solved> solved_;  // of them: those with a side that may move
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
 };
 

@@ -221,8 +221,8 @@ void ContactStage::put_in_order() {
 
 /// Whether the worker may solve what this thread has found.
 bool ContactStage::can_hand_to_worker(const Group& group) const {
-  return !group.by_worker && group.contacts.size() <= ContactWorker::kMostContacts && worker->holds(group.a) &&
-         worker->holds(group.b);
+  return !group.by_worker && group.contacts.size() <= ContactWorker::kMostContacts &&
+         worker->holds(group.a) && worker->holds(group.b);
 }
 
 /// Which rigid bodies the worker would move.
@@ -237,7 +237,25 @@ void ContactStage::find_rigid_sets(std::span<ContactRigid> rigids) {
       last = contact.rigid;
     }
   }
+  if (has_attachments()) AttachUnits::begin(*attachments, rigid_sets_);
   rigid_sets_.arrange(*worker);
+}
+
+/// Where the worker solves contacts, or there is much to do: a job of its own takes longer than a few attachments take here.
+bool ContactStage::hand_attachments_to_worker(std::size_t rigids) {
+  attach_units_.clear();
+  if (!has_attachments()) return false;
+  const bool with_contacts = std::any_of(groups_.begin(), groups_.begin() + std::ptrdiff_t(group_count_),
+                                         [](const Group& group) { return group.by_worker; });
+  if (!with_contacts && attachments->solved() < kManyAttachments) return false;
+  for (std::size_t i = 0; i < attachments->solved(); ++i) {
+    const AttachmentSides sides = attachments->sides(i);
+    if (!worker->holds(sides.a) || (sides.b != AttachmentSides::kNone && !worker->holds(sides.b)))
+      return false;
+  }
+  if (!attach_units_.write(*attachments, bodies_.size(), rigids, rigid_sets_)) return false;
+  worker->hold(attach_units_.units(), static_cast<std::uint32_t>(settings.attachment_iterations));
+  return true;
 }
 
 /// Contacts to the worker's memory if he can solve them.
@@ -245,9 +263,9 @@ void ContactStage::hand_to_worker(Group& group, std::span<ContactRigid> rigids, 
   if (!can_hand_to_worker(group)) return;
   const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], rigids};
   if (group.with_rigid) {
-    const auto moving = std::find_if(
-        group.contacts.begin(), group.contacts.end(),
-        [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; });
+    const auto moving =
+        std::find_if(group.contacts.begin(), group.contacts.end(),
+                     [&](const SoftContact& contact) { return rigids[contact.rigid].inverse_mass != 0; });
     if (moving != group.contacts.end()) {
       group.rigid_set = rigid_sets_.set_of(moving->rigid);
       if (group.rigid_set == RigidSets::kNone) return;
@@ -422,30 +440,32 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
     solve_attachments(rigids, step, round);
     iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
   }
-  if (has_attachments()) attachments->finish();
 }
 
-/// Each round on what contacts have left.
+/// Each round on what contacts have left. What pushes must not be is taken away before contacts push for the last time: they push
+/// against what is left.
 void ContactStage::solve_attachments(std::span<ContactRigid> rigids, float step, int round) {
   if (!has_attachments()) return;
-  if (round == 0) {
-    attached_.clear();
-    for (ContactBody& body : bodies_)
-      attached_.push_back(
-          {body.positions, body.velocities, body.pushes, body.inverse_masses, body.spacing(), body.asleep});
-    attachments->begin(attached_, rigids, step);
-  }
+  if (round == 0) begin_attachments(rigids, step);
   attachments->iterate(settings.attachment_iterations);
+  if (round + 1 == settings.rounds) attachments->finish();
+}
+
+void ContactStage::begin_attachments(std::span<ContactRigid> rigids, float step) {
+  attached_.clear();
+  for (ContactBody& body : bodies_)
+    attached_.push_back(
+        {body.positions, body.velocities, body.pushes, body.inverse_masses, body.spacing(), body.asleep});
+  attachments->begin(attached_, rigids, step);
 }
 
 void ContactStage::find_heavy_groups(std::span<const ContactRigid> rigids) {
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
     Group& group = groups_[i];
-    group.heavy =
-        std::any_of(group.contacts.begin(), group.contacts.end(), [&](const SoftContact& contact) {
-          const float inverse_mass = rigids[contact.rigid].inverse_mass;
-          return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->mass() < 1;
-        });
+    group.heavy = std::any_of(group.contacts.begin(), group.contacts.end(), [&](const SoftContact& contact) {
+      const float inverse_mass = rigids[contact.rigid].inverse_mass;
+      return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->mass() < 1;
+    });
   }
 }
 
@@ -500,6 +520,15 @@ void ContactStage::add_rigid_sets_to(SolveStages& stages) {
   }
 }
 
+/// All units at the same time.
+void ContactStage::add_attachments_to(SolveStages& stages, bool ends) const {
+  stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
+  for (std::uint32_t unit = 0; unit < attach_units_.units().size(); ++unit) {
+    stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
+    stages.groups.push_back({.contacts = {}, .attachments = unit, .ends = ends});
+  }
+}
+
 /// Of each body its contacts with what nothing moves, and its touched cells.
 void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
   constexpr std::size_t kBodiesInUnit = 12;
@@ -523,8 +552,11 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
 /// What only this thread can solve comes behind what bodies do to each other, and before what nothing moves.
 void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
   find_heavy_groups(rigids);
+  if (has_attachments()) begin_attachments(rigids, step);
   find_rigid_sets(rigids);
   for (std::size_t i = 0; i < group_count_; ++i) hand_to_worker(groups_[i], rigids, step);
+  const bool attachments_by_worker = hand_attachments_to_worker(rigids.size());
+  const bool attachments_here = has_attachments() && !attachments_by_worker;
   bounce(rigids, step);
   if (!bounces_.empty())
     for (const std::uint32_t i : bounces_.changed())
@@ -543,12 +575,12 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
     const float stiffening = round + 1 < settings.rounds ? settings.stiffening : 0;
     add_pairs_to(stages_);
     add_rigid_sets_to(stages_);
-    if (!here_.empty() || has_attachments()) {
+    if (!here_.empty() || attachments_here) {
       worker->solve(stages_);
       stages_.clear();
       take_from_worker();
       iterate_here(std::span(here_).first(here_that_move_), rigids, step);
-      solve_attachments(rigids, step, round);
+      if (attachments_here) solve_attachments(rigids, step, round);
       iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
       for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
         if (worker->holds(i) || stiffening == 0) continue;
@@ -556,17 +588,20 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
       }
       give_to_worker();
     }
+    if (attachments_by_worker) add_attachments_to(stages_, round + 1 == settings.rounds);
     add_bodies_to(stages_, stiffening);
   }
   worker->solve(stages_);
   take_from_worker();
-  if (has_attachments()) attachments->finish();
+  if (!attachments_by_worker) return;
+  worker->read(attach_units_.units());
+  attach_units_.read(*attachments);
 }
 
 void ContactStage::take_from_worker() {
   rigid_sets_.take();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
-    if (!touched_[i].empty() && worker->holds(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
+    if (changed_by_worker(i)) worker->take(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
 /// Of pairs of soft bodies. What rigid bodies and sleepers get is not counted here. A push moves particles, with their momenta.
@@ -606,7 +641,7 @@ void ContactStage::take_back_lost_spin(float step) {
 void ContactStage::give_to_worker() {
   rigid_sets_.put();
   for (std::uint32_t i = 0; i < bodies_.size(); ++i)
-    if (!touched_[i].empty() && worker->holds(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
+    if (changed_by_worker(i)) worker->put(i, bodies_[i].velocities, bodies_[i].pushes);
 }
 
 void ContactStage::find_islands(DisjointSets& islands) const {

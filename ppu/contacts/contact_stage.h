@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ppu/contacts/attach_units.h"
 #include "ppu/contacts/attachments.h"
 #include "ppu/contacts/bounces.h"
 #include "ppu/contacts/contact_body.h"
@@ -115,6 +116,7 @@ class ContactStage {
     }
   };
   using Pair = ContactOrder::Pair;
+  static constexpr std::size_t kManyAttachments = 16;
 
   void take_over(std::span<const BodyInStage> bodies, float step);
   void find_pairs(std::span<const BodyInStage> bodies);
@@ -127,6 +129,7 @@ class ContactStage {
   Group& next_group(std::uint32_t a, std::uint32_t b, bool with_rigid);
   void put_in_order();
   bool can_hand_to_worker(const Group& group) const;
+  bool hand_attachments_to_worker(std::size_t rigids);
   void find_rigid_sets(std::span<ContactRigid> rigids);
   void hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step);
   int iterations_of(const Group& group) const {
@@ -144,11 +147,16 @@ class ContactStage {
   void prepare_here(std::span<ContactRigid> rigids);
   bool has_attachments() const { return attachments != nullptr && !attachments->empty(); }
   void solve_attachments(std::span<ContactRigid> rigids, float step, int round);
+  void begin_attachments(std::span<ContactRigid> rigids, float step);
   void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
   SolveGroup solved_by_worker(const Group& group) const;
   void add_pairs_to(SolveStages& stages);
   void add_rigid_sets_to(SolveStages& stages);
+  void add_attachments_to(SolveStages& stages, bool ends) const;
   void add_bodies_to(SolveStages& stages, float stiffening);
+  bool changed_by_worker(std::uint32_t body) const {
+    return worker->holds(body) && (!touched_[body].empty() || attach_units_.hold(body));
+  }
   void take_from_worker();
   void take_back_lost_spin(float step);
   void give_to_worker();
@@ -169,6 +177,7 @@ class ContactStage {
   CrushedCellCount crushed_;
   std::vector<bool> is_crushed_;  // of each body: it has crushed cells
   RigidSets rigid_sets_;
+  AttachUnits attach_units_;
   Bounces bounces_;
   // In the last substep: a, b or a rigid one's number, and which.
   std::vector<std::array<std::uint32_t, 3>> pressed_;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "contact_solve_job.h"
+#include "ppu/contacts/attach_unit.h"
 #include "ppu/contacts/contact_body.h"
 
 namespace softcell::ppu {
@@ -24,16 +25,19 @@ struct FoundContacts {
   bool by_caller = false;                 ///< the worker cannot do it: the caller has to
 };
 
-/// Contacts that are solved together, one after the other; then cells of a are stiffened.
+/// Contacts that are solved together, one after the other; then cells of a are stiffened. Or attachments, which are alone in their unit.
 struct SolveGroup {
   static constexpr std::uint32_t kNobody = ~0u;
-  std::uint32_t a = 0, b = kNobody;       ///< bodies; b kNobody: rigid bodies, or what nothing moves
-  std::span<spu::SolveContact> contacts;  ///< from found() or room()
+  std::uint32_t a = 0, b = kNobody;        ///< bodies; b kNobody: rigid bodies, or what nothing moves
+  std::span<spu::SolveContact> contacts;   ///< from found() or room()
   std::span<spu::SolveRigid> rigids = {};  ///< from rigid_room(): those that contacts are with
-  std::uint32_t iterations = 0;           ///< over the contacts
+  std::uint32_t iterations = 0;            ///< over the contacts
   bool pushes = false;
   std::span<const std::uint32_t> cells = {};  ///< of a, to be stiffened
   float stiffening = 0;                       ///< 0..1
+  static constexpr std::uint32_t kNoAttachments = ~0u;
+  std::uint32_t attachments = kNoAttachments;  ///< in place of all of the above: a unit of hold()
+  bool ends = false;                           ///< it is solved for the last time in this substep
 };
 
 /// Groups in units, units in stages: units of one stage share no body that is not asleep and no rigid body, and may be solved at
@@ -72,6 +76,12 @@ class ContactWorker {
 
   /// Room for rigid bodies. Good until the next call of it, and the next begin().
   virtual std::span<spu::SolveRigid> rigid_room(std::size_t rigids) = 0;
+
+  /// Attachments for solve(). @param iterations  at most, over those of a unit, in each solve()
+  /// @pre holds() is true of all their bodies
+  virtual void hold(std::span<const AttachUnit> units, std::uint32_t iterations) = 0;
+  /// What solve() has made of links, points and rows.
+  virtual void read(std::span<AttachUnit> units) const = 0;
 
   /// @throws std::runtime_error  as found().
   virtual void solve(const SolveStages& stages) = 0;

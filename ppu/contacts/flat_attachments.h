@@ -24,6 +24,15 @@ class FlatAttachments final : public AttachmentSolver<3> {
   void begin(std::span<const AttachedBody<3>> bodies, std::span<ContactRigid> rigids, float step) override;
   void iterate(int iterations) override;
   void finish() override;
+  std::size_t solved() const override { return in_plane_.solved(); }
+  AttachmentSides sides(std::size_t attachment) const override { return in_plane_.sides(attachment); }
+  bool write(std::size_t attachment, AttachUnit& unit) const override {
+    return in_plane_.write(attachment, unit);
+  }
+  void read(std::size_t attachment, const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
+            std::span<const spu::AttachRow> rows) override {
+    in_plane_.read(attachment, link, points, rows);
+  }
 
  private:
   /// A body of the stage in the plane: only its held particles are there.

@@ -1,8 +1,9 @@
 #pragma once
-// The widths of the numbers in the contracts of contact_find and contact_solve, and buffers that know them.
+// The widths of the numbers in the contracts of contact_find, contact_solve and attach, and buffers that know them.
 
 #include <cstddef>
 
+#include "attach_job.h"
 #include "contact_find_job.h"
 #include "contact_solve_job.h"
 #include "ppu/spe_bodies/job_records.h"
@@ -66,12 +67,49 @@ struct ContactRecord<spu::SolveJob> {
   static constexpr dma::ElementRun kRuns[] = {{8, 8}, {120, 4}};
 };
 
+template <>
+struct ContactRecord<spu::AttachRun> {
+  static constexpr dma::ElementRun kRuns[] = {{8, 8}, {8, 4}};
+};
+template <>
+struct ContactRecord<spu::AttachRigid> {
+  static constexpr dma::ElementRun kRuns[] = {{8, 8}, {8, 4}};
+};
+template <>
+struct ContactRecord<spu::AttachLink> {
+  static constexpr dma::ElementRun kRuns[] = {{256, 4}};
+};
+template <>
+struct ContactRecord<spu::AttachPoint> {
+  static constexpr dma::ElementRun kRuns[] = {{96, 4}};
+};
+template <>
+struct ContactRecord<spu::AttachRow> {
+  static constexpr dma::ElementRun kRuns[] = {{128, 4}};
+};
+template <>
+struct ContactRecord<spu::AttachEntry> {
+  static constexpr dma::ElementRun kRuns[] = {{48, 4}};
+};
+template <>
+struct ContactRecord<spu::AttachJob> {
+  static constexpr dma::ElementRun kRuns[] = {{48, 8}, {80, 4}};
+};
+
 /// A buffer that SPEs of either byte order read rightly.
 template <typename T>
 dma::Buffer<T> contact_buffer(dma::AddressSpace& memory, const char* name, std::size_t count,
                               const dma::BufferOptions& options = {}) {
   static_assert(covers<T>(ContactRecord<T>::kRuns));
   return dma::Buffer<T>(memory, name, count, of_record(ContactRecord<T>::kRuns, options));
+}
+
+/// Room for at least so many elements; what is in them is lost.
+template <typename T>
+void make_room(dma::AddressSpace& memory, const char* name, dma::Buffer<T>& buffer, std::size_t count) {
+  if (count <= buffer.size()) return;
+  buffer = {};
+  buffer = contact_buffer<T>(memory, name, count + count / 4);
 }
 
 }  // namespace softcell::ppu

@@ -24,14 +24,6 @@ constexpr std::size_t kContactsInRoom = 4096;                // of one buffer
 constexpr std::size_t kJobsPerSpe = 4;                       // of finding: some pairs take longer than others
 static_assert(kContactsInRoom >= ContactWorker::kMostContacts);
 
-/// Room for at least so many elements; what is in them is lost.
-template <typename T>
-void make_room(dma::AddressSpace& memory, const char* name, dma::Buffer<T>& buffer, std::size_t count) {
-  if (count <= buffer.size()) return;
-  buffer = {};
-  buffer = contact_buffer<T>(memory, name, count + count / 4);
-}
-
 /// A chain for so many jobs. @pre the one that is there has ended
 void make_room(JobSystem& jobs, const char* name, std::unique_ptr<JobChain>& chain, std::size_t& most,
                std::size_t count) {
@@ -47,12 +39,12 @@ spu::SolveVelocity times(float scale, const Vector3f& v, float root = 0) {
 
 }  // namespace
 
-SpeContacts::SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& contact_find,
-                         const ls_sim::KernelImage& contact_solve)
+SpeContacts::SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ContactKernels& kernels)
     : memory_(memory),
       jobs_(jobs),
-      contact_find_(jobs.load(contact_find)),
-      contact_solve_(jobs.load(contact_solve)) {}
+      contact_find_(jobs.load(kernels.contact_find)),
+      contact_solve_(jobs.load(kernels.contact_solve)),
+      attachments_(memory, jobs, kernels.attach) {}
 
 SpeContacts::~SpeContacts() = default;
 
@@ -311,6 +303,22 @@ std::span<spu::SolveRigid> SpeContacts::rigid_room(std::size_t rigids) {
   return rigids_.span().first(rigids);
 }
 
+dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveRigid* rigid) const {
+  SC_ASSERT(rigid >= rigids_.data() && rigid < rigids_.data() + rigids_.size(),
+            "a rigid body that is not in the room for {}", rigids_.size());
+  return rigids_.ea(static_cast<std::size_t>(rigid - rigids_.data()));
+}
+
+void SpeContacts::hold(std::span<const AttachUnit> units, std::uint32_t iterations) {
+  attachments_.hold(
+      units, iterations,
+      [&](std::uint32_t body) {
+        return SpeAttachments::Place{velocities_.ea(places_[body].velocities),
+                                     static_cast<std::uint32_t>(bodies_[body].ends.size())};
+      },
+      [&](const spu::SolveRigid* rigid) { return ea_of(rigid); });
+}
+
 dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveContact* contact) const {
   const auto within = [&](const dma::Buffer<spu::SolveContact>& buffer) {
     return !buffer.empty() && contact >= buffer.data() && contact < buffer.data() + buffer.size();
@@ -337,7 +345,7 @@ spu::SolveTask SpeContacts::solve_task(const SolveGroup& group) {
   task.contact_count = static_cast<std::uint32_t>(group.contacts.size());
   if (task.contact_count != 0) task.contacts_ea = ea_of(group.contacts.data()).value;
   if (!group.rigids.empty()) {
-    task.rigids_ea = rigids_.ea(static_cast<std::size_t>(group.rigids.data() - rigids_.data())).value;
+    task.rigids_ea = ea_of(group.rigids.data()).value;
     task.rigid_count = static_cast<std::uint32_t>(group.rigids.size());
   }
   task.iterations = group.iterations;
@@ -366,13 +374,19 @@ void SpeContacts::solve(const SolveStages& stages) {
   make_room(memory_, "jobs of solving contacts", solve_jobs_, stages.units.size());
   make_room(jobs_, "solving contacts", solving_, most_solve_jobs_, stages.units.size());
   for (std::size_t g = 0; g < stages.groups.size(); ++g)
-    solve_tasks_[g] = solve_task(stages.groups[g]);
+    if (stages.groups[g].attachments == SolveGroup::kNoAttachments)
+      solve_tasks_[g] = solve_task(stages.groups[g]);
   std::size_t stage = 0;
   for (std::size_t u = 0; u < stages.units.size(); ++u) {
     for (; stage < stages.stages.size() && stages.stages[stage] == u; ++stage) solving_->sync();
     const std::size_t first = stages.units[u];
     const std::size_t end = u + 1 < stages.units.size() ? stages.units[u + 1] : stages.groups.size();
     if (first == end) continue;
+    const SolveGroup& group = stages.groups[first];
+    if (group.attachments != SolveGroup::kNoAttachments) {
+      solving_->add(attachments_.job(group.attachments, group.ends));
+      continue;
+    }
     solve_jobs_[u] = {};
     solve_jobs_[u].tasks_ea = solve_tasks_.ea(first).value;
     solve_jobs_[u].task_count = static_cast<std::uint32_t>(end - first);

@@ -1,5 +1,5 @@
 #pragma once
-// Contacts of soft bodies on SPEs, by the kernels `contact_find` and `contact_solve`.
+// Contacts of soft bodies on SPEs, by the kernels `contact_find` and `contact_solve`, and attachments between them, by `attach`.
 //
 //     begin   positions, ends, boxes of cells, velocities --> main memory
 //     find    a chain of jobs, each some pairs of bodies
@@ -15,19 +15,24 @@
 #include "contact_solve_job.h"
 #include "ppu/contacts/contact_worker.h"
 #include "ppu/spe_bodies/candidate_pairs.h"
+#include "ppu/spe_bodies/spe_attachments.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
 
 namespace softcell::ppu {
 
+/// Their images, which outlive what uses them.
+struct ContactKernels {
+  const ls_sim::KernelImage &contact_find, &contact_solve, &attach;
+};
+
 /// The result is the same bits for any number of SPEs. Used by one thread. Allocates when there is more to do
 /// than ever before.
 class SpeContacts final : public ContactWorker {
  public:
-  /// `memory`, `jobs` and the kernels' images outlive this.
+  /// `memory` and `jobs` outlive this.
   /// @throws std::runtime_error  main memory is full.
-  SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ls_sim::KernelImage& contact_find,
-              const ls_sim::KernelImage& contact_solve);
+  SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ContactKernels& kernels);
   ~SpeContacts() override;
 
   void forget(const ContactModel& model) override;
@@ -37,6 +42,8 @@ class SpeContacts final : public ContactWorker {
   std::span<const FoundContacts> found() override;
   std::span<spu::SolveContact> room(std::size_t contacts) override;
   std::span<spu::SolveRigid> rigid_room(std::size_t rigids) override;
+  void hold(std::span<const AttachUnit> units, std::uint32_t iterations) override;
+  void read(std::span<AttachUnit> units) const override { attachments_.read(units); }
   void solve(const SolveStages& stages) override;
   void take(std::uint32_t body, std::span<Eigen::Vector3f> velocities,
             std::span<Eigen::Vector3f> pushes) const override;
@@ -66,11 +73,13 @@ class SpeContacts final : public ContactWorker {
   void make_room_for_candidates();
   spu::FindTask find_task(std::uint32_t a, std::uint32_t b);
   dma::EffectiveAddress ea_of(const spu::SolveContact* contact) const;
+  dma::EffectiveAddress ea_of(const spu::SolveRigid* rigid) const;
   spu::SolveTask solve_task(const SolveGroup& group);
 
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
   JobImage contact_find_, contact_solve_;
+  SpeAttachments attachments_;
   std::unordered_map<const ContactModel*, std::unique_ptr<Model>> models_;  // null: too large
 
   std::span<const ContactBody> bodies_;

@@ -51,7 +51,8 @@ std::unique_ptr<SoftBodySolver<3>> SpeRuntime::make_solver() {
 }
 
 std::shared_ptr<ContactWorker> SpeRuntime::make_contact_worker() {
-  return std::make_shared<SpeContacts>(memory(), jobs(), kernel("contact_find"), kernel("contact_solve"));
+  return std::make_shared<SpeContacts>(
+      memory(), jobs(), ContactKernels{kernel("contact_find"), kernel("contact_solve"), kernel("attach")});
 }
 
 std::unique_ptr<SoftBodySolver<2>> SpeRuntime::make_solver_2d() {

@@ -8,6 +8,7 @@
 #include "common/reciprocal.h"
 #include "contact_solve_job.h"
 #include "contacts/quad_vector.h"
+#include "contacts/rigid_in_motion.h"
 
 namespace softcell::spu {
 
@@ -41,14 +42,6 @@ struct SolvedContact {
   vec_float4 point;    // x y z, and cells
 };
 static_assert(sizeof(SolvedContact) == sizeof(SolveContact), "the same bytes");
-
-/// A SolveRigid as registers.
-struct RigidInMotion {
-  vec_float4 velocity;  // x y z, and the inverse mass
-  vec_float4 spin;
-  vec_float4 inverse_inertia[3];
-};
-static_assert(sizeof(RigidInMotion) == sizeof(SolveRigid), "the same bytes");
 
 /// The sum of weight times value: even terms, odd terms, then both.
 inline vec_float4 value_at(const Anchor& anchor, const vec_float4* values) {
@@ -86,22 +79,6 @@ inline RigidInMotion& rigid_of(const RigidPoint& point, RigidInMotion* rigids) {
   return rigids[spu_extract(point.rigid, 0)];
 }
 
-/// How a rigid body's velocity at a point has changed.
-inline vec_float4 value_at(const RigidPoint& point, RigidInMotion* rigids) {
-  const RigidInMotion& rigid = rigid_of(point, rigids);
-  return spu_add(rigid.velocity, cross_of(rigid.spin, only_xyz(point.arm)));
-}
-
-/// It loses the impulse.
-inline void take_at(const RigidPoint& point, RigidInMotion* rigids, vec_float4 impulse) {
-  RigidInMotion& rigid = rigid_of(point, rigids);
-  const vec_float4 turn = cross_of(only_xyz(point.arm), impulse);
-  rigid.velocity = spu_nmsub(splat_lane<3>(rigid.velocity), impulse, rigid.velocity);
-  vec_float4 spin = spu_nmsub(splat_lane<0>(turn), rigid.inverse_inertia[0], rigid.spin);
-  spin = spu_nmsub(splat_lane<1>(turn), rigid.inverse_inertia[1], spin);
-  rigid.spin = spu_nmsub(splat_lane<2>(turn), rigid.inverse_inertia[2], spin);
-}
-
 /// Of one contact, along its normal and against it by friction (Coulomb's law, the same in all directions).
 template <With kWith>
 inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unused]] vec_float4* b,
@@ -110,7 +87,8 @@ inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unus
   const vec_float4 mass = splat_lane<0>(terms);
   vec_float4 v = spu_sub(value_at(contact.a, a), contact.carried);
   if constexpr (kWith == With::kSoft) v = spu_sub(v, value_at(contact.b, b));
-  if constexpr (kWith == With::kRigid) v = spu_sub(v, value_at(contact.rigid, rigids));
+  if constexpr (kWith == With::kRigid)
+    v = spu_sub(v, change_at(rigid_of(contact.rigid, rigids), only_xyz(contact.rigid.arm)));
   v = only_xyz(v);
   vec_float4 along = dot_in_all_lanes(n, v);
   const vec_float4 before = splat_lane<3>(contact.impulse);
@@ -136,7 +114,8 @@ inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unus
   const vec_float4 change = spu_madd(n, spu_sub(impulse, before), spu_sub(friction, friction_before));
   add_at(contact.a, a, change);
   if constexpr (kWith == With::kSoft) add_at(contact.b, b, negative(change));
-  if constexpr (kWith == With::kRigid) take_at(contact.rigid, rigids, change);
+  if constexpr (kWith == With::kRigid)
+    take_at(rigid_of(contact.rigid, rigids), only_xyz(contact.rigid.arm), change);
   contact.impulse = with_fourth(friction, impulse);
 }
 

@@ -12,6 +12,7 @@
 extern "C" {
 extern const std::byte softcell_image_job_loop[], softcell_image_job_loop_end[];
 extern const std::byte softcell_image_job_loop_spu[], softcell_image_job_loop_spu_end[];
+SC_DECLARE(attach)
 SC_DECLARE(contact_find)
 SC_DECLARE(contact_solve)
 SC_DECLARE(match)
@@ -38,6 +39,7 @@ std::span<const ImageFile> image_files() {
                 .elf = {softcell_image_job_loop, softcell_image_job_loop_end},
                 .checked_elf = {},
                 .spu_elf = {softcell_image_job_loop_spu, softcell_image_job_loop_spu_end}},
+      SC_FILE(attach),
       SC_FILE(contact_find),
       SC_FILE(contact_solve),
       SC_FILE(match),

@@ -116,8 +116,8 @@ class Twin {
   }
   static void take_at(const spu::SolveRigidPoint& point, SolveRigid& rigid, const V& impulse) {
     const V turn = cross({point.arm[0], point.arm[1], point.arm[2]}, impulse);
-    vector_of(rigid.velocity) = V::of(
-        [&](Axis d) { return nmsub(rigid.inverse_mass, impulse.*d, vector_of(rigid.velocity).*d); });
+    vector_of(rigid.velocity) =
+        V::of([&](Axis d) { return nmsub(rigid.inverse_mass, impulse.*d, vector_of(rigid.velocity).*d); });
     for (int d = 0; d < 3; ++d) {
       float& spin = rigid.spin[d];
       spin = nmsub(turn.x, rigid.inverse_inertia[0][d], spin);
@@ -134,9 +134,8 @@ class Twin {
     v = V::of([&](Axis d) { return madd(vector_of(c.rigid.feels).*d, impulse - before, v.*d); });
     const float along = dot(n, v);
     const V friction_before = vector_of(c.friction_impulse);
-    V friction = V::of([&](Axis d) {
-      return nmsub(nmsub(along, n.*d, v.*d), c.rigid.friction_mass, friction_before.*d);
-    });
+    V friction = V::of(
+        [&](Axis d) { return nmsub(nmsub(along, n.*d, v.*d), c.rigid.friction_mass, friction_before.*d); });
     const float most = c.friction * impulse, square = dot(friction, friction);
     const float scale = below_zero(msub(most, most, square)) ? most * reciprocal_sqrt(square) : 1.0f;
     friction = V::of([&](Axis d) { return friction.*d * scale; });
@@ -315,11 +314,14 @@ class SolveRig {
       V spin{0, 0, 0};
       for (const Axis d : {&V::x, &V::y, &V::z})
         for (int k = 0; k < 3; ++k)
-          spin.*d += (k == 0 ? turn.x : k == 1 ? turn.y : turn.z) *
-                     rigid.inverse_inertia[k][d == &V::x ? 0 : d == &V::y ? 1 : 2];
+          spin.*d += (k == 0   ? turn.x
+                      : k == 1 ? turn.y
+                               : turn.z) *
+                     rigid.inverse_inertia[k][d == &V::x   ? 0
+                                              : d == &V::y ? 1
+                                                           : 2];
       const V moved = cross(spin, arm);
-      vector_of(c.rigid.feels) =
-          V::of([&](Axis d) { return (own + rigid.inverse_mass) * n.*d + moved.*d; });
+      vector_of(c.rigid.feels) = V::of([&](Axis d) { return (own + rigid.inverse_mass) * n.*d + moved.*d; });
       c.rigid.push_mass = 1 / own;
       c.rigid.friction_mass = 1 / (own + rigid.inverse_mass + 0.5f);
       c.mass = 1 / dot(n, vector_of(c.rigid.feels));

@@ -188,17 +188,19 @@ struct Spes {
     if (contacts != ppu::ContactMethod::kSurface) return;
     contact_find = options.kernel("contact_find");
     contact_solve = options.kernel("contact_solve");
+    attach_image = options.kernel("attach");
   }
 
   /// Whoever steps the bodies has their contacts, too.
   std::shared_ptr<ppu::ContactWorker> make_contact_worker() {
     if (!contact_find) return nullptr;
-    return std::make_shared<ppu::SpeContacts>(memory, jobs, *contact_find, *contact_solve);
+    return std::make_shared<ppu::SpeContacts>(
+        memory, jobs, ppu::ContactKernels{*contact_find, *contact_solve, *attach_image});
   }
 
   dma::AddressSpace memory;
   ls_sim::KernelImage match_2d, strain, job_loop;
-  std::optional<ls_sim::KernelImage> contact_find, contact_solve;
+  std::optional<ls_sim::KernelImage> contact_find, contact_solve, attach_image;
   ppu::JobSystem jobs;
   ppu::SpeSolver<2> solver;
 };

@@ -177,7 +177,9 @@ struct Simulation3d::State {
     if (on_spes == nullptr || contacts != ppu::ContactMethod::kSurface) return nullptr;
     contact_find = options.kernel("contact_find");
     contact_solve = options.kernel("contact_solve");
-    return std::make_shared<ppu::SpeContacts>(memory, jobs, *contact_find, *contact_solve);
+    attach_image = options.kernel("attach");
+    return std::make_shared<ppu::SpeContacts>(
+        memory, jobs, ppu::ContactKernels{*contact_find, *contact_solve, *attach_image});
   }
 
   std::unique_ptr<ppu::SoftBodySolver<3>> make_solver(Solver wanted) {
@@ -551,8 +553,8 @@ struct Simulation3d::State {
   const ls_sim::Timing* timing;  // null: nothing is timed
   dma::AddressSpace memory;
   ls_sim::KernelImage job_loop, match, match_tiles, strain;
-  std::optional<ls_sim::KernelImage> skin;                         // none: the GPU does it
-  std::optional<ls_sim::KernelImage> contact_find, contact_solve;  // none: the PPU does it
+  std::optional<ls_sim::KernelImage> skin;                                       // none: the GPU does it
+  std::optional<ls_sim::KernelImage> contact_find, contact_solve, attach_image;  // none: the PPU does it
   ppu::JobSystem jobs;
   const ppu::SpeSolver<3>* on_spes = nullptr;  // null: the PPU steps all bodies
   std::unique_ptr<ppu::SoftBodySolver<3>> solver;

@@ -95,7 +95,8 @@ TEST(CandidatePairs, ForgetPairsThatAreNotAskedForAndReuseTheirPlace) {
 TEST(CandidatePairs, ContactsDoNotDependOnWhenTheirCandidatesWereFound) {
   const ContactModel penguin(make_soft_body_model(make_penguin(0.9f), settings_of(0.15f)));
   SpeRuntime spes({.spes = 1});
-  SpeContacts used(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));
+  SpeContacts used(spes.memory(), spes.jobs(),
+                   {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
   const Lattice<3>& lattice = penguin.lattice();
   const std::size_t count = lattice.particles.size();
   std::size_t contacts = 0;
@@ -115,7 +116,8 @@ TEST(CandidatePairs, ContactsDoNotDependOnWhenTheirCandidatesWereFound) {
       body.pushes = body.velocities;
       body.inverse_masses = penguin.inverse_masses;
     }
-    SpeContacts fresh(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));
+    SpeContacts fresh(spes.memory(), spes.jobs(),
+                      {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
     const ContactWorker::Pair pair{0, 1};
     std::vector<std::vector<unsigned char>> found;
     for (SpeContacts* const worker : {&used, &fresh}) {

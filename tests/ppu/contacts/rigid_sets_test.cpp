@@ -27,7 +27,9 @@ struct Rig {
     sets.begin(rigids);
   }
   SpeRuntime spes{{.spes = 1}};
-  SpeContacts worker{spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve")};
+  SpeContacts worker{spes.memory(),
+                     spes.jobs(),
+                     {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")}};
   std::vector<ContactRigid> rigids;
   RigidSets sets;
 };

@@ -72,7 +72,8 @@ TEST_P(SpeContactsFind, WhatThePpuFinds) {
   const ContactModel penguin(make_soft_body_model(make_penguin(0.9f), settings_of(0.15f)));
   const ContactModel ball(make_soft_body_model(make_sphere(0.35f, 16), settings_of(0.12f)));
   SpeRuntime spes({.spes = 2});
-  SpeContacts worker(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));
+  SpeContacts worker(spes.memory(), spes.jobs(),
+                     {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
   int total = 0;
   for (int i = 0; i < 12; ++i) {
     const float angle = 0.5f * static_cast<float>(i);
@@ -132,7 +133,8 @@ TEST(SpeContacts, ABodyMeetsItself) {
   ring.body.box = {Vector3f::Constant(-1), Vector3f::Constant(1)};
   EXPECT_TRUE(may_touch_itself(ring.body));
   SpeRuntime spes({.spes = 1});
-  SpeContacts worker(spes.memory(), spes.jobs(), spes.kernel("contact_find"), spes.kernel("contact_solve"));
+  SpeContacts worker(spes.memory(), spes.jobs(),
+                     {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
   const std::vector<ContactBody> bodies{ring.body};
   worker.begin(bodies, kStep);
   const ContactWorker::Pair itself{0, 0};
@@ -249,10 +251,8 @@ TEST(SpeContacts, RigidBodiesGetWhatBodiesLose) {
   SoftBody<3>& right = w.add(make_penguin(0.9f), settings_of(0.12f), {0.8f, 0.1f, 0.05f});
   left.add_velocity({3, 0.2f, 0});
   right.add_velocity({-2, 0, 0.3f});
-  btRigidBody& light =
-      w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 2, {0, 0.15f, 0});
-  btRigidBody& heavy =
-      w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 20, {0, -0.15f, 0});
+  btRigidBody& light = w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 2, {0, 0.15f, 0});
+  btRigidBody& heavy = w.add(std::make_unique<btBoxShape>(btVector3(0.15f, 0.1f, 0.15f)), 20, {0, -0.15f, 0});
   const auto momentum = [&] {
     return Vector3f(left.linear_momentum() + right.linear_momentum() + momentum_of(light) +
                     momentum_of(heavy));
@@ -296,9 +296,8 @@ TEST(SpeContacts, MoreRigidBodiesThanASetHasRoomForAreThere) {
   std::vector<btRigidBody*> boxes;
   for (int x = 0; x < 9; ++x)
     for (int z = 0; z < 9; ++z)
-      boxes.push_back(
-          &w.add(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, 0.05f)), 0.5f,
-                 {0.18f * static_cast<float>(x - 4), 0.3f, 0.18f * static_cast<float>(z - 4)}));
+      boxes.push_back(&w.add(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, 0.05f)), 0.5f,
+                             {0.18f * static_cast<float>(x - 4), 0.3f, 0.18f * static_cast<float>(z - 4)}));
   ASSERT_GT(boxes.size(), RigidSets::kMost);
   w.run(90);
   for (const btRigidBody* box : boxes) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "attach_samples.h"
 #include "contact_samples.h"
 #include "match_2d_job.h"
 #include "match_job.h"
@@ -195,6 +196,7 @@ void run_strain(SampleRun& sample) {
 
 std::span<const KernelSample> body_samples() {
   static constexpr KernelSample kSamples[] = {
+      {"attach", "particle", run_attach},
       {"contact_find", "pair of bodies", run_contact_find},
       {"contact_solve", "contact", run_contact_solve},
       {"match", "particle", run_match},

@@ -49,6 +49,21 @@ inline void run_contacts(SampleRun& sample, bool solves) {
     auto job = ppu::contact_buffer<spu::SolveJob>(sample.memory(), "job", 1);
     job[0].tasks_ea = task.ea().value;
     job[0].task_count = 1;
+    // With a rigid body, and as what is timed with another soft one.
+    const spu::SolveTask between_bodies = task[0];
+    const spu::SolveContact contact_of_bodies = contacts[0];
+    auto rigids = ppu::contact_buffer<spu::SolveRigid>(sample.memory(), "rigid body", 1);
+    rigids[0].inverse_mass = 1;
+    contacts[0].rigid = {};
+    contacts[0].rigid.feels[1] = 2;
+    contacts[0].rigid.push_mass = contacts[0].rigid.friction_mass = 1;
+    task[0].b_ea = 0;
+    task[0].rigids_ea = rigids.ea().value;
+    task[0].rigid_count = 1;
+    sample.run(job.ea());
+    task[0] = between_bodies;
+    contacts[0] = contact_of_bodies;
+    sample.begin_timing();
     return sample.run(job.ea());
   }
   const ppu::FindModel model(contact);
