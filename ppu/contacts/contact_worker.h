@@ -72,7 +72,7 @@ class ContactWorker {
 
   /// Room for contacts that the caller has found. Good until the next begin(). @pre as many fit into a group
   virtual std::span<spu::SolveContact> room(std::size_t contacts) = 0;
-  static constexpr std::size_t kMostContacts = spu::kSolveMaxContacts;  ///< of a group
+  static constexpr std::size_t kMostContacts = 4096;  ///< of a group
 
   /// Room for rigid bodies. Good until the next call of it, and the next begin().
   virtual std::span<spu::SolveRigid> rigid_room(std::size_t rigids) = 0;

@@ -20,9 +20,8 @@ using Eigen::Vector3f;
 constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindEnd);
 constexpr std::size_t kMostPairs = 4096;                     // that are looked at by the SPEs in a step
 constexpr std::uint32_t kNoTask = ~0u, kByCaller = ~0u - 1;  // of a pair, in place of a task's number
-constexpr std::size_t kContactsInRoom = 4096;                // of one buffer
-constexpr std::size_t kJobsPerSpe = 4;                       // of finding: some pairs take longer than others
-static_assert(kContactsInRoom >= ContactWorker::kMostContacts);
+constexpr std::size_t kContactsInRoom = 2 * ContactWorker::kMostContacts;  // of one buffer
+constexpr std::size_t kJobsPerSpe = 4;  // of finding: some pairs take longer than others
 
 /// A chain for so many jobs. @pre the one that is there has ended
 void make_room(JobSystem& jobs, const char* name, std::unique_ptr<JobChain>& chain, std::size_t& most,
@@ -329,7 +328,19 @@ dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveContact* contact) const
   return room->ea(static_cast<std::size_t>(contact - room->data()));
 }
 
-spu::SolveTask SpeContacts::solve_task(const SolveGroup& group) {
+/// More contacts than a local store has room for are solved in parts, one after the other.
+void SpeContacts::write_tasks(const SolveGroup& group) {
+  std::span<spu::SolveContact> rest = group.contacts;
+  do {
+    const auto part = rest.first(std::min<std::size_t>(rest.size(), spu::kSolveMaxContacts));
+    rest = rest.subspan(part.size());
+    solve_tasks_[tasks_used_++] = solve_task(group, part, rest.empty());
+  } while (!rest.empty());
+}
+
+/// @param last  cells are stiffened, too
+spu::SolveTask SpeContacts::solve_task(const SolveGroup& group, std::span<const spu::SolveContact> contacts,
+                                       bool last) {
   spu::SolveTask task{};
   const auto particles = [&](std::uint32_t body) {
     return static_cast<std::uint32_t>(bodies_[body].ends.size());
@@ -342,15 +353,15 @@ spu::SolveTask SpeContacts::solve_task(const SolveGroup& group) {
     task.b_count = particles(group.b);
     task.b_sleeps = bodies_[group.b].asleep ? 1 : 0;
   }
-  task.contact_count = static_cast<std::uint32_t>(group.contacts.size());
-  if (task.contact_count != 0) task.contacts_ea = ea_of(group.contacts.data()).value;
+  task.contact_count = static_cast<std::uint32_t>(contacts.size());
+  if (task.contact_count != 0) task.contacts_ea = ea_of(contacts.data()).value;
   if (!group.rigids.empty()) {
     task.rigids_ea = ea_of(group.rigids.data()).value;
     task.rigid_count = static_cast<std::uint32_t>(group.rigids.size());
   }
   task.iterations = group.iterations;
   task.pushes = group.pushes ? 1 : 0;
-  if (!group.cells.empty()) {
+  if (last && !group.cells.empty()) {
     task.cells_ea = cells_.ea(cells_used_).value;
     task.cell_count = static_cast<std::uint32_t>(group.cells.size());
     task.positions_ea = state_.ea(ends_of(group.a) + task.a_count).value;
@@ -366,30 +377,32 @@ spu::SolveTask SpeContacts::solve_task(const SolveGroup& group) {
 
 void SpeContacts::solve(const SolveStages& stages) {
   if (stages.groups.empty()) return;
-  std::size_t cells = 0;
-  for (const SolveGroup& group : stages.groups) cells += group.cells.size();
-  cells_used_ = 0;
+  std::size_t cells = 0, tasks = 0;
+  for (const SolveGroup& group : stages.groups) {
+    cells += group.cells.size();
+    tasks += group.contacts.size() / spu::kSolveMaxContacts + 1;
+  }
+  cells_used_ = tasks_used_ = 0;
   make_room(memory_, "cells to be stiffened", cells_, cells);
-  make_room(memory_, "tasks of solving contacts", solve_tasks_, stages.groups.size());
+  make_room(memory_, "tasks of solving contacts", solve_tasks_, tasks);
   make_room(memory_, "jobs of solving contacts", solve_jobs_, stages.units.size());
   make_room(jobs_, "solving contacts", solving_, most_solve_jobs_, stages.units.size());
-  for (std::size_t g = 0; g < stages.groups.size(); ++g)
-    if (stages.groups[g].attachments == SolveGroup::kNoAttachments)
-      solve_tasks_[g] = solve_task(stages.groups[g]);
   std::size_t stage = 0;
   for (std::size_t u = 0; u < stages.units.size(); ++u) {
     for (; stage < stages.stages.size() && stages.stages[stage] == u; ++stage) solving_->sync();
     const std::size_t first = stages.units[u];
     const std::size_t end = u + 1 < stages.units.size() ? stages.units[u + 1] : stages.groups.size();
     if (first == end) continue;
-    const SolveGroup& group = stages.groups[first];
-    if (group.attachments != SolveGroup::kNoAttachments) {
-      solving_->add(attachments_.job(group.attachments, group.ends));
+    const auto groups = std::span(stages.groups).subspan(first, end - first);
+    if (groups[0].attachments != SolveGroup::kNoAttachments) {
+      solving_->add(attachments_.job(groups[0].attachments, groups[0].ends));
       continue;
     }
     solve_jobs_[u] = {};
-    solve_jobs_[u].tasks_ea = solve_tasks_.ea(first).value;
-    solve_jobs_[u].task_count = static_cast<std::uint32_t>(end - first);
+    solve_jobs_[u].tasks_ea = solve_tasks_.ea(tasks_used_).value;
+    const std::size_t before = tasks_used_;
+    for (const SolveGroup& group : groups) write_tasks(group);
+    solve_jobs_[u].task_count = static_cast<std::uint32_t>(tasks_used_ - before);
     solving_->add({.image = contact_solve_, .argp = solve_jobs_.ea(u)});
   }
   solving_->kick();

@@ -74,7 +74,8 @@ class SpeContacts final : public ContactWorker {
   spu::FindTask find_task(std::uint32_t a, std::uint32_t b);
   dma::EffectiveAddress ea_of(const spu::SolveContact* contact) const;
   dma::EffectiveAddress ea_of(const spu::SolveRigid* rigid) const;
-  spu::SolveTask solve_task(const SolveGroup& group);
+  void write_tasks(const SolveGroup& group);
+  spu::SolveTask solve_task(const SolveGroup& group, std::span<const spu::SolveContact> contacts, bool last);
 
   dma::AddressSpace& memory_;
   JobSystem& jobs_;
@@ -108,7 +109,7 @@ class SpeContacts final : public ContactWorker {
   dma::Buffer<spu::SolveTask> solve_tasks_;
   dma::Buffer<spu::SolveJob> solve_jobs_;
   dma::Buffer<spu::SolveCell> cells_;
-  std::size_t cells_used_ = 0;
+  std::size_t cells_used_ = 0, tasks_used_ = 0;
   std::size_t most_find_jobs_ = 0, most_solve_jobs_ = 0;
   std::unique_ptr<JobChain> finding_, solving_;  // last: ended before what their jobs work on goes
 };

@@ -306,6 +306,33 @@ TEST(SpeContacts, MoreRigidBodiesThanASetHasRoomForAreThere) {
   }
 }
 
+/// They are solved in parts.
+TEST(SpeContacts, MoreContactsThanALocalStoreHasRoomForAreSolved) {
+  const auto heights = [](SpeRuntime* spes) {
+    ContactWorld w({0, -9.81f, 0}, spes);
+    w.add_floor();
+    const SoftBodySettings settings = settings_of(0.1f, 0.4f, 0.5f);
+    const auto model = make_soft_body_model(make_box({1.6f, 0.2f, 1.6f}, 0.1f), settings);
+    for (int i = 0; i < 2; ++i) w.bodies.add(model, {0, 0.105f + 0.205f * static_cast<float>(i), 0});
+    EXPECT_LE(model->particles(), spu::kSolveMaxParticles);
+    std::size_t most = 0;
+    for (int i = 0; i < 60; ++i) {
+      w.run(1);
+      std::vector<Contact> contacts;
+      w.bodies.append_contacts(contacts);
+      most = std::max(most, static_cast<std::size_t>(std::ranges::count_if(
+                                contacts, [](const Contact& c) { return c.position.y() > 0.1f; })));
+    }
+    EXPECT_GT(most, spu::kSolveMaxContacts) << "of the two bodies";
+    return std::pair(w.bodies[0].centre_of_mass().y(), w.bodies[1].centre_of_mass().y());
+  };
+  SpeRuntime spes({.spes = 2});
+  const auto on_spes = heights(&spes), on_ppu = heights(nullptr);
+  EXPECT_NEAR(on_spes.first, on_ppu.first, 0.002f);
+  EXPECT_NEAR(on_spes.second, on_ppu.second, 0.002f);
+  EXPECT_GT(on_spes.second, 0.25f);
+}
+
 /// What the SPEs cannot do, the PPU does in between: contacts of a body of too many particles.
 TEST(SpeContacts, RigidBodiesThatMoveAndLargeBodiesAreThere) {
   constexpr float kCell = 0.1f;
