@@ -7,7 +7,7 @@
 namespace softcell::ppu {
 namespace {
 
-constexpr std::uint32_t kNone = AttachmentSides::kNone;
+constexpr std::uint32_t kNoSide = AttachmentSides::kNone;
 
 bool fits(const AttachUnit& unit) {
   return unit.runs.size() <= spu::kAttachMaxRuns && unit.slots <= spu::kAttachMaxSlots &&
@@ -54,7 +54,7 @@ std::uint32_t number_of(const spu::SolveRigid* rigid, AttachUnit& unit) {
 void AttachUnits::begin(const AttachmentSolver<3>& attachments, RigidSets& sets) {
   for (std::size_t i = 0; i < attachments.solved(); ++i) {
     const std::uint32_t rigid = attachments.sides(i).rigid;
-    if (rigid != kNone) sets.join(rigid, rigid);
+    if (rigid != kNoSide) sets.join(rigid, rigid);
   }
 }
 
@@ -63,8 +63,8 @@ void AttachUnits::put_in_order(const AttachmentSolver<3>& attachments, std::size
   together_.reset(bodies + rigids);
   for (std::size_t i = 0; i < attachments.solved(); ++i) {
     const AttachmentSides sides = attachments.sides(i);
-    if (sides.b != kNone) together_.unite(sides.a, sides.b);
-    if (sides.rigid != kNone) together_.unite(sides.a, static_cast<std::uint32_t>(bodies) + sides.rigid);
+    if (sides.b != kNoSide) together_.unite(sides.a, sides.b);
+    if (sides.rigid != kNoSide) together_.unite(sides.a, static_cast<std::uint32_t>(bodies) + sides.rigid);
   }
   const auto set_of = [&](std::uint32_t i) { return together_.find(attachments.sides(i).a); };
   order_.resize(attachments.solved());
@@ -94,7 +94,7 @@ bool AttachUnits::append(std::span<const std::uint32_t> together, const Attachme
          entry = static_cast<std::uint32_t>(unit.entries.size());
     if (!attachments.write(i, unit)) return false;
     spu::AttachLink& link = unit.links.back();
-    if (sides.rigid != kNone) {
+    if (sides.rigid != kNoSide) {
       const std::uint32_t set = sets.set_of(sides.rigid);
       if (set == RigidSets::kNone) return false;
       link.rigid = number_of(&sets.of(set)[sets.number_in(set, sides.rigid)], unit);
@@ -105,7 +105,7 @@ bool AttachUnits::append(std::span<const std::uint32_t> together, const Attachme
     for (; entry < unit.entries.size(); ++entry)
       held_.push_back({entry < of_b ? sides.a : sides.b, unit.entries[entry].slot, entry, true});
     is_held_[sides.a] = true;
-    if (sides.b != kNone) is_held_[sides.b] = true;
+    if (sides.b != kNoSide) is_held_[sides.b] = true;
   }
   give_slots(unit);
   return fits(unit);

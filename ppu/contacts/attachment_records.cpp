@@ -1,10 +1,8 @@
-// AttachmentRows as records of the kernel `attach`. In two dimensions a particle is a column of two, each of half its mass, as contacts have
-// it (flat_layer.h).
+#include "ppu/contacts/attachment_records.h"
 
 #include <cmath>
 #include <cstdint>
 
-#include "ppu/contacts/attachment_rows.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -41,53 +39,54 @@ float inverse_or_0(float x) { return x > 0 ? 1 / x : 0; }
 }  // namespace
 
 template <int kDimension>
-bool AttachmentRows<kDimension>::write(AttachUnit& unit) const {
-  const bool is_weld_to_frame = settings_.kind == AttachmentKind::kWeld && sides_.b == nullptr;
-  const bool moves = sides_.rigid != nullptr && sides_.rigid->inverse_mass > 0;
-  if (is_weld_to_frame && moves && !with_rigid_at_once_) return false;  // the rigid body does not turn
+bool AttachmentRecords<kDimension>::write(AttachUnit& unit) const {
+  const bool is_weld_to_frame = rows_.settings_.kind == AttachmentKind::kWeld && rows_.sides_.b == nullptr;
+  const bool moves = rows_.sides_.rigid != nullptr && rows_.sides_.rigid->inverse_mass > 0;
+  if (is_weld_to_frame && moves && !rows_.with_rigid_at_once_) return false;  // the rigid body does not turn
   spu::AttachLink link{};
   link.rigid = spu::kAttachNoRigid;
-  link.pushes = pushes_;
-  link.breaks = std::isfinite(settings_.break_force);
-  link.most_impulse = link.breaks != 0 ? settings_.break_force * step_ : 0;
-  link.softness = softness_;
-  link.most_push[0] = most_push(sides_.a);
-  if (sides_.b != nullptr) link.most_push[1] = most_push(*sides_.b);
+  link.pushes = rows_.pushes_;
+  link.breaks = std::isfinite(rows_.settings_.break_force);
+  link.most_impulse = link.breaks != 0 ? rows_.settings_.break_force * rows_.step_ : 0;
+  link.softness = rows_.softness_;
+  link.most_push[0] = rows_.most_push(rows_.sides_.a);
+  if (rows_.sides_.b != nullptr) link.most_push[1] = rows_.most_push(*rows_.sides_.b);
   if (is_weld_to_frame) {
     link.kind = spu::kAttachPoints;
     write_points(link, unit);
   } else {
-    link.kind = settings_.kind == AttachmentKind::kRope ? spu::kAttachRope
-                : places_at_once_                       ? spu::kAttachPlaces
-                                                        : spu::kAttachHinge;
+    link.kind = rows_.settings_.kind == AttachmentKind::kRope ? spu::kAttachRope
+                : rows_.places_at_once_                       ? spu::kAttachPlaces
+                                                              : spu::kAttachHinge;
     write_rows(link, unit);
   }
   unit.links.push_back(link);
-  unit.pushes = unit.pushes || pushes_;
+  unit.pushes = unit.pushes || rows_.pushes_;
   return true;
 }
 
 /// Particles of a column share their row's compliance: each alone gives way by as much.
 template <int kDimension>
-void AttachmentRows<kDimension>::write_points(spu::AttachLink& link, AttachUnit& unit) const {
+void AttachmentRecords<kDimension>::write_points(spu::AttachLink& link, AttachUnit& unit) const {
   constexpr auto kCopies = kColumn<kDimension>;
   constexpr float kPerCopy = 1.0f / kCopies;
-  link.points = static_cast<std::uint32_t>(rows_.size()) * kCopies;
+  link.points = static_cast<std::uint32_t>(rows_.rows_.size()) * kCopies;
   link.softness *= kCopies;
-  if (with_rigid_at_once_) {
-    lift(sum_of_arms_, link.arms);
-    link.inverse_sum = 1 / sum_;
-    lift_inertia(inverse_inertia_, link.inverse_inertia);
+  if (rows_.with_rigid_at_once_) {
+    lift(rows_.sum_of_arms_, link.arms);
+    link.inverse_sum = 1 / rows_.sum_;
+    lift_inertia(rows_.inverse_inertia_, link.inverse_inertia);
   }
-  for (const Row& row : rows_) {
-    const std::uint32_t particle = a_.particle[row.a.first];
+  for (const typename Rows::Row& row : rows_.rows_) {
+    const std::uint32_t particle = rows_.a_.particle[row.a.first];
     spu::AttachPoint point{};
-    lift(-relative_velocity(row), point.carried);
+    lift(-rows_.relative_velocity(row), point.carried);
     lift(row.error, point.error);
-    if (sides_.rigid != nullptr) lift(Vector(row.point - sides_.rigid->centre), point.arm);
-    point.mass = kPerCopy * inverse_or_0(row.push_mobility + softness_);
+    if (rows_.sides_.rigid != nullptr)
+      lift(typename Rows::Vector(row.point - rows_.sides_.rigid->centre), point.arm);
+    point.mass = kPerCopy * inverse_or_0(row.push_mobility + rows_.softness_);
     point.push_mass = kPerCopy * inverse_or_0(row.push_mobility);
-    point.weight = std::sqrt(kCopies * sides_.a.inverse_masses[particle]);
+    point.weight = std::sqrt(kCopies * rows_.sides_.a.inverse_masses[particle]);
     for (std::uint32_t copy = 0; copy < kCopies; ++copy) {
       point.slot = particle * kCopies + copy;
       unit.points.push_back(point);
@@ -96,47 +95,48 @@ void AttachmentRows<kDimension>::write_points(spu::AttachLink& link, AttachUnit&
 }
 
 template <int kDimension>
-void AttachmentRows<kDimension>::write_rows(spu::AttachLink& link, AttachUnit& unit) const {
-  SC_ASSERT(rows_.size() <= 4, "{} places", rows_.size());
-  link.rows = static_cast<std::uint32_t>(rows_.size());
-  if (places_at_once_) {
-    lift_places(inverse_of_places_, link.inverse);
-    lift_places(inverse_of_pushes_, link.inverse_of_pushes);
+void AttachmentRecords<kDimension>::write_rows(spu::AttachLink& link, AttachUnit& unit) const {
+  SC_ASSERT(rows_.rows_.size() <= 4, "{} places", rows_.rows_.size());
+  link.rows = static_cast<std::uint32_t>(rows_.rows_.size());
+  if (rows_.places_at_once_) {
+    lift_places(rows_.inverse_of_places_, link.inverse);
+    lift_places(rows_.inverse_of_pushes_, link.inverse_of_pushes);
   }
-  for (const Row& from : rows_) {
+  for (const typename Rows::Row& from : rows_.rows_) {
     spu::AttachRow& row = unit.rows.emplace_back();
     row = {};
-    lift(-relative_velocity(from), row.carried);
+    lift(-rows_.relative_velocity(from), row.carried);
     lift(from.error, row.error);
-    if (sides_.rigid != nullptr) lift(Vector(from.point - sides_.rigid->centre), row.arm);
+    if (rows_.sides_.rigid != nullptr)
+      lift(typename Rows::Vector(from.point - rows_.sides_.rigid->centre), row.arm);
     row.push_mass = inverse_or_0(from.push_mobility);
-    if (settings_.kind == AttachmentKind::kRope) {
+    if (rows_.settings_.kind == AttachmentKind::kRope) {
       lift(from.along, row.along);
       row.most = from.most;
       row.mass = inverse_or_0(from.mobility);
       row.push_most = from.push_mobility > 0 ? from.push_most : 0;
-    } else if (!places_at_once_) {
+    } else if (!rows_.places_at_once_) {
       lift_matrix<kDimension>(from.inverse_mobility, row.inverse);
     }
   }
   write_entries(false, link, unit);
-  if (sides_.b != nullptr) write_entries(true, link, unit);
+  if (rows_.sides_.b != nullptr) write_entries(true, link, unit);
 }
 
 /// The places of a side have the same particles in the same order.
 template <int kDimension>
-void AttachmentRows<kDimension>::write_entries(bool of_b, spu::AttachLink& link, AttachUnit& unit) const {
+void AttachmentRecords<kDimension>::write_entries(bool of_b, spu::AttachLink& link, AttachUnit& unit) const {
   constexpr auto kCopies = kColumn<kDimension>;
-  const Side& side = of_b ? b_ : a_;
-  const AttachedBody<kDimension>& body = of_b ? *sides_.b : sides_.a;
-  const auto place_of = [&](std::size_t k) { return of_b ? rows_[k].b : rows_[k].a; };
-  const Place first = place_of(0);
+  const typename Rows::Side& side = of_b ? rows_.b_ : rows_.a_;
+  const AttachedBody<kDimension>& body = of_b ? *rows_.sides_.b : rows_.sides_.a;
+  const auto place_of = [&](std::size_t k) { return of_b ? rows_.rows_[k].b : rows_.rows_[k].a; };
+  const typename Rows::Place first = place_of(0);
   link.entries[of_b ? 1 : 0] = first.count * kCopies;
   for (std::uint32_t i = 0; i < first.count; ++i) {
     const std::uint32_t particle = side.particle[first.first + i];
     spu::AttachEntry entry{};
     entry.root = std::sqrt(kCopies * body.inverse_masses[particle]);
-    for (std::size_t k = 0; k < rows_.size(); ++k)
+    for (std::size_t k = 0; k < rows_.rows_.size(); ++k)
       entry.weight[k] = side.share[place_of(k).first + i] * entry.root / kCopies;
     for (std::uint32_t copy = 0; copy < kCopies; ++copy) {
       entry.slot = particle * kCopies + copy;
@@ -146,21 +146,19 @@ void AttachmentRows<kDimension>::write_entries(bool of_b, spu::AttachLink& link,
 }
 
 template <int kDimension>
-void AttachmentRows<kDimension>::read(const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
-                                      std::span<const spu::AttachRow> rows) {
+void AttachmentRecords<kDimension>::read(const spu::AttachLink& link,
+                                         std::span<const spu::AttachPoint> points,
+                                         std::span<const spu::AttachRow> rows) {
+  using Vector = typename Rows::Vector;
   Vector impulse = Vector::Zero();
   const auto add = [&](const float(&of_record)[3]) { impulse += Vector::Map(of_record); };
   for (const spu::AttachPoint& point : points) add(point.impulse);
   for (const spu::AttachRow& row : rows) add(row.impulse);
-  state_.force = impulse / step_;
-  broke_ = link.broke != 0;
+  rows_.state_.force = impulse / rows_.step_;
+  rows_.broke_ = link.broke != 0;
 }
 
-template bool AttachmentRows<2>::write(AttachUnit&) const;
-template bool AttachmentRows<3>::write(AttachUnit&) const;
-template void AttachmentRows<2>::read(const spu::AttachLink&, std::span<const spu::AttachPoint>,
-                                      std::span<const spu::AttachRow>);
-template void AttachmentRows<3>::read(const spu::AttachLink&, std::span<const spu::AttachPoint>,
-                                      std::span<const spu::AttachRow>);
+template class AttachmentRecords<2>;
+template class AttachmentRecords<3>;
 
 }  // namespace softcell::ppu

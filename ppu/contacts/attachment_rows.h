@@ -26,7 +26,6 @@
 #include <span>
 #include <vector>
 
-#include "ppu/contacts/attach_unit.h"
 #include "ppu/contacts/attached_rigid.h"
 #include "softcell/soft_bodies/attachment.h"
 
@@ -67,6 +66,9 @@ struct PatchParticles {
   Eigen::Vector<float, kDimension> middle() const;  ///< of mass
 };
 
+template <int kDimension>
+class AttachmentRecords;
+
 /// Constraints between a patch of a body, called a, and a patch of another one or a frame, called b.
 template <int kDimension>
 class AttachmentRows {
@@ -104,13 +106,6 @@ class AttachmentRows {
   float iterate();
   void finish();
 
-  /// In place of iterate() and finish(): appends what the kernel `attach` needs. The caller sets AttachLink::rigid, and gives slots.
-  /// @return false: the kernel cannot solve it, and nothing is appended. @pre begin()
-  bool write(AttachUnit& unit) const;
-  /// What the kernel has made of it.
-  void read(const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
-            std::span<const spu::AttachRow> rows);
-
   /// Whether the last iteration of the last substep would have passed the break force.
   bool broke() const { return broke_; }
   const AttachmentState<kDimension>& state() const { return state_; }
@@ -119,6 +114,8 @@ class AttachmentRows {
                                   const AttachmentFrame<kDimension>& frame) const;
 
  private:
+  friend class AttachmentRecords<kDimension>;
+
   /// Particles and their shares in a place, which sum to 1.
   struct Place {
     std::uint32_t first = 0, count = 0;
@@ -187,9 +184,6 @@ class AttachmentRows {
   void keep_below_break_force();
   void limit_pushes(const Side& side, const AttachedBody<kDimension>& body) const;
   Vector carried_impulse() const;
-  void write_points(spu::AttachLink& link, AttachUnit& unit) const;
-  void write_rows(spu::AttachLink& link, AttachUnit& unit) const;
-  void write_entries(bool of_b, spu::AttachLink& link, AttachUnit& unit) const;
 
   AttachmentSettings<kDimension> settings_;
   float length_ = 0;  // of a rope

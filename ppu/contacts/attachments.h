@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ppu/contacts/attach_unit.h"
+#include "ppu/contacts/attachment_records.h"
 #include "ppu/contacts/attachment_rows.h"
 
 namespace softcell::ppu {
@@ -75,11 +76,11 @@ class Attachments final : public AttachmentSolver<kDimension> {
   std::size_t solved() const override { return solved_.size(); }
   AttachmentSides sides(std::size_t attachment) const override { return solved_[attachment].sides; }
   bool write(std::size_t attachment, AttachUnit& unit) const override {
-    return solved_[attachment].rows->write(unit);
+    return AttachmentRecords<kDimension>(*solved_[attachment].rows).write(unit);
   }
   void read(std::size_t attachment, const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
             std::span<const spu::AttachRow> rows) override {
-    solved_[attachment].rows->read(link, points, rows);
+    AttachmentRecords<kDimension>(*solved_[attachment].rows).read(link, points, rows);
   }
 
  private:

@@ -64,10 +64,49 @@ SoftBodySettings stiff() {
   return settings;
 }
 
+enum class Who { kPpu, kSpes };
+
+/// A world whose attachments the PPU solves, or SPEs.
+class AttachedWorld {
+ public:
+  explicit AttachedWorld(Who who, const Vector3f& gravity = {0, -9.81f, 0})
+      : spes_(who == Who::kSpes ? std::make_unique<SpeRuntime>(SpeRuntimeOptions{.spes = 1}) : nullptr),
+        own_(gravity, spes_.get()) {
+    if (who == Who::kPpu) return;
+    // Far away so many other attachments that they are worth a job.
+    const auto model = make_soft_body_model(block({0.2f, 0.2f, 0.2f}), settings_of(kCell));
+    for (int i = 0; i < 16; ++i) {
+      SoftBody<3>& held = own_.bodies.add(model, {500 + static_cast<float>(i), 0, 0});
+      own_.bodies.attach(held, Patch<3>::of_particles({0, 1, 2, 3}));
+    }
+  }
+  SoftBody<3>& add(const TriangleMesh& mesh, const SoftBodySettings& settings, const Vector3f& position) {
+    return own_.add(mesh, settings, position);
+  }
+  btRigidBody& add(std::unique_ptr<btCollisionShape> shape, float mass, const Vector3f& position) {
+    return own_.add(std::move(shape), mass, position);
+  }
+  void run(int frames, int substeps = 2) { own_.run(frames, substeps); }
+
+ private:
+  std::unique_ptr<SpeRuntime> spes_;
+  ContactWorld own_;
+
+ public:
+  btDiscreteDynamicsWorld& world = own_.world;
+  BulletSoftBodies& bodies = own_.bodies;
+};
+
+class SolvedBy : public ::testing::TestWithParam<Who> {};
+INSTANTIATE_TEST_SUITE_P(Attachments, SolvedBy, ::testing::Values(Who::kPpu, Who::kSpes),
+                         [](const auto& solver) {
+                           return std::string(solver.param == Who::kPpu ? "Ppu" : "Spes");
+                         });
+
 /// A hundred times the weight of the patch hangs from it: most of it is a rigid body that is welded to the soft one's lower end.
-TEST(Attachments, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
+TEST_P(SolvedBy, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
   if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
-  ContactWorld w;
+  AttachedWorld w(GetParam());
   SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), stiff(), {0, 2, 0});
   const auto top = top_of(body);
   const auto bottom = particles_where(body, [](const Vector3f& p) { return p.y() < -0.15f; });
@@ -93,10 +132,10 @@ TEST(Attachments, AWeldCarriesAHundredTimesItsPatchWithoutCreep) {
 }
 
 /// A pendulum, and one that falls into its rope.
-TEST(Attachments, ARopeIsNeverLongerThanItsLength) {
+TEST_P(SolvedBy, ARopeIsNeverLongerThanItsLength) {
   for (const Vector3f& throw_at :
        {Vector3f(0, 0, 0), Vector3f(4, 0, 1), Vector3f(0, -6, 0), Vector3f(8, 8, 0)}) {
-    ContactWorld w;
+    AttachedWorld w(GetParam());
     SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.5f, 0.1f), {0, 0, 0});
     const auto top = top_of(body);
     const Vector3f hook(0, 0.2f + 1.0f, 0);
@@ -115,8 +154,8 @@ TEST(Attachments, ARopeIsNeverLongerThanItsLength) {
 }
 
 /// What hangs keeps swinging: a rope takes no more energy than a simulation without damping may lose.
-TEST(Attachments, APendulumKeepsItsEnergy) {
-  ContactWorld w;
+TEST_P(SolvedBy, APendulumKeepsItsEnergy) {
+  AttachedWorld w(GetParam());
   SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 1, 0.3f), {2, 2, 0});
   w.bodies.attach(body, Patch<3>::of_particles(particles_where(body, [](const Vector3f&) { return true; })),
                   {.kind = AttachmentKind::kRope, .point = Vector3f(0, 2, 0)});
@@ -132,9 +171,9 @@ TEST(Attachments, APendulumKeepsItsEnergy) {
 
 /// By the momentum of the body, not by what the attachment says of itself.
 /// @return  force on the body in each substep, with the break force given; 0 after it broke
-std::vector<float> forces_on(float break_force, bool suddenly, AttachmentKind kind,
+std::vector<float> forces_on(Who who, float break_force, bool suddenly, AttachmentKind kind,
                              int* broken_at = nullptr) {
-  ContactWorld w({0, 0, 0});
+  AttachedWorld w(who, {0, 0, 0});
   SoftBody<3>& body = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell, 0.5f, 0.2f), {0, 0, 0});
   AttachmentSettings<3> settings{.kind = kind, .break_force = break_force};
   if (kind == AttachmentKind::kRope) settings.point = Vector3f(0, 1, 0);
@@ -155,15 +194,15 @@ std::vector<float> forces_on(float break_force, bool suddenly, AttachmentKind ki
   return forces;
 }
 
-TEST(Attachments, BreakWhenTheyWouldCarryMore) {
+TEST_P(SolvedBy, BreakWhenTheyWouldCarryMore) {
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
     for (const bool suddenly : {false, true}) {
-      const std::vector<float> held = forces_on(1e9f, suddenly, kind);
+      const std::vector<float> held = forces_on(GetParam(), 1e9f, suddenly, kind);
       const float most = *std::max_element(held.begin(), held.end());
       for (const float share : {0.3f, 0.6f, 0.9f}) {
         const float force = share * most;
         int broken_at = -1;
-        const std::vector<float> broke = forces_on(force, suddenly, kind, &broken_at);
+        const std::vector<float> broke = forces_on(GetParam(), force, suddenly, kind, &broken_at);
         ASSERT_GE(broken_at, 0) << share << " suddenly: " << suddenly;
         for (int i = 0; i < broken_at; ++i) EXPECT_LE(broke[i], 1.05f * force);
         // It carries no more than its break force, and breaks when the one that holds carries that.
@@ -175,9 +214,9 @@ TEST(Attachments, BreakWhenTheyWouldCarryMore) {
   }
 }
 
-TEST(Attachments, TwoFreeBodiesKeepTheirMomentum) {
+TEST_P(SolvedBy, TwoFreeBodiesKeepTheirMomentum) {
   for (const AttachmentKind kind : {AttachmentKind::kWeld, AttachmentKind::kHinge, AttachmentKind::kRope}) {
-    ContactWorld w({0, 0, 0});
+    AttachedWorld w(GetParam(), {0, 0, 0});
     SoftBody<3>& left = w.add(block({0.4f, 0.4f, 0.4f}), settings_of(kCell), {0, 0, 0});
     SoftBody<3>& right = w.add(make_sphere(0.25f, 8), settings_of(0.12f), {0.6f, 0, 0});
     w.bodies.attach(left, Patch<3>::of_surface({0.2f, 0, 0}, 0.12f), right,
@@ -197,8 +236,8 @@ TEST(Attachments, TwoFreeBodiesKeepTheirMomentum) {
 }
 
 /// A cantilever: one body is held whole, the other sticks out from it.
-TEST(Attachments, AWeldOfTwoBodiesCarriesTorque) {
-  ContactWorld w;
+TEST_P(SolvedBy, AWeldOfTwoBodiesCarriesTorque) {
+  AttachedWorld w(GetParam());
   SoftBodySettings settings = settings_of(kCell, 0.6f, 0.4f);
   settings.half_width = 3;
   SoftBody<3>& left = w.add(block({0.4f, 0.4f, 0.4f}), settings, {0, 0, 0});
@@ -214,8 +253,8 @@ TEST(Attachments, AWeldOfTwoBodiesCarriesTorque) {
   EXPECT_NEAR(right.centre_of_mass().x(), 0.42f, 0.03f);
 }
 
-TEST(Attachments, AHingeTurnsAboutItsAxisOnly) {
-  ContactWorld w({0, -9.81f, 0});
+TEST_P(SolvedBy, AHingeTurnsAboutItsAxisOnly) {
+  AttachedWorld w(GetParam(), {0, -9.81f, 0});
   SoftBody<3>& door = w.add(block({0.8f, 0.8f, 0.2f}), stiff(), {0.4f, 0, 0});
   const Patch<3> edge =
       Patch<3>::of_particles(particles_where(door, [](const Vector3f& p) { return p.x() < -0.25f; }));
@@ -260,8 +299,8 @@ TEST(Attachments, AHungBodyCarriesOneThatStandsOnIt) {
   }
 }
 
-TEST(Attachments, ARigidBodyFeelsWhatHangsOnIt) {
-  ContactWorld w({0, 0, 0});
+TEST_P(SolvedBy, ARigidBodyFeelsWhatHangsOnIt) {
+  AttachedWorld w(GetParam(), {0, 0, 0});
   btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f)), 5, {0, 0, 0});
   SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell), {0.36f, 0, 0});
   w.bodies.attach(body, Patch<3>::of_surface({0.21f, 0, 0}, 0.2f), box);
@@ -280,8 +319,8 @@ TEST(Attachments, ARigidBodyFeelsWhatHangsOnIt) {
 }
 
 /// A spring of a known stiffness gives as Hooke says.
-TEST(Attachments, ComplianceGives) {
-  ContactWorld w;
+TEST_P(SolvedBy, ComplianceGives) {
+  AttachedWorld w(GetParam());
   SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), stiff(), {0, 0, 0});
   const auto top = top_of(body);
   const float weight = 9.81f * body.model().mass();
@@ -291,8 +330,8 @@ TEST(Attachments, ComplianceGives) {
   EXPECT_NEAR(before - middle_of(body, top).y(), 0.05f, 0.002f);
 }
 
-TEST(Attachments, FollowAPointThatTheProgramMoves) {
-  ContactWorld w({0, 0, 0});
+TEST_P(SolvedBy, FollowAPointThatTheProgramMoves) {
+  AttachedWorld w(GetParam(), {0, 0, 0});
   SoftBody<3>& body = w.add(block({0.3f, 0.3f, 0.3f}), settings_of(kCell, 0.5f, 0.5f), {0, 0, 0});
   const auto top = top_of(body);
   const AttachmentId hand = w.bodies.attach(body, Patch<3>::of_particles(top));

@@ -1,0 +1,35 @@
+#pragma once
+// AttachmentRows as records of the kernel `attach`. In two dimensions a particle is a column of two, each of half its mass, as contacts have
+// it (flat_layer.h).
+
+#include <span>
+
+#include "attach_job.h"
+#include "ppu/contacts/attach_unit.h"
+#include "ppu/contacts/attachment_rows.h"
+
+namespace softcell::ppu {
+
+/// Between begin() of its rows and the next one, in place of iterate() and finish().
+template <int kDimension>
+class AttachmentRecords {
+ public:
+  explicit AttachmentRecords(AttachmentRows<kDimension>& rows) : rows_(rows) {}
+
+  /// Appends what the kernel needs. The caller sets AttachLink::rigid, and gives slots.
+  /// @return false: the kernel cannot solve it, and nothing is appended.
+  bool write(AttachUnit& unit) const;
+  /// What the kernel has made of it.
+  void read(const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
+            std::span<const spu::AttachRow> rows);
+
+ private:
+  using Rows = AttachmentRows<kDimension>;
+  void write_points(spu::AttachLink& link, AttachUnit& unit) const;
+  void write_rows(spu::AttachLink& link, AttachUnit& unit) const;
+  void write_entries(bool of_b, spu::AttachLink& link, AttachUnit& unit) const;
+
+  Rows& rows_;
+};
+
+}  // namespace softcell::ppu
