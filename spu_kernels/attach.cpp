@@ -109,7 +109,11 @@ void send() {
 /// work(parts) for each link.
 template <typename Work>
 __attribute__((always_inline)) inline void each_link(const Work& work) {
-  LinkParts parts = {ls.links, ls.points, ls.rows, ls.entries};
+  LinkParts parts;  // not from a list: compilers keep lists of addresses, which an image must not have
+  parts.link = ls.links;
+  parts.points = ls.points;
+  parts.rows = ls.rows;
+  parts.entries = ls.entries;
   for (uint32_t i = 0; i < ls.job.link_count; ++i) {
     work(parts);
     const Link& link = *parts.link++;
@@ -145,7 +149,10 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   mfc_get(&ls.job, argp, sizeof(AttachJob), kTagJob, 0, 0);
   wait_for_tag(kTagJob);
   if (!fits(ls.job) || !fetch()) return kAttachTooLarge;
-  const Held held = {ls.velocities, ls.pushes, ls.rigids};
+  Held held;
+  held.velocities = ls.velocities;
+  held.pushes = ls.pushes;
+  held.rigids = ls.rigids;
   iterate(held);
   if (ls.job.ends != 0)
     each_link([&](const LinkParts& parts) __attribute__((always_inline)) { limit_pushes(parts, held); });

@@ -549,14 +549,13 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
   }
 }
 
-/// What only this thread can solve comes behind what bodies do to each other, and before what nothing moves.
-void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
+/// What the worker can solve is his from now on; the rest is here_. @return  whether attachments are his
+bool ContactStage::share_with_worker(std::span<ContactRigid> rigids, float step) {
   find_heavy_groups(rigids);
   if (has_attachments()) begin_attachments(rigids, step);
   find_rigid_sets(rigids);
   for (std::size_t i = 0; i < group_count_; ++i) hand_to_worker(groups_[i], rigids, step);
   const bool attachments_by_worker = hand_attachments_to_worker(rigids.size());
-  const bool attachments_here = has_attachments() && !attachments_by_worker;
   bounce(rigids, step);
   if (!bounces_.empty())
     for (const std::uint32_t i : bounces_.changed())
@@ -570,25 +569,40 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   add_rigid_groups(rigids);
   prepare_here(rigids);
   find_touched_cells();
+  return attachments_by_worker;
+}
+
+/// What this thread solves in a round, behind what bodies do to each other. The worker waits.
+void ContactStage::solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
+                                    bool with_attachments) {
+  iterate_here(std::span(here_).first(here_that_move_), rigids, step);
+  if (with_attachments) solve_attachments(rigids, step, round);
+  iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
+  if (stiffening == 0) return;
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    if (worker->holds(i)) continue;
+    for (const std::uint32_t cell : touched_[i]) stiffen(bodies_[i], cell, stiffening);
+  }
+}
+
+/// One chain of jobs for all rounds, unless there is something in between that only this thread can solve.
+void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step) {
+  const bool attachments_by_worker = share_with_worker(rigids, step);
+  const bool attachments_here = has_attachments() && !attachments_by_worker;
   stages_.clear();
   for (int round = 0; round < settings.rounds; ++round) {
-    const float stiffening = round + 1 < settings.rounds ? settings.stiffening : 0;
+    const bool is_last = round + 1 == settings.rounds;
+    const float stiffening = is_last ? 0 : settings.stiffening;
     add_pairs_to(stages_);
     add_rigid_sets_to(stages_);
     if (!here_.empty() || attachments_here) {
       worker->solve(stages_);
       stages_.clear();
       take_from_worker();
-      iterate_here(std::span(here_).first(here_that_move_), rigids, step);
-      if (attachments_here) solve_attachments(rigids, step, round);
-      iterate_here(std::span(here_).subspan(here_that_move_), rigids, step);
-      for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-        if (worker->holds(i) || stiffening == 0) continue;
-        for (const std::uint32_t cell : touched_[i]) stiffen(bodies_[i], cell, stiffening);
-      }
+      solve_in_between(rigids, step, round, stiffening, attachments_here);
       give_to_worker();
     }
-    if (attachments_by_worker) add_attachments_to(stages_, round + 1 == settings.rounds);
+    if (attachments_by_worker) add_attachments_to(stages_, is_last);
     add_bodies_to(stages_, stiffening);
   }
   worker->solve(stages_);

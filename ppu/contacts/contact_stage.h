@@ -141,6 +141,9 @@ class ContactStage {
   void find_touched_cells();
   void stiffen_touched_cells();
   void solve_here(std::span<ContactRigid> rigids, float step);
+  bool share_with_worker(std::span<ContactRigid> rigids, float step);
+  void solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
+                        bool with_attachments);
   void solve_with_worker(std::span<ContactRigid> rigids, float step);
   void find_heavy_groups(std::span<const ContactRigid> rigids);
   void add_rigid_groups(std::span<const ContactRigid> rigids);

@@ -289,23 +289,17 @@ inline void keep_below_break_impulse(const LinkParts& parts, const Held& held) {
   }
 }
 
+/// By no switch: compilers make tables of addresses of it, which an image must not have.
+inline float solve_kind(const LinkParts& parts, const Held& held) {
+  if (parts.link->kind == kAttachPoints) return solve_points(parts, held);
+  if (parts.link->kind == kAttachPlaces) return solve_places(parts, held);
+  if (parts.link->kind == kAttachHinge) return solve_hinge(parts, held);
+  return solve_rope(parts, held);
+}
+
 /// One iteration over a link. @return  the largest error of velocity, squared, in (m/s)^2
 inline float solve(const LinkParts& parts, const Held& held) {
-  float largest = 0.0f;
-  switch (parts.link->kind) {
-    case kAttachPoints:
-      largest = solve_points(parts, held);
-      break;
-    case kAttachPlaces:
-      largest = solve_places(parts, held);
-      break;
-    case kAttachHinge:
-      largest = solve_hinge(parts, held);
-      break;
-    case kAttachRope:
-      largest = solve_rope(parts, held);
-      break;
-  }
+  const float largest = solve_kind(parts, held);
   if (parts.link->breaks != 0) keep_below_break_impulse(parts, held);
   return largest;
 }
