@@ -123,20 +123,19 @@ __attribute__((always_inline)) inline void each_link(const Work& work) {
   }
 }
 
-/// Until nothing changes any more: an iteration finds what more would find for a link that is alone and is solved at once.
+/// Until nothing changes any more.
 void iterate(const Held& held) {
   constexpr float kDone = 0x1.5798eep-27f;  // 1e-8, of the first iteration's error, squared
-  const uint32_t kind = ls.links[0].kind;
-  const bool direct = ls.job.link_count == 1 && (kind == kAttachPoints || kind == kAttachPlaces);
   float first = 0.0f;
   for (uint32_t i = 0; i < ls.job.iterations; ++i) {
     float error = 0.0f;
     each_link([&](const LinkParts& parts) __attribute__((always_inline)) {
+      if (parts.link->once != 0 && i != 0) return;
       const float of_link = solve(parts, held);
-      if (of_link > error) error = of_link;
+      if (parts.link->once == 0 && of_link > error) error = of_link;
     });
     if (i == 0) first = error;
-    if (direct || !(error > kDone * first)) return;
+    if (!(error > kDone * first)) return;
   }
 }
 

@@ -53,7 +53,8 @@ struct alignas(16) AttachLink {
   float inverse[4][4];  ///< kg, of kAttachPlaces: what an error of velocity at one place asks of another one
   float inverse_of_pushes[4][4];
   uint32_t broke;  ///< changed: not 0: it would have carried more in the last iteration
-  uint32_t pad[3];
+  uint32_t once;   ///< not 0: it is solved in the first iteration only, as no other link changes its sides
+  uint32_t pad[2];
 };
 static_assert(sizeof(AttachLink) == 256, "sixteen quadwords");
 constexpr uint32_t kAttachNoRigid = 0xFFFFFFFFu;

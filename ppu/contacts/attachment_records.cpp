@@ -40,12 +40,13 @@ float inverse_or_0(float x) { return x > 0 ? 1 / x : 0; }
 }  // namespace
 
 template <int kDimension>
-bool AttachmentRecords<kDimension>::write(AttachUnit& unit) const {
+bool AttachmentRecords<kDimension>::write(bool once, AttachUnit& unit) const {
   const bool is_weld_to_frame = rows_.settings_.kind == AttachmentKind::kWeld && rows_.sides_.b == nullptr;
   const bool moves = rows_.sides_.rigid != nullptr && rows_.sides_.rigid->inverse_mass > 0;
   if (is_weld_to_frame && moves && !rows_.with_rigid_at_once_) return false;  // the rigid body does not turn
   spu::AttachLink link{};
   link.rigid = spu::kAttachNoRigid;
+  link.once = once;
   link.pushes = rows_.pushes_;
   link.breaks = std::isfinite(rows_.settings_.break_force);
   link.most_impulse = link.breaks != 0 ? rows_.settings_.break_force * rows_.step_ : 0;

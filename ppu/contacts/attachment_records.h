@@ -16,9 +16,9 @@ class AttachmentRecords {
  public:
   explicit AttachmentRecords(AttachmentRows<kDimension>& rows) : rows_(rows) {}
 
-  /// Appends what the kernel needs. The caller sets AttachLink::rigid, and gives slots.
+  /// Appends what the kernel needs. The caller sets AttachLink::rigid, and gives slots. @param once  as AttachLink::once
   /// @return false: the kernel cannot solve it, and nothing is appended.
-  bool write(AttachUnit& unit) const;
+  bool write(bool once, AttachUnit& unit) const;
   /// What the kernel has made of it.
   void read(const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
             std::span<const spu::AttachRow> rows);

@@ -41,6 +41,23 @@ void Attachments<kDimension>::begin(std::span<const AttachedBody<kDimension>> bo
                            step);
     solved_.push_back({attachment.rows, {attachment.a, attachment.b, moves ? attachment.rigid : kNone}});
   }
+  find_those_alone(bodies.size(), rigids.size());
+}
+
+/// Nobody else changes the sides of an attachment that has them for itself while attachments are solved.
+template <int kDimension>
+void Attachments<kDimension>::find_those_alone(std::size_t bodies, std::size_t rigids) {
+  attached_to_.assign(bodies + rigids, 0);
+  const auto of_each_side = [&](const AttachmentSides& sides, const auto& work) {
+    work(attached_to_[sides.a]);
+    if (sides.b != AttachmentSides::kNone) work(attached_to_[sides.b]);
+    if (sides.rigid != AttachmentSides::kNone) work(attached_to_[bodies + sides.rigid]);
+  };
+  for (const Solved& solved : solved_) of_each_side(solved.sides, [](std::uint32_t& count) { ++count; });
+  for (Solved& solved : solved_) {
+    solved.once = solved.rows->is_direct();
+    of_each_side(solved.sides, [&](const std::uint32_t& count) { solved.once = solved.once && count == 1; });
+  }
 }
 
 template <int kDimension>
@@ -49,9 +66,13 @@ void Attachments<kDimension>::iterate(int iterations) {
   float first = 0;
   for (int i = 0; i < iterations; ++i) {
     float error = 0;
-    for (const Solved& solved : solved_) error = std::max(error, solved.rows->iterate());
+    for (const Solved& solved : solved_) {
+      if (solved.once && i > 0) continue;
+      const float of_rows = solved.rows->iterate();
+      if (!solved.once) error = std::max(error, of_rows);
+    }
     if (i == 0) first = error;
-    if (error <= kDone * first || (solved_.size() == 1 && solved_[0].rows->is_direct())) return;
+    if (error <= kDone * first) return;
   }
 }
 

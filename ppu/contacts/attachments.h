@@ -76,7 +76,7 @@ class Attachments final : public AttachmentSolver<kDimension> {
   std::size_t solved() const override { return solved_.size(); }
   AttachmentSides sides(std::size_t attachment) const override { return solved_[attachment].sides; }
   bool write(std::size_t attachment, AttachUnit& unit) const override {
-    return AttachmentRecords<kDimension>(*solved_[attachment].rows).write(unit);
+    return AttachmentRecords<kDimension>(*solved_[attachment].rows).write(solved_[attachment].once, unit);
   }
   void read(std::size_t attachment, const spu::AttachLink& link, std::span<const spu::AttachPoint> points,
             std::span<const spu::AttachRow> rows) override {
@@ -87,10 +87,14 @@ class Attachments final : public AttachmentSolver<kDimension> {
   struct Solved {
     AttachmentRows<kDimension>* rows = nullptr;
     AttachmentSides sides;
+    bool once = false;  // in a call of iterate(): more iterations find nothing
   };
+  void find_those_alone(std::size_t bodies, std::size_t rigids);
+
   std::vector<AttachmentInStep<kDimension>> all_;
   std::vector<Solved> solved_;  // of them: those with a side that may move
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parted_;
+  std::vector<std::uint32_t> attached_to_;  // of each body, then of each rigid one: how many of solved_ are
 };
 
 extern template class Attachments<2>;

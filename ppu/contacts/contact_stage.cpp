@@ -254,7 +254,7 @@ bool ContactStage::hand_attachments_to_worker(std::size_t rigids) {
       return false;
   }
   if (!attach_units_.write(*attachments, bodies_.size(), rigids, rigid_sets_)) return false;
-  worker->hold(attach_units_.units(), static_cast<std::uint32_t>(settings.attachment_iterations));
+  worker->hold(attach_units_.units(), static_cast<std::uint32_t>(attachment_iterations()));
   return true;
 }
 
@@ -434,7 +434,7 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
   prepare_here(rigids);
   find_touched_cells();
   const std::span<Group* const> moving = std::span(here_).first(here_that_move_);
-  for (int round = 0; round < settings.rounds; ++round) {
+  for (int round = 0; round < rounds(); ++round) {
     if (round > 0) stiffen_touched_cells();
     iterate_here(moving, rigids, step);
     solve_attachments(rigids, step, round);
@@ -447,8 +447,8 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
 void ContactStage::solve_attachments(std::span<ContactRigid> rigids, float step, int round) {
   if (!has_attachments()) return;
   if (round == 0) begin_attachments(rigids, step);
-  attachments->iterate(settings.attachment_iterations);
-  if (round + 1 == settings.rounds) attachments->finish();
+  attachments->iterate(attachment_iterations());
+  if (round + 1 == rounds()) attachments->finish();
 }
 
 void ContactStage::begin_attachments(std::span<ContactRigid> rigids, float step) {
@@ -590,8 +590,8 @@ void ContactStage::solve_with_worker(std::span<ContactRigid> rigids, float step)
   const bool attachments_by_worker = share_with_worker(rigids, step);
   const bool attachments_here = has_attachments() && !attachments_by_worker;
   stages_.clear();
-  for (int round = 0; round < settings.rounds; ++round) {
-    const bool is_last = round + 1 == settings.rounds;
+  for (int round = 0; round < rounds(); ++round) {
+    const bool is_last = round + 1 == rounds();
     const float stiffening = is_last ? 0 : settings.stiffening;
     add_pairs_to(stages_);
     add_rigid_sets_to(stages_);

@@ -132,6 +132,9 @@ class ContactStage {
   bool hand_attachments_to_worker(std::size_t rigids);
   void find_rigid_sets(std::span<ContactRigid> rigids);
   void hand_to_worker(Group& group, std::span<ContactRigid> rigids, float step);
+  /// Without contacts nobody changes between rounds what attachments have solved: they have the iterations of all rounds in one.
+  int rounds() const { return group_count_ == 0 ? 1 : settings.rounds; }
+  int attachment_iterations() const { return settings.attachment_iterations * settings.rounds / rounds(); }
   int iterations_of(const Group& group) const {
     return group.heavy ? settings.heavy_iterations : settings.iterations;
   }

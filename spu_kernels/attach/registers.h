@@ -43,7 +43,7 @@ struct Link {
   vec_float4 inverse_inertia[3];
   vec_float4 inverse[4];
   vec_float4 inverse_of_pushes[4];
-  uint32_t broke, pad[3];
+  uint32_t broke, once, pad[2];
 };
 static_assert(sizeof(Link) == sizeof(AttachLink), "the same bytes");
 

@@ -289,6 +289,23 @@ TEST(SpeAttachments, AllBuildsGiveTheSameBits) {
   EXPECT_EQ(velocities({.spes = 1, .schedule = dma::parse_schedule("random:2"), .checked = true}), expected);
 }
 
+/// What has its sides for itself is solved at once; one iteration finds what four would find. Not so where two hold one body.
+TEST(SpeAttachments, ThoseAloneAreSolvedOnce) {
+  const auto velocities = [](bool in_common, int iterations) {
+    Scene scene(std::vector<AttachmentSettings<3>>{{.kind = AttachmentKind::kWeld}});
+    scene.attachments.clear();
+    scene.attachments.add({.rows = scene.rows[0].get(), .a = 0});
+    scene.attachments.add({.rows = scene.rows[1].get(), .a = 1, .rigid = 0});
+    if (in_common) scene.attachments.add({.rows = scene.rows[2].get(), .a = 0, .rigid = 1});
+    scene.begin();
+    scene.attachments.iterate(iterations);
+    scene.attachments.finish();
+    return std::pair(scene.bodies[0].velocities, scene.bodies[1].velocities);
+  };
+  EXPECT_EQ(velocities(false, 4), velocities(false, 1));
+  EXPECT_NE(velocities(true, 4).first, velocities(true, 1).first);
+}
+
 /// Bodies without attachments in common are solved at the same time; what does not fit is left to the PPU.
 TEST(SpeAttachments, AreInUnitsAndWithinLimits) {
   Scene scene(std::vector<AttachmentSettings<3>>{{.kind = AttachmentKind::kWeld}});

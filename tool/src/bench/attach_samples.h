@@ -40,14 +40,15 @@ class AttachSample {
     job_[0].iterations = 4;
   }
 
-  /// Of all particles. @param breaks  at next to nothing
-  void add(spu::AttachKind kind, bool to_rigid, bool breaks) {
+  /// Of all particles. @param breaks  at next to nothing   @param once  as AttachLink::once
+  void add(spu::AttachKind kind, bool to_rigid, bool breaks, bool once = false) {
     spu::AttachJob& job = job_[0];
     spu::AttachLink& link = links_[job.link_count++];
     link.kind = kind;
     link.rigid = to_rigid ? 0 : spu::kAttachNoRigid;
     link.pushes = 1;
     link.breaks = breaks ? 1 : 0;
+    link.once = once ? 1 : 0;
     link.most_impulse = 1e-4f;
     link.most_push[0] = link.most_push[1] = 0.5f;
     link.inverse_sum = 0.05f;
@@ -103,7 +104,7 @@ inline void run_attach(SampleRun& sample) {
   for (const spu::AttachKind kind :
        {spu::kAttachPoints, spu::kAttachPlaces, spu::kAttachHinge, spu::kAttachRope})
     for (const bool breaks : {false, true}) all.add(kind, kind != spu::kAttachPlaces, breaks);
-  weld.add(spu::kAttachPoints, true, false);
+  weld.add(spu::kAttachPoints, true, false, true);
   sample.run(all.job());
   sample.begin_timing();
   sample.run(weld.job(), 20);
