@@ -506,14 +506,16 @@ TEST(Attachments, TheSameBitsForAnyNumberOfSpesAndAnySchedule) {
 }
 
 /// Random attachments to things that come and go: nothing becomes infinite, and nobody gets energy from nothing.
-TEST(Attachments, SurviveRandomLives) {
+TEST_P(SolvedBy, TheySurviveRandomLives) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     std::mt19937 random(seed);
     const auto pick = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
     const auto number = [&](float low, float high) {
       return low + (high - low) * static_cast<float>(random() % 1000) / 1000;
     };
-    ContactWorld w;
+    const std::unique_ptr<SpeRuntime> spes =
+        GetParam() == Who::kSpes ? std::make_unique<SpeRuntime>(SpeRuntimeOptions{.spes = 2}) : nullptr;
+    ContactWorld w({0, -9.81f, 0}, spes.get());
     w.add_floor();
     btBoxShape shape(btVector3(0.15f, 0.15f, 0.15f));
     std::vector<std::unique_ptr<btRigidBody>> rigid;
