@@ -86,6 +86,19 @@ class Twin {
     }
   }
 
+  /// The contact's impulses become these, friction within its cone. @return  by how much
+  static V change_to(SolveContact& c, float impulse, const V& wanted_friction) {
+    const float most = c.friction * impulse, square = dot(wanted_friction, wanted_friction);
+    const float scale = below_zero(msub(most, most, square)) ? most * reciprocal_sqrt(square) : 1.0f;
+    const V friction = V::of([&](Axis d) { return wanted_friction.*d * scale; });
+    const V before = vector_of(c.friction_impulse);
+    const V change = V::of(
+        [&](Axis d) { return madd(vector_of(c.normal).*d, impulse - c.impulse, friction.*d - before.*d); });
+    vector_of(c.friction_impulse) = friction;
+    c.impulse = impulse;
+    return change;
+  }
+
   static void solve_velocities(SolveContact& c, SolveVelocity* a, SolveVelocity* b) {
     const V n = vector_of(c.normal), at_a = value_at(c.a, a);
     V v = V::of([&](Axis d) { return at_a.*d - vector_of(c.carried).*d; });
@@ -97,16 +110,11 @@ class Twin {
     const float wanted = madd(c.least_velocity - along, c.mass, before);
     const float impulse = below_zero(wanted) ? 0.0f : wanted;
     const V friction_before = vector_of(c.friction_impulse);
-    V friction = V::of([&](Axis d) { return nmsub(nmsub(along, n.*d, v.*d), c.mass, friction_before.*d); });
-    const float most = c.friction * impulse, square = dot(friction, friction);
-    const float scale = below_zero(msub(most, most, square)) ? most * reciprocal_sqrt(square) : 1.0f;
-    friction = V::of([&](Axis d) { return friction.*d * scale; });
-    const V change =
-        V::of([&](Axis d) { return madd(n.*d, impulse - before, friction.*d - friction_before.*d); });
+    const V friction =
+        V::of([&](Axis d) { return nmsub(nmsub(along, n.*d, v.*d), c.mass, friction_before.*d); });
+    const V change = change_to(c, impulse, friction);
     add_at(c.a, a, change, 1);
     if (b != nullptr) add_at(c.b, b, change, -1);
-    vector_of(c.friction_impulse) = friction;
-    c.impulse = impulse;
   }
 
   static V value_at(const spu::SolveRigidPoint& point, const SolveRigid& rigid) {
@@ -134,17 +142,11 @@ class Twin {
     v = V::of([&](Axis d) { return madd(vector_of(c.rigid.feels).*d, impulse - before, v.*d); });
     const float along = dot(n, v);
     const V friction_before = vector_of(c.friction_impulse);
-    V friction = V::of(
+    const V friction = V::of(
         [&](Axis d) { return nmsub(nmsub(along, n.*d, v.*d), c.rigid.friction_mass, friction_before.*d); });
-    const float most = c.friction * impulse, square = dot(friction, friction);
-    const float scale = below_zero(msub(most, most, square)) ? most * reciprocal_sqrt(square) : 1.0f;
-    friction = V::of([&](Axis d) { return friction.*d * scale; });
-    const V change =
-        V::of([&](Axis d) { return madd(n.*d, impulse - before, friction.*d - friction_before.*d); });
+    const V change = change_to(c, impulse, friction);
     add_at(c.a, a, change, 1);
     take_at(c.rigid, rigid, change);
-    vector_of(c.friction_impulse) = friction;
-    c.impulse = impulse;
   }
 
   static void solve_push(SolveContact& c, SolveVelocity* a, SolveVelocity* b, float mass) {

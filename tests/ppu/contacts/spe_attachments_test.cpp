@@ -127,18 +127,28 @@ void solve_on_ppu(Scene& scene) {
   scene.attachments.finish();
 }
 
+/// What a substep hands to its worker.
+struct Handed {
+  /// @param worker  has begun the substep
+  Handed(Scene& scene, SpeContacts& worker) {
+    scene.begin();
+    sets.begin(scene.rigids);
+    AttachUnits::begin(scene.attachments, sets);
+    sets.arrange(worker);
+    units.write(scene.attachments, scene.bodies.size(), scene.rigids.size(), sets);
+  }
+  RigidSets sets;
+  AttachUnits units;  // none: the kernel cannot solve all attachments
+};
+
 /// @return  how many units there were
 std::size_t solve_on_spes(Scene& scene, SpeRuntime& spes) {
   SpeContacts worker(spes.memory(), spes.jobs(),
                      {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
   worker.begin(scene.bodies, kStep);
-  scene.begin();
-  RigidSets sets;
-  sets.begin(scene.rigids);
-  AttachUnits units;
-  AttachUnits::begin(scene.attachments, sets);
-  sets.arrange(worker);
-  if (!units.write(scene.attachments, scene.bodies.size(), scene.rigids.size(), sets)) return 0;
+  Handed handed(scene, worker);
+  auto& [sets, units] = handed;
+  if (units.units().empty()) return 0;
   worker.hold(units.units(), kIterations);
   sets.put();
   SolveStages stages;
@@ -318,17 +328,7 @@ TEST(SpeAttachments, AreInUnitsAndWithinLimits) {
   SpeContacts worker(spes.memory(), spes.jobs(),
                      {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
   worker.begin(scene.bodies, kStep);
-  const auto units_of = [&] {
-    scene.begin();
-    RigidSets sets;
-    sets.begin(scene.rigids);
-    AttachUnits units;
-    AttachUnits::begin(scene.attachments, sets);
-    sets.arrange(worker);
-    return units.write(scene.attachments, scene.bodies.size(), scene.rigids.size(), sets)
-               ? units.units().size()
-               : 0;
-  };
+  const auto units_of = [&] { return Handed(scene, worker).units.units().size(); };
   // What has nothing in common goes into one unit as long as there is room.
   const auto points_of = [](const Scene& of, std::size_t which) {
     return of.rows[which]->particles(false).size();
