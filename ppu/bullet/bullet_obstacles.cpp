@@ -23,7 +23,9 @@
 #include <utility>
 
 #include "ppu/bullet/bullet_vector.h"
+#include "ppu/bullet/mesh_triangles.h"
 #include "ppu/numbers/deterministic_math.h"
+#include "ppu/surfaces/round_edges.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -290,6 +292,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       edges = &more_edges();
       for (const float height : {-obstacle.extent.y(), obstacle.extent.y()})
         add_rim(obstacle.extent.x(), height, *edges);
+      add_axis_of_cylinder(obstacle.extent.x(), obstacle.extent.y(), *edges);
       break;
     }
     case CONE_SHAPE_PROXYTYPE: {
@@ -297,9 +300,8 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       obstacle.kind = ObstacleKind::kCone;
       obstacle.rotation = obstacle.rotation * from_y_to(cone.getConeUpIndex());
       obstacle.extent = {cone.getRadius(), cone.getHeight() / 2, 0};
-      const Vector3f tip(0, obstacle.extent.y(), 0);
       edges = &more_edges();
-      edges->push_back({tip, tip});
+      add_axis_of_cone(obstacle.extent.x(), obstacle.extent.y(), *edges);
       add_rim(obstacle.extent.x(), -obstacle.extent.y(), *edges);
       break;
     }
@@ -320,26 +322,15 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
 
 void BulletObstacles::add_triangles(const btCollisionShape& shape, Obstacle obstacle, const Bounds<3>& box,
                                     std::vector<std::uint32_t>& indices) {
-  struct Gather final : btTriangleCallback {
-    explicit Gather(std::vector<Triangle>& list) : triangles(list) {}
-    std::vector<Triangle>& triangles;
-    void processTriangle(btVector3* corner, int, int) override {
-      triangles.push_back({to_eigen(corner[0]), to_eigen(corner[1]), to_eigen(corner[2])});
-    }
-  } gather(more_triangles());
+  std::vector<Triangle>& triangles = more_triangles();
   // The box in the shape's frame.
   const Matrix3f turn = obstacle.rotation.transpose();
   const Vector3f centre = turn * (0.5f * (box.low + box.high) - obstacle.position);
   const Vector3f half = turn.cwiseAbs() * (0.5f * (box.high - box.low));
-  static_cast<const btConcaveShape&>(shape).processAllTriangles(&gather, to_bullet(centre - half),
-                                                                to_bullet(centre + half));
-  if (gather.triangles.empty()) return;
+  find_triangles(static_cast<const btConcaveShape&>(shape), {centre - half, centre + half}, triangles);
+  if (triangles.empty()) return;
   obstacle.kind = ObstacleKind::kTriangles;
-  std::vector<ObstacleEdge>& edges = more_edges();
-  for (const Triangle& t : gather.triangles)
-    for (std::size_t i = 0; i < 3; ++i) edges.push_back({t[i], t[(i + 1) % 3]});
-  obstacle.edges = edges;
-  obstacle.triangles = gather.triangles;
+  obstacle.triangles = triangles;
   push(obstacle, indices);
 }
 
@@ -349,7 +340,9 @@ const BulletObstacles::Hull& BulletObstacles::hull_of(const btConvexShape& shape
   Hull& hull = hulls_[&shape];
   if (hull.points != points_ || hull.planes.empty()) {
     hull = {};
-    find_hull(points_, hull.planes, hull.edges);
+    std::vector<ObstacleEdge> edges;
+    find_hull(points_, hull.planes, edges);
+    for (const ObstacleEdge& edge : edges) add_edge_of_hull(edge, hull.planes, hull.edges);
     hull.points = points_;
   }
   return hull;

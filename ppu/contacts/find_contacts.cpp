@@ -40,7 +40,7 @@ struct Hit {
 };
 
 /// How far a point is beside a triangle, squared: not above or below it.
-/// @param normal  of unit length
+/// @param normal  of the triangle, of unit length
 template <typename Real>
 Real squared_beside(const std::array<Vector3f, 3>& triangle, const Vector3f& normal, const Vector3f& point) {
   using Vector = Eigen::Vector3<Real>;
@@ -51,56 +51,65 @@ Real squared_beside(const std::array<Vector3f, 3>& triangle, const Vector3f& nor
   return (beside - n * n.dot(beside)).squaredNorm();
 }
 
-/// Whether the triangle is above or below a point, or beside it by no more than `most` metres. Of a ground's triangles a kilometre long, or of
-/// needles, floats know the nearest place to a tenth of a millimetre, or worse.
-/// @param normal  of unit length   @param area  twice the triangle's
-bool is_over(const std::array<Vector3f, 3>& triangle, const Vector3f& normal, float area,
-             const Vector3f& point, float most) {
-  constexpr float kRounding = 2e-6f;
-  const float longest =
-      ((triangle[1] - triangle[0]).cwiseAbs() + (triangle[2] - triangle[0]).cwiseAbs()).sum();
-  const bool is_exact = kRounding * longest * longest * longest < most * area;
-  if (is_exact) return squared_beside<float>(triangle, normal, point) <= most * most;
-  return squared_beside<double>(triangle, normal, point) <= double{most} * double{most};
-}
+/// One of an obstacle's triangles.
+class Facing {
+ public:
+  Facing(const Obstacle& obstacle, const KnownTriangles& known, std::uint32_t number)
+      : triangle_(obstacle.triangles[number]),
+        face_(known.face(number)),
+        box_(known.boxes().at(number)),
+        rounding_(obstacle.rounding) {}
 
-/// Whether two points are on different sides of a triangle's plane.
-bool parts(const std::array<Vector3f, 3>& triangle, const Vector3f& a, const Vector3f& b) {
-  const Vector3f normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-  return normal.dot(a - triangle[0]) * normal.dot(b - triangle[0]) < 0;
-}
+  bool has_area() const { return face_.area > 0; }
+  const Vector3f& normal() const { return face_.normal; }
+  /// Above its plane, on the side from which it is wound counterclockwise: metres.
+  float height(const Vector3f& point) const { return face_.normal.dot(point - triangle_[0]); }
 
-/// @param front  1 or -1: towards the side from which it is wound counterclockwise, or the other one
-/// @param inside  a place of the point's body, before the substep
-std::optional<Hit> meet_triangle(const std::array<Vector3f, 3>& triangle, float rounding, const Way& way,
-                                 const Vector3f& inside, float spacing, float front) {
-  const float near = kNear * spacing;
-  const Vector3f cross = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-  const float area = cross.norm();
-  if (!(area > 0)) return {};
-  Vector3f normal = cross / (front * area);
-  float from = normal.dot(way.from - triangle[0]);
-  if (from < -kPressedThrough * spacing) {
-    const float of_inside = normal.dot(inside - triangle[0]);
-    const bool may_be_deep = from > -kDeepest * spacing && of_inside > 0;
-    const float crossing = of_inside / (of_inside - from);
-    if (!may_be_deep || !is_over(triangle, normal, area, inside + crossing * (way.from - inside), near))
-      normal = -normal, from = -from;
+  /// Whether the triangle is above or below a point, or beside it by no more than `most` metres. @pre has_area()
+  bool is_over(const Vector3f& point, float most) const {
+    // Most triangles are beside the point by more than what it is above or below them: no need for the nearest place.
+    const float farthest = 1.01f * (most + std::abs(height(point)));
+    if ((point.array() < box_.low.array() - farthest).any() ||
+        (point.array() > box_.high.array() + farthest).any())
+      return false;
+    // Of a ground's triangles a kilometre long, or of needles, floats know the nearest place to a tenth of a millimetre, or worse.
+    const bool is_exact = face_.rounding < most * face_.area;
+    if (is_exact) return squared_beside<float>(triangle_, face_.normal, point) <= most * most;
+    return squared_beside<double>(triangle_, face_.normal, point) <= double{most} * double{most};
   }
-  const float to = normal.dot(way.to - triangle[0]) - rounding;
-  if (to > near) return {};
-  const float share =
-      from - to > 0 ? std::clamp((from - rounding) / (from - rounding - to), 0.0f, 1.0f) : 0.0f;
-  const Vector3f at = way.from + share * (way.to - way.from);
-  // Most triangles are beside the point by more than what it is above or below them: no need for the nearest place.
-  const float farthest = 1.01f * (near + std::abs(normal.dot(at - triangle[0])));
-  for (int d = 0; d < 3; ++d) {
-    const auto [low, high] = std::minmax({triangle[0][d], triangle[1][d], triangle[2][d]});
-    if (at[d] < low - farthest || at[d] > high + farthest) return {};
+
+  /// Whether two points are on different sides of its plane.
+  bool parts(const Vector3f& a, const Vector3f& b) const {
+    return face_.cross.dot(a - triangle_[0]) * face_.cross.dot(b - triangle_[0]) < 0;
   }
-  if (!is_over(triangle, normal, area, at, near)) return {};
-  return Hit{normal, to};
-}
+
+  /// @param front  1 or -1: towards the side from which it is wound counterclockwise, or the other one
+  /// @param inside  a place of the point's body, before the substep
+  std::optional<Hit> meet(const Way& way, const Vector3f& inside, float spacing, float front) const {
+    if (!has_area()) return {};
+    const float near = kNear * spacing;
+    float side = front;
+    float from = side * height(way.from);
+    if (from < -kPressedThrough * spacing) {
+      const float of_inside = side * height(inside);
+      const bool may_be_deep = from > -kDeepest * spacing && of_inside > 0;
+      const float crossing = of_inside / (of_inside - from);
+      if (!may_be_deep || !is_over(inside + crossing * (way.from - inside), near)) side = -side, from = -from;
+    }
+    const float to = side * height(way.to) - rounding_;
+    if (to > near) return {};
+    const float share =
+        from - to > 0 ? std::clamp((from - rounding_) / (from - rounding_ - to), 0.0f, 1.0f) : 0.0f;
+    if (!is_over(way.from + share * (way.to - way.from), near)) return {};
+    return Hit{side * normal(), to};
+  }
+
+ private:
+  const std::array<Vector3f, 3>& triangle_;
+  const KnownTriangles::Face& face_;
+  Bounds<3> box_;
+  float rounding_;
+};
 
 std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowance, float spacing) {
   const float near = kNear * spacing - allowance;
@@ -193,20 +202,17 @@ class ObstacleContacts {
 
   /// On which side of a triangle the body is as a point of it, which may have been pressed through, tells: above 0 in front.
   /// 0: the point is far from the triangle at both ends of its way, or passes beside it.
-  float side_of(const EndCells::PointAtTriangle& near) const {
-    const std::array<Vector3f, 3>& triangle = obstacle_.triangles[near.triangle];
+  float side_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near) const {
+    const Facing triangle(obstacle_, triangles, near.triangle);
+    if (!triangle.has_area()) return 0;
     const float thick = kPressedThrough * body_.spacing() + obstacle_.rounding;
-    const Vector3f cross = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-    const float area = cross.norm();
-    if (!(area > 0)) return 0;
-    const Vector3f normal = cross / area;
-    const float from = normal.dot(near.from - triangle[0]), to = normal.dot(near.to - triangle[0]);
+    const float from = triangle.height(near.from), to = triangle.height(near.to);
     if (std::min(from, to) > thick || std::max(from, to) < -thick) return 0;
     const float share = from * to < 0 ? from / (from - to) : 1;
     const Vector3f at = near.from + share * (near.to - near.from);
-    if (!is_over(triangle, normal, area, at, kNear * body_.spacing())) return 0;
+    if (!triangle.is_over(at, kNear * body_.spacing())) return 0;
     if (std::abs(from) > thick) return from;
-    return normal.dot(near.inside - triangle[0]);
+    return triangle.height(near.inside);
   }
 
   /// Of a cell, well inside of the body.
@@ -217,13 +223,13 @@ class ObstacleContacts {
 
   /// A mesh is wound one way or the other, closed around something or around a room: most of what is near it says on which side the body
   /// is.
-  /// @return  1 or -1, as meet_triangle() takes it
-  float front_of_triangles() {
+  /// @return  1 or -1, as Facing::meet() takes it
+  float front_of_triangles(const KnownTriangles& triangles) {
     if (obstacle_.faces_bodies || cells_.near_triangles.empty()) return 1;
     const float clear = kClearSide * body_.spacing();
     int seen = 0;
     for (const EndCells::PointAtTriangle& near : cells_.near_triangles) {
-      const float side = side_of(near);
+      const float side = side_of(triangles, near);
       seen += side > clear ? 1 : side < -clear ? -1 : 0;
     }
     return cells_.side_of(rigid_.number, obstacle_.part, seen);
@@ -234,17 +240,18 @@ class ObstacleContacts {
     // As bounds(), but quicker.
     const float reach =
         come_near(widened(to_world(obstacle_, triangles.boxes().bounds()), obstacle_.rounding));
-    find_near_triangles(triangles.boxes());
-    const float front = front_of_triangles();
+    find_near_triangles(triangles);
+    const float front = front_of_triangles(triangles);
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
-      if (const auto hit = meet_triangle(obstacle_.triangles[at.triangle], obstacle_.rounding,
-                                         {at.from, at.to}, at.inside, body_.spacing(), front))
+      if (const auto hit = Facing(obstacle_, triangles, at.triangle)
+                               .meet({at.from, at.to}, at.inside, body_.spacing(), front))
         add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
     try_edges_of_triangles(triangles, reach);
   }
 
   /// Of each point those near its way; if there are none, those that it has been pressed through, at some depth.
-  void find_near_triangles(const TriangleBoxes& boxes) {
+  void find_near_triangles(const KnownTriangles& triangles) {
+    const TriangleBoxes& boxes = triangles.boxes();
     const float spacing = body_.spacing();
     // What has been pressed through a triangle may be so far behind it, and still meets it.
     const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
@@ -271,7 +278,7 @@ class ObstacleContacts {
         const float share = std::min(1.0f, kDeepest * spacing / inwards.norm());
         const Vector3f deepest = way.from + share * inwards;
         for_each_meeting({way.from.cwiseMin(deepest), way.from.cwiseMax(deepest)}, [&](std::uint32_t t) {
-          if (parts(obstacle_.triangles[t], way.from, inside)) add(t);
+          if (Facing(obstacle_, triangles, t).parts(way.from, inside)) add(t);
         });
       });
     });
@@ -288,14 +295,14 @@ class ObstacleContacts {
     for (const CornerSet::Point& corner : triangles.corners())
       if (may_be_in_body(in_world(corner))) near.push_back(corner);
     std::sort(near.begin(), near.end());
-    for (const CornerSet::Point& corner : near) try_corner(in_world(corner), Vector3f::Zero());
+    for (const CornerSet::Point& corner : near) try_corner(in_world(corner), Vector3f::Zero(), 0);
   }
 
   void try_long_edges(const KnownTriangles& triangles, float reach) {
     triangles.boxes().for_each_block([&](std::size_t first, std::size_t end, const Bounds<3>& box) {
       if (!cells_.boxes().any_meets(widened(to_world(obstacle_, box), 2 * reach))) return;
       for (std::size_t edge = 3 * first; edge < 3 * end; ++edge)
-        if (triangles.is_long(edge)) try_edge(obstacle_.edges[edge], reach);
+        if (triangles.is_long(edge)) try_edge(obstacle_.edge(edge), reach);
     });
   }
 
@@ -311,14 +318,16 @@ class ObstacleContacts {
 
   /// Points of the edge that are in the body: it has to give way there.
   void try_edge(const ObstacleEdge& edge, float reach) {
+    if (body_.spacing() <= edge.cells_above) return;
     const Vector3f from = obstacle_.rotation * edge.from + obstacle_.position;
     const Vector3f along = obstacle_.rotation * (edge.to - edge.from);
     const auto [first, last] = way_in_box(body_.box, from, along);
     if (first > last) return;
     const Vector3f a = from + first * along, b = from + last * along, margin = Vector3f::Constant(2 * reach);
     if (!cells_.boxes().any_meets({a.cwiseMin(b) - margin, a.cwiseMax(b) + margin})) return;
-    for_each_point_of_edge(from, along, body_.box, kEdgeSpacing * body_.spacing(),
-                           [&](const Vector3f& point) { try_corner(point, along); });
+    for_each_point_of_edge(
+        from, along, body_.box, kEdgeSpacing * body_.spacing(),
+        [&](const Vector3f& point, float share) { try_corner(point, along, edge.radius_at(share)); });
   }
 
   Vector3f moved(const Vector3f& point) const { return point + step_ * rigid_.velocity_at(point); }
@@ -347,8 +356,9 @@ class ObstacleContacts {
     if (other) hit = {other->normal, other->distance + allowance};
   }
 
-  /// @param along  the edge that has it; 0: a tip, in two dimensions a corner
-  void try_corner(const Vector3f& corner, const Vector3f& along) {
+  /// @param along   the edge that has it; 0: a tip, in two dimensions a corner
+  /// @param radius  of the edge there, metres
+  void try_corner(const Vector3f& corner, const Vector3f& along, float radius) {
     if (!contains(body_.box, corner)) return;
     const Vector3f point = moved(corner);
     const auto place = cells_.finder().find(point, [](std::uint32_t) { return true; });
@@ -356,15 +366,16 @@ class ObstacleContacts {
     const FieldValue field = body_.model->surface.field(place->cell, place->xi);
     const Vector3f outwards = place->jacobian.inverse().transpose() * field.gradient;
     const float steep = outwards.norm();
-    if (!(steep > 0) || field.distance / steep > kNear * body_.spacing() + obstacle_.rounding) return;
-    if (is_within_a_floor(corner, along)) return;
+    const float distance = field.distance / steep - obstacle_.rounding - radius;
+    if (!(steep > 0) || distance > kNear * body_.spacing()) return;
+    if (radius == 0 && is_within_a_floor(corner, along)) return;
     SoftContact& contact = contacts_.emplace_back();
     contact.a = body_.model->held(anchor_in_cell(body_.lattice(), place->cell, place->xi));
     contact.rigid = obstacle_.rigid;
     contact.point = point;
     contact.normal = -outwards / steep;
     const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
-    complete(contact, field.distance / steep - obstacle_.rounding, contact.normal.dot(v), friction_, step_);
+    complete(contact, distance, contact.normal.dot(v), friction_, step_);
   }
 
   const ContactBody& body_;

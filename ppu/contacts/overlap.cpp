@@ -79,12 +79,14 @@ class OverlapSearch {
   std::optional<Overlap> find_along_edges() const {
     std::optional<Overlap> found;
     const Bounds<3> box = box_around<Bounds<3>>(positions_);
-    for (const ObstacleEdge& edge : obstacle_.edges) {
+    for (std::size_t i = 0; i < obstacle_.edge_count(); ++i) {
+      const ObstacleEdge edge = obstacle_.edge(i);
       const Vector3f from = obstacle_.to_world(edge.from), along = obstacle_.to_world(edge.to) - from;
-      for_each_point_of_edge(from, along, box, kEdgeSpacing * spacing_, [&](const Vector3f& point) {
-        if (!found && is_in_body(point, obstacle_.rounding))
-          found = Overlap{point, separation_of(point).normal};
-      });
+      for_each_point_of_edge(from, along, box, kEdgeSpacing * spacing_,
+                             [&](const Vector3f& point, float share) {
+                               if (!found && is_in_body(point, obstacle_.rounding + edge.radius_at(share)))
+                                 found = Overlap{point, separation_of(point).normal};
+                             });
       if (found) break;
     }
     return found;

@@ -12,8 +12,9 @@ namespace softcell::ppu {
 /// Cells between points along an obstacle's edges.
 inline constexpr float kEdgeSpacing = 0.5f;
 
-/// Calls work(point) for points at most `spacing` metres apart on the edge from `from` to `from + along`, those in the box and perhaps
+/// Calls work(point, share) for points at most `spacing` metres apart on the edge from `from` to `from + along`, those in the box and perhaps
 /// a few beside it; for both ends of an edge that is no longer than that. Points stay where they are on the edge, however the box moves.
+/// `share` is that of the way from `from` to where a point is, 0..1.
 template <typename Work>
 void for_each_point_of_edge(const Eigen::Vector3f& from, const Eigen::Vector3f& along, const Bounds<3>& box,
                             float spacing, const Work& work) {
@@ -22,15 +23,18 @@ void for_each_point_of_edge(const Eigen::Vector3f& from, const Eigen::Vector3f& 
   if (first > last) return;
   const float length = along.norm();
   if (!(length > spacing)) {
-    work(from);
-    work(from + along);
+    work(from, 0.0f);
+    work(from + along, 1.0f);
     return;
   }
   const double step = double{spacing} / double{length};
   const double begin = std::ceil(double{first} / step);
   const int count = static_cast<int>(std::min(kMostPoints, std::floor(double{last} / step) - begin + 1));
-  for (int i = 0; i < count; ++i) work(from + static_cast<float>((begin + i) * step) * along);
-  if (last == 1) work(from + along);
+  for (int i = 0; i < count; ++i) {
+    const float share = static_cast<float>((begin + i) * step);
+    work(from + share * along, share);
+  }
+  if (last == 1) work(from + along, 1.0f);
 }
 
 }  // namespace softcell::ppu

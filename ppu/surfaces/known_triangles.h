@@ -25,6 +25,16 @@ class KnownTriangles {
 
   const TriangleBoxes& boxes() const { return boxes_; }
 
+  /// Where a triangle faces.
+  struct Face {
+    Eigen::Vector3f cross;  ///< of its sides: square metres
+    Eigen::Vector3f
+        normal;  ///< of unit length, towards the side from which it is wound counterclockwise; not set without an area
+    float area;      ///< twice the triangle's, square metres
+    float rounding;  ///< cubic metres: over the area, how well floats know the nearest place of the triangle
+  };
+  const Face& face(std::size_t triangle) const { return faces_[triangle]; }
+
   // What lies within a plane is left out, as it stands out of nothing: a body's points meet the plane. (Within a body's distance field a
   // point of the plane near the rim of the body's flat side would be pushed out sideways.)
 
@@ -36,20 +46,22 @@ class KnownTriangles {
   bool has_long_edges() const { return has_long_edges_; }
 
  private:
-  static constexpr std::uint32_t kNone = ~0u;
+  void find_faces();
   void find_corners();
-  void find_long_edges();
+  void find_long_edges(const Obstacle& obstacle);
   bool may_stand_out(std::size_t t, std::size_t side) const;
+  bool has_sides() const { return edges_.empty(); }
 
   std::vector<std::array<Eigen::Vector3f, 3>> triangles_;
-  std::vector<ObstacleEdge> edges_;
+  std::vector<ObstacleEdge> edges_;  // none: the triangles' sides
   float longest_ = 0;
 
   TriangleBoxes boxes_;
+  std::vector<Face> faces_;
   CornerSet set_;
   EdgeSet sides_;
   std::vector<CornerSet::Point> corners_;
-  std::vector<std::array<std::uint32_t, 3>> corners_of_;  // of each triangle: in set_, or kNone
+  std::vector<std::array<std::uint32_t, 3>> corners_of_;  // of each triangle with sides: in set_
   std::vector<bool> is_long_;                             // of each edge
   bool has_long_edges_ = false;
 };

@@ -125,10 +125,12 @@ Bounds<3> bounds(const Obstacle& obstacle) {
   }
   const Vector3f rounding = Vector3f::Constant(obstacle.rounding);
   if (obstacle.kind == ObstacleKind::kHull || obstacle.kind == ObstacleKind::kTriangles) {
-    SC_ASSERT(!obstacle.edges.empty(), "an obstacle of {} planes and {} triangles without edges",
+    SC_ASSERT(obstacle.edge_count() > 0, "an obstacle of {} planes and {} triangles without edges",
               obstacle.planes.size(), obstacle.triangles.size());
-    Bounds<3> box{obstacle.to_world(obstacle.edges[0].from), obstacle.to_world(obstacle.edges[0].from)};
-    for (const ObstacleEdge& edge : obstacle.edges) {
+    const Vector3f first = obstacle.to_world(obstacle.edge(0).from);
+    Bounds<3> box{first, first};
+    for (std::size_t i = 0; i < obstacle.edge_count(); ++i) {
+      const ObstacleEdge edge = obstacle.edge(i);
       for (const Vector3f& end : {obstacle.to_world(edge.from), obstacle.to_world(edge.to)}) {
         box.low = box.low.cwiseMin(end);
         box.high = box.high.cwiseMax(end);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -42,6 +43,12 @@ enum class ObstacleKind : std::uint32_t {
 /// A point of a shape that is sharper than the surface that it may meet: looked up in that body's field.
 struct ObstacleEdge {
   Eigen::Vector3f from, to;  ///< the same for a tip
+  /// Metres, at both ends: what lies so near to the edge is inside. For the axis of something thin.
+  float radius_from = 0, radius_to = 0;
+  /// Metres: a body of cells of this size, or smaller ones, feels what is there with its own points, and does not look it up.
+  float cells_above = 0;
+
+  float radius_at(float share) const { return radius_from + share * (radius_to - radius_from); }
 };
 
 /// The lists belong to whoever made the obstacle.
@@ -57,12 +64,23 @@ struct Obstacle {
   std::span<const std::array<Eigen::Vector3f, 3>> triangles = {};
   bool faces_bodies = false;  ///< of triangles: known to be wound so that their fronts are towards the bodies
   std::uint32_t part = 0;  ///< of triangles that do not: those of one part of the rigid body are wound alike
-  std::span<const ObstacleEdge> edges = {};  ///< of triangles: three around each, in their order
+  std::span<const ObstacleEdge> edges =
+      {};  ///< of triangles: three for each, in their order; none: their sides
 
   Eigen::Vector3f to_own(const Eigen::Vector3f& world) const {
     return rotation.transpose() * (world - position);
   }
   Eigen::Vector3f to_world(const Eigen::Vector3f& own) const { return rotation * own + position; }
+
+  std::size_t edge_count() const { return has_sides() ? 3 * triangles.size() : edges.size(); }
+  /// @param i  below edge_count()
+  ObstacleEdge edge(std::size_t i) const {
+    if (!has_sides()) return edges[i];
+    const std::array<Eigen::Vector3f, 3>& triangle = triangles[i / 3];
+    return {triangle[i % 3], triangle[(i + 1) % 3]};
+  }
+  /// Whether the sides of triangles are the edges.
+  bool has_sides() const { return kind == ObstacleKind::kTriangles && edges.empty(); }
 };
 
 /// How far a point is from a shape, and the direction away from it.

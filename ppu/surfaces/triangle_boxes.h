@@ -40,6 +40,11 @@ class TriangleBoxes {
     }
   }
 
+  /// Around one triangle.
+  Bounds<3> at(std::size_t triangle) const {
+    return fours_[triangle / 4].at(static_cast<Eigen::Index>(triangle % 4));
+  }
+
   /// Around all triangles. @pre there are some
   const Bounds<3>& bounds() const { return bounds_; }
 

@@ -236,7 +236,7 @@ TEST(EdgeSet, KnowsWhichSidesStandOutOfNothing) {
 /// Whoever has seen other triangles before knows the same of these as whoever sees them first.
 TEST(KnownTriangles, AreThoseOfTheLastCallWhateverHasChanged) {
   std::vector<CornerSet::Triangle> triangles;
-  std::vector<ObstacleEdge> edges;
+  std::vector<ObstacleEdge> edges;  // none: the sides
   const auto see = [&](KnownTriangles& known, float longest) {
     Obstacle obstacle;
     obstacle.kind = ObstacleKind::kTriangles;
@@ -248,11 +248,8 @@ TEST(KnownTriangles, AreThoseOfTheLastCallWhateverHasChanged) {
   const auto make_pyramid = [&](float height) {
     triangles.clear();
     edges.clear();
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 4; ++i)
       triangles.push_back({middle + Vector3f(0, height, 0), around[i], around[(i + 1) % 4]});
-      for (std::size_t k = 0; k < 3; ++k)
-        edges.push_back({triangles.back()[k], triangles.back()[(k + 1) % 3]});
-    }
   };
   KnownTriangles known;
   const auto expect_what_a_new_one_knows = [&](float longest, std::size_t corners, bool has_long) {
@@ -277,13 +274,57 @@ TEST(KnownTriangles, AreThoseOfTheLastCallWhateverHasChanged) {
   expect_what_a_new_one_knows(2, 4, false);  // nearly flat
   make_pyramid(-0.1f);
   expect_what_a_new_one_knows(1.2f, 5, true);  // the four along the border are longer
-  edges[0].from.y() += 0.5f;                   // an edge that is no side, as those of two dimensions
-  expect_what_a_new_one_knows(2, 6, false);
   triangles.resize(1);
-  edges.resize(3);
   expect_what_a_new_one_knows(2, 3, false);
+  edges = {{middle, middle}, {around[0], around[0]}, {middle, middle}};  // as in two dimensions
+  expect_what_a_new_one_knows(2, 2, false);
+  edges[0].to = 3 * around[1];
+  expect_what_a_new_one_knows(2, 2, true);
   make_pyramid(0);
   expect_what_a_new_one_knows(2, 4, false);
+}
+
+TEST(KnownTriangles, KnowWhereTrianglesFace) {
+  RandomPoints random;
+  std::vector<CornerSet::Triangle> triangles;
+  for (int i = 0; i < 100; ++i)
+    triangles.push_back({random.in_cube(1), random.in_cube(1), random.in_cube(1)});
+  triangles.push_back({Vector3f(0, 0, 0), Vector3f(1, 1, 1), Vector3f(2, 2, 2)});
+  Obstacle obstacle;
+  obstacle.kind = ObstacleKind::kTriangles;
+  obstacle.triangles = triangles;
+  KnownTriangles known;
+  known.see(obstacle, 1);
+  for (std::size_t t = 0; t + 1 < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    const Vector3f normal = (b - a).cross(c - a).normalized();
+    EXPECT_TRUE(known.face(t).normal.isApprox(normal, 1e-5f)) << t;
+    EXPECT_NEAR(
+        known.face(t).area,
+        (b - a).norm() * (c - a).norm() * std::sin(std::acos((b - a).normalized().dot((c - a).normalized()))),
+        1e-4f)
+        << t;
+    EXPECT_EQ(known.boxes().at(t).low, Vector3f(a.cwiseMin(b).cwiseMin(c))) << t;
+    EXPECT_EQ(known.boxes().at(t).high, Vector3f(a.cwiseMax(b).cwiseMax(c))) << t;
+  }
+  EXPECT_EQ(known.face(triangles.size() - 1).area, 0);
+}
+
+TEST(Obstacle, SidesOfTrianglesAreEdgesWhereThereAreNoOthers) {
+  const std::vector<CornerSet::Triangle> triangles{{Vector3f(0, 0, 0), Vector3f(1, 0, 0), Vector3f(0, 1, 0)},
+                                                   {Vector3f(0, 0, 5), Vector3f(1, 0, 5), Vector3f(0, 1, 5)}};
+  Obstacle obstacle;
+  obstacle.kind = ObstacleKind::kTriangles;
+  obstacle.triangles = triangles;
+  ASSERT_EQ(obstacle.edge_count(), 6u);
+  EXPECT_EQ(obstacle.edge(0).to, Vector3f(1, 0, 0));
+  EXPECT_EQ(obstacle.edge(5).from, Vector3f(0, 1, 5));
+  EXPECT_EQ(obstacle.edge(5).to, Vector3f(0, 0, 5));
+  EXPECT_EQ(bounds(obstacle).high, Vector3f(1, 1, 5));
+  const std::vector<ObstacleEdge> others{{Vector3f(0, 0, 0), Vector3f(0, 0, 7)}};
+  obstacle.edges = others;
+  ASSERT_EQ(obstacle.edge_count(), 1u);
+  EXPECT_EQ(obstacle.edge(0).to, Vector3f(0, 0, 7));
 }
 
 TEST(Obstacle, ABoxAroundItsPartsIsAroundThemInTheWorld) {

@@ -247,6 +247,16 @@ TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
                     {0.04f, 0.6f, 0.13f}});
   things.push_back(
       {"wire", std::make_unique<btCapsuleShapeZ>(0.005f, 2), {0.04f, 0.3f, 0}, {0.04f, 0.3f, 0.13f}});
+  for (const float radius : {0.005f, 0.02f, 0.04f}) {
+    auto rod = std::make_unique<btCylinderShapeZ>(btVector3(radius, radius, 1));
+    rod->setMargin(0.1f * radius);
+    things.push_back({"rod", std::move(rod), {0.04f, 0.3f, 0}, {0.04f, 0.3f, 0.13f}});
+  }
+  for (const float radius : {0.02f, 0.1f}) {
+    auto needle = std::make_unique<btConeShapeZ>(radius, 2.0f);
+    needle->setMargin(0.01f * radius);
+    things.push_back({"lying needle", std::move(needle), {0.04f, 0.3f, 0}, {0.04f, 0.3f, 0.33f}});
+  }
   for (Thing& thing : things) {
     ContactWorld w;
     w.add_floor();
