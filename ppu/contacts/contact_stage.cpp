@@ -180,7 +180,7 @@ void ContactStage::hold_by_own_cells(Group& group) {
   for (spu::SolveContact& contact : group.solved.contacts) ppu::hold_by_own_cells(contact, a, b);
 }
 
-/// What the worker was asked for is there already.
+/// Waits for what the worker was asked for.
 void ContactStage::find_among_bodies(float step) {
   const std::span<const FoundContacts> found =
       asked_.empty() ? std::span<const FoundContacts>() : worker->found();
@@ -197,7 +197,6 @@ void ContactStage::find_among_bodies(float step) {
       find_here(group, step);
     if (group.size() == 0) --group_count_;
   }
-  pair_groups_ = group_count_;
 }
 
 void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
@@ -403,8 +402,13 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
         asked_.emplace_back(a, b);
     if (!asked_.empty()) worker->find(asked_);
   }
-  find_among_bodies(step);
+  // While the worker looks at pairs. In the order of groups these come behind pairs all the same.
   find_with_rigid(bodies, obstacles, rigids, step);
+  const std::size_t rigid_groups = group_count_;
+  find_among_bodies(step);
+  pair_groups_ = group_count_ - rigid_groups;
+  const auto groups = groups_.begin();
+  std::rotate(groups, groups + std::ptrdiff_t(rigid_groups), groups + std::ptrdiff_t(group_count_));
   put_in_order();
   hold_pushes_of_crushed_bodies();
   if (group_count_ != 0 || has_attachments()) {

@@ -29,6 +29,7 @@ class CandidatePairs {
     Eigen::Vector3d apart{
         0, 0, 0};       ///< by how much the second body has moved against the first, when they were found
     double spread = 0;  ///< and the lengths of both
+    bool overflows = false;  ///< the kernel had no room for all that it found, once
   };
 
   /// There are other bodies than before: nothing is known.

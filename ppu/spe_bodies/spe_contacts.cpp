@@ -18,8 +18,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindEnd);
-constexpr std::size_t kMostPairs = 4096;                     // that are looked at by the SPEs in a step
-constexpr std::uint32_t kNoTask = ~0u, kByCaller = ~0u - 1;  // of a pair, in place of a task's number
+constexpr std::size_t kMostPairs = 4096;  // that are looked at by the SPEs in a step
 constexpr std::size_t kContactsInRoom = 2 * ContactWorker::kMostContacts;  // of one buffer
 constexpr std::size_t kJobsPerSpe = 4;  // of finding: some pairs take longer than others
 
@@ -43,7 +42,8 @@ SpeContacts::SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const Conta
       jobs_(jobs),
       contact_find_(jobs.load(kernels.contact_find)),
       contact_solve_(jobs.load(kernels.contact_solve)),
-      attachments_(memory, jobs, kernels.attach) {}
+      attachments_(memory, jobs, kernels.attach),
+      parts_(memory) {}
 
 SpeContacts::~SpeContacts() = default;
 
@@ -200,47 +200,75 @@ spu::FindTask SpeContacts::find_task(std::uint32_t a, std::uint32_t b) {
   return task;
 }
 
+/// Appends the tasks of a pair.
+SpeContacts::Asked SpeContacts::ask(std::uint32_t a, std::uint32_t b) {
+  // What two bodies have in common at the end is less than what they have on their ways.
+  if (!(end_boxes_[a].low.array() <= end_boxes_[b].high.array()).all() ||
+      !(end_boxes_[b].low.array() <= end_boxes_[a].high.array()).all())
+    return {};
+  spu::FindTask task = find_task(a, b);
+  const bool with_cracks = a == b && !bodies_[a].model->crack_sides.empty();  // the kernel knows none
+  if (tasks_.size() >= kMostPairs || with_cracks) return {.by_caller = true};
+  if (spu::find_bytes(task) > spu::kFindMaxBytes) return ask_in_parts({a, b}, task);
+  const CandidatePairs::Known& known =
+      pairs_.of({a, b}, std::min(bodies_[a].spacing(), bodies_[b].spacing()));
+  if (known.overflows) return ask_in_parts({a, b}, task);
+  if (known.count == 0) return {};
+  task.margin = known.margin;
+  task.candidate_count = known.count;
+  known_of_task_.push_back(static_cast<std::uint32_t>(pairs_.known().size() - 1));
+  tasks_.push_back(task);
+  return {.first = static_cast<std::uint32_t>(tasks_.size() - 1), .count = 1};
+}
+
+FindParts::Body SpeContacts::parts_body(std::uint32_t i) const {
+  const Model& model = *places_[i].model;
+  const std::size_t count = bodies_[i].ends.size();
+  const spu::FindEnd* const ends = state_.data() + ends_of(i);
+  return {.cells = model.cells.span(),
+          .groups = model.groups.span(),
+          .boxes = reinterpret_cast<const spu::FindBoxes*>(state_.data() + places_[i].state),
+          .ends = {ends, count},
+          .begins = {reinterpret_cast<const spu::FindBegin*>(ends + count), count}};
+}
+
+SpeContacts::Asked SpeContacts::ask_in_parts(const Pair& pair, const spu::FindTask& whole) {
+  const auto [a, b] = pair;
+  const std::size_t first_part = parts_.size();
+  const Bounds<3> common{Vector3f(whole.low[0], whole.low[1], whole.low[2]),
+                         Vector3f(whole.high[0], whole.high[1], whole.high[2])};
+  if (a == b || !parts_.add(parts_body(a), parts_body(b), common)) return {.by_caller = true};
+  const std::size_t count = parts_.size() - first_part, first = tasks_.size();
+  tasks_.resize(first + count, whole);
+  known_of_task_.resize(first + count, kWhole);
+  return {.first = static_cast<std::uint32_t>(first),
+          .count = static_cast<std::uint32_t>(count),
+          .first_part = static_cast<std::uint32_t>(first_part)};
+}
+
 void SpeContacts::find(std::span<const Pair> pairs) {
   tasks_.clear();
-  task_of_.clear();
+  asked_.clear();
   known_of_task_.clear();
+  parts_.clear();
   pairs_.begin_step();
-  for (const auto& [a, b] : pairs) {
-    // What two bodies have in common at the end is less than what they have on their ways.
-    if (!(end_boxes_[a].low.array() <= end_boxes_[b].high.array()).all() ||
-        !(end_boxes_[b].low.array() <= end_boxes_[a].high.array()).all()) {
-      task_of_.push_back(kNoTask);
-      continue;
-    }
-    spu::FindTask task = find_task(a, b);
-    const bool with_cracks = a == b && !bodies_[a].model->crack_sides.empty();  // the kernel knows none
-    if (spu::find_bytes(task) > spu::kFindMaxBytes || tasks_.size() == kMostPairs || with_cracks) {
-      task_of_.push_back(kByCaller);
-      continue;
-    }
-    const CandidatePairs::Known& known =
-        pairs_.of({a, b}, std::min(bodies_[a].spacing(), bodies_[b].spacing()));
-    if (known.count == 0) {
-      task_of_.push_back(kNoTask);
-      continue;
-    }
-    task.margin = known.margin;
-    task.candidate_count = known.count;
-    known_of_task_.push_back(static_cast<std::uint32_t>(pairs_.known().size() - 1));
-    task_of_.push_back(static_cast<std::uint32_t>(tasks_.size()));
-    tasks_.push_back(task);
-  }
+  for (const auto& [a, b] : pairs) asked_.push_back(ask(a, b));
   pairs_.end_step();
+  parts_.write();
+  for (const Asked& asked : asked_)
+    for (std::uint32_t i = 0; i < asked.count && asked.first_part != kWhole; ++i)
+      parts_.describe(asked.first_part + i, tasks_[asked.first + i].a, tasks_[asked.first + i].b);
   const std::size_t tasks = tasks_.size();
   make_room_for_candidates();
   make_room(memory_, "contacts found", contacts_, tasks * spu::kFindMaxContacts);
   make_room(memory_, "tasks of finding contacts", find_tasks_, tasks);
   make_room(memory_, "results of finding contacts", results_, tasks);
   for (std::size_t i = 0; i < tasks; ++i) {
-    const CandidatePairs::Known& known = pairs_.known()[known_of_task_[i]];
     tasks_[i].contacts_ea = contacts_.ea(i * spu::kFindMaxContacts).value;
-    if (known.margin > 0)
-      tasks_[i].candidates_ea = candidates_.ea(known.slot * std::size_t{spu::kFindMaxCandidates}).value;
+    if (tasks_[i].margin > 0) {
+      const std::size_t slot = pairs_.known()[known_of_task_[i]].slot;
+      tasks_[i].candidates_ea = candidates_.ea(slot * spu::kFindMaxCandidates).value;
+    }
     find_tasks_[i] = tasks_[i];
   }
   const std::size_t most_jobs = kJobsPerSpe * static_cast<std::size_t>(jobs_.spes());
@@ -273,19 +301,51 @@ std::span<const FoundContacts> SpeContacts::found() {
     finding_->wait();
     check_jobs(*finding_);
   }
-  for (std::size_t i = 0; i < tasks_.size(); ++i)
-    pairs_.known()[known_of_task_[i]].count = results_[i].candidate_count;
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    if (known_of_task_[i] == kWhole) continue;
+    CandidatePairs::Known& known = pairs_.known()[known_of_task_[i]];
+    known.count = results_[i].candidate_count;
+    known.overflows = results_[i].overflow != 0;
+  }
   found_.clear();
-  for (const std::uint32_t number : task_of_) {
+  for (const Asked& asked : asked_) {
+    if (asked.first_part != kWhole) {
+      found_.push_back(found_in_parts(asked));
+      continue;
+    }
     FoundContacts& found = found_.emplace_back();
-    found.by_caller = number == kByCaller;
-    if (number == kByCaller || number == kNoTask) continue;
-    const spu::FindResult& result = results_[number];
+    found.by_caller = asked.by_caller;
+    if (asked.count == 0) continue;
+    const spu::FindResult& result = results_[asked.first];
     found.by_caller = result.overflow != 0;
-    found.contacts = contacts_.span().subspan(std::size_t{number} * spu::kFindMaxContacts, result.count);
+    found.contacts = contacts_.span().subspan(std::size_t{asked.first} * spu::kFindMaxContacts, result.count);
     found.pushes = result.pushes != 0;
   }
   return found_;
+}
+
+/// One part's contacts behind those of another.
+FoundContacts SpeContacts::found_in_parts(const Asked& asked) {
+  FoundContacts found;
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < asked.count; ++i) {
+    const spu::FindResult& result = results_[asked.first + i];
+    found.by_caller = found.by_caller || result.overflow != 0;
+    found.pushes = found.pushes || result.pushes != 0;
+    count += result.count;
+  }
+  found.by_caller = found.by_caller || count > kMostContacts;
+  if (found.by_caller || count == 0) return found;
+  found.contacts = room(count);
+  auto next = found.contacts.begin();
+  for (std::uint32_t i = 0; i < asked.count; ++i) {
+    const std::size_t first = std::size_t{asked.first + i} * spu::kFindMaxContacts;
+    for (spu::SolveContact& contact : contacts_.span().subspan(first, results_[asked.first + i].count)) {
+      *next = contact;
+      parts_.restore(asked.first_part + i, *next++);
+    }
+  }
+  return found;
 }
 
 std::span<spu::SolveContact> SpeContacts::room(std::size_t contacts) {

@@ -15,6 +15,7 @@
 #include "contact_solve_job.h"
 #include "ppu/contacts/contact_worker.h"
 #include "ppu/spe_bodies/candidate_pairs.h"
+#include "ppu/spe_bodies/find_parts.h"
 #include "ppu/spe_bodies/spe_attachments.h"
 #include "softcell/dma/buffer.h"
 #include "softcell/jobs/job_system.h"
@@ -62,6 +63,13 @@ class SpeContacts final : public ContactWorker {
     const Model* model = nullptr;  ///< null: the body is too large
     std::size_t state = 0, velocities = 0, particles = 0;
   };
+  /// Of find_tasks_: those of a pair.
+  struct Asked {
+    std::uint32_t first = 0, count = 0;  ///< 0: the two cannot touch
+    std::uint32_t first_part = kWhole;   ///< of parts_, one for each task
+    bool by_caller = false;
+  };
+  static constexpr std::uint32_t kWhole = ~0u;
   const Model* model_of(const ContactModel& contact);
   /// Where its SolveTask::start_ea begins in velocities_, and its ends in state_.
   std::size_t start_of(std::uint32_t body) const;
@@ -72,6 +80,10 @@ class SpeContacts final : public ContactWorker {
   spu::FindBody find_body(std::uint32_t body);
   void make_room_for_candidates();
   spu::FindTask find_task(std::uint32_t a, std::uint32_t b);
+  Asked ask(std::uint32_t a, std::uint32_t b);
+  Asked ask_in_parts(const Pair& pair, const spu::FindTask& whole);
+  FindParts::Body parts_body(std::uint32_t body) const;
+  FoundContacts found_in_parts(const Asked& asked);
   dma::EffectiveAddress ea_of(const spu::SolveContact* contact) const;
   dma::EffectiveAddress ea_of(const spu::SolveRigid* rigid) const;
   void write_tasks(const SolveGroup& group);
@@ -101,9 +113,11 @@ class SpeContacts final : public ContactWorker {
   std::vector<dma::Buffer<spu::SolveContact>> rooms_;  // for contacts that others have found
   std::size_t room_ = 0, used_ = 0;                    // the one that is being filled, and how far
   dma::Buffer<spu::SolveRigid> rigids_;
+  FindParts parts_;
   std::vector<spu::FindTask> tasks_;
-  std::vector<std::uint32_t> task_of_;        // of each pair
-  std::vector<std::uint32_t> known_of_task_;  // which of pairs_.known() a task is about
+  std::vector<Asked> asked_;  // of each pair
+  std::vector<std::uint32_t>
+      known_of_task_;  // which of pairs_.known() a task is about; kWhole: none, as it is a part's
   std::vector<FoundContacts> found_;
 
   dma::Buffer<spu::SolveTask> solve_tasks_;

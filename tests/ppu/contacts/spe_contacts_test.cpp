@@ -65,59 +65,113 @@ std::vector<SoftContact> found_by_ppu(const ContactBody& a, const ContactBody& b
 
 Vector3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
+/// Each contact of the one is one of the other, but for those that are as near as contacts may be.
+void expect_what_the_ppu_finds(const FoundContacts& found, const ContactBody& a, const ContactBody& b) {
+  ASSERT_FALSE(found.by_caller);
+  const std::vector<SoftContact> expected = found_by_ppu(a, b);
+  int missing = 0;
+  for (const SoftContact& contact : expected) {
+    const auto same = [&](const spu::SolveContact& other) {
+      return (vector_of(other.point) - contact.point).norm() < 1e-4f &&
+             (vector_of(other.normal) - contact.normal).norm() < 1e-2f &&
+             std::abs(other.least_velocity - contact.least_velocity) < 0.02f &&
+             other.cell_a == contact.a.cell && other.cell_b == contact.b.cell &&
+             std::abs(other.push_velocity * kStep) <= 0.0201f * 0.15f;
+    };
+    missing += std::none_of(found.contacts.begin(), found.contacts.end(), same);
+  }
+  EXPECT_LE(missing, 1 + static_cast<int>(expected.size()) / 20) << "of " << expected.size();
+  EXPECT_NEAR(static_cast<double>(found.contacts.size()), static_cast<double>(expected.size()),
+              1 + static_cast<double>(expected.size()) / 20);
+  bool pushes = false;
+  for (const spu::SolveContact& contact : found.contacts) {
+    EXPECT_NEAR(vector_of(contact.normal).norm(), 1, 1e-5f);
+    float mobility = 0;
+    for (int k = 0; k < 8; ++k)
+      mobility += contact.a.weight[k] * contact.a.weight[k] + contact.b.weight[k] * contact.b.weight[k];
+    EXPECT_NEAR(contact.mass * mobility, 1, 1e-5f);
+    pushes = pushes || contact.push_velocity > 0;
+  }
+  EXPECT_EQ(found.pushes, pushes);
+}
+
+/// A worker of its own SPEs.
+struct Worker {
+  SpeRuntime spes{{.spes = 2}};
+  SpeContacts contacts{spes.memory(),
+                       spes.jobs(),
+                       {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")}};
+
+  FoundContacts found(const std::vector<ContactBody>& bodies) {
+    contacts.begin(bodies, kStep);
+    EXPECT_TRUE(contacts.holds(0) && contacts.holds(1));
+    const ContactWorker::Pair pair{0, 1};
+    contacts.find({&pair, 1});
+    return contacts.found()[0];
+  }
+};
+
 class SpeContactsFind : public ::testing::TestWithParam<float> {};
 
-/// Each contact of the one is one of the other, but for those that are as near as contacts may be.
 TEST_P(SpeContactsFind, WhatThePpuFinds) {
   const ContactModel penguin(make_soft_body_model(make_penguin(0.9f), settings_of(0.15f)));
   const ContactModel ball(make_soft_body_model(make_sphere(0.35f, 16), settings_of(0.12f)));
-  SpeRuntime spes({.spes = 2});
-  SpeContacts worker(spes.memory(), spes.jobs(),
-                     {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
-  int total = 0;
+  Worker worker;
+  std::size_t total = 0;
   for (int i = 0; i < 12; ++i) {
     const float angle = 0.5f * static_cast<float>(i);
     const Vector3f apart = 0.42f * Vector3f(std::cos(angle), 0.4f * std::sin(2 * angle), std::sin(angle));
     const PlacedBody first(penguin, {3, 2, 1}, {0.3f, 0, 0}, GetParam());
     const PlacedBody second(i % 2 == 0 ? penguin : ball, Vector3f(3, 2, 1) + apart, -3 * apart, -GetParam());
+    SCOPED_TRACE(i);
     const std::vector<ContactBody> bodies{first.body, second.body};
-    worker.begin(bodies, kStep);
-    const ContactWorker::Pair pair{0, 1};
-    worker.find({&pair, 1});
-    const FoundContacts found = worker.found()[0];
-    ASSERT_FALSE(found.by_caller);
-    const std::vector<SoftContact> expected = found_by_ppu(bodies[0], bodies[1]);
-    int missing = 0;
-    for (const SoftContact& contact : expected) {
-      const auto same = [&](const spu::SolveContact& other) {
-        return (vector_of(other.point) - contact.point).norm() < 1e-4f &&
-               (vector_of(other.normal) - contact.normal).norm() < 1e-2f &&
-               std::abs(other.least_velocity - contact.least_velocity) < 0.02f &&
-               other.cell_a == contact.a.cell && other.cell_b == contact.b.cell &&
-               std::abs(other.push_velocity * kStep) <= 0.0201f * 0.15f;
-      };
-      missing += std::none_of(found.contacts.begin(), found.contacts.end(), same);
-    }
-    total += static_cast<int>(expected.size());
-    EXPECT_LE(missing, 1 + static_cast<int>(expected.size()) / 20) << "of " << expected.size() << " at " << i;
-    EXPECT_NEAR(static_cast<double>(found.contacts.size()), static_cast<double>(expected.size()),
-                1 + static_cast<double>(expected.size()) / 20)
-        << i;
-    bool pushes = false;
-    for (const spu::SolveContact& contact : found.contacts) {
-      EXPECT_NEAR(vector_of(contact.normal).norm(), 1, 1e-5f);
-      float mobility = 0;
-      for (int k = 0; k < 8; ++k)
-        mobility += contact.a.weight[k] * contact.a.weight[k] + contact.b.weight[k] * contact.b.weight[k];
-      EXPECT_NEAR(contact.mass * mobility, 1, 1e-5f);
-      pushes = pushes || contact.push_velocity > 0;
-    }
-    EXPECT_EQ(found.pushes, pushes);
+    const FoundContacts found = worker.found(bodies);
+    expect_what_the_ppu_finds(found, bodies[0], bodies[1]);
+    total += found.contacts.size();
   }
-  EXPECT_GT(total, 200);
+  EXPECT_GT(total, 200u);
+}
+
+/// Two models of 100 KB and more each, which only some cells of are near each other.
+TEST_P(SpeContactsFind, WhatThePpuFindsOfBodiesThatDoNotFitIntoALocalStoreTogether) {
+  const ContactModel ball(make_soft_body_model(make_sphere(0.54f, 24), settings_of(0.12f)));
+  const ContactModel box(make_soft_body_model(make_box({1.1f, 0.9f, 0.9f}, 0.12f), settings_of(0.12f)));
+  for (const ContactModel* const model : {&ball, &box})
+    ASSERT_GT(model->lattice().cells.size() * sizeof(spu::FindCell), spu::kFindMaxBytes / 2);
+  Worker worker;
+  std::size_t total = 0;
+  for (int i = 0; i < 6; ++i) {
+    const float angle = static_cast<float>(i);
+    const Vector3f apart = 0.87f * Vector3f(std::cos(angle), 0.3f * std::sin(2 * angle), std::sin(angle));
+    const PlacedBody first(ball, {3, 2, 1}, {0.3f, 0, 0}, GetParam() / 2);
+    const PlacedBody second(box, Vector3f(3, 2, 1) + apart, -2 * apart, -GetParam() / 2);
+    SCOPED_TRACE(i);
+    const std::vector<ContactBody> bodies{first.body, second.body};
+    const FoundContacts found = worker.found(bodies);
+    expect_what_the_ppu_finds(found, bodies[0], bodies[1]);
+    total += found.contacts.size();
+  }
+  EXPECT_GT(total, 300u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bent, SpeContactsFind, ::testing::Values(0.0f, 0.5f, 1.5f));
+
+/// Two bodies in each other, at more points than the kernel has room for: the PPU does it once, and then it is done in parts.
+TEST(SpeContacts, BodiesThatTouchAtManyPointsAreLookedAtInParts) {
+  const ContactModel ball(make_soft_body_model(make_sphere(0.35f, 24), settings_of(0.1f)));
+  Worker worker;
+  const PlacedBody first(ball, {0, 0, 0}, {0.1f, 0, 0}, 0), second(ball, {0.08f, 0.02f, 0}, {-0.1f, 0, 0}, 0);
+  const std::vector<ContactBody> bodies{first.body, second.body};
+  ASSERT_GT(found_by_ppu(bodies[0], bodies[1]).size(), spu::kFindMaxContacts);
+  EXPECT_TRUE(worker.found(bodies).by_caller);
+  const FoundContacts found = worker.found(bodies);
+  expect_what_the_ppu_finds(found, bodies[0], bodies[1]);
+  EXPECT_GT(found.contacts.size(), spu::kFindMaxContacts);
+  // Apart, and back again: it is not known any more.
+  const PlacedBody away(ball, {5, 0, 0}, {0, 0, 0}, 0);
+  EXPECT_TRUE(worker.found({first.body, away.body}).contacts.empty());
+  EXPECT_TRUE(worker.found(bodies).by_caller);
+}
 
 /// A long body bent until its ends meet.
 TEST(SpeContacts, ABodyMeetsItself) {
@@ -132,9 +186,8 @@ TEST(SpeContacts, ABodyMeetsItself) {
   ring.body.ends.assign(ring.positions.begin(), ring.positions.end());
   ring.body.box = {Vector3f::Constant(-1), Vector3f::Constant(1)};
   EXPECT_TRUE(may_touch_itself(ring.body));
-  SpeRuntime spes({.spes = 1});
-  SpeContacts worker(spes.memory(), spes.jobs(),
-                     {spes.kernel("contact_find"), spes.kernel("contact_solve"), spes.kernel("attach")});
+  Worker its;
+  SpeContacts& worker = its.contacts;
   const std::vector<ContactBody> bodies{ring.body};
   worker.begin(bodies, kStep);
   const ContactWorker::Pair itself{0, 0};

@@ -1,0 +1,237 @@
+#include "ppu/spe_bodies/find_parts.h"
+
+#include <algorithm>
+
+#include "ppu/spe_bodies/contact_records.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr std::uint16_t kNone = 0xFFFF;
+constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindEnd);
+
+Bounds<3> box_of(const spu::FindBoxes* boxes, std::size_t cell) {
+  const spu::FindBoxes& four = boxes[cell / 4];
+  const std::size_t lane = cell % 4;
+  return {{four.low_x[lane], four.low_y[lane], four.low_z[lane]},
+          {four.high_x[lane], four.high_y[lane], four.high_z[lane]}};
+}
+
+/// The cells whose boxes have a point in common with `box`, ascending.
+void find_near(const FindParts::Body& body, const Bounds<3>& box, std::vector<std::uint16_t>& near) {
+  using Four = Eigen::Map<const Eigen::Array4f>;
+  near.clear();
+  for (std::size_t first = 0; first < body.cells.size(); first += 4) {
+    const spu::FindBoxes& four = body.boxes[first / 4];
+    const Eigen::Array4f apart = (Four(four.low_x) - box.high.x())
+                                     .max(box.low.x() - Four(four.high_x))
+                                     .max(Four(four.low_y) - box.high.y())
+                                     .max(box.low.y() - Four(four.high_y))
+                                     .max(Four(four.low_z) - box.high.z())
+                                     .max(box.low.z() - Four(four.high_z));
+    if (apart.minCoeff() > 0) continue;
+    const std::size_t count = std::min<std::size_t>(4, body.cells.size() - first);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      if (apart[static_cast<Eigen::Index>(lane)] <= 0)
+        near.push_back(static_cast<std::uint16_t>(first + lane));
+  }
+}
+
+Bounds<3> box_around(const FindParts::Body& body, std::span<const std::uint16_t> cells) {
+  Bounds<3> around = box_of(body.boxes, cells[0]);
+  for (const std::uint16_t cell : cells.subspan(1)) {
+    const Bounds<3> box = box_of(body.boxes, cell);
+    around.low = around.low.cwiseMin(box.low);
+    around.high = around.high.cwiseMax(box.high);
+  }
+  return around;
+}
+
+Bounds<3> in_common(const Bounds<3>& a, const Bounds<3>& b) {
+  return {a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)};
+}
+
+std::size_t points_of(const FindParts::Body& body, std::uint16_t cell) {
+  std::size_t points = 0;
+  for (const spu::FindGroup& group :
+       body.groups.subspan(body.cells[cell].first_group, body.cells[cell].group_count))
+    for (const float allowance : group.allowance) points += allowance < spu::kFindNoPoint / 2 ? 1 : 0;
+  return points;
+}
+
+/// How many of some cells have no more points than a part may have, as each has one contact at most.
+std::size_t first_ones(const FindParts::Body& body, std::span<const std::uint16_t> cells) {
+  std::size_t count = 0, points = 0;
+  for (; count < cells.size() && count < spu::kFindMaxNear; ++count) {
+    points += points_of(body, cells[count]);
+    if (points > spu::kFindMaxContacts) break;
+  }
+  return count;
+}
+
+}  // namespace
+
+void FindParts::clear() {
+  parts_.clear();
+  cells_.clear();
+  particles_.clear();
+}
+
+bool FindParts::add(const Body& a, const Body& b, const Bounds<3>& common) {
+  const std::size_t parts = parts_.size(), cells = cells_.size(), particles = particles_.size();
+  if (add_points_of(a, b, true, common) && add_points_of(b, a, false, common)) return true;
+  parts_.resize(parts);
+  cells_.resize(cells);
+  particles_.resize(particles);
+  return false;
+}
+
+bool FindParts::add_points_of(const Body& mine, const Body& other, bool mine_is_a, const Bounds<3>& common) {
+  find_near(other, common, near_);
+  if (near_.empty()) return true;
+  find_near(mine, in_common(common, box_around(other, near_)), mine_);
+  std::erase_if(mine_, [&](std::uint16_t cell) { return mine.cells[cell].group_count == 0; });
+  std::span<const std::uint16_t> left = mine_;
+  while (!left.empty()) {
+    std::size_t count = first_ones(mine, left);
+    const std::size_t cells = cells_.size(), particles = particles_.size();
+    for (;; count /= 2) {
+      if (count == 0) return false;
+      find_near(other, box_around(mine, left.first(count)), near_);
+      if (near_.empty()) break;
+      if (near_.size() > spu::kFindMaxNear) continue;
+      const Selection points = select(mine, left.first(count), true), others = select(other, near_, false);
+      if (bytes_of(points) + bytes_of(others) <= spu::kFindMaxBytes) {
+        parts_.push_back(mine_is_a ? Part{points, others} : Part{others, points});
+        break;
+      }
+      cells_.resize(cells);
+      particles_.resize(particles);
+    }
+    left = left.subspan(count);
+  }
+  return true;
+}
+
+FindParts::Selection FindParts::select(const Body& body, std::span<const std::uint16_t> cells,
+                                       bool with_points) {
+  Selection selection;
+  selection.body = body;
+  selection.with_points = with_points;
+  selection.first_cell = cells_.size();
+  selection.cell_count = cells.size();
+  selection.first_particle = particles_.size();
+  cells_.insert(cells_.end(), cells.begin(), cells.end());
+  number_.assign(body.ends.size(), kNone);
+  for (const std::uint16_t cell : cells) {
+    if (with_points) selection.group_count += body.cells[cell].group_count;
+    for (const std::uint16_t particle : body.cells[cell].corner) {
+      if (number_[particle] != kNone) continue;
+      number_[particle] = 0;
+      particles_.push_back(particle);
+    }
+  }
+  selection.particle_count = particles_.size() - selection.first_particle;
+  return selection;
+}
+
+/// Where their places in main memory are makes no difference.
+std::uint32_t FindParts::bytes_of(const Selection& selection) {
+  spu::FindBody body{};
+  body.cell_count = static_cast<std::uint32_t>(selection.cell_count);
+  body.group_count = static_cast<std::uint32_t>(selection.group_count);
+  body.particle_count = static_cast<std::uint32_t>(selection.particle_count);
+  return spu::find_model_bytes(body) + spu::find_state_bytes(body);
+}
+
+void FindParts::write() {
+  std::size_t cells = 0, groups = 0, state = 0;
+  for (Part& part : parts_) {
+    for (Selection* const selection : {&part.a, &part.b}) {
+      selection->cells_at = cells;
+      selection->groups_at = groups;
+      selection->state_at = state;
+      cells += selection->cell_count;
+      groups += selection->group_count;
+      state += (selection->cell_count + 3) / 4 * kQuadsOfBoxes + 2 * selection->particle_count;
+    }
+  }
+  make_room(memory_, "cells of parts in contact", part_cells_, cells);
+  make_room(memory_, "points of parts in contact", part_groups_, groups);
+  make_room(memory_, "parts in contact", part_state_, state);
+  for (const Part& part : parts_) write(part.a), write(part.b);
+}
+
+void FindParts::write(const Selection& selection) {
+  const Body& body = selection.body;
+  number_.assign(body.ends.size(), kNone);
+  const std::size_t groups_of_boxes = (selection.cell_count + 3) / 4;
+  auto* const boxes = reinterpret_cast<spu::FindBoxes*>(part_state_.data() + selection.state_at);
+  spu::FindEnd* const ends = part_state_.data() + selection.state_at + groups_of_boxes * kQuadsOfBoxes;
+  auto* const begins = reinterpret_cast<spu::FindBegin*>(ends + selection.particle_count);
+  for (std::size_t p = 0; p < selection.particle_count; ++p) {
+    const std::uint16_t particle = particles_[selection.first_particle + p];
+    number_[particle] = static_cast<std::uint16_t>(p);
+    ends[p] = body.ends[particle];
+    begins[p] = body.begins[particle];
+  }
+  spu::FindGroup* group = part_groups_.data() + selection.groups_at;
+  std::size_t groups = 0;
+  for (std::size_t c = 0; c < 4 * groups_of_boxes; ++c) {
+    const std::uint16_t number = cells_[selection.first_cell + std::min(c, selection.cell_count - 1)];
+    const Bounds<3> box = box_of(body.boxes, number);
+    spu::FindBoxes& four = boxes[c / 4];
+    const std::size_t lane = c % 4;
+    four.low_x[lane] = box.low.x(), four.low_y[lane] = box.low.y(), four.low_z[lane] = box.low.z();
+    four.high_x[lane] = box.high.x(), four.high_y[lane] = box.high.y(), four.high_z[lane] = box.high.z();
+    if (c >= selection.cell_count) continue;
+    spu::FindCell& cell = part_cells_[selection.cells_at + c];
+    cell = body.cells[number];
+    for (std::uint16_t& corner : cell.corner) corner = number_[corner];
+    const std::uint16_t first = cell.first_group;
+    cell.first_group = static_cast<std::uint16_t>(groups);
+    if (!selection.with_points) cell.group_count = 0;
+    group = std::copy_n(body.groups.begin() + first, cell.group_count, group);
+    groups += cell.group_count;
+  }
+}
+
+spu::FindBody FindParts::described(const Selection& selection) const {
+  spu::FindBody body{};
+  body.cells_ea = part_cells_.ea(selection.cells_at).value;
+  if (selection.group_count != 0) body.groups_ea = part_groups_.ea(selection.groups_at).value;
+  body.state_ea = part_state_.ea(selection.state_at).value;
+  body.cell_count = static_cast<std::uint32_t>(selection.cell_count);
+  body.group_count = static_cast<std::uint32_t>(selection.group_count);
+  body.particle_count = static_cast<std::uint32_t>(selection.particle_count);
+  return body;
+}
+
+void FindParts::describe(std::size_t part, spu::FindBody& a, spu::FindBody& b) const {
+  SC_ASSERT(part < parts_.size(), "part {} of {}", part, parts_.size());
+  const auto set = [](spu::FindBody& body, const spu::FindBody& now) {
+    body.cells_ea = now.cells_ea, body.groups_ea = now.groups_ea, body.state_ea = now.state_ea;
+    body.cell_count = now.cell_count, body.group_count = now.group_count;
+    body.particle_count = now.particle_count;
+  };
+  set(a, described(parts_[part].a));
+  set(b, described(parts_[part].b));
+}
+
+void FindParts::restore(std::size_t part, spu::SolveContact& contact) const {
+  SC_ASSERT(part < parts_.size(), "a contact of part {} of {}", part, parts_.size());
+  const auto restore_side = [&](const Selection& selection, spu::SolveAnchor& anchor, std::uint16_t& cell) {
+    // The slot of zeros is behind all particles.
+    for (std::uint16_t& particle : anchor.particle)
+      particle = particle < selection.particle_count ? particles_[selection.first_particle + particle]
+                                                     : static_cast<std::uint16_t>(selection.body.ends.size());
+    if (cell != spu::kSolveNoCell) cell = cells_[selection.first_cell + cell];
+  };
+  restore_side(parts_[part].a, contact.a, contact.cell_a);
+  restore_side(parts_[part].b, contact.b, contact.cell_b);
+}
+
+}  // namespace softcell::ppu

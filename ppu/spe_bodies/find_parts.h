@@ -1,0 +1,83 @@
+#pragma once
+// Pairs of bodies that do not fit into a local store together, or touch at more points than the kernel contact_find has room for.
+//
+//     body a  [ ] [ ] [#] [#] [ ]      cells of a that are near b, some at a time, with their points;
+//     body b      [#] [#] [#] [ ]      and of b those that are near these, without points. Then the other way round.
+//
+// Both are written as small bodies of their own, which the kernel takes for whole ones. Each point is in one part only.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact_find_job.h"
+#include "contact_solve_job.h"
+#include "softcell/dma/buffer.h"
+#include "softcell/soft_bodies/lattice.h"
+
+namespace softcell::ppu {
+
+/// Used by one thread. Allocates when there are more parts than ever before.
+class FindParts {
+ public:
+  /// `memory` outlives this.
+  explicit FindParts(dma::AddressSpace& memory) : memory_(memory) {}
+
+  /// What a body has in main memory; it stays there until write().
+  struct Body {
+    std::span<const spu::FindCell> cells;
+    std::span<const spu::FindGroup> groups;
+    const spu::FindBoxes* boxes = nullptr;  ///< of four cells each
+    std::span<const spu::FindEnd> ends;
+    std::span<const spu::FindBegin> begins;
+  };
+
+  /// Forgets all parts.
+  void clear();
+
+  /// Cuts two bodies, and appends parts.
+  /// @param common  metres: the box that the bodies' boxes have in common
+  /// @return  false: even a single cell is near too many others; then nothing is appended
+  bool add(const Body& a, const Body& b, const Bounds<3>& common);
+
+  std::size_t size() const { return parts_.size(); }
+
+  /// All parts to main memory.
+  /// @throws std::runtime_error  it is full.
+  void write();
+  /// Sets where a part's cells, groups and particles are, and how many. @pre write() was called
+  void describe(std::size_t part, spu::FindBody& a, spu::FindBody& b) const;
+  /// Gives a contact of a part the numbers that cells and particles have in the whole bodies.
+  void restore(std::size_t part, spu::SolveContact& contact) const;
+
+ private:
+  /// Some cells of a body, and the particles at their corners.
+  struct Selection {
+    Body body;
+    bool with_points = false;
+    std::size_t first_cell = 0, cell_count = 0;          // in cells_
+    std::size_t first_particle = 0, particle_count = 0;  // in particles_
+    std::size_t group_count = 0;
+    std::size_t cells_at = 0, groups_at = 0, state_at = 0;  // in main memory
+  };
+  struct Part {
+    Selection a, b;
+  };
+
+  bool add_points_of(const Body& mine, const Body& other, bool mine_is_a, const Bounds<3>& common);
+  Selection select(const Body& body, std::span<const std::uint16_t> cells, bool with_points);
+  void write(const Selection& selection);
+  static std::uint32_t bytes_of(const Selection& selection);
+  spu::FindBody described(const Selection& selection) const;
+
+  dma::AddressSpace& memory_;
+  std::vector<Part> parts_;
+  std::vector<std::uint16_t> cells_, particles_;  // of all selections: their numbers in the bodies
+  std::vector<std::uint16_t> mine_, near_;        // of add()
+  std::vector<std::uint16_t> number_;             // of each particle of a body in a selection; kNone
+  dma::Buffer<spu::FindCell> part_cells_;
+  dma::Buffer<spu::FindGroup> part_groups_;
+  dma::Buffer<spu::FindEnd> part_state_;
+};
+
+}  // namespace softcell::ppu
