@@ -52,9 +52,9 @@ Real squared_beside(const std::array<Vector3f, 3>& triangle, const Vector3f& nor
 }
 
 /// One of an obstacle's triangles.
-class Facing {
+class ObstacleTriangle {
  public:
-  Facing(const Obstacle& obstacle, const KnownTriangles& known, std::uint32_t number)
+  ObstacleTriangle(const Obstacle& obstacle, const KnownTriangles& known, std::uint32_t number)
       : triangle_(obstacle.triangles[number]),
         face_(known.face(number)),
         box_(known.boxes().at(number)),
@@ -203,7 +203,7 @@ class ObstacleContacts {
   /// On which side of a triangle the body is as a point of it, which may have been pressed through, tells: above 0 in front.
   /// 0: the point is far from the triangle at both ends of its way, or passes beside it.
   float side_of(const KnownTriangles& triangles, const EndCells::PointAtTriangle& near) const {
-    const Facing triangle(obstacle_, triangles, near.triangle);
+    const ObstacleTriangle triangle(obstacle_, triangles, near.triangle);
     if (!triangle.has_area()) return 0;
     const float thick = kPressedThrough * body_.spacing() + obstacle_.rounding;
     const float from = triangle.height(near.from), to = triangle.height(near.to);
@@ -223,7 +223,7 @@ class ObstacleContacts {
 
   /// A mesh is wound one way or the other, closed around something or around a room: most of what is near it says on which side the body
   /// is.
-  /// @return  1 or -1, as Facing::meet() takes it
+  /// @return  1 or -1, as ObstacleTriangle::meet() takes it
   float front_of_triangles(const KnownTriangles& triangles) {
     if (obstacle_.faces_bodies || cells_.near_triangles.empty()) return 1;
     const float clear = kClearSide * body_.spacing();
@@ -243,7 +243,7 @@ class ObstacleContacts {
     find_near_triangles(triangles);
     const float front = front_of_triangles(triangles);
     for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
-      if (const auto hit = Facing(obstacle_, triangles, at.triangle)
+      if (const auto hit = ObstacleTriangle(obstacle_, triangles, at.triangle)
                                .meet({at.from, at.to}, at.inside, body_.spacing(), front))
         add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
     try_edges_of_triangles(triangles, reach);
@@ -278,7 +278,7 @@ class ObstacleContacts {
         const float share = std::min(1.0f, kDeepest * spacing / inwards.norm());
         const Vector3f deepest = way.from + share * inwards;
         for_each_meeting({way.from.cwiseMin(deepest), way.from.cwiseMax(deepest)}, [&](std::uint32_t t) {
-          if (Facing(obstacle_, triangles, t).parts(way.from, inside)) add(t);
+          if (ObstacleTriangle(obstacle_, triangles, t).parts(way.from, inside)) add(t);
         });
       });
     });

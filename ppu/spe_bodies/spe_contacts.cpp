@@ -93,6 +93,7 @@ bool SpeContacts::find_places(std::size_t& state, std::size_t& velocities) {
 }
 
 void SpeContacts::begin(std::span<const ContactBody> bodies, float step) {
+  if (finding_ != nullptr) finding_->wait();  // of a substep that failed before it asked for what was found
   bodies_ = bodies;
   step_ = step;
   room_ = used_ = 0;
