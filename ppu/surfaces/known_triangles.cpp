@@ -16,7 +16,8 @@ namespace {
 /// Both are lists of floats without gaps.
 template <typename T>
 bool are_same(const std::vector<T>& known, std::span<const T> now) {
-  return known.size() == now.size() && std::memcmp(known.data(), now.data(), now.size_bytes()) == 0;
+  if (known.size() != now.size()) return false;
+  return now.empty() || std::memcmp(known.data(), now.data(), now.size_bytes()) == 0;
 }
 
 }  // namespace
