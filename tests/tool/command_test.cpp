@@ -891,6 +891,19 @@ TEST(Command, ReplacesTheRecordingThatItReplays) {
   EXPECT_EQ(files_in(folder.path()), std::set<std::string>{"run.rec"});
 }
 
+/// Bodies that have not moved are not skinned again: then a vertex would take less than a tenth of a nanosecond.
+TEST(Command, ABenchmarkOfSkinningSkins) {
+  const ScratchFolder folder;
+  const std::string json = folder / "bench.json";
+  const CommandResult run = run_softcell("bench --rounds 3 --filter '^skin/sphere/' --json " + json);
+  EXPECT_EQ(run.status, 0) << run.output;
+  std::map<std::string, double> least;
+  for (const auto& entry : read_json(json))
+    least[entry["name"].get<std::string>()] = entry["ns_min"].get<double>();
+  ASSERT_EQ(least.size(), 2u);
+  EXPECT_GT(least["skin/sphere/spe"], 0.01 * least["skin/sphere/scalar"]);
+}
+
 TEST(Command, ABenchmarkThatIsInterruptedLeavesNoFile) {
   const ScratchFolder folder;
   const CommandResult run = run_shell("timeout --signal=INT 2 " SOFTCELL_COMMAND
