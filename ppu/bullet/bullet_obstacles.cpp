@@ -342,7 +342,7 @@ const BulletObstacles::Hull& BulletObstacles::hull_of(const btConvexShape& shape
     hull = {};
     std::vector<ObstacleEdge> edges;
     find_hull(points_, hull.planes, edges);
-    for (const ObstacleEdge& edge : edges) add_edge_of_hull(edge, hull.planes, hull.edges);
+    add_edges_of_hull(edges, hull.planes, hull.edges);
     hull.points = points_;
   }
   return hull;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "softcell/base/assert.h"
@@ -19,23 +20,23 @@ constexpr float kBulge = 0.06f;
 /// Of a radius, which bulges by kApart^2 / (8 radius): rounded.
 constexpr float kCellsOfRadius = 1;
 
-/// How far a hull stands out between two places of its surface, one on either side of an edge.
-/// @param at     on the edge                     @param out     outwards, of unit length
-/// @param aside  from the edge to one of the places, at a right angle to `out`
-float bulge(std::span<const Vector4f> planes, const Vector3f& at, const Vector3f& out,
-            const Vector3f& aside) {
+/// The largest cells of which half of kApart beside a place of an edge, on either side, the hull is lower than there by no more than
+/// kBulge. Each face says how low it is at least, in proportion to the cells: there is no need to search.
+/// @param at     on the edge                       @param out    outwards, of unit length
+/// @param aside  at a right angle to both, of unit length
+float cells_that_feel(std::span<const Vector4f> planes, const Vector3f& at, const Vector3f& out,
+                      const Vector3f& aside) {
   constexpr float kUpright = 0.02f;  // a face that is nearly parallel to `out` is the end of the edge
-  float sum = 0;
-  for (const Vector3f& place : {Vector3f(at + aside), Vector3f(at - aside)}) {
-    float height = 0;
-    for (const Vector4f& plane : planes) {
-      const Vector3f normal = plane.head<3>();
-      const float upright = normal.dot(out);
-      if (upright > kUpright) height = std::min(height, (plane[3] - normal.dot(place)) / upright);
-    }
-    sum -= height;
+  float cells = std::numeric_limits<float>::max();
+  for (const Vector4f& plane : planes) {
+    const Vector3f normal = plane.head<3>();
+    const float upright = normal.dot(out);
+    if (upright <= kUpright) continue;
+    const float behind = std::max(0.0f, plane[3] - normal.dot(at));  // metres from the place to the plane
+    const float sinks = kApart / 2 * std::abs(normal.dot(aside)) - kBulge * upright;
+    if (sinks * cells > behind) cells = behind / sinks;
   }
-  return sum / 2;
+  return cells;
 }
 
 }  // namespace
@@ -52,29 +53,24 @@ float cells_that_feel(const ObstacleEdge& edge, std::span<const Vector4f> planes
                 to = std::abs(normal.dot(edge.to) - plane[3]);
     if (std::max(from, to) <= tolerance) out += normal;
   }
-  const Vector3f aside = along.cross(out);
+  Vector3f aside = along.cross(out);
   if (!(aside.norm() > 0)) return 0;
   out.normalize();
-  const auto is_felt_in_cells_of = [&](float cell) {
-    const Vector3f half = kApart / 2 * cell * aside.normalized();
-    for (const float share : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f})
-      if (!(bulge(planes, edge.from + share * along, out, half) <= kBulge * cell)) return false;
-    return true;
-  };
-  // The share of a cell by which a convex hull bulges grows with the cell.
-  constexpr int kHalvings = 10;
-  float felt = std::ldexp(length, -6), not_felt = std::ldexp(length, 3);
-  if (!is_felt_in_cells_of(felt)) return 0;
-  for (int i = 0; i < kHalvings; ++i) {
-    const float between = std::sqrt(felt * not_felt);
-    (is_felt_in_cells_of(between) ? felt : not_felt) = between;
+  aside.normalize();
+  const float sharp = std::ldexp(length, -6);  // its own two faces are on it but for rounding
+  float cells = std::numeric_limits<float>::max();
+  for (const float share : {0.0f, 1.0f, 0.25f, 0.5f, 0.75f}) {
+    cells = std::min(cells, cells_that_feel(planes, edge.from + share * along, out, aside));
+    if (cells < sharp) return 0;
   }
-  return felt;
+  return cells;
 }
+
+namespace {
 
 void add_edge_of_hull(const ObstacleEdge& edge, std::span<const Vector4f> planes,
                       std::vector<ObstacleEdge>& edges) {
-  constexpr int kMostHalvings = 5;
+  constexpr int kMostHalvings = 4;
   ObstacleEdge rest = edge;
   for (int i = 0; i < kMostHalvings; ++i) {
     rest.cells_above = cells_that_feel(rest, planes);
@@ -89,6 +85,18 @@ void add_edge_of_hull(const ObstacleEdge& edge, std::span<const Vector4f> planes
     rest = is_first ? second : first;
   }
   edges.push_back(rest);
+}
+
+}  // namespace
+
+void add_edges_of_hull(std::span<const ObstacleEdge> of_hull, std::span<const Vector4f> planes,
+                       std::vector<ObstacleEdge>& edges) {
+  constexpr std::size_t kMost = 60'000;  // edges times faces: a millisecond or so, in which a frame waits
+  if (of_hull.size() * planes.size() > kMost) {
+    edges.insert(edges.end(), of_hull.begin(), of_hull.end());
+    return;
+  }
+  for (const ObstacleEdge& edge : of_hull) add_edge_of_hull(edge, planes, edges);
 }
 
 void add_axis_of_cylinder(float radius, float half_height, std::vector<ObstacleEdge>& edges) {

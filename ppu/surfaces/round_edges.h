@@ -18,9 +18,10 @@ namespace softcell::ppu {
 /// @return  0: the edge is sharp
 float cells_that_feel(const ObstacleEdge& edge, std::span<const Eigen::Vector4f> planes);
 
-/// Appends an edge of a hull, with the cells that feel it. One that gets sharper towards an end, as those of a cone do, in parts.
-void add_edge_of_hull(const ObstacleEdge& edge, std::span<const Eigen::Vector4f> planes,
-                      std::vector<ObstacleEdge>& edges);
+/// Appends the edges of a hull, with the cells that feel them. One that gets sharper towards an end, as those of a cone do, in parts.
+/// Of more than some 100 corners, where it would take too long, edges are appended as they are.
+void add_edges_of_hull(std::span<const ObstacleEdge> of_hull, std::span<const Eigen::Vector4f> planes,
+                       std::vector<ObstacleEdge>& edges);
 
 /// Appends a cylinder's axis, so far as balls about it lie within. The cylinder is along y. Metres.
 void add_axis_of_cylinder(float radius, float half_height, std::vector<ObstacleEdge>& edges);

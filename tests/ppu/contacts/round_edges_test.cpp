@@ -64,7 +64,7 @@ TEST(RoundEdges, OfAPrismOfFewSidesAreSharp) {
     const Prism prism{sides, 0.3f, 0.5f};
     EXPECT_EQ(cells_that_feel(prism.side(1), prism.planes()), 0) << sides;
     std::vector<ObstacleEdge> edges;
-    add_edge_of_hull(prism.side(1), prism.planes(), edges);
+    add_edges_of_hull(std::vector{prism.side(1)}, prism.planes(), edges);
     ASSERT_EQ(edges.size(), 1u);
     EXPECT_EQ(edges[0].cells_above, 0);
   }
@@ -78,8 +78,8 @@ TEST(RoundEdges, OfAPyramidAreInPartsThatGetSharperTowardsTheTip) {
     ObstacleEdge side = pyramid.side(3);
     if (turned) std::swap(side.from, side.to);
     std::vector<ObstacleEdge> edges;
-    add_edge_of_hull(side, planes, edges);
-    ASSERT_EQ(edges.size(), 6u);
+    add_edges_of_hull(std::vector{side}, planes, edges);
+    ASSERT_EQ(edges.size(), 5u);
     float length = 0;
     for (std::size_t i = 0; i < edges.size(); ++i) {
       length += (edges[i].to - edges[i].from).norm();
@@ -91,6 +91,16 @@ TEST(RoundEdges, OfAPyramidAreInPartsThatGetSharperTowardsTheTip) {
     EXPECT_EQ(edges.back().cells_above, 0);
     EXPECT_NEAR(length, (side.to - side.from).norm(), 1e-5f);
   }
+}
+
+/// In the frame in which something first touches such a hull, it may take a few milliseconds.
+TEST(RoundEdges, OfAHullOfThousandsOfFacesAreAsTheyAre) {
+  const Prism prism{2000, 0.3f, 0.5f};
+  std::vector<ObstacleEdge> sides, edges;
+  for (int i = 0; i < prism.sides; ++i) sides.push_back(prism.side(i));
+  add_edges_of_hull(sides, prism.planes(), edges);
+  ASSERT_EQ(edges.size(), sides.size());
+  for (const ObstacleEdge& edge : edges) EXPECT_EQ(edge.cells_above, 0);
 }
 
 TEST(RoundEdges, ACylindersAxisIsThatOfBallsWithin) {
