@@ -104,6 +104,13 @@ dma::Buffer<T> contact_buffer(dma::AddressSpace& memory, const char* name, std::
   return dma::Buffer<T>(memory, name, count, of_record(ContactRecord<T>::kRuns, options));
 }
 
+/// One of four boxes.
+template <typename Vector>
+void set_box(spu::FindBoxes& four, std::size_t lane, const Vector& low, const Vector& high) {
+  four.low_x[lane] = low[0], four.low_y[lane] = low[1], four.low_z[lane] = low[2];
+  four.high_x[lane] = high[0], four.high_y[lane] = high[1], four.high_z[lane] = high[2];
+}
+
 /// Room for at least so many elements; what is in them is lost.
 template <typename T>
 void make_room(dma::AddressSpace& memory, const char* name, dma::Buffer<T>& buffer, std::size_t count) {

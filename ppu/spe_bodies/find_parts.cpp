@@ -8,11 +8,7 @@
 namespace softcell::ppu {
 namespace {
 
-using Eigen::Vector3f;
-
 constexpr std::uint16_t kNone = 0xFFFF;
-constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindEnd);
-
 Bounds<3> box_of(const spu::FindBoxes* boxes, std::size_t cell) {
   const spu::FindBoxes& four = boxes[cell / 4];
   const std::size_t lane = cell % 4;
@@ -138,12 +134,21 @@ FindParts::Selection FindParts::select(const Body& body, std::span<const std::ui
   return selection;
 }
 
-/// Where their places in main memory are makes no difference.
-std::uint32_t FindParts::bytes_of(const Selection& selection) {
-  spu::FindBody body{};
+void FindParts::set_counts(const Selection& selection, spu::FindBody& body) {
   body.cell_count = static_cast<std::uint32_t>(selection.cell_count);
   body.group_count = static_cast<std::uint32_t>(selection.group_count);
   body.particle_count = static_cast<std::uint32_t>(selection.particle_count);
+}
+
+std::uint32_t FindParts::bytes_of_state(const Selection& selection) {
+  spu::FindBody body{};
+  set_counts(selection, body);
+  return spu::find_state_bytes(body);
+}
+
+std::uint32_t FindParts::bytes_of(const Selection& selection) {
+  spu::FindBody body{};
+  set_counts(selection, body);
   return spu::find_model_bytes(body) + spu::find_state_bytes(body);
 }
 
@@ -156,7 +161,7 @@ void FindParts::write() {
       selection->state_at = state;
       cells += selection->cell_count;
       groups += selection->group_count;
-      state += (selection->cell_count + 3) / 4 * kQuadsOfBoxes + 2 * selection->particle_count;
+      state += bytes_of_state(*selection) / sizeof(spu::FindEnd);
     }
   }
   make_room(memory_, "cells of parts in contact", part_cells_, cells);
@@ -170,7 +175,7 @@ void FindParts::write(const Selection& selection) {
   number_.assign(body.ends.size(), kNone);
   const std::size_t groups_of_boxes = (selection.cell_count + 3) / 4;
   auto* const boxes = reinterpret_cast<spu::FindBoxes*>(part_state_.data() + selection.state_at);
-  spu::FindEnd* const ends = part_state_.data() + selection.state_at + groups_of_boxes * kQuadsOfBoxes;
+  auto* const ends = reinterpret_cast<spu::FindEnd*>(boxes + groups_of_boxes);
   auto* const begins = reinterpret_cast<spu::FindBegin*>(ends + selection.particle_count);
   for (std::size_t p = 0; p < selection.particle_count; ++p) {
     const std::uint16_t particle = particles_[selection.first_particle + p];
@@ -183,10 +188,7 @@ void FindParts::write(const Selection& selection) {
   for (std::size_t c = 0; c < 4 * groups_of_boxes; ++c) {
     const std::uint16_t number = cells_[selection.first_cell + std::min(c, selection.cell_count - 1)];
     const Bounds<3> box = box_of(body.boxes, number);
-    spu::FindBoxes& four = boxes[c / 4];
-    const std::size_t lane = c % 4;
-    four.low_x[lane] = box.low.x(), four.low_y[lane] = box.low.y(), four.low_z[lane] = box.low.z();
-    four.high_x[lane] = box.high.x(), four.high_y[lane] = box.high.y(), four.high_z[lane] = box.high.z();
+    set_box(boxes[c / 4], c % 4, box.low, box.high);
     if (c >= selection.cell_count) continue;
     spu::FindCell& cell = part_cells_[selection.cells_at + c];
     cell = body.cells[number];
@@ -199,26 +201,17 @@ void FindParts::write(const Selection& selection) {
   }
 }
 
-spu::FindBody FindParts::described(const Selection& selection) const {
-  spu::FindBody body{};
+void FindParts::describe(const Selection& selection, spu::FindBody& body) const {
   body.cells_ea = part_cells_.ea(selection.cells_at).value;
-  if (selection.group_count != 0) body.groups_ea = part_groups_.ea(selection.groups_at).value;
+  body.groups_ea = selection.group_count == 0 ? 0 : part_groups_.ea(selection.groups_at).value;
   body.state_ea = part_state_.ea(selection.state_at).value;
-  body.cell_count = static_cast<std::uint32_t>(selection.cell_count);
-  body.group_count = static_cast<std::uint32_t>(selection.group_count);
-  body.particle_count = static_cast<std::uint32_t>(selection.particle_count);
-  return body;
+  set_counts(selection, body);
 }
 
 void FindParts::describe(std::size_t part, spu::FindBody& a, spu::FindBody& b) const {
   SC_ASSERT(part < parts_.size(), "part {} of {}", part, parts_.size());
-  const auto set = [](spu::FindBody& body, const spu::FindBody& now) {
-    body.cells_ea = now.cells_ea, body.groups_ea = now.groups_ea, body.state_ea = now.state_ea;
-    body.cell_count = now.cell_count, body.group_count = now.group_count;
-    body.particle_count = now.particle_count;
-  };
-  set(a, described(parts_[part].a));
-  set(b, described(parts_[part].b));
+  describe(parts_[part].a, a);
+  describe(parts_[part].b, b);
 }
 
 void FindParts::restore(std::size_t part, spu::SolveContact& contact) const {

@@ -67,8 +67,10 @@ class FindParts {
   bool add_points_of(const Body& mine, const Body& other, bool mine_is_a, const Bounds<3>& common);
   Selection select(const Body& body, std::span<const std::uint16_t> cells, bool with_points);
   void write(const Selection& selection);
+  static void set_counts(const Selection& selection, spu::FindBody& body);
+  static std::uint32_t bytes_of_state(const Selection& selection);
   static std::uint32_t bytes_of(const Selection& selection);
-  spu::FindBody described(const Selection& selection) const;
+  void describe(const Selection& selection, spu::FindBody& body) const;
 
   dma::AddressSpace& memory_;
   std::vector<Part> parts_;

@@ -163,10 +163,7 @@ void SpeContacts::write_boxes(std::uint32_t i) {
     }
     lowest = lowest.min(low);
     highest = highest.max(high);
-    spu::FindBoxes& boxes = all_boxes[c / 4];
-    const std::size_t lane = c % 4;
-    boxes.low_x[lane] = low[0], boxes.low_y[lane] = low[1], boxes.low_z[lane] = low[2];
-    boxes.high_x[lane] = high[0], boxes.high_y[lane] = high[1], boxes.high_z[lane] = high[2];
+    set_box(all_boxes[c / 4], c % 4, low, high);
   }
   end_boxes_[i] = {lowest.head<3>(), highest.head<3>()};
 }
@@ -213,7 +210,7 @@ SpeContacts::Asked SpeContacts::ask(std::uint32_t a, std::uint32_t b) {
   if (spu::find_bytes(task) > spu::kFindMaxBytes) return ask_in_parts({a, b}, task);
   const CandidatePairs::Known& known =
       pairs_.of({a, b}, std::min(bodies_[a].spacing(), bodies_[b].spacing()));
-  if (known.overflows) return ask_in_parts({a, b}, task);
+  if (known.overflows && a != b) return ask_in_parts({a, b}, task);
   if (known.count == 0) return {};
   task.margin = known.margin;
   task.candidate_count = known.count;
