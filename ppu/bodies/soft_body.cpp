@@ -1,6 +1,7 @@
 #include "softcell/soft_bodies/soft_body.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <future>
 #include <optional>
@@ -88,10 +89,18 @@ typename Motion<kDimension>::Matrix orientation_of(const SoftBody<kDimension>& b
   return nearest_rotation(correlation);
 }
 
-/// Where the rest shapes of all bodies flow.
+/// Where the rest shapes of all bodies flow. A body that yields does so in each look, and a result is wanted in the next step only.
 Workshop& flows() {
-  static Workshop workshop;
+  static Workshop workshop(Workshop::Start::kByClock);
   return workshop;
+}
+
+/// Returns when it has a result.
+template <class Flowed>
+void wait_for(const std::shared_future<Flowed>& flow) {
+  if (flow.wait_for(std::chrono::seconds(0)) == std::future_status::ready) return;
+  flows().hurry();
+  flow.wait();
 }
 
 }  // namespace
@@ -135,7 +144,7 @@ struct SoftBody<kDimension>::RestShape {
     return std::make_shared<const Shape>(Shape{std::move(plan), std::move(positions)});
   }
   void wait() const {
-    if (next.valid()) next.wait();
+    if (next.valid()) wait_for(next);
   }
 
   // flows() has these two while `next` is not ready.
@@ -336,6 +345,7 @@ template <int kDimension>
 void SoftBody<kDimension>::take_flow() {
   SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
   if (!rest_->next.valid()) return;
+  wait_for(rest_->next);
   std::shared_ptr<const typename RestShape::Shape> flowed = std::exchange(rest_->next, {}).get();
   rest_->is_flowing = flowed != nullptr;
   rest_->worn = flowed ? std::exchange(rest_->shape, flowed) : nullptr;

@@ -1,6 +1,7 @@
 #pragma once
 // What takes long and need not be ready at once, such as pieces of broken bodies, is made on a thread of its own.
 
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -17,7 +18,12 @@ namespace softcell::ppu {
 /// Any thread may use it. Its own thread begins with the first task, and takes one after the other.
 class Workshop {
  public:
-  Workshop() = default;
+  /// When its thread begins with a task that finds it idle.
+  enum class Start {
+    kAtOnce,   ///< whoever adds the task wakes it, for 4 to 50 us of his time
+    kByClock,  ///< the same, unless tasks come at a regular pace: then it wakes itself a little after one is due. See hurry()
+  };
+  explicit Workshop(Start start = Start::kAtOnce) : start_(start) {}
   /// Waits for the task under way; others are given up.
   ~Workshop();
   Workshop(const Workshop&) = delete;
@@ -40,6 +46,9 @@ class Workshop {
     return made;
   }
 
+  /// What was begun is waited for: its thread begins with it now, if it has not yet.
+  void hurry();
+
   /// Destroys what is large on its thread.
   template <class Garbage>
   void dispose(Garbage garbage) {
@@ -48,13 +57,19 @@ class Workshop {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void add(std::function<void()> task);
   void work();
+  void wait_for_task(std::unique_lock<std::mutex>& lock);
 
+  const Start start_;
   std::mutex mutex_;
   std::condition_variable has_changed_;
   std::queue<std::function<void()>> tasks_;
-  bool ends_ = false;
+  bool ends_ = false, is_busy_ = false, wakes_itself_ = false;
+  Clock::time_point last_{};   // when a task last found it idle
+  Clock::duration between_{};  // and how long that was after the one before
   std::thread thread_;
 };
 
