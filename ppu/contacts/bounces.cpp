@@ -33,9 +33,9 @@ std::size_t index_in(std::span<const std::uint32_t> ascending, std::uint32_t num
   return static_cast<std::size_t>(at - ascending.begin());
 }
 
-/// Of the substep, until the two surfaces of a contact touch.
+/// Of the substep, until a velocity changes: when the two surfaces of a contact touch. What is sharp lets a body go on, but only so far.
 float share_until_touch(const BounceContact& contact, float step) {
-  return std::min(contact.gap / (step * contact.approach), 1.0f);
+  return contact.is_sharp() ? 0.0f : std::min(contact.gap / (step * contact.approach), 1.0f);
 }
 
 }  // namespace
@@ -52,27 +52,40 @@ void Bounces::Whole::push(const Vector3d& point, const Vector3d& impulse) {
   spin += inverse_inertia * Vector3d(point - centre).cross(impulse);
 }
 
+double Bounces::Part::share_of(const Eigen::Vector3i& particle) const {
+  if (thickness == kEverything) return 1;
+  // A cell's high corners are one off its low one.
+  const Vector3f at = particle.cast<float>();
+  const Vector3f off = (cells.low - at).cwiseMax(at - cells.high - Vector3f::Ones()).cwiseMax(0.0f);
+  return std::clamp(2 - double{off.norm()} / double{thickness}, 0.0, 1.0);
+}
+
 /// @param time  seconds after the substep's beginning
-Bounces::Whole Bounces::whole_of(const ContactBody& body, double time) {
-  const std::span<const float> masses = body.model->masses();
+Bounces::Whole Bounces::whole_of(const ContactBody& body, const Part& part, double time) {
+  const auto& particles = body.lattice().particles;
+  const auto mass_of = [&](std::size_t p) {
+    return part.share_of(particles[p]) * double{body.model->masses()[p]};
+  };
   const auto place = [&](std::size_t p) -> Vector3d {
     return body.positions[p].cast<double>() + time * body.velocities[p].cast<double>();
   };
   Whole whole;
   double mass = 0;
-  for (std::size_t p = 0; p < masses.size(); ++p) {
-    mass += double{masses[p]};
-    whole.centre += double{masses[p]} * place(p);
-    whole.velocity += double{masses[p]} * body.velocities[p].cast<double>();
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const double own = mass_of(p);
+    mass += own;
+    whole.centre += own * place(p);
+    whole.velocity += own * body.velocities[p].cast<double>();
   }
   whole.centre /= mass;
   whole.velocity /= mass;
   Matrix3d inertia = Matrix3d::Zero();
   Vector3d spin = Vector3d::Zero();
-  for (std::size_t p = 0; p < masses.size(); ++p) {
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const double own = mass_of(p);
     const Vector3d r = place(p) - whole.centre;
-    spin += double{masses[p]} * r.cross(body.velocities[p].cast<double>());
-    inertia += double{masses[p]} * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
+    spin += own * r.cross(body.velocities[p].cast<double>());
+    inertia += own * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
   }
   // A body that is pressed to a line cannot turn about it.
   inertia.diagonal().array() += 1e-9 * inertia.trace();
@@ -98,9 +111,53 @@ Bounces::Whole Bounces::whole_of(const ContactRigid& rigid) {
 }
 
 void Bounces::add(const BounceContact& contact) {
-  SC_ASSERT(contact.restitution > 0 && contact.restitution <= 1 && contact.gap >= 0,
+  SC_ASSERT((contact.restitution > 0 || contact.is_sharp()) && contact.restitution <= 1 && contact.gap >= 0,
             "a bounce with restitution {} over {} m", contact.restitution, contact.gap);
   contacts_.push_back(contact);
+}
+
+std::optional<double> Bounces::target_of(const BounceContact& contact, const Bounce& bounce, double share,
+                                         const BounceSettings& settings, double step) {
+  const double along =
+      bounce.normal.dot(bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point));
+  if (contact.is_sharp()) {
+    const double least = -(double{contact.gap} + double{contact.room}) / step;
+    return along < least ? std::optional(least) : std::nullopt;
+  }
+  // Velocities hold the gravity of the whole substep, but it acts before and after the bounce: a velocity of
+  // a substep is exact in its middle.
+  const auto falls = [](const Whole& whole) { return whole.inverse_mass > 0 ? 1.0 : 0.0; };
+  const double fall =
+      (falls(*bounce.a) - falls(*bounce.b)) * step * bounce.normal.dot(settings.gravity.cast<double>());
+  const double hits = along + fall * (share - 0.5);
+  if (!(-hits > std::max(double{settings.least_speed}, kRestingSteps * std::abs(fall)))) return {};
+  return -double{contact.restitution} * hits + fall * (0.5 - share);
+}
+
+/// Of changed_: all of what bounces, and of others what is near sharp things.
+void Bounces::choose_parts(std::span<const ContactBody> bodies) {
+  constexpr float kLeastThickness = 2;  // cells
+  parts_.assign(changed_.size(), Part());
+  std::vector<bool> is_sharp(changed_.size(), false), bounces(changed_.size(), false);
+  for (const std::uint32_t i : chosen_) {
+    const BounceContact& contact = contacts_[i];
+    const std::size_t a = index_in(changed_, contact.a);
+    if (!contact.is_sharp()) {
+      bounces[a] = true;
+      if (contact.b != BounceContact::kNobody) bounces[index_in(changed_, contact.b)] = true;
+      continue;
+    }
+    const Vector3f cell = bodies[contact.a].lattice().cells[contact.cell].cast<float>();
+    Bounds<3>& cells = parts_[a].cells;
+    cells =
+        is_sharp[a] ? Bounds<3>{cells.low.cwiseMin(cell), cells.high.cwiseMax(cell)} : Bounds<3>{cell, cell};
+    is_sharp[a] = true;
+  }
+  for (std::size_t i = 0; i < changed_.size(); ++i) {
+    const ContactBody& body = bodies[changed_[i]];
+    if (!bounces[i])
+      parts_[i].thickness = std::max(body.model->thickness() / body.spacing(), kLeastThickness);
+  }
 }
 
 /// Which contacts may bounce, which bodies they have, and when these first touch.
@@ -109,7 +166,6 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
   chosen_.clear(), changed_.clear(), rigids_.clear();
   for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
     const BounceContact& contact = contacts_[i];
-    if (!(contact.approach > settings.least_speed)) continue;
     chosen_.push_back(i);
     insert(changed_, contact.a);
     if (contact.b != BounceContact::kNobody)
@@ -127,9 +183,10 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
     float& of_b = share_[index_in(changed_, contact.b)];
     of_b = std::min(of_b, share);
   }
+  choose_parts(bodies);
   wholes_.clear();
   for (std::size_t i = 0; i < changed_.size(); ++i)
-    wholes_.push_back(whole_of(bodies[changed_[i]], double{share_[i]} * double{step}));
+    wholes_.push_back(whole_of(bodies[changed_[i]], parts_[i], double{share_[i]} * double{step}));
   for (const std::uint32_t rigid : rigids_) wholes_.push_back(whole_of(rigids[rigid]));
 
   bounces_.clear();
@@ -144,22 +201,16 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
     bounce.normal = contact.normal.cast<double>();
     const auto waits = [&](std::uint32_t body) {
       const float until_first = step * share_[index_in(changed_, body)];
-      return contact.gap - until_first * contact.approach > kTouches * bodies[body].spacing();
+      return !contact.is_sharp() &&
+             contact.gap - until_first * contact.approach > kTouches * bodies[body].spacing();
     };
     if (waits(contact.a) || (!with_rigid && waits(contact.b))) continue;
     const double share = double{share_until_touch(contact, step)};
     const Vector3d end = contact.point.cast<double>();
     bounce.point = end - (1 - share) * double{step} * bounce.a->velocity_at(end);
-    // Velocities hold the gravity of the whole substep, but it acts before and after the bounce: a velocity of
-    // a substep is exact in its middle.
-    const auto falls = [](const Whole& whole) { return whole.inverse_mass > 0 ? 1.0 : 0.0; };
-    const double fall = (falls(*bounce.a) - falls(*bounce.b)) * double{step} *
-                        bounce.normal.dot(settings.gravity.cast<double>());
-    const double hits =
-        bounce.normal.dot(bounce.a->velocity_at(bounce.point) - bounce.b->velocity_at(bounce.point)) +
-        fall * (share - 0.5);
-    if (!(-hits > std::max(double{settings.least_speed}, kRestingSteps * std::abs(fall)))) continue;
-    bounce.target = -double{contact.restitution} * hits + fall * (0.5 - share);
+    const auto target = target_of(contact, bounce, share, settings, double{step});
+    if (!target) continue;
+    bounce.target = *target;
     const double mobility =
         bounce.a->mobility(bounce.point, bounce.normal) + bounce.b->mobility(bounce.point, bounce.normal);
     if (!(mobility > 0)) continue;
@@ -209,7 +260,8 @@ void Bounces::apply(std::span<ContactBody> bodies, std::span<ContactRigid> rigid
     const double time = double{share_[i]} * double{step};
     for (std::size_t p = 0; p < body.velocities.size(); ++p) {
       const Vector3d touching = body.positions[p].cast<double>() + time * body.velocities[p].cast<double>();
-      const Vector3d by = change + turn.cross(touching - whole.centre);
+      const double share = parts_[i].share_of(body.lattice().particles[p]);
+      const Vector3d by = share * (change + turn.cross(touching - whole.centre));
       const Vector3d velocity = body.velocities[p].cast<double>() + by;
       body.velocities[p] = velocity.cast<float>();
       body.pushes[p] -= (double{share_[i]} * by).cast<float>();

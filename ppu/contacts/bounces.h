@@ -1,5 +1,6 @@
 #pragma once
-// Restitution: a body that hits something fast enough leaves it as a rigid body would.
+// Restitution: a body that hits something fast enough leaves it as a rigid body would. One that something sharp
+// would crush is stopped as a rigid body would be.
 //
 // Shape matching carries an impulse from the surface to the rest of a body one substep later, so a restitution of the
 // surface alone is lost inside the body. Bounces therefore change the rigid motion of whole bodies: six numbers
@@ -9,10 +10,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "ppu/contacts/contact_body.h"
+#include "ppu/contacts/contact_group.h"
 #include "ppu/surfaces/obstacle.h"
 
 namespace softcell::ppu {
@@ -29,8 +33,9 @@ struct BounceSettings {
   bool may_bounce(float restitution) const { return mix == Mix::kLarger || restitution > 0; }
 };
 
-/// A contact that bounces if it is fast enough.
+/// A contact that bounces if it is fast enough, or one with something sharp, against which a body goes no farther than it has room.
 struct BounceContact {
+  static constexpr float kNoLimit = SoftContact::kNoLimit;
   static constexpr std::uint32_t kNobody = ~0u;
   std::uint32_t a = 0, b = kNobody;  ///< bodies; b kNobody: `rigid`
   std::uint32_t rigid = 0;
@@ -38,8 +43,12 @@ struct BounceContact {
   Eigen::Vector3f normal{0, 1, 0};  ///< from the other one to a
   float gap = 0;                    ///< metres at the substep's beginning, not negative
   float approach = 0;               ///< m/s, of the two surfaces against each other
-  float restitution = 0;            ///< above 0, at most 1
+  float restitution = 0;            ///< 0..1; of what is sharp without effect
+  float room = kNoLimit;            ///< metres, SoftContact::room
+  std::uint32_t cell = 0;           ///< of what is sharp: of a
   float friction = 0;
+
+  bool is_sharp() const { return room < kNoLimit; }
 };
 
 /// Used by one thread. Allocates when there are more contacts or bodies than ever before.
@@ -59,7 +68,15 @@ class Bounces {
   std::span<const std::uint32_t> changed() const { return changed_; }
 
  private:
-  /// A body as if it were rigid, where it first touches.
+  /// Of a body, what moves as if it were rigid: all of it if it bounces. What is sharp stops what is near: ends of a long body fall on.
+  struct Part {
+    static constexpr float kEverything = std::numeric_limits<float>::infinity();
+    Bounds<3> cells{};  ///< around the low corners of those that meet something sharp, by Lattice::cells
+    float thickness = kEverything;  ///< cells: so far from these all moves, and twice as far nothing does
+    /// 0..1: how much of a particle's mass counts, and of the change of motion it gets.
+    double share_of(const Eigen::Vector3i& particle) const;
+  };
+  /// A part of a body as if it were rigid, where it first touches.
   struct Whole {
     Eigen::Vector3d centre{0, 0, 0};
     Eigen::Vector3d velocity{0, 0, 0}, spin{0, 0, 0};
@@ -82,8 +99,13 @@ class Bounces {
     Eigen::Vector3d friction_impulse{0, 0, 0};
   };
 
-  static Whole whole_of(const ContactBody& body, double time);
+  static Whole whole_of(const ContactBody& body, const Part& part, double time);
   static Whole whole_of(const ContactRigid& rigid);
+  /// What the velocity of its two sides along its normal shall be at least, m/s; none: it is so already.
+  /// @param share  of the substep, until it touches
+  static std::optional<double> target_of(const BounceContact& contact, const Bounce& bounce, double share,
+                                         const BounceSettings& settings, double step);
+  void choose_parts(std::span<const ContactBody> bodies);
   void choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
               const BounceSettings& settings, float step);
   void iterate();
@@ -93,6 +115,7 @@ class Bounces {
   std::vector<std::uint32_t> chosen_;            // of contacts_
   std::vector<std::uint32_t> changed_, rigids_;  // that bounce, ascending
   std::vector<float> share_;                     // of each of changed_: of the substep until it touches
+  std::vector<Part> parts_;                      // likewise
   std::vector<Whole> wholes_;                    // of changed_, then of rigids_
   std::vector<Bounce> bounces_;
 };

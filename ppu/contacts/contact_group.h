@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace softcell::ppu {
 
 /// Something, called b, that a body, called a, must not enter.
 struct SoftContact {
+  static constexpr float kNoLimit = std::numeric_limits<float>::infinity();
+
   Anchor a;
   Anchor b;                         ///< of soft bodies
   std::uint32_t rigid = 0;          ///< of rigid ones: its index
@@ -23,6 +26,8 @@ struct SoftContact {
   float least_velocity = 0;         ///< m/s along the normal, of a against b
   float depth = 0;                  ///< metres in which they are already, or less than 0
   float friction = 0;
+  /// Metres that body a may go on as a whole before something sharp crushes its cells (sharp_contacts.h); kNoLimit: it is not sharp.
+  float room = kNoLimit;
   bool holds_pushes = false;  ///< a body has pushes of its own, which must not lead into the other one
 
   // What solving changes.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ppu/contacts/find_contacts.h"
+#include "ppu/contacts/sharp_contacts.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -145,7 +146,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
   if (group_count_ == groups_.size()) groups_.emplace_back();
   Group& group = groups_[group_count_++];
   group.a = a, group.b = b, group.with_rigid = with_rigid;
-  group.by_worker = group.heavy = group.fast = false;
+  group.by_worker = group.heavy = group.fast = group.sharp = false;
   group.contacts.clear();
   group.solved = {};
   group.rigid_set = RigidSets::kNone;
@@ -207,6 +208,7 @@ void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::spa
     for (const std::uint32_t obstacle : bodies[a].obstacles)
       find_contacts(bodies_[a], cells_[a], obstacles, bodies[a].obstacles, obstacle, rigids, step,
                     group.contacts);
+    group.sharp = keep_sharp_ones(group.contacts, bodies_[a]);
     if (group.contacts.empty()) --group_count_;
   }
 }
@@ -294,7 +296,7 @@ void ContactStage::hold_pushes_of_crushed_bodies() {
   }
 }
 
-/// Contacts of bodies with a restitution, whoever has found them. Two that pressed on each other in the last
+/// Contacts of bodies with a restitution and those with sharp things, whoever has found them. Two that pressed on each other in the last
 /// substep do not hit each other: what they do against each other is their deformation.
 void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
   bounces_.clear();
@@ -302,7 +304,7 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
     const Group& group = groups_[i];
     const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
     const bool itself = !group.with_rigid && group.a == group.b;
-    if ((!settings.bounces.may_bounce(a.restitution) && !group.fast) || itself) continue;
+    if ((!settings.bounces.may_bounce(a.restitution) && !group.fast && !group.sharp) || itself) continue;
     const auto restitution_with = [&](float other) {
       const float both = settings.bounces.restitution_of(a.restitution, other);
       return group.fast ? std::max(both, kFastRestitution) : both;
@@ -310,9 +312,12 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
     BounceContact bounce{.a = group.a};
     if (!group.with_rigid) bounce.b = group.b;
     const auto add = [&](std::uint32_t other, const Vector3f& point, const Vector3f& normal,
-                         float least_velocity, float along, float friction, float restitution) {
+                         float least_velocity, float along, float friction, float restitution, float room) {
       const std::array<std::uint32_t, 3> pair{group.a, other, group.with_rigid};
-      if (!(restitution > 0) || std::binary_search(pressed_.begin(), pressed_.end(), pair)) return;
+      const bool bounces = restitution > 0 && -along > settings.bounces.least_speed &&
+                           !std::binary_search(pressed_.begin(), pressed_.end(), pair);
+      bounce.room = bounces ? BounceContact::kNoLimit : room;
+      if (!bounces && !bounce.is_sharp()) return;
       bounce.point = point, bounce.normal = normal;
       bounce.gap = -step * least_velocity, bounce.approach = -along;
       bounce.friction = friction, bounce.restitution = std::min(restitution, 1.0f);
@@ -323,7 +328,8 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
       for (const spu::SolveContact& contact : group.solved.contacts) {
         const Vector3f normal(contact.normal);
         add(group.b, Vector3f(contact.point), normal, contact.least_velocity,
-            -normal.dot(Vector3f(contact.carried)), contact.friction, restitution_with(b.restitution));
+            -normal.dot(Vector3f(contact.carried)), contact.friction, restitution_with(b.restitution),
+            BounceContact::kNoLimit);
       }
       continue;
     }
@@ -333,12 +339,13 @@ void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
         const ContactRigid& rigid = rigids[contact.rigid];
         v -= rigid.velocity_at(contact.point);
         bounce.rigid = contact.rigid;
+        bounce.cell = contact.a.cell;
         add(rigid.number, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction, restitution_with(rigid.restitution));
+            contact.friction, restitution_with(rigid.restitution), contact.room);
       } else {
         v -= contact.b.of(b.velocities);
         add(group.b, contact.point, contact.normal, contact.least_velocity, contact.normal.dot(v),
-            contact.friction, restitution_with(b.restitution));
+            contact.friction, restitution_with(b.restitution), contact.room);
       }
     }
   }

@@ -106,6 +106,7 @@ class ContactStage {
     bool by_worker = false;             ///< he solves them: they are in `solved`
     bool heavy = false;                 ///< with a rigid body that outweighs a
     bool fast = false;                  ///< two bodies that may pass each other in the substep
+    bool sharp = false;                 ///< some of its contacts limit how far a goes on as a whole
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
     /// Of those that the worker moves in it; kNone: nothing moves the rigid bodies.

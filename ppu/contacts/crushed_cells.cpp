@@ -41,6 +41,10 @@ Edges edges_of(const Place& place) {
   return edges;
 }
 
+Edges edges_at_beginning(const ContactBody& body, const std::array<std::uint32_t, 8>& corners) {
+  return edges_of([&](unsigned k) -> Vector3f { return body.positions[corners[k]] / body.spacing(); });
+}
+
 /// By how much the volume grows with each corner's place, in cells.
 std::array<Vector3f, 8> gradient(const Edges& edges) {
   const Vector3f yz = edges.y.cross(edges.z), zx = edges.z.cross(edges.x), xy = edges.x.cross(edges.y);
@@ -69,6 +73,11 @@ void grow(std::vector<Vector3f>& values, float per_value, const std::array<std::
 
 }  // namespace
 
+float volume_of_cell(const ContactBody& body, std::uint32_t cell) {
+  SC_ASSERT(cell < body.lattice().corners.size(), "cell {} of {}", cell, body.lattice().corners.size());
+  return edges_at_beginning(body, body.lattice().corners[cell]).volume();
+}
+
 bool CrushedCells::hold(ContactBody& body, float step) {
   SC_ASSERT(step > 0, "a substep of {} s", step);
   cells_.clear();
@@ -81,9 +90,6 @@ bool CrushedCells::hold(ContactBody& body, float step) {
       return per_spacing * (body.positions[corners[k]] + step * body.velocities[corners[k]]);
     });
   };
-  const auto edges_at_beginning = [&](const std::array<std::uint32_t, 8>& corners) {
-    return edges_of([&](unsigned k) -> Vector3f { return per_spacing * body.positions[corners[k]]; });
-  };
   for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell)
     if (!body.model->is_margin(cell) && edges_at_end(lattice.corners[cell]).volume() < kLeastVolume)
       cells_.push_back(cell);
@@ -92,7 +98,7 @@ bool CrushedCells::hold(ContactBody& body, float step) {
   bool changed = false;
   for (const std::uint32_t cell : cells_) {
     const auto& corners = lattice.corners[cell];
-    const Edges edges = edges_at_beginning(corners);
+    const Edges edges = edges_at_beginning(body, corners);
     const float volume = edges.volume();
     least_.push_back(std::min(volume, kLeastVolume));
     if (volume >= kLeastVolume) continue;

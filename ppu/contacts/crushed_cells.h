@@ -14,6 +14,9 @@ namespace softcell::ppu {
 
 inline constexpr float kLeastVolume = 0.5f;  ///< of rest: what is below it is crushed
 
+/// Of its volume at rest, at the substep's beginning; below 0 inside out.
+float volume_of_cell(const ContactBody& body, std::uint32_t cell);
+
 /// Used by one thread. Allocates when more cells are crushed than ever before.
 class CrushedCells {
  public:

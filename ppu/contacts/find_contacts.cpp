@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ppu/contacts/contact_terms.h"
+#include "ppu/contacts/sharp_contacts.h"
 #include "ppu/surfaces/crack_sides.h"
 #include "ppu/surfaces/edge_points.h"
 #include "ppu/surfaces/triangle_distance.h"
@@ -374,6 +375,7 @@ class ObstacleContacts {
     contact.rigid = obstacle_.rigid;
     contact.point = point;
     contact.normal = -outwards / steep;
+    contact.room = room_to_squeeze(body_, *place, -field.gradient.normalized(), -distance);
     const Vector3f v = contact.a.of(body_.velocities) - rigid_.velocity_at(point);
     complete(contact, distance, contact.normal.dot(v), friction_, step_);
   }

@@ -1,0 +1,63 @@
+#include "ppu/contacts/sharp_contacts.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "ppu/contacts/crushed_cells.h"
+#include "ppu/lattice/locate.h"
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector3i;
+
+// A load is felt so many cells deep before it is spread: one behind the touched one is crushed first.
+constexpr int kCellsBehind = 3;
+// Of the volume at rest: so much of theirs these cells keep. With 0.5, below which cells are crushed, edges get a fifth of a cell deep, with
+// 0.6 an eighth, and no less deep with more.
+constexpr float kLeastAtEdges = 0.6f;
+// What would be as deep at the substep's end has passed the touched cell.
+constexpr float kDeep = 0.5f;  // cells
+
+/// Of the area across the body, on which it would lie on a floor: what touches more than a third of it is no edge.
+bool are_few(std::size_t cells, const ContactBody& body) {
+  const double touched = 3 * static_cast<double>(cells);
+  const auto particles = static_cast<double>(body.positions.size());
+  // A flat body has each particle twice, and lies on a line.
+  return body.model->is_flat() ? touched * touched < particles / 2
+                               : touched * touched * touched < particles * particles;
+}
+
+}  // namespace
+
+float room_to_squeeze(const ContactBody& body, const DeformedPlace& place, const Vector3f& inwards,
+                      float depth) {
+  SC_ASSERT(place.cell < body.lattice().cells.size(), "cell {} of {}", place.cell,
+            body.lattice().cells.size());
+  const Lattice<3>& lattice = body.lattice();
+  const Vector3f begin = lattice.cells[place.cell].cast<float>() + place.xi;
+  float least = 1;
+  for (int k = 0; k <= kCellsBehind; ++k) {
+    const Vector3i at = (begin + static_cast<float>(k) * inwards).array().floor().cast<int>();
+    if (const auto cell = find_cell<3>(lattice, at)) least = std::min(least, volume_of_cell(body, *cell));
+  }
+  const float cells = std::min(least - kLeastAtEdges, kDeep - depth / body.spacing());
+  return std::max(cells, 0.0f) * body.spacing();
+}
+
+bool keep_sharp_ones(std::span<SoftContact> contacts, const ContactBody& body) {
+  const auto is_sharp = [](const SoftContact& contact) { return contact.room < SoftContact::kNoLimit; };
+  if (std::ranges::none_of(contacts, is_sharp)) return false;
+  std::vector<std::uint32_t> cells;
+  for (const SoftContact& contact : contacts) cells.push_back(contact.a.cell);
+  std::ranges::sort(cells);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  if (are_few(cells.size(), body)) return true;
+  for (SoftContact& contact : contacts) contact.room = SoftContact::kNoLimit;
+  return false;
+}
+
+}  // namespace softcell::ppu
