@@ -138,33 +138,22 @@ std::optional<double> Bounces::target_of(const BounceContact& contact, const Bou
 void Bounces::choose_parts(std::span<const ContactBody> bodies) {
   constexpr float kLeastThickness = 2;  // cells
   parts_.assign(changed_.size(), Part());
-  std::vector<bool> is_sharp(changed_.size(), false), bounces(changed_.size(), false);
   for (const std::uint32_t i : chosen_) {
     const BounceContact& contact = contacts_[i];
-    const std::size_t a = index_in(changed_, contact.a);
-    if (!contact.is_sharp()) {
-      bounces[a] = true;
-      if (contact.b != BounceContact::kNobody) bounces[index_in(changed_, contact.b)] = true;
-      continue;
-    }
-    const Vector3f cell = bodies[contact.a].lattice().cells[contact.cell].cast<float>();
-    Bounds<3>& cells = parts_[a].cells;
-    cells =
-        is_sharp[a] ? Bounds<3>{cells.low.cwiseMin(cell), cells.high.cwiseMax(cell)} : Bounds<3>{cell, cell};
-    is_sharp[a] = true;
-  }
-  for (std::size_t i = 0; i < changed_.size(); ++i) {
-    const ContactBody& body = bodies[changed_[i]];
-    if (!bounces[i])
-      parts_[i].thickness = std::max(body.model->thickness() / body.spacing(), kLeastThickness);
+    if (!contact.is_sharp()) continue;
+    const ContactBody& body = bodies[contact.a];
+    const Vector3f cell = body.lattice().cells[contact.cell].cast<float>();
+    Part& part = parts_[index_in(changed_, contact.a)];
+    if (part.thickness == Part::kEverything) part.cells = {cell, cell};
+    part.cells = {part.cells.low.cwiseMin(cell), part.cells.high.cwiseMax(cell)};
+    part.thickness = std::max(body.model->thickness() / body.spacing(), kLeastThickness);
   }
 }
 
-/// Which contacts may bounce, which bodies they have, and when these first touch.
-void Bounces::choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
-                     const BounceSettings& settings, float step) {
+/// What bounces is not stopped by what is sharp.
+void Bounces::choose_contacts() {
   chosen_.clear(), changed_.clear(), rigids_.clear();
-  for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
+  const auto choose = [&](std::uint32_t i) {
     const BounceContact& contact = contacts_[i];
     chosen_.push_back(i);
     insert(changed_, contact.a);
@@ -172,7 +161,18 @@ void Bounces::choose(std::span<const ContactBody> bodies, std::span<const Contac
       insert(changed_, contact.b);
     else
       insert(rigids_, contact.rigid);
-  }
+  };
+  for (std::uint32_t i = 0; i < contacts_.size(); ++i)
+    if (!contacts_[i].is_sharp()) choose(i);
+  bouncing_ = changed_;
+  for (std::uint32_t i = 0; i < contacts_.size(); ++i)
+    if (contacts_[i].is_sharp() && !std::ranges::binary_search(bouncing_, contacts_[i].a)) choose(i);
+}
+
+/// Which contacts may bounce, which bodies they have, and when these first touch.
+void Bounces::choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
+                     const BounceSettings& settings, float step) {
+  choose_contacts();
   share_.assign(changed_.size(), 1.0f);
   for (const std::uint32_t i : chosen_) {
     const BounceContact& contact = contacts_[i];

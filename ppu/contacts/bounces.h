@@ -54,7 +54,7 @@ struct BounceContact {
 /// Used by one thread. Allocates when there are more contacts or bodies than ever before.
 class Bounces {
  public:
-  void clear() { contacts_.clear(); }
+  void clear() { contacts_.clear(), bounces_.clear(); }
   void add(const BounceContact& contact);
   bool empty() const { return contacts_.empty(); }
 
@@ -63,6 +63,13 @@ class Bounces {
   /// and, but for what gravity does within the substep, energy of a restitution of 1 are kept.
   void solve(std::span<ContactBody> bodies, std::span<ContactRigid> rigids, const BounceSettings& settings,
              float step);
+
+  /// Calls work(contact, impulse) for what has changed bodies in the last solve(): kg m/s along the normal, above 0.
+  template <typename Work>
+  void for_each_impulse(const Work& work) const {
+    for (const Bounce& bounce : bounces_)
+      if (bounce.impulse > 0) work(contacts_[bounce.contact], static_cast<float>(bounce.impulse));
+  }
 
   /// The bodies of the last solve() whose velocities have changed, ascending.
   std::span<const std::uint32_t> changed() const { return changed_; }
@@ -105,6 +112,7 @@ class Bounces {
   /// @param share  of the substep, until it touches
   static std::optional<double> target_of(const BounceContact& contact, const Bounce& bounce, double share,
                                          const BounceSettings& settings, double step);
+  void choose_contacts();
   void choose_parts(std::span<const ContactBody> bodies);
   void choose(std::span<const ContactBody> bodies, std::span<const ContactRigid> rigids,
               const BounceSettings& settings, float step);
@@ -113,6 +121,7 @@ class Bounces {
 
   std::vector<BounceContact> contacts_;
   std::vector<std::uint32_t> chosen_;            // of contacts_
+  std::vector<std::uint32_t> bouncing_;          // bodies that do not meet something sharp only
   std::vector<std::uint32_t> changed_, rigids_;  // that bounce, ascending
   std::vector<float> share_;                     // of each of changed_: of the substep until it touches
   std::vector<Part> parts_;                      // likewise

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "ppu/contacts/find_contacts.h"
-#include "ppu/contacts/sharp_contacts.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -208,7 +207,7 @@ void ContactStage::find_with_rigid(std::span<const BodyInStage> bodies, std::spa
     for (const std::uint32_t obstacle : bodies[a].obstacles)
       find_contacts(bodies_[a], cells_[a], obstacles, bodies[a].obstacles, obstacle, rigids, step,
                     group.contacts);
-    group.sharp = keep_sharp_ones(group.contacts, bodies_[a]);
+    group.sharp = sharp_contacts_.keep(group.contacts, bodies_[a]);
     if (group.contacts.empty()) --group_count_;
   }
 }
@@ -299,7 +298,6 @@ void ContactStage::hold_pushes_of_crushed_bodies() {
 /// Contacts of bodies with a restitution and those with sharp things, whoever has found them. Two that pressed on each other in the last
 /// substep do not hit each other: what they do against each other is their deformation.
 void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
-  bounces_.clear();
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
     const ContactBody &a = bodies_[group.a], &b = bodies_[group.b];
@@ -400,6 +398,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
                         std::span<ContactRigid> rigids, float step) {
   take_over(bodies, step);
   group_count_ = 0;
+  bounces_.clear();
   find_pairs(bodies);
   asked_.clear();
   if (worker != nullptr) {
@@ -701,6 +700,11 @@ void ContactStage::append_contacts(std::vector<PressingContact>& contacts) const
         append(c, group.contacts[c].impulse, group.contacts[c].point, group.contacts[c].normal);
     }
   }
+  bounces_.for_each_impulse([&](const BounceContact& bounce, float impulse) {
+    const bool with_rigid = bounce.b == BounceContact::kNobody;
+    contacts.push_back({bounce.a, with_rigid ? bounce.a : bounce.b, with_rigid, bounce.rigid, bounce.point,
+                        bounce.normal, impulse});
+  });
 }
 
 }  // namespace softcell::ppu

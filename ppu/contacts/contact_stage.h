@@ -20,6 +20,7 @@
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/lost_spin.h"
 #include "ppu/contacts/rigid_sets.h"
+#include "ppu/contacts/sharp_contacts.h"
 #include "ppu/contacts/swept_contacts.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/obstacle.h"
@@ -80,7 +81,7 @@ class ContactStage {
   /// What moves it out of what it is in, in that step only, m/s.
   std::span<const Eigen::Vector3f> pushes(std::size_t body) const { return bodies_[body].pushes; }
 
-  /// Appends those of the last step that press, in the order of bodies.
+  /// Appends those of the last step that press, in the order of bodies; behind them what stopped or threw back a body as a whole.
   void append_contacts(std::vector<PressingContact>& contacts) const;
   /// Sets of the bodies that pressed on each other in the last step, directly or through others. What presses on a rigid body only is
   /// alone.
@@ -181,6 +182,7 @@ class ContactStage {
   ContactOrder order_;                               // of the former
   std::vector<std::vector<std::uint32_t>> touched_;  // of each body: cells, ascending
   CrushedCells crushed_cells_;
+  SharpContacts sharp_contacts_;
   CrushedCellCount crushed_;
   std::vector<bool> is_crushed_;  // of each body: it has crushed cells
   RigidSets rigid_sets_;

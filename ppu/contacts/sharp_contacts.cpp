@@ -1,18 +1,15 @@
 #include "ppu/contacts/sharp_contacts.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <vector>
 
 #include "ppu/contacts/crushed_cells.h"
-#include "ppu/lattice/locate.h"
+#include "ppu/surfaces/inner_places.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 namespace {
 
 using Eigen::Vector3f;
-using Eigen::Vector3i;
 
 // A load is felt so many cells deep before it is spread: one behind the touched one is crushed first.
 constexpr int kCellsBehind = 3;
@@ -41,21 +38,21 @@ float room_to_squeeze(const ContactBody& body, const DeformedPlace& place, const
   const Vector3f begin = lattice.cells[place.cell].cast<float>() + place.xi;
   float least = 1;
   for (int k = 0; k <= kCellsBehind; ++k) {
-    const Vector3i at = (begin + static_cast<float>(k) * inwards).array().floor().cast<int>();
-    if (const auto cell = find_cell<3>(lattice, at)) least = std::min(least, volume_of_cell(body, *cell));
+    const auto cell = cell_at(lattice, begin + static_cast<float>(k) * inwards);
+    if (cell) least = std::min(least, volume_of_cell(body, *cell));
   }
   const float cells = std::min(least - kLeastAtEdges, kDeep - depth / body.spacing());
   return std::max(cells, 0.0f) * body.spacing();
 }
 
-bool keep_sharp_ones(std::span<SoftContact> contacts, const ContactBody& body) {
+bool SharpContacts::keep(std::span<SoftContact> contacts, const ContactBody& body) {
   const auto is_sharp = [](const SoftContact& contact) { return contact.room < SoftContact::kNoLimit; };
   if (std::ranges::none_of(contacts, is_sharp)) return false;
-  std::vector<std::uint32_t> cells;
-  for (const SoftContact& contact : contacts) cells.push_back(contact.a.cell);
-  std::ranges::sort(cells);
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  if (are_few(cells.size(), body)) return true;
+  cells_.clear();
+  for (const SoftContact& contact : contacts) cells_.push_back(contact.a.cell);
+  std::ranges::sort(cells_);
+  const auto distinct = std::unique(cells_.begin(), cells_.end()) - cells_.begin();
+  if (are_few(static_cast<std::size_t>(distinct), body)) return true;
   for (SoftContact& contact : contacts) contact.room = SoftContact::kNoLimit;
   return false;
 }

@@ -6,8 +6,9 @@
 // the body. So where something is sharp a body goes on as a whole no farther than the cells behind the contact can be squeezed (bounces.h).
 
 #include <Eigen/Core>
-#include <limits>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "ppu/contacts/contact_group.h"
 #include "ppu/surfaces/cell_finder.h"
@@ -21,9 +22,16 @@ namespace softcell::ppu {
 float room_to_squeeze(const ContactBody& body, const DeformedPlace& place, const Eigen::Vector3f& inwards,
                       float depth);
 
-/// A body that lies on much else besides is not carried by an edge. Takes SoftContact::room off contacts that are not sharp.
-/// @param contacts  of the body with rigid bodies, all of them
-/// @return          whether some are
-bool keep_sharp_ones(std::span<SoftContact> contacts, const ContactBody& body);
+/// Used by one thread. Allocates when a body has more contacts than ever before.
+class SharpContacts {
+ public:
+  /// A body that lies on much else besides is not carried by an edge. Takes SoftContact::room off contacts that are not sharp.
+  /// @param contacts  of the body with rigid bodies, all of them
+  /// @return          whether some are
+  bool keep(std::span<SoftContact> contacts, const ContactBody& body);
+
+ private:
+  std::vector<std::uint32_t> cells_;  // that contacts have
+};
 
 }  // namespace softcell::ppu

@@ -6,9 +6,11 @@
 #include <span>
 
 #include "ppu/lattice/locate.h"
+#include "softcell/base/assert.h"
 
 namespace softcell::ppu {
 
+using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 namespace {
@@ -49,6 +51,11 @@ std::vector<CellPlace> find_inner_places(const FlatLayer& layer) {
   for (std::uint32_t margin = own; margin < cells.size(); ++margin)
     places.push_back(CellPlace(places[cells[margin].beside]));
   return places;
+}
+
+std::optional<std::uint32_t> cell_at(const Lattice<3>& lattice, const Vector3f& place) {
+  SC_ASSERT(place.allFinite(), "place {} in the lattice", place.x());
+  return find_cell<3>(lattice, place.array().floor().cast<int>());
 }
 
 }  // namespace softcell::ppu

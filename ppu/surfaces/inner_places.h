@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ppu/surfaces/contact_surface.h"
@@ -21,5 +22,8 @@ struct CellPlace {
 std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice);
 /// Of a flat layer: in the body's own cells. What a margin cell has is that of the cell beside which it moves.
 std::vector<CellPlace> find_inner_places(const FlatLayer& layer);
+
+/// The cell that has a place: in cells, from the lattice's grid index 0.
+std::optional<std::uint32_t> cell_at(const Lattice<3>& lattice, const Eigen::Vector3f& place);
 
 }  // namespace softcell::ppu

@@ -176,6 +176,20 @@ TEST_F(ToldIn2d, ContactsBeginGoOnAndEnd) {
   EXPECT_TRUE(after(0.1f).empty());
 }
 
+/// Bounces had no events.
+TEST_F(ToldIn2d, BouncesAreContacts) {
+  b2Body* const floor = w_.add_box({0, -1}, {10, 1});
+  for (b2Fixture* fixture = floor->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
+    fixture->SetRestitution(0.8f);
+  const SoftBody<2>& body = add({0, 1});
+  const auto events = after(1);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].rigid, floor);
+  const float fallen = 9.81f * body.model().mass();
+  EXPECT_GT(events[0].impulse, 0.5f * fallen);
+  EXPECT_NEAR(events[0].impulse, body.linear_momentum().y() + fallen, 0.02f * fallen);
+}
+
 TEST_F(ToldIn2d, SleepEndsNoContactAndRemovalDoes) {
   SoftBody<2>& body = add_sleeper();
   ASSERT_TRUE(body.asleep());

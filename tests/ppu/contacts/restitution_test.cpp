@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -211,6 +212,57 @@ TEST(Restitution, OfZeroChangesNothing) {
     hashes.push_back(state_hash(body));
   }
   EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+/// An edge stops what does not bounce.
+TEST(Restitution, IsThatOfAFloorOnEdgesToo) {
+  for (const float e : {0.5f, 0.9f}) {
+    std::vector<float> fastest;
+    for (const bool wire : {false, true}) {
+      ContactWorld w;
+      if (wire)
+        w.add(std::make_unique<btCapsuleShapeZ>(0.005f, 2), 0, {0, 0, 0}, 0, 1);
+      else
+        w.add_floor(0, 1);
+      SoftBodySettings settings = settings_of(kCellSize, 0.9f, 0.1f);
+      settings.restitution = e;
+      const SoftBody<3>& body = w.add(make_box({0.6f, 0.6f, 0.6f}, kCellSize), settings, {0, 1, 0});
+      fastest.push_back(0);
+      for (int i = 0; i < 30; ++i) {
+        w.run(1);
+        fastest.back() = std::max(fastest.back(), body.linear_momentum().y() / body.model().mass());
+      }
+    }
+    EXPECT_NEAR(fastest[1], fastest[0], 0.03f * fastest[0]) << e;
+  }
+}
+
+/// What a bounce, or an edge, does to a body as a whole is an impulse of their contact as much as what contacts do to cells: events sum up to
+/// the body's change of momentum. Bounces had no events at all.
+TEST(Restitution, EventsHaveAllImpulses) {
+  for (const bool wire : {false, true}) {
+    for (const float e : {0.0f, 0.5f, 0.9f}) {
+      ContactWorld w;
+      if (wire)
+        w.add(std::make_unique<btCapsuleShapeZ>(0.005f, 2), 0, {0, 0, 0}, 0, 1);
+      else
+        w.add_floor(0, 1);
+      SoftBodySettings settings = settings_of(kCellSize, 0.9f, 0.1f);
+      settings.restitution = e;
+      const SoftBody<3>& body = w.add(make_box({0.6f, 0.6f, 0.6f}, kCellSize), settings, {0, 1, 0});
+      w.bodies.watch_contacts(true);
+      const int frames = wire ? 30 : 60;  // before it falls off the wire
+      w.run(frames);
+      float impulse = 0;
+      const auto events = w.bodies.poll_contact_events();
+      for (const ContactEvent& event : events) impulse += event.impulse * event.normal.y();
+      const float fallen = 9.81f * static_cast<float>(frames) / 60 * body.model().mass();
+      EXPECT_EQ(events.size(), 1u) << (wire ? "wire, " : "floor, ") << e;
+      EXPECT_GT(impulse, 0.5f * fallen) << e;
+      EXPECT_NEAR(impulse, body.linear_momentum().y() + fallen, (wire ? 0.1f : 0.02f) * fallen)
+          << (wire ? "wire, " : "floor, ") << e;
+    }
+  }
 }
 
 }  // namespace

@@ -74,12 +74,13 @@ TEST(SharpContacts, AreThoseOnFewCells) {
     return contacts;
   };
   auto none = touching(4);
-  EXPECT_FALSE(keep_sharp_ones(none, cube.body));
+  SharpContacts sharp_contacts;
+  EXPECT_FALSE(sharp_contacts.keep(none, cube.body));
   for (const std::uint32_t cells : {1u, 6u, 16u, 17u, 36u}) {
     auto contacts = touching(cells);
     contacts[0].room = 0.01f;
     const bool sharp = cells <= 16;
-    EXPECT_EQ(keep_sharp_ones(contacts, cube.body), sharp) << cells;
+    EXPECT_EQ(sharp_contacts.keep(contacts, cube.body), sharp) << cells;
     EXPECT_EQ(contacts[0].room < SoftContact::kNoLimit, sharp) << cells;
   }
 }

@@ -265,7 +265,7 @@ TEST(SurfaceContacts, ThinAndPointedThingsStayOutside) {
     for (int i = 0; i < 240; ++i) {
       w.run(1);
       if (i % 6 != 0) continue;
-      ASSERT_LT(ContactWorld::depth_in_drawn(body, thing.tip), 1.5f * kCell) << thing.name << ' ' << i;
+      ASSERT_LT(ContactWorld::depth_in_drawn(body, thing.tip), 0.3f * kCell) << thing.name << ' ' << i;
     }
   }
 }
