@@ -55,7 +55,11 @@ CandidatePairs::Known& CandidatePairs::of(const Pair& pair, float spacing) {
       return known_.emplace_back(known);
   } else {
     known.pair = pair;
-    if (free_slots_.empty()) free_slots_.push_back(static_cast<std::uint32_t>(slots_++));
+    if (free_slots_.empty()) {
+      free_slots_.push_back(static_cast<std::uint32_t>(slots_++));
+      // A step in which pairs part allocates nothing.
+      if (free_slots_.capacity() < slots_) free_slots_.reserve(2 * slots_);
+    }
     known.slot = free_slots_.back();
     free_slots_.pop_back();
   }
