@@ -214,19 +214,24 @@ TEST(Restitution, OfZeroChangesNothing) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+/// A cube above a floor, or a wire, that gives back everything.
+SoftBody<3>& add_cube_above(bool wire, float restitution, ContactWorld& w) {
+  if (wire)
+    w.add(std::make_unique<btCapsuleShapeZ>(0.005f, 2), 0, {0, 0, 0}, 0, 1);
+  else
+    w.add_floor(0, 1);
+  SoftBodySettings settings = settings_of(kCellSize, 0.9f, 0.1f);
+  settings.restitution = restitution;
+  return w.add(make_box({0.6f, 0.6f, 0.6f}, kCellSize), settings, {0, 1, 0});
+}
+
 /// An edge stops what does not bounce.
 TEST(Restitution, IsThatOfAFloorOnEdgesToo) {
   for (const float e : {0.5f, 0.9f}) {
     std::vector<float> fastest;
     for (const bool wire : {false, true}) {
       ContactWorld w;
-      if (wire)
-        w.add(std::make_unique<btCapsuleShapeZ>(0.005f, 2), 0, {0, 0, 0}, 0, 1);
-      else
-        w.add_floor(0, 1);
-      SoftBodySettings settings = settings_of(kCellSize, 0.9f, 0.1f);
-      settings.restitution = e;
-      const SoftBody<3>& body = w.add(make_box({0.6f, 0.6f, 0.6f}, kCellSize), settings, {0, 1, 0});
+      const SoftBody<3>& body = add_cube_above(wire, e, w);
       fastest.push_back(0);
       for (int i = 0; i < 30; ++i) {
         w.run(1);
@@ -243,13 +248,7 @@ TEST(Restitution, EventsHaveAllImpulses) {
   for (const bool wire : {false, true}) {
     for (const float e : {0.0f, 0.5f, 0.9f}) {
       ContactWorld w;
-      if (wire)
-        w.add(std::make_unique<btCapsuleShapeZ>(0.005f, 2), 0, {0, 0, 0}, 0, 1);
-      else
-        w.add_floor(0, 1);
-      SoftBodySettings settings = settings_of(kCellSize, 0.9f, 0.1f);
-      settings.restitution = e;
-      const SoftBody<3>& body = w.add(make_box({0.6f, 0.6f, 0.6f}, kCellSize), settings, {0, 1, 0});
+      const SoftBody<3>& body = add_cube_above(wire, e, w);
       w.bodies.watch_contacts(true);
       const int frames = wire ? 30 : 60;  // before it falls off the wire
       w.run(frames);
