@@ -95,14 +95,6 @@ Workshop& flows() {
   return workshop;
 }
 
-/// Returns when it has a result.
-template <class Flowed>
-void wait_for(const std::shared_future<Flowed>& flow) {
-  if (flow.wait_for(std::chrono::seconds(0)) == std::future_status::ready) return;
-  flows().hurry();
-  flow.wait();
-}
-
 }  // namespace
 
 /// What a plastic body has in addition. It is null until the body was looked at, `shape` until it has yielded.
@@ -143,8 +135,11 @@ struct SoftBody<kDimension>::RestShape {
       positions.push_back(plan.rest_centre() + particle.x0);
     return std::make_shared<const Shape>(Shape{std::move(plan), std::move(positions)});
   }
+  /// Returns when a flow that has begun has a result.
   void wait() const {
-    if (next.valid()) wait_for(next);
+    if (!next.valid() || next.wait_for(std::chrono::seconds(0)) == std::future_status::ready) return;
+    flows().hurry();
+    next.wait();
   }
 
   // flows() has these two while `next` is not ready.
@@ -345,7 +340,7 @@ template <int kDimension>
 void SoftBody<kDimension>::take_flow() {
   SC_ASSERT(rest_ != nullptr, "a body of {} particles was never looked at", x_.size());
   if (!rest_->next.valid()) return;
-  wait_for(rest_->next);
+  rest_->wait();
   std::shared_ptr<const typename RestShape::Shape> flowed = std::exchange(rest_->next, {}).get();
   rest_->is_flowing = flowed != nullptr;
   rest_->worn = flowed ? std::exchange(rest_->shape, flowed) : nullptr;
