@@ -78,6 +78,28 @@ float volume_of_cell(const ContactBody& body, std::uint32_t cell) {
   return edges_at_beginning(body, body.lattice().corners[cell]).volume();
 }
 
+/// Where particles would be, in cells.
+void CrushedCells::place_ends(const ContactBody& body, float step) {
+  const float per_spacing = 1 / body.spacing();
+  ends_.resize(body.positions.size());
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    const Vector3f end = per_spacing * (body.positions[i] + step * body.velocities[i]);
+    ends_[i].head<3>() = end, ends_[i][3] = 0;
+  }
+}
+
+/// As edges_of() has it, three numbers at a time.
+float CrushedCells::volume_at_end(const std::array<std::uint32_t, 8>& corners) const {
+  Eigen::Array4f x = Eigen::Array4f::Zero(), y = x, z = x;
+  for (unsigned k = 0; k < 8; ++k) {
+    const Eigen::Array4f& p = ends_[corners[k]];
+    x += 0.25f * side(k, 0) * p;
+    y += 0.25f * side(k, 1) * p;
+    z += 0.25f * side(k, 2) * p;
+  }
+  return Edges{x.head<3>(), y.head<3>(), z.head<3>()}.volume();
+}
+
 bool CrushedCells::hold(ContactBody& body, float step) {
   SC_ASSERT(step > 0, "a substep of {} s", step);
   cells_.clear();
@@ -90,8 +112,9 @@ bool CrushedCells::hold(ContactBody& body, float step) {
       return per_spacing * (body.positions[corners[k]] + step * body.velocities[corners[k]]);
     });
   };
+  place_ends(body, step);
   for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell)
-    if (!body.model->is_margin(cell) && edges_at_end(lattice.corners[cell]).volume() < kLeastVolume)
+    if (!body.model->is_margin(cell) && volume_at_end(lattice.corners[cell]) < kLeastVolume)
       cells_.push_back(cell);
   if (cells_.empty()) return false;
 

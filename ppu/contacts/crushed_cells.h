@@ -5,6 +5,8 @@
 // matching resists compression by forces, which a load beats; a cell without volume has no inside in which others
 // could be found. So below kLeastVolume volume is a constraint.
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,6 +34,10 @@ class CrushedCells {
   std::uint32_t inside_out() const { return inside_out_; }
 
  private:
+  void place_ends(const ContactBody& body, float step);
+  float volume_at_end(const std::array<std::uint32_t, 8>& corners) const;
+
+  std::vector<Eigen::Array4f> ends_;  // of each particle
   std::vector<std::uint32_t> cells_;  // that would be crushed at the end
   std::vector<float> least_;          // of each of them: the volume that it is to have then
   std::uint32_t count_ = 0, inside_out_ = 0;

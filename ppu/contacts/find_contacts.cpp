@@ -151,8 +151,9 @@ class ObstacleContacts {
     const float reach = come_near(bounds(obstacle_));
     if (may_have_others_beside())
       cells_.beside.begin(obstacles_, near_obstacles_, obstacle_, body_.spacing());
+    const Passage near = passage(near_);
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
-      for_each_point_in(near_, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
+      for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         const Way way = way_of(from, to);
         auto hit = meet(obstacle_, way, point.allowance, body_.spacing());
         if (!hit) return;
@@ -182,13 +183,27 @@ class ObstacleContacts {
     return (box.low - rigid_.centre).cwiseAbs().cwiseMax((box.high - rigid_.centre).cwiseAbs()).norm();
   }
 
+  /// A box, and where points end whose ways may pass through it: they go hardly farther than the particles that hold them.
+  struct Passage {
+    Bounds<3> box, ends;
+  };
+  Passage passage(const Bounds<3>& box) {
+    constexpr float kRounding = 1e-5f;  // of what is added up for a point
+    const Vector3f farthest = body_.box.low.cwiseAbs().cwiseMax(body_.box.high.cwiseAbs());
+    const Vector3f reach = 2 * cells_.boxes().longest_way() + kRounding * farthest;
+    return {box, {box.low - reach, box.high + reach}};
+  }
+
   /// Calls work(point, from, to) for a cell's points whose ways pass through the box.
   template <typename Work>
-  void for_each_point_in(const Bounds<3>& box, std::uint32_t cell, const Work& work) const {
+  void for_each_point_in(const Passage& passage, std::uint32_t cell, const Work& work) const {
     const ContactModel& model = *body_.model;
+    const Bounds<3>& box = passage.box;
     for (std::uint32_t i = model.first_of_cell[cell]; i < model.first_of_cell[cell + 1]; ++i) {
       const TouchPoint& point = model.touch_points[i];
-      const Vector3f from = point.anchor.of(body_.positions), to = point.anchor.of(body_.ends);
+      const Vector3f to = point.anchor.of(body_.ends);
+      if (!contains(passage.ends, to)) continue;  // without looking where it begins
+      const Vector3f from = point.anchor.of(body_.positions);
       if ((from.cwiseMax(to).array() < box.low.array()).any() ||
           (from.cwiseMin(to).array() > box.high.array()).any())
         continue;
@@ -256,9 +271,9 @@ class ObstacleContacts {
     const float spacing = body_.spacing();
     // What has been pressed through a triangle may be so far behind it, and still meets it.
     const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
-    const Bounds<3> deep = widened(near_, kDeepest * spacing);
+    const Passage deep = passage(widened(near_, kDeepest * spacing));
     cells_.near_triangles.clear();
-    cells_.boxes().for_each_meeting(deep, [&](std::uint32_t cell) {
+    cells_.boxes().for_each_meeting(deep.box, [&](std::uint32_t cell) {
       const Vector3f inner = inner_place(cell);
       const Bounds<3> around = cells_.boxes().at(cell);
       if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;

@@ -122,18 +122,17 @@ void SpeContacts::write_particles(std::uint32_t i, bool was_there) {
   const std::size_t count = body.ends.size();
   spu::FindEnd* const ends = state_.data() + ends_of(i);
   auto* const begins = reinterpret_cast<spu::FindBegin*>(ends + count);
-  using Row = Eigen::Array4f;
-  Row least = Row::Constant(std::numeric_limits<float>::max()), most = -least;
+  Vector3f least = Vector3f::Constant(std::numeric_limits<float>::max()), most = -least;
   for (std::size_t p = 0; p < count; ++p) {
     const Vector3f &x = body.positions[p], &end = body.ends[p];
     begins[p] = {x.x(), x.y(), x.z(), body.asleep ? 0.0f : model.inverse_root_masses[p]};
-    const Row now(end.x(), end.y(), end.z(), 0);
-    auto before = Row::Map(&ends[p].x);
-    least = least.min(now - before);
-    most = most.max(now - before);
-    before = now;
+    // Number by number: a quadword read right behind its four parts waits for them in the store buffer.
+    const Vector3f way(end.x() - ends[p].x, end.y() - ends[p].y, end.z() - ends[p].z);
+    least = least.cwiseMin(way);
+    most = most.cwiseMax(way);
+    ends[p] = {end.x(), end.y(), end.z(), 0};
   }
-  if (was_there) pairs_.add_way(i, least.head<3>(), most.head<3>());
+  if (was_there) pairs_.add_way(i, least, most);
   spu::SolveVelocity* const start = velocities_.data() + start_of(i);
   for (std::size_t p = 0; p < count; ++p)
     start[p] = times(model.root_masses[p], body.velocities[p], model.root_masses[p]);

@@ -11,11 +11,13 @@ void CellBoxes::place(const Lattice<3>& lattice, std::span<const Eigen::Vector3f
       "{} and {} places of {} particles", begins.size(), ends.size(), lattice.particles.size());
   least_.resize(begins.size());
   most_.resize(begins.size());
+  longest_way_.setZero();
   for (std::size_t i = 0; i < begins.size(); ++i) {
     // Number by number: a quadword read right behind its four parts waits for them in the store buffer.
     least_[i].head<3>() = begins[i].cwiseMin(ends[i]);
     most_[i].head<3>() = begins[i].cwiseMax(ends[i]);
     least_[i][3] = most_[i][3] = 0;
+    longest_way_ = longest_way_.cwiseMax((ends[i] - begins[i]).cwiseAbs());
   }
   cells_ = lattice.cells.size();
   fours_.resize((cells_ + 3) / 4);
@@ -29,6 +31,14 @@ void CellBoxes::place(const Lattice<3>& lattice, std::span<const Eigen::Vector3f
     FourBoxes& four = fours_[c / 4];
     const auto lane = static_cast<Eigen::Index>(c % 4);
     for (int d = 0; d < 3; ++d) four.low[d][lane] = low[d], four.high[d][lane] = high[d];
+  }
+  sixteens_.resize((fours_.size() + 3) / 4);
+  for (std::size_t i = 0; i < 4 * sixteens_.size(); ++i) {
+    const FourBoxes& four = fours_[std::min(i, fours_.size() - 1)];
+    FourBoxes& sixteen = sixteens_[i / 4];
+    const auto lane = static_cast<Eigen::Index>(i % 4);
+    for (int d = 0; d < 3; ++d)
+      sixteen.low[d][lane] = four.low[d].minCoeff(), sixteen.high[d][lane] = four.high[d].maxCoeff();
   }
 }
 

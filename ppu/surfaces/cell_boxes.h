@@ -23,26 +23,46 @@ class CellBoxes {
   /// Calls work(cell) for each cell whose box has a point in common with `box`, ascending.
   template <typename Work>
   void for_each_meeting(const Bounds<3>& box, const Work& work) const {
-    for (std::size_t g = 0; g < fours_.size(); ++g) {
-      const Eigen::Array4f apart = fours_[g].apart_from(box);
-      if (apart.minCoeff() > 0) continue;
+    any_four_meets(box, [&](std::size_t g, const Eigen::Array4f& apart) {
       const std::size_t count = std::min<std::size_t>(4, cells_ - 4 * g);
       for (std::size_t lane = 0; lane < count; ++lane)
         if (apart[static_cast<Eigen::Index>(lane)] <= 0) work(static_cast<std::uint32_t>(4 * g + lane));
-    }
+      return false;
+    });
   }
+
+  /// Metres along each axis: no particle goes farther.
+  Eigen::Vector3f longest_way() const { return longest_way_; }
 
   /// Around one cell.
   Bounds<3> at(std::uint32_t cell) const { return fours_[cell / 4].at(static_cast<Eigen::Index>(cell % 4)); }
 
   bool any_meets(const Bounds<3>& box) const {
-    return std::any_of(fours_.begin(), fours_.end(),
-                       [&](const FourBoxes& four) { return four.apart_from(box).minCoeff() <= 0; });
+    return any_four_meets(box, [](std::size_t, const Eigen::Array4f&) { return true; });
   }
 
  private:
+  /// Calls work(index, apart) for each of fours_ that has a point in common with `box`, ascending, until it returns true.
+  template <typename Work>
+  bool any_four_meets(const Bounds<3>& box, const Work& work) const {
+    for (std::size_t s = 0; s < sixteens_.size(); ++s) {
+      const Eigen::Array4f around = sixteens_[s].apart_from(box);
+      if (around.minCoeff() > 0) continue;
+      const std::size_t count = std::min<std::size_t>(4, fours_.size() - 4 * s);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (around[static_cast<Eigen::Index>(i)] > 0) continue;
+        const Eigen::Array4f apart = fours_[4 * s + i].apart_from(box);
+        if (apart.minCoeff() <= 0 && work(4 * s + i, apart)) return true;
+      }
+    }
+    return false;
+  }
+
   std::size_t cells_ = 0;
-  std::vector<FourBoxes> fours_;              // the last cell again where there are fewer
+  Eigen::Vector3f longest_way_{0, 0, 0};
+  std::vector<FourBoxes> fours_;  // the last cell again where there are fewer
+  std::vector<FourBoxes>
+      sixteens_;  // around four of them in each lane; the last four again where there are fewer
   std::vector<Eigen::Array4f> least_, most_;  // of each particle's two places
 };
 

@@ -30,21 +30,26 @@ void CellFinder::place(const Lattice<3>& lattice, std::span<const Vector3f> posi
             "{} positions of {} particles", positions.size(), lattice.particles.size());
   lattice_ = &lattice;
   positions_ = positions;
+  using Row = Eigen::Array4f;
+  rows_.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    // Number by number: a quadword read right behind its four parts waits for them in the store buffer.
+    rows_[i].head<3>() = positions[i], rows_[i][3] = 0;
   boxes_.resize(lattice.cells.size());
-  Vector3f low = positions[0], high = positions[0];
+  Row lowest = rows_[0], highest = lowest;
   for (std::size_t c = 0; c < boxes_.size(); ++c) {
     const auto& corners = lattice.corners[c];
-    Box box{positions[corners[0]], positions[corners[0]]};
-    for (const std::uint32_t k : corners) {
-      box.low = box.low.cwiseMin(positions[k]);
-      box.high = box.high.cwiseMax(positions[k]);
+    Row low = rows_[corners[0]], high = low;
+    for (std::size_t k = 1; k < 8; ++k) {
+      low = low.min(rows_[corners[k]]);
+      high = high.max(rows_[corners[k]]);
     }
-    boxes_[c] = box;
-    low = low.cwiseMin(box.low);
-    high = high.cwiseMax(box.high);
+    boxes_[c] = {low.head<3>(), high.head<3>()};
+    lowest = lowest.min(low);
+    highest = highest.max(high);
   }
-  low_ = low;
-  const Vector3f size = high - low;
+  low_ = lowest.head<3>();
+  const Vector3f size = highest.head<3>().matrix() - low_;
   const float cube = std::max(kCubeInCells * lattice.spacing, size.maxCoeff() / kMostCubesPerAxis);
   per_cube_ = 1 / cube;
   counts_ = (size * per_cube_).cast<int>().array() + 1;

@@ -68,6 +68,7 @@ class CellFinder {
   Eigen::Vector3f low_{0, 0, 0};
   float per_cube_ = 1;
   Eigen::Vector3i counts_{0, 0, 0};
+  std::vector<Eigen::Array4f> rows_;  // of each particle: where it is
   std::vector<Box> boxes_;            // of each cell
   std::vector<std::uint32_t> begin_;  // of each cube
   std::vector<std::uint32_t> cells_, next_;

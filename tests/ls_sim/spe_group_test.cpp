@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -202,6 +203,22 @@ TEST_F(SpeGroupTest, SignalsFromThePpuCollectOrReplace) {
     }
   }
   EXPECT_THROW(spe.write_signal(3, 0), std::invalid_argument);
+}
+
+TEST_F(SpeGroupTest, SpesThatSleepLeaveTheProcessorToOthers) {
+  SpeGroup group(memory_, {.spes = 6});
+  for (int spe = 0; spe < 6; ++spe) group.start(spe, waits_, {.argp = kInMbox});
+  const auto processor_time = [] {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+  };
+  std::this_thread::sleep_for(50ms);  // they look for a while before they sleep
+  const auto before = processor_time();
+  std::this_thread::sleep_for(200ms);
+  EXPECT_LT(processor_time() - before, 20ms);
+  for (int spe = 0; spe < 6; ++spe) group.problem_state(spe).write_in_mbox(7);
+  for (int spe = 0; spe < 6; ++spe) EXPECT_EQ(group.wait(spe).status(), 7u);
 }
 
 TEST_F(SpeGroupTest, EventsWakeAnSpeThatSleeps) {

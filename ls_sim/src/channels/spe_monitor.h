@@ -9,10 +9,12 @@
 // Its mutex also guards what an SPE may wait for (mailboxes, signals, events), so that a sleeping SPE never
 // misses the change that it waits for. Nobody holds it while an MFC or a kernel runs.
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -149,6 +151,12 @@ class SpeMonitor {
     std::uint64_t time = 0;         ///< cycles, by its own clock
     std::uint64_t woken_at = 0;     ///< cycles
     std::condition_variable wake_up;
+    std::atomic<bool> called = false;  ///< since it has begun to look: read without the lock
+
+    void call() {
+      called.store(true, std::memory_order_relaxed);
+      wake_up.notify_one();
+    }
   };
 
   static constexpr int kNobody = -1;
@@ -163,6 +171,7 @@ class SpeMonitor {
   bool may_go_on(int spe) {
     return member(spe).stopped || (member(spe).state == State::kRunnable && has_turn(spe));
   }
+  void look(Lock& lock, int spe);
   bool any(State state) const;
   bool is_idle() const;
   std::span<Member> used() { return std::span(members_).first(members_used_); }
@@ -182,7 +191,11 @@ class SpeMonitor {
 
   const bool takes_turns_;
   const bool by_time_;
+  const bool may_look_;
   const PpuSide ppu_side_;
+
+  static constexpr int kNobodyLooks = std::numeric_limits<int>::max();
+  std::atomic<int> looks_ = kNobodyLooks;  // which SPE; read without the lock
 
   std::mutex mutex_;  // guards all below, and what SPEs wait for
   std::vector<Member> members_;

@@ -15,6 +15,7 @@
 #include "ppu/contacts/contact_body.h"
 #include "ppu/mesh/outer_surface.h"
 #include "ppu/mesh/solid.h"
+#include "ppu/surfaces/cell_boxes.h"
 #include "ppu/surfaces/cell_finder.h"
 #include "ppu/surfaces/contact_surface.h"
 #include "ppu/surfaces/corner_set.h"
@@ -528,6 +529,42 @@ TEST(Beside, TheWayOutIsNotIntoTheNextShape) {
   EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out({-1e-4f, -0.5f, 0.5f})) << "deep within both";
   // At the foot of a wall the ground pushes upwards, although the wall is there, too.
   EXPECT_FALSE(TwoBoxes({1.99f, 0.5f, 0}).way_out({-0.005f, -0.002f, 0}));
+}
+
+TEST(CellBoxes, MeetWhatTheBoxOfEachCellMeets) {
+  RandomPoints random;
+  for (const Vector3f& size : {Vector3f(1, 1, 1), Vector3f(1, 0.25f, 0.25f), Vector3f(1.25f, 0.75f, 0.25f)}) {
+    const Lattice<3> lattice = voxelize(make_box(size, 0.5f), 0.25f);
+    std::vector<Vector3f> begins, ends;
+    for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+      begins.push_back(lattice.rest_position(i) + random.in_cube(0.1f));
+      ends.push_back(begins.back() + random.in_cube(0.05f));
+    }
+    CellBoxes boxes;
+    boxes.place(lattice, begins, ends);
+    for (int trial = 0; trial < 200; ++trial) {
+      const Vector3f at = random.in_cube(0.9f);
+      const Bounds<3> box{at - Vector3f::Constant(0.1f), at + Vector3f::Constant(0.1f)};
+      std::vector<std::uint32_t> expected, met;
+      for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell) {
+        Vector3f low = begins[lattice.corners[cell][0]], high = low;
+        for (const std::uint32_t k : lattice.corners[cell]) {
+          low = low.cwiseMin(begins[k]).cwiseMin(ends[k]);
+          high = high.cwiseMax(begins[k]).cwiseMax(ends[k]);
+        }
+        EXPECT_EQ(boxes.at(cell).low, low);
+        EXPECT_EQ(boxes.at(cell).high, high);
+        if (overlap(box, Bounds<3>{low, high})) expected.push_back(cell);
+      }
+      boxes.for_each_meeting(box, [&](std::uint32_t cell) { met.push_back(cell); });
+      EXPECT_EQ(met, expected);
+      EXPECT_EQ(boxes.any_meets(box), !expected.empty());
+    }
+    Vector3f longest = Vector3f::Zero();
+    for (std::size_t i = 0; i < begins.size(); ++i)
+      longest = longest.cwiseMax((ends[i] - begins[i]).cwiseAbs());
+    EXPECT_EQ(boxes.longest_way(), longest);
+  }
 }
 
 TEST(CellFinder, FindsPlacesInATwistedLattice) {
