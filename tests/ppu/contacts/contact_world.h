@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "ppu/bullet/bullet_vector.h"
-#include "ppu/surfaces/triangle_distance.h"
 #include "softcell/bullet/bullet_soft_bodies.h"
 #include "softcell/soft_bodies/shapes.h"
 #include "softcell/soft_bodies/skinned_mesh.h"
+#include "support/drawn_overlap.h"
 #include "support/slow_build.h"
 
 namespace softcell::ppu {
@@ -74,12 +74,10 @@ class ContactWorld {
     for (const Eigen::Vector3f& p : drawn(body)) lowest = std::min(lowest, p.y());
     return lowest;
   }
-  /// How deep a point is in what is drawn, metres; below 0 outside. By brute force, not by the contact code's field.
+  /// How deep a point is in what is drawn, metres; 0 outside. By brute force: of a mesh that is folded, its nearest triangle does not tell on
+  /// which side of it a point is.
   static float depth_in_drawn(const SoftBody<3>& body, const Eigen::Vector3f& point) {
-    TriangleMesh mesh = body.model().mesh();
-    mesh.positions = drawn(body);
-    const float reach = 4 * body.model().lattice().spacing;
-    return -TriangleGrid(mesh, body.model().lattice().spacing).signed_distance(point, reach);
+    return tests::DrawnBody(body).depth(point);
   }
   static float fastest(const SoftBody<3>& body) {
     float fastest = 0;
