@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "contact_world.h"
+#include "ppu/surfaces/triangle_distance.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 
 namespace softcell::ppu {
