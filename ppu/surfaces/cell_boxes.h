@@ -60,9 +60,8 @@ class CellBoxes {
 
   std::size_t cells_ = 0;
   Eigen::Vector3f longest_way_{0, 0, 0};
-  std::vector<FourBoxes> fours_;  // the last cell again where there are fewer
-  std::vector<FourBoxes>
-      sixteens_;  // around four of them in each lane; the last four again where there are fewer
+  std::vector<FourBoxes> fours_;              // the last cell again where there are fewer
+  std::vector<FourBoxes> sixteens_;           // a lane around each of fours_; the last again
   std::vector<Eigen::Array4f> least_, most_;  // of each particle's two places
 };
 

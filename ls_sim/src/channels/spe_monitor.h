@@ -98,7 +98,7 @@ class SpeMonitor {
   /// @return  false when the SPE has been stopped meanwhile.
   bool pass_turn(int spe) { return !takes_turns_ || pass_turn_now(spe); }
 
-  /// Sleeps until somebody calls wake(), or as Woken says.
+  /// Sleeps until somebody calls wake(), or as Woken says. Where SPEs run freely it looks for a while first, without the host's help.
   Woken sleep(Lock& lock, int spe, const Sleep& sleep);
 
   /// Ticks of simulated time that went by in the SPE's last sleep, whatever ended it. With the lock.
