@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "ppu/numbers/row.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -82,10 +83,8 @@ float volume_of_cell(const ContactBody& body, std::uint32_t cell) {
 void CrushedCells::place_ends(const ContactBody& body, float step) {
   const float per_spacing = 1 / body.spacing();
   ends_.resize(body.positions.size());
-  for (std::size_t i = 0; i < ends_.size(); ++i) {
-    const Vector3f end = per_spacing * (body.positions[i] + step * body.velocities[i]);
-    ends_[i].head<3>() = end, ends_[i][3] = 0;
-  }
+  for (std::size_t i = 0; i < ends_.size(); ++i)
+    set_row(ends_[i], per_spacing * (body.positions[i] + step * body.velocities[i]));
 }
 
 /// As edges_of() has it, three numbers at a time.

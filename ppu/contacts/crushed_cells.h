@@ -19,7 +19,7 @@ inline constexpr float kLeastVolume = 0.5f;  ///< of rest: what is below it is c
 /// Of its volume at rest, at the substep's beginning; below 0 inside out.
 float volume_of_cell(const ContactBody& body, std::uint32_t cell);
 
-/// Used by one thread. Allocates when more cells are crushed than ever before.
+/// Used by one thread. Allocates when there are more particles, or more crushed cells, than ever before.
 class CrushedCells {
  public:
   /// Looks for cells that would be crushed at the substep's end. They lose the velocities that crush them further,

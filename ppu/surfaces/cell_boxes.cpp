@@ -1,5 +1,6 @@
 #include "ppu/surfaces/cell_boxes.h"
 
+#include "ppu/numbers/row.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -13,10 +14,8 @@ void CellBoxes::place(const Lattice<3>& lattice, std::span<const Eigen::Vector3f
   most_.resize(begins.size());
   longest_way_.setZero();
   for (std::size_t i = 0; i < begins.size(); ++i) {
-    // Number by number: a quadword read right behind its four parts waits for them in the store buffer.
-    least_[i].head<3>() = begins[i].cwiseMin(ends[i]);
-    most_[i].head<3>() = begins[i].cwiseMax(ends[i]);
-    least_[i][3] = most_[i][3] = 0;
+    set_row(least_[i], begins[i].cwiseMin(ends[i]));
+    set_row(most_[i], begins[i].cwiseMax(ends[i]));
     longest_way_ = longest_way_.cwiseMax((ends[i] - begins[i]).cwiseAbs());
   }
   cells_ = lattice.cells.size();

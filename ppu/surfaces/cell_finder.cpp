@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "ppu/numbers/row.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -32,9 +33,7 @@ void CellFinder::place(const Lattice<3>& lattice, std::span<const Vector3f> posi
   positions_ = positions;
   using Row = Eigen::Array4f;
   rows_.resize(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    // Number by number: a quadword read right behind its four parts waits for them in the store buffer.
-    rows_[i].head<3>() = positions[i], rows_[i][3] = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) set_row(rows_[i], positions[i]);
   boxes_.resize(lattice.cells.size());
   Row lowest = rows_[0], highest = lowest;
   for (std::size_t c = 0; c < boxes_.size(); ++c) {
