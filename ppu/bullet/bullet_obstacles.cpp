@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "ppu/bullet/bullet_vector.h"
+#include "ppu/bullet/may_move.h"
 #include "ppu/bullet/mesh_triangles.h"
 #include "ppu/numbers/deterministic_math.h"
 #include "ppu/surfaces/round_edges.h"
@@ -127,6 +128,40 @@ void find_points(const btConvexShape& shape, std::vector<btVector3>& points) {
   points.assign(around.getVertexPointer(), around.getVertexPointer() + around.numVertices());
 }
 
+bool is_under_way(const btCollisionObject& object) { return may_move(object) && object.isActive(); }
+
+/// What it would be without contacts: Bullet adds forces, gravity among them, later in its step.
+Vector3f velocity_in(float step, const btRigidBody& body) {
+  const Vector3f velocity = to_eigen(body.getLinearVelocity());
+  if (body.isStaticOrKinematicObject()) return velocity;
+  return velocity + step * body.getInvMass() * to_eigen(body.getTotalForce() * body.getLinearFactor());
+}
+
+/// How far an object goes in a substep, metres.
+struct Way {
+  Vector3f along = Vector3f::Zero();
+  float turn = 0;  ///< no point of it goes farther by its spin
+};
+
+Way way_of(const btCollisionObject& object, float step) {
+  const btRigidBody* const body = btRigidBody::upcast(&object);
+  if (body == nullptr || !is_under_way(object)) return {};
+  btVector3 centre;
+  btScalar radius = 0;
+  body->getCollisionShape()->getBoundingSphere(centre, radius);
+  return {step * velocity_in(step, *body),
+          step * body->getAngularVelocity().length() * (centre.length() + radius)};
+}
+
+/// Around a box on that way.
+Bounds<3> ahead(const Bounds<3>& box, const Way& way) {
+  return {box.low + way.along.cwiseMin(0.0f) - Vector3f::Constant(way.turn),
+          box.high + way.along.cwiseMax(0.0f) + Vector3f::Constant(way.turn)};
+}
+
+/// Around all that comes into a box on that way.
+Bounds<3> behind(const Bounds<3>& box, const Way& way) { return ahead(box, {-way.along, way.turn}); }
+
 /// Collects what the broad phase finds.
 struct Collector final : btBroadphaseAabbCallback {
   Collector(int its_group, int its_mask, std::vector<const btBroadphaseProxy*>& list)
@@ -160,6 +195,20 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   objects_.clear();
   obstacle_of_.clear();
   edges_used_ = triangles_used_ = 0;
+  leaving_.clear();
+  const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+  for (int i = 0; i < objects.size(); ++i)
+    if (is_under_way(*objects[i])) find_leaving(*objects[i]);
+}
+
+void BulletObstacles::find_leaving(const btCollisionObject& object) {
+  const btBroadphaseProxy* const proxy = object.getBroadphaseHandle();
+  btVector3 low, high;
+  object.getCollisionShape()->getAabb(object.getWorldTransform(), low, high);
+  const Bounds<3> box = ahead({to_eigen(low), to_eigen(high)}, way_of(object, step_));
+  const bool is_known = (box.low.array() >= to_eigen(proxy->m_aabbMin).array()).all() &&
+                        (box.high.array() <= to_eigen(proxy->m_aabbMax).array()).all();
+  if (!is_known) leaving_.push_back({proxy, box});
 }
 
 void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
@@ -170,14 +219,20 @@ void BulletObstacles::add_near(const Bounds<3>& box, int group, int mask,
   // Broad phases are not const where they only look.
   const_cast<btBroadphaseInterface*>(world_->getBroadphase())
       ->aabbTest(to_bullet(box.low), to_bullet(box.high), near);
+  // Of other boxes the tree may find some.
+  std::erase_if(found_, [&](const btBroadphaseProxy* proxy) {
+    return !overlap({to_eigen(proxy->m_aabbMin), to_eigen(proxy->m_aabbMax)}, box);
+  });
+  for (const Leaving& leaving : leaving_)
+    if (overlap(leaving.box, box)) near.process(leaving.proxy);
   // In the order in which objects were added, whatever tree they are in.
   std::sort(found_.begin(), found_.end(),
             [](const auto* a, const auto* b) { return a->m_uniqueId < b->m_uniqueId; });
+  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
   for (const btBroadphaseProxy* const proxy : found_) {
     auto& object = *static_cast<btCollisionObject*>(proxy->m_clientObject);
-    const bool wanted = object.hasContactResponse() == (role_ == Objects::kSolid);
-    if (wanted && overlap({to_eigen(proxy->m_aabbMin), to_eigen(proxy->m_aabbMax)}, box))
-      add_object(object, box, indices);
+    if (object.hasContactResponse() == (role_ == Objects::kSolid))
+      add_object(object, behind(box, way_of(object, step_)), indices);
   }
 }
 
@@ -204,12 +259,9 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   rigid.friction = object.getFriction();
   rigid.restitution = object.getRestitution();
   if (const btRigidBody* const body = btRigidBody::upcast(&object)) {
-    rigid.velocity = to_eigen(body->getLinearVelocity());
+    rigid.velocity = velocity_in(step_, *body);
     rigid.spin = to_eigen(body->getAngularVelocity());
     if (!body->isStaticOrKinematicObject()) {
-      // Bullet adds forces, gravity among them, after this.
-      rigid.velocity +=
-          step_ * body->getInvMass() * to_eigen(body->getTotalForce() * body->getLinearFactor());
       rigid.inverse_mass = body->getInvMass();
       rigid.inverse_inertia = to_eigen(body->getInvInertiaTensorWorld());
     }

@@ -28,10 +28,11 @@ class BulletObstacles {
   };
   explicit BulletObstacles(Objects objects) : role_(objects) {}
 
-  /// Forgets what was near before.
+  /// Forgets what was near before. The broad phase knows where objects have been: of those that go on it learns later in Bullet's step. So
+  /// this looks for the ones that leave the boxes that it has for them.
   void begin(const btDiscreteDynamicsWorld& world, float step);
 
-  /// Appends the indices of all obstacles in a box.
+  /// Appends the indices of all obstacles that are in a box, or come there in the substep.
   /// @param group, mask  Bullet's collision filter of what is in the box
   /// @throws std::runtime_error  a shape that is neither convex nor made of triangles; the sentence names it.
   void add_near(const Bounds<3>& box, int group, int mask, std::vector<std::uint32_t>& indices);
@@ -55,7 +56,13 @@ class BulletObstacles {
     std::vector<ObstacleEdge> edges;
   };
   using Triangle = std::array<Eigen::Vector3f, 3>;
+  /// An object whose way in the substep leads out of the box that the broad phase has.
+  struct Leaving {
+    const btBroadphaseProxy* proxy;
+    Bounds<3> box;  ///< around its way
+  };
 
+  void find_leaving(const btCollisionObject& object);
   void add_object(btCollisionObject& object, const Bounds<3>& box, std::vector<std::uint32_t>& indices);
   void add_shape(const btCollisionShape& shape, const btTransform& pose, std::uint32_t rigid,
                  const Bounds<3>& box, std::vector<std::uint32_t>& indices);
@@ -78,6 +85,7 @@ class BulletObstacles {
   std::vector<std::vector<ObstacleEdge>> edges_;
   std::vector<std::vector<Triangle>> triangles_;
   std::size_t edges_used_ = 0, triangles_used_ = 0;
+  std::vector<Leaving> leaving_;
   std::vector<const btBroadphaseProxy*> found_;
   std::vector<btVector3> points_;
 };

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "ppu/bullet/may_move.h"
 #include "ppu/contacts/attachment_patch.h"
 #include "softcell/base/assert.h"
 
@@ -174,7 +175,7 @@ void SurfaceAttachments::find_islands() {
     for (SurfaceBody* const body : island.bodies) body->set_attached(false);
   islands_.clear();
   for (const auto& link : links_) {
-    const bool by_rigid = link->rigid != nullptr && !link->rigid->isStaticObject();
+    const bool by_rigid = link->rigid != nullptr && may_move(*link->rigid);
     Island island{.bodies = {link->a}, .rigids = {}, .links = {link.get()}};
     if (link->b != nullptr) island.bodies.push_back(link->b);
     if (by_rigid) island.rigids.push_back(link->rigid);

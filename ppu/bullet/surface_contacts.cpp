@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ppu/bullet/bullet_vector.h"
+#include "ppu/bullet/may_move.h"
 #include "ppu/contacts/overlap.h"
 #include "softcell/base/assert.h"
 
@@ -15,11 +16,10 @@ bool is_awake(const btCollisionObject& object) {
   return !object.isStaticOrKinematicObject() && object.isActive();
 }
 
-/// Kinematic bodies, too.
 bool moves(const btCollisionObject& object) {
   constexpr float kMoves = 0.05f;  // m/s and rad/s
   const btRigidBody* const body = btRigidBody::upcast(&object);
-  return body && !body->isStaticObject() && body->isActive() &&
+  return body && may_move(*body) && body->isActive() &&
          (body->getLinearVelocity().length2() > kMoves * kMoves ||
           body->getAngularVelocity().length2() > kMoves * kMoves);
 }

@@ -171,9 +171,10 @@ class ObstacleContacts {
 
   /// Sets what is near. @param box  around the obstacle  @return how far from the obstacle that reaches, metres
   float come_near(const Bounds<3>& box) {
-    const float reach =
-        kNear * body_.spacing() + step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * radius(box));
+    const float way = step_ * (rigid_.velocity.norm() + rigid_.spin.norm() * radius(box));
+    const float reach = kNear * body_.spacing() + way;
     near_ = widened(box, reach);
+    where_edges_begin_ = widened(body_.box, way);
     return reach;
   }
 
@@ -337,12 +338,12 @@ class ObstacleContacts {
     if (body_.spacing() <= edge.cells_above) return;
     const Vector3f from = obstacle_.rotation * edge.from + obstacle_.position;
     const Vector3f along = obstacle_.rotation * (edge.to - edge.from);
-    const auto [first, last] = way_in_box(body_.box, from, along);
+    const auto [first, last] = way_in_box(where_edges_begin_, from, along);
     if (first > last) return;
     const Vector3f a = from + first * along, b = from + last * along, margin = Vector3f::Constant(2 * reach);
     if (!cells_.boxes().any_meets({a.cwiseMin(b) - margin, a.cwiseMax(b) + margin})) return;
     for_each_point_of_edge(
-        from, along, body_.box, kEdgeSpacing * body_.spacing(),
+        from, along, where_edges_begin_, kEdgeSpacing * body_.spacing(),
         [&](const Vector3f& point, float share) { try_corner(point, along, edge.radius_at(share)); });
   }
 
@@ -350,7 +351,7 @@ class ObstacleContacts {
 
   /// What cannot be costs no more than a look at a few boxes.
   bool may_be_in_body(const Vector3f& point) const {
-    return contains(body_.box, point) && cells_.finder().may_find(moved(point));
+    return contains(where_edges_begin_, point) && cells_.finder().may_find(moved(point));
   }
 
   /// Of triangles it is known already, and what is round has its edges within.
@@ -375,8 +376,8 @@ class ObstacleContacts {
   /// @param along   the edge that has it; 0: a tip, in two dimensions a corner
   /// @param radius  of the edge there, metres
   void try_corner(const Vector3f& corner, const Vector3f& along, float radius) {
-    if (!contains(body_.box, corner)) return;
     const Vector3f point = moved(corner);
+    if (!contains(body_.box, point)) return;
     const auto place = cells_.finder().find(point, [](std::uint32_t) { return true; });
     if (!place) return;
     const FieldValue field = body_.model->surface.field(place->cell, place->xi);
@@ -404,7 +405,8 @@ class ObstacleContacts {
   float friction_;
   float step_;
   std::vector<SoftContact>& contacts_;
-  Bounds<3> near_{};  // around the obstacle, as far as anything that moves may come from
+  Bounds<3> near_{};               // around the obstacle, as far as anything that moves may come from
+  Bounds<3> where_edges_begin_{};  // of the obstacle that may be in the body at the substep's end
 };
 
 }  // namespace

@@ -1,0 +1,102 @@
+// What moves meets a body where it will be at the substep's end, wherever it was when Bullet last looked.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contact_world.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kOfCube = 0.1f;
+constexpr float kFast = 20;  // m/s: 1.7 cells a substep
+
+struct Thrown {
+  std::string name;
+  std::unique_ptr<btCollisionShape> shape;
+  float front;  ///< metres: so far before its origin is its foremost point
+};
+
+class ThrownThings {
+ public:
+  std::vector<Thrown> all() {
+    std::vector<Thrown> things;
+    things.push_back({"ball", std::make_unique<btSphereShape>(0.1f), 0.1f});
+    things.push_back({"box", std::make_unique<btBoxShape>(btVector3(0.1f, 0.1f, 0.1f)), 0.1f});
+    auto cone = std::make_unique<btConeShapeX>(0.1f, 0.3f);
+    cone->setMargin(0.001f);
+    things.push_back({"cone", std::move(cone), 0.15f});
+    auto compound = std::make_unique<btCompoundShape>();
+    for (const float x : {-0.5f, 0.5f})
+      compound->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(x, 0, 0)), &child_);
+    things.push_back({"compound", std::move(compound), 0.6f});
+    return things;
+  }
+
+ private:
+  btSphereShape child_{0.1f};
+};
+
+/// They were seen a substep late, 1.7 cells deep, and stayed there for as long as pushes took to bring them out.
+TEST(MovingObstacles, WhatIsThrownIsMetWhereverItBegins) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  ThrownThings things;
+  for (int place = 0; place < 8; ++place) {
+    for (Thrown& thing : things.all()) {
+      ContactWorld w({0, 0, 0});
+      const SoftBody<3>& body =
+          w.add(make_box({0.7f, 0.7f, 0.7f}, kOfCube), settings_of(kOfCube, 0.7f), {0, 0, 0});
+      const float gap = 0.4f + kFast * kStep * static_cast<float>(place) / 8;
+      btRigidBody& rigid = w.add(std::move(thing.shape), 0.05f * body.model().mass(),
+                                 {-0.35f - gap - thing.front, 0.03f, 0.02f});
+      rigid.setLinearVelocity({kFast, 0, 0});
+      float deepest = 0;
+      for (int i = 0; i < 12; ++i) {
+        w.run(1);
+        const btVector3 front = rigid.getWorldTransform() * btVector3(thing.front, 0, 0);
+        deepest = std::max(deepest, ContactWorld::depth_in_drawn(body, to_eigen(front)));
+      }
+      EXPECT_LT(rigid.getLinearVelocity().x(), kFast / 2) << thing.name << " has met nothing";
+      EXPECT_LT(deepest, 0.3f * kOfCube) << thing.name << ", " << gap << " m before the body";
+    }
+  }
+}
+
+/// A body that is moved by its motion state; Bullet derives its velocity.
+struct MovedBySomebody final : btMotionState {
+  btTransform pose = btTransform::getIdentity();
+  void getWorldTransform(btTransform& world) const override { world = pose; }
+  void setWorldTransform(const btTransform&) override {}
+};
+
+TEST(MovingObstacles, AWallThatIsMovedPushesABodyAlong) {
+  for (const float speed : {5.0f, kFast}) {
+    MovedBySomebody moved;  // outlives the world
+    ContactWorld w({0, 0, 0});
+    const SoftBody<3>& body =
+        w.add(make_box({0.7f, 0.7f, 0.7f}, kOfCube), settings_of(kOfCube, 0.7f), {0, 0, 0});
+    btRigidBody& wall = w.add(std::make_unique<btBoxShape>(btVector3(0.02f, 1, 1)), 0, {-1, 0, 0});
+    wall.setCollisionFlags(wall.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    wall.setActivationState(DISABLE_DEACTIVATION);
+    wall.setMotionState(&moved);
+    float deepest = 0;
+    for (int i = 0; i < 40; ++i) {
+      moved.pose.setOrigin(btVector3(-1 + speed * kStep * static_cast<float>(i), 0, 0));
+      w.world.stepSimulation(kStep, 0);
+      // Bullet's velocity of it is that of its last way, and the body has gone this way with it.
+      const float front = moved.pose.getOrigin().x() + 0.02f + speed * kStep;
+      for (const Vector3f& p : ContactWorld::drawn(body)) deepest = std::max(deepest, front - p.x());
+    }
+    EXPECT_LT(deepest, 0.15f * kOfCube) << speed << " m/s";
+    EXPECT_GT(body.centre_of_mass().x(), 0) << speed << " m/s";
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ppu
