@@ -8,7 +8,7 @@
 //   points      in, out    AttachPoint, 96 bytes        <= 384   16
 //   rows        in, out    AttachRow, 128 bytes         <= 96    16
 //   entries     in, out    AttachEntry, 48 bytes        <= 1280  16
-//   rigids      in, out    SolveRigid, 80 bytes         <= 64    16
+//   rigids      in, out    of SolveRigid, 80 bytes      <= 64    16
 //
 // Of the bodies only runs of particles with attached ones are here: velocities beside each other, pushes likewise. Links that have a body
 // in common hear each other in each iteration, without main memory in between.

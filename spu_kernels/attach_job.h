@@ -19,7 +19,7 @@ static_assert(sizeof(AttachRun) == 16, "a quadword");
 
 /// A rigid body that impulses move.
 struct alignas(16) AttachRigid {
-  uint64_t rigid_ea;  ///< a SolveRigid, a multiple of 16
+  uint64_t rigid_ea;  ///< a SolveRigid that is free, a multiple of 16
   uint32_t pad[2];
 };
 static_assert(sizeof(AttachRigid) == 16, "a quadword");

@@ -5,7 +5,7 @@
 //   tasks       in         SolveTask, 128 bytes           any            128
 //   velocities  in, out    SolveVelocity, 16 bytes        of two bodies  16
 //   contacts    in, out    SolveContact, 176 bytes        <= 512         16
-//   rigids      in, out    SolveRigid, 80 bytes           <= 64          16
+//   rigids      in, out    SolveRigid, 224 bytes          <= 64          16
 //   cells       in         SolveCell, 16 bytes            <= 1024        16
 //   positions   in         x y z and anything, 16 bytes   <= 1023        16
 //   start       in         SolveVelocity, 16 bytes        <= 1023        16
@@ -13,7 +13,7 @@
 // A task has two bodies and all contacts between them in the local store for all its iterations. Tasks of a job follow each other:
 // one may have a body of the one before.
 //
-// Budget: 192 KB. Contacts 88 KB, or cells and positions in their place; velocities and pushes of two bodies 64 KB; rigid bodies 5 KB;
+// Budget: 192 KB. Contacts 88 KB, or cells and positions in their place; velocities and pushes of two bodies 64 KB; rigid bodies 14 KB;
 // the rest for code and 4 KB of stack.
 //
 // Compiles unchanged with a real SPU g++ (7 to 9, -std=c++17).
@@ -43,7 +43,7 @@ struct alignas(128) LocalStoreMap {
   SolveTask task;
   alignas(128) vec_float4 a[solve_slots(kSolveMaxParticles)];
   alignas(128) vec_float4 b[solve_slots(kSolveMaxParticles)];
-  alignas(128) RigidInMotion rigids[kSolveMaxRigids];
+  alignas(128) HeldRigid rigids[kSolveMaxRigids];
   union alignas(128) {
     SolvedContact contacts[kSolveMaxContacts];
     Stiffening stiffening;

@@ -30,11 +30,15 @@ struct alignas(16) SolveAnchor {
 struct alignas(16) SolveRigid {
   float velocity[3];  ///< changed: m/s, how that of its centre has changed in this step
   float inverse_mass;
-  float spin[3];  ///< changed: rad/s, likewise
-  float zero;
+  float spin[3];                ///< changed: rad/s, likewise
+  float held;                   ///< 0: it is free, and what follows the inverse inertia is not read
   float inverse_inertia[3][4];  ///< columns in world axes, 1/(kg m^2); the fourth row is 0
+  // What it lies on takes a part of impulses. Columns in world axes, as above.
+  float linear[3][4];    ///< 1/kg: of its velocity by an impulse, besides that by the inverse mass
+  float coupling[3][4];  ///< 1/(kg m): of its velocity by a moment
+  float coupled[3][4];   ///< the transposed: of its spin by an impulse
 };
-static_assert(sizeof(SolveRigid) == 80, "five quadwords");
+static_assert(sizeof(SolveRigid) == 224, "fourteen quadwords");
 
 /// Where a contact holds on to a rigid body.
 struct alignas(16) SolveRigidPoint {

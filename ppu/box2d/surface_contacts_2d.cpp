@@ -83,8 +83,11 @@ void SurfaceContacts2d::begin_attachments(Bodies bodies, Box2dAttachments& attac
     return obstacles_.rigid_of(rigid);
   };
   attachments_.clear();
-  for (const AttachmentInStep<2>& attachment : attachments.begin(bodies, number_of, step))
+  attached_rigids_.clear();
+  for (const AttachmentInStep<2>& attachment : attachments.begin(bodies, number_of, step)) {
     attachments_.add(attachment);
+    if (attachment.rigid != AttachmentInStep<2>::kNone) attached_rigids_.push_back(attachment.rigid);
+  }
 }
 
 void SurfaceContacts2d::begin(Bodies bodies, const Box2dAttachments& attachments, float step) {
@@ -175,7 +178,8 @@ void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float
   std::size_t particles = 0;
   for (const auto& body : bodies) particles += body->soft().positions().size();
   if (particles >= kFewParticles) stage_.worker = worker_.get();
-  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), step);
+  const auto touches = rigid_touches_.find(obstacles_, attached_rigids_);
+  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), touches, step);
   move(bodies, step);
   obstacles_.apply();
   attachments.end();

@@ -235,6 +235,10 @@ bool SurfaceAttachments::joins(const SurfaceBody& body, const btCollisionObject&
   });
 }
 
+bool SurfaceAttachments::are_to(const btCollisionObject& object) const {
+  return std::ranges::any_of(links_, [&](const auto& link) { return link->rigid == &object; });
+}
+
 void SurfaceAttachments::fill(Attachments<3>& attachments, std::span<SurfaceBody* const> bodies,
                               BulletObstacles& obstacles, float step) {
   attachments.clear();

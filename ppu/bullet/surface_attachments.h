@@ -56,6 +56,8 @@ class SurfaceAttachments {
   void part(const SurfaceBody& body, BulletObstacles& obstacles, std::vector<std::uint32_t>& near) const;
   /// Whether a rigid body is attached to what the soft one is, directly or not: they sleep together.
   bool joins(const SurfaceBody& body, const btCollisionObject& object) const;
+  /// Whether a soft body is attached to it.
+  bool are_to(const btCollisionObject& object) const;
   /// The attachments of the substep. @param bodies  by their numbers in it
   void fill(Attachments<3>& attachments, std::span<SurfaceBody* const> bodies, BulletObstacles& obstacles,
             float step);

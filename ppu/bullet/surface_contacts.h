@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ppu/bullet/bullet_obstacles.h"
+#include "ppu/bullet/rigid_touches.h"
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/contact_stage.h"
@@ -74,6 +75,7 @@ class SurfaceContacts {
   std::shared_ptr<ContactWorker> worker_;
   std::map<const SoftBodyModel<3>*, std::unique_ptr<ContactModel>> models_;
   BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
+  RigidTouches rigid_touches_;
   SurfaceAttachments attachments_{world_};
   Attachments<3> in_step_;
   ContactStage stage_;

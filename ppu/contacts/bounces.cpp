@@ -40,16 +40,29 @@ float share_until_touch(const BounceContact& contact, float step) {
 
 }  // namespace
 
+Bounces::Whole::Change Bounces::Whole::change_by(const Vector3d& point, const Vector3d& impulse) const {
+  const Vector3d moment = (point - centre).cross(impulse);
+  if (held == nullptr) return {inverse_mass * impulse, inverse_inertia * moment};
+  const Matrix3d coupling = held->coupling.cast<double>();
+  return {held->linear.cast<double>() * impulse + coupling * moment,
+          coupling.transpose() * impulse + held->angular.cast<double>() * moment};
+}
+
 double Bounces::Whole::mobility(const Vector3d& point, const Vector3d& direction) const {
   if (inverse_mass == 0) return 0;
-  const Vector3d turn = (point - centre).cross(direction);
-  return inverse_mass + turn.dot(inverse_inertia * turn);
+  if (held == nullptr) {
+    const Vector3d turn = (point - centre).cross(direction);
+    return inverse_mass + turn.dot(inverse_inertia * turn);
+  }
+  const Change change = change_by(point, direction);
+  return direction.dot(change.velocity) + (point - centre).cross(direction).dot(change.spin);
 }
 
 void Bounces::Whole::push(const Vector3d& point, const Vector3d& impulse) {
   if (inverse_mass == 0) return;
-  velocity += inverse_mass * impulse;
-  spin += inverse_inertia * Vector3d(point - centre).cross(impulse);
+  const Change change = change_by(point, impulse);
+  velocity += change.velocity;
+  spin += change.spin;
 }
 
 double Bounces::Part::share_of(const Eigen::Vector3i& particle) const {
@@ -107,6 +120,7 @@ Bounces::Whole Bounces::whole_of(const ContactRigid& rigid) {
   whole.spin = whole.spin_before = rigid.spin.cast<double>();
   whole.inverse_mass = double{rigid.inverse_mass};
   whole.inverse_inertia = rigid.inverse_inertia.cast<double>();
+  if (rigid.held) whole.held = &*rigid.held;
   return whole;
 }
 

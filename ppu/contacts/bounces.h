@@ -71,6 +71,15 @@ class Bounces {
       if (bounce.impulse > 0) work(contacts_[bounce.contact], static_cast<float>(bounce.impulse));
   }
 
+  /// Calls work(rigid, point, impulse) for what rigid bodies got in the last solve(): kg m/s, at a place in the world.
+  template <typename Work>
+  void for_each_impulse_on_rigid(const Work& work) const {
+    for (const Bounce& bounce : bounces_)
+      if (contacts_[bounce.contact].b == BounceContact::kNobody)
+        work(contacts_[bounce.contact].rigid, Eigen::Vector3f(bounce.point.cast<float>()),
+             Eigen::Vector3f((-bounce.impulse * bounce.normal - bounce.friction_impulse).cast<float>()));
+  }
+
   /// The bodies of the last solve() whose velocities have changed, ascending.
   std::span<const std::uint32_t> changed() const { return changed_; }
 
@@ -90,10 +99,15 @@ class Bounces {
     Eigen::Vector3d velocity_before{0, 0, 0}, spin_before{0, 0, 0};
     double inverse_mass = 0;
     Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();
+    const HeldMobility* held = nullptr;  ///< null: it is free
 
     Eigen::Vector3d velocity_at(const Eigen::Vector3d& point) const {
       return velocity + spin.cross(Eigen::Vector3d(point - centre));
     }
+    struct Change {
+      Eigen::Vector3d velocity, spin;
+    };
+    Change change_by(const Eigen::Vector3d& point, const Eigen::Vector3d& impulse) const;
     double mobility(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
     void push(const Eigen::Vector3d& point, const Eigen::Vector3d& impulse);
   };

@@ -20,7 +20,9 @@ float mobility(const ContactRigid& rigid, const Vector3f& point, const Vector3f&
   if (rigid.inverse_mass == 0) return 0;
   const Vector3f arm = point - rigid.centre;
   const Vector3f turn = arm.cross(direction);
-  return rigid.inverse_mass + turn.dot(rigid.inverse_inertia * turn);
+  if (!rigid.held) return rigid.inverse_mass + turn.dot(rigid.inverse_inertia * turn);
+  const ContactRigid::Change change = rigid.change_by(direction, turn);
+  return direction.dot(change.velocity) + turn.dot(change.spin);
 }
 
 float mobility(const SoftContact& contact, const ContactSides& sides, const Vector3f& direction) {
@@ -43,8 +45,10 @@ void apply(const SoftContact& contact, const ContactSides& sides, const Vector3f
   }
   ContactRigid& rigid = sides.rigids[contact.rigid];
   if (rigid.inverse_mass == 0) return;
-  rigid.velocity -= rigid.inverse_mass * impulse;
-  rigid.spin -= rigid.inverse_inertia * Vector3f(contact.point - rigid.centre).cross(impulse);
+  const ContactRigid::Change change =
+      rigid.change_by(impulse, Vector3f(contact.point - rigid.centre).cross(impulse));
+  rigid.velocity -= change.velocity;
+  rigid.spin -= change.spin;
 }
 
 void solve_normal(SoftContact& contact, const ContactSides& sides) {
@@ -155,7 +159,8 @@ void meet_rigid(spu::SolveContact& solved, const SoftContact& contact, const Con
   const float own = contact.a.mobility(sides.a->inverse_masses);
   const Vector3f arm = contact.point - rigid.centre, &normal = contact.normal;
   const auto moved_by = [&](const Vector3f& impulse) -> Vector3f {
-    return rigid.inverse_mass * impulse + (rigid.inverse_inertia * arm.cross(impulse)).cross(arm);
+    const ContactRigid::Change change = rigid.change_by(impulse, arm.cross(impulse));
+    return change.velocity + change.spin.cross(arm);
   };
   const Vector3f across = normal.unitOrthogonal(), also_across = normal.cross(across);
   const Vector3f by_across = moved_by(across);

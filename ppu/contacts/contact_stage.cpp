@@ -295,6 +295,36 @@ void ContactStage::hold_pushes_of_crushed_bodies() {
   }
 }
 
+void ContactStage::find_supports(std::span<ContactRigid> rigids, std::span<const RigidTouch> touches,
+                                 float step) {
+  presses_.clear();
+  if (!touches.empty()) {
+    for (std::size_t i = pair_groups_; i < group_count_; ++i) {
+      const ContactBody& body = bodies_[groups_[i].a];
+      for (const SoftContact& contact : groups_[i].contacts)
+        if (rigids[contact.rigid].inverse_mass > 0)
+          presses_.push_back({contact.rigid, contact.point, contact.normal,
+                              1 / contact.a.mobility(body.inverse_masses), contact.a.of(body.velocities),
+                              contact.friction, body.spacing()});
+    }
+  }
+  supports_.hold(rigids, touches, presses_, step);
+}
+
+void ContactStage::release_supports() {
+  if (supports_.empty()) return;
+  for (std::size_t i = pair_groups_; i < group_count_; ++i) {
+    const Group& group = groups_[i];
+    for (std::size_t c = 0; c < group.contacts.size(); ++c)
+      supports_.add_impulse(group.contacts[c].rigid, group.contacts[c].point, -group.whole_impulse(c));
+  }
+  bounces_.for_each_impulse_on_rigid(
+      [&](std::uint32_t rigid, const Vector3f& point, const Vector3f& impulse) {
+        supports_.add_impulse(rigid, point, impulse);
+      });
+  supports_.release();
+}
+
 /// Contacts of bodies with a restitution and those with sharp things, whoever has found them. Two that pressed on each other in the last
 /// substep do not hit each other: what they do against each other is their deformation.
 void ContactStage::bounce(std::span<ContactRigid> rigids, float step) {
@@ -395,7 +425,7 @@ void ContactStage::stiffen_touched_cells() {
 }
 
 void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
-                        std::span<ContactRigid> rigids, float step) {
+                        std::span<ContactRigid> rigids, std::span<const RigidTouch> touches, float step) {
   take_over(bodies, step);
   group_count_ = 0;
   bounces_.clear();
@@ -417,6 +447,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   std::rotate(groups, groups + std::ptrdiff_t(rigid_groups), groups + std::ptrdiff_t(group_count_));
   put_in_order();
   hold_pushes_of_crushed_bodies();
+  find_supports(rigids, touches, step);
   if (group_count_ != 0 || has_attachments()) {
     if (worker != nullptr)
       solve_with_worker(rigids, step);
@@ -424,6 +455,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
       solve_here(rigids, step);
     take_back_lost_spin(step);
   }
+  release_supports();
   remember_who_presses(rigids);
 }
 

@@ -21,6 +21,7 @@
 #include "ppu/contacts/lost_spin.h"
 #include "ppu/contacts/rigid_sets.h"
 #include "ppu/contacts/sharp_contacts.h"
+#include "ppu/contacts/supports.h"
 #include "ppu/contacts/swept_contacts.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/obstacle.h"
@@ -73,8 +74,9 @@ class ContactStage {
   /// Finds the contacts that bodies would have in `step` seconds, and the velocities with which they have them: particles then move
   /// by step (v + push). Rigid bodies' velocities change, too.
   /// @throws std::runtime_error  a body is not finite, or 1e15 m large or far.
+  /// @param touches  of rigid bodies with each other and with what nothing moves; those of attached ones are not wanted
   void step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
-            std::span<ContactRigid> rigids, float step);
+            std::span<ContactRigid> rigids, std::span<const RigidTouch> touches, float step);
 
   /// Of a body after the last step, m/s; a body that sleeps has the same velocities as before.
   std::span<const Eigen::Vector3f> velocities(std::size_t body) const { return bodies_[body].velocities; }
@@ -113,6 +115,13 @@ class ContactStage {
     /// Of those that the worker moves in it; kNone: nothing moves the rigid bodies.
     std::uint32_t rigid_set = RigidSets::kNone;
     std::size_t size() const { return by_worker ? solved.contacts.size() : contacts.size(); }
+    /// Of a contact with a rigid body: what its soft one has got, kg m/s.
+    Eigen::Vector3f whole_impulse(std::size_t contact) const {
+      const SoftContact& found = contacts[contact];
+      const Eigen::Vector3f friction =
+          by_worker ? Eigen::Vector3f(solved.contacts[contact].friction_impulse) : found.friction_impulse;
+      return impulse(contact) * found.normal + friction;
+    }
     float impulse(std::size_t contact) const {
       return by_worker ? solved.contacts[contact].impulse : contacts[contact].impulse;
     }
@@ -141,6 +150,8 @@ class ContactStage {
     return group.heavy ? settings.heavy_iterations : settings.iterations;
   }
   void hold_pushes_of_crushed_bodies();
+  void find_supports(std::span<ContactRigid> rigids, std::span<const RigidTouch> touches, float step);
+  void release_supports();
   void bounce(std::span<ContactRigid> rigids, float step);
   void remember_who_presses(std::span<const ContactRigid> rigids);
   void find_touched_cells();
@@ -185,6 +196,8 @@ class ContactStage {
   SharpContacts sharp_contacts_;
   CrushedCellCount crushed_;
   std::vector<bool> is_crushed_;  // of each body: it has crushed cells
+  std::vector<Press> presses_;
+  Supports supports_;
   RigidSets rigid_sets_;
   AttachUnits attach_units_;
   Bounces bounces_;

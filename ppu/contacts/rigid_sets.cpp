@@ -8,6 +8,26 @@ namespace softcell::ppu {
 
 using Eigen::Vector3f;
 
+namespace {
+
+void write_columns(const Eigen::Matrix3f& matrix, float (&columns)[3][4]) {
+  for (int column = 0; column < 3; ++column) Vector3f::Map(columns[column]) = matrix.col(column);
+}
+
+void write_mobility(const ContactRigid& rigid, spu::SolveRigid& solved) {
+  if (!rigid.held) {
+    solved.inverse_mass = rigid.inverse_mass;
+    return write_columns(rigid.inverse_inertia, solved.inverse_inertia);
+  }
+  solved.held = 1;
+  write_columns(rigid.held->linear, solved.linear);
+  write_columns(rigid.held->coupling, solved.coupling);
+  write_columns(rigid.held->coupling.transpose(), solved.coupled);
+  write_columns(rigid.held->angular, solved.inverse_inertia);
+}
+
+}  // namespace
+
 void RigidSets::begin(std::span<ContactRigid> rigids) {
   rigids_ = rigids;
   together_.reset(rigids.size());
@@ -51,10 +71,7 @@ void RigidSets::arrange(ContactWorker& worker) {
     Set& set = sets_[set_of_[i]];
     number_in_[i] = set.count++;
     spu::SolveRigid& solved = solved_[set.first + set_of_[i] + number_in_[i]];
-    solved.inverse_mass = rigids_[i].inverse_mass;
-    for (int column = 0; column < 3; ++column)
-      for (int row = 0; row < 3; ++row)
-        solved.inverse_inertia[column][row] = rigids_[i].inverse_inertia(row, column);
+    write_mobility(rigids_[i], solved);
     members_[set.first + number_in_[i]] = {i, rigids_[i].velocity, rigids_[i].spin, &solved};
   }
 }

@@ -56,7 +56,7 @@ struct ContactRecord<spu::SolveCell> {
 };
 template <>
 struct ContactRecord<spu::SolveRigid> {
-  static constexpr dma::ElementRun kRuns[] = {{80, 4}};
+  static constexpr dma::ElementRun kRuns[] = {{224, 4}};
 };
 template <>
 struct ContactRecord<spu::SolveTask> {

@@ -11,25 +11,10 @@
 #include <span>
 #include <vector>
 
+#include "ppu/surfaces/contact_rigid.h"
 #include "softcell/soft_bodies/mesh.h"
 
 namespace softcell::ppu {
-
-/// A rigid body as contacts see it, in the world's frame.
-struct ContactRigid {
-  std::uint32_t number = 0;           ///< the same in every substep
-  Eigen::Vector3f centre{0, 0, 0};    ///< of mass, metres
-  Eigen::Vector3f velocity{0, 0, 0};  ///< m/s, of the centre: what it would have without contacts
-  Eigen::Vector3f spin{0, 0, 0};      ///< rad/s
-  float inverse_mass = 0;             ///< 1/kg; 0: nothing moves it
-  Eigen::Matrix3f inverse_inertia = Eigen::Matrix3f::Zero();  ///< 1/(kg m^2)
-  float friction = 0.5f;
-  float restitution = 0;
-
-  Eigen::Vector3f velocity_at(const Eigen::Vector3f& point) const {
-    return velocity + spin.cross(Eigen::Vector3f(point - centre));
-  }
-};
 
 enum class ObstacleKind : std::uint32_t {
   kPlane,     ///< the half-space y < 0

@@ -75,20 +75,20 @@ inline void add_at(const Anchor& anchor, vec_float4* values, vec_float4 impulse)
   add(spu_extract(p, 7), splat_lane<3>(w1));
 }
 
-inline RigidInMotion& rigid_of(const RigidPoint& point, RigidInMotion* rigids) {
+inline HeldRigid& rigid_of(const RigidPoint& point, HeldRigid* rigids) {
   return rigids[spu_extract(point.rigid, 0)];
 }
 
 /// Of one contact, along its normal and against it by friction (Coulomb's law, the same in all directions).
 template <With kWith>
 inline void solve_velocities(SolvedContact& contact, vec_float4* a, [[maybe_unused]] vec_float4* b,
-                             [[maybe_unused]] RigidInMotion* rigids) {
+                             [[maybe_unused]] HeldRigid* rigids) {
   const vec_float4 n = contact.normal, terms = contact.terms;
   const vec_float4 mass = splat_lane<0>(terms);
   vec_float4 v = spu_sub(value_at(contact.a, a), contact.carried);
   if constexpr (kWith == With::kSoft) v = spu_sub(v, value_at(contact.b, b));
   if constexpr (kWith == With::kRigid)
-    v = spu_sub(v, change_at(rigid_of(contact.rigid, rigids), only_xyz(contact.rigid.arm)));
+    v = spu_sub(v, change_at(rigid_of(contact.rigid, rigids).motion, only_xyz(contact.rigid.arm)));
   v = only_xyz(v);
   vec_float4 along = dot_in_all_lanes(n, v);
   const vec_float4 before = splat_lane<3>(contact.impulse);

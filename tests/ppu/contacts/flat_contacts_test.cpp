@@ -389,6 +389,33 @@ TEST_P(FlatContacts, AHeavyBoxRestsOnABody) {
   EXPECT_GT(box->GetPosition().y, 0.6f);
 }
 
+/// Two crates, one on the other, each of a hundredth, or a tenth, of its mass.
+TEST_P(FlatContacts, LightCratesCarryABody) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  for (const float mass : {0.01f, 0.1f}) {
+    const auto w = world();
+    w->add_box({0, -1}, {10, 1});
+    SoftBody<2>& body = w->soft.add(rectangle_model({8, 6}, calm()), {-0.05f, 1.9f});
+    const auto density = static_cast<float>(double{mass} * mass_of(body) / (1.6 * 0.6));
+    std::array<b2Body*, 2> crates{};
+    for (std::size_t i = 0; i < crates.size(); ++i)
+      crates[i] = w->add_box({0, 0.3f + 0.6f * static_cast<float>(i)}, {0.8f, 0.3f}, density);
+    float deepest = 0;
+    for (int i = 0; i < 90; ++i) {
+      w->run(1.0f / 60);
+      for (const b2Body* const crate : crates)
+        for (const float x : {-0.8f, -0.4f, 0.0f, 0.4f, 0.8f}) {
+          const b2Vec2 place = crate->GetWorldPoint({x, 0.3f});
+          deepest = std::max(deepest, depth_in(body, {place.x, place.y}));
+        }
+    }
+    EXPECT_LT(deepest, 0.35f) << mass;
+    w->run(4);
+    EXPECT_NEAR(lowest(body), 1.2f, 0.1f * 0.25f) << mass;
+    EXPECT_NEAR(crates[0]->GetPosition().y, 0.3f, 0.1f * 0.25f) << mass;
+  }
+}
+
 /// Its cells have stairs, what is drawn has none.
 TEST_P(FlatContacts, ADiscRollsOnWhatIsDrawn) {
   constexpr float kGravity = 2;

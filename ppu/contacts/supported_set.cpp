@@ -1,0 +1,282 @@
+#include "ppu/contacts/supported_set.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "softcell/base/assert.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using Six = Eigen::Matrix<double, 6, 1>;
+
+// They say which touches are loaded, no more.
+constexpr int kIterations = 20;
+// Of a touch's own mobility, added to it: four corners of a crate say more than there is to say. What holds gives way by so much.
+constexpr double kGivesWay = 1e-6;
+// Cells in a substep: what moves farther where it was held was not.
+constexpr double kHeld = 0.1;
+
+/// What an impulse and a moment change of a rigid body that is free.
+Six change_of_free(const ContactRigid& rigid, const Six& by) {
+  Six change;
+  change << double{rigid.inverse_mass} * by.head<3>(), rigid.inverse_inertia.cast<double>() * by.tail<3>();
+  return change;
+}
+
+Six velocity_of(const ContactRigid& rigid) {
+  Six velocity;
+  velocity << rigid.velocity.cast<double>(), rigid.spin.cast<double>();
+  return velocity;
+}
+
+/// A direction at a point of a rigid body, and how that turns it.
+Six direction_at(const ContactRigid& rigid, const Vector3f& point, const Vector3f& direction) {
+  const Vector3d arm = (point - rigid.centre).cast<double>(), along = direction.cast<double>();
+  Six both;
+  both << along, arm.cross(along);
+  return both;
+}
+
+}  // namespace
+
+void SupportedSet::begin(std::span<ContactRigid> rigids, std::span<const std::uint32_t> members) {
+  rigids_ = rigids;
+  members_.clear(), touches_.clear(), rows_.clear();
+  for (const std::uint32_t rigid : members) {
+    SC_ASSERT(rigids[rigid].inverse_mass > 0, "nothing moves rigid body {}", rigid);
+    const Six velocity = velocity_of(rigids[rigid]);
+    members_.push_back({.rigid = rigid, .before = velocity, .now = velocity, .impulse = Six::Zero()});
+  }
+}
+
+std::size_t SupportedSet::member_of(std::uint32_t rigid) const {
+  const auto found = std::ranges::find(members_, rigid, &Member::rigid);
+  return found == members_.end() ? kOutside : static_cast<std::size_t>(found - members_.begin());
+}
+
+SupportedSet::Row SupportedSet::row(const RigidTouch& touch, const Vector3f& direction) const {
+  Row made;
+  const auto side = [&](std::uint32_t rigid, const Vector3f& along_it) -> Side {
+    const ContactRigid& body = rigids_[rigid];
+    const Six along = direction_at(body, touch.point, along_it);
+    const Side one{rigid, member_of(rigid), along, change_of_free(body, along)};
+    if (one.member == kOutside)
+      made.outside += along.dot(velocity_of(body));
+    else
+      made.mobility += along.dot(one.change);
+    return one;
+  };
+  made.a = side(touch.a, direction);
+  made.b = side(touch.b, -direction);
+  return made;
+}
+
+void SupportedSet::add(const RigidTouch& touch, float step) {
+  if (touches_.size() == kMostTouches) return;
+  if (member_of(touch.a) == kOutside && member_of(touch.b) == kOutside) return;
+  const Vector3f across = touch.normal.unitOrthogonal();
+  touches_.push_back({row(touch, touch.normal),
+                      {row(touch, across), row(touch, touch.normal.cross(across))},
+                      double{touch.friction}});
+  touches_.back().normal.target = -std::max(0.0, double{touch.gap}) / double{step};
+}
+
+bool SupportedSet::Touch::sticks() const {
+  return std::hypot(across[0].impulse, across[1].impulse) < friction * normal.impulse;
+}
+
+/// Of its two sides against each other; along the normal below 0 they come together. m/s.
+double SupportedSet::speed(const Row& row) const {
+  double speed = row.outside;
+  for (const Side* const side : {&row.a, &row.b})
+    if (side->member != kOutside) speed += side->along.dot(members_[side->member].now);
+  return speed;
+}
+
+void SupportedSet::push(const Row& row, double impulse) {
+  for (const Side* const side : {&row.a, &row.b})
+    if (side->member != kOutside) members_[side->member].now += impulse * side->change;
+}
+
+/// By impulses that only part what touches, and friction.
+void SupportedSet::iterate() {
+  const auto change = [&](Row& row, double impulse) {
+    push(row, impulse - row.impulse);
+    row.impulse = impulse;
+  };
+  const auto wanted = [&](const Row& row) {
+    return row.mobility > 0 ? row.impulse + (row.target - speed(row)) / row.mobility : 0;
+  };
+  for (int i = 0; i < kIterations; ++i) {
+    for (Touch& touch : touches_) {
+      change(touch.normal, std::max(0.0, wanted(touch.normal)));
+      const double one = wanted(touch.across[0]), other = wanted(touch.across[1]);
+      const double length = std::hypot(one, other), most = touch.friction * touch.normal.impulse;
+      const double share = length > most ? most / length : 1;
+      change(touch.across[0], share * one);
+      change(touch.across[1], share * other);
+    }
+  }
+}
+
+/// With what soft bodies do to members that stand as they do now.
+void SupportedSet::load(std::span<const Press> presses, float step) {
+  fastest_ = std::numeric_limits<double>::max();
+  for (const Press& press : presses) {
+    const std::size_t number = member_of(press.rigid);
+    if (number == kOutside) continue;
+    Member& member = members_[number];
+    member.pressed = true;
+    fastest_ = std::min(fastest_, kHeld * double{press.spacing} / double{step});
+    const Vector3d arm = (press.point - rigids_[press.rigid].centre).cast<double>();
+    const Vector3d relative =
+        press.velocity.cast<double>() - member.now.head<3>() - Vector3d(member.now.tail<3>()).cross(arm);
+    const Vector3d normal = press.normal.cast<double>();
+    const double approach = -normal.dot(relative);
+    if (approach <= 0) continue;
+    Vector3d sliding = relative + approach * normal;
+    const double speed = sliding.norm(), most = double{press.friction} * approach;
+    if (speed > most) sliding *= most / speed;
+    const Vector3d impulse = double{press.mass} * (sliding - approach * normal);
+    Six both;
+    both << impulse, arm.cross(impulse);
+    member.impulse += both;
+  }
+  for (Member& member : members_) member.now += change_of_free(rigids_[member.rigid], member.impulse);
+}
+
+bool SupportedSet::hold(std::span<const Press> presses, float step) {
+  if (touches_.empty()) return false;
+  iterate();
+  load(presses, step);
+  iterate();
+  std::erase_if(touches_, [](const Touch& touch) { return !(touch.normal.impulse > 0); });
+  if (touches_.empty()) return false;
+  for (Touch& touch : touches_) {
+    rows_.push_back(&touch.normal);
+    if (touch.sticks())
+      for (Row& across : touch.across) rows_.push_back(&across);
+  }
+  factor();
+  fallen_.clear();
+  for (const Member& member : members_) fallen_.push_back(member.before);
+  stand(fallen_);
+  for (std::size_t i = 0; i < members_.size(); ++i)
+    if (members_[i].pressed) hold_member(i);
+  for (Member& member : members_) member.impulse.setZero();  // that was a guess
+  return true;
+}
+
+/// By Cholesky.
+void SupportedSet::factor() {
+  const std::size_t n = rows_.size();
+  factor_.assign(n * n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Row& row = *rows_[i];
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = i == j ? kGivesWay * row.mobility : 0;
+      for (const Side* const side : {&row.a, &row.b})
+        for (const Side* const other : {&rows_[j]->a, &rows_[j]->b})
+          if (side->member != kOutside && side->member == other->member)
+            sum += side->along.dot(other->change);
+      for (std::size_t k = 0; k < j; ++k) sum -= factor_[i * n + k] * factor_[j * n + k];
+      factor_[i * n + j] =
+          i == j ? std::sqrt(std::max(sum, kGivesWay * row.mobility)) : sum / factor_[j * n + j];
+    }
+  }
+}
+
+/// Makes changes of the speeds of rows the impulses that cause them.
+void SupportedSet::solve(std::span<double> values) const {
+  const std::size_t n = rows_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < i; ++k) values[i] -= factor_[i * n + k] * values[k];
+    values[i] /= factor_[i * n + i];
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t k = i + 1; k < n; ++k) values[i] -= factor_[k * n + i] * values[k];
+    values[i] /= factor_[i * n + i];
+  }
+}
+
+/// Members on what holds them; `values_` are its impulses. @param falling  their velocities without it
+void SupportedSet::stand(std::span<const Six> falling) {
+  for (std::size_t i = 0; i < members_.size(); ++i) members_[i].now = falling[i];
+  values_.resize(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) values_[i] = rows_[i]->target - speed(*rows_[i]);
+  solve(values_);
+  for (std::size_t i = 0; i < rows_.size(); ++i) push(*rows_[i], values_[i]);
+}
+
+void SupportedSet::hold_member(std::size_t number) {
+  const Member& member = members_[number];
+  ContactRigid& rigid = rigids_[member.rigid];
+  const auto change_by = [&](const Row& row) -> Six {
+    Six change = Six::Zero();
+    for (const Side* const side : {&row.a, &row.b})
+      if (side->member == number) change += side->change;
+    return change;
+  };
+  Eigen::Matrix<double, 6, 6> mobility;
+  for (int axis = 0; axis < 6; ++axis) {
+    // What an impulse changes of speeds of rows is what their impulses change of the member.
+    for (std::size_t i = 0; i < rows_.size(); ++i) values_[i] = change_by(*rows_[i])[axis];
+    solve(values_);
+    Six change = change_of_free(rigid, Six::Unit(axis));
+    for (std::size_t i = 0; i < rows_.size(); ++i) change -= values_[i] * change_by(*rows_[i]);
+    mobility.col(axis) = change;
+  }
+  rigid.held = HeldMobility{mobility.topLeftCorner<3, 3>().cast<float>(),
+                            mobility.topRightCorner<3, 3>().cast<float>(),
+                            mobility.bottomRightCorner<3, 3>().cast<float>()};
+  rigid.velocity = member.now.head<3>().cast<float>();
+  rigid.spin = member.now.tail<3>().cast<float>();
+}
+
+void SupportedSet::add_impulse(std::uint32_t rigid, const Vector3f& point, const Vector3f& impulse) {
+  const std::size_t member = member_of(rigid);
+  if (member != kOutside) members_[member].impulse += direction_at(rigids_[rigid], point, impulse);
+}
+
+void SupportedSet::give_impulses() {
+  for (Member& member : members_) {
+    ContactRigid& rigid = rigids_[member.rigid];
+    member.now = member.before + change_of_free(rigid, member.impulse);
+    rigid.held.reset();
+    rigid.velocity = member.now.head<3>().cast<float>();
+    rigid.spin = member.now.tail<3>().cast<float>();
+  }
+}
+
+void SupportedSet::give_support() {
+  fallen_.clear();
+  for (const Member& member : members_) fallen_.push_back(member.now);
+  const auto all_rows = [&](const auto& work) {
+    for (Touch& touch : touches_)
+      for (Row* const row : {&touch.normal, &touch.across[0], &touch.across[1]}) work(*row);
+  };
+  all_rows([](Row& row) { row.impulse = 0; });
+  iterate();
+  // Soft bodies have been solved as if nothing moved along these rows. A crate that is a hundredth of them would fly away with what they have
+  // got from it, if then it slides or is lifted: what it lies on keeps it for this substep.
+  const auto gives_way = [&](const Row* row) { return std::abs(speed(*row) - row->target) > fastest_; };
+  if (std::ranges::any_of(rows_, gives_way)) {
+    stand(fallen_);
+    all_rows([](Row& row) { row.impulse = 0; });
+    for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i]->impulse = values_[i];
+  }
+  all_rows([&](const Row& row) {
+    for (const Side* const side : {&row.a, &row.b}) {
+      const Six change = row.impulse * side->change;
+      rigids_[side->rigid].velocity += change.head<3>().cast<float>();
+      rigids_[side->rigid].spin += change.tail<3>().cast<float>();
+    }
+  });
+}
+
+}  // namespace softcell::ppu

@@ -1,0 +1,54 @@
+#pragma once
+// Rigid bodies as contacts see them.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+
+namespace softcell::ppu {
+
+/// What impulses change of a rigid body that is not free: it lies on something, which takes a part of them. A symmetric matrix of 6 x 6.
+struct HeldMobility {
+  Eigen::Matrix3f linear;    ///< 1/kg: of velocity, by an impulse
+  Eigen::Matrix3f coupling;  ///< 1/(kg m): of velocity, by a moment; transposed: of spin, by an impulse
+  Eigen::Matrix3f angular;   ///< 1/(kg m^2): of spin, by a moment
+};
+
+/// A rigid body in the world's frame.
+struct ContactRigid {
+  std::uint32_t number = 0;           ///< the same in every substep
+  Eigen::Vector3f centre{0, 0, 0};    ///< of mass, metres
+  Eigen::Vector3f velocity{0, 0, 0};  ///< m/s, of the centre: what it would have without contacts
+  Eigen::Vector3f spin{0, 0, 0};      ///< rad/s
+  float inverse_mass = 0;             ///< 1/kg; 0: nothing moves it
+  Eigen::Matrix3f inverse_inertia = Eigen::Matrix3f::Zero();  ///< 1/(kg m^2)
+  float friction = 0.5f;
+  float restitution = 0;
+  std::optional<HeldMobility> held = {};  ///< none: it is free (supports.h)
+
+  Eigen::Vector3f velocity_at(const Eigen::Vector3f& point) const {
+    return velocity + spin.cross(Eigen::Vector3f(point - centre));
+  }
+
+  struct Change {
+    Eigen::Vector3f velocity, spin;
+  };
+  /// By an impulse, kg m/s, and a moment about its centre, kg m^2/s.
+  Change change_by(const Eigen::Vector3f& impulse, const Eigen::Vector3f& moment) const {
+    if (!held) return {inverse_mass * impulse, inverse_inertia * moment};
+    return {held->linear * impulse + held->coupling * moment,
+            held->coupling.transpose() * impulse + held->angular * moment};
+  }
+};
+
+/// Where a rigid body touches another one, as their engine knows it.
+struct RigidTouch {
+  std::uint32_t a = 0, b = 0;  ///< indices of their ContactRigid; one of the two moves
+  Eigen::Vector3f point{0, 0, 0};
+  Eigen::Vector3f normal{0, 1, 0};  ///< from b to a, unit length
+  float gap = 0;                    ///< metres; below 0: they are in each other
+  float friction = 0;               ///< of the two together
+};
+
+}  // namespace softcell::ppu
