@@ -29,41 +29,45 @@ std::span<const RigidTouch> RigidTouches::find(
     const std::function<bool(const btCollisionObject&)>& is_attached) {
   touches_.clear();
   is_reached_.assign(static_cast<std::size_t>(world.getNumCollisionObjects()), false);
-  const auto is_reached = [&](const btCollisionObject& object) {
-    return is_reached_[static_cast<std::size_t>(object.getWorldArrayIndex())];
+  for (const btCollisionObject* const object : obstacles.objects()) reach(*object);
+  if (std::ranges::find(is_reached_, true) == is_reached_.end()) return {};
+  const auto counts = [&](const btCollisionObject& object) {
+    return object.hasContactResponse() && !is_attached(object);
   };
-  bool any = false;
-  for (const btCollisionObject* const object : obstacles.objects()) {
-    if (!is_dynamic(*object)) continue;
-    is_reached(*object) = true;
-    any = true;
-  }
-  if (!any) return {};
-  const btDispatcher& dispatcher = *world.getDispatcher();
+  // Bullet's dispatcher is not const where one only looks.
+  btDispatcher& dispatcher = *const_cast<btDiscreteDynamicsWorld&>(world).getDispatcher();
   manifolds_.clear();
   for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-    const btPersistentManifold& manifold =
-        *const_cast<btDispatcher&>(dispatcher)
-             .getManifoldByIndexInternal(i);  // not const where it only looks
-    const auto counts = [&](const btCollisionObject& object) {
-      return object.hasContactResponse() && !is_attached(object);
-    };
-    if (manifold.getNumContacts() > 0 && counts(first(manifold)) && counts(second(manifold)))
-      manifolds_.push_back(&manifold);
+    const btPersistentManifold* const manifold = dispatcher.getManifoldByIndexInternal(i);
+    if (manifold->getNumContacts() > 0 && counts(first(*manifold)) && counts(second(*manifold)))
+      manifolds_.push_back(manifold);
   }
-  for (int i = 0; i <= kFarthest; ++i) {
-    const auto near = std::stable_partition(manifolds_.begin(), manifolds_.end(), [&](const auto* manifold) {
-      return !is_reached(first(*manifold)) && !is_reached(second(*manifold));
-    });
-    if (near == manifolds_.end()) break;
-    for (auto manifold = near; manifold != manifolds_.end(); ++manifold) {
-      add(**manifold, obstacles);
-      for (const btCollisionObject* const object : {&first(**manifold), &second(**manifold)})
-        if (is_dynamic(*object)) is_reached(*object) = true;
-    }
-    manifolds_.erase(near, manifolds_.end());
-  }
+  for (int i = 0; i <= kFarthest; ++i)
+    if (!add_reached(obstacles)) break;
   return touches_;
+}
+
+void RigidTouches::reach(const btCollisionObject& object) {
+  if (is_dynamic(object)) is_reached_[static_cast<std::size_t>(object.getWorldArrayIndex())] = true;
+}
+
+/// Of all that is reached; what it touches is reached then. @return whether there is something new
+bool RigidTouches::add_reached(BulletObstacles& obstacles) {
+  const auto is_reached = [&](const btCollisionObject& object) -> bool {
+    return is_reached_[static_cast<std::size_t>(object.getWorldArrayIndex())];
+  };
+  near_.clear();
+  std::erase_if(manifolds_, [&](const btPersistentManifold* manifold) {
+    if (!is_reached(first(*manifold)) && !is_reached(second(*manifold))) return false;
+    near_.push_back(manifold);
+    return true;
+  });
+  for (const btPersistentManifold* const manifold : near_) {
+    add(*manifold, obstacles);
+    reach(first(*manifold));
+    reach(second(*manifold));
+  }
+  return !near_.empty();
 }
 
 void RigidTouches::add(const btPersistentManifold& manifold, BulletObstacles& obstacles) {

@@ -23,10 +23,13 @@ class RigidTouches {
                                    const std::function<bool(const btCollisionObject&)>& is_attached);
 
  private:
+  void reach(const btCollisionObject& object);
+  bool add_reached(BulletObstacles& obstacles);
   void add(const btPersistentManifold& manifold, BulletObstacles& obstacles);
 
   std::vector<RigidTouch> touches_;
   std::vector<const btPersistentManifold*> manifolds_;  // not among touches_ yet
+  std::vector<const btPersistentManifold*> near_;       // of them: of what is reached
   std::vector<bool> is_reached_;                        // of each object of the world
 };
 

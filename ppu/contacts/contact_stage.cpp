@@ -145,7 +145,7 @@ ContactStage::Group& ContactStage::next_group(std::uint32_t a, std::uint32_t b, 
   if (group_count_ == groups_.size()) groups_.emplace_back();
   Group& group = groups_[group_count_++];
   group.a = a, group.b = b, group.with_rigid = with_rigid;
-  group.by_worker = group.heavy = group.fast = group.sharp = false;
+  group.by_worker = group.heavy = group.alternates = group.fast = group.sharp = false;
   group.contacts.clear();
   group.solved = {};
   group.rigid_set = RigidSets::kNone;
@@ -459,11 +459,26 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   remember_who_presses(rigids);
 }
 
-void ContactStage::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
-  for (Group* const group : groups) {
-    const ContactSides sides{&bodies_[group->a], group->with_rigid ? nullptr : &bodies_[group->b], rigids};
-    for (int i = 0; i < iterations_of(*group); ++i) iterate(group->contacts, sides, step);
+/// Calls work(group, iterations), those that alternate behind the others.
+template <typename Groups, typename Work>
+void ContactStage::for_each_turn(const Groups& groups, const Work& work) const {
+  int turns = 0;
+  for (auto&& group : groups) {
+    if (group->alternates)
+      turns = std::max(turns, iterations_of(*group));
+    else
+      work(*group, iterations_of(*group));
   }
+  for (int i = 0; i < turns; ++i)
+    for (auto&& group : groups)
+      if (group->alternates && i < iterations_of(*group)) work(*group, 1);
+}
+
+void ContactStage::iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step) {
+  for_each_turn(groups, [&](Group& group, int iterations) {
+    const ContactSides sides{&bodies_[group.a], group.with_rigid ? nullptr : &bodies_[group.b], rigids};
+    for (int i = 0; i < iterations; ++i) iterate(group.contacts, sides, step);
+  });
 }
 
 /// In the order in which a worker would do it, and those that are left to this thread.
@@ -471,7 +486,7 @@ void ContactStage::solve_here(std::span<ContactRigid> rigids, float step) {
   bounce(rigids, step);
   here_.clear();
   for (const std::uint32_t i : order_.order()) here_.push_back(&groups_[i]);
-  find_heavy_groups(rigids);
+  weigh_rigid_groups(rigids);
   add_rigid_groups(rigids);
   prepare_here(rigids);
   find_touched_cells();
@@ -501,13 +516,30 @@ void ContactStage::begin_attachments(std::span<ContactRigid> rigids, float step)
   attachments->begin(attached_, rigids, step);
 }
 
-void ContactStage::find_heavy_groups(std::span<const ContactRigid> rigids) {
+void ContactStage::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
+  // Of the soft bodies' mass. What is lighter hands on little, in an iteration, of what one of them does to another one.
+  constexpr float kLight = 0.2f;
+  touched_rigids_.assign(rigids.size(), {});
+  for (std::size_t i = pair_groups_; i < group_count_; ++i) {
+    const float mass = bodies_[groups_[i].a].model->mass();
+    for (const SoftContact& contact : groups_[i].contacts) {
+      TouchedRigid& touched = touched_rigids_[contact.rigid];
+      if (touched.first == TouchedRigid::kNobody)
+        touched = {.first = i, .by_several = false, .lightest = mass};
+      if (touched.first != i) touched.by_several = true;
+      touched.lightest = std::min(touched.lightest, mass);
+    }
+  }
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
     Group& group = groups_[i];
-    group.heavy = std::any_of(group.contacts.begin(), group.contacts.end(), [&](const SoftContact& contact) {
+    for (const SoftContact& contact : group.contacts) {
       const float inverse_mass = rigids[contact.rigid].inverse_mass;
-      return inverse_mass > 0 && inverse_mass * bodies_[group.a].model->mass() < 1;
-    });
+      const TouchedRigid& touched = touched_rigids_[contact.rigid];
+      if (inverse_mass == 0) continue;
+      group.heavy = group.heavy || inverse_mass * bodies_[group.a].model->mass() < 1;
+      group.alternates =
+          group.alternates || (touched.by_several && kLight * inverse_mass * touched.lightest > 1);
+    }
   }
 }
 
@@ -557,8 +589,13 @@ void ContactStage::add_rigid_sets_to(SolveStages& stages) {
   stages.stages.push_back(static_cast<std::uint32_t>(stages.units.size()));
   for (std::uint32_t set = 0; set < rigid_sets_.sets(); ++set) {
     stages.units.push_back(static_cast<std::uint32_t>(stages.groups.size()));
+    of_set_.clear();
     for (std::size_t i = pair_groups_; i < group_count_; ++i)
-      if (groups_[i].rigid_set == set) stages.groups.push_back(solved_by_worker(groups_[i]));
+      if (groups_[i].rigid_set == set) of_set_.push_back(&groups_[i]);
+    for_each_turn(of_set_, [&](const Group& group, int iterations) {
+      stages.groups.push_back(solved_by_worker(group));
+      stages.groups.back().iterations = static_cast<std::uint32_t>(iterations);
+    });
   }
 }
 
@@ -593,7 +630,7 @@ void ContactStage::add_bodies_to(SolveStages& stages, float stiffening) {
 
 /// What the worker can solve is his from now on; the rest is here_. @return  whether attachments are his
 bool ContactStage::share_with_worker(std::span<ContactRigid> rigids, float step) {
-  find_heavy_groups(rigids);
+  weigh_rigid_groups(rigids);
   if (has_attachments()) begin_attachments(rigids, step);
   find_rigid_sets(rigids);
   for (std::size_t i = 0; i < group_count_; ++i) hand_to_worker(groups_[i], rigids, step);

@@ -106,10 +106,12 @@ class ContactStage {
   struct Group {
     std::uint32_t a = 0, b = 0;
     bool with_rigid = false;
-    bool by_worker = false;             ///< he solves them: they are in `solved`
-    bool heavy = false;                 ///< with a rigid body that outweighs a
-    bool fast = false;                  ///< two bodies that may pass each other in the substep
-    bool sharp = false;                 ///< some of its contacts limit how far a goes on as a whole
+    bool by_worker = false;  ///< he solves them: they are in `solved`
+    bool heavy = false;      ///< with a rigid body that outweighs a
+    bool alternates =
+        false;           ///< with others that touch the same light rigid body: one iteration each in turn
+    bool fast = false;   ///< two bodies that may pass each other in the substep
+    bool sharp = false;  ///< some of its contacts limit how far a goes on as a whole
     std::vector<SoftContact> contacts;  ///< found here
     FoundContacts solved;
     /// Of those that the worker moves in it; kNone: nothing moves the rigid bodies.
@@ -161,12 +163,14 @@ class ContactStage {
   void solve_in_between(std::span<ContactRigid> rigids, float step, int round, float stiffening,
                         bool with_attachments);
   void solve_with_worker(std::span<ContactRigid> rigids, float step);
-  void find_heavy_groups(std::span<const ContactRigid> rigids);
+  void weigh_rigid_groups(std::span<const ContactRigid> rigids);
   void add_rigid_groups(std::span<const ContactRigid> rigids);
   void prepare_here(std::span<ContactRigid> rigids);
   bool has_attachments() const { return attachments != nullptr && !attachments->empty(); }
   void solve_attachments(std::span<ContactRigid> rigids, float step, int round);
   void begin_attachments(std::span<ContactRigid> rigids, float step);
+  template <typename Groups, typename Work>
+  void for_each_turn(const Groups& groups, const Work& work) const;
   void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
   SolveGroup solved_by_worker(const Group& group) const;
   void add_pairs_to(SolveStages& stages);
@@ -205,6 +209,15 @@ class ContactStage {
   std::vector<std::array<std::uint32_t, 3>> pressed_;
   std::vector<Group*> here_;        // solved here, among what the worker solves
   std::size_t here_that_move_ = 0;  // of them, the first ones
+  /// Who touches a rigid body that moves.
+  struct TouchedRigid {
+    static constexpr std::size_t kNobody = ~std::size_t{0};
+    std::size_t first = kNobody;  // group
+    bool by_several = false;
+    float lightest = 0;  // kg, of the soft bodies
+  };
+  std::vector<TouchedRigid> touched_rigids_;
+  std::vector<Group*> of_set_;  // of rigid bodies
   LostSpin lost_spin_;
   std::vector<AttachedBody<3>> attached_;  // bodies_, as attachments see them
   SolveStages stages_;

@@ -169,7 +169,7 @@ struct CratesUnderACube {
 };
 
 /// Crates of a tenth of its mass were in the middle of the cube, three cells deep, for good.
-TEST(Supports, ALightCrateCarriesAHeavyBody) {
+TEST(LightBodies, ACrateCarriesAHeavyBody) {
   if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   SpeRuntime spes;
   for (SolverFactory* const solvers :
@@ -189,8 +189,38 @@ TEST(Supports, ALightCrateCarriesAHeavyBody) {
   }
 }
 
+/// What one does to the other goes through it: it was half a cell deep in both for good.
+TEST(LightBodies, APlateBetweenTwoBodiesStaysBetweenThem) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  SpeRuntime spes;
+  constexpr float kThick = 0.06f, kWide = 0.25f;
+  for (SolverFactory* const solvers :
+       {static_cast<SolverFactory*>(nullptr), static_cast<SolverFactory*>(&spes)}) {
+    ContactWorld w({0, -9.81f, 0}, solvers);
+    w.add_floor();
+    const TriangleMesh cube = make_box({0.7f, 0.7f, 0.7f}, kCells);
+    const SoftBody<3>& lower = w.add(cube, settings_of(kCells, 0.8f, 0.2f), {0, 0.36f, 0});
+    const SoftBody<3>& upper = w.add(cube, settings_of(kCells, 0.8f, 0.2f), {0.03f, 1.3f, 0.02f});
+    btRigidBody& plate = w.add(std::make_unique<btBoxShape>(btVector3(kWide, kThick / 2, kWide)),
+                               0.03f * upper.model().mass(), {0, 0.75f, 0}, 0.6f);
+    float deepest = 0;
+    for (int i = 0; i < 180; ++i) {
+      w.run(1);
+      const tests::DrawnBody drawn_lower(lower), drawn_upper(upper);
+      for (const float x : {-kWide, 0.0f, kWide})
+        for (const float z : {-kWide, 0.0f, kWide})
+          for (const float y : {-kThick / 2, kThick / 2}) {
+            const Vector3f point = to_eigen(plate.getWorldTransform() * btVector3(x, y, z));
+            deepest = std::max({deepest, drawn_lower.depth(point), drawn_upper.depth(point)});
+          }
+    }
+    EXPECT_LT(deepest, 0.15f * kCells);
+    EXPECT_NEAR(plate.getWorldTransform().getOrigin().y(), 0.7f, 0.6f * kCells);
+  }
+}
+
 /// Bullet would throw it back with half the velocity at which the cube has pressed it down.
-TEST(Supports, ACrateThatBouncesIsNotThrownIntoTheBodyOnIt) {
+TEST(LightBodies, ACrateThatBouncesIsNotThrownIntoTheBodyOnIt) {
   CratesUnderACube on(0.1f, 1, nullptr, 0.7f);
   float deepest = 0, highest = 0;
   for (int i = 0; i < 60; ++i) {
@@ -203,7 +233,7 @@ TEST(Supports, ACrateThatBouncesIsNotThrownIntoTheBodyOnIt) {
 }
 
 /// On a slope of ten degrees: it is the load that holds it by friction.
-TEST(Supports, ALoadedCrateDoesNotSlide) {
+TEST(LightBodies, ALoadedCrateDoesNotSlide) {
   ContactWorld w({9.81f * 0.1736f, -9.81f * 0.9848f, 0});
   w.add_floor(0.6f);
   SoftBody<3>& cube =
