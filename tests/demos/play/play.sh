@@ -38,7 +38,7 @@ hash_of() { sed -n 's/^state: *\([0-9a-f]*\).*/\1/p' "$folder/log"; }
 same_again() {
   local hash
   hash=$(hash_of)
-  for how in --headless --size=640x360; do
+  for how in --headless --size=160x90; do
     "$softcell" demo "$1" --replay "$folder/$2.rec" "$how" --spes 2 >"$folder/log" 2>&1 || fail "the replay fails ($how)"
     [ "$(hash_of)" = "$hash" ] || fail "the replay ends in $(hash_of), not in $hash ($how)"
   done
