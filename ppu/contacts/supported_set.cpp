@@ -10,6 +10,7 @@
 namespace softcell::ppu {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Six = Eigen::Matrix<double, 6, 1>;
@@ -90,7 +91,7 @@ void SupportedSet::add(const RigidTouch& touch, float step) {
 }
 
 bool SupportedSet::Touch::sticks() const {
-  return std::hypot(across[0].impulse, across[1].impulse) < friction * normal.impulse;
+  return Vector2d(across[0].impulse, across[1].impulse).norm() < friction * normal.impulse;
 }
 
 /// Of its two sides against each other; along the normal below 0 they come together. m/s.
@@ -122,11 +123,11 @@ void SupportedSet::iterate() {
     most = largest_change = 0;
     for (Touch& touch : touches_) {
       change(touch.normal, std::max(0.0, wanted(touch.normal)));
-      const double one = wanted(touch.across[0]), other = wanted(touch.across[1]);
-      const double length = std::hypot(one, other), limit = touch.friction * touch.normal.impulse;
-      const double share = length > limit ? limit / length : 1;
-      change(touch.across[0], share * one);
-      change(touch.across[1], share * other);
+      Vector2d across(wanted(touch.across[0]), wanted(touch.across[1]));
+      const double length = across.norm(), limit = touch.friction * touch.normal.impulse;
+      if (length > limit) across *= limit / length;
+      change(touch.across[0], across.x());
+      change(touch.across[1], across.y());
     }
     if (largest_change <= kSettled * most) break;
   }
