@@ -194,6 +194,7 @@ void BulletObstacles::begin(const btDiscreteDynamicsWorld& world, float step) {
   before_.clear();
   objects_.clear();
   obstacle_of_.clear();
+  rigid_of_.assign(static_cast<std::size_t>(world.getNumCollisionObjects()), kNone);
   edges_used_ = triangles_used_ = 0;
   leaving_.clear();
   const btCollisionObjectArray& objects = world.getCollisionObjectArray();
@@ -251,8 +252,12 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   SC_ASSERT(rigids_.size() == objects_.size() && obstacle_of_.size() == objects_.size(),
             "{} rigid bodies, {} with obstacles, of {} objects", rigids_.size(), obstacle_of_.size(),
             objects_.size());
-  const auto known = std::find(objects_.begin(), objects_.end(), &object);
-  if (known != objects_.end()) return static_cast<std::uint32_t>(known - objects_.begin());
+  const int place = object.getWorldArrayIndex();
+  SC_ASSERT(place >= 0 && static_cast<std::size_t>(place) < rigid_of_.size(), "object {} of a world of {}",
+            place, rigid_of_.size());
+  std::uint32_t& known = rigid_of_[static_cast<std::size_t>(place)];
+  if (known != kNone) return known;
+  known = static_cast<std::uint32_t>(objects_.size());
   ContactRigid rigid;
   rigid.number = static_cast<std::uint32_t>(object.getBroadphaseHandle()->m_uniqueId);
   rigid.centre = to_eigen(object.getWorldTransform().getOrigin());
@@ -270,7 +275,7 @@ std::uint32_t BulletObstacles::rigid_of(btCollisionObject& object) {
   before_.push_back(rigid);
   objects_.push_back(&object);
   obstacle_of_.push_back(kNone);
-  return static_cast<std::uint32_t>(rigids_.size() - 1);
+  return known;
 }
 
 std::vector<ObstacleEdge>& BulletObstacles::more_edges() { return next_list(edges_, edges_used_); }

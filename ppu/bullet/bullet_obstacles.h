@@ -79,6 +79,7 @@ class BulletObstacles {
   std::vector<Obstacle> obstacles_;
   std::vector<ContactRigid> rigids_, before_;
   std::vector<btCollisionObject*> objects_;
+  std::vector<std::uint32_t> rigid_of_;     // of each object of the world; kNone: not known yet
   std::vector<std::uint32_t> obstacle_of_;  // of each object without triangles; kNone: not known yet
   std::map<const btCollisionShape*, Hull> hulls_;
   // Lists of obstacles of this substep, and behind them those that lists of others may use again.

@@ -54,7 +54,8 @@ void SupportedSet::begin(std::span<ContactRigid> rigids, std::span<const std::ui
   for (const std::uint32_t rigid : members) {
     SC_ASSERT(rigids[rigid].inverse_mass > 0, "nothing moves rigid body {}", rigid);
     const Six velocity = velocity_of(rigids[rigid]);
-    members_.push_back({.rigid = rigid, .before = velocity, .now = velocity, .impulse = Six::Zero()});
+    members_.push_back(
+        {.rigid = rigid, .before = velocity, .stands = velocity, .now = velocity, .impulse = Six::Zero()});
   }
 }
 
@@ -159,22 +160,30 @@ void SupportedSet::load(std::span<const Press> presses, float step) {
   for (Member& member : members_) member.now += change_of_free(rigids_[member.rigid], member.impulse);
 }
 
+template <typename Work>
+void SupportedSet::for_each_row(const Work& work) {
+  for (Touch& touch : touches_)
+    for (Row* const row : {&touch.normal, &touch.across[0], &touch.across[1]}) work(*row);
+}
+
 bool SupportedSet::hold(std::span<const Press> presses, float step) {
   if (touches_.empty()) return false;
   iterate();
+  for (Member& member : members_) member.stands = member.now;
+  for_each_row([&](Row& row) { row.stands = speed(row), row.stands_by = row.impulse; });
   load(presses, step);
   iterate();
-  std::erase_if(touches_, [](const Touch& touch) { return !(touch.normal.impulse > 0); });
-  if (touches_.empty()) return false;
+  all_stick_ = true;
   for (Touch& touch : touches_) {
+    if (!(touch.normal.impulse > 0)) continue;
     rows_.push_back(&touch.normal);
+    all_stick_ = all_stick_ && touch.sticks();
     if (touch.sticks())
       for (Row& across : touch.across) rows_.push_back(&across);
   }
+  if (rows_.empty()) return false;
   factor();
-  fallen_.clear();
-  for (const Member& member : members_) fallen_.push_back(member.before);
-  stand(fallen_);
+  values_.resize(rows_.size());
   for (std::size_t i = 0; i < members_.size(); ++i)
     if (members_[i].pressed) hold_member(i);
   for (Member& member : members_) member.impulse.setZero();  // that was a guess
@@ -213,15 +222,6 @@ void SupportedSet::solve(std::span<double> values) const {
   }
 }
 
-/// Members on what holds them; `values_` are its impulses. @param falling  their velocities without it
-void SupportedSet::stand(std::span<const Six> falling) {
-  for (std::size_t i = 0; i < members_.size(); ++i) members_[i].now = falling[i];
-  values_.resize(rows_.size());
-  for (std::size_t i = 0; i < rows_.size(); ++i) values_[i] = rows_[i]->target - speed(*rows_[i]);
-  solve(values_);
-  for (std::size_t i = 0; i < rows_.size(); ++i) push(*rows_[i], values_[i]);
-}
-
 void SupportedSet::hold_member(std::size_t number) {
   const Member& member = members_[number];
   ContactRigid& rigid = rigids_[member.rigid];
@@ -243,8 +243,8 @@ void SupportedSet::hold_member(std::size_t number) {
   rigid.held = HeldMobility{mobility.topLeftCorner<3, 3>().cast<float>(),
                             mobility.topRightCorner<3, 3>().cast<float>(),
                             mobility.bottomRightCorner<3, 3>().cast<float>()};
-  rigid.velocity = member.now.head<3>().cast<float>();
-  rigid.spin = member.now.tail<3>().cast<float>();
+  rigid.velocity = member.stands.head<3>().cast<float>();
+  rigid.spin = member.stands.tail<3>().cast<float>();
 }
 
 void SupportedSet::add_impulse(std::uint32_t rigid, const Vector3f& point, const Vector3f& impulse) {
@@ -253,44 +253,42 @@ void SupportedSet::add_impulse(std::uint32_t rigid, const Vector3f& point, const
 }
 
 void SupportedSet::give_impulses() {
-  for (Member& member : members_) {
+  for (const Member& member : members_) {
     ContactRigid& rigid = rigids_[member.rigid];
-    member.now = member.before + change_of_free(rigid, member.impulse);
+    const Six velocity = member.before + change_of_free(rigid, member.impulse);
     rigid.held.reset();
-    rigid.velocity = member.now.head<3>().cast<float>();
-    rigid.spin = member.now.tail<3>().cast<float>();
+    rigid.velocity = velocity.head<3>().cast<float>();
+    rigid.spin = velocity.tail<3>().cast<float>();
   }
 }
 
+/// m/s: how much rows that hold differ from where members stand.
+double SupportedSet::fastest() const {
+  double most = 0;
+  for (const Row* const row : rows_) most = std::max(most, std::abs(speed(*row) - row->stands));
+  return most;
+}
+
 void SupportedSet::give_support() {
-  fallen_.clear();
-  for (const Member& member : members_) fallen_.push_back(member.now);
-  const auto all_rows = [&](const auto& work) {
-    for (Touch& touch : touches_)
-      for (Row* const row : {&touch.normal, &touch.across[0], &touch.across[1]}) work(*row);
+  const auto load_standing = [&] {
+    for (Member& member : members_)
+      member.now = member.stands + change_of_free(rigids_[member.rigid], member.impulse);
+    for_each_row([](Row& row) { row.impulse = row.stands_by; });
   };
-  all_rows([](Row& row) { row.impulse = 0; });
-  const auto fastest = [&] {
-    double most = 0;
-    for (const Row* const row : rows_) most = std::max(most, std::abs(speed(*row) - row->target));
-    return most;
-  };
+  load_standing();
   const double falls = fastest();
-  // Begins with what would hold members in both directions.
-  stand(fallen_);
-  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i]->impulse = values_[i];
   iterate();
   // Soft bodies have been solved as if nothing moved along these rows. What moves a little there, of a table on many legs, is what iterations
   // have left; and a crate that is a hundredth of them would fly away with what they have got from it, if then it slides or is lifted. In both
   // cases what it lies on keeps it for this substep.
   const double moves = fastest();
-  const bool all_stick = rows_.size() == 3 * touches_.size();
-  if (moves > fastest_ || (all_stick && moves < kLeft * falls)) {
-    stand(fallen_);
-    all_rows([](Row& row) { row.impulse = 0; });
-    for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i]->impulse = values_[i];
+  if (moves > fastest_ || (all_stick_ && moves < kLeft * falls)) {
+    load_standing();
+    for (std::size_t i = 0; i < rows_.size(); ++i) values_[i] = rows_[i]->stands - speed(*rows_[i]);
+    solve(values_);
+    for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i]->impulse += values_[i];
   }
-  all_rows([&](const Row& row) {
+  for_each_row([&](const Row& row) {
     for (const Side* const side : {&row.a, &row.b}) {
       const Six change = row.impulse * side->change;
       rigids_[side->rigid].velocity += change.head<3>().cast<float>();

@@ -53,7 +53,8 @@ class SupportedSet {
     std::uint32_t rigid = 0;
     bool pressed = false;
     Six before;   // its velocity without anything
-    Six now;      // and at this point of a solution
+    Six stands;   // on what it lies on, without soft bodies
+    Six now;      // at this point of a solution
     Six impulse;  // of soft bodies
   };
   /// One of the two that touch.
@@ -68,8 +69,9 @@ class SupportedSet {
     Side a, b;
     double outside = 0;   // m/s, of what is no member
     double mobility = 0;  // 1/kg
-    double target = 0;    // m/s, of a against b
+    double target = 0;    // m/s, of a against b: at least; across: wanted
     double impulse = 0;
+    double stands = 0, stands_by = 0;  // m/s and the impulse, where members stand
   };
   struct Touch {
     Row normal;
@@ -86,15 +88,17 @@ class SupportedSet {
   void load(std::span<const Press> presses, float step);
   void factor();
   void solve(std::span<double> values) const;
-  void stand(std::span<const Six> falling);
+  double fastest() const;
+  template <typename Work>
+  void for_each_row(const Work& work);
   void hold_member(std::size_t member);
 
   std::span<ContactRigid> rigids_;
   std::vector<Member> members_;
   std::vector<Touch> touches_;
   std::vector<Row*> rows_;      // of touches_: those that hold members
+  bool all_stick_ = true;       // of rows_
   double fastest_ = 0;          // m/s, along rows that hold
-  std::vector<Six> fallen_;     // of each member: its velocity without what holds it
   std::vector<double> values_;  // of each row
   std::vector<double> factor_;  // of what impulses of rows change of speeds of rows: lower, row by row
 };

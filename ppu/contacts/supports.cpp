@@ -18,6 +18,7 @@ void Supports::hold(std::span<ContactRigid> rigids, std::span<const RigidTouch> 
   SC_ASSERT(step > 0, "a substep of {} s", step);
   count_ = 0;
   if (touches.empty() || presses.empty()) return;
+  sort_touches(rigids.size(), touches);
   const auto moves = [&](std::uint32_t rigid) { return rigids[rigid].inverse_mass > 0; };
   together_.reset(rigids.size());
   for (const RigidTouch& touch : touches)
@@ -34,19 +35,39 @@ void Supports::hold(std::span<ContactRigid> rigids, std::span<const RigidTouch> 
     for (std::uint32_t rigid = name; rigid < rigids.size(); ++rigid)
       if (moves(rigid) && together_.find(rigid) == name) set_.push_back(rigid);
     if (set_.size() <= kMostTogether)
-      look_at(set_, rigids, touches, presses, step);
+      look_at(set_, false, rigids, touches, presses, step);
     else
       for (std::size_t i = first; i < end; ++i)
-        look_at(std::span(pressed_).subspan(i, 1), rigids, touches, presses, step);
+        look_at(std::span(pressed_).subspan(i, 1), true, rigids, touches, presses, step);
   }
 }
 
-void Supports::look_at(std::span<const std::uint32_t> set, std::span<ContactRigid> rigids,
+/// By the rigid bodies that have them: each touch twice.
+void Supports::sort_touches(std::size_t rigids, std::span<const RigidTouch> touches) {
+  first_.assign(rigids + 1, 0);
+  for (const RigidTouch& touch : touches) ++first_[touch.a], ++first_[touch.b];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& first : first_) sum += first, first = sum;  // where the next one ends
+  touch_.resize(2 * touches.size());
+  for (std::size_t i = touches.size(); i-- > 0;)
+    for (const std::uint32_t rigid : {touches[i].a, touches[i].b})
+      touch_[--first_[rigid]] = static_cast<std::uint32_t>(i);
+}
+
+void Supports::look_at(std::span<const std::uint32_t> set, bool alone, std::span<ContactRigid> rigids,
                        std::span<const RigidTouch> touches, std::span<const Press> presses, float step) {
   if (count_ == sets_.size()) sets_.emplace_back();
   SupportedSet& looked_at = sets_[count_];
   looked_at.begin(rigids, set);
-  for (const RigidTouch& touch : touches) looked_at.add(touch, step);
+  for (const std::uint32_t rigid : set) {
+    for (std::uint32_t i = first_[rigid]; i < first_[rigid + 1]; ++i) {
+      const RigidTouch& touch = touches[touch_[i]];
+      const std::uint32_t other = touch.a == rigid ? touch.b : touch.a;
+      const bool is_member = rigids[other].inverse_mass > 0;
+      // That of two members comes once.
+      if (!is_member || (!alone && other > rigid)) looked_at.add(touch, step);
+    }
+  }
   if (looked_at.hold(presses, step)) ++count_;
 }
 

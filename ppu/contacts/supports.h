@@ -38,11 +38,15 @@ class Supports {
   void release();
 
  private:
-  void look_at(std::span<const std::uint32_t> set, std::span<ContactRigid> rigids,
+  void sort_touches(std::size_t rigids, std::span<const RigidTouch> touches);
+  /// @param alone  a body of a heap
+  void look_at(std::span<const std::uint32_t> set, bool alone, std::span<ContactRigid> rigids,
                std::span<const RigidTouch> touches, std::span<const Press> presses, float step);
 
   DisjointSets together_;
   std::vector<std::uint32_t> pressed_, set_;
+  std::vector<std::uint32_t> first_,
+      touch_;                       // where those of a rigid body begin in touch_, and the indices of touches
   std::vector<SupportedSet> sets_;  // and behind count_ those that keep room for others
   std::size_t count_ = 0;
 };

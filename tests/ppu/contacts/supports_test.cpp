@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -217,6 +218,42 @@ TEST(LightBodies, APlateBetweenTwoBodiesStaysBetweenThem) {
     EXPECT_LT(deepest, 0.15f * kCells);
     EXPECT_NEAR(plate.getWorldTransform().getOrigin().y(), 0.7f, 0.6f * kCells);
   }
+}
+
+/// Crates of a hundredth of a ball's mass to twice of it, many more than are solved together: none is thrown out.
+TEST(LightBodies, AHeapOfCratesAndBodiesStaysCalm) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  constexpr float kRoom = 0.8f;
+  ContactWorld w;
+  w.add_floor();
+  for (const float side : {-1.0f, 1.0f}) {
+    w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 3, kRoom + 0.2f)), 0, {side * (kRoom + 0.1f), 3, 0});
+    w.add(std::make_unique<btBoxShape>(btVector3(kRoom + 0.2f, 3, 0.1f)), 0, {0, 3, side * (kRoom + 0.1f)});
+  }
+  const TriangleMesh ball = make_sphere(0.25f, 10);
+  std::vector<const SoftBody<3>*> balls;
+  for (int i = 0; i < 6; ++i) {
+    const float angle = 2.4f * static_cast<float>(i);
+    balls.push_back(
+        &w.add(ball, settings_of(kCells, 0.5f, 0.2f),
+               {0.5f * std::cos(angle), 0.6f + 0.5f * static_cast<float>(i), 0.5f * std::sin(angle)}));
+  }
+  std::vector<btRigidBody*> crates;
+  for (int i = 0; i < 60; ++i) {
+    const float angle = 2.4f * static_cast<float>(i), far = 0.1f * static_cast<float>(i % 7);
+    const float mass = balls[0]->model().mass() * (i % 3 == 0 ? 2 : i % 3 == 1 ? 0.1f : 0.01f);
+    crates.push_back(
+        &w.add(std::make_unique<btBoxShape>(btVector3(0.1f, 0.1f, 0.1f)), mass,
+               {far * std::cos(angle), 0.15f + 0.06f * static_cast<float>(i), far * std::sin(angle)}, 0.6f));
+  }
+  float fastest = 0;
+  for (int frame = 0; frame < 240; ++frame) {
+    w.run(1);
+    for (const btRigidBody* const crate : crates)
+      fastest = std::max(fastest, float{crate->getLinearVelocity().length()});
+  }
+  EXPECT_LT(fastest, 12) << "from a height of 4 m things fall at 9 m/s";
+  for (const SoftBody<3>* const soft : balls) EXPECT_LT(soft->centre_of_mass().norm(), 5);
 }
 
 /// Bullet would throw it back with half the velocity at which the cube has pressed it down.
