@@ -460,17 +460,17 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
 }
 
 /// Calls work(group, iterations), those that alternate behind the others.
-template <typename Groups, typename Work>
-void ContactStage::for_each_turn(const Groups& groups, const Work& work) const {
+template <typename Work>
+void ContactStage::for_each_turn(std::span<Group* const> groups, const Work& work) const {
   int turns = 0;
-  for (auto&& group : groups) {
+  for (Group* const group : groups) {
     if (group->alternates)
       turns = std::max(turns, iterations_of(*group));
     else
       work(*group, iterations_of(*group));
   }
   for (int i = 0; i < turns; ++i)
-    for (auto&& group : groups)
+    for (Group* const group : groups)
       if (group->alternates && i < iterations_of(*group)) work(*group, 1);
 }
 
@@ -592,7 +592,7 @@ void ContactStage::add_rigid_sets_to(SolveStages& stages) {
     of_set_.clear();
     for (std::size_t i = pair_groups_; i < group_count_; ++i)
       if (groups_[i].rigid_set == set) of_set_.push_back(&groups_[i]);
-    for_each_turn(of_set_, [&](const Group& group, int iterations) {
+    for_each_turn(std::span<Group* const>(of_set_), [&](const Group& group, int iterations) {
       stages.groups.push_back(solved_by_worker(group));
       stages.groups.back().iterations = static_cast<std::uint32_t>(iterations);
     });

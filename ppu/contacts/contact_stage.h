@@ -169,8 +169,8 @@ class ContactStage {
   bool has_attachments() const { return attachments != nullptr && !attachments->empty(); }
   void solve_attachments(std::span<ContactRigid> rigids, float step, int round);
   void begin_attachments(std::span<ContactRigid> rigids, float step);
-  template <typename Groups, typename Work>
-  void for_each_turn(const Groups& groups, const Work& work) const;
+  template <typename Work>
+  void for_each_turn(std::span<Group* const> groups, const Work& work) const;
   void iterate_here(std::span<Group* const> groups, std::span<ContactRigid> rigids, float step);
   SolveGroup solved_by_worker(const Group& group) const;
   void add_pairs_to(SolveStages& stages);
