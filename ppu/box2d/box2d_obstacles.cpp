@@ -55,6 +55,10 @@ float depth_behind(const b2PolygonShape& polygon, int face) {
   return -least;
 }
 
+bool is_under_way(const b2Body& body) {
+  return body.IsAwake() && (body.GetLinearVelocity().LengthSquared() > 0 || body.GetAngularVelocity() != 0);
+}
+
 }  // namespace
 
 class Box2dObstacles::Collector final : public b2QueryCallback {
@@ -68,7 +72,8 @@ class Box2dObstacles::Collector final : public b2QueryCallback {
       return true;
     const std::uint32_t body = of_.number(*fixture->GetBody()), number = Box2dObstacles::number(*fixture);
     for (int child = 0; child < fixture->GetShape()->GetChildCount(); ++child)
-      if (b2TestOverlap(fixture->GetAABB(child), box_)) found_.push_back({body, number, child, fixture});
+      if (b2TestOverlap(of_.box_of_step(*fixture, child), box_))
+        found_.push_back({body, number, child, fixture});
     return true;
   }
 
@@ -93,6 +98,29 @@ void Box2dObstacles::begin(b2World& world, float step, float layer) {
   known_.clear();
   shapes_used_ = 0;
   number_bodies();
+  moving_.clear();
+  for (b2Body* body = world.GetBodyList(); body != nullptr; body = body->GetNext())
+    if (is_under_way(*body)) moving_.push_back(body);
+}
+
+/// What it would be without contacts: Box2D adds gravity later in its step.
+b2Vec2 Box2dObstacles::velocity_of(const b2Body& body) const {
+  const bool falls = body.GetType() == b2_dynamicBody && body.IsAwake();
+  return falls ? body.GetLinearVelocity() + step_ * body.GetGravityScale() * world_->GetGravity()
+               : body.GetLinearVelocity();
+}
+
+/// Box2D has a box around where a fixture has been: of what moves, one around where it comes.
+b2AABB Box2dObstacles::box_of_step(const b2Fixture& fixture, int child) const {
+  b2AABB box = fixture.GetAABB(child);
+  const b2Body& body = *fixture.GetBody();
+  if (!is_under_way(body)) return box;
+  const b2Vec2 way = step_ * velocity_of(body), centre = body.GetWorldCenter();
+  const b2Vec2 arm = b2Max(b2Abs(box.lowerBound - centre), b2Abs(box.upperBound - centre));
+  const float turn = step_ * std::abs(body.GetAngularVelocity()) * arm.Length();
+  box.lowerBound += b2Min(way, b2Vec2_zero) - b2Vec2(turn, turn);
+  box.upperBound += b2Max(way, b2Vec2_zero) + b2Vec2(turn, turn);
+  return box;
 }
 
 std::uint32_t Box2dObstacles::number(const b2Fixture& fixture) {
@@ -126,6 +154,9 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
   found_.clear();
   Collector near(filter, query, *this, found_);
   world_->QueryAABB(&near, query);
+  for (b2Body* const body : moving_)
+    for (b2Fixture* fixture = body->GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
+      near.ReportFixture(fixture);
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
   for (const Found& found : found_) indices.push_back(obstacle_of(found, face_before(found, box, middle)));
@@ -160,14 +191,12 @@ std::uint32_t Box2dObstacles::rigid_of(b2Body& body) {
   ContactRigid rigid;
   rigid.number = number(body);
   rigid.centre = lifted(body.GetWorldCenter());
-  rigid.velocity = lifted(body.GetLinearVelocity());
+  rigid.velocity = lifted(velocity_of(body));
   rigid.spin = {0, 0, body.GetAngularVelocity()};
   rigid.friction = 1;  // fixtures have it
   for (const b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
     rigid.restitution = std::max(rigid.restitution, fixture->GetRestitution());
   if (body.GetType() == b2_dynamicBody) {
-    // Box2D adds gravity after this.
-    if (body.IsAwake()) rigid.velocity += step_ * body.GetGravityScale() * lifted(world_->GetGravity());
     rigid.inverse_mass = 1 / body.GetMass();
     rigid.inverse_inertia(2, 2) = inverse_inertia_of(body);
   }

@@ -389,6 +389,37 @@ TEST_P(FlatContacts, AHeavyBoxRestsOnABody) {
   EXPECT_GT(box->GetPosition().y, 0.6f);
 }
 
+/// Box2D knows where it was: it was seen three quarters of a cell deep, and stayed there for as long as pushes took to bring it out.
+TEST_P(FlatContacts, WhatFliesIsMetWhereverItBegins) {
+  constexpr float kCell = 0.1f, kRadius = 0.1f, kSpeed = 20;
+  for (const bool from_rest : {false, true}) {
+    for (int place = 0; place < 12; ++place) {
+      const auto w = world(0);
+      const SoftBody<2>& body = w->soft.add(rectangle_model({8, 8}, calm(kCell)), {0, 0});
+      float left = 0;
+      for (const Vector2f& at : drawn_edge(body)) left = std::min(left, at.x());
+      const float gap = (from_rest ? 0.01f : 0.7f) + kSpeed * kStep2d * static_cast<float>(place) / 12;
+      b2BodyDef definition;
+      definition.type = b2_dynamicBody;
+      definition.position = {left - gap - kRadius, 0.03f};
+      b2Body* const disc = w->box2d.CreateBody(&definition);
+      b2CircleShape circle;
+      circle.m_radius = kRadius;
+      disc->CreateFixture(&circle, 1);
+      w->run(0.1f);
+      disc->SetLinearVelocity({kSpeed, 0});
+      float deepest = 0;
+      for (int i = 0; i < 16; ++i) {
+        w->run(kStep2d);
+        const b2Vec2 at = disc->GetPosition();
+        deepest = std::max(deepest, depth_in(body, {at.x + kRadius, at.y}));
+      }
+      EXPECT_LT(deepest, 0.2f) << gap << " m before the body";
+      EXPECT_LT(disc->GetLinearVelocity().x, kSpeed / 2) << "it has met nothing";
+    }
+  }
+}
+
 /// Two crates, one on the other, each of a hundredth, or a tenth, of its mass.
 TEST_P(FlatContacts, LightCratesCarryABody) {
   if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
