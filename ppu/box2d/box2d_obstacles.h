@@ -28,7 +28,8 @@ class Box2dObstacles {
   /// Forgets what was near before. @param layer  metres above and below z = 0 in which soft bodies are
   void begin(b2World& world, float step, float layer);
 
-  /// Appends the indices of all obstacles that are in a box, or come there in the substep, those of one body behind each other, bodies in the order in which the world got them.
+  /// Appends the indices of all obstacles that are in a box, or come there in the substep, those of one body behind each other, bodies in
+  /// the order in which the world got them.
   /// @param middle  of the body in the box: says which face of a thin polygon is before it
   void add_near(const Bounds<3>& box, const Eigen::Vector2f& middle, const CollisionFilter& filter,
                 std::vector<std::uint32_t>& indices);
@@ -100,7 +101,7 @@ class Box2dObstacles {
   std::unordered_map<const b2Body*, std::uint32_t> numbers_;  // of all that the world has
   std::uint32_t next_number_ = 0;
   std::vector<b2Body*> unknown_;
-  std::vector<b2Body*> moving_;
+  std::vector<b2Body*> moving_;  // in this substep
   std::vector<Found> found_;
   std::vector<Known> known_;
   std::deque<Shape> shapes_;  // obstacles point into them

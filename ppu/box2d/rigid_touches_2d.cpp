@@ -7,12 +7,6 @@
 #include <cstddef>
 
 namespace softcell::ppu {
-namespace {
-
-constexpr int kFarthest = 4;  // bodies behind the one near a soft body; the others stand still for it
-
-}  // namespace
-
 std::span<const RigidTouch> RigidTouches2d::find(Box2dObstacles& obstacles,
                                                  std::span<const std::uint32_t> attached) {
   touches_.clear();
@@ -21,7 +15,7 @@ std::span<const RigidTouch> RigidTouches2d::find(Box2dObstacles& obstacles,
     return std::ranges::find(attached, rigid) != attached.end();
   };
   std::size_t first = 0;
-  for (int i = 0; i <= kFarthest; ++i) {
+  for (int i = 0; i <= kFarthestTouch; ++i) {
     const std::size_t end = obstacles.bodies().size();
     for (std::size_t rigid = first; rigid < end; ++rigid) {
       b2Body& body = *obstacles.bodies()[rigid];

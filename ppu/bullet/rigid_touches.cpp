@@ -11,8 +11,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kFarthest = 4;  // bodies behind the one near a soft body; the others stand still for it
-
 /// What impulses move.
 bool is_dynamic(const btCollisionObject& object) {
   const btRigidBody* const body = btRigidBody::upcast(&object);
@@ -31,19 +29,15 @@ std::span<const RigidTouch> RigidTouches::find(
   is_reached_.assign(static_cast<std::size_t>(world.getNumCollisionObjects()), false);
   for (const btCollisionObject* const object : obstacles.objects()) reach(*object);
   if (std::ranges::find(is_reached_, true) == is_reached_.end()) return {};
-  const auto counts = [&](const btCollisionObject& object) {
-    return object.hasContactResponse() && !is_attached(object);
-  };
   // Bullet's dispatcher is not const where one only looks.
   btDispatcher& dispatcher = *const_cast<btDiscreteDynamicsWorld&>(world).getDispatcher();
   manifolds_.clear();
   for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
     const btPersistentManifold* const manifold = dispatcher.getManifoldByIndexInternal(i);
-    if (manifold->getNumContacts() > 0 && counts(first(*manifold)) && counts(second(*manifold)))
-      manifolds_.push_back(manifold);
+    if (manifold->getNumContacts() > 0) manifolds_.push_back(manifold);
   }
-  for (int i = 0; i <= kFarthest; ++i)
-    if (!add_reached(obstacles)) break;
+  for (int i = 0; i <= kFarthestTouch; ++i)
+    if (!add_reached(obstacles, is_attached)) break;
   return touches_;
 }
 
@@ -52,14 +46,18 @@ void RigidTouches::reach(const btCollisionObject& object) {
 }
 
 /// Of all that is reached; what it touches is reached then. @return whether there is something new
-bool RigidTouches::add_reached(BulletObstacles& obstacles) {
+bool RigidTouches::add_reached(BulletObstacles& obstacles,
+                               const std::function<bool(const btCollisionObject&)>& is_attached) {
   const auto is_reached = [&](const btCollisionObject& object) -> bool {
     return is_reached_[static_cast<std::size_t>(object.getWorldArrayIndex())];
+  };
+  const auto counts = [&](const btCollisionObject& object) {
+    return object.hasContactResponse() && !is_attached(object);
   };
   near_.clear();
   std::erase_if(manifolds_, [&](const btPersistentManifold* manifold) {
     if (!is_reached(first(*manifold)) && !is_reached(second(*manifold))) return false;
-    near_.push_back(manifold);
+    if (counts(first(*manifold)) && counts(second(*manifold))) near_.push_back(manifold);
     return true;
   });
   for (const btPersistentManifold* const manifold : near_) {

@@ -24,7 +24,8 @@ class RigidTouches {
 
  private:
   void reach(const btCollisionObject& object);
-  bool add_reached(BulletObstacles& obstacles);
+  bool add_reached(BulletObstacles& obstacles,
+                   const std::function<bool(const btCollisionObject&)>& is_attached);
   void add(const btPersistentManifold& manifold, BulletObstacles& obstacles);
 
   std::vector<RigidTouch> touches_;

@@ -15,20 +15,10 @@ using Eigen::Vector3f;
 // kMostPush cells.
 constexpr float kSlop = 0.01f, kPushShare = 0.1f, kMostPush = 0.02f;
 
-/// 1/kg, of a rigid body at a point in a direction.
-float mobility(const ContactRigid& rigid, const Vector3f& point, const Vector3f& direction) {
-  if (rigid.inverse_mass == 0) return 0;
-  const Vector3f arm = point - rigid.centre;
-  const Vector3f turn = arm.cross(direction);
-  if (!rigid.held) return rigid.inverse_mass + turn.dot(rigid.inverse_inertia * turn);
-  const ContactRigid::Change change = rigid.change_by(direction, turn);
-  return direction.dot(change.velocity) + turn.dot(change.spin);
-}
-
 float mobility(const SoftContact& contact, const ContactSides& sides, const Vector3f& direction) {
   const float own = contact.a.mobility(sides.a->inverse_masses);
   if (sides.b != nullptr) return own + contact.b.mobility(sides.b->inverse_masses);
-  return own + mobility(sides.rigids[contact.rigid], contact.point, direction);
+  return own + sides.rigids[contact.rigid].mobility(contact.point, direction);
 }
 
 Vector3f relative_velocity(const SoftContact& contact, const ContactSides& sides) {

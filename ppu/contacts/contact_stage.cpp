@@ -523,6 +523,7 @@ void ContactStage::weigh_rigid_groups(std::span<const ContactRigid> rigids) {
   for (std::size_t i = pair_groups_; i < group_count_; ++i) {
     const float mass = bodies_[groups_[i].a].model->mass();
     for (const SoftContact& contact : groups_[i].contacts) {
+      if (rigids[contact.rigid].inverse_mass == 0) continue;
       TouchedRigid& touched = touched_rigids_[contact.rigid];
       if (touched.first == TouchedRigid::kNobody)
         touched = {.first = i, .by_several = false, .lightest = mass};

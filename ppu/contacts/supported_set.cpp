@@ -39,10 +39,10 @@ Six velocity_of(const ContactRigid& rigid) {
 }
 
 /// A direction at a point of a rigid body, and how that turns it.
-Six direction_at(const ContactRigid& rigid, const Vector3f& point, const Vector3f& direction) {
-  const Vector3d arm = (point - rigid.centre).cast<double>(), along = direction.cast<double>();
+Six direction_at(const ContactRigid& rigid, const Vector3f& point, const Vector3d& direction) {
+  const Vector3d arm = (point - rigid.centre).cast<double>();
   Six both;
-  both << along, arm.cross(along);
+  both << direction, arm.cross(direction);
   return both;
 }
 
@@ -68,7 +68,7 @@ SupportedSet::Row SupportedSet::row(const RigidTouch& touch, const Vector3f& dir
   Row made;
   const auto side = [&](std::uint32_t rigid, const Vector3f& along_it) -> Side {
     const ContactRigid& body = rigids_[rigid];
-    const Six along = direction_at(body, touch.point, along_it);
+    const Six along = direction_at(body, touch.point, along_it.cast<double>());
     const Side one{rigid, member_of(rigid), along, change_of_free(body, along)};
     if (one.member == kOutside)
       made.outside += along.dot(velocity_of(body));
@@ -152,10 +152,8 @@ void SupportedSet::load(std::span<const Press> presses, float step) {
     Vector3d sliding = relative + approach * normal;
     const double speed = sliding.norm(), most = double{press.friction} * approach;
     if (speed > most) sliding *= most / speed;
-    const Vector3d impulse = double{press.mass} * (sliding - approach * normal);
-    Six both;
-    both << impulse, arm.cross(impulse);
-    member.impulse += both;
+    member.impulse +=
+        direction_at(rigids_[press.rigid], press.point, double{press.mass} * (sliding - approach * normal));
   }
   for (Member& member : members_) member.now += change_of_free(rigids_[member.rigid], member.impulse);
 }
@@ -249,7 +247,8 @@ void SupportedSet::hold_member(std::size_t number) {
 
 void SupportedSet::add_impulse(std::uint32_t rigid, const Vector3f& point, const Vector3f& impulse) {
   const std::size_t member = member_of(rigid);
-  if (member != kOutside) members_[member].impulse += direction_at(rigids_[rigid], point, impulse);
+  if (member != kOutside)
+    members_[member].impulse += direction_at(rigids_[rigid], point, impulse.cast<double>());
 }
 
 void SupportedSet::give_impulses() {

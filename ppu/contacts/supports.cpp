@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
 
 namespace softcell::ppu {
@@ -18,7 +19,11 @@ void Supports::hold(std::span<ContactRigid> rigids, std::span<const RigidTouch> 
   SC_ASSERT(step > 0, "a substep of {} s", step);
   count_ = 0;
   if (touches.empty() || presses.empty()) return;
-  sort_touches(rigids.size(), touches);
+  const auto for_each_side = [&](std::size_t touch, const auto& work) {
+    work(touches[touch].a);
+    work(touches[touch].b);
+  };
+  sort_into_lists(rigids.size(), touches.size(), for_each_side, first_, touch_);
   const auto moves = [&](std::uint32_t rigid) { return rigids[rigid].inverse_mass > 0; };
   together_.reset(rigids.size());
   for (const RigidTouch& touch : touches)
@@ -40,18 +45,6 @@ void Supports::hold(std::span<ContactRigid> rigids, std::span<const RigidTouch> 
       for (std::size_t i = first; i < end; ++i)
         look_at(std::span(pressed_).subspan(i, 1), true, rigids, touches, presses, step);
   }
-}
-
-/// By the rigid bodies that have them: each touch twice.
-void Supports::sort_touches(std::size_t rigids, std::span<const RigidTouch> touches) {
-  first_.assign(rigids + 1, 0);
-  for (const RigidTouch& touch : touches) ++first_[touch.a], ++first_[touch.b];
-  std::uint32_t sum = 0;
-  for (std::uint32_t& first : first_) sum += first, first = sum;  // where the next one ends
-  touch_.resize(2 * touches.size());
-  for (std::size_t i = touches.size(); i-- > 0;)
-    for (const std::uint32_t rigid : {touches[i].a, touches[i].b})
-      touch_[--first_[rigid]] = static_cast<std::uint32_t>(i);
 }
 
 void Supports::look_at(std::span<const std::uint32_t> set, bool alone, std::span<ContactRigid> rigids,

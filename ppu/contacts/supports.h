@@ -38,7 +38,6 @@ class Supports {
   void release();
 
  private:
-  void sort_touches(std::size_t rigids, std::span<const RigidTouch> touches);
   /// @param alone  a body of a heap
   void look_at(std::span<const std::uint32_t> set, bool alone, std::span<ContactRigid> rigids,
                std::span<const RigidTouch> touches, std::span<const Press> presses, float step);

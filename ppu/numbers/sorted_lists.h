@@ -10,17 +10,17 @@ namespace softcell::ppu {
 /// Counts, then fills in: list i is items[begin[i]] .. items[begin[i + 1]], ascending.
 /// @param count          sorts the numbers from 0 to count - 1
 /// @param for_each_list  for_each_list(number, work) calls work(list) for each list that the number is in, the same in every call
-/// @param begin, items   are made anew
+/// @param begin, items   are made anew, in the room that they have
 template <class ForEachList>
 void sort_into_lists(std::size_t lists, std::size_t count, const ForEachList& for_each_list,
                      std::vector<std::uint32_t>& begin, std::vector<std::uint32_t>& items) {
   begin.assign(lists + 1, 0);
-  for (std::size_t n = 0; n < count; ++n) for_each_list(n, [&](std::size_t list) { ++begin[list + 1]; });
+  for (std::size_t n = 0; n < count; ++n) for_each_list(n, [&](std::size_t list) { ++begin[list]; });
   for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
   items.resize(begin.back());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (std::size_t n = 0; n < count; ++n)
-    for_each_list(n, [&](std::size_t list) { items[next[list]++] = static_cast<std::uint32_t>(n); });
+  // From where lists end back to where they begin.
+  for (std::size_t n = count; n-- > 0;)
+    for_each_list(n, [&](std::size_t list) { items[--begin[list]] = static_cast<std::uint32_t>(n); });
 }
 
 }  // namespace softcell::ppu

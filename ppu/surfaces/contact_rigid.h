@@ -34,6 +34,15 @@ struct ContactRigid {
   struct Change {
     Eigen::Vector3f velocity, spin;
   };
+  /// 1/kg, at a point in a direction.
+  float mobility(const Eigen::Vector3f& point, const Eigen::Vector3f& direction) const {
+    if (inverse_mass == 0) return 0;
+    const Eigen::Vector3f arm = point - centre;
+    const Eigen::Vector3f turn = arm.cross(direction);
+    if (!held) return inverse_mass + turn.dot(inverse_inertia * turn);
+    const Change change = change_by(direction, turn);
+    return direction.dot(change.velocity) + turn.dot(change.spin);
+  }
   /// By an impulse, kg m/s, and a moment about its centre, kg m^2/s.
   Change change_by(const Eigen::Vector3f& impulse, const Eigen::Vector3f& moment) const {
     if (!held) return {inverse_mass * impulse, inverse_inertia * moment};
@@ -50,5 +59,8 @@ struct RigidTouch {
   float gap = 0;                    ///< metres; below 0: they are in each other
   float friction = 0;               ///< of the two together
 };
+
+/// Couplings look for touches of rigid bodies near soft ones, of what these touch, and so on, up to so many bodies farther.
+inline constexpr int kFarthestTouch = 4;
 
 }  // namespace softcell::ppu

@@ -53,12 +53,6 @@ Press from_above(std::uint32_t rigid, const Vector3f& point) {
           .spacing = kCells};
 }
 
-float mobility(const ContactRigid& rigid, const Vector3f& point, const Vector3f& direction) {
-  const Vector3f moment = Vector3f(point - rigid.centre).cross(direction);
-  const ContactRigid::Change change = rigid.change_by(direction, moment);
-  return direction.dot(change.velocity) + moment.dot(change.spin);
-}
-
 TEST(Supports, ACrateOnItsCornersSlidesAndTurnsOnly) {
   std::vector<ContactRigid> rigids = {crate({0, kHalf, 0}), ContactRigid()};
   Supports supports;
@@ -67,10 +61,10 @@ TEST(Supports, ACrateOnItsCornersSlidesAndTurnsOnly) {
   ASSERT_TRUE(rigids[0].held);
   EXPECT_NEAR(rigids[0].velocity.norm(), 0, 1e-5f) << "it stands";
   const Vector3f point(0.4f, 2 * kHalf, -0.3f);
-  EXPECT_NEAR(mobility(rigids[0], point, {0, 1, 0}), 0, 1e-4f);
-  EXPECT_NEAR(mobility(rigids[0], {0, 0.1f, 0}, {1, 0, 0}), 0.5f, 1e-4f);
+  EXPECT_NEAR(rigids[0].mobility(point, {0, 1, 0}), 0, 1e-4f);
+  EXPECT_NEAR(rigids[0].mobility({0, 0.1f, 0}, {1, 0, 0}), 0.5f, 1e-4f);
   // Half a metre beside its centre, it turns about the vertical axis, too.
-  EXPECT_NEAR(mobility(rigids[0], {0, kHalf, kHalf}, {1, 0, 0}), 0.5f + 4 * kHalf * kHalf, 1e-4f);
+  EXPECT_NEAR(rigids[0].mobility({0, kHalf, kHalf}, {1, 0, 0}), 0.5f + 4 * kHalf * kHalf, 1e-4f);
 }
 
 TEST(Supports, ACrateOnAnEdgeTipsOverIt) {
@@ -81,7 +75,7 @@ TEST(Supports, ACrateOnAnEdgeTipsOverIt) {
   ASSERT_TRUE(rigids[0].held);
   for (const float x : {-kHalf, 0.1f, kHalf}) {
     const float arm = x - kHalf, inertia = 1 / 5.0f + 2 * kHalf * kHalf;
-    EXPECT_NEAR(mobility(rigids[0], {x, 2 * kHalf, 0}, {0, 1, 0}), arm * arm / inertia, 1e-4f) << x;
+    EXPECT_NEAR(rigids[0].mobility({x, 2 * kHalf, 0}, {0, 1, 0}), arm * arm / inertia, 1e-4f) << x;
   }
 }
 
@@ -107,7 +101,7 @@ TEST(Supports, APairThatIsPressedKeepsItsMomentum) {
     const std::vector<Press> presses = {from_above(0, point)};
     supports.hold(rigids, corners_of(0, 1, rigids[0].centre), presses, kStep);
     ASSERT_TRUE(rigids[0].held);
-    EXPECT_NEAR(mobility(rigids[0], rigids[0].centre, {0, 1, 0}), 0.25f, 1e-4f) << "of both together";
+    EXPECT_NEAR(rigids[0].mobility(rigids[0].centre, {0, 1, 0}), 0.25f, 1e-4f) << "of both together";
     supports.add_impulse(0, point, {0, -impulse, 0});
     supports.release();
     EXPECT_FALSE(rigids[0].held);
@@ -129,7 +123,7 @@ TEST(Supports, WhatIsPressedHarderThanFrictionHoldsSlides) {
     const Vector3f point(0, 0, 0);
     const std::vector<Press> presses = {from_above(0, point)};
     supports.hold(rigids, touches, presses, kStep);
-    EXPECT_NEAR(mobility(rigids[0], {0.2f, 1, 0.3f}, {1, 0, 0}), 0, 1e-4f) << "it sticks";
+    EXPECT_NEAR(rigids[0].mobility({0.2f, 1, 0.3f}, {1, 0, 0}), 0, 1e-4f) << "it sticks";
     constexpr float kDown = 0.8f;
     supports.add_impulse(0, point, {across, -kDown, 0});
     supports.release();
