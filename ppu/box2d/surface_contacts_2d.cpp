@@ -178,8 +178,8 @@ void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float
   std::size_t particles = 0;
   for (const auto& body : bodies) particles += body->soft().positions().size();
   if (particles >= kFewParticles) stage_.worker = worker_.get();
-  const auto touches = rigid_touches_.find(obstacles_, attached_rigids_);
-  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), touches, step);
+  const RigidLinks links = links_.find(obstacles_, attached_rigids_, step);
+  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), links, step);
   move(bodies, step);
   obstacles_.apply();
   attachments.end();

@@ -12,9 +12,9 @@
 
 #include "ppu/box2d/box2d_attachments.h"
 #include "ppu/box2d/box2d_body.h"
+#include "ppu/box2d/box2d_links.h"
 #include "ppu/box2d/box2d_obstacles.h"
 #include "ppu/box2d/rest.h"
-#include "ppu/box2d/rigid_touches_2d.h"
 #include "ppu/contacts/contact_stage.h"
 #include "ppu/contacts/flat_attachments.h"
 #include "ppu/contacts/touch_log.h"
@@ -112,7 +112,7 @@ class SurfaceContacts2d {
   std::unordered_map<const SoftBodyModel<2>*, std::unique_ptr<Model>> models_;
   std::unordered_map<const Box2dBody*, Kept> kept_;
   Box2dObstacles obstacles_{Box2dObstacles::Fixtures::kSolid};
-  RigidTouches2d rigid_touches_;
+  Box2dLinks links_;
   FlatAttachments attachments_;
   std::vector<std::uint32_t> attached_rigids_;
   ContactStage stage_;

@@ -87,10 +87,11 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
                              to_eigen(world_.getGravity())};
   in_step_.clear();
   if (!attachments_.empty()) attachments_.fill(in_step_, bodies, obstacles_, step);
-  const auto touches = rigid_touches_.find(world_, obstacles_, [&](const btCollisionObject& object) {
+  const auto is_attached = [&](const btCollisionObject& object) {
     return !attachments_.empty() && attachments_.are_to(object);
-  });
-  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), touches, step);
+  };
+  const RigidLinks links = links_.find(world_, obstacles_, is_attached, step);
+  stage_.step(in_stage_, obstacles_.obstacles(), obstacles_.rigids(), links, step);
   move(bodies, step);
   stage_.find_islands(islands_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ppu/bullet/bullet_obstacles.h"
-#include "ppu/bullet/rigid_touches.h"
+#include "ppu/bullet/bullet_links.h"
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/contact_stage.h"
@@ -75,7 +75,7 @@ class SurfaceContacts {
   std::shared_ptr<ContactWorker> worker_;
   std::map<const SoftBodyModel<3>*, std::unique_ptr<ContactModel>> models_;
   BulletObstacles obstacles_{BulletObstacles::Objects::kSolid};
-  RigidTouches rigid_touches_;
+  BulletLinks links_;
   SurfaceAttachments attachments_{world_};
   Attachments<3> in_step_;
   ContactStage stage_;

@@ -295,20 +295,35 @@ void ContactStage::hold_pushes_of_crushed_bodies() {
   }
 }
 
-void ContactStage::find_supports(std::span<ContactRigid> rigids, std::span<const RigidTouch> touches,
-                                 float step) {
+/// Points near each other move the same particles: what each of them moves is what its share of all their impulses does.
+void ContactStage::find_presses(const Group& group, std::span<const ContactRigid> rigids) {
+  const ContactBody& body = bodies_[group.a];
+  const auto for_each_press = [&](const auto& work) {
+    for (const SoftContact& contact : group.contacts)
+      if (rigids[contact.rigid].inverse_mass > 0) work(contact);
+  };
+  moved_by_all_.resize(std::max(moved_by_all_.size(), body.velocities.size()));
+  for_each_press([&](const SoftContact& contact) {
+    for (const std::uint32_t particle : contact.a.particle) moved_by_all_[particle] = 0;
+  });
+  for_each_press([&](const SoftContact& contact) {
+    for (std::size_t k = 0; k < 8; ++k)
+      moved_by_all_[contact.a.particle[k]] += contact.a.share[k] * body.inverse_masses[contact.a.particle[k]];
+  });
+  for_each_press([&](const SoftContact& contact) {
+    float mobility = 0;
+    for (std::size_t k = 0; k < 8; ++k) mobility += contact.a.share[k] * moved_by_all_[contact.a.particle[k]];
+    mobility = std::max(mobility, contact.a.mobility(body.inverse_masses));
+    presses_.push_back({contact.rigid, contact.point, contact.normal, 1 / mobility,
+                        contact.a.of(body.velocities), contact.friction, body.spacing()});
+  });
+}
+
+void ContactStage::find_supports(std::span<ContactRigid> rigids, const RigidLinks& links, float step) {
   presses_.clear();
-  if (!touches.empty()) {
-    for (std::size_t i = pair_groups_; i < group_count_; ++i) {
-      const ContactBody& body = bodies_[groups_[i].a];
-      for (const SoftContact& contact : groups_[i].contacts)
-        if (rigids[contact.rigid].inverse_mass > 0)
-          presses_.push_back({contact.rigid, contact.point, contact.normal,
-                              1 / contact.a.mobility(body.inverse_masses), contact.a.of(body.velocities),
-                              contact.friction, body.spacing()});
-    }
-  }
-  supports_.hold(rigids, touches, presses_, step);
+  if (!links.empty())
+    for (std::size_t i = pair_groups_; i < group_count_; ++i) find_presses(groups_[i], rigids);
+  supports_.hold(rigids, links, presses_, step);
 }
 
 void ContactStage::release_supports() {
@@ -425,7 +440,7 @@ void ContactStage::stiffen_touched_cells() {
 }
 
 void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
-                        std::span<ContactRigid> rigids, std::span<const RigidTouch> touches, float step) {
+                        std::span<ContactRigid> rigids, const RigidLinks& links, float step) {
   take_over(bodies, step);
   group_count_ = 0;
   bounces_.clear();
@@ -447,7 +462,7 @@ void ContactStage::step(std::span<const BodyInStage> bodies, std::span<const Obs
   std::rotate(groups, groups + std::ptrdiff_t(rigid_groups), groups + std::ptrdiff_t(group_count_));
   put_in_order();
   hold_pushes_of_crushed_bodies();
-  find_supports(rigids, touches, step);
+  find_supports(rigids, links, step);
   if (group_count_ != 0 || has_attachments()) {
     if (worker != nullptr)
       solve_with_worker(rigids, step);

@@ -74,9 +74,9 @@ class ContactStage {
   /// Finds the contacts that bodies would have in `step` seconds, and the velocities with which they have them: particles then move
   /// by step (v + push). Rigid bodies' velocities change, too.
   /// @throws std::runtime_error  a body is not finite, or 1e15 m large or far.
-  /// @param touches  of rigid bodies with each other and with what nothing moves; those of attached ones are not wanted
+  /// @param links  of rigid bodies with each other and with what nothing moves; those of attached ones are not wanted
   void step(std::span<const BodyInStage> bodies, std::span<const Obstacle> obstacles,
-            std::span<ContactRigid> rigids, std::span<const RigidTouch> touches, float step);
+            std::span<ContactRigid> rigids, const RigidLinks& links, float step);
 
   /// Of a body after the last step, m/s; a body that sleeps has the same velocities as before.
   std::span<const Eigen::Vector3f> velocities(std::size_t body) const { return bodies_[body].velocities; }
@@ -152,7 +152,8 @@ class ContactStage {
     return group.heavy ? settings.heavy_iterations : settings.iterations;
   }
   void hold_pushes_of_crushed_bodies();
-  void find_supports(std::span<ContactRigid> rigids, std::span<const RigidTouch> touches, float step);
+  void find_presses(const Group& group, std::span<const ContactRigid> rigids);
+  void find_supports(std::span<ContactRigid> rigids, const RigidLinks& links, float step);
   void release_supports();
   void bounce(std::span<ContactRigid> rigids, float step);
   void remember_who_presses(std::span<const ContactRigid> rigids);
@@ -199,7 +200,8 @@ class ContactStage {
   CrushedCells crushed_cells_;
   SharpContacts sharp_contacts_;
   CrushedCellCount crushed_;
-  std::vector<bool> is_crushed_;  // of each body: it has crushed cells
+  std::vector<bool> is_crushed_;     // of each body: it has crushed cells
+  std::vector<float> moved_by_all_;  // of each particle that presses, by an impulse of 1 at each point
   std::vector<Press> presses_;
   Supports supports_;
   RigidSets rigid_sets_;

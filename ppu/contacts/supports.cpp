@@ -1,7 +1,7 @@
 #include "ppu/contacts/supports.h"
 
 #include <algorithm>
-#include <utility>
+#include <tuple>
 
 #include "ppu/numbers/sorted_lists.h"
 #include "softcell/base/assert.h"
@@ -9,57 +9,89 @@
 namespace softcell::ppu {
 namespace {
 
-constexpr std::size_t kMostTogether =
-    6;  // bodies; of larger heaps each is solved as if the others were walls
+// A part is a body with all that is joined to it, up to so many; of what is larger each body is a part.
+constexpr std::size_t kMostJoined = 64;
+// Parts; of larger heaps each is solved as if only what nothing moves touched it.
+constexpr std::size_t kMostTogether = 6;
 
 }  // namespace
 
-void Supports::hold(std::span<ContactRigid> rigids, std::span<const RigidTouch> touches,
-                    std::span<const Press> presses, float step) {
+void Supports::hold(std::span<ContactRigid> rigids, const RigidLinks& links, std::span<const Press> presses,
+                    float step) {
   SC_ASSERT(step > 0, "a substep of {} s", step);
   count_ = 0;
-  if (touches.empty() || presses.empty()) return;
-  const auto for_each_side = [&](std::size_t touch, const auto& work) {
-    work(touches[touch].a);
-    work(touches[touch].b);
-  };
-  sort_into_lists(rigids.size(), touches.size(), for_each_side, first_, touch_);
-  const auto moves = [&](std::uint32_t rigid) { return rigids[rigid].inverse_mass > 0; };
-  together_.reset(rigids.size());
-  for (const RigidTouch& touch : touches)
-    if (moves(touch.a) && moves(touch.b)) together_.unite(touch.a, touch.b);
+  if (links.empty() || presses.empty()) return;
+  find_parts(rigids, links);
   pressed_.clear();
   for (const Press& press : presses) pressed_.push_back(press.rigid);
-  std::ranges::sort(pressed_, {},
-                    [&](std::uint32_t rigid) { return std::pair(together_.find(rigid), rigid); });
+  std::ranges::sort(pressed_, {}, [&](std::uint32_t rigid) {
+    return std::tuple(together_.find(rigid), part_of_[rigid], rigid);
+  });
   pressed_.erase(std::unique(pressed_.begin(), pressed_.end()), pressed_.end());
-  for (std::size_t first = 0, end = 0; first < pressed_.size(); first = end) {
-    const std::uint32_t name = together_.find(pressed_[first]);
-    while (end < pressed_.size() && together_.find(pressed_[end]) == name) ++end;
+  for (std::size_t i = 0; i < pressed_.size();) {
+    const std::uint32_t heap = together_.find(pressed_[i]), part = part_of_[pressed_[i]];
     set_.clear();
-    for (std::uint32_t rigid = name; rigid < rigids.size(); ++rigid)
-      if (moves(rigid) && together_.find(rigid) == name) set_.push_back(rigid);
-    if (set_.size() <= kMostTogether)
-      look_at(set_, false, rigids, touches, presses, step);
-    else
-      for (std::size_t i = first; i < end; ++i)
-        look_at(std::span(pressed_).subspan(i, 1), true, rigids, touches, presses, step);
+    std::size_t parts = 0;
+    for (std::uint32_t rigid = 0; rigid < rigids.size(); ++rigid) {
+      if (rigids[rigid].inverse_mass == 0 || together_.find(rigid) != heap) continue;
+      set_.push_back(rigid);
+      if (part_of_[rigid] == rigid) ++parts;
+    }
+    const bool alone = parts > kMostTogether;
+    if (alone) std::erase_if(set_, [&](std::uint32_t rigid) { return part_of_[rigid] != part; });
+    look_at(rigids, links, presses, step);
+    while (i < pressed_.size() &&
+           (alone ? part_of_[pressed_[i]] == part : together_.find(pressed_[i]) == heap))
+      ++i;
   }
 }
 
-void Supports::look_at(std::span<const std::uint32_t> set, bool alone, std::span<ContactRigid> rigids,
-                       std::span<const RigidTouch> touches, std::span<const Press> presses, float step) {
+/// Which bodies are a part, by its lowest index, and which parts touch.
+void Supports::find_parts(std::span<const ContactRigid> rigids, const RigidLinks& links) {
+  const auto moves = [&](std::uint32_t rigid) {
+    return rigid != JointRow::kWorld && rigids[rigid].inverse_mass > 0;
+  };
+  const auto sort_links = [&](const auto& of, OfRigid& sorted) {
+    const auto for_each_side = [&](std::size_t link, const auto& work) {
+      for (const std::uint32_t rigid : {of[link].a, of[link].b})
+        if (moves(rigid)) work(rigid);
+    };
+    sort_into_lists(rigids.size(), of.size(), for_each_side, sorted.first, sorted.links);
+  };
+  sort_links(links.touches, touches_);
+  sort_links(links.joints, joints_);
+  together_.reset(rigids.size());
+  for (const JointRow& joint : links.joints)
+    if (moves(joint.a) && moves(joint.b)) together_.unite(joint.a, joint.b);
+  part_of_.resize(rigids.size());
+  joined_.assign(rigids.size(), 0);
+  for (std::uint32_t rigid = 0; rigid < rigids.size(); ++rigid) ++joined_[together_.find(rigid)];
+  for (std::uint32_t rigid = 0; rigid < rigids.size(); ++rigid) {
+    const std::uint32_t part = together_.find(rigid);
+    part_of_[rigid] = joined_[part] > kMostJoined ? rigid : part;
+  }
+  together_.reset(rigids.size());
+  for (std::uint32_t rigid = 0; rigid < rigids.size(); ++rigid) together_.unite(rigid, part_of_[rigid]);
+  for (const RigidTouch& touch : links.touches)
+    if (moves(touch.a) && moves(touch.b)) together_.unite(touch.a, touch.b);
+}
+
+void Supports::look_at(std::span<ContactRigid> rigids, const RigidLinks& links,
+                       std::span<const Press> presses, float step) {
   if (count_ == sets_.size()) sets_.emplace_back();
   SupportedSet& looked_at = sets_[count_];
-  looked_at.begin(rigids, set);
-  for (const std::uint32_t rigid : set) {
-    for (std::uint32_t i = first_[rigid]; i < first_[rigid + 1]; ++i) {
-      const RigidTouch& touch = touches[touch_[i]];
-      const std::uint32_t other = touch.a == rigid ? touch.b : touch.a;
-      const bool is_member = rigids[other].inverse_mass > 0;
-      // That of two members comes once.
-      if (!is_member || (!alone && other > rigid)) looked_at.add(touch, step);
-    }
+  looked_at.begin(rigids, set_);
+  // Of two members their link comes once. That of a member to what moves and is none is left out.
+  const auto counts = [&](std::uint32_t rigid, const auto& link) {
+    const std::uint32_t other = link.a == rigid ? link.b : link.a;
+    if (other == JointRow::kWorld || rigids[other].inverse_mass == 0) return true;
+    return other < rigid && std::ranges::binary_search(set_, other);
+  };
+  for (const std::uint32_t rigid : set_) {
+    for (const std::uint32_t i : joints_.of(rigid))
+      if (counts(rigid, links.joints[i])) looked_at.add(links.joints[i]);
+    for (const std::uint32_t i : touches_.of(rigid))
+      if (counts(rigid, links.touches[i])) looked_at.add(links.touches[i], step);
   }
   if (looked_at.hold(presses, step)) ++count_;
 }

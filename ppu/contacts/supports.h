@@ -1,10 +1,10 @@
 #pragma once
-// What rigid bodies lie on while soft ones press on them.
+// What rigid bodies lie on or hang from while soft ones press on them.
 //
 // Their engine solves that, and contacts with soft bodies are solved before. A crate on a floor would get out of the way of a heavy body as if
 // the floor were not there, and only then be stopped by it: the lighter it is, the deeper the body sinks onto it. So for contacts with soft
 // bodies a rigid one moves as what it lies on lets it: the touches that the press loads hold it, in both directions, and across as long as they
-// do not slide, as sequential impulses tell. In the end their impulses on what soft bodies have done are found by the same, and the engine
+// do not slide, as sequential impulses tell. Joints hold it likewise. In the end their impulses on what soft bodies have done are found by the same, and the engine
 // has nothing left to stop.
 
 #include <Eigen/Core>
@@ -15,6 +15,7 @@
 #include "ppu/contacts/supported_set.h"
 #include "ppu/numbers/disjoint_sets.h"
 #include "ppu/surfaces/contact_rigid.h"
+#include "ppu/surfaces/rigid_links.h"
 
 namespace softcell::ppu {
 
@@ -22,10 +23,11 @@ namespace softcell::ppu {
 /// ever before.
 class Supports {
  public:
-  /// Sets ContactRigid::held of those that are pressed on and lie on something, and their velocities to what that leaves of them.
+  /// Sets ContactRigid::held of those that are pressed on and lie on something or are joined to it, and their velocities to what that leaves of
+  /// them.
   /// @param rigids  stay where they are until release()  @param step  seconds
-  void hold(std::span<ContactRigid> rigids, std::span<const RigidTouch> touches,
-            std::span<const Press> presses, float step);
+  void hold(std::span<ContactRigid> rigids, const RigidLinks& links, std::span<const Press> presses,
+            float step);
 
   bool empty() const { return count_ == 0; }
 
@@ -38,14 +40,22 @@ class Supports {
   void release();
 
  private:
-  /// @param alone  a body of a heap
-  void look_at(std::span<const std::uint32_t> set, bool alone, std::span<ContactRigid> rigids,
-               std::span<const RigidTouch> touches, std::span<const Press> presses, float step);
+  /// Indices of touches or joints by their rigid bodies.
+  struct OfRigid {
+    std::vector<std::uint32_t> first, links;
+    std::span<const std::uint32_t> of(std::uint32_t rigid) const {
+      return std::span(links).subspan(first[rigid], first[rigid + 1] - first[rigid]);
+    }
+  };
+  void find_parts(std::span<const ContactRigid> rigids, const RigidLinks& links);
+  void look_at(std::span<ContactRigid> rigids, const RigidLinks& links, std::span<const Press> presses,
+               float step);
 
-  DisjointSets together_;
+  DisjointSets together_;               // rigid bodies that hold each other
+  std::vector<std::uint32_t> part_of_;  // of each rigid body: the lowest of those that are joined to it
+  std::vector<std::uint32_t> joined_;   // how many these are
+  OfRigid touches_, joints_;
   std::vector<std::uint32_t> pressed_, set_;
-  std::vector<std::uint32_t> first_,
-      touch_;                       // where those of a rigid body begin in touch_, and the indices of touches
   std::vector<SupportedSet> sets_;  // and behind count_ those that keep room for others
   std::size_t count_ = 0;
 };

@@ -8,7 +8,8 @@
 
 namespace softcell::ppu {
 
-/// What impulses change of a rigid body that is not free: it lies on something, which takes a part of them. A symmetric matrix of 6 x 6.
+/// What impulses change of a rigid body that is not free: it lies on something or is joined to it, which takes a part of them. A symmetric
+/// matrix of 6 x 6.
 struct HeldMobility {
   Eigen::Matrix3f linear;    ///< 1/kg: of velocity, by an impulse
   Eigen::Matrix3f coupling;  ///< 1/(kg m): of velocity, by a moment; transposed: of spin, by an impulse
@@ -50,17 +51,5 @@ struct ContactRigid {
             held->coupling.transpose() * impulse + held->angular * moment};
   }
 };
-
-/// Where a rigid body touches another one, as their engine knows it.
-struct RigidTouch {
-  std::uint32_t a = 0, b = 0;  ///< indices of their ContactRigid; one of the two moves
-  Eigen::Vector3f point{0, 0, 0};
-  Eigen::Vector3f normal{0, 1, 0};  ///< from b to a, unit length
-  float gap = 0;                    ///< metres; below 0: they are in each other
-  float friction = 0;               ///< of the two together
-};
-
-/// Couplings look for touches of rigid bodies near soft ones, of what these touch, and so on, up to so many bodies farther.
-inline constexpr int kFarthestTouch = 4;
 
 }  // namespace softcell::ppu

@@ -16,6 +16,7 @@
 
 #include "../fracture/crack_depth.h"
 #include "../soft_body_2d_scenes.h"
+#include "drawn_flat.h"
 #include "place_of.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/lattice/outline_distance.h"
@@ -36,34 +37,6 @@ constexpr float kStep2d = 1.0f / 120;
 
 SoftBodySettings calm(float cell_size = 0.25f) {
   return {.cell_size = cell_size, .half_width = 2, .density = 5, .alpha = 0.5f, .damping = 0.3f};
-}
-
-/// Where the drawn edge of a body is.
-std::vector<Vector2f> drawn_edge(const SoftBody<2>& body) {
-  const Skin2d skin = make_skin_2d(body.model().lattice(), SoftBodyModel<2>::kContactRadiusInCells);
-  std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size()), edge;
-  deform(skin, body.positions(), positions, slopes);
-  for (const auto& loop : skin.outlines)
-    for (const std::uint32_t vertex : loop) edge.push_back(positions[vertex]);
-  return edge;
-}
-float lowest(const SoftBody<2>& body) {
-  const std::vector<Vector2f> edge = drawn_edge(body);
-  return std::ranges::min_element(edge, {}, [](const Vector2f& at) { return at.y(); })->y();
-}
-float highest(const SoftBody<2>& body) {
-  const std::vector<Vector2f> edge = drawn_edge(body);
-  return std::ranges::max_element(edge, {}, [](const Vector2f& at) { return at.y(); })->y();
-}
-
-/// How deep in what is drawn a place is, in cells; below 0: outside.
-float depth_in(const SoftBody<2>& body, const Vector2f& place) {
-  const float cell = body.model().lattice().spacing;
-  Skin2d skin = make_skin_2d(body.model().lattice(), SoftBodyModel<2>::kContactRadiusInCells);
-  std::vector<Vector2f> positions(skin.rest.size()), slopes(skin.rest.size());
-  deform(skin, body.positions(), positions, slopes);
-  for (std::size_t i = 0; i < positions.size(); ++i) skin.rest[i] = positions[i] / cell;
-  return -OutlineDistance(skin).signed_distance(place / cell);
 }
 
 double mass_of(const SoftBody<2>& body) { return double{body.model().mass()}; }

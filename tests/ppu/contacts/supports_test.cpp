@@ -57,7 +57,8 @@ TEST(Supports, ACrateOnItsCornersSlidesAndTurnsOnly) {
   std::vector<ContactRigid> rigids = {crate({0, kHalf, 0}), ContactRigid()};
   Supports supports;
   const std::vector<Press> presses = {from_above(0, {0.2f, 2 * kHalf, 0.1f})};
-  supports.hold(rigids, corners_of(0, 1, rigids[0].centre), presses, kStep);
+  const auto touches = corners_of(0, 1, rigids[0].centre);
+  supports.hold(rigids, {.touches = touches}, presses, kStep);
   ASSERT_TRUE(rigids[0].held);
   EXPECT_NEAR(rigids[0].velocity.norm(), 0, 1e-5f) << "it stands";
   const Vector3f point(0.4f, 2 * kHalf, -0.3f);
@@ -71,7 +72,8 @@ TEST(Supports, ACrateOnAnEdgeTipsOverIt) {
   std::vector<ContactRigid> rigids = {crate({0, kHalf, 0}), ContactRigid()};
   Supports supports;
   const std::vector<Press> presses = {from_above(0, {0.2f, 2 * kHalf, 0})};
-  supports.hold(rigids, corners_of(0, 1, rigids[0].centre, false), presses, kStep);
+  const auto touches = corners_of(0, 1, rigids[0].centre, false);
+  supports.hold(rigids, {.touches = touches}, presses, kStep);
   ASSERT_TRUE(rigids[0].held);
   for (const float x : {-kHalf, 0.1f, kHalf}) {
     const float arm = x - kHalf, inertia = 1 / 5.0f + 2 * kHalf * kHalf;
@@ -86,7 +88,8 @@ TEST(Supports, WhatIsLiftedOrTouchesNothingIsFree) {
   from_below.normal = {0, -1, 0}, from_below.velocity = {0, 10, 0};
   from_below.mass = 10;
   const std::vector<Press> presses = {from_below, from_above(2, {5, 2 * kHalf, 0})};
-  supports.hold(rigids, corners_of(0, 1, rigids[0].centre), presses, kStep);
+  const auto touches = corners_of(0, 1, rigids[0].centre);
+  supports.hold(rigids, {.touches = touches}, presses, kStep);
   EXPECT_FALSE(rigids[0].held);
   EXPECT_FALSE(rigids[2].held);
   EXPECT_EQ(rigids[0].velocity.y(), -9.81f * kStep);
@@ -99,7 +102,8 @@ TEST(Supports, APairThatIsPressedKeepsItsMomentum) {
     Supports supports;
     const Vector3f point(0.1f, 4 * kHalf, 0);
     const std::vector<Press> presses = {from_above(0, point)};
-    supports.hold(rigids, corners_of(0, 1, rigids[0].centre), presses, kStep);
+    const auto touches = corners_of(0, 1, rigids[0].centre);
+    supports.hold(rigids, {.touches = touches}, presses, kStep);
     ASSERT_TRUE(rigids[0].held);
     EXPECT_NEAR(rigids[0].mobility(rigids[0].centre, {0, 1, 0}), 0.25f, 1e-4f) << "of both together";
     supports.add_impulse(0, point, {0, -impulse, 0});
@@ -122,7 +126,7 @@ TEST(Supports, WhatIsPressedHarderThanFrictionHoldsSlides) {
     Supports supports;
     const Vector3f point(0, 0, 0);
     const std::vector<Press> presses = {from_above(0, point)};
-    supports.hold(rigids, touches, presses, kStep);
+    supports.hold(rigids, {.touches = touches}, presses, kStep);
     EXPECT_NEAR(rigids[0].mobility({0.2f, 1, 0.3f}, {1, 0, 0}), 0, 1e-4f) << "it sticks";
     constexpr float kDown = 0.8f;
     supports.add_impulse(0, point, {across, -kDown, 0});

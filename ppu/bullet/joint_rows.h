@@ -1,0 +1,20 @@
+#pragma once
+// What a joint of Bullet holds.
+
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "ppu/surfaces/rigid_links.h"
+
+namespace softcell::ppu {
+
+/// Appends the rows that Bullet's solver would solve, of a joint of any kind.
+/// @param a, b  indices of the ContactRigid of the joint's first and second body, or JointRow::kWorld
+/// @param step  seconds
+void add_joint_rows(btTypedConstraint& joint, std::uint32_t a, std::uint32_t b,
+                    const btContactSolverInfo& info, float step, std::vector<JointRow>& rows);
+
+}  // namespace softcell::ppu
