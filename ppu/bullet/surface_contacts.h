@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/bullet_links.h"
+#include "ppu/bullet/bullet_obstacles.h"
 #include "ppu/bullet/surface_attachments.h"
 #include "ppu/bullet/surface_body.h"
 #include "ppu/contacts/contact_stage.h"
