@@ -112,6 +112,7 @@ void SupportedSet::add(const JointRow& joint) {
   Row made;
   made.a = side(joint.a, along(joint.of_a), made);
   made.b = side(joint.b, along(joint.of_b), made);
+  if (!(made.mobility > 0)) return;  // of turning, of bodies that do not turn
   made.softness = double{joint.softness};
   const bool is_motor = joint.is_limited() && joint.least != 0 && joint.most != 0;
   made.kind = joint.is_watched || is_motor ? Row::Kind::kOfEngine

@@ -36,7 +36,7 @@ class SupportedSet {
   void begin(std::span<ContactRigid> rigids, std::span<const std::uint32_t> members);
   /// Without effect if it is of no member, or there are kMostTouches already. @param step  seconds
   void add(const RigidTouch& touch, float step);
-  /// Without effect if it is of no member.
+  /// Without effect if it is of no member, or of nothing that members do.
   void add(const JointRow& joint);
   /// Finds which touches the presses on members load, and sets ContactRigid::held of those that are pressed on, and the velocities which
   /// that leaves them. @return whether anything holds them

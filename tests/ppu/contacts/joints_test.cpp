@@ -84,6 +84,22 @@ TEST(Joints, AHingeLetsAPlankTurnOnly) {
   EXPECT_NEAR(rigids[0].spin.z(), -9.81f * kStep * 2 * 0.5f / 1.5f, 1e-4f);
 }
 
+/// Engines can keep bodies from turning: no row of turning says anything of them.
+TEST(Joints, WhatDoesNotTurnIsHeldAsWell) {
+  std::vector<ContactRigid> rigids = {plank()};
+  rigids[0].inverse_inertia.setZero();
+  const auto rows = hinge_at({-0.5f, 0, 0});
+  const std::vector<Press> presses = {from_above({0.3f, 0, 0})};
+  Supports supports;
+  supports.hold(rigids, {.joints = rows}, presses, kStep);
+  ASSERT_TRUE(rigids[0].held);
+  EXPECT_NEAR(rigids[0].mobility({0.3f, 0, 0}, {0, 1, 0}), 0, 1e-4f);
+  supports.add_impulse(0, {0.3f, 0, 0}, {0, -1, 0});
+  supports.release();
+  EXPECT_TRUE(rigids[0].velocity.allFinite() && rigids[0].spin.allFinite());
+  EXPECT_EQ(rigids[0].spin.norm(), 0);
+}
+
 /// One that is too weak for a load does what it can, and what it moves goes on as if it were free.
 TEST(Joints, AMotorHoldsWhatItIsStrongEnoughFor) {
   JointRow motor{.of_a = {{0, 1, 0}, {0, 0, 0}}, .target = 0.5f};
