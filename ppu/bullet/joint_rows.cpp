@@ -2,6 +2,7 @@
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -27,10 +28,11 @@ float limit_of(btScalar limit) {
   return limit <= -SIMD_INFINITY ? -JointRow::kNoLimit : limit;
 }
 
-/// Where a motor or errors of positions want it. What is at a limit stays there.
+/// Where a motor or errors of positions want it. What has not come to a limit yet may go there, and what is beyond stays there.
 float target_of(const BulletRow& row) {
   const bool is_limited_below = row.least > -SIMD_INFINITY, is_limited_above = row.most < SIMD_INFINITY;
-  return is_limited_below == is_limited_above ? row.target : 0;
+  if (is_limited_below == is_limited_above) return row.target;
+  return is_limited_below ? std::min(row.target, 0.0f) : std::max(row.target, 0.0f);
 }
 
 /// How much an impulse changes of a row's speed, as Bullet sees it.

@@ -1,5 +1,6 @@
 // Rigid bodies that hang from joints, under soft ones.
 
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
 #include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
 #include <gtest/gtest.h>
 
@@ -423,6 +424,34 @@ TEST(JointRows, AreThoseOfAHinge) {
   rows.clear();
   add_joint_rows(hinge, 3, JointRow::kWorld, info, kStep, rows);
   EXPECT_TRUE(rows[0].is_watched);
+}
+
+/// Bullet has rows of both ends of a range: in between things may go on to either, and beyond one they are held.
+TEST(JointRows, AreThoseOfARange) {
+  btBoxShape box(btVector3(0.5f, 0.1f, 0.1f));
+  btRigidBody body(2, nullptr, &box, {1, 1, 1});
+  btGeneric6DofSpring2Constraint range(body, btTransform::getIdentity());
+  for (int axis = 0; axis < 6; ++axis) range.setLimit(axis, 0, 0);
+  range.setLimit(1, -0.5f, 0.5f);
+  const btContactSolverInfo info;
+  const auto fastest = [&](float height, float direction) {
+    body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, height, 0)));
+    body.setCenterOfMassTransform(body.getWorldTransform());
+    std::vector<JointRow> rows;
+    add_joint_rows(range, JointRow::kWorld, 0, info, kStep, rows);
+    float speed = 1e9f;
+    for (const JointRow& row : rows) {
+      if (!row.is_limited()) continue;
+      const float share = direction * row.of_b.linear.y();
+      const bool stops = share > 0 ? row.least < 0 : row.most > 0;
+      if (stops) speed = std::min(speed, row.target / share);
+    }
+    return speed;
+  };
+  EXPECT_GT(fastest(0, 1), 5);
+  EXPECT_GT(fastest(0, -1), 5);
+  EXPECT_EQ(fastest(0.51f, 1), 0);
+  EXPECT_GT(fastest(0.51f, -1), 5);
 }
 
 }  // namespace
