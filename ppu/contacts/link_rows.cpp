@@ -17,8 +17,11 @@ using Six = LinkRows::Six;
 // Until an iteration changes no impulse by more than a share of the largest, or at most so many.
 constexpr int kMostIterations = 100;
 constexpr double kSettled = 1e-3;
-// Of its own mobility, what joints leave of a row: below that they hold its members alone.
-constexpr double kHeldByJoints = 1e-4;
+// Of its own mobility, what joints leave of a row: below that they hold its members alone. Rows that nearly contradict joints would move what
+// these leave, and fast.
+constexpr double kHeldByJoints = 1e-2;
+// Likewise of joints among each other.
+constexpr double kJointGivesWay = 1e-5;
 
 Six velocity_of(const ContactRigid& rigid) {
   Six velocity;
@@ -99,19 +102,19 @@ void LinkRows::add(const JointRow& joint) {
   made.a = side(joint.a, along(joint.of_a), made);
   made.b = side(joint.b, along(joint.of_b), made);
   if (!(made.mobility > 0)) return;  // of turning, of bodies that do not turn
-  made.softness = double{joint.softness};
-  const bool is_motor = joint.is_limited() && joint.least != 0 && joint.most != 0;
-  made.kind = joint.is_watched || is_motor ? Row::Kind::kOfEngine
-              : joint.is_limited()         ? Row::Kind::kStop
-                                           : Row::Kind::kJoint;
+  made.softness = double{joint.softness} + kJointGivesWay * made.mobility;
   made.target = double{joint.target};
-  if (!joint.is_limited()) {
+  const bool is_motor = joint.is_limited() && joint.least != 0 && joint.most != 0;
+  made.is_of_engine = is_motor || joint.is_watched;
+  if (!joint.is_limited() && !made.is_of_engine) {
     joints_.push_back(made);
     return;
   }
   limited_.push_back({.row = guarded_.size(), .least = double{joint.least}, .most = double{joint.most}});
   guarded_.push_back(made);
 }
+
+bool LinkRows::has_rows_of_engine() const { return std::ranges::any_of(guarded_, &Row::is_of_engine); }
 
 bool LinkRows::sticks(const Touch& touch) const {
   const Row* const rows = &guarded_[touch.normal];
@@ -178,12 +181,12 @@ void LinkRows::begin_from_outside() {
     member.now = member.before + change_of_free(rigids_[member.rigid], member.impulse);
 }
 
-void LinkRows::solve() {
+void LinkRows::solve(Rows rows) {
   begin_from_outside();
   for (std::size_t j = 0; j < joints_.size(); ++j) joint_impulse_[j] = joints_[j].target - speed(joints_[j]);
   joints_factor_.solve(joint_impulse_);
   for (std::size_t j = 0; j < joints_.size(); ++j) push(joints_[j], joint_impulse_[j]);
-  iterate();
+  iterate(rows);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     joints_[j].impulse = joint_impulse_[j];
     for (std::size_t i = 0; i < guarded_.size(); ++i)
@@ -202,7 +205,7 @@ double LinkRows::wanted(std::size_t row) const {
 }
 
 /// Of guarded rows: by impulses that only part what touches, friction, and as far as limits let them.
-void LinkRows::iterate() {
+void LinkRows::iterate(Rows rows) {
   const std::size_t n = guarded_.size();
   double most = 0, largest_change = 0;
   const auto act = [&](std::size_t row, double impulse) {
@@ -220,8 +223,10 @@ void LinkRows::iterate() {
   for (std::size_t i = 0; i < n; ++i) act(i, guarded_[i].impulse);
   for (int i = 0; i < kMostIterations; ++i) {
     most = largest_change = 0;
-    for (const Limited& limited : limited_)
-      change(limited.row, std::clamp(wanted(limited.row), limited.least, limited.most));
+    for (const Limited& limited : limited_) {
+      const bool is_there = rows == Rows::kAll || !guarded_[limited.row].is_of_engine;
+      change(limited.row, is_there ? std::clamp(wanted(limited.row), limited.least, limited.most) : 0);
+    }
     for (const Touch& touch : touches_) {
       change(touch.normal, std::max(0.0, wanted(touch.normal)));
       Vector2d across(wanted(touch.normal + 1), wanted(touch.normal + 2));

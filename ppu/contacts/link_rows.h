@@ -37,13 +37,7 @@ class LinkRows {
   };
   /// A touch or a joint in one direction.
   struct Row {
-    enum class Kind {
-      kTouch,
-      kJoint,    ///< without limits
-      kStop,     ///< a limit of a joint
-      kOfEngine  ///< a motor, or what the program watches: what it bears is left to the engine
-    };
-    Kind kind = Kind::kTouch;
+    bool is_of_engine = false;  ///< a motor, or what the program watches: what it bears is left to the engine
     Side a, b;
     double outside = 0;   ///< m/s, of what is no member
     double mobility = 0;  ///< 1/kg
@@ -79,7 +73,7 @@ class LinkRows {
   ContactRigid& rigid(const Member& member) const { return rigids_[member.rigid]; }
   /// kOutside: it is none.
   std::size_t member_of(std::uint32_t rigid) const;
-  std::span<Row> joints() { return joints_; }    ///< that have no limits
+  std::span<Row> joints() { return joints_; }    ///< that have no limits and are not of the engine
   std::span<Row> guarded() { return guarded_; }  ///< of touches and limited joints
   std::span<const Touch> touches() const { return touches_; }
   std::span<const Limited> limited() const { return limited_; }
@@ -90,8 +84,12 @@ class LinkRows {
     for (Row& row : guarded_) work(row);
   }
 
+  bool has_joints() const { return !joints_.empty() || !limited_.empty(); }
+  bool has_rows_of_engine() const;
+
+  enum class Rows { kAll, kWithoutThoseOfEngine };
   /// Members' velocities and rows' impulses, by those from outside. Goes on from guarded rows' impulses of before.
-  void solve();
+  void solve(Rows rows = Rows::kAll);
   /// Members' velocities by what joints want, and nothing else.
   void move_by_targets();
   /// Of a row's two sides against each other, as members move now; along a normal below 0 they come together. m/s.
@@ -128,7 +126,7 @@ class LinkRows {
   static double coupling(const Row& one, const Row& other);
   void begin_from_outside();
   double wanted(std::size_t row) const;
-  void iterate();
+  void iterate(Rows rows);
 
   std::span<ContactRigid> rigids_;
   std::vector<Member> members_;

@@ -33,6 +33,7 @@ void SupportedSet::begin(std::span<ContactRigid> rigids, std::span<const std::ui
 void SupportedSet::limit_targets(std::span<const Press> presses) {
   links_.move_by_targets();
   double fastest = 0;
+  for (const Member& member : links_.members()) fastest = std::max(fastest, member.now.head<3>().norm());
   for (const Press& press : presses) {
     const std::size_t number = links_.member_of(press.rigid);
     if (number == LinkRows::kOutside) continue;
@@ -209,32 +210,52 @@ void SupportedSet::give_support() {
   if (moves > kHeld * cell_a_substep_ || (all_stick_ && moves < kLeft * falls)) {
     load_standing();
     keep_standing();
-    for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i]->impulse += values_[i];
-  }
-  const double left = share_of_engine();
-  const auto given = [&](const Row& row) {
-    const double by_soft = row.impulse - row.stands_by;
-    switch (row.kind) {
-      case Row::Kind::kJoint:
-        return kGivenOfStanding * row.stands_by + (1 - left) * by_soft;
-      case Row::Kind::kStop:
-        return (1 - left) * by_soft;
-      case Row::Kind::kOfEngine:
-        return 0.0;
-      default:
-        return row.impulse;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      rows_[i]->impulse += values_[i];
+      links_.push(*rows_[i], values_[i]);
     }
-  };
+  }
+  if (links_.has_joints())
+    give_part();
+  else
+    give_all();
+}
+
+void SupportedSet::give_all() {
   links_.for_each_row([&](const Row& row) {
-    const double impulse = given(row);
     for (const LinkRows::Side* const side : {&row.a, &row.b}) {
       if (side->member == LinkRows::kOutside) continue;
       ContactRigid& rigid = links_.rigid(links_.members()[side->member]);
-      const Six change = impulse * side->change;
+      const Six change = row.impulse * side->change;
       rigid.velocity += change.head<3>().cast<float>();
       rigid.spin += change.tail<3>().cast<float>();
     }
   });
+}
+
+/// Of what rows do to each member, not of each row's impulse: where joints contradict each other these are large, and make up for each other.
+void SupportedSet::give_part() {
+  if (links_.has_rows_of_engine()) {
+    const auto solve_with = [&](double share) {
+      for (std::size_t i = 0; i < standing_.size(); ++i)
+        links_.members()[i].impulse = share * standing_[i].impulse;
+      links_.solve(LinkRows::Rows::kWithoutThoseOfEngine);
+    };
+    for (std::size_t i = 0; i < standing_.size(); ++i) standing_[i].impulse = links_.members()[i].impulse;
+    solve_with(0);
+    for (std::size_t i = 0; i < standing_.size(); ++i) standing_[i].velocity = links_.members()[i].now;
+    solve_with(1);
+  }
+  const double left = share_of_engine();
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    const Member& member = links_.members()[i];
+    ContactRigid& rigid = links_.rigid(member);
+    const Six standing = standing_[i].velocity - member.before;
+    const Six by_soft = member.now - standing_[i].velocity - LinkRows::change_of_free(rigid, member.impulse);
+    const Six given = kGivenOfStanding * standing + (1 - left) * by_soft;
+    rigid.velocity += given.head<3>().cast<float>();
+    rigid.spin += given.tail<3>().cast<float>();
+  }
 }
 
 }  // namespace softcell::ppu

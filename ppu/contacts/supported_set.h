@@ -53,7 +53,8 @@ class SupportedSet {
   /// Of a member.
   struct Standing {
     bool pressed = false;
-    Six velocity;  // on what it lies on, without soft bodies
+    Six velocity = Six::Zero();  // on what it lies on, without soft bodies
+    Six impulse = Six::Zero();   // of soft bodies
   };
 
   void limit_targets(std::span<const Press> presses);
@@ -65,6 +66,8 @@ class SupportedSet {
   void load_standing();
   double fastest() const;
   double share_of_engine() const;
+  void give_all();
+  void give_part();
 
   LinkRows links_;
   std::vector<Standing> standing_;

@@ -143,7 +143,7 @@ TEST(Joints, AChainHoldsItsLastBody) {
   Supports supports;
   supports.hold(rigids, {.joints = rows}, presses, kStep);
   ASSERT_TRUE(rigids[kLinks - 1].held);
-  EXPECT_NEAR(rigids[kLinks - 1].mobility(press.point, {0, 1, 0}), 0, 1e-4f);
+  EXPECT_NEAR(rigids[kLinks - 1].mobility(press.point, {0, 1, 0}), 0, 1e-3f);
   EXPECT_GT(rigids[kLinks - 1].mobility(press.point, {1, 0, 0}), 0.1f) << "it swings";
   for (std::uint32_t i = 0; i + 1 < kLinks; ++i) EXPECT_FALSE(rigids[i].held) << i;
 }
@@ -341,6 +341,26 @@ TEST_P(JointsUnderACube, ACarCarriesIt) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, JointsUnderACube, testing::Bool(),
                          [](const auto& solvers) { return solvers.param ? "Spes" : "Ppu"; });
+
+/// A plate that one joint wants here and others there, one of them with feedback: nothing is thrown out.
+TEST(Joints, ThatContradictEachOtherThrowNothing) {
+  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
+  UnderACube s(nullptr);
+  btRigidBody& plate = s.add_plank({0.6f, 0.04f, 0.6f}, 0.05f, {0, 0, 0});
+  const btVector3 axis(0, 0, 1);
+  s.join<btPoint2PointConstraint>(plate, btVector3(0.5f, 0, 0)).setPivotB({0.52f, 0.01f, 0});
+  s.join<btPoint2PointConstraint>(plate, btVector3(-0.5f, 0, 0)).setPivotB({-0.53f, 0, 0.01f});
+  s.join<btHingeConstraint>(plate, btVector3(0.1f, 0, 0), axis).enableFeedback(true);
+  auto& slider = s.join<btSliderConstraint>(plate, btTransform::getIdentity(), true);
+  slider.setLowerLinLimit(0.01f);
+  slider.setUpperLinLimit(0.02f);
+  float fastest = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    s.w.run(1);
+    fastest = std::max({fastest, float{plate.getLinearVelocity().length()}, ContactWorld::fastest(*s.cube)});
+  }
+  EXPECT_LT(fastest, 12);
+}
 
 /// A plate of the cube's mass, which a joint fixes to the world.
 btGeneric6DofConstraint& fix_a_plate(UnderACube& s) {
