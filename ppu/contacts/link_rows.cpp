@@ -114,8 +114,6 @@ void LinkRows::add(const JointRow& joint) {
   guarded_.push_back(made);
 }
 
-bool LinkRows::has_rows_of_engine() const { return std::ranges::any_of(guarded_, &Row::is_of_engine); }
-
 bool LinkRows::sticks(const Touch& touch) const {
   const Row* const rows = &guarded_[touch.normal];
   return Vector2d(rows[1].impulse, rows[2].impulse).norm() < touch.friction * rows[0].impulse;

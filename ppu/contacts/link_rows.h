@@ -2,6 +2,7 @@
 // Velocities of rigid bodies that touch or are joined.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,8 +32,7 @@ class LinkRows {
   /// One of the two that a row is of.
   struct Side {
     std::size_t member = kOutside;
-    Six along =
-        Six::Zero();  ///< the share of velocities that counts for the row, and of impulses that it takes
+    Six along = Six::Zero();   ///< what of its velocity counts for the row, and of the row's impulses for it
     Six change = Six::Zero();  ///< of its velocity by an impulse of 1 kg m/s; 0 of what nothing moves
   };
   /// A touch or a joint in one direction.
@@ -85,7 +85,7 @@ class LinkRows {
   }
 
   bool has_joints() const { return !joints_.empty() || !limited_.empty(); }
-  bool has_rows_of_engine() const;
+  bool has_rows_of_engine() const { return std::ranges::any_of(guarded_, &Row::is_of_engine); }
 
   enum class Rows { kAll, kWithoutThoseOfEngine };
   /// Members' velocities and rows' impulses, by those from outside. Goes on from guarded rows' impulses of before.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace softcell::ppu {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kHeld = 0.1;
 constexpr double kLeft = 0.1;
 // Cells in a substep: by how much engines let what is joined move, of what soft bodies do to it, before light things give way.
 constexpr double kEngineBears = 0.03;
-// Of the impulses with which joints hold what nothing presses, errors that they take back among them. The rest engines find by themselves.
+// Of what joints do to members that nothing presses, which takes back errors, too. The rest engines find by themselves.
 constexpr double kGivenOfStanding = 0.5;
 
 }  // namespace
@@ -199,7 +200,8 @@ void SupportedSet::load_standing() {
   links_.for_each_row([](Row& row) { row.impulse = row.stands_by; });
 }
 
-void SupportedSet::give_support() {
+/// Members and rows as soft bodies have loaded them.
+void SupportedSet::solve_loaded() {
   load_standing();
   const double falls = fastest();
   links_.solve();
@@ -215,6 +217,25 @@ void SupportedSet::give_support() {
       links_.push(*rows_[i], values_[i]);
     }
   }
+}
+
+/// Where members stand, and as soft bodies have loaded them, as if rows that are left to the engine were not there.
+void SupportedSet::solve_without_engine() {
+  for (std::size_t i = 0; i < standing_.size(); ++i)
+    standing_[i].impulse = std::exchange(links_.members()[i].impulse, Six::Zero());
+  links_.solve(LinkRows::Rows::kWithoutThoseOfEngine);
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    standing_[i].velocity = links_.members()[i].now;
+    links_.members()[i].impulse = standing_[i].impulse;
+  }
+  links_.solve(LinkRows::Rows::kWithoutThoseOfEngine);
+}
+
+void SupportedSet::give_support() {
+  if (links_.has_rows_of_engine())
+    solve_without_engine();
+  else
+    solve_loaded();
   if (links_.has_joints())
     give_part();
   else
@@ -235,17 +256,6 @@ void SupportedSet::give_all() {
 
 /// Of what rows do to each member, not of each row's impulse: where joints contradict each other these are large, and make up for each other.
 void SupportedSet::give_part() {
-  if (links_.has_rows_of_engine()) {
-    const auto solve_with = [&](double share) {
-      for (std::size_t i = 0; i < standing_.size(); ++i)
-        links_.members()[i].impulse = share * standing_[i].impulse;
-      links_.solve(LinkRows::Rows::kWithoutThoseOfEngine);
-    };
-    for (std::size_t i = 0; i < standing_.size(); ++i) standing_[i].impulse = links_.members()[i].impulse;
-    solve_with(0);
-    for (std::size_t i = 0; i < standing_.size(); ++i) standing_[i].velocity = links_.members()[i].now;
-    solve_with(1);
-  }
   const double left = share_of_engine();
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     const Member& member = links_.members()[i];

@@ -66,6 +66,8 @@ class SupportedSet {
   void load_standing();
   double fastest() const;
   double share_of_engine() const;
+  void solve_loaded();
+  void solve_without_engine();
   void give_all();
   void give_part();
 

@@ -4,8 +4,8 @@
 // Their engine solves that, and contacts with soft bodies are solved before. A crate on a floor would get out of the way of a heavy body as if
 // the floor were not there, and only then be stopped by it: the lighter it is, the deeper the body sinks onto it. So for contacts with soft
 // bodies a rigid one moves as what it lies on lets it: the touches that the press loads hold it, in both directions, and across as long as they
-// do not slide, as sequential impulses tell. Joints hold it likewise. In the end their impulses on what soft bodies have done are found by the same, and the engine
-// has nothing left to stop.
+// do not slide, as sequential impulses tell. In the end their impulses on what soft bodies have done are found by the same, and the engine
+// has nothing left to stop. Joints hold it likewise; of those the engine is left a part.
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -31,9 +31,8 @@ class SkylineFactor {
       }
     }
   }
-  std::size_t size() const { return n_; }
 
-  /// Makes right sides solutions. @pre values.size() == size()
+  /// Makes right sides solutions. @pre as many as rows
   void solve(std::span<double> values) const {
     for (std::size_t i = 0; i < n_; ++i) {
       const double* const row = &lower_[i * n_];

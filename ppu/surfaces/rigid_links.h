@@ -29,10 +29,10 @@ struct JointRow {
   std::uint32_t a = 0, b = kWorld;  ///< indices of their ContactRigid, or kWorld; one of the two moves
   Share of_a = {}, of_b = {};
   float target = 0;  ///< the sum of both shares that it makes for, m/s or rad/s
-  float softness =
-      0;  ///< how much of that it gives up for an impulse of 1, as a spring does: 1/kg, or 1/(kg m^2)
-  float least = -kNoLimit,
-        most = kNoLimit;    ///< its impulses in a substep: of what ends at a limit, or has a motor
+  /// How much of that it gives up for an impulse of 1, as a spring does: 1/kg, or 1/(kg m^2).
+  float softness = 0;
+  /// Its impulses in a substep: of what ends at a limit, or has a motor.
+  float least = -kNoLimit, most = kNoLimit;
   bool is_watched = false;  ///< the program wants to know what it bears, so its engine must see that
 
   bool is_limited() const { return least != -kNoLimit || most != kNoLimit; }
