@@ -130,6 +130,30 @@ std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowanc
   return Hit{here.normal, here.distance + allowance + left * here.normal.dot(along)};
 }
 
+/// A point that has been pressed past the middle of something thin is nearer to its far side, and would leave it there.
+/// @param inside  a place of the point's body, before the substep, in the obstacle's frame
+/// @param hit     of the point, as meet() finds it
+/// @return  the contact with the side that the way from inside of the body meets; none: that is not the opposite one
+std::optional<Hit> hit_of_near_side(const Obstacle& obstacle, const Way& way, const Vector3f& inside,
+                                    const Hit& hit, float allowance, float spacing) {
+  // Cosine between the normals. At an edge the two are those of faces side by side.
+  constexpr float kOpposite = -0.5f;
+  const Vector3f along = way.from - inside;
+  if (hit.normal.dot(along) <= 0) return {};  // the body is in front of it
+  const float length = along.norm();
+  const float least_step = std::max(kLeastStep * spacing, length / kMostSteps);
+  Separation here = separation(obstacle, inside);
+  if (here.distance <= 0) return {};  // it does not tell
+  float done = 0;
+  while (here.distance > 0 && done < length) {
+    done = std::min(length, done + std::max(here.distance, least_step));
+    here = separation(obstacle, inside + done / length * along);
+  }
+  if (here.distance > 0 || here.normal.dot(hit.normal) > kOpposite) return {};
+  const Vector3f entry = inside + done / length * along - here.distance * here.normal;
+  return Hit{here.normal, here.normal.dot(way.to - entry) + allowance};
+}
+
 class ObstacleContacts {
  public:
   ObstacleContacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
@@ -155,10 +179,8 @@ class ObstacleContacts {
     cells_.boxes().for_each_meeting(near_, [&](std::uint32_t cell) {
       for_each_point_in(near, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         const Way way = way_of(from, to);
-        auto hit = meet(obstacle_, way, point.allowance, body_.spacing());
-        if (!hit) return;
-        turn_outwards(way.to, point.allowance, *hit);
-        add(point.anchor, to, *hit);
+        const auto hit = meet(obstacle_, way, point.allowance, body_.spacing());
+        if (hit) add(point.anchor, to, turned_outwards(*hit, way, cell, point.allowance));
       });
     });
     for (const ObstacleEdge& edge : obstacle_.edges) try_edge(edge, reach);
@@ -366,11 +388,14 @@ class ObstacleContacts {
     return body_.model->is_flat() && cells_.beside.face_goes_on(corner, Vector3f::UnitZ());
   }
 
-  /// Not towards a face that has another shape behind it, if there is another one.
-  void turn_outwards(const Vector3f& end, float allowance, Hit& hit) {
-    if (!may_have_others_beside()) return;
-    const auto other = cells_.beside.way_out(end, {hit.end - allowance, hit.normal});
-    if (other) hit = {other->normal, other->distance + allowance};
+  /// Not towards the far side of something thin, nor towards a face that has another shape behind it.
+  Hit turned_outwards(const Hit& hit, const Way& way, std::uint32_t cell, float allowance) {
+    const Vector3f inside = obstacle_.to_own(inner_place(cell));
+    if (const auto near = hit_of_near_side(obstacle_, way, inside, hit, allowance, body_.spacing()))
+      return *near;
+    if (!may_have_others_beside()) return hit;
+    const auto other = cells_.beside.way_out(way.to, {hit.end - allowance, hit.normal}, way.from);
+    return other ? Hit{other->normal, other->distance + allowance} : hit;
   }
 
   /// @param along   the edge that has it; 0: a tip, in two dimensions a corner

@@ -117,7 +117,8 @@ bool Beside::face_goes_on(const Vector3f& point, const Vector3f& along) {
   return false;
 }
 
-std::optional<Separation> Beside::way_out(const Vector3f& point, const Separation& nearest) {
+std::optional<Separation> Beside::way_out(const Vector3f& point, const Separation& nearest,
+                                          const Vector3f& from) {
   if (none()) return {};
   const auto has_another_behind = [&](const Separation& face) {
     return is_inside_others(own_->to_world(point + (kInside * spacing_ - face.distance) * face.normal), 0);
@@ -128,6 +129,7 @@ std::optional<Separation> Beside::way_out(const Vector3f& point, const Separatio
     const Separation face{plane.head<3>().dot(point) - plane[3], plane.head<3>()};
     if (face.distance < -kDeepest * spacing_ || (best && face.distance <= best->distance)) return;
     if (face.normal.dot(nearest.normal) > 0.999f) return;
+    if (plane.head<3>().dot(from) - plane[3] < -kDeepest * spacing_) return;
     const Vector3f place = point - face.distance * face.normal;
     if (separation(*own_, place).distance > 2 * kLevel * spacing_ || has_another_behind(face)) return;
     best = face;

@@ -31,8 +31,10 @@ class Beside {
   /// slides over a floor is stopped by the side of the next plank.
   /// @param point    a bit within the obstacle, in its frame, as the result
   /// @param nearest  face of it
+  /// @param from     where the point was, in the same frame: a face that it was well behind is no way out
   /// @return  none: the nearest face is free, or no other one is near
-  std::optional<Separation> way_out(const Eigen::Vector3f& point, const Separation& nearest);
+  std::optional<Separation> way_out(const Eigen::Vector3f& point, const Separation& nearest,
+                                    const Eigen::Vector3f& from);
 
  private:
   struct Other {

@@ -487,9 +487,10 @@ class TwoBoxes {
   }
   bool face_goes_on(const Vector3f& point) { return beside_.face_goes_on(point, {0, 0, 3}); }
   /// Of a point of the world, by the nearest face.
-  std::optional<Separation> way_out(const Vector3f& point) {
+  std::optional<Separation> way_out(const Vector3f& point) { return way_out(point, point); }
+  std::optional<Separation> way_out(const Vector3f& point, const Vector3f& from) {
     const Vector3f own = obstacles_[0].to_own(point);
-    return beside_.way_out(own, separation(obstacles_[0], own));
+    return beside_.way_out(own, separation(obstacles_[0], own), obstacles_[0].to_own(from));
   }
 
  private:
@@ -524,6 +525,8 @@ TEST(Beside, TheWayOutIsNotIntoTheNextShape) {
   ASSERT_TRUE(up);
   EXPECT_NEAR(up->distance, -0.02f, 1e-6f);
   EXPECT_EQ(up->normal, Vector3f(0, 1, 0));
+  EXPECT_TRUE(TwoBoxes({2, -1, 0}).way_out(point, {-1, 1, 0})) << "come from above";
+  EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out(point, {0.5f, -1, 0.5f})) << "come from behind the upper side";
   EXPECT_FALSE(TwoBoxes({4, -1, 0}).way_out(point)) << "nothing is beside it there";
   EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out({-0.5f, -0.02f, 0.5f})) << "the upper side is the nearest";
   EXPECT_FALSE(TwoBoxes({2, -1, 0}).way_out({-1e-4f, -0.5f, 0.5f})) << "deep within both";

@@ -1,0 +1,106 @@
+// Plates thinner than what one substep presses a body into them: its points go back by the side on which the body is.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "contact_world.h"
+
+namespace softcell::ppu {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kOfThrown = 0.1f;
+
+/// A box of the world, and how deep points of its faces are in what is drawn of a body.
+struct Plate {
+  btRigidBody* body;
+  Vector3f half;
+
+  float depth_in(const tests::DrawnBody& drawn) const {
+    constexpr float kApart = 0.07f;
+    const Eigen::Vector3i last = (2 / kApart * half).array().ceil().cast<int>().max(1);
+    float deepest = 0;
+    for (int i = 0; i <= last.x(); ++i)
+      for (int j = 0; j <= last.y(); ++j)
+        for (int k = 0; k <= last.z(); ++k) {
+          const Vector3f share = Eigen::Array3f(float(i), float(j), float(k)) / last.cast<float>().array();
+          const Vector3f own = (2 * share.array() - 1) * half.array();
+          const Vector3f point = to_eigen(body->getWorldTransform() * to_bullet(own));
+          if (drawn.box().contains(point)) deepest = std::max(deepest, drawn.depth(point));
+        }
+    return deepest;
+  }
+};
+
+Plate add_plate(ContactWorld& w, const Vector3f& half, const Vector3f& position) {
+  return {&w.add(std::make_unique<btBoxShape>(to_bullet(half)), 0, position, 0.6f), half};
+}
+
+void throw_body(SoftBody<3>& body, const Vector3f& velocity) {
+  for (std::size_t i = 0; i < body.positions().size(); ++i) body.set_particle(i, body.position(i), velocity);
+}
+
+/// What had been pressed past the middle of a plate was pushed out on its far side, and hung there.
+TEST(ThinThings, NothingHangsInTheCornerOfARoomWithThinWalls) {
+  const TriangleMesh box = make_box({0.5f, 0.6f, 0.4f}, 0.05f), ball = make_sphere(0.3f, 10);
+  const std::vector<Vector3f> directions{{1, -0.9f, 1}, {1, 0.3f, 0.2f}, {-0.5f, -1, 0.9f}, {0.7f, 0.8f, -1}};
+  for (const TriangleMesh* mesh : {&box, &ball}) {
+    for (const float alpha : {0.15f, 0.5f, 0.85f}) {
+      const auto model = make_soft_body_model(*mesh, settings_of(kOfThrown, alpha));
+      for (const float thickness : {0.03f, 0.1f}) {
+        for (const Vector3f& direction : directions) {
+          constexpr float kInner = 0.9f;
+          ContactWorld w;
+          std::vector<Plate> walls;
+          for (int axis = 0; axis < 3; ++axis) {
+            for (const float side : {-1.0f, 1.0f}) {
+              Vector3f half = Vector3f::Constant(kInner + thickness), at = Vector3f::Zero();
+              half[axis] = thickness / 2, at[axis] = side * (kInner + thickness / 2);
+              walls.push_back(add_plate(w, half, at));
+            }
+          }
+          SoftBody<3>& body = w.bodies.add(model, Vector3f(0, 0, 0));
+          throw_body(body, 20 * direction.normalized());
+          w.run(60);
+          const tests::DrawnBody drawn(body);
+          for (const Plate& wall : walls)
+            EXPECT_LT(wall.depth_in(drawn), 0.1f * kOfThrown)
+                << "alpha " << alpha << ", walls of " << thickness << " m, thrown along "
+                << direction.transpose();
+        }
+      }
+    }
+  }
+}
+
+/// As a flipper does: the bar ends up in the body's way, in one step farther than it is thick.
+TEST(ThinThings, ABodyFliesOffTheBarThatHitsIt) {
+  for (const float alpha : {0.2f, 0.5f, 0.8f}) {
+    for (const float turn : {5.0f, 8.0f, 15.0f}) {  // rad/s
+      ContactWorld w;
+      const Vector3f half(0.6f, 0.06f, 0.3f), hinge(-0.6f, 0.3f, 0);
+      const Plate bar = add_plate(w, half, {0, 0.3f, 0});
+      bar.body->setCollisionFlags(bar.body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+      bar.body->setActivationState(DISABLE_DEACTIVATION);
+      SoftBody<3>& body = w.add(make_sphere(0.3f, 10), settings_of(kOfThrown, alpha), {0.25f, 0.75f, 0});
+      for (int frame = 0; frame < 150; ++frame) {
+        const float angle = std::clamp(turn * float(frame - 60) / 60, 0.0f, 1.2f);
+        btTransform pose(btQuaternion(btVector3(0, 0, 1), angle), to_bullet(hinge));
+        pose.setOrigin(pose * btVector3(half.x(), 0, 0));
+        bar.body->setWorldTransform(pose);
+        w.world.updateSingleAabb(bar.body);
+        w.world.stepSimulation(1.0f / 60, 2, 1.0f / 120);
+      }
+      EXPECT_LT(bar.depth_in(tests::DrawnBody(body)), 0.1f * kOfThrown)
+          << "alpha " << alpha << ", " << turn << " rad/s";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softcell::ppu
