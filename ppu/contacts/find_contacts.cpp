@@ -24,8 +24,10 @@ constexpr float kMostSteps = 256;  // of a way: what is faster goes in longer on
 // A point so near behind a triangle, in cells, has been pressed through it; and one so near before it may be, from the other side.
 constexpr float kPressedThrough = 0.25f;
 // Deeper behind it only if the way to it from well inside of the body goes through the triangle.
-constexpr float kDeepest = 1;
+constexpr float kDeepest = 2;
 constexpr float kClearSide = 0.05f;  // cells: what is nearer to a triangle may be on either side
+// Cosine between the normals of the two sides of something thin. At an edge the two are those of faces side by side.
+constexpr float kOpposite = -0.5f;
 constexpr int kApartAtRest =
     3;  // a point never meets cells of its own body that are nearer at rest: their middles
 
@@ -91,14 +93,17 @@ class ObstacleTriangle {
     const float near = kNear * spacing;
     float side = front;
     float from = side * height(way.from);
+    bool is_deep = false;
     if (from < -kPressedThrough * spacing) {
       const float of_inside = side * height(inside);
       const bool may_be_deep = from > -kDeepest * spacing && of_inside > 0;
       const float crossing = of_inside / (of_inside - from);
-      if (!may_be_deep || !is_over(inside + crossing * (way.from - inside), near)) side = -side, from = -from;
+      is_deep = may_be_deep && is_over(inside + crossing * (way.from - inside), near);
+      if (!is_deep) side = -side, from = -from;
     }
     const float to = side * height(way.to) - rounding_;
     if (to > near) return {};
+    if (is_deep) return Hit{side * normal(), to};  // the next triangle may be over the point
     const float share =
         from - to > 0 ? std::clamp((from - rounding_) / (from - rounding_ - to), 0.0f, 1.0f) : 0.0f;
     if (!is_over(way.from + share * (way.to - way.from), near)) return {};
@@ -136,8 +141,6 @@ std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowanc
 /// @return  the contact with the side that the way from inside of the body meets; none: that is not the opposite one
 std::optional<Hit> hit_of_near_side(const Obstacle& obstacle, const Way& way, const Vector3f& inside,
                                     const Hit& hit, float allowance, float spacing) {
-  // Cosine between the normals. At an edge the two are those of faces side by side.
-  constexpr float kOpposite = -0.5f;
   const Vector3f along = way.from - inside;
   if (hit.normal.dot(along) <= 0) return {};  // the body is in front of it
   const float length = along.norm();
@@ -268,6 +271,7 @@ class ObstacleContacts {
     const float clear = kClearSide * body_.spacing();
     int seen = 0;
     for (const EndCells::PointAtTriangle& near : cells_.near_triangles) {
+      if (near.is_far_side) continue;
       const float side = side_of(triangles, near);
       seen += side > clear ? 1 : side < -clear ? -1 : 0;
     }
@@ -281,11 +285,38 @@ class ObstacleContacts {
         come_near(widened(to_world(obstacle_, triangles.boxes().bounds()), obstacle_.rounding));
     find_near_triangles(triangles);
     const float front = front_of_triangles(triangles);
-    for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
+    for (const EndCells::PointAtTriangle& at : cells_.near_triangles) {
+      if (at.is_far_side) continue;
       if (const auto hit = ObstacleTriangle(obstacle_, triangles, at.triangle)
                                .meet({at.from, at.to}, at.inside, body_.spacing(), front))
         add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
+    }
     try_edges_of_triangles(triangles, reach);
+  }
+
+  /// Of a plate of triangles the body is in front of one side and behind the other one, which a point that has been pressed into the plate,
+  /// or rests on it, would seem to have been pressed through.
+  /// @param near  of one point
+  void leave_out_far_sides(const KnownTriangles& triangles, std::span<EndCells::PointAtTriangle> near) const {
+    // None of them face each other where all face nearly the same way, as those of a ground do.
+    constexpr float kAlike = 0.5f;  // the cosine of half of the angle whose cosine is kOpposite
+    const auto is_alike = [&](const EndCells::PointAtTriangle& at) {
+      const KnownTriangles::Face &first = triangles.face(near[0].triangle),
+                                 &own = triangles.face(at.triangle);
+      return first.area > 0 && own.area > 0 && first.normal.dot(own.normal) > kAlike;
+    };
+    if (near.empty() || std::ranges::all_of(near, is_alike)) return;
+    for (EndCells::PointAtTriangle& far : near) {
+      const ObstacleTriangle farther(obstacle_, triangles, far.triangle);
+      if (!farther.has_area()) continue;
+      for (const EndCells::PointAtTriangle& other : near) {
+        const ObstacleTriangle nearer(obstacle_, triangles, other.triangle);
+        if (!nearer.has_area() || farther.normal().dot(nearer.normal()) > kOpposite) continue;
+        const float height = nearer.height(other.inside), beyond = farther.height(far.inside);
+        if (height * beyond >= 0 || std::abs(height) >= std::abs(beyond)) continue;
+        if (nearer.is_over(far.from, kNear * body_.spacing())) far.is_far_side = true;
+      }
+    }
   }
 
   /// Of each point those near its way; if there are none, those that it has been pressed through, at some depth.
@@ -295,6 +326,8 @@ class ObstacleContacts {
     // What has been pressed through a triangle may be so far behind it, and still meets it.
     const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
     const Passage deep = passage(widened(near_, kDeepest * spacing));
+    // As far as that is known before they are seen.
+    const float front = obstacle_.faces_bodies ? 1 : cells_.last_side_of(rigid_.number, obstacle_.part);
     cells_.near_triangles.clear();
     cells_.boxes().for_each_meeting(deep.box, [&](std::uint32_t cell) {
       const Vector3f inner = inner_place(cell);
@@ -312,14 +345,29 @@ class ObstacleContacts {
           cells_.near_triangles.push_back({&point, t, way.from, way.to, inside});
         };
         for_each_meeting({way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin}, add);
-        if (cells_.near_triangles.size() > before) return;
+        const auto near = [&] { return std::span(cells_.near_triangles).subspan(before); };
+        if (!near().empty() && !is_behind_any(triangles, near(), front))
+          return leave_out_far_sides(triangles, near());
         const Vector3f inwards = inside - way.from;
         const float share = std::min(1.0f, kDeepest * spacing / inwards.norm());
         const Vector3f deepest = way.from + share * inwards;
         for_each_meeting({way.from.cwiseMin(deepest), way.from.cwiseMax(deepest)}, [&](std::uint32_t t) {
-          if (ObstacleTriangle(obstacle_, triangles, t).parts(way.from, inside)) add(t);
+          const auto is_it = [&](const EndCells::PointAtTriangle& at) { return at.triangle == t; };
+          if (ObstacleTriangle(obstacle_, triangles, t).parts(way.from, inside) &&
+              std::ranges::none_of(near(), is_it))
+            add(t);
         });
+        leave_out_far_sides(triangles, near());
       });
+    });
+  }
+
+  /// Whether the body seems to be behind a triangle: that may be the far side of a plate, and its near side not near the point.
+  bool is_behind_any(const KnownTriangles& triangles, std::span<const EndCells::PointAtTriangle> near,
+                     float front) const {
+    return std::ranges::any_of(near, [&](const EndCells::PointAtTriangle& at) {
+      const ObstacleTriangle triangle(obstacle_, triangles, at.triangle);
+      return triangle.has_area() && front * triangle.height(at.inside) < 0;
     });
   }
 
@@ -435,6 +483,12 @@ class ObstacleContacts {
 };
 
 }  // namespace
+
+float EndCells::last_side_of(std::uint32_t rigid, std::uint32_t part) const {
+  const auto known = std::ranges::find_if(
+      sides_, [&](const Side& side) { return side.rigid == rigid && side.part == part; });
+  return known != sides_.end() && known->side < 0 ? -1.0f : 1.0f;
+}
 
 float EndCells::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
   constexpr int kMostDoubts = 12;

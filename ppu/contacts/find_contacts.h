@@ -50,6 +50,8 @@ class EndCells {
   /// @param rigid  ContactRigid::number   @param part  Obstacle::part
   /// @param seen  above 0 in front, below 0 behind; 0 if that is not clear now
   float side_of(std::uint32_t rigid, std::uint32_t part, int seen);
+  /// As side_of() had it in the last substep, or 1.
+  float last_side_of(std::uint32_t rigid, std::uint32_t part) const;
 
   /// A touch point and a triangle that it may meet; in the obstacle's frame.
   struct PointAtTriangle {
@@ -57,6 +59,7 @@ class EndCells {
     std::uint32_t triangle;
     Eigen::Vector3f from, to;  ///< before and after the substep
     Eigen::Vector3f inside;    ///< a place well inside of the body near the point, before it
+    bool is_far_side = false;  ///< of a plate whose other side is nearer to the body
   };
   // For those who look for contacts with triangles, again and again without allocating.
   std::vector<CornerSet::Point> near_corners;

@@ -37,16 +37,43 @@ struct Plate {
   }
 };
 
-Plate add_plate(ContactWorld& w, const Vector3f& half, const Vector3f& position) {
-  return {&w.add(std::make_unique<btBoxShape>(to_bullet(half)), 0, position, 0.6f), half};
-}
+/// Plates as convex shapes, or as the triangles of their faces.
+class Plates {
+ public:
+  explicit Plates(bool of_triangles) : of_triangles_(of_triangles) {}
+
+  /// @pre the world is gone before this
+  Plate add(ContactWorld& w, const Vector3f& half, const Vector3f& position) {
+    return {&w.add(shape(half), 0, position, 0.6f), half};
+  }
+
+ private:
+  std::unique_ptr<btCollisionShape> shape(const Vector3f& half) {
+    constexpr float kEdge = 0.3f;
+    if (!of_triangles_) return std::make_unique<btBoxShape>(to_bullet(half));
+    const TriangleMesh box = make_box(2 * half, kEdge);
+    meshes_.push_back(std::make_unique<btTriangleMesh>());
+    for (const auto& [i, j, k] : box.triangles)
+      meshes_.back()->addTriangle(to_bullet(box.positions[i]), to_bullet(box.positions[j]),
+                                  to_bullet(box.positions[k]));
+    return std::make_unique<btBvhTriangleMeshShape>(meshes_.back().get(), true);
+  }
+
+  bool of_triangles_;
+  std::vector<std::unique_ptr<btTriangleMesh>> meshes_;
+};
+
+class ThinThings : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(As, ThinThings, testing::Values(false, true),
+                         [](const auto& kind) { return kind.param ? "Triangles" : "ConvexShapes"; });
 
 void throw_body(SoftBody<3>& body, const Vector3f& velocity) {
   for (std::size_t i = 0; i < body.positions().size(); ++i) body.set_particle(i, body.position(i), velocity);
 }
 
 /// What had been pressed past the middle of a plate was pushed out on its far side, and hung there.
-TEST(ThinThings, NothingHangsInTheCornerOfARoomWithThinWalls) {
+TEST_P(ThinThings, NothingHangsInTheCornerOfARoomWithThinWalls) {
   const TriangleMesh box = make_box({0.5f, 0.6f, 0.4f}, 0.05f), ball = make_sphere(0.3f, 10);
   const std::vector<Vector3f> directions{{1, -0.9f, 1}, {1, 0.3f, 0.2f}, {-0.5f, -1, 0.9f}, {0.7f, 0.8f, -1}};
   for (const TriangleMesh* mesh : {&box, &ball}) {
@@ -55,13 +82,14 @@ TEST(ThinThings, NothingHangsInTheCornerOfARoomWithThinWalls) {
       for (const float thickness : {0.03f, 0.1f}) {
         for (const Vector3f& direction : directions) {
           constexpr float kInner = 0.9f;
+          Plates plates(GetParam());
           ContactWorld w;
           std::vector<Plate> walls;
           for (int axis = 0; axis < 3; ++axis) {
             for (const float side : {-1.0f, 1.0f}) {
               Vector3f half = Vector3f::Constant(kInner + thickness), at = Vector3f::Zero();
               half[axis] = thickness / 2, at[axis] = side * (kInner + thickness / 2);
-              walls.push_back(add_plate(w, half, at));
+              walls.push_back(plates.add(w, half, at));
             }
           }
           SoftBody<3>& body = w.bodies.add(model, Vector3f(0, 0, 0));
@@ -79,12 +107,13 @@ TEST(ThinThings, NothingHangsInTheCornerOfARoomWithThinWalls) {
 }
 
 /// As a flipper does: the bar ends up in the body's way, in one step farther than it is thick.
-TEST(ThinThings, ABodyFliesOffTheBarThatHitsIt) {
+TEST_P(ThinThings, ABodyFliesOffTheBarThatHitsIt) {
   for (const float alpha : {0.2f, 0.5f, 0.8f}) {
     for (const float turn : {5.0f, 8.0f, 15.0f}) {  // rad/s
+      Plates plates(GetParam());
       ContactWorld w;
       const Vector3f half(0.6f, 0.06f, 0.3f), hinge(-0.6f, 0.3f, 0);
-      const Plate bar = add_plate(w, half, {0, 0.3f, 0});
+      const Plate bar = plates.add(w, half, {0, 0.3f, 0});
       bar.body->setCollisionFlags(bar.body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
       bar.body->setActivationState(DISABLE_DEACTIVATION);
       SoftBody<3>& body = w.add(make_sphere(0.3f, 10), settings_of(kOfThrown, alpha), {0.25f, 0.75f, 0});
