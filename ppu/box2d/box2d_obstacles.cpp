@@ -159,7 +159,15 @@ void Box2dObstacles::add_near(const Bounds<3>& box, const Vector2f& middle, cons
       near.ReportFixture(fixture);
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-  for (const Found& found : found_) indices.push_back(obstacle_of(found, face_before(found, box, middle)));
+  for (auto first = found_.begin(); first != found_.end();) {
+    const bool is_chain = first->there->GetType() == b2Shape::e_chain;
+    const auto end = is_chain ? std::find_if(first, found_.end(),
+                                             [&](const Found& next) { return next.there != first->there; })
+                              : first + 1;
+    indices.push_back(is_chain ? obstacle_of_chain({first, end})
+                               : obstacle_of(*first, face_before(*first, box, middle)));
+    first = end;
+  }
 }
 
 /// Of a thin polygon, the face that the body as a whole is in front of.
@@ -216,17 +224,12 @@ Box2dObstacles::Shape& Box2dObstacles::next_shape() {
 }
 
 std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int face) {
-  const b2Fixture& fixture = *found.there;
+  b2Fixture& fixture = *found.there;
   const auto known = std::ranges::find_if(known_, [&](const Known& one) {
     return one.fixture == &fixture && one.child == found.child && one.face == face;
   });
   if (known != known_.end()) return known->obstacle;
-  const b2Transform& pose = fixture.GetBody()->GetTransform();
-  Obstacle obstacle;
-  obstacle.rigid = rigid_of(*found.there->GetBody());
-  obstacle.friction = std::sqrt(fixture.GetFriction());
-  obstacle.position = lifted(pose.p);
-  obstacle.rotation << pose.q.c, -pose.q.s, 0, pose.q.s, pose.q.c, 0, 0, 0, 1;
+  Obstacle obstacle = placed_with(fixture);
   Shape& shape = next_shape();
   switch (fixture.GetType()) {
     case b2Shape::e_circle:
@@ -241,18 +244,46 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int face) {
     default: {
       const Ends ends = ends_of(fixture, found.child);
       add_wall(ends.from, ends.to, obstacle, shape);
-      obstacle.part = found.fixture;  // edges of a chain are wound alike
+      obstacle.part = found.fixture;
       break;
     }
   }
+  known_.push_back({&fixture, found.child, face, add(obstacle, shape, *found.there)});
+  return known_.back().obstacle;
+}
+
+/// One obstacle, as what lies between two of its edges may be thinner than what presses into it. Another body may be near other edges.
+std::uint32_t Box2dObstacles::obstacle_of_chain(std::span<const Found> edges) {
+  b2Fixture& fixture = *edges.front().there;
+  Obstacle obstacle = placed_with(fixture);
+  obstacle.part = edges.front().fixture;
+  Shape& shape = next_shape();
+  for (const Found& edge : edges) {
+    const Ends ends = ends_of(fixture, edge.child);
+    add_wall(ends.from, ends.to, obstacle, shape);
+  }
+  return add(obstacle, shape, fixture);
+}
+
+/// Without a shape.
+Obstacle Box2dObstacles::placed_with(b2Fixture& fixture) {
+  const b2Transform& pose = fixture.GetBody()->GetTransform();
+  Obstacle obstacle;
+  obstacle.rigid = rigid_of(*fixture.GetBody());
+  obstacle.friction = std::sqrt(fixture.GetFriction());
+  obstacle.position = lifted(pose.p);
+  obstacle.rotation << pose.q.c, -pose.q.s, 0, pose.q.s, pose.q.c, 0, 0, 0, 1;
+  return obstacle;
+}
+
+/// @return  its index
+std::uint32_t Box2dObstacles::add(Obstacle obstacle, const Shape& shape, b2Fixture& fixture) {
   obstacle.planes = shape.planes;
   obstacle.edges = shape.edges;
   obstacle.triangles = shape.triangles;
-  const auto index = static_cast<std::uint32_t>(obstacles_.size());
   obstacles_.push_back(obstacle);
-  fixtures_.push_back(found.there);
-  known_.push_back({&fixture, found.child, face, index});
-  return index;
+  fixtures_.push_back(&fixture);
+  return static_cast<std::uint32_t>(obstacles_.size() - 1);
 }
 
 /// A ball: nothing touches it but at z = 0.

@@ -85,6 +85,9 @@ class Box2dObstacles {
   b2AABB box_of_step(const b2Fixture& fixture, int child) const;
   int face_before(const Found& found, const Bounds<3>& box, const Eigen::Vector2f& middle) const;
   std::uint32_t obstacle_of(const Found& found, int face);
+  std::uint32_t obstacle_of_chain(std::span<const Found> edges);
+  Obstacle placed_with(b2Fixture& fixture);
+  std::uint32_t add(Obstacle obstacle, const Shape& shape, b2Fixture& fixture);
   static void add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   static void add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   void add_face(const b2Fixture& fixture, int face, Obstacle& obstacle, Shape& shape) const;

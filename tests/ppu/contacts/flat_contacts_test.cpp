@@ -244,6 +244,36 @@ TEST_P(FlatContacts, AGroundOfEdgesCarriesAsABoxDoes) {
   }
 }
 
+/// A body lay on both sides of such a plate, and stayed so, as the far side held what had been pressed through it.
+TEST_P(FlatContacts, AChainAroundAThinPlateIsAFloor) {
+  constexpr float kHalfWidth = 5;
+  for (const bool turned : {false, true}) {
+    for (const float thickness : {0.04f, 0.1f}) {
+      for (const float alpha : {0.3f, 0.8f}) {
+        for (const float speed : {5.0f, 17.0f}) {
+          const auto w = world();
+          std::array<b2Vec2, 4> corners{
+              b2Vec2{-kHalfWidth, -thickness}, {kHalfWidth, -thickness}, {kHalfWidth, 0}, {-kHalfWidth, 0}};
+          if (turned) std::reverse(corners.begin(), corners.end());
+          b2ChainShape chain;
+          chain.CreateLoop(corners.data(), static_cast<int>(corners.size()));
+          b2BodyDef definition;
+          w->box2d.CreateBody(&definition)->CreateFixture(&chain, 0)->SetFriction(0.6f);
+          SoftBodySettings settings = calm();
+          settings.alpha = alpha;
+          settings.half_width = 1;
+          SoftBody<2>& body = w->soft.add(rectangle_model({7, 5}, settings), {0, 1});
+          body.add_velocity({0, -speed});
+          w->run(6);
+          EXPECT_NEAR(lowest(body), 0, 0.1f * settings.cell_size)
+              << (turned ? "clockwise, " : "counterclockwise, ") << thickness << " m, alpha " << alpha << ", "
+              << speed << " m/s";
+        }
+      }
+    }
+  }
+}
+
 /// Its middle comes below the edge long before its last part has left it.
 TEST_P(FlatContacts, WhatHangsOverTheEndOfAnEdgeSlidesOff) {
   for (const bool is_chain : {false, true}) {
