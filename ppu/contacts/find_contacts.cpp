@@ -26,8 +26,9 @@ constexpr float kPressedThrough = 0.25f;
 // Deeper behind it only if the way to it from well inside of the body goes through the triangle.
 constexpr float kDeepest = 2;
 constexpr float kClearSide = 0.05f;  // cells: what is nearer to a triangle may be on either side
-// Cosine between the normals of the two sides of something thin. At an edge the two are those of faces side by side.
-constexpr float kOpposite = -0.5f;
+// Cosines between normals: of the two sides of something thin; of what counts as one face. Of triangles which all are like one of them no two
+// are opposite.
+constexpr float kOpposite = -0.5f, kAlike = 0.5f;
 constexpr int kApartAtRest =
     3;  // a point never meets cells of its own body that are nearer at rest: their middles
 
@@ -135,12 +136,13 @@ std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowanc
   return Hit{here.normal, here.distance + allowance + left * here.normal.dot(along)};
 }
 
-/// A point that has been pressed past the middle of something thin is nearer to its far side, and would leave it there.
+/// A point that has been pressed in deep is nearer to another face than to the one by which it came in: to the far side of something thin, or
+/// to a side near an edge. It would leave by that face, and its body would hang there.
 /// @param inside  a place of the point's body, before the substep, in the obstacle's frame
 /// @param hit     of the point, as meet() finds it
-/// @return  the contact with the side that the way from inside of the body meets; none: that is not the opposite one
-std::optional<Hit> hit_of_near_side(const Obstacle& obstacle, const Way& way, const Vector3f& inside,
-                                    const Hit& hit, float allowance, float spacing) {
+/// @return  the contact with the face that the way from inside of the body meets; none: that is the same one
+std::optional<Hit> hit_of_entered_face(const Obstacle& obstacle, const Way& way, const Vector3f& inside,
+                                       const Hit& hit, float allowance, float spacing) {
   const Vector3f along = way.from - inside;
   if (hit.normal.dot(along) <= 0) return {};  // the body is in front of it
   const float length = along.norm();
@@ -152,7 +154,7 @@ std::optional<Hit> hit_of_near_side(const Obstacle& obstacle, const Way& way, co
     done = std::min(length, done + std::max(here.distance, least_step));
     here = separation(obstacle, inside + done / length * along);
   }
-  if (here.distance > 0 || here.normal.dot(hit.normal) > kOpposite) return {};
+  if (here.distance > 0 || here.normal.dot(hit.normal) > kAlike) return {};
   const Vector3f entry = inside + done / length * along - here.distance * here.normal;
   return Hit{here.normal, here.normal.dot(way.to - entry) + allowance};
 }
@@ -299,7 +301,6 @@ class ObstacleContacts {
   /// @param near  of one point
   void leave_out_far_sides(const KnownTriangles& triangles, std::span<EndCells::PointAtTriangle> near) const {
     // None of them face each other where all face nearly the same way, as those of a ground do.
-    constexpr float kAlike = 0.5f;  // the cosine of half of the angle whose cosine is kOpposite
     const auto is_alike = [&](const EndCells::PointAtTriangle& at) {
       const KnownTriangles::Face &first = triangles.face(near[0].triangle),
                                  &own = triangles.face(at.triangle);
@@ -319,9 +320,8 @@ class ObstacleContacts {
     }
   }
 
-  /// Of each point those near its way; if there are none, those that it has been pressed through, at some depth.
+  /// Of each point those near its way; if there are none, or its body is behind one, those that it has been pressed through, at some depth.
   void find_near_triangles(const KnownTriangles& triangles) {
-    const TriangleBoxes& boxes = triangles.boxes();
     const float spacing = body_.spacing();
     // What has been pressed through a triangle may be so far behind it, and still meets it.
     const Vector3f margin = Vector3f::Constant((kNear + kPressedThrough) * spacing + obstacle_.rounding);
@@ -337,29 +337,46 @@ class ObstacleContacts {
       for_each_point_in(deep, cell, [&](const TouchPoint& point, const Vector3f& from, const Vector3f& to) {
         if (point.allowance > 0) return;  // it may be on either side
         const Way way = way_of(from, to);
-        const std::size_t before = cells_.near_triangles.size();
-        const auto for_each_meeting = [&](const Bounds<3>& box, const auto& work) {
-          if (overlap(box, boxes.bounds())) boxes.for_each_meeting(box, work);
-        };
-        const auto add = [&](std::uint32_t t) {
-          cells_.near_triangles.push_back({&point, t, way.from, way.to, inside});
-        };
-        for_each_meeting({way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin}, add);
-        const auto near = [&] { return std::span(cells_.near_triangles).subspan(before); };
-        if (!near().empty() && !is_behind_any(triangles, near(), front))
-          return leave_out_far_sides(triangles, near());
-        const Vector3f inwards = inside - way.from;
-        const float share = std::min(1.0f, kDeepest * spacing / inwards.norm());
-        const Vector3f deepest = way.from + share * inwards;
-        for_each_meeting({way.from.cwiseMin(deepest), way.from.cwiseMax(deepest)}, [&](std::uint32_t t) {
-          const auto is_it = [&](const EndCells::PointAtTriangle& at) { return at.triangle == t; };
-          if (ObstacleTriangle(obstacle_, triangles, t).parts(way.from, inside) &&
-              std::ranges::none_of(near(), is_it))
-            add(t);
-        });
+        EndCells::PointAtTriangle at{&point, 0, way.from, way.to, inside};
+        const std::size_t first = cells_.near_triangles.size();
+        const auto near = [&] { return std::span(cells_.near_triangles).subspan(first); };
+        for_each_triangle(triangles, {way.from.cwiseMin(way.to) - margin, way.from.cwiseMax(way.to) + margin},
+                          [&](std::uint32_t triangle) {
+                            at.triangle = triangle;
+                            cells_.near_triangles.push_back(at);
+                          });
+        if (near().empty() || is_behind_any(triangles, near(), front))
+          add_pressed_through(triangles, at, first);
         leave_out_far_sides(triangles, near());
       });
     });
+  }
+
+  /// Calls work(triangle) for those whose boxes meet a box.
+  template <typename Work>
+  static void for_each_triangle(const KnownTriangles& triangles, const Bounds<3>& box, const Work& work) {
+    if (overlap(box, triangles.boxes().bounds())) triangles.boxes().for_each_meeting(box, work);
+  }
+
+  /// Those that part a point from the inside of its body, up to kDeepest from the point.
+  /// @param first  of the point's triangles that are there already
+  void add_pressed_through(const KnownTriangles& triangles, EndCells::PointAtTriangle at, std::size_t first) {
+    const Vector3f inwards = at.inside - at.from;
+    const float share = std::min(1.0f, kDeepest * body_.spacing() / inwards.norm());
+    const Vector3f deepest = at.from + share * inwards;
+    const auto is_there = [&](std::uint32_t triangle) {
+      return std::ranges::any_of(
+          std::span(cells_.near_triangles).subspan(first),
+          [&](const EndCells::PointAtTriangle& known) { return known.triangle == triangle; });
+    };
+    for_each_triangle(triangles, {at.from.cwiseMin(deepest), at.from.cwiseMax(deepest)},
+                      [&](std::uint32_t triangle) {
+                        if (!ObstacleTriangle(obstacle_, triangles, triangle).parts(at.from, at.inside) ||
+                            is_there(triangle))
+                          return;
+                        at.triangle = triangle;
+                        cells_.near_triangles.push_back(at);
+                      });
   }
 
   /// Whether the body seems to be behind a triangle: that may be the far side of a plate, and its near side not near the point.
@@ -439,7 +456,7 @@ class ObstacleContacts {
   /// Not towards the far side of something thin, nor towards a face that has another shape behind it.
   Hit turned_outwards(const Hit& hit, const Way& way, std::uint32_t cell, float allowance) {
     const Vector3f inside = obstacle_.to_own(inner_place(cell));
-    if (const auto near = hit_of_near_side(obstacle_, way, inside, hit, allowance, body_.spacing()))
+    if (const auto near = hit_of_entered_face(obstacle_, way, inside, hit, allowance, body_.spacing()))
       return *near;
     if (!may_have_others_beside()) return hit;
     const auto other = cells_.beside.way_out(way.to, {hit.end - allowance, hit.normal}, way.from);
