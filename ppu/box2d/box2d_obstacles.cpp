@@ -241,14 +241,11 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int face) {
       else
         add_face(fixture, face, obstacle, shape);
       break;
-    default: {
-      const Ends ends = ends_of(fixture, found.child);
-      add_wall(ends.from, ends.to, obstacle, shape);
-      obstacle.part = found.fixture;
+    default:
+      add_walls({&found, 1}, obstacle, shape);
       break;
-    }
   }
-  known_.push_back({&fixture, found.child, face, add(obstacle, shape, *found.there)});
+  known_.push_back({&fixture, found.child, face, add(obstacle, shape, fixture)});
   return known_.back().obstacle;
 }
 
@@ -256,12 +253,8 @@ std::uint32_t Box2dObstacles::obstacle_of(const Found& found, int face) {
 std::uint32_t Box2dObstacles::obstacle_of_chain(std::span<const Found> edges) {
   b2Fixture& fixture = *edges.front().there;
   Obstacle obstacle = placed_with(fixture);
-  obstacle.part = edges.front().fixture;
   Shape& shape = next_shape();
-  for (const Found& edge : edges) {
-    const Ends ends = ends_of(fixture, edge.child);
-    add_wall(ends.from, ends.to, obstacle, shape);
-  }
+  add_walls(edges, obstacle, shape);
   return add(obstacle, shape, fixture);
 }
 
@@ -311,6 +304,15 @@ void Box2dObstacles::add_face(const b2Fixture& fixture, int face, Obstacle& obst
   const Ends ends = face_of(static_cast<const b2PolygonShape&>(*fixture.GetShape()), face);
   add_wall(ends.from, ends.to, obstacle, shape);
   obstacle.faces_bodies = true;
+}
+
+/// @param edges  of one fixture
+void Box2dObstacles::add_walls(std::span<const Found> edges, Obstacle& obstacle, Shape& shape) const {
+  obstacle.part = edges.front().fixture;
+  for (const Found& edge : edges) {
+    const Ends ends = ends_of(*edge.there, edge.child);
+    add_wall(ends.from, ends.to, obstacle, shape);
+  }
 }
 
 /// As high as the layer and as much again. Its front is on the right of the way from one end to the other.

@@ -91,6 +91,7 @@ class Box2dObstacles {
   static void add_circle(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   static void add_polygon(const b2Fixture& fixture, Obstacle& obstacle, Shape& shape);
   void add_face(const b2Fixture& fixture, int face, Obstacle& obstacle, Shape& shape) const;
+  void add_walls(std::span<const Found> edges, Obstacle& obstacle, Shape& shape) const;
   void add_wall(const b2Vec2& from, const b2Vec2& to, Obstacle& obstacle, Shape& shape) const;
   Shape& next_shape();
 

@@ -118,45 +118,51 @@ class ObstacleTriangle {
   float rounding_;
 };
 
-std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowance, float spacing) {
-  const float near = kNear * spacing - allowance;
-  const Vector3f along = way.to - way.from;
+/// Where a way comes near an obstacle.
+struct Arrival {
+  float share;  ///< of the way
+  Separation there;
+};
+
+/// @param near  metres from the obstacle  @return  the first such place of the way; none: it comes to none
+std::optional<Arrival> arrive(const Obstacle& obstacle, const Vector3f& from, const Vector3f& along,
+                              float near, float spacing) {
   const float length = along.norm();
-  Separation here = separation(obstacle, way.from);
+  Separation here = separation(obstacle, from);
   if (here.distance > length + near) return {};
-  // From outside the first place counts that is inside: at the end it may be nearer to the other side.
   float done = 0;
   const float least_step = std::max(kLeastStep * spacing, length / kMostSteps);
   while (here.distance > near && done < length) {
     done = std::min(length, done + std::max(here.distance - near, least_step));
-    here = separation(obstacle, way.from + done / length * along);
+    here = separation(obstacle, from + done / length * along);
   }
   if (here.distance > near) return {};
-  const float left = length > 0 ? 1 - done / length : 0;
-  return Hit{here.normal, here.distance + allowance + left * here.normal.dot(along)};
+  return Arrival{length > 0 ? done / length : 1, here};
+}
+
+/// From outside the first place counts that is inside: at the end it may be nearer to the other side.
+std::optional<Hit> meet(const Obstacle& obstacle, const Way& way, float allowance, float spacing) {
+  const Vector3f along = way.to - way.from;
+  const auto arrival = arrive(obstacle, way.from, along, kNear * spacing - allowance, spacing);
+  if (!arrival) return {};
+  const auto& [share, there] = *arrival;
+  return Hit{there.normal, there.distance + allowance + (1 - share) * there.normal.dot(along)};
 }
 
 /// A point that has been pressed in deep is nearer to another face than to the one by which it came in: to the far side of something thin, or
 /// to a side near an edge. It would leave by that face, and its body would hang there.
 /// @param inside  a place of the point's body, before the substep, in the obstacle's frame
 /// @param hit     of the point, as meet() finds it
-/// @return  the contact with the face that the way from inside of the body meets; none: that is the same one
+/// @return  the contact with the face that the way from inside of the body meets; none: that is the same one, or `inside` does not tell
 std::optional<Hit> hit_of_entered_face(const Obstacle& obstacle, const Way& way, const Vector3f& inside,
                                        const Hit& hit, float allowance, float spacing) {
   const Vector3f along = way.from - inside;
   if (hit.normal.dot(along) <= 0) return {};  // the body is in front of it
-  const float length = along.norm();
-  const float least_step = std::max(kLeastStep * spacing, length / kMostSteps);
-  Separation here = separation(obstacle, inside);
-  if (here.distance <= 0) return {};  // it does not tell
-  float done = 0;
-  while (here.distance > 0 && done < length) {
-    done = std::min(length, done + std::max(here.distance, least_step));
-    here = separation(obstacle, inside + done / length * along);
-  }
-  if (here.distance > 0 || here.normal.dot(hit.normal) > kAlike) return {};
-  const Vector3f entry = inside + done / length * along - here.distance * here.normal;
-  return Hit{here.normal, here.normal.dot(way.to - entry) + allowance};
+  const auto arrival = arrive(obstacle, inside, along, 0, spacing);
+  if (!arrival || arrival->share == 0 || arrival->there.normal.dot(hit.normal) > kAlike) return {};
+  const auto& [share, there] = *arrival;
+  const Vector3f entry = inside + share * along - there.distance * there.normal;
+  return Hit{there.normal, there.normal.dot(way.to - entry) + allowance};
 }
 
 class ObstacleContacts {
@@ -273,7 +279,6 @@ class ObstacleContacts {
     const float clear = kClearSide * body_.spacing();
     int seen = 0;
     for (const EndCells::PointAtTriangle& near : cells_.near_triangles) {
-      if (near.is_far_side) continue;
       const float side = side_of(triangles, near);
       seen += side > clear ? 1 : side < -clear ? -1 : 0;
     }
@@ -287,19 +292,18 @@ class ObstacleContacts {
         come_near(widened(to_world(obstacle_, triangles.boxes().bounds()), obstacle_.rounding));
     find_near_triangles(triangles);
     const float front = front_of_triangles(triangles);
-    for (const EndCells::PointAtTriangle& at : cells_.near_triangles) {
-      if (at.is_far_side) continue;
+    for (const EndCells::PointAtTriangle& at : cells_.near_triangles)
       if (const auto hit = ObstacleTriangle(obstacle_, triangles, at.triangle)
                                .meet({at.from, at.to}, at.inside, body_.spacing(), front))
         add(at.point->anchor, at.point->anchor.of(body_.ends), *hit);
-    }
     try_edges_of_triangles(triangles, reach);
   }
 
   /// Of a plate of triangles the body is in front of one side and behind the other one, which a point that has been pressed into the plate,
   /// or rests on it, would seem to have been pressed through.
-  /// @param near  of one point
-  void leave_out_far_sides(const KnownTriangles& triangles, std::span<EndCells::PointAtTriangle> near) const {
+  /// @param begin  of one point's triangles, the last ones there are
+  void leave_out_far_sides(const KnownTriangles& triangles, std::size_t begin) {
+    const auto near = std::span(cells_.near_triangles).subspan(begin);
     // None of them face each other where all face nearly the same way, as those of a ground do.
     const auto is_alike = [&](const EndCells::PointAtTriangle& at) {
       const KnownTriangles::Face &first = triangles.face(near[0].triangle),
@@ -318,6 +322,8 @@ class ObstacleContacts {
         if (nearer.is_over(far.from, kNear * body_.spacing())) far.is_far_side = true;
       }
     }
+    const auto far_sides = std::ranges::remove_if(near, &EndCells::PointAtTriangle::is_far_side);
+    cells_.near_triangles.resize(cells_.near_triangles.size() - far_sides.size());
   }
 
   /// Of each point those near its way; if there are none, or its body is behind one, those that it has been pressed through, at some depth.
@@ -347,7 +353,7 @@ class ObstacleContacts {
                           });
         if (near().empty() || is_behind_any(triangles, near(), front))
           add_pressed_through(triangles, at, first);
-        leave_out_far_sides(triangles, near());
+        leave_out_far_sides(triangles, first);
       });
     });
   }
@@ -502,15 +508,13 @@ class ObstacleContacts {
 }  // namespace
 
 float EndCells::last_side_of(std::uint32_t rigid, std::uint32_t part) const {
-  const auto known = std::ranges::find_if(
-      sides_, [&](const Side& side) { return side.rigid == rigid && side.part == part; });
+  const auto known = std::ranges::find_if(sides_, Side::of(rigid, part));
   return known != sides_.end() && known->side < 0 ? -1.0f : 1.0f;
 }
 
 float EndCells::side_of(std::uint32_t rigid, std::uint32_t part, int seen) {
   constexpr int kMostDoubts = 12;
-  auto known = std::ranges::find_if(
-      sides_, [&](const Side& side) { return side.rigid == rigid && side.part == part; });
+  auto known = std::ranges::find_if(sides_, Side::of(rigid, part));
   if (known == sides_.end()) known = sides_.insert(known, Side{rigid, part, true, 0, 0});
   known->is_near = true;
   const int side = seen > 0 ? 1 : seen < 0 ? -1 : 0;

@@ -68,6 +68,9 @@ class EndCells {
 
  private:
   struct Side {
+    static auto of(std::uint32_t rigid, std::uint32_t part) {
+      return [=](const Side& side) { return side.rigid == rigid && side.part == part; };
+    }
     std::uint32_t rigid, part;
     bool is_near;  // in this substep
     int side;      // 0: not known

@@ -68,10 +68,6 @@ class ThinThings : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(As, ThinThings, testing::Values(false, true),
                          [](const auto& kind) { return kind.param ? "Triangles" : "ConvexShapes"; });
 
-void throw_body(SoftBody<3>& body, const Vector3f& velocity) {
-  for (std::size_t i = 0; i < body.positions().size(); ++i) body.set_particle(i, body.position(i), velocity);
-}
-
 /// Throws boxes and balls into the corners of a room that is 1.8 m wide.
 /// @param beyond  metres: so far do walls reach beyond the corners  @param most  metres: how deep they are in what is drawn in the end
 void throw_in_room(bool of_triangles, float thickness, float beyond, float alpha, float most) {
@@ -91,7 +87,7 @@ void throw_in_room(bool of_triangles, float thickness, float beyond, float alpha
         }
       }
       SoftBody<3>& body = w.bodies.add(model, Vector3f(0, 0, 0));
-      throw_body(body, 20 * direction.normalized());
+      body.add_velocity(20 * direction.normalized());
       w.run(60);
       const tests::DrawnBody drawn(body);
       for (const Plate& wall : walls)
