@@ -322,8 +322,11 @@ class ObstacleContacts {
         if (nearer.is_over(far.from, kNear * body_.spacing())) far.is_far_side = true;
       }
     }
-    const auto far_sides = std::ranges::remove_if(near, &EndCells::PointAtTriangle::is_far_side);
-    cells_.near_triangles.resize(cells_.near_triangles.size() - far_sides.size());
+    // Not by std::ranges::remove_if(), whose subranges Clang 14 cannot read.
+    std::vector<EndCells::PointAtTriangle>& all = cells_.near_triangles;
+    const auto is_far_side = [](const EndCells::PointAtTriangle& at) { return at.is_far_side; };
+    all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(begin), all.end(), is_far_side),
+              all.end());
   }
 
   /// Of each point those near its way; if there are none, or its body is behind one, those that it has been pressed through, at some depth.

@@ -69,7 +69,7 @@ class EndCells {
  private:
   struct Side {
     static auto of(std::uint32_t rigid, std::uint32_t part) {
-      return [=](const Side& side) { return side.rigid == rigid && side.part == part; };
+      return [=](const Side& known) { return known.rigid == rigid && known.part == part; };
     }
     std::uint32_t rigid, part;
     bool is_near;  // in this substep
