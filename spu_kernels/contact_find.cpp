@@ -44,7 +44,6 @@ constexpr uint32_t kBatch = 16;         // tasks that are fetched together
 constexpr uint32_t kInverses = 64;      // that are kept
 constexpr uint32_t kContactBatch = 64;  // contacts that go to main memory together
 #endif
-constexpr uint16_t kNoCell = 0xFFFF;
 constexpr uint32_t kGroups = 4;  // of a FindCandidate
 /// Something that is in the local store already.
 struct Part {
@@ -407,7 +406,7 @@ struct Sides {
 
 /// Inverses are of another body from now on.
 void forget_inverses() {
-  const vec_ushort8 nobody = spu_splats(kNoCell);
+  const vec_ushort8 nobody = spu_splats(kFindNoCell);
   for (uint32_t i = 0; i < kInverses; i += 8) *reinterpret_cast<vec_ushort8*>(ls.inverse_of + i) = nobody;
 }
 

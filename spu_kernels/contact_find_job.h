@@ -10,15 +10,18 @@ namespace softcell::spu {
 
 /// A cell of a model: its corners, the points in it that touch, and the distance from the surface at rest.
 struct alignas(16) FindCell {
-  uint16_t corner[8];                 ///< particles; corner k = bx + 2 by + 4 bz
-  int16_t grid[4];                    ///< place in the lattice, x y z and 0
+  uint16_t corner[8];  ///< particles; corner k = bx + 2 by + 4 bz
+  int16_t grid[4];     ///< place in the lattice, x y z; 1 of what lies beside a flat body, else 0
   uint16_t first_group, group_count;  ///< its FindGroups
-  uint16_t pad[2];
+  uint16_t inner_cell;                ///< well inside of the body near the cell: in this one; or kFindNoCell
+  uint16_t inner_node;                ///< at x + 4 y + 16 z of its 3 x 3 x 3 nodes
   /// In the cell no distance is less than least.xyz . (xi - 1/2) + least.w.
   float least[4];
   float field[28];  ///< distances at 3 x 3 x 3 nodes, in cells, below 0 inside; x fastest; the last is 0
 };
 static_assert(sizeof(FindCell) == 160, "ten quadwords");
+
+constexpr uint16_t kFindNoCell = 0xFFFF;
 
 /// Four points that touch, in one cell. A group that is not full has points whose allowance is kFindNoPoint.
 struct alignas(16) FindGroup {
@@ -130,6 +133,8 @@ struct alignas(128) FindJob {
 };
 static_assert(sizeof(FindJob) == 128, "one line");
 
+/// In cells at rest: what is deeper leaves by the face by which it has come in (contacts/entered_face.h).
+constexpr float kFindDeep = 0x1.99999ap-4f;  // 0.1
 /// What is near, in cells: what comes nearer in a step is in contact.
 constexpr float kFindNear = 0.005f;
 /// A body does not touch itself in cells whose middles are nearer at rest, in cells.

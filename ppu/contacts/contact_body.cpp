@@ -28,7 +28,8 @@ ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> shared)
               shared->lattice()),
       model_(std::move(shared)),
       lattice_(model_, &model_->lattice()),
-      masses_(model_->masses()) {
+      masses_(model_->masses()),
+      own_count_(lattice_->cells.size()) {
   weigh();
   place_touch_points();
   inner_places = find_inner_places(surface, lattice());
@@ -38,7 +39,8 @@ ContactModel::ContactModel(std::shared_ptr<const SoftBodyModel<3>> piece, const 
     : surface(whole.surface, piece->lattice(), piece->mesh(), piece->cracks()),
       model_(std::move(piece)),
       lattice_(model_, &model_->lattice()),
-      masses_(model_->masses()) {
+      masses_(model_->masses()),
+      own_count_(lattice_->cells.size()) {
   SC_ASSERT(model_->whole() == whole.model(), "a piece of {} particles of another body of {}",
             model_->particles(), whole.masses().size());
   weigh();
@@ -54,6 +56,7 @@ ContactModel::ContactModel(const FlatLayer& layer)
       own_masses_(layer.masses().begin(), layer.masses().end()),
       masses_(own_masses_),
       margin_cells_(layer.margin_cells().begin(), layer.margin_cells().end()) {
+  while (own_count_ < margin_cells_.size() && margin_cells_[own_count_].beside == own_count_) ++own_count_;
   weigh();
   place_touch_points();
   inner_places = find_inner_places(layer);

@@ -81,6 +81,8 @@ class ContactModel {
   bool is_flat() const { return !margin_cells_.empty(); }
   /// Whether a cell is none of the body's own.
   bool is_margin(std::uint32_t cell) const { return is_flat() && margin_cells_[cell].beside != cell; }
+  /// Without those of margins.
+  std::span<const Eigen::Vector3i> own_cells() const { return std::span(lattice_->cells).first(own_count_); }
   /// The same place as held by a cell of the body.
   Anchor held(const Anchor& anchor) const;
 
@@ -105,6 +107,7 @@ class ContactModel {
   float mass_ = 0;
   float thickness_ = 0;
   std::vector<MarginCell> margin_cells_;  // empty: there are none
+  std::size_t own_count_ = 0;             // of cells, which are the first ones
 };
 
 struct ContactBody;

@@ -414,12 +414,25 @@ void ContactStage::remember_who_presses(std::span<const ContactRigid> rigids) {
 
 void ContactStage::find_touched_cells() {
   touched_.resize(bodies_.size());
-  for (auto& cells : touched_) cells.clear();
+  const auto keep_each_once = [](std::vector<std::uint32_t>& cells) {
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  };
+  // Most cells are touched at several points. Room for each of them twice is enough.
+  const auto add = [&](std::uint32_t body, std::uint32_t cell) {
+    std::vector<std::uint32_t>& cells = touched_[body];
+    if (cells.size() == cells.capacity()) keep_each_once(cells);
+    cells.push_back(cell);
+  };
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    touched_[i].clear();
+    touched_[i].reserve(2 * bodies_[i].lattice().cells.size());
+  }
   for (std::size_t i = 0; i < group_count_; ++i) {
     const Group& group = groups_[i];
     const auto touch = [&](std::uint32_t cell_a, std::uint32_t cell_b) {
-      touched_[group.a].push_back(cell_a);
-      if (!group.with_rigid) touched_[group.b].push_back(cell_b);
+      add(group.a, cell_a);
+      if (!group.with_rigid) add(group.b, cell_b);
     };
     if (group.by_worker)
       for (const spu::SolveContact& contact : group.solved.contacts) touch(contact.cell_a, contact.cell_b);
@@ -427,10 +440,8 @@ void ContactStage::find_touched_cells() {
       for (const SoftContact& contact : group.contacts) touch(contact.a.cell, contact.b.cell);
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    auto& cells = touched_[i];
-    if (bodies_[i].asleep) cells.clear();
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    if (bodies_[i].asleep) touched_[i].clear();
+    keep_each_once(touched_[i]);
   }
 }
 

@@ -34,16 +34,23 @@ struct WayOut {
   Eigen::Vector3f normal;
 };
 
-/// @param allowance  TouchPoint::allowance of what is at a place of the body   @return none if that is not in contact
-inline std::optional<WayOut> way_out_of(const ContactBody& body, const DeformedPlace& place,
-                                        float allowance) {
-  const FieldValue field = body.model->surface.field(place.cell, place.xi);
-  const Eigen::Vector3f outwards = place.jacobian.inverse().transpose() * field.gradient;
+/// @param inverse  of DeformedPlace::jacobian   @param allowance  TouchPoint::allowance of what is there
+/// @return none if that is not in contact
+inline std::optional<WayOut> way_out_by(const FieldValue& field, const Eigen::Matrix3f& inverse,
+                                        float allowance, float spacing) {
+  const Eigen::Vector3f outwards = inverse.transpose() * field.gradient;
   const float steep = outwards.norm();
   if (!(steep > 0)) return {};
   const float distance = field.distance / steep + allowance;
-  if (distance > kNear * body.spacing()) return {};
+  if (distance > kNear * spacing) return {};
   return WayOut{distance, outwards / steep};
+}
+
+/// By the nearest face. @param allowance  TouchPoint::allowance of what is at a place of the body   @return none if that is not in contact
+inline std::optional<WayOut> way_out_of(const ContactBody& body, const DeformedPlace& place,
+                                        float allowance) {
+  return way_out_by(body.model->surface.field(place.cell, place.xi), place.jacobian.inverse(), allowance,
+                    body.spacing());
 }
 
 }  // namespace softcell::ppu

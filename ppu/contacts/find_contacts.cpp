@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ppu/contacts/contact_terms.h"
+#include "ppu/contacts/entered_face.h"
 #include "ppu/contacts/sharp_contacts.h"
 #include "ppu/surfaces/crack_sides.h"
 #include "ppu/surfaces/edge_points.h"
@@ -165,6 +166,12 @@ std::optional<Hit> hit_of_entered_face(const Obstacle& obstacle, const Way& way,
   return Hit{there.normal, there.normal.dot(way.to - entry) + allowance};
 }
 
+/// Of a cell, well inside of the body. @param places  the body's particles, at either end of the substep
+Vector3f inner_place(const ContactBody& body, std::uint32_t cell, std::span<const Vector3f> places) {
+  const CellPlace& inner = body.model->inner_places[cell];
+  return anchor_in_cell(body.lattice(), inner.cell, inner.xi).of(places);
+}
+
 class ObstacleContacts {
  public:
   ObstacleContacts(const ContactBody& body, EndCells& cells, std::span<const Obstacle> obstacles,
@@ -265,12 +272,6 @@ class ObstacleContacts {
     return triangle.height(near.inside);
   }
 
-  /// Of a cell, well inside of the body.
-  Vector3f inner_place(std::uint32_t cell) const {
-    const CellPlace& inner = body_.model->inner_places[cell];
-    return anchor_in_cell(body_.lattice(), inner.cell, inner.xi).of(body_.positions);
-  }
-
   /// A mesh is wound one way or the other, closed around something or around a room: most of what is near it says on which side the body
   /// is.
   /// @return  1 or -1, as ObstacleTriangle::meet() takes it
@@ -339,7 +340,7 @@ class ObstacleContacts {
     const float front = obstacle_.faces_bodies ? 1 : cells_.last_side_of(rigid_.number, obstacle_.part);
     cells_.near_triangles.clear();
     cells_.boxes().for_each_meeting(deep.box, [&](std::uint32_t cell) {
-      const Vector3f inner = inner_place(cell);
+      const Vector3f inner = inner_place(body_, cell, body_.positions);
       const Bounds<3> around = cells_.boxes().at(cell);
       if (!overlap(near_, Bounds<3>{around.low.cwiseMin(inner), around.high.cwiseMax(inner)})) return;
       const Vector3f inside = obstacle_.to_own(inner);
@@ -464,7 +465,7 @@ class ObstacleContacts {
 
   /// Not towards the far side of something thin, nor towards a face that has another shape behind it.
   Hit turned_outwards(const Hit& hit, const Way& way, std::uint32_t cell, float allowance) {
-    const Vector3f inside = obstacle_.to_own(inner_place(cell));
+    const Vector3f inside = obstacle_.to_own(inner_place(body_, cell, body_.positions));
     if (const auto near = hit_of_entered_face(obstacle_, way, inside, hit, allowance, body_.spacing()))
       return *near;
     if (!may_have_others_beside()) return hit;
@@ -580,7 +581,8 @@ void find_contacts(const ContactBody& a, EndCells& cells_of_a, const ContactBody
     };
     const auto place = cells_of_b.finder().find(to, is_apart);
     if (!place) return;
-    const auto way_out = way_out_of(b, *place, point.allowance);
+    const auto way_out = itself ? way_out_of(b, *place, point.allowance)
+                                : way_out_of(b, *place, point.allowance, inner_place(a, cell, a.ends) - to);
     if (!way_out) return;
     SoftContact& contact = contacts.emplace_back();
     contact.a = model.held(point.anchor);

@@ -38,7 +38,7 @@ float room_to_squeeze(const ContactBody& body, const DeformedPlace& place, const
   const Vector3f begin = lattice.cells[place.cell].cast<float>() + place.xi;
   float least = 1;
   for (int k = 0; k <= kCellsBehind; ++k) {
-    const auto cell = cell_at(lattice, begin + static_cast<float>(k) * inwards);
+    const auto cell = cell_at(lattice.cells, begin + static_cast<float>(k) * inwards);
     if (cell) least = std::min(least, volume_of_cell(body, *cell));
   }
   const float cells = std::min(least - kLeastAtEdges, kDeep - depth / body.spacing());

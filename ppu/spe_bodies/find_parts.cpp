@@ -9,6 +9,8 @@ namespace softcell::ppu {
 namespace {
 
 constexpr std::uint16_t kNone = 0xFFFF;
+const Bounds<3> kNowhere{Eigen::Vector3f::Constant(1e30f), Eigen::Vector3f::Constant(-1e30f)};
+
 Bounds<3> box_of(const spu::FindBoxes* boxes, std::size_t cell) {
   const spu::FindBoxes& four = boxes[cell / 4];
   const std::size_t lane = cell % 4;
@@ -99,8 +101,10 @@ bool FindParts::add_points_of(const Body& mine, const Body& other, bool mine_is_
       find_near(other, box_around(mine, left.first(count)), near_);
       if (near_.empty()) break;
       if (near_.size() > spu::kFindMaxNear) continue;
-      const Selection points = select(mine, left.first(count), true), others = select(other, near_, false);
+      const Selection points = select_points(mine, left.first(count));
+      Selection others = select_near(other, near_);
       if (bytes_of(points) + bytes_of(others) <= spu::kFindMaxBytes) {
+        add_rest(others, spu::kFindMaxBytes - bytes_of(points));
         parts_.push_back(mine_is_a ? Part{points, others} : Part{others, points});
         break;
       }
@@ -112,26 +116,65 @@ bool FindParts::add_points_of(const Body& mine, const Body& other, bool mine_is_
   return true;
 }
 
-FindParts::Selection FindParts::select(const Body& body, std::span<const std::uint16_t> cells,
-                                       bool with_points) {
+FindParts::Selection FindParts::select_points(const Body& body, std::span<const std::uint16_t> cells) {
+  Selection selection = select_near(body, cells);
+  selection.with_points = true;
+  mark_cells(selection);
+  for (const std::uint16_t cell : cells) {
+    selection.group_count += body.cells[cell].group_count;
+    const std::uint16_t inner = body.cells[cell].inner_cell;
+    if (cell_number_[inner] != spu::kFindNoCell) continue;
+    cell_number_[inner] = 0;
+    cells_.push_back(inner);
+  }
+  selection.cell_count = cells_.size() - selection.first_cell;
+  select_particles(selection);
+  return selection;
+}
+
+FindParts::Selection FindParts::select_near(const Body& body, std::span<const std::uint16_t> cells) {
   Selection selection;
   selection.body = body;
-  selection.with_points = with_points;
   selection.first_cell = cells_.size();
-  selection.cell_count = cells.size();
+  selection.cell_count = selection.near_count = cells.size();
   selection.first_particle = particles_.size();
   cells_.insert(cells_.end(), cells.begin(), cells.end());
-  number_.assign(body.ends.size(), kNone);
-  for (const std::uint16_t cell : cells) {
-    if (with_points) selection.group_count += body.cells[cell].group_count;
-    for (const std::uint16_t particle : body.cells[cell].corner) {
+  select_particles(selection);
+  return selection;
+}
+
+void FindParts::select_particles(Selection& selection) {
+  particles_.resize(selection.first_particle);
+  number_.assign(selection.body.ends.size(), kNone);
+  for (const std::uint16_t cell : cells_of(selection)) {
+    for (const std::uint16_t particle : selection.body.cells[cell].corner) {
       if (number_[particle] != kNone) continue;
       number_[particle] = 0;
       particles_.push_back(particle);
     }
   }
   selection.particle_count = particles_.size() - selection.first_particle;
-  return selection;
+}
+
+void FindParts::add_rest(Selection& selection, std::size_t most_bytes) {
+  const std::size_t cell_count = selection.cell_count;
+  mark_cells(selection);
+  for (std::size_t cell = 0; cell < selection.body.cells.size(); ++cell)
+    if (cell_number_[cell] == spu::kFindNoCell) cells_.push_back(static_cast<std::uint16_t>(cell));
+  selection.cell_count = cells_.size() - selection.first_cell;
+  if (bytes_of(selection) <= most_bytes) return;
+  selection.cell_count = cell_count;
+  cells_.resize(selection.first_cell + cell_count);
+}
+
+std::span<const std::uint16_t> FindParts::cells_of(const Selection& selection) const {
+  return std::span(cells_).subspan(selection.first_cell, selection.cell_count);
+}
+
+void FindParts::mark_cells(const Selection& selection) {
+  cell_number_.assign(selection.body.cells.size(), spu::kFindNoCell);
+  std::uint16_t number = 0;
+  for (const std::uint16_t cell : cells_of(selection)) cell_number_[cell] = number++;
 }
 
 void FindParts::set_counts(const Selection& selection, spu::FindBody& body) {
@@ -183,19 +226,23 @@ void FindParts::write(const Selection& selection) {
     ends[p] = body.ends[particle];
     begins[p] = body.begins[particle];
   }
+  mark_cells(selection);
+  const std::span<const std::uint16_t> numbers = cells_of(selection);
   spu::FindGroup* group = part_groups_.data() + selection.groups_at;
   std::size_t groups = 0;
   for (std::size_t c = 0; c < 4 * groups_of_boxes; ++c) {
-    const std::uint16_t number = cells_[selection.first_cell + std::min(c, selection.cell_count - 1)];
-    const Bounds<3> box = box_of(body.boxes, number);
+    const std::size_t last_one = std::min(c, numbers.size() - 1);
+    const bool is_near = last_one < selection.near_count;
+    const Bounds<3> box = is_near ? box_of(body.boxes, numbers[last_one]) : kNowhere;
     set_box(boxes[c / 4], c % 4, box.low, box.high);
-    if (c >= selection.cell_count) continue;
+    if (c >= numbers.size()) continue;
     spu::FindCell& cell = part_cells_[selection.cells_at + c];
-    cell = body.cells[number];
+    cell = body.cells[numbers[c]];
     for (std::uint16_t& corner : cell.corner) corner = number_[corner];
+    cell.inner_cell = cell_number_[cell.inner_cell];
     const std::uint16_t first = cell.first_group;
     cell.first_group = static_cast<std::uint16_t>(groups);
-    if (!selection.with_points) cell.group_count = 0;
+    if (!selection.with_points || !is_near) cell.group_count = 0;
     group = std::copy_n(body.groups.begin() + first, cell.group_count, group);
     groups += cell.group_count;
   }

@@ -4,7 +4,9 @@
 //     body a  [ ] [ ] [#] [#] [ ]      cells of a that are near b, some at a time, with their points;
 //     body b      [#] [#] [#] [ ]      and of b those that are near these, without points. Then the other way round.
 //
-// Both are written as small bodies of their own, which the kernel takes for whole ones. Each point is in one part only.
+// Both are written as small bodies of their own, which the kernel takes for whole ones. Each point is in one part only. Ways through the
+// bodies pass through other cells: of a the inner cells of those with points are there, of b, if they fit, all; without boxes, so that they
+// are near nothing.
 
 #include <cstdint>
 #include <span>
@@ -51,11 +53,12 @@ class FindParts {
   void restore(std::size_t part, spu::SolveContact& contact) const;
 
  private:
-  /// Some cells of a body, and the particles at their corners.
+  /// Some cells of a body, and particles at their corners.
   struct Selection {
     Body body;
     bool with_points = false;
     std::size_t first_cell = 0, cell_count = 0;          // in cells_
+    std::size_t near_count = 0;                          // of these, the first ones: with boxes
     std::size_t first_particle = 0, particle_count = 0;  // in particles_
     std::size_t group_count = 0;
     std::size_t cells_at = 0, groups_at = 0, state_at = 0;  // in main memory
@@ -65,7 +68,17 @@ class FindParts {
   };
 
   bool add_points_of(const Body& mine, const Body& other, bool mine_is_a, const Bounds<3>& common);
-  Selection select(const Body& body, std::span<const std::uint16_t> cells, bool with_points);
+  /// Cells with their points, and their inner cells.
+  Selection select_points(const Body& body, std::span<const std::uint16_t> cells);
+  /// Cells without points.
+  Selection select_near(const Body& body, std::span<const std::uint16_t> cells);
+  /// Of those cells in cells_.
+  void select_particles(Selection& selection);
+  /// All other cells of the body, without particles, if that makes no more than so many bytes. @pre it is the last selection
+  void add_rest(Selection& selection, std::size_t most_bytes);
+  std::span<const std::uint16_t> cells_of(const Selection& selection) const;
+  /// Sets cell_number_.
+  void mark_cells(const Selection& selection);
   void write(const Selection& selection);
   static void set_counts(const Selection& selection, spu::FindBody& body);
   static std::uint32_t bytes_of_state(const Selection& selection);
@@ -77,6 +90,7 @@ class FindParts {
   std::vector<std::uint16_t> cells_, particles_;  // of all selections: their numbers in the bodies
   std::vector<std::uint16_t> mine_, near_;        // of add()
   std::vector<std::uint16_t> number_;             // of each particle of a body in a selection; kNone
+  std::vector<std::uint16_t> cell_number_;        // of each cell; kFindNoCell
   dma::Buffer<spu::FindCell> part_cells_;
   dma::Buffer<spu::FindGroup> part_groups_;
   dma::Buffer<spu::FindEnd> part_state_;

@@ -53,9 +53,9 @@ std::vector<CellPlace> find_inner_places(const FlatLayer& layer) {
   return places;
 }
 
-std::optional<std::uint32_t> cell_at(const Lattice<3>& lattice, const Vector3f& place) {
+std::optional<std::uint32_t> cell_at(std::span<const Vector3i> cells, const Vector3f& place) {
   SC_ASSERT(place.allFinite(), "place {} in the lattice", place.x());
-  return find_cell<3>(lattice, place.array().floor().cast<int>());
+  return find_cell<3>(cells, place.array().floor().cast<int>());
 }
 
 }  // namespace softcell::ppu

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ppu/surfaces/contact_surface.h"
@@ -23,7 +24,7 @@ std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const La
 /// Of a flat layer: in the body's own cells. What a margin cell has is that of the cell beside which it moves.
 std::vector<CellPlace> find_inner_places(const FlatLayer& layer);
 
-/// The cell that has a place: in cells, from the lattice's grid index 0.
-std::optional<std::uint32_t> cell_at(const Lattice<3>& lattice, const Eigen::Vector3f& place);
+/// Which of some cells has a place: in cells, from the lattice's grid index 0. @param cells  ascending, as a lattice has them
+std::optional<std::uint32_t> cell_at(std::span<const Eigen::Vector3i> cells, const Eigen::Vector3f& place);
 
 }  // namespace softcell::ppu

@@ -7,85 +7,18 @@
 
 #include "common/reciprocal.h"
 #include "contact_find_job.h"
-#include "contacts/deformed_cell.h"
+#include "contacts/body_in_store.h"
+#include "contacts/entered_face.h"
 #include "contacts/quad_vector.h"
 #include "contacts/sequential_impulses.h"
 
 namespace softcell::spu {
-
-/// A FindCell as registers.
-struct CellAtRest {
-  vec_ushort8 corner;
-  vec_short8 place;  // grid index x y z 0, first group, number of groups
-  vec_float4 least;
-  float field[28];
-};
-static_assert(sizeof(CellAtRest) == sizeof(FindCell), "the same bytes");
-
-/// One body of a task in the local store.
-struct BodyInStore {
-  const CellAtRest* cells;
-  const vec_float4* groups;  // four quadwords each
-  const vec_float4* boxes;   // six quadwords for four cells
-  const vec_float4* ends;
-  const vec_float4* begins;  // and the roots of inverse masses
-  uint32_t cell_count, particle_count;
-  float spacing;
-};
 
 /// 1 / sqrt(x) for normal x > 0, to a unit in the last place or two.
 inline vec_float4 exact_reciprocal_sqrt(vec_float4 x) {
   const vec_float4 y = reciprocal_sqrt(x);
   const vec_float4 half = spu_mul(spu_mul(x, y), spu_splats(0.5f));
   return spu_madd(y, spu_nmsub(half, y, spu_splats(0.5f)), y);
-}
-
-/// The distance in cells and its derivatives by s, trilinear between the nodes of an eighth of the cell.
-/// @param s  -1/2..1/2; x y z
-/// @return   d/ds1, d/ds2, d/ds3, and the distance
-inline vec_float4 field_at(const float* field, vec_float4 s) {
-  const vec_float4 place = spu_madd(s, spu_splats(2.0f), spu_splats(1.0f));  // 0..2
-  const vec_int4 upper = (vec_int4)spu_andc(spu_splats(1u), spu_rlmask((vec_uint4)s, -31));
-  const int32_t x = spu_extract(upper, 0), y = spu_extract(upper, 1), z = spu_extract(upper, 2);
-  const vec_float4 f = spu_sub(place, spu_convtf(upper, 0));
-  const float* const node = field + (z * 3 + y) * 3 + x;
-  const vec_float4 low = {node[0], node[3], node[9], node[12]};  // x = 0: y z 00 10 01 11
-  const vec_float4 high = {node[1], node[4], node[10], node[13]};
-  const vec_float4 by_x = spu_sub(high, low);
-  const vec_float4 at_x = spu_madd(splat_lane<0>(f), by_x, low);
-  // Over y, then z: of the distances and of their slopes along x.
-  const vec_uchar16 y_low = {0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27};
-  const vec_uchar16 y_high = {4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31};
-  const vec_float4 low_y = spu_shuffle(at_x, by_x, y_low);  // d z0, d z1, dx z0, dx z1
-  const vec_float4 by_y = spu_sub(spu_shuffle(at_x, by_x, y_high), low_y);
-  const vec_float4 at_y = spu_madd(splat_lane<1>(f), by_y, low_y);
-  const vec_uchar16 z_low = {8, 9, 10, 11, 16, 17, 18, 19, 0, 1, 2, 3, 0, 1, 2, 3};
-  const vec_uchar16 z_high = {12, 13, 14, 15, 20, 21, 22, 23, 4, 5, 6, 7, 4, 5, 6, 7};
-  const vec_float4 z0 = spu_shuffle(at_y, by_y, z_low), z1 = spu_shuffle(at_y, by_y, z_high);
-  const vec_float4 by_z = spu_sub(z1, z0);                       // dxz, dyz, dz, dz
-  const vec_float4 at_z = spu_madd(splat_lane<2>(f), by_z, z0);  // dx, dy, d, d
-  const vec_uchar16 slope_z = {0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 12, 13, 14, 15};
-  const vec_float4 all = spu_shuffle(at_z, by_z, slope_z);  // dx dy dz d
-  const vec_float4 scale = {2.0f, 2.0f, 2.0f, 1.0f};
-  return spu_mul(all, scale);
-}
-
-/// Trilinear shares of a cell's corners.
-struct Shares {
-  vec_float4 low, high;  // z = 0 and z = 1
-};
-
-inline Shares shares_at(vec_float4 s) {
-  const vec_float4 half = spu_splats(0.5f);
-  const vec_float4 upper = spu_add(half, s), lower = spu_sub(half, s);
-  const vec_uchar16 x = {16, 17, 18, 19, 0, 1, 2, 3, 16, 17, 18, 19, 0, 1, 2, 3};
-  const vec_uchar16 y = {20, 21, 22, 23, 20, 21, 22, 23, 4, 5, 6, 7, 4, 5, 6, 7};
-  const vec_float4 xy = spu_mul(spu_shuffle(upper, lower, x), spu_shuffle(upper, lower, y));
-  return {spu_mul(xy, splat_lane<2>(lower)), spu_mul(xy, splat_lane<2>(upper))};
-}
-
-inline vec_float4 value_of(vec_ushort8 corner, const Shares& shares, const vec_float4* values) {
-  return value_at(Anchor{corner, {shares.low, shares.high}}, values);
 }
 
 /// Shares times roots of inverse masses.
@@ -112,6 +45,60 @@ struct PointInCell {
   float allowance;
 };
 
+/// The inverse of dx/ds at a place of a cell: each row times the determinant, and what that is the inverse of.
+struct InverseThere {
+  vec_float4 c1, c2, c3, by_volume;
+
+  explicit InverseThere(const PointInCell& point)
+      : c1(cross_of(point.f2, point.f3)),
+        c2(cross_of(point.f3, point.f1)),
+        c3(cross_of(point.f1, point.f2)),
+        by_volume(reciprocal(dot_in_all_lanes(point.f1, c1))) {}
+
+  /// What a vector is in the cell, before it is divided by the determinant. The fourth lane is c3's.
+  vec_float4 times_volume(vec_float4 v) const {
+    const vec_float4 along1 = dot_in_all_lanes(c1, v), along2 = dot_in_all_lanes(c2, v);
+    const vec_float4 along3 = dot_in_all_lanes(c3, v);
+    const vec_uchar16 two_and_one = {0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23};
+    return spu_shuffle(interleave_low(along1, along2), along3, two_and_one);
+  }
+
+  /// The gradient in the world of what has one in the cell; x y z 0.
+  vec_float4 gradient(vec_float4 by_s) const {
+    const vec_float4 sum = spu_madd(splat_lane<0>(by_s), c1,
+                                    spu_madd(splat_lane<1>(by_s), c2, spu_mul(splat_lane<2>(by_s), c3)));
+    return only_xyz(spu_mul(sum, by_volume));
+  }
+};
+
+/// Whether the cosine of the angle between two vectors is above 1/2, of which one lane tells.
+/// @param product  their dot product  @param squares  |a|^2 |b|^2
+inline bool are_alike(vec_float4 product, vec_float4 squares) {
+  const vec_float4 signed_square = spu_mul(product, absolute(product));
+  return spu_extract(spu_cmpgt(signed_square, spu_mul(squares, spu_splats(0.25f))), 0) != 0;
+}
+
+/// The field of the face by which a deep point has come in; `nearest`, the field where it is, if that is as good.
+inline vec_float4 field_of_entered_face(const BodyInStore& mine, const BodyInStore& other,
+                                        const PointInCell& point, const InverseThere& inverse, vec_float4 s,
+                                        vec_float4 nearest) {
+  vec_float4 inside;
+  if (mine.ends == other.ends || !inner_place(mine, point.cell_of_point, inside)) return nearest;
+  const vec_float4 along = only_xyz(spu_sub(inside, point.end));
+  const vec_float4 way = only_xyz(spu_mul(inverse.times_volume(along), inverse.by_volume));
+  const vec_float4 outwards = inverse.gradient(nearest), square = dot_in_all_lanes(outwards, outwards);
+  const vec_float4 squares = spu_mul(square, dot_in_all_lanes(along, along));
+  const vec_float4 length_squared = dot_in_all_lanes(way, way);
+  if (!(spu_extract(length_squared, 0) > 0x1.4484cp-100f)) return nearest;  // 1e-30
+  if (are_alike(dot_in_all_lanes(outwards, along), squares)) return nearest;
+  const vec_float4 direction = spu_mul(way, exact_reciprocal_sqrt(length_squared));
+  const vec_float4 field = field_of_face(other, point.cell, s, nearest, direction);
+  const vec_float4 others = inverse.gradient(field);
+  const bool is_same =
+      are_alike(dot_in_all_lanes(outwards, others), spu_mul(square, dot_in_all_lanes(others, others)));
+  return is_same ? nearest : field;
+}
+
 /// @param mine   the point's body, @param other  whose cell it is in
 /// @param swap   the contact is to be as seen from `other`
 /// @return       whether it is one
@@ -120,14 +107,11 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   const CellAtRest& there = other.cells[point.cell];
   const vec_float4 half = spu_splats(0.5f);
   const vec_float4 s = larger(smaller(point.s, half), negative(half));
-  const vec_float4 field = field_at(there.field, s);
-  const vec_float4 c1 = cross_of(point.f2, point.f3), c2 = cross_of(point.f3, point.f1);
-  const vec_float4 c3 = cross_of(point.f1, point.f2);
-  const vec_float4 by_volume = reciprocal(dot_in_all_lanes(point.f1, c1));
-  const vec_float4 outwards =
-      only_xyz(spu_mul(spu_madd(splat_lane<0>(field), c1,
-                                spu_madd(splat_lane<1>(field), c2, spu_mul(splat_lane<2>(field), c3))),
-                       by_volume));
+  const InverseThere inverse(point);
+  vec_float4 field = field_at(there.field, s);
+  if (spu_extract(field, 3) < -kFindDeep)
+    field = field_of_entered_face(mine, other, point, inverse, s, field);
+  const vec_float4 outwards = inverse.gradient(field);
   const vec_float4 square = dot_in_all_lanes(outwards, outwards);
   if (!(spu_extract(square, 0) > 0x1.4484cp-100f)) return false;  // 1e-30
   const vec_float4 flat = exact_reciprocal_sqrt(square);
@@ -145,11 +129,7 @@ inline bool make_contact(const BodyInStore& mine, const BodyInStore& other, cons
   for (int i = 0; i < 3; ++i) {
     const vec_float4 off =
         only_xyz(spu_sub(own_begin, value_of(there.corner, shares_at(held), other.begins)));
-    const vec_float4 along1 = dot_in_all_lanes(c1, off), along2 = dot_in_all_lanes(c2, off);
-    const vec_float4 along3 = dot_in_all_lanes(c3, off);
-    const vec_float4 along12 = interleave_low(along1, along2);
-    const vec_uchar16 two_and_one = {0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23};
-    held = spu_madd(spu_shuffle(along12, along3, two_and_one), by_volume, held);
+    held = spu_madd(inverse.times_volume(off), inverse.by_volume, held);
     held = larger(smaller(held, farthest), negative(farthest));
   }
   const Shares others = shares_at(held);

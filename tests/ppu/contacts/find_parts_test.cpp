@@ -64,6 +64,19 @@ std::size_t points_of(std::span<const spu::FindGroup> groups) {
   return points;
 }
 
+/// Whether something may be near a cell.
+bool has_box(const spu::FindBoxes* boxes, std::uint32_t cell) {
+  const spu::FindBoxes& four = boxes[cell / 4];
+  return four.low_x[cell % 4] <= four.high_x[cell % 4];
+}
+
+std::uint32_t near_cells_of(SpeRuntime& spes, const spu::FindBody& part) {
+  const auto* const boxes = reinterpret_cast<const spu::FindBoxes*>(at(spes, part.state_ea));
+  std::uint32_t count = 0;
+  for (std::uint32_t c = 0; c < part.cell_count; ++c) count += has_box(boxes, c) ? 1 : 0;
+  return count;
+}
+
 TEST(FindParts, HaveEachPointOnceAndFitIntoALocalStore) {
   SpeRuntime spes({.spes = 1});
   const ContactModel contact(make_soft_body_model(make_sphere(0.62f, 24), settings_of(0.13f)));
@@ -77,8 +90,8 @@ TEST(FindParts, HaveEachPointOnceAndFitIntoALocalStore) {
     spu::FindTask task{};
     parts.describe(i, task.a, task.b);
     EXPECT_LE(spu::find_bytes(task), spu::kFindMaxBytes);
-    EXPECT_LE(task.a.cell_count, spu::kFindMaxNear);
-    EXPECT_LE(task.b.cell_count, spu::kFindMaxNear);
+    EXPECT_LE(near_cells_of(spes, task.a), spu::kFindMaxNear);
+    EXPECT_LE(near_cells_of(spes, task.b), spu::kFindMaxNear);
     EXPECT_TRUE((task.a.group_count == 0) != (task.b.group_count == 0)) << "points of one side";
     for (const auto& [side, sum] : {std::pair{&task.a, &points_of_a}, std::pair{&task.b, &points_of_b}}) {
       if (side->group_count == 0) continue;
@@ -131,9 +144,19 @@ TEST(FindParts, AreOfTheBodiesUnderOtherNumbers) {
       there.cell_a = static_cast<std::uint16_t>(c);
       parts.restore(i, there);
       const spu::FindCell& whole = a.model.cells[there.cell_a];
-      EXPECT_TRUE(std::ranges::equal(whole.corner, there.a.particle));
       EXPECT_TRUE(std::ranges::equal(whole.field, cells[c].field));
       EXPECT_TRUE(std::ranges::equal(whole.grid, cells[c].grid));
+      if (cells[c].group_count != 0) {
+        ASSERT_LT(cells[c].inner_cell, of_a.cell_count);
+        EXPECT_TRUE(
+            std::ranges::equal(a.model.cells[whole.inner_cell].grid, cells[cells[c].inner_cell].grid));
+        EXPECT_EQ(whole.inner_node, cells[c].inner_node);
+      }
+      if (!has_box(boxes, c)) {
+        EXPECT_EQ(cells[c].group_count, 0);
+        continue;
+      }
+      EXPECT_TRUE(std::ranges::equal(whole.corner, there.a.particle));
       EXPECT_EQ(boxes[c / 4].low_y[c % 4], a.boxes[there.cell_a / 4].low_y[there.cell_a % 4]);
       for (int k = 0; k < 8; ++k) {
         EXPECT_EQ(ends[cells[c].corner[k]].x, a.ends[there.a.particle[k]].x);

@@ -13,6 +13,7 @@
 #include "contact_world.h"
 #include "ppu/contacts/find_contacts.h"
 #include "ppu/contacts/rigid_sets.h"
+#include "ppu/numbers/box_around.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
 #include "support/slow_build.h"
@@ -152,6 +153,36 @@ TEST_P(SpeContactsFind, WhatThePpuFindsOfBodiesThatDoNotFitIntoALocalStoreTogeth
     total += found.contacts.size();
   }
   EXPECT_GT(total, 300u);
+}
+
+/// Points that are deep leave by the face by which they came in, in both.
+TEST(SpeContacts, WhatThePpuFindsOfBodiesThatArePressedFlatIntoEachOther) {
+  const ContactModel box(make_soft_body_model(make_box({0.6f, 0.4f, 0.6f}, 0.08f), settings_of(0.1f)));
+  const ContactModel ball(make_soft_body_model(make_sphere(0.3f, 14), settings_of(0.1f)));
+  Worker worker;
+  for (const ContactModel* const above : {&box, &ball}) {
+    PlacedBody first(box, {0, 0, 0}, {0, 0, 0}, 0), second(*above, {0, 0, 0}, {0, 0, 0}, 0);
+    const auto press = [](PlacedBody& placed, const Vector3f& position) {
+      const Lattice<3>& lattice = placed.body.model->lattice();
+      for (std::size_t i = 0; i < lattice.particles.size(); ++i) {
+        placed.positions[i] = lattice.rest_position(i).cwiseProduct(Vector3f(1.2f, 0.4f, 1.1f)) + position;
+        placed.body.ends[i] = placed.positions[i];
+      }
+      placed.body.positions = placed.positions;
+      placed.body.box = box_around<Bounds<3>>(placed.body.positions);
+    };
+    press(first, {0, 0, 0});
+    press(second, {0.35f, 0.11f, 0.25f});
+    const std::vector<ContactBody> bodies{first.body, second.body};
+    const FoundContacts found = worker.found(bodies);
+    expect_what_the_ppu_finds(found, bodies[0], bodies[1]);
+    EXPECT_GT(found.contacts.size(), 50u);
+    const auto upright = std::ranges::count_if(found.contacts, [](const spu::SolveContact& contact) {
+      return vector_of(contact.normal).y() < -0.5f;
+    });
+    EXPECT_GT(upright, static_cast<std::ptrdiff_t>(found.contacts.size() * 8 / 10))
+        << "of " << found.contacts.size() << ": the first body goes down";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Bent, SpeContactsFind, ::testing::Values(0.0f, 0.5f, 1.5f));
