@@ -94,6 +94,14 @@ Anchor ContactModel::held(const Anchor& anchor) const {
   return anchor_in_cell(lattice(), margin_cells_[anchor.cell].beside, xi);
 }
 
+std::optional<std::uint32_t> ContactModel::cell_at(const Eigen::Vector3f& place) const {
+  // Both parts of the list ascend.
+  const std::span<const Eigen::Vector3i> cells(lattice().cells);
+  if (const auto own = ppu::cell_at(cells.first(own_count_), place)) return own;
+  const auto margin = ppu::cell_at(cells.subspan(own_count_), place);
+  return margin ? std::optional(static_cast<std::uint32_t>(*margin + own_count_)) : std::nullopt;
+}
+
 /// In each cell points of the surface come first.
 void ContactModel::place_touch_points() {
   const auto homes = homes_of_particles(lattice());

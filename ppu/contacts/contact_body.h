@@ -81,8 +81,8 @@ class ContactModel {
   bool is_flat() const { return !margin_cells_.empty(); }
   /// Whether a cell is none of the body's own.
   bool is_margin(std::uint32_t cell) const { return is_flat() && margin_cells_[cell].beside != cell; }
-  /// Without those of margins.
-  std::span<const Eigen::Vector3i> own_cells() const { return std::span(lattice_->cells).first(own_count_); }
+  /// The cell, of the body or of a margin, that has a place: in cells, from the lattice's grid index 0.
+  std::optional<std::uint32_t> cell_at(const Eigen::Vector3f& place) const;
   /// The same place as held by a cell of the body.
   Anchor held(const Anchor& anchor) const;
 

@@ -2,8 +2,6 @@
 
 #include <Eigen/Geometry>
 
-#include "ppu/surfaces/inner_places.h"
-
 namespace softcell::ppu {
 namespace {
 
@@ -26,7 +24,7 @@ std::optional<FieldValue> field_of_face(const ContactModel& model, const Deforme
   Vector3f way = Vector3f::Zero();
   for (int step = 0; field.distance < -kDeepAtRest; ++step) {
     way -= (field.distance + kDeepAtRest / 2) * direction;
-    const auto cell = cell_at(model.own_cells(), begin + way);
+    const auto cell = model.cell_at(begin + way);
     if (!cell || step == kMostStepsAtRest) return {};
     field = model.surface.field(*cell, begin + way - low(*cell));
   }

@@ -34,7 +34,6 @@ FindModel::FindModel(const ContactModel& model) {
     spu::FindCell& cell = cells.emplace_back();
     std::copy(lattice.corners[c].begin(), lattice.corners[c].end(), cell.corner);
     for (int d = 0; d < 3; ++d) cell.grid[d] = static_cast<std::int16_t>(lattice.cells[c][d]);
-    cell.grid[3] = model.is_margin(c) ? 1 : 0;
     const CellPlace& inner = model.inner_places[c];
     cell.inner_cell = static_cast<std::uint16_t>(inner.cell);
     cell.inner_node = static_cast<std::uint16_t>(2 * inner.xi.x() + 8 * inner.xi.y() + 32 * inner.xi.z());

@@ -48,6 +48,7 @@ std::vector<CellPlace> find_inner_places(const FlatLayer& layer) {
   while (own < cells.size() && cells[own].beside == own) ++own;
   std::vector<CellPlace> places =
       deepest_nodes(layer.surface(), std::span(layer.lattice()->cells).first(own));
+  for (CellPlace& place : places) place.xi.z() = 0.5f;  // in the plane, where points are
   for (std::uint32_t margin = own; margin < cells.size(); ++margin)
     places.push_back(CellPlace(places[cells[margin].beside]));
   return places;

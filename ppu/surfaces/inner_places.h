@@ -21,7 +21,7 @@ struct CellPlace {
 
 /// Of each cell the deepest of the field's nodes in it and in the cells beside it.
 std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const Lattice<3>& lattice);
-/// Of a flat layer: in the body's own cells. What a margin cell has is that of the cell beside which it moves.
+/// Of a flat layer: in the body's own cells, and in the plane. What a margin cell has is that of the cell beside which it moves.
 std::vector<CellPlace> find_inner_places(const FlatLayer& layer);
 
 /// Which of some cells has a place: in cells, from the lattice's grid index 0. @param cells  ascending, as a lattice has them

@@ -5,6 +5,7 @@
 #include <box2d/b2_circle_shape.h>
 #include <box2d/b2_edge_shape.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -135,6 +136,46 @@ TEST_P(FlatContacts, OneBodyRestsOnAnother) {
   const float gap = lowest(above) - highest(below);
   EXPECT_LT(gap, 0.02f * 0.25f);
   EXPECT_GT(gap, -0.2f * 0.25f);
+}
+
+/// The deepest particle of one body in what is drawn of another one, in cells.
+float deepest_in_others(const std::vector<SoftBody<2>*>& bodies) {
+  float deepest = 0;
+  for (const SoftBody<2>* body : bodies) {
+    Eigen::AlignedBox2f box;
+    for (const Vector2f& p : body->positions()) box.extend(p);
+    for (const SoftBody<2>* other : bodies)
+      if (other != body)
+        for (const Vector2f& p : other->positions())
+          if (box.contains(p)) deepest = std::max(deepest, depth_in(*body, p));
+  }
+  return deepest;
+}
+
+/// What is deep in another body leaves by the face by which it came in, however flat that one is pressed.
+TEST_P(FlatContacts, StacksOfSoftBodiesDoNotMerge) {
+  for (const Eigen::Vector2i& size : {Eigen::Vector2i(6, 4), Eigen::Vector2i(8, 2), Eigen::Vector2i(6, 1)}) {
+    for (const float alpha : {0.15f, 0.3f}) {
+      SCOPED_TRACE(testing::Message() << size.x() << " x " << size.y() << " cells, alpha " << alpha);
+      const auto w = world();
+      w->add_box({0, -1}, {20, 1});
+      const SoftBodySettings settings{
+          .cell_size = 0.25f, .half_width = 1, .density = 5, .alpha = alpha, .damping = 0.2f};
+      std::vector<SoftBody<2>*> bodies;
+      for (int i = 0; i < 5; ++i) {
+        const float aside = i % 2 == 0 ? 0.1f : -0.1f;
+        bodies.push_back(
+            &w->soft.add(rectangle_model(size, settings), {aside, 0.3f + 1.3f * static_cast<float>(i)}));
+        for (std::size_t p = 0; p < bodies.back()->positions().size(); ++p)
+          bodies.back()->set_particle(p, bodies.back()->position(p), {0, -2});
+      }
+      w->run(4);
+      for (int i = 0; i < 10; ++i) {
+        w->run(0.1f);
+        EXPECT_LT(deepest_in_others(bodies), 0.1f) << "after " << 4 + 0.1 * i << " seconds";
+      }
+    }
+  }
 }
 
 TEST_P(FlatContacts, KeepMomentum) {
