@@ -2,14 +2,14 @@
 // By which face of another body a point has come in.
 //
 // Of what is deep in a body that is pressed flat the nearest place of the surface at rest is often at its rim, as above and below there is
-// more at rest than there is now: two bodies on each other would be pushed sideways, and into each other. The way towards the inside of the
-// point's own body meets the face that the two have in common:
+// more at rest than there is now: two bodies on each other would be pushed sideways, and into each other.
 //
-//      a  ____*____      *  well inside of a
-//        |    |    |     x  a point of a
-//     .__|____|____|__.  ^  the face of b that the way meets: b's surface there is at a right angle to it, or nearly so
-//     |  '----x----'  |
-//     |  b            |
+//      a  .--------------.
+//         |       *      |      * well inside of a
+//    .----+-------o------+-.    o the face of b that the way from x to * meets: by it x goes back
+//    |    '-------x------' |    x a point of a
+//  b |                     |
+//    '---------------------'
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
