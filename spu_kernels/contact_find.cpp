@@ -38,7 +38,7 @@ namespace {
 enum Tag : uint32_t { kTagTask = 0, kTagIn = 1, kTagOut = 2 };
 
 #ifdef SOFTCELL_CHECKED  // its code is twice as large
-constexpr uint32_t kBatch = 1, kInverses = 8, kContactBatch = 8;
+constexpr uint32_t kBatch = 1, kInverses = 8, kContactBatch = 4;
 #else
 constexpr uint32_t kBatch = 16;         // tasks that are fetched together
 constexpr uint32_t kInverses = 64;      // that are kept

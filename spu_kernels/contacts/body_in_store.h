@@ -1,5 +1,7 @@
 #pragma once
 // A body of a task in the local store: its cells, and the distances from its surface at rest.
+//
+// What is used in several places is not inlined: the checked flavour of the kernel has hardly room for its code.
 
 #include <spu_intrinsics.h>
 #include <stdint.h>
@@ -33,7 +35,7 @@ struct BodyInStore {
 /// The distance in cells and its derivatives by s, trilinear between the nodes of an eighth of the cell.
 /// @param s  -1/2..1/2; x y z
 /// @return   d/ds1, d/ds2, d/ds3, and the distance
-inline vec_float4 field_at(const float* field, vec_float4 s) {
+__attribute__((noinline)) inline vec_float4 field_at(const float* field, vec_float4 s) {
   const vec_float4 place = spu_madd(s, spu_splats(2.0f), spu_splats(1.0f));  // 0..2
   const vec_int4 upper = (vec_int4)spu_andc(spu_splats(1u), spu_rlmask((vec_uint4)s, -31));
   const int32_t x = spu_extract(upper, 0), y = spu_extract(upper, 1), z = spu_extract(upper, 2);
@@ -74,7 +76,8 @@ inline Shares shares_at(vec_float4 s) {
   return {spu_mul(xy, splat_lane<2>(lower)), spu_mul(xy, splat_lane<2>(upper))};
 }
 
-inline vec_float4 value_of(vec_ushort8 corner, const Shares& shares, const vec_float4* values) {
+__attribute__((noinline)) inline vec_float4 value_of(vec_ushort8 corner, const Shares& shares,
+                                                     const vec_float4* values) {
   return value_at(Anchor{corner, {shares.low, shares.high}}, values);
 }
 
