@@ -13,9 +13,8 @@ struct alignas(16) FindCell {
   uint16_t corner[8];                 ///< particles; corner k = bx + 2 by + 4 bz
   int16_t grid[4];                    ///< place in the lattice, x y z and 0
   uint16_t first_group, group_count;  ///< its FindGroups
-  uint16_t
-      inner_cell;  ///< that of a place well inside of the body near this cell; kFindNoCell: it is not there
-  uint16_t inner_node;  ///< the place: x + 4 y + 16 z of the inner cell's 3 x 3 x 3 nodes
+  uint16_t inner_cell;                ///< has a place well inside of the body, near this cell; or kFindNoCell
+  uint16_t inner_node;                ///< the place: x + 4 y + 16 z of its 3 x 3 x 3 nodes
   /// In the cell no distance is less than least.xyz . (xi - 1/2) + least.w.
   float least[4];
   float field[28];  ///< distances at 3 x 3 x 3 nodes, in cells, below 0 inside; x fastest; the last is 0

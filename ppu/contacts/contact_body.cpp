@@ -55,8 +55,8 @@ ContactModel::ContactModel(const FlatLayer& layer)
       lattice_(layer.lattice()),
       own_masses_(layer.masses().begin(), layer.masses().end()),
       masses_(own_masses_),
-      margin_cells_(layer.margin_cells().begin(), layer.margin_cells().end()) {
-  while (own_count_ < margin_cells_.size() && margin_cells_[own_count_].beside == own_count_) ++own_count_;
+      margin_cells_(layer.margin_cells().begin(), layer.margin_cells().end()),
+      own_count_(layer.own_cells()) {
   weigh();
   place_touch_points();
   inner_places = find_inner_places(layer);

@@ -117,7 +117,7 @@ bool FindParts::add_points_of(const Body& mine, const Body& other, bool mine_is_
 }
 
 FindParts::Selection FindParts::select_points(const Body& body, std::span<const std::uint16_t> cells) {
-  Selection selection = select_near(body, cells);
+  Selection selection = select_cells(body, cells);
   selection.with_points = true;
   mark_cells(selection);
   for (const std::uint16_t cell : cells) {
@@ -133,18 +133,22 @@ FindParts::Selection FindParts::select_points(const Body& body, std::span<const 
 }
 
 FindParts::Selection FindParts::select_near(const Body& body, std::span<const std::uint16_t> cells) {
+  Selection selection = select_cells(body, cells);
+  select_particles(selection);
+  return selection;
+}
+
+FindParts::Selection FindParts::select_cells(const Body& body, std::span<const std::uint16_t> cells) {
   Selection selection;
   selection.body = body;
   selection.first_cell = cells_.size();
   selection.cell_count = selection.near_count = cells.size();
   selection.first_particle = particles_.size();
   cells_.insert(cells_.end(), cells.begin(), cells.end());
-  select_particles(selection);
   return selection;
 }
 
 void FindParts::select_particles(Selection& selection) {
-  particles_.resize(selection.first_particle);
   number_.assign(selection.body.ends.size(), kNone);
   for (const std::uint16_t cell : cells_of(selection)) {
     for (const std::uint16_t particle : selection.body.cells[cell].corner) {

@@ -72,7 +72,9 @@ class FindParts {
   Selection select_points(const Body& body, std::span<const std::uint16_t> cells);
   /// Cells without points.
   Selection select_near(const Body& body, std::span<const std::uint16_t> cells);
-  /// Of those cells in cells_.
+  /// Of one of these, without inner cells and particles.
+  Selection select_cells(const Body& body, std::span<const std::uint16_t> cells);
+  /// Of those cells in cells_. @pre it is the last selection
   void select_particles(Selection& selection);
   /// All other cells of the body, without particles, if that makes no more than so many bytes. @pre it is the last selection
   void add_rest(Selection& selection, std::size_t most_bytes);

@@ -221,6 +221,12 @@ FlatLayer::FlatLayer(Maker maker)
       beyond_(std::move(maker.beyond)),
       first_beyond_(std::move(maker.first_beyond)) {}
 
+std::size_t FlatLayer::own_cells() const {
+  std::size_t own = 0;
+  while (own < margin_cells_.size() && margin_cells_[own].beside == own) ++own;
+  return own;
+}
+
 void FlatLayer::lift(std::span<const Vector2f> flat, float half, std::vector<Vector3f>& lifted) const {
   const std::size_t columns = lattice_->particles.size() / 2;
   SC_ASSERT(flat.size() + first_beyond_.size() - 1 == columns,

@@ -45,6 +45,7 @@ class FlatLayer {
   /// kg, of each particle; 0 of those that margin cells alone have.
   std::span<const float> masses() const { return masses_; }
   std::span<const MarginCell> margin_cells() const { return margin_cells_; }  ///< of each cell
+  std::size_t own_cells() const;  ///< how many of the cells are the body's: the first ones
   /// As crack_sides(); of margin cells 0.
   std::span<const std::uint32_t> crack_sides() const { return crack_sides_; }
 

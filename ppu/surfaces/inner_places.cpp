@@ -44,12 +44,11 @@ std::vector<CellPlace> find_inner_places(const ContactSurface& surface, const La
 
 std::vector<CellPlace> find_inner_places(const FlatLayer& layer) {
   const std::span<const MarginCell> cells = layer.margin_cells();
-  std::uint32_t own = 0;
-  while (own < cells.size() && cells[own].beside == own) ++own;
+  const std::size_t own = layer.own_cells();
   std::vector<CellPlace> places =
       deepest_nodes(layer.surface(), std::span(layer.lattice()->cells).first(own));
   for (CellPlace& place : places) place.xi.z() = 0.5f;  // in the plane, where points are
-  for (std::uint32_t margin = own; margin < cells.size(); ++margin)
+  for (std::size_t margin = own; margin < cells.size(); ++margin)
     places.push_back(CellPlace(places[cells[margin].beside]));
   return places;
 }
