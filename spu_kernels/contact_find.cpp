@@ -498,7 +498,8 @@ class Contacts {
 
  private:
   /// All of the same four groups. @param i  the first of them; becomes the first one of others
-  bool find_of_cell(const Sides& sides, uint32_t& i) {
+  // Inlined, as Clang would do, its points would take stack also where a search begins anew.
+  __attribute__((noinline)) bool find_of_cell(const Sides& sides, uint32_t& i) {
     const FindCandidate first = ls.candidates[i];
     const CellMap map = in_all_lanes(deformed_cell(sides.mine.cells[first.cell].corner, sides.mine.ends));
     FourPoints points[kGroups];
@@ -531,7 +532,8 @@ class Contacts {
 enum class Candidates { kThere, kNotKept, kTooMany };
 
 /// Of four near cells to ls.bounds.
-void bound_four(const Sides& sides, const NearCells& near, uint32_t first) {
+// Not inlined: its arrays are not needed together with the points of a cell.
+__attribute__((noinline)) void bound_four(const Sides& sides, const NearCells& near, uint32_t first) {
   vec_float4 middle[4], row1[4], row2[4], row3[4], reach[4], lengths[4], slope[4];
   for (uint32_t i = 0; i < 4; ++i) {
     const uint32_t k = first + i < near.count ? first + i : near.count - 1;
