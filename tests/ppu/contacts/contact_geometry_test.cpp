@@ -11,7 +11,6 @@
 #include <random>
 #include <vector>
 
-#include "place_of.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/mesh/outer_surface.h"
 #include "ppu/mesh/solid.h"
@@ -584,7 +583,7 @@ TEST(CellFinder, FindsPlacesInATwistedLattice) {
   RandomPoints random;
   for (std::uint32_t cell = 0; cell < lattice.cells.size(); ++cell) {
     const Vector3f xi = random.in_cube(0.45f) + Vector3f::Constant(0.5f);
-    const Vector3f p = place_of(anchor_in_cell(lattice, cell, xi), twisted);
+    const Vector3f p = anchor_in_cell(lattice, cell, xi).of(twisted);
     const auto found = finder.find(p, [](std::uint32_t) { return true; });
     ASSERT_TRUE(found);
     EXPECT_EQ(found->cell, cell);

@@ -18,7 +18,6 @@
 #include "../fracture/crack_depth.h"
 #include "../soft_body_2d_scenes.h"
 #include "drawn_flat.h"
-#include "place_of.h"
 #include "ppu/contacts/contact_body.h"
 #include "ppu/lattice/outline_distance.h"
 #include "ppu/surfaces/flat_layer.h"
@@ -85,7 +84,7 @@ TEST(FlatLayer, IsALayerWithTheDrawnEdgeInMarginCells) {
     // A place of a margin cell is the same place beyond the cell beside.
     const Anchor there = anchor_in_cell(layer, c, {0.25f, 0.75f, 0.5f}), held = contact.held(there);
     EXPECT_FALSE(contact.is_margin(held.cell));
-    EXPECT_LT((place_of(there, places) - place_of(held, places)).norm(), 1e-5f);
+    EXPECT_LT((there.of(places) - held.of(places)).norm(), 1e-5f);
     for (const std::uint32_t particle : held.particle) EXPECT_LT(particle, 2 * model->particles());
   }
   for (const SurfacePointAtRest& point : contact.surface.points()) EXPECT_EQ(point.xi.z(), 0.5f);
