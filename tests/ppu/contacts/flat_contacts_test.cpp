@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -138,15 +139,17 @@ TEST_P(FlatContacts, OneBodyRestsOnAnother) {
 }
 
 /// The deepest particle of one body in what is drawn of another one, in cells.
-float deepest_in_others(const std::vector<SoftBody<2>*>& bodies) {
+float deepest_in_others(const std::vector<SoftBody<2>*>& bodies, const std::vector<DrawnFlat>& drawn) {
   float deepest = 0;
-  for (const SoftBody<2>* body : bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
     Eigen::AlignedBox2f box;
-    for (const Vector2f& p : body->positions()) box.extend(p);
+    for (const Vector2f& p : bodies[i]->positions()) box.extend(p);
+    std::vector<Vector2f> places;
     for (const SoftBody<2>* other : bodies)
-      if (other != body)
-        for (const Vector2f& p : other->positions())
-          if (box.contains(p)) deepest = std::max(deepest, depth_in(*body, p));
+      if (other != bodies[i])
+        std::ranges::copy_if(other->positions(), std::back_inserter(places),
+                             [&](const Vector2f& p) { return box.contains(p); });
+    deepest = std::max(deepest, drawn[i].depth(places));
   }
   return deepest;
 }
@@ -168,10 +171,12 @@ TEST_P(FlatContacts, StacksOfSoftBodiesDoNotMerge) {
         for (std::size_t p = 0; p < bodies.back()->positions().size(); ++p)
           bodies.back()->set_particle(p, bodies.back()->position(p), {0, -2});
       }
+      std::vector<DrawnFlat> drawn;
+      for (const SoftBody<2>* body : bodies) drawn.emplace_back(*body);
       w->run(4);
       for (int i = 0; i < 10; ++i) {
         w->run(0.1f);
-        EXPECT_LT(deepest_in_others(bodies), 0.1f) << "after " << 4 + 0.1 * i << " seconds";
+        EXPECT_LT(deepest_in_others(bodies, drawn), 0.1f) << "after " << 4 + 0.1 * i << " seconds";
       }
     }
   }
@@ -207,10 +212,11 @@ TEST_P(FlatContacts, AThinThingStaysOutside) {
   SoftBodySettings settings = calm();
   settings.alpha = 0.8f;
   SoftBody<2>& body = w->soft.add(rectangle_model({8, 3}, settings), {0.05f, 1.6f});
+  const DrawnFlat drawn(body);
   float deepest = 0;
   for (int i = 0; i < 600; ++i) {
     w->soft.step(kStep2d);
-    deepest = std::max(deepest, depth_in(body, {0, 1}));
+    deepest = std::max(deepest, drawn.depth({{0, 1}}));
   }
   ASSERT_LT(body.centre_of_mass().y(), 1.6f) << "it has not come down to the needle";
   EXPECT_LT(deepest, 0.1f);
@@ -403,12 +409,13 @@ TEST_P(FlatContacts, RestitutionIsTheLargerOfBoth) {
     settings.alpha = 1;
     settings.damping = 1;
     SoftBody<2>& body = w->soft.add(rectangle_model({4, 4}, settings), {0, 2.125f});
+    const DrawnFlat drawn(body);
     float top = 0;
     bool was_down = false;
     for (int i = 0; i < 240; ++i) {
       w->soft.step(kStep2d);
       was_down = was_down || body.linear_momentum().y() > 0;
-      if (was_down) top = std::max(top, lowest(body));
+      if (was_down) top = std::max(top, drawn.lowest());
     }
     EXPECT_NEAR(top, 0.36f * 2, 0.05f * 2);
   }
@@ -439,8 +446,9 @@ TEST_P(FlatContacts, WhatFliesIsMetWhereverItBegins) {
     for (int place = 0; place < 12; ++place) {
       const auto w = world(0);
       const SoftBody<2>& body = w->soft.add(rectangle_model({8, 8}, calm(kCell)), {0, 0});
+      const DrawnFlat drawn(body);
       float left = 0;
-      for (const Vector2f& at : drawn_edge(body)) left = std::min(left, at.x());
+      for (const Vector2f& at : drawn.edge()) left = std::min(left, at.x());
       const float gap = (from_rest ? 0.01f : 0.7f) + kSpeed * kStep2d * static_cast<float>(place) / 12;
       b2BodyDef definition;
       definition.type = b2_dynamicBody;
@@ -455,7 +463,7 @@ TEST_P(FlatContacts, WhatFliesIsMetWhereverItBegins) {
       for (int i = 0; i < 16; ++i) {
         w->run(kStep2d);
         const b2Vec2 at = disc->GetPosition();
-        deepest = std::max(deepest, depth_in(body, {at.x + kRadius, at.y}));
+        deepest = std::max(deepest, drawn.depth({{at.x + kRadius, at.y}}));
       }
       EXPECT_LT(deepest, 0.2f) << gap << " m before the body";
       EXPECT_LT(disc->GetLinearVelocity().x, kSpeed / 2) << "it has met nothing";
@@ -474,14 +482,17 @@ TEST_P(FlatContacts, LightCratesCarryABody) {
     std::array<b2Body*, 2> crates{};
     for (std::size_t i = 0; i < crates.size(); ++i)
       crates[i] = w->add_box({0, 0.3f + 0.6f * static_cast<float>(i)}, {0.8f, 0.3f}, density);
+    const DrawnFlat drawn(body);
     float deepest = 0;
     for (int i = 0; i < 90; ++i) {
       w->run(1.0f / 60);
+      std::vector<Vector2f> places;
       for (const b2Body* const crate : crates)
         for (const float x : {-0.8f, -0.4f, 0.0f, 0.4f, 0.8f}) {
           const b2Vec2 place = crate->GetWorldPoint({x, 0.3f});
-          deepest = std::max(deepest, depth_in(body, {place.x, place.y}));
+          places.emplace_back(place.x, place.y);
         }
+      deepest = std::max(deepest, drawn.depth(places));
     }
     EXPECT_LT(deepest, 0.35f) << mass;
     w->run(4);

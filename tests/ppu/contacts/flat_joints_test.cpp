@@ -58,12 +58,14 @@ struct UnderABlock {
     float most = 0;
     for (int frame = 0; frame < frames; ++frame) {
       w->run(1.0f / 60);
+      std::vector<Vector2f> places;
       for (const auto& [body, half] : planks)
         for (int i = -6; i <= 6; ++i)
           for (const float y : {-half.y, half.y}) {
             const b2Vec2 place = body->GetWorldPoint({half.x * static_cast<float>(i) / 6, y});
-            most = std::max(most, depth_in(block, {place.x, place.y}));
+            places.emplace_back(place.x, place.y);
           }
+      most = std::max(most, drawn.depth(places));
     }
     return most;
   }
@@ -74,6 +76,7 @@ struct UnderABlock {
   std::unique_ptr<World2d> w;
   b2Body& ground;
   SoftBody<2>& block;
+  DrawnFlat drawn{block};
   std::vector<Plank> planks;
 };
 
