@@ -14,7 +14,8 @@ file(WRITE ${project}/CMakeLists.txt ${text})
 
 # Packages that are installed on this machine are no help.
 step("configuring" ${CMAKE_COMMAND} -S ${project} -B ${build} -G ${GENERATOR} -DCMAKE_DISABLE_FIND_PACKAGE_softcell=ON
-  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_BUILD_TESTS=OFF -DSOFTCELL_UNITY_BUILD=ON)
+  -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DSOFTCELL_BUILD_TESTS=OFF
+  -DSOFTCELL_UNITY_BUILD=ON -DSOFTCELL_PRECOMPILED_HEADERS=ON)
 step("building" ${CMAKE_COMMAND} --build ${build} --parallel 2)
 step("testing" ${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure)
 file(GLOB_RECURSE pictures ${build}/jelly_on_spes/*.png)
