@@ -25,7 +25,6 @@
 #include "softcell/soft_bodies/skin_2d.h"
 #include "softcell/soft_bodies/state_hash.h"
 #include "softcell/spe_bodies/spe_runtime.h"
-#include "support/slow_build.h"
 
 namespace softcell::ppu {
 namespace {
@@ -423,7 +422,6 @@ TEST_P(FlatContacts, RestitutionIsTheLargerOfBoth) {
 
 /// A box of ten times its mass lies on a body, and goes no deeper.
 TEST_P(FlatContacts, AHeavyBoxRestsOnABody) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   const auto w = world();
   w->add_box({0, -1}, {10, 1});
   SoftBodySettings settings = calm();
@@ -473,7 +471,6 @@ TEST_P(FlatContacts, WhatFliesIsMetWhereverItBegins) {
 
 /// Two crates, one on the other, each of a hundredth, or a tenth, of its mass.
 TEST_P(FlatContacts, LightCratesCarryABody) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float mass : {0.01f, 0.1f}) {
     const auto w = world();
     w->add_box({0, -1}, {10, 1});

@@ -20,7 +20,6 @@
 #include "drawn_flat.h"
 #include "ppu/box2d/joint_rows_2d.h"
 #include "softcell/spe_bodies/spe_runtime.h"
-#include "support/slow_build.h"
 
 namespace softcell::ppu {
 namespace {
@@ -93,7 +92,6 @@ class FlatJoints : public testing::TestWithParam<bool> {
 
 /// A plate that hangs in the world, by each kind of joint.
 TEST_P(FlatJoints, APlateThatHangsCarriesABlock) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   const auto weld = [](UnderABlock& s, b2Body& plate) {
     s.join<b2WeldJointDef>(s.ground, plate, b2Vec2(-1.5f, 0));
   };
@@ -125,7 +123,6 @@ TEST_P(FlatJoints, APlateThatHangsCarriesABlock) {
 }
 
 TEST_P(FlatJoints, ABridgeOfPlanksCarriesABlock) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float mass : {1.0f, 0.1f}) {
     const auto s = scene();
     constexpr int kPlanks = 8;
@@ -145,7 +142,6 @@ TEST_P(FlatJoints, ABridgeOfPlanksCarriesABlock) {
 
 /// As fast as its motor, if that is strong enough; with half of what both weigh they come down at half of g.
 TEST_P(FlatJoints, ALiftIsAsStrongAsItsMotor) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float strength : {3.0f, 0.5f}) {
     const auto s = scene();
     constexpr float kMass = 0.1f;
@@ -172,7 +168,6 @@ TEST_P(FlatJoints, ALiftIsAsStrongAsItsMotor) {
 
 /// Wheels on springs, on a road.
 TEST_P(FlatJoints, ACarCarriesABlock) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   const auto s = scene();
   constexpr float kMass = 0.05f;
   s->w->add_box({0, -1.4f}, {20, 0.5f});

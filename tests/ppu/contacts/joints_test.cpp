@@ -268,7 +268,6 @@ class JointsUnderACube : public testing::TestWithParam<bool> {
 
 /// Plates of a tenth of its mass were three cells deep in it, and it fell through them.
 TEST_P(JointsUnderACube, APlateThatHangsInTheWorldCarriesIt) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float mass : {1.0f, 0.03f}) {
     const auto s = scene();
     btRigidBody& plate = s->add_plank({0.6f, 0.04f, 0.6f}, mass, {0, 0, 0});
@@ -280,7 +279,6 @@ TEST_P(JointsUnderACube, APlateThatHangsInTheWorldCarriesIt) {
 }
 
 TEST_P(JointsUnderACube, ALiftBringsItUp) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float mass : {1.0f, 0.03f}) {
     const auto s = scene();
     btRigidBody& plate = s->add_plank({0.6f, 0.04f, 0.6f}, mass, {0, 0, 0});
@@ -304,7 +302,6 @@ TEST_P(JointsUnderACube, ALiftBringsItUp) {
 
 /// It throws nothing into the air either.
 TEST_P(JointsUnderACube, ABridgeOfPlanksCarriesIt) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float mass : {1.0f, 0.1f}) {
     const auto s = scene();
     s->add_bridge(8, mass);
@@ -322,7 +319,6 @@ TEST_P(JointsUnderACube, ABridgeOfPlanksCarriesIt) {
 
 /// On wheels that are joined to what it lies on, and touch the floor: joints and touches in one set.
 TEST_P(JointsUnderACube, ACarCarriesIt) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   const auto s = scene();
   constexpr float kMass = 0.05f;
   s->w.add(std::make_unique<btBoxShape>(btVector3(50, 1, 50)), 0, {0, -1.3f, 0}, 1);
@@ -344,7 +340,6 @@ INSTANTIATE_TEST_SUITE_P(Solvers, JointsUnderACube, testing::Bool(),
 
 /// A plate that one joint wants here and others there, one of them with feedback: nothing is thrown out.
 TEST(Joints, ThatContradictEachOtherThrowNothing) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   UnderACube s(nullptr);
   btRigidBody& plate = s.add_plank({0.6f, 0.04f, 0.6f}, 0.05f, {0, 0, 0});
   const btVector3 axis(0, 0, 1);
@@ -371,7 +366,6 @@ btGeneric6DofConstraint& fix_a_plate(UnderACube& s) {
 }
 
 TEST(Joints, OneThatSaysWhatItBearsBearsASoftBody) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   UnderACube s(nullptr);
   btGeneric6DofConstraint& fixed = fix_a_plate(s);
   btJointFeedback feedback;
@@ -389,7 +383,6 @@ TEST(Joints, OneThatSaysWhatItBearsBearsASoftBody) {
 
 /// Bullet breaks it as under a rigid body. When the cube comes down it bears four times the weight of one.
 TEST(Joints, OneThatBreaksBreaksUnderASoftBody) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   for (const float strength : {3.0f, 30.0f}) {
     UnderACube s(nullptr);
     btGeneric6DofConstraint& fixed = fix_a_plate(s);

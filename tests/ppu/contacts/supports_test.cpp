@@ -169,7 +169,6 @@ struct CratesUnderACube {
 
 /// Crates of a tenth of its mass were in the middle of the cube, three cells deep, for good.
 TEST(LightBodies, ACrateCarriesAHeavyBody) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   SpeRuntime spes;
   for (SolverFactory* const solvers :
        {static_cast<SolverFactory*>(nullptr), static_cast<SolverFactory*>(&spes)}) {
@@ -190,7 +189,6 @@ TEST(LightBodies, ACrateCarriesAHeavyBody) {
 
 /// What one does to the other goes through it: it was half a cell deep in both for good.
 TEST(LightBodies, APlateBetweenTwoBodiesStaysBetweenThem) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   SpeRuntime spes;
   constexpr float kThick = 0.06f, kWide = 0.25f;
   for (SolverFactory* const solvers :
@@ -220,7 +218,6 @@ TEST(LightBodies, APlateBetweenTwoBodiesStaysBetweenThem) {
 
 /// Crates of a hundredth of a ball's mass to twice of it, many more than are solved together: none is thrown out.
 TEST(LightBodies, AHeapOfCratesAndBodiesStaysCalm) {
-  if (kSlowBuild) GTEST_SKIP() << "with sanitizers, which have the others";
   constexpr float kRoom = 0.8f;
   ContactWorld w;
   w.add_floor();
