@@ -94,9 +94,14 @@ function(softcell_add_library folder)
     set_target_properties(softcell_${folder} PROPERTIES SOFTCELL_EVERY_CHECK ON)
     set(own_headers ON)  # precompiled ones have other options
   endif()
-  # The command's own part of what tests do takes little time; optimising its checks takes as long again as compiling them.
-  if(SOFTCELL_SANITIZE MATCHES address AND folder MATCHES "^tool")
+  # What scenes and the command do themselves takes little time beside the libraries, and half as long to compile. With the address sanitizer
+  # optimising the checks takes as long again as compiling them. Benchmarks are optimised as what they measure. Precompiled headers have the
+  # libraries' options, which GCC would take for these sources, too.
+  if(SOFTCELL_SANITIZE MATCHES address AND folder MATCHES "^(demos|tool.*)$")
     target_compile_options(softcell_${folder} PRIVATE -O0)
+    set(own_headers ON)
+  elseif(NOT SOFTCELL_SANITIZE AND folder MATCHES "^(demos|tool|tool_demo)$")
+    target_compile_options(softcell_${folder} PRIVATE $<$<CONFIG:Release>:-O1>)
     set(own_headers ON)
   endif()
   if(SOFTCELL_PRECOMPILED_HEADERS AND NOT own_headers)
@@ -135,8 +140,8 @@ function(softcell_link_libraries_first program)
     endif()
   endwhile()
   set(commands ${files})
-  list(FILTER commands INCLUDE REGEX "softcell_tool")
-  list(FILTER files EXCLUDE REGEX "softcell_tool")
+  list(FILTER commands INCLUDE REGEX "softcell_(demos|tool)")
+  list(FILTER files EXCLUDE REGEX "softcell_(demos|tool)")
   list(APPEND files ${commands})
   list(JOIN files "," files)
   target_link_options(${program} PRIVATE "LINKER:--whole-archive,${files},--no-whole-archive")
