@@ -15,6 +15,9 @@ class Option;
 
 namespace softcell::tool {
 
+/// The most orders of DMA, random:1 to random:SEEDS, that a verb tries.
+inline constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
+
 /// Makes the option accept only a whole number in decimal digits from `least`, which is above 0, to `most`.
 /// @return the option
 CLI::Option* accept_whole_number(CLI::Option* option, std::uint64_t least, std::uint64_t most);

@@ -30,7 +30,7 @@ std::string value_at(std::span<const std::byte> bytes, std::size_t offset) {
   return fmt::format("0x{:08X} ({:g})", word, std::bit_cast<float>(word));
 }
 
-std::string joined(const std::vector<std::string>& parts) {
+std::string list_or_none(const std::vector<std::string>& parts) {
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
   return text.empty() ? "none" : text;
@@ -87,7 +87,7 @@ std::vector<Difference> differences(const KernelOutcome& first, const KernelOutc
       found.push_back({fmt::format("SPE {}", spe), 0, 0, first.ends[spe], other.ends[spe]});
   }
   if (first.findings != other.findings)
-    found.push_back({"findings", 0, 0, joined(first.findings), joined(other.findings)});
+    found.push_back({"findings", 0, 0, list_or_none(first.findings), list_or_none(other.findings)});
   for (std::size_t i = 0; i < first.buffers.size(); ++i)
     compare_buffers(first.buffers[i], other.buffers[i], found);
   return found;

@@ -19,8 +19,6 @@
 namespace softcell::tool {
 namespace {
 
-constexpr int kExitDifference = 1;
-constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
 constexpr std::uint64_t kMaxDeadline = 4'000'000;
 
 /// A library that is loaded before those of the program.
@@ -130,7 +128,7 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
     write_json(*json, all);
   }
   files.commit();
-  return differs ? kExitDifference : first.exit_status();
+  return differs ? kExitFailed : first.exit_status();
 }
 
 class RunVerb final : public Verb {

@@ -12,13 +12,12 @@
 #include "kernel_runs/kernel_file.h"
 #include "softcell/base/assert.h"
 #include "softcell/base/text.h"
+#include "verb/exit_status.h"
 
 namespace softcell::tool {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr int kExitFailed = 1, kExitFindings = 3;
 
 /// One kind of DMA command. A kind without an amount of its own has no second count.
 struct TrafficRow {

@@ -20,7 +20,6 @@
 namespace softcell::tool {
 namespace {
 
-constexpr int kExitDifference = 1;
 constexpr std::uint64_t kFirstSeed = 1;
 
 dma::Schedule schedule_of(std::uint64_t seed) { return {dma::Schedule::kRandom, seed}; }
@@ -80,7 +79,7 @@ class Explorer {
   }
 
   int exit_status() const {
-    return differences_.empty() ? tool::exit_status(image_, first_run_) : kExitDifference;
+    return differences_.empty() ? tool::exit_status(image_, first_run_) : kExitFailed;
   }
 
   bool replaces_inputs() const {

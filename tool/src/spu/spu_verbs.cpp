@@ -11,7 +11,6 @@
 namespace softcell::tool {
 namespace {
 
-constexpr std::uint64_t kMaxSeeds = 1'000'000'000;
 constexpr std::uint64_t kMaxPort = 65'535;
 
 ls_sim::Clock parse_clock(const std::string& text, bool is_timed) {

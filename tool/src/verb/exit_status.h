@@ -5,6 +5,8 @@
 
 namespace softcell::tool {
 
+/// What was run has failed, or two runs that have to be alike differ.
+inline constexpr int kExitFailed = 1;
 /// Checked kernels have findings.
 inline constexpr int kExitFindings = 3;
 /// The run was interrupted: the status that a shell reports for a process that SIGINT ended.
