@@ -11,6 +11,8 @@ namespace softcell::libspe2 {
 namespace {
 
 constexpr unsigned int kCallbacks = 256;
+constexpr unsigned int kLibraries =
+    4;  // numbers of C library, POSIX and others that SPU programs bring [libspe2] documented
 
 std::atomic<void*>& slot(unsigned int callnum) {
   static std::array<std::atomic<void*>, kCallbacks> slots{};
@@ -33,6 +35,7 @@ int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned 
   void* before = nullptr;
   switch (mode) {
     case SPE_CALLBACK_NEW:
+      if (callnum < kLibraries) return fail(EACCES);
       return slot(callnum).compare_exchange_strong(before, handler) ? 0 : fail(EACCES);
     case SPE_CALLBACK_UPDATE:
       before = slot(callnum).load();
@@ -46,6 +49,7 @@ int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned 
 
 int spe_callback_handler_deregister(unsigned int callnum) {
   if (callnum >= kCallbacks) return fail(EINVAL);
+  if (callnum < kLibraries) return fail(EACCES);
   return slot(callnum).exchange(nullptr) != nullptr ? 0 : fail(ESRCH);
 }
 

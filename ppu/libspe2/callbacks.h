@@ -4,7 +4,7 @@
 namespace softcell::libspe2 {
 
 /// A handler gets the local store and the word of the call: operation << 24 | local-store address.
-using Callback = int(void* ls_base, unsigned int data);
+using Callback = int(void* ls_base, unsigned int ls_address);
 
 /// @return  null: none. Any thread.
 Callback* callback_of(unsigned int callnum);

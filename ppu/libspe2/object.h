@@ -6,11 +6,11 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <memory>
 #include <mutex>
 #include <new>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -53,10 +53,10 @@ struct spe_context {
   std::mutex mutex;  ///< guards all below
   Registers registers;
   std::shared_ptr<const softcell::ls_sim::KernelImage> image;
-  bool goes_on = false;                 ///< the last run has stopped so that it can go on
-  unsigned int next_entry = 0;          ///< then at this address
-  std::optional<spe_stop_info_t> stop;  ///< not read yet
-  std::atomic<bool> has_stop{false};    ///< whether there is one, for who waits
+  bool goes_on = false;               ///< the last run has stopped so that it can go on
+  unsigned int next_entry = 0;        ///< then at this address
+  std::deque<spe_stop_info_t> stops;  ///< not read yet, the oldest first; of contexts with events
+  std::atomic<bool> has_stop{false};  ///< whether there is one, for who waits
 };
 
 namespace softcell::libspe2 {

@@ -27,6 +27,8 @@ using softcell::ls_sim::RunResult;
 
 namespace {
 
+/// Stops that nobody has read: as many as fit into the pipe that the original keeps them in; then the oldest is lost.
+constexpr std::size_t kMostStops = 65536 / sizeof(spe_stop_info_t);
 constexpr unsigned int kRunFlags = SPE_RUN_USER_REGS | SPE_NO_CALLBACKS;
 constexpr std::uint32_t kCallnumMask = 0xFF;  // [libspe2, newlib] documented
 constexpr int kStatusStopped = 0x2, kStatusHalted = 0x4,
@@ -120,7 +122,7 @@ Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
     const bool asks = stop.goes_on && (code & ~kCallnumMask) == kAssistedCalls;
     auto* const callback = asks && callbacks ? softcell::libspe2::callback_of(code & kCallnumMask) : nullptr;
     if (callback == nullptr) return outcome_of(stop.result);
-    if (const int result = callback(context.problem_state().local_store().data(), stop.assist)) {
+    if (const int result = callback(context.problem_state().local_store().data(), stop.assist.value)) {
       return failure(SPE_CALLBACK_ERROR, result, static_cast<int>(code << kStatusCodeShift) | kStatusStopped,
                      EFAULT);
     }
@@ -163,8 +165,11 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
     const std::lock_guard lock(context.mutex);
     context.goes_on = stop->goes_on;
     context.next_entry = stop->next.value;
-    context.stop = outcome.info;
-    context.has_stop = true;
+    if ((context.flags & SPE_EVENTS_ENABLE) != 0) {
+      if (context.stops.size() == kMostStops) context.stops.pop_front();
+      context.stops.push_back(outcome.info);
+      context.has_stop = true;
+    }
   }
   Machine::get().contexts().wake();
   if (stopinfo != nullptr) *stopinfo = outcome.info;
@@ -194,10 +199,10 @@ int spe_stop_info_read(spe_context_ptr_t spe, spe_stop_info_t* stopinfo) {
     if (stopinfo == nullptr) return fail(EINVAL);
     if ((context.flags & SPE_EVENTS_ENABLE) == 0) return fail(ENOTSUP);
     const std::lock_guard lock(context.mutex);
-    if (!context.stop) return fail(EAGAIN);
-    *stopinfo = *context.stop;
-    context.stop.reset();
-    context.has_stop = false;
+    if (context.stops.empty()) return fail(EAGAIN);
+    *stopinfo = context.stops.front();
+    context.stops.pop_front();
+    context.has_stop = !context.stops.empty();
     return 0;
   });
 }

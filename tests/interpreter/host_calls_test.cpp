@@ -100,6 +100,22 @@ TEST_F(HostCallsTest, PrintsWhatPrintfWould) {
   EXPECT_EQ(printed_, "-7|   42|beef|text|z|-1234567890123|0.667|1.2e+04|%|-1|     3|0x3fff0\n");
 }
 
+TEST_F(HostCallsTest, WritesHowManyCharactersThereAreSoFar) {
+  constexpr std::uint32_t kCounts = kVariable + 256;
+  memory_.set_word(kCounts, 0xFFFF'FFFF);
+  std::uint32_t at = kVariable;
+  for (const std::uint32_t argument : {kCounts, 7u, kCounts + 2}) {
+    memory_.set_word(at, argument);
+    at += 16;
+  }
+  set_argument(0, text("abc%hhn|%d%hn"));
+  set_argument(1, kVariable);
+  set_argument(2, kVariable + 128);
+  EXPECT_EQ(serve(kC99Call, 37), 5);
+  EXPECT_EQ(printed_, "abc|7");
+  EXPECT_EQ(memory_.word(kCounts), 0x03FF'0005u);
+}
+
 TEST_F(HostCallsTest, PrintsLinesAndCharacters) {
   set_argument(0, text("line"));
   serve(kC99Call, 25);

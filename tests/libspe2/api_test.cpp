@@ -224,6 +224,14 @@ TEST(SpeRun, StopInformationIsReadOnce) {
   EXPECT_EQ(stop.stop_reason, static_cast<unsigned>(SPE_STOP_AND_SIGNAL));
   EXPECT_EQ(stop.result.spe_signal_code, 0x11);
   EXPECT_FAILS(spe_stop_info_read(context, &stop), EAGAIN);
+  unsigned int entry = SPE_DEFAULT_ENTRY;
+  for (const int code : {0x11, 0x12, 0x13})
+    ASSERT_EQ(spe_context_run(context, &entry, 0, nullptr, nullptr, nullptr), code);
+  for (const int code : {0x11, 0x12, 0x13}) {
+    ASSERT_EQ(spe_stop_info_read(context, &stop), 0);
+    EXPECT_EQ(stop.result.spe_signal_code, code);
+  }
+  EXPECT_FAILS(spe_stop_info_read(context, &stop), EAGAIN);
   EXPECT_FAILS(spe_stop_info_read(gone(), &stop), ESRCH);
   const Context without(&pauses);
   EXPECT_FAILS(spe_stop_info_read(without, &stop), ENOTSUP);
@@ -267,6 +275,8 @@ TEST(SpeCallback, IsRegisteredUpdatedAndTakenAway) {
   EXPECT_FAILS(spe_callback_handler_register(nullptr, 20, SPE_CALLBACK_NEW), EINVAL);
   EXPECT_FAILS(spe_callback_handler_register(handler, 256, SPE_CALLBACK_NEW), EINVAL);
   EXPECT_FAILS(spe_callback_handler_register(handler, 20, 3), EINVAL);
+  EXPECT_FAILS(spe_callback_handler_register(handler, 3, SPE_CALLBACK_NEW), EACCES);
+  EXPECT_FAILS(spe_callback_handler_deregister(3), EACCES);
   EXPECT_FAILS(spe_callback_handler_register(handler, 20, SPE_CALLBACK_UPDATE), ESRCH);
   EXPECT_EQ(spe_callback_handler_register(handler, 20, SPE_CALLBACK_NEW), 0);
   EXPECT_FAILS(spe_callback_handler_register(handler, 20, SPE_CALLBACK_NEW), EACCES);

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -122,6 +123,20 @@ TEST_F(SpeGroupTest, RunsAnImageWithItsArgumentsAndGivesItsStatus) {
   EXPECT_EQ(group.statistics(1).jobs, 2u);
   EXPECT_EQ(group.statistics(1).dma.bytes(), 512u);
   EXPECT_EQ(group.statistics(0).jobs, 0u);
+}
+
+TEST_F(SpeGroupTest, APointerAsANumberIsALocalStoreAddressToDmaCommands) {
+  const KernelImage image = test_image("lists_by_number");
+  dma::Buffer<std::array<std::uint32_t, 32>> line(memory_, "line", 1);
+  SpeGroup group(memory_, {.spes = 1});
+  for (const std::uint64_t way : {0u, 1u}) {
+    std::iota(line.span()[0].begin(), line.span()[0].end(), 0u);
+    group.start(0, image, {.argp = line.ea().value, .envp = way});
+    const RunResult result = group.wait(0);
+    ASSERT_FALSE(result.fault) << result.fault->message();
+    EXPECT_EQ(line.span()[0][0], 16u);
+    EXPECT_EQ(line.span()[0][16], 0u);
+  }
 }
 
 TEST_F(SpeGroupTest, AKernelRoundsAndFlushesAsAnSpuDoes) {

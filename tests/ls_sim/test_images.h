@@ -37,6 +37,7 @@
   X(sees_mask)              \
   X(takes_turns)            \
   X(computes)               \
+  X(lists_by_number)        \
   X(stress_0)               \
   X(stress_1)               \
   X(stress_2)               \

@@ -80,7 +80,8 @@ std::unique_ptr<FormatArguments> AssistedCalls::variable_arguments(int number) {
 
 /// @param format_argument  the number of the argument with the format; the va_list follows it.
 std::string AssistedCalls::formatted(int format_argument) {
-  return format_text(memory_.text(argument(format_argument)), *variable_arguments(format_argument + 1));
+  return format_text(memory_.text(argument(format_argument)), *variable_arguments(format_argument + 1),
+                     memory_);
 }
 
 AssistedCalls::Result AssistedCalls::store_text(std::uint32_t to, std::uint32_t room,

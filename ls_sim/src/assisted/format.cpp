@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "call_memory.h"
+
 namespace softcell::ls_sim::assisted {
 namespace {
 
@@ -133,7 +135,13 @@ bool is_long_long(const std::string& length) {
   return length == "ll" || length == "q" || length == "j" || length == "L";
 }
 
-std::string format_text(const std::string& format, FormatArguments& arguments) {
+std::uint32_t integer_bytes(const std::string& length) {
+  if (length == "hh") return 1;
+  if (length == "h") return 2;
+  return is_long_long(length) ? 8 : 4;
+}
+
+std::string format_text(const std::string& format, FormatArguments& arguments, CallMemory& memory) {
   std::string text;
   for (std::size_t at = 0; at < format.size() && text.size() < kMostText;) {
     if (format[at] != '%') {
@@ -141,6 +149,10 @@ std::string format_text(const std::string& format, FormatArguments& arguments) {
     } else {
       const std::size_t begin = at++;
       const Conversion conversion = read_conversion(format, at, arguments);
+      if (conversion.kind == 'n') {
+        memory.set_value(arguments.next_word(), text.size(), integer_bytes(conversion.length));
+        continue;
+      }
       static const std::string kKinds = "diuoxXcspaAeEfFgG%";
       const bool known = conversion.kind != '\0' && kKinds.find(conversion.kind) != std::string::npos;
       text += known ? convert(conversion, arguments) : format.substr(begin, at - begin);

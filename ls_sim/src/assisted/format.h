@@ -6,6 +6,8 @@
 
 namespace softcell::ls_sim::assisted {
 
+class CallMemory;
+
 /// Where the arguments behind a format come from, one after another.
 class FormatArguments {
  public:
@@ -21,8 +23,11 @@ class FormatArguments {
 /// Whether a conversion's length says 64 bits.
 bool is_long_long(const std::string& length);
 
-/// What printf makes of them, cut at 2^20 characters. `l`, `z` and `t` are 32 bits, `ll` and `j` 64, `L` is a double, `%p` shows a local-store address. `%n`
-/// and what is no conversion are copied as they stand. [C17, 7.21.6.1]
-std::string format_text(const std::string& format, FormatArguments& arguments);
+/// Of an integer whose conversion has this length.
+std::uint32_t integer_bytes(const std::string& length);
+
+/// What printf makes of them, cut at 2^20 characters. `l`, `z` and `t` are 32 bits, `ll` and `j` 64, `L` is a double, `%p` shows a local-store address, and
+/// what is no conversion is copied as it stands. `%n` writes to `memory`. [C17, 7.21.6.1]
+std::string format_text(const std::string& format, FormatArguments& arguments, CallMemory& memory);
 
 }  // namespace softcell::ls_sim::assisted

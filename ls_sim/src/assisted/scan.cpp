@@ -107,7 +107,8 @@ class Scan {
         return match('%');
       case 'n':
         if (c.stores)
-          memory_.set_value(arguments_.next_word(), static_cast<std::uint64_t>(consumed_), size_of(c));
+          memory_.set_value(arguments_.next_word(), static_cast<std::uint64_t>(consumed_),
+                            integer_bytes(c.length));
         return true;
       case 'd':
       case 'i':
@@ -136,11 +137,6 @@ class Scan {
     }
   }
 
-  static std::uint32_t size_of(const ScanConversion& c) {
-    if (c.length == "hh") return 1;
-    if (c.length == "h") return 2;
-    return is_long_long(c.length) ? 8 : 4;
-  }
   static std::string width_of(const ScanConversion& c) { return c.width == 0 ? "" : std::to_string(c.width); }
 
   /// @return  whether there is a value, which has been counted if it is to be stored
@@ -155,7 +151,8 @@ class Scan {
     unsigned long long value = 0;
     const char kind = c.kind == 'p' ? 'x' : c.kind;
     if (!got_one(c, scan_one(from_, width_of(c) + "ll" + kind, &value, consumed_))) return false;
-    if (c.stores) memory_.set_value(arguments_.next_word(), value, c.kind == 'p' ? 4 : size_of(c));
+    if (c.stores)
+      memory_.set_value(arguments_.next_word(), value, c.kind == 'p' ? 4 : integer_bytes(c.length));
     return true;
   }
 

@@ -75,7 +75,7 @@ void SpuChannels::sync() {
 }
 
 /// The hardware's transfers go on while the SPU stands still.
-bool SpuChannels::stop(std::uint32_t code, std::uint32_t assist) {
+bool SpuChannels::stop(std::uint32_t code, dma::LocalStoreAddress assist) {
   if (stop_listener_ == nullptr) return false;
   while (move_something()) {
   }

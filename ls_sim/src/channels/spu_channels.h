@@ -30,7 +30,7 @@ class StopListener {
   /// Returns when the SPU is to go on.
   /// @param assist  as ChannelPort::stop(). @param next  the local-store address behind the instruction, as far as the engine knows it.
   /// @return  false: its run is to end.
-  virtual bool on_stop(std::uint32_t code, std::uint32_t assist, dma::LocalStoreAddress next) = 0;
+  virtual bool on_stop(std::uint32_t code, dma::LocalStoreAddress assist, dma::LocalStoreAddress next) = 0;
 };
 
 /// Used by the thread that runs the SPE. Before the SPE sleeps, the MFC moves all bytes that it can: the
@@ -90,7 +90,7 @@ class SpuChannels final : public ChannelPort {
   ChannelReply count(std::uint32_t channel) override;
   ChannelReply issue(const dma::MfcCommand& command) override;
   void sync() override;
-  bool stop(std::uint32_t code, std::uint32_t assist) override;
+  bool stop(std::uint32_t code, dma::LocalStoreAddress assist) override;
 
   /// Where a list command was issued whose element broke a rule: elements execute later, when the kernel is
   /// elsewhere.

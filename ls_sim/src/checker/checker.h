@@ -82,7 +82,9 @@ class Checker final : public ChannelPort, public AccessObserver {
     unsynced_.clear();
     to_.channels.sync();
   }
-  bool stop(std::uint32_t code, std::uint32_t assist) override { return to_.channels.stop(code, assist); }
+  bool stop(std::uint32_t code, dma::LocalStoreAddress assist) override {
+    return to_.channels.stop(code, assist);
+  }
   void on_access(const Access& access) override;
   void on_instruction(const ExecutedInstruction& instruction) override;
   UndefinedBits undefined_bits(dma::LocalStoreAddress quadword) override;

@@ -107,7 +107,9 @@ class Spe final : public dma::LocalStorePort, private dma::ReservationListener, 
       return port().issue(command);
     }
     void sync() override { spe_.checker_->sync(); }
-    bool stop(std::uint32_t code, std::uint32_t assist) override { return port().stop(code, assist); }
+    bool stop(std::uint32_t code, dma::LocalStoreAddress assist) override {
+      return port().stop(code, assist);
+    }
 
    private:
     ChannelPort& port() {

@@ -307,7 +307,7 @@ class Context final : public SpeContext, private StopListener {
                                   .detail = "the kernel was stopped before its first instruction"};
       }
       spe_.publish_statistics();
-      stop_ = {.result = std::move(result), .goes_on = false, .assist = 0, .next = spe_.position()};
+      stop_ = {.result = std::move(result), .goes_on = false, .assist = {}, .next = spe_.position()};
       SC_ASSERT(phase_ == (abandoned_ ? Phase::kStopped : Phase::kRunning),
                 "context {} ends run {} in phase {}", number_->value, run.number, phase_);
       phase_ = Phase::kIdle;
@@ -316,7 +316,7 @@ class Context final : public SpeContext, private StopListener {
     }
   }
 
-  bool on_stop(std::uint32_t code, std::uint32_t assist, dma::LocalStoreAddress next) override {
+  bool on_stop(std::uint32_t code, dma::LocalStoreAddress assist, dma::LocalStoreAddress next) override {
     SpeMonitor::Lock lock = monitor_.lock();
     stop_ = {.result = {code, std::nullopt, {}}, .goes_on = true, .assist = assist, .next = next};
     SC_ASSERT(phase_ == Phase::kRunning && !abandoned_, "context {} stops with code {} in phase {}",

@@ -14,7 +14,8 @@ namespace softcell::ls_sim {
 std::string demangled(std::string_view symbol) {
   constexpr std::size_t kLongestName = 1024;  // a longer one stays as it is
   std::string name(symbol);
-  if (name.size() > kLongestName) return name;
+  // The function also reads names of types: to it a function `f` of C is "float". [Itanium C++ ABI, mangling] documented
+  if (!symbol.starts_with("_Z") || name.size() > kLongestName) return name;
   int status = 0;
   char* const text = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status);
   SC_ASSERT(status != 0 || text != nullptr, "a name of {} characters is demangled to nothing", name.size());

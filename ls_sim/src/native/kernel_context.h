@@ -28,7 +28,8 @@ struct Environment {
   std::uint32_t access_bytes = 0, access_instruction = 0, access_stack_pointer = 0;
   std::uint32_t padding = 0;
   std::uint64_t job_image_ea = 0, job_ea = 0;
-  std::uint32_t reserved[16] = {};
+  std::uint32_t assist = 0;
+  std::uint32_t reserved[15] = {};
 };
 static_assert(sizeof(Environment) == 128);
 

@@ -119,6 +119,12 @@ class NativeEngine final : public Engine {
   std::uint32_t stack_high_water() const override;
 
  private:
+  /// Of what a kernel writes as one: on an SPU it is the same as a pointer, which here lies in the host's memory.
+  std::uint32_t local_store_address(std::uint32_t value) const {
+    const std::uint32_t offset = value - static_cast<std::uint32_t>(arena());
+    return offset < dma::kLocalStoreBytes ? offset : value;
+  }
+
   std::uintptr_t arena() const { return reinterpret_cast<std::uintptr_t>(local_store_.base()); }
   /// Read field by field: a copy of it all in wide pieces would wait for the kernel's narrow stores to leave
   /// the processor's store queue, which costs as much as the rest of a command.
@@ -301,7 +307,7 @@ std::optional<RunResult> NativeEngine::answer() {
     return RunResult{0, fault(dma::Rule::kDeadlineExceeded, "the kernel did not end in time")};
   if (context_.operation() == Operation::kStop) {
     RunResult end{context_.value & 0x3FFFu, std::nullopt};
-    if (!end.ended_normally() && channels_->stop(end.stop_code, 0)) return std::nullopt;
+    if (!end.ended_normally() && channels_->stop(end.stop_code, {})) return std::nullopt;
     return end;
   }
   if (context_.operation() == Operation::kAssist) {
@@ -312,7 +318,9 @@ std::optional<RunResult> NativeEngine::answer() {
       context_.reply = calls.serve(code, context_.value);
       return std::nullopt;
     }
-    if (channels_->stop(code, context_.value)) return std::nullopt;
+    auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
+    environment.assist = context_.value;
+    if (channels_->stop(code, {offsetof(native::Environment, assist)})) return std::nullopt;
     return RunResult{code, std::nullopt, {}};
   }
   if (context_.operation() == Operation::kHalt) {
@@ -441,12 +449,16 @@ ChannelReply NativeEngine::answer_channel() {
     const auto word = [](const std::uint32_t& stored) {
       return static_cast<const volatile std::uint32_t&>(stored);
     };
-    return channels_->issue(
-        {.word = context_.value,
-         .lsa = {word(environment.mfc_lsa)},
-         .ea = {std::uint64_t{word(environment.mfc_eah)} << 32 | word(environment.mfc_eal)},
-         .size = word(environment.mfc_size),
-         .tag = word(environment.mfc_tag)});
+    dma::MfcCommand command{
+        .word = context_.value,
+        .lsa = {local_store_address(word(environment.mfc_lsa))},
+        .ea = {std::uint64_t{word(environment.mfc_eah)} << 32 | word(environment.mfc_eal)},
+        .size = word(environment.mfc_size),
+        .tag = word(environment.mfc_tag)};
+    if (command.kind() == dma::CommandKind::kList)
+      command.ea.value =
+          (command.ea.value & ~std::uint64_t{UINT32_MAX}) | local_store_address(command.list_address().value);
+    return channels_->issue(command);
   }
   if (environment.mfc_tag_mask != tag_mask_) {
     tag_mask_ = environment.mfc_tag_mask;

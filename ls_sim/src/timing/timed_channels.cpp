@@ -158,7 +158,7 @@ void TimedChannels::trace_acknowledged(std::uint32_t tag) {
   trace_->complete_at(*stalled_commands_[tag], nanoseconds(complete));
 }
 
-bool TimedChannels::stop(std::uint32_t code, std::uint32_t assist) {
+bool TimedChannels::stop(std::uint32_t code, dma::LocalStoreAddress assist) {
   arrive();
   return to_.stop(code, assist);
 }

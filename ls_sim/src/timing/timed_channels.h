@@ -57,7 +57,7 @@ class TimedChannels final : public ChannelPort {
   ChannelReply count(std::uint32_t channel) override;
   ChannelReply issue(const dma::MfcCommand& command) override;
   void sync() override { to_.sync(); }
-  bool stop(std::uint32_t code, std::uint32_t assist) override;
+  bool stop(std::uint32_t code, dma::LocalStoreAddress assist) override;
 
  private:
   void arrive();

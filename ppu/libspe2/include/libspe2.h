@@ -62,7 +62,7 @@ int spe_program_load(spe_context_ptr_t spe, spe_program_handle_t* program);
 int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int runflags, void* argp, void* envp,
                     spe_stop_info_t* stopinfo);
 
-/* Why the context has stopped last; each stop can be read once. ENOTSUP: the context was made without
+/* Why the context has stopped: the oldest stop that was not read yet, of the last thousand. ENOTSUP: the context was made without
  * SPE_EVENTS_ENABLE. EAGAIN: there is nothing to be read. EINVAL: a null pointer. */
 int spe_stop_info_read(spe_context_ptr_t spe, spe_stop_info_t* stopinfo);
 
@@ -136,15 +136,15 @@ int spe_ls_size_get(spe_context_ptr_t spe);
 /* The registers of an area. EACCES: the context was made without SPE_MAP_PS. EINVAL: no such area. */
 void* spe_ps_area_get(spe_context_ptr_t spe, enum ps_area area);
 
-/* ---- calls of the PPU side by SPE programs: int handler(void* ls_base, unsigned int data), where `data` holds the
- * operation in its upper 8 bits and the local-store address of the arguments below. Any other result than 0 ends
- * spe_context_run(). */
+/* ---- calls of the PPU side by SPE programs: int handler(void* ls_base, unsigned int ls_address). At that
+ * address of the local store is the word behind the stop: the operation in its upper 8 bits, and below them the local-store
+ * address of the arguments. Any other result than 0 ends spe_context_run(). */
 
-/* callnum: 0 to 255. EINVAL: another one, a null handler, an unknown mode. EACCES: SPE_CALLBACK_NEW, and there is one.
- * ESRCH: SPE_CALLBACK_UPDATE, and there is none. */
+/* callnum: 4 to 255. EINVAL: one above, a null handler, an unknown mode. EACCES: SPE_CALLBACK_NEW, and there is one, or the
+ * number is one of the first four, which are the libraries'. ESRCH: SPE_CALLBACK_UPDATE, and there is none. */
 int spe_callback_handler_register(void* handler, unsigned int callnum, unsigned int mode);
 
-/* EINVAL: callnum is out of range. ESRCH: there is none. */
+/* EINVAL: callnum is out of range. EACCES: it is one of the libraries'. ESRCH: there is none. */
 int spe_callback_handler_deregister(unsigned int callnum);
 void* spe_callback_handler_query(unsigned int callnum);
 

@@ -16,7 +16,8 @@ enum {
   softcell_stop = 3,
   softcell_halt = 4,
   softcell_tag_status = 5,
-  softcell_sync = 8
+  softcell_sync = 8,
+  softcell_assist = 9
 };
 
 SC_C_INLINE volatile struct softcell_environment* softcell_environment(void) {

@@ -4,17 +4,18 @@ extern spe_program_handle_t calls;
 
 static int times;
 
-static int add(void* ls_base, unsigned int data) {
-  unsigned int* arguments = (unsigned int*)((char*)ls_base + (data & 0xFFFFFF));
-  CHECK(data >> 24 == 7);
+static int add(void* ls_base, unsigned int ls_address) {
+  const unsigned int word = *(unsigned int*)((char*)ls_base + ls_address);
+  unsigned int* arguments = (unsigned int*)((char*)ls_base + (word & 0xFFFFFF));
+  CHECK(word >> 24 == 7);
   arguments[0] += arguments[1];
   arguments[1] = (unsigned int)++times;
   return 0;
 }
 
-static int refuse(void* ls_base, unsigned int data) {
+static int refuse(void* ls_base, unsigned int ls_address) {
   (void)ls_base;
-  (void)data;
+  (void)ls_address;
   return 33;
 }
 

@@ -72,6 +72,8 @@ static void output(void) {
   CHECK(sprintf(text, "%d%d%d%d%d%d%d%d %g %g", 1, 2, 3, 4, 5, 6, 7, 8, 0.5, 1.5) == 16 &&
         strcmp(text, "12345678 0.5 1.5") == 0);
   CHECK(snprintf(text, 4, "%s", "truncated") == 9 && strcmp(text, "tru") == 0);
+  int count = 0;
+  CHECK(sprintf(text, "%s%n|%d", "abc", &count, 7) == 5 && count == 3 && strcmp(text, "abc|7") == 0);
   CHECK(sprintf(text, "%ld %zu %hd %*d %.3s", -5l, sizeof text, (short)-2, 4, 7, "abcdef") == 17);
 }
 

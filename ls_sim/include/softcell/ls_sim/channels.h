@@ -46,11 +46,11 @@ class ChannelPort {
   virtual void sync() = 0;
 
   /// The SPU has stopped with a code that does not end its program. Returns when the PPU side lets it go on.
-  /// @param assist  of a call of the PPU side (codes 0x2100 to 0x21FF): its operation and the local-store
-  ///                address of its arguments, operation << 24 | address; on an SPU, the word behind the
+  /// @param assist  of a call of the PPU side (codes 0x2100 to 0x21FF): where the word is that says what for,
+  ///                operation << 24 | the local-store address of the arguments; on an SPU, behind the
   ///                instruction. [libspe2, newlib] documented
   /// @return  whether it goes on; otherwise its run ends with this code.
-  virtual bool stop(std::uint32_t code, std::uint32_t assist) {
+  virtual bool stop(std::uint32_t code, dma::LocalStoreAddress assist) {
     static_cast<void>(code);
     static_cast<void>(assist);
     return false;

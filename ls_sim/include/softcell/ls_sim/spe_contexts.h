@@ -32,9 +32,8 @@ namespace softcell::ls_sim {
 struct ContextStop {
   RunResult result;
   bool goes_on = false;  ///< resume() continues behind the stop
-  /// Of a stop that asks the PPU side for a service (0x2100 to 0x21FF): what for, in the upper 8 bits, and the
-  /// local-store address of the arguments. [libspe2, newlib] documented
-  std::uint32_t assist = 0;
+  /// Of a stop that calls the PPU side (0x2100 to 0x21FF): as ChannelPort::stop().
+  dma::LocalStoreAddress assist = {};
   /// Where it would continue; also an address within a fault's instruction.
   dma::LocalStoreAddress next = {};
 };

@@ -1,4 +1,8 @@
 #pragma once
 // As newlib for the SPU declares it.
 
-extern "C" void __send_to_ppe(int signalcode, int opcode, void* data);
+#ifdef __cplusplus
+extern "C"
+#endif
+    void
+    __send_to_ppe(int signalcode, int opcode, void* data);
