@@ -48,6 +48,7 @@ Machine& Machine::get() {
     try {
       auto* made = new Machine;
       std::atexit(&Machine::at_exit);
+      std::at_quick_exit(&Machine::at_exit);
       map_registers();
       return made;
     } catch (const std::exception& error) {
@@ -84,6 +85,30 @@ void Machine::count_statistics(const ls_sim::SpeStatistics& statistics) {
   bytes_.fetch_add(statistics.dma.bytes(), std::memory_order_relaxed);
 }
 
+void Machine::count_context() {
+  if (contexts_made_.fetch_add(1, std::memory_order_relaxed) == 0) write_report_so_far();
+}
+
+void Machine::end_run() {
+  const std::size_t mistakes = findings_.size() + faults_.size();
+  {
+    const std::lock_guard lock(report_mutex_);
+    if (mistakes == reported_mistakes_) return;
+    reported_mistakes_ = mistakes;
+  }
+  write_report_so_far();
+}
+
+void Machine::write_report_so_far() {
+  if (settings_.report_file.empty() || process_ != getpid()) return;
+  const std::lock_guard lock(report_mutex_);
+  if (is_ending_) return;
+  try {
+    write_report(Report::kSoFar);
+  } catch (const std::exception&) {  // is said at the end, when it cannot be written either
+  }
+}
+
 void Machine::at_exit() {
   Machine& machine = get();
   if (machine.process_ != getpid()) return;  // a fork of the program
@@ -92,7 +117,8 @@ void Machine::at_exit() {
     machine.end_runs();
     machine.print_findings();
     machine.write_trace();
-    machine.write_report();
+    const std::lock_guard lock(machine.report_mutex_);
+    machine.write_report(Report::kWhole);
   } catch (const std::exception& error) {
     complain(error.what());
   }
@@ -122,7 +148,7 @@ void Machine::write_trace() const {
   if (trace_ != nullptr) trace_->write(settings_.trace_file);
 }
 
-void Machine::write_report() const {
+void Machine::write_report(Report which) const {
   if (settings_.report_file.empty()) return;
   base::JsonText json;
   json.raw("{\"contexts\":").number(static_cast<std::int64_t>(contexts_made_.load()));
@@ -131,6 +157,7 @@ void Machine::write_report() const {
   json.raw(",\"dma_bytes\":").number(static_cast<std::int64_t>(bytes_.load()));
   json.raw(",\"dma\":").string(to_string(settings_.schedule));
   json.raw(",\"checked\":").boolean(settings_.checked);
+  json.raw(",\"whole\":").boolean(which == Report::kWhole);
   json.raw(",\"findings\":");
   append(json, findings_.list());
   json.raw(",\"faults\":");

@@ -41,8 +41,11 @@ class Machine {
   /// Whether the end of the process ends all runs.
   bool is_ending() const { return is_ending_; }
 
-  void count_context() { contexts_made_.fetch_add(1, std::memory_order_relaxed); }
+  void count_context();
   void count_run() { runs_.fetch_add(1, std::memory_order_relaxed); }
+  /// A run has ended, and report() has been told of its fault. The report is brought up to date with what was found: a
+  /// program may end without its exit handlers, by _exit() or a signal.
+  void end_run();
   /// Adds up what a context has moved that is about to go.
   void count_statistics(const ls_sim::SpeStatistics& statistics);
 
@@ -52,7 +55,9 @@ class Machine {
   void end_runs();
   void print_findings() const;
   void write_trace() const;
-  void write_report() const;
+  enum class Report { kSoFar, kWhole };
+  void write_report(Report which) const;
+  void write_report_so_far();
 
   std::atomic<bool> is_ending_{false};
   const Settings settings_;
@@ -62,6 +67,8 @@ class Machine {
   std::unique_ptr<ls_sim::Trace> trace_;
   std::unique_ptr<ls_sim::SpeContexts> contexts_;
   std::atomic<std::uint64_t> contexts_made_{0}, runs_{0}, commands_{0}, bytes_{0};
+  std::mutex report_mutex_;  ///< guards the file and what follows
+  std::size_t reported_mistakes_ = 0;
 };
 
 /// The address at which a program finds the blocks of its heap: an allocator that was loaded before the C library,

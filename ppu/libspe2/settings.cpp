@@ -1,5 +1,7 @@
 #include "settings.h"
 
+#include <unistd.h>
+
 #include <charconv>
 #include <cstdlib>
 #include <stdexcept>
@@ -7,6 +9,8 @@
 
 namespace softcell::libspe2 {
 namespace {
+
+constexpr std::string_view kProcess = "%p";  // in the name of a file
 
 std::string_view value_of(const char* variable) {
   const char* const value = std::getenv(variable);
@@ -50,6 +54,8 @@ Settings settings_from_environment() {
   settings.deadline = milliseconds_of("SOFTCELL_DEADLINE_MS");
   settings.trace_file = value_of("SOFTCELL_TRACE");
   settings.report_file = value_of("SOFTCELL_REPORT");
+  if (const auto at = settings.report_file.find(kProcess); at != std::string::npos)
+    settings.report_file.replace(at, kProcess.size(), std::to_string(getpid()));
   return settings;
 }
 

@@ -17,7 +17,8 @@ struct Settings {
   bool checked = false;    ///< SOFTCELL_CHECKED: 0 or 1
   std::chrono::milliseconds deadline{0};  ///< SOFTCELL_DEADLINE_MS: of one run; 0: none
   std::string trace_file;                 ///< SOFTCELL_TRACE
-  std::string report_file;                ///< SOFTCELL_REPORT: what the run has done, as JSON
+  std::string
+      report_file;  ///< SOFTCELL_REPORT: what the run has done, as JSON; "%p" was replaced by the process's number
 };
 
 /// Reads them. @throws std::runtime_error  one has a value that is not allowed; the message names both.

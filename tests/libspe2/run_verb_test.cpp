@@ -62,6 +62,30 @@ TEST(RunVerb, FindsAForgottenWaitOfACheckedProgram) {
   EXPECT_EQ(json.at("report").at("findings").at(0).at("rule"), "load-in-flight");
 }
 
+TEST(RunVerb, LosesNoFindingOfAProgramThatEndsWithoutItsExitHandlers) {
+  const CommandResult exits = run_softcell("run --checked -- " + kForgets + " 0 _exit");
+  EXPECT_EQ(exits.status, 3) << exits.output;
+  EXPECT_TRUE(has(exits, "finding: SPE 0, kernel breaks_rules, breaks_rules.cpp:")) << exits.output;
+  EXPECT_TRUE(has(exits, "1 SPE context, ")) << exits.output;
+  EXPECT_TRUE(has(
+      exits, "2 findings; it ended by _exit() or a signal, so the counts are those of before its last runs"))
+      << exits.output;
+  const CommandResult quickly = run_softcell("run --checked -- " + kForgets + " 0 quick_exit");
+  EXPECT_EQ(quickly.status, 3) << quickly.output;
+  EXPECT_TRUE(has(quickly, "2 findings\n")) << quickly.output;
+  const CommandResult aborts = run_softcell("run --checked -- " + kForgets + " 0 abort");
+  EXPECT_EQ(aborts.status, 134) << aborts.output;
+  EXPECT_TRUE(has(aborts, "2 findings;")) << aborts.output;
+}
+
+TEST(RunVerb, AddsUpTheProcessesOfAProgram) {
+  const CommandResult run = run_softcell("run --checked -- sh -c '" + kForgets + "; " + kPingPong + "; " +
+                                         kForgets + " 0 _exit; true'");
+  EXPECT_EQ(run.status, 3) << run.output;
+  EXPECT_TRUE(has(run, "6 SPE contexts, ")) << run.output;
+  EXPECT_TRUE(has(run, ", 4 findings; it ended by")) << run.output;
+}
+
 TEST(RunVerb, SeedsTellWhatDependsOnTheOrder) {
   const CommandResult run = run_softcell("run --seeds 30 --quiet -- " + kForgets);
   EXPECT_EQ(run.status, 1) << run.output;
@@ -69,6 +93,7 @@ TEST(RunVerb, SeedsTellWhatDependsOnTheOrder) {
       run,
       "the outcome depends on the order of transfers or SPEs; see it again with softcell run --dma random:"))
       << run.output;
+  EXPECT_TRUE(has(run, ", beside seed 1: line 1 of its output is '")) << run.output;
   const CommandResult good = run_softcell("run --seeds 5 --quiet -- " + kPingPong);
   EXPECT_EQ(good.status, 0) << good.output;
   EXPECT_TRUE(has(good, "softcell: 5 seeds: ")) << good.output;

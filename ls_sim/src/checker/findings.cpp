@@ -32,6 +32,11 @@ std::vector<Finding> Findings::list() const {
   return findings_;
 }
 
+std::size_t Findings::size() const {
+  const std::scoped_lock lock(mutex_);
+  return findings_.size();
+}
+
 bool Findings::empty() const {
   const std::scoped_lock lock(mutex_);
   return findings_.empty();

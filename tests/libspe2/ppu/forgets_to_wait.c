@@ -1,4 +1,7 @@
-/* Its SPE reads a buffer before the transfer has been waited for, so that what it prints depends on luck. */
+/* Its SPE reads a buffer before the transfer has been waited for, so that what it prints depends on luck.
+ * Ends with a status, by main's return (forgets_to_wait STATUS) or without its exit handlers (forgets_to_wait STATUS _exit, quick_exit, abort). */
+#include <unistd.h>
+
 #include "run_in_thread.h"
 
 extern spe_program_handle_t breaks_rules;
@@ -6,8 +9,13 @@ extern spe_program_handle_t breaks_rules;
 static unsigned int words[64] __attribute__((aligned(128))) = {42};
 
 int main(int argc, char** argv) {
+  const int status = argc > 1 ? atoi(argv[1]) : 0;
+  const char* const way = argc > 2 ? argv[2] : "return";
   spe_thread_t spe;
   start_spe(&spe, &breaks_rules, 0, (void*)7, words);
   printf("%d\n", end_spe(&spe));
-  return argc > 1 ? atoi(argv[1]) : 0;
+  if (strcmp(way, "_exit") == 0) _exit(status);
+  if (strcmp(way, "quick_exit") == 0) quick_exit(status);
+  if (strcmp(way, "abort") == 0) abort();
+  return status;
 }

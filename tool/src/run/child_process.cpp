@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -20,6 +21,13 @@ extern char** environ;
 
 namespace softcell::tool {
 namespace {
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
 
 std::vector<std::string> environment_with(const std::map<std::string, std::string>& variables) {
   SC_ASSERT(std::ranges::none_of(variables,
@@ -123,11 +131,27 @@ ScratchFile::~ScratchFile() {
   std::filesystem::remove(path_, ignored);
 }
 
-std::string ScratchFile::text() const {
-  std::ifstream file(path_, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+std::string ScratchFile::text() const { return text_of(path_); }
+
+ScratchFolder::ScratchFolder() {
+  std::string name = std::filesystem::temp_directory_path() / "softcell-run-XXXXXX";
+  if (mkdtemp(name.data()) == nullptr)
+    throw std::runtime_error("cannot make the temporary folder " + name + ": " + std::strerror(errno));
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::vector<std::string> ScratchFolder::texts(const std::string& extension) const {
+  std::set<std::filesystem::path> files;
+  for (const auto& file : std::filesystem::directory_iterator(path_)) files.insert(file.path());
+  std::vector<std::string> texts;
+  for (const std::filesystem::path& file : files)
+    if (file.extension() == extension) texts.push_back(text_of(file));
+  return texts;
 }
 
 }  // namespace softcell::tool

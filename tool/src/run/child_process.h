@@ -36,4 +36,20 @@ class ScratchFile {
   std::filesystem::path path_;
 };
 
+/// A folder of its own among the temporary files, which goes with the object and what is in it.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Of each file in it that ends so (".json"), by the files' names.
+  std::vector<std::string> texts(const std::string& extension) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
 }  // namespace softcell::tool

@@ -1,7 +1,10 @@
 #include "run_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <set>
+#include <sstream>
 #include <utility>
 
 #include "softcell/base/text.h"
@@ -12,21 +15,66 @@ namespace {
 
 std::size_t count_in(const nlohmann::json& report, const char* list) { return report.at(list).size(); }
 
-/// The rules that were broken and where, without addresses, which differ from run to run.
-std::string mistakes(const nlohmann::json& report, const char* list) {
-  std::string text;
-  for (const auto& finding : report.at(list)) {
-    text += fmt::format("{} {} {}\n", finding.at("rule").get<std::string>(),
-                        finding.at("kernel").get<std::string>(), finding.at("place").get<std::string>());
+/// The rules that were broken and where, without addresses, which differ from run to run, and in an order of their own, as processes
+/// have none.
+std::set<std::string> mistakes(const nlohmann::json& report) {
+  std::set<std::string> all;
+  if (report.is_null()) return all;
+  for (const char* list : {"findings", "faults"}) {
+    for (const auto& finding : report.at(list)) {
+      all.insert(fmt::format("{} in {} {}", finding.at("rule").get<std::string>(),
+                             finding.at("kernel").get<std::string>(),
+                             finding.at("place").get<std::string>()));
+    }
   }
-  return text;
+  return all;
+}
+
+/// Makes the report of one process that of two.
+void add(nlohmann::json& report, const nlohmann::json& other) {
+  for (const char* count : {"contexts", "runs", "dma_commands", "dma_bytes"})
+    report.at(count) = report.at(count).get<std::int64_t>() + other.at(count).get<std::int64_t>();
+  for (const char* list : {"findings", "faults"}) {
+    for (const auto& finding : other.at(list)) report.at(list).push_back(finding);
+  }
+  report.at("whole") = report.at("whole").get<bool>() && other.at("whole").get<bool>();
+}
+
+/// The first line in which two texts differ, and its number from 1.
+struct OutputLine {
+  std::size_t number;
+  std::string first, other;
+};
+OutputLine first_difference(const std::string& first, const std::string& other) {
+  std::istringstream a(first), b(other);
+  OutputLine line{0, {}, {}};
+  do {
+    ++line.number;
+    line.first.clear();
+    line.other.clear();
+    std::getline(a, line.first);
+    std::getline(b, line.other);
+  } while (line.first == line.other && (a || b));
+  return line;
+}
+
+std::string how_it_ended(const ChildEnd& end) {
+  if (end.signal != 0) return fmt::format("was ended by signal {}", end.signal);
+  return fmt::format("ended with status {}", end.status);
 }
 
 }  // namespace
 
-ProgramRun program_run(const ChildEnd& end, std::string output, const std::string& report) {
+ProgramRun program_run(const ChildEnd& end, std::string output, const std::vector<std::string>& reports) {
   ProgramRun run{end, std::move(output), nullptr};
-  if (!report.empty()) run.report = nlohmann::json::parse(report);
+  for (const std::string& text : reports) {
+    nlohmann::json report = nlohmann::json::parse(text);
+    if (run.report.is_null()) {
+      run.report = std::move(report);
+    } else {
+      add(run.report, report);
+    }
+  }
   return run;
 }
 
@@ -34,10 +82,27 @@ bool ProgramRun::has_findings() const {
   return !report.is_null() && count_in(report, "findings") + count_in(report, "faults") != 0;
 }
 
-std::string ProgramRun::outcome() const {
-  std::string text = fmt::format("{}\n{}\n", end.status, output);
-  if (!report.is_null()) text += mistakes(report, "findings") + mistakes(report, "faults");
-  return text;
+std::vector<std::string> ProgramRun::unsaid_findings() const {
+  std::vector<std::string> messages;
+  if (report.is_null() || report.at("whole").get<bool>()) return messages;
+  for (const auto& finding : report.at("findings")) messages.push_back(finding.at("message"));
+  return messages;
+}
+
+std::string ProgramRun::ending() const { return how_it_ended(end); }
+
+std::optional<std::string> ProgramRun::difference(const ProgramRun& other) const {
+  if (other.end.status != end.status || other.end.signal != end.signal)
+    return fmt::format("it {}, and not: {}", other.ending(), ending());
+  if (other.output != output) {
+    const OutputLine line = first_difference(output, other.output);
+    return fmt::format("line {} of its output is '{}', and not '{}'", line.number, line.other, line.first);
+  }
+  const std::set<std::string> ours = mistakes(report), theirs = mistakes(other.report);
+  if (ours == theirs) return std::nullopt;
+  return fmt::format("it broke {}, and not {}",
+                     theirs.empty() ? "no rule" : fmt::format("{}", fmt::join(theirs, ", ")),
+                     ours.empty() ? "any" : fmt::format("{}", fmt::join(ours, ", ")));
 }
 
 std::string ProgramRun::summary() const {
@@ -48,6 +113,8 @@ std::string ProgramRun::summary() const {
       report.at("dma_bytes").get<double>() / 1e6, base::counted(count_in(report, "findings"), "finding"));
   if (const std::size_t faults = count_in(report, "faults"); faults != 0)
     text += ", " + base::counted(faults, "fault");
+  if (!report.at("whole").get<bool>())
+    text += "; it ended by _exit() or a signal, so the counts are those of before its last runs";
   return text;
 }
 

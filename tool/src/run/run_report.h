@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "child_process.h"
 
@@ -12,18 +14,23 @@ namespace softcell::tool {
 struct ProgramRun {
   ChildEnd end;
   std::string output;     ///< if it was collected
-  nlohmann::json report;  ///< null: the program has made no SPE context, or was killed
+  nlohmann::json report;  ///< of all its processes together; null: none has made an SPE context
 
   bool has_findings() const;
-  /// What has to be the same under every order: the end, the output, and which rules were broken where.
-  std::string outcome() const;
+  /// The messages of findings that libspe2 had no time to print at the program's end.
+  std::vector<std::string> unsaid_findings() const;
+  /// "ended with status 0"
+  std::string ending() const;
+  /// What has to be the same under every order is the end, the output, and which rules were broken where.
+  /// @return  what of it the other run has that this one has not: "line 3 of its output is '7', and not '8'"; nothing: all is the same.
+  std::optional<std::string> difference(const ProgramRun& other) const;
   /// "2 SPE contexts, 2 runs, 120 DMA commands (1.2 MB), 1 finding"
   std::string summary() const;
   /// The program's status; if that is 0, kExitFindings if a rule was broken.
   int exit_status() const;
 };
 
-/// @param report  the text of the file that SOFTCELL_REPORT names; may be empty.
-ProgramRun program_run(const ChildEnd& end, std::string output, const std::string& report);
+/// @param reports  what libspe2 has written of each process that has made SPE contexts.
+ProgramRun program_run(const ChildEnd& end, std::string output, const std::vector<std::string>& reports);
 
 }  // namespace softcell::tool

@@ -57,16 +57,12 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
 
 ProgramRun run_once(const RunOptions& options, bool collect) {
   SC_ASSERT(!options.words.empty(), "a run of no program under {}", options.dma);
-  const ScratchFile report, output;
+  const ScratchFolder reports;
+  const ScratchFile output;
   auto variables = variables_of(options);
-  variables["SOFTCELL_REPORT"] = report.path();
+  variables["SOFTCELL_REPORT"] = reports.path() / "%p.json";
   const ChildEnd end = run_child(options.words, variables, collect ? output.path() : std::filesystem::path());
-  return program_run(end, collect ? output.text() : std::string(), report.text());
-}
-
-std::string how_it_ended(const ProgramRun& run) {
-  if (run.end.signal != 0) return fmt::format("was ended by signal {}", run.end.signal);
-  return fmt::format("ended with status {}", run.end.status);
+  return program_run(end, collect ? output.text() : std::string(), reports.texts(".json"));
 }
 
 nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run) {
@@ -78,7 +74,9 @@ nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run
 
 int run_one(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
   const ProgramRun run = run_once(options, false);
-  fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), how_it_ended(run), run.summary());
+  for (const std::string& finding : run.unsaid_findings())
+    fmt::print(stderr, "softcell: finding: {}\n", finding);
+  fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), run.ending(), run.summary());
   if (json != nullptr) write_json(*json, document(options, run));
   files.commit();
   const int status = run.exit_status();
@@ -101,10 +99,10 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
       ProgramRun run = run_once(seeded, true);
       if (seed == 1) {
         first = std::move(run);
-      } else if (run.outcome() != first.outcome()) {
+      } else if (const auto difference = first.difference(run)) {
         differs = true;
-        fmt::print(stderr, "softcell: under seed {} {} {}, under seed 1 it {}\n", seed, options.words.front(),
-                   how_it_ended(run), how_it_ended(first));
+        fmt::print(stderr, "softcell: {} under seed {}, beside seed 1: {}\n", options.words.front(), seed,
+                   *difference);
       }
       if (first.end.signal != 0 && first.report.is_null()) break;  // somebody wants it to end
       if (!options.quiet) bar.show(seed);
@@ -119,7 +117,7 @@ int run_many(const RunOptions& options, OutputFiles& files, base::WholeFile* jso
                seed, options.checked ? " --checked" : "", fmt::join(options.words, " "));
   } else {
     fmt::print(stderr, "softcell: {} seeds: {} {} under each, with the same output; {}\n", seed,
-               options.words.front(), how_it_ended(first), first.summary());
+               options.words.front(), first.ending(), first.summary());
   }
   if (json != nullptr) {
     nlohmann::ordered_json all = document(options, first);

@@ -29,6 +29,8 @@ class Findings {
   /// threads.
   std::vector<Finding> list() const;
   bool empty() const;
+  /// Of list().
+  std::size_t size() const;
 
  private:
   mutable std::mutex mutex_;
