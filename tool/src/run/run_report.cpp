@@ -66,9 +66,12 @@ std::string how_it_ended(const ChildEnd& end) {
 }  // namespace
 
 ProgramRun program_run(const ChildEnd& end, std::string output, const std::vector<std::string>& reports) {
-  ProgramRun run{end, std::move(output), nullptr};
+  ProgramRun run{end, std::move(output), {}, nullptr};
   for (const std::string& text : reports) {
     nlohmann::json report = nlohmann::json::parse(text);
+    if (!report.at("whole").get<bool>()) {
+      for (const auto& finding : report.at("findings")) run.unsaid_findings.push_back(finding.at("message"));
+    }
     if (run.report.is_null()) {
       run.report = std::move(report);
     } else {
@@ -80,13 +83,6 @@ ProgramRun program_run(const ChildEnd& end, std::string output, const std::vecto
 
 bool ProgramRun::has_findings() const {
   return !report.is_null() && count_in(report, "findings") + count_in(report, "faults") != 0;
-}
-
-std::vector<std::string> ProgramRun::unsaid_findings() const {
-  std::vector<std::string> messages;
-  if (report.is_null() || report.at("whole").get<bool>()) return messages;
-  for (const auto& finding : report.at("findings")) messages.push_back(finding.at("message"));
-  return messages;
 }
 
 std::string ProgramRun::ending() const { return how_it_ended(end); }

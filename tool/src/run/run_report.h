@@ -13,12 +13,12 @@ namespace softcell::tool {
 
 struct ProgramRun {
   ChildEnd end;
-  std::string output;     ///< if it was collected
+  std::string output;  ///< if it was collected
+  /// The messages of those that libspe2 had no time to print, as the process has ended without its exit handlers.
+  std::vector<std::string> unsaid_findings;
   nlohmann::json report;  ///< of all its processes together; null: none has made an SPE context
 
   bool has_findings() const;
-  /// The messages of findings that libspe2 had no time to print at the program's end.
-  std::vector<std::string> unsaid_findings() const;
   /// "ended with status 0"
   std::string ending() const;
   /// What has to be the same under every order is the end, the output, and which rules were broken where.

@@ -74,7 +74,7 @@ nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run
 
 int run_one(const RunOptions& options, OutputFiles& files, base::WholeFile* json) {
   const ProgramRun run = run_once(options, false);
-  for (const std::string& finding : run.unsaid_findings())
+  for (const std::string& finding : run.unsaid_findings)
     fmt::print(stderr, "softcell: finding: {}\n", finding);
   fmt::print(stderr, "softcell: {} {}; {}\n", options.words.front(), run.ending(), run.summary());
   if (json != nullptr) write_json(*json, document(options, run));
