@@ -761,7 +761,9 @@ bool do_task(const FindTask& task) {
   fetch_state(ls.state[0], state_a, task.a);
   const uint32_t model_b = state_a + find_state_bytes(task.a);
   const uint32_t state_b = model_b + (one_model ? 0 : find_model_bytes(task.b));
-  if (!itself) {
+  if (itself) {
+    ls.model[1].ea = ls.state[1].ea = 0;  // a may lie where they were
+  } else {
     if (one_model)
       ls.model[1].ea = 0;
     else

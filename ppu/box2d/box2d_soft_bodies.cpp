@@ -382,6 +382,14 @@ void Box2dSoftBodies::set_filter(const SoftBody<2>& body, const CollisionFilter&
   coupled.set_filter(filter);
 }
 
+/// @throws std::invalid_argument  it is no length of time
+static bool passes_time(float step) {
+  if (!(step >= 0) || !std::isfinite(step))
+    throw std::invalid_argument("Box2dSoftBodies: a step of " + std::to_string(step) +
+                                " s; expected are 0 s or more");
+  return step > 0;
+}
+
 void Box2dSoftBodies::step(float step, int velocity_iterations, int position_iterations) {
   begin_step(step);
   impl_->world.Step(step, velocity_iterations, position_iterations);
@@ -389,16 +397,15 @@ void Box2dSoftBodies::step(float step, int velocity_iterations, int position_ite
 }
 
 void Box2dSoftBodies::begin_step(float step) {
-  impl_->timed([&] { impl_->begin_step(step); });
+  if (passes_time(step)) impl_->timed([&] { impl_->begin_step(step); });
 }
 
 void Box2dSoftBodies::end_step(float step) {
-  impl_->timed([&] { impl_->end_step(step); });
+  if (passes_time(step)) impl_->timed([&] { impl_->end_step(step); });
 }
 
 void Box2dSoftBodies::begin_ahead(float step) {
-  SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
-  impl_->timed([&] { impl_->solve.begin(step); });
+  if (passes_time(step)) impl_->timed([&] { impl_->solve.begin(step); });
 }
 
 void Box2dSoftBodies::let_sleep(const std::optional<SleepSettings>& settings) {

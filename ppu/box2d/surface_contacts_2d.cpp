@@ -185,6 +185,7 @@ void SurfaceContacts2d::step(Bodies bodies, Box2dAttachments& attachments, float
   attachments.end();
   note_touches(bodies);
   if (!watches_) return;
+  log_.begin_step();
   log_touches(bodies);
   log_sensors(bodies, step);
 }

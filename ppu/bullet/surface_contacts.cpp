@@ -102,6 +102,7 @@ void SurfaceContacts::step(std::span<SurfaceBody* const> bodies, float step) {
   }
   if (!attachments_.empty()) attachments_.end(step);
   if (watches_) {
+    touches_.begin_step();
     note_touches(bodies);
     note_triggers(bodies, step);
   }

@@ -53,6 +53,20 @@ class TouchLog {
       goes_on_ = false;
       return taken;
     }
+    /// As it was polled last, without an impulse.
+    Event persist() const {
+      Event again = event;
+      again.kind = Event::Kind::kPersist;
+      again.impulse = 0;
+      return again;
+    }
+    Event end() {
+      if (goes_on_) take();
+      Event last = event;
+      last.kind = Event::Kind::kEnd;
+      last.impulse = 0;
+      return last;
+    }
 
     bool is_old_ = false;   // it was among those that were polled
     bool goes_on_ = false;  // they touched in a substep since then
@@ -60,6 +74,8 @@ class TouchLog {
     float weight_ = 0;      // of the sums since then: position and normal are not divided by it yet
   };
 
+  /// A substep is about to add what touches in it.
+  void begin_step() { has_stepped_ = true; }
   Touch& operator[](const Key& key) { return touches_[key]; }
   void clear() { touches_.clear(); }
 
@@ -70,22 +86,25 @@ class TouchLog {
       if (touch.event.body == &body || touch.event.other == &body) touch.is_over_ = true;
   }
 
-  /// What has begun, gone on or ended since the last call, in the order of keys.
+  /// What has begun, gone on or ended since the last call, in the order of keys. Without a substep since then, all goes on.
   std::vector<Event> poll() {
     std::vector<Event> events;
     for (auto entry = touches_.begin(); entry != touches_.end();) {
       Touch& touch = entry->second;
-      if (!touch.is_over_ && touch.goes_on_) {
-        events.push_back(touch.take());
-      } else if (touch.is_over_ || !sleeps(entry->first, touch.event)) {
-        events.push_back(touch.event);
-        events.back().kind = Event::Kind::kEnd;
-        events.back().impulse = 0;
+      const bool goes_on = !has_stepped_ || touch.goes_on_ || sleeps(entry->first, touch.event);
+      if (touch.is_over_ || !goes_on) {
+        if (touch.is_old_) events.push_back(touch.end());
         entry = touches_.erase(entry);
         continue;
       }
+      if (touch.goes_on_) {
+        events.push_back(touch.take());
+      } else if (!has_stepped_ && !sleeps(entry->first, touch.event)) {
+        events.push_back(touch.persist());
+      }
       ++entry;
     }
+    has_stepped_ = false;
     return events;
   }
 
@@ -97,6 +116,7 @@ class TouchLog {
   }
 
   std::map<Key, Touch> touches_;
+  bool has_stepped_ = false;  // since the last poll()
 };
 
 }  // namespace softcell::ppu

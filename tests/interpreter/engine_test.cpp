@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include "softcell/ls_sim/findings.h"
 #include "softcell/ls_sim/image.h"
 #include "softcell/ls_sim/spe_group.h"
+#include "softcell/ls_sim/timing.h"
 #include "spu_words.h"
 
 namespace softcell::ls_sim::interpreter {
@@ -320,6 +322,30 @@ TEST(Interpreter, GivesSrr0BackAndTakesAnInterrupt) {
   group.start(0, image, {});
   group.problem_state(0).write_in_mbox(1);
   EXPECT_EQ(group.wait(0).stop_code, 0x2009u);
+}
+
+TEST(Interpreter, TakesTheDecrementersInterruptInSimulatedTime) {
+  // Enables the decrementer's event, starts it with 1,000 ticks, and jumps on the spot; the handler at 0 stops.
+  constexpr std::uint32_t kDecrementerEvent = 0x20, kWriteDecrementer = 7;
+  std::vector<std::uint32_t> words(0x80 / 4, 0x40200000);
+  words[0] = stop_with(0x2009);
+  const std::vector<std::uint32_t> main = {
+      ri16(il, 3, kDecrementerEvent), rr(wrch, 3, 1),     ri16(il, 5, 1000),
+      rr(wrch, 5, kWriteDecrementer), ri18(ila, 4, 0x94), rr(bi, 0, 4, kEnableInterrupts)};
+  words.insert(words.end(), main.begin(), main.end());
+  KernelImage image = program_of(words, 0);
+  image.entry = 0x80;
+  Timing timing(1);
+  dma::AddressSpace memory;
+  SpeGroup group(memory, {.spes = 1,
+                          .deadline = std::chrono::seconds(20),
+                          .clock = Clock::kSimulated,
+                          .interleaving = Interleaving::kByTime,
+                          .timing = &timing});
+  group.start(0, image, {});
+  EXPECT_EQ(group.wait(0).stop_code, 0x2009u);
+  constexpr double kCycles = 1000 * 3.2e9 / 79.8e6;
+  EXPECT_NEAR(static_cast<double>(timing.now(0)), kCycles, 100);
 }
 
 TEST(Interpreter, RunsAgainAsLinked) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -222,6 +223,21 @@ TEST_P(Box2dCoupling, RefusesWhatItIsNotGiven) {
   EXPECT_THROW(world.soft.remove(body), std::invalid_argument);
   EXPECT_THROW(rectangle_model({1, 1}, rubber(), 0), std::runtime_error);
   EXPECT_THROW(rectangle_model({1, 1}, {.cell_size = 0}), std::runtime_error);
+}
+
+TEST_P(Box2dCoupling, AStepOfNoTimeChangesNothing) {
+  World2d world(9.81f, GetParam());
+  world.add_box({0, -1}, {10, 1});
+  SoftBody<2>& body = world.soft.add(rectangle_model({3, 3}, rubber()), {0, 0.3f});
+  world.run(1);
+  const std::uint64_t before = state_hash(body);
+  for (int i = 0; i < 3; ++i) world.soft.step(0);
+  world.soft.begin_ahead(0);
+  EXPECT_EQ(state_hash(body), before);
+  for (const float wrong : {-0.5f, std::numeric_limits<float>::infinity(), std::nanf("")})
+    EXPECT_THROW(world.soft.step(wrong), std::invalid_argument);
+  world.run(1);
+  EXPECT_TRUE(body.centre_of_mass().allFinite());
 }
 
 TEST_P(Box2dCoupling, FiltersSayWhatTouches) {

@@ -34,6 +34,12 @@ class Surroundings {
   virtual void sync() = 0;
 };
 
+/// An observer that moves the SPE's clock, which it brings up to date on request.
+template <class Observer>
+concept HasClock = requires(Observer& observer) {
+  observer.bring_clock();
+};
+
 /// Hears nothing, and costs nothing. An observer has these functions; each is called before the instruction
 /// changes anything.
 struct NoObserver {

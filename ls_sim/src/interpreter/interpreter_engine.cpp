@@ -61,6 +61,7 @@ class BothObservers {
     first_.on_store(lsa, pc);
     second_.on_store(lsa, pc);
   }
+  void bring_clock() requires HasClock<Second> { second_.bring_clock(); }
 
  private:
   First first_;

@@ -74,11 +74,12 @@ class WithJobs {
   void on_load(std::uint32_t lsa, std::uint32_t pc) { observer_.on_load(lsa, pc); }
   void on_store(std::uint32_t lsa, std::uint32_t pc) { observer_.on_store(lsa, pc); }
   bool on_jump(std::uint32_t from, std::uint32_t to) {
-    if constexpr (requires { observer_.bring_clock(); }) {
+    if constexpr (HasClock<Observer>) {
       if (jobs_.is_border(from, to)) observer_.bring_clock();
     }
     return jobs_.on_jump(from, to);
   }
+  void bring_clock() requires HasClock<Observer> { observer_.bring_clock(); }
 
  private:
   JobCalls& jobs_;

@@ -100,7 +100,10 @@ template <class Observer>
         break;
       }
     }
-    if (__builtin_expect(core.state.interrupts_enabled, 0) && !take_interrupt(core, pc)) break;
+    if (__builtin_expect(core.state.interrupts_enabled, 0)) {
+      if constexpr (HasClock<Observer>) observer.bring_clock();  // whether the decrementer has ended is asked
+      if (!take_interrupt(core, pc)) break;
+    }
   }
   core.state.pc = pc;
   return executed;

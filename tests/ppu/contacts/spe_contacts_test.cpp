@@ -261,6 +261,40 @@ TEST(SpeContacts, TheSameBitsForAnyNumberOfSpesAndAnySchedule) {
 }
 
 /// In the SPU's byte order, with the SPU compiler's code.
+/// A small body, a large one that is folded on itself, and a small one again, both on the same other body: found one after the
+/// other, the large one lies in the local store where the other body was.
+TEST(SpeContacts, ABodyThatMeetsItselfLeavesNothingOfThePairBefore) {
+  const auto small = make_soft_body_model(make_box({0.3f, 0.3f, 0.3f}, 0.1f), {.cell_size = 0.1f});
+  const auto other = make_soft_body_model(make_box({1.2f, 0.3f, 0.3f}, 0.1f), {.cell_size = 0.15f});
+  const auto large = make_soft_body_model(make_box({1.6f, 0.2f, 0.6f}, 0.1f),
+                                          {.cell_size = 0.1f, .half_width = 1, .alpha = 0.02f});
+  const auto state_with = [&](int spes) {
+    SpeRuntime runtime({.spes = spes});
+    ContactWorld w({0, 0, 0}, &runtime);
+    for (int group = 0; group < 4; ++group) {
+      const float x = 10.0f * static_cast<float>(group);
+      w.bodies.add(small, {x, 2, 0});
+      SoftBody<3>& folded = w.bodies.add(large, {x, 5, 0});
+      w.bodies.add(small, {x + 0.8f, 2, 0});
+      w.bodies.add(other, {x + 0.4f, 1.72f, 0});
+      constexpr float kBend = 3.6f;  // about z, so far that its ends meet
+      for (std::size_t p = 0; p < folded.positions().size(); ++p) {
+        const Vector3f at = folded.position(p) - Vector3f(x, 5, 0);
+        const float angle = kBend * at.x(), radius = 1 / kBend - at.y();
+        folded.set_particle(p, {x + radius * std::sin(angle), 5 - radius * std::cos(angle), at.z()},
+                            {0, 0, 0});
+      }
+    }
+    w.run(30);
+    std::uint64_t state = 0;
+    for (std::size_t i = 0; i < w.bodies.size(); ++i) state = state_hash(w.bodies[i], state);
+    return state;
+  };
+  const std::uint64_t with_one = state_with(1);  // whose jobs have several pairs each
+  EXPECT_EQ(state_with(2), with_one);
+  EXPECT_EQ(state_with(6), with_one);
+}
+
 TEST(SpeContacts, InterpretedKernelsGiveTheSameBits) {
   EXPECT_EQ(heap({.spes = 2, .machine = ls_sim::Machine::kSpu}, 16), heap({.spes = 2}, 16));
 }

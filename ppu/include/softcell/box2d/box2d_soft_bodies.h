@@ -156,17 +156,20 @@ class Box2dSoftBodies {
   /// @throws std::invalid_argument  the body is not one of these
   void set_filter(const SoftBody<2>& body, const CollisionFilter& filter);
 
-  /// One step of the world and its soft bodies. @param step  seconds, above 0.
+  /// One step of the world and its soft bodies.
+  /// @param step  seconds, the same in every step, as a body's stiffness depends on it unless its settings have a frequency, and a step that
+  ///              is much shorter or longer than the one before throws bodies up. 0 changes nothing, as of b2World::Step().
+  /// @throws std::invalid_argument  the step is negative or not finite.
   void step(float step, int velocity_iterations = 8, int position_iterations = 3);
 
   /// The first half of step(), for a program that calls b2World::Step() itself between both halves, with the same length.
-  /// @param step  seconds, above 0
+  /// @param step  as step()
   void begin_step(float step);
   void end_step(float step);  ///< the second half of step(); the same length as in begin_step()
 
   /// Lets the solver begin the next step, of `step` seconds, while the caller does something else. If bodies change after
   /// all, or the step has another length, softcell discards that work and does it again. The result is the same, except
-  /// for what SoftBodySolver::drop() says of rotations. Call it between steps. @pre step > 0
+  /// for what SoftBodySolver::drop() says of rotations. Call it between steps. @param step  as step()
   void begin_ahead(float step);
 
   /// Lets bodies at rest sleep, or never (std::nullopt, the default). Bodies that touch each other or are connected by
