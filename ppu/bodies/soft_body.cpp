@@ -17,6 +17,7 @@
 #include "ppu/numbers/turning.h"
 #include "ppu/reference/shape_matching.h"
 #include "softcell/base/assert.h"
+#include "softcell/base/text.h"
 
 namespace softcell::ppu {
 namespace {
@@ -285,7 +286,9 @@ auto SoftBody<kDimension>::own_rest() const -> std::span<const Vector> {
 
 template <int kDimension>
 void SoftBody<kDimension>::set_rest_positions(std::span<const Vector> rest) {
-  SC_ASSERT(rest.size() == x_.size(), "{} positions at rest of {} particles", rest.size(), x_.size());
+  if (rest.size() != x_.size())
+    throw std::runtime_error("a soft body of " + base::counted(x_.size(), "particle") + " was given " +
+                             base::counted(rest.size(), "position") + " at rest");
   std::vector<Eigen::Matrix<double, kDimension, 1>> exact;
   for (const Vector& position : rest) {
     if (!position.allFinite()) throw std::runtime_error("a soft body's rest shape is not finite");

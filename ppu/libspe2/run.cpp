@@ -159,7 +159,8 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
   }
   if (!stop) return fail(EINVAL);
   const Outcome outcome = answer_calls(context, *stop, (flags & SPE_NO_CALLBACKS) == 0);
-  if (stop->result.fault) Machine::get().report(*stop->result.fault);
+  // A program may end while contexts run: that is no mistake of theirs.
+  if (stop->result.fault && !Machine::get().is_ending()) Machine::get().report(*stop->result.fault);
   Machine::get().end_run();
   *entry = stop->next.value;
   {

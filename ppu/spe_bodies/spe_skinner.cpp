@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "ppu/spe_bodies/skin_orchestrator.h"
 #include "softcell/base/assert.h"
@@ -29,7 +31,8 @@ struct SpeSkinner::State {
     return static_cast<std::size_t>(found - bodies.begin());
   }
 
-  std::vector<const SoftBody<3>*> bodies;  // in the orchestrator's order
+  std::vector<const SoftBody<3>*> bodies;                       // in the orchestrator's order
+  std::vector<std::shared_ptr<const SoftBodyModel<3>>> models;  // of the bodies when they were added
   std::vector<std::span<const Eigen::Vector4f>> positions;
   SkinOrchestrator orchestrator;
 };
@@ -48,19 +51,27 @@ void SpeSkinner::add(const SoftBody<3>& body) {
   state_->orchestrator.add(std::shared_ptr<const Embedding>(body.shared_model(), &model.embedding()),
                            model.particles());
   state_->bodies.push_back(&body);
+  state_->models.push_back(body.shared_model());
   state_->positions.resize(state_->bodies.size());
 }
 
 void SpeSkinner::remove(const SoftBody<3>& body) {
   const std::size_t number = state_->number_of(body);
   state_->bodies.erase(state_->bodies.begin() + static_cast<std::ptrdiff_t>(number));
+  state_->models.erase(state_->models.begin() + static_cast<std::ptrdiff_t>(number));
   state_->positions.resize(state_->bodies.size());
   state_->orchestrator.remove(number);
 }
 
 bool SpeSkinner::begin_frame() {
-  for (std::size_t b = 0; b < state_->bodies.size(); ++b)
+  for (std::size_t b = 0; b < state_->bodies.size(); ++b) {
+    if (state_->bodies[b]->shared_model() != state_->models[b])
+      throw std::runtime_error(
+          "SpeSkinner: body " + std::to_string(b) + " of " + std::to_string(state_->bodies.size()) +
+          " has another model than when it was added, as it has broken, was cut or was assigned to: "
+          "call remove() and add() of it");
     state_->positions[b] = state_->bodies[b]->padded_positions();
+  }
   return state_->orchestrator.kick(state_->positions);
 }
 

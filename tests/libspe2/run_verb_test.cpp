@@ -145,6 +145,7 @@ TEST(Environment, ADeadlineEndsAProgramThatNeverEnds) {
 TEST(Environment, AProgramMayEndWhileItsContextsRun) {
   const CommandResult run = run_shell(LIBSPE2_PROGRAMS "/libspe2_never_ends leave");
   EXPECT_EQ(run.status, 5) << run.output;
+  EXPECT_FALSE(has(run, "deadline-exceeded")) << run.output;
 }
 
 TEST(RunVerb, KeepsAllMemoryBelow4GB) {

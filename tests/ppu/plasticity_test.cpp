@@ -401,6 +401,8 @@ TEST(Plasticity, ARestShapeIsRestored) {
   auto rest = body.rest_positions();
   rest[3].y() = std::numeric_limits<float>::infinity();
   EXPECT_THROW(other.set_rest_positions(rest), std::runtime_error);
+  EXPECT_THROW(other.set_rest_positions(body.rest_positions().subspan(1)), std::runtime_error)
+      << "one is missing";
 }
 
 TEST(Plasticity, RefusesWhatIsOutOfRange) {

@@ -240,6 +240,21 @@ TEST(SpeSkinner, BodiesComeAndGo) {
   EXPECT_EQ(spes.memory().free_bytes(dma::Memory::kMain), free);
 }
 
+TEST(SpeSkinner, RefusesABodyWhoseModelHasChanged) {
+  SpeRuntime spes({.spes = 1});
+  SpeSkinner skinner(spes);
+  SoftBody<3> body(ball());
+  skinner.add(body);
+  ASSERT_TRUE(skinner.begin_frame());
+  skinner.finish_frame();
+  body = SoftBody<3>(ball());  // as many particles, and yet another model
+  EXPECT_THROW(skinner.begin_frame(), std::runtime_error);
+  skinner.remove(body);
+  skinner.add(body);
+  EXPECT_TRUE(skinner.begin_frame());
+  skinner.finish_frame();
+}
+
 TEST(SpeSkinner, RefusesAModelWithoutAMesh) {
   SpeRuntime spes({.spes = 1});
   SpeSkinner skinner(spes);

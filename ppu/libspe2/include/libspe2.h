@@ -8,6 +8,9 @@
  * its comment says. What a kernel does wrong, softcell also reports on standard error, with rule and source line.
  * [SPE Runtime Management Library 2.2] documented */
 
+#include <errno.h>
+#include <stdio.h>
+
 #include "libspe2-types.h"
 
 #ifdef __cplusplus

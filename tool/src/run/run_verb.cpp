@@ -20,6 +20,8 @@ namespace softcell::tool {
 namespace {
 
 constexpr std::uint64_t kMaxDeadline = 4'000'000;
+/// Of SPEs that take turns: one that reads its local store until another one has written there has the turn for ever.
+constexpr std::uint64_t kDeadlineOfTurns = 30'000;
 
 /// A library that is loaded before those of the program.
 std::string library_for(const char* option, const std::string& name) {
@@ -43,12 +45,17 @@ std::string preloaded(const RunOptions& options) {
   return libraries;
 }
 
+/// Milliseconds; 0: none.
+std::uint64_t deadline_of(const RunOptions& options) {
+  return options.deadline_ms.value_or(options.turns ? kDeadlineOfTurns : 0);
+}
+
 std::map<std::string, std::string> variables_of(const RunOptions& options) {
   std::map<std::string, std::string> variables{
       {"SOFTCELL_DMA", options.dma},
       {"SOFTCELL_TURNS", options.turns ? "1" : "0"},
       {"SOFTCELL_CHECKED", options.checked ? "1" : "0"},
-      {"SOFTCELL_DEADLINE_MS", std::to_string(options.deadline_ms)},
+      {"SOFTCELL_DEADLINE_MS", std::to_string(deadline_of(options))},
       {"SOFTCELL_TRACE", options.trace ? std::filesystem::absolute(*options.trace).string() : ""}};
   if (const std::string libraries = preloaded(options); !libraries.empty())
     variables["LD_PRELOAD"] = libraries;
@@ -150,10 +157,10 @@ class RunVerb final : public Verb {
         "--low-memory", options_.low_memory,
         "Keep all memory of the program below 4 GB, for code that keeps pointers in 32 bits; the program "
         "must be linked with -no-pie");
-    accept_whole_number(
-        r->add_option("--deadline", options_.deadline_ms,
-                      "End a run of an SPE context that takes longer (milliseconds; default: none)"),
-        1, kMaxDeadline)
+    accept_whole_number(r->add_option("--deadline", options_.deadline_ms,
+                                      "End a run of an SPE context that takes longer (milliseconds; default: "
+                                      "none, and 30000 with --turns or --seeds)"),
+                        1, kMaxDeadline)
         ->type_name("MS");
     CLI::Option* seeds = accept_whole_number(
         r->add_option("--seeds", options_.seeds,

@@ -16,8 +16,8 @@ struct RunOptions {
   std::vector<std::string> words;  ///< the program and its arguments
   std::string dma = "eager";
   bool turns = false, checked = false, allocations = false, low_memory = false, quiet = false;
-  std::uint64_t deadline_ms = 0;  ///< 0: none
-  std::uint64_t seeds = 0;        ///< 0: one run
+  std::optional<std::uint64_t> deadline_ms = {};  ///< none: what `turns` and `seeds` ask for
+  std::uint64_t seeds = 0;                        ///< 0: one run
   std::optional<std::filesystem::path> trace, json;
 };
 

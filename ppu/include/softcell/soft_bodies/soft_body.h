@@ -146,7 +146,7 @@ class SoftBody {
   /// Puts the body back into the model's shape, a plastic body too. Keeps its centre, mean orientation and both momenta.
   void reset_deformation();
   /// Gives the body another rest shape, for example that of a saved body: the position of each particle in metres, in any frame.
-  /// @throws std::runtime_error  a position is not finite, or the model has too many particles for plastic bodies
+  /// @throws std::runtime_error  a position is not finite, there are more or fewer than particles, or the model has too many particles for plastic bodies
   void set_rest_positions(std::span<const Vector> rest);
   void add_velocity(const Vector& dv);                                 ///< m/s, to every particle
   void add_particle_velocity(std::size_t particle, const Vector& dv);  ///< m/s

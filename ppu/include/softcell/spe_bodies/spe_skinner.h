@@ -79,7 +79,8 @@ class SpeSkinner {
   SpeSkinner& operator=(const SpeSkinner&) = delete;
 
   /// Waits for the frame under way and adds a body to the ones to come. The body stays where it is until
-  /// remove().
+  /// remove(). A body that breaks, is cut or is assigned to has another model: remove() it before the next frame and
+  /// add() it again, and its other pieces.
   /// @throws std::invalid_argument  its model has no mesh, or it was added before.
   /// @throws std::runtime_error     main memory is full; as finish_frame().
   void add(const SoftBody<3>& body);
@@ -90,7 +91,8 @@ class SpeSkinner {
   /// Copies where the particles of all bodies are now and has the SPEs begin to skin them. Never waits: when
   /// the SPEs have not finished the frame before, nothing is done, and the picture stays as it is.
   /// @return whether a frame has begun.
-  /// @throws std::runtime_error  a job of the frame before has failed; the sentence says why.
+  /// @throws std::runtime_error  a job of the frame before has failed, or a body has another model than when it was added; the
+  ///                             sentence says which.
   bool begin_frame();
 
   /// Waits for the frame under way, if there is one, and makes it the one that vertices() shows: for pictures
