@@ -401,8 +401,9 @@ TEST(Plasticity, ARestShapeIsRestored) {
   auto rest = body.rest_positions();
   rest[3].y() = std::numeric_limits<float>::infinity();
   EXPECT_THROW(other.set_rest_positions(rest), std::runtime_error);
-  EXPECT_THROW(other.set_rest_positions(body.rest_positions().subspan(1)), std::runtime_error)
-      << "one is missing";
+  rest = body.rest_positions();
+  rest.pop_back();
+  EXPECT_THROW(other.set_rest_positions(rest), std::runtime_error);
 }
 
 TEST(Plasticity, RefusesWhatIsOutOfRange) {
