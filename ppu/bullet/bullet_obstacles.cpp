@@ -128,6 +128,55 @@ void find_points(const btConvexShape& shape, std::vector<btVector3>& points) {
   points.assign(around.getVertexPointer(), around.getVertexPointer() + around.numVertices());
 }
 
+/// What counts as no length beside another one, and how thick that is made, in both directions.
+constexpr float kNoLength = 1e-5f, kThickness = 1e-3f;
+
+/// The point that is farthest from `from` in the directions that `measured` leaves of a difference.
+template <class Measured>
+Vector3f farthest(const std::vector<btVector3>& points, const Vector3f& from, const Measured& measured) {
+  Vector3f most = Vector3f::Zero();
+  for (const btVector3& point : points) {
+    const Vector3f difference = measured(Vector3f(to_eigen(point) - from));
+    if (difference.squaredNorm() > most.squaredNorm()) most = difference;
+  }
+  return most;
+}
+
+/// Points in one plane or on one line have no inside that something could be pushed out of: each becomes two or four, on both sides.
+/// Points that are all the same stay what they are.
+void give_volume(std::vector<btVector3>& points) {
+  if (points.empty()) return;
+  const Vector3f origin = to_eigen(points.front());
+  const Vector3f along = farthest(points, origin, [](const Vector3f& d) { return d; });
+  const float length = along.norm();
+  if (!(length > 0)) return;
+  const Vector3f x = along / length;
+  const Vector3f across =
+      farthest(points, origin, [&](const Vector3f& d) { return Vector3f(d - d.dot(x) * x); });
+  const bool is_line = across.norm() < kNoLength * length;
+  const Vector3f y = is_line ? x.unitOrthogonal() : across.normalized(), z = x.cross(y);
+  const auto widen = [&](const Vector3f& direction) {
+    const btVector3 side = to_bullet(Vector3f(kThickness * length * direction));
+    const std::size_t count = points.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      points.push_back(points[i] + side);
+      points[i] -= side;
+    }
+  };
+  const Vector3f out = farthest(points, origin, [&](const Vector3f& d) { return Vector3f(d.dot(z) * z); });
+  if (is_line) widen(y);
+  if (is_line || out.norm() < kNoLength * length) widen(z);
+}
+
+/// Half of a length of a shape, which gets some if it has none beside the longest half.
+float with_thickness(float half, float longest) {
+  return half < kNoLength * longest ? kThickness * longest : half;
+}
+Vector3f extent_of(const btBoxShape& box) {
+  const Vector3f extent = to_eigen(box.getHalfExtentsWithMargin());
+  return extent.unaryExpr([&](float half) { return with_thickness(half, extent.maxCoeff()); });
+}
+
 bool is_under_way(const btCollisionObject& object) { return may_move(object) && object.isActive(); }
 
 /// What it would be without contacts: Bullet adds forces, gravity among them, later in its step.
@@ -326,7 +375,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       break;
     case BOX_SHAPE_PROXYTYPE:
       obstacle.kind = ObstacleKind::kBox;
-      obstacle.extent = to_eigen(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin());
+      obstacle.extent = extent_of(static_cast<const btBoxShape&>(shape));
       edges = &more_edges();
       add_edges_of_box(obstacle.extent, *edges);
       break;
@@ -345,7 +394,8 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
       const int axis = cylinder.getUpAxis();
       obstacle.kind = ObstacleKind::kCylinder;
       obstacle.rotation = obstacle.rotation * from_y_to(axis);
-      obstacle.extent = {cylinder.getRadius(), cylinder.getHalfExtentsWithMargin()[axis], 0};
+      obstacle.extent = {cylinder.getRadius(),
+                         with_thickness(cylinder.getHalfExtentsWithMargin()[axis], cylinder.getRadius()), 0};
       edges = &more_edges();
       for (const float height : {-obstacle.extent.y(), obstacle.extent.y()})
         add_rim(obstacle.extent.x(), height, *edges);
@@ -368,6 +418,7 @@ void BulletObstacles::add_shape(const btCollisionShape& shape, const btTransform
         throw std::runtime_error(std::string("soft bodies cannot touch a shape of the kind ") +
                                  shape.getName() + "; it is neither convex nor made of triangles");
       const Hull& hull = hull_of(static_cast<const btConvexShape&>(shape));
+      if (hull.planes.empty()) return;  // of no points, or of one: it has no size
       obstacle.kind = ObstacleKind::kHull;
       obstacle.planes = hull.planes;
       obstacle.edges = hull.edges;
@@ -398,9 +449,10 @@ const BulletObstacles::Hull& BulletObstacles::hull_of(const btConvexShape& shape
   if (hull.points != points_ || hull.planes.empty()) {
     hull = {};
     std::vector<ObstacleEdge> edges;
+    hull.points = points_;
+    give_volume(points_);
     find_hull(points_, hull.planes, edges);
     add_edges_of_hull(edges, hull.planes, hull.edges);
-    hull.points = points_;
   }
   return hull;
 }

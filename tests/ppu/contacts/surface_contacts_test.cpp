@@ -338,6 +338,17 @@ TEST(SurfaceContacts, KindsOfShapesHoldABody) {
     hull->addPoint(
         btVector3((i & 1) != 0 ? 2.f : -2.f, (i & 2) != 0 ? 0.f : -1.f, (i & 4) != 0 ? 2.f : -2.f));
   shapes.emplace_back("hull", std::move(hull));
+  // Without thickness.
+  auto flat_hull = std::make_unique<btConvexHullShape>();
+  for (int i = 0; i < 4; ++i)
+    flat_hull->addPoint(btVector3((i & 1) != 0 ? 2.f : -2.f, 0, (i & 2) != 0 ? 2.f : -2.f));
+  shapes.emplace_back("flat hull", std::move(flat_hull));
+  auto triangle = std::make_unique<btConvexHullShape>();
+  for (const btVector3& corner : {btVector3(-3, 0, -2), btVector3(3, 0, -2), btVector3(0, 0, 3)})
+    triangle->addPoint(corner);
+  shapes.emplace_back("hull of a triangle", std::move(triangle));
+  shapes.emplace_back("flat box", std::make_unique<btBoxShape>(btVector3(2, 0, 2)));
+  shapes.emplace_back("flat cylinder", std::make_unique<btCylinderShape>(btVector3(2, 0, 2)));
   shapes.emplace_back("capsule", std::make_unique<btCapsuleShapeX>(0.0f + 0.4f, 4));
   shapes.emplace_back("cylinder", std::make_unique<btCylinderShape>(btVector3(1, 0.5f, 1)));
   shapes.emplace_back("sphere", std::make_unique<btSphereShape>(3));
@@ -349,6 +360,19 @@ TEST(SurfaceContacts, KindsOfShapesHoldABody) {
     const SoftBody<3>& body = w.add(cube(0.8f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0, 0.45f, 0});
     w.run(200);
     EXPECT_NEAR(body.centre_of_mass().y(), 0.37f, 0.07f) << kind;
+  }
+}
+
+TEST(SurfaceContacts, HullsWithoutLengthTouchNothing) {
+  for (const int points : {0, 1, 8}) {
+    ContactWorld w;
+    w.add_floor();
+    auto hull = std::make_unique<btConvexHullShape>();
+    for (int i = 0; i < points; ++i) hull->addPoint(btVector3(0.1f, 0, 0));
+    w.add(std::move(hull), 0, {0, 0.3f, 0});
+    const SoftBody<3>& body = w.add(cube(0.8f, 0.1f), settings_of(0.1f, 0.6f, 0.4f), {0, 0.45f, 0});
+    w.run(100);
+    EXPECT_NEAR(body.centre_of_mass().y(), 0.37f, 0.07f) << points;
   }
 }
 
