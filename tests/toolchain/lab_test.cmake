@@ -24,6 +24,7 @@ says(0 "value 1" sh -c "echo 'value __SPU__' | ${gcc} -E -P -U__SPU__ -D__SPU__=
 says(0 "main.o: .*help.h" ${gcc} -MM -I${lab}/spu ${lab}/spu/main.c)
 step("one call for all" ${gcc} -DFACTOR=2 -I${lab}/spu ${lab}/spu/main.c ${lab}/spu/help.c ${lab}/spu/more_help.cpp
   -Wl,-z,stack-size=8192 -o ${lab}/whole)
+says(0 "\nwhole .* 262144\n" ${BIN}/softcell spu budget --checked ${lab}/whole)
 step("a partial link" ${BIN}/softcell-spu-ld -r -o ${lab}/part.o ${lab}/spu/help.o ${lab}/spu/more_help.o)
 step("a link by ld" ${BIN}/softcell-spu-ld -o ${lab}/by_ld ${lab}/spu/main.o ${lab}/part.o -lm)
 says(0 "_end" ${BIN}/softcell-spu-nm ${lab}/by_ld)

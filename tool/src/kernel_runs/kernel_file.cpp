@@ -16,10 +16,10 @@ namespace {
 constexpr std::string_view kSuffix = ".spu.elf";
 constexpr std::string_view kCheckedSuffix = ".checked.spu.elf";
 
-/// The file that holds the flavour asked for.
+/// The file that holds the flavour asked for: one beside it, or itself.
 std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked) {
   const std::string text = file.string();
-  if (!checked || text.ends_with(kCheckedSuffix)) return file;
+  if (!checked || text.ends_with(kCheckedSuffix) || spu_kernels::holds_checked_flavour(file)) return file;
   if (!text.ends_with(kSuffix)) {
     throw std::runtime_error(
         "--checked " + text +
@@ -29,8 +29,9 @@ std::filesystem::path flavour_of(const std::filesystem::path& file, bool checked
   std::filesystem::path neighbour =
       text.substr(0, text.size() - kSuffix.size()) + std::string(kCheckedSuffix);
   if (!std::filesystem::exists(neighbour)) {
-    throw std::runtime_error("there is no checked flavour of " + text + ": " + neighbour.string() +
-                             " does not exist; softcell_add_spu_kernel makes both");
+    throw std::runtime_error(
+        "there is no checked flavour of " + text + ": " + neighbour.string() +
+        " does not exist; softcell_add_spu_kernel makes both, and softcell-spu-gcc a file with both");
   }
   return neighbour;
 }
@@ -59,7 +60,8 @@ bool is_spu_file(const std::filesystem::path& file) {
 
 ls_sim::KernelImage load_any(const std::string& image, bool checked, std::optional<ls_sim::Machine> machine) {
   if (const auto file = find_kernel_file(image, checked)) {
-    ls_sim::KernelImage loaded = spu_kernels::load_kernel_file(*file);
+    const bool is_within = checked && !file->string().ends_with(kCheckedSuffix) && !is_spu_file(*file);
+    ls_sim::KernelImage loaded = spu_kernels::load_kernel_file(*file, is_within);
     if (loaded.machine == ls_sim::Machine::kSpu) loaded.checked = checked;
     return loaded;
   }

@@ -19,8 +19,13 @@ ls_sim::KernelImage load_kernel(std::string_view name, bool checked = false,
 /// A kernel from a file that softcell_add_spu_kernel made: NAME.spu.elf, or NAME.checked.spu.elf for its
 /// checked flavour; or from an executable of a compiler for the SPU, NAME.elf, which the interpreter runs. The
 /// image's name is NAME. Any thread.
+/// @param checked  the flavour that softcell-spu-gcc has put into the file.
 /// @throws std::runtime_error  one sentence that names the file: it cannot be read, it is larger than 256 MB,
-///         or it is no such image.
-ls_sim::KernelImage load_kernel_file(const std::filesystem::path& file);
+///         it is no such image, or it holds no checked flavour.
+ls_sim::KernelImage load_kernel_file(const std::filesystem::path& file, bool checked = false);
+
+/// Whether load_kernel_file() finds a checked flavour in the file itself. Any thread.
+/// @throws std::runtime_error  the file cannot be read, or is larger than 256 MB
+bool holds_checked_flavour(const std::filesystem::path& file);
 
 }  // namespace softcell::spu_kernels
