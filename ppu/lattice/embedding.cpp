@@ -26,9 +26,14 @@ std::vector<PlaceInCell> locate_all(const TriangleMesh& mesh, const Lattice<3>& 
     const auto place = locate(lattice, mesh.positions[v]);
     if (!place) {
       const Eigen::Vector3f& p = mesh.positions[v];
+      const bool is_used = std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
+        return std::ranges::find(triangle, v) != triangle.end();
+      });
       throw std::runtime_error("vertex " + std::to_string(v) + " at (" + std::to_string(p.x()) + ", " +
                                std::to_string(p.y()) + ", " + std::to_string(p.z()) +
-                               ") lies in no cell of the lattice; the lattice must cover the mesh");
+                               ") lies in no cell of the lattice; " +
+                               (is_used ? "the lattice must cover the mesh"
+                                        : "it belongs to no triangle, so leave it out of the mesh"));
     }
     places.push_back(*place);
   }

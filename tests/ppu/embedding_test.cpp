@@ -280,6 +280,28 @@ TEST(Embedding, PutsVerticesOnInnerFacesIntoTheCellAbove) {
   EXPECT_EQ(embedding.groups[0].xi[0], 0.0f);
 }
 
+TEST(Embedding, SaysWhatToDoWithAVertexThatNoTriangleHas) {
+  const Eigen::Vector3i cell(0, 0, 0);
+  const Lattice<3> lattice = lattice_from_cells({&cell, 1}, 1.0f, Vector3f::Zero());
+  TriangleMesh mesh;
+  mesh.positions = {{0.1f, 0.1f, 0.1f}, {0.9f, 0.1f, 0.1f}, {0.1f, 0.9f, 0.1f}, {7, 0, 0}};
+  mesh.normals.assign(4, Vector3f(0, 0, 1));
+  mesh.triangles = {{0, 1, 2}};
+  const auto refusal = [&] {
+    try {
+      embed(mesh, lattice);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_NE(refusal().find("vertex 3 at (7.000000, 0.000000, 0.000000)"), std::string::npos) << refusal();
+  EXPECT_NE(refusal().find("it belongs to no triangle, so leave it out of the mesh"), std::string::npos)
+      << refusal();
+  mesh.triangles = {{0, 1, 3}};
+  EXPECT_NE(refusal().find("the lattice must cover the mesh"), std::string::npos) << refusal();
+}
+
 TEST(Embedding, RefusesAVertexOutsideTheLattice) {
   const Eigen::Vector3i cell(0, 0, 0);
   const Lattice<3> lattice = lattice_from_cells({&cell, 1}, 1.0f, Vector3f::Zero());

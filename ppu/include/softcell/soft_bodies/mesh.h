@@ -25,6 +25,7 @@ struct MeshPart {
 /// An indexed triangle mesh in metres. `normals` has one unit vector per position. Each attribute below
 /// `triangles` is either empty or complete; softcell carries attributes along and does not interpret them.
 struct TriangleMesh {
+  /// Metres. One that belongs to no triangle is skinned with the others, and refused if it lies outside of the lattice.
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
