@@ -17,8 +17,7 @@ struct Settings {
   bool checked = false;    ///< SOFTCELL_CHECKED: 0 or 1
   std::chrono::milliseconds deadline{0};  ///< SOFTCELL_DEADLINE_MS: of one run; 0: none
   std::string trace_file;                 ///< SOFTCELL_TRACE
-  std::string
-      report_file;  ///< SOFTCELL_REPORT: what the run has done, as JSON; "%p" was replaced by the process's number
+  std::string report_file;                ///< SOFTCELL_REPORT, %p replaced: what the run has done, as JSON
 };
 
 /// Reads them. @throws std::runtime_error  one has a value that is not allowed; the message names both.
