@@ -131,6 +131,7 @@ class NativeEngine final : public Engine {
   const native::Environment& environment() const {
     return *reinterpret_cast<const native::Environment*>(local_store_.base());
   }
+  native::Environment& environment() { return *reinterpret_cast<native::Environment*>(local_store_.base()); }
   std::uint32_t stack_limit() const {
     return image_->stack_top - image_->sizes.stack - (job_image_ == nullptr ? 0 : job_image_->sizes.stack);
   }
@@ -217,8 +218,7 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
                             image_->sizes.end - image_->begin - linked_.size());
     }
   }
-  auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
-  environment.mfc_tag_mask = tag_mask_ = 0;
+  environment().mfc_tag_mask = tag_mask_ = 0;
   job_image_ = nullptr;
   job_under_way_ = false;
   context_.entry = arena() + image_->entry;
@@ -318,8 +318,7 @@ std::optional<RunResult> NativeEngine::answer() {
       context_.reply = calls.serve(code, context_.value);
       return std::nullopt;
     }
-    auto& environment = *reinterpret_cast<native::Environment*>(local_store_.base());
-    environment.assist = context_.value;
+    environment().assist = context_.value;
     if (channels_->stop(code, {offsetof(native::Environment, assist)})) return std::nullopt;
     return RunResult{code, std::nullopt, {}};
   }

@@ -22,8 +22,8 @@ struct Environment {
   uint32_t padding;
   // Of a job that a kernel is about to call (see mark_job_begin()).
   uint64_t job_image_ea, job_ea;
-  uint32_t
-      assist;  ///< of the last call of the PPU side (kAssist): its word, which on an SPU is behind the instruction
+  // Of the last call of the PPU side (kAssist): its word, which on an SPU is behind the instruction.
+  uint32_t assist;
   uint32_t reserved[15];
 };
 static_assert(sizeof(Environment) == 128, "what the link script leaves free");

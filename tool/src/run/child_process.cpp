@@ -92,7 +92,8 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   if (!output.empty())
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_TRUNC, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0600);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t usual;
@@ -117,22 +118,6 @@ ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::st
   return {WEXITSTATUS(status), 0};
 }
 
-ScratchFile::ScratchFile() {
-  std::string name = std::filesystem::temp_directory_path() / "softcell-run-XXXXXX";
-  const int file = mkstemp(name.data());
-  if (file < 0)
-    throw std::runtime_error("cannot make the temporary file " + name + ": " + std::strerror(errno));
-  close(file);
-  path_ = name;
-}
-
-ScratchFile::~ScratchFile() {
-  std::error_code ignored;
-  std::filesystem::remove(path_, ignored);
-}
-
-std::string ScratchFile::text() const { return text_of(path_); }
-
 ScratchFolder::ScratchFolder() {
   std::string name = std::filesystem::temp_directory_path() / "softcell-run-XXXXXX";
   if (mkdtemp(name.data()) == nullptr)
@@ -144,6 +129,8 @@ ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }
+
+std::string ScratchFolder::text(const std::string& name) const { return text_of(path_ / name); }
 
 std::vector<std::string> ScratchFolder::texts(const std::string& extension) const {
   std::set<std::filesystem::path> files;

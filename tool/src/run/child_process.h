@@ -16,25 +16,10 @@ struct ChildEnd {
 /// Runs a program and waits for its end. It has the terminal's signals; while it runs, those do not end the caller.
 /// @param words       the program, looked for as a shell does, and its arguments; not empty.
 /// @param variables   are set in its environment; an empty value takes one away.
-/// @param output      receives its standard output; empty: it has the caller's.
+/// @param output      a file that receives its standard output; empty: it has the caller's.
 /// @throws std::runtime_error  it cannot be started; the message says why.
 ChildEnd run_child(const std::vector<std::string>& words, const std::map<std::string, std::string>& variables,
                    const std::filesystem::path& output = {});
-
-/// A file of its own in the folder for temporary files, empty at first, which goes with the object.
-class ScratchFile {
- public:
-  ScratchFile();
-  ~ScratchFile();
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::string text() const;
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A folder of its own among the temporary files, which goes with the object and what is in it.
 class ScratchFolder {
@@ -45,6 +30,8 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  /// Of a file in it; empty if there is none.
+  std::string text(const std::string& name) const;
   /// Of each file in it that ends so (".json"), by the files' names.
   std::vector<std::string> texts(const std::string& extension) const;
 

@@ -64,12 +64,13 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
 
 ProgramRun run_once(const RunOptions& options, bool collect) {
   SC_ASSERT(!options.words.empty(), "a run of no program under {}", options.dma);
-  const ScratchFolder reports;
-  const ScratchFile output;
+  const ScratchFolder folder;
+  const std::string output = "output";
   auto variables = variables_of(options);
-  variables["SOFTCELL_REPORT"] = reports.path() / "%p.json";
-  const ChildEnd end = run_child(options.words, variables, collect ? output.path() : std::filesystem::path());
-  return program_run(end, collect ? output.text() : std::string(), reports.texts(".json"));
+  variables["SOFTCELL_REPORT"] = folder.path() / "%p.json";
+  const ChildEnd end =
+      run_child(options.words, variables, collect ? folder.path() / output : std::filesystem::path());
+  return program_run(end, folder.text(output), folder.texts(".json"));
 }
 
 nlohmann::ordered_json document(const RunOptions& options, const ProgramRun& run) {

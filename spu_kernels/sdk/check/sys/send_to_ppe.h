@@ -2,7 +2,7 @@
 // As newlib for the SPU declares it.
 
 #ifdef __cplusplus
-extern "C"
+extern "C" void __send_to_ppe(int signalcode, int opcode, void* data);
+#else
+void __send_to_ppe(int signalcode, int opcode, void* data);
 #endif
-    void
-    __send_to_ppe(int signalcode, int opcode, void* data);
