@@ -9,7 +9,7 @@
 //   ends      in         FindEnd, 16 bytes           of two bodies     16
 //   begins    in         FindBegin, 16 bytes         of two bodies     16
 //   candid.   in, out    FindCandidate, 8 bytes      <= 448 of a task  16
-//   contacts  out        SolveContact, 176 bytes     <= 256 of a task  16
+//   contacts  out        SolveContact, 176 bytes     <= 256 of a task  16, those of a job beside each other
 //   results   out        FindResult, 16 bytes        1 of a task       16
 //
 // Cells of the two bodies are held against each other by their boxes, four at a time; then points, four at a time, against
@@ -87,6 +87,7 @@ struct alignas(128) LocalStoreMap {
   Part model[2], state[2];
   alignas(128) SolvedContact contacts[kContactBatch];  // found last
   uint32_t contacts_sent;                              // before them
+  uint32_t contacts_most;                              // that the task may have
   uint64_t contacts_ea;                                // of the task
   NearCells near[2];                                   // of a, of b
   uint16_t inverse_of[kInverses];                      // whose it is
@@ -483,7 +484,7 @@ class Contacts {
     const vec_float4 *const p1 = &f1.a, *const p2 = &f2.a, *const p3 = &f3.a;
     for (uint32_t lane = 0; lane < 4; ++lane) {
       if ((left & 8u >> lane) == 0) continue;
-      if (ls.result.count == kFindMaxContacts) return false;
+      if (ls.result.count == ls.contacts_most) return false;
       const PointInCell point = {
           cell,       there,       p_own[lane],
           p_at[lane], p1[lane],    p2[lane],
@@ -775,12 +776,16 @@ bool do_task(const FindTask& task) {
   const BodyInStore b = itself ? a : body_in_store(one_model ? 0 : model_b, state_b, task.b);
   const TaskTerms terms = {task.step, task.inverse_step, task.friction, task.a.spacing};
   ls.result = {0, 0, 0, kFindUnknown};
-  ls.contacts_ea = task.contacts_ea;
   ls.contacts_sent = 0;
-  if (find_between(a, b, task, terms))
+  ls.contacts_most = ls.job.contacts_room < kFindMaxContacts ? ls.job.contacts_room : kFindMaxContacts;
+  if (find_between(a, b, task, terms)) {
     send_contacts();
-  else
-    ls.result = {0, 0, 1, kFindUnknown};
+    ls.contacts_ea += ls.result.count * sizeof(SolvedContact);
+    ls.job.contacts_room -= ls.result.count;
+  } else {
+    const bool is_full = ls.result.count == ls.contacts_most && ls.contacts_most < kFindMaxContacts;
+    ls.result = {0, 0, is_full ? kFindJobIsFull : kFindTooMany, kFindUnknown};
+  }
   return true;
 }
 
@@ -794,6 +799,7 @@ int main(uint64_t, uint64_t argp, uint64_t) {
   ls.under_way = 0;
   mfc_get(&ls.job, argp, sizeof(FindJob), kTagTask, 0, 0);
   wait_for_tag(kTagTask);
+  ls.contacts_ea = ls.job.contacts_ea;
   for (uint32_t first = 0; first < ls.job.task_count; first += kBatch) {
     const uint32_t left = ls.job.task_count - first, count = left < kBatch ? left : kBatch;
     mfc_get(ls.tasks, ls.job.tasks_ea + first * sizeof(FindTask), count * sizeof(FindTask), kTagTask, 0, 0);

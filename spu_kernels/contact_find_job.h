@@ -76,24 +76,29 @@ constexpr uint16_t kFindOfB = 0x8000;
 /// nothing in one body has moved by more than `margin` against anything in the other since they were found.
 struct alignas(128) FindTask {
   FindBody a, b;           ///< the same in all for a body with itself
-  uint64_t contacts_ea;    ///< room for kFindMaxContacts SolveContact
   uint64_t candidates_ea;  ///< room for kFindMaxCandidates FindCandidate; 0: nobody wants them
-  float low[4], high[4];   ///< the box that both bodies' ends have in common; x y z 0
-  float step;              ///< seconds
+  /// How many there are, from a task before, which are taken; kFindUnknown: they are looked for.
+  uint32_t candidate_count;
+  float margin;           ///< metres, 0 or more: of the candidates that are looked for
+  float low[4], high[4];  ///< the box that both bodies' ends have in common; x y z 0
+  float step;             ///< seconds
   float inverse_step;
   float friction;
   uint32_t itself;  ///< not 0: a and b are one body
-  float margin;     ///< metres, 0 or more: of the candidates that are looked for
-  /// How many there are, from a task before, which are taken; kFindUnknown: they are looked for.
-  uint32_t candidate_count;
-  uint32_t pad[10];
+  uint32_t pad[16];
 };
 static_assert(sizeof(FindTask) == 256, "two lines");
 
+enum FindOverflow : uint32_t {
+  kFindNoOverflow = 0,
+  kFindTooMany = 1,    ///< there is no room for all that has to be looked at
+  kFindJobIsFull = 2,  ///< contacts of the job's tasks before have left too little room
+};
+
 struct alignas(16) FindResult {
-  uint32_t count;     ///< contacts
+  uint32_t count;     ///< contacts, behind those of the job's tasks before
   uint32_t pushes;    ///< not 0: one of them at least pushes
-  uint32_t overflow;  ///< not 0: there was no room for all that had to be looked at; then there are none
+  uint32_t overflow;  ///< a FindOverflow; if there is one, there are no contacts
   /// How many there are at candidates_ea; kFindUnknown: the margin was too large, or there are more than fit.
   uint32_t candidate_count;
 };
@@ -126,10 +131,12 @@ inline uint32_t find_bytes(const FindTask& task) {
 
 /// The job's descriptor, one line in main memory.
 struct alignas(128) FindJob {
-  uint64_t tasks_ea;    ///< task_count FindTask
-  uint64_t results_ea;  ///< room for a FindResult of each
-  uint32_t task_count;  ///< any number, 0 included
-  uint32_t pad[27];
+  uint64_t tasks_ea;       ///< task_count FindTask
+  uint64_t results_ea;     ///< room for a FindResult of each
+  uint64_t contacts_ea;    ///< room for contacts_room SolveContact of all tasks
+  uint32_t task_count;     ///< any number, 0 included
+  uint32_t contacts_room;  ///< any number; kFindMaxContacts for each task are enough
+  uint32_t pad[24];
 };
 static_assert(sizeof(FindJob) == 128, "one line");
 

@@ -28,7 +28,7 @@ struct ContactRecord<spu::FindEnd> {
 };
 template <>
 struct ContactRecord<spu::FindTask> {
-  static constexpr dma::ElementRun kRuns[] = {{24, 8}, {40, 4}, {24, 8}, {40, 4}, {16, 8}, {112, 4}};
+  static constexpr dma::ElementRun kRuns[] = {{24, 8}, {40, 4}, {24, 8}, {40, 4}, {8, 8}, {120, 4}};
 };
 template <>
 struct ContactRecord<spu::FindCandidate> {
@@ -40,7 +40,7 @@ struct ContactRecord<spu::FindResult> {
 };
 template <>
 struct ContactRecord<spu::FindJob> {
-  static constexpr dma::ElementRun kRuns[] = {{16, 8}, {112, 4}};
+  static constexpr dma::ElementRun kRuns[] = {{24, 8}, {104, 4}};
 };
 template <>
 struct ContactRecord<spu::SolveVelocity> {

@@ -21,6 +21,8 @@ constexpr std::size_t kQuadsOfBoxes = sizeof(spu::FindBoxes) / sizeof(spu::FindE
 constexpr std::size_t kMostPairs = 4096;  // that are looked at by the SPEs in a step
 constexpr std::size_t kContactsInRoom = 2 * ContactWorker::kMostContacts;  // of one buffer
 constexpr std::size_t kJobsPerSpe = 4;  // of finding: some pairs take longer than others
+// Room for what is found: of up to 512 tasks for all that a task may find, of many more for what bodies in a heap have in common.
+constexpr std::size_t kContactsOfAll = std::size_t{512} * spu::kFindMaxContacts, kLeastContactsOfTask = 48;
 
 /// A chain for so many jobs. @pre the one that is there has ended
 void make_room(JobSystem& jobs, const char* name, std::unique_ptr<JobChain>& chain, std::size_t& most,
@@ -29,6 +31,14 @@ void make_room(JobSystem& jobs, const char* name, std::unique_ptr<JobChain>& cha
   chain.reset();
   most = count + count / 4;
   chain = std::make_unique<JobChain>(jobs, name, most);
+}
+
+/// Room for those that a job of so many tasks finds, of so many in all.
+std::size_t contacts_of_job(std::size_t all_tasks, std::size_t tasks) {
+  constexpr std::size_t kMost = spu::kFindMaxContacts;
+  const std::size_t of_task =
+      std::clamp(kContactsOfAll / std::max<std::size_t>(all_tasks, 1), kLeastContactsOfTask, kMost);
+  return std::max(tasks * of_task, kMost);
 }
 
 spu::SolveVelocity times(float scale, const Vector3f& v, float root = 0) {
@@ -257,11 +267,9 @@ void SpeContacts::find(std::span<const Pair> pairs) {
       parts_.describe(asked.first_part + i, tasks_[asked.first + i].a, tasks_[asked.first + i].b);
   const std::size_t tasks = tasks_.size();
   make_room_for_candidates();
-  make_room(memory_, "contacts found", contacts_, tasks * spu::kFindMaxContacts);
   make_room(memory_, "tasks of finding contacts", find_tasks_, tasks);
   make_room(memory_, "results of finding contacts", results_, tasks);
   for (std::size_t i = 0; i < tasks; ++i) {
-    tasks_[i].contacts_ea = contacts_.ea(i * spu::kFindMaxContacts).value;
     if (tasks_[i].margin > 0) {
       const std::size_t slot = pairs_.known()[known_of_task_[i]].slot;
       tasks_[i].candidates_ea = candidates_.ea(slot * spu::kFindMaxCandidates).value;
@@ -269,17 +277,18 @@ void SpeContacts::find(std::span<const Pair> pairs) {
     find_tasks_[i] = tasks_[i];
   }
   const std::size_t most_jobs = kJobsPerSpe * static_cast<std::size_t>(jobs_.spes());
-  const std::size_t per_job = (tasks + most_jobs - 1) / most_jobs;
-  const std::size_t job_count = tasks == 0 ? 0 : (tasks + per_job - 1) / per_job;
+  tasks_of_job_ = (tasks + most_jobs - 1) / most_jobs;
+  room_of_job_ = contacts_of_job(tasks, tasks_of_job_);
+  const std::size_t job_count = tasks == 0 ? 0 : (tasks + tasks_of_job_ - 1) / tasks_of_job_;
+  make_room(memory_, "contacts found", contacts_, job_count * room_of_job_);
   make_room(memory_, "jobs of finding contacts", find_jobs_, job_count);
   make_room(jobs_, "finding contacts", finding_, most_find_jobs_, std::max<std::size_t>(job_count, 1));
   for (std::size_t j = 0; j < job_count; ++j) {
-    const std::size_t first = j * per_job;
-    find_jobs_[j] = {};
-    find_jobs_[j].tasks_ea = find_tasks_.ea(first).value;
-    find_jobs_[j].results_ea = results_.ea(first).value;
-    find_jobs_[j].task_count = static_cast<std::uint32_t>(std::min(per_job, tasks - first));
-    finding_->add({.image = contact_find_, .argp = find_jobs_.ea(j)});
+    const std::size_t first = j * tasks_of_job_;
+    add_find_job(j, {.task = first,
+                     .tasks = std::min(tasks_of_job_, tasks - first),
+                     .contacts = contacts_.ea(j * room_of_job_),
+                     .room = room_of_job_});
   }
   if (job_count != 0) finding_->kick();
 }
@@ -293,12 +302,55 @@ void SpeContacts::make_room_for_candidates() {
   candidates_ = std::move(more);
 }
 
+/// Tasks for which the others of their jobs have left no room: each in a job of its own. The result must not depend on which tasks share
+/// a job, as that depends on the number of SPEs.
+void SpeContacts::find_again() {
+  const auto is_left = [&](std::size_t task) { return results_[task].overflow == spu::kFindJobIsFull; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tasks_.size(); ++i) count += is_left(i) ? 1 : 0;
+  if (count == 0) return;
+  constexpr std::size_t kRoom = spu::kFindMaxContacts;
+  make_room(memory_, "contacts found again", more_contacts_, count * kRoom);
+  make_room(memory_, "jobs of finding contacts", find_jobs_, count);
+  make_room(jobs_, "finding contacts", finding_, most_find_jobs_, count);
+  std::size_t job = 0;
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    if (!is_left(i)) continue;
+    found_by_task_[i] = more_contacts_.span().subspan(job * kRoom, kRoom);
+    add_find_job(job, {.task = i, .tasks = 1, .contacts = more_contacts_.ea(job * kRoom), .room = kRoom});
+    ++job;
+  }
+  finding_->kick();
+  finding_->wait();
+  check_jobs(*finding_);
+}
+
+void SpeContacts::add_find_job(std::size_t number, const FindPart& part) {
+  spu::FindJob& job = find_jobs_[number];
+  job = {};
+  job.tasks_ea = find_tasks_.ea(part.task).value;
+  job.results_ea = results_.ea(part.task).value;
+  job.contacts_ea = part.contacts.value;
+  job.task_count = static_cast<std::uint32_t>(part.tasks);
+  job.contacts_room = static_cast<std::uint32_t>(part.room);
+  finding_->add({.image = contact_find_, .argp = find_jobs_.ea(number)});
+}
+
 std::span<const FoundContacts> SpeContacts::found() {
   if (finding_->size() != 0) {
     finding_->wait();
     check_jobs(*finding_);
   }
+  found_by_task_.resize(tasks_.size());
+  std::size_t next = 0;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    if (i % tasks_of_job_ == 0) next = i / tasks_of_job_ * room_of_job_;
+    found_by_task_[i] = contacts_.span().subspan(next);
+    next += results_[i].count;
+  }
+  find_again();
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    found_by_task_[i] = found_by_task_[i].first(results_[i].count);
     if (known_of_task_[i] == kWhole) continue;
     CandidatePairs::Known& known = pairs_.known()[known_of_task_[i]];
     known.count = results_[i].candidate_count;
@@ -315,7 +367,7 @@ std::span<const FoundContacts> SpeContacts::found() {
     if (asked.count == 0) continue;
     const spu::FindResult& result = results_[asked.first];
     found.by_caller = result.overflow != 0;
-    found.contacts = contacts_.span().subspan(std::size_t{asked.first} * spu::kFindMaxContacts, result.count);
+    found.contacts = found_by_task_[asked.first];
     found.pushes = result.pushes != 0;
   }
   return found_;
@@ -336,8 +388,7 @@ FoundContacts SpeContacts::found_in_parts(const Asked& asked) {
   found.contacts = room(count);
   auto next = found.contacts.begin();
   for (std::uint32_t i = 0; i < asked.count; ++i) {
-    const std::size_t first = std::size_t{asked.first + i} * spu::kFindMaxContacts;
-    for (spu::SolveContact& contact : contacts_.span().subspan(first, results_[asked.first + i].count)) {
+    for (const spu::SolveContact& contact : found_by_task_[asked.first + i]) {
       *next = contact;
       parts_.restore(asked.first_part + i, *next++);
     }
@@ -379,7 +430,8 @@ dma::EffectiveAddress SpeContacts::ea_of(const spu::SolveContact* contact) const
   const auto within = [&](const dma::Buffer<spu::SolveContact>& buffer) {
     return !buffer.empty() && contact >= buffer.data() && contact < buffer.data() + buffer.size();
   };
-  if (within(contacts_)) return contacts_.ea(static_cast<std::size_t>(contact - contacts_.data()));
+  for (const dma::Buffer<spu::SolveContact>* found : {&contacts_, &more_contacts_})
+    if (within(*found)) return found->ea(static_cast<std::size_t>(contact - found->data()));
   const auto room = std::find_if(rooms_.begin(), rooms_.end(), within);
   SC_ASSERT(room != rooms_.end(), "contacts that are in none of {} buffers", rooms_.size());
   return room->ea(static_cast<std::size_t>(contact - room->data()));

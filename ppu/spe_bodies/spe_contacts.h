@@ -83,6 +83,14 @@ class SpeContacts final : public ContactWorker {
   Asked ask(std::uint32_t a, std::uint32_t b);
   Asked ask_in_parts(const Pair& pair, const spu::FindTask& whole);
   FindParts::Body parts_body(std::uint32_t body) const;
+  /// A job of finding: so many tasks from `task` on, and where their contacts go.
+  struct FindPart {
+    std::size_t task, tasks;
+    dma::EffectiveAddress contacts;
+    std::size_t room;
+  };
+  void add_find_job(std::size_t number, const FindPart& part);
+  void find_again();
   FoundContacts found_in_parts(const Asked& asked);
   dma::EffectiveAddress ea_of(const spu::SolveContact* contact) const;
   dma::EffectiveAddress ea_of(const spu::SolveRigid* rigid) const;
@@ -109,7 +117,8 @@ class SpeContacts final : public ContactWorker {
   dma::Buffer<spu::FindCandidate> candidates_;  // kFindMaxCandidates for each of pairs_.slots()
   dma::Buffer<spu::FindResult> results_;
   dma::Buffer<spu::FindJob> find_jobs_;
-  dma::Buffer<spu::SolveContact> contacts_;            // kFindMaxContacts for each pair
+  dma::Buffer<spu::SolveContact> contacts_;            // room_of_job_ for each job
+  dma::Buffer<spu::SolveContact> more_contacts_;       // kFindMaxContacts for each task of find_again()
   std::vector<dma::Buffer<spu::SolveContact>> rooms_;  // for contacts that others have found
   std::size_t room_ = 0, used_ = 0;                    // the one that is being filled, and how far
   dma::Buffer<spu::SolveRigid> rigids_;
@@ -118,6 +127,8 @@ class SpeContacts final : public ContactWorker {
   std::vector<Asked> asked_;  // of each pair
   std::vector<std::uint32_t>
       known_of_task_;  // which of pairs_.known() a task is about; kWhole: none, as it is a part's
+  std::size_t tasks_of_job_ = 1, room_of_job_ = 0;  // of finding_
+  std::vector<std::span<spu::SolveContact>> found_by_task_;
   std::vector<FoundContacts> found_;
 
   dma::Buffer<spu::SolveTask> solve_tasks_;

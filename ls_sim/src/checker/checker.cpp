@@ -36,11 +36,8 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   SC_ASSERT(image.checked, "image {} is not a checked one", image.name);
   SC_ASSERT(stack.begin <= stack.end && stack.end <= dma::kLocalStoreBytes, "the stack of {} is {} to {}",
             image.name, stack.begin, stack.end);
-  if (image_ != &image) {
-    lines_ = std::make_unique<SourceLines>(image);
-    image_ = &image;
-    padding_ = padding_of(image);
-  }
+  image_ = &image;
+  debug_information_ = &debug_information_of(image);
   objects_.emplace(image, stack);
   last_store_.reset();
   written_.forget_the_last_program();
@@ -53,7 +50,7 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   if (runs_spu_program() && image.stack_top == dma::kLocalStoreBytes)
     written_.mark(dma::kLocalStoreBytes - dma::kQuadwordBytes, dma::kQuadwordBytes);
   stack_overflow_known_ = false;
-  for (const PaddingRange& gap : padding_) written_.mark(gap.lsa, gap.bytes);
+  for (const PaddingRange& gap : debug_information_->padding) written_.mark(gap.lsa, gap.bytes);
   in_flight_.clear();
   tag_mask_ = tags_issued_ = 0;
   is_waiting_ = false;
@@ -61,6 +58,16 @@ void Checker::begin_run(const KernelImage& image, const StackRange& stack) {
   status_unread_.reset();
   reservation_.reset();
   check_fetched_code();
+}
+
+const Checker::DebugInformation& Checker::debug_information_of(const KernelImage& image) {
+  // A program may load images without end.
+  constexpr std::size_t kMostKnown = 64;
+  const void* const file = image.elf.get();
+  if (known_files_.size() == kMostKnown && !known_files_.contains(file)) known_files_.clear();
+  std::unique_ptr<DebugInformation>& known = known_files_[file];
+  if (known == nullptr) known = std::make_unique<DebugInformation>(image);
+  return *known;
 }
 
 // ---- instructions

@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "commands_in_flight.h"
@@ -109,6 +110,14 @@ class Checker final : public ChannelPort, public AccessObserver {
     std::array<std::byte, dma::kQuadwordBytes> before;
   };
 
+  /// What an image's file says of its sources and variables.
+  struct DebugInformation {
+    explicit DebugInformation(const KernelImage& image) : lines(image), padding(padding_of(image)) {}
+    SourceLines lines;
+    std::vector<PaddingRange> padding;
+  };
+  const DebugInformation& debug_information_of(const KernelImage& image);
+
   void check_code(Address instruction);
   void mark_changed_words();
   void check_fetched_code();
@@ -132,15 +141,16 @@ class Checker final : public ChannelPort, public AccessObserver {
   bool runs_spu_program() const { return image_ != nullptr && image_->machine == Machine::kSpu; }
   /// Without debug information, the function.
   std::string place_of(Address instruction) const {
-    const std::string place = lines_->place_of(instruction);
+    const std::string place = debug_information_->lines.place_of(instruction);
     return place.empty() ? function_at(*image_, instruction) : place;
   }
 
   Surroundings to_;
   const KernelImage* image_ = nullptr;
-  std::unique_ptr<SourceLines> lines_;  ///< of image_
+  /// By the image's file, which its lines keep: a job loop changes between images all the time.
+  std::unordered_map<const void*, std::unique_ptr<DebugInformation>> known_files_;
+  const DebugInformation* debug_information_ = nullptr;  ///< of image_
   std::optional<ObjectMap> objects_;
-  std::vector<PaddingRange> padding_;
 
   WrittenBytes written_;
   UnsyncedBytes unsynced_;

@@ -7,7 +7,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "contact_world.h"
@@ -205,6 +207,34 @@ TEST(SpeContacts, BodiesThatTouchAtManyPointsAreLookedAtInParts) {
 }
 
 /// A long body bent until its ends meet.
+TEST(SpeContacts, WhatAHeapHasInCommonIsFoundAlsoWhenJobsHaveNoRoomForIt) {
+  const ContactModel cube(make_soft_body_model(make_box({0.4f, 0.4f, 0.4f}, 0.1f), settings_of(0.2f)));
+  std::vector<PlacedBody> placed;
+  for (int i = 0; i < 64; ++i)
+    placed.emplace_back(cube, 0.0005f * static_cast<float>(i) * Vector3f(1, -1, 1), Vector3f::Zero(), 0.0f);
+  std::vector<ContactBody> bodies;
+  std::vector<ContactWorker::Pair> pairs;
+  for (std::uint32_t a = 0; a < placed.size(); ++a) {
+    bodies.push_back(placed[a].body);
+    for (std::uint32_t b = a + 1; b < placed.size(); ++b) pairs.push_back({a, b});
+  }
+  Worker heap, alone;
+  heap.contacts.begin(bodies, kStep);
+  heap.contacts.find(pairs);
+  const std::span<const FoundContacts> found = heap.contacts.found();
+  std::size_t count = 0;
+  for (const FoundContacts& of_pair : found) count += of_pair.contacts.size();
+  EXPECT_GT(count, 150'000u) << "there is room for 131,072 at first";
+  for (std::size_t p = 0; p < pairs.size(); p += 29) {
+    alone.contacts.begin(bodies, kStep);
+    alone.contacts.find({&pairs[p], 1});
+    const std::span<const spu::SolveContact> expected = alone.contacts.found()[0].contacts;
+    ASSERT_EQ(found[p].contacts.size(), expected.size()) << p;
+    EXPECT_EQ(std::memcmp(found[p].contacts.data(), expected.data(), expected.size_bytes()), 0) << p;
+    EXPECT_FALSE(found[p].by_caller);
+  }
+}
+
 TEST(SpeContacts, ABodyMeetsItself) {
   const ContactModel model(make_soft_body_model(make_box({1.8f, 0.2f, 0.2f}, 0.1f), settings_of(0.1f)));
   PlacedBody ring(model, {0, 0, 0}, {0, 0, 0}, 0);

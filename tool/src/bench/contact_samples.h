@@ -100,7 +100,6 @@ inline void run_contacts(SampleRun& sample, bool solves) {
   }
   std::fill_n(task[0].low, 3, -2.0f);
   std::fill_n(task[0].high, 3, 2.0f);
-  task[0].contacts_ea = contacts.ea().value;
   task[0].candidate_count = spu::kFindUnknown;
   task[0].step = 0.01f;
   task[0].inverse_step = 100;
@@ -108,7 +107,9 @@ inline void run_contacts(SampleRun& sample, bool solves) {
   auto job = ppu::contact_buffer<spu::FindJob>(sample.memory(), "job", 1);
   job[0].tasks_ea = task.ea().value;
   job[0].results_ea = result.ea().value;
+  job[0].contacts_ea = contacts.ea().value;
   job[0].task_count = 1;
+  job[0].contacts_room = spu::kFindMaxContacts;
   sample.run(job.ea());
 }
 
