@@ -96,6 +96,10 @@ void require_job(const ls_sim::KernelImage& image, const ls_sim::KernelImage& lo
   }
 }
 
+dma::Buffer<JobDescriptor> room_for(dma::AddressSpace& memory, const std::string& chain, std::size_t jobs) {
+  return {memory, chain + ": jobs", std::max<std::size_t>(jobs, 1), kDescriptors};
+}
+
 /// Wakes whoever waits for a chain's last line when an SPE writes it.
 class DoneListener final : public dma::ReservationListener {
  public:
@@ -138,6 +142,7 @@ struct JobChain::State {
   void collect();
 
   JobSystem::State& shared;
+  std::string name;
   std::size_t board_slot = 0;
   dma::Buffer<JobDescriptor> descriptors;
   dma::Buffer<ChainDone> done;
@@ -408,10 +413,11 @@ std::vector<ls_sim::SpeStatistics> JobSystem::statistics() const {
 
 int JobSystem::spes() const { return state_->group.spes(); }
 
-JobChain::State::State(JobSystem::State& system, const std::string& name, std::size_t most)
+JobChain::State::State(JobSystem::State& system, const std::string& chain_name, std::size_t most)
     : shared(system),
-      descriptors(system.memory, name + ": jobs", std::max<std::size_t>(most, 1), kDescriptors),
-      done(system.memory, name + ": done", 1, kWords),
+      name(chain_name),
+      descriptors(room_for(system.memory, chain_name, most)),
+      done(system.memory, chain_name + ": done", 1, kWords),
       holder(system.memory.reservations(), &listener),
       most_jobs(most) {
   const std::scoped_lock lock(shared.mutex);
@@ -501,6 +507,16 @@ JobChain::JobChain(JobSystem& system, const std::string& name, std::size_t most_
     : state_(std::make_unique<State>(*system.state_, name, most_jobs)) {}
 
 JobChain::~JobChain() = default;
+
+void JobChain::reserve(std::size_t most_jobs) {
+  State& state = *state_;
+  if (most_jobs <= state.most_jobs) return;
+  state.wait();
+  dma::Buffer<JobDescriptor> more = room_for(state.shared.memory, state.name, most_jobs);
+  std::copy_n(state.descriptors.data(), size(), more.data());
+  state.descriptors = std::move(more);
+  state.most_jobs = most_jobs;
+}
 
 void JobChain::clear() {
   SC_ASSERT(!state_->under_way, "clear() while the chain's {} jobs are under way", size());

@@ -38,9 +38,13 @@ class ObjCheck {
 
  private:
   void statement() {
-    const auto& words = lines_.words();
-    const std::string_view keyword = words[0];
+    const std::string_view keyword = lines_.words()[0];
     if (keyword.starts_with('#')) return;
+    // Names may have a # of their own.
+    const bool is_geometry =
+        keyword == "v" || keyword == "vt" || keyword == "vn" || keyword == "f" || keyword == "fo";
+    const std::span<const std::string_view> words =
+        is_geometry ? before_comment(lines_.words()) : lines_.words();
     if (keyword == "v") {
       // x y z, with a weight, or with a colour
       numbers(words, {3, 4, 6, 7});
@@ -71,20 +75,31 @@ class ObjCheck {
     }
   }
 
-  static std::span<const std::string_view> arguments(const std::vector<std::string_view>& words) {
-    return std::span(words).subspan(1);
-  }
+  using Words = std::span<const std::string_view>;
 
-  void keep(std::string_view keyword, const std::vector<std::string_view>& words) {
+  static Words before_comment(Words words) {
+    const auto comment =
+        std::ranges::find_if(words, [](std::string_view word) { return word.starts_with('#'); });
+    return {words.begin(), comment};
+  }
+  static Words arguments(Words words) { return words.subspan(1); }
+
+  /// In the way that the library reads: it takes .5 for no number.
+  void keep(std::string_view keyword, Words words) {
     contents_.geometry += keyword;
-    for (std::size_t i = 1; i < words.size() && !words[i].starts_with('#'); ++i) {
+    for (std::string_view word : arguments(words)) {
       contents_.geometry += ' ';
-      contents_.geometry += words[i];
+      if (word.starts_with('-') || word.starts_with('+')) {
+        if (word[0] == '-') contents_.geometry += '-';
+        word.remove_prefix(1);
+      }
+      if (word.starts_with('.')) contents_.geometry += '0';
+      contents_.geometry += word;
     }
     contents_.geometry += '\n';
   }
 
-  void numbers(const std::vector<std::string_view>& words, std::initializer_list<std::size_t> allowed) {
+  void numbers(Words words, std::initializer_list<std::size_t> allowed) {
     if (std::find(allowed.begin(), allowed.end(), words.size() - 1) == allowed.end()) {
       lines_.refuse(in_quotes(words[0]) + " is followed by " + std::to_string(words.size() - 1) +
                     " numbers; " + std::to_string(*allowed.begin()) + " were expected");
@@ -92,11 +107,10 @@ class ObjCheck {
     for (std::size_t i = 1; i < words.size(); ++i) lines_.finite_number(words[i]);
   }
 
-  void face(const std::vector<std::string_view>& words) {
-    std::size_t corners = 0;
-    for (std::size_t i = 1; i < words.size() && !words[i].starts_with('#'); ++i, ++corners) corner(words[i]);
+  void face(Words words) {
+    for (const std::string_view word : arguments(words)) corner(word);
     try {
-      add_polygon(contents_, corners, "");
+      add_polygon(contents_, words.size() - 1, "");
     } catch (const std::runtime_error& problem) {
       lines_.refuse(problem.what());
     }

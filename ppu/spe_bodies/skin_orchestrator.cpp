@@ -42,16 +42,6 @@ constexpr dma::BufferOptions kOutput{.spe_access = dma::SpeAccess::kWrite, .elem
 
 }  // namespace
 
-/// The jobs of a frame, as the halves lie in memory: from frame to frame they only change what they point to, until other bodies move
-/// than before.
-struct SkinOrchestrator::Frame {
-  Frame(JobSystem& system, std::size_t jobs)
-      : chain{JobChain(system, "skinning, first half", jobs),
-              JobChain(system, "skinning, second half", jobs)} {}
-  std::array<JobChain, 2> chain;
-  std::array<std::vector<bool>, 2> skins;  ///< of each body: its jobs are in the chain
-};
-
 Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions) {
   SC_ASSERT(!positions.empty(), "a body without particles has no origin");
   Eigen::Vector3f low = positions[0].head<3>(), high = low;
@@ -64,10 +54,19 @@ Eigen::Vector3f skin_origin(std::span<const Eigen::Vector4f> positions) {
 
 SkinOrchestrator::SkinOrchestrator(dma::AddressSpace& memory, JobSystem& jobs,
                                    const ls_sim::KernelImage& skin)
-    : memory_(memory), system_(jobs), skin_(jobs.load(skin)) {}
+    : memory_(memory),
+      skin_(jobs.load(skin)),
+      chains_{JobChain(jobs, "skinning, first half", 1), JobChain(jobs, "skinning, second half", 1)} {}
 
-SkinOrchestrator::~SkinOrchestrator() {
-  frame_.reset();  // which waits, while the bodies' memory is still there
+SkinOrchestrator::~SkinOrchestrator() = default;
+
+/// Bodies have come or gone: nothing of the jobs that were added serves them.
+void SkinOrchestrator::forget_jobs() {
+  for (std::size_t half = 0; half < chains_.size(); ++half) {
+    chains_[half].wait();
+    chains_[half].clear();
+    skins_[half].clear();
+  }
 }
 
 auto SkinOrchestrator::make_body(std::shared_ptr<const Embedding> embedding, std::size_t particles)
@@ -100,7 +99,7 @@ auto SkinOrchestrator::make_body(std::shared_ptr<const Embedding> embedding, std
 
 std::size_t SkinOrchestrator::add(std::shared_ptr<const Embedding> embedding, std::size_t particles) {
   drain();
-  frame_.reset();
+  forget_jobs();
   bodies_.push_back(make_body(std::move(embedding), particles));
   jobs_per_frame_ += bodies_.back()->model->embedding->parts.size();
   return bodies_.size() - 1;
@@ -110,7 +109,7 @@ void SkinOrchestrator::replace(std::size_t body, std::shared_ptr<const Embedding
                                std::size_t particles) {
   SC_ASSERT(body < bodies_.size(), "body {} of {}", body, bodies_.size());
   drain();
-  frame_.reset();
+  forget_jobs();
   std::unique_ptr<Body> other = make_body(std::move(embedding), particles);
   bodies_[body].swap(other);
   jobs_per_frame_ += bodies_[body]->model->embedding->parts.size();
@@ -133,7 +132,7 @@ void SkinOrchestrator::remove(std::size_t body) {
   } catch (...) {
     failure = std::current_exception();
   }
-  frame_.reset();
+  forget_jobs();
   jobs_per_frame_ -= bodies_[body]->model->embedding->parts.size();
   const Model* const model = bodies_[body]->model;
   bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(body));
@@ -176,24 +175,25 @@ bool SkinOrchestrator::write_half(Body& body, std::span<const Eigen::Vector4f> p
 
 /// Of bodies that have moved.
 void SkinOrchestrator::choose_jobs() {
-  if (frame_ == nullptr) frame_ = std::make_unique<Frame>(system_, jobs_per_frame_);
   const auto half = static_cast<std::size_t>(working_);
-  if (frame_->skins[half] == moved_) return;
-  frame_->skins[half] = moved_;
-  JobChain& chain = frame_->chain[half];
+  if (skins_[half] == moved_) return;
+  JobChain& chain = chains_[half];
   chain.clear();
+  skins_[half].clear();
+  chain.reserve(jobs_per_frame_);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (!moved_[b]) continue;
     const auto& descriptors = bodies_[b]->half[half].jobs;
     for (std::size_t i = 0; i < descriptors.size(); ++i)
       chain.add({.image = skin_, .argp = descriptors.ea(i)});
   }
+  skins_[half] = moved_;
 }
 
 /// Null: none is, or there was nothing to do for it.
 JobChain* SkinOrchestrator::chain_under_way() {
   if (!in_flight_) return nullptr;
-  JobChain& chain = frame_->chain[static_cast<std::size_t>(working_)];
+  JobChain& chain = chains_[static_cast<std::size_t>(working_)];
   return chain.size() == 0 ? nullptr : &chain;
 }
 

@@ -7,6 +7,7 @@
 // Positions, job descriptors and vertices exist twice in main memory: the SPEs work on one half while the PPU
 // shows the other.
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -70,7 +71,6 @@ class SkinOrchestrator {
  private:
   struct Model;  // an embedding in main memory
   struct Body;   // a body's two halves
-  struct Frame;  // a chain for each half
 
   std::unique_ptr<Body> make_body(std::shared_ptr<const Embedding> embedding, std::size_t particles);
   void forget_unused(const Model& model);
@@ -78,18 +78,21 @@ class SkinOrchestrator {
   bool collect();
   bool write_half(Body& body, std::span<const Eigen::Vector4f> positions);
   void choose_jobs();
+  void forget_jobs();
 
   dma::AddressSpace& memory_;
-  JobSystem& system_;
   JobImage skin_;
   std::vector<std::unique_ptr<Model>> models_;
   std::vector<std::unique_ptr<Body>> bodies_;
-  std::unique_ptr<Frame> frame_;  // what the SPEs work off; made when the first frame after an add() begins
   std::size_t jobs_per_frame_ = 0;
   std::vector<bool> moved_;  // of each body: its vertices are made in this frame
   bool in_flight_ = false;
   int working_ = 0;  // the half that the SPEs write, or wrote last
   int shown_ = -1;   // the half that is complete
+  /// Of each half, for each body: its jobs are in the half's chain. From frame to frame they only change what they point to, until
+  /// other bodies move than before.
+  std::array<std::vector<bool>, 2> skins_;
+  std::array<JobChain, 2> chains_;  // last: ended before what their jobs work on goes
 };
 
 }  // namespace softcell::ppu

@@ -24,13 +24,10 @@ constexpr std::size_t kJobsPerSpe = 4;  // of finding: some pairs take longer th
 // Room for what is found: of up to 512 tasks for all that a task may find, of many more for what bodies in a heap have in common.
 constexpr std::size_t kContactsOfAll = std::size_t{512} * spu::kFindMaxContacts, kLeastContactsOfTask = 48;
 
-/// A chain for so many jobs. @pre the one that is there has ended
-void make_room(JobSystem& jobs, const char* name, std::unique_ptr<JobChain>& chain, std::size_t& most,
-               std::size_t count) {
-  if (chain != nullptr && count <= most) return chain->clear();
-  chain.reset();
-  most = count + count / 4;
-  chain = std::make_unique<JobChain>(jobs, name, most);
+/// An empty chain for so many jobs. @pre it has ended
+void make_room(JobChain& chain, std::size_t count) {
+  chain.clear();
+  chain.reserve(count + count / 4);
 }
 
 /// Room for those that a job of so many tasks finds, of so many in all.
@@ -53,7 +50,9 @@ SpeContacts::SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const Conta
       contact_find_(jobs.load(kernels.contact_find)),
       contact_solve_(jobs.load(kernels.contact_solve)),
       attachments_(memory, jobs, kernels.attach),
-      parts_(memory) {}
+      parts_(memory),
+      finding_(jobs, "finding contacts", 1),
+      solving_(jobs, "solving contacts", 1) {}
 
 SpeContacts::~SpeContacts() = default;
 
@@ -103,7 +102,7 @@ bool SpeContacts::find_places(std::size_t& state, std::size_t& velocities) {
 }
 
 void SpeContacts::begin(std::span<const ContactBody> bodies, float step) {
-  if (finding_ != nullptr) finding_->wait();  // of a substep that failed before it asked for what was found
+  finding_.wait();  // of a substep that failed before it asked for what was found
   bodies_ = bodies;
   step_ = step;
   room_ = used_ = 0;
@@ -282,7 +281,7 @@ void SpeContacts::find(std::span<const Pair> pairs) {
   const std::size_t job_count = tasks == 0 ? 0 : (tasks + tasks_of_job_ - 1) / tasks_of_job_;
   make_room(memory_, "contacts found", contacts_, job_count * room_of_job_);
   make_room(memory_, "jobs of finding contacts", find_jobs_, job_count);
-  make_room(jobs_, "finding contacts", finding_, most_find_jobs_, std::max<std::size_t>(job_count, 1));
+  make_room(finding_, job_count);
   for (std::size_t j = 0; j < job_count; ++j) {
     const std::size_t first = j * tasks_of_job_;
     add_find_job(j, {.task = first,
@@ -290,7 +289,7 @@ void SpeContacts::find(std::span<const Pair> pairs) {
                      .contacts = contacts_.ea(j * room_of_job_),
                      .room = room_of_job_});
   }
-  if (job_count != 0) finding_->kick();
+  if (job_count != 0) finding_.kick();
 }
 
 /// What is in them stays.
@@ -312,7 +311,7 @@ void SpeContacts::find_again() {
   constexpr std::size_t kRoom = spu::kFindMaxContacts;
   make_room(memory_, "contacts found again", more_contacts_, count * kRoom);
   make_room(memory_, "jobs of finding contacts", find_jobs_, count);
-  make_room(jobs_, "finding contacts", finding_, most_find_jobs_, count);
+  make_room(finding_, count);
   std::size_t job = 0;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     if (!is_left(i)) continue;
@@ -320,9 +319,9 @@ void SpeContacts::find_again() {
     add_find_job(job, {.task = i, .tasks = 1, .contacts = more_contacts_.ea(job * kRoom), .room = kRoom});
     ++job;
   }
-  finding_->kick();
-  finding_->wait();
-  check_jobs(*finding_);
+  finding_.kick();
+  finding_.wait();
+  check_jobs(finding_);
 }
 
 void SpeContacts::add_find_job(std::size_t number, const FindPart& part) {
@@ -333,13 +332,13 @@ void SpeContacts::add_find_job(std::size_t number, const FindPart& part) {
   job.contacts_ea = part.contacts.value;
   job.task_count = static_cast<std::uint32_t>(part.tasks);
   job.contacts_room = static_cast<std::uint32_t>(part.room);
-  finding_->add({.image = contact_find_, .argp = find_jobs_.ea(number)});
+  finding_.add({.image = contact_find_, .argp = find_jobs_.ea(number)});
 }
 
 std::span<const FoundContacts> SpeContacts::found() {
-  if (finding_->size() != 0) {
-    finding_->wait();
-    check_jobs(*finding_);
+  if (finding_.size() != 0) {
+    finding_.wait();
+    check_jobs(finding_);
   }
   found_by_task_.resize(tasks_.size());
   std::size_t next = 0;
@@ -495,16 +494,16 @@ void SpeContacts::solve(const SolveStages& stages) {
   make_room(memory_, "cells to be stiffened", cells_, cells);
   make_room(memory_, "tasks of solving contacts", solve_tasks_, tasks);
   make_room(memory_, "jobs of solving contacts", solve_jobs_, stages.units.size());
-  make_room(jobs_, "solving contacts", solving_, most_solve_jobs_, stages.units.size());
+  make_room(solving_, stages.units.size());
   std::size_t stage = 0;
   for (std::size_t u = 0; u < stages.units.size(); ++u) {
-    for (; stage < stages.stages.size() && stages.stages[stage] == u; ++stage) solving_->sync();
+    for (; stage < stages.stages.size() && stages.stages[stage] == u; ++stage) solving_.sync();
     const std::size_t first = stages.units[u];
     const std::size_t end = u + 1 < stages.units.size() ? stages.units[u + 1] : stages.groups.size();
     if (first == end) continue;
     const auto groups = std::span(stages.groups).subspan(first, end - first);
     if (groups[0].attachments != SolveGroup::kNoAttachments) {
-      solving_->add(attachments_.job(groups[0].attachments, groups[0].ends));
+      solving_.add(attachments_.job(groups[0].attachments, groups[0].ends));
       continue;
     }
     solve_jobs_[u] = {};
@@ -512,11 +511,11 @@ void SpeContacts::solve(const SolveStages& stages) {
     const std::size_t before = tasks_used_;
     for (const SolveGroup& group : groups) write_tasks(group);
     solve_jobs_[u].task_count = static_cast<std::uint32_t>(tasks_used_ - before);
-    solving_->add({.image = contact_solve_, .argp = solve_jobs_.ea(u)});
+    solving_.add({.image = contact_solve_, .argp = solve_jobs_.ea(u)});
   }
-  solving_->kick();
-  solving_->wait();
-  check_jobs(*solving_);
+  solving_.kick();
+  solving_.wait();
+  check_jobs(solving_);
 }
 
 void SpeContacts::take(std::uint32_t body, std::span<Vector3f> velocities, std::span<Vector3f> pushes) const {

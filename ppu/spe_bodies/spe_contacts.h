@@ -32,7 +32,7 @@ struct ContactKernels {
 class SpeContacts final : public ContactWorker {
  public:
   /// `memory` and `jobs` outlive this.
-  /// @throws std::runtime_error  main memory is full.
+  /// It takes two chains. @throws std::runtime_error  main memory is full, or there are too few chains left.
   SpeContacts(dma::AddressSpace& memory, JobSystem& jobs, const ContactKernels& kernels);
   ~SpeContacts() override;
 
@@ -135,8 +135,7 @@ class SpeContacts final : public ContactWorker {
   dma::Buffer<spu::SolveJob> solve_jobs_;
   dma::Buffer<spu::SolveCell> cells_;
   std::size_t cells_used_ = 0, tasks_used_ = 0;
-  std::size_t most_find_jobs_ = 0, most_solve_jobs_ = 0;
-  std::unique_ptr<JobChain> finding_, solving_;  // last: ended before what their jobs work on goes
+  JobChain finding_, solving_;  // last: ended before what their jobs work on goes
 };
 
 }  // namespace softcell::ppu

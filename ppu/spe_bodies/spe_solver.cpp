@@ -141,7 +141,8 @@ SpeSolver<kDimension>::SpeSolver(dma::AddressSpace& memory, JobSystem& jobs,
       jobs_(jobs),
       match_(jobs.load(whole(kernels))),
       match_tiles_(place_tiles(jobs, kernels)),
-      checked_(whole(kernels).checked) {
+      checked_(whole(kernels).checked),
+      chain_(jobs, "soft bodies", 1) {
   if (kernels.strain != nullptr) strain_ = jobs.load(*kernels.strain);
   regroup({});  // a world without soft bodies steps, too
 }
@@ -218,7 +219,7 @@ void SpeSolver<kDimension>::prepare(const std::shared_ptr<const SoftBodyModel<kD
 template <int kDimension>
 void SpeSolver<kDimension>::inherit_state(const Body& whole, const Body& piece,
                                           std::span<const std::uint32_t> particle_of) {
-  SC_ASSERT(!is_stepping_, "a body breaks with {} jobs under way", chain_->size());
+  SC_ASSERT(!is_stepping_, "a body breaks with {} jobs under way", chain_.size());
   if constexpr (kDimension == 3) {  // in two a rotation has a closed form
     const auto rotations_at = [](const Body& body, const Plans& plans, MatchBodies<3>* bodies,
                                  std::size_t number, TiledMemory* tiled) -> std::optional<RegionRotations> {
@@ -323,10 +324,11 @@ void SpeSolver<kDimension>::regroup(std::span<Body* const> bodies) {
     const TiledMemory* const tiled = old != nullptr ? old->tiled.get() : member.tiled.get();
     jobs += 1 + (tiled != nullptr ? tiled->most_jobs() : 1);  // the first is a look
   }
-  auto chain = std::make_unique<JobChain>(jobs_, "soft bodies", jobs);
+  chain_.reserve(jobs);
   for (Member& member : members)
     if (Member* const old = known.find(member)) take_over(member, *old);
-  chain_ = std::move(chain);
+  chain_.wait();  // of a step that was dropped: its jobs work on what goes now
+  chain_.clear();
   groups_ = std::move(groups);
   members_ = std::move(members);
 }
@@ -353,12 +355,12 @@ void SpeSolver<kDimension>::look_at(Member& member) {
     group.looks = std::make_shared<StrainLooks<kDimension>>(memory_, group.model, place_of, places,
                                                             group.members.size());
   if (const auto job = group.looks->job(member.number, body, positions))
-    chain_->add({.image = *strain_, .argp = *job});
+    chain_.add({.image = *strain_, .argp = *job});
 }
 
 template <int kDimension>
 bool SpeSolver<kDimension>::may_break(const Body& body) const {
-  SC_ASSERT(!is_stepping_, "asked whether a body breaks with {} jobs under way", chain_->size());
+  SC_ASSERT(!is_stepping_, "asked whether a body breaks with {} jobs under way", chain_.size());
   const auto member = std::ranges::find(members_, &body, &Member::body);
   return member == members_.end() || !member->stepped || !member->group->looks ||
          member->group->looks->may_break(member->number);
@@ -397,7 +399,7 @@ template <int kDimension>
 void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
   SC_ASSERT(step > 0 && std::isfinite(step), "a time step of {} s", step);
   SC_ASSERT(!is_stepping_, "kick() of {} bodies, with {} jobs of the one before under way", bodies.size(),
-            chain_->size());
+            chain_.size());
   SC_ASSERT(std::ranges::find(bodies, nullptr) == bodies.end(), "one of {} bodies is null", bodies.size());
   if (!knows(bodies)) regroup(bodies);
   step_ = step;
@@ -414,20 +416,20 @@ void SpeSolver<kDimension>::kick(std::span<Body* const> bodies, float step) {
     else
       left_to_ppu_.push_back(member.body);
   }
-  chain_->clear();
+  chain_.clear();
   for (const auto& group : groups_) {
     if (group->awake.empty()) continue;
-    group->bodies->add_jobs(*chain_, match_, group->settings, group->awake,
+    group->bodies->add_jobs(chain_, match_, group->settings, group->awake,
                             bodies_per_job(group->awake.size(), jobs_.spes()));
   }
   for (Member& member : members_)
     if (member.stepped) look_at(member);
   for (const spu::TilePass pass : kTilePasses) {
     for (const Member& member : members_)
-      if (member.stepped && member.tiled) member.tiled->add_jobs(*chain_, match_tiles_, pass);
-    chain_->sync();
+      if (member.stepped && member.tiled) member.tiled->add_jobs(chain_, match_tiles_, pass);
+    chain_.sync();
   }
-  if (chain_->size() != 0) chain_->kick();
+  if (chain_.size() != 0) chain_.kick();
 }
 
 /// Velocities from main memory.
@@ -453,12 +455,12 @@ void SpeSolver<kDimension>::finish() {
   try {
     for (Body* const body : left_to_ppu_) body->pull(step_), body->flow(step_);
   } catch (...) {
-    chain_->wait();  // its jobs work on what the next kick() changes
+    chain_.wait();  // its jobs work on what the next kick() changes
     throw;
   }
-  chain_->wait();
-  if (chain_->size() == 0) return;
-  check_jobs(*chain_);
+  chain_.wait();
+  if (chain_.size() == 0) return;
+  check_jobs(chain_);
   for (const auto& group : groups_) {
     if (!group->awake.empty() && !group->bodies->take_results().empty())
       throw std::runtime_error("a soft body has positions or velocities that are not finite numbers");
@@ -476,12 +478,12 @@ void SpeSolver<kDimension>::finish() {
 template <int kDimension>
 void SpeSolver<kDimension>::drop() {
   is_stepping_ = false;
-  chain_->wait();
+  chain_.wait();
 }
 
 template <int kDimension>
 void SpeSolver<kDimension>::forget(const Body& body) {
-  SC_ASSERT(!is_stepping_, "forget() with {} jobs under way", chain_->size());
+  SC_ASSERT(!is_stepping_, "forget() with {} jobs under way", chain_.size());
   for (const Member& member : members_) {
     if (member.body != &body) continue;
     if (member.group->bodies) member.group->bodies->reset(member.number);

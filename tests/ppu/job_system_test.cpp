@@ -208,6 +208,28 @@ TEST_F(JobSystemTest, AChainIsKickedAgainAndAgain) {
   EXPECT_EQ(lines[2][0], 2002u);
 }
 
+TEST_F(JobSystemTest, AChainGetsMoreRoomAndKeepsItsJobs) {
+  JobSystem jobs(memory_, {.spes = 2}, loop_);
+  auto lines = make_lines(200);
+  const JobImage adds = jobs.load(adds_);
+  std::vector<std::unique_ptr<JobChain>> others;
+  for (std::size_t c = 0; c + 1 < spu::kMaxChains; ++c)
+    others.push_back(std::make_unique<JobChain>(jobs, "other", 1));
+  JobChain chain(jobs, "grows", 2);  // the last for which there is room
+  chain.add({adds, lines.ea(0)});
+  chain.add({adds, lines.ea(1)});
+  EXPECT_THROW(chain.add({adds, lines.ea(2)}), std::length_error);
+  chain.kick();
+  chain.reserve(200);
+  EXPECT_TRUE(chain.finished()) << "it waits for jobs under way";
+  for (std::size_t i = 2; i < lines.size(); ++i) chain.add({adds, lines.ea(i)});
+  chain.reserve(1);
+  EXPECT_EQ(chain.size(), 200u);
+  chain.kick();
+  chain.wait();
+  for (std::size_t i = 0; i < lines.size(); ++i) ASSERT_EQ(lines[i][0], i + (i < 2 ? 2 : 1));
+}
+
 TEST_F(JobSystemTest, ChainsRunBesideEachOther) {
   JobSystem jobs(memory_, {.spes = 4}, loop_);
   auto lines = make_lines(15 * 50);

@@ -117,6 +117,29 @@ TEST(SpeRuntime, CountsTheCyclesOfAPs3) {
   EXPECT_LT(in_kernels, once.cycles) << "the loops take something, too";
 }
 
+TEST(SpeRuntime, WorldsHaveTheirChainsFromTheBeginningAndAreRefusedWhenThereAreNone) {
+  SpeRuntime spes({.spes = 1});
+  std::vector<std::unique_ptr<BulletWorld>> worlds;
+  std::vector<std::unique_ptr<BulletSoftBodies>> bodies;
+  for (int w = 0; w < 5; ++w) {  // of three chains each
+    worlds.push_back(std::make_unique<BulletWorld>());
+    bodies.push_back(std::make_unique<BulletSoftBodies>(worlds.back()->world(), spes));
+  }
+  EXPECT_THROW(SpeSkinner{spes}, std::runtime_error);
+  BulletWorld sixth;
+  EXPECT_THROW(BulletSoftBodies(sixth.world(), spes), std::runtime_error);
+  const auto model = ball();
+  for (int frame = 0; frame < 4; ++frame)  // which need more room for jobs each time
+    for (std::size_t w = 0; w < worlds.size(); ++w) {
+      for (int i = 0; i < 3; ++i)
+        bodies[w]->add(model, {static_cast<float>(i), 2.0f * static_cast<float>(frame), 0});
+      worlds[w]->step(kFrame, 2);
+    }
+  for (const auto& of_world : bodies) EXPECT_EQ(of_world->size(), 12u);
+  for (auto& of_world : bodies) of_world.reset();
+  EXPECT_NO_THROW(BulletSoftBodies(sixth.world(), spes));
+}
+
 TEST(SpeRuntime, CheckedKernelsGiveTheSameBitsAndNoFindings) {
   SpeRuntime plain({.spes = 2}), checked({.spes = 2, .checked = true});
   EXPECT_TRUE(checked.kernel("match").checked);

@@ -108,6 +108,10 @@ class JobChain {
   JobChain(const JobChain&) = delete;
   JobChain& operator=(const JobChain&) = delete;
 
+  /// Makes room for so many jobs, if there is less; those that were added stay. Waits for jobs under way.
+  /// @throws std::runtime_error  main memory is full; then the chain is as it was.
+  void reserve(std::size_t most_jobs);
+
   // The jobs of the next kick(). They stay until clear(), so that a chain can be kicked again. @pre finished()
 
   void clear();  ///< removes all jobs

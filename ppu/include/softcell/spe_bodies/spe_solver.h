@@ -105,8 +105,8 @@ class SpeSolver final : public SoftBodySolver<kDimension> {
   std::mutex preparing_;         // guards prepared_
   std::vector<Place> prepared_;  // that no group has taken yet
   float step_ = 0;
-  bool is_stepping_ = false;         // between kick() and finish() or drop()
-  std::unique_ptr<JobChain> chain_;  // last, so that it has ended before what its jobs work on goes
+  bool is_stepping_ = false;  // between kick() and finish() or drop()
+  JobChain chain_;            // last, so that it has ended before what its jobs work on goes
 };
 
 }  // namespace softcell::ppu
