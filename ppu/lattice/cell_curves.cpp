@@ -1,5 +1,6 @@
 #include "ppu/lattice/cell_curves.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

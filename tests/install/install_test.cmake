@@ -60,6 +60,15 @@ says(1 "softcell has no component 'bodies'; its components are[ \n]+spu,[ \n]+li
   ${CMAKE_COMMAND} -S ${SCRATCH}/wrong -B ${SCRATCH}/wrong/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
   -DCMAKE_CXX_COMPILER=${COMPILER})
 
+# Optional ones that there are not, or that lack a library, are no reason to refuse the others.
+file(WRITE ${SCRATCH}/optional/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(optional LANGUAGES CXX)\n"
+  "set(CMAKE_DISABLE_FIND_PACKAGE_assimp ON)\n"
+  "find_package(softcell REQUIRED COMPONENTS box2d OPTIONAL_COMPONENTS mesh_import bodies render)\n"
+  "foreach(component box2d soft_bodies mesh_import bodies render)\n"
+  "  if(TARGET softcell::\${component} AND softcell_\${component}_FOUND)\n    message(STATUS \"has \${component}\")\n  endif()\nendforeach()\n")
+says(0 "has box2d\n-- has soft_bodies\n-- has render\n" ${CMAKE_COMMAND} -S ${SCRATCH}/optional -B ${SCRATCH}/optional/build -G ${GENERATOR}
+  -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${COMPILER})
+
 # The same by pkg-config, without CMake.
 set(ENV{PKG_CONFIG_PATH} ${prefix}/lib/pkgconfig)
 function(pkg_config_builds program source)

@@ -5,6 +5,7 @@
 #include <turbojpeg.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <filesystem>

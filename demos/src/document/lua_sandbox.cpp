@@ -133,6 +133,42 @@ class Sandbox {
     return 0;
   }
 
+  /// Tables and functions are written as their type here: as an address, which Lua writes, they would differ from run to run.
+  static bool has_only_an_address(lua_State* state, int index) {
+    const int type = lua_type(state, index);
+    return type == LUA_TTABLE || type == LUA_TFUNCTION || type == LUA_TUSERDATA ||
+           type == LUA_TLIGHTUSERDATA || type == LUA_TTHREAD;
+  }
+
+  static int to_string(lua_State* state) {
+    luaL_checkany(state, 1);
+    if (has_only_an_address(state, 1))
+      lua_pushstring(state, luaL_typename(state, 1));
+    else
+      luaL_tolstring(state, 1, nullptr);
+    return 1;
+  }
+
+  /// string.format. Upvalue: Lua's own.
+  static int format(lua_State* state) {
+    for (const char* c = luaL_checkstring(state, 1); *c != '\0'; ++c) {
+      if (*c != '%') continue;
+      c += 1 + std::strspn(c + 1, "-+ #0123456789.");
+      if (*c == 'p') return luaL_argerror(state, 1, "%p is an address, which differs from run to run");
+      if (*c == '\0') break;
+    }
+    for (int i = 2; i <= lua_gettop(state); ++i) {
+      if (!has_only_an_address(state, i)) continue;
+      lua_pushstring(state, luaL_typename(state, i));
+      lua_replace(state, i);
+    }
+    const int arguments = lua_gettop(state);
+    lua_pushvalue(state, lua_upvalueindex(1));
+    lua_insert(state, 1);
+    lua_call(state, arguments, 1);
+    return 1;
+  }
+
   /// Opens the libraries and leaves only what is allowed, also to methods of texts.
   void open_libraries() {
     const auto open = [&](const Library& library) {
@@ -143,9 +179,16 @@ class Sandbox {
     for (const Library& library : kLibraries) open(library);
     seed_random();
     push_allowed(kBaseLibrary);  // the new globals
+    lua_pushcfunction(state_, to_string);
+    lua_setfield(state_, -2, "tostring");
     for (const Library& library : kLibraries) {
       push_allowed(library);
-      if (library.open == luaopen_string) make_methods_of_texts();
+      if (library.open == luaopen_string) {
+        lua_getfield(state_, -1, "format");
+        lua_pushcclosure(state_, format, 1);
+        lua_setfield(state_, -2, "format");
+        make_methods_of_texts();
+      }
       if (library.open == luaopen_table) {
         lua_pushcfunction(state_, insert);
         lua_setfield(state_, -2, "insert");
