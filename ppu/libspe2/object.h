@@ -48,6 +48,7 @@ struct spe_context {
   struct Registers {
     softcell::dma::MfcCommand command;
     unsigned int query_mask = 0;
+    std::uint32_t spu_status = 0;  ///< of the last stop
   };
 
   std::mutex mutex;  ///< guards all below

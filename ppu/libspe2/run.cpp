@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "callbacks.h"
 #include "libspe2.h"
@@ -30,6 +31,7 @@ namespace {
 /// Stops that nobody has read: as many as fit into the pipe that the original keeps them in; then the oldest is lost.
 constexpr std::size_t kMostStops = 65536 / sizeof(spe_stop_info_t);
 constexpr unsigned int kRunFlags = SPE_RUN_USER_REGS | SPE_NO_CALLBACKS;
+constexpr int kNoHandler = -1;                // what a call without a handler has failed with
 constexpr std::uint32_t kCallnumMask = 0xFF;  // [libspe2, newlib] documented
 constexpr int kStatusStopped = 0x2, kStatusHalted = 0x4,
               kStatusCodeShift = 16;  // SPU_Status [CBEA] documented
@@ -54,11 +56,11 @@ Outcome failure(unsigned int reason, int what, int spu_status, int error) {
 Outcome outcome_of(const Fault& fault) {
   switch (fault.rule) {
     case Rule::kKernelHalt:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_HALT, kStatusHalted, EIO);
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_HALT, kStatusHalted, EFAULT);
     case Rule::kIllegalInstruction:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_INSTR, SPE_SPU_INVALID_INSTR, EIO);
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_INSTR, SPE_SPU_INVALID_INSTR, EFAULT);
     case Rule::kIllegalChannel:
-      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_CHANNEL, SPE_SPU_INVALID_CHANNEL, EIO);
+      return failure(SPE_RUNTIME_ERROR, SPE_SPU_INVALID_CHANNEL, SPE_SPU_INVALID_CHANNEL, EFAULT);
     case Rule::kLsaAlignment:
     case Rule::kEaAlignment:
     case Rule::kLowBitsDiffer:
@@ -115,14 +117,21 @@ EntryArguments arguments_of(spe_context_ptr_t spe, unsigned int flags, void* arg
 }
 
 /// Calls the PPU side as long as the program asks for it.
-/// @return  what no callback answers, or the failure of one.
+/// @return  the first stop that is no call, or the failure of a call.
 Outcome answer_calls(spe_context& context, ContextStop& stop, bool callbacks) {
   for (;;) {
     const std::uint32_t code = stop.result.stop_code;
     const bool asks = stop.goes_on && (code & ~kCallnumMask) == kAssistedCalls;
-    auto* const callback = asks && callbacks ? softcell::libspe2::callback_of(code & kCallnumMask) : nullptr;
-    if (callback == nullptr) return outcome_of(stop.result);
-    if (const int result = callback(context.problem_state().local_store().data(), stop.assist.value)) {
+    if (!asks || !callbacks) return outcome_of(stop.result);
+    const std::uint32_t callnum = code & kCallnumMask;
+    auto* const callback = softcell::libspe2::callback_of(callnum);
+    if (callback == nullptr)
+      Machine::complain("an SPE program calls the PPU side by number " + std::to_string(callnum) +
+                        ", for which spe_callback_handler_register() has registered no handler");
+    const int result = callback == nullptr
+                           ? kNoHandler
+                           : callback(context.problem_state().local_store().data(), stop.assist.value);
+    if (result != 0) {
       return failure(SPE_CALLBACK_ERROR, result, static_cast<int>(code << kStatusCodeShift) | kStatusStopped,
                      EFAULT);
     }
@@ -166,6 +175,9 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
   {
     const std::lock_guard lock(context.mutex);
     context.goes_on = stop->goes_on;
+    // Whoever asks for a command that the MFC cannot execute does not stop by itself.
+    context.registers.spu_status =
+        outcome.info.spu_status < 0 ? 0 : static_cast<std::uint32_t>(outcome.info.spu_status);
     context.next_entry = stop->next.value;
     if ((context.flags & SPE_EVENTS_ENABLE) != 0) {
       if (context.stops.size() == kMostStops) context.stops.pop_front();
