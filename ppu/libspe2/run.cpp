@@ -113,7 +113,9 @@ EntryArguments arguments_of(spe_context_ptr_t spe, unsigned int flags, void* arg
   }
   std::array<std::uint64_t, 6> registers;  // three quadwords; an argument is the first half of its own
   std::memcpy(registers.data(), argp, sizeof registers);
-  return {.spe_id = registers[0], .argp = registers[2], .envp = registers[4]};
+  EntryArguments arguments{.spe_id = registers[0], .argp = registers[2], .envp = registers[4]};
+  std::memcpy(arguments.registers.emplace().data(), argp, sizeof registers);
+  return arguments;
 }
 
 /// Calls the PPU side as long as the program asks for it.

@@ -226,6 +226,16 @@ void NativeEngine::prepare(const EntryArguments& arguments) {
   context_.arguments[1] = arguments.argp;
   context_.arguments[2] = arguments.envp;
   context_.arguments[3] = arguments.fourth;
+  for (std::size_t i = 0; i < std::size(context_.vectors); ++i) {
+    auto& words = context_.vectors[i];
+    if (arguments.registers) {
+      std::copy_n(arguments.registers->begin() + 4 * static_cast<std::ptrdiff_t>(i), 4, words);
+    } else {  // a number of 64 bits is in the first two words, the upper half first
+      words[0] = static_cast<std::uint32_t>(context_.arguments[i] >> 32);
+      words[1] = static_cast<std::uint32_t>(context_.arguments[i]);
+      words[2] = words[3] = 0;
+    }
+  }
   context_.interrupted = 0;
   context_.stepping = 0;
   context_.trap = {};

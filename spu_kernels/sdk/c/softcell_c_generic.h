@@ -306,6 +306,7 @@ SC_C_SPLAT(vec_double2, double)
 #define SC_C_CASES_COMPARED(f) SC_C_CASES_8_16_32(f), SC_C_CASES_REAL(f)
 #define spu_cmpeq(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpeq, a, b)
 #define spu_cmpgt(a, b) SC_C_CALL2_LIKE(SC_C_CASES_COMPARED, cmpgt, a, b)
+#define spu_testsv(a, kinds) (softcell_c_testsv_vec_double2((a), SC_C_CONSTANT(kinds, 0, 0x7F)))
 #define spu_cmpabseq(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabseq, a, b)
 #define spu_cmpabsgt(a, b) SC_C_CALL2(SC_C_CASES_REAL, cmpabsgt, a, b)
 SC_C_INLINE void softcell_halt_if(int condition) {

@@ -121,22 +121,26 @@ SC_SDK_INLINE vec_ullong2 spu_cmpabsgt(vec_double2 a_, vec_double2 b_) {
 
 namespace softcell_sdk {
 
-template <int Kinds>
-SC_SDK_INLINE vec_ullong2 test_special_value(vec_double2 a_) {
-  static_assert(Kinds >= 0 && Kinds <= 0x7F, "spu_testsv takes a sum of SPU_SV_ constants, 0 to 127");
+/// The kinds as a number, for C.
+SC_SDK_INLINE vec_ullong2 special_values(vec_double2 a_, int kinds) {
   const Raw<long long> magnitude = (Raw<long long>)a_.raw & INT64_MAX;
   const Raw<long long> negative = (Raw<long long>)a_.raw < 0;
   const Raw<long long> infinity = magnitude == 0x7FF0000000000000, nan = magnitude > 0x7FF0000000000000;
   const Raw<long long> zero = magnitude == 0, denormal = ~zero & (magnitude < 0x0010000000000000);
   Raw<long long> found{};
-  if constexpr ((Kinds & SPU_SV_NEG_DENORM) != 0) found |= denormal & negative;
-  if constexpr ((Kinds & SPU_SV_POS_DENORM) != 0) found |= denormal & ~negative;
-  if constexpr ((Kinds & SPU_SV_NEG_ZERO) != 0) found |= zero & negative;
-  if constexpr ((Kinds & SPU_SV_POS_ZERO) != 0) found |= zero & ~negative;
-  if constexpr ((Kinds & SPU_SV_NEG_INFINITY) != 0) found |= infinity & negative;
-  if constexpr ((Kinds & SPU_SV_POS_INFINITY) != 0) found |= infinity & ~negative;
-  if constexpr ((Kinds & SPU_SV_NAN) != 0) found |= nan;
+  if ((kinds & SPU_SV_NEG_DENORM) != 0) found |= denormal & negative;
+  if ((kinds & SPU_SV_POS_DENORM) != 0) found |= denormal & ~negative;
+  if ((kinds & SPU_SV_NEG_ZERO) != 0) found |= zero & negative;
+  if ((kinds & SPU_SV_POS_ZERO) != 0) found |= zero & ~negative;
+  if ((kinds & SPU_SV_NEG_INFINITY) != 0) found |= infinity & negative;
+  if ((kinds & SPU_SV_POS_INFINITY) != 0) found |= infinity & ~negative;
+  if ((kinds & SPU_SV_NAN) != 0) found |= nan;
   return make<vec_ullong2>(found);
+}
+template <int Kinds>
+SC_SDK_INLINE vec_ullong2 test_special_value(vec_double2 a_) {
+  static_assert(Kinds >= 0 && Kinds <= 0x7F, "spu_testsv takes a sum of SPU_SV_ constants, 0 to 127");
+  return special_values(a_, Kinds);
 }
 
 }  // namespace softcell_sdk

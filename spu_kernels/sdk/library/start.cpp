@@ -13,15 +13,18 @@ using Function = void();
 extern Function* const softcell_constructors[] __attribute__((visibility("hidden")));
 extern Function* const softcell_constructors_end[] __attribute__((visibility("hidden")));
 
-/// The program's main, whatever its parameters: what it does not take is left alone.
-int softcell_main(uint64_t, uint64_t, uint64_t, uint64_t) __attribute__((visibility("hidden")));
+/// The program's main, whatever its parameters: what it does not take is left alone. Numbers and vectors come in registers of different kinds.
+using Words = softcell_sdk::Raw<unsigned int>;
+int softcell_main(uint64_t, uint64_t, uint64_t, uint64_t, Words, Words, Words)
+    __attribute__((visibility("hidden")));
 
 /// Where the image is entered.
-int softcell_start(uint64_t first, uint64_t second, uint64_t third, uint64_t fourth) {
+int softcell_start(uint64_t first, uint64_t second, uint64_t third, uint64_t fourth, Words one, Words two,
+                   Words three) {
   for (Function* const* constructor = softcell_constructors; constructor != softcell_constructors_end;
        ++constructor)
     (*constructor)();
-  exit(softcell_main(first, second, third, fourth));
+  exit(softcell_main(first, second, third, fourth, one, two, three));
 }
 
 // What is to be called when the program ends: the last first.
