@@ -20,6 +20,7 @@ using softcell::dma::Fault;
 using softcell::dma::Rule;
 using softcell::libspe2::fail;
 using softcell::libspe2::Machine;
+using softcell::libspe2::Waits;
 using softcell::libspe2::with_context;
 using softcell::ls_sim::ContextStop;
 using softcell::ls_sim::EntryArguments;
@@ -197,7 +198,7 @@ int run(spe_context_ptr_t spe, spe_context& context, unsigned int* entry, unsign
 
 int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int runflags, void* argp, void* envp,
                     spe_stop_info_t* stopinfo) {
-  return with_context(spe, [&](spe_context& context) {
+  const auto work = [&](spe_context& context) {
     if (entry == nullptr || (runflags & ~kRunFlags) != 0) return fail(EINVAL);
     if ((runflags & SPE_RUN_USER_REGS) != 0 && argp == nullptr) return fail(EINVAL);
     if (context.busy.exchange(true)) return fail(EBUSY);
@@ -207,7 +208,8 @@ int spe_context_run(spe_context_ptr_t spe, unsigned int* entry, unsigned int run
     };
     const Release release{context.busy};
     return run(spe, context, entry, runflags, argp, envp, stopinfo);
-  });
+  };
+  return with_context(spe, work, Waits::kForARun);
 }
 
 int spe_stop_info_read(spe_context_ptr_t spe, spe_stop_info_t* stopinfo) {
