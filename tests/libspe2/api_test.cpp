@@ -429,7 +429,8 @@ TEST(SpeProxyDma, MovesBytesAndTellsRules) {
     EXPECT_FAILS(issue(context, 0x1000, from.data(), 17, 1, 0, 0), EINVAL);
     EXPECT_FAILS(issue(context, 0x1000, nullptr, 16, 1, 0, 0), EINVAL);
     EXPECT_FAILS(issue(context, 0x1000, from.data(), 16, 32, 0, 0), EINVAL);
-    EXPECT_NE(testing::internal::GetCapturedStderr().find("size-not-legal"), std::string::npos);
+    const std::string message = testing::internal::GetCapturedStderr();
+    EXPECT_NE(message.find("proxy command of the PPU side: size-not-legal"), std::string::npos) << message;
     EXPECT_FAILS(issue(gone(), 0x1000, from.data(), 16, 1, 0, 0), ESRCH);
   }
 }

@@ -30,7 +30,7 @@
 #define SC_PROGRAMS(X)                                                                  \
   X(vectors) X(language) X(library) X(jumps) X(fails) X(maths) X(counts) X(files)       \
   X(calendar) X(text_numbers) X(characters) X(doubles) X(shared_words) X(prints) X(simd) \
-  X(statics) X(objects) X(destroys) X(no_parameters)
+  X(traps) X(statics) X(objects) X(destroys) X(no_parameters)
 // clang-format on
 extern "C" {
 #define SC_DECLARE(name)                                                                         \
@@ -128,6 +128,21 @@ TEST(Program, IsNamedByItsOwnLineWhenItFails) {
   const Ended ended = run("maths", program("maths").plain);  // which fetches its work from address 2
   ASSERT_TRUE(ended.result.fault);
   EXPECT_TRUE(ended.result.fault->place.starts_with("maths.c:")) << ended.result.fault->message();
+}
+
+TEST(Program, IsToldWhatItDidWhenTheProcessorStopsIt) {
+  const struct {
+    std::uint64_t how;
+    const char *place, *message;
+  } cases[] = {{1, "traps.c:10", "the smallest integer by -1"},
+               {2, "traps.c:11", "jumped to address 0x00000, by a null pointer to a function"},
+               {3, "traps.c:12", "read from address 0x00000, by a null pointer"}};
+  for (const auto& [how, place, message] : cases) {
+    const Ended ended = run("traps", program("traps").plain, EntryArguments{.argp = how});
+    ASSERT_TRUE(ended.result.fault) << how;
+    EXPECT_EQ(ended.result.fault->place, place) << ended.result.fault->message();
+    EXPECT_NE(ended.result.fault->detail.find(message), std::string::npos) << ended.result.fault->message();
+  }
 }
 
 TEST(Program, EndsItsStaticObjectsTheLastFirst) {
