@@ -47,6 +47,8 @@ says(1 "wrong.c:1:25: error: [^\n]*undeclared" ${gcc} -c ${lab}/wrong.c -o ${lab
 if(EXISTS ${lab}/wrong.o)
   message(FATAL_ERROR "an object was written of a source with an error")
 endif()
+file(WRITE ${lab}/fpscr.c "#include <spu_intrinsics.h>\nint main(void) { return (int)spu_extract(spu_mffpscr(), 0); }\n")
+says(1 "fpscr.c:2:[0-9]+: error: [^\n]*FPSCR is not modelled on the host" ${gcc} -c ${lab}/fpscr.c -o ${lab}/fpscr.o)
 file(WRITE ${lab}/large.c "static char bytes[262144]; int main(void) { bytes[1] = 1; return bytes[2]; }\n")
 says(1 "does not fit into the local store: code and data take 262[0-9]+ bytes and the stack 4096, [0-9]+ more than its 262144\n$" ${gcc} ${lab}/large.c -o ${lab}/large)
 says(1 "and the stack 262144, [0-9]+ more" ${gcc} ${lab}/spu/main.o ${lab}/part.o -Wl,-z,stack-size=262144 -o ${lab}/large)

@@ -37,7 +37,7 @@ def failure_of(command) -> str:
 def main() -> int:
     sdk, spu_gcc, spu_gxx, *check = sys.argv[1:]
     library = pathlib.Path(sdk, "library/include")
-    headers = ["spu_intrinsics.h", "spu_mfcio.h", "sys/send_to_ppe.h"]
+    headers = ["spu_intrinsics.h", "spu_internals.h", "spu_mfcio.h", "sys/send_to_ppe.h"]
     failures = []
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)

@@ -386,4 +386,18 @@ SC_C_INLINE void softcell_halt_if(int condition) {
 #define spu_idisable() __asm__ volatile("" ::: "memory")
 #define __align_hint(pointer, base, offset) ((void)(pointer))
 
+/* What compiles on an SPU and has no meaning here is refused where it is used, with the reason. */
+__attribute__((error(
+    "FPSCR is not modelled on the host: doubles round to nearest, and there are no sticky flags"))) vec_uint4
+softcell_no_fpscr(void);
+__attribute__((error("special purpose registers are not modelled on the host"))) unsigned int
+softcell_no_special_register(void);
+__attribute__((error("interrupts are not modelled on the host: wait on SPU_RdEventStat instead"))) void
+softcell_no_interrupts(void);
+#define spu_ienable() softcell_no_interrupts()
+#define spu_mffpscr() softcell_no_fpscr()
+#define spu_mtfpscr(value) ((void)(value), (void)softcell_no_fpscr())
+#define spu_mfspr(number) softcell_no_special_register()
+#define spu_mtspr(number, value) ((void)(value), (void)softcell_no_special_register())
+
 #endif
